@@ -1,0 +1,72 @@
+# rpc_add_test(<package> <name> [LABEL unit] [NP 1 2 3] [SOURCES extra.cpp] [LIBRARIES libs] [TIMEOUT seconds])
+# One executable <package>_<name>_test from <name>_test.cpp, with the common main of test/support, linked to rpc::<package>
+# where there is such a target; one CTest entry <package>.<name>.np<k> per number of ranks.
+# LABEL is unit, verification, regression or performance.
+find_package(GTest QUIET)
+rpc_require("GoogleTest" libgtest-dev GTest_FOUND)
+
+set(RPC_TEST_THREADS 1 CACHE STRING "OpenMP threads per rank in tests")
+
+add_library(rpc_test_main OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/test/support/gtest_main.cpp)
+target_compile_features(rpc_test_main PUBLIC cxx_std_17)
+target_link_libraries(rpc_test_main PUBLIC rpc::trilinos GTest::gtest)
+
+# More ranks than cores, and root in a container: Open MPI refuses both unless told.
+set(rpc_test_environment
+    OMP_NUM_THREADS=${RPC_TEST_THREADS}
+    OMP_PROC_BIND=false
+    OMPI_ALLOW_RUN_AS_ROOT=1
+    OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    OMPI_MCA_rmaps_base_oversubscribe=1
+    OMPI_MCA_btl_vader_single_copy_mechanism=none) # containers forbid it, with an error message per message sent
+set(rpc_mpiexec_flags)
+if(RPC_TRILINOS_HAS_MPI)
+  execute_process(COMMAND ${MPIEXEC_EXECUTABLE} --version OUTPUT_VARIABLE version ERROR_QUIET)
+  if(version MATCHES "Open ?MPI|OpenRTE")
+    set(rpc_mpiexec_flags --oversubscribe --bind-to none) # bound ranks of tests that run side by side share one core
+  endif()
+endif()
+
+# rpc_add_run_test(<name> <np> LABEL label TIMEOUT seconds COMMAND target args...): the CTest entry <name>.np<np> that runs an
+# executable target, through mpiexec for np > 1; none then where Trilinos has no MPI.
+function(rpc_add_run_test name np)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "LABEL;TIMEOUT" "COMMAND")
+  if(np GREATER 1 AND NOT RPC_TRILINOS_HAS_MPI)
+    return()
+  endif()
+  if(NOT arg_LABEL MATCHES "^(unit|verification|regression|performance|stress)$")
+    message(FATAL_ERROR "test ${name}: LABEL must be one of unit, verification, regression, performance, stress, got ${arg_LABEL}")
+  endif()
+  set(launch)
+  if(np GREATER 1)
+    set(launch ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${np} ${rpc_mpiexec_flags})
+  endif()
+  list(POP_FRONT arg_COMMAND target)
+  add_test(NAME ${name}.np${np} COMMAND ${launch} $<TARGET_FILE:${target}> ${arg_COMMAND})
+  math(EXPR processors "${np} * ${RPC_TEST_THREADS}")
+  set_tests_properties(${name}.np${np} PROPERTIES LABELS ${arg_LABEL} PROCESSORS ${processors} TIMEOUT ${arg_TIMEOUT}
+                       ENVIRONMENT "${rpc_test_environment}")
+endfunction()
+
+function(rpc_add_test package name)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "LABEL;TIMEOUT" "NP;SOURCES;LIBRARIES")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "rpc_add_test(${package} ${name}): unknown argument ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  foreach(default IN ITEMS LABEL=unit TIMEOUT=120 NP=1)
+    string(REGEX MATCH "^(.*)=(.*)$" default ${default})
+    if(NOT arg_${CMAKE_MATCH_1})
+      set(arg_${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
+    endif()
+  endforeach()
+  if(TARGET rpc::${package})
+    list(PREPEND arg_LIBRARIES rpc::${package})
+  endif()
+  set(target ${package}_${name}_test)
+  add_executable(${target} ${name}_test.cpp ${arg_SOURCES})
+  target_compile_options(${target} PRIVATE -Wall -Wextra)
+  target_link_libraries(${target} PRIVATE rpc_test_main ${arg_LIBRARIES})
+  foreach(np IN LISTS arg_NP)
+    rpc_add_run_test(${package}.${name} ${np} LABEL ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} COMMAND ${target})
+  endforeach()
+endfunction()

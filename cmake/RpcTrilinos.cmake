@@ -1,0 +1,75 @@
+# The target rpc::trilinos: all that this project uses of Trilinos. Trilinos 13.2 exports variables instead of usable targets
+# (its own lack the include folders), and nothing outside this file needs to know. Also installed, for rpcConfig.cmake.
+# Sets RPC_TRILINOS_HAS_MPI, and FindMPI's MPIEXEC_EXECUTABLE where there is MPI.
+include_guard()
+
+set(CMAKE_CXX_EXTENSIONS OFF) # KokkosConfig.cmake warns otherwise
+# Only the packages in use and what they pull in: a full Trilinos costs link time, and Debian may have but a part installed.
+set(rpc_packages Teuchos Kokkos KokkosKernels Tpetra Xpetra Belos Amesos2 Ifpack2 MueLu NOX)
+# Zoltan2 repartitions MueLu's coarse levels; Intrepid2 gives tests their reference values.
+find_package(Trilinos 13.2 QUIET COMPONENTS ${rpc_packages} OPTIONAL_COMPONENTS Zoltan2 Intrepid2)
+if(NOT Trilinos_DIR)
+  message(FATAL_ERROR "Trilinos 13.2 or newer was not found. On Debian: bash cmake/install_packages.sh (or apt-get install "
+                      "trilinos-all-dev); elsewhere: -DTrilinos_ROOT=<install prefix>.")
+endif()
+foreach(package IN LISTS rpc_packages)
+  if(NOT Trilinos_${package}_FOUND)
+    message(FATAL_ERROR "Trilinos in ${Trilinos_DIR} lacks the package ${package}, which rpc needs.")
+  endif()
+endforeach()
+
+set(RPC_TRILINOS_HAS_MPI OFF)
+if(MPI IN_LIST Trilinos_TPL_LIST)
+  set(RPC_TRILINOS_HAS_MPI ON)
+  find_package(MPI QUIET COMPONENTS CXX) # adds nothing when the compiler is the MPI wrapper
+  if(NOT MPI_CXX_FOUND)
+    message(FATAL_ERROR "Trilinos was built with MPI, which was not found. On Debian: apt-get install libopenmpi-dev openmpi-bin.")
+  endif()
+endif()
+
+# Debian's Trilinos names folders and libraries of -dev packages that it does not depend on (scotch); a shared library needs none.
+function(rpc_drop_missing_files list)
+  set(kept)
+  foreach(item IN LISTS ${list})
+    if(NOT IS_ABSOLUTE "${item}" OR EXISTS "${item}")
+      list(APPEND kept ${item})
+    endif()
+  endforeach()
+  set(${list} ${kept} PARENT_SCOPE)
+endfunction()
+
+# Headers of others do not warn. A folder that the compiler searches anyway must not become -isystem: it would come before
+# libstdc++, whose #include_next <stdlib.h> then finds nothing.
+function(rpc_system_include target)
+  list(TRANSFORM ARGN REPLACE "/+$" "" OUTPUT_VARIABLE dirs)
+  list(REMOVE_DUPLICATES dirs)
+  list(REMOVE_ITEM dirs /usr/include /usr/local/include ${CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES})
+  rpc_drop_missing_files(dirs)
+  target_include_directories(${target} SYSTEM INTERFACE ${dirs})
+endfunction()
+
+if(NOT TARGET rpc_trilinos)
+  message(STATUS "Trilinos ${Trilinos_VERSION}: ${Trilinos_DIR}")
+  add_library(rpc_trilinos INTERFACE IMPORTED GLOBAL)
+  add_library(rpc::trilinos ALIAS rpc_trilinos)
+  rpc_system_include(rpc_trilinos ${Trilinos_INCLUDE_DIRS} ${Trilinos_TPL_INCLUDE_DIRS})
+  foreach(library IN LISTS Trilinos_LIBRARIES)
+    get_target_property(links ${library} INTERFACE_LINK_LIBRARIES)
+    if(links)
+      rpc_drop_missing_files(links)
+      set_target_properties(${library} PROPERTIES INTERFACE_LINK_LIBRARIES "${links}")
+    endif()
+  endforeach()
+  set(links ${Trilinos_LIBRARIES} ${Trilinos_TPL_LIBRARIES} ${Trilinos_EXTRA_LD_FLAGS})
+  rpc_drop_missing_files(links)
+  target_link_libraries(rpc_trilinos INTERFACE ${links})
+  if(RPC_TRILINOS_HAS_MPI)
+    target_link_libraries(rpc_trilinos INTERFACE MPI::MPI_CXX)
+  endif()
+  # Of Trilinos' compiler flags only those that its headers depend on: Debian's hardening, -w and -O3 stay out. The linker needs
+  # them too: -fopenmp brings libgomp.
+  separate_arguments(rpc_flags UNIX_COMMAND "${Trilinos_CXX_COMPILER_FLAGS}")
+  list(FILTER rpc_flags INCLUDE REGEX "^(-fopenmp|-?-(expt-)?extended-lambda|-arch=.*|-march=.*)$")
+  target_compile_options(rpc_trilinos INTERFACE ${rpc_flags})
+  target_link_options(rpc_trilinos INTERFACE ${rpc_flags})
+endif()

@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs the program: bash cmake/run.sh --input=beam.xml [more options of rpc]
+# Environment: NP=2 runs on 2 MPI ranks; see also setup.sh.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+set_up rpc
+if [ "${NP:-1}" -eq 1 ]; then exec "$root/rpc" "$@"; fi
+if [ "$(id -u)" -eq 0 ]; then export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; fi
+export OMPI_MCA_rmaps_base_oversubscribe=1 # more ranks than cores is the user's business
+exec mpirun -np "$NP" "$root/rpc" "$@"

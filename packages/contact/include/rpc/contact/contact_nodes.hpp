@@ -1,0 +1,66 @@
+#pragma once
+
+#include "rpc/core/field.hpp"
+#include "rpc/fem/dirichlet.hpp"
+#include "rpc/fem/surface.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <string>
+
+namespace rpc::contact
+{
+
+/// A side that may touch the foundation, and the foundation's law there.
+struct ContactOptions {
+  std::string side;         ///< empty: nothing touches
+  ScalarField yield_stress; ///< xi > 0 [Pa], may be inf
+  ScalarField gap;          ///< g [m], distance to the foundation along the outward normal; < 0 is initial penetration
+  double penalty = 1e8;     ///< r > 0 [Pa/m]
+};
+
+/// Parameters of the deck's `Contact` sublist.
+Teuchos::ParameterList valid_contact_parameters();
+/// @throws rpc::Error (bad_input) on anything out of range that needs no mesh to be seen
+ContactOptions contact_options(const Teuchos::ParameterList &list, const FieldParser &parse);
+
+/// The nodes of one contact side that this rank owns, each a point with a weight.                     doc/theory.md
+/// (2.6), (3.4)
+///
+/// v_i = direction_i . u_i - free_gap_i is the penetration of node i, where `direction` is the normal without its
+/// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether
+/// has direction 0: it takes no part in the solution, and its pressure is 0 if it stays clear, xi if it is pressed in,
+/// and open to choice at v = 0.
+struct ContactNodes {
+  int dim = 2;
+  DeviceView<LO *> node;           ///< (n) owned node lids, ascending
+  DeviceView<double *> weight;     ///< (n) [m^(dim-1)]
+  DeviceView<double **> normal;    ///< (n, dim) outward unit normal
+  DeviceView<double **> direction; ///< (n, dim) normal, prescribed components 0
+  DeviceView<double *> gap;        ///< (n) g [m]
+  DeviceView<double *> free_gap;   ///< (n) g - normal . u_prescribed [m]
+  DeviceView<double *> yield;      ///< (n) xi [Pa]
+  DeviceView<double *> penalty;    ///< (n) r [Pa/m]
+  DeviceView<char *> fixed;        ///< (n) 1 where direction = 0
+  GO num_total = 0;                ///< over all ranks
+  GO num_fixed = 0;                ///< over all ranks
+
+  LO size() const { return static_cast<LO>(node.extent(0)); }
+};
+
+/// Collective. An empty side name gives no nodes.
+/// @throws rpc::Error bad_input if the side does not exist, xi <= 0 or NaN, or the gap is not finite somewhere (the
+/// place is named);
+///         no_solution if a prescribed displacement presses a node into a rigid foundation
+ContactNodes contact_nodes(const fem::Discretization &d, const ContactOptions &options,
+                           const fem::DirichletDofs &dirichlet);
+
+/// v_i = direction_i . u_i - free_gap_i at one node, for kernels.
+template <class U>
+KOKKOS_INLINE_FUNCTION double penetration(const ContactNodes &c, const LO i, const U &u)
+{
+  double v = -c.free_gap(i);
+  for (int k = 0; k < c.dim; ++k) v += c.direction(i, k) * u(c.dim * c.node(i) + k);
+  return v;
+}
+
+} // namespace rpc::contact

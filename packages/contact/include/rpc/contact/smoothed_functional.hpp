@@ -1,0 +1,102 @@
+#pragma once
+
+#include "rpc/contact/contact_nodes.hpp"
+#include "rpc/contact/foundation_law.hpp"
+
+namespace rpc::contact
+{
+
+/// How many contact nodes are in each state, over all ranks; nodes with a prescribed normal displacement are not
+/// counted.
+struct StateCounts {
+  GO open = 0, stuck = 0, yielded = 0;
+};
+
+/// The functional along a line t -> u + t d, as far as its slope goes: convex, piecewise quadratic.      doc/theory.md
+/// (4.3)
+///
+///     slope(t) = slope(0) + curvature t + sum_i w_i dv_i (Psi_i'(v_i + t dv_i) - Psi_i'(v_i))
+///
+/// The difference form keeps its digits when slope(0) is small against its parts.
+class LineModel
+{
+public:
+  LineModel(const Comm &comm, double slope_at_0, double elastic_curvature, const ContactNodes &contact,
+            DeviceView<double *> v, DeviceView<double *> dv, DeviceView<double *> lambda);
+
+  struct Value {
+    double slope;     ///< d/dt [J]
+    double curvature; ///< of the piece that t lies on, >= 0 [J]
+  };
+  /// Collective.
+  Value at(double t) const;
+
+private:
+  const Comm &comm_;
+  double slope_at_0_, elastic_curvature_;
+  ContactNodes contact_;
+  DeviceView<double *> v_, dv_, lambda_;
+};
+
+/// What the generalized Newton iteration minimizes for given multipliers, its gradient and its generalized Hessian.
+///
+///     M(u) = u.Ku/2 - b.u + sum_i w_i Psi_i(v_i(u))                                                doc/theory.md (4.1)
+///     F(u) = Ku - b + sum_i w_i Psi_i'(v_i) m_i,     H(u) = K + sum over stuck i of r_i w_i m_i m_i^T      (4.2)
+///
+/// with m_i the node's direction. One matrix serves as K and as H: it holds K with the contact blocks of the states
+/// last given to update_hessian, whose elastic values are kept aside; products with K subtract what was added. Contact
+/// terms touch only contact rows. All vectors are on owned dofs; all members are collective.
+class SmoothedFunctional
+{
+public:
+  SmoothedFunctional(const Comm &comm, fem::ElasticProblem problem, ContactNodes contact);
+
+  /// M(u) [J], with the energy of prescribed displacements.
+  double value(const Vector &u) const;
+  /// Energy of the problem itself, J(u) = Pi(u) + sum_i w_i xi_i v_i+ [J]; independent of multipliers.       (1.4)
+  double energy(const Vector &u) const;
+  /// a(u, u), twice the elastic energy [J], prescribed displacements included.
+  double strain_energy(const Vector &u) const;
+  void gradient(const Vector &u, Vector &F) const;
+  /// Brings hessian() to H(u). @return number of contact nodes whose stiffness changed, over all ranks
+  GO update_hessian(const Vector &u);
+  const RCP<CrsMatrix> &hessian() const { return problem_.stiffness; }
+  /// @param F  gradient at u
+  LineModel along(const Vector &u, const Vector &d, const Vector &F) const;
+  StateCounts count_states(const Vector &u) const;
+
+  /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   (5.1)
+  double update_multipliers(const Vector &u);
+
+  /// |K u - b + sum_i w_i lambda_i m_i|_2 over the larger of the norms of load and contact force.              (5.2)
+  double equilibrium_residual(const Vector &u) const;
+  /// Largest violation of the contact law by (u, lambda), dimensionless.                                         (5.3)
+  /// @param stiffness_scale  rho [Pa/m] that turns a distance into a pressure
+  double contact_law_residual(const Vector &u, double stiffness_scale) const;
+
+  /// |load|_2 including the lifted prescribed displacements [N]; 1 if there is none.
+  double force_scale() const;
+
+  const ContactNodes &contact() const { return contact_; }
+  const fem::ElasticProblem &problem() const { return problem_; }
+  const DeviceView<double *> &multipliers() const { return lambda_; }
+  int num_products() const { return num_products_; } ///< products with K so far
+
+private:
+  void apply_stiffness(const Vector &u, Vector &Ku) const;
+  double potential(const Vector &u) const; // Pi(u) [J]
+  double contact_sum(const Vector &u, bool smoothed) const;
+  void add_contact_force(const DeviceView<double *> &pressure, Vector &F) const;
+  void find_diagonal_blocks();
+
+  const Comm &comm_;
+  fem::ElasticProblem problem_;
+  ContactNodes contact_;
+  DeviceView<double *> lambda_;        // (contact nodes) [Pa]
+  DeviceView<char *> stuck_in_matrix_; // (contact nodes) whose blocks hold r w m m^T
+  DeviceView<std::size_t **> block_; // (contact nodes, dim) entry where the node's own block begins in each of its rows
+  DeviceView<double ***> elastic_;   // (contact nodes, dim, dim) that block of K
+  mutable int num_products_ = 0;
+};
+
+} // namespace rpc::contact

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "rpc/contact/smoothed_functional.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace rpc::contact
+{
+
+/// What ends the Uzawa iteration.
+enum class UzawaTest {
+  certificate,      ///< contact law and equilibrium hold: no solve is spent on confirming it
+  multiplier_change ///< the paper's: relative change of the multipliers
+};
+
+struct UzawaOptions {
+  double tolerance = 1e-8; ///< of the test, and of the certificate, dimensionless, > 0
+  int max_iterations = 50; ///< > 0
+  UzawaTest test = UzawaTest::certificate;
+};
+
+/// Parameters of the deck's `Uzawa` sublist.
+Teuchos::ParameterList valid_uzawa_parameters();
+/// @throws rpc::Error (bad_input) on anything out of range
+UzawaOptions uzawa_options(const Teuchos::ParameterList &list);
+
+/// How well (u, lambda) solves the discrete problem; both dimensionless.                    doc/theory.md (5.2), (5.3)
+struct Certificate {
+  double equilibrium_residual = 0;
+  double kkt_residual = 0;
+
+  bool holds(const double tolerance) const { return equilibrium_residual <= tolerance && kkt_residual <= tolerance; }
+};
+
+/// What came out of one minimization of the smoothed functional.
+struct MinimizeResult {
+  bool converged = false;
+  int newton_iterations = 0;
+  std::string reason; ///< why not, if not
+};
+
+struct UzawaResult {
+  bool converged = false; ///< the certificate holds
+  std::string reason;
+  int iterations = 0;
+  std::vector<int> newton_iterations; ///< per Uzawa iteration
+  double multiplier_change = 0;       ///< of the last one, relative
+  Certificate certificate;
+};
+
+/// Alternates minimization over u and multiplier update until the certificate holds.            doc/theory.md (5.1)
+///
+/// Without a contact node there is nothing to alternate with: one minimization.
+/// @param minimize         brings u to the minimum of the functional for its present multipliers; collective
+/// @param stiffness_scale  rho [Pa/m] of the contact law's residual
+/// @param report           called after each iteration, for the console
+UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function<MinimizeResult()> &minimize,
+                  double stiffness_scale, const UzawaOptions &options,
+                  const std::function<void(const UzawaResult &)> &report);
+
+} // namespace rpc::contact

@@ -1,0 +1,284 @@
+#include "rpc/contact/smoothed_functional.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rpc::contact
+{
+
+LineModel::LineModel(const Comm &comm, const double slope_at_0, const double elastic_curvature,
+                     const ContactNodes &contact, DeviceView<double *> v, DeviceView<double *> dv,
+                     DeviceView<double *> lambda)
+    : comm_(comm), slope_at_0_(slope_at_0), elastic_curvature_(elastic_curvature), contact_(contact), v_(std::move(v)),
+      dv_(std::move(dv)), lambda_(std::move(lambda))
+{
+}
+
+LineModel::Value LineModel::at(const double t) const
+{
+  const ContactNodes c = contact_;
+  const auto v = v_;
+  const auto dv = dv_;
+  const auto lambda = lambda_;
+  double sums[2] = {0, 0};
+  Kokkos::parallel_reduce(
+      "rpc::contact::line_model", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &slope, double &curvature) {
+        const double r = c.penalty(i), xi = c.yield(i), moved = v(i) + t * dv(i);
+        slope += c.weight(i) * dv(i) * (pressure(moved, lambda(i), r, xi) - pressure(v(i), lambda(i), r, xi));
+        if (state(moved, lambda(i), r, xi) == State::stuck) curvature += c.weight(i) * r * dv(i) * dv(i);
+      },
+      sums[0], sums[1]);
+  double all[2];
+  Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 2, sums, all);
+  return {slope_at_0_ + elastic_curvature_ * t + all[0], elastic_curvature_ + all[1]};
+}
+
+SmoothedFunctional::SmoothedFunctional(const Comm &comm, fem::ElasticProblem problem, ContactNodes contact)
+    : comm_(comm), problem_(std::move(problem)), contact_(std::move(contact)),
+      lambda_("rpc::contact::multiplier", contact_.size()), stuck_in_matrix_("rpc::contact::stuck", contact_.size()),
+      block_("rpc::contact::block", contact_.size(), contact_.dim),
+      elastic_("rpc::contact::elastic", contact_.size(), contact_.dim, contact_.dim)
+{
+  // The paper's start l = 0, which is half the yield limit; a rigid foundation has no half.
+  const ContactNodes c = contact_;
+  const auto lambda = lambda_;
+  Kokkos::parallel_for(
+      "rpc::contact::start", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { lambda(i) = c.fixed(i) || c.yield(i) > 1e308 ? 0 : 0.5 * c.yield(i); });
+  find_diagonal_blocks();
+}
+
+void SmoothedFunctional::find_diagonal_blocks()
+{
+  const ContactNodes c = contact_;
+  const auto A = problem_.stiffness->getLocalMatrixDevice();
+  const auto block = block_;
+  const auto elastic = elastic_;
+  Kokkos::parallel_for(
+      "rpc::contact::find_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k) {
+          const LO row = c.dim * c.node(i) + k;
+          std::size_t at = A.graph.row_map(row);
+          while (A.graph.entries(at) != c.dim * c.node(i)) ++at; // an owned node's first column has its first row's lid
+          block(i, k) = at;
+          for (int l = 0; l < c.dim; ++l) elastic(i, k, l) = A.values(at + l);
+        }
+      });
+  Kokkos::fence();
+}
+
+void SmoothedFunctional::apply_stiffness(const Vector &u, Vector &Ku) const
+{
+  problem_.stiffness->apply(u, Ku);
+  ++num_products_;
+  const ContactNodes c = contact_;
+  const auto stuck = stuck_in_matrix_;
+  const auto from = device_read(u);
+  const auto to = device_write(Ku);
+  Kokkos::parallel_for(
+      "rpc::contact::without_contact", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        if (!stuck(i)) return;
+        double along = 0;
+        for (int k = 0; k < c.dim; ++k) along += c.direction(i, k) * from(c.dim * c.node(i) + k);
+        for (int k = 0; k < c.dim; ++k)
+          to(c.dim * c.node(i) + k) -= c.penalty(i) * c.weight(i) * along * c.direction(i, k);
+      });
+  Kokkos::fence();
+}
+
+double SmoothedFunctional::contact_sum(const Vector &u, const bool smoothed) const
+{
+  const ContactNodes c = contact_;
+  const auto lambda = lambda_;
+  const auto x = device_read(u);
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::energy", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) {
+        const double v = penetration(c, i, x);
+        part += c.weight(i) * (smoothed && !c.fixed(i) ? smoothed_energy(v, lambda(i), c.penalty(i), c.yield(i))
+                                                       : plastic_energy(v, c.yield(i)));
+      },
+      sum);
+  return sum_all(comm_, sum);
+}
+
+double SmoothedFunctional::potential(const Vector &u) const
+{
+  Vector Ku(u.getMap());
+  apply_stiffness(u, Ku);
+  return 0.5 * u.dot(Ku) - problem_.load->dot(u) + problem_.energy_offset;
+}
+
+double SmoothedFunctional::strain_energy(const Vector &u) const
+{
+  return 2 * (potential(u) + problem_.applied_load->dot(u));
+}
+
+double SmoothedFunctional::value(const Vector &u) const
+{
+  return potential(u) + contact_sum(u, true);
+}
+
+double SmoothedFunctional::energy(const Vector &u) const
+{
+  return potential(u) + contact_sum(u, false);
+}
+
+void SmoothedFunctional::add_contact_force(const DeviceView<double *> &p, Vector &F) const
+{
+  const ContactNodes c = contact_;
+  const auto to = device_write(F);
+  Kokkos::parallel_for(
+      "rpc::contact::force", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) += c.weight(i) * p(i) * c.direction(i, k);
+      });
+  Kokkos::fence();
+}
+
+void SmoothedFunctional::gradient(const Vector &u, Vector &F) const
+{
+  apply_stiffness(u, F);
+  F.update(-1., *problem_.load, 1.);
+  const ContactNodes c = contact_;
+  const auto lambda = lambda_;
+  DeviceView<double *> p("rpc::contact::pressure", c.size());
+  {
+    const auto x = device_read(u);
+    Kokkos::parallel_for(
+        "rpc::contact::pressure", device_range(c.size()),
+        KOKKOS_LAMBDA(const LO i) { p(i) = pressure(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i)); });
+  }
+  add_contact_force(p, F);
+}
+
+GO SmoothedFunctional::update_hessian(const Vector &u)
+{
+  const ContactNodes c = contact_;
+  const auto lambda = lambda_;
+  const auto stuck = stuck_in_matrix_;
+  const auto block = block_;
+  const auto elastic = elastic_;
+  const auto values = problem_.stiffness->getLocalMatrixDevice().values;
+  const auto x = device_read(u);
+  LO changed = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::update_hessian", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, LO &count) {
+        if (c.fixed(i)) return;
+        const char now = state(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i)) == State::stuck;
+        if (now == stuck(i)) return;
+        stuck(i) = now;
+        ++count;
+        const double stiffness = now ? c.penalty(i) * c.weight(i) : 0;
+        for (int k = 0; k < c.dim; ++k) // contact nodes share no rows
+          for (int l = 0; l < c.dim; ++l)
+            values(block(i, k) + l) = elastic(i, k, l) + stiffness * c.direction(i, k) * c.direction(i, l);
+      },
+      changed);
+  return sum_all(comm_, GO(changed));
+}
+
+LineModel SmoothedFunctional::along(const Vector &u, const Vector &d, const Vector &F) const
+{
+  Vector Kd(d.getMap());
+  apply_stiffness(d, Kd);
+  const ContactNodes c = contact_;
+  DeviceView<double *> v("rpc::contact::v", c.size()), dv("rpc::contact::dv", c.size());
+  const auto from = device_read(u);
+  const auto step = device_read(d);
+  Kokkos::parallel_for(
+      "rpc::contact::along", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        v(i) = penetration(c, i, from);
+        dv(i) = penetration(c, i, step) + c.free_gap(i);
+      });
+  Kokkos::fence();
+  return LineModel(comm_, d.dot(F), d.dot(Kd), contact_, v, dv, lambda_);
+}
+
+StateCounts SmoothedFunctional::count_states(const Vector &u) const
+{
+  const ContactNodes c = contact_;
+  const auto lambda = lambda_;
+  const auto x = device_read(u);
+  GO counts[3] = {0, 0, 0};
+  Kokkos::parallel_reduce(
+      "rpc::contact::count_states", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, GO &open, GO &stuck, GO &yielded) {
+        if (c.fixed(i)) return;
+        const State s = state(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i));
+        open += s == State::open;
+        stuck += s == State::stuck;
+        yielded += s == State::yielded;
+      },
+      counts[0], counts[1], counts[2]);
+  GO all[3];
+  Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 3, counts, all);
+  return {all[0], all[1], all[2]};
+}
+
+double SmoothedFunctional::update_multipliers(const Vector &u)
+{
+  const ContactNodes c = contact_;
+  const auto lambda = lambda_;
+  const auto x = device_read(u);
+  double sums[2] = {0, 0};
+  Kokkos::parallel_reduce(
+      "rpc::contact::update_multipliers", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &change, double &size) {
+        if (c.fixed(i)) return;
+        const double next = pressure(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i));
+        change += (next - lambda(i)) * (next - lambda(i));
+        size += next * next;
+        lambda(i) = next;
+      },
+      sums[0], sums[1]);
+  double all[2];
+  Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 2, sums, all);
+  if (all[0] == 0) return 0;
+  return std::sqrt(all[0] / std::max(all[1], all[0])); // all multipliers gone to zero is a change of 1, not of infinity
+}
+
+double SmoothedFunctional::force_scale() const
+{
+  const double load = problem_.load->norm2();
+  return load > 0 ? load : 1;
+}
+
+double SmoothedFunctional::equilibrium_residual(const Vector &u) const
+{
+  Vector contact(u.getMap()), F(u.getMap());
+  add_contact_force(lambda_, contact);
+  apply_stiffness(u, F);
+  F.update(-1., *problem_.load, 1., contact, 1.);
+  return F.norm2() / std::max(force_scale(), contact.norm2());
+}
+
+double SmoothedFunctional::contact_law_residual(const Vector &u, const double stiffness_scale) const
+{
+  const ContactNodes c = contact_;
+  const auto lambda = lambda_;
+  const auto x = device_read(u);
+  double violation = 0, largest = 0, deepest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::law_residual", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &worst, double &pressure_scale, double &distance_scale) {
+        if (c.fixed(i)) return;
+        const double rho_v = stiffness_scale * penetration(c, i, x);
+        const double p = lambda(i);
+        const auto larger = [](const double a, const double b) { return a > b ? a : b; };
+        const double miss = p - clamp(p + rho_v, 0, c.yield(i));
+        worst = larger(worst, miss < 0 ? -miss : miss);
+        pressure_scale = larger(pressure_scale, p);
+        distance_scale = larger(distance_scale, rho_v < 0 ? -rho_v : rho_v);
+      },
+      Kokkos::Max<double>(violation), Kokkos::Max<double>(largest), Kokkos::Max<double>(deepest));
+  const double mine[3] = {violation, largest, deepest};
+  double all[3];
+  Teuchos::reduceAll(comm_, Teuchos::REDUCE_MAX, 3, mine, all);
+  if (!(all[0] > 0)) return 0;
+  return all[0] / (all[1] > 0 ? all[1] : all[2]);
+}
+
+} // namespace rpc::contact

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "rpc/core/error.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+/// Deck handling that every package shares: validation with helpful refusals, fields, documentation.
+///
+/// Each package owns its XOptions, a valid_parameters() with defaults, units, ranges and docs, and an x_options(list)
+/// that reads a validated list; past that line nobody sees a ParameterList.
+namespace rpc
+{
+
+/// Declares `name` in a valid_parameters() list as a field: a number, or an expression of x, y, z in a string.
+void set_field(Teuchos::ParameterList &valid, const std::string &name, const std::string &default_value,
+               const std::string &doc);
+
+/// Text of a field parameter, which a deck may give as int, double or string.
+std::string field_text(const Teuchos::ParameterList &list, const std::string &name);
+
+/// Declares a sublist whose content is handed on to a library unread.
+void set_pass_through(Teuchos::ParameterList &valid, const std::string &name, const std::string &doc);
+
+/// Declares a sublist whose entries are named by the user, all of them sublists of the form `entry`.
+/// The deck may hold any number of them; valid defaults are filled in for each.
+void set_named_entries(Teuchos::ParameterList &valid, const std::string &name, const Teuchos::ParameterList &entry,
+                       const std::string &doc);
+
+/// Checks names and types of `list` against `valid`, recursively, and fills in the defaults.
+///
+/// An int is taken where a double is asked for. Path in messages: "Contact->Yield Stress".
+/// @throws rpc::Error (bad_input) naming the parameter, what is allowed and, for a misspelt name, the nearest valid one
+void validate(Teuchos::ParameterList &list, const Teuchos::ParameterList &valid, const std::string &path = "");
+
+/// Applies one assignment "Contact->Yield Stress=16" to a list that is not validated yet. The text is read as the type
+/// that `valid` gives the parameter; below a pass-through sublist as the first of int, double, bool, string that fits.
+/// @throws rpc::Error (bad_input) on an unknown path or a text that does not read as that type
+void assign(Teuchos::ParameterList &list, const Teuchos::ParameterList &valid, const std::string &assignment);
+
+/// The name among `candidates` with the least edit distance to `name`; empty if there is none.
+std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates);
+
+/// "a, b, c"
+std::string join(const std::vector<std::string> &names);
+
+/// Prints every parameter of `valid` with type, default and doc, as nested Markdown lists.
+void print_parameters(std::ostream &out, const Teuchos::ParameterList &valid, const std::string &path = "");
+
+} // namespace rpc

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "rpc/core/kokkos.hpp"
+
+#include <Teuchos_Comm.hpp>
+#include <Teuchos_CommHelpers.hpp>
+#include <Teuchos_RCP.hpp>
+#include <Tpetra_CrsGraph.hpp>
+#include <Tpetra_CrsMatrix.hpp>
+#include <Tpetra_Import.hpp>
+#include <Tpetra_Map.hpp>
+#include <Tpetra_MultiVector.hpp>
+#include <Tpetra_Vector.hpp>
+
+/// Tpetra types of this project, and the only place that knows names which differ between Trilinos versions.
+namespace rpc
+{
+
+using Teuchos::RCP;
+using Teuchos::rcp;
+using Comm = Teuchos::Comm<int>;
+using Map = Tpetra::Map<LO, GO, Node>;
+using Import = Tpetra::Import<LO, GO, Node>;
+using Vector = Tpetra::Vector<double, LO, GO, Node>;
+using MultiVector = Tpetra::MultiVector<double, LO, GO, Node>;
+using CrsGraph = Tpetra::CrsGraph<LO, GO, Node>;
+using CrsMatrix = Tpetra::CrsMatrix<double, LO, GO, Node>;
+
+/// Number of indices that this rank holds (getLocalNumElements since Trilinos 13.4).
+inline LO num_local(const Map &map)
+{
+  return static_cast<LO>(map.getNodeNumElements());
+}
+
+/// A vector's first column as a rank-1 device view, to read or to write.
+inline auto device_read(const Vector &v)
+{
+  return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadOnly), Kokkos::ALL(), 0);
+}
+inline auto device_write(Vector &v)
+{
+  return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadWrite), Kokkos::ALL(), 0);
+}
+
+/// Sum, maximum or minimum of one number over all ranks; collective.
+template <class T>
+T sum_all(const Comm &comm, const T value)
+{
+  T result{};
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, value, Teuchos::outArg(result));
+  return result;
+}
+template <class T>
+T max_all(const Comm &comm, const T value)
+{
+  T result{};
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, value, Teuchos::outArg(result));
+  return result;
+}
+template <class T>
+T min_all(const Comm &comm, const T value)
+{
+  T result{};
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MIN, value, Teuchos::outArg(result));
+  return result;
+}
+
+} // namespace rpc

@@ -1,0 +1,282 @@
+#include "rpc/core/parameters.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <Teuchos_ParameterEntryValidator.hpp>
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <ostream>
+
+namespace rpc
+{
+namespace
+{
+
+using Teuchos::Array;
+using Teuchos::ParameterEntry;
+using Teuchos::ParameterList;
+
+constexpr const char *any_entry = "*";     // template of user-named sublists
+constexpr const char *pass_through = "**"; // content is read by a library
+
+/// Marks a parameter as a field. Teuchos asks a validator for more than its rule; the rule itself is in validate().
+class FieldValidator : public Teuchos::ParameterEntryValidator
+{
+public:
+  const std::string getXMLTypeName() const override { return "field"; }
+  void printDoc(const std::string &doc, std::ostream &out) const override { out << doc; }
+  ValidStringsList validStringValues() const override { return Teuchos::null; }
+  void validate(const ParameterEntry &, const std::string &, const std::string &) const override {}
+};
+
+bool is_field(const ParameterEntry &entry)
+{
+  return dynamic_cast<const FieldValidator *>(entry.validator().get()) != nullptr;
+}
+
+std::string quoted(const std::string &path, const std::string &name)
+{
+  return "\"" + (path.empty() ? name : path + "->" + name) + "\"";
+}
+
+std::string type_name(const ParameterEntry &entry)
+{
+  if (entry.isList()) return "sublist";
+  if (is_field(entry)) return "number or expression";
+  if (entry.isType<int>()) return "int";
+  if (entry.isType<double>()) return "double";
+  if (entry.isType<bool>()) return "bool";
+  if (entry.isType<std::string>()) return "string";
+  if (entry.isType<Array<int>>()) return "array of int";
+  if (entry.isType<Array<double>>()) return "array of double";
+  if (entry.isType<Array<std::string>>()) return "array of string";
+  return entry.getAny(false).typeName();
+}
+
+std::vector<std::string> names_of(const ParameterList &list)
+{
+  std::vector<std::string> names;
+  for (auto it = list.begin(); it != list.end(); ++it) names.push_back(list.name(it));
+  return names;
+}
+
+/// `value` as an entry of the same type as `model`, where C++ and XML habits make that harmless: 1 for 1.0.
+std::optional<ParameterEntry> converted(const ParameterEntry &value, const ParameterEntry &model)
+{
+  if (is_field(model)) {
+    if (value.isType<int>() || value.isType<double>() || value.isType<std::string>()) return value;
+    return std::nullopt;
+  }
+  if (value.getAny(false).type() == model.getAny(false).type()) return value;
+  if (model.isType<double>() && value.isType<int>())
+    return ParameterEntry(static_cast<double>(Teuchos::getValue<int>(value)));
+  if (model.isType<Array<double>>() && value.isType<Array<int>>()) {
+    const auto &ints = Teuchos::getValue<Array<int>>(value);
+    return ParameterEntry(Array<double>(ints.begin(), ints.end()));
+  }
+  return std::nullopt;
+}
+
+template <class T>
+std::optional<T> read_as(const std::string &text)
+{
+  std::istringstream in(text);
+  T value{};
+  if (!(in >> std::boolalpha >> value)) return std::nullopt;
+  in >> std::ws;
+  if (!in.eof()) return std::nullopt;
+  return value;
+}
+
+/// The text as the type of `model`, or as the first type that fits where there is no model.
+std::optional<ParameterEntry> read_entry(const std::string &text, const ParameterEntry *model)
+{
+  const auto entry_of = [](const auto &value) -> std::optional<ParameterEntry> {
+    if (!value) return std::nullopt;
+    return ParameterEntry(*value);
+  };
+  if (!model) {
+    if (const auto value = entry_of(read_as<int>(text))) return value;
+    if (const auto value = entry_of(read_as<double>(text))) return value;
+    if (const auto value = entry_of(read_as<bool>(text))) return value;
+    return ParameterEntry(text);
+  }
+  try {
+    if (is_field(*model) || model->isType<std::string>()) return ParameterEntry(text);
+    if (model->isType<int>()) return entry_of(read_as<int>(text));
+    if (model->isType<double>()) return entry_of(read_as<double>(text));
+    if (model->isType<bool>()) return entry_of(read_as<bool>(text));
+    if (model->isType<Array<int>>()) return ParameterEntry(Teuchos::fromStringToArray<int>(text));
+    if (model->isType<Array<double>>()) return ParameterEntry(Teuchos::fromStringToArray<double>(text));
+    if (model->isType<Array<std::string>>()) return ParameterEntry(Teuchos::fromStringToArray<std::string>(text));
+  } catch (const std::exception &) { // Teuchos' own words on a malformed array do not name the parameter
+  }
+  return std::nullopt;
+}
+
+std::string unknown_name_message(const std::string &path, const std::string &name, const ParameterList &valid)
+{
+  const auto names = names_of(valid);
+  const std::string nearest = nearest_name(name, names);
+  std::ostringstream message;
+  message << "deck: unknown parameter " << quoted(path, name) << ".";
+  if (!nearest.empty()) message << " Did you mean \"" << nearest << "\"?";
+  message << " Valid here: " << join(names) << ".";
+  return message.str();
+}
+
+} // namespace
+
+void set_field(ParameterList &valid, const std::string &name, const std::string &default_value, const std::string &doc)
+{
+  valid.set(name, default_value, doc, Teuchos::rcp(new FieldValidator));
+}
+
+std::string field_text(const ParameterList &list, const std::string &name)
+{
+  const ParameterEntry &entry = list.getEntry(name);
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  if (entry.isType<int>())
+    text << Teuchos::getValue<int>(entry);
+  else if (entry.isType<double>())
+    text << Teuchos::getValue<double>(entry);
+  else
+    text << Teuchos::getValue<std::string>(entry);
+  return text.str();
+}
+
+void set_pass_through(ParameterList &valid, const std::string &name, const std::string &doc)
+{
+  valid.sublist(name, false, doc).set(pass_through, true);
+}
+
+void set_named_entries(ParameterList &valid, const std::string &name, const ParameterList &entry,
+                       const std::string &doc)
+{
+  valid.sublist(name, false, doc).sublist(any_entry) = entry;
+}
+
+void validate(ParameterList &list, const ParameterList &valid, const std::string &path)
+{
+  if (valid.isParameter(pass_through)) return;
+  const bool named_entries = valid.isSublist(any_entry);
+  for (const std::string &name : names_of(list)) {
+    if (!named_entries && !valid.isParameter(name))
+      throw Error(ExitCode::bad_input, unknown_name_message(path, name, valid));
+    const ParameterEntry &model = valid.getEntry(named_entries ? any_entry : name);
+    ParameterEntry &entry = list.getEntry(name);
+    if (entry.isList() && model.isList()) continue;
+    const auto value = entry.isList() || model.isList() ? std::nullopt : converted(entry, model);
+    RPC_REQUIRE(value, "deck: " << quoted(path, name) << " must be a " << type_name(model) << ", got a "
+                                << type_name(entry)
+                                << (entry.isList() ? "" : " (" + Teuchos::toString(entry.getAny(false)) + ")"));
+    list.setEntry(name, *value);
+  }
+  if (named_entries) {
+    for (const std::string &name : names_of(list))
+      validate(list.sublist(name), valid.sublist(any_entry), path.empty() ? name : path + "->" + name);
+    return;
+  }
+  for (const std::string &name : names_of(valid)) {
+    const ParameterEntry &model = valid.getEntry(name);
+    if (model.isList())
+      validate(list.sublist(name), valid.sublist(name), path.empty() ? name : path + "->" + name);
+    else if (!list.isParameter(name))
+      list.setEntry(name, model);
+  }
+}
+
+void assign(ParameterList &list, const ParameterList &valid, const std::string &assignment)
+{
+  const auto equals = assignment.find('=');
+  RPC_REQUIRE(equals != std::string::npos && equals > 0,
+              "--set must read \"Sublist->Parameter=value\", got \"" << assignment << "\"");
+  std::string rest = assignment.substr(0, equals);
+  const std::string text = assignment.substr(equals + 1);
+
+  ParameterList *target = &list;
+  const ParameterList *model = &valid; // null below a pass-through sublist
+  std::string path;
+  for (auto arrow = rest.find("->"); arrow != std::string::npos; arrow = rest.find("->")) {
+    const std::string name = rest.substr(0, arrow);
+    rest = rest.substr(arrow + 2);
+    if (model && !model->isParameter(pass_through)) {
+      const std::string key = model->isSublist(any_entry) ? any_entry : name;
+      RPC_REQUIRE(model->isParameter(key), unknown_name_message(path, name, *model));
+      RPC_REQUIRE(model->isSublist(key), "--set: " << quoted(path, name) << " is a parameter, not a sublist");
+      model = &model->sublist(key);
+    }
+    RPC_REQUIRE(!target->isParameter(name) || target->isSublist(name),
+                "--set: " << quoted(path, name) << " is a parameter, not a sublist");
+    target = &target->sublist(name);
+    path = path.empty() ? name : path + "->" + name;
+  }
+  const bool unread = model->isParameter(pass_through);
+  RPC_REQUIRE(unread || (model->isParameter(rest) && !model->isSublist(rest)),
+              unknown_name_message(path, rest, *model));
+  const auto value = read_entry(text, unread ? nullptr : &model->getEntry(rest));
+  RPC_REQUIRE(value, "--set: " << quoted(path, rest) << " must be a " << type_name(model->getEntry(rest)) << ", got \""
+                               << text << "\"");
+  target->setEntry(rest, *value);
+}
+
+std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates)
+{
+  const auto distance = [](const std::string &a, const std::string &b) { // Levenshtein, case ignored
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= b.size(); ++j) {
+        const bool same =
+            std::tolower(static_cast<unsigned char>(a[i - 1])) == std::tolower(static_cast<unsigned char>(b[j - 1]));
+        const std::size_t replaced = diagonal + (same ? 0 : 1);
+        diagonal = row[j];
+        row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+      }
+    }
+    return row.back();
+  };
+  std::string best;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  for (const auto &candidate : candidates) {
+    const std::size_t d = distance(name, candidate);
+    if (d < best_distance) {
+      best = candidate;
+      best_distance = d;
+    }
+  }
+  return best;
+}
+
+std::string join(const std::vector<std::string> &names)
+{
+  std::string text;
+  for (const auto &name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+void print_parameters(std::ostream &out, const ParameterList &valid, const std::string &path)
+{
+  for (const std::string &name : names_of(valid)) {
+    const ParameterEntry &entry = valid.getEntry(name);
+    if (entry.isList() || name == pass_through) continue;
+    out << "- `" << name << "` (" << type_name(entry) << ", default `" << Teuchos::toString(entry.getAny(false))
+        << "`): " << entry.docString() << "\n";
+  }
+  for (const std::string &name : names_of(valid)) {
+    const ParameterEntry &entry = valid.getEntry(name);
+    if (!entry.isList()) continue;
+    const std::string shown = name == any_entry ? "<any name>" : name;
+    const std::string full = path.empty() ? shown : path + "->" + shown;
+    out << "\n### " << full << "\n\n";
+    if (!entry.docString().empty()) out << entry.docString() << "\n\n";
+    print_parameters(out, valid.sublist(name), full);
+  }
+}
+
+} // namespace rpc

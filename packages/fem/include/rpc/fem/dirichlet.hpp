@@ -1,0 +1,59 @@
+#pragma once
+
+#include "rpc/core/field.hpp"
+#include "rpc/fem/discretization.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rpc::fem
+{
+
+/// Prescribed displacement on one side; an absent component is free.
+struct DirichletCondition {
+  std::string name; ///< of the entry in the deck, for messages
+  std::string side;
+  std::array<std::optional<ScalarField>, 3> displacement; ///< [m]
+};
+
+/// Parameters of the deck's `Dirichlet` sublist.
+Teuchos::ParameterList valid_dirichlet_parameters();
+/// @throws rpc::Error (bad_input) if there is no entry, or one that prescribes nothing
+std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &list, int dim,
+                                                  const FieldParser &parse);
+
+/// Which unknowns are prescribed, and their values.
+struct DirichletDofs {
+  DeviceView<char *> fixed; ///< (overlap dofs) 1 where prescribed
+  RCP<Vector> value;        ///< (owned dofs) [m], 0 where free
+  GO num_fixed = 0;         ///< over all ranks
+};
+
+/// Collective.
+/// @throws rpc::Error (bad_input) if a side does not exist, a value is NaN or infinite, or two conditions prescribe
+/// different
+///         values at one node
+DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<DirichletCondition> &conditions);
+
+/// The discrete elastic problem with its boundary conditions built in: find u with stiffness u = load, where nothing
+/// touches.
+struct ElasticProblem {
+  RCP<CrsMatrix> stiffness; ///< symmetric positive definite if rigid motions are held
+  RCP<Vector> load;         ///< [N]
+  RCP<Vector> applied_load; ///< before elimination [N]; the same object as load if nothing is moved
+  DirichletDofs dirichlet;
+  double energy_offset =
+      0; ///< Pi(u) = u.(stiffness u)/2 - load.u + energy_offset, Pi being that of the problem before elimination [J]
+};
+
+/// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays, the load takes what moves to the
+/// right.
+///                                                                                                  doc/theory.md (2.7)
+/// Consumes its arguments. Collective.
+ElasticProblem eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> stiffness, RCP<Vector> load,
+                                   DirichletDofs dirichlet);
+
+} // namespace rpc::fem

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "rpc/core/field.hpp"
+#include "rpc/fem/discretization.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <array>
+
+namespace rpc::fem
+{
+
+/// Linear isotropic elasticity; plane strain in 2D.
+struct Material {
+  double youngs_modulus = 1; ///< E [Pa] > 0
+  double poissons_ratio = 0; ///< nu     in (-1, 0.5)
+
+  double lambda() const { return youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio)); }
+  double mu() const { return youngs_modulus / (2 * (1 + poissons_ratio)); }
+};
+
+/// Parameters of the deck's `Material` sublist.
+Teuchos::ParameterList valid_material_parameters();
+/// @throws rpc::Error (bad_input) on anything out of range
+Material material_options(const Teuchos::ParameterList &list);
+
+using VectorField = std::array<ScalarField, 3>;
+
+/// A force per area on one side.
+struct TractionLoad {
+  std::string name; ///< of the entry in the deck, for messages
+  std::string side;
+  VectorField traction; ///< [Pa]
+};
+
+/// Parameters of the deck's `Traction` and `Body Force` sublists.
+Teuchos::ParameterList valid_traction_parameters();
+Teuchos::ParameterList valid_body_force_parameters();
+std::vector<TractionLoad> traction_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse);
+VectorField body_force_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse); ///< [N/m^3]
+
+/// The stiffness matrix, without boundary conditions.
+///
+///     K(ai,bj) = sum over cells, int lambda dN_ai dN_bj + mu (dN_aj dN_bi + delta_ij dN_a . dN_b)     doc/theory.md
+///     (2.4)
+///
+/// Each rank fills its own rows from its local cells; no communication but the check. [N/m], in 2D per m of thickness
+/// [Pa].
+/// @throws rpc::Error (bad_mesh) on every rank if a cell has a Jacobian <= 0 at a quadrature point
+RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Material &material);
+
+/// load(ai) += int N_a f_i, over the body, for a force per volume f [N/m^3] (owned dofs, [N], in 2D per m). (2.5)
+/// @param parameter  deck path for messages; collective
+void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load);
+
+/// load(ai) += int N_a t_i, over a side, for a traction t [Pa].                                                  (2.5)
+/// @param parameter  deck path for messages; collective
+void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,
+                  const std::string &parameter, Vector &load);
+
+} // namespace rpc::fem

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "rpc/fem/discretization.hpp"
+
+namespace rpc::fem
+{
+
+/// Owned nodes of a side with what nodal quadrature needs: int f ds ~ sum_i weight_i f(x_i).          doc/theory.md
+/// (2.6)
+struct SurfaceNodes {
+  DeviceView<LO *> node;       ///< (n) owned node lids, ascending
+  DeviceView<double *> weight; ///< (n) w_i [m^(dim-1)]
+  DeviceView<double **>
+      normal; ///< (n, dim) outward unit normal of the body, averaged by area over the facets at the node
+};
+
+/// @throws rpc::Error (bad_mesh) on every rank if a weight is not positive; collective
+SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side);
+
+/// For each node of a side that `known` leaves out, the mean over the known nodes with which it shares a facet; 0 if
+/// there are none.
+///
+/// Serves contact nodes whose normal displacement is prescribed: the contact law leaves their pressure open.
+/// doc/theory.md (3.9)
+/// @param[in,out] value  (owned nodes of the mesh) values where known   @param[in] known (owned nodes) 1 or 0;
+/// collective
+void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &value, const Vector &known);
+
+} // namespace rpc::fem

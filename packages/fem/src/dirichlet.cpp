@@ -1,0 +1,181 @@
+#include "rpc/fem/dirichlet.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/evaluate.hpp"
+#include "rpc/core/parameters.hpp"
+
+#include <cmath>
+#include <sstream>
+
+namespace rpc::fem
+{
+namespace
+{
+
+constexpr const char *component_name[] = {"X", "Y", "Z"};
+
+/// Owned nodes of a side, each once, ascending.
+std::vector<LO> owned_nodes_of(const mesh::Mesh &mesh, const mesh::Side &side)
+{
+  const auto facets = to_host(side.facets);
+  std::vector<char> seen(mesh.num_owned_nodes(), 0);
+  std::vector<LO> nodes;
+  for (std::size_t f = 0; f < facets.extent(0); ++f)
+    for (std::size_t a = 0; a < facets.extent(1); ++a)
+      if (facets(f, a) < mesh.num_owned_nodes()) seen[facets(f, a)] = 1;
+  for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
+    if (seen[n]) nodes.push_back(n);
+  return nodes;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_dirichlet_parameters()
+{
+  Teuchos::ParameterList entry, valid("Dirichlet");
+  entry.set("Side", "", "Side of the mesh; by default the side that the entry is named after.");
+  for (const char *name : component_name)
+    set_field(entry, name, "",
+              std::string("Displacement in ") + name +
+                  " [m], a number or an expression; absent: this component is free.");
+  Teuchos::ParameterList parent;
+  set_named_entries(parent, "Dirichlet", entry,
+                    "Prescribed displacements, any number of entries with names of your choice.");
+  return parent.sublist("Dirichlet");
+}
+
+std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &list, const int dim,
+                                                  const FieldParser &parse)
+{
+  std::vector<DirichletCondition> conditions;
+  for (auto it = list.begin(); it != list.end(); ++it) {
+    DirichletCondition condition;
+    condition.name = list.name(it);
+    const Teuchos::ParameterList &entry = list.sublist(condition.name);
+    const std::string path = "Dirichlet->" + condition.name;
+    condition.side = entry.get<std::string>("Side").empty() ? condition.name : entry.get<std::string>("Side");
+    bool any = false;
+    for (int c = 0; c < 3; ++c) {
+      const std::string text = field_text(entry, component_name[c]);
+      if (text.empty()) continue;
+      RPC_REQUIRE(c < dim, "deck: \"" << path << "->" << component_name[c] << "\" prescribes a component that a " << dim
+                                      << "D mesh does not have");
+      condition.displacement[c] = parse(text, path + "->" + component_name[c]);
+      any = true;
+    }
+    RPC_REQUIRE(any, "deck: \"" << path << "\" prescribes nothing. Give X, Y or Z [m].");
+    conditions.push_back(condition);
+  }
+  RPC_REQUIRE(
+      !conditions.empty(),
+      "deck: there is no Dirichlet condition, so nothing holds the body. Give at least one entry in \"Dirichlet\".");
+  return conditions;
+}
+
+DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<DirichletCondition> &conditions)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  const int dim = d.dim();
+  const LO num_owned = dim * mesh.num_owned_nodes();
+  const auto coords = to_host(mesh.coords);
+  HostView<double *> value("rpc::fem::dirichlet_value", num_owned);
+  std::vector<int> owner(num_owned, -1); // condition that prescribed the unknown
+  std::optional<std::string> conflict;
+
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    const DirichletCondition &condition = conditions[k];
+    const std::string path = "Dirichlet->" + condition.name;
+    const auto nodes = owned_nodes_of(mesh, mesh.side(condition.side, path + "->Side"));
+    HostView<double **> points("rpc::fem::side_points", nodes.size(), dim);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      for (int c = 0; c < dim; ++c) points(n, c) = coords(nodes[n], c);
+    for (int c = 0; c < dim; ++c) {
+      if (!condition.displacement[c]) continue;
+      const auto values = evaluate(*condition.displacement[c], points, path + "->" + component_name[c], mesh.comm());
+      for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const LO dof = dim * nodes[n] + c;
+        const bool differs = std::abs(value(dof) - values(n)) > 1e-12 * (std::abs(value(dof)) + std::abs(values(n)));
+        if (owner[dof] >= 0 && differs && !conflict) {
+          std::ostringstream message;
+          message << "deck: \"Dirichlet->" << conditions[owner[dof]].name << "\" and \"" << path
+                  << "\" prescribe different " << component_name[c] << " at one node (" << points(n, 0) << ", "
+                  << points(n, 1) << (dim == 3 ? ", " + std::to_string(points(n, 2)) : "") << "): " << value(dof)
+                  << " and " << values(n) << " [m]";
+          conflict = message.str();
+        }
+        owner[dof] = static_cast<int>(k);
+        value(dof) = values(n);
+      }
+    }
+  }
+  throw_if_any(mesh.comm(), ExitCode::bad_input, conflict);
+
+  DirichletDofs dirichlet;
+  dirichlet.value = rcp(new Vector(d.owned_dofs));
+  Vector fixed(d.owned_dofs), fixed_overlap(d.overlap_dofs);
+  GO count = 0;
+  {
+    const auto value_to = dirichlet.value->getLocalViewHost(Tpetra::Access::OverwriteAll);
+    const auto fixed_to = fixed.getLocalViewHost(Tpetra::Access::OverwriteAll);
+    for (LO dof = 0; dof < num_owned; ++dof) {
+      value_to(dof, 0) = value(dof);
+      fixed_to(dof, 0) = owner[dof] >= 0 ? 1 : 0;
+      count += owner[dof] >= 0 ? 1 : 0;
+    }
+  }
+  dirichlet.num_fixed = sum_all(mesh.comm(), count);
+  fixed_overlap.doImport(fixed, *d.dof_import,
+                         Tpetra::INSERT); // a neighbour's node may lie on a side whose facets are not here
+  dirichlet.fixed = DeviceView<char *>("rpc::fem::dirichlet_fixed", num_local(*d.overlap_dofs));
+  const auto flag = dirichlet.fixed;
+  const auto from = device_read(fixed_overlap);
+  Kokkos::parallel_for(
+      "rpc::fem::dirichlet_flags", device_range(num_local(*d.overlap_dofs)),
+      KOKKOS_LAMBDA(const LO dof) { flag(dof) = from(dof) != 0; });
+  Kokkos::fence();
+  return dirichlet;
+}
+
+ElasticProblem eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> stiffness, RCP<Vector> load,
+                                   DirichletDofs dirichlet)
+{
+  ElasticProblem problem;
+  const Vector &prescribed = *dirichlet.value;
+  const bool moves = prescribed.normInf() > 0;
+  Vector force(d.owned_dofs); // of the prescribed displacement, K u_D
+  problem.applied_load = load;
+  if (moves) {
+    problem.applied_load = rcp(new Vector(*load, Teuchos::Copy));
+    stiffness->apply(prescribed, force);
+    problem.energy_offset = 0.5 * prescribed.dot(force) - load->dot(prescribed);
+    load->update(-1., force, 1.);
+  }
+
+  const auto fixed = dirichlet.fixed;
+  const auto value = device_read(prescribed);
+  const auto b = device_write(*load);
+  const auto A = stiffness->getLocalMatrixDevice();
+  double own_energy = 0; // of the prescribed unknowns in the eliminated problem: -u_D diag(K) u_D / 2
+  Kokkos::parallel_reduce(
+      "rpc::fem::eliminate_dirichlet", device_range(A.numRows()),
+      KOKKOS_LAMBDA(const LO row, double &energy) {
+        for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k) {
+          const LO col = A.graph.entries(k);
+          if (col == row) { // a row's own column has its lid in both maps
+            if (!fixed(row)) continue;
+            b(row) = A.values(k) * value(row);
+            energy -= 0.5 * value(row) * b(row);
+          } else if (fixed(row) || fixed(col)) {
+            A.values(k) = 0;
+          }
+        }
+      },
+      own_energy);
+  problem.energy_offset -= sum_all(d.mesh->comm(), own_energy);
+  problem.stiffness = stiffness;
+  problem.load = load;
+  problem.dirichlet = std::move(dirichlet);
+  return problem;
+}
+
+} // namespace rpc::fem

@@ -1,0 +1,197 @@
+#include "rpc/fem/discretization.hpp"
+
+#include <array>
+
+namespace rpc::fem
+{
+namespace
+{
+
+/// Exclusive prefix sum of counts (n) into offsets (n + 1).
+template <class Count>
+DeviceView<std::size_t *> offsets_of(const DeviceView<Count *> &count, const std::string &label)
+{
+  const LO n = static_cast<LO>(count.extent(0));
+  DeviceView<std::size_t *> offset(label, n + 1);
+  Kokkos::parallel_scan(
+      "rpc::fem::offsets", device_range(n), KOKKOS_LAMBDA(const LO i, std::size_t &sum, const bool last) {
+        sum += count(i);
+        if (last) offset(i + 1) = sum;
+      });
+  return offset;
+}
+
+std::size_t last_of(const DeviceView<std::size_t *> &offset)
+{
+  std::size_t last = 0;
+  Kokkos::deep_copy(last, Kokkos::subview(offset, offset.extent(0) - 1));
+  return last;
+}
+
+/// Cells around each owned node, as offsets and list; the order within a node is not fixed.
+struct NodeCells {
+  DeviceView<std::size_t *> row;
+  DeviceView<LO *> cell;
+};
+
+NodeCells cells_around_nodes(const mesh::Mesh &mesh)
+{
+  const auto cells = mesh.cells;
+  const LO num_owned = mesh.num_owned_nodes();
+  const int nodes = mesh.element.num_nodes();
+  DeviceView<LO *> count("rpc::fem::cells_per_node", num_owned);
+  Kokkos::parallel_for(
+      "rpc::fem::count_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
+        for (int a = 0; a < nodes; ++a)
+          if (cells(cell, a) < num_owned) Kokkos::atomic_increment(&count(cells(cell, a)));
+      });
+  NodeCells around;
+  around.row = offsets_of(count, "rpc::fem::node_cells_row");
+  around.cell = DeviceView<LO *>("rpc::fem::node_cells", last_of(around.row));
+  Kokkos::deep_copy(count, 0);
+  const auto row = around.row;
+  const auto list = around.cell;
+  Kokkos::parallel_for(
+      "rpc::fem::list_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
+        for (int a = 0; a < nodes; ++a) {
+          const LO node = cells(cell, a);
+          if (node < num_owned) list(row(node) + Kokkos::atomic_fetch_add(&count(node), 1)) = cell;
+        }
+      });
+  return around;
+}
+
+NodeGraph node_graph(const mesh::Mesh &mesh)
+{
+  const NodeCells around = cells_around_nodes(mesh);
+  const auto cells = mesh.cells;
+  const auto row = around.row;
+  const auto list = around.cell;
+  const LO num_owned = mesh.num_owned_nodes();
+  const int nodes = mesh.element.num_nodes();
+  DeviceView<LO *> candidates(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_candidates"),
+                              nodes * list.extent(0));
+  DeviceView<LO *> length("rpc::fem::graph_row_length", num_owned);
+  Kokkos::parallel_for(
+      "rpc::fem::graph_rows", device_range(num_owned), KOKKOS_LAMBDA(const LO node) {
+        LO *const found = &candidates(nodes * row(node)); // sorted, without repetition
+        LO size = 0;
+        for (std::size_t k = row(node); k < row(node + 1); ++k) {
+          for (int a = 0; a < nodes; ++a) {
+            const LO other = cells(list(k), a);
+            LO at = size;
+            while (at > 0 && found[at - 1] > other) --at;
+            if (at > 0 && found[at - 1] == other) continue;
+            for (LO move = size; move > at; --move) found[move] = found[move - 1];
+            found[at] = other;
+            ++size;
+          }
+        }
+        length(node) = size;
+      });
+  NodeGraph graph;
+  graph.row = offsets_of(length, "rpc::fem::node_graph_row");
+  graph.col = DeviceView<LO *>(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::node_graph_col"), last_of(graph.row));
+  const auto graph_row = graph.row;
+  const auto graph_col = graph.col;
+  Kokkos::parallel_for(
+      "rpc::fem::graph_compress", device_range(num_owned), KOKKOS_LAMBDA(const LO node) {
+        for (LO k = 0; k < length(node); ++k) graph_col(graph_row(node) + k) = candidates(nodes * row(node) + k);
+      });
+  return graph;
+}
+
+/// `dim` unknowns for each index of a node map.
+RCP<const Map> dof_map(const Map &nodes, const int dim)
+{
+  const GO total = static_cast<GO>(nodes.getGlobalNumElements());
+  if (nodes.isContiguous()) return rcp(new Map(dim * total, dim * num_local(nodes), 0, nodes.getComm()));
+  const auto gids = nodes.getMyGlobalIndices();
+  Teuchos::Array<GO> dofs(gids.size() * dim);
+  for (std::size_t n = 0; n < gids.size(); ++n)
+    for (int c = 0; c < dim; ++c) dofs[dim * n + c] = dim * gids(n) + c;
+  return rcp(new Map(Teuchos::OrdinalTraits<GO>::invalid(), dofs(), 0, nodes.getComm()));
+}
+
+RCP<const CrsGraph> dof_graph(const Discretization &d)
+{
+  using LocalGraph = CrsGraph::local_graph_device_type;
+  const LO num_nodes = d.mesh->num_owned_nodes();
+  const int dim = d.dim();
+  const auto node_row = d.nodes.row;
+  const auto node_col = d.nodes.col;
+  LocalGraph::row_map_type::non_const_type row("rpc::fem::graph_row", dim * num_nodes + 1);
+  LocalGraph::entries_type::non_const_type col(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_col"),
+                                               std::size_t(dim) * dim * node_col.extent(0));
+  Kokkos::parallel_for(
+      "rpc::fem::dof_graph", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
+        const std::size_t begin = node_row(node), length = node_row(node + 1) - begin;
+        for (int i = 0; i < dim; ++i) {
+          const std::size_t start = dim * (dim * begin + i * length);
+          row(dim * node + i + 1) = start + dim * length;
+          for (std::size_t k = 0; k < length; ++k)
+            for (int j = 0; j < dim; ++j) col(start + dim * k + j) = dim * node_col(begin + k) + j;
+        }
+      });
+  Kokkos::fence();
+  const RCP<CrsGraph> graph = rcp(new CrsGraph(d.owned_dofs, d.overlap_dofs, row, col));
+  graph->expertStaticFillComplete(
+      d.owned_dofs, d.owned_dofs,
+      d.dof_import->getNumRemoteIDs() == 0 && d.owned_dofs->getComm()->getSize() == 1 ? Teuchos::null : d.dof_import);
+  return graph;
+}
+
+} // namespace
+
+Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
+{
+  Discretization d;
+  d.mesh = std::move(mesh);
+  d.reference = tabulate(d.mesh->element);
+  d.owned_dofs = dof_map(*d.mesh->owned_nodes, d.dim());
+  d.overlap_dofs =
+      d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
+  d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
+  d.nodes = node_graph(*d.mesh);
+  d.graph = dof_graph(d);
+  return d;
+}
+
+RCP<MultiVector> node_coordinates(const Discretization &d)
+{
+  const auto result = rcp(new MultiVector(d.mesh->owned_nodes, d.dim()));
+  const auto to = result->getLocalViewDevice(Tpetra::Access::OverwriteAll);
+  const auto from = d.mesh->coords;
+  const int dim = d.dim();
+  Kokkos::parallel_for(
+      "rpc::fem::node_coordinates", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO node) {
+        for (int c = 0; c < dim; ++c) to(node, c) = from(node, c);
+      });
+  return result;
+}
+
+RCP<MultiVector> rigid_body_modes(const Discretization &d)
+{
+  const int dim = d.dim();
+  const auto coords = node_coordinates(d);
+  std::array<double, 3> mean{};
+  coords->meanValue(Teuchos::ArrayView<double>(mean.data(), dim));
+  const Kokkos::Array<double, 3> centre{{mean[0], mean[1], mean[2]}};
+  const auto result = rcp(new MultiVector(d.owned_dofs, dim == 2 ? 3 : 6)); // zero
+  const auto modes = result->getLocalViewDevice(Tpetra::Access::ReadWrite);
+  const auto x = coords->getLocalViewDevice(Tpetra::Access::ReadOnly);
+  Kokkos::parallel_for(
+      "rpc::fem::rigid_body_modes", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO node) {
+        for (int c = 0; c < dim; ++c) modes(dim * node + c, c) = 1;
+        int mode = dim;
+        for (int i = 0; i < dim; ++i) {
+          for (int j = i + 1; j < dim; ++j, ++mode) { // rotation in the plane of x_i and x_j
+            modes(dim * node + i, mode) = -(x(node, j) - centre[j]);
+            modes(dim * node + j, mode) = x(node, i) - centre[i];
+          }
+        }
+      });
+  return result;
+}
+
+} // namespace rpc::fem

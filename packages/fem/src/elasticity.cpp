@@ -1,0 +1,285 @@
+#include "rpc/fem/elasticity.hpp"
+
+#include "kernels.hpp"
+#include "rpc/core/evaluate.hpp"
+#include "rpc/core/parameters.hpp"
+
+#include <cmath>
+
+namespace rpc::fem
+{
+namespace
+{
+
+/// K += stiffness of one cell. Entries are found once per pair of nodes: a node's rows share their columns.
+template <int Dim, int Nodes>
+struct Stiffness {
+  static constexpr int dofs = Dim * Nodes;
+
+  DeviceView<double **> coords;       // (overlap nodes, Dim)        [m]    in
+  DeviceView<LO **> cells;            // (cells, Nodes)                     in, overlap lids
+  DeviceView<double ***> gradient;    // (points, Nodes, Dim)               in
+  DeviceView<double *> weight;        // (points)                           in
+  DeviceView<std::size_t *> node_row; // (owned nodes + 1)                  in
+  DeviceView<LO *> node_col;          // (node graph)                       in
+  LO num_owned;                       // rows of nodes >= this are another rank's
+  double lambda, mu;                  // Lame constants              [Pa]   in
+  DeviceView<double *> values;        // (matrix entries)            [N/m]  inout
+
+  /// @param bad  counts cells whose Jacobian is <= 0 somewhere
+  KOKKOS_FUNCTION void operator()(const LO cell, LO &bad) const
+  {
+    double product[dofs][dofs]; // int dN_ai dN_bj
+    if (!integrate(cell, product)) {
+      ++bad;
+      return;
+    }
+    for (int a = 0; a < Nodes; ++a) {
+      const LO node = cells(cell, a);
+      if (node >= num_owned) continue;
+      const std::size_t begin = node_row(node), length = node_row(node + 1) - begin;
+      for (int b = 0; b < Nodes; ++b) {
+        double trace = 0;
+        for (int k = 0; k < Dim; ++k) trace += product[Dim * a + k][Dim * b + k];
+        const std::size_t at = find(begin, length, cells(cell, b));
+        for (int i = 0; i < Dim; ++i) {
+          double *const entry = &values(Dim * (Dim * begin + i * length + at));
+          for (int j = 0; j < Dim; ++j) {
+            double k = lambda * product[Dim * a + i][Dim * b + j] + mu * product[Dim * a + j][Dim * b + i];
+            if (i == j) k += mu * trace;
+            add_shared(entry[j], k); // cells share rows
+          }
+        }
+      }
+    }
+  }
+
+  KOKKOS_FUNCTION bool integrate(const LO cell, double (&product)[dofs][dofs]) const
+  {
+    const CellCoords<Dim, Nodes> x(coords, cells, cell);
+    for (int r = 0; r < dofs; ++r)
+      for (int c = 0; c < dofs; ++c) product[r][c] = 0;
+    for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
+      double dN[Nodes][Dim];
+      const double det = physical_gradients(x, gradient, q, dN);
+      if (!(det > 0)) return false;
+      const double volume = weight(q) * det;
+      for (int a = 0; a < Nodes; ++a)
+        for (int i = 0; i < Dim; ++i)
+          for (int b = 0; b < Nodes; ++b)
+            for (int j = 0; j < Dim; ++j) product[Dim * a + i][Dim * b + j] += volume * dN[a][i] * dN[b][j];
+    }
+    return true;
+  }
+
+  /// Place of a node in a row of the node graph; it is there, for the graph was made of these cells.
+  KOKKOS_FUNCTION std::size_t find(const std::size_t begin, const std::size_t length, const LO node) const
+  {
+    std::size_t low = 0, high = length;
+    while (high - low > 1) {
+      const std::size_t middle = (low + high) / 2;
+      if (node_col(begin + middle) <= node)
+        low = middle;
+      else
+        high = middle;
+    }
+    return low;
+  }
+};
+
+constexpr const char *component_name[] = {"X", "Y", "Z"};
+
+VectorField vector_field(const Teuchos::ParameterList &list, const int dim, const std::string &path,
+                         const FieldParser &parse)
+{
+  VectorField field;
+  for (int c = 0; c < 3; ++c) {
+    const std::string parameter = path + "->" + component_name[c];
+    field[c] = parse(field_text(list, component_name[c]), parameter);
+    RPC_REQUIRE(c < dim || field[c].is_zero(),
+                "deck: \"" << parameter << "\" must be 0 in " << dim << "D, got " << field[c].text);
+  }
+  return field;
+}
+
+/// Values of a vector field at points (n, dim), as (n, dim) on the device.
+DeviceView<double **> evaluate_vector(const VectorField &field, const DeviceView<double **> &points,
+                                      const std::string &parameter, const Comm &comm)
+{
+  const int dim = static_cast<int>(points.extent(1));
+  const auto host_points = to_host(points);
+  DeviceView<double **> result("rpc::fem::load_at_points", points.extent(0), dim);
+  const auto host = Kokkos::create_mirror_view(result);
+  for (int c = 0; c < dim; ++c) {
+    const auto values = evaluate(field[c], host_points, parameter + "->" + component_name[c], comm);
+    for (std::size_t p = 0; p < values.extent(0); ++p) host(p, c) = values(p);
+  }
+  Kokkos::deep_copy(result, host);
+  return result;
+}
+
+bool is_zero(const VectorField &field, const int dim)
+{
+  for (int c = 0; c < dim; ++c)
+    if (!field[c].is_zero()) return false;
+  return true;
+}
+
+/// x = sum_a N_a x_a at the quadrature points of cells or facets: (entities * points, dim).
+DeviceView<double **> quadrature_points(const DeviceView<double **> &coords, const DeviceView<LO **> &nodes,
+                                        const DeviceView<double **> &value)
+{
+  const int dim = static_cast<int>(coords.extent(1)), points = static_cast<int>(value.extent(0));
+  DeviceView<double **> x("rpc::fem::quadrature_points", nodes.extent(0) * points, dim);
+  Kokkos::parallel_for(
+      "rpc::fem::quadrature_points", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO entity) {
+        for (int q = 0; q < points; ++q)
+          for (int d = 0; d < dim; ++d)
+            for (std::size_t a = 0; a < nodes.extent(1); ++a)
+              x(entity * points + q, d) += value(q, a) * coords(nodes(entity, a), d);
+      });
+  return x;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_material_parameters()
+{
+  Teuchos::ParameterList valid("Material");
+  valid.set("Young's Modulus", 1., "E > 0 [Pa].");
+  valid.set("Poisson's Ratio", 0.3, "nu, in (-1, 0.5).");
+  return valid;
+}
+
+Material material_options(const Teuchos::ParameterList &list)
+{
+  Material material;
+  material.youngs_modulus = list.get<double>("Young's Modulus");
+  material.poissons_ratio = list.get<double>("Poisson's Ratio");
+  RPC_REQUIRE(material.youngs_modulus > 0 && std::isfinite(material.youngs_modulus),
+              "deck: \"Material->Young's Modulus\" must be > 0 and finite [Pa], got " << material.youngs_modulus);
+  RPC_REQUIRE(material.poissons_ratio > -1 && material.poissons_ratio < 0.5,
+              "deck: \"Material->Poisson's Ratio\" must be in (-1, 0.5), got " << material.poissons_ratio);
+  return material;
+}
+
+Teuchos::ParameterList valid_traction_parameters()
+{
+  Teuchos::ParameterList entry, parent;
+  entry.set("Side", "", "Side of the mesh; by default the side that the entry is named after.");
+  for (const char *name : component_name)
+    set_field(entry, name, "0", std::string("Force per area in ") + name + " [Pa], a number or an expression.");
+  set_named_entries(parent, "Traction", entry, "Surface loads, any number of entries with names of your choice.");
+  return parent.sublist("Traction");
+}
+
+Teuchos::ParameterList valid_body_force_parameters()
+{
+  Teuchos::ParameterList valid("Body Force");
+  for (const char *name : component_name)
+    set_field(valid, name, "0", std::string("Force per volume in ") + name + " [N/m^3], a number or an expression.");
+  return valid;
+}
+
+std::vector<TractionLoad> traction_options(const Teuchos::ParameterList &list, const int dim, const FieldParser &parse)
+{
+  std::vector<TractionLoad> loads;
+  for (auto it = list.begin(); it != list.end(); ++it) {
+    const std::string name = list.name(it);
+    const Teuchos::ParameterList &entry = list.sublist(name);
+    const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
+    loads.push_back({name, side, vector_field(entry, dim, "Traction->" + name, parse)});
+  }
+  return loads;
+}
+
+VectorField body_force_options(const Teuchos::ParameterList &list, const int dim, const FieldParser &parse)
+{
+  return vector_field(list, dim, "Body Force", parse);
+}
+
+RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Material &material)
+{
+  const auto matrix = rcp(new CrsMatrix(d.graph));
+  const mesh::Mesh &mesh = *d.mesh;
+  LO bad = 0;
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    Stiffness<dim, nodes> kernel;
+    kernel.coords = mesh.coords;
+    kernel.cells = mesh.cells;
+    kernel.gradient = d.reference.cell.gradient;
+    kernel.weight = d.reference.cell.weight;
+    kernel.node_row = d.nodes.row;
+    kernel.node_col = d.nodes.col;
+    kernel.num_owned = mesh.num_owned_nodes();
+    kernel.lambda = material.lambda();
+    kernel.mu = material.mu();
+    kernel.values = matrix->getLocalMatrixDevice().values;
+    Kokkos::parallel_reduce("rpc::fem::stiffness", device_range(mesh.num_cells()), kernel, bad);
+  });
+  const GO all_bad = sum_all(mesh.comm(), GO(bad));
+  RPC_REQUIRE_CODE(all_bad == 0, ExitCode::bad_mesh,
+                   "mesh: " << all_bad << " cells are degenerate or inverted (Jacobian determinant <= 0)");
+  matrix->fillComplete(d.owned_dofs, d.owned_dofs);
+  return matrix;
+}
+
+void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load)
+{
+  if (is_zero(force, d.dim())) return;
+  const mesh::Mesh &mesh = *d.mesh;
+  const BasisTable &table = d.reference.cell;
+  const auto points = quadrature_points(mesh.coords, mesh.cells, table.value);
+  const auto f = evaluate_vector(force, points, parameter, mesh.comm());
+  const auto b = device_write(load);
+  const LO num_owned = mesh.num_owned_nodes();
+  const auto coords = mesh.coords;
+  const auto cells = mesh.cells;
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    constexpr int Dim = dim, Nodes = nodes;
+    const auto value = table.value;
+    const auto gradient = table.gradient;
+    const auto weight = table.weight;
+    const int num_points = table.num_points();
+    Kokkos::parallel_for(
+        "rpc::fem::body_force", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
+          const CellCoords<Dim, Nodes> x(coords, cells, cell);
+          for (int q = 0; q < num_points; ++q) {
+            double dN[Nodes][Dim];
+            const double volume = weight(q) * physical_gradients(x, gradient, q, dN);
+            for (int a = 0; a < Nodes; ++a)
+              for (int i = 0; i < Dim && cells(cell, a) < num_owned; ++i)
+                add_shared(b(Dim * cells(cell, a) + i), volume * value(q, a) * f(cell * num_points + q, i));
+          }
+        });
+  });
+}
+
+void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,
+                  const std::string &parameter, Vector &load)
+{
+  if (is_zero(traction, d.dim())) return;
+  const mesh::Mesh &mesh = *d.mesh;
+  const BasisTable &table = d.reference.facet;
+  const auto points = quadrature_points(mesh.coords, side.facets, table.value);
+  const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
+  const auto b = device_write(load);
+  const LO num_owned = mesh.num_owned_nodes();
+  const int dim = d.dim(), num_points = table.num_points();
+  const auto coords = mesh.coords;
+  const auto facets = side.facets;
+  const auto value = table.value;
+  const auto gradient = table.gradient;
+  const auto weight = table.weight;
+  Kokkos::parallel_for(
+      "rpc::fem::traction", device_range(static_cast<LO>(facets.extent(0))), KOKKOS_LAMBDA(const LO facet) {
+        for (int q = 0; q < num_points; ++q) {
+          const double area = weight(q) * norm(area_normal(coords, facets, facet, gradient, q));
+          for (std::size_t a = 0; a < facets.extent(1); ++a)
+            for (int i = 0; i < dim && facets(facet, a) < num_owned; ++i)
+              add_shared(b(dim * facets(facet, a) + i), area * value(q, a) * t(facet * num_points + q, i));
+        }
+      });
+}
+
+} // namespace rpc::fem

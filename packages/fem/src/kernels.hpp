@@ -1,0 +1,105 @@
+#pragma once
+
+#include "rpc/core/error.hpp"
+#include "rpc/fem/discretization.hpp"
+
+#include <string>
+#include <utility>
+
+/// What kernels over cells and facets share: geometry at a quadrature point, and the choice of static extents.
+namespace rpc::fem
+{
+
+/// Determinant and inverse of a small matrix; inverse is undefined if the determinant is 0.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION double invert(const double (&m)[Dim][Dim], double (&inverse)[Dim][Dim])
+{
+  if constexpr (Dim == 2) {
+    const double det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    const double s = 1 / det;
+    inverse[0][0] = s * m[1][1];
+    inverse[0][1] = -s * m[0][1];
+    inverse[1][0] = -s * m[1][0];
+    inverse[1][1] = s * m[0][0];
+    return det;
+  } else {
+    double cofactor[3][3];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+        cofactor[i][j] = m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1];
+      }
+    const double det = m[0][0] * cofactor[0][0] + m[0][1] * cofactor[0][1] + m[0][2] * cofactor[0][2];
+    const double s = 1 / det;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) inverse[i][j] = s * cofactor[j][i];
+    return det;
+  }
+}
+
+/// Node coordinates of one cell [m].
+template <int Dim, int Nodes>
+struct CellCoords {
+  double x[Nodes][Dim];
+
+  KOKKOS_INLINE_FUNCTION CellCoords(const DeviceView<double **> &coords, const DeviceView<LO **> &cells, const LO cell)
+  {
+    for (int a = 0; a < Nodes; ++a)
+      for (int d = 0; d < Dim; ++d) x[a][d] = coords(cells(cell, a), d);
+  }
+};
+
+/// Gradients dN(a, i) [1/m] of the shape functions at a point, and the Jacobian's determinant [m^Dim].
+template <int Dim, int Nodes>
+KOKKOS_INLINE_FUNCTION double physical_gradients(const CellCoords<Dim, Nodes> &cell,
+                                                 const DeviceView<double ***> &gradient, const int q,
+                                                 double (&dN)[Nodes][Dim])
+{
+  double jacobian[Dim][Dim] = {}; // dx_i / dX_j
+  for (int a = 0; a < Nodes; ++a)
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) jacobian[i][j] += cell.x[a][i] * gradient(q, a, j);
+  double inverse[Dim][Dim];
+  const double det = invert<Dim>(jacobian, inverse);
+  for (int a = 0; a < Nodes; ++a)
+    for (int i = 0; i < Dim; ++i) {
+      dN[a][i] = 0;
+      for (int j = 0; j < Dim; ++j) dN[a][i] += gradient(q, a, j) * inverse[j][i];
+    }
+  return det;
+}
+
+/// Outward normal at a facet's point times the ratio of area to reference area [m^(dim-1)].
+template <class Coords, class Facets, class Gradient>
+KOKKOS_INLINE_FUNCTION Kokkos::Array<double, 3> area_normal(const Coords &coords, const Facets &facets, const LO facet,
+                                                            const Gradient &gradient, const int q)
+{
+  const int dim = static_cast<int>(coords.extent(1)), nodes = static_cast<int>(facets.extent(1));
+  double t[2][3] = {};
+  for (int g = 0; g < dim - 1; ++g)
+    for (int a = 0; a < nodes; ++a)
+      for (int i = 0; i < dim; ++i) t[g][i] += gradient(q, a, g) * coords(facets(facet, a), i);
+  if (dim == 2) return {{t[0][1], -t[0][0], 0}};
+  return {{t[0][1] * t[1][2] - t[0][2] * t[1][1], t[0][2] * t[1][0] - t[0][0] * t[1][2],
+           t[0][0] * t[1][1] - t[0][1] * t[1][0]}};
+}
+
+KOKKOS_INLINE_FUNCTION double norm(const Kokkos::Array<double, 3> &v)
+{
+  return Kokkos::Experimental::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/// Calls work(Dim, Nodes) with both as compile-time constants. A new element is a new line here.
+template <class Work>
+void with_static_extents(const mesh::Element &element, Work &&work)
+{
+  using std::integral_constant;
+  const auto is = [&](const int dim, const int nodes) { return element.dim == dim && element.num_nodes() == nodes; };
+  if (is(2, 4)) return work(integral_constant<int, 2>(), integral_constant<int, 4>());
+  if (is(2, 9)) return work(integral_constant<int, 2>(), integral_constant<int, 9>());
+  if (is(3, 8)) return work(integral_constant<int, 3>(), integral_constant<int, 8>());
+  throw Error(ExitCode::bad_input,
+              "fem: no kernels for " + element.name() + " in " + std::to_string(element.dim) + "D");
+}
+
+} // namespace rpc::fem

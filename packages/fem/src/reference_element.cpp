@@ -1,0 +1,150 @@
+#include "rpc/fem/reference_element.hpp"
+
+#include "rpc/core/error.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace rpc::fem
+{
+namespace
+{
+
+struct Rule1d {
+  std::vector<double> point, weight; // on [-1, 1]
+};
+
+Rule1d gauss(const int points)
+{
+  switch (points) {
+  case 2:
+    return {{-1 / std::sqrt(3.), 1 / std::sqrt(3.)}, {1, 1}};
+  case 3:
+    return {{-std::sqrt(0.6), 0, std::sqrt(0.6)}, {5. / 9, 8. / 9, 5. / 9}};
+  case 4: {
+    const double a = std::sqrt(3. / 7 - 2. / 7 * std::sqrt(1.2)), b = std::sqrt(3. / 7 + 2. / 7 * std::sqrt(1.2));
+    const double wa = (18 + std::sqrt(30.)) / 36, wb = (18 - std::sqrt(30.)) / 36;
+    return {{-b, -a, a, b}, {wb, wa, wa, wb}};
+  }
+  default:
+    throw Error(ExitCode::internal_error, "fem::gauss: no rule of " + std::to_string(points) + " points");
+  }
+}
+
+Rule1d lobatto(const int order)
+{
+  return order == 1 ? Rule1d{{-1, 1}, {1, 1}} : Rule1d{{-1, 0, 1}, {1. / 3, 4. / 3, 1. / 3}};
+}
+
+double node_1d(const int i, const int order)
+{
+  return -1 + 2. * i / order;
+}
+
+/// Value and derivative at x of the Lagrange polynomial of node i.
+struct Shape1d {
+  double value, slope;
+};
+Shape1d lagrange(const int i, const int order, const double x)
+{
+  Shape1d shape{1, 0};
+  for (int k = 0; k <= order; ++k) {
+    if (k == i) continue;
+    const double span = node_1d(i, order) - node_1d(k, order);
+    const double factor = (x - node_1d(k, order)) / span;
+    shape.slope = shape.slope * factor + shape.value / span;
+    shape.value *= factor;
+  }
+  return shape;
+}
+
+/// Nodes of a facet on its own lattice {0..order}^d, in the order of Element::facets.
+std::vector<std::vector<int>> facet_lattice(const mesh::Element &element)
+{
+  if (element.dim == 3) return mesh::Element{2, element.order}.lattice();
+  std::vector<std::vector<int>> nodes = {{0}, {element.order}};
+  if (element.order == 2) nodes.push_back({1});
+  return nodes;
+}
+
+/// Tensor product of a 1d rule; `lattice` (nodes, d) names the node of each shape function in each direction.
+BasisTable tensor_table(const std::vector<std::vector<int>> &lattice, const int order, const Rule1d &rule)
+{
+  const int d = static_cast<int>(lattice[0].size()), nodes = static_cast<int>(lattice.size());
+  const int n = static_cast<int>(rule.point.size());
+  const int points = static_cast<int>(std::lround(std::pow(n, d)));
+  HostView<double **> value("rpc::fem::value", points, nodes);
+  HostView<double ***> gradient("rpc::fem::gradient", points, nodes, d);
+  HostView<double *> weight("rpc::fem::weight", points);
+  for (int q = 0; q < points; ++q) {
+    std::vector<int> at(d);
+    weight(q) = 1;
+    for (int k = 0, rest = q; k < d; ++k, rest /= n) {
+      at[k] = rest % n;
+      weight(q) *= rule.weight[at[k]];
+    }
+    for (int a = 0; a < nodes; ++a) {
+      value(q, a) = 1;
+      for (int g = 0; g < d; ++g) gradient(q, a, g) = 1;
+      for (int k = 0; k < d; ++k) {
+        const Shape1d shape = lagrange(lattice[a][k], order, rule.point[at[k]]);
+        value(q, a) *= shape.value;
+        for (int g = 0; g < d; ++g) gradient(q, a, g) *= g == k ? shape.slope : shape.value;
+      }
+    }
+  }
+  BasisTable table;
+  table.value = DeviceView<double **>("rpc::fem::basis_value", points, nodes);
+  table.gradient = DeviceView<double ***>("rpc::fem::basis_gradient", points, nodes, d);
+  table.weight = DeviceView<double *>("rpc::fem::quadrature_weight", points);
+  const auto copy = [](const auto &device, const auto &host) { // layouts may differ
+    auto mirror = Kokkos::create_mirror_view(device);
+    Kokkos::deep_copy(mirror, host);
+    Kokkos::deep_copy(device, mirror);
+  };
+  copy(table.value, value);
+  copy(table.gradient, gradient);
+  copy(table.weight, weight);
+  return table;
+}
+
+} // namespace
+
+ReferenceElement tabulate(const mesh::Element &element)
+{
+  const int order = element.order;
+  const auto on_facet = facet_lattice(element);
+  ReferenceElement reference;
+  reference.element = element;
+  reference.cell = tensor_table(element.lattice(), order, gauss(order + 1));
+  reference.facet = tensor_table(on_facet, order, gauss(order + 2));
+
+  // The points of the nodal rule must come in the order of the nodes, not of the tensor product.
+  const Rule1d rule = lobatto(order);
+  const BasisTable all = tensor_table(on_facet, order, rule);
+  const auto value = to_host(all.value);
+  const auto gradient = to_host(all.gradient);
+  const auto weight = to_host(all.weight);
+  const int nodes = all.num_points(), d = element.dim - 1;
+  BasisTable &nodal = reference.facet_nodal;
+  nodal.value = DeviceView<double **>("rpc::fem::nodal_value", nodes, nodes);
+  nodal.gradient = DeviceView<double ***>("rpc::fem::nodal_gradient", nodes, nodes, d);
+  nodal.weight = DeviceView<double *>("rpc::fem::nodal_weight", nodes);
+  const auto value_to = Kokkos::create_mirror_view(nodal.value);
+  const auto gradient_to = Kokkos::create_mirror_view(nodal.gradient);
+  const auto weight_to = Kokkos::create_mirror_view(nodal.weight);
+  for (int a = 0; a < nodes; ++a) {
+    const int q = on_facet[a][0] + (d == 2 ? (order + 1) * on_facet[a][1] : 0);
+    weight_to(a) = weight(q);
+    for (int b = 0; b < nodes; ++b) {
+      value_to(a, b) = value(q, b);
+      for (int g = 0; g < d; ++g) gradient_to(a, b, g) = gradient(q, b, g);
+    }
+  }
+  Kokkos::deep_copy(nodal.value, value_to);
+  Kokkos::deep_copy(nodal.gradient, gradient_to);
+  Kokkos::deep_copy(nodal.weight, weight_to);
+  return reference;
+}
+
+} // namespace rpc::fem

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+namespace rpc::io
+{
+
+/// An output file that appears whole or not at all: written under a temporary name in the same folder, then renamed.
+///
+/// One rank only; see on_root().
+class AtomicFile
+{
+public:
+  /// Creates the temporary file, empty.
+  /// @throws rpc::Error: bad_input if the folder cannot be written to, internal_error otherwise (disk full)
+  explicit AtomicFile(const std::string &path);
+  /// Removes the temporary file unless commit() has run.
+  ~AtomicFile();
+  AtomicFile(const AtomicFile &) = delete;
+  AtomicFile &operator=(const AtomicFile &) = delete;
+
+  /// Where to write meanwhile: the path with the process id appended.
+  const std::string &temporary() const { return temporary_; }
+
+  /// Flushes the temporary file to disk and gives it its name; an older file of that name is replaced.
+  /// The writer has closed the file before.
+  /// @throws rpc::Error as the constructor does
+  void commit();
+
+private:
+  std::string path_;
+  std::string temporary_;
+  bool committed_ = false;
+};
+
+/// Writes a whole text file or none; one rank only.
+/// @throws rpc::Error: bad_input if the folder cannot be written to, internal_error otherwise (disk full)
+void write_text(const std::string &path, const std::string &text);
+
+/// Makes the folder, and those above it, if it is missing, and proves that files can be made in it; one rank only.
+/// @throws rpc::Error (bad_input) with the system's reason and the remedy
+void require_writable_folder(const std::string &folder);
+
+} // namespace rpc::io

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <string>
+
+namespace rpc::io
+{
+
+/// Path of a deck: `name` as given, else in the folder that the environment variable RPC_INPUT_DIR names, in the source
+/// tree's input/, or in the installed share/rpc/input.
+/// @throws rpc::Error (bad_input) listing the places searched
+std::string find_deck(const std::string &name);
+
+/// Reads a deck: YAML if the name ends in .yaml or .yml, Teuchos XML otherwise. The root list may have a name or not.
+///
+/// A value must read as the type that the deck gives it (Teuchos alone takes "abc" for the double 0), and a name may be
+/// given once. A double inf or nan arrives as a string, as YAML has it: only fields know what to do with one. Not
+/// collective; each rank that wants the deck reads the file.
+/// @throws rpc::Error (bad_input) with path, line where known, and reason
+Teuchos::ParameterList read_deck(const std::string &path);
+
+} // namespace rpc::io

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "rpc/core/field.hpp"
+
+#include <string>
+
+namespace rpc::io
+{
+
+/// A field of the deck: a number, `inf`, or a muParser expression of x, y, z [m] with the constants pi, e and inf.
+///
+/// A text without variables becomes a constant. The function is not thread safe: copies share one parser.
+/// @param parameter  deck path for messages, "Contact->Yield Stress"
+/// @throws rpc::Error (bad_input) if the text does not parse, assigns to a variable, has several values, or is a
+/// constant NaN
+ScalarField parse_field(const std::string &text, const std::string &parameter);
+
+} // namespace rpc::io

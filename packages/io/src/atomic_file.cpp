@@ -1,0 +1,136 @@
+#include "rpc/io/atomic_file.hpp"
+
+#include "rpc/core/error.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <unistd.h>
+
+namespace rpc::io
+{
+namespace
+{
+
+constexpr const char *remedy = "; choose a folder that can be written to with --output=DIR";
+
+/// Whether the user's choice of folder is at fault rather than the machine.
+bool is_bad_folder(const int error)
+{
+  switch (error) {
+  case EACCES:
+  case EPERM:
+  case EROFS:
+  case ENOENT:
+  case ENOTDIR:
+  case EISDIR:
+  case EEXIST:
+  case ELOOP:
+  case ENAMETOOLONG:
+    return true;
+  default:
+    return false;
+  }
+}
+
+[[noreturn]] void fail(const int error, const std::string &action, const std::string &path)
+{
+  const bool bad_folder = is_bad_folder(error);
+  throw Error(bad_folder ? ExitCode::bad_input : ExitCode::internal_error,
+              "output: cannot " + action + " \"" + path + "\": " + std::strerror(error) + (bad_folder ? remedy : ""));
+}
+
+/// Owns a file descriptor; close() reports what the destructor would swallow.
+class Descriptor
+{
+public:
+  Descriptor(const std::string &path, const int flags) : path_(path), fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666))
+  {
+    if (fd_ < 0) fail(errno, flags & O_CREAT ? "create" : "open", path_);
+  }
+  ~Descriptor()
+  {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor &) = delete;
+  Descriptor &operator=(const Descriptor &) = delete;
+
+  void write(const std::string &text)
+  {
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t written = ::write(fd_, text.data() + done, text.size() - done);
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail(errno, "write", path_);
+      done += static_cast<std::size_t>(written);
+    }
+  }
+  void sync()
+  {
+    if (::fsync(fd_) != 0 && errno != EINVAL) fail(errno, "write", path_); // EINVAL: a file system without fsync
+  }
+  void close()
+  {
+    const int fd = fd_;
+    fd_ = -1;
+    if (::close(fd) != 0) fail(errno, "write", path_);
+  }
+
+private:
+  std::string path_;
+  int fd_;
+};
+
+std::string temporary_name(const std::string &path)
+{
+  return path + ".tmp." + std::to_string(::getpid());
+}
+
+} // namespace
+
+AtomicFile::AtomicFile(const std::string &path) : path_(path), temporary_(temporary_name(path))
+{
+  Descriptor(temporary_, O_WRONLY | O_CREAT | O_TRUNC).close();
+}
+
+AtomicFile::~AtomicFile()
+{
+  if (!committed_) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::commit()
+{
+  Descriptor file(temporary_, O_RDWR);
+  file.sync();
+  file.close();
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno, "replace", path_);
+  committed_ = true;
+}
+
+void write_text(const std::string &path, const std::string &text)
+{
+  AtomicFile output(path);
+  Descriptor file(output.temporary(), O_WRONLY);
+  file.write(text);
+  file.close();
+  output.commit();
+}
+
+void require_writable_folder(const std::string &folder)
+{
+  const std::filesystem::path path = folder.empty() ? "." : folder;
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  RPC_REQUIRE(!error, "output: cannot create the folder \"" << path.string() << "\": " << error.message() << remedy);
+  RPC_REQUIRE(std::filesystem::is_directory(path, error),
+              "output: \"" << path.string() << "\" is not a folder" << remedy);
+  const std::string probe = temporary_name((path / ".rpc").string());
+  const int fd = ::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  RPC_REQUIRE(fd >= 0,
+              "output: cannot write to the folder \"" << path.string() << "\": " << std::strerror(errno) << remedy);
+  ::close(fd);
+  ::unlink(probe.c_str());
+}
+
+} // namespace rpc::io

@@ -1,0 +1,180 @@
+#include "rpc/io/contact_csv.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/io/atomic_file.hpp"
+#include "rpc/io/gather.hpp"
+#include "rpc/io/on_root.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+namespace rpc::io
+{
+namespace
+{
+
+/// One contact node.
+struct Row {
+  GO id;
+  std::array<double, 3> x;
+  double u_nu, gap, pressure;
+  int state;
+  double s = 0; ///< arc length [m]
+};
+
+using Edge = std::array<int, 2>; // rows at its ends
+using Chain = std::vector<int>;  // rows in the order of the walk
+
+/// All ranks' rows ordered by id; rank 0 only.
+std::vector<Row> gather_rows(const Comm &comm, const ContactTable &table, const int dim)
+{
+  const std::size_t n = table.id.extent(0);
+  const auto id = gather(comm, table.id.data(), n);
+  const auto u_nu = gather(comm, table.u_nu.data(), n);
+  const auto gap = gather(comm, table.gap.data(), n);
+  const auto pressure = gather(comm, table.pressure.data(), n);
+  const auto state = gather(comm, table.state.data(), n);
+  const auto x = gather(comm, table.position.data(), n * dim);
+  std::vector<Row> rows;
+  for (std::size_t k = 0; k < id.size(); ++k) {
+    Row row{id[k], {}, u_nu[k], gap[k], pressure[k], state[k]};
+    std::copy_n(x.begin() + k * dim, dim, row.x.begin());
+    rows.push_back(row);
+  }
+  std::sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) { return a.id < b.id; });
+  return rows;
+}
+
+/// Facets as edges between neighbouring rows, in an order that does not depend on the ranks. A node without a row is
+/// passed over.
+std::vector<Edge> edges_of(const std::vector<Row> &rows, const std::vector<GO> &facets, const int width)
+{
+  std::map<GO, int> row_of;
+  for (std::size_t r = 0; r < rows.size(); ++r) row_of[rows[r].id] = static_cast<int>(r);
+  std::vector<Edge> edges;
+  for (std::size_t f = 0; f < facets.size(); f += width) {
+    std::vector<GO> walk = {facets[f]}; // end, middle ones, end
+    for (int a = 2; a < width; ++a) walk.push_back(facets[f + a]);
+    walk.push_back(facets[f + 1]);
+    std::vector<int> present;
+    for (const GO id : walk)
+      if (const auto row = row_of.find(id); row != row_of.end()) present.push_back(row->second);
+    for (std::size_t k = 1; k < present.size(); ++k) edges.push_back({present[k - 1], present[k]});
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+/// Cuts the surface into chains, each of which starts at its lowest end, or point if it is closed; sorted by their
+/// starts.
+std::vector<Chain> chains_of(const std::vector<Row> &rows, const std::vector<Edge> &edges)
+{
+  std::vector<std::vector<int>> neighbours(rows.size()); // along the facets' direction first
+  for (const Edge &edge : edges) neighbours[edge[0]].push_back(edge[1]);
+  for (const Edge &edge : edges) neighbours[edge[1]].push_back(edge[0]);
+
+  const auto lower = [&](const int a, const int b) { return rows[a].x < rows[b].x; };
+  std::vector<int> starts(rows.size());
+  std::iota(starts.begin(), starts.end(), 0);
+  std::stable_sort(starts.begin(), starts.end(), lower);
+  std::stable_partition(starts.begin(), starts.end(),
+                        [&](const int row) { return neighbours[row].size() < 2; }); // ends first
+
+  std::vector<Chain> chains;
+  std::vector<bool> visited(rows.size(), false);
+  for (const int start : starts) {
+    if (visited[start]) continue;
+    Chain chain;
+    for (std::optional<int> at = start; at;) {
+      chain.push_back(*at);
+      visited[*at] = true;
+      const auto &around = neighbours[*at];
+      const auto next = std::find_if(around.begin(), around.end(), [&](const int row) { return !visited[row]; });
+      at = next == around.end() ? std::nullopt : std::optional<int>(*next);
+    }
+    chains.push_back(chain);
+  }
+  std::stable_sort(chains.begin(), chains.end(),
+                   [&](const Chain &a, const Chain &b) { return lower(a.front(), b.front()); });
+  return chains;
+}
+
+std::vector<Row> along_the_surface(std::vector<Row> rows, const std::vector<Edge> &edges)
+{
+  std::vector<Row> sorted;
+  for (const Chain &chain : chains_of(rows, edges)) {
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+      Row &row = rows[chain[k]];
+      if (k > 0) row.s = sorted.back().s + std::hypot(row.x[0] - sorted.back().x[0], row.x[1] - sorted.back().x[1]);
+      sorted.push_back(row);
+    }
+  }
+  return sorted;
+}
+
+void append(std::string &text, const double value)
+{
+  char buffer[32];
+  text.append(buffer,
+              std::to_chars(buffer, buffer + sizeof buffer, value).ptr); // the shortest that reads back the same
+  text += ',';
+}
+
+std::string csv(const std::vector<Row> &rows, const int dim)
+{
+  static const std::array<const char *, 3> states = {"open", "stuck", "yielded"};
+  std::string text = dim == 2 ? "x,y,s,u_nu,gap,pressure,state\n" : "x,y,z,u_nu,gap,pressure,state\n";
+  for (const Row &row : rows) {
+    RPC_REQUIRE_CODE(row.state >= 0 && row.state < 3, ExitCode::internal_error,
+                     "output: the contact state of node " << row.id << " must be 0, 1 or 2, got " << row.state);
+    for (const double value : {row.x[0], row.x[1], dim == 2 ? row.s : row.x[2], row.u_nu, row.gap, row.pressure})
+      append(text, value);
+    text += states[row.state];
+    text += '\n';
+  }
+  return text;
+}
+
+void require_equal_lengths(const Comm &comm, const ContactTable &table)
+{
+  const std::size_t n = table.id.extent(0);
+  std::optional<std::string> message;
+  for (const std::size_t length : {table.position.extent(0), table.u_nu.extent(0), table.gap.extent(0),
+                                   table.pressure.extent(0), table.state.extent(0)})
+    if (length != n)
+      message = "output: the contact table's columns must have a value for each of " + std::to_string(n) +
+                " nodes, got " + std::to_string(length);
+  throw_if_any(comm, ExitCode::internal_error, message);
+}
+
+void require_unique(const std::vector<Row> &rows)
+{
+  for (std::size_t k = 1; k < rows.size(); ++k)
+    RPC_REQUIRE_CODE(rows[k].id != rows[k - 1].id, ExitCode::internal_error,
+                     "output: the contact node " << rows[k].id << " is on several ranks or comes twice on one");
+}
+
+} // namespace
+
+void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const ContactTable &table,
+                       const HostView<GO **> &facets)
+{
+  require_equal_lengths(*comm, table);
+  const int dim = max_all(*comm, static_cast<int>(table.position.extent(1)));
+  const int width = max_all(*comm, static_cast<int>(facets.extent(1)));
+  std::vector<Row> rows = gather_rows(*comm, table, dim);
+  const std::vector<GO> all_facets = gather(*comm, facets.data(), facets.size());
+  on_root(*comm, ExitCode::internal_error, [&] {
+    require_unique(rows);
+    if (dim == 2) rows = along_the_surface(rows, edges_of(rows, all_facets, width));
+    write_text(path, csv(rows, dim));
+  });
+}
+
+} // namespace rpc::io

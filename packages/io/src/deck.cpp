@@ -1,0 +1,251 @@
+#include "rpc/io/deck.hpp"
+
+#include "rpc/core/error.hpp"
+
+#include <Teuchos_StringInputSource.hpp>
+#include <Teuchos_XMLObject.hpp>
+#include <Teuchos_XMLParameterListReader.hpp>
+#include <Teuchos_YamlParameterListCoreHelpers.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <vector>
+
+namespace rpc::io
+{
+namespace
+{
+
+using Teuchos::ParameterList;
+using Teuchos::XMLObject;
+
+std::string trimmed(const std::string &text)
+{
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+std::string read_text(const std::string &path)
+{
+  const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  RPC_REQUIRE(file, "deck: cannot open \"" << path << "\": " << std::strerror(errno));
+  std::string text;
+  char buffer[1 << 14];
+  while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, count);
+  RPC_REQUIRE(!std::ferror(file.get()), "deck: cannot read \"" << path << "\": " << std::strerror(errno));
+  RPC_REQUIRE(!trimmed(text).empty(), "deck: \"" << path << "\" is empty");
+  return text;
+}
+
+bool is_yaml(const std::string &path)
+{
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](const unsigned char c) { return std::tolower(c); });
+  return extension == ".yaml" || extension == ".yml";
+}
+
+std::vector<std::string> lines_of(const std::string &text)
+{
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// What Teuchos says, in one line: without its source files, counters, conditions, echoes of the input and parser
+/// states.
+std::string reason_of(const std::string &what)
+{
+  static const std::regex noise(R"(^\S+\.[ch]pp:\d+:$|^Throw (number|test)|^error: |^-+$|^\s*$)");
+  static const std::regex position(R"(^XML parse error at line \d+: )");
+  std::string reason;
+  const std::vector<std::string> lines = lines_of(what);
+  for (std::size_t n = 0; n < lines.size(); ++n) {
+    if (lines[n].rfind("Lexer text", 0) == 0) break; // nothing but the parser's state from here on
+    const bool echo = n > 0 && n + 1 < lines.size() && std::regex_match(lines[n + 1], std::regex(R"(\s*\^)"));
+    if (echo) ++n;
+    if (echo || std::regex_search(lines[n], noise)) continue;
+    reason += (reason.empty() ? "" : " ") + std::regex_replace(lines[n], position, "");
+  }
+  while (!reason.empty() && std::isspace(static_cast<unsigned char>(reason.back()))) reason.pop_back();
+  return reason.empty() ? "malformed" : reason;
+}
+
+/// "deck: "path", line n: reason"
+[[noreturn]] void refuse(const std::string &path, const std::exception &error, const int lines_added = 0)
+{
+  const std::string what = error.what();
+  std::smatch line;
+  std::string where;
+  if (std::regex_search(what, line, std::regex(R"(at line (\d+)|\(line (\d+))"))) {
+    const int number = std::stoi(line[1].matched ? line[1].str() : line[2].str()) - lines_added;
+    if (number > 0) where = ", line " + std::to_string(number);
+  }
+  std::string reason = reason_of(what);
+  if (reason.rfind("Expected one of", 0) == 0) reason += " (in YAML a text with special characters needs quotes)";
+  throw Error(ExitCode::bad_input, "deck: \"" + path + "\"" + where + ": " + reason);
+}
+
+std::optional<double> read_double(const std::string &text)
+{
+  char *end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0') return std::nullopt;
+  return value;
+}
+
+bool reads_as_integer(const std::string &text)
+{
+  errno = 0;
+  char *end = nullptr;
+  const long long value = std::strtoll(text.c_str(), &end, 10);
+  return !text.empty() && *end == '\0' && errno == 0 && value == static_cast<int>(value);
+}
+
+bool reads_as_bool(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(), [](const unsigned char c) { return std::tolower(c); });
+  static const std::set<std::string> words = {"true", "false", "yes", "no", "1", "0"};
+  return words.count(text) > 0;
+}
+
+/// Whether the text is of the Teuchos type; types other than numbers and bool are left to Teuchos.
+bool reads_as(const std::string &type, const std::string &text)
+{
+  if (type == "int") return reads_as_integer(text);
+  if (type == "double" || type == "float") {
+    const auto value = read_double(text);
+    return value && std::isfinite(*value);
+  }
+  if (type == "bool") return reads_as_bool(text);
+  return true;
+}
+
+bool array_reads_as(const std::string &type, const std::string &text)
+{
+  if (text.size() < 2 || text.front() != '{' || text.back() != '}') return false;
+  const std::string inside = trimmed(text.substr(1, text.size() - 2));
+  if (inside.empty()) return true;
+  std::istringstream in(inside + ",");
+  for (std::string item; std::getline(in, item, ',');)
+    if (!reads_as(type, trimmed(item))) return false;
+  return true;
+}
+
+/// Checks a parameter's value against its type; a double inf or nan becomes a string.
+void check_value(XMLObject &xml, const std::string &file, const std::string &path)
+{
+  if (!xml.hasAttribute("type") || !xml.hasAttribute("value")) return; // Teuchos names what is missing
+  const std::string type = xml.getAttribute("type");
+  const std::string value = trimmed(xml.getAttribute("value"));
+  if (type == "double") {
+    const auto number = read_double(value);
+    if (number && !std::isfinite(*number)) {
+      xml.addAttribute("type", "string");
+      return;
+    }
+  }
+  static const std::regex array(R"(Array\((.*)\))");
+  std::smatch item;
+  const bool good = std::regex_match(type, item, array) ? array_reads_as(item[1], value) : reads_as(type, value);
+  RPC_REQUIRE(good, "deck: \"" << file << "\": \"" << path << "\" = \"" << value << "\" does not read as " << type);
+}
+
+void check_list(const XMLObject &xml, const std::string &file, const std::string &path)
+{
+  std::set<std::string> names;
+  for (int n = 0; n < xml.numChildren(); ++n) {
+    XMLObject child = xml.getChild(n);
+    const bool is_list = child.getTag() == "ParameterList";
+    if ((!is_list && child.getTag() != "Parameter") || !child.hasAttribute("name")) continue;
+    const std::string name = child.getAttribute("name");
+    const std::string full = path.empty() ? name : path + "->" + name;
+    RPC_REQUIRE(names.insert(name).second, "deck: \"" << file << "\": \"" << full << "\" is given twice");
+    if (is_list)
+      check_list(child, file, full);
+    else
+      check_value(child, file, full);
+  }
+}
+
+ParameterList read_xml(const std::string &path)
+{
+  const std::string text = read_text(path);
+  try {
+    Teuchos::StringInputSource source(text);
+    const XMLObject xml = source.getObject();
+    check_list(xml, path, "");
+    return Teuchos::XMLParameterListReader().toParameterList(xml);
+  } catch (const Error &) {
+    throw;
+  } catch (const std::exception &error) {
+    refuse(path, error);
+  }
+}
+
+/// Number of names at the outermost level of a YAML text.
+int count_root_names(const std::vector<std::string> &lines)
+{
+  static const std::regex name(R"([^\s#%-].*:(\s.*)?)");
+  return static_cast<int>(
+      std::count_if(lines.begin(), lines.end(), [](const std::string &line) { return std::regex_match(line, name); }));
+}
+
+ParameterList read_yaml(const std::string &path)
+{
+  const std::vector<std::string> lines = lines_of(read_text(path));
+  // Teuchos wants one name at the outermost level, and loses parameters without a word if there are more.
+  const bool anonymous = count_root_names(lines) > 1;
+  std::string text = anonymous ? "ANONYMOUS:\n" : "";
+  for (const std::string &line : lines) {
+    const bool marker = !line.empty() && (line == "---" || line == "..." || line[0] == '%');
+    if (!anonymous)
+      text += line;
+    else if (!marker && !line.empty())
+      text += "  " + line;
+    text += "\n";
+  }
+  try {
+    return *Teuchos::getParametersFromYamlString(text);
+  } catch (const std::exception &error) {
+    refuse(path, error, anonymous ? 1 : 0);
+  }
+}
+
+} // namespace
+
+std::string find_deck(const std::string &name)
+{
+  std::vector<std::filesystem::path> places = {name};
+  if (!std::filesystem::path(name).is_absolute()) {
+    if (const char *folder = std::getenv("RPC_INPUT_DIR")) places.push_back(std::filesystem::path(folder) / name);
+    places.push_back(std::filesystem::path(RPC_SOURCE_INPUT_DIR) / name);
+    places.push_back(std::filesystem::path(RPC_INSTALL_INPUT_DIR) / name);
+  }
+  std::string searched;
+  for (const auto &place : places) {
+    std::error_code error;
+    if (std::filesystem::exists(place, error) && !std::filesystem::is_directory(place, error)) return place.string();
+    searched += (searched.empty() ? "" : ", ") + place.string();
+  }
+  throw Error(ExitCode::bad_input, "deck: there is no file \"" + name + "\"; searched: " + searched);
+}
+
+ParameterList read_deck(const std::string &path)
+{
+  return is_yaml(path) ? read_yaml(path) : read_xml(path);
+}
+
+} // namespace rpc::io

@@ -1,0 +1,252 @@
+#include "rpc/io/exodus.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/io/atomic_file.hpp"
+#include "rpc/io/gather.hpp"
+#include "rpc/io/on_root.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exodusII.h>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace rpc::io
+{
+namespace
+{
+
+constexpr int block_id = 1;
+
+/// Facets of the whole mesh, 1-based as Exodus counts, ordered by cell and ordinal; rank 0 only.
+struct SideSet {
+  std::string name;
+  std::vector<int> cell, ordinal;
+};
+
+/// What the file's header fixes. It comes before all data, which NetCDF would have to move if it grew later.
+struct Header {
+  std::string title;
+  std::vector<std::string> info, field_names;
+  mesh::Element element;
+  GO num_nodes, num_cells;
+};
+
+/// The library takes arrays of pointers to non-const characters, which it only reads.
+std::vector<char *> pointers(std::vector<std::string> &texts)
+{
+  std::vector<char *> result;
+  for (auto &text : texts) result.push_back(text.data());
+  return result;
+}
+
+std::vector<std::string> cut(std::vector<std::string> texts, const std::size_t length)
+{
+  for (auto &text : texts) text.resize(std::min(text.size(), length));
+  return texts;
+}
+
+/// An open Exodus file on rank 0, under its temporary name until commit().
+class Writer
+{
+public:
+  explicit Writer(const std::string &path) : path_(path), file_(path)
+  {
+    ex_opts(EX_DEFAULT); // errors come as return codes, not on the console
+    int word_size = sizeof(double), file_word_size = sizeof(double);
+    id_ = ex_create(file_.temporary().c_str(), EX_CLOBBER | EX_LARGE_MODEL, &word_size, &file_word_size);
+    if (id_ < 0) fail("create");
+  }
+  ~Writer()
+  {
+    if (id_ >= 0) ex_close(id_);
+  }
+  Writer(const Writer &) = delete;
+  Writer &operator=(const Writer &) = delete;
+
+  void put_header(const Header &header, const std::vector<SideSet> &sides)
+  {
+    define(header, sides);
+    put_names(header, sides);
+    put_sides(sides);
+  }
+  void put_coordinate(const int direction, const std::vector<double> &values)
+  {
+    std::array<const double *, 3> by_direction{};
+    by_direction[direction] = values.data();
+    check(ex_put_coord(id_, by_direction[0], by_direction[1], by_direction[2]), "write the coordinates of");
+  }
+  void put_cells(const std::vector<int> &nodes)
+  {
+    check(ex_put_conn(id_, EX_ELEM_BLOCK, block_id, nodes.data(), nullptr, nullptr), "write the cells of");
+  }
+  void put_field(const int index, const std::vector<double> &values)
+  {
+    check(ex_put_nodal_var(id_, 1, index + 1, static_cast<int64_t>(values.size()), values.data()), "write a field of");
+  }
+  void commit()
+  {
+    check(ex_close(std::exchange(id_, -1)), "close");
+    file_.commit();
+  }
+
+private:
+  void define(const Header &header, const std::vector<SideSet> &sides)
+  {
+    const auto &element = header.element;
+    check(ex_put_init(id_, header.title.substr(0, MAX_LINE_LENGTH).c_str(), element.dim, header.num_nodes,
+                      header.num_cells, 1, 0, static_cast<int64_t>(sides.size())),
+          "define");
+    std::string program = "rpc", version = RPC_VERSION, date, time;
+    char *qa[1][4] = {{program.data(), version.data(), date.data(), time.data()}};
+    check(ex_put_qa(id_, 1, qa), "define");
+    auto info = cut(header.info, MAX_LINE_LENGTH);
+    if (!info.empty()) check(ex_put_info(id_, static_cast<int>(info.size()), pointers(info).data()), "define");
+    check(ex_put_block(id_, EX_ELEM_BLOCK, block_id, element.exodus_name().c_str(), header.num_cells,
+                       element.num_nodes(), 0, 0, 0),
+          "define");
+    for (std::size_t s = 0; s < sides.size(); ++s)
+      check(ex_put_set_param(id_, EX_SIDE_SET, s + 1, static_cast<int64_t>(sides[s].cell.size()), 0), "define");
+    if (!header.field_names.empty())
+      check(ex_put_variable_param(id_, EX_NODAL, static_cast<int>(header.field_names.size())), "define");
+  }
+
+  void put_names(const Header &header, const std::vector<SideSet> &sides)
+  {
+    std::vector<std::string> coordinates = {"x", "y", "z"}, fields = header.field_names;
+    check(ex_put_coord_names(id_, pointers(coordinates).data()), "name the coordinates of");
+    check(ex_put_name(id_, EX_ELEM_BLOCK, block_id, "body"), "name the block of");
+    for (std::size_t s = 0; s < sides.size(); ++s)
+      check(ex_put_name(id_, EX_SIDE_SET, s + 1, sides[s].name.c_str()), "name the sides of");
+    if (!fields.empty())
+      check(ex_put_variable_names(id_, EX_NODAL, static_cast<int>(fields.size()), pointers(fields).data()),
+            "name the fields of");
+  }
+
+  void put_sides(const std::vector<SideSet> &sides)
+  {
+    for (std::size_t s = 0; s < sides.size(); ++s)
+      if (!sides[s].cell.empty())
+        check(ex_put_set(id_, EX_SIDE_SET, s + 1, sides[s].cell.data(), sides[s].ordinal.data()), "write the sides of");
+    const double time = 0;
+    check(ex_put_time(id_, 1, &time), "write the time of");
+  }
+
+  void check(const int status, const char *action) const
+  {
+    if (status != 0) fail(action);
+  }
+
+  [[noreturn]] void fail(const char *action) const
+  {
+    const char *message = nullptr, *function = nullptr;
+    int code = 0;
+    ex_get_err(&message, &function, &code);
+    std::string text = "output: cannot " + std::string(action) + " \"" + path_ + "\"";
+    if (message && *message) text += ": " + std::string(message);
+    if (code > 0) text += std::string(" (") + std::strerror(code) + ")"; // NetCDF hands on errno; its own codes are < 0
+    throw Error(ExitCode::internal_error, text);
+  }
+
+  std::string path_;
+  AtomicFile file_;
+  int id_ = -1;
+};
+
+void require_writable(const mesh::Mesh &mesh, const std::vector<NodalField> &fields)
+{
+  std::optional<std::string> message;
+  const auto check_name = [&](const std::string &name) {
+    if (name.empty() || name.size() > MAX_NAME_LENGTH)
+      message = "output: an Exodus name must have 1 to 32 characters, got \"" + name + "\"";
+  };
+  for (const auto &side : mesh.sides) check_name(side.name);
+  for (const auto &field : fields) {
+    check_name(field.name);
+    if (static_cast<LO>(field.values.extent(0)) != mesh.num_owned_nodes())
+      message = "output: the field \"" + field.name + "\" must have a value for each of " +
+                std::to_string(mesh.num_owned_nodes()) + " owned nodes, got " + std::to_string(field.values.extent(0));
+  }
+  throw_if_any(mesh.comm(), ExitCode::internal_error, message);
+}
+
+SideSet gather_side(const mesh::Mesh &mesh, const mesh::Side &side)
+{
+  const auto cell = to_host(side.cell);
+  const auto ordinal = to_host(side.ordinal);
+  std::vector<GO> owned_cell;
+  std::vector<int> owned_ordinal;
+  for (std::size_t f = 0; f < cell.extent(0); ++f) {
+    if (cell(f) >= mesh.num_owned_cells) continue;
+    owned_cell.push_back(mesh.cell_id(cell(f)));
+    owned_ordinal.push_back(ordinal(f));
+  }
+  const auto all_cells = gather(mesh.comm(), owned_cell.data(), owned_cell.size());
+  const auto all_ordinals = gather(mesh.comm(), owned_ordinal.data(), owned_ordinal.size());
+  std::vector<std::pair<GO, int>> facets;
+  for (std::size_t f = 0; f < all_cells.size(); ++f) facets.emplace_back(all_cells[f], all_ordinals[f]);
+  std::sort(facets.begin(), facets.end());
+
+  SideSet set{side.name, {}, {}};
+  for (const auto &facet : facets) {
+    set.cell.push_back(static_cast<int>(facet.first) + 1);
+    set.ordinal.push_back(facet.second + 1);
+  }
+  return set;
+}
+
+/// Node numbers of owned cells, 1-based: (owned cells, nodes per cell), row by row.
+std::vector<int> owned_connectivity(const mesh::Mesh &mesh)
+{
+  const auto ids = overlap_node_ids(mesh);
+  const auto cells = to_host(mesh.cells);
+  const int width = mesh.element.num_nodes();
+  std::vector<int> nodes;
+  nodes.reserve(std::size_t(mesh.num_owned_cells) * width);
+  for (LO c = 0; c < mesh.num_owned_cells; ++c)
+    for (int a = 0; a < width; ++a) nodes.push_back(static_cast<int>(ids(cells(c, a))) + 1);
+  return nodes;
+}
+
+} // namespace
+
+void write_exodus(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
+                  const std::vector<NodalField> &fields, const std::vector<std::string> &info)
+{
+  require_writable(mesh, fields);
+  const Comm &comm = mesh.comm();
+  const RCP<const Comm> shared_comm = mesh.owned_nodes->getComm();
+  const CanonicalOrder nodes(shared_comm, mesh.node_id, "node"), cells(shared_comm, mesh.cell_id, "cell");
+  std::vector<SideSet> sides;
+  for (const auto &side : mesh.sides) sides.push_back(gather_side(mesh, side));
+  Header header{title, info, {}, mesh.element, nodes.size(), cells.size()};
+  for (const auto &field : fields) header.field_names.push_back(field.name);
+
+  std::unique_ptr<Writer> writer; // rank 0 only
+  on_root(comm, ExitCode::internal_error, [&] {
+    writer = std::make_unique<Writer>(path);
+    writer->put_header(header, sides);
+  });
+  {
+    const auto coords = to_host(mesh.coords);
+    std::vector<double> owned(mesh.num_owned_nodes());
+    for (int d = 0; d < mesh.dim(); ++d) {
+      for (LO n = 0; n < mesh.num_owned_nodes(); ++n) owned[n] = coords(n, d);
+      const auto all = nodes.gather(owned.data());
+      on_root(comm, ExitCode::internal_error, [&] { writer->put_coordinate(d, all); });
+    }
+  }
+  {
+    const auto all = cells.gather(owned_connectivity(mesh).data(), mesh.element.num_nodes());
+    on_root(comm, ExitCode::internal_error, [&] { writer->put_cells(all); });
+  }
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const auto all = nodes.gather(fields[f].values.data());
+    on_root(comm, ExitCode::internal_error, [&] { writer->put_field(static_cast<int>(f), all); });
+  }
+  on_root(comm, ExitCode::internal_error, [&] { writer->commit(); });
+}
+
+} // namespace rpc::io

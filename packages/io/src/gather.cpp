@@ -1,0 +1,110 @@
+#include "rpc/io/gather.hpp"
+
+#include "rpc/io/on_root.hpp"
+
+#include <algorithm>
+
+namespace rpc::io
+{
+namespace
+{
+
+constexpr std::size_t most_per_message = std::size_t(1)
+                                         << 26; // items; far below the 2^31 bytes that MPI's int counts allow
+
+/// Calls message(first, count) for each piece of [0, total).
+template <class Message>
+void in_pieces(const std::size_t total, const Message &message)
+{
+  for (std::size_t first = 0; first < total; first += most_per_message)
+    message(first, static_cast<int>(std::min(most_per_message, total - first)));
+}
+
+} // namespace
+
+template <class T>
+std::vector<T> gather(const Comm &comm, const T *values, const std::size_t count)
+{
+  const GO mine = static_cast<GO>(count);
+  std::vector<GO> counts(comm.getSize());
+  Teuchos::gatherAll(comm, 1, &mine, comm.getSize(), counts.data());
+  if (comm.getRank() != 0) {
+    in_pieces(count, [&](const std::size_t first, const int n) { Teuchos::send(comm, n, values + first, 0); });
+    return {};
+  }
+  GO total = 0;
+  for (const GO n : counts) total += n;
+  std::vector<T> all(total);
+  std::copy(values, values + count, all.begin());
+  std::size_t offset = count;
+  for (int rank = 1; rank < comm.getSize(); ++rank) {
+    in_pieces(counts[rank], [&](const std::size_t first, const int n) {
+      Teuchos::receive(comm, rank, n, all.data() + offset + first);
+    });
+    offset += counts[rank];
+  }
+  return all;
+}
+
+template std::vector<double> gather(const Comm &, const double *, std::size_t);
+template std::vector<int> gather(const Comm &, const int *, std::size_t);
+template std::vector<GO> gather(const Comm &, const GO *, std::size_t);
+
+CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const HostView<const GO *> &ids, const std::string &what)
+    : comm_(comm), owned_(ids.extent(0)), size_(sum_all(*comm, static_cast<GO>(ids.extent(0)))),
+      ids_(io::gather(*comm, ids.data(), ids.extent(0)))
+{
+  on_root(*comm, ExitCode::internal_error, [&] {
+    std::vector<bool> seen(size_, false);
+    for (const GO id : ids_) {
+      RPC_REQUIRE_CODE(id >= 0 && id < size_ && !seen[id], ExitCode::internal_error,
+                       "io: the " << what << " ids must be each of 0 .. " << size_ - 1 << " once, got " << id
+                                  << (id >= 0 && id < size_ ? " twice" : ""));
+      seen[id] = true;
+    }
+  });
+}
+
+template <class T>
+std::vector<T> CanonicalOrder::gather(const T *values, const int width) const
+{
+  const std::vector<T> by_rank = io::gather(*comm_, values, owned_ * width);
+  std::vector<T> by_id(by_rank.size());
+  for (std::size_t n = 0; n < ids_.size(); ++n)
+    std::copy_n(by_rank.begin() + n * width, width, by_id.begin() + ids_[n] * width);
+  return by_id;
+}
+
+template std::vector<double> CanonicalOrder::gather(const double *, int) const;
+template std::vector<int> CanonicalOrder::gather(const int *, int) const;
+template std::vector<GO> CanonicalOrder::gather(const GO *, int) const;
+
+HostView<GO *> overlap_node_ids(const mesh::Mesh &mesh)
+{
+  using IdVector = Tpetra::Vector<GO, LO, GO, Node>;
+  IdVector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes);
+  {
+    const auto view = owned.getLocalViewHost(Tpetra::Access::OverwriteAll);
+    for (LO n = 0; n < mesh.num_owned_nodes(); ++n) view(n, 0) = mesh.node_id(n);
+  }
+  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+  HostView<GO *> ids("rpc::io::overlap_node_ids", mesh.num_local_nodes());
+  const auto view = overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (LO n = 0; n < mesh.num_local_nodes(); ++n) ids(n) = view(n, 0);
+  return ids;
+}
+
+HostView<GO **> owned_facets(const mesh::Mesh &mesh, const mesh::Side &side, const HostView<GO *> &overlap_ids)
+{
+  const auto nodes = to_host(side.facets);
+  const auto cell = to_host(side.cell);
+  std::vector<LO> owned;
+  for (LO f = 0; f < static_cast<LO>(cell.extent(0)); ++f)
+    if (cell(f) < mesh.num_owned_cells) owned.push_back(f);
+  HostView<GO **> facets("rpc::io::owned_facets", owned.size(), mesh.element.num_facet_nodes());
+  for (std::size_t f = 0; f < owned.size(); ++f)
+    for (std::size_t a = 0; a < facets.extent(1); ++a) facets(f, a) = overlap_ids(nodes(owned[f], a));
+  return facets;
+}
+
+} // namespace rpc::io

@@ -1,0 +1,29 @@
+#include "rpc/io/on_root.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <optional>
+#include <string>
+
+namespace rpc::io
+{
+
+void on_root(const Teuchos::Comm<int> &comm, const ExitCode default_code, const std::function<void()> &work)
+{
+  std::optional<std::string> message;
+  ExitCode code = default_code;
+  if (comm.getRank() == 0) {
+    try {
+      work();
+    } catch (const Error &error) {
+      message = error.what();
+      code = error.code();
+    } catch (const std::exception &error) {
+      message = error.what();
+    }
+  }
+  int shared_code = message ? static_cast<int>(code) : -1; // -1: no error
+  Teuchos::broadcast(comm, 0, Teuchos::outArg(shared_code));
+  if (shared_code >= 0) throw_if_any(comm, static_cast<ExitCode>(shared_code), message);
+}
+
+} // namespace rpc::io

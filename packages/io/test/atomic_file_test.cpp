@@ -1,0 +1,125 @@
+#include "rpc/io/atomic_file.hpp"
+
+#include "rpc/core/error.hpp"
+#include "scratch.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <csignal>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace
+{
+
+using rpc::ExitCode;
+using rpc::io::AtomicFile;
+using rpc::io::require_writable_folder;
+using rpc::io::write_text;
+using rpc::test::expect_error;
+using rpc::test::text_of;
+
+/// While it lives no file may grow beyond `bytes`: writes fail as on a full disk.
+class FileSizeLimit
+{
+public:
+  explicit FileSizeLimit(const rlim_t bytes)
+  {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    rlimit limit = old_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit()
+  {
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+
+private:
+  rlimit old_{};
+};
+
+class AtomicFileTest : public testing::Test
+{
+protected:
+  rpc::RCP<const rpc::Comm> comm_ = Tpetra::getDefaultComm();
+  rpc::test::Scratch scratch_{*comm_};
+};
+
+TEST_F(AtomicFileTest, TextIsWrittenWholeAndLeavesNothingElse)
+{
+  const std::string text(1 << 20, 'a');
+  write_text(scratch_.path("a.txt"), text);
+  EXPECT_EQ(text_of(scratch_.path("a.txt")), text);
+  write_text(scratch_.path("a.txt"), "new");
+  EXPECT_EQ(text_of(scratch_.path("a.txt")), "new");
+  EXPECT_EQ(scratch_.num_files(), 1);
+}
+
+TEST_F(AtomicFileTest, NothingAppearsWithoutCommit)
+{
+  {
+    const AtomicFile file(scratch_.path("a.txt"));
+    EXPECT_NE(file.temporary().find(std::to_string(::getpid())), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(file.temporary()));
+    EXPECT_FALSE(std::filesystem::exists(scratch_.path("a.txt")));
+  }
+  EXPECT_EQ(scratch_.num_files(), 0);
+}
+
+TEST_F(AtomicFileTest, FailedWriteKeepsTheOldFile)
+{
+  write_text(scratch_.path("a.txt"), "old");
+  {
+    const FileSizeLimit limit(1000);
+    expect_error(ExitCode::internal_error, "cannot write",
+                 [&] { write_text(scratch_.path("a.txt"), std::string(5000, 'a')); });
+  }
+  EXPECT_EQ(text_of(scratch_.path("a.txt")), "old");
+  EXPECT_EQ(scratch_.num_files(), 1);
+}
+
+TEST_F(AtomicFileTest, UnusableFolderIsBadInputWithTheRemedy)
+{
+  scratch_.write("file", "");
+  for (const char *name : {"none/a.txt", "file/a.txt"}) {
+    expect_error(ExitCode::bad_input, "--output=DIR", [&] { write_text(scratch_.path(name), "text"); });
+    expect_error(ExitCode::bad_input, scratch_.path(name), [&] { write_text(scratch_.path(name), "text"); });
+  }
+  std::filesystem::create_directory(scratch_.path("folder"));
+  expect_error(ExitCode::bad_input, "Is a directory", [&] { write_text(scratch_.path("folder"), "text"); });
+  EXPECT_EQ(scratch_.num_files(), 2);
+}
+
+TEST_F(AtomicFileTest, WritableFolderIsMadeWithItsParents)
+{
+  const std::string folder = scratch_.path("a/b/c");
+  require_writable_folder(folder);
+  require_writable_folder(folder);
+  require_writable_folder(folder + "/");
+  require_writable_folder("");
+  EXPECT_TRUE(std::filesystem::is_directory(folder));
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST_F(AtomicFileTest, FolderBelowAFileIsRefused)
+{
+  const std::string file = scratch_.write("file", "");
+  expect_error(ExitCode::bad_input, "Not a directory", [&] { require_writable_folder(file + "/folder"); });
+  expect_error(ExitCode::bad_input, "--output=DIR", [&] { require_writable_folder(file + "/folder"); });
+  expect_error(ExitCode::bad_input, file, [&] { require_writable_folder(file); });
+}
+
+TEST_F(AtomicFileTest, FolderWithoutPermissionIsRefused)
+{
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  const std::string folder = scratch_.path("locked");
+  std::filesystem::create_directory(folder);
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  expect_error(ExitCode::bad_input, "Permission denied", [&] { require_writable_folder(folder); });
+  expect_error(ExitCode::bad_input, "Permission denied", [&] { write_text(folder + "/a.txt", "text"); });
+}
+
+} // namespace

@@ -1,0 +1,231 @@
+#include "rpc/io/contact_csv.hpp"
+
+#include "rpc/io/gather.hpp"
+#include "rpc/mesh/box.hpp"
+#include "scratch.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <sstream>
+
+namespace
+{
+
+using rpc::Comm;
+using rpc::ExitCode;
+using rpc::GO;
+using rpc::HostView;
+using rpc::LO;
+using rpc::RCP;
+using rpc::io::ContactTable;
+using rpc::io::write_contact_csv;
+using rpc::test::expect_error;
+using rpc::test::text_of;
+
+struct Vertex {
+  GO id;
+  double x, y;
+};
+
+/// The vertices and facets dealt out to the ranks like cards, from the last one on, so that no order survives by
+/// chance.
+struct Dealt {
+  ContactTable table;
+  HostView<GO **> facets;
+};
+
+Dealt deal(const Comm &comm, std::vector<Vertex> vertices, std::vector<std::vector<GO>> facets)
+{
+  const auto mine = [&](auto &items) {
+    auto all = items;
+    items.clear();
+    for (std::size_t k = comm.getRank(); k < all.size(); k += comm.getSize()) items.push_back(all[all.size() - 1 - k]);
+  };
+  const std::size_t width = facets.empty() ? 2 : facets[0].size();
+  mine(vertices);
+  mine(facets);
+  const std::size_t n = vertices.size();
+  Dealt dealt{{HostView<GO *>("id", n), HostView<double **>("position", n, 2), HostView<double *>("u_nu", n),
+               HostView<double *>("gap", n), HostView<double *>("pressure", n), HostView<int *>("state", n)},
+              HostView<GO **>("facets", facets.size(), width)};
+  for (std::size_t k = 0; k < n; ++k) {
+    dealt.table.id(k) = vertices[k].id;
+    dealt.table.position(k, 0) = vertices[k].x;
+    dealt.table.position(k, 1) = vertices[k].y;
+    dealt.table.pressure(k) = static_cast<double>(vertices[k].id);
+  }
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    for (std::size_t a = 0; a < width; ++a) dealt.facets(f, a) = facets[f][a];
+  return dealt;
+}
+
+std::vector<std::vector<std::string>> cells_of(const std::string &text)
+{
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+class ContactCsv : public testing::Test
+{
+protected:
+  using Column = std::vector<double>;
+
+  /// Writes and expects these ids (in the pressure column) and arc lengths, row by row.
+  void expect_walk(const std::vector<Vertex> &vertices, const std::vector<std::vector<GO>> &facets,
+                   const std::vector<GO> &ids, const Column &lengths)
+  {
+    const Dealt dealt = deal(*comm_, vertices, facets);
+    write_contact_csv(path_, comm_, dealt.table, dealt.facets);
+    comm_->barrier();
+    const auto rows = cells_of(text_of(path_));
+    ASSERT_EQ(rows.size(), ids.size() + 1);
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      ASSERT_EQ(rows[k + 1].size(), 7u);
+      EXPECT_EQ(std::stod(rows[k + 1][5]), ids[k]) << "row " << k;
+      EXPECT_NEAR(std::stod(rows[k + 1][2]), lengths[k], 1e-14) << "row " << k;
+    }
+    comm_->barrier();
+  }
+
+  RCP<const Comm> comm_ = Tpetra::getDefaultComm();
+  rpc::test::Scratch scratch_{*comm_};
+  std::string path_ = scratch_.path("a.contact.csv");
+};
+
+TEST_F(ContactCsv, WritesOneRowPerNodeExactly)
+{
+  const Dealt dealt = deal(*comm_, {{0, 0.1, 0}, {1, 1. / 3, 0}, {2, 1, 0}}, {{0, 1}, {1, 2}});
+  for (std::size_t k = 0; k < dealt.table.id.extent(0); ++k) {
+    const int id = static_cast<int>(dealt.table.id(k));
+    dealt.table.u_nu(k) = 1e-300 * id;
+    dealt.table.gap(k) = M_PI * id;
+    dealt.table.pressure(k) = 2. / 3 * id;
+    dealt.table.state(k) = id;
+  }
+  write_contact_csv(path_, comm_, dealt.table, dealt.facets);
+  comm_->barrier();
+  const std::string text = text_of(path_);
+  EXPECT_EQ(text.substr(0, text.find('\n')), "x,y,s,u_nu,gap,pressure,state");
+  const auto rows = cells_of(text);
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(std::stod(rows[2][0]), 1. / 3);
+  EXPECT_EQ(std::stod(rows[3][3]), 2e-300);
+  EXPECT_EQ(std::stod(rows[2][4]), M_PI);
+  EXPECT_EQ(std::stod(rows[2][5]), 2. / 3);
+  EXPECT_EQ(rows[1][0], "0.1");
+  EXPECT_EQ(rows[1][6], "open");
+  EXPECT_EQ(rows[2][6], "stuck");
+  EXPECT_EQ(rows[3][6], "yielded");
+}
+
+TEST_F(ContactCsv, ChainStartsAtTheEndWithTheSmallerX)
+{
+  const std::vector<Vertex> bent = {{7, 2, 0}, {3, 0, 0}, {5, 1, 0}, {1, 2, 3}};
+  expect_walk(bent, {{5, 3}, {7, 5}, {1, 7}}, {3, 5, 7, 1}, {0, 1, 2, 5});
+  expect_walk(bent, {{3, 5}, {5, 7}, {7, 1}}, {3, 5, 7, 1}, {0, 1, 2, 5}); // whatever way the facets point
+}
+
+TEST_F(ContactCsv, ChainOfEqualXStartsAtTheSmallerY)
+{
+  expect_walk({{0, 1, 2}, {1, 1, 1}, {2, 1, 0}}, {{0, 1}, {1, 2}}, {2, 1, 0}, {0, 1, 2});
+}
+
+TEST_F(ContactCsv, MiddleNodesOfQuadraticFacetsComeInBetween)
+{
+  expect_walk({{0, 0, 0}, {1, 2, 0}, {2, 4, 0}, {3, 1, 1}, {4, 3, 0}}, {{1, 0, 3}, {2, 1, 4}}, {0, 3, 1, 4, 2},
+              {0, std::sqrt(2), 2 * std::sqrt(2), 1 + 2 * std::sqrt(2), 2 + 2 * std::sqrt(2)});
+}
+
+TEST_F(ContactCsv, SeveralChainsFollowEachOtherWithTheirOwnLengths)
+{
+  expect_walk({{0, 5, 0}, {1, 6, 0}, {2, 0, 0}, {3, 1, 0}, {4, 2, 0}}, {{0, 1}, {3, 2}, {4, 3}}, {2, 3, 4, 0, 1},
+              {0, 1, 2, 0, 1});
+}
+
+TEST_F(ContactCsv, ClosedChainStartsAtItsLowestPointAndFollowsTheFacets)
+{
+  const std::vector<Vertex> square = {{0, 1, 1}, {1, 0, 1}, {2, 0, 0}, {3, 1, 0}};
+  expect_walk(square, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}, {2, 3, 0, 1}, {0, 1, 2, 3});
+  expect_walk(square, {{1, 0}, {2, 1}, {3, 2}, {0, 3}}, {2, 1, 0, 3}, {0, 1, 2, 3});
+}
+
+TEST_F(ContactCsv, NodeThatTheTableLacksIsPassedOver)
+{
+  expect_walk({{1, 1, 0}, {2, 2, 0}}, {{0, 1}, {1, 2}, {2, 3}}, {1, 2}, {0, 1});
+}
+
+TEST_F(ContactCsv, EmptyTableGivesAHeaderOnly)
+{
+  expect_walk({}, {}, {}, {});
+}
+
+TEST_F(ContactCsv, BottomOfABoxIsSortedForAnyNumberOfRanks)
+{
+  for (const int order : {1, 2}) {
+    const auto mesh = rpc::mesh::make_box({{0, 0}, {5, 1}, {10, 4}, {2, order}}, comm_);
+    const auto ids = rpc::io::overlap_node_ids(mesh);
+    const auto coords = rpc::to_host(mesh.coords);
+    std::vector<LO> bottom;
+    for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
+      if (coords(n, 1) == 0) bottom.push_back(n);
+    const std::size_t count = bottom.size();
+    const ContactTable table{HostView<GO *>("id", count),           HostView<double **>("position", count, 2),
+                             HostView<double *>("u_nu", count),     HostView<double *>("gap", count),
+                             HostView<double *>("pressure", count), HostView<int *>("state", count)};
+    for (std::size_t k = 0; k < count; ++k) {
+      table.id(k) = ids(bottom[k]);
+      for (int d = 0; d < 2; ++d) table.position(k, d) = coords(bottom[k], d);
+    }
+    write_contact_csv(path_, comm_, table, rpc::io::owned_facets(mesh, mesh.side("bottom", "test"), ids));
+    comm_->barrier();
+    const auto rows = cells_of(text_of(path_));
+    ASSERT_EQ(rows.size(), std::size_t(10 * order + 2));
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      EXPECT_NEAR(std::stod(rows[k][0]), 0.5 / order * (k - 1), 1e-14);
+      EXPECT_NEAR(std::stod(rows[k][2]), 0.5 / order * (k - 1), 1e-13);
+    }
+    comm_->barrier();
+  }
+}
+
+TEST_F(ContactCsv, In3dRowsComeById)
+{
+  const std::size_t count = comm_->getRank() == comm_->getSize() - 1 ? 2 : 0;
+  const ContactTable table{HostView<GO *>("id", count),           HostView<double **>("position", count, 3),
+                           HostView<double *>("u_nu", count),     HostView<double *>("gap", count),
+                           HostView<double *>("pressure", count), HostView<int *>("state", count)};
+  for (std::size_t k = 0; k < count; ++k) {
+    table.id(k) = 9 - static_cast<GO>(k);
+    table.position(k, 2) = static_cast<double>(9 - k);
+  }
+  write_contact_csv(path_, comm_, table, HostView<GO **>());
+  comm_->barrier();
+  EXPECT_EQ(text_of(path_), "x,y,z,u_nu,gap,pressure,state\n0,0,8,0,0,0,open\n0,0,9,0,0,0,open\n");
+}
+
+TEST_F(ContactCsv, BadTableIsRefusedOnEveryRank)
+{
+  const Dealt twice = deal(*comm_, {{4, 0, 0}, {4, 1, 0}}, {});
+  expect_error(ExitCode::internal_error, "node 4 is on several ranks",
+               [&] { write_contact_csv(path_, comm_, twice.table, twice.facets); });
+  const Dealt state = deal(*comm_, {{4, 0, 0}}, {});
+  if (state.table.state.extent(0) > 0) state.table.state(0) = 3;
+  expect_error(ExitCode::internal_error, "must be 0, 1 or 2, got 3",
+               [&] { write_contact_csv(path_, comm_, state.table, state.facets); });
+  Dealt shorter = deal(*comm_, {{4, 0, 0}}, {});
+  if (comm_->getRank() == 0) shorter.table.gap = HostView<double *>("gap", 0);
+  expect_error(ExitCode::internal_error, "columns",
+               [&] { write_contact_csv(path_, comm_, shorter.table, shorter.facets); });
+  comm_->barrier();
+  EXPECT_EQ(scratch_.num_files(), 0);
+}
+
+} // namespace

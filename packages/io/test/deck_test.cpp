@@ -1,0 +1,199 @@
+#include "rpc/io/deck.hpp"
+
+#include "rpc/core/error.hpp"
+#include "scratch.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <Tpetra_Core.hpp>
+#include <gtest/gtest.h>
+#include <regex>
+#include <stdlib.h>
+
+namespace
+{
+
+using rpc::ExitCode;
+using rpc::io::find_deck;
+using rpc::io::read_deck;
+using rpc::test::error_of;
+using rpc::test::expect_error;
+using Teuchos::Array;
+
+const char *const good_xml = R"xml(<ParameterList name="rpc">
+  <!-- a comment -->
+  <ParameterList name="Mesh">
+    <Parameter name="Type" type="string" value="box"/>
+    <Parameter name="Upper" type="Array(double)" value="{5, 1.0}"/>
+    <Parameter name="Cells" type="Array(int)" value="{160, 32}"/>
+  </ParameterList>
+  <ParameterList name="Contact">
+    <Parameter name="Yield Stress" type="string" value="x &lt; 1 ? 2 : inf"/>
+    <Parameter name="Penalty" type="double" value="1e8"/>
+    <Parameter name="On" type="bool" value="true"/>
+  </ParameterList>
+</ParameterList>
+)xml";
+
+const char *const good_yaml = R"yaml(# a comment
+rpc:
+  Mesh:
+    Type: box
+    Upper: [5, 1.0]
+    Cells: [160, 32]
+  Contact:
+    Yield Stress: "x < 1 ? 2 : inf"
+    Penalty: 1e8
+    On: true
+)yaml";
+
+class Deck : public testing::Test
+{
+protected:
+  std::string file(const std::string &name, const std::string &text) const { return scratch_.write(name, text); }
+  /// Expects a refusal in one line that starts with the path, and holds `part`.
+  void expect_refusal(const std::string &name, const std::string &text, const std::string &part) const
+  {
+    const std::string path = file(name, text);
+    expect_error(ExitCode::bad_input, part, [&] { read_deck(path); });
+    const std::string message = error_of([&] { read_deck(path); }).what();
+    EXPECT_EQ(message.rfind("deck: \"" + path + "\"", 0), 0u) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    EXPECT_EQ(message.find(".cpp"), std::string::npos) << message;
+    EXPECT_EQ(message.find("Throw"), std::string::npos) << message;
+  }
+  static std::string replaced(std::string text, const std::string &from, const std::string &to)
+  {
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+  /// The same deck without its root's name.
+  static std::string unindented(const std::string &yaml)
+  {
+    return std::regex_replace(replaced(yaml, "rpc:\n", ""), std::regex("\n  "), "\n");
+  }
+
+  rpc::RCP<const rpc::Comm> comm_ = Tpetra::getDefaultComm();
+  rpc::test::Scratch scratch_{*comm_};
+};
+
+void expect_good(const Teuchos::ParameterList &list)
+{
+  const auto &mesh = list.sublist("Mesh"), &contact = list.sublist("Contact");
+  EXPECT_EQ(mesh.get<std::string>("Type"), "box");
+  EXPECT_EQ(mesh.get<Array<double>>("Upper"), Array<double>(Teuchos::tuple(5., 1.)));
+  EXPECT_EQ(mesh.get<Array<int>>("Cells"), Array<int>(Teuchos::tuple(160, 32)));
+  EXPECT_EQ(contact.get<std::string>("Yield Stress"), "x < 1 ? 2 : inf");
+  EXPECT_EQ(contact.get<double>("Penalty"), 1e8);
+  EXPECT_TRUE(contact.get<bool>("On"));
+}
+
+TEST_F(Deck, XmlRootMayHaveANameOrNot)
+{
+  expect_good(read_deck(file("a.xml", good_xml)));
+  expect_good(read_deck(file("b.xml", replaced(good_xml, " name=\"rpc\"", ""))));
+}
+
+TEST_F(Deck, YamlRootMayHaveANameOrNot)
+{
+  expect_good(read_deck(file("a.yaml", good_yaml)));
+  expect_good(read_deck(file("a.YML", good_yaml)));
+  expect_good(read_deck(file("b.yaml", unindented(good_yaml)))); // Teuchos itself loses Mesh here
+  const std::string with_markers = "%YAML 1.1\n---\nMesh:\n  Type: box\n\nE: 2.5\nContact:\n  Penalty: 1\n...\n";
+  const auto list = read_deck(file("c.yaml", with_markers));
+  EXPECT_EQ(list.sublist("Mesh").get<std::string>("Type"), "box");
+  EXPECT_EQ(list.get<double>("E"), 2.5);
+  EXPECT_EQ(list.sublist("Contact").get<int>("Penalty"), 1);
+}
+
+TEST_F(Deck, YamlNeedsNoFinalNewline)
+{
+  EXPECT_EQ(read_deck(file("a.yaml", "rpc:\n  Mesh:\n    Type: box")).sublist("Mesh").get<std::string>("Type"), "box");
+}
+
+TEST_F(Deck, AnyTruncatedXmlIsRefused)
+{
+  const std::string whole = good_xml;
+  const std::size_t end = whole.rfind('>');
+  for (std::size_t length = 0; length <= end; length += 7) expect_refusal("t.xml", whole.substr(0, length), ": ");
+  expect_refusal("t.xml", whole.substr(0, end), ": ");
+  expect_refusal("t.xml", whole.substr(0, whole.find("  <ParameterList name=\"Contact\"")),
+                 "line 8: file ended before closing element");
+}
+
+TEST_F(Deck, MalformedXmlIsRefusedWithItsLine)
+{
+  expect_refusal("m.xml", replaced(good_xml, "</ParameterList>", "</ParamList>"), "line 7: document not well-formed");
+  expect_refusal("m.xml", std::string(good_xml) + "<ParameterList/>", "more than one root element");
+  expect_refusal("m.xml", "hello", "line 1");
+  expect_refusal("m.xml", "<Foo/>", "expected tag ParameterList, found Foo");
+  expect_refusal("m.xml", replaced(good_xml, "<Parameter ", "<Paramete "), "found Paramete tag");
+  expect_refusal("m.xml", replaced(good_xml, " value=\"box\"", ""), "must have a value attribute Bad Parameter: Type");
+  expect_refusal("m.xml", replaced(good_xml, " type=\"string\"", " type=\"strin\""), "type: strin");
+}
+
+TEST_F(Deck, ValueMustReadAsItsType)
+{
+  expect_refusal("v.xml", replaced(good_xml, "1e8", "1e8 Pa"),
+                 "\"Contact->Penalty\" = \"1e8 Pa\" does not read as double");
+  expect_refusal("v.xml", replaced(good_xml, "1e8", ""), "\"Contact->Penalty\"");
+  expect_refusal("v.xml", replaced(good_xml, "{160, 32}", "{160, 3.2}"),
+                 "\"Mesh->Cells\" = \"{160, 3.2}\" does not read as Array(int)");
+  expect_refusal("v.xml", replaced(good_xml, "{160, 32}", "{160, 32"), "\"Mesh->Cells\"");
+  expect_refusal("v.xml", replaced(good_xml, "{160, 32}", "{160,, 32}"), "\"Mesh->Cells\"");
+  expect_refusal("v.xml", replaced(good_xml, "{160, 32}", "{160, 99999999999}"), "\"Mesh->Cells\"");
+  expect_refusal("v.xml", replaced(good_xml, "{5, 1.0}", "{5, l.0}"), "\"Mesh->Upper\"");
+  expect_refusal("v.xml", replaced(good_xml, "\"true\"", "\"maybe\""),
+                 "\"Contact->On\" = \"maybe\" does not read as bool");
+}
+
+TEST_F(Deck, DoubleInfArrivesAsText)
+{
+  const auto list = read_deck(file("i.xml", replaced(good_xml, "1e8", "inf"))); // Teuchos itself reads 0
+  EXPECT_EQ(list.sublist("Contact").get<std::string>("Penalty"), "inf");
+}
+
+TEST_F(Deck, NameGivenTwiceIsRefused)
+{
+  const std::string type = "<Parameter name=\"Type\" type=\"string\" value=\"box\"/>";
+  expect_refusal("d.xml", replaced(good_xml, type, type + type), "\"Mesh->Type\" is given twice");
+  expect_refusal("d.xml", replaced(good_xml, "\"Contact\"", "\"Mesh\""), "\"Mesh\" is given twice");
+  expect_refusal("d.yaml", replaced(good_yaml, "    Type: box\n", "    Type: box\n    Type: box\n"),
+                 "\"Type\" already exists");
+  expect_refusal("d.yaml", replaced(good_yaml, "Contact", "Mesh"), "\"Mesh\" already exists");
+}
+
+TEST_F(Deck, MalformedYamlIsRefusedWithItsLine)
+{
+  const std::string bad = replaced(good_yaml, "[160, 32]", "[160, 32");
+  expect_refusal("m.yaml", bad, "line 7: Expected one of {',', ]}");
+  expect_refusal("m.yaml", unindented(bad), "line 6: Expected one of");
+  expect_refusal("m.yaml", replaced(good_yaml, "\"x < 1 ? 2 : inf\"", "x > 1 ? 2 : inf"), "needs quotes");
+  for (const char *text : {"", " \n"}) expect_refusal("m.yaml", text, "is empty");
+  expect_refusal("m.yaml", "- 1\n- 2\n", "line ");
+  expect_refusal("m.yaml", "rpc:\n  Mesh: \"bo", "line ");
+  expect_refusal("m.yaml", "just text", "line ");
+}
+
+TEST_F(Deck, UnreadableFileIsRefused)
+{
+  for (const char *extension : {".xml", ".yaml"})
+    expect_error(ExitCode::bad_input, "No such file", [&] { read_deck(scratch_.path("none") + extension); });
+  std::filesystem::create_directory(scratch_.path("folder.xml"));
+  expect_error(ExitCode::bad_input, "Is a directory", [&] { read_deck(scratch_.path("folder.xml")); });
+}
+
+TEST_F(Deck, IsLookedUpAsGivenThenInTheInputFolders)
+{
+  const std::string path = file("own.xml", good_xml);
+  EXPECT_EQ(find_deck(path), path);
+  ::setenv("RPC_INPUT_DIR", scratch_.folder().c_str(), 1);
+  EXPECT_EQ(find_deck("own.xml"), path);
+  ::unsetenv("RPC_INPUT_DIR");
+  const std::string message = error_of([] { find_deck("own.xml"); }).what();
+  for (const char *part : {"\"own.xml\"", "/input/own.xml", "/share/rpc/input/own.xml"})
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  expect_error(ExitCode::bad_input, "there is no file", [&] { find_deck(scratch_.folder()); });
+}
+
+} // namespace

@@ -1,0 +1,290 @@
+#include "rpc/io/exodus.hpp"
+
+#include "rpc/mesh/box.hpp"
+#include "scratch.hpp"
+
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <Tpetra_Core.hpp>
+#include <array>
+#include <csignal>
+#include <exodusII.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+namespace
+{
+
+using rpc::Comm;
+using rpc::ExitCode;
+using rpc::HostView;
+using rpc::LO;
+using rpc::RCP;
+using rpc::io::NodalField;
+using rpc::io::write_exodus;
+using rpc::mesh::Element;
+using rpc::mesh::Mesh;
+using rpc::test::expect_error;
+using rpc::test::Scratch;
+using rpc::test::text_of;
+
+Mesh box(const Element &element, const RCP<const Comm> &comm)
+{
+  if (element.dim == 2) return rpc::mesh::make_box({{0, -1}, {6, 2}, {6, 3}, element}, comm);
+  return rpc::mesh::make_box({{0, -1, 0}, {6, 2, 1}, {6, 3, 2}, element}, comm);
+}
+
+double first_field(const double x, const double y)
+{
+  return x + 100 * y;
+}
+
+std::vector<NodalField> fields_of(const Mesh &mesh)
+{
+  const auto coords = rpc::to_host(mesh.coords);
+  HostView<double *> first("first", mesh.num_owned_nodes()), second("second", mesh.num_owned_nodes());
+  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) {
+    first(n) = first_field(coords(n, 0), coords(n, 1));
+    second(n) = -coords(n, 0) / 3;
+  }
+  return {{"disp_x", first}, {"contact_pressure", second}};
+}
+
+/// A file read back whole; rank 0 only.
+struct Content {
+  explicit Content(const std::string &path)
+  {
+    int word = sizeof(double), file_word = 0;
+    float version = 0;
+    const int id = ex_open(path.c_str(), EX_READ, &word, &file_word, &version);
+    if (id < 0) {
+      ADD_FAILURE() << "cannot open " << path;
+      return;
+    }
+    EXPECT_EQ(ex_large_model(id), 1);
+    EXPECT_EQ(file_word, static_cast<int>(sizeof(double)));
+    char text[MAX_LINE_LENGTH + 1] = {};
+    EXPECT_EQ(ex_get_init(id, text, &dim, &nodes, &cells, &blocks, &node_sets, &side_sets), 0);
+    title = text;
+    std::vector<double> x(nodes), y(nodes), z(nodes);
+    EXPECT_EQ(ex_get_coord(id, x.data(), y.data(), z.data()), 0);
+    coords = {x, y, z};
+    ex_block block{};
+    block.id = 1;
+    block.type = EX_ELEM_BLOCK;
+    EXPECT_EQ(ex_get_block_param(id, &block), 0);
+    topology = block.topology;
+    nodes_per_cell = static_cast<int>(block.num_nodes_per_entry);
+    conn.resize(block.num_entry * nodes_per_cell);
+    EXPECT_EQ(ex_get_conn(id, EX_ELEM_BLOCK, 1, conn.data(), nullptr, nullptr), 0);
+    char name[MAX_STR_LENGTH + 1] = {};
+    EXPECT_EQ(ex_get_name(id, EX_ELEM_BLOCK, 1, name), 0);
+    block_name = name;
+    read_sides(id);
+    read_fields(id);
+    EXPECT_EQ(ex_inquire_int(id, EX_INQ_TIME), 1);
+    EXPECT_EQ(ex_get_time(id, 1, &time), 0);
+    EXPECT_EQ(ex_inquire_int(id, EX_INQ_QA), 1);
+    num_info = static_cast<int>(ex_inquire_int(id, EX_INQ_INFO));
+    ex_close(id);
+  }
+
+  void read_sides(const int id)
+  {
+    for (int s = 1; s <= side_sets; ++s) {
+      char name[MAX_STR_LENGTH + 1] = {};
+      EXPECT_EQ(ex_get_name(id, EX_SIDE_SET, s, name), 0);
+      side_names.push_back(name);
+      int count = 0, factors = 0;
+      EXPECT_EQ(ex_get_set_param(id, EX_SIDE_SET, s, &count, &factors), 0);
+      std::vector<int> cell(count), ordinal(count);
+      EXPECT_EQ(ex_get_set(id, EX_SIDE_SET, s, cell.data(), ordinal.data()), 0);
+      side_cells.push_back(cell);
+      side_ordinals.push_back(ordinal);
+    }
+  }
+
+  void read_fields(const int id)
+  {
+    int count = 0;
+    EXPECT_EQ(ex_get_variable_param(id, EX_NODAL, &count), 0);
+    for (int f = 1; f <= count; ++f) {
+      char name[MAX_STR_LENGTH + 1] = {};
+      EXPECT_EQ(ex_get_variable_name(id, EX_NODAL, f, name), 0);
+      field_names.push_back(name);
+      std::vector<double> values(nodes);
+      EXPECT_EQ(ex_get_nodal_var(id, 1, f, nodes, values.data()), 0);
+      fields.push_back(values);
+    }
+  }
+
+  std::string title, topology, block_name;
+  int dim = 0, nodes = 0, cells = 0, blocks = 0, node_sets = 0, side_sets = 0, nodes_per_cell = 0, num_info = 0;
+  double time = -1;
+  std::array<std::vector<double>, 3> coords;
+  std::vector<int> conn;
+  std::vector<std::string> side_names, field_names;
+  std::vector<std::vector<int>> side_cells, side_ordinals;
+  std::vector<std::vector<double>> fields;
+};
+
+class Exodus : public testing::Test
+{
+protected:
+  RCP<const Comm> comm_ = Tpetra::getDefaultComm();
+  Scratch scratch_{*comm_};
+  const bool root_ = comm_->getRank() == 0;
+};
+
+class ExodusElements : public Exodus, public testing::WithParamInterface<Element>
+{
+};
+
+TEST_P(ExodusElements, ReadsBackAsTheBoxItWas)
+{
+  const Element element = GetParam();
+  const auto mesh = box(element, comm_);
+  write_exodus(scratch_.path("a.e"), "a box", mesh, fields_of(mesh), {"first line", std::string(200, 'i')});
+  if (!root_) return;
+  const Content file(scratch_.path("a.e"));
+  const int p = element.order, nx = 6 * p + 1, ny = 3 * p + 1, nz = element.dim == 2 ? 1 : 2 * p + 1;
+  EXPECT_EQ(file.title, "a box");
+  EXPECT_EQ(file.dim, element.dim);
+  EXPECT_EQ(file.cells, element.dim == 2 ? 18 : 36);
+  EXPECT_EQ(file.blocks, 1);
+  EXPECT_EQ(file.block_name, "body");
+  EXPECT_EQ(file.topology, element.exodus_name());
+  EXPECT_EQ(file.nodes_per_cell, element.num_nodes());
+  EXPECT_EQ(file.time, 0);
+  EXPECT_EQ(file.num_info, 2);
+  EXPECT_EQ(file.field_names, (std::vector<std::string>{"disp_x", "contact_pressure"}));
+  ASSERT_EQ(file.nodes, nx * ny * nz);
+  ASSERT_EQ(file.fields.size(), 2u);
+  for (int n = 0; n < file.nodes; ++n) { // the lattice, x fastest
+    const double x = 6. * (n % nx) / (nx - 1), y = -1 + 3. * (n / nx % ny) / (ny - 1);
+    EXPECT_NEAR(file.coords[0][n], x, 1e-14);
+    EXPECT_NEAR(file.coords[1][n], y, 1e-14);
+    const double z = nz == 1 ? 0 : 1. * (n / nx / ny) / (nz - 1);
+    EXPECT_NEAR(file.coords[2][n], z, 1e-14);
+    EXPECT_NEAR(file.fields[0][n], first_field(x, y), 1e-11);
+    EXPECT_NEAR(file.fields[1][n], -x / 3, 1e-14);
+  }
+}
+
+TEST_P(ExodusElements, CellsKeepTheirPlaceAndNodeOrder)
+{
+  const Element element = GetParam();
+  const auto mesh = box(element, comm_);
+  write_exodus(scratch_.path("a.e"), "a box", mesh, {});
+  if (!root_) return;
+  const Content file(scratch_.path("a.e"));
+  ASSERT_EQ(file.conn.size(), std::size_t(file.cells) * element.num_nodes());
+  const std::array<double, 3> lower = {0, -1, 0}, size = {1, 1, 0.5};
+  for (int c = 0; c < file.cells; ++c) {
+    const std::array<int, 3> at = {c % 6, c / 6 % 3, c / 18};
+    for (int a = 0; a < element.num_nodes(); ++a) {
+      const int node = file.conn[c * element.num_nodes() + a] - 1;
+      ASSERT_TRUE(node >= 0 && node < file.nodes);
+      for (int d = 0; d < element.dim; ++d)
+        EXPECT_NEAR(file.coords[d][node],
+                    lower[d] + size[d] * (at[d] + double(element.lattice()[a][d]) / element.order), 1e-14);
+    }
+  }
+}
+
+TEST_P(ExodusElements, SideSetsHoldEachFacetOnceWithItsName)
+{
+  const Element element = GetParam();
+  const auto mesh = box(element, comm_);
+  write_exodus(scratch_.path("a.e"), "a box", mesh, {});
+  if (!root_) return;
+  const Content file(scratch_.path("a.e"));
+  ASSERT_EQ(file.side_names.size(), mesh.sides.size());
+  for (std::size_t s = 0; s < file.side_names.size(); ++s) {
+    EXPECT_EQ(file.side_names[s], mesh.sides[s].name);
+    const bool along_x = file.side_names[s] == "bottom" || file.side_names[s] == "top";
+    const bool across_x = file.side_names[s] == "left" || file.side_names[s] == "right";
+    const int depth = element.dim == 2 ? 1 : 2;
+    ASSERT_EQ(static_cast<int>(file.side_cells[s].size()), along_x ? 6 * depth : across_x ? 3 * depth : 18);
+    EXPECT_TRUE(std::is_sorted(file.side_cells[s].begin(), file.side_cells[s].end()));
+    if (file.side_names[s] != "bottom") continue;
+    for (std::size_t f = 0; f < file.side_cells[s].size(); ++f) {
+      const int cell = file.side_cells[s][f] - 1;
+      const auto &facet = element.facets()[file.side_ordinals[s][f] - 1];
+      for (const int a : facet) EXPECT_EQ(file.coords[1][file.conn[cell * element.num_nodes() + a] - 1], -1);
+    }
+  }
+}
+
+TEST_P(ExodusElements, FileDoesNotDependOnTheNumberOfRanks)
+{
+  const auto mesh = box(GetParam(), comm_);
+  write_exodus(scratch_.path("parallel.e"), "a box", mesh, fields_of(mesh));
+  const auto serial = box(GetParam(), Teuchos::rcp(new Teuchos::SerialComm<int>));
+  const std::string serial_path = scratch_.path("serial" + std::to_string(comm_->getRank()) + ".e");
+  write_exodus(serial_path, "a box", serial, fields_of(serial));
+  comm_->barrier();
+  const std::string bytes = text_of(scratch_.path("parallel.e"));
+  EXPECT_GT(bytes.size(), 1000u);
+  EXPECT_TRUE(bytes == text_of(serial_path));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ExodusElements,
+                         testing::Values(Element{2, 1}, Element{2, 2}, Element{3, 1}, Element{3, 2}),
+                         [](const auto &info) { return info.param.exodus_name(); });
+
+TEST_F(Exodus, NamesOf32CharactersAreKept)
+{
+  const auto mesh = box({2, 1}, comm_);
+  const std::string name(32, 'n');
+  write_exodus(scratch_.path("a.e"), std::string(200, 't'), mesh, {{name, fields_of(mesh)[0].values}});
+  if (!root_) return;
+  const Content file(scratch_.path("a.e"));
+  EXPECT_EQ(file.field_names, std::vector<std::string>{name});
+  EXPECT_EQ(file.title, std::string(80, 't'));
+}
+
+TEST_F(Exodus, LongNameOrShortFieldIsRefusedOnEveryRank)
+{
+  const auto mesh = box({2, 1}, comm_);
+  const auto values = fields_of(mesh)[0].values;
+  expect_error(ExitCode::internal_error, "1 to 32 characters", [&] {
+    write_exodus(scratch_.path("a.e"), "t", mesh, {{std::string(33, 'n'), values}});
+  });
+  const HostView<double *> shorter("shorter", values.extent(0) - (root_ ? 1 : 0));
+  expect_error(ExitCode::internal_error, "\"u\" must have a value for each of", [&] {
+    write_exodus(scratch_.path("a.e"), "t", mesh, {{"u", shorter}});
+  });
+  comm_->barrier();
+  EXPECT_EQ(scratch_.num_files(), 0);
+}
+
+TEST_F(Exodus, UnwritableFolderIsBadInputOnEveryRank)
+{
+  const auto mesh = box({2, 1}, comm_);
+  if (root_) scratch_.write("file", "");
+  comm_->barrier();
+  expect_error(ExitCode::bad_input, "--output=DIR", [&] { write_exodus(scratch_.path("file/a.e"), "t", mesh, {}); });
+}
+
+TEST_F(Exodus, FullDiskIsToldOnEveryRankAndLeavesTheOldFile)
+{
+  const auto mesh = rpc::mesh::make_box({{0, 0}, {1, 1}, {200, 200}, Element{2, 1}}, comm_);
+  if (root_) scratch_.write("a.e", "old");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit old{};
+  ::getrlimit(RLIMIT_FSIZE, &old);
+  for (const rlim_t bytes : {1000, 1500000}) { // when the header is defined, in the fields
+    rlimit limit = old;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    expect_error(ExitCode::internal_error, "cannot",
+                 [&] { write_exodus(scratch_.path("a.e"), "t", mesh, fields_of(mesh)); });
+    ::setrlimit(RLIMIT_FSIZE, &old);
+    comm_->barrier();
+    EXPECT_EQ(scratch_.num_files(), 1);
+    EXPECT_EQ(text_of(scratch_.path("a.e")), "old");
+  }
+  std::signal(SIGXFSZ, SIG_DFL);
+}
+
+} // namespace

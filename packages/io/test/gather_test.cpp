@@ -1,0 +1,131 @@
+#include "rpc/io/gather.hpp"
+
+#include "rpc/mesh/box.hpp"
+#include "scratch.hpp"
+
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <set>
+
+namespace
+{
+
+using rpc::Comm;
+using rpc::ExitCode;
+using rpc::GO;
+using rpc::HostView;
+using rpc::LO;
+using rpc::RCP;
+using rpc::io::CanonicalOrder;
+using rpc::test::expect_error;
+
+/// Rank r of p owns the ids r, r + p, r + 2p, ... below n, the largest first.
+HostView<GO *> scattered_ids(const Comm &comm, const GO n)
+{
+  std::vector<GO> ids;
+  for (GO id = comm.getRank(); id < n; id += comm.getSize()) ids.insert(ids.begin(), id);
+  HostView<GO *> view("ids", ids.size());
+  std::copy(ids.begin(), ids.end(), view.data());
+  return view;
+}
+
+void expect_ordered(const RCP<const Comm> &comm)
+{
+  const GO n = 1000;
+  const auto ids = scattered_ids(*comm, n);
+  const CanonicalOrder order(comm, ids, "node");
+  EXPECT_EQ(order.size(), n);
+  std::vector<double> doubles;
+  std::vector<int> pairs;
+  for (std::size_t k = 0; k < ids.extent(0); ++k) {
+    doubles.push_back(0.5 * ids(k));
+    pairs.insert(pairs.end(), {static_cast<int>(ids(k)), -static_cast<int>(ids(k))});
+  }
+  const auto all_doubles = order.gather(doubles.data());
+  const auto all_pairs = order.gather(pairs.data(), 2);
+  const auto all_ids = order.gather(ids.data());
+  const std::size_t expected = comm->getRank() == 0 ? n : 0;
+  ASSERT_EQ(all_doubles.size(), expected);
+  ASSERT_EQ(all_pairs.size(), 2 * expected);
+  ASSERT_EQ(all_ids.size(), expected);
+  for (std::size_t k = 0; k < expected; ++k) {
+    EXPECT_EQ(all_doubles[k], 0.5 * k);
+    EXPECT_EQ(all_pairs[2 * k], static_cast<int>(k));
+    EXPECT_EQ(all_pairs[2 * k + 1], -static_cast<int>(k));
+    EXPECT_EQ(all_ids[k], static_cast<GO>(k));
+  }
+}
+
+TEST(Gather, RankZeroGetsValuesInTheOrderOfTheRanks)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const std::vector<int> mine(comm->getRank() + 1, comm->getRank());
+  const auto all = rpc::io::gather(*comm, mine.data(), mine.size());
+  std::vector<int> expected;
+  for (int rank = 0; comm->getRank() == 0 && rank < comm->getSize(); ++rank)
+    expected.insert(expected.end(), rank + 1, rank);
+  EXPECT_EQ(all, expected);
+}
+
+TEST(Gather, RanksMayHaveNothing)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const std::vector<GO> mine(comm->getRank() == comm->getSize() - 1 ? 2 : 0, 7);
+  EXPECT_EQ(rpc::io::gather(*comm, mine.data(), mine.size()), std::vector<GO>(comm->getRank() == 0 ? 2 : 0, 7));
+}
+
+TEST(CanonicalOrder, ValuesComeOrderedById)
+{
+  expect_ordered(Tpetra::getDefaultComm());
+}
+
+TEST(CanonicalOrder, SerialCommunicatorWorksToo)
+{
+  expect_ordered(Teuchos::rcp(new Teuchos::SerialComm<int>));
+}
+
+TEST(CanonicalOrder, IdsThatAreNoPermutationAreRefusedOnEveryRank)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const auto twice = scattered_ids(*comm, 10), beyond = scattered_ids(*comm, 10);
+  if (comm->getRank() == 0) {
+    twice(0) = twice(1);
+    beyond(0) = 10;
+  }
+  expect_error(ExitCode::internal_error, "node ids must be each of 0 .. 9 once",
+               [&] { CanonicalOrder(comm, twice, "node"); });
+  expect_error(ExitCode::internal_error, "got 10", [&] { CanonicalOrder(comm, beyond, "node"); });
+}
+
+/// 5 x 3 cells on (0,5) x (0,3): a node's id is x + 6 y for Q1.
+rpc::mesh::Mesh box(const RCP<const Comm> &comm)
+{
+  return rpc::mesh::make_box({{0, 0}, {5, 3}, {5, 3}, rpc::mesh::Element{2, 1}}, comm);
+}
+
+TEST(OverlapNodeIds, AreKnownOfGhostsToo)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const auto mesh = box(comm);
+  const auto ids = rpc::io::overlap_node_ids(mesh);
+  const auto coords = rpc::to_host(mesh.coords);
+  ASSERT_EQ(static_cast<LO>(ids.extent(0)), mesh.num_local_nodes());
+  for (LO n = 0; n < mesh.num_local_nodes(); ++n) EXPECT_NEAR(ids(n), coords(n, 0) + 6 * coords(n, 1), 1e-12);
+}
+
+TEST(OwnedFacets, EachFacetOfASideAppearsOnceOverAllRanks)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const auto mesh = box(comm);
+  const auto facets = rpc::io::owned_facets(mesh, mesh.side("bottom", "test"), rpc::io::overlap_node_ids(mesh));
+  const auto all = rpc::io::gather(*comm, facets.data(), facets.size());
+  if (comm->getRank() != 0) return;
+  ASSERT_EQ(all.size(), 10u);
+  std::set<std::pair<GO, GO>> edges;
+  for (std::size_t f = 0; f < all.size(); f += 2) edges.insert(std::minmax(all[f], all[f + 1]));
+  EXPECT_EQ(edges, (std::set<std::pair<GO, GO>>{{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}}));
+}
+
+} // namespace

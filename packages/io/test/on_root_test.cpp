@@ -1,0 +1,40 @@
+#include "rpc/io/on_root.hpp"
+
+#include "rpc/core/tpetra.hpp"
+#include "scratch.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using rpc::Error;
+using rpc::ExitCode;
+using rpc::io::on_root;
+using rpc::test::expect_error;
+
+TEST(OnRoot, WorkRunsOnceOnRankZero)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  int runs = 0;
+  on_root(*comm, ExitCode::internal_error, [&] { ++runs; });
+  EXPECT_EQ(runs, comm->getRank() == 0 ? 1 : 0);
+}
+
+TEST(OnRoot, ErrorKeepsItsCodeAndMessageOnEveryRank)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  expect_error(ExitCode::bad_input, "no such folder", [&] {
+    on_root(*comm, ExitCode::internal_error, [] { throw Error(ExitCode::bad_input, "no such folder"); });
+  });
+}
+
+TEST(OnRoot, OtherExceptionsGetTheDefaultCodeOnEveryRank)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  expect_error(ExitCode::bad_mesh, "out of paper",
+               [&] { on_root(*comm, ExitCode::bad_mesh, [] { throw std::runtime_error("out of paper"); }); });
+}
+
+} // namespace

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/tpetra.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <optional>
+#include <stdlib.h>
+#include <string>
+
+/// What tests of files share.
+namespace rpc::test
+{
+
+/// A folder that goes away with its owner; rank 0 makes and removes it, all ranks know its name. Collective.
+class Scratch
+{
+public:
+  explicit Scratch(const Comm &comm) : comm_(comm), folder_("/tmp/rpc_io_test_XXXXXX")
+  {
+    if (comm_.getRank() == 0 && !::mkdtemp(folder_.data())) ADD_FAILURE() << "cannot create " << folder_;
+    Teuchos::broadcast(comm_, 0, static_cast<int>(folder_.size()), folder_.data());
+  }
+  ~Scratch()
+  {
+    comm_.barrier();
+    if (comm_.getRank() == 0) std::filesystem::remove_all(folder_);
+  }
+  Scratch(const Scratch &) = delete;
+  Scratch &operator=(const Scratch &) = delete;
+
+  const std::string &folder() const { return folder_; }
+  std::string path(const std::string &name) const { return folder_ + "/" + name; }
+
+  std::string write(const std::string &name, const std::string &text) const
+  {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+  int num_files() const
+  {
+    const std::filesystem::directory_iterator entries(folder_);
+    return static_cast<int>(std::distance(begin(entries), end(entries)));
+  }
+
+private:
+  const Comm &comm_;
+  std::string folder_;
+};
+
+inline std::string text_of(const std::string &path)
+{
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The rpc::Error that the work must throw.
+template <class Work>
+Error error_of(const Work &work)
+{
+  try {
+    work();
+  } catch (const Error &error) {
+    return error;
+  }
+  ADD_FAILURE() << "no rpc::Error was thrown";
+  return Error(ExitCode::converged, "");
+}
+
+template <class Work>
+void expect_error(const ExitCode code, const std::string &part, const Work &work)
+{
+  const Error error = error_of(work);
+  EXPECT_EQ(error.code(), code) << error.what();
+  EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+}
+
+} // namespace rpc::test

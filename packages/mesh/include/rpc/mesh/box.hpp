@@ -1,0 +1,32 @@
+#pragma once
+
+#include "rpc/mesh/mesh.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <vector>
+
+namespace rpc::mesh
+{
+
+/// An axis-parallel box, divided evenly. 2D or 3D by the length of its arrays.
+struct BoxOptions {
+  std::vector<double> lower; ///< [m]
+  std::vector<double> upper; ///< [m]   upper > lower
+  std::vector<int> cells;    ///<       > 0 in each direction
+  Element element;
+};
+
+/// Parameters of the deck's `Mesh` sublist.
+Teuchos::ParameterList valid_parameters();
+
+/// @throws rpc::Error (bad_input) on anything out of range
+BoxOptions box_options(const Teuchos::ParameterList &list);
+
+/// Makes this rank's part of a box; no communication of mesh data, and no rank holds the whole.
+///
+/// Ranks form a grid of blocks chosen for the least number of shared cell faces. Sides are named left, right (x),
+/// bottom, top (y), and in 3D back, front (z). Node ids run over the lattice, x fastest. Collective on comm.
+/// @throws rpc::Error (bad_mesh) if there are fewer cells than ranks in every direction
+Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm);
+
+} // namespace rpc::mesh

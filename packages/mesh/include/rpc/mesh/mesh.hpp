@@ -1,0 +1,51 @@
+#pragma once
+
+#include "rpc/core/tpetra.hpp"
+#include "rpc/mesh/element.hpp"
+
+#include <string>
+#include <vector>
+
+namespace rpc::mesh
+{
+
+/// A named part of the boundary: those of its facets that touch a node which this rank owns.
+struct Side {
+  std::string name;
+  DeviceView<LO **>
+      facets; ///< (facets, facet nodes), overlap node lids; order gives the outward normal, see Element::facets
+  DeviceView<LO *> cell;     ///< (facets) local cell that the facet belongs to
+  DeviceView<int *> ordinal; ///< (facets) which facet of that cell
+};
+
+/// One rank's part of a mesh.
+///
+/// A rank holds every cell that touches a node which it owns, so that it fills its own matrix rows without
+/// communication; the cells that it owns itself (each cell has one owner) come first. Overlap node lids run over the
+/// owned nodes first, so that an owned node has one lid in both maps. Node gids are consecutive on each rank; `node_id`
+/// and `cell_id` number the mesh independently of the number of ranks, 0-based, and are what output goes by.
+struct Mesh {
+  Element element;
+  RCP<const Map> owned_nodes;   ///< one-to-one
+  RCP<const Map> overlap_nodes; ///< all nodes of local cells, owned first
+  DeviceView<double **> coords; ///< (overlap nodes, dim) [m]
+  DeviceView<LO **> cells;      ///< (local cells, nodes per cell) overlap node lids
+  HostView<GO *> node_id;       ///< (owned nodes)
+  HostView<GO *> cell_id;       ///< (owned cells)
+  LO num_owned_cells = 0;
+  std::vector<Side> sides;
+
+  int dim() const { return element.dim; }
+  LO num_owned_nodes() const { return num_local(*owned_nodes); }
+  LO num_local_nodes() const { return num_local(*overlap_nodes); }
+  LO num_cells() const { return static_cast<LO>(cells.extent(0)); }
+  const Comm &comm() const { return *owned_nodes->getComm(); }
+
+  /// @throws rpc::Error (bad_input) naming `user` (a deck path) and listing the sides that exist
+  const Side &side(const std::string &name, const std::string &user) const;
+};
+
+/// Diagonal of the bounding box [m]; collective.
+double diameter(const Mesh &mesh);
+
+} // namespace rpc::mesh

@@ -1,0 +1,439 @@
+#include "rpc/mesh/box.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+using Teuchos::Array;
+
+/// A position on the lattice of cells or nodes; absent dimensions are 0. (Kokkos 3.4 takes a view of Kokkos::Array for
+/// a view of one more dimension, hence no Kokkos::Array here.)
+struct Index {
+  GO along[3];
+  KOKKOS_INLINE_FUNCTION GO &operator[](const int d) { return along[d]; }
+  KOKKOS_INLINE_FUNCTION GO operator[](const int d) const { return along[d]; }
+};
+
+/// A block of lattice positions, [begin, end) in each direction, in the storage order of this mesh.
+struct Block {
+  Index begin{}, end{};
+  Kokkos::Array<int, 3> axes{}; // from the fastest running one to the slowest
+
+  KOKKOS_INLINE_FUNCTION GO size() const { return (end[0] - begin[0]) * (end[1] - begin[1]) * (end[2] - begin[2]); }
+  KOKKOS_INLINE_FUNCTION bool contains(const Index &at) const
+  {
+    for (int d = 0; d < 3; ++d)
+      if (at[d] < begin[d] || at[d] >= end[d]) return false;
+    return true;
+  }
+  KOKKOS_INLINE_FUNCTION GO index_of(const Index &at) const
+  {
+    GO index = 0;
+    for (int s = 2; s >= 0; --s) {
+      const int d = axes[s];
+      index = index * (end[d] - begin[d]) + (at[d] - begin[d]);
+    }
+    return index;
+  }
+  KOKKOS_INLINE_FUNCTION Index at(GO index) const
+  {
+    Index position{};
+    for (int s = 0; s < 3; ++s) {
+      const int d = axes[s];
+      position[d] = begin[d] + index % (end[d] - begin[d]);
+      index /= end[d] - begin[d];
+    }
+    return position;
+  }
+};
+
+/// The whole box and its division into blocks of cells, one per rank. Every rank can compute every other rank's block.
+///
+/// A node on the border of two blocks belongs to the lower one.
+class Grid
+{
+public:
+  Grid(const BoxOptions &options, const int num_ranks) : dim_(options.element.dim), order_(options.element.order)
+  {
+    for (int d = 0; d < dim_; ++d) cells_[d] = options.cells[d];
+    // The shortest direction runs fastest: least bandwidth, and blocks along the longest one share short borders.
+    std::sort(axes_.begin(), axes_.begin() + dim_, [&](const int a, const int b) { return cells_[a] < cells_[b]; });
+    choose_blocks(num_ranks);
+    offsets_.assign(num_ranks + 1, 0);
+    for (int rank = 0; rank < num_ranks; ++rank) offsets_[rank + 1] = offsets_[rank] + owned_nodes(rank).size();
+  }
+
+  Block owned_cells(const int rank) const
+  {
+    Block block = empty_block();
+    const auto b = block_of(rank);
+    for (int d = 0; d < 3; ++d) {
+      block.begin[d] = first_cell(d, b[d]);
+      block.end[d] = first_cell(d, b[d] + 1);
+    }
+    return block;
+  }
+  /// The cells that touch an owned node: one layer more on the upper borders.
+  Block local_cells(const int rank) const
+  {
+    Block block = owned_cells(rank);
+    for (int d = 0; d < dim_; ++d) block.end[d] = std::min<GO>(block.end[d] + 1, cells_[d]);
+    return block;
+  }
+  Block owned_nodes(const int rank) const
+  {
+    Block block = owned_cells(rank);
+    for (int d = 0; d < dim_; ++d) {
+      block.begin[d] = block.begin[d] == 0 ? 0 : order_ * block.begin[d] + 1;
+      block.end[d] = order_ * block.end[d] + 1;
+    }
+    return block;
+  }
+  Block local_nodes(const int rank) const
+  {
+    Block block = local_cells(rank);
+    for (int d = 0; d < dim_; ++d) {
+      block.begin[d] = order_ * block.begin[d];
+      block.end[d] = order_ * block.end[d] + 1;
+    }
+    return block;
+  }
+  GO node_offset(const int rank) const { return offsets_[rank]; }
+  GO node_gid(const Index &node) const
+  {
+    std::array<int, 3> b{};
+    for (int d = 0; d < dim_; ++d) {
+      const GO cell = node[d] == 0 ? 0 : (node[d] - 1) / order_; // the lower one of the two that share the node
+      while (first_cell(d, b[d] + 1) <= cell) ++b[d];
+    }
+    const int rank = b[0] + blocks_[0] * (b[1] + blocks_[1] * b[2]);
+    return offsets_[rank] + owned_nodes(rank).index_of(node);
+  }
+  const std::array<int, 3> &num_cells() const { return cells_; }
+  GO num_cells_total() const { return GO(cells_[0]) * cells_[1] * cells_[2]; }
+
+private:
+  Block empty_block() const
+  {
+    Block block;
+    for (int d = 0; d < 3; ++d) block.axes[d] = axes_[d];
+    return block;
+  }
+  std::array<int, 3> block_of(const int rank) const
+  {
+    return {rank % blocks_[0], rank / blocks_[0] % blocks_[1], rank / (blocks_[0] * blocks_[1])};
+  }
+  GO first_cell(const int d, const int b) const { return GO(cells_[d]) * b / blocks_[d]; }
+
+  void choose_blocks(const int num_ranks)
+  {
+    double least = std::numeric_limits<double>::max();
+    for (int x = 1; x <= num_ranks; ++x) {
+      for (int y = 1; num_ranks % x == 0 && y <= num_ranks / x; ++y) {
+        const int z = num_ranks / x / y;
+        if (x * y * z != num_ranks || x > cells_[0] || y > cells_[1] || z > cells_[2]) continue;
+        const std::array<int, 3> blocks{x, y, z};
+        double shared = 0; // faces between blocks
+        for (int d = 0; d < 3; ++d) shared += (blocks[d] - 1) * (double(num_cells_total()) / cells_[d]);
+        if (shared < least) {
+          least = shared;
+          blocks_ = blocks;
+        }
+      }
+    }
+    RPC_REQUIRE_CODE(
+        least < std::numeric_limits<double>::max(), ExitCode::bad_mesh,
+        "box mesh: " << cells_[0] << " x " << cells_[1] << (dim_ == 3 ? " x " + std::to_string(cells_[2]) : "")
+                     << " cells cannot be divided among " << num_ranks << " ranks. Use fewer ranks or more cells.");
+  }
+
+  int dim_, order_;
+  std::array<int, 3> cells_{1, 1, 1};
+  std::array<int, 3> axes_{0, 1, 2};
+  std::array<int, 3> blocks_{1, 1, 1};
+  std::vector<GO> offsets_;
+};
+
+/// Positions of `outer` that `inner` does not contain, in outer's order.
+std::vector<Index> shell(const Block &outer, const Block &inner)
+{
+  std::vector<Index> positions;
+  const int fast = outer.axes[0], mid = outer.axes[1], slow = outer.axes[2];
+  Index at{};
+  for (at[slow] = outer.begin[slow]; at[slow] < outer.end[slow]; ++at[slow]) {
+    for (at[mid] = outer.begin[mid]; at[mid] < outer.end[mid]; ++at[mid]) {
+      at[fast] = inner.begin[fast];
+      const bool row_crosses = inner.contains(at);
+      for (at[fast] = outer.begin[fast]; at[fast] < outer.end[fast]; ++at[fast]) {
+        if (row_crosses && at[fast] == inner.begin[fast]) at[fast] = inner.end[fast];
+        if (at[fast] < outer.end[fast]) positions.push_back(at);
+      }
+    }
+  }
+  return positions;
+}
+
+/// The six (four) sides of a box: name, direction, upper or lower end, and the facet number of the cells there.
+struct BoxSide {
+  const char *name;
+  int direction;
+  bool upper;
+  int facet;
+};
+constexpr std::array<BoxSide, 4> sides_2d{
+    {{"left", 0, false, 3}, {"right", 0, true, 1}, {"bottom", 1, false, 0}, {"top", 1, true, 2}}};
+constexpr std::array<BoxSide, 6> sides_3d{{{"left", 0, false, 3},
+                                           {"right", 0, true, 1},
+                                           {"bottom", 1, false, 0},
+                                           {"top", 1, true, 2},
+                                           {"back", 2, false, 4},
+                                           {"front", 2, true, 5}}};
+
+/// Numbers and places of one rank's nodes and cells, for kernels.
+struct Numbering {
+  Block owned_nodes, local_nodes, owned_cells;
+  DeviceView<LO *> node_lid; // (local lattice) node at a position of local_nodes
+  DeviceView<Index *> ghost; // (ghost nodes) position
+  DeviceView<Index *> halo;  // (ghost cells) position
+  LO num_owned_cells = 0;
+
+  KOKKOS_INLINE_FUNCTION LO lid_of(const Index &node) const { return node_lid(local_nodes.index_of(node)); }
+  KOKKOS_INLINE_FUNCTION Index node_at(const LO lid) const
+  {
+    const LO owned = static_cast<LO>(owned_nodes.size());
+    return lid < owned ? owned_nodes.at(lid) : ghost(lid - owned);
+  }
+  KOKKOS_INLINE_FUNCTION Index cell_at(const LO cell) const
+  {
+    return cell < num_owned_cells ? owned_cells.at(cell) : halo(cell - num_owned_cells);
+  }
+};
+
+DeviceView<Index *> device_positions(const std::vector<Index> &positions, const std::string &label)
+{
+  HostView<Index *> host(label, positions.size());
+  std::copy(positions.begin(), positions.end(), host.data());
+  return to_device(host);
+}
+
+void number_nodes(Numbering &numbering, const LO num_nodes)
+{
+  numbering.node_lid = DeviceView<LO *>("rpc::mesh::node_lid", numbering.local_nodes.size());
+  const Numbering n = numbering;
+  Kokkos::parallel_for(
+      "rpc::mesh::number_box_nodes", device_range(num_nodes),
+      KOKKOS_LAMBDA(const LO lid) { n.node_lid(n.local_nodes.index_of(n.node_at(lid))) = lid; });
+}
+
+void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView<double **> &coords)
+{
+  Kokkos::Array<double, 3> lower{}, upper{}, last{};
+  const int dim = options.element.dim;
+  for (int d = 0; d < dim; ++d) {
+    lower[d] = options.lower[d];
+    upper[d] = options.upper[d];
+    last[d] = double(options.cells[d]) * options.element.order;
+  }
+  Kokkos::parallel_for(
+      "rpc::mesh::box_coords", device_range(static_cast<LO>(coords.extent(0))), KOKKOS_LAMBDA(const LO lid) {
+        const Index at = n.node_at(lid);
+        for (int d = 0; d < dim; ++d) { // both ends exact
+          const double t = at[d] / last[d];
+          coords(lid, d) = (1 - t) * lower[d] + t * upper[d];
+        }
+      });
+}
+
+void fill_cells(const Numbering &n, const Element &element, const DeviceView<LO **> &cells)
+{
+  const int nodes = element.num_nodes(), dim = element.dim, order = element.order;
+  HostView<int **> lattice_host("rpc::mesh::lattice", nodes, dim);
+  for (int a = 0; a < nodes; ++a)
+    for (int d = 0; d < dim; ++d) lattice_host(a, d) = element.lattice()[a][d];
+  const auto lattice = to_device(lattice_host);
+  Kokkos::parallel_for(
+      "rpc::mesh::box_cells", device_range(static_cast<LO>(cells.extent(0))), KOKKOS_LAMBDA(const LO cell) {
+        const Index corner = n.cell_at(cell);
+        for (int a = 0; a < nodes; ++a) {
+          Index node{};
+          for (int d = 0; d < dim; ++d) node[d] = order * corner[d] + lattice(a, d);
+          cells(cell, a) = n.lid_of(node);
+        }
+      });
+}
+
+Side make_side(const BoxSide &box_side, const Grid &grid, const Numbering &numbering, const std::vector<Index> &halo,
+               const Block &local_cells, const Mesh &mesh)
+{
+  // Only this rank's cells along the side are visited.
+  Block layer = local_cells;
+  const int d = box_side.direction;
+  const GO at_end = box_side.upper ? grid.num_cells()[d] - 1 : 0;
+  const bool present = local_cells.begin[d] <= at_end && at_end < local_cells.end[d];
+  layer.begin[d] = at_end;
+  layer.end[d] = present ? at_end + 1 : at_end;
+
+  std::map<GO, LO> halo_cell; // position in local_cells -> local cell
+  for (std::size_t h = 0; h < halo.size(); ++h)
+    halo_cell[local_cells.index_of(halo[h])] = numbering.num_owned_cells + static_cast<LO>(h);
+
+  Side side;
+  side.name = box_side.name;
+  const LO num_facets = static_cast<LO>(layer.size());
+  const auto &facet_nodes = mesh.element.facets()[box_side.facet];
+  HostView<LO *> cell("rpc::mesh::side_cell", num_facets);
+  HostView<int *> ordinal("rpc::mesh::side_ordinal", num_facets);
+  for (LO f = 0; f < num_facets; ++f) {
+    const Index at = layer.at(f);
+    cell(f) = numbering.owned_cells.contains(at) ? static_cast<LO>(numbering.owned_cells.index_of(at))
+                                                 : halo_cell.at(local_cells.index_of(at));
+    ordinal(f) = box_side.facet;
+  }
+  side.cell = to_device(cell);
+  side.ordinal = to_device(ordinal);
+
+  side.facets = DeviceView<LO **>("rpc::mesh::side_facets", num_facets, facet_nodes.size());
+  HostView<int *> local_host("rpc::mesh::facet_nodes", facet_nodes.size());
+  std::copy(facet_nodes.begin(), facet_nodes.end(), local_host.data());
+  const auto local = to_device(local_host);
+  const auto cells = mesh.cells;
+  const auto facets = side.facets;
+  const auto facet_cell = side.cell;
+  Kokkos::parallel_for(
+      "rpc::mesh::side_facets", device_range(num_facets), KOKKOS_LAMBDA(const LO f) {
+        for (std::size_t a = 0; a < facets.extent(1); ++a) facets(f, a) = cells(facet_cell(f), local(a));
+      });
+  return side;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_parameters()
+{
+  Teuchos::ParameterList valid("Mesh");
+  valid.set("Type", "box", "Kind of mesh: `box`.");
+  valid.set("Lower", Array<double>(Teuchos::tuple(0., 0.)), "Lower corner of the box, 2 or 3 numbers [m].");
+  valid.set("Upper", Array<double>(Teuchos::tuple(1., 1.)),
+            "Upper corner of the box, above the lower one in each direction [m].");
+  valid.set("Cells", Array<int>(Teuchos::tuple(8, 8)), "Number of cells in each direction, > 0.");
+  valid.set("Element", "Q1", "Element: `Q1` or `Q2`.");
+  return valid;
+}
+
+BoxOptions box_options(const Teuchos::ParameterList &list)
+{
+  RPC_REQUIRE(list.get<std::string>("Type") == "box",
+              "deck: \"Mesh->Type\" must be one of box, got \"" << list.get<std::string>("Type") << "\"");
+  BoxOptions options;
+  const auto &lower = list.get<Array<double>>("Lower");
+  const auto &upper = list.get<Array<double>>("Upper");
+  const auto &cells = list.get<Array<int>>("Cells");
+  options.lower.assign(lower.begin(), lower.end());
+  options.upper.assign(upper.begin(), upper.end());
+  options.cells.assign(cells.begin(), cells.end());
+  const std::size_t dim = options.lower.size();
+  RPC_REQUIRE(dim == 2 || dim == 3, "deck: \"Mesh->Lower\" must hold 2 or 3 numbers, got " << dim);
+  RPC_REQUIRE(options.upper.size() == dim && options.cells.size() == dim,
+              "deck: \"Mesh->Lower\", \"Upper\" and \"Cells\" must be of one length, got "
+                  << dim << ", " << options.upper.size() << " and " << options.cells.size());
+  double nodes = 1;
+  options.element = parse_element(list.get<std::string>("Element"), static_cast<int>(dim));
+  for (std::size_t d = 0; d < dim; ++d) {
+    RPC_REQUIRE(std::isfinite(options.lower[d]) && std::isfinite(options.upper[d]) &&
+                    options.lower[d] < options.upper[d],
+                "deck: \"Mesh->Upper\" must be above \"Mesh->Lower\" in each direction [m], got "
+                    << options.lower[d] << " and " << options.upper[d] << " in direction " << d + 1);
+    RPC_REQUIRE(options.cells[d] > 0, "deck: \"Mesh->Cells\" must be > 0 in each direction, got "
+                                          << options.cells[d] << " in direction " << d + 1);
+    nodes *= double(options.cells[d]) * options.element.order + 1;
+  }
+  const double most = std::numeric_limits<LO>::max() / 3.;
+  RPC_REQUIRE(nodes <= most, "deck: \"Mesh->Cells\" make " << nodes << " nodes; at most " << most << " are supported");
+  return options;
+}
+
+Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
+{
+  const Grid grid(options, comm->getSize());
+  const int rank = comm->getRank();
+  Numbering numbering;
+  numbering.owned_nodes = grid.owned_nodes(rank);
+  numbering.local_nodes = grid.local_nodes(rank);
+  numbering.owned_cells = grid.owned_cells(rank);
+  numbering.num_owned_cells = static_cast<LO>(numbering.owned_cells.size());
+  const Block local_cells = grid.local_cells(rank);
+  const std::vector<Index> halo = shell(local_cells, numbering.owned_cells);
+
+  struct Ghost {
+    GO gid;
+    Index at;
+  };
+  std::vector<Ghost> ghosts; // in the order of their gids, which is by owner: what Tpetra's Import packs best
+  for (const Index &at : shell(numbering.local_nodes, numbering.owned_nodes)) ghosts.push_back({grid.node_gid(at), at});
+  std::sort(ghosts.begin(), ghosts.end(), [](const Ghost &a, const Ghost &b) { return a.gid < b.gid; });
+
+  const GO first = grid.node_offset(rank);
+  const LO num_owned = static_cast<LO>(numbering.owned_nodes.size());
+  const LO num_nodes = num_owned + static_cast<LO>(ghosts.size());
+  std::vector<Index> ghost_positions;
+  Teuchos::Array<GO> gids;
+  for (LO n = 0; n < num_owned; ++n) gids.push_back(first + n);
+  for (const Ghost &ghost : ghosts) {
+    gids.push_back(ghost.gid);
+    ghost_positions.push_back(ghost.at);
+  }
+  numbering.ghost = device_positions(ghost_positions, "rpc::mesh::ghost_nodes");
+  numbering.halo = device_positions(halo, "rpc::mesh::halo_cells");
+  number_nodes(numbering, num_nodes);
+
+  Mesh mesh;
+  mesh.element = options.element;
+  const GO total = grid.node_offset(comm->getSize());
+  const GO invalid = Teuchos::OrdinalTraits<GO>::invalid();
+  mesh.owned_nodes = rcp(new Map(total, num_owned, 0, comm));
+  mesh.overlap_nodes = mesh.owned_nodes;
+  if (comm->getSize() > 1) mesh.overlap_nodes = rcp(new Map(invalid, gids(), 0, comm));
+  mesh.num_owned_cells = numbering.num_owned_cells;
+  mesh.coords = DeviceView<double **>("rpc::mesh::coords", num_nodes, mesh.dim());
+  mesh.cells = DeviceView<LO **>("rpc::mesh::cells", numbering.num_owned_cells + halo.size(), mesh.element.num_nodes());
+  fill_coords(numbering, options, mesh.coords);
+  fill_cells(numbering, mesh.element, mesh.cells);
+
+  // Rank-independent numbers: the lattice of the whole box, x fastest.
+  Index nodes{1, 1, 1}, cells{1, 1, 1};
+  for (int d = 0; d < mesh.dim(); ++d) {
+    cells[d] = options.cells[d];
+    nodes[d] = GO(options.cells[d]) * options.element.order + 1;
+  }
+  const auto lattice_id = [](const Index &at, const Index &extent) {
+    return at[0] + extent[0] * (at[1] + extent[1] * at[2]);
+  };
+  mesh.node_id = HostView<GO *>("rpc::mesh::node_id", num_owned);
+  mesh.cell_id = HostView<GO *>("rpc::mesh::cell_id", numbering.num_owned_cells);
+  for (LO n = 0; n < num_owned; ++n) mesh.node_id(n) = lattice_id(numbering.owned_nodes.at(n), nodes);
+  for (LO c = 0; c < numbering.num_owned_cells; ++c) mesh.cell_id(c) = lattice_id(numbering.owned_cells.at(c), cells);
+
+  const auto add_sides = [&](const auto &box_sides) {
+    for (const BoxSide &box_side : box_sides)
+      mesh.sides.push_back(make_side(box_side, grid, numbering, halo, local_cells, mesh));
+  };
+  if (mesh.dim() == 2)
+    add_sides(sides_2d);
+  else
+    add_sides(sides_3d);
+  Kokkos::fence();
+  return mesh;
+}
+
+} // namespace rpc::mesh

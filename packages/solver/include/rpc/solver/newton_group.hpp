@@ -1,0 +1,70 @@
+#pragma once
+
+#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/solver/linear_solver.hpp"
+#include "rpc/solver/nox_vector.hpp"
+
+#include <NOX_Abstract_Group.H>
+#include <string>
+
+namespace rpc::solver
+{
+
+/// What the groups of one Newton iteration share: the functional, the linear solver, and a record of the last step.
+struct NewtonContext {
+  contact::SmoothedFunctional &functional;
+  LinearSolver &linear_solver;
+  double target_residual = 0; ///< |F|_2 at which Newton stops [N]; no linear solve need be better than this
+
+  // Last step
+  double direction_norm = 0; ///< |d|_2 of the full Newton step [m]
+  int linear_iterations = 0;
+  std::string failure; ///< of the linear solver, if it did not converge
+};
+
+/// A point of the Newton iteration: u, F(u) and the Newton direction. NOX holds two of them.            doc/theory.md
+/// (4.2)
+class NewtonGroup : public NOX::Abstract::Group
+{
+public:
+  NewtonGroup(RCP<NewtonContext> context, RCP<rpc::Vector> u);
+  NewtonGroup(const NewtonGroup &source, NOX::CopyType type);
+
+  NewtonGroup(const NewtonGroup &) = delete;
+  NewtonGroup &operator=(const NewtonGroup &source);
+  NOX::Abstract::Group &operator=(const NOX::Abstract::Group &source) override;
+  void setX(const NOX::Abstract::Vector &y) override;
+  void computeX(const NOX::Abstract::Group &from, const NOX::Abstract::Vector &d, double step) override;
+  ReturnType computeF() override;
+  ReturnType computeJacobian() override;
+  ReturnType computeNewton(Teuchos::ParameterList &) override;
+
+  bool isF() const override { return has_F_; }
+  bool isJacobian() const override { return has_jacobian_; }
+  bool isNewton() const override { return has_newton_; }
+  const NOX::Abstract::Vector &getX() const override { return u_; }
+  const NOX::Abstract::Vector &getF() const override { return F_; }
+  double getNormF() const override { return norm_F_; }
+  const NOX::Abstract::Vector &getNewton() const override { return newton_; }
+  const NOX::Abstract::Vector &getGradient() const override
+  {
+    return F_;
+  } // of the functional; NOX's own would be J^T F
+  RCP<const NOX::Abstract::Vector> getXPtr() const override { return Teuchos::rcpFromRef(u_); }
+  RCP<const NOX::Abstract::Vector> getFPtr() const override { return Teuchos::rcpFromRef(F_); }
+  RCP<const NOX::Abstract::Vector> getNewtonPtr() const override { return Teuchos::rcpFromRef(newton_); }
+  RCP<const NOX::Abstract::Vector> getGradientPtr() const override { return getFPtr(); }
+  RCP<NOX::Abstract::Group> clone(NOX::CopyType type) const override;
+
+  NewtonContext &context() const { return *context_; }
+
+private:
+  void invalidate();
+
+  RCP<NewtonContext> context_;
+  NoxVector u_, F_, newton_;
+  double norm_F_ = 0;
+  bool has_F_ = false, has_jacobian_ = false, has_newton_ = false;
+};
+
+} // namespace rpc::solver

@@ -1,0 +1,182 @@
+#include "rpc/solver/linear_solver.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
+
+#include <BelosSolverFactory.hpp>
+#include <BelosTpetraAdapter.hpp>
+#include <MueLu_CreateTpetraPreconditioner.hpp>
+#include <MueLu_TpetraOperator.hpp>
+#include <Teuchos_StackedTimer.hpp>
+#include <Teuchos_TimeMonitor.hpp>
+#include <algorithm>
+#include <cmath>
+
+namespace rpc::solver
+{
+namespace
+{
+
+using Operator = Tpetra::Operator<double, LO, GO, Node>;
+using Preconditioner = MueLu::TpetraOperator<double, LO, GO, Node>;
+using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
+using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
+
+/// Smoothed aggregation with a polynomial smoother, which is the same on every backend and number of ranks.
+Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_node)
+{
+  Teuchos::ParameterList list("MueLu");
+  list.set("verbosity", "none");
+  list.set("problem: symmetric", true);
+  list.set("multigrid algorithm", "sa");
+  list.set("number of equations", dofs_per_node);
+  list.set("smoother: type", "CHEBYSHEV");
+  Teuchos::ParameterList &smoother = list.sublist("smoother: params");
+  smoother.set("chebyshev: degree", 2);
+  smoother.set("chebyshev: ratio eigenvalue", 7.);
+  smoother.set("chebyshev: eigenvalue max iterations", 20);
+  // There is always a level below the finest one, so that what is solved directly has gone to one rank.
+  const GO rows = static_cast<GO>(A.getGlobalNumRows());
+  list.set("coarse: max size", static_cast<int>(std::clamp<GO>(rows / 4, 1, 1000)));
+#ifdef HAVE_MUELU_ZOLTAN2
+  if (A.getComm()->getSize() > 1) { // the direct coarse solvers of 13.2 are wrong on a distributed matrix
+    list.set("repartition: enable", true);
+    list.set("repartition: partitioner", "zoltan2");
+    list.set("repartition: start level", 1);
+    list.set("repartition: min rows per proc", 5000);
+    list.set("repartition: max imbalance", 1.3);
+    list.set("repartition: rebalance P and R", true);
+    Teuchos::ParameterList &partitioner = list.sublist("repartition: params");
+    partitioner.set("algorithm", "multijagged");
+  }
+#else
+  if (A.getComm()->getSize() > 1) list.set("coarse: type", "CHEBYSHEV");
+#endif
+  return list;
+}
+
+} // namespace
+
+struct LinearSolver::Impl {
+  RCP<CrsMatrix> A;
+  RCP<MultiVector> coordinates, null_space;
+  Teuchos::ParameterList muelu;
+  RCP<Preconditioner> preconditioner;
+  bool stale = true;
+  RCP<LinearProblem> problem;
+  RCP<SolverManager> manager;
+};
+
+Teuchos::ParameterList valid_linear_solver_parameters()
+{
+  Teuchos::ParameterList valid("Linear Solver");
+  valid.set("Method", "Pseudoblock CG",
+            "Krylov method by its name in Belos; the matrix is symmetric positive definite.");
+  valid.set("Tolerance", 1e-8, "|r|/|b| of a linear solve, in (0, 1).");
+  valid.set("Maximum Iterations", 500, "of a linear solve, > 0.");
+  valid.set("Reuse", "tP",
+            "What of the multigrid hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
+            "tentative prolongator), `RP` (transfer operators).");
+  set_pass_through(valid, "Belos", "Handed to Belos as it is.");
+  set_pass_through(valid, "MueLu",
+                   "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing.");
+  return valid;
+}
+
+LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
+{
+  LinearSolverOptions options;
+  options.method = list.get<std::string>("Method");
+  options.tolerance = list.get<double>("Tolerance");
+  options.max_iterations = list.get<int>("Maximum Iterations");
+  options.reuse = list.get<std::string>("Reuse");
+  options.belos = list.sublist("Belos");
+  options.muelu = list.sublist("MueLu");
+  RPC_REQUIRE(options.tolerance > 0 && options.tolerance < 1,
+              "deck: \"Linear Solver->Tolerance\" must be in (0, 1), got " << options.tolerance);
+  RPC_REQUIRE(options.max_iterations > 0,
+              "deck: \"Linear Solver->Maximum Iterations\" must be > 0, got " << options.max_iterations);
+  RPC_REQUIRE(options.reuse == "none" || options.reuse == "tP" || options.reuse == "RP",
+              "deck: \"Linear Solver->Reuse\" must be one of none, tP, RP, got \"" << options.reuse << "\"");
+  const Belos::SolverFactory<double, MultiVector, Operator> factory;
+  RPC_REQUIRE(factory.isSupported(options.method),
+              "deck: \"Linear Solver->Method\" is not known to Belos, got \""
+                  << options.method << "\". It knows: "
+                  << join(std::vector<std::string>(factory.supportedSolverNames().begin(),
+                                                   factory.supportedSolverNames().end())));
+  return options;
+}
+
+LinearSolver::LinearSolver(LinearSolverOptions options, RCP<CrsMatrix> A, RCP<MultiVector> coordinates,
+                           RCP<MultiVector> null_space)
+    : options_(std::move(options)), impl_(std::make_unique<Impl>())
+{
+  impl_->A = A;
+  impl_->muelu = muelu_defaults(*A, static_cast<int>(coordinates->getNumVectors()));
+  impl_->muelu.set("reuse: type", options_.reuse);
+  impl_->muelu.setParameters(options_.muelu);
+  impl_->coordinates = coordinates;
+  impl_->null_space = null_space;
+
+  const auto belos = Teuchos::parameterList("Belos");
+  belos->set("Verbosity", static_cast<int>(Belos::Errors));
+  belos->set("Maximum Iterations", options_.max_iterations);
+  belos->setParameters(options_.belos);
+  impl_->problem = rcp(new LinearProblem(A, Teuchos::null, Teuchos::null));
+  impl_->manager = Belos::SolverFactory<double, MultiVector, Operator>().create(options_.method, belos);
+  impl_->manager->setProblem(impl_->problem);
+}
+
+LinearSolver::~LinearSolver() = default;
+
+void LinearSolver::matrix_changed()
+{
+  impl_->stale = true;
+}
+
+void LinearSolver::set_up()
+{
+  const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
+  const double start = Teuchos::Time::wallTime();
+  if (impl_->preconditioner.is_null() || options_.reuse == "none") {
+    Teuchos::ParameterList list = impl_->muelu; // MueLu adds to its list
+    list.sublist("user data").set("Coordinates", impl_->coordinates);
+    list.sublist("user data").set("Nullspace", impl_->null_space);
+    impl_->preconditioner = MueLu::CreateTpetraPreconditioner(RCP<Operator>(impl_->A), list);
+    impl_->problem->setLeftPrec(impl_->preconditioner);
+  } else {
+    MueLu::ReuseTpetraPreconditioner(impl_->A, *impl_->preconditioner);
+  }
+  impl_->stale = false;
+  ++counts_.preconditioner_setups;
+  counts_.setup_seconds += Teuchos::Time::wallTime() - start;
+}
+
+LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const double tolerance)
+{
+  Result result;
+  try {
+    if (impl_->stale) set_up();
+    const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
+    const double start = Teuchos::Time::wallTime();
+    const auto list = Teuchos::parameterList();
+    list->set("Convergence Tolerance", std::max(tolerance, options_.tolerance));
+    impl_->manager->setParameters(list);
+    x.putScalar(0);
+    impl_->problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b));
+    result.converged = impl_->manager->solve() == Belos::Converged;
+    result.iterations = impl_->manager->getNumIters();
+    counts_.iterations.push_back(result.iterations);
+    counts_.solve_seconds += Teuchos::Time::wallTime() - start;
+    if (!result.converged)
+      result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(impl_->manager->achievedTol()) +
+                      " after " + std::to_string(result.iterations) + " iterations";
+  } catch (
+      const std::exception &failure) { // a breakdown, such as an indefinite or singular matrix; the same on all ranks
+    counts_.iterations.push_back(impl_->manager->getNumIters());
+    result.reason = std::string("the linear solver broke down: ") + failure.what();
+  }
+  return result;
+}
+
+} // namespace rpc::solver

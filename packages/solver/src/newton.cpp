@@ -1,0 +1,185 @@
+#include "rpc/solver/newton.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
+#include "rpc/solver/exact_line_search.hpp"
+#include "rpc/solver/newton_group.hpp"
+
+#include <NOX.H>
+#include <NOX_Abstract_PrePostOperator.H>
+#include <NOX_Solver_LineSearchBased.H>
+#include <NOX_StatusTest_Factory.H>
+#include <Teuchos_TimeMonitor.hpp>
+#include <sstream>
+
+namespace rpc::solver
+{
+namespace
+{
+
+/// The paper's stopping test, |full Newton step| / |u| < tolerance. The full step, not the one that the line search
+/// shortened: a short step is no sign of convergence.
+class StepTest : public NOX::StatusTest::Generic
+{
+public:
+  StepTest(RCP<NewtonContext> context, const double tolerance) : context_(std::move(context)), tolerance_(tolerance) {}
+
+  NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic &solver, NOX::StatusTest::CheckType) override
+  {
+    status_ = NOX::StatusTest::Unconverged;
+    if (solver.getNumIterations() > 0) {
+      ratio_ = context_->direction_norm / solver.getSolutionGroup().getX().norm();
+      if (ratio_ < tolerance_) status_ = NOX::StatusTest::Converged;
+    }
+    return status_;
+  }
+  NOX::StatusTest::StatusType getStatus() const override { return status_; }
+  std::ostream &print(std::ostream &out, const int indent) const override
+  {
+    return out << std::string(indent, ' ') << status_ << "|step|/|u| = " << ratio_ << " < " << tolerance_ << "\n";
+  }
+
+private:
+  RCP<NewtonContext> context_;
+  double tolerance_, ratio_ = 0;
+  NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
+};
+
+/// Tells the console about each step.
+class Reporter : public NOX::Abstract::PrePostOperator
+{
+public:
+  Reporter(RCP<NewtonContext> context, const double scale, std::function<void(const NewtonStep &)> report)
+      : context_(std::move(context)), scale_(scale), report_(std::move(report))
+  {
+  }
+  void runPreSolve(const NOX::Solver::Generic &solver) override { tell(solver, 0); }
+  void runPostIterate(const NOX::Solver::Generic &solver) override
+  {
+    const auto *line = dynamic_cast<const NOX::Solver::LineSearchBased *>(&solver);
+    tell(solver, line ? line->getStepSize() : 1);
+  }
+
+private:
+  void tell(const NOX::Solver::Generic &solver, const double step_length) const
+  {
+    const auto &group = solver.getSolutionGroup();
+    NewtonStep step;
+    step.iteration = solver.getNumIterations();
+    step.residual = group.isF() ? group.getNormF() / scale_ : 0;
+    step.step_length = step_length;
+    step.linear_iterations = step.iteration > 0 ? context_->linear_iterations : 0;
+    step.states = context_->functional.count_states(tpetra(group.getX()));
+    report_(step);
+  }
+
+  RCP<NewtonContext> context_;
+  double scale_;
+  std::function<void(const NewtonStep &)> report_;
+};
+
+RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
+                                     const RCP<NOX::Abstract::PrePostOperator> &reporter)
+{
+  const auto list = Teuchos::parameterList("NOX");
+  list->set("Nonlinear Solver", "Line Search Based");
+  list->sublist("Printing").set("Output Information", 0);
+  list->sublist("Line Search").set("Method", "Exact");
+  list->sublist("Direction").set("Method", "Newton");
+  list->setParameters(user);
+  list->remove("Status Tests", false);
+  Teuchos::ParameterList &search = list->sublist("Line Search");
+  if (search.get<std::string>("Method") == "Exact") {
+    search.set("Method", "User Defined");
+    search.set<RCP<NOX::LineSearch::UserDefinedFactory>>("User Defined Line Search Factory",
+                                                         rcp(new ExactLineSearchFactory));
+  }
+  list->sublist("Solver Options").set("User Defined Pre/Post Operator", reporter);
+  return list;
+}
+
+RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const RCP<NewtonContext> &context)
+{
+  using namespace NOX::StatusTest;
+  const RCP<Combo> tests = rcp(new Combo(Combo::OR));
+  tests->addStatusTest(rcp(new FiniteValue));
+  if (options.nox.isSublist("Status Tests")) { // the user's, instead of ours
+    Teuchos::ParameterList list = options.nox.sublist("Status Tests");
+    tests->addStatusTest(buildStatusTests(list, NOX::Utils()));
+    return tests;
+  }
+  tests->addStatusTest(rcp(new NormF(context->target_residual, NOX::Abstract::Vector::TwoNorm, NormF::Unscaled)));
+  tests->addStatusTest(rcp(new StepTest(context, options.step_tolerance)));
+  tests->addStatusTest(rcp(new MaxIters(options.max_iterations)));
+  return tests;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_newton_parameters()
+{
+  Teuchos::ParameterList valid("NOX");
+  valid.set("Step Tolerance", 1e-10, "Newton stops at |step|_2/|u|_2 below this, > 0: the paper's test.");
+  valid.set("Residual Tolerance", 1e-11, "Newton also stops at |F|_2/|load|_2 below this, > 0.");
+  valid.set("Maximum Iterations", 60, "Newton steps per Uzawa iteration at most, > 0.");
+  for (const char *name : {"Line Search", "Direction", "Printing", "Solver Options", "Status Tests"})
+    set_pass_through(valid, name, "Handed to NOX as it is.");
+  valid.sublist("Line Search", true,
+                "Handed to NOX as it is. `Method` = `Exact` (default) minimizes the functional along the step exactly; "
+                "`Full Step` and NOX's others work as in NOX.");
+  return valid;
+}
+
+NewtonOptions newton_options(const Teuchos::ParameterList &list)
+{
+  NewtonOptions options;
+  options.step_tolerance = list.get<double>("Step Tolerance");
+  options.residual_tolerance = list.get<double>("Residual Tolerance");
+  options.max_iterations = list.get<int>("Maximum Iterations");
+  RPC_REQUIRE(options.step_tolerance > 0, "deck: \"NOX->Step Tolerance\" must be > 0, got " << options.step_tolerance);
+  RPC_REQUIRE(options.residual_tolerance > 0,
+              "deck: \"NOX->Residual Tolerance\" must be > 0, got " << options.residual_tolerance);
+  RPC_REQUIRE(options.max_iterations > 0,
+              "deck: \"NOX->Maximum Iterations\" must be > 0, got " << options.max_iterations);
+  for (const char *name : {"Line Search", "Direction", "Printing", "Solver Options", "Status Tests"})
+    if (list.isSublist(name) && list.sublist(name).numParams() > 0) options.nox.sublist(name) = list.sublist(name);
+  return options;
+}
+
+contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, LinearSolver &linear_solver,
+                                 const RCP<Vector> &u, const NewtonOptions &options,
+                                 const std::function<void(const NewtonStep &)> &report)
+{
+  const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::newton"));
+  const double scale = functional.force_scale();
+  const auto context = rcp(new NewtonContext{functional, linear_solver, options.residual_tolerance * scale, 0, 0, ""});
+  const auto reporter = rcp(new Reporter(context, scale, report));
+  const auto list = nox_list(options.nox, reporter);
+  const auto group = rcp(new NewtonGroup(context, u));
+
+  contact::MinimizeResult result;
+  try {
+    group->computeF(); // so that the start is reported with its residual
+    const auto solver = NOX::Solver::buildSolver(group, status_tests(options, context), list);
+    const auto status = solver->solve();
+    u->assign(tpetra(solver->getSolutionGroup().getX()));
+    result.newton_iterations = solver->getNumIterations();
+    result.converged = status == NOX::StatusTest::Converged;
+  } catch (const std::exception &failure) { // NOX throws when a direction cannot be had; the same on all ranks
+    result.reason = failure.what();
+  } catch (const char *failure) { // some of NOX's errors are bare strings
+    result.reason = failure;
+  }
+  if (!result.converged) {
+    std::ostringstream reason;
+    reason << "Newton did not converge in " << result.newton_iterations << " steps";
+    if (!context->failure.empty())
+      reason << "; " << context->failure;
+    else if (!result.reason.empty())
+      reason << "; " << result.reason;
+    result.reason = reason.str();
+  }
+  return result;
+}
+
+} // namespace rpc::solver

@@ -1,0 +1,91 @@
+#include "rpc/solver/newton_group.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rpc::solver
+{
+
+NewtonGroup::NewtonGroup(RCP<NewtonContext> context, RCP<rpc::Vector> u)
+    : context_(std::move(context)), u_(u), F_(u_, NOX::ShapeCopy), newton_(u_, NOX::ShapeCopy)
+{
+}
+
+NewtonGroup::NewtonGroup(const NewtonGroup &source, const NOX::CopyType type)
+    : context_(source.context_), u_(source.u_, type), F_(source.F_, NOX::ShapeCopy),
+      newton_(source.newton_, NOX::ShapeCopy)
+{
+  if (type == NOX::DeepCopy) *this = source;
+}
+
+void NewtonGroup::invalidate()
+{
+  has_F_ = has_jacobian_ = has_newton_ = false;
+}
+
+NOX::Abstract::Group &NewtonGroup::operator=(const NOX::Abstract::Group &source)
+{
+  return *this = dynamic_cast<const NewtonGroup &>(source);
+}
+
+NewtonGroup &NewtonGroup::operator=(const NewtonGroup &source)
+{
+  invalidate();
+  u_ = source.u_;
+  if (source.has_F_) {
+    F_ = source.F_;
+    norm_F_ = source.norm_F_;
+    has_F_ = true;
+  }
+  return *this; // the direction stays where it was computed: NOX hands it on by itself
+}
+
+void NewtonGroup::setX(const NOX::Abstract::Vector &y)
+{
+  invalidate();
+  u_ = y;
+}
+
+void NewtonGroup::computeX(const NOX::Abstract::Group &from, const NOX::Abstract::Vector &d, const double step)
+{
+  invalidate();
+  u_.update(1., from.getX(), step, d, 0.);
+}
+
+NOX::Abstract::Group::ReturnType NewtonGroup::computeF()
+{
+  if (has_F_) return Ok;
+  context_->functional.gradient(u_.data(), F_.data());
+  norm_F_ = F_.data().norm2();
+  has_F_ = true;
+  return Ok;
+}
+
+NOX::Abstract::Group::ReturnType NewtonGroup::computeJacobian()
+{
+  if (context_->functional.update_hessian(u_.data()) > 0) context_->linear_solver.matrix_changed();
+  has_jacobian_ = true;
+  return Ok;
+}
+
+NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterList &)
+{
+  if (has_newton_) return Ok;
+  if (!has_F_ || !has_jacobian_) return BadDependency;
+  // A tenth of the target is close enough; far from the solution that is below the linear solver's own tolerance.
+  const double enough = std::min(0.1, 0.1 * context_->target_residual / norm_F_);
+  const auto result = context_->linear_solver.solve(F_.data(), newton_.data(), enough);
+  newton_.scale(-1.);
+  context_->linear_iterations = result.iterations;
+  context_->direction_norm = newton_.data().norm2();
+  context_->failure = result.reason;
+  has_newton_ = true;
+  return std::isfinite(context_->direction_norm) ? (result.converged ? Ok : NotConverged) : Failed;
+}
+
+RCP<NOX::Abstract::Group> NewtonGroup::clone(const NOX::CopyType type) const
+{
+  return rcp(new NewtonGroup(*this, type));
+}
+
+} // namespace rpc::solver

@@ -1,0 +1,96 @@
+#include "command_line.hpp"
+#include "output.hpp"
+#include "report.hpp"
+#include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
+#include "rpc/io/atomic_file.hpp"
+#include "rpc/io/deck.hpp"
+#include "rpc/io/on_root.hpp"
+#include "scene.hpp"
+#include "solve.hpp"
+
+#include <Teuchos_StackedTimer.hpp>
+#include <Teuchos_Time.hpp>
+#include <Teuchos_TimeMonitor.hpp>
+#include <Tpetra_Core.hpp>
+#include <iostream>
+#include <malloc.h>
+
+namespace
+{
+
+using rpc::ExitCode;
+
+/// Keeps freed memory with the process. By default glibc hands each big vector back to the kernel, and MueLu and Belos
+/// make new ones in every cycle: the page faults cost a second rank all that it gains.
+void keep_freed_memory()
+{
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 2000 << 20);
+  mallopt(M_TOP_PAD, 256 << 20);
+#endif
+}
+
+ExitCode run(int argc, char *argv[], const rpc::RCP<const rpc::Comm> &comm, std::ostream &out)
+{
+  const double start = Teuchos::Time::wallTime();
+  std::string help;
+  const auto line = rpc::parse_command_line(argc, argv, help);
+  if (!line) {
+    out << help;
+    return ExitCode::converged;
+  }
+  if (line->version) {
+    out << "rpc " RPC_VERSION " (Kokkos " << rpc::ExecutionSpace::name() << ")\n";
+    return ExitCode::converged;
+  }
+  if (line->print_parameters) {
+    rpc::print_parameters(out, rpc::valid_deck());
+    return ExitCode::converged;
+  }
+  RPC_REQUIRE(!line->input.empty(), "command line: --input=DECK is missing. See rpc --help.");
+  const std::string deck = rpc::io::find_deck(line->input);
+  const rpc::Scene scene = rpc::read_scene(deck, line->assignments);
+  if (line->check) {
+    out << deck << ": nothing wrong with it\n";
+    return ExitCode::converged;
+  }
+  rpc::io::on_root(*comm, ExitCode::bad_input, [&] { rpc::io::require_writable_folder(line->output); });
+
+  const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));
+  if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
+  rpc::Solution solution = rpc::solve(scene, comm, out);
+  const auto files = rpc::write_results(scene, solution, line->output, start);
+  rpc::print_summary(out, scene, solution, files);
+  if (scene.output.timers) {
+    timers->stopBaseTimer();
+    Teuchos::StackedTimer::OutputOptions options;
+    options.output_fraction = options.output_minmax = true;
+    timers->report(out, comm, options);
+  }
+  return solution.uzawa.converged ? ExitCode::converged : ExitCode::not_converged;
+}
+
+} // namespace
+
+int main(int argc, char *argv[])
+{
+  keep_freed_memory();
+  Tpetra::ScopeGuard scope(&argc, &argv);
+  const auto comm = Tpetra::getDefaultComm();
+  const bool root = comm->getRank() == 0;
+  std::ostream out(root ? std::cout.rdbuf() : nullptr);
+  try {
+    return static_cast<int>(run(argc, argv, comm, out));
+  } catch (const rpc::Error &error) { // on all ranks
+    if (root) std::cerr << "rpc: error: " << error.what() << std::endl;
+    return static_cast<int>(error.code());
+  } catch (const std::exception &error) { // maybe on this rank alone: nobody must wait for it
+    std::cerr << "rpc: internal error: " << error.what() << std::endl;
+#ifdef HAVE_TPETRACORE_MPI
+    if (comm->getSize() > 1) MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitCode::internal_error));
+#endif
+    return static_cast<int>(ExitCode::internal_error);
+  }
+}

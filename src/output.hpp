@@ -1,0 +1,22 @@
+#pragma once
+
+#include "solve.hpp"
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace rpc
+{
+
+/// The summary of a run as doc/input.md lists it. A value that is not a number (a limit of inf, say) is null.
+nlohmann::ordered_json summary(const Scene &scene, const Solution &solution);
+
+/// Writes what the scene asks for into a folder, each file whole or not at all; collective. Updates seconds.output and
+/// seconds.total.
+/// @param start  wall-clock time at which the run began [s]
+/// @return the files' paths
+/// @throws rpc::Error on every rank if a file cannot be written
+std::vector<std::string> write_results(const Scene &scene, Solution &solution, const std::string &folder, double start);
+
+} // namespace rpc

@@ -1,0 +1,95 @@
+#include "report.hpp"
+
+#include <Teuchos_Time.hpp>
+#include <cstdarg>
+#include <cstdio>
+#include <numeric>
+
+namespace rpc
+{
+namespace
+{
+
+/// printf into a stream.
+[[gnu::format(printf, 2, 3)]] void print(std::ostream &out, const char *format, ...)
+{
+  char line[400];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  out << line;
+}
+
+int sum(const std::vector<int> &values)
+{
+  return std::accumulate(values.begin(), values.end(), 0);
+}
+
+} // namespace
+
+ConsoleTable::ConsoleTable(std::ostream &out) : out_(out), start_(Teuchos::Time::wallTime()) {}
+
+void ConsoleTable::scene(const Scene &scene, const Solution &solution)
+{
+  const mesh::Mesh &mesh = *solution.discretization.mesh;
+  const auto &contact = solution.functional->contact();
+  print(out_, "%s: %lld %s cells, %lld dofs, %lld contact nodes on \"%s\", %d rank%s, %s\n", scene.name.c_str(),
+        static_cast<long long>(sum_all(mesh.comm(), GO(mesh.num_owned_cells))), mesh.element.name().c_str(),
+        static_cast<long long>(solution.discretization.owned_dofs->getGlobalNumElements()),
+        static_cast<long long>(contact.num_total), scene.contact.side.c_str(), mesh.comm().getSize(),
+        mesh.comm().getSize() == 1 ? "" : "s", ExecutionSpace::name());
+  if (contact.num_fixed > 0)
+    print(out_,
+          "note: the normal displacement of %lld contact nodes is prescribed by \"Dirichlet\", which wins over contact "
+          "there\n",
+          static_cast<long long>(contact.num_fixed));
+  print(out_, "uzawa newton  residual     step    open   stuck yielded    cg   time [s]\n");
+  out_ << std::flush;
+}
+
+void ConsoleTable::newton(const solver::NewtonStep &step)
+{
+  const auto &n = step.states;
+  print(out_, "%5d %6d  %8.2e", uzawa_, step.iteration, step.residual);
+  if (step.iteration == 0)
+    print(out_, "         ");
+  else
+    print(out_, " %8.2e", step.step_length);
+  print(out_, " %7lld %7lld %7lld %5d %10.3f\n", static_cast<long long>(n.open), static_cast<long long>(n.stuck),
+        static_cast<long long>(n.yielded), step.linear_iterations, Teuchos::Time::wallTime() - start_);
+  out_ << std::flush;
+}
+
+void ConsoleTable::uzawa(const contact::UzawaResult &result)
+{
+  print(out_, "%5d   kkt   %8.2e   equilibrium %8.2e   multiplier change %8.2e\n", result.iterations,
+        result.certificate.kkt_residual, result.certificate.equilibrium_residual, result.multiplier_change);
+  out_ << std::flush;
+}
+
+void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &files)
+{
+  const bool flat = s.discretization.dim() == 2;
+  const auto &c = s.contact;
+  print(out, "%s: %s\n", s.uzawa.converged ? "converged" : "NOT CONVERGED", s.uzawa.reason.c_str());
+  print(out, "  energy J            %.9g %s\n", s.energy, flat ? "J/m" : "J");
+  if (!scene.contact.side.empty()) {
+    print(out, "  contact force       (%.6g, %.6g%s) %s\n", c.force[0], c.force[1],
+          flat ? "" : (", " + std::to_string(c.force[2])).c_str(), flat ? "N/m" : "N");
+    print(out, "  max. pressure       %.6g Pa\n", c.max_pressure);
+    print(out, "  max. penetration    %.6g m\n", c.max_penetration);
+    if (c.max_initial_penetration > 0) print(out, "  initial penetration %.6g m\n", c.max_initial_penetration);
+    print(out, "  in contact          %.6g, yielded %.6g %s\n", c.contact_length, c.yielded_length, flat ? "m" : "m^2");
+  }
+  print(out,
+        "  work                %d Uzawa, %d Newton, %zu linear solves, %d CG iterations, %d preconditioner set-ups\n",
+        s.uzawa.iterations, sum(s.uzawa.newton_iterations), s.linear.iterations.size(), sum(s.linear.iterations),
+        s.linear.preconditioner_setups);
+  const auto &t = s.seconds;
+  print(out, "  time [s]            mesh %.3f, assembly %.3f, set-up %.3f, solve %.3f, output %.3f, total %.3f\n",
+        t.mesh, t.assembly, t.setup, t.solve, t.output, t.total);
+  for (const auto &file : files) print(out, "  wrote %s\n", file.c_str());
+}
+
+} // namespace rpc

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "solve.hpp"
+
+#include <ostream>
+
+namespace rpc
+{
+
+/// The console's view of a run: a line per Newton step and per multiplier update, and a summary.
+class ConsoleTable
+{
+public:
+  explicit ConsoleTable(std::ostream &out);
+
+  void scene(const Scene &scene, const Solution &solution);
+  void next_uzawa() { ++uzawa_; }
+  void newton(const solver::NewtonStep &step);
+  void uzawa(const contact::UzawaResult &result);
+
+private:
+  std::ostream &out_;
+  double start_;
+  int uzawa_ = 0;
+};
+
+/// @param files  what was written
+void print_summary(std::ostream &out, const Scene &scene, const Solution &solution,
+                   const std::vector<std::string> &files);
+
+} // namespace rpc

@@ -1,0 +1,67 @@
+#include "scene.hpp"
+
+#include "rpc/core/parameters.hpp"
+#include "rpc/io/deck.hpp"
+#include "rpc/io/expression.hpp"
+
+#include <filesystem>
+
+namespace rpc
+{
+namespace
+{
+
+Teuchos::ParameterList valid_output_parameters()
+{
+  Teuchos::ParameterList valid("Output");
+  valid.set("Exodus", true, "Write <deck>.e: displacement, stresses, contact fields.");
+  valid.set("CSV", true, "Write <deck>.contact.csv: the contact nodes along the surface.");
+  valid.set("JSON", true, "Write <deck>.json: the summary.");
+  valid.set("Timers", false, "Print the timer tree at the end.");
+  return valid;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_deck()
+{
+  Teuchos::ParameterList valid("rpc");
+  valid.sublist("Mesh") = mesh::valid_parameters();
+  valid.sublist("Material") = fem::valid_material_parameters();
+  valid.sublist("Dirichlet") = fem::valid_dirichlet_parameters();
+  valid.sublist("Traction") = fem::valid_traction_parameters();
+  valid.sublist("Body Force") = fem::valid_body_force_parameters();
+  valid.sublist("Contact") = contact::valid_contact_parameters();
+  valid.sublist("Uzawa") = contact::valid_uzawa_parameters();
+  valid.sublist("NOX") = solver::valid_newton_parameters();
+  valid.sublist("Linear Solver") = solver::valid_linear_solver_parameters();
+  valid.sublist("Output") = valid_output_parameters();
+  return valid;
+}
+
+Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments)
+{
+  const Teuchos::ParameterList valid = valid_deck();
+  Teuchos::ParameterList deck = io::read_deck(deck_path);
+  for (const auto &assignment : assignments) assign(deck, valid, assignment);
+  validate(deck, valid);
+
+  Scene scene;
+  scene.name = std::filesystem::path(deck_path).stem().string();
+  scene.mesh = mesh::box_options(deck.sublist("Mesh"));
+  const int dim = scene.mesh.element.dim;
+  scene.material = fem::material_options(deck.sublist("Material"));
+  scene.dirichlet = fem::dirichlet_options(deck.sublist("Dirichlet"), dim, io::parse_field);
+  scene.tractions = fem::traction_options(deck.sublist("Traction"), dim, io::parse_field);
+  scene.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, io::parse_field);
+  scene.contact = contact::contact_options(deck.sublist("Contact"), io::parse_field);
+  scene.uzawa = contact::uzawa_options(deck.sublist("Uzawa"));
+  scene.newton = solver::newton_options(deck.sublist("NOX"));
+  scene.linear_solver = solver::linear_solver_options(deck.sublist("Linear Solver"));
+  const Teuchos::ParameterList &output = deck.sublist("Output");
+  scene.output = {output.get<bool>("Exodus"), output.get<bool>("CSV"), output.get<bool>("JSON"),
+                  output.get<bool>("Timers")};
+  return scene;
+}
+
+} // namespace rpc

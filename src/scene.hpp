@@ -1,0 +1,45 @@
+#pragma once
+
+#include "rpc/contact/contact_nodes.hpp"
+#include "rpc/contact/uzawa.hpp"
+#include "rpc/fem/dirichlet.hpp"
+#include "rpc/fem/elasticity.hpp"
+#include "rpc/mesh/box.hpp"
+#include "rpc/solver/linear_solver.hpp"
+#include "rpc/solver/newton.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <string>
+#include <vector>
+
+namespace rpc
+{
+
+struct OutputOptions {
+  bool exodus = true, csv = true, json = true;
+  bool timers = false;
+};
+
+/// A deck, read and checked: all that a run needs to know.
+struct Scene {
+  std::string name; ///< of the deck's file, without folder and extension
+  mesh::BoxOptions mesh;
+  fem::Material material;
+  std::vector<fem::DirichletCondition> dirichlet;
+  std::vector<fem::TractionLoad> tractions;
+  fem::VectorField body_force;
+  contact::ContactOptions contact;
+  contact::UzawaOptions uzawa;
+  solver::NewtonOptions newton;
+  solver::LinearSolverOptions linear_solver;
+  OutputOptions output;
+};
+
+/// Every parameter of a deck: the packages' lists put together.
+Teuchos::ParameterList valid_deck();
+
+/// @param assignments  "Sublist->Parameter=value", applied on top of the deck
+/// @throws rpc::Error (bad_input) on the first thing that is wrong
+Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments);
+
+} // namespace rpc

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "rpc/contact/result.hpp"
+#include "scene.hpp"
+
+#include <memory>
+#include <optional>
+#include <ostream>
+
+namespace rpc
+{
+
+/// Wall-clock time of a run's phases [s].
+struct PhaseSeconds {
+  double mesh = 0, assembly = 0, setup = 0, solve = 0, output = 0, total = 0;
+};
+
+/// All that a run has found.
+struct Solution {
+  fem::Discretization discretization;
+  RCP<Vector> u; ///< (owned dofs) [m]
+  std::shared_ptr<contact::SmoothedFunctional> functional;
+  contact::UzawaResult uzawa;
+  contact::ContactResult contact;
+  double energy = 0;        ///< J(u) [J]
+  double strain_energy = 0; ///< a(u, u) [J]
+  solver::LinearSolverCounts linear;
+  int matrix_assemblies = 0;
+  PhaseSeconds seconds;
+};
+
+/// Mesh, assembly, Uzawa and Newton: from a scene to its solution. Collective on comm.
+/// @param console  where the table of the iteration goes; a stream without a buffer prints nothing
+/// @throws rpc::Error on every rank if the scene does not fit its mesh; failing to converge is in the result
+Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console);
+
+} // namespace rpc

@@ -1,0 +1,42 @@
+# Installs the build tree to a scratch prefix, builds the consumer against it and runs both the consumer and the program.
+cmake_minimum_required(VERSION 3.23)
+file(REMOVE_RECURSE ${work_dir})
+set(prefix ${work_dir}/prefix)
+set(consumer ${work_dir}/consumer)
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${command}\nended with ${result}:\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+run(${CMAKE_COMMAND} --install ${build_dir} --prefix ${prefix} --config ${config})
+
+# The install tree has to stand without the source and build trees.
+file(GLOB_RECURSE installed ${prefix}/*.cmake)
+foreach(file IN LISTS installed)
+  file(READ ${file} text)
+  foreach(dir IN ITEMS ${source_dir}/packages ${source_dir}/cmake ${build_dir}/)
+    string(FIND "${text}" "${dir}" position)
+    if(NOT position EQUAL -1)
+      message(FATAL_ERROR "${file} refers to ${dir}")
+    endif()
+  endforeach()
+endforeach()
+
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${consumer} -G ${generator} -D CMAKE_PREFIX_PATH=${prefix}
+    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher} -D CMAKE_BUILD_TYPE=${config})
+run(${CMAKE_COMMAND} --build ${consumer} --config ${config})
+run(${consumer}/consumer)
+if(NOT output MATCHES "nodes: 24\n")
+  message(FATAL_ERROR "The consumer had to print \"nodes: 24\", but printed:\n${output}")
+endif()
+
+file(GLOB decks ${prefix}/share/rpc/input/*.xml)
+if(NOT decks)
+  message(FATAL_ERROR "No deck in ${prefix}/share/rpc/input")
+endif()
+run(${prefix}/bin/rpc --version)
