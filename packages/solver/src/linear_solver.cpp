@@ -45,7 +45,7 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
     list.set("repartition: start level", 1);
     list.set("repartition: min rows per proc", 5000);
     list.set("repartition: max imbalance", 1.3);
-    list.set("repartition: rebalance P and R", true);
+    list.set("repartition: rebalance P and R", false); // what reuse of prolongators asks for
     Teuchos::ParameterList &partitioner = list.sublist("repartition: params");
     partitioner.set("algorithm", "multijagged");
   }
