@@ -1,8 +1,12 @@
 #include "command_line.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
 
 #include <Teuchos_CommandLineProcessor.hpp>
+#include <algorithm>
+#include <array>
+#include <regex>
 #include <sstream>
 
 namespace rpc
@@ -10,60 +14,140 @@ namespace rpc
 namespace
 {
 
-/// Takes every --set=... and --set ... out of the arguments: Teuchos keeps only the last of equal options.
-std::vector<std::string> take_assignments(std::vector<char *> &arguments)
+constexpr std::array options_with_value{"--input", "--output", "--set"};
+constexpr std::array flags{"--check", "--print-parameters", "--version", "--help"};
+
+bool is_one_of(const std::string &text, const std::vector<std::string> &names)
 {
-  std::vector<std::string> assignments;
-  std::vector<char *> rest;
+  return std::find(names.begin(), names.end(), text) != names.end();
+}
+
+/// "--name value" as "--name=value", and no value where none belongs: Teuchos passes over both without a word.
+std::vector<std::string> joined(const std::vector<char *> &arguments)
+{
+  const std::vector<std::string> valued(options_with_value.begin(), options_with_value.end());
+  const std::vector<std::string> plain(flags.begin(), flags.end());
+  std::vector<std::string> result;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     std::string text = arguments[i];
-    if (text == "--set") {
-      RPC_REQUIRE(i + 1 < arguments.size(),
-                  "command line: --set needs an assignment, --set=\"Sublist->Parameter=value\"");
-      assignments.push_back(arguments[++i]);
-    } else if (text.rfind("--set=", 0) == 0) {
-      text = text.substr(6);
-      if (text.size() > 1 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
-      assignments.push_back(text);
-    } else {
-      rest.push_back(arguments[i]);
+    if (i > 0 && is_one_of(text, valued) && i + 1 < arguments.size() && arguments[i + 1][0] != '-')
+      text += std::string("=") + arguments[++i];
+    const auto equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    const bool has_value = equals != std::string::npos && equals + 1 < text.size();
+    RPC_REQUIRE(i == 0 || has_value || !is_one_of(name, valued),
+                "command line: " << name << " needs a value, as in " << name << "="
+                                 << (name == "--set" ? "\"Sublist->Parameter=value\"" : "NAME") << ". See rpc --help.");
+    RPC_REQUIRE(i == 0 || equals == std::string::npos || !is_one_of(name, plain),
+                "command line: " << name << " takes no value, got \"" << text << "\". See rpc --help.");
+    result.push_back(text);
+  }
+  return result;
+}
+
+/// Takes every --set=... out of the arguments: Teuchos keeps only the last of equal options.
+std::vector<std::string> take_assignments(std::vector<std::string> &arguments)
+{
+  std::vector<std::string> assignments, rest;
+  for (const std::string &argument : arguments) {
+    if (argument.rfind("--set=", 0) != 0) {
+      rest.push_back(argument);
+      continue;
     }
+    std::string text = argument.substr(6);
+    if (text.size() > 1 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+    assignments.push_back(text);
   }
   arguments = rest;
   return assignments;
 }
 
+/// Takes out a flag that Teuchos does not know or would act upon by itself.
+bool take_flag(std::vector<std::string> &arguments, const std::string &name)
+{
+  const auto end = std::remove(arguments.begin() + 1, arguments.end(), name);
+  const bool found = end != arguments.end();
+  arguments.erase(end, arguments.end());
+  return found;
+}
+
+/// Names the argument that Teuchos' message is about.
+std::string refusal(const std::string &message)
+{
+  static const std::regex quote("option '(.*)' was not recognized");
+  std::smatch found;
+  if (!std::regex_search(message, found, quote)) return "command line: " + one_line(message);
+  const std::string argument = found[1];
+  std::vector<std::string> names(options_with_value.begin(), options_with_value.end());
+  names.insert(names.end(), flags.begin(), flags.end());
+  const std::string nearest = nearest_name(argument.substr(0, argument.find('=')), names);
+  return "command line: unknown option \"" + argument + "\"." +
+         (nearest.empty() ? "" : " Did you mean " + nearest + "?");
+}
+
 } // namespace
 
-std::optional<CommandLine> parse_command_line(const int argc, char *argv[], std::string &help)
+Arguments split_arguments(const int argc, char *argv[])
+{
+  Arguments arguments;
+  for (int i = 0; i < argc; ++i) {
+    const bool for_kokkos = std::string(argv[i]).rfind("--kokkos-", 0) == 0;
+    arguments.kokkos_help |= std::string(argv[i]) == "--kokkos-help";
+    if (i == 0 || for_kokkos) arguments.kokkos.push_back(argv[i]);
+    if (i == 0 || !for_kokkos) arguments.own.push_back(argv[i]);
+  }
+  return arguments;
+}
+
+CommandLine parse_command_line(std::vector<char *> argument_pointers)
 {
   using Teuchos::CommandLineProcessor;
-  std::vector<char *> arguments(argv, argv + argc);
+  std::vector<std::string> arguments = joined(argument_pointers);
   CommandLine line;
   line.assignments = take_assignments(arguments);
+  line.help = take_flag(arguments, "--help") | take_flag(arguments, "-h");
 
   CommandLineProcessor parser(false, true, false);
-  parser.setDocString(
-      "Contact of an elastic body with a rigid-plastic foundation.\n\n"
-      "  --set=\"Sublist->Parameter=value\" sets a parameter of the deck, any number of times.\n"
-      "  --kokkos-* options go to Kokkos.\n\n"
-      "Exit codes: 0 converged, 1 internal error, 2 bad input, 3 bad mesh, 4 not converged, 5 no solution exists.\n");
-  parser.setOption("input", &line.input,
-                   "Deck, .xml or .yaml; looked up as given, then among the decks that come with rpc.");
-  parser.setOption("output", &line.output, "Folder for the results.");
-  parser.setOption("check", "run", &line.check, "Only read and check the deck.");
-  parser.setOption("print-parameters", "no-print-parameters", &line.print_parameters,
-                   "Print all parameters of a deck and stop.");
-  parser.setOption("version", "no-version", &line.version, "Print the version and stop.");
+  parser.setOption("input", &line.input, "");
+  parser.setOption("output", &line.output, "");
+  parser.setOption("check", "run", &line.check, "");
+  parser.setOption("print-parameters", "no-print-parameters", &line.print_parameters, "");
+  parser.setOption("version", "no-version", &line.version, "");
+  std::vector<char *> pointers;
+  for (std::string &argument : arguments) pointers.push_back(argument.data());
   std::ostringstream text;
-  const auto status = parser.parse(static_cast<int>(arguments.size()), arguments.data(), &text);
-  if (status == CommandLineProcessor::PARSE_HELP_PRINTED) {
-    help = text.str();
-    return std::nullopt;
-  }
-  RPC_REQUIRE(status == CommandLineProcessor::PARSE_SUCCESSFUL,
-              "command line: " << text.str().substr(0, text.str().find("\n\n")) << "\nSee rpc --help.");
+  const auto status = parser.parse(static_cast<int>(pointers.size()), pointers.data(), &text);
+  RPC_REQUIRE(status == CommandLineProcessor::PARSE_SUCCESSFUL, refusal(text.str()) << " See rpc --help.");
   return line;
+}
+
+std::string help_text()
+{
+  return R"(Contact of an elastic body with a rigid-plastic foundation.
+
+Usage: rpc --input=DECK [options]
+       mpirun -n RANKS rpc --input=DECK [options]
+
+  --input=DECK         the problem, in Teuchos XML or, by its extension .yaml or .yml, in YAML;
+                       looked up as given, then among the decks that come with rpc
+  --output=DIR         folder for the results, made if missing; default: the current one
+  --set="A->B=VALUE"   sets a parameter of the deck, any number of times,
+                       e.g. --set="Contact->Yield Stress=16" --set="Mesh->Cells={80, 16}"
+  --check              only reads and checks the deck
+  --print-parameters   prints every parameter of a deck: type, default, meaning, unit
+  --version            prints the version
+  --help, -h           prints this text
+  --kokkos-...         goes to Kokkos, e.g. --kokkos-threads=4; --kokkos-help lists them
+
+Results: DECK.e (fields, for ParaView), DECK.contact.csv (contact surface), DECK.json (summary).
+
+Exit codes: 0 converged
+            1 internal error
+            2 bad input
+            3 bad mesh
+            4 not converged
+            5 no solution exists
+)";
 }
 
 } // namespace rpc

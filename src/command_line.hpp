@@ -12,13 +12,23 @@ struct CommandLine {
   std::string output = ".";             ///< folder
   std::vector<std::string> assignments; ///< of --set, in order
   bool check = false;
+  bool help = false;
   bool print_parameters = false;
   bool version = false;
 };
 
-/// @param help  where the text goes that --help asks for
-/// @return nothing if --help was asked for
+/// The arguments, those for Kokkos apart: Kokkos must not see the others, or it answers to --help and --threads too.
+/// Both start with the program's name.
+struct Arguments {
+  std::vector<char *> kokkos, own;
+  bool kokkos_help = false; ///< Kokkos has been asked to list its options, and nothing more is to be done
+};
+Arguments split_arguments(int argc, char *argv[]);
+
 /// @throws rpc::Error (bad_input) on an unknown or incomplete option
-std::optional<CommandLine> parse_command_line(int argc, char *argv[], std::string &help);
+CommandLine parse_command_line(std::vector<char *> arguments);
+
+/// What --help prints.
+std::string help_text();
 
 } // namespace rpc

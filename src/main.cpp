@@ -9,12 +9,15 @@
 #include "scene.hpp"
 #include "solve.hpp"
 
+#include <Teuchos_GlobalMPISession.hpp>
 #include <Teuchos_StackedTimer.hpp>
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <Tpetra_Core.hpp>
+#include <algorithm>
 #include <iostream>
 #include <malloc.h>
+#include <memory>
 
 namespace
 {
@@ -32,36 +35,56 @@ void keep_freed_memory()
 #endif
 }
 
-ExitCode run(int argc, char *argv[], const rpc::RCP<const rpc::Comm> &comm, std::ostream &out)
+/// Starts Kokkos with the options that are for it. On all ranks alike.
+std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, const bool root)
+{
+  std::string given; // Kokkos takes its options out
+  for (std::size_t i = 1; i < arguments.size(); ++i) given += std::string(" ") + arguments[i];
+  if (!root) // Kokkos prints it on every rank
+    arguments.erase(std::remove(arguments.begin(), arguments.end(), std::string("--kokkos-help")), arguments.end());
+  int argc = static_cast<int>(arguments.size());
+  arguments.push_back(nullptr);
+  char **argv = arguments.data();
+  std::unique_ptr<Tpetra::ScopeGuard> guard;
+  try {
+    guard = std::make_unique<Tpetra::ScopeGuard>(&argc, &argv);
+  } catch (const std::exception &error) {
+    if (given.empty()) throw;
+    throw rpc::Error(ExitCode::bad_input, "command line: Kokkos refuses its options" + given +
+                                              " See rpc --kokkos-help. (" + rpc::one_line(error.what()) + ")");
+  }
+  RPC_REQUIRE(argc == 1, "command line: Kokkos does not know the option \"" << argv[1] << "\". See rpc --kokkos-help.");
+  return guard;
+}
+
+ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm, std::ostream &out)
 {
   const double start = Teuchos::Time::wallTime();
-  std::string help;
-  const auto line = rpc::parse_command_line(argc, argv, help);
-  if (!line) {
-    out << help;
+  if (line.help) {
+    out << rpc::help_text();
     return ExitCode::converged;
   }
-  if (line->version) {
+  if (line.version) {
     out << "rpc " RPC_VERSION " (Kokkos " << rpc::ExecutionSpace::name() << ")\n";
     return ExitCode::converged;
   }
-  if (line->print_parameters) {
+  if (line.print_parameters) {
     rpc::print_parameters(out, rpc::valid_deck());
     return ExitCode::converged;
   }
-  RPC_REQUIRE(!line->input.empty(), "command line: --input=DECK is missing. See rpc --help.");
-  const std::string deck = rpc::io::find_deck(line->input);
-  const rpc::Scene scene = rpc::read_scene(deck, line->assignments);
-  if (line->check) {
+  RPC_REQUIRE(!line.input.empty(), "command line: --input=DECK is missing. See rpc --help.");
+  const std::string deck = rpc::io::find_deck(line.input);
+  const rpc::Scene scene = rpc::read_scene(deck, line.assignments);
+  if (line.check) {
     out << deck << ": nothing wrong with it\n";
     return ExitCode::converged;
   }
-  rpc::io::on_root(*comm, ExitCode::bad_input, [&] { rpc::io::require_writable_folder(line->output); });
+  rpc::io::on_root(*comm, ExitCode::bad_input, [&] { rpc::io::require_writable_folder(line.output); });
 
   const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
   rpc::Solution solution = rpc::solve(scene, comm, out);
-  const auto files = rpc::write_results(scene, solution, line->output, start);
+  const auto files = rpc::write_results(scene, solution, line.output, start);
   rpc::print_summary(out, scene, solution, files);
   if (scene.output.timers) {
     timers->stopBaseTimer();
@@ -77,20 +100,30 @@ ExitCode run(int argc, char *argv[], const rpc::RCP<const rpc::Comm> &comm, std:
 int main(int argc, char *argv[])
 {
   keep_freed_memory();
-  Tpetra::ScopeGuard scope(&argc, &argv);
-  const auto comm = Tpetra::getDefaultComm();
-  const bool root = comm->getRank() == 0;
+  const Teuchos::GlobalMPISession mpi(&argc, &argv, nullptr);
+  const bool root = Teuchos::GlobalMPISession::getRank() == 0;
   std::ostream out(root ? std::cout.rdbuf() : nullptr);
+  const auto stop = [](const char *what) { // maybe on this rank alone: nobody must wait for it
+    std::cerr << "rpc: internal error: " << what << std::endl;
+#ifdef HAVE_TPETRACORE_MPI
+    if (Teuchos::GlobalMPISession::getNProc() > 1) MPI_Abort(MPI_COMM_WORLD, 1);
+#endif
+    return static_cast<int>(ExitCode::internal_error);
+  };
   try {
-    return static_cast<int>(run(argc, argv, comm, out));
+    const rpc::Arguments arguments = rpc::split_arguments(argc, argv);
+    const rpc::CommandLine line = rpc::parse_command_line(arguments.own);
+    const auto kokkos = start_kokkos(arguments.kokkos, root);
+    if (arguments.kokkos_help) return 0;
+    return static_cast<int>(run(line, Tpetra::getDefaultComm(), out));
   } catch (const rpc::Error &error) { // on all ranks
     if (root) std::cerr << "rpc: error: " << error.what() << std::endl;
     return static_cast<int>(error.code());
-  } catch (const std::exception &error) { // maybe on this rank alone: nobody must wait for it
-    std::cerr << "rpc: internal error: " << error.what() << std::endl;
-#ifdef HAVE_TPETRACORE_MPI
-    if (comm->getSize() > 1) MPI_Abort(MPI_COMM_WORLD, static_cast<int>(ExitCode::internal_error));
-#endif
-    return static_cast<int>(ExitCode::internal_error);
+  } catch (const std::bad_alloc &) {
+    return stop("out of memory; more ranks on more machines, or fewer cells, help");
+  } catch (const std::exception &error) {
+    return stop(rpc::one_line(error.what()).c_str());
+  } catch (const char *message) { // NOX throws these
+    return stop(message);
   }
 }

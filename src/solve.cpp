@@ -64,9 +64,9 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     const Phase phase("solve", s.seconds.solve);
     solver::LinearSolver linear(scene.linear_solver, s.functional->hessian(), fem::node_coordinates(d),
                                 fem::rigid_body_modes(d));
-    const auto minimize = [&] {
+    const auto minimize = [&](const int iteration) {
       table.next_uzawa();
-      return solver::minimize(*s.functional, linear, s.u, scene.newton,
+      return solver::minimize(*s.functional, linear, s.u, scene.newton, iteration > 1,
                               [&](const solver::NewtonStep &step) { table.newton(step); });
     };
     const double stiffness_scale = scene.material.youngs_modulus / mesh::diameter(*d.mesh);

@@ -97,8 +97,11 @@ double SmoothedFunctional::contact_sum(const Vector &u, const bool smoothed) con
       "rpc::contact::energy", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &part) {
         const double v = penetration(c, i, x);
-        part += c.weight(i) * (smoothed && !c.fixed(i) ? smoothed_energy(v, lambda(i), c.penalty(i), c.yield(i))
-                                                       : plastic_energy(v, c.yield(i)));
+        const double xi = c.yield(i);
+        if (c.fixed(i))
+          part += c.weight(i) * plastic_energy(v, xi);
+        else
+          part += c.weight(i) * (smoothed ? smoothed_energy(v, lambda(i), c.penalty(i), xi) : lambda(i) * v);
       },
       sum);
   return sum_all(comm_, sum);
@@ -139,16 +142,29 @@ void SmoothedFunctional::add_contact_force(const DeviceView<double *> &p, Vector
 
 void SmoothedFunctional::gradient(const Vector &u, Vector &F) const
 {
+  gradient(u, false, F);
+}
+
+void SmoothedFunctional::piece_gradient(const Vector &u, Vector &F) const
+{
+  gradient(u, true, F);
+}
+
+void SmoothedFunctional::gradient(const Vector &u, const bool of_piece, Vector &F) const
+{
   apply_stiffness(u, F);
   F.update(-1., *problem_.load, 1.);
   const ContactNodes c = contact_;
   const auto lambda = lambda_;
+  const auto stuck = stuck_in_matrix_;
   DeviceView<double *> p("rpc::contact::pressure", c.size());
   {
     const auto x = device_read(u);
     Kokkos::parallel_for(
-        "rpc::contact::pressure", device_range(c.size()),
-        KOKKOS_LAMBDA(const LO i) { p(i) = pressure(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i)); });
+        "rpc::contact::pressure", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+          const double z = lambda(i) + c.penalty(i) * penetration(c, i, x);
+          p(i) = of_piece && stuck(i) ? z : clamp(z, 0, c.yield(i));
+        });
   }
   add_contact_force(p, F);
 }

@@ -35,14 +35,14 @@ UzawaOptions uzawa_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function<MinimizeResult()> &minimize,
+UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function<MinimizeResult(int)> &minimize,
                   const double stiffness_scale, const UzawaOptions &options,
                   const std::function<void(const UzawaResult &)> &report)
 {
   UzawaResult result;
   bool stop = false;
   while (!stop && result.iterations < options.max_iterations) {
-    const MinimizeResult inner = minimize();
+    const MinimizeResult inner = minimize(result.iterations + 1);
     result.newton_iterations.push_back(inner.newton_iterations);
     ++result.iterations;
     result.multiplier_change = functional.update_multipliers(u);

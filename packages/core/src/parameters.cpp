@@ -90,6 +90,25 @@ std::optional<T> read_as(const std::string &text)
   return value;
 }
 
+/// "{1, 2}", each item by the rules for a single one: Teuchos itself reads "2.5" as the int 2 and "abc" as the double
+/// 0.
+template <class T>
+std::optional<Array<T>> read_array(const std::string &text)
+{
+  const auto first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
+  if (first == std::string::npos || first == last || text[first] != '{' || text[last] != '}') return std::nullopt;
+  const std::string inside = text.substr(first + 1, last - first - 1);
+  Array<T> values;
+  if (inside.find_first_not_of(' ') == std::string::npos) return values;
+  std::istringstream in(inside + ",");
+  for (std::string item; std::getline(in, item, ',');) {
+    const auto value = read_as<T>(item);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  return values;
+}
+
 /// The text as the type of `model`, or as the first type that fits where there is no model.
 std::optional<ParameterEntry> read_entry(const std::string &text, const ParameterEntry *model)
 {
@@ -103,22 +122,42 @@ std::optional<ParameterEntry> read_entry(const std::string &text, const Paramete
     if (const auto value = entry_of(read_as<bool>(text))) return value;
     return ParameterEntry(text);
   }
-  try {
-    if (is_field(*model) || model->isType<std::string>()) return ParameterEntry(text);
-    if (model->isType<int>()) return entry_of(read_as<int>(text));
-    if (model->isType<double>()) return entry_of(read_as<double>(text));
-    if (model->isType<bool>()) return entry_of(read_as<bool>(text));
-    if (model->isType<Array<int>>()) return ParameterEntry(Teuchos::fromStringToArray<int>(text));
-    if (model->isType<Array<double>>()) return ParameterEntry(Teuchos::fromStringToArray<double>(text));
-    if (model->isType<Array<std::string>>()) return ParameterEntry(Teuchos::fromStringToArray<std::string>(text));
-  } catch (const std::exception &) { // Teuchos' own words on a malformed array do not name the parameter
-  }
+  if (is_field(*model) || model->isType<std::string>()) return ParameterEntry(text);
+  if (model->isType<int>()) return entry_of(read_as<int>(text));
+  if (model->isType<double>()) return entry_of(read_as<double>(text));
+  if (model->isType<bool>()) return entry_of(read_as<bool>(text));
+  if (model->isType<Array<int>>()) return entry_of(read_array<int>(text));
+  if (model->isType<Array<double>>()) return entry_of(read_array<double>(text));
+  if (model->isType<Array<std::string>>()) return entry_of(read_array<std::string>(text));
   return std::nullopt;
+}
+
+/// What a value has to be, after "must be ".
+std::string rule_of(const ParameterEntry &model)
+{
+  if (model.isType<double>()) return "a double, and finite";
+  if (model.isType<bool>()) return "a bool: true or false";
+  if (model.isType<int>()) return "an int";
+  if (model.isType<Array<int>>()) return "an array of int, such as {160, 32}";
+  if (model.isType<Array<double>>()) return "an array of double, such as {0, 2.5}, all finite";
+  if (model.isType<Array<std::string>>()) return "an array of string, such as {a, b}";
+  return "a " + type_name(model);
+}
+
+/// A default as a deck would have it.
+std::string text_of(const ParameterEntry &entry)
+{
+  if (entry.isType<bool>()) return Teuchos::getValue<bool>(entry) ? "true" : "false";
+  if (!entry.isType<Array<double>>()) return Teuchos::toString(entry.getAny(false));
+  std::ostringstream text; // Teuchos writes all the digits
+  text << "{";
+  for (const double value : Teuchos::getValue<Array<double>>(entry)) text << (text.tellp() > 1 ? ", " : "") << value;
+  return text.str() + "}";
 }
 
 std::string unknown_name_message(const std::string &path, const std::string &name, const ParameterList &valid)
 {
-  const auto names = names_of(valid);
+  auto names = names_of(valid);
   const std::string nearest = nearest_name(name, names);
   std::ostringstream message;
   message << "deck: unknown parameter " << quoted(path, name) << ".";
@@ -156,7 +195,7 @@ void set_pass_through(ParameterList &valid, const std::string &name, const std::
 void set_named_entries(ParameterList &valid, const std::string &name, const ParameterList &entry,
                        const std::string &doc)
 {
-  valid.sublist(name, false, doc).sublist(any_entry) = entry;
+  valid.sublist(name, false, doc).sublist(any_entry, false, doc) = entry; // twice: copies of the list lose its own doc
 }
 
 void validate(ParameterList &list, const ParameterList &valid, const std::string &path)
@@ -170,9 +209,8 @@ void validate(ParameterList &list, const ParameterList &valid, const std::string
     ParameterEntry &entry = list.getEntry(name);
     if (entry.isList() && model.isList()) continue;
     const auto value = entry.isList() || model.isList() ? std::nullopt : converted(entry, model);
-    RPC_REQUIRE(value, "deck: " << quoted(path, name) << " must be a " << type_name(model) << ", got a "
-                                << type_name(entry)
-                                << (entry.isList() ? "" : " (" + Teuchos::toString(entry.getAny(false)) + ")"));
+    RPC_REQUIRE(value, "deck: " << quoted(path, name) << " must be " << rule_of(model) << ", got "
+                                << (entry.isList() ? "a sublist" : text_of(entry) + " (" + type_name(entry) + ")"));
     list.setEntry(name, *value);
   }
   if (named_entries) {
@@ -215,10 +253,13 @@ void assign(ParameterList &list, const ParameterList &valid, const std::string &
     path = path.empty() ? name : path + "->" + name;
   }
   const bool unread = model->isParameter(pass_through);
-  RPC_REQUIRE(unread || (model->isParameter(rest) && !model->isSublist(rest)),
-              unknown_name_message(path, rest, *model));
+  const bool named_entries = model->isSublist(any_entry);
+  RPC_REQUIRE(unread || (!named_entries && !model->isSublist(rest)) || rest.empty(),
+              "--set: " << quoted(path, rest) << " is a sublist. Set one of its parameters: \""
+                        << (path.empty() ? "" : path + "->") << rest << "->Parameter=value\"");
+  RPC_REQUIRE(unread || model->isParameter(rest), unknown_name_message(path, rest, *model));
   const auto value = read_entry(text, unread ? nullptr : &model->getEntry(rest));
-  RPC_REQUIRE(value, "--set: " << quoted(path, rest) << " must be a " << type_name(model->getEntry(rest)) << ", got \""
+  RPC_REQUIRE(value, "--set: " << quoted(path, rest) << " must be " << rule_of(model->getEntry(rest)) << ", got \""
                                << text << "\"");
   target->setEntry(rest, *value);
 }
@@ -245,6 +286,8 @@ std::string nearest_name(const std::string &name, const std::vector<std::string>
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   for (const auto &candidate : candidates) {
     const std::size_t d = distance(name, candidate);
+    const bool abbreviated = !name.empty() && d == candidate.size() - name.size();
+    if (!abbreviated && 2 * d > std::max(name.size(), candidate.size())) continue; // no likeness at all
     if (d < best_distance) {
       best = candidate;
       best_distance = d;
@@ -265,17 +308,20 @@ void print_parameters(std::ostream &out, const ParameterList &valid, const std::
   for (const std::string &name : names_of(valid)) {
     const ParameterEntry &entry = valid.getEntry(name);
     if (entry.isList() || name == pass_through) continue;
-    out << "- `" << name << "` (" << type_name(entry) << ", default `" << Teuchos::toString(entry.getAny(false))
-        << "`): " << entry.docString() << "\n";
+    out << "- `" << name << "` (" << type_name(entry) << ", default `" << text_of(entry) << "`): " << entry.docString()
+        << "\n";
   }
   for (const std::string &name : names_of(valid)) {
     const ParameterEntry &entry = valid.getEntry(name);
     if (!entry.isList()) continue;
     const std::string shown = name == any_entry ? "<any name>" : name;
     const std::string full = path.empty() ? shown : path + "->" + shown;
-    out << "\n### " << full << "\n\n";
-    if (!entry.docString().empty()) out << entry.docString() << "\n\n";
-    print_parameters(out, valid.sublist(name), full);
+    const ParameterList &list = valid.sublist(name);
+    if (!list.isSublist(any_entry)) { // otherwise there is nothing to say but what follows about its entries
+      out << "\n### " << full << "\n\n" << entry.docString() << (entry.docString().empty() ? "" : "\n");
+      if (!entry.docString().empty() && !list.isParameter(pass_through)) out << "\n";
+    }
+    print_parameters(out, list, full);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -79,7 +80,8 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
   const LO num_owned = dim * mesh.num_owned_nodes();
   const auto coords = to_host(mesh.coords);
   HostView<double *> value("rpc::fem::dirichlet_value", num_owned);
-  std::vector<int> owner(num_owned, -1); // condition that prescribed the unknown
+  std::vector<int> owner(num_owned, -1);                       // condition that prescribed the unknown
+  std::vector<std::array<double, 3>> scale(conditions.size()); // largest value: sin(pi) is 0 up to the round-off of sin
   std::optional<std::string> conflict;
 
   for (std::size_t k = 0; k < conditions.size(); ++k) {
@@ -92,15 +94,20 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
     for (int c = 0; c < dim; ++c) {
       if (!condition.displacement[c]) continue;
       const auto values = evaluate(*condition.displacement[c], points, path + "->" + component_name[c], mesh.comm());
+      double largest = 0;
+      for (std::size_t n = 0; n < nodes.size(); ++n) largest = std::max(largest, std::abs(values(n)));
+      scale[k][c] = max_all(mesh.comm(), largest);
       for (std::size_t n = 0; n < nodes.size(); ++n) {
         const LO dof = dim * nodes[n] + c;
-        const bool differs = std::abs(value(dof) - values(n)) > 1e-12 * (std::abs(value(dof)) + std::abs(values(n)));
-        if (owner[dof] >= 0 && differs && !conflict) {
+        const int other = owner[dof];
+        const bool differs =
+            other >= 0 && std::abs(value(dof) - values(n)) > 1e-12 * std::max(scale[other][c], scale[k][c]);
+        if (differs && !conflict) {
           std::ostringstream message;
-          message << "deck: \"Dirichlet->" << conditions[owner[dof]].name << "\" and \"" << path
-                  << "\" prescribe different " << component_name[c] << " at one node (" << points(n, 0) << ", "
-                  << points(n, 1) << (dim == 3 ? ", " + std::to_string(points(n, 2)) : "") << "): " << value(dof)
-                  << " and " << values(n) << " [m]";
+          message << "deck: \"Dirichlet->" << conditions[other].name << "\" and \"" << path << "\" prescribe different "
+                  << component_name[c] << " at one node (" << points(n, 0) << ", " << points(n, 1)
+                  << (dim == 3 ? ", " + std::to_string(points(n, 2)) : "") << "): " << value(dof) << " and "
+                  << values(n) << " [m]";
           conflict = message.str();
         }
         owner[dof] = static_cast<int>(k);

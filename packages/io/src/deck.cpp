@@ -64,25 +64,6 @@ std::vector<std::string> lines_of(const std::string &text)
   return lines;
 }
 
-/// What Teuchos says, in one line: without its source files, counters, conditions, echoes of the input and parser
-/// states.
-std::string reason_of(const std::string &what)
-{
-  static const std::regex noise(R"(^\S+\.[ch]pp:\d+:$|^Throw (number|test)|^error: |^-+$|^\s*$)");
-  static const std::regex position(R"(^XML parse error at line \d+: )");
-  std::string reason;
-  const std::vector<std::string> lines = lines_of(what);
-  for (std::size_t n = 0; n < lines.size(); ++n) {
-    if (lines[n].rfind("Lexer text", 0) == 0) break; // nothing but the parser's state from here on
-    const bool echo = n > 0 && n + 1 < lines.size() && std::regex_match(lines[n + 1], std::regex(R"(\s*\^)"));
-    if (echo) ++n;
-    if (echo || std::regex_search(lines[n], noise)) continue;
-    reason += (reason.empty() ? "" : " ") + std::regex_replace(lines[n], position, "");
-  }
-  while (!reason.empty() && std::isspace(static_cast<unsigned char>(reason.back()))) reason.pop_back();
-  return reason.empty() ? "malformed" : reason;
-}
-
 /// "deck: "path", line n: reason"
 [[noreturn]] void refuse(const std::string &path, const std::exception &error, const int lines_added = 0)
 {
@@ -93,7 +74,8 @@ std::string reason_of(const std::string &what)
     const int number = std::stoi(line[1].matched ? line[1].str() : line[2].str()) - lines_added;
     if (number > 0) where = ", line " + std::to_string(number);
   }
-  std::string reason = reason_of(what);
+  std::string reason = one_line(what);
+  if (reason.empty()) reason = "malformed";
   if (reason.rfind("Expected one of", 0) == 0) reason += " (in YAML a text with special characters needs quotes)";
   throw Error(ExitCode::bad_input, "deck: \"" + path + "\"" + where + ": " + reason);
 }
@@ -224,20 +206,30 @@ ParameterList read_yaml(const std::string &path)
   }
 }
 
+/// Folder of the running program, or where it would be installed if the system does not tell.
+std::filesystem::path program_folder()
+{
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::filesystem::path(RPC_INSTALL_BIN_DIR) : program.parent_path();
+}
+
 } // namespace
 
 std::string find_deck(const std::string &name)
 {
-  std::vector<std::filesystem::path> places = {name};
-  if (!std::filesystem::path(name).is_absolute()) {
-    if (const char *folder = std::getenv("RPC_INPUT_DIR")) places.push_back(std::filesystem::path(folder) / name);
-    places.push_back(std::filesystem::path(RPC_SOURCE_INPUT_DIR) / name);
-    places.push_back(std::filesystem::path(RPC_INSTALL_INPUT_DIR) / name);
+  namespace fs = std::filesystem;
+  std::error_code error;
+  RPC_REQUIRE(!fs::is_directory(name, error), "deck: \"" << name << "\" is a folder; there is no file of that name");
+  std::vector<fs::path> places = {name};
+  if (!fs::path(name).is_absolute()) {
+    if (const char *folder = std::getenv("RPC_INPUT_DIR")) places.push_back(fs::path(folder) / name);
+    places.push_back((program_folder() / RPC_INPUT_FROM_BIN / name).lexically_normal());
+    places.push_back(fs::path(RPC_SOURCE_INPUT_DIR) / name);
   }
   std::string searched;
   for (const auto &place : places) {
-    std::error_code error;
-    if (std::filesystem::exists(place, error) && !std::filesystem::is_directory(place, error)) return place.string();
+    if (fs::exists(place, error) && !fs::is_directory(place, error)) return place.string();
     searched += (searched.empty() ? "" : ", ") + place.string();
   }
   throw Error(ExitCode::bad_input, "deck: there is no file \"" + name + "\"; searched: " + searched);

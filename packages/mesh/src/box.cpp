@@ -280,7 +280,8 @@ Side make_side(const BoxSide &box_side, const Grid &grid, const Numbering &numbe
   Block layer = local_cells;
   const int d = box_side.direction;
   const GO at_end = box_side.upper ? grid.num_cells()[d] - 1 : 0;
-  const bool present = local_cells.begin[d] <= at_end && at_end < local_cells.end[d];
+  const GO plane = box_side.upper ? mesh.element.order * (at_end + 1) : 0; // of nodes: a halo cell may reach it alone
+  const bool present = numbering.owned_nodes.begin[d] <= plane && plane < numbering.owned_nodes.end[d];
   layer.begin[d] = at_end;
   layer.end[d] = present ? at_end + 1 : at_end;
 

@@ -6,11 +6,13 @@
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
 #include <MueLu_CreateTpetraPreconditioner.hpp>
+#include <MueLu_MasterList.hpp>
 #include <MueLu_TpetraOperator.hpp>
 #include <Teuchos_StackedTimer.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace rpc::solver
 {
@@ -53,6 +55,56 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
   if (A.getComm()->getSize() > 1) list.set("coarse: type", "CHEBYSHEV");
 #endif
   return list;
+}
+
+void require_known(const Teuchos::ParameterList &given, const Teuchos::ParameterList &known, const std::string &path)
+{
+  std::vector<std::string> names;
+  for (auto it = known.begin(); it != known.end(); ++it) names.push_back(known.name(it));
+  for (auto it = given.begin(); it != given.end(); ++it) {
+    const std::string nearest = nearest_name(given.name(it), names);
+    RPC_REQUIRE(known.isParameter(given.name(it)),
+                "deck: unknown parameter \"" << path << "->" << given.name(it) << "\"."
+                                             << (nearest.empty() ? "" : " Did you mean \"" + nearest + "\"?"));
+  }
+}
+
+/// Belos refuses values by itself, but passes over names that it does not know.
+void check_belos(const std::string &method, const Teuchos::ParameterList &user)
+{
+  Belos::SolverFactory<double, MultiVector, Operator> factory;
+  const auto methods = factory.supportedSolverNames(); // some come twice
+  const std::set<std::string> sorted(methods.begin(), methods.end());
+  RPC_REQUIRE(factory.isSupported(method), "deck: \"Linear Solver->Method\" must be one that Belos knows, got \""
+                                               << method << "\". It knows: " << join({sorted.begin(), sorted.end()}));
+  try {
+    const auto list = Teuchos::parameterList("Linear Solver->Belos");
+    list->setParameters(user);
+    require_known(user, *factory.create(method, list)->getValidParameters(), "Linear Solver->Belos");
+  } catch (const Error &) {
+    throw;
+  } catch (const std::exception &failure) {
+    throw Error(ExitCode::bad_input, "deck: \"Linear Solver->Belos\": " + one_line(failure.what()));
+  }
+}
+
+/// What MueLu would refuse when it is set up, and say on every rank; and a number of levels that crashes it.
+void check_muelu(const Teuchos::ParameterList &user)
+{
+  if (user.isSublist("Hierarchy") || user.isParameter("parameterlist: syntax")) return; // its other ways of being told
+  Teuchos::ParameterList list("Linear Solver->MueLu");
+  list.setParameters(user);
+  for (auto it = user.begin(); it != user.end(); ++it)
+    if (user.name(it).rfind("level ", 0) == 0) list.remove(user.name(it)); // the same once more for certain levels
+  const Teuchos::ParameterList &known = *MueLu::MasterList::List();
+  require_known(list, known, "Linear Solver->MueLu");
+  try {
+    list.validateParameters(known, 0);
+  } catch (const std::exception &failure) {
+    throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
+  }
+  RPC_REQUIRE(!list.isParameter("max levels") || list.get<int>("max levels") > 0,
+              "deck: \"Linear Solver->MueLu->max levels\" must be > 0, got " << list.get<int>("max levels"));
 }
 
 } // namespace
@@ -98,12 +150,8 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
               "deck: \"Linear Solver->Maximum Iterations\" must be > 0, got " << options.max_iterations);
   RPC_REQUIRE(options.reuse == "none" || options.reuse == "tP" || options.reuse == "RP",
               "deck: \"Linear Solver->Reuse\" must be one of none, tP, RP, got \"" << options.reuse << "\"");
-  const Belos::SolverFactory<double, MultiVector, Operator> factory;
-  RPC_REQUIRE(factory.isSupported(options.method),
-              "deck: \"Linear Solver->Method\" is not known to Belos, got \""
-                  << options.method << "\". It knows: "
-                  << join(std::vector<std::string>(factory.supportedSolverNames().begin(),
-                                                   factory.supportedSolverNames().end())));
+  check_belos(options.method, options.belos);
+  check_muelu(options.muelu);
   return options;
 }
 
@@ -114,6 +162,7 @@ LinearSolver::LinearSolver(LinearSolverOptions options, RCP<CrsMatrix> A, RCP<Mu
   impl_->A = A;
   impl_->muelu = muelu_defaults(*A, static_cast<int>(coordinates->getNumVectors()));
   impl_->muelu.set("reuse: type", options_.reuse);
+  if (options_.muelu.isParameter("smoother: type")) impl_->muelu.remove("smoother: params"); // of another type
   impl_->muelu.setParameters(options_.muelu);
   impl_->coordinates = coordinates;
   impl_->null_space = null_space;
@@ -142,7 +191,12 @@ void LinearSolver::set_up()
     Teuchos::ParameterList list = impl_->muelu; // MueLu adds to its list
     list.sublist("user data").set("Coordinates", impl_->coordinates);
     list.sublist("user data").set("Nullspace", impl_->null_space);
-    impl_->preconditioner = MueLu::CreateTpetraPreconditioner(RCP<Operator>(impl_->A), list);
+    try {
+      impl_->preconditioner = MueLu::CreateTpetraPreconditioner(RCP<Operator>(impl_->A), list);
+    } catch (const std::exception &failure) {
+      if (options_.muelu.numParams() == 0 || counts_.preconditioner_setups > 0) throw;
+      throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
+    }
     impl_->problem->setLeftPrec(impl_->preconditioner);
   } else {
     MueLu::ReuseTpetraPreconditioner(impl_->A, *impl_->preconditioner);
@@ -171,10 +225,12 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const doubl
     if (!result.converged)
       result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(impl_->manager->achievedTol()) +
                       " after " + std::to_string(result.iterations) + " iterations";
+  } catch (const Error &) {
+    throw;
   } catch (
       const std::exception &failure) { // a breakdown, such as an indefinite or singular matrix; the same on all ranks
     counts_.iterations.push_back(impl_->manager->getNumIters());
-    result.reason = std::string("the linear solver broke down: ") + failure.what();
+    result.reason = "the linear solver broke down: " + one_line(failure.what());
   }
   return result;
 }

@@ -89,7 +89,7 @@ RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
   list->setParameters(user);
   list->remove("Status Tests", false);
   Teuchos::ParameterList &search = list->sublist("Line Search");
-  if (search.get<std::string>("Method") == "Exact") {
+  if (search.isType<std::string>("Method") && search.get<std::string>("Method") == "Exact") {
     search.set("Method", "User Defined");
     search.set<RCP<NOX::LineSearch::UserDefinedFactory>>("User Defined Line Search Factory",
                                                          rcp(new ExactLineSearchFactory));
@@ -112,6 +112,58 @@ RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const R
   tests->addStatusTest(rcp(new StepTest(context, options.step_tolerance)));
   tests->addStatusTest(rcp(new MaxIters(options.max_iterations)));
   return tests;
+}
+
+/// Goes to the minimum of the piece that the last solve ended on, as far as the functional falls on the way there.
+/// doc/theory.md (5.4)
+/// @return number of steps done, 0 or 1
+int predict(NewtonContext &context, Vector &u)
+{
+  Vector F(u.getMap()), d(u.getMap());
+  context.functional.piece_gradient(u, F);
+  const auto solved = context.linear_solver.solve(F, d, 0.1 * context.target_residual / F.norm2());
+  context.linear_iterations = solved.iterations;
+  d.scale(-1.);
+  context.functional.gradient(u, F);
+  const double step = solved.converged ? exact_step(context.functional.along(u, d, F)) : 0;
+  u.update(step, d, 1.);
+  return step > 0 ? 1 : 0;
+}
+
+/// NOX passes over names that it does not know: they stay unread.
+/// @param given  the user's parameters, of which `read` holds copies
+void require_read(const Teuchos::ParameterList &given, const Teuchos::ParameterList &read, const std::string &path)
+{
+  for (auto it = given.begin(); it != given.end(); ++it) {
+    const std::string &name = given.name(it);
+    if (given.isSublist(name))
+      require_read(given.sublist(name), read.sublist(name), path + "->" + name);
+    else
+      RPC_REQUIRE(read.getEntry(name).isUsed(), "deck: NOX does not know the parameter \""
+                                                    << path << "->" << name
+                                                    << "\", or does not read it with these settings");
+  }
+}
+
+/// @throws rpc::Error (bad_input) if NOX refuses the user's parameters
+RCP<NOX::Solver::Generic> build_solver(const RCP<NewtonGroup> &group, const NewtonOptions &options,
+                                       const RCP<NewtonContext> &context, const RCP<Teuchos::ParameterList> &list)
+{
+  std::string reason;
+  try {
+    const auto solver = NOX::Solver::buildSolver(group, status_tests(options, context), list);
+    for (const char *name : {"Line Search", "Direction", "Printing", "Solver Options"})
+      if (options.nox.isSublist(name))
+        require_read(options.nox.sublist(name), list->sublist(name), std::string("NOX->") + name);
+    return solver;
+  } catch (const Error &) {
+    throw;
+  } catch (const std::exception &failure) {
+    reason = one_line(failure.what());
+  } catch (const char *failure) { // some of NOX's errors are bare strings
+    reason = failure;
+  }
+  throw Error(ExitCode::bad_input, "deck: \"NOX\": " + reason);
 }
 
 } // namespace
@@ -147,7 +199,7 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
 }
 
 contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, LinearSolver &linear_solver,
-                                 const RCP<Vector> &u, const NewtonOptions &options,
+                                 const RCP<Vector> &u, const NewtonOptions &options, const bool same_states,
                                  const std::function<void(const NewtonStep &)> &report)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::newton"));
@@ -160,13 +212,20 @@ contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, Linear
   contact::MinimizeResult result;
   try {
     group->computeF(); // so that the start is reported with its residual
-    const auto solver = NOX::Solver::buildSolver(group, status_tests(options, context), list);
+    if (same_states && group->getNormF() > context->target_residual) {
+      result.newton_iterations += predict(*context, *u);
+      group->setX(NoxVector(u));
+      group->computeF();
+    }
+    const auto solver = build_solver(group, options, context, list);
     const auto status = solver->solve();
     u->assign(tpetra(solver->getSolutionGroup().getX()));
-    result.newton_iterations = solver->getNumIterations();
+    result.newton_iterations += solver->getNumIterations();
     result.converged = status == NOX::StatusTest::Converged;
+  } catch (const Error &) { // a mistake in the deck
+    throw;
   } catch (const std::exception &failure) { // NOX throws when a direction cannot be had; the same on all ranks
-    result.reason = failure.what();
+    result.reason = one_line(failure.what());
   } catch (const char *failure) { // some of NOX's errors are bare strings
     result.reason = failure;
   }

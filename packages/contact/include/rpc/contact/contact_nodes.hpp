@@ -23,8 +23,7 @@ Teuchos::ParameterList valid_contact_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range that needs no mesh to be seen
 ContactOptions contact_options(const Teuchos::ParameterList &list, const FieldParser &parse);
 
-/// The nodes of one contact side that this rank owns, each a point with a weight.                     doc/theory.md
-/// (2.6), (3.4)
+/// The nodes of one contact side that this rank owns, each a point with a weight. doc/theory.md (2.6), (3.4)
 ///
 /// v_i = direction_i . u_i - free_gap_i is the penetration of node i, where `direction` is the normal without its
 /// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether

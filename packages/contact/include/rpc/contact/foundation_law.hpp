@@ -3,12 +3,12 @@
 #include <Kokkos_Core.hpp>
 
 /// The rigid-plastic foundation at one contact node, and its smoothing by the modified Lagrangian.      doc/theory.md
-/// (3.1)-(3.3)
+/// section 3
 ///
 /// v = u_nu - g > 0 is penetration [m]; p >= 0 is the contact pressure on the body [Pa]; xi > 0, or inf for a rigid
 /// foundation.
 ///
-///     p = 0 if v < 0,   0 <= p <= xi if v = 0,   p = xi if v > 0                                         (3.1)
+///     p = 0 if v < 0,   0 <= p <= xi if v = 0,   p = xi if v > 0                                         (1.1)
 ///
 /// The multiplier is kept as a pressure, lambda = l + xi/2 in [0, xi], with l the paper's: that shift alone makes xi =
 /// inf a value like any other.
@@ -22,13 +22,13 @@ KOKKOS_INLINE_FUNCTION double clamp(const double x, const double low, const doub
   return x < low ? low : (x > high ? high : x);
 }
 
-/// Psi'(v) = clamp(lambda + r v, 0, xi): the smoothed pressure, and after a solve the next multiplier.   (3.2)
+/// Psi'(v) = clamp(lambda + r v, 0, xi): the smoothed pressure, and after a solve the next multiplier.   (3.1)
 KOKKOS_INLINE_FUNCTION double pressure(const double v, const double lambda, const double r, const double xi)
 {
   return clamp(lambda + r * v, 0, xi);
 }
 
-/// Psi(v) with Psi(0) = 0 [J/m^2]; the paper's Xi(v) + xi v / 2 up to a constant.                        (3.3)
+/// Psi(v) with Psi(0) = 0 [J/m^2]; the paper's Xi(v) + xi v / 2 up to a constant.                        (3.2), (3.3)
 KOKKOS_INLINE_FUNCTION double smoothed_energy(const double v, const double lambda, const double r, const double xi)
 {
   const double z = lambda + r * v;
@@ -44,11 +44,10 @@ KOKKOS_INLINE_FUNCTION State state(const double v, const double lambda, const do
   return z < 0 ? State::open : (z > xi ? State::yielded : State::stuck);
 }
 
-/// Energy of the foundation itself, xi v+ [J/m^2]. On a rigid one penetration costs infinitely much; what the solver's
-/// tolerance leaves of it is judged by the certificate and not counted here.                                      (3.1)
+/// Energy that the foundation has taken up, xi v+ [J/m^2]; 0, not NaN, for a rigid one that is not pressed.   (1.3)
 KOKKOS_INLINE_FUNCTION double plastic_energy(const double v, const double xi)
 {
-  return v > 0 && xi < 1e308 ? xi * v : 0;
+  return v > 0 ? xi * v : 0;
 }
 
 } // namespace rpc::contact

@@ -12,8 +12,7 @@ struct StateCounts {
   GO open = 0, stuck = 0, yielded = 0;
 };
 
-/// The functional along a line t -> u + t d, as far as its slope goes: convex, piecewise quadratic.      doc/theory.md
-/// (4.3)
+/// The functional along a line t -> u + t d, as far as its slope goes: convex, piecewise quadratic. doc/theory.md (4.3)
 ///
 ///     slope(t) = slope(0) + curvature t + sum_i w_i dv_i (Psi_i'(v_i + t dv_i) - Psi_i'(v_i))
 ///
@@ -53,11 +52,16 @@ public:
 
   /// M(u) [J], with the energy of prescribed displacements.
   double value(const Vector &u) const;
-  /// Energy of the problem itself, J(u) = Pi(u) + sum_i w_i xi_i v_i+ [J]; independent of multipliers.       (1.4)
+  /// Energy of the problem itself, J(u) = Pi(u) + sum_i w_i xi_i v_i+ [J], computed as Pi(u) + sum_i w_i lambda_i v_i:
+  /// the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a stuck node. (1.4),
+  /// (5.5)
   double energy(const Vector &u) const;
   /// a(u, u), twice the elastic energy [J], prescribed displacements included.
   double strain_energy(const Vector &u) const;
   void gradient(const Vector &u, Vector &F) const;
+  /// The gradient at u of the quadratic piece that hessian() belongs to: stuck nodes carry lambda + r v, whatever that
+  /// is. (5.4)
+  void piece_gradient(const Vector &u, Vector &F) const;
   /// Brings hessian() to H(u). @return number of contact nodes whose stiffness changed, over all ranks
   GO update_hessian(const Vector &u);
   const RCP<CrsMatrix> &hessian() const { return problem_.stiffness; }
@@ -85,6 +89,7 @@ public:
 private:
   void apply_stiffness(const Vector &u, Vector &Ku) const;
   double potential(const Vector &u) const; // Pi(u) [J]
+  void gradient(const Vector &u, bool of_piece, Vector &F) const;
   double contact_sum(const Vector &u, bool smoothed) const;
   void add_contact_force(const DeviceView<double *> &pressure, Vector &F) const;
   void find_diagonal_blocks();

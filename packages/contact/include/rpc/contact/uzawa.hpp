@@ -54,10 +54,11 @@ struct UzawaResult {
 /// Alternates minimization over u and multiplier update until the certificate holds.            doc/theory.md (5.1)
 ///
 /// Without a contact node there is nothing to alternate with: one minimization.
-/// @param minimize         brings u to the minimum of the functional for its present multipliers; collective
+/// @param minimize         (iteration, from 1) brings u to the minimum of the functional for its present multipliers;
+/// collective
 /// @param stiffness_scale  rho [Pa/m] of the contact law's residual
 /// @param report           called after each iteration, for the console
-UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function<MinimizeResult()> &minimize,
+UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function<MinimizeResult(int)> &minimize,
                   double stiffness_scale, const UzawaOptions &options,
                   const std::function<void(const UzawaResult &)> &report);
 

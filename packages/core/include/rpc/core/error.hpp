@@ -36,6 +36,10 @@ private:
 /// Throws on every rank, with the lowest rank's message, if any rank brings one; collective on comm.
 void throw_if_any(const Teuchos::Comm<int> &comm, ExitCode code, const std::optional<std::string> &message);
 
+/// A library's error in one line: without its source files, counters, conditions, echoes of the input, parser states
+/// and lists of everything that would be valid.
+std::string one_line(const std::string &what);
+
 } // namespace rpc
 
 /// Always-on O(1) host check of what a user handed in: RPC_REQUIRE(x > 0, "\"Material->x\" must be > 0 [Pa], got " <<

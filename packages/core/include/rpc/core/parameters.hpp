@@ -40,7 +40,8 @@ void validate(Teuchos::ParameterList &list, const Teuchos::ParameterList &valid,
 /// @throws rpc::Error (bad_input) on an unknown path or a text that does not read as that type
 void assign(Teuchos::ParameterList &list, const Teuchos::ParameterList &valid, const std::string &assignment);
 
-/// The name among `candidates` with the least edit distance to `name`; empty if there is none.
+/// The name among `candidates` with the least edit distance to `name`, or of which it is an abbreviation; empty if none
+/// bears any likeness.
 std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates);
 
 /// "a, b, c"

@@ -40,8 +40,7 @@ VectorField body_force_options(const Teuchos::ParameterList &list, int dim, cons
 
 /// The stiffness matrix, without boundary conditions.
 ///
-///     K(ai,bj) = sum over cells, int lambda dN_ai dN_bj + mu (dN_aj dN_bi + delta_ij dN_a . dN_b)     doc/theory.md
-///     (2.4)
+///     K(ai,bj) = sum over cells, int lambda dN_ai dN_bj + mu (dN_aj dN_bi + delta_ij dN_a . dN_b) doc/theory.md (2.4)
 ///
 /// Each rank fills its own rows from its local cells; no communication but the check. [N/m], in 2D per m of thickness
 /// [Pa].

@@ -5,8 +5,7 @@
 namespace rpc::fem
 {
 
-/// Owned nodes of a side with what nodal quadrature needs: int f ds ~ sum_i weight_i f(x_i).          doc/theory.md
-/// (2.6)
+/// Owned nodes of a side with what nodal quadrature needs: int f ds ~ sum_i weight_i f(x_i). doc/theory.md (2.6)
 struct SurfaceNodes {
   DeviceView<LO *> node;       ///< (n) owned node lids, ascending
   DeviceView<double *> weight; ///< (n) w_i [m^(dim-1)]
@@ -21,7 +20,7 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side);
 /// there are none.
 ///
 /// Serves contact nodes whose normal displacement is prescribed: the contact law leaves their pressure open.
-/// doc/theory.md (3.9)
+/// doc/theory.md (3.5)
 /// @param[in,out] value  (owned nodes of the mesh) values where known   @param[in] known (owned nodes) 1 or 0;
 /// collective
 void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &value, const Vector &known);

@@ -6,8 +6,9 @@
 namespace rpc::io
 {
 
-/// Path of a deck: `name` as given, else in the folder that the environment variable RPC_INPUT_DIR names, in the source
-/// tree's input/, or in the installed share/rpc/input.
+/// Path of a deck: `name` as given, else in the folder that the environment variable RPC_INPUT_DIR names, in the
+/// share/rpc/input next to the running program's bin/ (so that an install tree can be moved), or in the source tree's
+/// input/.
 /// @throws rpc::Error (bad_input) listing the places searched
 std::string find_deck(const std::string &name);
 

@@ -8,8 +8,7 @@
 namespace rpc::solver
 {
 
-/// The t > 0 where a line model's slope vanishes, to rounding.                                        doc/theory.md
-/// (4.4)
+/// The t > 0 where a line model's slope vanishes, to rounding. doc/theory.md (4.4)
 ///
 /// The slope is continuous, nondecreasing and piecewise linear: Newton's method, kept inside a bracket and helped by
 /// bisection, ends on the piece that holds the root and is then exact. Each trial costs one sum over the contact nodes.

@@ -33,9 +33,11 @@ struct NewtonStep {
 };
 
 /// Minimizes the smoothed functional over u, in place; collective. Failure is a result, not an exception.
-/// @param report  called after each step
+/// @param same_states  start with a step on the piece that the last minimization ended on, doc/theory.md (5.4): after a
+///                     multiplier update its states are a better guess than those of lambda + r v at the old v
+/// @param report       called after each step
 contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, LinearSolver &linear_solver,
-                                 const RCP<Vector> &u, const NewtonOptions &options,
+                                 const RCP<Vector> &u, const NewtonOptions &options, bool same_states,
                                  const std::function<void(const NewtonStep &)> &report);
 
 } // namespace rpc::solver

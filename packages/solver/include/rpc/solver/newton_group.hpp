@@ -22,8 +22,7 @@ struct NewtonContext {
   std::string failure; ///< of the linear solver, if it did not converge
 };
 
-/// A point of the Newton iteration: u, F(u) and the Newton direction. NOX holds two of them.            doc/theory.md
-/// (4.2)
+/// A point of the Newton iteration: u, F(u) and the Newton direction. NOX holds two of them. doc/theory.md (4.2)
 class NewtonGroup : public NOX::Abstract::Group
 {
 public:

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "rpc/core/error.hpp"
+
+#include <gtest/gtest.h>
+#include <initializer_list>
+#include <string>
+
+namespace rpc::test
+{
+
+/// The rpc::Error that the work must throw.
+template <class Work>
+Error error_of(const Work &work)
+{
+  try {
+    work();
+  } catch (const Error &error) {
+    return error;
+  }
+  ADD_FAILURE() << "no rpc::Error was thrown";
+  return Error(ExitCode::converged, "");
+}
+
+/// The work must throw this code, and a message that contains all parts.
+template <class Work>
+void expect_error(const ExitCode code, const std::initializer_list<const char *> parts, const Work &work)
+{
+  const Error error = error_of(work);
+  EXPECT_EQ(error.code(), code) << error.what();
+  for (const char *part : parts)
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what() << "\nlacks: " << part;
+}
+
+} // namespace rpc::test

@@ -1,0 +1,278 @@
+#include "rpc/core/parameters.hpp"
+
+#include "expect_error.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace
+{
+
+using rpc::assign;
+using rpc::ExitCode;
+using rpc::field_text;
+using rpc::test::error_of;
+using rpc::test::expect_error;
+using Teuchos::Array;
+using Teuchos::ParameterList;
+using Teuchos::tuple;
+
+/// One parameter of each kind.
+ParameterList valid_deck()
+{
+  ParameterList valid("deck"), entry;
+  ParameterList &mesh = valid.sublist("Mesh", false, "The mesh.");
+  mesh.set("Type", "box", "Kind of mesh.");
+  mesh.set("Lower", Array<double>(tuple(0., 0.)), "Lower corner [m].");
+  mesh.set("Cells", Array<int>(tuple(8, 8)), "Number of cells.");
+  mesh.set("Blocks", Array<std::string>(tuple<std::string>("a")), "Names of blocks.");
+  ParameterList &contact = valid.sublist("Contact", false, "The contact.");
+  contact.set("Penalty", 1e8, "r > 0 [Pa/m].");
+  contact.set("Steps", 3, "Number of steps.");
+  contact.set("Verbose", false, "Whether to talk.");
+  rpc::set_field(contact, "Gap", "0", "Gap [m].");
+  rpc::set_pass_through(valid, "NOX", "Handed on to NOX.");
+  entry.set("Side", "", "Side of the mesh.");
+  rpc::set_field(entry, "X", "", "Displacement [m].");
+  rpc::set_named_entries(valid, "Dirichlet", entry, "Prescribed displacements.");
+  return valid;
+}
+
+ParameterList assigned(const std::string &assignment)
+{
+  ParameterList list;
+  assign(list, valid_deck(), assignment);
+  return list;
+}
+
+void expect_refused(const std::string &assignment, const std::initializer_list<const char *> parts)
+{
+  SCOPED_TRACE(assignment);
+  expect_error(ExitCode::bad_input, parts, [&] { assigned(assignment); });
+}
+
+void expect_invalid(ParameterList list, const std::initializer_list<const char *> parts)
+{
+  expect_error(ExitCode::bad_input, parts, [&] { rpc::validate(list, valid_deck()); });
+}
+
+TEST(Validate, EmptyListGetsAllDefaults)
+{
+  ParameterList list;
+  rpc::validate(list, valid_deck());
+  EXPECT_EQ(list.sublist("Mesh").get<std::string>("Type"), "box");
+  EXPECT_EQ(list.sublist("Mesh").get<Array<int>>("Cells"), Array<int>(tuple(8, 8)));
+  EXPECT_EQ(list.sublist("Contact").get<double>("Penalty"), 1e8);
+  EXPECT_EQ(field_text(list.sublist("Contact"), "Gap"), "0");
+  EXPECT_TRUE(list.isSublist("Dirichlet"));
+  EXPECT_EQ(list.sublist("Dirichlet").numParams(), 0);
+  EXPECT_EQ(list.sublist("NOX").numParams(), 0);
+}
+
+TEST(Validate, GivenValuesSurviveTheDefaults)
+{
+  ParameterList list;
+  list.sublist("Contact").set("Steps", 7);
+  rpc::validate(list, valid_deck());
+  EXPECT_EQ(list.sublist("Contact").get<int>("Steps"), 7);
+  EXPECT_EQ(list.sublist("Contact").get<bool>("Verbose"), false);
+}
+
+TEST(Validate, MisspeltNameIsRefusedWithTheNearestOne)
+{
+  ParameterList parameter, sublist;
+  parameter.sublist("Contact").set("penaltty", 1.);
+  expect_invalid(parameter, {"\"Contact->penaltty\"", "Did you mean \"Penalty\"", "Penalty, Steps, Verbose, Gap"});
+  sublist.sublist("Contat");
+  expect_invalid(sublist, {"\"Contat\"", "Did you mean \"Contact\""});
+}
+
+TEST(Validate, WrongTypeIsRefusedWithBothTypesAndTheValue)
+{
+  ParameterList text, fraction, number, list, parameter, array;
+  text.sublist("Contact").set("Penalty", "much");
+  expect_invalid(text, {"\"Contact->Penalty\"", "double", "string", "much"});
+  fraction.sublist("Contact").set("Steps", 2.5);
+  expect_invalid(fraction, {"\"Contact->Steps\"", "int", "double", "2.5"});
+  number.sublist("Contact").set("Gap", true);
+  expect_invalid(number, {"\"Contact->Gap\"", "number or expression", "bool"});
+  list.sublist("Contact").sublist("Steps");
+  expect_invalid(list, {"\"Contact->Steps\"", "int", "sublist"});
+  parameter.set("Contact", 1);
+  expect_invalid(parameter, {"\"Contact\"", "sublist", "int"});
+  array.sublist("Mesh").set("Cells", Array<double>(tuple(1., 2.)));
+  expect_invalid(array, {"\"Mesh->Cells\"", "array of int", "array of double"});
+}
+
+TEST(Validate, IntegersServeAsDoubles)
+{
+  ParameterList list;
+  list.sublist("Contact").set("Penalty", 5);
+  list.sublist("Mesh").set("Lower", Array<int>(tuple(-1, 2)));
+  rpc::validate(list, valid_deck());
+  EXPECT_EQ(list.sublist("Contact").get<double>("Penalty"), 5.);
+  EXPECT_EQ(list.sublist("Mesh").get<Array<double>>("Lower"), Array<double>(tuple(-1., 2.)));
+}
+
+TEST(Validate, FieldIsAnIntADoubleOrAText)
+{
+  for (const std::string expected : {"2", "0.5", "x + 1"}) {
+    ParameterList list;
+    if (expected == "2") list.sublist("Contact").set("Gap", 2);
+    if (expected == "0.5") list.sublist("Contact").set("Gap", 0.5);
+    if (expected == "x + 1") list.sublist("Contact").set("Gap", expected);
+    rpc::validate(list, valid_deck());
+    EXPECT_EQ(field_text(list.sublist("Contact"), "Gap"), expected);
+  }
+}
+
+TEST(Validate, PassThroughSublistStaysAsItIs)
+{
+  ParameterList list;
+  ParameterList &nox = list.sublist("NOX");
+  nox.set("Anything", 1);
+  nox.sublist("Deeper").set("Gap", true);
+  const ParameterList before = nox;
+  rpc::validate(list, valid_deck());
+  EXPECT_EQ(list.sublist("NOX"), before);
+}
+
+TEST(Validate, NamedEntriesGetTheirOwnDefaultsAndChecks)
+{
+  ParameterList list, misspelt, flat;
+  list.sublist("Dirichlet").sublist("anchor").set("X", 1);
+  list.sublist("Dirichlet").sublist("right");
+  rpc::validate(list, valid_deck());
+  EXPECT_EQ(list.sublist("Dirichlet").numParams(), 2);
+  EXPECT_EQ(field_text(list.sublist("Dirichlet").sublist("anchor"), "X"), "1");
+  EXPECT_EQ(list.sublist("Dirichlet").sublist("anchor").get<std::string>("Side"), "");
+  EXPECT_EQ(field_text(list.sublist("Dirichlet").sublist("right"), "X"), "");
+  misspelt.sublist("Dirichlet").sublist("anchor").set("Sid", "left");
+  expect_invalid(misspelt, {"\"Dirichlet->anchor->Sid\"", "Did you mean \"Side\""});
+  flat.sublist("Dirichlet").set("X", 1);
+  expect_invalid(flat, {"\"Dirichlet->X\"", "sublist", "int"});
+}
+
+TEST(Assign, ReadsTheTextAsTheTypeOfTheParameter)
+{
+  EXPECT_EQ(assigned("Contact->Penalty=16").sublist("Contact").get<double>("Penalty"), 16.);
+  EXPECT_EQ(assigned("Contact->Steps=-2").sublist("Contact").get<int>("Steps"), -2);
+  EXPECT_EQ(assigned("Contact->Verbose=true").sublist("Contact").get<bool>("Verbose"), true);
+  EXPECT_EQ(assigned("Mesh->Type=12").sublist("Mesh").get<std::string>("Type"), "12");
+  EXPECT_EQ(assigned("Contact->Gap=x = 1").sublist("Contact").get<std::string>("Gap"), "x = 1");
+  EXPECT_EQ(assigned("Mesh->Cells={160, 32}").sublist("Mesh").get<Array<int>>("Cells"), Array<int>(tuple(160, 32)));
+  EXPECT_EQ(assigned("Mesh->Lower={1, 0.5}").sublist("Mesh").get<Array<double>>("Lower"), Array<double>(tuple(1., .5)));
+  EXPECT_EQ(assigned("Mesh->Blocks={a, b}").sublist("Mesh").get<Array<std::string>>("Blocks"),
+            Array<std::string>(tuple<std::string>("a", "b")));
+  EXPECT_EQ(assigned("Dirichlet->anchor->X=1").sublist("Dirichlet").sublist("anchor").get<std::string>("X"), "1");
+}
+
+TEST(Assign, ReplacesWhatTheDeckSaid)
+{
+  ParameterList list;
+  list.sublist("Contact").set("Penalty", 1).set("Steps", 5); // an int, as a deck may give it
+  assign(list, valid_deck(), "Contact->Penalty=2.5");
+  EXPECT_EQ(list.sublist("Contact").get<double>("Penalty"), 2.5);
+  EXPECT_EQ(list.sublist("Contact").get<int>("Steps"), 5);
+}
+
+TEST(Assign, BelowAPassThroughTheFirstTypeThatFitsIsTaken)
+{
+  EXPECT_EQ(assigned("NOX->A=3").sublist("NOX").get<int>("A"), 3);
+  EXPECT_EQ(assigned("NOX->Deep->A=1e-8").sublist("NOX").sublist("Deep").get<double>("A"), 1e-8);
+  EXPECT_EQ(assigned("NOX->Deep->Deeper->A=false").sublist("NOX").sublist("Deep").sublist("Deeper").get<bool>("A"),
+            false);
+  EXPECT_EQ(assigned("NOX->A=3 steps").sublist("NOX").get<std::string>("A"), "3 steps");
+}
+
+TEST(Assign, PathThatDoesNotExistIsRefusedWithTheNearestOne)
+{
+  expect_refused("Contact->Penality=1", {"\"Contact->Penality\"", "Did you mean \"Penalty\""});
+  expect_refused("Contakt->Penalty=1", {"\"Contakt\"", "Did you mean \"Contact\""});
+  expect_refused("Dirichlet->anchor->Sides=left", {"\"Dirichlet->anchor->Sides\"", "Did you mean \"Side\""});
+}
+
+TEST(Assign, ParameterAndSublistAreNotMixedUp)
+{
+  expect_refused("Contact->Gap->X=1", {"\"Contact->Gap\"", "not a sublist"});
+  expect_refused("Contact=1", {"\"Contact\"", "is a sublist"});
+  expect_refused("Dirichlet->anchor=1", {"\"Dirichlet->anchor\"", "is a sublist"});
+  ParameterList list;
+  list.set("Contact", 1);
+  expect_error(ExitCode::bad_input, {"\"Contact\"", "not a sublist"},
+               [&] { assign(list, valid_deck(), "Contact->Steps=1"); });
+}
+
+TEST(Assign, TextThatDoesNotReadAsTheTypeIsRefused)
+{
+  expect_refused("Contact->Penalty=much", {"\"Contact->Penalty\"", "double", "\"much\""});
+  expect_refused("Contact->Penalty=1 m", {"\"1 m\""});
+  expect_refused("Contact->Penalty=", {"\"Contact->Penalty\"", "\"\""});
+  expect_refused("Contact->Steps=2.5", {"\"Contact->Steps\"", "int", "\"2.5\""});
+  expect_refused("Contact->Steps=99999999999", {"\"Contact->Steps\""});
+  expect_refused("Contact->Verbose=1", {"\"Contact->Verbose\"", "bool"});
+  expect_refused("Mesh->Cells=8", {"\"Mesh->Cells\"", "array of int"});
+  expect_refused("Mesh->Cells={1.5, 2}", {"\"Mesh->Cells\"", "array of int"});
+  expect_refused("Mesh->Cells={1, two}", {"\"Mesh->Cells\"", "array of int"});
+  expect_refused("Mesh->Lower={1, 2m}", {"\"Mesh->Lower\"", "array of double"});
+}
+
+TEST(Assign, TextWithoutNameOrValueIsRefused)
+{
+  expect_refused("Contact->Penalty", {"Contact->Penalty", "=value"});
+  expect_refused("=1", {"=value"});
+}
+
+TEST(FieldText, DoublesKeepAllTheirDigits)
+{
+  for (const double value :
+       {0.1, 1. / 3, -2e-300, 1e22, std::nextafter(16., 17.), std::numeric_limits<double>::max()}) {
+    ParameterList list;
+    list.set("Gap", value);
+    EXPECT_EQ(std::stod(field_text(list, "Gap")), value) << field_text(list, "Gap");
+  }
+}
+
+TEST(Validate, RefusedValueIsSpeltAsInADeck)
+{
+  ParameterList array, boolean;
+  array.sublist("Mesh").set("Cells", Array<double>(tuple(1., 2.5)));
+  expect_invalid(array, {"{1, 2.5}"});
+  boolean.sublist("Contact").set("Steps", true);
+  expect_invalid(boolean, {"true"});
+}
+
+TEST(NearestName, IsTheOneOfLeastEditDistanceWithoutRegardToCase)
+{
+  EXPECT_EQ(rpc::nearest_name("yeild stress", {"Side", "Yield Stress", "Gap"}), "Yield Stress");
+  EXPECT_EQ(rpc::nearest_name("ga", {"Side", "Gap", "Gab Gap"}), "Gap");
+  EXPECT_EQ(rpc::nearest_name("Gap", {}), "");
+}
+
+TEST(Join, PutsCommasBetween)
+{
+  EXPECT_EQ(rpc::join({"a", "b", "c"}), "a, b, c");
+  EXPECT_EQ(rpc::join({"a"}), "a");
+  EXPECT_EQ(rpc::join({}), "");
+}
+
+TEST(PrintParameters, ListsEachParameterWithTypeDefaultAndDoc)
+{
+  std::ostringstream out;
+  rpc::print_parameters(out, valid_deck());
+  const std::string text = out.str();
+  for (const std::string line :
+       {"- `Type` (string, default `box`): Kind of mesh.",
+        "- `Lower` (array of double, default `{0, 0}`): Lower corner",
+        "- `Cells` (array of int, default `{8, 8}`): Number of cells.", "- `Blocks` (array of string, default `{a}`)",
+        "- `Penalty` (double, default `1e+08`): r > 0 [Pa/m].", "- `Steps` (int, default `3`)",
+        "- `Verbose` (bool, default `false`)", "- `Gap` (number or expression, default `0`): Gap [m].",
+        "### Dirichlet-><any name>\n\nPrescribed displacements.", "- `Side` (string, default ``)",
+        "### NOX\n\nHanded on to NOX.", "### Mesh\n\nThe mesh."})
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\nis not in\n" << text;
+  EXPECT_EQ(text.find("**"), std::string::npos) << text; // the mark of a pass-through is no parameter
+}
+
+} // namespace

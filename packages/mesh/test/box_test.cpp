@@ -1,0 +1,379 @@
+#include "rpc/mesh/box.hpp"
+
+#include "../../core/test/expect_error.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <array>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace
+{
+
+using rpc::ExitCode;
+using rpc::GO;
+using rpc::LO;
+using rpc::mesh::BoxOptions;
+using rpc::mesh::Element;
+using rpc::mesh::make_box;
+using rpc::mesh::Mesh;
+using rpc::mesh::Side;
+using rpc::test::expect_error;
+using Position = std::array<GO, 3>;
+
+/// Boxes of different shapes, flat and thin ones too, all divisible among up to 4 ranks.
+std::vector<BoxOptions> boxes()
+{
+  return {{{-1, 2}, {1.5, 3}, {5, 3}, Element{2, 1}},
+          {{-1, 2}, {1.5, 3}, {3, 4}, Element{2, 2}},
+          {{0, 0}, {7, 1}, {7, 1}, Element{2, 1}},
+          {{0, 0}, {1, 7}, {1, 7}, Element{2, 2}},
+          {{-1, 2, 0.5}, {0, 3, 4}, {3, 2, 4}, Element{3, 1}},
+          {{-1, 2, 0.5}, {0, 3, 4}, {2, 2, 3}, Element{3, 2}}};
+}
+
+std::string text_of(const BoxOptions &box)
+{
+  std::ostringstream text;
+  text << box.element.name() << ", cells";
+  for (const int n : box.cells) text << ' ' << n;
+  return text.str();
+}
+
+/// The lattices of a whole box, and where a rank's nodes and cells lie on them by their coordinates.
+struct Lattice {
+  const BoxOptions &box;
+  int dim = box.element.dim, order = box.element.order;
+
+  GO extent(const int d, const int per_cell) const { return GO(per_cell) * box.cells[d]; }
+  GO num_nodes() const { return count(order, 1); }
+  GO num_cells() const { return count(1, 0); }
+  GO count(const int per_cell, const int more) const
+  {
+    GO n = 1;
+    for (int d = 0; d < dim; ++d) n *= extent(d, per_cell) + more;
+    return n;
+  }
+  GO id(const Position &at, const int per_cell, const int more) const // x fastest
+  {
+    GO result = 0;
+    for (int d = dim - 1; d >= 0; --d) result = result * (extent(d, per_cell) + more) + at[d];
+    return result;
+  }
+  Position position(GO index, const int per_cell, const int more) const
+  {
+    Position at{};
+    for (int d = 0; d < dim; ++d) {
+      at[d] = index % (extent(d, per_cell) + more);
+      index /= extent(d, per_cell) + more;
+    }
+    return at;
+  }
+  double coordinate(const GO at, const int d) const
+  {
+    return box.lower[d] + (box.upper[d] - box.lower[d]) * at / extent(d, order);
+  }
+  /// From a node's coordinates, which must lie on the lattice.
+  template <class Coords>
+  Position node_position(const Coords &coords, const LO lid) const
+  {
+    Position at{};
+    for (int d = 0; d < dim; ++d) {
+      const double t = (coords(lid, d) - box.lower[d]) / (box.upper[d] - box.lower[d]) * extent(d, order);
+      at[d] = std::llround(t);
+      EXPECT_NEAR(t, at[d], 1e-12 * extent(d, order));
+    }
+    return at;
+  }
+  GO node_id(const Position &at) const { return id(at, order, 1); }
+  GO cell_id(const Position &at) const { return id(at, 1, 0); }
+  std::set<GO> nodes_of(const Position &cell) const
+  {
+    std::set<GO> nodes;
+    for (const auto &step : box.element.lattice()) {
+      Position at{};
+      for (int d = 0; d < dim; ++d) at[d] = order * cell[d] + step[d];
+      nodes.insert(node_id(at));
+    }
+    return nodes;
+  }
+};
+
+/// A box's mesh with the lattice position of each local node and cell.
+struct Made {
+  BoxOptions box;
+  Lattice lattice{box};
+  Mesh mesh = make_box(box, Tpetra::getDefaultComm());
+  rpc::HostView<double **> coords{"coords", mesh.coords.extent(0), mesh.coords.extent(1)};
+  rpc::HostView<LO **> cells{"cells", mesh.cells.extent(0), mesh.cells.extent(1)};
+  std::vector<Position> node, cell;
+
+  explicit Made(const BoxOptions &options) : box(options)
+  {
+    Kokkos::deep_copy(coords, rpc::to_host(mesh.coords));
+    Kokkos::deep_copy(cells, rpc::to_host(mesh.cells));
+    for (LO n = 0; n < mesh.num_local_nodes(); ++n) node.push_back(lattice.node_position(coords, n));
+    for (LO c = 0; c < mesh.num_cells(); ++c) {
+      Position corner = node[cells(c, 0)]; // node 0 is the lattice's lowest
+      for (int d = 0; d < mesh.dim(); ++d) corner[d] /= mesh.element.order;
+      cell.push_back(corner);
+    }
+  }
+  GO node_id(const LO lid) const { return lattice.node_id(node[lid]); }
+};
+
+/// How often each id in [0, n) occurs over all ranks.
+template <class Ids>
+std::vector<int> occurrences(const Ids &ids, const GO n)
+{
+  std::vector<int> mine(n, 0), all(n, 0);
+  for (std::size_t k = 0; k < ids.extent(0); ++k) {
+    EXPECT_TRUE(0 <= ids(k) && ids(k) < n) << ids(k);
+    if (0 <= ids(k) && ids(k) < n) ++mine[ids(k)];
+  }
+  Teuchos::reduceAll(*Tpetra::getDefaultComm(), Teuchos::REDUCE_SUM, static_cast<int>(n), mine.data(), all.data());
+  return all;
+}
+
+template <class Check>
+void for_each_box(const Check &check)
+{
+  for (const BoxOptions &box : boxes()) {
+    SCOPED_TRACE(text_of(box));
+    check(Made(box));
+  }
+}
+
+TEST(Box, EachNodeAndCellIdOccursOnceOverAllRanks)
+{
+  for_each_box([](const Made &made) {
+    EXPECT_EQ(made.mesh.owned_nodes->getGlobalNumElements(), std::size_t(made.lattice.num_nodes()));
+    EXPECT_EQ(occurrences(made.mesh.node_id, made.lattice.num_nodes()), std::vector<int>(made.lattice.num_nodes(), 1));
+    EXPECT_EQ(occurrences(made.mesh.cell_id, made.lattice.num_cells()), std::vector<int>(made.lattice.num_cells(), 1));
+    EXPECT_EQ(static_cast<LO>(made.mesh.node_id.extent(0)), made.mesh.num_owned_nodes());
+    EXPECT_EQ(static_cast<LO>(made.mesh.cell_id.extent(0)), made.mesh.num_owned_cells);
+  });
+}
+
+TEST(Box, NodesAndCellsLieWhereTheirIdsSay)
+{
+  for_each_box([](const Made &made) {
+    for (LO n = 0; n < made.mesh.num_owned_nodes(); ++n) {
+      EXPECT_EQ(made.mesh.node_id(n), made.node_id(n));
+      const Position at = made.lattice.position(made.mesh.node_id(n), made.lattice.order, 1);
+      for (int d = 0; d < made.mesh.dim(); ++d)
+        EXPECT_NEAR(made.coords(n, d), made.lattice.coordinate(at[d], d), 4e-16 * 8); // 8 > any coordinate
+    }
+    for (LO c = 0; c < made.mesh.num_owned_cells; ++c)
+      EXPECT_EQ(made.mesh.cell_id(c), made.lattice.cell_id(made.cell[c]));
+  });
+}
+
+TEST(Box, EndsOfTheBoxAreMetExactly)
+{
+  const BoxOptions box{{0.1, -0.7}, {0.3, 1. / 3}, {7, 4}, Element{2, 1}};
+  const Made made(box);
+  for (LO n = 0; n < made.mesh.num_local_nodes(); ++n) {
+    for (int d = 0; d < 2; ++d) {
+      const GO at = made.node[n][d];
+      if (at == 0 || at == box.cells[d]) {
+        EXPECT_EQ(made.coords(n, d), at == 0 ? box.lower[d] : box.upper[d]);
+      }
+    }
+  }
+}
+
+TEST(Box, GlobalIndicesAreConsecutiveAndOwnedNodesComeFirstInTheOverlap)
+{
+  for_each_box([](const Made &made) {
+    const rpc::Comm &comm = made.mesh.comm();
+    const LO num_owned = made.mesh.num_owned_nodes();
+    GO end = 0;
+    Teuchos::scan(comm, Teuchos::REDUCE_SUM, GO(num_owned), Teuchos::outArg(end));
+    ASSERT_LE(num_owned, made.mesh.num_local_nodes());
+    for (LO n = 0; n < num_owned; ++n) {
+      EXPECT_EQ(made.mesh.owned_nodes->getGlobalElement(n), end - num_owned + n);
+      EXPECT_EQ(made.mesh.overlap_nodes->getGlobalElement(n), end - num_owned + n);
+    }
+    for (LO n = num_owned; n < made.mesh.num_local_nodes(); ++n)
+      EXPECT_FALSE(made.mesh.owned_nodes->isNodeGlobalElement(made.mesh.overlap_nodes->getGlobalElement(n)));
+  });
+}
+
+TEST(Box, GhostNodesLieWhereTheirOwnersHaveThem)
+{
+  for_each_box([](const Made &made) {
+    rpc::Vector id(made.mesh.owned_nodes), id_overlap(made.mesh.overlap_nodes);
+    for (LO n = 0; n < made.mesh.num_owned_nodes(); ++n)
+      id.replaceLocalValue(n, static_cast<double>(made.mesh.node_id(n)));
+    id_overlap.doImport(id, rpc::Import(made.mesh.owned_nodes, made.mesh.overlap_nodes), Tpetra::INSERT);
+    const auto ids = id_overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (LO n = 0; n < made.mesh.num_local_nodes(); ++n) EXPECT_EQ(ids(n, 0), made.node_id(n)) << "node " << n;
+  });
+}
+
+TEST(Box, LocalCellsAreThoseThatTouchAnOwnedNodeAndNoOthers)
+{
+  for_each_box([](const Made &made) {
+    std::set<GO> owned, touching, local;
+    for (LO n = 0; n < made.mesh.num_owned_nodes(); ++n) owned.insert(made.node_id(n));
+    for (GO c = 0; c < made.lattice.num_cells(); ++c)
+      for (const GO node : made.lattice.nodes_of(made.lattice.position(c, 1, 0)))
+        if (owned.count(node) > 0) touching.insert(c);
+    for (const Position &cell : made.cell) local.insert(made.lattice.cell_id(cell));
+    EXPECT_EQ(local, touching);
+    EXPECT_EQ(local.size(), made.cell.size()); // each once
+  });
+}
+
+TEST(Box, CellNodesFollowTheElementsLattice)
+{
+  for_each_box([](const Made &made) {
+    for (LO c = 0; c < made.mesh.num_cells(); ++c)
+      for (int a = 0; a < made.mesh.element.num_nodes(); ++a)
+        for (int d = 0; d < made.mesh.dim(); ++d)
+          EXPECT_EQ(made.node[made.cells(c, a)][d],
+                    made.mesh.element.order * made.cell[c][d] + made.mesh.element.lattice()[a][d]);
+  });
+}
+
+TEST(Box, LocalNodesAreThoseOfLocalCellsEachOnce)
+{
+  for_each_box([](const Made &made) {
+    std::set<GO> of_cells, local;
+    for (const Position &cell : made.cell) of_cells.merge(made.lattice.nodes_of(cell));
+    for (LO n = 0; n < made.mesh.num_local_nodes(); ++n) local.insert(made.node_id(n));
+    EXPECT_EQ(local, of_cells);
+    EXPECT_EQ(static_cast<LO>(local.size()), made.mesh.num_local_nodes());
+  });
+}
+
+struct Direction {
+  std::string name;
+  int d;
+  bool upper;
+};
+const std::vector<Direction> &directions()
+{
+  static const std::vector<Direction> all = {{"left", 0, false}, {"right", 0, true}, {"bottom", 1, false},
+                                             {"top", 1, true},   {"back", 2, false}, {"front", 2, true}};
+  return all;
+}
+
+TEST(Box, SidesAreNamedLeftRightBottomTopBackFront)
+{
+  for_each_box([](const Made &made) {
+    std::vector<std::string> names, expected;
+    for (const Side &side : made.mesh.sides) names.push_back(side.name);
+    for (int k = 0; k < 2 * made.mesh.dim(); ++k) expected.push_back(directions()[k].name);
+    EXPECT_EQ(names, expected);
+  });
+}
+
+TEST(Box, SidesHoldEachFacetThatTouchesAnOwnedNodeOnce)
+{
+  for_each_box([](const Made &made) {
+    std::set<GO> owned;
+    for (LO n = 0; n < made.mesh.num_owned_nodes(); ++n) owned.insert(made.node_id(n));
+    for (int k = 0; k < 2 * made.mesh.dim(); ++k) {
+      const Direction &direction = directions()[k];
+      SCOPED_TRACE(direction.name);
+      const auto on_side = [&](const GO node) {
+        const GO end = direction.upper ? made.lattice.extent(direction.d, made.lattice.order) : 0;
+        return made.lattice.position(node, made.lattice.order, 1)[direction.d] == end;
+      };
+      std::set<std::set<GO>> expected, found; // a facet by its nodes
+      for (GO c = 0; c < made.lattice.num_cells(); ++c) {
+        std::set<GO> facet;
+        bool touches = false;
+        for (const GO node : made.lattice.nodes_of(made.lattice.position(c, 1, 0))) {
+          if (!on_side(node)) continue;
+          facet.insert(node);
+          touches = touches || owned.count(node) > 0;
+        }
+        if (touches) expected.insert(facet);
+      }
+      const auto facets = rpc::to_host(made.mesh.side(direction.name, "test").facets);
+      for (std::size_t f = 0; f < facets.extent(0); ++f) {
+        std::set<GO> nodes;
+        for (std::size_t a = 0; a < facets.extent(1); ++a) nodes.insert(made.node_id(facets(f, a)));
+        found.insert(nodes);
+      }
+      EXPECT_EQ(found, expected);
+      EXPECT_EQ(facets.extent(0), expected.size());
+    }
+  });
+}
+
+TEST(Box, FacetsBelongToTheirCellsAndPointOutward)
+{
+  for_each_box([](const Made &made) {
+    for (int k = 0; k < 2 * made.mesh.dim(); ++k) {
+      const Direction &direction = directions()[k];
+      SCOPED_TRACE(direction.name);
+      const Side &side = made.mesh.side(direction.name, "test");
+      const auto facets = rpc::to_host(side.facets);
+      const auto cell = rpc::to_host(side.cell);
+      const auto ordinal = rpc::to_host(side.ordinal);
+      for (std::size_t f = 0; f < facets.extent(0); ++f) {
+        const auto &nodes = made.mesh.element.facets()[ordinal(f)];
+        for (std::size_t a = 0; a < nodes.size(); ++a) EXPECT_EQ(facets(f, a), made.cells(cell(f), nodes[a]));
+        const auto edge = [&](const int node, const int d) {
+          return d < made.mesh.dim() ? made.coords(facets(f, node), d) - made.coords(facets(f, 0), d) : 0.;
+        };
+        std::array<double, 3> normal{edge(1, 1), -edge(1, 0), 0};
+        if (made.mesh.dim() == 3)
+          for (int d = 0; d < 3; ++d)
+            normal[d] = edge(1, (d + 1) % 3) * edge(3, (d + 2) % 3) - edge(1, (d + 2) % 3) * edge(3, (d + 1) % 3);
+        const double length = std::hypot(normal[0], normal[1], normal[2]);
+        ASSERT_GT(length, 0);
+        EXPECT_NEAR(normal[direction.d] / length, direction.upper ? 1 : -1, 1e-14);
+      }
+    }
+  });
+}
+
+TEST(Box, UnknownSideIsRefusedWithTheListOfSides)
+{
+  const Made made(boxes()[0]);
+  expect_error(ExitCode::bad_input, {"\"Contact->Side\"", "\"floor\"", "left, right, bottom, top"},
+               [&] { made.mesh.side("floor", "Contact->Side"); });
+}
+
+TEST(Box, BlocksShareAsFewFacesAsPossible)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  if (comm->getSize() == 1) GTEST_SKIP() << "one rank shares nothing";
+  for (const bool tall : {false, true}) {
+    const Made made({{0, 0}, {1, 1}, {tall ? 4 : 40, tall ? 40 : 4}, Element{2, 1}});
+    const GO ghosts = rpc::sum_all(*comm, GO(made.mesh.num_local_nodes() - made.mesh.num_owned_nodes()));
+    EXPECT_EQ(ghosts,
+              2 * 5 * (comm->getSize() - 1)); // cut across the short direction: 5 nodes wide, seen from both sides
+  }
+}
+
+TEST(Box, MoreRanksThanTheCellsCanServeIsABadMeshOnEveryRank)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  if (comm->getSize() == 1) GTEST_SKIP() << "one rank can always have the whole box";
+  const std::string ranks = std::to_string(comm->getSize()) + " ranks";
+  expect_error(ExitCode::bad_mesh, {"1 x 1 cells", ranks.c_str(), "fewer ranks"}, [&] {
+    make_box({{0, 0}, {1, 1}, {1, 1}, Element{2, 1}}, comm);
+  });
+  expect_error(ExitCode::bad_mesh, {"1 x 1 x 1 cells"}, [&] {
+    make_box({{0, 0, 0}, {1, 1, 1}, {1, 1, 1}, Element{3, 1}}, comm);
+  });
+}
+
+TEST(Diameter, IsTheDiagonalWhereverTheBoxLies)
+{
+  for (const double shift : {0., 100., -100.}) {
+    const Made flat({{shift, shift}, {shift + 4, shift + 3}, {8, 4}, Element{2, 1}});
+    EXPECT_NEAR(rpc::mesh::diameter(flat.mesh), 5, 1e-13);
+    const Made solid({{shift, shift, shift}, {shift + 2, shift + 3, shift + 6}, {2, 2, 4}, Element{3, 1}});
+    EXPECT_NEAR(rpc::mesh::diameter(solid.mesh), 7, 1e-13);
+  }
+}
+
+} // namespace

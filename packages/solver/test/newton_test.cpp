@@ -1,0 +1,200 @@
+#include "rpc/fem/elasticity.hpp"
+#include "rpc/mesh/box.hpp"
+#include "rpc/solver/exact_line_search.hpp"
+#include "rpc/solver/linear_solver.hpp"
+#include "rpc/solver/newton.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <memory>
+#include <random>
+
+namespace
+{
+
+using namespace rpc;
+using contact::ContactNodes;
+using contact::LineModel;
+
+/// A line model of given kinks, all on rank 0; the elastic part is slope(0) and curvature.
+struct Line {
+  ContactNodes nodes;
+  DeviceView<double *> v, dv, lambda;
+
+  explicit Line(const int n, const unsigned seed)
+  {
+    const int mine = Tpetra::getDefaultComm()->getRank() == 0 ? n : 0;
+    nodes.node = DeviceView<LO *>("node", mine);
+    const auto fill = [mine](const std::string &label, auto &&value) {
+      HostView<double *> host(label, mine);
+      for (int i = 0; i < mine; ++i) host(i) = value();
+      return to_device(host);
+    };
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1), sign(-1, 1);
+    nodes.weight = fill("weight", [&] { return 0.1 + unit(random); });
+    nodes.yield =
+        fill("yield", [&] { return unit(random) < 0.1 ? std::numeric_limits<double>::infinity() : 1 + unit(random); });
+    nodes.penalty = fill("penalty", [&] { return std::pow(10, 8 * unit(random)); }); // kinks at all scales
+    v = fill("v", [&] { return sign(random); });
+    dv = fill("dv", [&] { return sign(random); });
+    lambda = fill("lambda", [&] { return unit(random); });
+  }
+  LineModel model(const double slope, const double curvature) const
+  {
+    return LineModel(*Tpetra::getDefaultComm(), slope, curvature, nodes, v, dv, lambda);
+  }
+};
+
+TEST(ExactStep, FindsTheRootOfTheSlopeWhateverTheKinks)
+{
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    const Line line(1 + seed % 60, seed);
+    const auto model = line.model(-0.01 * (seed + 1), seed % 3 == 0 ? 1e-3 : 2);
+    const double t = solver::exact_step(model);
+    ASSERT_GT(t, 0);
+    const double eps = 1e-10 * t; // the slope changes sign at t
+    EXPECT_LE(model.at(t - eps).slope, 1e-12 * 0.01 * (seed + 1)) << seed;
+    EXPECT_GE(model.at(t + eps).slope, -1e-12 * 0.01 * (seed + 1)) << seed;
+  }
+}
+
+TEST(ExactStep, IsOneForAQuadraticAndItsNewtonStep)
+{
+  const Line line(0, 0);
+  EXPECT_NEAR(solver::exact_step(line.model(-3, 3)), 1, 1e-12);
+  EXPECT_NEAR(solver::exact_step(line.model(-3e-20, 3e-20)), 1, 1e-12);
+  EXPECT_NEAR(solver::exact_step(line.model(-1, 1e-6)), 1e6, 1e-6);
+}
+
+TEST(ExactStep, IsZeroWithoutDescent)
+{
+  const Line line(3, 7);
+  EXPECT_EQ(solver::exact_step(line.model(1, 2)), 0);
+  EXPECT_EQ(solver::exact_step(line.model(std::nan(""), 2)), 0);
+}
+
+/// The paper's beam at 1/h = 16, xi = 16, where the states are many.
+struct Beam {
+  fem::Discretization d;
+  std::shared_ptr<contact::SmoothedFunctional> functional;
+  std::shared_ptr<solver::LinearSolver> linear;
+  RCP<Vector> u;
+
+  explicit Beam(const solver::LinearSolverOptions &options = {}, const double xi = 16)
+  {
+    mesh::BoxOptions box{{0, 0}, {5, 1}, {80, 16}, {2, 1}};
+    d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
+    std::vector<fem::DirichletCondition> held;
+    for (const char *side : {"left", "right"}) held.push_back({side, side, {ScalarField(0.), ScalarField(0.)}});
+    const auto load = rcp(new Vector(d.owned_dofs));
+    const ScalarField push("push", [](const Point &x) { return -20 * std::sin(std::acos(-1.) * x[0] / 5); });
+    fem::add_traction(d, d.mesh->side("top", ""), {ScalarField(0.), push, ScalarField(0.)}, "Traction", *load);
+    auto problem =
+        fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, {2000, 0.3}), load, fem::dirichlet_dofs(d, held));
+    contact::ContactOptions contact;
+    contact.side = "bottom";
+    contact.yield_stress = ScalarField(xi);
+    auto nodes = contact::contact_nodes(d, contact, problem.dirichlet);
+    functional = std::make_shared<contact::SmoothedFunctional>(d.mesh->comm(), std::move(problem), std::move(nodes));
+    linear = std::make_shared<solver::LinearSolver>(options, functional->hessian(), fem::node_coordinates(d),
+                                                    fem::rigid_body_modes(d));
+    u = rcp(new Vector(d.owned_dofs));
+  }
+};
+
+void ignore(const solver::NewtonStep &) {}
+
+TEST(Newton, FullStepsCycleWhereExactStepsConverge)
+{
+  for (const double xi : {16., 18.}) {
+    Beam full({}, xi), exact({}, xi);
+    solver::NewtonOptions full_steps;
+    full_steps.nox.sublist("Line Search").set("Method", "Full Step");
+    full_steps.max_iterations = 30;
+    std::vector<std::array<GO, 3>> states;
+    const auto record = [&](const solver::NewtonStep &step) {
+      states.push_back({step.states.open, step.states.stuck, step.states.yielded});
+    };
+    contact::MinimizeResult with_full, with_exact;
+    for (int uzawa = 0; uzawa < 4;
+         ++uzawa) { // cold each time: the start that a multiplier update leaves is where full steps cycle
+      if (uzawa == 0 || with_full.converged) {
+        states.clear();
+        with_full = solver::minimize(*full.functional, *full.linear, full.u, full_steps, false, record);
+        full.functional->update_multipliers(*full.u);
+      }
+      with_exact = solver::minimize(*exact.functional, *exact.linear, exact.u, {}, false, ignore);
+      EXPECT_TRUE(with_exact.converged) << with_exact.reason;
+      EXPECT_LE(with_exact.newton_iterations, 12);
+      exact.functional->update_multipliers(*exact.u);
+    }
+    EXPECT_FALSE(with_full.converged);
+    EXPECT_EQ(with_full.newton_iterations, 30);
+    EXPECT_GT(std::count(states.begin(), states.end(), states.back()), 1)
+        << "the states of the last step came before: a cycle";
+  }
+}
+
+TEST(Newton, FunctionalFallsAtEveryExactStep)
+{
+  Beam beam;
+  double previous = beam.functional->value(*beam.u);
+  solver::NewtonOptions options;
+  options.max_iterations = 1;
+  for (int k = 0; k < 12; ++k) {
+    solver::minimize(*beam.functional, *beam.linear, beam.u, options, false, ignore);
+    const double now = beam.functional->value(*beam.u);
+    EXPECT_LE(now, previous + 1e-13 * std::abs(previous)) << k;
+    previous = now;
+  }
+  Vector F(beam.u->getMap());
+  beam.functional->gradient(*beam.u, F);
+  EXPECT_LT(F.norm2(), 1e-10 * beam.functional->force_scale());
+}
+
+TEST(Newton, SaysWhyItFailed)
+{
+  solver::LinearSolverOptions weak;
+  weak.max_iterations = 1;
+  Beam beam(weak);
+  solver::NewtonOptions options;
+  options.max_iterations = 2;
+  const auto result = solver::minimize(*beam.functional, *beam.linear, beam.u, options, false, ignore);
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.reason.find("linear solver"), std::string::npos) << result.reason;
+}
+
+TEST(LinearSolver, SetsUpAgainOnlyWhenTheMatrixHasChanged)
+{
+  Beam beam;
+  Vector x(beam.u->getMap());
+  EXPECT_TRUE(beam.linear->solve(*beam.functional->problem().load, x, 1e-8).converged);
+  EXPECT_TRUE(beam.linear->solve(*beam.functional->problem().load, x, 1e-8).converged);
+  EXPECT_EQ(beam.linear->counts().preconditioner_setups, 1);
+  beam.functional->update_hessian(*beam.u);
+  beam.linear->matrix_changed();
+  const auto result = beam.linear->solve(*beam.functional->problem().load, x, 1e-8);
+  EXPECT_TRUE(result.converged);
+  EXPECT_LE(result.iterations, 20);
+  EXPECT_EQ(beam.linear->counts().preconditioner_setups, 2);
+  Vector r(x.getMap());
+  beam.functional->hessian()->apply(x, r);
+  r.update(1., *beam.functional->problem().load, -1.);
+  EXPECT_LT(r.norm2(), 1.01e-8 * beam.functional->problem().load->norm2());
+}
+
+TEST(LinearSolver, StopsEarlyWhereLessAccuracyIsAskedFor)
+{
+  Beam beam;
+  Vector x(beam.u->getMap());
+  const int fine = beam.linear->solve(*beam.functional->problem().load, x, 1e-8).iterations;
+  const int coarse = beam.linear->solve(*beam.functional->problem().load, x, 1e-2).iterations;
+  EXPECT_LT(coarse, fine);
+  EXPECT_EQ(beam.linear->solve(*beam.functional->problem().load, x, 1e-30).iterations, fine); // bounded by the options
+}
+
+} // namespace

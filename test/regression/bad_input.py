@@ -1,0 +1,236 @@
+"""Whatever is wrong with the input: one message that names the parameter, the value and the rule, the right exit code,
+and no file left. On several ranks only what has to be agreed upon among them."""
+
+import re
+import unittest
+
+from rpc_run import BEAM, RANKS, SMALL, RpcTestCase, files, run_all
+
+BAD_INPUT, BAD_MESH, NO_SOLUTION = 2, 3, 5
+
+# (assignments, parts of the message)
+ASSIGNMENTS = [
+    # names
+    (["Material->Youngs Modulus=3"], ['"Material->Youngs Modulus"', 'Did you mean "Young\'s Modulus"?']),
+    (["Materail->Poisson's Ratio=0.2"], ['"Materail"', 'Did you mean "Material"?']),
+    (["Yield Stress=3"], ['"Yield Stress"', "Valid here: Mesh, Material"]),
+    (["Dirichlet->left->W=0"], ['"Dirichlet->left->W"', "X, Y, Z"]),
+    (["Output=3"], ['"Output" is a sublist']),
+    (["Dirichlet->left=3"], ['"Dirichlet->left" is a sublist']),
+    (["Mesh->Type->A=3"], ['"Mesh->Type" is a parameter, not a sublist']),
+    (["Contact"], ['"Sublist->Parameter=value"', 'got "Contact"']),
+    (["=3"], ['"Sublist->Parameter=value"']),
+    # types
+    (["Material->Young's Modulus=stiff"], ['"Material->Young\'s Modulus" must be a double', '"stiff"']),
+    (["Material->Young's Modulus="], ['"Material->Young\'s Modulus" must be a double', 'got ""']),
+    (["Material->Young's Modulus=nan"], ['"Material->Young\'s Modulus" must be a double, and finite', '"nan"']),
+    (["Material->Poisson's Ratio=nan"], ['"Material->Poisson\'s Ratio" must be a double, and finite']),
+    (["Uzawa->Tolerance=nan"], ['"Uzawa->Tolerance" must be a double, and finite']),
+    (["Uzawa->Maximum Iterations=2.5"], ['"Uzawa->Maximum Iterations" must be an int', '"2.5"']),
+    (["Output->JSON=maybe"], ['"Output->JSON" must be a bool', '"maybe"']),
+    (["Mesh->Cells=20"], ['"Mesh->Cells" must be an array of int, such as {160, 32}', '"20"']),
+    (["Mesh->Cells={20,4"], ['"Mesh->Cells" must be an array of int', '"{20,4"']),
+    (["Mesh->Cells={2.5,4}"], ['"Mesh->Cells" must be an array of int', '"{2.5,4}"']),
+    (["Mesh->Cells={20000000000,4}"], ['"Mesh->Cells" must be an array of int']),
+    (["Mesh->Lower={0,zero}"], ['"Mesh->Lower" must be an array of double', '"{0,zero}"']),
+    (["Mesh->Upper={nan,1}"], ['"Mesh->Upper" must be an array of double', "all finite", '"{nan,1}"']),
+    # mesh
+    (["Mesh->Type=gmsh"], ['"Mesh->Type" must be one of box', '"gmsh"']),
+    (["Mesh->Element=Q7"], ['"Mesh->Element" must be one of', "Q1", '"Q7"']),
+    (["Mesh->Cells={0,4}"], ['"Mesh->Cells" must be > 0', "got 0 in direction 1"]),
+    (["Mesh->Cells={20,-4}"], ['"Mesh->Cells" must be > 0', "got -4 in direction 2"]),
+    (["Mesh->Cells={2000000000,2000000000}"], ['"Mesh->Cells"', "nodes; at most"]),
+    (["Mesh->Cells={20}"], ['"Mesh->Lower", "Upper" and "Cells" must be of one length, got 2, 2 and 1']),
+    (["Mesh->Upper={0,1}"], ['"Mesh->Upper" must be above "Mesh->Lower"', "0 and 0 in direction 1"]),
+    (["Mesh->Upper={5,-1}"], ['"Mesh->Upper" must be above "Mesh->Lower"', "0 and -1 in direction 2"]),
+    # material
+    (["Material->Young's Modulus=0"], ['"Material->Young\'s Modulus" must be > 0', "[Pa]", "got 0"]),
+    (["Material->Young's Modulus=-1"], ['"Material->Young\'s Modulus" must be > 0', "got -1"]),
+    (["Material->Poisson's Ratio=0.5"], ['"Material->Poisson\'s Ratio" must be in (-1, 0.5)', "got 0.5"]),
+    (["Material->Poisson's Ratio=-1"], ['"Material->Poisson\'s Ratio" must be in (-1, 0.5)', "got -1"]),
+    # fields
+    (["Contact->Yield Stress=0"], ['"Contact->Yield Stress" must be > 0 [Pa]', "got 0"]),
+    (["Contact->Yield Stress=-inf"], ['"Contact->Yield Stress" must be > 0 [Pa]', "got -inf"]),
+    (["Contact->Yield Stress=nan"], ['"Contact->Yield Stress"', "not a number"]),
+    (["Contact->Yield Stress="], ['"Contact->Yield Stress"', "empty"]),
+    (["Contact->Yield Stress=16+*2"], ['"Contact->Yield Stress" = "16+*2"', "at character 4", "Variables: x, y, z"]),
+    (["Contact->Yield Stress=2*t"], ['"Contact->Yield Stress" = "2*t"', '"t"', "Variables: x, y, z"]),
+    (["Contact->Gap=inf"], ['"Contact->Gap" = "inf" must be a finite number']),
+    (["Contact->Penalty=0"], ['"Contact->Penalty" must be > 0', "[Pa/m]", "got 0"]),
+    (["Dirichlet->left->Z=0"], ['"Dirichlet->left->Z"', "2D"]),
+    (["Traction->top->Z=3"], ['"Traction->top->Z" must be 0 in 2D', "got 3"]),
+    # solvers
+    (["Uzawa->Tolerance=-1"], ['"Uzawa->Tolerance" must be in (0, 1)', "got -1"]),
+    (["Uzawa->Maximum Iterations=0"], ['"Uzawa->Maximum Iterations" must be > 0', "got 0"]),
+    (["Uzawa->Stopping Test=none"], ['"Uzawa->Stopping Test" must be one of certificate, multiplier change', '"none"']),
+    (["NOX->Step Tolerance=-1"], ['"NOX->Step Tolerance" must be > 0', "got -1"]),
+    (["NOX->Residual Tolerance=0"], ['"NOX->Residual Tolerance" must be > 0', "got 0"]),
+    (["NOX->Maximum Iterations=0"], ['"NOX->Maximum Iterations" must be > 0', "got 0"]),
+    (["Linear Solver->Tolerance=-1e-8"], ['"Linear Solver->Tolerance" must be in (0, 1)', "got -1e-08"]),
+    (["Linear Solver->Maximum Iterations=0"], ['"Linear Solver->Maximum Iterations" must be > 0', "got 0"]),
+    (["Linear Solver->Reuse=all"], ['"Linear Solver->Reuse" must be one of none, tP, RP', '"all"']),
+    (["Linear Solver->Method=Gauss"], ['"Linear Solver->Method"', '"Gauss"', "It knows:", "PSEUDOBLOCK CG"]),
+    (["Linear Solver->Belos->Verbose=3"], ['"Linear Solver->Belos->Verbose"', 'Did you mean "Verbosity"?']),
+    (["Linear Solver->Belos->Verbosity=abc"], ['"Linear Solver->Belos"', '"Verbosity"', '"string"']),
+    (["Linear Solver->Method=Block CG", "Linear Solver->Belos->Block Size=-3"],
+     ['"Linear Solver->Belos"', '"Block Size" must be strictly positive']),
+    (["Linear Solver->MueLu->smoother: tipe=RELAXATION"],
+     ['"Linear Solver->MueLu->smoother: tipe"', 'Did you mean "smoother: type"?']),
+    (["Linear Solver->MueLu->max levels=many"], ['"Linear Solver->MueLu"', '"max levels"', 'correct type is "int"']),
+    (["Linear Solver->MueLu->max levels=0"], ['"Linear Solver->MueLu->max levels" must be > 0', "got 0"]),
+    (["NOX->Line Serach->Method=Exact"], ['"NOX->Line Serach"', 'Did you mean "Line Search"?']),
+]
+
+# The same, where the ranks have to agree on what is wrong.
+COLLECTIVE_ASSIGNMENTS = [
+    (["Material->Young's Modulus=-3"], ['"Material->Young\'s Modulus" must be > 0', "got -3"]),
+    (["Contact->Side=nowhere"], ['"Contact->Side"', '"nowhere"', "left, right, bottom, top"]),
+    (["Traction->roof->Y=3"], ['"Traction->roof->Side"', '"roof"', "left, right, bottom, top"]),
+    (["Dirichlet->hinge->Y=0"], ['"Dirichlet->hinge->Side"', '"hinge"', "left, right, bottom, top"]),
+    (["Dirichlet->top->X=1"], ['"Dirichlet->left" and "Dirichlet->top" prescribe different X', "(0, 1)", "0 and 1 [m]"]),
+    (["Dirichlet->right->Y=y/0"], ['"Dirichlet->right->Y" = "y/0" must be a finite number', "got nan at (5, 0)"]),
+    (["Contact->Yield Stress=4-x"], ['"Contact->Yield Stress" must be > 0 [Pa]', '"4-x" at (4, 0)', "got 0"]),
+    (["Contact->Yield Stress=sqrt(4.1-x)"], ['"sqrt(4.1-x)"', "got nan at (4.25, 0)"]),
+    (["Contact->Gap=1/x"], ['"Contact->Gap" = "1/x" must be a finite number', "got inf at (0, 0)"]),
+    (["Traction->top->Y=log(4.5-x)"], ['"Traction->top->Y" = "log(4.5-x)" must be a finite number', "got nan at (4.5"]),
+    (["Traction->top->Y=1/(x>4)"], ['"Traction->top->Y" = "1/(x>4)" must be a finite number', "got inf at (0.", ", 1)"]),
+    (["Body Force->Y=1/(x<4)"], ['"Body Force->Y" = "1/(x<4)" must be a finite number', "got inf at (4."]),
+    (["NOX->Line Search->Method=Guess"], ['"NOX"', '"Method" in "Line Search"']),
+    (["NOX->Line Search->Metod=Exact"], ['"NOX->Line Search->Metod"']),
+    (["NOX->Line Search->Method=3"], ['"NOX"', '"Method"', '"int"']),
+    (["NOX->Printing->Output Information=much"], ['"NOX"', '"Output Information"']),
+    (["NOX->Status Tests->Test Type=Guess"], ['"NOX"', '"Guess"']),
+    (["Linear Solver->MueLu->smoother: type=SANDPAPER"], ['"Linear Solver->MueLu"', "'SANDPAPER'"]),
+    (["Linear Solver->MueLu->multigrid algorithm=guess"], ['"Linear Solver->MueLu"', '"guess"']),
+    (["Linear Solver->MueLu->smoother: params->chebyshev: degree=two"],
+     ['"Linear Solver->MueLu"', '"chebyshev: degree"', '"int"']),
+]
+
+
+def beam(old="", new=""):
+    """The beam's deck with a piece replaced."""
+    text = BEAM.read_text()
+    assert old in text, old
+    return text.replace(old, new).encode()
+
+
+E = """name="Young's Modulus" type="double" value="2000\""""
+
+# (file name, content, parts of the message)
+DECKS = [
+    ("empty.xml", b"", ['empty.xml" is empty']),
+    ("truncated.xml", BEAM.read_bytes()[:700], ["truncated.xml"]),
+    ("binary.xml", bytes(range(256)), ["binary.xml"]),
+    ("zeros.xml", bytes(300), ["zeros.xml"]),
+    ("words.xml", b"hello", ["words.xml", "line 1"]),
+    ("html.xml", b"<html></html>", ["html.xml", "expected tag ParameterList"]),
+    ("empty.yaml", b"", ['empty.yaml" is empty']),
+    ("binary.yaml", bytes(range(256)), ["binary.yaml"]),
+    ("open.yaml", b"beam:\n  Mesh: {Type: box", ["open.yaml"]),
+    ("twice.xml", beam("Upper", "Lower"), ['"Mesh->Lower" is given twice']),
+    ("misspelt.xml", beam("Penalty", "Penality"), ['"Contact->Penality"', 'Did you mean "Penalty"?']),
+    ("text.xml", beam(E, E.replace("2000", "stiff")), ['"Material->Young\'s Modulus" = "stiff"', "double"]),
+    ("nan.xml", beam(E, E.replace("2000", "nan")), ['"Material->Young\'s Modulus" must be a double, and finite', "nan"]),
+    ("type.xml", beam(E, E.replace("double", "string")), ['"Material->Young\'s Modulus" must be a double', "string"]),
+    ("flat.xml", beam(E, E.replace("double", "Array(double)").replace("2000", "{2000}")), ["Young's", "array of double"]),
+    ("cells.xml", beam("{160, 32}", "{160, 3.2}"), ['"Mesh->Cells" = "{160, 3.2}"', "Array(int)"]),
+    ("free.xml", re.sub(rb'  <ParameterList name="Dirichlet">.*?\n  </ParameterList>\n', b"", BEAM.read_bytes(),
+                        flags=re.S), ["no Dirichlet condition"]),
+    ("nothing.xml", beam('<Parameter name="X" type="double" value="0"/>', "").replace(
+        b'<Parameter name="Y" type="double" value="0"/>', b""), ['"Dirichlet->left" prescribes nothing']),
+]
+
+
+class BadInput(RpcTestCase):
+    def expect_refusals(self, cases):
+        """Runs (name, arguments, code, parts) and expects a refusal of each that leaves nothing behind."""
+        jobs = []
+        for index, (_, arguments, _, _) in enumerate(cases):
+            folder = self.folder / f"run{index}"
+            folder.mkdir()
+            jobs.append((arguments, folder))
+        for (name, _, code, parts), (_, folder), result in zip(cases, jobs, run_all(jobs)):
+            with self.subTest(name):
+                self.expect_refusal(result, code, parts)
+                self.assertEqual(files(folder), [])
+
+    def expect_bad_assignments(self, cases):
+        self.expect_refusals([(", ".join(assignments),
+                               ["--input=beam.xml", SMALL, "--output=out", *(f"--set={a}" for a in assignments)],
+                               BAD_INPUT, parts) for assignments, parts in cases])
+
+    @unittest.skipIf(RANKS > 1, "needs one rank: found before anything is shared")
+    def test_assignment_is_refused(self):
+        self.expect_bad_assignments(ASSIGNMENTS)
+
+    def test_assignment_is_refused_on_all_ranks(self):
+        self.expect_bad_assignments(COLLECTIVE_ASSIGNMENTS)
+
+    @unittest.skipIf(RANKS > 1, "needs one rank: every rank reads the deck")
+    def test_check_finds_what_needs_no_mesh(self):
+        cases = [(["Linear Solver->MueLu->smoother: tipe=a"], ["tipe"]), (["Contact->Yield Stress=0"], ["> 0"]),
+                 (["Linear Solver->Belos->Verbose=3"], ["Verbose"]), (["Mesh->Cells={0,4}"], ["Cells"])]
+        self.expect_refusals([(a[0], ["--check", "--input=beam.xml", f"--set={a[0]}"], BAD_INPUT, parts)
+                              for a, parts in cases])
+
+    def test_deck_is_refused(self):
+        cases = []
+        for name, content, parts in DECKS if RANKS == 1 else DECKS[:4]:
+            (self.folder / name).write_bytes(content)
+            cases.append((name, [f"--input={self.folder / name}", "--output=out"], BAD_INPUT, parts))
+        self.expect_refusals(cases)
+
+    def test_deck_that_cannot_be_read_is_refused(self):
+        cases = [("missing", ["--input=missing.xml"], BAD_INPUT, ['there is no file "missing.xml"', "searched:"]),
+                 ("folder", [f"--input={self.folder}"], BAD_INPUT, [f'"{self.folder}" is a folder'])]
+        self.expect_refusals(cases if RANKS == 1 else cases[:1])
+
+    def test_output_below_a_file_is_refused_before_the_run(self):
+        (self.folder / "file").write_text("")
+        for name in ["file", "file/below"]:
+            result = self.rpc("--input=beam.xml", SMALL, f"--output={name}", code=BAD_INPUT)
+            self.expect_refusal(result, BAD_INPUT, ["output:", f'"{name}"', "--output=DIR"])
+            self.assertNotIn("newton", result.stdout)
+        self.assertEqual(files(self.folder), ["file"])
+
+    def test_pressing_into_a_rigid_foundation_has_no_solution(self):
+        self.expect_refusals([("press", ["--input=beam.xml", SMALL, "--set=Contact->Yield Stress=inf",
+                                         "--set=Dirichlet->right->Y=-0.1", "--output=out"],
+                               NO_SOLUTION, ['side "bottom"', "rigid", "(5, 0)", "0.1 [m]"])])
+
+    @unittest.skipIf(RANKS == 1, "needs several ranks: there are to be more of them than cells")
+    def test_more_ranks_than_cells_is_a_bad_mesh(self):
+        self.expect_refusals([("mesh", ["--input=beam.xml", "--set=Mesh->Cells={1,1}", "--output=out"], BAD_MESH,
+                               ["1 x 1 cells cannot be divided among", "Use fewer ranks or more cells"])])
+
+    @unittest.skipIf(RANKS > 1, "needs one rank: every rank reads the deck")
+    def test_truncated_deck_is_never_an_internal_error(self):
+        whole = BEAM.read_bytes()
+        jobs = []
+        for length in range(0, len(whole) + 97, 97):
+            path = self.folder / f"{length}.xml"
+            path.write_bytes(whole[:length])
+            jobs.append((["--check", f"--input={path}"], self.folder))
+        results = run_all(jobs)
+        for result in results[:-1]:
+            with self.subTest(result.args):
+                self.expect_refusal(result, BAD_INPUT, [".xml"])
+        self.assertEqual(results[-1].returncode, 0, results[-1].stderr)
+
+    @unittest.skipIf(RANKS > 1, "needs one rank: every rank reads the deck")
+    def test_damaged_deck_is_never_an_internal_error(self):
+        whole = BEAM.read_bytes()
+        jobs = []
+        for place in range(60, len(whole), 97):  # another character each time, over markup and values alike
+            path = self.folder / f"{place}.xml"
+            path.write_bytes(whole[:place] + bytes([33 + place % 90]) + whole[place + 1:])
+            jobs.append((["--check", f"--input={path}"], self.folder))
+        for result in run_all(jobs):
+            with self.subTest(result.args):
+                self.assertIn(result.returncode, (0, BAD_INPUT), result.stderr)
+                if result.returncode:
+                    self.expect_refusal(result, BAD_INPUT, [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,72 @@
+"""Starts rpc as a user would, each run in a folder of its own. What to start comes from the environment, set by CTest."""
+
+import concurrent.futures
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["RPC_PROGRAM"]
+SOURCE = pathlib.Path(os.environ["RPC_SOURCE_DIR"])
+RANKS = int(os.environ.get("RPC_RANKS", "1"))
+LAUNCH = [word for word in os.environ.get("RPC_LAUNCH", "").split("|") if word]
+BEAM = SOURCE / "input" / "beam.xml"
+SMALL = "--set=Mesh->Cells={20,4}"
+
+# What no user should get to see, whatever is wrong.
+NOISE = ["Teuchos::", ".cpp", ".hpp", "Throw number", "Throw test", "Traceback", "terminate called", "what():", "Signal:",
+         "ANONYMOUS", "internal error"]
+
+
+def run(arguments, cwd, environment=None):
+    return subprocess.run(LAUNCH + [PROGRAM] + [str(a) for a in arguments], cwd=cwd, capture_output=True, text=True,
+                          errors="replace", timeout=120, stdin=subprocess.DEVNULL,
+                          env={**os.environ, **(environment or {})})
+
+
+def run_all(jobs):
+    """Runs (arguments, cwd) pairs, two at a time on one rank; most of a short run is the loading of its libraries."""
+    with concurrent.futures.ThreadPoolExecutor(max_workers=max(1, 2 // RANKS)) as pool:
+        return list(pool.map(lambda job: run(*job), jobs))
+
+
+def errors(result):
+    return [line for line in result.stderr.splitlines() if line.startswith("rpc: ")]
+
+
+def files(folder):
+    """All the files below a folder, hidden ones too."""
+    return sorted(str(path.relative_to(folder)) for path in pathlib.Path(folder).rglob("*") if path.is_file())
+
+
+class RpcTestCase(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory(prefix="rpc_test_")
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+
+    def rpc(self, *arguments, code=0, **options):
+        result = run(arguments, self.folder, **options)
+        self.assertEqual(result.returncode, code, f"{arguments}\n{result.stdout}\n{result.stderr}")
+        return result
+
+    def solve(self, *arguments, deck="beam.xml", output="out", code=0):
+        """A run of the small beam: its summary."""
+        result = self.rpc(f"--input={deck}", SMALL, f"--output={output}", *arguments, code=code)
+        self.assertEqual(errors(result), [])
+        return json.loads((self.folder / output / f"{pathlib.Path(deck).stem}.json").read_text())
+
+    def expect_refusal(self, result, code, parts):
+        """One message with all the parts, and nothing that only a developer understands."""
+        text = f"{result.args}\n{result.stdout}\n{result.stderr}"
+        self.assertEqual(result.returncode, code, text)
+        self.assertEqual(len(errors(result)), 1, text)
+        self.assertTrue(errors(result)[0].startswith("rpc: error: "), text)
+        for part in parts:
+            self.assertIn(part, errors(result)[0])
+        for noise in NOISE:
+            self.assertNotIn(noise, result.stdout + result.stderr)
+        if RANKS == 1:  # mpiexec has words of its own
+            self.assertEqual(len(result.stderr.strip().splitlines()), 1, text)

@@ -1,0 +1,156 @@
+#include "run_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <map>
+#include <numeric>
+
+// Example 1 of Namm & Tsoy (2025). The paper's values are printed there; the converged ones come from hp elements of
+// order 4 to 8 in independent code, good to 2e-8.
+
+namespace
+{
+
+using namespace rpc;
+
+Solution beam(const int n, const std::string &xi, std::vector<std::string> more = {},
+              const RCP<const Comm> &comm = Tpetra::getDefaultComm())
+{
+  more.push_back("Mesh->Cells={" + std::to_string(5 * n) + "," + std::to_string(n) + "}");
+  more.push_back("Contact->Yield Stress=" + xi);
+  return run_scene(std::string(RPC_TEST_DECKS) + "/../../../input/beam.xml", more, comm);
+}
+
+int sum(const std::vector<int> &v)
+{
+  return std::accumulate(v.begin(), v.end(), 0);
+}
+int largest(const std::vector<int> &v)
+{
+  return *std::max_element(v.begin(), v.end());
+}
+
+TEST(Beam, EnergiesOfThePapersTable1AreReproduced)
+{
+  const std::map<int, double> paper = {
+      {8, -3.906382}, {16, -3.954664}, {32, -3.969465}, {64, -3.974141}, {128, -3.975677}};
+  for (const auto &[n, energy] : paper) {
+    const Solution s = beam(n, "2");
+    ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+    EXPECT_NEAR(s.energy, energy, 2e-6) << n;
+    EXPECT_LE(s.uzawa.iterations, 3);
+    EXPECT_EQ(s.discretization.owned_dofs->getGlobalNumElements(), 2u * (5 * n + 1) * (n + 1));
+    EXPECT_EQ(s.functional->contact().num_total, 5 * n + 1);
+    EXPECT_NEAR(s.contact.force[1], 10, 1e-9); // everything yields
+  }
+}
+
+TEST(Beam, EnergiesAtOtherYieldLimitsAreThoseOfIndependentCode)
+{
+  const std::map<std::string, double> at_32 = {
+      {"12", -0.522733}, {"16", -0.213404}, {"18", -0.192640}, {"20", -0.191269}, {"inf", -0.191269}};
+  const std::map<std::string, double> at_64 = {
+      {"12", -0.523052}, {"16", -0.213432}, {"18", -0.192646}, {"100", -0.191273}};
+  for (const auto &[xi, energy] : at_32) EXPECT_NEAR(beam(32, xi).energy, energy, 2e-6) << xi;
+  for (const auto &[xi, energy] : at_64) EXPECT_NEAR(beam(64, xi).energy, energy, 2e-6) << xi;
+}
+
+TEST(Beam, UzawaIterationsOfThePapersTable2AreNotExceeded)
+{
+  for (const char *xi : {"4", "8", "12", "16", "18", "20"}) {
+    const Solution s = beam(32, xi, {"Uzawa->Stopping Test=multiplier change"});
+    EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+    EXPECT_LE(s.uzawa.iterations, 4) << xi;
+  }
+}
+
+TEST(Beam, WorkStaysInItsRangeOnEveryMesh)
+{
+  struct Range {
+    const char *xi;
+    int uzawa, newton, setups; // at most
+  };
+  // Everything yields: one solve each for the start, the yielded state and polish. Rigid: nothing to find out. Between:
+  // states to find.
+  for (const Range &range :
+       {Range{"2", 1, 3, 2}, Range{"12", 1, 8, 7}, Range{"16", 2, 13, 11}, Range{"inf", 2, 4, 1}}) {
+    for (const int n : {16, 32, 64}) {
+      const Solution s = beam(n, range.xi);
+      EXPECT_LE(s.uzawa.iterations, range.uzawa) << range.xi << " " << n;
+      EXPECT_LE(sum(s.uzawa.newton_iterations), range.newton) << range.xi << " " << n;
+      EXPECT_GE(sum(s.uzawa.newton_iterations), 2);
+      EXPECT_EQ(s.linear.iterations.size(), static_cast<std::size_t>(sum(s.uzawa.newton_iterations)));
+      EXPECT_LE(s.linear.preconditioner_setups, range.setups) << range.xi << " " << n;
+      EXPECT_LE(largest(s.linear.iterations), 20) << range.xi << " " << n;
+      EXPECT_EQ(s.matrix_assemblies, 1);
+      EXPECT_LE(s.uzawa.certificate.kkt_residual, 1e-8);
+      EXPECT_LE(s.uzawa.certificate.equilibrium_residual, 1e-10);
+    }
+  }
+}
+
+TEST(Beam, EnergyNormErrorHalvesWithTheMeshAtYieldLimit16)
+{
+  const double exact = -0.21344083, strain_energy = 0.4268816;
+  double previous = 0;
+  for (const int n : {16, 32, 64}) {
+    const double error = std::sqrt(2 * (beam(n, "16").energy - exact) / strain_energy);
+    if (previous > 0) {
+      EXPECT_NEAR(previous / error, 2, 0.15) << n;
+    }
+    previous = error;
+  }
+}
+
+TEST(Beam, ContactZonesAreThoseOfIndependentCode)
+{
+  const Solution s = beam(64, "16");
+  EXPECT_NEAR(s.contact.force[1], 64.9414, 0.01 * 64.9414);
+  EXPECT_NEAR(s.contact.max_penetration, 0.011728, 0.001 * 0.011728);
+  EXPECT_NEAR(s.contact.yielded_length, 5 - 2 * 0.80, 0.04);
+  EXPECT_NEAR(beam(64, "18").contact.yielded_length, 5 - 2 * 1.41, 0.04);
+  const Solution rigid = beam(64, "inf");
+  EXPECT_LT(rigid.contact.max_penetration, 1e-9);
+  EXPECT_EQ(rigid.contact.yielded_length, 0);
+}
+
+TEST(Beam, ForcesBalance)
+{
+  const Solution s = beam(32, "16");
+  // Work of the actual forces on the solution itself: a(u,u) = b(u) - sum w p (u_nu - g) at the minimum, a = 2 (J - j)
+  // + 2 b ...
+  const auto &c = s.functional->contact();
+  const auto w = to_host(c.weight), p = to_host(s.contact.pressure), v = to_host(s.contact.penetration);
+  double mine = 0;
+  for (LO i = 0; i < c.size(); ++i) mine += w(i) * p(i) * v(i);
+  const double contact_work = sum_all(s.discretization.mesh->comm(), mine);
+  const double load_work = s.functional->problem().applied_load->dot(*s.u);
+  EXPECT_NEAR(s.strain_energy, load_work - contact_work, 1e-9 * load_work);
+  EXPECT_NEAR(s.energy, 0.5 * s.strain_energy - load_work + contact_work, 1e-9 * load_work); // xi v+ = p v
+}
+
+TEST(Beam, RanksAgreeOnEnergyAndPressures)
+{
+  const auto world = Tpetra::getDefaultComm();
+  if (world->getSize() == 1) GTEST_SKIP() << "one rank has nobody to agree with";
+  const RCP<const Comm> alone = world->split(world->getRank(), 0);
+  for (const char *xi : {"2", "16", "inf"}) {
+    const Solution shared = beam(32, xi), own = beam(32, xi, {}, alone);
+    EXPECT_NEAR(shared.energy, own.energy, 1e-10 * std::abs(own.energy));
+    std::map<GO, double> pressure;
+    const auto read = [](const Solution &s, auto &&visit) {
+      const auto node = to_host(s.functional->contact().node);
+      const auto p = to_host(s.contact.pressure);
+      for (LO i = 0; i < s.functional->contact().size(); ++i) visit(s.discretization.mesh->node_id(node(i)), p(i));
+    };
+    read(own, [&](const GO id, const double p) { pressure[id] = p; });
+    ASSERT_EQ(pressure.size(), 161u);
+    read(shared, [&](const GO id, const double p) {
+      EXPECT_NEAR(p, pressure.at(id), 1e-8 * own.contact.max_pressure) << xi << " " << id;
+    });
+    EXPECT_NEAR(shared.uzawa.newton_iterations[0], own.uzawa.newton_iterations[0], 1);
+  }
+}
+
+} // namespace
