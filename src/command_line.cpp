@@ -121,6 +121,27 @@ CommandLine parse_command_line(std::vector<char *> argument_pointers)
   return line;
 }
 
+std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, const bool root)
+{
+  std::string given; // Kokkos takes its options out
+  for (std::size_t i = 1; i < arguments.size(); ++i) given += std::string(" ") + arguments[i];
+  if (!root) // Kokkos prints it on every rank
+    arguments.erase(std::remove(arguments.begin(), arguments.end(), std::string("--kokkos-help")), arguments.end());
+  int argc = static_cast<int>(arguments.size());
+  arguments.push_back(nullptr);
+  char **argv = arguments.data();
+  std::unique_ptr<Tpetra::ScopeGuard> guard;
+  try {
+    guard = std::make_unique<Tpetra::ScopeGuard>(&argc, &argv);
+  } catch (const std::exception &error) {
+    if (given.empty()) throw;
+    throw Error(ExitCode::bad_input, "command line: Kokkos refuses its options" + given + " (" +
+                                         one_line(error.what()) + "). See rpc --kokkos-help.");
+  }
+  RPC_REQUIRE(argc == 1, "command line: Kokkos does not know the option \"" << argv[1] << "\". See rpc --kokkos-help.");
+  return guard;
+}
+
 std::string help_text()
 {
   return R"(Contact of an elastic body with a rigid-plastic foundation.

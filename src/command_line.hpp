@@ -1,6 +1,7 @@
 #pragma once
 
-#include <optional>
+#include <Tpetra_Core.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,11 @@ Arguments split_arguments(int argc, char *argv[]);
 
 /// @throws rpc::Error (bad_input) on an unknown or incomplete option
 CommandLine parse_command_line(std::vector<char *> arguments);
+
+/// Starts Kokkos with the options that are for it; on all ranks alike.
+/// @param root  whether this is rank 0, which alone prints Kokkos' help
+/// @throws rpc::Error (bad_input) on an option that Kokkos refuses or does not know
+std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, bool root);
 
 /// What --help prints.
 std::string help_text();

@@ -14,10 +14,8 @@
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <Tpetra_Core.hpp>
-#include <algorithm>
 #include <iostream>
 #include <malloc.h>
-#include <memory>
 
 namespace
 {
@@ -33,28 +31,6 @@ void keep_freed_memory()
   mallopt(M_TRIM_THRESHOLD, 2000 << 20);
   mallopt(M_TOP_PAD, 256 << 20);
 #endif
-}
-
-/// Starts Kokkos with the options that are for it. On all ranks alike.
-std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, const bool root)
-{
-  std::string given; // Kokkos takes its options out
-  for (std::size_t i = 1; i < arguments.size(); ++i) given += std::string(" ") + arguments[i];
-  if (!root) // Kokkos prints it on every rank
-    arguments.erase(std::remove(arguments.begin(), arguments.end(), std::string("--kokkos-help")), arguments.end());
-  int argc = static_cast<int>(arguments.size());
-  arguments.push_back(nullptr);
-  char **argv = arguments.data();
-  std::unique_ptr<Tpetra::ScopeGuard> guard;
-  try {
-    guard = std::make_unique<Tpetra::ScopeGuard>(&argc, &argv);
-  } catch (const std::exception &error) {
-    if (given.empty()) throw;
-    throw rpc::Error(ExitCode::bad_input, "command line: Kokkos refuses its options" + given +
-                                              " See rpc --kokkos-help. (" + rpc::one_line(error.what()) + ")");
-  }
-  RPC_REQUIRE(argc == 1, "command line: Kokkos does not know the option \"" << argv[1] << "\". See rpc --kokkos-help.");
-  return guard;
 }
 
 ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm, std::ostream &out)
@@ -113,7 +89,7 @@ int main(int argc, char *argv[])
   try {
     const rpc::Arguments arguments = rpc::split_arguments(argc, argv);
     const rpc::CommandLine line = rpc::parse_command_line(arguments.own);
-    const auto kokkos = start_kokkos(arguments.kokkos, root);
+    const auto kokkos = rpc::start_kokkos(arguments.kokkos, root);
     if (arguments.kokkos_help) return 0;
     return static_cast<int>(run(line, Tpetra::getDefaultComm(), out));
   } catch (const rpc::Error &error) { // on all ranks

@@ -138,7 +138,9 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
   s.seconds.total = now - start;
   if (scene.output.json) { // last: its presence says that the others are complete
     files.push_back(stem + ".json");
-    const std::string text = summary(scene, s).dump(2) + "\n"; // collective, hence outside
+    // Collective, hence outside. A deck's name may be no valid UTF-8.
+    const auto json = summary(scene, s);
+    const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     io::on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(files.back(), text); });
   }
   return files;

@@ -92,7 +92,7 @@ COLLECTIVE_ASSIGNMENTS = [
     (["Contact->Yield Stress=4-x"], ['"Contact->Yield Stress" must be > 0 [Pa]', '"4-x" at (4, 0)', "got 0"]),
     (["Contact->Yield Stress=sqrt(4.1-x)"], ['"sqrt(4.1-x)"', "got nan at (4.25, 0)"]),
     (["Contact->Gap=1/x"], ['"Contact->Gap" = "1/x" must be a finite number', "got inf at (0, 0)"]),
-    (["Traction->top->Y=log(4.5-x)"], ['"Traction->top->Y" = "log(4.5-x)" must be a finite number', "got nan at (4.5"]),
+    (["Traction->top->Y=log(4.5-x)"], ['"Traction->top->Y" = "log(4.5-x)" must be a finite number', "got nan at (4.", ", 1)"]),
     (["Traction->top->Y=1/(x>4)"], ['"Traction->top->Y" = "1/(x>4)" must be a finite number', "got inf at (0.", ", 1)"]),
     (["Body Force->Y=1/(x<4)"], ['"Body Force->Y" = "1/(x<4)" must be a finite number', "got inf at (4."]),
     (["NOX->Line Search->Method=Guess"], ['"NOX"', '"Method" in "Line Search"']),

@@ -27,8 +27,8 @@ def run(arguments, cwd, environment=None):
 
 
 def run_all(jobs):
-    """Runs (arguments, cwd) pairs, two at a time on one rank; most of a short run is the loading of its libraries."""
-    with concurrent.futures.ThreadPoolExecutor(max_workers=max(1, 2 // RANKS)) as pool:
+    """Runs (arguments, cwd) pairs, two at a time; most of a short run is the loading of its libraries."""
+    with concurrent.futures.ThreadPoolExecutor(max_workers=2) as pool:
         return list(pool.map(lambda job: run(*job), jobs))
 
 

@@ -139,6 +139,7 @@ const std::vector<std::vector<int>> &Element::facets() const
 Element parse_element(const std::string &name, const int dim)
 {
   RPC_REQUIRE(name == "Q1" || name == "Q2", "deck: \"Mesh->Element\" must be one of Q1, Q2, got \"" << name << "\"");
+  RPC_REQUIRE(name == "Q1" || dim == 2, "deck: \"Mesh->Element\" must be Q1 in 3D, got \"" << name << "\"");
   return Element{dim, name == "Q1" ? 1 : 2};
 }
 

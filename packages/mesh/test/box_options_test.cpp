@@ -35,10 +35,10 @@ TEST(BoxOptions, DefaultsAreTheUnitSquare)
 TEST(BoxOptions, ThreeNumbersMakeItThreeDimensional)
 {
   auto list = deck("Lower", Array<double>(tuple(0., 0., -1.)));
-  list.set("Upper", Array<double>(tuple(1., 2., 3.))).set("Cells", Array<int>(tuple(1, 2, 3))).set("Element", "Q2");
+  list.set("Upper", Array<double>(tuple(1., 2., 3.))).set("Cells", Array<int>(tuple(1, 2, 3)));
   const BoxOptions options = rpc::mesh::box_options(list);
   EXPECT_EQ(options.element.dim, 3);
-  EXPECT_EQ(options.element.order, 2);
+  EXPECT_EQ(options.element.order, 1);
   EXPECT_EQ(options.upper, (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(options.cells, (std::vector<int>{1, 2, 3}));
 }

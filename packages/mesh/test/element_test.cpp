@@ -137,6 +137,8 @@ TEST(ParseElement, KnowsQ1AndQ2AndListsThemOtherwise)
   EXPECT_EQ(rpc::mesh::parse_element("Q1", 3).dim, 3);
   rpc::test::expect_error(rpc::ExitCode::bad_input, {"\"Mesh->Element\"", "Q1, Q2", "\"P1\""},
                           [] { rpc::mesh::parse_element("P1", 2); });
+  rpc::test::expect_error(rpc::ExitCode::bad_input, {"\"Mesh->Element\"", "3D", "\"Q2\""},
+                          [] { rpc::mesh::parse_element("Q2", 3); });
 }
 
 } // namespace

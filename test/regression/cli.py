@@ -1,0 +1,237 @@
+"""The command line, the deck's forms, and the files that a run leaves."""
+
+import csv
+import json
+import re
+import shutil
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from rpc_run import BEAM, SMALL, SOURCE, RpcTestCase, errors, files, run_all
+
+YAML = SOURCE / "test" / "regression" / "decks" / "beam.yaml"
+OPTIONS = ["--input", "--output", "--set", "--check", "--print-parameters", "--version", "--help", "--kokkos-"]
+SUBLISTS = ["Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact", "Uzawa", "NOX", "Linear Solver",
+            "Linear Solver->Belos", "Linear Solver->MueLu", "Output"]
+
+NUMBER, INTEGERS, NUMBERS = (int, float), [int], [(int, float)]
+SUMMARY = {"converged": bool, "reason": str, "dofs": int, "contact_nodes": int, "ranks": int, "energy_J": NUMBER,
+           "strain_energy": NUMBER, "contact_force": NUMBERS, "max_pressure": NUMBER, "max_penetration": NUMBER,
+           "contact_length": NUMBER, "yielded_length": NUMBER, "kkt_residual": NUMBER, "uzawa_iterations": int,
+           "newton_iterations": INTEGERS, "linear_solves": int, "linear_iterations": INTEGERS,
+           "preconditioner_setups": int, "matrix_assemblies": int, "seconds": dict}
+
+
+class CommandLine(RpcTestCase):
+    def test_help_names_every_option_and_exit_code(self):
+        for option in ["--help", "-h"]:
+            text = self.rpc(option).stdout
+            for name in OPTIONS:
+                self.assertIn(name, text)
+            for code in ["0 converged", "1 internal error", "2 bad input", "3 bad mesh", "4 not converged",
+                         "5 no solution exists"]:
+                self.assertIn(code, text)
+            self.assertNotIn("Kokkos command line arguments", text)  # its own help is --kokkos-help
+        self.assertEqual(files(self.folder), [])
+
+    def test_version_is_one_line(self):
+        self.assertRegex(self.rpc("--version").stdout, r"^rpc \d+\.\d+\.\d+ \(Kokkos \w+\)\n$")
+
+    def test_print_parameters_lists_every_sublist_with_units(self):
+        text = self.rpc("--print-parameters").stdout
+        sections = {re.sub(r"-><.*>$", "", title) for title in re.findall(r"^### (.*)$", text, re.MULTILINE)}
+        for name in SUBLISTS:
+            self.assertIn(name, sections)
+        for unit in ["[m]", "[Pa]", "[Pa/m]", "[N/m^3]"]:
+            self.assertIn(unit, text)
+        for line in re.findall(r"^- .*$", text, re.MULTILINE):
+            self.assertRegex(line, r"^- `[^`]+` \([a-z ]+, default `[^`]*`\): .{5,}$")
+        self.assertNotIn("e+00", text)
+
+    def test_every_parameter_of_the_deck_is_documented(self):
+        text = self.rpc("--print-parameters").stdout
+        for parameter in ElementTree.parse(BEAM).getroot().iter("Parameter"):
+            self.assertIn(f"- `{parameter.get('name')}` (", text)
+
+    def test_check_writes_nothing(self):
+        result = self.rpc("--check", "--input=beam.xml", "--output=out")
+        self.assertIn("nothing wrong", result.stdout)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_kokkos_options_are_taken(self):
+        for options in [["--kokkos-threads=1"], ["--kokkos-num-devices=1"], ["--kokkos-disable-warnings"]]:
+            self.rpc("--version", *options)
+        text = self.rpc("--kokkos-help").stdout
+        self.assertEqual(text.count("--kokkos-threads=INT"), 1)
+
+    def test_faulty_option_is_refused(self):
+        cases = [(["--inpt=beam.xml"], ['"--inpt=beam.xml"', "Did you mean --input?", "rpc --help"]),
+                 (["--chekc"], ['"--chekc"', "Did you mean --check?"]),
+                 (["--threads=2", "--input=beam.xml"], ['unknown option "--threads=2"']),
+                 (["beam.xml"], ['unknown option "beam.xml"']),
+                 ([], ["--input=DECK is missing"]),
+                 (["--input="], ["--input needs a value"]),
+                 (["--input"], ["--input needs a value"]),
+                 (["--output", "--input=beam.xml"], ["--output needs a value"]),
+                 (["--input=beam.xml", "--set"], ['--set needs a value, as in --set="Sublist->Parameter=value"']),
+                 (["--check=no", "--input=beam.xml"], ["--check takes no value"]),
+                 (["--kokkos-theads=2", "--version"], ['"--kokkos-theads=2"', "rpc --kokkos-help"]),
+                 (["--kokkos-threads=many", "--version"], ["Kokkos refuses", "--kokkos-threads=many"]),
+                 (["--kokkos-threads", "--version"], ["Kokkos refuses", "--kokkos-threads"])]
+        for (arguments, parts), result in zip(cases, run_all([(a, self.folder) for a, _ in cases])):
+            with self.subTest(arguments):
+                self.expect_refusal(result, 2, parts)
+        self.assertEqual(files(self.folder), [])
+
+    def test_values_may_follow_their_options(self):
+        self.rpc("--input", "beam.xml", "--set", "Mesh->Cells={20,4}", "--output", "out")
+        self.assertIn("beam.json", files(self.folder / "out"))
+
+
+class Decks(RpcTestCase):
+    def test_deck_is_taken_as_given_before_one_that_comes_with_rpc(self):
+        text = BEAM.read_text().replace('value="16"', 'value="-7"')
+        (self.folder / "beam.xml").write_text(text)
+        self.assertIn("got -7", self.rpc("--check", "--input=beam.xml", code=2).stderr)
+        self.rpc("--check", f"--input={BEAM}")
+        (self.folder / "beam.xml").unlink()
+        self.assertIn(str(BEAM), self.rpc("--check", "--input=beam.xml").stdout)
+
+    def test_deck_lies_where_the_environment_says(self):
+        decks = self.folder / "decks"
+        decks.mkdir()
+        shutil.copy(BEAM, decks / "mine.xml")
+        self.rpc("--check", "--input=mine.xml", environment={"RPC_INPUT_DIR": str(decks)})
+        self.rpc("--check", "--input=mine.xml", code=2)
+
+    def test_yaml_and_xml_and_the_roots_name_make_no_difference(self):
+        (self.folder / "noname.xml").write_text(BEAM.read_text().replace('<ParameterList name="beam">', "<ParameterList>"))
+        (self.folder / "noname.yaml").write_text(
+            re.sub(r"^  ", "", YAML.read_text().replace("beam:\n", ""), flags=re.MULTILINE))
+        expected = None
+        for deck in [BEAM, YAML, self.folder / "noname.xml", self.folder / "noname.yaml"]:
+            with self.subTest(deck.name):
+                summary = self.solve(deck=deck)
+                del summary["seconds"], summary["deck"]
+                expected = expected or summary
+                self.assertEqual(summary, expected)
+
+    def test_assignments_win_over_the_deck_and_over_earlier_ones(self):
+        summary = self.solve("--set=Mesh->Cells={10, 2}", "--set", "Contact->Yield Stress=2", "--set=Output->Exodus=false",
+                             "--set=Contact->Yield Stress=10+0*x", "--set=Dirichlet->clamp->Side=left",
+                             "--set=Dirichlet->clamp->Y=0")
+        self.assertEqual((summary["cells"], summary["max_pressure"]), (20, 10))
+        self.assertEqual(files(self.folder / "out"), ["beam.contact.csv", "beam.json"])
+
+
+class Results(RpcTestCase):
+    def expect_type(self, value, kind, name):
+        if isinstance(kind, list):
+            self.assertIsInstance(value, list, name)
+            self.assertTrue(value, name)
+            for item in value:
+                self.expect_type(item, kind[0], name)
+        else:
+            self.assertIsInstance(value, kind, name)
+            self.assertEqual(isinstance(value, bool), kind is bool, name)
+
+    def test_summary_has_all_keys_and_agrees_with_itself(self):
+        summary = self.solve()
+        for name, kind in SUMMARY.items():
+            self.assertIn(name, summary)
+            self.expect_type(summary[name], kind, name)
+        for phase in ["mesh", "assembly", "setup", "solve", "output", "total"]:
+            self.expect_type(summary["seconds"][phase], NUMBER, phase)
+            self.assertGreaterEqual(summary["seconds"][phase], 0)
+        self.assertTrue(summary["converged"])
+        self.assertEqual((summary["dofs"], summary["contact_nodes"], summary["ranks"]), (210, 21, 1))
+        self.assertEqual(len(summary["newton_iterations"]), summary["uzawa_iterations"])
+        self.assertEqual(len(summary["linear_iterations"]), summary["linear_solves"])
+        self.assertEqual(len(summary["contact_force"]), 2)
+        self.assertLess(summary["kkt_residual"], 1e-8)
+        self.assertAlmostEqual(summary["energy_J"], -0.2113221, delta=1e-6)
+
+    def test_table_is_sorted_and_agrees_with_the_summary(self):
+        summary = self.solve()
+        text = (self.folder / "out" / "beam.contact.csv").read_text()
+        self.assertEqual(text.splitlines()[0], "x,y,s,u_nu,gap,pressure,state")
+        rows = [{k: v if k == "state" else float(v) for k, v in row.items()} for row in csv.DictReader(text.splitlines())]
+        self.assertEqual(len(rows), summary["contact_nodes"])
+        self.assertEqual([row["s"] for row in rows], sorted(row["s"] for row in rows))
+        for row in rows:
+            self.assertAlmostEqual(row["s"], row["x"], delta=1e-12)
+            self.assertEqual(row["y"], 0)
+            self.assertTrue(0 <= row["pressure"] <= 16)
+            self.assertEqual(row["state"], "yielded" if row["pressure"] == 16 else "stuck" if row["pressure"] > 0 else "open")
+        self.assertEqual(max(row["pressure"] for row in rows), summary["max_pressure"])
+        self.assertAlmostEqual(max(row["u_nu"] - row["gap"] for row in rows), summary["max_penetration"], delta=1e-12)
+        weights = [0.25 if 0 < row["x"] < 5 else 0.125 for row in rows]
+        self.assertAlmostEqual(sum(w for w, row in zip(weights, rows) if row["state"] == "yielded"),
+                               summary["yielded_length"], delta=1e-12)
+        self.assertAlmostEqual(sum(w * row["pressure"] for w, row in zip(weights, rows)), summary["contact_force"][1],
+                               delta=1e-9)
+
+    def test_folder_is_made_and_holds_the_results_alone(self):
+        result = self.rpc("--input=beam.xml", SMALL, "--output=new/deeper")
+        self.assertEqual(files(self.folder), [f"new/deeper/beam.{end}" for end in ("contact.csv", "e", "json")])
+        for name in files(self.folder):
+            self.assertIn(f"wrote {name}", result.stdout)
+        self.assertEqual(errors(result), [])
+        self.assertEqual(result.stderr, "")
+
+    def test_older_results_are_replaced(self):
+        (self.folder / "out").mkdir()
+        (self.folder / "out" / "beam.json").write_text("old")
+        self.assertTrue(self.solve()["converged"])
+
+    def test_note_says_that_dirichlet_wins_over_contact(self):
+        self.assertIn("note: the normal displacement of 2 contact nodes is prescribed",
+                      self.rpc("--input=beam.xml", SMALL, "--output=out").stdout)
+
+    def test_run_that_does_not_converge_writes_its_results_and_says_why(self):
+        for assignment, reason in [("Uzawa->Maximum Iterations=1", "1 Uzawa iteration"),
+                                   ("NOX->Maximum Iterations=1", "Newton did not converge in 1 step")]:
+            with self.subTest(assignment):
+                summary = self.solve(f"--set={assignment}", "--set=Uzawa->Tolerance=1e-12", output=assignment[:3], code=4)
+                self.assertFalse(summary["converged"])
+                self.assertIn(reason, summary["reason"])
+                self.assertEqual(len(files(self.folder / assignment[:3])), 3)
+
+    def test_numbers_that_are_not_finite_do_not_break_the_summary(self):
+        summary = self.solve("--set=Traction->top->Y=-1e300", code=4)  # json.loads has refused nothing
+        self.assertFalse(summary["converged"])
+
+
+class PassThrough(RpcTestCase):
+    def test_muelu_gets_its_parameters(self):
+        chebyshev = self.solve("--set=Contact->Yield Stress=2")
+        relaxation = self.solve("--set=Contact->Yield Stress=2", "--set=Linear Solver->MueLu->smoother: type=RELAXATION")
+        degree = self.solve("--set=Contact->Yield Stress=2",
+                            "--set=Linear Solver->MueLu->smoother: params->chebyshev: degree=5")
+        self.assertNotEqual(sum(chebyshev["linear_iterations"]), sum(relaxation["linear_iterations"]))
+        self.assertLess(sum(degree["linear_iterations"]), sum(chebyshev["linear_iterations"]))
+        for summary in (relaxation, degree):
+            self.assertAlmostEqual(summary["energy_J"], chebyshev["energy_J"], delta=1e-9 * abs(chebyshev["energy_J"]))
+
+    def test_belos_gets_its_parameters(self):
+        silent = self.rpc("--input=beam.xml", SMALL, "--output=out")
+        talks = self.rpc("--input=beam.xml", SMALL, "--output=out", "--set=Linear Solver->Belos->Verbosity=127",
+                         "--set=Linear Solver->Belos->Output Frequency=1")
+        self.assertNotIn("Belos", silent.stdout)
+        self.assertIn("Belos", talks.stdout)
+
+    def test_another_krylov_method_works(self):
+        self.assertTrue(self.solve("--set=Linear Solver->Method=Block GMRES")["converged"])
+
+    def test_nox_gets_its_parameters(self):
+        result = self.rpc("--input=beam.xml", SMALL, "--output=out", "--set=NOX->Line Search->Method=Full Step")
+        steps = re.findall(r"^ +\d+ +[1-9]\d* +\S+ +(\d\S+) +\d+ +\d+ +\d+", result.stdout, re.MULTILINE)
+        self.assertTrue(steps)
+        self.assertEqual(set(steps), {"1.00e+00"})
+        half = self.rpc("--input=beam.xml", SMALL, "--output=out", "--set=NOX->Line Search->Method=Full Step",
+                        "--set=NOX->Line Search->Full Step->Full Step=0.5")
+        self.assertIn("5.00e-01", half.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
