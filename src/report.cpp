@@ -44,7 +44,7 @@ void ConsoleTable::scene(const Scene &scene, const Solution &solution)
           "note: the normal displacement of %lld contact nodes is prescribed by \"Dirichlet\", which wins over contact "
           "there\n",
           static_cast<long long>(contact.num_fixed));
-  print(out_, "uzawa newton  residual     step    open   stuck yielded    cg   time [s]\n");
+  print(out_, "uzawa newton   |F|/|b|     step    open   stuck yielded krylov   time [s]\n");
   out_ << std::flush;
 }
 
@@ -56,14 +56,14 @@ void ConsoleTable::newton(const solver::NewtonStep &step)
     print(out_, "         ");
   else
     print(out_, " %8.2e", step.step_length);
-  print(out_, " %7lld %7lld %7lld %5d %10.3f\n", static_cast<long long>(n.open), static_cast<long long>(n.stuck),
+  print(out_, " %7lld %7lld %7lld %6d %10.3f\n", static_cast<long long>(n.open), static_cast<long long>(n.stuck),
         static_cast<long long>(n.yielded), step.linear_iterations, Teuchos::Time::wallTime() - start_);
   out_ << std::flush;
 }
 
 void ConsoleTable::uzawa(const contact::UzawaResult &result)
 {
-  print(out_, "%5d   kkt   %8.2e   equilibrium %8.2e   multiplier change %8.2e\n", result.iterations,
+  print(out_, "%5d     -- kkt residual %.1e, equilibrium residual %.1e, multiplier change %.1e\n", result.iterations,
         result.certificate.kkt_residual, result.certificate.equilibrium_residual, result.multiplier_change);
   out_ << std::flush;
 }
@@ -72,7 +72,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
 {
   const bool flat = s.discretization.dim() == 2;
   const auto &c = s.contact;
-  print(out, "%s: %s\n", s.uzawa.converged ? "converged" : "NOT CONVERGED", s.uzawa.reason.c_str());
+  print(out, "\n%s: %s\n", s.uzawa.converged ? "converged" : "NOT CONVERGED", s.uzawa.reason.c_str());
   print(out, "  energy J            %.9g %s\n", s.energy, flat ? "J/m" : "J");
   if (!scene.contact.side.empty()) {
     print(out, "  contact force       (%.6g, %.6g%s) %s\n", c.force[0], c.force[1],

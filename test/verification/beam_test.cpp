@@ -118,8 +118,7 @@ TEST(Beam, ContactZonesAreThoseOfIndependentCode)
 TEST(Beam, ForcesBalance)
 {
   const Solution s = beam(32, "16");
-  // Work of the actual forces on the solution itself: a(u,u) = b(u) - sum w p (u_nu - g) at the minimum, a = 2 (J - j)
-  // + 2 b ...
+  // Equilibrium tested with the solution itself: a(u, u) = b(u) - sum w p u_nu, at gap 0.
   const auto &c = s.functional->contact();
   const auto w = to_host(c.weight), p = to_host(s.contact.pressure), v = to_host(s.contact.penetration);
   double mine = 0;
