@@ -8,6 +8,7 @@ rpc_require("GoogleTest" libgtest-dev GTest_FOUND)
 set(RPC_TEST_THREADS 1 CACHE STRING "OpenMP threads per rank in tests")
 
 add_library(rpc_test_main OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/test/support/gtest_main.cpp)
+target_include_directories(rpc_test_main PUBLIC ${PROJECT_SOURCE_DIR}/test/support)
 target_compile_features(rpc_test_main PUBLIC cxx_std_17)
 target_link_libraries(rpc_test_main PUBLIC rpc::trilinos GTest::gtest)
 

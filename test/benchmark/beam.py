@@ -189,6 +189,14 @@ def energy_error(program, reference, sizes):
     return table
 
 
+HEADING = """# Benchmarks
+
+The paper's beam (input/beam.xml). Every figure below was printed by
+
+    cmake --build build --target benchmark
+
+which writes this page to build/benchmark/benchmarks.md. Times are those of one machine on one day; ratios and counts are what to compare.
+"""
 TABLES = {"a": ("table_1", table_1), "b": ("table_2", table_2), "c": ("cg_iterations", cg_iterations),
           "d": ("speed_up", speed_up), "e": ("energy_error", energy_error)}
 FULL = {"a": [8, 16, 32, 64, 128, 256, 512], "b": 128, "c": ([32, 64, 128, 256], [1, 2, 3]), "d": ([128, 256], 3, True),
@@ -230,15 +238,18 @@ def main(arguments):
     program = Program(options)
     sizes = cut(QUICK if options.quick else FULL, options.largest)
     os.makedirs(options.output, exist_ok=True)
-    failed = []
+    failed, document = [], HEADING
     for name in options.only:
         stem, make = TABLES[name]
         table = make(program, reference, sizes)
         print("\n" + table.text(), flush=True)
         with open(os.path.join(options.output, stem + ".md"), "w") as file:
             file.write(table.text())
+        document += "\n" + table.text()
         if not table.good:
             failed.append(name)
+    with open(os.path.join(options.output, "benchmarks.md"), "w") as file:
+        file.write(document)
     print("benchmark: " + ("FAILED: " + ", ".join(failed) if failed else "all criteria hold"))
     return 1 if failed else 0
 

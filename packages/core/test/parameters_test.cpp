@@ -47,13 +47,13 @@ ParameterList assigned(const std::string &assignment)
   return list;
 }
 
-void expect_refused(const std::string &assignment, const std::initializer_list<const char *> parts)
+void expect_refused(const std::string &assignment, const std::initializer_list<std::string> parts)
 {
   SCOPED_TRACE(assignment);
   expect_error(ExitCode::bad_input, parts, [&] { assigned(assignment); });
 }
 
-void expect_invalid(ParameterList list, const std::initializer_list<const char *> parts)
+void expect_invalid(ParameterList list, const std::initializer_list<std::string> parts)
 {
   expect_error(ExitCode::bad_input, parts, [&] { rpc::validate(list, valid_deck()); });
 }

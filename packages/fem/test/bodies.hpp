@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../../core/test/expect_error.hpp"
+#include "expect_error.hpp"
 #include "rpc/core/field.hpp"
 #include "rpc/fem/discretization.hpp"
 #include "rpc/mesh/box.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/error.hpp"
+#include "expect_error.hpp"
 #include "rpc/core/tpetra.hpp"
 
 #include <filesystem>
@@ -55,27 +55,6 @@ inline std::string text_of(const std::string &path)
 {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// The rpc::Error that the work must throw.
-template <class Work>
-Error error_of(const Work &work)
-{
-  try {
-    work();
-  } catch (const Error &error) {
-    return error;
-  }
-  ADD_FAILURE() << "no rpc::Error was thrown";
-  return Error(ExitCode::converged, "");
-}
-
-template <class Work>
-void expect_error(const ExitCode code, const std::string &part, const Work &work)
-{
-  const Error error = error_of(work);
-  EXPECT_EQ(error.code(), code) << error.what();
-  EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
 }
 
 } // namespace rpc::test

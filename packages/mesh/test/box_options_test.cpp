@@ -1,4 +1,4 @@
-#include "../../core/test/expect_error.hpp"
+#include "expect_error.hpp"
 #include "rpc/mesh/box.hpp"
 
 #include <Teuchos_Array.hpp>
@@ -45,7 +45,7 @@ TEST(BoxOptions, ThreeNumbersMakeItThreeDimensional)
 
 TEST(BoxOptions, BadValuesAreRefusedByName)
 {
-  const auto refused = [](const Teuchos::ParameterList &list, const std::initializer_list<const char *> parts) {
+  const auto refused = [](const Teuchos::ParameterList &list, const std::initializer_list<std::string> parts) {
     expect_error(ExitCode::bad_input, parts, [&] { rpc::mesh::box_options(list); });
   };
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,6 @@
 #include "rpc/mesh/box.hpp"
 
-#include "../../core/test/expect_error.hpp"
+#include "expect_error.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <array>

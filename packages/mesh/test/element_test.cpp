@@ -1,6 +1,6 @@
 #include "rpc/mesh/element.hpp"
 
-#include "../../core/test/expect_error.hpp"
+#include "expect_error.hpp"
 
 #include <algorithm>
 #include <array>

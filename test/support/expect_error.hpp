@@ -24,12 +24,18 @@ Error error_of(const Work &work)
 
 /// The work must throw this code, and a message that contains all parts.
 template <class Work>
-void expect_error(const ExitCode code, const std::initializer_list<const char *> parts, const Work &work)
+void expect_error(const ExitCode code, const std::initializer_list<std::string> &parts, const Work &work)
 {
   const Error error = error_of(work);
   EXPECT_EQ(error.code(), code) << error.what();
-  for (const char *part : parts)
+  for (const std::string &part : parts)
     EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what() << "\nlacks: " << part;
+}
+
+template <class Work>
+void expect_error(const ExitCode code, const std::string &part, const Work &work)
+{
+  expect_error(code, {part}, work);
 }
 
 } // namespace rpc::test
