@@ -185,7 +185,7 @@ TEST(EliminateDirichlet, EnergyWithItsOffsetIsThatOfTheFullProblem)
                   1e-13 * std::abs(expected));
       Vector change(*problem.applied_load, Teuchos::Copy);
       change.update(-1., *load, 1.);
-      EXPECT_EQ(change.normInf(), 0);
+      EXPECT_LT(change.normInf(), 1e-14 * load->normInf()); // threads sum in any order
     }
   }
 }
