@@ -4,6 +4,7 @@
 
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
+#include <sstream>
 
 namespace rpc
 {
@@ -72,6 +73,13 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     const double stiffness_scale = scene.material.youngs_modulus / mesh::diameter(*d.mesh);
     s.uzawa = contact::uzawa(*s.functional, *s.u, minimize, stiffness_scale, scene.uzawa,
                              [&](const contact::UzawaResult &result) { table.uzawa(result); });
+    if (!s.uzawa.converged && !scene.contact.side.empty()) {
+      std::ostringstream hint; // the penalty has a unit, and no default fits all
+      hint << "; \"Contact->Penalty\" = " << scene.contact.penalty << " [Pa/m] is "
+           << scene.contact.penalty / stiffness_scale
+           << " times E/diameter of the body, where 1e3 to 1e9 usually works";
+      s.uzawa.reason += hint.str();
+    }
     s.linear = linear.counts();
     const mesh::Side *side = scene.contact.side.empty() ? nullptr : &d.mesh->side(scene.contact.side, "Contact->Side");
     s.contact = contact::contact_result(d, side, *s.functional, *s.u);

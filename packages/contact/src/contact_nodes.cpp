@@ -4,6 +4,7 @@
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -32,26 +33,37 @@ HostPoints positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node)
   return to_host(points);
 }
 
-/// Splits each normal into the free components and those that are prescribed.
-void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet)
+/// Splits each normal into the free components and those that are prescribed; collective.
+void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, const Comm &comm)
 {
   const auto fixed = dirichlet.fixed;
   const auto value = device_read(*dirichlet.value);
   const ContactNodes nodes = c;
+  double largest_gap = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::largest_gap", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &most) {
+        const double gap = nodes.gap(i) < 0 ? -nodes.gap(i) : nodes.gap(i);
+        if (gap > most) most = gap;
+      },
+      Kokkos::Max<double>(largest_gap));
+  // Prescribed displacements and gaps that are meant to be equal differ by rounding: sin(pi) is not 0.
+  const double rounding = 1e-12 * (std::max(0., max_all(comm, largest_gap)) + dirichlet.value->normInf());
   Kokkos::parallel_for(
       "rpc::contact::directions", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        double length = 0;
-        nodes.free_gap(i) = nodes.gap(i);
+        double length = 0, free_gap = nodes.gap(i);
         for (int k = 0; k < nodes.dim; ++k) {
           const LO dof = nodes.dim * nodes.node(i) + k;
-          if (fixed(dof)) nodes.free_gap(i) -= nodes.normal(i, k) * value(dof);
+          if (fixed(dof)) free_gap -= nodes.normal(i, k) * value(dof);
           nodes.direction(i, k) = fixed(dof) ? 0 : nodes.normal(i, k);
           length += nodes.direction(i, k) * nodes.direction(i, k);
         }
         // A remainder of rounding size is no direction to push in.
         nodes.fixed(i) = length < 1e-16;
         for (int k = 0; k < nodes.dim && nodes.fixed(i); ++k) nodes.direction(i, k) = 0;
+        nodes.free_gap(i) = nodes.fixed(i) && free_gap < rounding && free_gap > -rounding ? 0 : free_gap;
       });
+  Kokkos::fence();
 }
 
 } // namespace
@@ -117,7 +129,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const ContactOptions &o
   throw_if_any(comm, ExitCode::bad_input, bad);
   c.yield = to_device(xi);
   c.gap = to_device(evaluate(options.gap, points, "Contact->Gap", comm));
-  take_over_dirichlet(c, dirichlet);
+  take_over_dirichlet(c, dirichlet, comm);
   c.num_total = sum_all(comm, GO(n));
 
   const auto fixed = to_host(c.fixed);

@@ -6,6 +6,107 @@
 namespace rpc::contact
 {
 
+// Kernels are free functions: nvcc takes no device lambda in a constructor or a private member.
+namespace
+{
+
+KOKKOS_INLINE_FUNCTION double larger(const double a, const double b)
+{
+  return a > b ? a : b;
+}
+KOKKOS_INLINE_FUNCTION double magnitude(const double x)
+{
+  return x < 0 ? -x : x;
+}
+
+/// The paper's start l = 0, which is half the yield limit; a rigid foundation has no half.
+void start_multipliers(const ContactNodes &c, const DeviceView<double *> &lambda)
+{
+  Kokkos::parallel_for(
+      "rpc::contact::start", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { lambda(i) = c.fixed(i) || c.yield(i) > 1e308 ? 0 : 0.5 * c.yield(i); });
+}
+
+/// Where each contact node's own block of K lies, and what it holds.
+void find_diagonal_blocks(const ContactNodes &c, const CrsMatrix &K, const DeviceView<std::size_t **> &block,
+                          const DeviceView<double ***> &elastic)
+{
+  const auto A = K.getLocalMatrixDevice();
+  Kokkos::parallel_for(
+      "rpc::contact::find_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k) {
+          const LO row = c.dim * c.node(i) + k;
+          std::size_t at = A.graph.row_map(row);
+          while (A.graph.entries(at) != c.dim * c.node(i)) ++at; // an owned node's first column has its first row's lid
+          block(i, k) = at;
+          for (int l = 0; l < c.dim; ++l) elastic(i, k, l) = A.values(at + l);
+        }
+      });
+  Kokkos::fence();
+}
+
+/// Ku -= sum over nodes whose block is in the matrix, r w m (m . u).
+void subtract_contact(const ContactNodes &c, const DeviceView<char *> &stuck, const Vector &u, Vector &Ku)
+{
+  const auto from = device_read(u);
+  const auto to = device_write(Ku);
+  Kokkos::parallel_for(
+      "rpc::contact::without_contact", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        if (!stuck(i)) return;
+        double along = 0;
+        for (int k = 0; k < c.dim; ++k) along += c.direction(i, k) * from(c.dim * c.node(i) + k);
+        for (int k = 0; k < c.dim; ++k)
+          to(c.dim * c.node(i) + k) -= c.penalty(i) * c.weight(i) * along * c.direction(i, k);
+      });
+  Kokkos::fence();
+}
+
+/// This rank's sum_i w_i Psi_i(v_i) (smoothed) or sum_i w_i lambda_i v_i.
+double contact_energy(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u, const bool smoothed)
+{
+  const auto x = device_read(u);
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::energy", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) {
+        const double v = penetration(c, i, x);
+        const double xi = c.yield(i);
+        if (c.fixed(i))
+          part += c.weight(i) * plastic_energy(v, xi);
+        else
+          part += c.weight(i) * (smoothed ? smoothed_energy(v, lambda(i), c.penalty(i), xi) : lambda(i) * v);
+      },
+      sum);
+  return sum;
+}
+
+/// F += sum_i w_i p_i m_i.
+void add_contact_force(const ContactNodes &c, const DeviceView<double *> &p, Vector &F)
+{
+  const auto to = device_write(F);
+  Kokkos::parallel_for(
+      "rpc::contact::force", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) += c.weight(i) * p(i) * c.direction(i, k);
+      });
+  Kokkos::fence();
+}
+
+/// (contact nodes) Psi_i'(v_i), without its limits where `unlimited` is set.
+DeviceView<double *> pressures(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u,
+                               const DeviceView<char *> &unlimited)
+{
+  DeviceView<double *> p("rpc::contact::pressure", c.size());
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::pressure", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        const double z = lambda(i) + c.penalty(i) * penetration(c, i, x);
+        p(i) = unlimited(i) ? z : clamp(z, 0, c.yield(i));
+      });
+  return p;
+}
+
+} // namespace
+
 LineModel::LineModel(const Comm &comm, const double slope_at_0, const double elastic_curvature,
                      const ContactNodes &contact, DeviceView<double *> v, DeviceView<double *> dv,
                      DeviceView<double *> lambda)
@@ -40,71 +141,14 @@ SmoothedFunctional::SmoothedFunctional(const Comm &comm, fem::ElasticProblem pro
       block_("rpc::contact::block", contact_.size(), contact_.dim),
       elastic_("rpc::contact::elastic", contact_.size(), contact_.dim, contact_.dim)
 {
-  // The paper's start l = 0, which is half the yield limit; a rigid foundation has no half.
-  const ContactNodes c = contact_;
-  const auto lambda = lambda_;
-  Kokkos::parallel_for(
-      "rpc::contact::start", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i) { lambda(i) = c.fixed(i) || c.yield(i) > 1e308 ? 0 : 0.5 * c.yield(i); });
-  find_diagonal_blocks();
-}
-
-void SmoothedFunctional::find_diagonal_blocks()
-{
-  const ContactNodes c = contact_;
-  const auto A = problem_.stiffness->getLocalMatrixDevice();
-  const auto block = block_;
-  const auto elastic = elastic_;
-  Kokkos::parallel_for(
-      "rpc::contact::find_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) {
-          const LO row = c.dim * c.node(i) + k;
-          std::size_t at = A.graph.row_map(row);
-          while (A.graph.entries(at) != c.dim * c.node(i)) ++at; // an owned node's first column has its first row's lid
-          block(i, k) = at;
-          for (int l = 0; l < c.dim; ++l) elastic(i, k, l) = A.values(at + l);
-        }
-      });
-  Kokkos::fence();
+  start_multipliers(contact_, lambda_);
+  find_diagonal_blocks(contact_, *problem_.stiffness, block_, elastic_);
 }
 
 void SmoothedFunctional::apply_stiffness(const Vector &u, Vector &Ku) const
 {
   problem_.stiffness->apply(u, Ku);
-  ++num_products_;
-  const ContactNodes c = contact_;
-  const auto stuck = stuck_in_matrix_;
-  const auto from = device_read(u);
-  const auto to = device_write(Ku);
-  Kokkos::parallel_for(
-      "rpc::contact::without_contact", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (!stuck(i)) return;
-        double along = 0;
-        for (int k = 0; k < c.dim; ++k) along += c.direction(i, k) * from(c.dim * c.node(i) + k);
-        for (int k = 0; k < c.dim; ++k)
-          to(c.dim * c.node(i) + k) -= c.penalty(i) * c.weight(i) * along * c.direction(i, k);
-      });
-  Kokkos::fence();
-}
-
-double SmoothedFunctional::contact_sum(const Vector &u, const bool smoothed) const
-{
-  const ContactNodes c = contact_;
-  const auto lambda = lambda_;
-  const auto x = device_read(u);
-  double sum = 0;
-  Kokkos::parallel_reduce(
-      "rpc::contact::energy", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &part) {
-        const double v = penetration(c, i, x);
-        const double xi = c.yield(i);
-        if (c.fixed(i))
-          part += c.weight(i) * plastic_energy(v, xi);
-        else
-          part += c.weight(i) * (smoothed ? smoothed_energy(v, lambda(i), c.penalty(i), xi) : lambda(i) * v);
-      },
-      sum);
-  return sum_all(comm_, sum);
+  subtract_contact(contact_, stuck_in_matrix_, u, Ku);
 }
 
 double SmoothedFunctional::potential(const Vector &u) const
@@ -121,52 +165,27 @@ double SmoothedFunctional::strain_energy(const Vector &u) const
 
 double SmoothedFunctional::value(const Vector &u) const
 {
-  return potential(u) + contact_sum(u, true);
+  return potential(u) + sum_all(comm_, contact_energy(contact_, lambda_, u, true));
 }
 
 double SmoothedFunctional::energy(const Vector &u) const
 {
-  return potential(u) + contact_sum(u, false);
-}
-
-void SmoothedFunctional::add_contact_force(const DeviceView<double *> &p, Vector &F) const
-{
-  const ContactNodes c = contact_;
-  const auto to = device_write(F);
-  Kokkos::parallel_for(
-      "rpc::contact::force", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) += c.weight(i) * p(i) * c.direction(i, k);
-      });
-  Kokkos::fence();
+  return potential(u) + sum_all(comm_, contact_energy(contact_, lambda_, u, false));
 }
 
 void SmoothedFunctional::gradient(const Vector &u, Vector &F) const
 {
-  gradient(u, false, F);
+  const DeviceView<char *> none("rpc::contact::none", contact_.size());
+  apply_stiffness(u, F);
+  F.update(-1., *problem_.load, 1.);
+  add_contact_force(contact_, pressures(contact_, lambda_, u, none), F);
 }
 
 void SmoothedFunctional::piece_gradient(const Vector &u, Vector &F) const
 {
-  gradient(u, true, F);
-}
-
-void SmoothedFunctional::gradient(const Vector &u, const bool of_piece, Vector &F) const
-{
   apply_stiffness(u, F);
   F.update(-1., *problem_.load, 1.);
-  const ContactNodes c = contact_;
-  const auto lambda = lambda_;
-  const auto stuck = stuck_in_matrix_;
-  DeviceView<double *> p("rpc::contact::pressure", c.size());
-  {
-    const auto x = device_read(u);
-    Kokkos::parallel_for(
-        "rpc::contact::pressure", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-          const double z = lambda(i) + c.penalty(i) * penetration(c, i, x);
-          p(i) = of_piece && stuck(i) ? z : clamp(z, 0, c.yield(i));
-        });
-  }
-  add_contact_force(p, F);
+  add_contact_force(contact_, pressures(contact_, lambda_, u, stuck_in_matrix_), F);
 }
 
 GO SmoothedFunctional::update_hessian(const Vector &u)
@@ -265,7 +284,7 @@ double SmoothedFunctional::force_scale() const
 double SmoothedFunctional::equilibrium_residual(const Vector &u) const
 {
   Vector contact(u.getMap()), F(u.getMap());
-  add_contact_force(lambda_, contact);
+  add_contact_force(contact_, lambda_, contact);
   apply_stiffness(u, F);
   F.update(-1., *problem_.load, 1., contact, 1.);
   return F.norm2() / std::max(force_scale(), contact.norm2());
@@ -283,11 +302,10 @@ double SmoothedFunctional::contact_law_residual(const Vector &u, const double st
         if (c.fixed(i)) return;
         const double rho_v = stiffness_scale * penetration(c, i, x);
         const double p = lambda(i);
-        const auto larger = [](const double a, const double b) { return a > b ? a : b; };
         const double miss = p - clamp(p + rho_v, 0, c.yield(i));
-        worst = larger(worst, miss < 0 ? -miss : miss);
+        worst = larger(worst, magnitude(miss));
         pressure_scale = larger(pressure_scale, p);
-        distance_scale = larger(distance_scale, rho_v < 0 ? -rho_v : rho_v);
+        distance_scale = larger(distance_scale, magnitude(rho_v));
       },
       Kokkos::Max<double>(violation), Kokkos::Max<double>(largest), Kokkos::Max<double>(deepest));
   const double mine[3] = {violation, largest, deepest};

@@ -51,7 +51,8 @@ UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function
     const bool changes = result.multiplier_change >= options.tolerance;
     stop = holds && (options.test == UzawaTest::certificate || !changes);
     report(result);
-    if (!inner.converged && !holds) {
+    // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from.
+    if (!inner.converged && !(result.certificate.equilibrium_residual <= options.tolerance)) {
       result.reason = inner.reason;
       return result;
     }

@@ -141,6 +141,73 @@ DeviceView<double **> quadrature_points(const DeviceView<double **> &coords, con
   return x;
 }
 
+/// measure(cell * points + q) = weight * Jacobian determinant: what a quadrature point stands for [m^Dim].
+template <int Dim, int Nodes>
+struct CellMeasure {
+  DeviceView<double **> coords;    // (overlap nodes, Dim)   [m]      in
+  DeviceView<LO **> cells;         // (cells, Nodes)                  in
+  DeviceView<double ***> gradient; // (points, Nodes, Dim)            in
+  DeviceView<double *> weight;     // (points)                        in
+  DeviceView<double *> measure;    // (cells * points)       [m^Dim]  out
+
+  KOKKOS_FUNCTION void operator()(const LO cell) const
+  {
+    const CellCoords<Dim, Nodes> x(coords, cells, cell);
+    const int points = static_cast<int>(weight.extent(0));
+    double dN[Nodes][Dim];
+    for (int q = 0; q < points; ++q) measure(cell * points + q) = weight(q) * physical_gradients(x, gradient, q, dN);
+  }
+};
+
+DeviceView<double *> cell_measure(const mesh::Mesh &mesh, const BasisTable &table)
+{
+  DeviceView<double *> measure("rpc::fem::cell_measure", std::size_t(mesh.num_cells()) * table.num_points());
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    const CellMeasure<dim, nodes> kernel{mesh.coords, mesh.cells, table.gradient, table.weight, measure};
+    Kokkos::parallel_for("rpc::fem::cell_measure", device_range(mesh.num_cells()), kernel);
+  });
+  return measure;
+}
+
+DeviceView<double *> facet_measure(const DeviceView<double **> &coords, const DeviceView<LO **> &facets,
+                                   const BasisTable &table)
+{
+  const int points = table.num_points();
+  const auto gradient = table.gradient;
+  const auto weight = table.weight;
+  DeviceView<double *> measure("rpc::fem::facet_measure", facets.extent(0) * points);
+  Kokkos::parallel_for(
+      "rpc::fem::facet_measure", device_range(static_cast<LO>(facets.extent(0))), KOKKOS_LAMBDA(const LO facet) {
+        for (int q = 0; q < points; ++q)
+          measure(facet * points + q) = weight(q) * norm(area_normal(coords, facets, facet, gradient, q));
+      });
+  return measure;
+}
+
+/// load(ai) += sum over entities (cells or facets) and their points q, measure_q N_a(q) f_i(q).
+/// @param f  (entities * points, dim)
+void add_load(const DeviceView<LO **> &entities, const DeviceView<double **> &value,
+              const DeviceView<double *> &measure, const DeviceView<double **> &f, const LO num_owned_nodes,
+              Vector &load)
+{
+  const auto b = device_write(load);
+  const int dim = static_cast<int>(f.extent(1)), points = static_cast<int>(value.extent(0));
+  const int nodes = static_cast<int>(entities.extent(1));
+  Kokkos::parallel_for(
+      "rpc::fem::add_load", device_range(static_cast<LO>(entities.extent(0))), KOKKOS_LAMBDA(const LO entity) {
+        for (int a = 0; a < nodes; ++a) {
+          const LO node = entities(entity, a);
+          for (int i = 0; i < dim && node < num_owned_nodes; ++i) {
+            double sum = 0;
+            for (int q = 0; q < points; ++q)
+              sum += measure(entity * points + q) * value(q, a) * f(entity * points + q, i);
+            add_shared(b(dim * node + i), sum);
+          }
+        }
+      });
+  Kokkos::fence();
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_material_parameters()
@@ -231,28 +298,7 @@ void add_body_force(const Discretization &d, const VectorField &force, const std
   const BasisTable &table = d.reference.cell;
   const auto points = quadrature_points(mesh.coords, mesh.cells, table.value);
   const auto f = evaluate_vector(force, points, parameter, mesh.comm());
-  const auto b = device_write(load);
-  const LO num_owned = mesh.num_owned_nodes();
-  const auto coords = mesh.coords;
-  const auto cells = mesh.cells;
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    constexpr int Dim = dim, Nodes = nodes;
-    const auto value = table.value;
-    const auto gradient = table.gradient;
-    const auto weight = table.weight;
-    const int num_points = table.num_points();
-    Kokkos::parallel_for(
-        "rpc::fem::body_force", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
-          const CellCoords<Dim, Nodes> x(coords, cells, cell);
-          for (int q = 0; q < num_points; ++q) {
-            double dN[Nodes][Dim];
-            const double volume = weight(q) * physical_gradients(x, gradient, q, dN);
-            for (int a = 0; a < Nodes; ++a)
-              for (int i = 0; i < Dim && cells(cell, a) < num_owned; ++i)
-                add_shared(b(Dim * cells(cell, a) + i), volume * value(q, a) * f(cell * num_points + q, i));
-          }
-        });
-  });
+  add_load(mesh.cells, table.value, cell_measure(mesh, table), f, mesh.num_owned_nodes(), load);
 }
 
 void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,
@@ -263,23 +309,7 @@ void add_traction(const Discretization &d, const mesh::Side &side, const VectorF
   const BasisTable &table = d.reference.facet;
   const auto points = quadrature_points(mesh.coords, side.facets, table.value);
   const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
-  const auto b = device_write(load);
-  const LO num_owned = mesh.num_owned_nodes();
-  const int dim = d.dim(), num_points = table.num_points();
-  const auto coords = mesh.coords;
-  const auto facets = side.facets;
-  const auto value = table.value;
-  const auto gradient = table.gradient;
-  const auto weight = table.weight;
-  Kokkos::parallel_for(
-      "rpc::fem::traction", device_range(static_cast<LO>(facets.extent(0))), KOKKOS_LAMBDA(const LO facet) {
-        for (int q = 0; q < num_points; ++q) {
-          const double area = weight(q) * norm(area_normal(coords, facets, facet, gradient, q));
-          for (std::size_t a = 0; a < facets.extent(1); ++a)
-            for (int i = 0; i < dim && facets(facet, a) < num_owned; ++i)
-              add_shared(b(dim * facets(facet, a) + i), area * value(q, a) * t(facet * num_points + q, i));
-        }
-      });
+  add_load(side.facets, table.value, facet_measure(mesh.coords, side.facets, table), t, mesh.num_owned_nodes(), load);
 }
 
 } // namespace rpc::fem

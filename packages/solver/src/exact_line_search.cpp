@@ -40,7 +40,9 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
   const auto &from = dynamic_cast<const NewtonGroup &>(solver.getPreviousSolutionGroup());
   const auto line = from.context().functional.along(tpetra(from.getX()), tpetra(direction), tpetra(from.getF()));
   step = exact_step(line);
+  from.context().step_length = step;
   group.computeX(from, direction, step);
+  if (!(step > 0)) from.context().failure = "the functional does not fall along the Newton direction";
   return step > 0;
 }
 

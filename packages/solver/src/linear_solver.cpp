@@ -37,11 +37,12 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
   smoother.set("chebyshev: degree", 2);
   smoother.set("chebyshev: ratio eigenvalue", 7.);
   smoother.set("chebyshev: eigenvalue max iterations", 20);
-  // There is always a level below the finest one, so that what is solved directly has gone to one rank.
+  // On several ranks there is always a level below the finest one, so that what is solved directly has gone to one rank.
   const GO rows = static_cast<GO>(A.getGlobalNumRows());
-  list.set("coarse: max size", static_cast<int>(std::clamp<GO>(rows / 4, 1, 1000)));
+  const bool alone = A.getComm()->getSize() == 1;
+  list.set("coarse: max size", alone ? 1000 : static_cast<int>(std::clamp<GO>(rows / 4, 1, 1000)));
 #ifdef HAVE_MUELU_ZOLTAN2
-  if (A.getComm()->getSize() > 1) { // the direct coarse solvers of 13.2 are wrong on a distributed matrix
+  if (!alone) { // the direct coarse solvers of 13.2 are wrong on a distributed matrix
     list.set("repartition: enable", true);
     list.set("repartition: partitioner", "zoltan2");
     list.set("repartition: start level", 1);
@@ -52,7 +53,7 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
     partitioner.set("algorithm", "multijagged");
   }
 #else
-  if (A.getComm()->getSize() > 1) list.set("coarse: type", "CHEBYSHEV");
+  if (!alone) list.set("coarse: type", "CHEBYSHEV");
 #endif
   return list;
 }
@@ -230,7 +231,8 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const doubl
   } catch (
       const std::exception &failure) { // a breakdown, such as an indefinite or singular matrix; the same on all ranks
     counts_.iterations.push_back(impl_->manager->getNumIters());
-    result.reason = "the linear solver broke down: " + one_line(failure.what());
+    result.reason = "the linear solver broke down, as it does when nothing holds the body in some direction (" +
+                    one_line(failure.what()) + ")";
   }
   return result;
 }

@@ -10,6 +10,7 @@
 #include <NOX_Solver_LineSearchBased.H>
 #include <NOX_StatusTest_Factory.H>
 #include <Teuchos_TimeMonitor.hpp>
+#include <Teuchos_oblackholestream.hpp>
 #include <sstream>
 
 namespace rpc::solver
@@ -42,6 +43,40 @@ public:
 private:
   RCP<NewtonContext> context_;
   double tolerance_, ratio_ = 0;
+  NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
+};
+
+/// Stops where rounding ends Newton's progress: two more full steps with the same states, and the residual does not fall.
+class StagnationTest : public NOX::StatusTest::Generic
+{
+public:
+  explicit StagnationTest(RCP<NewtonContext> context) : context_(std::move(context)) {}
+
+  NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic &solver, NOX::StatusTest::CheckType) override
+  {
+    const auto &group = solver.getSolutionGroup();
+    const auto states = context_->functional.count_states(tpetra(group.getX()));
+    const bool falls = solver.getNumIterations() == 0 || group.getNormF() < 0.5 * residual_;
+    const bool same = states.stuck == states_.stuck && states.open == states_.open && context_->step_length > 0.5;
+    idle_steps_ = same && !falls ? idle_steps_ + 1 : 0;
+    status_ = idle_steps_ >= 2 ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
+    residual_ = group.getNormF();
+    states_ = states;
+    if (status_ == NOX::StatusTest::Failed && context_->failure.empty())
+      context_->failure = "the residual stagnates: the scene is too ill-conditioned for this accuracy";
+    return status_;
+  }
+  NOX::StatusTest::StatusType getStatus() const override { return status_; }
+  std::ostream &print(std::ostream &out, const int indent) const override
+  {
+    return out << std::string(indent, ' ') << status_ << "residual falls, or states change\n";
+  }
+
+private:
+  RCP<NewtonContext> context_;
+  double residual_ = 0;
+  contact::StateCounts states_;
+  int idle_steps_ = 0;
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
@@ -84,8 +119,11 @@ RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
   const auto list = Teuchos::parameterList("NOX");
   list->set("Nonlinear Solver", "Line Search Based");
   list->sublist("Printing").set("Output Information", 0);
+  list->sublist("Printing")
+      .set<RCP<std::ostream>>("Output Stream", rcp(new Teuchos::oblackholestream)); // else it warns
   list->sublist("Line Search").set("Method", "Exact");
   list->sublist("Direction").set("Method", "Newton");
+  if (user.isSublist("Printing")) list->remove("Printing");
   list->setParameters(user);
   list->remove("Status Tests", false);
   Teuchos::ParameterList &search = list->sublist("Line Search");
@@ -110,6 +148,7 @@ RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const R
   }
   tests->addStatusTest(rcp(new NormF(context->target_residual, NOX::Abstract::Vector::TwoNorm, NormF::Unscaled)));
   tests->addStatusTest(rcp(new StepTest(context, options.step_tolerance)));
+  tests->addStatusTest(rcp(new StagnationTest(context)));
   tests->addStatusTest(rcp(new MaxIters(options.max_iterations)));
   return tests;
 }
@@ -173,7 +212,7 @@ Teuchos::ParameterList valid_newton_parameters()
   Teuchos::ParameterList valid("NOX");
   valid.set("Step Tolerance", 1e-10, "Newton stops at |step|_2/|u|_2 below this, > 0: the paper's test.");
   valid.set("Residual Tolerance", 1e-11, "Newton also stops at |F|_2/|load|_2 below this, > 0.");
-  valid.set("Maximum Iterations", 60, "Newton steps per Uzawa iteration at most, > 0.");
+  valid.set("Maximum Iterations", 200, "Newton steps per Uzawa iteration at most, > 0.");
   for (const char *name : {"Line Search", "Direction", "Printing", "Solver Options", "Status Tests"})
     set_pass_through(valid, name, "Handed to NOX as it is.");
   valid.sublist("Line Search", true,
@@ -204,7 +243,8 @@ contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, Linear
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::newton"));
   const double scale = functional.force_scale();
-  const auto context = rcp(new NewtonContext{functional, linear_solver, options.residual_tolerance * scale, 0, 0, ""});
+  const auto context =
+      rcp(new NewtonContext{functional, linear_solver, options.residual_tolerance * scale, 0, 1, 0, ""});
   const auto reporter = rcp(new Reporter(context, scale, report));
   const auto list = nox_list(options.nox, reporter);
   const auto group = rcp(new NewtonGroup(context, u));
@@ -231,7 +271,7 @@ contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, Linear
   }
   if (!result.converged) {
     std::ostringstream reason;
-    reason << "Newton did not converge in " << result.newton_iterations << " steps";
+    reason << "Newton did not converge; steps: " << result.newton_iterations;
     if (!context->failure.empty())
       reason << "; " << context->failure;
     else if (!result.reason.empty())

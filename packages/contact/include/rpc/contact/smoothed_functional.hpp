@@ -84,15 +84,10 @@ public:
   const ContactNodes &contact() const { return contact_; }
   const fem::ElasticProblem &problem() const { return problem_; }
   const DeviceView<double *> &multipliers() const { return lambda_; }
-  int num_products() const { return num_products_; } ///< products with K so far
 
 private:
   void apply_stiffness(const Vector &u, Vector &Ku) const;
   double potential(const Vector &u) const; // Pi(u) [J]
-  void gradient(const Vector &u, bool of_piece, Vector &F) const;
-  double contact_sum(const Vector &u, bool smoothed) const;
-  void add_contact_force(const DeviceView<double *> &pressure, Vector &F) const;
-  void find_diagonal_blocks();
 
   const Comm &comm_;
   fem::ElasticProblem problem_;
@@ -101,7 +96,6 @@ private:
   DeviceView<char *> stuck_in_matrix_; // (contact nodes) whose blocks hold r w m m^T
   DeviceView<std::size_t **> block_; // (contact nodes, dim) entry where the node's own block begins in each of its rows
   DeviceView<double ***> elastic_;   // (contact nodes, dim, dim) that block of K
-  mutable int num_products_ = 0;
 };
 
 } // namespace rpc::contact

@@ -13,7 +13,7 @@ namespace rpc::solver
 struct NewtonOptions {
   double step_tolerance = 1e-10;     ///< |d|_2 / |u|_2 of a full Newton step, > 0: the paper's test
   double residual_tolerance = 1e-11; ///< |F|_2 / |load|_2, > 0
-  int max_iterations = 60;           ///< > 0
+  int max_iterations = 200;          ///< > 0
   Teuchos::ParameterList nox;        ///< sublists for NOX, on top of the defaults
 };
 
