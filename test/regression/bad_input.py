@@ -6,6 +6,8 @@ import unittest
 
 from rpc_run import BEAM, RANKS, SMALL, RpcTestCase, files, run_all
 
+LEVELS = "Linear Solver->MueLu->coarse: max size=20"  # small meshes are solved directly by default
+
 BAD_INPUT, BAD_MESH, NO_SOLUTION = 2, 3, 5
 
 # (assignments, parts of the message)
@@ -100,9 +102,9 @@ COLLECTIVE_ASSIGNMENTS = [
     (["NOX->Line Search->Method=3"], ['"NOX"', '"Method"', '"int"']),
     (["NOX->Printing->Output Information=much"], ['"NOX"', '"Output Information"']),
     (["NOX->Status Tests->Test Type=Guess"], ['"NOX"', '"Guess"']),
-    (["Linear Solver->MueLu->smoother: type=SANDPAPER"], ['"Linear Solver->MueLu"', "'SANDPAPER'"]),
-    (["Linear Solver->MueLu->multigrid algorithm=guess"], ['"Linear Solver->MueLu"', '"guess"']),
-    (["Linear Solver->MueLu->smoother: params->chebyshev: degree=two"],
+    ([LEVELS, "Linear Solver->MueLu->smoother: type=SANDPAPER"], ['"Linear Solver->MueLu"', "'SANDPAPER'"]),
+    ([LEVELS, "Linear Solver->MueLu->multigrid algorithm=guess"], ['"Linear Solver->MueLu"', '"guess"']),
+    ([LEVELS, "Linear Solver->MueLu->smoother: params->chebyshev: degree=two"],
      ['"Linear Solver->MueLu"', '"chebyshev: degree"', '"int"']),
 ]
 

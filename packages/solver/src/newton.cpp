@@ -56,7 +56,7 @@ public:
   {
     const auto &group = solver.getSolutionGroup();
     const auto states = context_->functional.count_states(tpetra(group.getX()));
-    const bool falls = solver.getNumIterations() == 0 || group.getNormF() < 0.5 * residual_;
+    const bool falls = solver.getNumIterations() == 0 || group.getNormF() < 0.9 * residual_;
     const bool same = states.stuck == states_.stuck && states.open == states_.open && context_->step_length > 0.5;
     idle_steps_ = same && !falls ? idle_steps_ + 1 : 0;
     status_ = idle_steps_ >= 2 ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
@@ -271,7 +271,8 @@ contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, Linear
   }
   if (!result.converged) {
     std::ostringstream reason;
-    reason << "Newton did not converge; steps: " << result.newton_iterations;
+    reason << "Newton did not converge in " << result.newton_iterations
+           << (result.newton_iterations == 1 ? " step" : " steps");
     if (!context->failure.empty())
       reason << "; " << context->failure;
     else if (!result.reason.empty())
