@@ -56,7 +56,7 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     auto contact = contact::contact_nodes(s.discretization, scene.contact, problem.dirichlet);
     s.matrix_assemblies = 1;
     s.u = rcp(new Vector(*problem.dirichlet.value, Teuchos::Copy));
-    s.functional = std::make_shared<contact::SmoothedFunctional>(*comm, std::move(problem), std::move(contact));
+    s.functional = std::make_shared<contact::SmoothedFunctional>(comm, std::move(problem), std::move(contact));
   }
   const fem::Discretization &d = s.discretization;
   ConsoleTable table(console);
@@ -73,7 +73,7 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     const double stiffness_scale = scene.material.youngs_modulus / mesh::diameter(*d.mesh);
     s.uzawa = contact::uzawa(*s.functional, *s.u, minimize, stiffness_scale, scene.uzawa,
                              [&](const contact::UzawaResult &result) { table.uzawa(result); });
-    if (!s.uzawa.converged && !scene.contact.side.empty()) {
+    if (!s.uzawa.converged && s.uzawa.iterations == scene.uzawa.max_iterations) {
       std::ostringstream hint; // the penalty has a unit, and no default fits all
       hint << "; \"Contact->Penalty\" = " << scene.contact.penalty << " [Pa/m] is "
            << scene.contact.penalty / stiffness_scale
@@ -84,7 +84,7 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     const mesh::Side *side = scene.contact.side.empty() ? nullptr : &d.mesh->side(scene.contact.side, "Contact->Side");
     s.contact = contact::contact_result(d, side, *s.functional, *s.u);
     s.energy = s.functional->energy(*s.u);
-    s.strain_energy = s.functional->strain_energy(*s.u);
+    s.strain_energy = fem::strain_energy(d, scene.material, *s.u);
   }
   s.seconds.setup = s.linear.setup_seconds;
   s.seconds.solve -= s.seconds.setup;

@@ -102,6 +102,21 @@ TEST_P(Block, PushedDownByAPrescribedDisplacementYieldsAtItsLimit)
   }
 }
 
+TEST(Block, ResultsDoNotSeeARigidShiftOfTheScene)
+{
+  const std::vector<std::string> scene = {"Traction->top->Y=0", "Contact->Yield Stress=1.5", "Uzawa->Tolerance=1e-8",
+                                          "NOX->Residual Tolerance=1e-11"};
+  auto here = scene, there = scene;
+  here.insert(here.end(), {"Dirichlet->left->Y=-0.01*y", "Dirichlet->right->Y=-0.01*y"});
+  there.insert(there.end(), {"Dirichlet->left->Y=-0.01*y-1", "Dirichlet->right->Y=-0.01*y-1", "Contact->Gap=1"});
+  const Solution a = run_scene(block, here), b = run_scene(block, there);
+  ASSERT_TRUE(a.uzawa.converged) << a.uzawa.reason;
+  ASSERT_TRUE(b.uzawa.converged) << b.uzawa.reason;
+  EXPECT_GT(a.contact.force[1], 0.1);
+  EXPECT_NEAR(b.contact.force[1], a.contact.force[1], 1e-6 * a.contact.force[1]);
+  EXPECT_NEAR(b.strain_energy, a.strain_energy, 1e-9 * a.strain_energy);
+}
+
 TEST(BlockIn3d, IsCompressedUniformlyToRounding)
 {
   const double p = 4, nu = 0.3, modulus = 2000 * (1 - nu) / ((1 + nu) * (1 - 2 * nu));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rpc::contact
 {
@@ -24,7 +25,23 @@ void start_multipliers(const ContactNodes &c, const DeviceView<double *> &lambda
 {
   Kokkos::parallel_for(
       "rpc::contact::start", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i) { lambda(i) = c.fixed(i) || c.yield(i) > 1e308 ? 0 : 0.5 * c.yield(i); });
+      KOKKOS_LAMBDA(const LO i) { lambda(i) = c.fixed(i) || is_rigid(c.yield(i)) ? 0 : 0.5 * c.yield(i); });
+}
+
+/// |v|_2 over the unknowns that are free.
+double free_norm(const fem::ElasticProblem &problem, const Vector &v)
+{
+  Vector free(v, Teuchos::Copy);
+  {
+    const auto fixed = problem.dirichlet.fixed;
+    const auto to = device_write(free);
+    Kokkos::parallel_for(
+        "rpc::contact::free_part", device_range(static_cast<LO>(v.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
+          if (fixed(dof)) to(dof) = 0;
+        });
+    Kokkos::fence();
+  }
+  return free.norm2();
 }
 
 /// Where each contact node's own block of K lies, and what it holds.
@@ -53,8 +70,7 @@ void subtract_contact(const ContactNodes &c, const DeviceView<char *> &stuck, co
   Kokkos::parallel_for(
       "rpc::contact::without_contact", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         if (!stuck(i)) return;
-        double along = 0;
-        for (int k = 0; k < c.dim; ++k) along += c.direction(i, k) * from(c.dim * c.node(i) + k);
+        const double along = along_direction(c, i, from);
         for (int k = 0; k < c.dim; ++k)
           to(c.dim * c.node(i) + k) -= c.penalty(i) * c.weight(i) * along * c.direction(i, k);
       });
@@ -107,11 +123,11 @@ DeviceView<double *> pressures(const ContactNodes &c, const DeviceView<double *>
 
 } // namespace
 
-LineModel::LineModel(const Comm &comm, const double slope_at_0, const double elastic_curvature,
+LineModel::LineModel(RCP<const Comm> comm, const double slope_at_0, const double elastic_curvature,
                      const ContactNodes &contact, DeviceView<double *> v, DeviceView<double *> dv,
                      DeviceView<double *> lambda)
-    : comm_(comm), slope_at_0_(slope_at_0), elastic_curvature_(elastic_curvature), contact_(contact), v_(std::move(v)),
-      dv_(std::move(dv)), lambda_(std::move(lambda))
+    : comm_(std::move(comm)), slope_at_0_(slope_at_0), elastic_curvature_(elastic_curvature), contact_(contact),
+      v_(std::move(v)), dv_(std::move(dv)), lambda_(std::move(lambda))
 {
 }
 
@@ -131,17 +147,19 @@ LineModel::Value LineModel::at(const double t) const
       },
       sums[0], sums[1]);
   double all[2];
-  Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 2, sums, all);
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, sums, all);
   return {slope_at_0_ + elastic_curvature_ * t + all[0], elastic_curvature_ + all[1]};
 }
 
-SmoothedFunctional::SmoothedFunctional(const Comm &comm, fem::ElasticProblem problem, ContactNodes contact)
-    : comm_(comm), problem_(std::move(problem)), contact_(std::move(contact)),
+SmoothedFunctional::SmoothedFunctional(RCP<const Comm> comm, fem::ElasticProblem problem, ContactNodes contact)
+    : comm_(std::move(comm)), problem_(std::move(problem)), contact_(std::move(contact)),
       lambda_("rpc::contact::multiplier", contact_.size()), stuck_in_matrix_("rpc::contact::stuck", contact_.size()),
       block_("rpc::contact::block", contact_.size(), contact_.dim),
       elastic_("rpc::contact::elastic", contact_.size(), contact_.dim, contact_.dim)
 {
-  start_multipliers(contact_, lambda_);
+  applied_force_ = free_norm(problem_, *problem_.applied_load);
+  lifted_force_ = free_norm(problem_, *problem_.load);
+  if (lifted_force_ > 0) start_multipliers(contact_, lambda_); // else nothing acts, and lambda = 0 is the solution
   find_diagonal_blocks(contact_, *problem_.stiffness, block_, elastic_);
 }
 
@@ -158,19 +176,14 @@ double SmoothedFunctional::potential(const Vector &u) const
   return 0.5 * u.dot(Ku) - problem_.load->dot(u) + problem_.energy_offset;
 }
 
-double SmoothedFunctional::strain_energy(const Vector &u) const
-{
-  return 2 * (potential(u) + problem_.applied_load->dot(u));
-}
-
 double SmoothedFunctional::value(const Vector &u) const
 {
-  return potential(u) + sum_all(comm_, contact_energy(contact_, lambda_, u, true));
+  return potential(u) + sum_all(*comm_, contact_energy(contact_, lambda_, u, true));
 }
 
 double SmoothedFunctional::energy(const Vector &u) const
 {
-  return potential(u) + sum_all(comm_, contact_energy(contact_, lambda_, u, false));
+  return potential(u) + sum_all(*comm_, contact_energy(contact_, lambda_, u, false));
 }
 
 void SmoothedFunctional::gradient(const Vector &u, Vector &F) const
@@ -212,7 +225,7 @@ GO SmoothedFunctional::update_hessian(const Vector &u)
             values(block(i, k) + l) = elastic(i, k, l) + stiffness * c.direction(i, k) * c.direction(i, l);
       },
       changed);
-  return sum_all(comm_, GO(changed));
+  return sum_all(*comm_, GO(changed));
 }
 
 LineModel SmoothedFunctional::along(const Vector &u, const Vector &d, const Vector &F) const
@@ -226,7 +239,7 @@ LineModel SmoothedFunctional::along(const Vector &u, const Vector &d, const Vect
   Kokkos::parallel_for(
       "rpc::contact::along", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         v(i) = penetration(c, i, from);
-        dv(i) = penetration(c, i, step) + c.free_gap(i);
+        dv(i) = along_direction(c, i, step);
       });
   Kokkos::fence();
   return LineModel(comm_, d.dot(F), d.dot(Kd), contact_, v, dv, lambda_);
@@ -249,7 +262,7 @@ StateCounts SmoothedFunctional::count_states(const Vector &u) const
       },
       counts[0], counts[1], counts[2]);
   GO all[3];
-  Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 3, counts, all);
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 3, counts, all);
   return {all[0], all[1], all[2]};
 }
 
@@ -270,15 +283,19 @@ double SmoothedFunctional::update_multipliers(const Vector &u)
       },
       sums[0], sums[1]);
   double all[2];
-  Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 2, sums, all);
-  if (all[0] == 0) return 0;
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, sums, all);
+  if (all[0] <= 0) return 0;                           // a maximum over no nodes is -DBL_MAX
   return std::sqrt(all[0] / std::max(all[1], all[0])); // all multipliers gone to zero is a change of 1, not of infinity
 }
 
 double SmoothedFunctional::force_scale() const
 {
-  const double load = problem_.load->norm2();
-  return load > 0 ? load : 1;
+  if (applied_force_ > 0) return applied_force_;
+  Vector contact(problem_.load->getMap());
+  add_contact_force(contact_, lambda_, contact);
+  const double contact_force = contact.norm2();
+  if (contact_force > 0) return contact_force;
+  return lifted_force_ > 0 ? lifted_force_ : 1;
 }
 
 double SmoothedFunctional::equilibrium_residual(const Vector &u) const
@@ -310,8 +327,8 @@ double SmoothedFunctional::contact_law_residual(const Vector &u, const double st
       Kokkos::Max<double>(violation), Kokkos::Max<double>(largest), Kokkos::Max<double>(deepest));
   const double mine[3] = {violation, largest, deepest};
   double all[3];
-  Teuchos::reduceAll(comm_, Teuchos::REDUCE_MAX, 3, mine, all);
-  if (!(all[0] > 0)) return 0;
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, 3, mine, all);
+  if (all[0] <= 0) return 0; // a maximum over no nodes is -DBL_MAX
   return all[0] / (all[1] > 0 ? all[1] : all[2]);
 }
 

@@ -87,6 +87,36 @@ struct Stiffness {
   }
 };
 
+/// energy += int sigma(u) : eps(u) over one cell.
+template <int Dim, int Nodes>
+struct StrainEnergy {
+  DeviceView<double **> coords;                            // (overlap nodes, Dim)  [m]   in
+  DeviceView<LO **> cells;                                 // (cells, Nodes)              in
+  DeviceView<double ***> gradient;                         // (points, Nodes, Dim)        in
+  DeviceView<double *> weight;                             // (points)                    in
+  decltype(device_read(std::declval<const Vector &>())) u; // (overlap dofs)        [m]   in
+  double lambda, mu;                                       // Lame constants        [Pa]  in
+
+  KOKKOS_FUNCTION void operator()(const LO cell, double &energy) const
+  {
+    const CellCoords<Dim, Nodes> x(coords, cells, cell);
+    for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
+      double dN[Nodes][Dim];
+      const double volume = weight(q) * physical_gradients(x, gradient, q, dN);
+      double grad[Dim][Dim] = {}; // du_i / dx_j
+      for (int a = 0; a < Nodes; ++a)
+        for (int i = 0; i < Dim; ++i)
+          for (int j = 0; j < Dim; ++j) grad[i][j] += u(Dim * cells(cell, a) + i) * dN[a][j];
+      double trace = 0, product = 0;
+      for (int i = 0; i < Dim; ++i) {
+        trace += grad[i][i];
+        for (int j = 0; j < Dim; ++j) product += 0.25 * (grad[i][j] + grad[j][i]) * (grad[i][j] + grad[j][i]);
+      }
+      energy += volume * (lambda * trace * trace + 2 * mu * product);
+    }
+  }
+};
+
 constexpr const char *component_name[] = {"X", "Y", "Z"};
 
 VectorField vector_field(const Teuchos::ParameterList &list, const int dim, const std::string &path,
@@ -289,6 +319,22 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Material &mater
                    "mesh: " << all_bad << " cells are degenerate or inverted (Jacobian determinant <= 0)");
   matrix->fillComplete(d.owned_dofs, d.owned_dofs);
   return matrix;
+}
+
+double strain_energy(const Discretization &d, const Material &material, const Vector &u)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  Vector u_overlap(d.overlap_dofs);
+  u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
+  double energy = 0;
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    const BasisTable &table = d.reference.cell;
+    const StrainEnergy<dim, nodes> kernel{
+        mesh.coords,       mesh.cells,   table.gradient, table.weight, device_read(u_overlap),
+        material.lambda(), material.mu()};
+    Kokkos::parallel_reduce("rpc::fem::strain_energy", device_range(mesh.num_owned_cells), kernel, energy);
+  });
+  return sum_all(mesh.comm(), energy);
 }
 
 void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load)

@@ -18,6 +18,7 @@ double exact_step(const contact::LineModel &line)
   double t = 1, previous_width = high;
   for (int trial = 0; trial < 200; ++trial) { // 53 halvings of any bracket, and its search by doubling
     const auto value = line.at(t);
+    if (!std::isfinite(value.slope)) return 0;
     if (std::abs(value.slope) <= zero) return t;
     (value.slope < 0 ? low : high) = t;
     const double width = high - low;
@@ -42,7 +43,8 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
   step = exact_step(line);
   from.context().step_length = step;
   group.computeX(from, direction, step);
-  if (!(step > 0)) from.context().failure = "the functional does not fall along the Newton direction";
+  if (!(step > 0) && from.context().failure.empty())
+    from.context().failure = "the functional does not fall along the Newton direction";
   return step > 0;
 }
 

@@ -82,6 +82,9 @@ void check_belos(const std::string &method, const Teuchos::ParameterList &user)
     const auto list = Teuchos::parameterList("Linear Solver->Belos");
     list->setParameters(user);
     require_known(user, *factory.create(method, list)->getValidParameters(), "Linear Solver->Belos");
+    RPC_REQUIRE(!user.isParameter("Convergence Tolerance"),
+                "deck: \"Linear Solver->Belos->Convergence Tolerance\" is set by rpc for each solve; give the bound as "
+                "\"Linear Solver->Tolerance\"");
   } catch (const Error &) {
     throw;
   } catch (const std::exception &failure) {
@@ -228,9 +231,12 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const doubl
                       " after " + std::to_string(result.iterations) + " iterations";
   } catch (const Error &) {
     throw;
+  } catch (const std::bad_alloc &) { // on this rank alone
+    throw;
   } catch (
       const std::exception &failure) { // a breakdown, such as an indefinite or singular matrix; the same on all ranks
-    counts_.iterations.push_back(impl_->manager->getNumIters());
+    counts_.iterations.push_back(0);   // how many there were is not to be had
+    result.broken = true;
     result.reason = "the linear solver broke down, as it does when nothing holds the body in some direction (" +
                     one_line(failure.what()) + ")";
   }

@@ -11,6 +11,7 @@
 #include <NOX_StatusTest_Factory.H>
 #include <Teuchos_TimeMonitor.hpp>
 #include <Teuchos_oblackholestream.hpp>
+#include <algorithm>
 #include <sstream>
 
 namespace rpc::solver
@@ -160,7 +161,7 @@ int predict(NewtonContext &context, Vector &u)
 {
   Vector F(u.getMap()), d(u.getMap());
   context.functional.piece_gradient(u, F);
-  const auto solved = context.linear_solver.solve(F, d, 0.1 * context.target_residual / F.norm2());
+  const auto solved = context.linear_solver.solve(F, d, std::min(0.1, 0.1 * context.target_residual / F.norm2()));
   context.linear_iterations = solved.iterations;
   d.scale(-1.);
   context.functional.gradient(u, F);
@@ -263,6 +264,8 @@ contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, Linear
     result.newton_iterations += solver->getNumIterations();
     result.converged = status == NOX::StatusTest::Converged;
   } catch (const Error &) { // a mistake in the deck
+    throw;
+  } catch (const std::bad_alloc &) { // on this rank alone
     throw;
   } catch (const std::exception &failure) { // NOX throws when a direction cannot be had; the same on all ranks
     result.reason = one_line(failure.what());

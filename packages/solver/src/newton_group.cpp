@@ -80,7 +80,7 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
   context_->direction_norm = newton_.data().norm2();
   context_->failure = result.reason;
   has_newton_ = true;
-  return std::isfinite(context_->direction_norm) ? (result.converged ? Ok : NotConverged) : Failed;
+  return std::isfinite(context_->direction_norm) && !result.broken ? (result.converged ? Ok : NotConverged) : Failed;
 }
 
 RCP<NOX::Abstract::Group> NewtonGroup::clone(const NOX::CopyType type) const

@@ -45,7 +45,7 @@ struct Line {
   }
   LineModel model(const double slope, const double curvature) const
   {
-    return LineModel(*Tpetra::getDefaultComm(), slope, curvature, nodes, v, dv, lambda);
+    return LineModel(Tpetra::getDefaultComm(), slope, curvature, nodes, v, dv, lambda);
   }
 };
 
@@ -99,7 +99,8 @@ struct Beam {
     contact.side = "bottom";
     contact.yield_stress = ScalarField(xi);
     auto nodes = contact::contact_nodes(d, contact, problem.dirichlet);
-    functional = std::make_shared<contact::SmoothedFunctional>(d.mesh->comm(), std::move(problem), std::move(nodes));
+    functional = std::make_shared<contact::SmoothedFunctional>(d.mesh->owned_nodes->getComm(), std::move(problem),
+                                                               std::move(nodes));
     linear = std::make_shared<solver::LinearSolver>(options, functional->hessian(), fem::node_coordinates(d),
                                                     fem::rigid_body_modes(d));
     u = rcp(new Vector(d.owned_dofs));

@@ -53,13 +53,20 @@ struct ContactNodes {
 ContactNodes contact_nodes(const fem::Discretization &d, const ContactOptions &options,
                            const fem::DirichletDofs &dirichlet);
 
-/// v_i = direction_i . u_i - free_gap_i at one node, for kernels.
+/// direction_i . u_i at one node, for kernels [m].
+template <class U>
+KOKKOS_INLINE_FUNCTION double along_direction(const ContactNodes &c, const LO i, const U &u)
+{
+  double moved = 0;
+  for (int k = 0; k < c.dim; ++k) moved += c.direction(i, k) * u(c.dim * c.node(i) + k);
+  return moved;
+}
+
+/// v_i = direction_i . u_i - free_gap_i at one node, for kernels [m].
 template <class U>
 KOKKOS_INLINE_FUNCTION double penetration(const ContactNodes &c, const LO i, const U &u)
 {
-  double v = -c.free_gap(i);
-  for (int k = 0; k < c.dim; ++k) v += c.direction(i, k) * u(c.dim * c.node(i) + k);
-  return v;
+  return along_direction(c, i, u) - c.free_gap(i);
 }
 
 } // namespace rpc::contact

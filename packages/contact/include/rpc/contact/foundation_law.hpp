@@ -17,6 +17,12 @@ namespace rpc::contact
 
 enum class State : int { open = 0, stuck = 1, yielded = 2 };
 
+/// The foundation never gives way. Numbers that would overflow in products count as infinite.
+KOKKOS_INLINE_FUNCTION bool is_rigid(const double xi)
+{
+  return xi > 1e100;
+}
+
 KOKKOS_INLINE_FUNCTION double clamp(const double x, const double low, const double high)
 {
   return x < low ? low : (x > high ? high : x);

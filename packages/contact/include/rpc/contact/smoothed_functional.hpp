@@ -20,7 +20,7 @@ struct StateCounts {
 class LineModel
 {
 public:
-  LineModel(const Comm &comm, double slope_at_0, double elastic_curvature, const ContactNodes &contact,
+  LineModel(RCP<const Comm> comm, double slope_at_0, double elastic_curvature, const ContactNodes &contact,
             DeviceView<double *> v, DeviceView<double *> dv, DeviceView<double *> lambda);
 
   struct Value {
@@ -31,7 +31,7 @@ public:
   Value at(double t) const;
 
 private:
-  const Comm &comm_;
+  RCP<const Comm> comm_;
   double slope_at_0_, elastic_curvature_;
   ContactNodes contact_;
   DeviceView<double *> v_, dv_, lambda_;
@@ -48,7 +48,7 @@ private:
 class SmoothedFunctional
 {
 public:
-  SmoothedFunctional(const Comm &comm, fem::ElasticProblem problem, ContactNodes contact);
+  SmoothedFunctional(RCP<const Comm> comm, fem::ElasticProblem problem, ContactNodes contact);
 
   /// M(u) [J], with the energy of prescribed displacements.
   double value(const Vector &u) const;
@@ -56,8 +56,6 @@ public:
   /// the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a stuck node. (1.4),
   /// (5.5)
   double energy(const Vector &u) const;
-  /// a(u, u), twice the elastic energy [J], prescribed displacements included.
-  double strain_energy(const Vector &u) const;
   void gradient(const Vector &u, Vector &F) const;
   /// The gradient at u of the quadratic piece that hessian() belongs to: stuck nodes carry lambda + r v, whatever that
   /// is. (5.4)
@@ -78,7 +76,9 @@ public:
   /// @param stiffness_scale  rho [Pa/m] that turns a distance into a pressure
   double contact_law_residual(const Vector &u, double stiffness_scale) const;
 
-  /// |load|_2 including the lifted prescribed displacements [N]; 1 if there is none.
+  /// |applied load|_2 on the free unknowns; without any, |contact force|_2; without that, what prescribed displacements do
+  /// to the free unknowns [N]; 1 if nothing acts. A rigid shift of the whole scene leaves it as it is where anything is
+  /// applied or touches.
   double force_scale() const;
 
   const ContactNodes &contact() const { return contact_; }
@@ -89,9 +89,11 @@ private:
   void apply_stiffness(const Vector &u, Vector &Ku) const;
   double potential(const Vector &u) const; // Pi(u) [J]
 
-  const Comm &comm_;
+  RCP<const Comm> comm_;
   fem::ElasticProblem problem_;
   ContactNodes contact_;
+  double applied_force_ = 0;           // |applied load|_2 on free unknowns [N]
+  double lifted_force_ = 0;            // the same with the forces of prescribed displacements [N]
   DeviceView<double *> lambda_;        // (contact nodes) [Pa]
   DeviceView<char *> stuck_in_matrix_; // (contact nodes) whose blocks hold r w m m^T
   DeviceView<std::size_t **> block_; // (contact nodes, dim) entry where the node's own block begins in each of its rows

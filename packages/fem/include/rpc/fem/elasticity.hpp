@@ -47,6 +47,10 @@ VectorField body_force_options(const Teuchos::ParameterList &list, int dim, cons
 /// @throws rpc::Error (bad_mesh) on every rank if a cell has a Jacobian <= 0 at a quadrature point
 RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Material &material);
 
+/// a(u, u), twice the elastic energy [J], in 2D per m, summed over the cells: rigid motion cancels cell by cell.      (1.2)
+/// @param u  (owned dofs) [m], prescribed ones included; collective
+double strain_energy(const Discretization &d, const Material &material, const Vector &u);
+
 /// load(ai) += int N_a f_i, over the body, for a force per volume f [N/m^3] (owned dofs, [N], in 2D per m). (2.5)
 /// @param parameter  deck path for messages; collective
 void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load);

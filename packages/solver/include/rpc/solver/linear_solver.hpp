@@ -49,6 +49,7 @@ public:
 
   struct Result {
     bool converged = false;
+    bool broken = false; ///< x is no approximation of anything
     int iterations = 0;
     std::string reason; ///< why not, if not
   };
