@@ -284,7 +284,7 @@ double SmoothedFunctional::update_multipliers(const Vector &u)
       sums[0], sums[1]);
   double all[2];
   Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, sums, all);
-  if (all[0] <= 0) return 0;                           // a maximum over no nodes is -DBL_MAX
+  if (all[0] == 0) return 0;
   return std::sqrt(all[0] / std::max(all[1], all[0])); // all multipliers gone to zero is a change of 1, not of infinity
 }
 

@@ -1,5 +1,6 @@
 #include "rpc/fem/dirichlet.hpp"
 
+#include "component_name.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
@@ -12,8 +13,6 @@ namespace rpc::fem
 {
 namespace
 {
-
-constexpr const char *component_name[] = {"X", "Y", "Z"};
 
 /// Owned nodes of a side, each once, ascending.
 std::vector<LO> owned_nodes_of(const mesh::Mesh &mesh, const mesh::Side &side)

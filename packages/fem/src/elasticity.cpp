@@ -1,5 +1,6 @@
 #include "rpc/fem/elasticity.hpp"
 
+#include "component_name.hpp"
 #include "kernels.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
@@ -103,10 +104,8 @@ struct StrainEnergy {
     for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
       double dN[Nodes][Dim];
       const double volume = weight(q) * physical_gradients(x, gradient, q, dN);
-      double grad[Dim][Dim] = {}; // du_i / dx_j
-      for (int a = 0; a < Nodes; ++a)
-        for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j) grad[i][j] += u(Dim * cells(cell, a) + i) * dN[a][j];
+      double grad[Dim][Dim];
+      displacement_gradient(u, cells, cell, dN, grad);
       double trace = 0, product = 0;
       for (int i = 0; i < Dim; ++i) {
         trace += grad[i][i];
@@ -116,8 +115,6 @@ struct StrainEnergy {
     }
   }
 };
-
-constexpr const char *component_name[] = {"X", "Y", "Z"};
 
 VectorField vector_field(const Teuchos::ParameterList &list, const int dim, const std::string &path,
                          const FieldParser &parse)

@@ -69,6 +69,19 @@ KOKKOS_INLINE_FUNCTION double physical_gradients(const CellCoords<Dim, Nodes> &c
   return det;
 }
 
+/// grad(i, j) = du_i / dx_j at a point of a cell, from the gradients dN there.
+/// @param u  (overlap dofs) [m]
+template <int Dim, int Nodes, class U>
+KOKKOS_INLINE_FUNCTION void displacement_gradient(const U &u, const DeviceView<LO **> &cells, const LO cell,
+                                                  const double (&dN)[Nodes][Dim], double (&grad)[Dim][Dim])
+{
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      grad[i][j] = 0;
+      for (int a = 0; a < Nodes; ++a) grad[i][j] += u(Dim * cells(cell, a) + i) * dN[a][j];
+    }
+}
+
 /// Outward normal at a facet's point times the ratio of area to reference area [m^(dim-1)].
 template <class Coords, class Facets, class Gradient>
 KOKKOS_INLINE_FUNCTION Kokkos::Array<double, 3> area_normal(const Coords &coords, const Facets &facets, const LO facet,

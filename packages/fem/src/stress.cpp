@@ -43,10 +43,8 @@ struct ProjectStress {
     for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
       double dN[Nodes][Dim];
       const double part = weight(q) * physical_gradients(x, gradient, q, dN);
-      double grad[Dim][Dim] = {}; // du_i / dx_j
-      for (int a = 0; a < Nodes; ++a)
-        for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j) grad[i][j] += u(Dim * cells(cell, a) + i) * dN[a][j];
+      double grad[Dim][Dim];
+      displacement_gradient(u, cells, cell, dN, grad);
       double trace = 0;
       for (int i = 0; i < Dim; ++i) trace += grad[i][i];
       for (int a = 0; a < Nodes; ++a) {

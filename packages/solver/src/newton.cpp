@@ -19,6 +19,8 @@ namespace rpc::solver
 namespace
 {
 
+constexpr const char *passed_to_nox[] = {"Line Search", "Direction", "Printing", "Solver Options", "Status Tests"};
+
 /// The paper's stopping test, |full Newton step| / |u| < tolerance. The full step, not the one that the line search
 /// shortened: a short step is no sign of convergence.
 class StepTest : public NOX::StatusTest::Generic
@@ -214,11 +216,13 @@ Teuchos::ParameterList valid_newton_parameters()
   valid.set("Step Tolerance", 1e-10, "Newton stops at |step|_2/|u|_2 below this, > 0: the paper's test.");
   valid.set("Residual Tolerance", 1e-11, "Newton also stops at |F|_2/|load|_2 below this, > 0.");
   valid.set("Maximum Iterations", 200, "Newton steps per Uzawa iteration at most, > 0.");
-  for (const char *name : {"Line Search", "Direction", "Printing", "Solver Options", "Status Tests"})
-    set_pass_through(valid, name, "Handed to NOX as it is.");
-  valid.sublist("Line Search", true,
-                "Handed to NOX as it is. `Method` = `Exact` (default) minimizes the functional along the step exactly; "
-                "`Full Step` and NOX's others work as in NOX.");
+  for (const char *name : passed_to_nox)
+    set_pass_through(valid, name,
+                     std::string("Handed to NOX as it is.") +
+                         (name == std::string("Line Search")
+                              ? " `Method` = `Exact` (default) minimizes the functional along the step exactly; `Full "
+                                "Step` and NOX's others work as in NOX."
+                              : ""));
   return valid;
 }
 
@@ -233,7 +237,7 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
               "deck: \"NOX->Residual Tolerance\" must be > 0, got " << options.residual_tolerance);
   RPC_REQUIRE(options.max_iterations > 0,
               "deck: \"NOX->Maximum Iterations\" must be > 0, got " << options.max_iterations);
-  for (const char *name : {"Line Search", "Direction", "Printing", "Solver Options", "Status Tests"})
+  for (const char *name : passed_to_nox)
     if (list.isSublist(name) && list.sublist(name).numParams() > 0) options.nox.sublist(name) = list.sublist(name);
   return options;
 }

@@ -1,0 +1,9 @@
+#pragma once
+
+namespace rpc::fem
+{
+
+/// Names of a vector's components in the deck.
+inline constexpr const char *component_name[] = {"X", "Y", "Z"};
+
+} // namespace rpc::fem
