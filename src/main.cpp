@@ -2,10 +2,10 @@
 #include "output.hpp"
 #include "report.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/on_root.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/io/atomic_file.hpp"
 #include "rpc/io/deck.hpp"
-#include "rpc/io/on_root.hpp"
 #include "scene.hpp"
 #include "solve.hpp"
 
@@ -55,7 +55,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     out << deck << ": nothing wrong with it\n";
     return ExitCode::converged;
   }
-  rpc::io::on_root(*comm, ExitCode::bad_input, [&] { rpc::io::require_writable_folder(line.output); });
+  rpc::on_root(*comm, ExitCode::bad_input, [&] { rpc::io::require_writable_folder(line.output); });
 
   const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);

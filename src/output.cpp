@@ -1,11 +1,11 @@
 #include "output.hpp"
 
+#include "rpc/core/on_root.hpp"
 #include "rpc/fem/stress.hpp"
 #include "rpc/io/atomic_file.hpp"
 #include "rpc/io/contact_csv.hpp"
 #include "rpc/io/exodus.hpp"
 #include "rpc/io/gather.hpp"
-#include "rpc/io/on_root.hpp"
 
 #include <Teuchos_Time.hpp>
 #include <filesystem>
@@ -23,15 +23,26 @@ HostView<double *> column(const MultiVector &v, const int stride, const int offs
   return values;
 }
 
-template <class DeviceColumn>
-HostView<double *> scatter(const contact::ContactNodes &contact, const DeviceColumn &values, const LO num_nodes,
-                           const double elsewhere)
+/// The contact point that a node's fields show, -1 for none: of a node of two sides the one with the higher pressure.
+std::vector<LO> shown_points(const contact::ContactNodes &contact, const contact::ContactResult &result,
+                             const LO num_nodes)
 {
-  HostView<double *> result("rpc::output::contact_field", num_nodes);
-  Kokkos::deep_copy(result, elsewhere);
+  std::vector<LO> shown(num_nodes, -1);
   const auto node = to_host(contact.node);
+  const auto pressure = to_host(result.pressure);
+  for (LO i = 0; i < contact.size(); ++i) {
+    LO &point = shown[node(i)];
+    if (point < 0 || pressure(i) > pressure(point)) point = i;
+  }
+  return shown;
+}
+
+template <class DeviceColumn>
+HostView<double *> scatter(const std::vector<LO> &shown, const DeviceColumn &values, const double elsewhere)
+{
+  HostView<double *> result("rpc::output::contact_field", shown.size());
   const auto from = to_host(values);
-  for (LO i = 0; i < contact.size(); ++i) result(node(i)) = from(i);
+  for (std::size_t n = 0; n < shown.size(); ++n) result(n) = shown[n] < 0 ? elsewhere : from(shown[n]);
   return result;
 }
 
@@ -43,40 +54,70 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const Solution &s)
   std::vector<io::NodalField> fields;
   const char *const displacement[] = {"disp_x", "disp_y", "disp_z"};
   for (int c = 0; c < dim; ++c) fields.push_back({displacement[c], column(*s.u, dim, c, n, 0)});
-  const auto stress = fem::nodal_stresses(d, scene.material, *s.u);
+  const auto stress = fem::nodal_stresses(d, scene.materials.common, *s.u);
   const auto names = fem::stress_names(dim);
   for (std::size_t k = 0; k < names.size(); ++k)
     fields.push_back({names[k], column(*stress, 1, 0, n, static_cast<int>(k))});
-  if (scene.contact.side.empty()) return fields;
-  const auto &contact = s.functional->contact();
-  fields.push_back({"contact_pressure", scatter(contact, s.contact.pressure, n, 0)});
-  fields.push_back({"gap", scatter(contact, contact.gap, n, 0)});
-  fields.push_back({"penetration", scatter(contact, s.contact.penetration, n, 0)});
-  fields.push_back({"contact_status", scatter(contact, s.contact.state, n, -1)});
+  if (scene.contact.empty()) return fields;
+  const auto shown = shown_points(s.functional->contact(), s.contact, n);
+  fields.push_back({"contact_pressure", scatter(shown, s.contact.pressure, 0)});
+  fields.push_back({"gap", scatter(shown, s.functional->contact().gap, 0)});
+  fields.push_back({"penetration", scatter(shown, s.contact.penetration, 0)});
+  fields.push_back({"contact_status", scatter(shown, s.contact.state, -1)});
   return fields;
+}
+
+/// [begin, end) of a view, on the host.
+template <class Data>
+HostView<Data *> part_of(const DeviceView<Data *> &values, const LO begin, const LO end)
+{
+  HostView<Data *> part(values.label(), end - begin);
+  Kokkos::deep_copy(part, Kokkos::subview(values, Kokkos::make_pair(begin, end)));
+  return part;
 }
 
 void write_csv(const std::string &path, const Scene &scene, const Solution &s)
 {
   const mesh::Mesh &mesh = *s.discretization.mesh;
   const auto &contact = s.functional->contact();
-  const auto node = to_host(contact.node);
   const auto coords = to_host(mesh.coords);
-  io::ContactTable table;
-  const LO n = contact.size();
-  table.id = HostView<GO *>("rpc::output::id", n);
-  table.position = HostView<double **>("rpc::output::position", n, mesh.dim());
-  for (LO i = 0; i < n; ++i) {
-    table.id(i) = mesh.node_id(node(i));
-    for (int c = 0; c < mesh.dim(); ++c) table.position(i, c) = coords(node(i), c);
+  const auto node_ids = io::overlap_node_ids(mesh);
+  std::vector<io::ContactTable> tables;
+  for (int k = 0; k < contact.num_sides(); ++k) {
+    const LO begin = contact.first(k), end = contact.first(k + 1);
+    io::ContactTable table;
+    table.side = scene.contact[k].side;
+    table.id = HostView<GO *>("rpc::output::id", end - begin);
+    table.position = HostView<double **>("rpc::output::position", end - begin, mesh.dim());
+    const auto node = part_of(contact.node, begin, end);
+    for (LO i = 0; i < end - begin; ++i) {
+      table.id(i) = mesh.node_id(node(i));
+      for (int c = 0; c < mesh.dim(); ++c) table.position(i, c) = coords(node(i), c);
+    }
+    table.u_nu = part_of(s.contact.normal_displacement, begin, end);
+    table.gap = part_of(contact.gap, begin, end);
+    table.pressure = part_of(s.contact.pressure, begin, end);
+    table.state = part_of(s.contact.state, begin, end);
+    table.facets = io::owned_facets(mesh, mesh.side(table.side, scene.contact[k].path + "->Side"), node_ids);
+    tables.push_back(table);
   }
-  table.u_nu = to_host(s.contact.normal_displacement);
-  table.gap = to_host(contact.gap);
-  table.pressure = to_host(s.contact.pressure);
-  table.state = to_host(s.contact.state);
-  const auto facets =
-      io::owned_facets(mesh, mesh.side(scene.contact.side, "Contact->Side"), io::overlap_node_ids(mesh));
-  io::write_contact_csv(path, mesh.owned_nodes->getComm(), table, facets);
+  io::write_contact_csv(path, mesh.owned_nodes->getComm(), tables);
+}
+
+nlohmann::ordered_json vector_json(const std::array<double, 3> &v, const int dim)
+{
+  return std::vector<double>(v.begin(), v.begin() + dim);
+}
+
+void add_sums(nlohmann::ordered_json &json, const contact::ContactSums &sums, const int dim)
+{
+  json["contact_nodes"] = sums.num_nodes;
+  json["contact_force"] = vector_json(sums.force, dim);
+  json["max_pressure"] = sums.max_pressure;
+  json["max_penetration"] = sums.max_penetration;
+  json["max_initial_penetration"] = sums.max_initial_penetration;
+  json["contact_length"] = sums.contact_length;
+  json["yielded_length"] = sums.yielded_length;
 }
 
 } // namespace
@@ -92,18 +133,18 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["element"] = mesh.element.name();
   json["cells"] = sum_all(mesh.comm(), GO(mesh.num_owned_cells));
   json["dofs"] = s.discretization.owned_dofs->getGlobalNumElements();
-  json["contact_nodes"] = s.functional->contact().num_total;
   json["fixed_contact_nodes"] = s.functional->contact().num_fixed;
   json["ranks"] = mesh.comm().getSize();
   json["execution_space"] = ExecutionSpace::name();
   json["energy_J"] = s.energy;
   json["strain_energy"] = s.strain_energy;
-  json["contact_force"] = std::vector<double>(s.contact.force.begin(), s.contact.force.begin() + mesh.dim());
-  json["max_pressure"] = s.contact.max_pressure;
-  json["max_penetration"] = s.contact.max_penetration;
-  json["max_initial_penetration"] = s.contact.max_initial_penetration;
-  json["contact_length"] = s.contact.contact_length;
-  json["yielded_length"] = s.contact.yielded_length;
+  add_sums(json, s.contact.total, mesh.dim());
+  json["contact_sides"] = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < scene.contact.size(); ++k)
+    add_sums(json["contact_sides"][scene.contact[k].side], s.contact.sides[k], mesh.dim());
+  json["reaction_force"] = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < scene.dirichlet.size(); ++k)
+    json["reaction_force"][scene.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());
   json["kkt_residual"] = s.uzawa.certificate.kkt_residual;
   json["equilibrium_residual"] = s.uzawa.certificate.equilibrium_residual;
   json["multiplier_change"] = s.uzawa.multiplier_change;
@@ -129,7 +170,7 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
     files.push_back(stem + ".e");
     io::write_exodus(files.back(), scene.name, mesh, nodal_fields(scene, s));
   }
-  if (scene.output.csv && !scene.contact.side.empty()) {
+  if (scene.output.csv && !scene.contact.empty()) {
     files.push_back(stem + ".contact.csv");
     write_csv(files.back(), scene, s);
   }
@@ -141,7 +182,7 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
     // Collective, hence outside. A deck's name may be no valid UTF-8.
     const auto json = summary(scene, s);
     const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-    io::on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(files.back(), text); });
+    on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(files.back(), text); });
   }
   return files;
 }

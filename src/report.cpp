@@ -34,10 +34,12 @@ void ConsoleTable::scene(const Scene &scene, const Solution &solution)
 {
   const mesh::Mesh &mesh = *solution.discretization.mesh;
   const auto &contact = solution.functional->contact();
-  print(out_, "%s: %lld %s cells, %lld dofs, %lld contact nodes on \"%s\", %d rank%s, %s\n", scene.name.c_str(),
+  std::string sides;
+  for (const auto &side : scene.contact) sides += (sides.empty() ? " on \"" : ", \"") + side.side + "\"";
+  print(out_, "%s: %lld %s cells, %lld dofs, %lld contact nodes%s, %d rank%s, %s\n", scene.name.c_str(),
         static_cast<long long>(sum_all(mesh.comm(), GO(mesh.num_owned_cells))), mesh.element.name().c_str(),
         static_cast<long long>(solution.discretization.owned_dofs->getGlobalNumElements()),
-        static_cast<long long>(contact.num_total), scene.contact.side.c_str(), mesh.comm().getSize(),
+        static_cast<long long>(contact.num_total), sides.c_str(), mesh.comm().getSize(),
         mesh.comm().getSize() == 1 ? "" : "s", ExecutionSpace::name());
   if (contact.num_fixed > 0)
     print(out_,
@@ -71,16 +73,23 @@ void ConsoleTable::uzawa(const contact::UzawaResult &result)
 void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &files)
 {
   const bool flat = s.discretization.dim() == 2;
-  const auto &c = s.contact;
+  const auto &c = s.contact.total;
   print(out, "\n%s: %s\n", s.uzawa.converged ? "converged" : "NOT CONVERGED", s.uzawa.reason.c_str());
   print(out, "  energy J            %.9g %s\n", s.energy, flat ? "J/m" : "J");
-  if (!scene.contact.side.empty()) {
+  if (!scene.contact.empty()) {
     print(out, "  contact force       (%.6g, %.6g%s) %s\n", c.force[0], c.force[1],
           flat ? "" : (", " + std::to_string(c.force[2])).c_str(), flat ? "N/m" : "N");
     print(out, "  max. pressure       %.6g Pa\n", c.max_pressure);
     print(out, "  max. penetration    %.6g m\n", c.max_penetration);
     if (c.max_initial_penetration > 0) print(out, "  initial penetration %.6g m\n", c.max_initial_penetration);
     print(out, "  in contact          %.6g, yielded %.6g %s\n", c.contact_length, c.yielded_length, flat ? "m" : "m^2");
+  }
+  for (std::size_t k = 0; k < scene.contact.size() && scene.contact.size() > 1; ++k) {
+    const auto &side = s.contact.sides[k];
+    print(out, "    on \"%s\": force (%.6g, %.6g%s), max. pressure %.6g, in contact %.6g, yielded %.6g\n",
+          scene.contact[k].side.c_str(), side.force[0], side.force[1],
+          flat ? "" : (", " + std::to_string(side.force[2])).c_str(), side.max_pressure, side.contact_length,
+          side.yielded_length);
   }
   print(out,
         "  work                %d Uzawa, %d Newton, %zu linear solves, %d CG iterations, %d preconditioner set-ups\n",

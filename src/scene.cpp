@@ -48,13 +48,13 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
 
   Scene scene;
   scene.name = std::filesystem::path(deck_path).stem().string();
-  scene.mesh = mesh::box_options(deck.sublist("Mesh"));
-  const int dim = scene.mesh.element.dim;
-  scene.material = fem::material_options(deck.sublist("Material"));
+  scene.mesh = mesh::mesh_options(deck.sublist("Mesh"), std::filesystem::path(deck_path).parent_path().string());
+  const int dim = mesh::dimension(scene.mesh);
+  scene.materials = fem::material_options(deck.sublist("Material"));
   scene.dirichlet = fem::dirichlet_options(deck.sublist("Dirichlet"), dim, io::parse_field);
   scene.tractions = fem::traction_options(deck.sublist("Traction"), dim, io::parse_field);
   scene.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, io::parse_field);
-  scene.contact = contact::contact_options(deck.sublist("Contact"), io::parse_field);
+  scene.contact = contact::contact_options(deck.sublist("Contact"), dim, io::parse_field);
   scene.uzawa = contact::uzawa_options(deck.sublist("Uzawa"));
   scene.newton = solver::newton_options(deck.sublist("NOX"));
   scene.linear_solver = solver::linear_solver_options(deck.sublist("Linear Solver"));

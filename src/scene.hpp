@@ -4,7 +4,7 @@
 #include "rpc/contact/uzawa.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"
-#include "rpc/mesh/box.hpp"
+#include "rpc/mesh/make_mesh.hpp"
 #include "rpc/solver/linear_solver.hpp"
 #include "rpc/solver/newton.hpp"
 
@@ -23,12 +23,12 @@ struct OutputOptions {
 /// A deck, read and checked: all that a run needs to know.
 struct Scene {
   std::string name; ///< of the deck's file, without folder and extension
-  mesh::BoxOptions mesh;
-  fem::Material material;
+  mesh::MeshOptions mesh;
+  fem::Materials materials;
   std::vector<fem::DirichletCondition> dirichlet;
   std::vector<fem::TractionLoad> tractions;
   fem::VectorField body_force;
-  contact::ContactOptions contact;
+  std::vector<contact::ContactOptions> contact; ///< one per contact side
   contact::UzawaOptions uzawa;
   solver::NewtonOptions newton;
   solver::LinearSolverOptions linear_solver;

@@ -3,6 +3,7 @@
 #include "rpc/contact/result.hpp"
 #include "scene.hpp"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -22,8 +23,9 @@ struct Solution {
   std::shared_ptr<contact::SmoothedFunctional> functional;
   contact::UzawaResult uzawa;
   contact::ContactResult contact;
-  double energy = 0;        ///< J(u) [J]
-  double strain_energy = 0; ///< a(u, u) [J]
+  double energy = 0;                            ///< J(u) [J]
+  double strain_energy = 0;                     ///< a(u, u) [J]
+  std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
   solver::LinearSolverCounts linear;
   int matrix_assemblies = 0;
   PhaseSeconds seconds;

@@ -37,7 +37,9 @@ ASSIGNMENTS = [
     (["Mesh->Lower={0,zero}"], ['"Mesh->Lower" must be an array of double', '"{0,zero}"']),
     (["Mesh->Upper={nan,1}"], ['"Mesh->Upper" must be an array of double', "all finite", '"{nan,1}"']),
     # mesh
-    (["Mesh->Type=gmsh"], ['"Mesh->Type" must be one of box', '"gmsh"']),
+    (["Mesh->Type=mesh"], ['"Mesh->Type" must be one of box, gmsh', '"mesh"']),
+    (["Mesh->Type=gmsh"], ['"Mesh->Lower" does not go with "Mesh->Type" = gmsh']),
+    (["Mesh->File=hertz.geo"], ['"Mesh->File" does not go with "Mesh->Type" = box']),
     (["Mesh->Element=Q7"], ['"Mesh->Element" must be one of', "Q1", '"Q7"']),
     (["Mesh->Cells={0,4}"], ['"Mesh->Cells" must be > 0', "got 0 in direction 1"]),
     (["Mesh->Cells={20,-4}"], ['"Mesh->Cells" must be > 0', "got -4 in direction 2"]),

@@ -1,5 +1,6 @@
 #include "run_scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ double largest_error(const Solution &s, const std::function<std::array<double, 2
 class Block : public testing::TestWithParam<const char *>
 {
 };
-INSTANTIATE_TEST_SUITE_P(Elements, Block, testing::Values("Q1", "Q2"));
+INSTANTIATE_TEST_SUITE_P(Elements, Block, testing::Values("P1", "Q1", "P2", "Q2"));
 
 TEST_P(Block, BetweenRollersIsCompressedUniformlyToRounding)
 {
@@ -40,12 +41,12 @@ TEST_P(Block, BetweenRollersIsCompressedUniformlyToRounding)
                               return std::array<double, 2>{0, -p / modulus * y};
                             }),
               1e-12 * scale);
-    EXPECT_NEAR(s.contact.max_pressure, p, 1e-12 * p) << xi;
-    EXPECT_NEAR(s.contact.force[1], p, 1e-12 * p);
-    EXPECT_NEAR(s.contact.force[0], 0, 1e-12 * p);
+    EXPECT_NEAR(s.contact.total.max_pressure, p, 1e-12 * p) << xi;
+    EXPECT_NEAR(s.contact.total.force[1], p, 1e-12 * p);
+    EXPECT_NEAR(s.contact.total.force[0], 0, 1e-12 * p);
     EXPECT_NEAR(s.energy, -0.5 * p * p / modulus, 1e-12 * p * p / modulus);
     EXPECT_NEAR(s.strain_energy, p * p / modulus, 1e-12 * p * p / modulus);
-    EXPECT_NEAR(s.contact.contact_length, 1, 1e-12);
+    EXPECT_NEAR(s.contact.total.contact_length, 1, 1e-12);
     EXPECT_LE(s.uzawa.iterations, 5);
   }
 }
@@ -56,8 +57,8 @@ TEST_P(Block, FullyYieldedEqualsTheLinearProblemWithThatPressure)
                                          "Dirichlet->right->Y=0", "Traction->top->Y=-12", "Contact->Yield Stress=1.5"};
   const Solution contact = run_scene(block, held);
   ASSERT_TRUE(contact.uzawa.converged) << contact.uzawa.reason;
-  EXPECT_NEAR(contact.contact.yielded_length, 1, 1e-12);
-  EXPECT_NEAR(contact.contact.force[1], 1.5, 1e-12);
+  EXPECT_NEAR(contact.contact.total.yielded_length, 1, 1e-12);
+  EXPECT_NEAR(contact.contact.total.force[1], 1.5, 1e-12);
   EXPECT_EQ(contact.uzawa.iterations, 1);
 
   auto linear_case = held;
@@ -75,9 +76,9 @@ TEST_P(Block, LiftedOffItsFoundationIsFree)
   const Solution s = run_scene(block, {std::string("Mesh->Element=") + GetParam(), "Dirichlet->top->Y=0.01",
                                        "Traction->top->Y=0", "Contact->Gap=-0.005"});
   ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
-  EXPECT_EQ(s.contact.max_pressure, 0);
-  EXPECT_EQ(s.contact.contact_length, 0);
-  EXPECT_NEAR(s.contact.max_initial_penetration, 0.005, 1e-15);
+  EXPECT_EQ(s.contact.total.max_pressure, 0);
+  EXPECT_EQ(s.contact.total.contact_length, 0);
+  EXPECT_NEAR(s.contact.total.max_initial_penetration, 0.005, 1e-15);
   EXPECT_LT(largest_error(s, [](double, double) { return std::array<double, 2>{0, 0.01}; }), 1e-13);
 }
 
@@ -91,14 +92,46 @@ TEST_P(Block, PushedDownByAPrescribedDisplacementYieldsAtItsLimit)
                                          "Dirichlet->top->Y=" + std::to_string(-delta), "Traction->top->Y=0"});
     ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
     const double p = std::min(10., modulus * delta), sunk = delta - p / modulus;
-    EXPECT_NEAR(s.contact.max_pressure, p, 1e-11 * p);
+    EXPECT_NEAR(s.contact.total.max_pressure, p, 1e-11 * p);
     EXPECT_LT(largest_error(s,
                             [&](double, double y) {
                               return std::array<double, 2>{0, -sunk - p / modulus * y};
                             }),
               1e-12 * delta);
     EXPECT_NEAR(s.strain_energy, p * p / modulus, 1e-11 * p * p / modulus);
+    const auto top = std::find_if(s.reactions.begin(), s.reactions.end(), [](const auto &r) { return r[1] != 0; });
+    ASSERT_NE(top, s.reactions.end());
+    EXPECT_NEAR((*top)[1], -s.contact.total.force[1], 1e-12 * p);
     EXPECT_NEAR(s.energy, 0.5 * p * p / modulus + 10 * sunk, 1e-11 * 10 * delta); // J with xi v+ of the foundation
+  }
+}
+
+TEST_P(Block, InACornerTouchesTwoFoundationsEachWithItsLaw)
+{
+  // u = (-a x, -b y) is exact; the corner's node belongs to both sides.
+  const double lambda = 2000 * 0.3 / (1.3 * 0.4), mu = 2000 / 2.6, a = 0.001;
+  for (const bool yields : {false, true}) {
+    const double b = yields ? (1.5 - lambda * a) / (lambda + 2 * mu) : 0.003; // sigma_yy = -1.5
+    const Solution s =
+        run_scene(block, {std::string("Mesh->Element=") + GetParam(), "Traction->top->Y=0",
+                          "Dirichlet->left->Side=right", "Dirichlet->left->X=-0.001", "Dirichlet->right->X=-0.001",
+                          "Dirichlet->top->Y=-0.003", "Contact->Sides->left->Yield Stress=inf",
+                          std::string("Contact->Yield Stress=") + (yields ? "1.5" : "inf")});
+    ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+    const double sunk = yields ? 0.003 - b : 0;
+    EXPECT_LT(largest_error(s,
+                            [&](double x, double y) {
+                              return std::array<double, 2>{-a * x, -sunk - b * y};
+                            }),
+              1e-11 * a);
+    const double p_left = lambda * (a + b) + 2 * mu * a, p_bottom = lambda * (a + b) + 2 * mu * b;
+    ASSERT_EQ(s.contact.sides.size(), 2u);
+    EXPECT_NEAR(s.contact.sides[0].force[1], p_bottom, 1e-10 * p_bottom);
+    EXPECT_NEAR(s.contact.sides[0].yielded_length, yields ? 1 : 0, 1e-12);
+    EXPECT_NEAR(s.contact.sides[1].force[0], p_left, 1e-10 * p_bottom);
+    EXPECT_NEAR(s.contact.sides[1].max_pressure, p_left, 1e-10 * p_bottom);
+    EXPECT_NEAR(s.contact.total.force[0], p_left, 1e-10 * p_bottom);
+    EXPECT_NEAR(s.contact.total.force[1], p_bottom, 1e-10 * p_bottom);
   }
 }
 
@@ -112,9 +145,32 @@ TEST(Block, ResultsDoNotSeeARigidShiftOfTheScene)
   const Solution a = run_scene(block, here), b = run_scene(block, there);
   ASSERT_TRUE(a.uzawa.converged) << a.uzawa.reason;
   ASSERT_TRUE(b.uzawa.converged) << b.uzawa.reason;
-  EXPECT_GT(a.contact.force[1], 0.1);
-  EXPECT_NEAR(b.contact.force[1], a.contact.force[1], 1e-6 * a.contact.force[1]);
+  EXPECT_GT(a.contact.total.force[1], 0.1);
+  EXPECT_NEAR(b.contact.total.force[1], a.contact.total.force[1], 1e-6 * a.contact.total.force[1]);
   EXPECT_NEAR(b.strain_energy, a.strain_energy, 1e-9 * a.strain_energy);
+}
+
+TEST(Layers, OfTwoMaterialsAreCompressedEachByItsModulus)
+{
+  const double p = 4, nu = 0.3, factor = (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+  const double stiff = 8000 * factor, soft = 2000 * factor;
+  for (const char *file : {"layers.geo", "layers_quads.geo"})
+    for (const char *order : {"1", "2"}) {
+      const Solution s = run_scene(std::string(RPC_TEST_DECKS) + "/layers.xml",
+                                   {std::string("Mesh->File=") + file, std::string("Mesh->Order=") + order,
+                                    "Material->Blocks->stiff->Young's Modulus=8000"});
+      ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+      EXPECT_EQ(s.discretization.mesh->element.name(),
+                std::string(file == std::string("layers.geo") ? "P" : "Q") + order);
+      EXPECT_LT(largest_error(s,
+                              [&](double, double y) {
+                                const double below = std::min(y, 0.25), above = std::max(y - 0.25, 0.);
+                                return std::array<double, 2>{0, -p * (below / stiff + above / soft)};
+                              }),
+                1e-11 * p / soft);
+      EXPECT_NEAR(s.strain_energy, p * p * (0.25 / stiff + 0.75 / soft), 1e-11 * p * p / soft);
+      EXPECT_NEAR(s.contact.total.force[1], p, 1e-11 * p);
+    }
 }
 
 TEST(BlockIn3d, IsCompressedUniformlyToRounding)
@@ -123,8 +179,8 @@ TEST(BlockIn3d, IsCompressedUniformlyToRounding)
   const Solution s = run_scene(block, {"Mesh->Lower={0,0,0}", "Mesh->Upper={1,1,1}", "Mesh->Cells={4,3,4}",
                                        "Dirichlet->back->Z=0", "Dirichlet->front->Z=0"});
   ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
-  EXPECT_NEAR(s.contact.max_pressure, p, 1e-12 * p);
-  EXPECT_NEAR(s.contact.force[1], p, 1e-12 * p);
+  EXPECT_NEAR(s.contact.total.max_pressure, p, 1e-12 * p);
+  EXPECT_NEAR(s.contact.total.force[1], p, 1e-12 * p);
   EXPECT_NEAR(s.energy, -0.5 * p * p / modulus, 1e-12 * p * p / modulus);
 }
 

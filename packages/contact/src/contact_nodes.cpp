@@ -66,86 +66,258 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
   Kokkos::fence();
 }
 
+/// Parameters of one contact side.
+void add_side_parameters(Teuchos::ParameterList &valid)
+{
+  set_field(valid, "Yield Stress", "inf",
+            "xi > 0 [Pa]: pressure at which the foundation gives way; `inf`: rigid (Signorini). Number or expression.");
+  set_field(valid, "Gap", "0",
+            "g [m]: distance to the foundation along the normal, where there is no obstacle; < 0: initial penetration. "
+            "Number or expression.");
+  valid.set("Normal", "",
+            "Direction in which contact acts: `surface` (outward normal of the body), `foundation` (normal of the "
+            "obstacle), or a fixed one as numbers, `0, -1`. Default: `foundation` with an obstacle, else `surface`.");
+  valid.sublist("Obstacle", false, "Surface of the foundation, from which the gap follows.") =
+      valid_obstacle_parameters();
+  valid.set(
+      "Penalty", 1e8,
+      "r > 0 [Pa/m] of the modified Lagrangian. The solution does not depend on it, the number of iterations does.");
+}
+
+/// Unit vector from a text like "0, -1".
+std::optional<Point> direction_from(const std::string &text, const int dim)
+{
+  std::istringstream in(text);
+  Point direction{};
+  char comma = ',';
+  for (int c = 0; c < dim; ++c)
+    if ((c > 0 && !(in >> comma)) || comma != ',' || !(in >> direction[c])) return std::nullopt;
+  const double length = std::hypot(direction[0], direction[1], direction[2]);
+  if (in >> comma || !(length > 0) || !std::isfinite(length)) return std::nullopt;
+  for (double &component : direction) component /= length;
+  return direction;
+}
+
+ContactOptions side_options(const Teuchos::ParameterList &list, const std::string &path, const std::string &side,
+                            const int dim, const FieldParser &parse)
+{
+  ContactOptions options;
+  options.path = path;
+  options.side = side;
+  options.yield_stress = parse(field_text(list, "Yield Stress"), path + "->Yield Stress");
+  options.gap = parse(field_text(list, "Gap"), path + "->Gap");
+  options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle");
+  options.penalty = list.get<double>("Penalty");
+  const bool obstacle = options.obstacle.kind != Obstacle::Kind::none;
+  const auto &normal = list.get<std::string>("Normal");
+  RPC_REQUIRE(options.penalty > 0 && std::isfinite(options.penalty),
+              "deck: \"" << path << "->Penalty\" must be > 0 and finite [Pa/m], got " << options.penalty);
+  RPC_REQUIRE(!options.yield_stress.is_constant() || options.yield_stress.constant > 0,
+              "deck: \"" << path << "->Yield Stress\" must be > 0 [Pa] (inf for a rigid foundation), got "
+                         << options.yield_stress.text);
+  RPC_REQUIRE(!obstacle || list.getEntry("Gap").isDefault(), "deck: \"" << path << "->Gap\" does not go with \"" << path
+                                                                        << "->Obstacle\", from which the gap follows");
+  RPC_REQUIRE(obstacle || normal != "foundation",
+              "deck: \"" << path << "->Normal\" = foundation needs an \"" << path << "->Obstacle\"");
+  if (normal.empty()) {
+    options.normal = obstacle ? Normal::foundation : Normal::surface;
+  } else if (normal == "surface" || normal == "foundation") {
+    options.normal = normal == "surface" ? Normal::surface : Normal::foundation;
+  } else {
+    const auto direction = direction_from(normal, dim);
+    RPC_REQUIRE(direction, "deck: \"" << path << "->Normal\" must be surface, foundation or " << dim
+                                      << " numbers that are not all 0, as in \"" << (dim == 2 ? "0, -1" : "0, 0, -1")
+                                      << "\", got \"" << normal << "\"");
+    options.normal = Normal::fixed;
+    options.direction = *direction;
+  }
+  return options;
+}
+
+/// Values of this rank's points of one side, on the host.
+struct SideValues {
+  HostView<double *> yield, gap;
+  HostView<double **> normal;
+};
+
+/// Normal and gap of points that face an obstacle; collective.
+void face_obstacle(SideValues &values, const ContactOptions &options, const HostPoints &points, const Comm &comm)
+{
+  const int dim = static_cast<int>(points.extent(1));
+  std::optional<std::string> bad;
+  for (LO i = 0; i < static_cast<LO>(points.extent(0)) && !bad; ++i) {
+    Point x{}, direction{};
+    for (int c = 0; c < dim; ++c) {
+      x[c] = points(i, c);
+      direction[c] = values.normal(i, c);
+    }
+    std::optional<Point> into = direction;
+    if (options.normal == Normal::foundation) into = direction_into(options.obstacle, x);
+    const auto gap = into ? distance_along(options.obstacle, x, *into) : std::nullopt;
+    if (!gap) {
+      std::ostringstream message;
+      message << "deck: \"" << options.path << "\": from the node at " << place(points, i) << " of side \""
+              << options.side << "\" the normal (" << direction[0] << ", " << direction[1]
+              << (dim == 3 ? ", " + std::to_string(direction[2]) : "")
+              << ") does not lead into the obstacle. Use \"Normal\" = foundation or a smaller side.";
+      bad = message.str();
+      continue;
+    }
+    values.gap(i) = *gap;
+    for (int c = 0; c < dim; ++c) values.normal(i, c) = (*into)[c];
+  }
+  throw_if_any(comm, ExitCode::bad_input, bad);
+}
+
+SideValues side_values(const ContactOptions &options, const HostPoints &points,
+                       const DeviceView<double **> &surface_normal, const Comm &comm)
+{
+  const LO n = static_cast<LO>(points.extent(0));
+  SideValues values;
+  values.yield = evaluate(options.yield_stress, points, options.path + "->Yield Stress", comm, true);
+  values.gap = evaluate(options.gap, points, options.path + "->Gap", comm);
+  values.normal = HostView<double **>("rpc::contact::side_normal", n, points.extent(1));
+  const auto outward = to_host(surface_normal);
+  for (LO i = 0; i < n; ++i)
+    for (std::size_t c = 0; c < points.extent(1); ++c)
+      values.normal(i, c) = options.normal == Normal::fixed ? options.direction[c] : outward(i, c);
+  if (options.obstacle.kind != Obstacle::Kind::none) face_obstacle(values, options, points, comm);
+
+  std::optional<std::string> bad;
+  for (LO i = 0; i < n && !bad; ++i) {
+    if (values.yield(i) > 0) continue;
+    std::ostringstream message;
+    message << "deck: \"" << options.path << "->Yield Stress\" must be > 0 [Pa] (inf for a rigid foundation), got "
+            << values.yield(i);
+    if (!options.yield_stress.is_constant())
+      message << " from \"" << options.yield_stress.text << "\" at " << place(points, i);
+    bad = message.str();
+  }
+  throw_if_any(comm, ExitCode::bad_input, bad);
+  return values;
+}
+
+/// (n) of the device, from a vector.
+template <class T>
+DeviceView<T *> device_values(const std::vector<T> &values, const std::string &label)
+{
+  HostView<T *> host(label, values.size());
+  std::copy(values.begin(), values.end(), host.data());
+  return to_device(host);
+}
+
+/// (n, dim) of the device, from a vector row by row.
+DeviceView<double **> device_rows(const std::vector<double> &values, const int dim, const std::string &label)
+{
+  DeviceView<double **> device(label, values.size() / dim, dim);
+  const auto host = Kokkos::create_mirror_view(device);
+  for (std::size_t k = 0; k < values.size(); ++k) host(k / dim, k % dim) = values[k];
+  Kokkos::deep_copy(device, host);
+  return device;
+}
+
+/// On this rank.
+GO count_fixed(const ContactNodes &c)
+{
+  GO count = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::count_fixed", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, GO &sum) { sum += c.fixed(i) ? 1 : 0; }, count);
+  return count;
+}
+
+/// Refuses nodes that a prescribed displacement presses into a foundation that cannot give way; collective.
+void require_room(const ContactNodes &c, const std::vector<ContactOptions> &options, const mesh::Mesh &mesh)
+{
+  const HostPoints points = positions(mesh, c.node);
+  const auto fixed = to_host(c.fixed);
+  const auto free_gap = to_host(c.free_gap);
+  const auto xi = to_host(c.yield);
+  std::optional<std::string> bad;
+  for (int side = 0; side < c.num_sides(); ++side)
+    for (LO i = c.first(side); i < c.first(side + 1) && !bad; ++i) {
+      if (!fixed(i) || std::isfinite(xi(i)) || !(-free_gap(i) > 0)) continue;
+      std::ostringstream message;
+      message << "contact: the prescribed displacement presses the node at " << place(points, i) << " by "
+              << -free_gap(i) << " [m] into the foundation of side \"" << options[side].side
+              << "\", which is rigid there. Lower it, or give a finite yield stress.";
+      bad = message.str();
+    }
+  throw_if_any(mesh.comm(), ExitCode::no_solution, bad);
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_contact_parameters()
 {
-  Teuchos::ParameterList valid("Contact");
-  valid.set("Side", "", "Side of the body that may touch the foundation; empty: none.");
-  set_field(valid, "Yield Stress", "inf",
-            "xi > 0 [Pa]: pressure at which the foundation gives way; `inf`: rigid (Signorini). Number or expression.");
-  set_field(valid, "Gap", "0",
-            "g [m]: distance to the foundation along the body's outward normal; < 0: initial penetration. Number or "
-            "expression.");
-  valid.set(
-      "Penalty", 1e8,
-      "r > 0 [Pa/m] of the modified Lagrangian. The solution does not depend on it, the number of iterations does.");
+  Teuchos::ParameterList valid("Contact"), entry;
+  valid.set("Side", "", "Side of the body that may touch the foundation; empty: none but those of `Sides`.");
+  add_side_parameters(valid);
+  entry.set("Side", "", "Side of the body; by default the side that the entry is named after.");
+  add_side_parameters(entry);
+  set_named_entries(valid, "Sides", entry, "Further contact sides, any number of entries with names of your choice.");
   return valid;
 }
 
-ContactOptions contact_options(const Teuchos::ParameterList &list, const FieldParser &parse)
+std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, const int dim, const FieldParser &parse)
 {
-  ContactOptions options;
-  options.side = list.get<std::string>("Side");
-  options.yield_stress = parse(field_text(list, "Yield Stress"), "Contact->Yield Stress");
-  options.gap = parse(field_text(list, "Gap"), "Contact->Gap");
-  options.penalty = list.get<double>("Penalty");
-  RPC_REQUIRE(options.penalty > 0 && std::isfinite(options.penalty),
-              "deck: \"Contact->Penalty\" must be > 0 and finite [Pa/m], got " << options.penalty);
-  RPC_REQUIRE(!options.yield_stress.is_constant() || options.yield_stress.constant > 0,
-              "deck: \"Contact->Yield Stress\" must be > 0 [Pa] (inf for a rigid foundation), got "
-                  << options.yield_stress.text);
+  std::vector<ContactOptions> options;
+  // Read even where it names no side: a wrong value is wrong in any case.
+  const ContactOptions first = side_options(list, "Contact", list.get<std::string>("Side"), dim, parse);
+  if (!first.side.empty()) options.push_back(first);
+  const Teuchos::ParameterList &sides = list.sublist("Sides");
+  for (auto it = sides.begin(); it != sides.end(); ++it) {
+    const std::string name = sides.name(it);
+    const Teuchos::ParameterList &entry = sides.sublist(name);
+    const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
+    options.push_back(side_options(entry, "Contact->Sides->" + name, side, dim, parse));
+  }
+  for (std::size_t a = 0; a < options.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      RPC_REQUIRE(options[a].side != options[b].side, "deck: \"" << options[b].path << "\" and \"" << options[a].path
+                                                                 << "\" both name the side \"" << options[a].side
+                                                                 << "\"; give it one contact law");
   return options;
 }
 
-ContactNodes contact_nodes(const fem::Discretization &d, const ContactOptions &options,
+ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
                            const fem::DirichletDofs &dirichlet)
 {
+  const mesh::Mesh &mesh = *d.mesh;
+  const Comm &comm = mesh.comm();
   ContactNodes c;
   c.dim = d.dim();
-  fem::SurfaceNodes surface;
-  if (!options.side.empty()) surface = fem::surface_nodes(d, d.mesh->side(options.side, "Contact->Side"));
-  c.node = surface.node;
-  c.weight = surface.weight;
-  c.normal = surface.normal;
-  const LO n = c.size();
-  const Comm &comm = d.mesh->comm();
-  c.direction = DeviceView<double **>("rpc::contact::direction", n, c.dim);
-  c.free_gap = DeviceView<double *>("rpc::contact::free_gap", n);
-  c.fixed = DeviceView<char *>("rpc::contact::fixed", n);
-  c.penalty = DeviceView<double *>("rpc::contact::penalty", n);
-  Kokkos::deep_copy(c.penalty, options.penalty);
-
-  const HostPoints points = positions(*d.mesh, c.node);
-  const auto xi = evaluate(options.yield_stress, points, "Contact->Yield Stress", comm, true);
-  std::optional<std::string> bad;
-  for (LO i = 0; i < n && !bad; ++i) {
-    std::ostringstream message;
-    message << "deck: \"Contact->Yield Stress\" must be > 0 [Pa] (inf for a rigid foundation), got " << xi(i);
-    if (!options.yield_stress.is_constant())
-      message << " from \"" << options.yield_stress.text << "\" at " << place(points, i);
-    if (!(xi(i) > 0)) bad = message.str();
+  c.first = HostView<LO *>("rpc::contact::first", options.size() + 1);
+  std::vector<LO> node;
+  std::vector<double> weight, normal, gap, yield, penalty;
+  for (std::size_t k = 0; k < options.size(); ++k) {
+    const auto surface = fem::surface_nodes(d, mesh.side(options[k].side, options[k].path + "->Side"));
+    const SideValues values = side_values(options[k], positions(mesh, surface.node), surface.normal, comm);
+    const auto side_node = to_host(surface.node);
+    const auto side_weight = to_host(surface.weight);
+    for (std::size_t i = 0; i < side_node.extent(0); ++i) {
+      node.push_back(side_node(i));
+      weight.push_back(side_weight(i));
+      gap.push_back(values.gap(i));
+      yield.push_back(values.yield(i));
+      penalty.push_back(options[k].penalty);
+      for (int component = 0; component < c.dim; ++component) normal.push_back(values.normal(i, component));
+    }
+    c.first(k + 1) = static_cast<LO>(node.size());
   }
-  throw_if_any(comm, ExitCode::bad_input, bad);
-  c.yield = to_device(xi);
-  c.gap = to_device(evaluate(options.gap, points, "Contact->Gap", comm));
+  c.node = device_values(node, "rpc::contact::node");
+  c.weight = device_values(weight, "rpc::contact::weight");
+  c.gap = device_values(gap, "rpc::contact::gap");
+  c.yield = device_values(yield, "rpc::contact::yield");
+  c.penalty = device_values(penalty, "rpc::contact::penalty");
+  c.normal = device_rows(normal, c.dim, "rpc::contact::normal");
+  c.direction = DeviceView<double **>("rpc::contact::direction", node.size(), c.dim);
+  c.free_gap = DeviceView<double *>("rpc::contact::free_gap", node.size());
+  c.fixed = DeviceView<char *>("rpc::contact::fixed", node.size());
+  c.num_total = sum_all(comm, GO(node.size()));
   take_over_dirichlet(c, dirichlet, comm);
-  c.num_total = sum_all(comm, GO(n));
-
-  const auto fixed = to_host(c.fixed);
-  const auto free_gap = to_host(c.free_gap);
-  GO num_fixed = 0;
-  for (LO i = 0; i < n; ++i) {
-    num_fixed += fixed(i);
-    if (!fixed(i) || std::isfinite(xi(i)) || !(-free_gap(i) > 0) || bad) continue;
-    std::ostringstream message;
-    message << "contact: the prescribed displacement presses the node at " << place(points, i) << " by " << -free_gap(i)
-            << " [m] into the foundation of side \"" << options.side
-            << "\", which is rigid there. Lower it, or give a finite yield stress.";
-    bad = message.str();
-  }
-  throw_if_any(comm, ExitCode::no_solution, bad);
-  c.num_fixed = sum_all(comm, num_fixed);
+  c.num_fixed = sum_all(comm, count_fixed(c));
+  require_room(c, options, mesh);
   return c;
 }
 

@@ -20,12 +20,14 @@ KOKKOS_INLINE_FUNCTION double magnitude(const double x)
   return x < 0 ? -x : x;
 }
 
-/// The paper's start l = 0, which is half the yield limit; a rigid foundation has no half.
+/// The paper's start l = 0, which is half the yield limit, where the body touches; a rigid foundation has no half. Where
+/// there is a gap no pressure is the better guess.
 void start_multipliers(const ContactNodes &c, const DeviceView<double *> &lambda)
 {
   Kokkos::parallel_for(
-      "rpc::contact::start", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i) { lambda(i) = c.fixed(i) || is_rigid(c.yield(i)) ? 0 : 0.5 * c.yield(i); });
+      "rpc::contact::start", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        lambda(i) = c.fixed(i) || is_rigid(c.yield(i)) || c.free_gap(i) > 0 ? 0 : 0.5 * c.yield(i);
+      });
 }
 
 /// |v|_2 over the unknowns that are free.
@@ -62,17 +64,38 @@ void find_diagonal_blocks(const ContactNodes &c, const CrsMatrix &K, const Devic
   Kokkos::fence();
 }
 
+/// Brings the contact nodes' own blocks to those of K + sum over stuck points, r w m m^T. All of them, for a node of two
+/// sides is two points with one block.
+void write_diagonal_blocks(const ContactNodes &c, const DeviceView<State *> &piece,
+                           const DeviceView<std::size_t **> &block, const DeviceView<double ***> &elastic, CrsMatrix &H)
+{
+  const auto values = H.getLocalMatrixDevice().values;
+  Kokkos::parallel_for(
+      "rpc::contact::elastic_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k)
+          for (int l = 0; l < c.dim; ++l) values(block(i, k) + l) = elastic(i, k, l);
+      });
+  Kokkos::parallel_for(
+      "rpc::contact::stuck_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        if (piece(i) != State::stuck) return;
+        for (int k = 0; k < c.dim; ++k)
+          for (int l = 0; l < c.dim; ++l)
+            add_shared(values(block(i, k) + l), c.penalty(i) * c.weight(i) * c.direction(i, k) * c.direction(i, l));
+      });
+  Kokkos::fence();
+}
+
 /// Ku -= sum over nodes whose block is in the matrix, r w m (m . u).
-void subtract_contact(const ContactNodes &c, const DeviceView<char *> &stuck, const Vector &u, Vector &Ku)
+void subtract_contact(const ContactNodes &c, const DeviceView<State *> &piece, const Vector &u, Vector &Ku)
 {
   const auto from = device_read(u);
   const auto to = device_write(Ku);
   Kokkos::parallel_for(
       "rpc::contact::without_contact", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (!stuck(i)) return;
+        if (piece(i) != State::stuck) return;
         const double along = along_direction(c, i, from);
-        for (int k = 0; k < c.dim; ++k)
-          to(c.dim * c.node(i) + k) -= c.penalty(i) * c.weight(i) * along * c.direction(i, k);
+        for (int k = 0; k < c.dim; ++k) // a node of two sides is two points
+          add_shared(to(c.dim * c.node(i) + k), -c.penalty(i) * c.weight(i) * along * c.direction(i, k));
       });
   Kokkos::fence();
 }
@@ -102,23 +125,62 @@ void add_contact_force(const ContactNodes &c, const DeviceView<double *> &p, Vec
   const auto to = device_write(F);
   Kokkos::parallel_for(
       "rpc::contact::force", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) += c.weight(i) * p(i) * c.direction(i, k);
+        for (int k = 0; k < c.dim; ++k) add_shared(to(c.dim * c.node(i) + k), c.weight(i) * p(i) * c.direction(i, k));
       });
   Kokkos::fence();
 }
 
-/// (contact nodes) Psi_i'(v_i), without its limits where `unlimited` is set.
-DeviceView<double *> pressures(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u,
-                               const DeviceView<char *> &unlimited)
+/// (contact nodes) Psi_i'(v_i).
+DeviceView<double *> pressures(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u)
 {
   DeviceView<double *> p("rpc::contact::pressure", c.size());
   const auto x = device_read(u);
   Kokkos::parallel_for(
-      "rpc::contact::pressure", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        const double z = lambda(i) + c.penalty(i) * penetration(c, i, x);
-        p(i) = unlimited(i) ? z : clamp(z, 0, c.yield(i));
+      "rpc::contact::pressure", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { p(i) = pressure(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i)); });
+  return p;
+}
+
+/// (contact nodes) The pressures of the piece of given states, whether they lie in [0, xi] or not.
+DeviceView<double *> piece_pressures(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u,
+                                     const DeviceView<State *> &piece)
+{
+  DeviceView<double *> p("rpc::contact::piece_pressure", c.size());
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::piece_pressure", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        if (piece(i) == State::stuck)
+          p(i) = lambda(i) + c.penalty(i) * penetration(c, i, x);
+        else
+          p(i) = piece(i) == State::yielded ? c.yield(i) : 0;
       });
   return p;
+}
+
+/// A number in which all bits of the argument take part.
+KOKKOS_INLINE_FUNCTION std::uint64_t scrambled(std::uint64_t x)
+{
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+/// Sum over all ranks of a number for each node and its state.
+std::uint64_t fingerprint_of(const Comm &comm, const ContactNodes &c, const DeviceView<State *> &state)
+{
+  const std::uint64_t rank = comm.getRank();
+  std::uint64_t sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::fingerprint", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, std::uint64_t &part) {
+        part += scrambled((rank << 40) + 4 * static_cast<std::uint64_t>(i) + static_cast<std::uint64_t>(state(i)) + 1);
+      },
+      sum);
+  // As halves, for sums of 64 bits would overflow a signed GO.
+  const GO halves[2] = {static_cast<GO>(sum & 0xffffffffULL), static_cast<GO>(sum >> 32)};
+  GO all[2];
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 2, halves, all);
+  return static_cast<std::uint64_t>(all[0]) + (static_cast<std::uint64_t>(all[1]) << 32);
 }
 
 } // namespace
@@ -153,20 +215,25 @@ LineModel::Value LineModel::at(const double t) const
 
 SmoothedFunctional::SmoothedFunctional(RCP<const Comm> comm, fem::ElasticProblem problem, ContactNodes contact)
     : comm_(std::move(comm)), problem_(std::move(problem)), contact_(std::move(contact)),
-      lambda_("rpc::contact::multiplier", contact_.size()), stuck_in_matrix_("rpc::contact::stuck", contact_.size()),
+      lambda_("rpc::contact::multiplier", contact_.size()), piece_("rpc::contact::piece", contact_.size()),
       block_("rpc::contact::block", contact_.size(), contact_.dim),
       elastic_("rpc::contact::elastic", contact_.size(), contact_.dim, contact_.dim)
 {
   applied_force_ = free_norm(problem_, *problem_.applied_load);
   lifted_force_ = free_norm(problem_, *problem_.load);
-  if (lifted_force_ > 0) start_multipliers(contact_, lambda_); // else nothing acts, and lambda = 0 is the solution
+  reset_multipliers();
   find_diagonal_blocks(contact_, *problem_.stiffness, block_, elastic_);
+}
+
+void SmoothedFunctional::reset_multipliers()
+{
+  if (lifted_force_ > 0) start_multipliers(contact_, lambda_); // else nothing acts, and lambda = 0 is the solution
 }
 
 void SmoothedFunctional::apply_stiffness(const Vector &u, Vector &Ku) const
 {
   problem_.stiffness->apply(u, Ku);
-  subtract_contact(contact_, stuck_in_matrix_, u, Ku);
+  subtract_contact(contact_, piece_, u, Ku);
 }
 
 double SmoothedFunctional::potential(const Vector &u) const
@@ -188,44 +255,79 @@ double SmoothedFunctional::energy(const Vector &u) const
 
 void SmoothedFunctional::gradient(const Vector &u, Vector &F) const
 {
-  const DeviceView<char *> none("rpc::contact::none", contact_.size());
   apply_stiffness(u, F);
   F.update(-1., *problem_.load, 1.);
-  add_contact_force(contact_, pressures(contact_, lambda_, u, none), F);
+  add_contact_force(contact_, pressures(contact_, lambda_, u), F);
 }
 
 void SmoothedFunctional::piece_gradient(const Vector &u, Vector &F) const
 {
   apply_stiffness(u, F);
   F.update(-1., *problem_.load, 1.);
-  add_contact_force(contact_, pressures(contact_, lambda_, u, stuck_in_matrix_), F);
+  add_contact_force(contact_, piece_pressures(contact_, lambda_, u, piece_), F);
 }
 
 GO SmoothedFunctional::update_hessian(const Vector &u)
 {
   const ContactNodes c = contact_;
   const auto lambda = lambda_;
-  const auto stuck = stuck_in_matrix_;
-  const auto block = block_;
-  const auto elastic = elastic_;
-  const auto values = problem_.stiffness->getLocalMatrixDevice().values;
+  const auto piece = piece_;
   const auto x = device_read(u);
   LO changed = 0;
   Kokkos::parallel_reduce(
       "rpc::contact::update_hessian", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, LO &count) {
         if (c.fixed(i)) return;
-        const char now = state(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i)) == State::stuck;
-        if (now == stuck(i)) return;
-        stuck(i) = now;
-        ++count;
-        const double stiffness = now ? c.penalty(i) * c.weight(i) : 0;
-        for (int k = 0; k < c.dim; ++k) // contact nodes share no rows
-          for (int l = 0; l < c.dim; ++l)
-            values(block(i, k) + l) = elastic(i, k, l) + stiffness * c.direction(i, k) * c.direction(i, l);
+        const State now = state(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i));
+        count += (now == State::stuck) != (piece(i) == State::stuck);
+        piece(i) = now;
       },
       changed);
+  piece_chosen_ = true;
+  if (changed > 0) write_diagonal_blocks(c, piece, block_, elastic_, *problem_.stiffness);
   return sum_all(*comm_, GO(changed));
+}
+
+StateChange SmoothedFunctional::choose_states(const Vector &u, const double rho)
+{
+  const ContactNodes c = contact_;
+  const auto lambda = lambda_;
+  const auto piece = piece_;
+  const bool chosen = piece_chosen_;
+  const auto p = chosen ? piece_pressures(c, lambda, u, piece) : lambda;
+  const DeviceView<State *> next("rpc::contact::next_state", c.size());
+  LO changed = 0, stiffness = 0;
+  {
+    const auto x = device_read(u);
+    Kokkos::parallel_reduce(
+        "rpc::contact::choose_states", device_range(c.size()),
+        KOKKOS_LAMBDA(const LO i, LO &nodes, LO &blocks) {
+          // What the penalty leaves of v at a stuck node says nothing.
+          const double v = chosen && piece(i) == State::stuck ? 0 : penetration(c, i, x);
+          next(i) = c.fixed(i) ? piece(i) : state(v, p(i), rho, c.yield(i));
+          nodes += next(i) != piece(i);
+          blocks += (next(i) == State::stuck) != (piece(i) == State::stuck);
+        },
+        changed, stiffness);
+  }
+  const GO mine[2] = {changed, stiffness};
+  GO all[2];
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, mine, all);
+  StateChange change{all[0], all[1], fingerprint_of(*comm_, c, next)};
+  if (change.nodes == 0 && chosen) return change;
+  piece_chosen_ = true;
+  Kokkos::parallel_for(
+      "rpc::contact::take_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        if (c.fixed(i)) return;
+        piece(i) = next(i);
+        if (next(i) == State::stuck)
+          lambda(i) = clamp(p(i), 0, c.yield(i));
+        else
+          lambda(i) = next(i) == State::yielded ? c.yield(i) : 0;
+      });
+  Kokkos::fence();
+  if (change.stiffness > 0) write_diagonal_blocks(c, piece, block_, elastic_, *problem_.stiffness);
+  return change;
 }
 
 LineModel SmoothedFunctional::along(const Vector &u, const Vector &d, const Vector &F) const

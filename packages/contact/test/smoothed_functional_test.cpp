@@ -1,11 +1,7 @@
-#include "rpc/contact/result.hpp"
 #include "rpc/contact/smoothed_functional.hpp"
-#include "rpc/core/error.hpp"
-#include "rpc/fem/elasticity.hpp"
-#include "rpc/mesh/box.hpp"
 
-#include <Tpetra_Core.hpp>
-#include <array>
+#include "scene.hpp"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
@@ -14,52 +10,7 @@ namespace
 {
 
 using namespace rpc;
-using contact::SmoothedFunctional;
-
-ScalarField field(std::function<double(const Point &)> f)
-{
-  return ScalarField("test", std::move(f));
-}
-
-/// A block of 6 x 3 cells on a foundation, held at its top or at its sides, with a yield limit and a gap that vary.
-struct Scene {
-  fem::Discretization d;
-  std::shared_ptr<SmoothedFunctional> functional;
-
-  explicit Scene(const double penalty = 40, const bool hold_sides = false, const double top = 0)
-  {
-    mesh::BoxOptions box{{0, 0}, {2, 1}, {6, 3}, {2, 1}};
-    d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
-    std::vector<fem::DirichletCondition> held{{"top", "top", {ScalarField(0.), ScalarField(top)}}};
-    if (hold_sides) held.push_back({"left", "left", {ScalarField(0.), {}}});
-    const auto load = rcp(new Vector(d.owned_dofs));
-    fem::add_body_force(d, {ScalarField(0.3), ScalarField(-2.), ScalarField(0.)}, "Body Force", *load);
-    auto problem =
-        fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, {10, 0.3}), load, fem::dirichlet_dofs(d, held));
-    contact::ContactOptions options;
-    options.side = "bottom";
-    options.yield_stress = field([](const Point &x) { return 1 + x[0]; });
-    options.gap = field([](const Point &x) { return 0.02 * (x[0] - 1); });
-    options.penalty = penalty;
-    auto nodes = contact::contact_nodes(d, options, problem.dirichlet);
-    functional =
-        std::make_shared<SmoothedFunctional>(d.mesh->owned_nodes->getComm(), std::move(problem), std::move(nodes));
-  }
-
-  /// A vector that depends on the node's place alone, so that every number of ranks gets the same one; 0 where
-  /// prescribed.
-  RCP<Vector> vector(const double scale, const double phase) const
-  {
-    const auto v = rcp(new Vector(d.owned_dofs));
-    const auto to = v->getLocalViewHost(Tpetra::Access::OverwriteAll);
-    const auto coords = to_host(d.mesh->coords);
-    const auto fixed = to_host(functional->problem().dirichlet.fixed);
-    for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n)
-      for (int c = 0; c < 2; ++c)
-        to(2 * n + c, 0) = fixed(2 * n + c) ? 0 : scale * std::sin(phase + 5 * coords(n, 0) + 3 * coords(n, 1) + 2 * c);
-    return v;
-  }
-};
+using namespace rpc::test;
 
 RCP<Vector> plus(const Vector &u, const double t, const Vector &d)
 {
@@ -101,6 +52,93 @@ TEST(SmoothedFunctional, HessianIsTheDerivativeOfTheGradientOnEachPiece)
   up.scale(1 / (2 * h));
   up.update(-1., Hd, 1.);
   EXPECT_LT(up.norm2(), 1e-9 * Hd.norm2());
+}
+
+/// |H d - (F(u + h d) - F(u - h d)) / 2h|_2 / |H d|_2 for the Hessian that is in the matrix.
+double hessian_error(const contact::SmoothedFunctional &functional, const Vector &u, const Vector &d)
+{
+  Vector Hd(u.getMap()), up(u.getMap()), down(u.getMap());
+  functional.hessian()->apply(d, Hd);
+  const double h = 1e-5; // keeps each node on its piece
+  functional.gradient(*plus(u, h, d), up);
+  functional.gradient(*plus(u, -h, d), down);
+  up.update(-1., down, 1.);
+  up.update(-1., Hd, 1 / (2 * h));
+  return up.norm2() / Hd.norm2();
+}
+
+TEST(SmoothedFunctional, GradientIsTheDerivativeOfTheValueWhereSidesMeet)
+{
+  const Scene scene(std::vector{below(40), beside(25)});
+  const auto u = scene.vector(0.05, 0.4), d = scene.vector(1, 2);
+  Vector F(u->getMap());
+  scene.functional->gradient(*u, F);
+  const double h = 1e-5;
+  const double difference =
+      (scene.functional->value(*plus(*u, h, *d)) - scene.functional->value(*plus(*u, -h, *d))) / (2 * h);
+  EXPECT_NEAR(difference, F.dot(*d), 1e-9 * F.norm2() * d->norm2());
+}
+
+TEST(SmoothedFunctional, HessianOfANodeOfTwoSidesIsTheDerivativeInEachOfItsStates)
+{
+  const Scene scene(std::vector{below(40), beside(25)});
+  auto &functional = *scene.functional;
+  // The corner (2, 0) along the normals (0, -1) and (0.8, -0.6) of its two points, the other nodes anyhow. Multipliers
+  // are 1.5 and 1.5: the first point is stuck for v in (-0.0375, 0.0375), the second for v in (-0.06, 0.06).
+  struct Case {
+    const char *name;
+    double below, beside; // u along the normals
+  };
+  const Case cases[] = {{"both stuck", 0, 0},      {"open below", -0.2, 0},   {"both open", -0.2, -0.2},
+                        {"open beside", 0, -1},    {"yielded below", 0.3, 0}, {"both yielded", 0.3, 0.3},
+                        {"both stuck again", 0, 0}};
+  const bool stuck[][2] = {{true, true},  {false, true},  {false, false}, {true, false},
+                           {false, true}, {false, false}, {true, true}};
+  const Scene alone(std::vector<contact::ContactOptions>{});
+  const auto at_corner = [&](const Point &x, const Point &value, const Point &elsewhere) {
+    return x[0] == 2 && x[1] == 0 ? value : elsewhere;
+  };
+  for (std::size_t k = 0; k < std::size(cases); ++k) {
+    SCOPED_TRACE(cases[k].name);
+    const Point corner{(cases[k].beside - 0.6 * cases[k].below) / 0.8, -cases[k].below, 0};
+    const auto u = scene.vector([&](const Point &x) {
+      return at_corner(x, corner, {0.05 * std::sin(5 * x[0] + x[1]), 0.05 * std::sin(0.4 + 5 * x[0] - k), 0});
+    });
+    functional.update_hessian(*u);
+    EXPECT_EQ(functional.update_hessian(*u), 0);
+    // The corner's block of H along both of its unknowns, against K's alone, and everything at once.
+    double along[2];
+    for (int c = 0; c < 2; ++c) {
+      const auto d = scene.vector([&](const Point &x) {
+        return at_corner(x, {c == 0 ? 1. : 0., c == 1 ? 1. : 0., 0}, {});
+      });
+      EXPECT_LT(hessian_error(functional, *u, *d), 1e-9) << c;
+      Vector Hd(u->getMap());
+      functional.hessian()->apply(*d, Hd);
+      along[c] = Hd.dot(*d);
+    }
+    EXPECT_LT(hessian_error(functional, *u, *scene.vector(1, 2)), 1e-9);
+    // r w m m^T with weights 1/6 below and beside; K of the corner's cell by the diagonal of a cell of 1/3 x 1/3
+    for (int c = 0; c < 2; ++c) {
+      const auto d = alone.vector([&](const Point &x) {
+        return at_corner(x, {c == 0 ? 1. : 0., c == 1 ? 1. : 0., 0}, {});
+      });
+      Vector Kd(u->getMap());
+      alone.functional->hessian()->apply(*d, Kd);
+      const double of_below = stuck[k][0] && c == 1 ? 40. / 6 : 0,
+                   of_beside = stuck[k][1] ? 25. / 6 * (c == 0 ? 0.64 : 0.36) : 0;
+      EXPECT_NEAR(along[c], Kd.dot(*d) + of_below + of_beside, 1e-13 * 40);
+    }
+  }
+}
+
+TEST(SmoothedFunctional, StatesCountThePointsOfBothSides)
+{
+  const Scene scene(std::vector{below(40), beside(25)});
+  const auto states = scene.functional->count_states(*scene.vector(0.05, 0.4));
+  EXPECT_EQ(states.open + states.stuck + states.yielded, 7 + 3); // the held point at (2, 1) is in none
+  EXPECT_EQ(scene.functional->contact().num_total, 7 + 4);
+  EXPECT_EQ(scene.functional->contact().num_fixed, 1);
 }
 
 TEST(SmoothedFunctional, AcrossKinksTheGradientIsContinuousAndDifferencesConvergeAtFirstOrder)
@@ -198,9 +236,9 @@ TEST(SmoothedFunctional, EnergiesAndResidualsDoNotDependOnTheNumberOfRanks)
   const auto u = scene.vector(0.05, 0.4);
   functional.update_multipliers(*u);
   // Values of one rank, to be met by all.
-  EXPECT_NEAR(functional.value(*u), 0.40449452585322238, 1e-13);
-  EXPECT_NEAR(functional.energy(*u), 0.40259702781371176, 1e-13);
-  EXPECT_NEAR(functional.equilibrium_residual(*u), 3.3726049261830227, 1e-12);
+  EXPECT_NEAR(functional.value(*u), 0.41911329126094887, 1e-13);
+  EXPECT_NEAR(functional.energy(*u), 0.41226150411482143, 1e-13);
+  EXPECT_NEAR(functional.equilibrium_residual(*u), 3.4491199932704339, 1e-12);
   const auto states = functional.count_states(*u);
   EXPECT_EQ(states.open + states.stuck + states.yielded, 7);
 }
@@ -215,43 +253,6 @@ TEST(SmoothedFunctional, ContactLawResidualVanishesExactlyForPairsThatObeyTheLaw
   EXPECT_LT(functional.contact_law_residual(*u, 5), 1e-14);
   functional.update_multipliers(*scene.vector(0.05, 3.4));
   EXPECT_GT(functional.contact_law_residual(*u, 5), 1e-3);
-}
-
-TEST(ContactNodes, PrescribedNormalDisplacementTakesANodeOutOfTheSolution)
-{
-  mesh::BoxOptions box{{0, 0}, {2, 1}, {6, 3}, {2, 1}};
-  const auto d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
-  const auto held = fem::dirichlet_dofs(d, {{"left", "left", {ScalarField(0.), ScalarField(-0.1)}}});
-  contact::ContactOptions options;
-  options.side = "bottom";
-  options.yield_stress = ScalarField(3.);
-  const auto nodes = contact::contact_nodes(d, options, held);
-  EXPECT_EQ(nodes.num_total, 7);
-  EXPECT_EQ(nodes.num_fixed, 1);
-  options.yield_stress = ScalarField(std::numeric_limits<double>::infinity());
-  try { // pressed by 0.1 into what cannot give way
-    contact::contact_nodes(d, options, held);
-    FAIL();
-  } catch (const Error &error) {
-    EXPECT_EQ(error.code(), ExitCode::no_solution);
-    EXPECT_NE(std::string(error.what()).find("0.1"), std::string::npos);
-  }
-}
-
-TEST(ContactNodes, RefuseAYieldLimitThatIsNotPositiveSayingWhere)
-{
-  const Scene scene;
-  contact::ContactOptions options;
-  options.side = "bottom";
-  options.yield_stress = ScalarField("x-1", [](const Point &x) { return x[0] - 1; });
-  try {
-    contact::contact_nodes(scene.d, options, scene.functional->problem().dirichlet);
-    FAIL();
-  } catch (const Error &error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    EXPECT_NE(std::string(error.what()).find("x-1"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("(0, 0)"), std::string::npos) << error.what();
-  }
 }
 
 } // namespace

@@ -166,6 +166,13 @@ std::string unknown_name_message(const std::string &path, const std::string &nam
   return message.str();
 }
 
+/// The entry, marked as not given by the user.
+ParameterEntry as_default(ParameterEntry entry)
+{
+  entry.setAnyValue(Teuchos::any(entry.getAny(false)), true);
+  return entry;
+}
+
 } // namespace
 
 void set_field(ParameterList &valid, const std::string &name, const std::string &default_value, const std::string &doc)
@@ -223,7 +230,7 @@ void validate(ParameterList &list, const ParameterList &valid, const std::string
     if (model.isList())
       validate(list.sublist(name), valid.sublist(name), path.empty() ? name : path + "->" + name);
     else if (!list.isParameter(name))
-      list.setEntry(name, model);
+      list.setEntry(name, as_default(model));
   }
 }
 

@@ -80,6 +80,38 @@ TEST(Validate, GivenValuesSurviveTheDefaults)
   EXPECT_EQ(list.sublist("Contact").get<bool>("Verbose"), false);
 }
 
+TEST(Validate, FilledInDefaultsSaySoAndGivenValuesDoNot)
+{
+  ParameterList list;
+  list.sublist("Mesh").set("Type", "box"); // the default's own value
+  list.sublist("Contact").set("Penalty", 5).set("Gap", 0);
+  list.sublist("Dirichlet").sublist("anchor").set("X", "");
+  const auto expect_marks = [&](const ParameterList &done) {
+    EXPECT_FALSE(done.sublist("Mesh").getEntry("Type").isDefault());
+    EXPECT_TRUE(done.sublist("Mesh").getEntry("Lower").isDefault());
+    EXPECT_TRUE(done.sublist("Mesh").getEntry("Cells").isDefault());
+    EXPECT_FALSE(done.sublist("Contact").getEntry("Penalty").isDefault()); // an int made a double
+    EXPECT_FALSE(done.sublist("Contact").getEntry("Gap").isDefault());
+    EXPECT_TRUE(done.sublist("Contact").getEntry("Steps").isDefault());
+    EXPECT_TRUE(done.sublist("Contact").getEntry("Verbose").isDefault());
+    EXPECT_FALSE(done.sublist("Dirichlet").sublist("anchor").getEntry("X").isDefault());
+    EXPECT_TRUE(done.sublist("Dirichlet").sublist("anchor").getEntry("Side").isDefault());
+  };
+  rpc::validate(list, valid_deck());
+  expect_marks(list);
+  rpc::validate(list, valid_deck()); // once more changes nothing
+  expect_marks(list);
+}
+
+TEST(Validate, AssignedValuesAreGivenOnes)
+{
+  ParameterList list;
+  assign(list, valid_deck(), "Contact->Steps=3"); // the default's own value
+  rpc::validate(list, valid_deck());
+  EXPECT_FALSE(list.sublist("Contact").getEntry("Steps").isDefault());
+  EXPECT_TRUE(list.sublist("Contact").getEntry("Penalty").isDefault());
+}
+
 TEST(Validate, MisspeltNameIsRefusedWithTheNearestOne)
 {
   ParameterList parameter, sublist;

@@ -129,6 +129,9 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
       count += owner[dof] >= 0 ? 1 : 0;
     }
   }
+  HostView<int *> condition("rpc::fem::dirichlet_condition", num_owned);
+  std::copy(owner.begin(), owner.end(), condition.data());
+  dirichlet.condition = to_device(condition);
   dirichlet.num_fixed = sum_all(mesh.comm(), count);
   fixed_overlap.doImport(fixed, *d.dof_import,
                          Tpetra::INSERT); // a neighbour's node may lie on a side whose facets are not here
@@ -149,9 +152,8 @@ ElasticProblem eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> stiff
   const Vector &prescribed = *dirichlet.value;
   const bool moves = prescribed.normInf() > 0;
   Vector force(d.owned_dofs); // of the prescribed displacement, K u_D
-  problem.applied_load = load;
+  problem.applied_load = rcp(new Vector(*load, Teuchos::Copy));
   if (moves) {
-    problem.applied_load = rcp(new Vector(*load, Teuchos::Copy));
     stiffness->apply(prescribed, force);
     problem.energy_offset = 0.5 * prescribed.dot(force) - load->dot(prescribed);
     load->update(-1., force, 1.);
@@ -182,6 +184,26 @@ ElasticProblem eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> stiff
   problem.load = load;
   problem.dirichlet = std::move(dirichlet);
   return problem;
+}
+
+std::vector<std::array<double, 3>> reaction_forces(const Discretization &d, const DirichletDofs &dirichlet,
+                                                   const int num_conditions, const Vector &out_of_balance)
+{
+  const int dim = d.dim();
+  DeviceView<double **> sums("rpc::fem::reaction", num_conditions, 3);
+  const auto condition = dirichlet.condition;
+  const auto force = device_read(out_of_balance);
+  Kokkos::parallel_for(
+      "rpc::fem::reactions", device_range(static_cast<LO>(condition.extent(0))), KOKKOS_LAMBDA(const LO dof) {
+        if (condition(dof) >= 0) add_shared(sums(condition(dof), dof % dim), force(dof));
+      });
+  const auto mine = to_host(sums);
+  std::vector<std::array<double, 3>> reactions(num_conditions);
+  for (int k = 0; k < num_conditions; ++k) {
+    const double local[3] = {mine(k, 0), mine(k, 1), mine(k, 2)};
+    Teuchos::reduceAll(d.mesh->comm(), Teuchos::REDUCE_SUM, 3, local, reactions[k].data());
+  }
+  return reactions;
 }
 
 } // namespace rpc::fem

@@ -1,5 +1,7 @@
 #include "rpc/fem/discretization.hpp"
 
+#include "node_cells.hpp"
+
 #include <array>
 
 namespace rpc::fem
@@ -26,39 +28,6 @@ std::size_t last_of(const DeviceView<std::size_t *> &offset)
   std::size_t last = 0;
   Kokkos::deep_copy(last, Kokkos::subview(offset, offset.extent(0) - 1));
   return last;
-}
-
-/// Cells around each owned node, as offsets and list; the order within a node is not fixed.
-struct NodeCells {
-  DeviceView<std::size_t *> row;
-  DeviceView<LO *> cell;
-};
-
-NodeCells cells_around_nodes(const mesh::Mesh &mesh)
-{
-  const auto cells = mesh.cells;
-  const LO num_owned = mesh.num_owned_nodes();
-  const int nodes = mesh.element.num_nodes();
-  DeviceView<LO *> count("rpc::fem::cells_per_node", num_owned);
-  Kokkos::parallel_for(
-      "rpc::fem::count_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
-        for (int a = 0; a < nodes; ++a)
-          if (cells(cell, a) < num_owned) Kokkos::atomic_increment(&count(cells(cell, a)));
-      });
-  NodeCells around;
-  around.row = offsets_of(count, "rpc::fem::node_cells_row");
-  around.cell = DeviceView<LO *>("rpc::fem::node_cells", last_of(around.row));
-  Kokkos::deep_copy(count, 0);
-  const auto row = around.row;
-  const auto list = around.cell;
-  Kokkos::parallel_for(
-      "rpc::fem::list_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
-        for (int a = 0; a < nodes; ++a) {
-          const LO node = cells(cell, a);
-          if (node < num_owned) list(row(node) + Kokkos::atomic_fetch_add(&count(node), 1)) = cell;
-        }
-      });
-  return around;
 }
 
 NodeGraph node_graph(const mesh::Mesh &mesh)
@@ -142,6 +111,33 @@ RCP<const CrsGraph> dof_graph(const Discretization &d)
 }
 
 } // namespace
+
+NodeCells cells_around_nodes(const mesh::Mesh &mesh)
+{
+  const auto cells = mesh.cells;
+  const LO num_owned = mesh.num_owned_nodes();
+  const int nodes = mesh.element.num_nodes();
+  DeviceView<LO *> count("rpc::fem::cells_per_node", num_owned);
+  Kokkos::parallel_for(
+      "rpc::fem::count_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
+        for (int a = 0; a < nodes; ++a)
+          if (cells(cell, a) < num_owned) Kokkos::atomic_increment(&count(cells(cell, a)));
+      });
+  NodeCells around;
+  around.row = offsets_of(count, "rpc::fem::node_cells_row");
+  around.cell = DeviceView<LO *>("rpc::fem::node_cells", last_of(around.row));
+  Kokkos::deep_copy(count, 0);
+  const auto row = around.row;
+  const auto list = around.cell;
+  Kokkos::parallel_for(
+      "rpc::fem::list_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
+        for (int a = 0; a < nodes; ++a) {
+          const LO node = cells(cell, a);
+          if (node < num_owned) list(row(node) + Kokkos::atomic_fetch_add(&count(node), 1)) = cell;
+        }
+      });
+  return around;
+}
 
 Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
 {

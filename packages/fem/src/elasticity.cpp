@@ -5,7 +5,9 @@
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace rpc::fem
 {
@@ -24,7 +26,8 @@ struct Stiffness {
   DeviceView<std::size_t *> node_row; // (owned nodes + 1)                  in
   DeviceView<LO *> node_col;          // (node graph)                       in
   LO num_owned;                       // rows of nodes >= this are another rank's
-  double lambda, mu;                  // Lame constants              [Pa]   in
+  DeviceView<double **> lame;         // (blocks; lambda, mu)        [Pa]   in
+  DeviceView<int *> block;            // (cells)                            in
   DeviceView<double *> values;        // (matrix entries)            [N/m]  inout
 
   /// @param bad  counts cells whose Jacobian is <= 0 somewhere
@@ -35,6 +38,7 @@ struct Stiffness {
       ++bad;
       return;
     }
+    const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
     for (int a = 0; a < Nodes; ++a) {
       const LO node = cells(cell, a);
       if (node >= num_owned) continue;
@@ -96,10 +100,12 @@ struct StrainEnergy {
   DeviceView<double ***> gradient;                         // (points, Nodes, Dim)        in
   DeviceView<double *> weight;                             // (points)                    in
   decltype(device_read(std::declval<const Vector &>())) u; // (overlap dofs)        [m]   in
-  double lambda, mu;                                       // Lame constants        [Pa]  in
+  DeviceView<double **> lame;                              // (blocks; lambda, mu)  [Pa]  in
+  DeviceView<int *> block;                                 // (cells)                     in
 
   KOKKOS_FUNCTION void operator()(const LO cell, double &energy) const
   {
+    const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
     const CellCoords<Dim, Nodes> x(coords, cells, cell);
     for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
       double dN[Nodes][Dim];
@@ -115,6 +121,82 @@ struct StrainEnergy {
     }
   }
 };
+
+/// f(ai) += int sigma(u) : grad(N_a e_i) over one cell.
+template <int Dim, int Nodes>
+struct InternalForces {
+  DeviceView<double **> coords;                            // (overlap nodes, Dim)  [m]   in
+  DeviceView<LO **> cells;                                 // (cells, Nodes)              in
+  DeviceView<double ***> gradient;                         // (points, Nodes, Dim)        in
+  DeviceView<double *> weight;                             // (points)                    in
+  decltype(device_read(std::declval<const Vector &>())) u; // (overlap dofs)        [m]   in
+  DeviceView<double **> lame;                              // (blocks; lambda, mu)  [Pa]  in
+  DeviceView<int *> block;                                 // (cells)                     in
+  LO num_owned;                                            // nodes
+  decltype(device_write(std::declval<Vector &>())) force;  // (owned dofs)          [N]   inout
+
+  KOKKOS_FUNCTION void operator()(const LO cell) const
+  {
+    const CellCoords<Dim, Nodes> x(coords, cells, cell);
+    const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
+    for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
+      double dN[Nodes][Dim];
+      const double volume = weight(q) * physical_gradients(x, gradient, q, dN);
+      double grad[Dim][Dim];
+      displacement_gradient(u, cells, cell, dN, grad);
+      double trace = 0;
+      for (int i = 0; i < Dim; ++i) trace += grad[i][i];
+      for (int a = 0; a < Nodes; ++a) {
+        const LO node = cells(cell, a);
+        if (node >= num_owned) continue;
+        for (int i = 0; i < Dim; ++i) {
+          double sum = lambda * trace * dN[a][i];
+          for (int j = 0; j < Dim; ++j) sum += mu * (grad[i][j] + grad[j][i]) * dN[a][j];
+          add_shared(force(Dim * node + i), volume * sum);
+        }
+      }
+    }
+  }
+};
+
+/// Names the first owned cell whose Jacobian determinant is not positive at a quadrature point; nothing if there is none
+/// on this rank.
+template <int Dim, int Nodes>
+struct FirstBadCell {
+  DeviceView<double **> coords;    // (overlap nodes, Dim)   [m]      in
+  DeviceView<LO **> cells;         // (cells, Nodes)                  in
+  DeviceView<double ***> gradient; // (points, Nodes, Dim)            in
+
+  KOKKOS_FUNCTION void operator()(const LO cell, LO &first) const
+  {
+    const CellCoords<Dim, Nodes> x(coords, cells, cell);
+    double dN[Nodes][Dim];
+    for (int q = 0; q < static_cast<int>(gradient.extent(0)); ++q)
+      if (!(physical_gradients(x, gradient, q, dN) > 0) && cell < first) first = cell;
+  }
+};
+
+std::optional<std::string> describe_bad_cell(const Discretization &d)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  LO first = 0;
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    const FirstBadCell<dim, nodes> kernel{mesh.coords, mesh.cells, d.reference.cell.gradient};
+    Kokkos::parallel_reduce("rpc::fem::first_bad_cell", device_range(mesh.num_owned_cells), kernel,
+                            Kokkos::Min<LO>(first));
+  });
+  if (first >= mesh.num_owned_cells) return std::nullopt;
+  const auto coords = to_host(mesh.coords);
+  const auto cells = to_host(mesh.cells);
+  const auto block = to_host(mesh.block);
+  std::ostringstream message;
+  message << "mesh: cell " << mesh.cell_id(first) + 1 << " of block \"" << mesh.blocks[block(first)]
+          << "\" is degenerate or inverted (Jacobian determinant <= 0), with vertices at";
+  for (int a = 0; a < mesh.element.num_vertices(); ++a)
+    for (int c = 0; c < mesh.dim(); ++c)
+      message << (c == 0 ? " (" : ", ") << coords(cells(first, a), c) << (c + 1 == mesh.dim() ? ")" : "");
+  return message.str();
+}
 
 VectorField vector_field(const Teuchos::ParameterList &list, const int dim, const std::string &path,
                          const FieldParser &parse)
@@ -143,6 +225,18 @@ DeviceView<double **> evaluate_vector(const VectorField &field, const DeviceView
   }
   Kokkos::deep_copy(result, host);
   return result;
+}
+
+Material one_material(const Teuchos::ParameterList &list, const std::string &path)
+{
+  Material material;
+  material.youngs_modulus = list.get<double>("Young's Modulus");
+  material.poissons_ratio = list.get<double>("Poisson's Ratio");
+  RPC_REQUIRE(material.youngs_modulus > 0 && std::isfinite(material.youngs_modulus),
+              "deck: \"" << path << "->Young's Modulus\" must be > 0 and finite [Pa], got " << material.youngs_modulus);
+  RPC_REQUIRE(material.poissons_ratio > -1 && material.poissons_ratio < 0.5,
+              "deck: \"" << path << "->Poisson's Ratio\" must be in (-1, 0.5), got " << material.poissons_ratio);
+  return material;
 }
 
 bool is_zero(const VectorField &field, const int dim)
@@ -242,19 +336,46 @@ Teuchos::ParameterList valid_material_parameters()
   Teuchos::ParameterList valid("Material");
   valid.set("Young's Modulus", 1., "E > 0 [Pa].");
   valid.set("Poisson's Ratio", 0.3, "nu, in (-1, 0.5).");
+  Teuchos::ParameterList entry = valid;
+  set_named_entries(valid, "Blocks", entry,
+                    "Materials of single blocks of the mesh, each entry named after its block; other blocks have the "
+                    "material above.");
   return valid;
 }
 
-Material material_options(const Teuchos::ParameterList &list)
+Materials material_options(const Teuchos::ParameterList &list)
 {
-  Material material;
-  material.youngs_modulus = list.get<double>("Young's Modulus");
-  material.poissons_ratio = list.get<double>("Poisson's Ratio");
-  RPC_REQUIRE(material.youngs_modulus > 0 && std::isfinite(material.youngs_modulus),
-              "deck: \"Material->Young's Modulus\" must be > 0 and finite [Pa], got " << material.youngs_modulus);
-  RPC_REQUIRE(material.poissons_ratio > -1 && material.poissons_ratio < 0.5,
-              "deck: \"Material->Poisson's Ratio\" must be in (-1, 0.5), got " << material.poissons_ratio);
-  return material;
+  Materials materials(one_material(list, "Material"));
+  const Teuchos::ParameterList &blocks = list.sublist("Blocks");
+  for (auto it = blocks.begin(); it != blocks.end(); ++it)
+    materials.block[blocks.name(it)] =
+        one_material(blocks.sublist(blocks.name(it)), "Material->Blocks->" + blocks.name(it));
+  return materials;
+}
+
+double Materials::largest_youngs_modulus() const
+{
+  double largest = common.youngs_modulus;
+  for (const auto &[name, material] : block) largest = std::max(largest, material.youngs_modulus);
+  return largest;
+}
+
+DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materials)
+{
+  for (const auto &[name, material] : materials.block)
+    RPC_REQUIRE(std::find(mesh.blocks.begin(), mesh.blocks.end(), name) != mesh.blocks.end(),
+                "deck: \"Material->Blocks->" << name << "\" names a block that the mesh does not have. Its blocks: "
+                                             << join(mesh.blocks) << ".");
+  DeviceView<double **> table("rpc::fem::lame", mesh.blocks.size(), 2);
+  const auto host = Kokkos::create_mirror_view(table);
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const auto own = materials.block.find(mesh.blocks[b]);
+    const Material &material = own == materials.block.end() ? materials.common : own->second;
+    host(b, 0) = material.lambda();
+    host(b, 1) = material.mu();
+  }
+  Kokkos::deep_copy(table, host);
+  return table;
 }
 
 Teuchos::ParameterList valid_traction_parameters()
@@ -292,7 +413,7 @@ VectorField body_force_options(const Teuchos::ParameterList &list, const int dim
   return vector_field(list, dim, "Body Force", parse);
 }
 
-RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Material &material)
+RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &materials)
 {
   const auto matrix = rcp(new CrsMatrix(d.graph));
   const mesh::Mesh &mesh = *d.mesh;
@@ -306,19 +427,17 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Material &mater
     kernel.node_row = d.nodes.row;
     kernel.node_col = d.nodes.col;
     kernel.num_owned = mesh.num_owned_nodes();
-    kernel.lambda = material.lambda();
-    kernel.mu = material.mu();
+    kernel.lame = lame_table(mesh, materials);
+    kernel.block = mesh.block;
     kernel.values = matrix->getLocalMatrixDevice().values;
     Kokkos::parallel_reduce("rpc::fem::stiffness", device_range(mesh.num_cells()), kernel, bad);
   });
-  const GO all_bad = sum_all(mesh.comm(), GO(bad));
-  RPC_REQUIRE_CODE(all_bad == 0, ExitCode::bad_mesh,
-                   "mesh: " << all_bad << " cells are degenerate or inverted (Jacobian determinant <= 0)");
+  if (sum_all(mesh.comm(), GO(bad)) > 0) throw_if_any(mesh.comm(), ExitCode::bad_mesh, describe_bad_cell(d));
   matrix->fillComplete(d.owned_dofs, d.owned_dofs);
   return matrix;
 }
 
-double strain_energy(const Discretization &d, const Material &material, const Vector &u)
+double strain_energy(const Discretization &d, const Materials &materials, const Vector &u)
 {
   const mesh::Mesh &mesh = *d.mesh;
   Vector u_overlap(d.overlap_dofs);
@@ -327,18 +446,40 @@ double strain_energy(const Discretization &d, const Material &material, const Ve
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
     const BasisTable &table = d.reference.cell;
     const StrainEnergy<dim, nodes> kernel{
-        mesh.coords,       mesh.cells,   table.gradient, table.weight, device_read(u_overlap),
-        material.lambda(), material.mu()};
+        mesh.coords, mesh.cells, table.gradient, table.weight, device_read(u_overlap), lame_table(mesh, materials),
+        mesh.block};
     Kokkos::parallel_reduce("rpc::fem::strain_energy", device_range(mesh.num_owned_cells), kernel, energy);
   });
   return sum_all(mesh.comm(), energy);
+}
+
+Vector internal_forces(const Discretization &d, const Materials &materials, const Vector &u)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  Vector u_overlap(d.overlap_dofs), force(d.owned_dofs);
+  u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    const BasisTable &table = d.reference.cell;
+    const InternalForces<dim, nodes> kernel{mesh.coords,
+                                            mesh.cells,
+                                            table.gradient,
+                                            table.weight,
+                                            device_read(u_overlap),
+                                            lame_table(mesh, materials),
+                                            mesh.block,
+                                            mesh.num_owned_nodes(),
+                                            device_write(force)};
+    Kokkos::parallel_for("rpc::fem::internal_forces", device_range(mesh.num_cells()), kernel);
+  });
+  Kokkos::fence();
+  return force;
 }
 
 void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load)
 {
   if (is_zero(force, d.dim())) return;
   const mesh::Mesh &mesh = *d.mesh;
-  const BasisTable &table = d.reference.cell;
+  const BasisTable &table = d.reference.cell_load;
   const auto points = quadrature_points(mesh.coords, mesh.cells, table.value);
   const auto f = evaluate_vector(force, points, parameter, mesh.comm());
   add_load(mesh.cells, table.value, cell_measure(mesh, table), f, mesh.num_owned_nodes(), load);

@@ -108,6 +108,8 @@ void with_static_extents(const mesh::Element &element, Work &&work)
 {
   using std::integral_constant;
   const auto is = [&](const int dim, const int nodes) { return element.dim == dim && element.num_nodes() == nodes; };
+  if (is(2, 3)) return work(integral_constant<int, 2>(), integral_constant<int, 3>());
+  if (is(2, 6)) return work(integral_constant<int, 2>(), integral_constant<int, 6>());
   if (is(2, 4)) return work(integral_constant<int, 2>(), integral_constant<int, 4>());
   if (is(2, 9)) return work(integral_constant<int, 2>(), integral_constant<int, 9>());
   if (is(3, 8)) return work(integral_constant<int, 3>(), integral_constant<int, 8>());

@@ -2,6 +2,7 @@
 
 #include "rpc/core/error.hpp"
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct Rule1d {
 Rule1d gauss(const int points)
 {
   switch (points) {
+  case 1:
+    return {{0}, {2}};
   case 2:
     return {{-1 / std::sqrt(3.), 1 / std::sqrt(3.)}, {1, 1}};
   case 3:
@@ -67,6 +70,25 @@ std::vector<std::vector<int>> facet_lattice(const mesh::Element &element)
   return nodes;
 }
 
+BasisTable device_table(const HostView<double **> &value, const HostView<double ***> &gradient,
+                        const HostView<double *> &weight)
+{
+  BasisTable table;
+  table.value = DeviceView<double **>("rpc::fem::basis_value", value.extent(0), value.extent(1));
+  table.gradient =
+      DeviceView<double ***>("rpc::fem::basis_gradient", gradient.extent(0), gradient.extent(1), gradient.extent(2));
+  table.weight = DeviceView<double *>("rpc::fem::quadrature_weight", weight.extent(0));
+  const auto copy = [](const auto &device, const auto &host) { // layouts may differ
+    auto mirror = Kokkos::create_mirror_view(device);
+    Kokkos::deep_copy(mirror, host);
+    Kokkos::deep_copy(device, mirror);
+  };
+  copy(table.value, value);
+  copy(table.gradient, gradient);
+  copy(table.weight, weight);
+  return table;
+}
+
 /// Tensor product of a 1d rule; `lattice` (nodes, d) names the node of each shape function in each direction.
 BasisTable tensor_table(const std::vector<std::vector<int>> &lattice, const int order, const Rule1d &rule)
 {
@@ -93,19 +115,58 @@ BasisTable tensor_table(const std::vector<std::vector<int>> &lattice, const int 
       }
     }
   }
-  BasisTable table;
-  table.value = DeviceView<double **>("rpc::fem::basis_value", points, nodes);
-  table.gradient = DeviceView<double ***>("rpc::fem::basis_gradient", points, nodes, d);
-  table.weight = DeviceView<double *>("rpc::fem::quadrature_weight", points);
-  const auto copy = [](const auto &device, const auto &host) { // layouts may differ
-    auto mirror = Kokkos::create_mirror_view(device);
-    Kokkos::deep_copy(mirror, host);
-    Kokkos::deep_copy(device, mirror);
+  return device_table(value, gradient, weight);
+}
+
+struct TriangleRule {
+  std::vector<std::array<double, 2>> point;
+  std::vector<double> weight; // their sum is 1/2, the triangle's area
+};
+
+/// Symmetric rules of degree 1, 2 and 4.
+TriangleRule triangle_rule(const int points)
+{
+  TriangleRule rule;
+  const auto orbit = [&](const double a, const double weight) { // (a, a) and its images
+    for (const auto &p : {std::array{a, a}, std::array{1 - 2 * a, a}, std::array{a, 1 - 2 * a}}) {
+      rule.point.push_back(p);
+      rule.weight.push_back(weight);
+    }
   };
-  copy(table.value, value);
-  copy(table.gradient, gradient);
-  copy(table.weight, weight);
-  return table;
+  if (points == 1) return {{{1. / 3, 1. / 3}}, {0.5}};
+  if (points == 3) {
+    orbit(1. / 6, 1. / 6);
+  } else {
+    // Two orbits whose moments up to degree 4 are the triangle's.
+    const double root = std::sqrt(38 - 44 * std::sqrt(0.4)), mean = 8 - std::sqrt(10.);
+    const double w = std::sqrt(213125 - 53320 * std::sqrt(10.));
+    orbit((mean + root) / 18, (620 + w) / 7440);
+    orbit((mean - root) / 18, (620 - w) / 7440);
+  }
+  return rule;
+}
+
+BasisTable triangle_table(const int order, const TriangleRule &rule)
+{
+  const int points = static_cast<int>(rule.weight.size()), nodes = order == 1 ? 3 : 6;
+  HostView<double **> value("rpc::fem::value", points, nodes);
+  HostView<double ***> gradient("rpc::fem::gradient", points, nodes, 2);
+  HostView<double *> weight("rpc::fem::weight", points);
+  constexpr double slope[3][2] = {{-1, -1}, {1, 0}, {0, 1}}; // of the barycentric coordinates
+  for (int q = 0; q < points; ++q) {
+    const double x = rule.point[q][0], y = rule.point[q][1];
+    const double L[3] = {1 - x - y, x, y};
+    weight(q) = rule.weight[q];
+    for (int a = 0; a < 3; ++a) {
+      value(q, a) = order == 1 ? L[a] : L[a] * (2 * L[a] - 1);
+      for (int g = 0; g < 2; ++g) gradient(q, a, g) = slope[a][g] * (order == 1 ? 1 : 4 * L[a] - 1);
+      if (order == 1) continue;
+      const int b = (a + 1) % 3; // the node in the middle of edge a
+      value(q, 3 + a) = 4 * L[a] * L[b];
+      for (int g = 0; g < 2; ++g) gradient(q, 3 + a, g) = 4 * (L[a] * slope[b][g] + L[b] * slope[a][g]);
+    }
+  }
+  return device_table(value, gradient, weight);
 }
 
 } // namespace
@@ -116,7 +177,15 @@ ReferenceElement tabulate(const mesh::Element &element)
   const auto on_facet = facet_lattice(element);
   ReferenceElement reference;
   reference.element = element;
-  reference.cell = tensor_table(element.lattice(), order, gauss(order + 1));
+  if (element.shape == mesh::Shape::simplex) {
+    reference.cell = triangle_table(order, triangle_rule(order == 1 ? 1 : 3));
+    reference.cell_load = triangle_table(order, triangle_rule(order == 1 ? 3 : 6));
+    reference.recovery = reference.cell;
+  } else {
+    reference.cell = tensor_table(element.lattice(), order, gauss(order + 1));
+    reference.cell_load = reference.cell;
+    reference.recovery = tensor_table(element.lattice(), order, gauss(order));
+  }
   reference.facet = tensor_table(on_facet, order, gauss(order + 2));
 
   // The points of the nodal rule must come in the order of the nodes, not of the tensor product.

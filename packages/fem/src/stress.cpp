@@ -1,66 +1,113 @@
 #include "rpc/fem/stress.hpp"
 
-#include "kernels.hpp"
+#include "node_cells.hpp"
+#include "patch_recovery.hpp"
 
 namespace rpc::fem
 {
 namespace
 {
 
-/// Stress components in the order of stress_names, without von Mises.
-template <int Dim>
-struct Voigt {
-  static constexpr int size = Dim == 2 ? 3 : 6;
-  static KOKKOS_INLINE_FUNCTION int row(const int k)
-  {
-    constexpr int r2[] = {0, 1, 0}, r3[] = {0, 1, 2, 0, 1, 0};
-    return Dim == 2 ? r2[k % 3] : r3[k];
-  }
-  static KOKKOS_INLINE_FUNCTION int col(const int k)
-  {
-    constexpr int c2[] = {0, 1, 1}, c3[] = {0, 1, 2, 1, 2, 2};
-    return Dim == 2 ? c2[k % 3] : c3[k];
-  }
-};
+DeviceView<int **> device_table(const std::vector<std::vector<int>> &rows, const std::string &label)
+{
+  DeviceView<int **> table(label, rows.size(), rows[0].size());
+  const auto host = Kokkos::create_mirror_view(table);
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (std::size_t c = 0; c < rows[r].size(); ++c) host(r, c) = rows[r][c];
+  Kokkos::deep_copy(table, host);
+  return table;
+}
 
-/// sum(node, k) += int N_a sigma_k, volume(node) += int N_a.
-template <int Dim, int Nodes>
-struct ProjectStress {
-  DeviceView<double **> coords;    // (overlap nodes, Dim)   [m]    in
-  DeviceView<LO **> cells;         // (cells, Nodes)                in
-  DeviceView<double **> value;     // (points, Nodes)               in
-  DeviceView<double ***> gradient; // (points, Nodes, Dim)          in
-  DeviceView<double *> weight;     // (points)                      in
-  DeviceView<double *> u;          // (overlap dofs)         [m]    in
-  double lambda, mu;               // Lame constants         [Pa]   in
-  LO num_owned;
-  DeviceView<double **> sum;   // (owned nodes, Voigt)          inout
-  DeviceView<double *> volume; // (owned nodes)                 inout
+/// (vertices, dim): for each facet at a vertex the vertex that lies opposite in it, an edge's other end or a
+/// quadrilateral's far corner. With the vertex, it tells the facet from all others around the vertex.
+DeviceView<int **> facet_mates(const mesh::Element &element)
+{
+  std::vector<std::vector<int>> mates(element.num_vertices());
+  const int corners = 1 << (element.dim - 1); // facets are edges or quadrilaterals, corners first and in turn
+  for (const auto &facet : element.facets())
+    for (int i = 0; i < corners; ++i) mates[facet[i]].push_back(facet[(i + corners / 2) % corners]);
+  return device_table(mates, "rpc::fem::facet_mates");
+}
 
-  KOKKOS_FUNCTION void operator()(const LO cell) const
-  {
-    const CellCoords<Dim, Nodes> x(coords, cells, cell);
-    for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
-      double dN[Nodes][Dim];
-      const double part = weight(q) * physical_gradients(x, gradient, q, dN);
-      double grad[Dim][Dim];
-      displacement_gradient(u, cells, cell, dN, grad);
-      double trace = 0;
-      for (int i = 0; i < Dim; ++i) trace += grad[i][i];
-      for (int a = 0; a < Nodes; ++a) {
-        const LO node = cells(cell, a);
-        if (node >= num_owned) continue;
-        const double share = part * value(q, a);
-        add_shared(volume(node), share);
-        for (int k = 0; k < Voigt<Dim>::size; ++k) {
-          const int i = Voigt<Dim>::row(k), j = Voigt<Dim>::col(k);
-          const double stress = mu * (grad[i][j] + grad[j][i]) + (i == j ? lambda * trace : 0);
-          add_shared(sum(node, k), share * stress);
-        }
+/// (nodes, vertices): 1 for the vertices of the edge, face or cell inside which a node lies, or which it is itself;
+/// those are the ones whose linear shape function is not 0 there.
+DeviceView<int **> carrying_vertices(const mesh::Element &element)
+{
+  std::vector<std::vector<int>> carries;
+  const auto &lattice = element.lattice();
+  for (const auto &node : lattice) {
+    carries.emplace_back();
+    for (int v = 0; v < element.num_vertices(); ++v) {
+      int shape = 1, rest = element.order;
+      for (int i = 0; i < element.dim; ++i) rest -= node[i];
+      if (element.shape == mesh::Shape::tensor) {
+        for (int i = 0; i < element.dim; ++i) shape *= lattice[v][i] == 0 ? element.order - node[i] : node[i];
+      } else {
+        shape = v == 0 ? rest : node[v - 1];
       }
+      carries.back().push_back(shape > 0 ? 1 : 0);
     }
   }
-};
+  return device_table(carries, "rpc::fem::carrying_vertices");
+}
+
+/// The table of the owned nodes with those of the overlap; the table itself on one rank.
+RCP<const MultiVector> with_overlap(const mesh::Mesh &mesh, const RCP<const MultiVector> &owned, const Import &import)
+{
+  if (mesh.owned_nodes == mesh.overlap_nodes) return owned;
+  const auto overlap = rcp(new MultiVector(mesh.overlap_nodes, owned->getNumVectors()));
+  overlap->doImport(*owned, import, Tpetra::INSERT);
+  return overlap;
+}
+
+template <int Dim, int Nodes>
+RCP<MultiVector> recover(const Discretization &d, const DeviceView<double **> &lame, const Vector &u_overlap)
+{
+  using Table = PatchTable<Dim, Nodes>;
+  const mesh::Mesh &mesh = *d.mesh;
+  const auto nodes = device_range(mesh.num_owned_nodes());
+  const NodeCells around = cells_around_nodes(mesh);
+  const Import import(mesh.owned_nodes, mesh.overlap_nodes);
+  const auto table = rcp(new MultiVector(mesh.owned_nodes, Table::columns)); // zero
+  {
+    const FitPatch<Dim, Nodes> fit{mesh.coords,
+                                   mesh.cells,
+                                   mesh.block,
+                                   device_read(u_overlap),
+                                   around.row,
+                                   around.cell,
+                                   d.nodes,
+                                   facet_mates(mesh.element),
+                                   table->getLocalViewDevice(Tpetra::Access::ReadWrite)};
+    Kokkos::parallel_for("rpc::fem::fit_patch", nodes, fit);
+    Kokkos::fence();
+  }
+  {
+    const auto from = with_overlap(mesh, table, import);
+    const AdoptPolynomial<Dim, Nodes> adopt{mesh.cells,
+                                            around.row,
+                                            around.cell,
+                                            from->getLocalViewDevice(Tpetra::Access::ReadOnly),
+                                            table->getLocalViewDevice(Tpetra::Access::ReadWrite),
+                                            mesh.element.num_vertices()};
+    Kokkos::parallel_for("rpc::fem::adopt_polynomial", nodes, adopt);
+    Kokkos::fence();
+  }
+  const auto result = rcp(new MultiVector(mesh.owned_nodes, stress_names(Dim).size()));
+  const auto all = with_overlap(mesh, table, import);
+  const EvaluatePatches<Dim, Nodes> evaluate{mesh.coords,
+                                             mesh.cells,
+                                             mesh.block,
+                                             lame,
+                                             around.row,
+                                             around.cell,
+                                             carrying_vertices(mesh.element),
+                                             all->getLocalViewDevice(Tpetra::Access::ReadOnly),
+                                             result->getLocalViewDevice(Tpetra::Access::ReadWrite)};
+  Kokkos::parallel_for("rpc::fem::evaluate_patches", nodes, evaluate);
+  Kokkos::fence();
+  return result;
+}
 
 } // namespace
 
@@ -70,39 +117,14 @@ std::vector<std::string> stress_names(const int dim)
   return {"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_yz", "stress_xz", "von_mises"};
 }
 
-RCP<MultiVector> nodal_stresses(const Discretization &d, const Material &material, const Vector &u)
+RCP<MultiVector> nodal_stresses(const Discretization &d, const Materials &materials, const Vector &u)
 {
-  const mesh::Mesh &mesh = *d.mesh;
-  const LO num_owned = mesh.num_owned_nodes();
   Vector u_overlap(d.overlap_dofs);
   u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
-  DeviceView<double *> u_local("rpc::fem::u_local", num_local(*d.overlap_dofs));
-  Kokkos::deep_copy(u_local, device_read(u_overlap));
-  const int components = d.dim() == 2 ? 3 : 6;
-  DeviceView<double **> sum("rpc::fem::stress_sum", num_owned, components);
-  DeviceView<double *> volume("rpc::fem::node_volume", num_owned);
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const BasisTable &table = d.reference.cell;
-    const ProjectStress<dim, nodes> kernel{mesh.coords, mesh.cells,        table.value,   table.gradient, table.weight,
-                                           u_local,     material.lambda(), material.mu(), num_owned,      sum,
-                                           volume};
-    Kokkos::parallel_for("rpc::fem::project_stress", device_range(mesh.num_cells()), kernel);
-  });
-
-  const auto result = rcp(new MultiVector(mesh.owned_nodes, components + 1));
-  const auto stress = result->getLocalViewDevice(Tpetra::Access::OverwriteAll);
-  const double nu = material.poissons_ratio;
-  const bool plane = d.dim() == 2;
-  Kokkos::parallel_for(
-      "rpc::fem::nodal_stress", device_range(num_owned), KOKKOS_LAMBDA(const LO n) {
-        double s[6];
-        for (int k = 0; k < components; ++k) stress(n, k) = s[k] = sum(n, k) / volume(n);
-        const double xx = s[0], yy = s[1], zz = plane ? nu * (xx + yy) : s[2];
-        const double shear = plane ? s[2] * s[2] : s[3] * s[3] + s[4] * s[4] + s[5] * s[5];
-        const double spread = (xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx);
-        stress(n, components) = Kokkos::Experimental::sqrt(0.5 * spread + 3 * shear);
-      });
-  Kokkos::fence();
+  const auto lame = lame_table(*d.mesh, materials);
+  RCP<MultiVector> result;
+  with_static_extents(d.mesh->element,
+                      [&](const auto dim, const auto nodes) { result = recover<dim, nodes>(d, lame, u_overlap); });
   return result;
 }
 

@@ -32,7 +32,7 @@ inline RCP<const Comm> alone()
 /// Elements that have kernels.
 inline std::vector<mesh::Element> elements()
 {
-  return {{2, 1}, {2, 2}, {3, 1}};
+  return {{2, 1}, {2, 2}, {3, 1}, {2, 1, mesh::Shape::simplex}, {2, 2, mesh::Shape::simplex}};
 }
 inline std::string text_of(const mesh::Element &element)
 {

@@ -190,14 +190,18 @@ TEST(EliminateDirichlet, EnergyWithItsOffsetIsThatOfTheFullProblem)
   }
 }
 
-TEST(EliminateDirichlet, NothingMovedMeansNoOffsetAndOneLoad)
+TEST(EliminateDirichlet, NothingMovedMeansNoOffsetAndTheLoadOfFreeUnknownsAsItIs)
 {
   const auto d = bulged_body({2, 1}, world());
   auto conditions = held_and_pushed(d);
   conditions[1].displacement[0] = ScalarField(0);
   const auto problem = eliminated(d, conditions, some_load(d));
   EXPECT_EQ(problem.energy_offset, 0);
-  EXPECT_EQ(problem.applied_load, problem.load);
+  const auto fixed = to_host(problem.dirichlet.fixed);
+  const auto load = values_of(*problem.load), applied = values_of(*problem.applied_load);
+  for (std::size_t dof = 0; dof < load.size(); ++dof) EXPECT_EQ(load[dof], fixed(dof) ? 0 : applied[dof]);
+  EXPECT_LT(difference(by_node_id(d, *problem.applied_load), by_node_id(d, *some_load(d))),
+            1e-14); // reactions need all
 }
 
 TEST(DirichletDofs, MarkThePrescribedComponentsOfOwnedAndGhostNodes)
@@ -224,6 +228,28 @@ TEST(DirichletDofs, MarkThePrescribedComponentsOfOwnedAndGhostNodes)
     int across = 1; // nodes of the side
     for (int c = 1; c < d.dim(); ++c) across *= box.cells[c] * element.order + 1;
     EXPECT_EQ(dirichlet.num_fixed, across * (d.dim() + 1));
+  }
+}
+
+TEST(DirichletDofs, TellWhichConditionPrescribesAnUnknownTheLastOfSeveral)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto box = small_box(element);
+    const auto d = body(box, world());
+    DirichletCondition wall{"wall", "left", {}}, floor{"floor", "bottom", {}};
+    wall.displacement[0] = wall.displacement[1] = floor.displacement[0] = ScalarField(0);
+    const auto condition = to_host(fem::dirichlet_dofs(d, {wall, floor}).condition);
+    ASSERT_EQ(static_cast<LO>(condition.extent(0)), d.dim() * d.mesh->num_owned_nodes());
+    for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n) {
+      const Point x = point_of(d, n);
+      const bool left = x[0] == box.lower[0], bottom = x[1] == box.lower[1];
+      EXPECT_EQ(condition(d.dim() * n), bottom ? 1 : left ? 0 : -1);
+      EXPECT_EQ(condition(d.dim() * n + 1), left ? 0 : -1);
+      if (d.dim() == 3) {
+        EXPECT_EQ(condition(d.dim() * n + 2), -1);
+      }
+    }
   }
 }
 

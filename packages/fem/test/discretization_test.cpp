@@ -21,12 +21,15 @@ std::vector<std::set<GO>> adjacency(const mesh::BoxOptions &box)
     nodes[d] = order * cells[d] + 1;
   }
   std::vector<std::set<GO>> adjacent(nodes[0] * nodes[1] * nodes[2]);
-  for (GO cell = 0; cell < cells[0] * cells[1] * cells[2]; ++cell) {
+  const int parts = box.element.shape == mesh::Shape::simplex ? 2 : 1; // a rectangle is two triangles, one turned
+  for (GO part = 0; part < parts * cells[0] * cells[1] * cells[2]; ++part) {
+    const GO cell = part / parts;
+    const bool turned = part % parts == 1;
     const std::array<GO, 3> corner{cell % cells[0], cell / cells[0] % cells[1], cell / cells[0] / cells[1]};
     std::set<GO> of_cell;
     for (const auto &step : box.element.lattice()) {
       std::array<GO, 3> at{};
-      for (int d = 0; d < dim; ++d) at[d] = order * corner[d] + step[d];
+      for (int d = 0; d < dim; ++d) at[d] = order * corner[d] + (turned ? order - step[d] : step[d]);
       of_cell.insert(at[0] + nodes[0] * (at[1] + nodes[1] * at[2]));
     }
     for (const GO node : of_cell) adjacent[node].insert(of_cell.begin(), of_cell.end());

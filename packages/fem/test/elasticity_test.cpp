@@ -1,7 +1,6 @@
 #include "rpc/fem/elasticity.hpp"
 
 #include "bodies.hpp"
-#include "rpc/core/parameters.hpp"
 
 #include <limits>
 
@@ -10,7 +9,6 @@ namespace
 
 using namespace rpc;
 using namespace rpc::test;
-using Teuchos::ParameterList;
 
 constexpr fem::Material steel{2000, 0.3};
 
@@ -73,6 +71,35 @@ TEST(Stiffness, OfTheUnitSquareHasTheNumbersOfTheDerivation)
                                   {lambda / 6, (mu - lambda) / 4}};
   for (int b = 0; b < 4; ++b)
     for (int j = 0; j < 2; ++j) EXPECT_NEAR(unit_stiffness(q1, 0, 0, b, j), first_row[b][j], 1e-14 * lambda);
+}
+
+TEST(Stiffness, OfAUnitSquareOfTwoP1TrianglesIsTheOneByHand)
+{
+  // Right angles at (0, 0) and (1, 1). Gradients are constant: (-1, -1), (1, 0), (0, 1), and the opposite ones in the
+  // other triangle; the area of each is 1/2.
+  const auto d = body({{0, 0}, {1, 1}, {1, 1}, {2, 1, mesh::Shape::simplex}}, alone());
+  const auto K = dense(*fem::assemble_stiffness(d, steel));
+  const double lambda = steel.lambda(), mu = steel.mu();
+  // Corners by x + 2 y.
+  constexpr double gradient[2][4][2] = {{{-1, -1}, {1, 0}, {0, 1}, {0, 0}}, {{0, 0}, {0, -1}, {-1, 0}, {1, 1}}};
+  std::array<LO, 4> node{};
+  for (LO n = 0; n < 4; ++n) node[static_cast<int>(point_of(d, n)[0] + 2 * point_of(d, n)[1])] = n;
+  ASSERT_EQ(K.size(), 8u);
+  for (int a = 0; a < 4; ++a)
+    for (int i = 0; i < 2; ++i)
+      for (int b = 0; b < 4; ++b)
+        for (int j = 0; j < 2; ++j) {
+          double expected = 0;
+          for (const auto &g : gradient) {
+            expected += 0.5 * (lambda * g[a][i] * g[b][j] + mu * g[a][j] * g[b][i]);
+            if (i == j) expected += 0.5 * mu * (g[a][0] * g[b][0] + g[a][1] * g[b][1]);
+          }
+          EXPECT_NEAR(K[2 * node[a] + i][2 * node[b] + j], expected, 1e-14 * steel.youngs_modulus) << a << i << b << j;
+        }
+  EXPECT_NEAR(K[2 * node[0]][2 * node[0]], (lambda + 3 * mu) / 2, 1e-14 * lambda);
+  EXPECT_NEAR(K[2 * node[1]][2 * node[1]], (lambda + 3 * mu) / 2,
+              1e-14 * lambda);                                     // two triangles, a right angle in none
+  EXPECT_NEAR(K[2 * node[0]][2 * node[3] + 1], 0, 1e-14 * lambda); // they share no triangle
 }
 
 TEST(Stiffness, IsSymmetric)
@@ -189,183 +216,82 @@ TEST(Stiffness, CellInsideOutOnOneRankIsABadMeshOnAll)
   }
 }
 
+TEST(Stiffness, BadCellIsNamedByNumberBlockAndVertices)
+{
+  // The upper right corner of the last rectangle is pulled across its diagonal.
+  const auto pulled = [](const mesh::Element &element) {
+    const auto d = body({{0, 0}, {4, 3}, {4, 3}, element}, world(), [](const Point &x) {
+      return x[0] == 4 && x[1] == 3 ? Point{2.5, 2.5, 0} : x;
+    });
+    auto mesh = std::make_shared<mesh::Mesh>(*d.mesh);
+    mesh->blocks = {"soft", "hard part"};
+    mesh->block = DeviceView<int *>("block", mesh->num_cells());
+    Kokkos::deep_copy(mesh->block, 1);
+    return fem::discretize(mesh);
+  };
+  using mesh::Shape;
+  const std::string block = " of block \"hard part\" ", quad = "(3, 2) (4, 2) (2.5, 2.5) (3, 3)",
+                    triangle = "(2.5, 2.5) (3, 3) (4, 2)";
+  const auto refused = [&](const mesh::Element &element, const std::string &cell, const std::string &vertices) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = pulled(element);
+    const Error error = error_of([&] { fem::assemble_stiffness(d, steel); });
+    EXPECT_EQ(error.code(), ExitCode::bad_mesh);
+    const std::string text = error.what(), expected = "cell " + cell + block;
+    EXPECT_NE(text.find(expected), std::string::npos) << text;
+    ASSERT_GE(text.size(), vertices.size());
+    EXPECT_EQ(text.substr(text.size() - vertices.size()), vertices); // no more than these
+  };
+  refused({2, 1}, "12", quad);
+  refused({2, 2}, "12", quad);
+  refused({2, 1, Shape::simplex}, "24", triangle);
+  refused({2, 2, Shape::simplex}, "24", triangle);
+}
+
+TEST(InternalForces, AreTheStiffnessTimesTheDisplacement)
+{
+  for (const auto &element : elements()) {
+    const auto d = bulged_body(element, world());
+    const auto u = interpolate(d, wild);
+    Vector force(d.owned_dofs);
+    fem::assemble_stiffness(d, steel)->apply(*u, force);
+    EXPECT_LT(difference(by_node_id(d, fem::internal_forces(d, steel, *u)), by_node_id(d, force)), 1e-13)
+        << text_of(element);
+  }
+}
+
+TEST(InternalForces, OfRigidMotionVanishHoweverFarItLeads)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = bulged_body(element, world());
+    const auto modes = fem::rigid_body_modes(d);
+    for (const double far : {1., 1e6}) {
+      Vector u(d.owned_dofs);
+      for (std::size_t mode = 0; mode < modes->getNumVectors(); ++mode) u.update(far, *modes->getVector(mode), 1.);
+      // The displacement itself is rounded.
+      const double rounding = std::numeric_limits<double>::epsilon() * u.normInf();
+      EXPECT_LT(fem::internal_forces(d, steel, u).normInf(), 100 * rounding * steel.youngs_modulus) << far;
+    }
+  }
+}
+
+TEST(InternalForces, SumToZeroAndHaveNoMoment)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = bulged_body(element, world());
+    const auto force = fem::internal_forces(d, steel, *interpolate(d, wild));
+    const auto modes = fem::rigid_body_modes(d);
+    for (std::size_t mode = 0; mode < modes->getNumVectors(); ++mode)
+      EXPECT_LT(std::abs(modes->getVector(mode)->dot(force)), 1e-13 * force.norm1()) << "mode " << mode;
+  }
+}
+
 TEST(Stiffness, ElementWithoutKernelsIsRefused)
 {
   const auto d = body({{0, 0, 0}, {1, 1, 1}, {1, 1, 3}, {3, 2}}, world());
   expect_error(ExitCode::bad_input, {"Q2 in 3D"}, [&] { fem::assemble_stiffness(d, steel); });
-}
-
-/// int of x_i^p over the box along direction i.
-double moment(const mesh::BoxOptions &box, const int i, const int p)
-{
-  return (std::pow(box.upper[i], p + 1) - std::pow(box.lower[i], p + 1)) / (p + 1);
-}
-
-TEST(BodyForce, ResultantIsTheIntegral)
-{
-  for (const auto &element : elements()) {
-    SCOPED_TRACE(text_of(element));
-    const auto box = small_box(element);
-    const auto d = body(box, world());
-    Vector load(d.owned_dofs);
-    const fem::VectorField force{field([](const Point &x) { return x[0] * x[0] * x[1] * x[1]; }), ScalarField(-9.81),
-                                 field([](const Point &x) { return x[2] * x[0]; })};
-    fem::add_body_force(d, force, "Body Force", load);
-    const double depth = element.dim == 3 ? moment(box, 2, 0) : 1;
-    const Point sum = resultant(d, load);
-    const Point expected{moment(box, 0, 2) * moment(box, 1, 2) * depth,
-                         -9.81 * moment(box, 0, 0) * moment(box, 1, 0) * depth,
-                         element.dim == 3 ? moment(box, 0, 1) * moment(box, 1, 0) * moment(box, 2, 1) : 0};
-    for (int c = 0; c < d.dim(); ++c) EXPECT_NEAR(sum[c], expected[c], 1e-13 * std::abs(expected[1]));
-  }
-}
-
-TEST(BodyForce, ResultantOnBulgedCellsIsForceTimesVolume)
-{
-  for (const auto &element : elements()) {
-    const auto box = small_box(element);
-    const auto d = bulged_body(element, world());
-    Vector load(d.owned_dofs);
-    fem::add_body_force(d, {ScalarField(1), ScalarField(2), ScalarField(0)}, "Body Force", load);
-    const double depth = element.dim == 3 ? moment(box, 2, 0) : 1;
-    const double volume = moment(box, 0, 0) * moment(box, 1, 0) * depth;
-    const Point sum = resultant(d, load);
-    EXPECT_NEAR(sum[0], volume, 1e-13 * volume) << text_of(element);
-    EXPECT_NEAR(sum[1], 2 * volume, 1e-13 * volume) << text_of(element);
-  }
-}
-
-TEST(Traction, ResultantAndMomentAreTheIntegrals)
-{
-  for (const auto &element : elements()) {
-    SCOPED_TRACE(text_of(element));
-    const auto box = small_box(element);
-    const auto d = body(box, world());
-    Vector load(d.owned_dofs);
-    const fem::VectorField traction{field([](const Point &x) { return x[0] * x[0] * x[0] + x[1]; }), ScalarField(-20),
-                                    field([](const Point &x) { return x[0] * x[2] * x[2]; })};
-    fem::add_traction(d, d.mesh->side("top", "test"), traction, "Traction->top", load);
-    const double depth = element.dim == 3 ? moment(box, 2, 0) : 1, scale = 20 * moment(box, 0, 0);
-    const Point sum = resultant(d, load);
-    EXPECT_NEAR(sum[0], (moment(box, 0, 3) + box.upper[1] * moment(box, 0, 0)) * depth, 1e-13 * scale);
-    EXPECT_NEAR(sum[1], -20 * moment(box, 0, 0) * depth, 1e-13 * scale);
-    if (element.dim == 3) {
-      EXPECT_NEAR(sum[2], moment(box, 0, 1) * moment(box, 2, 2), 1e-13 * scale);
-    }
-    const auto lever = interpolate(d, [](const Point &x) { return Point{0, x[0], 0}; });
-    EXPECT_NEAR(lever->dot(load), -20 * moment(box, 0, 1) * depth, 1e-13 * scale);
-  }
-}
-
-TEST(Traction, LoadsOnlyTheNodesOfItsSide)
-{
-  const mesh::BoxOptions box = small_box({2, 1});
-  const auto d = body(box, world());
-  Vector load(d.owned_dofs);
-  fem::add_traction(d, d.mesh->side("right", "test"), {ScalarField(3), ScalarField(0), ScalarField(0)}, "T", load);
-  const auto loads = by_node_id(d, load);
-  const double h = (box.upper[1] - box.lower[1]) / box.cells[1];
-  for (int y = 0; y <= box.cells[1]; ++y) {
-    for (int x = 0; x <= box.cells[0]; ++x) {
-      const double share = x < box.cells[0] ? 0 : y == 0 || y == box.cells[1] ? 0.5 : 1;
-      EXPECT_NEAR(loads[2 * (x + (box.cells[0] + 1) * y)], 3 * h * share, 1e-14);
-      EXPECT_EQ(loads[2 * (x + (box.cells[0] + 1) * y) + 1], 0);
-    }
-  }
-}
-
-TEST(Loads, AddUpAndAreTheSameOnAnyNumberOfRanks)
-{
-  for (const auto &element : elements()) {
-    const fem::VectorField f{field([](const Point &x) { return wild(x)[0]; }),
-                             field([](const Point &x) { return wild(x)[1]; }),
-                             field([](const Point &x) { return wild(x)[2]; })};
-    const auto loads = [&](const RCP<const Comm> &comm) {
-      const auto d = bulged_body(element, comm);
-      Vector load(d.owned_dofs), traction(d.owned_dofs), volume(d.owned_dofs);
-      fem::add_body_force(d, f, "B", load);
-      fem::add_traction(d, d.mesh->side("top", "test"), f, "T", load);
-      fem::add_body_force(d, f, "B", volume);
-      fem::add_traction(d, d.mesh->side("top", "test"), f, "T", traction);
-      const double scale = load.normInf();
-      load.update(-1., volume, -1., traction, 1.);
-      EXPECT_LT(load.normInf(), 1e-14 * scale) << text_of(element);
-      volume.update(1., traction, 1.);
-      return by_node_id(d, volume);
-    };
-    EXPECT_LT(difference(loads(world()), loads(alone())), 1e-13) << text_of(element);
-  }
-}
-
-TEST(Loads, NanNamesTheParameterOnEveryRank)
-{
-  const auto d = body(small_box({2, 1}), world());
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  Vector load(d.owned_dofs);
-  const fem::VectorField bad{ScalarField(0), field([&](const Point &x) { return x[0] > 1 ? nan : 1; }, "1/0"),
-                             ScalarField(0)};
-  expect_error(ExitCode::bad_input, {"\"Body Force->Y\"", "\"1/0\"", "nan at"},
-               [&] { fem::add_body_force(d, bad, "Body Force", load); });
-  expect_error(ExitCode::bad_input, {"\"Traction->a->Y\"", "nan at"},
-               [&] { fem::add_traction(d, d.mesh->side("right", "test"), bad, "Traction->a", load); });
-}
-
-TEST(MaterialOptions, LameConstantsFollowFromYoungAndPoisson)
-{
-  ParameterList list = fem::valid_material_parameters();
-  list.set("Young's Modulus", 5.).set("Poisson's Ratio", 0.25);
-  const auto material = fem::material_options(list);
-  EXPECT_NEAR(material.lambda(), 2, 1e-15 * 4);
-  EXPECT_NEAR(material.mu(), 2, 1e-15 * 4);
-}
-
-TEST(MaterialOptions, ValuesOutOfRangeAreRefused)
-{
-  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
-  const auto refused = [](const char *name, const double value) {
-    ParameterList list = fem::valid_material_parameters();
-    list.set(name, value);
-    expect_error(ExitCode::bad_input, {name}, [&] { fem::material_options(list); });
-  };
-  for (const double e : {0., -1., inf, nan}) refused("Young's Modulus", e);
-  for (const double nu : {-1., 0.5, 0.7, nan, -inf}) refused("Poisson's Ratio", nu);
-}
-
-/// A deck's sublist with its defaults.
-ParameterList completed(ParameterList list, const ParameterList &valid)
-{
-  validate(list, valid);
-  return list;
-}
-
-TEST(TractionOptions, SideIsTheNameUnlessGiven)
-{
-  ParameterList list;
-  list.sublist("top").set("Y", -2.5);
-  list.sublist("push").set("Side", "left").set("X", "4");
-  const auto loads = fem::traction_options(completed(list, fem::valid_traction_parameters()), 2, parse_constant);
-  ASSERT_EQ(loads.size(), 2u);
-  EXPECT_EQ(loads[0].side, "top");
-  EXPECT_EQ(loads[0].traction[1].constant, -2.5);
-  EXPECT_TRUE(loads[0].traction[0].is_zero());
-  EXPECT_EQ(loads[1].name, "push");
-  EXPECT_EQ(loads[1].side, "left");
-  EXPECT_EQ(loads[1].traction[0].constant, 4);
-}
-
-TEST(LoadOptions, ThirdComponentIn2dIsRefusedByName)
-{
-  ParameterList traction, volume;
-  traction.sublist("top").set("Z", 1);
-  volume.set("Z", 1);
-  const auto tractions = completed(traction, fem::valid_traction_parameters());
-  const auto volumes = completed(volume, fem::valid_body_force_parameters());
-  expect_error(ExitCode::bad_input, {"\"Traction->top->Z\"", "2D"},
-               [&] { fem::traction_options(tractions, 2, parse_constant); });
-  expect_error(ExitCode::bad_input, {"\"Body Force->Z\"", "2D"},
-               [&] { fem::body_force_options(volumes, 2, parse_constant); });
-  EXPECT_EQ(fem::traction_options(tractions, 3, parse_constant)[0].traction[2].constant, 1);
-  EXPECT_EQ(fem::body_force_options(volumes, 3, parse_constant)[2].constant, 1);
 }
 
 } // namespace

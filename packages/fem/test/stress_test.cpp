@@ -2,7 +2,7 @@
 
 #include "bodies.hpp"
 
-#include <limits>
+#include <functional>
 
 namespace
 {
@@ -39,49 +39,213 @@ std::vector<double> hookes_law(const int dim)
   return {s[0][0], s[1][1], s[2][2], s[0][1], s[1][2], s[0][2], std::sqrt(square)};
 }
 
+/// Elements whose stresses can be recovered, triangles too.
+std::vector<mesh::Element> recoverable()
+{
+  return {{2, 1}, {2, 2}, {3, 1}, {2, 1, mesh::Shape::simplex}, {2, 2, mesh::Shape::simplex}};
+}
+
+std::vector<double> repeated(const std::vector<double> &row, const std::size_t size)
+{
+  std::vector<double> all;
+  while (all.size() < size) all.insert(all.end(), row.begin(), row.end());
+  return all;
+}
+
+using Gradient = std::array<std::array<double, 3>, 3>; // [i][j] = du_i / dx_j
+
+/// Hooke's stress at all nodes, without von Mises, and that of nodal_stresses.
+struct Compared {
+  std::vector<double> exact, recovered; // (nodes, columns)
+  std::vector<double> boundary;         // (nodes) 1 on the faces of the box
+};
+Compared compare(const fem::Discretization &d, const mesh::BoxOptions &box, const RCP<Vector> &u,
+                 const std::function<Gradient(const Point &)> &gradient)
+{
+  const int dim = d.dim(), columns = dim == 2 ? 3 : 6;
+  const auto stress = fem::nodal_stresses(d, steel, *u);
+  const auto values = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
+  Compared result;
+  result.recovered = by_node_id(*d.mesh, columns, [&](const LO n, const int k) { return values(n, k); });
+  result.exact = by_node_id(*d.mesh, columns, [&](const LO n, const int k) {
+    constexpr int row[2][6] = {{0, 1, 0}, {0, 1, 2, 0, 1, 0}}, col[2][6] = {{0, 1, 1}, {0, 1, 2, 1, 2, 2}};
+    const Gradient g = gradient(point_of(d, n));
+    const int i = row[dim - 2][k], j = col[dim - 2][k];
+    const double trace = g[0][0] + g[1][1] + (dim == 3 ? g[2][2] : 0);
+    return steel.mu() * (g[i][j] + g[j][i]) + (i == j ? steel.lambda() * trace : 0);
+  });
+  result.boundary = by_node_id(*d.mesh, 1, [&](const LO n, int) {
+    const Point x = point_of(d, n);
+    double on = 0;
+    for (int c = 0; c < dim; ++c)
+      if (std::abs(x[c] - box.lower[c]) < 1e-9 || std::abs(x[c] - box.upper[c]) < 1e-9) on = 1;
+    return on;
+  });
+  return result;
+}
+
 TEST(NodalStresses, LinearDisplacementGivesHookesStressAtEveryNode)
 {
-  for (const auto &element : elements()) {
+  for (const auto &element : recoverable()) {
     SCOPED_TRACE(text_of(element));
     const auto d = bulged_body(element, world());
     const auto all = stresses(d, *interpolate(d, [&](const Point &x) { return linear(x, element.dim); }));
-    const auto row = hookes_law(element.dim);
-    std::vector<double> expected;
-    while (expected.size() < all.size()) expected.insert(expected.end(), row.begin(), row.end());
-    EXPECT_LT(difference(all, expected), 1e-13);
+    EXPECT_LT(difference(all, repeated(hookes_law(element.dim), all.size())), 1e-12);
+  }
+}
+
+TEST(NodalStresses, AreExactForDisplacementsOfOneDegreeMoreThanTheElement)
+{
+  // u_i = (a_i . x)^n, also on the boundary and at its corners, and also where cells are out of shape.
+  constexpr double a[3][3] = {{0.3, -0.5, 0.2}, {-0.4, 0.1, 0.6}, {0.2, 0.7, -0.3}};
+  for (const auto &element : recoverable()) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = bulged_body(element, world());
+    const auto dot = [&](const int i, const Point &x) { return a[i][0] * x[0] + a[i][1] * x[1] + a[i][2] * x[2]; };
+    const int n = element.order + 1;
+    const auto u = interpolate(d, [&](const Point &x) {
+      return Point{std::pow(dot(0, x), n), std::pow(dot(1, x), n), std::pow(dot(2, x), n)};
+    });
+    const auto at_nodes = compare(d, small_box(element), u, [&](const Point &x) {
+      Gradient g;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) g[i][j] = n * std::pow(dot(i, x), n - 1) * a[i][j];
+      return g;
+    });
+    EXPECT_LT(difference(at_nodes.recovered, at_nodes.exact), 1e-11);
+  }
+}
+
+TEST(NodalStresses, ConvergeByOneOrderMoreThanThoseOfTheElementAtEveryNode)
+{
+  constexpr double a[3][3] = {{1.1, 0.7, 0.5}, {0.6, -1.3, 0.4}, {-0.5, 0.9, 0.8}};
+  const auto phase = [&](const int i, const Point &x) {
+    return a[i][0] * x[0] + a[i][1] * x[1] + a[i][2] * x[2] + 0.3;
+  };
+  for (const auto &element : recoverable()) {
+    SCOPED_TRACE(text_of(element));
+    double error[2][2] = {}; // [mesh][boundary], largest
+    for (const int fine : {0, 1}) {
+      const int n = (element.dim == 3 ? 6 : 16) << fine;
+      mesh::BoxOptions box;
+      box.lower.assign(element.dim, 0.);
+      box.upper.assign(element.dim, 1.);
+      box.cells.assign(element.dim, n);
+      box.element = element;
+      const auto d = body(box, world(), bulge(box));
+      const auto u = interpolate(d, [&](const Point &x) {
+        return Point{std::sin(phase(0, x)), std::sin(phase(1, x)), std::sin(phase(2, x))};
+      });
+      const auto at_nodes = compare(d, box, u, [&](const Point &x) {
+        Gradient g;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) g[i][j] = std::cos(phase(i, x)) * a[i][j];
+        return g;
+      });
+      const std::size_t columns = at_nodes.exact.size() / at_nodes.boundary.size();
+      for (std::size_t k = 0; k < at_nodes.exact.size(); ++k) {
+        double &largest = error[fine][at_nodes.boundary[k / columns] > 0];
+        largest = std::max(largest, std::abs(at_nodes.recovered[k] - at_nodes.exact[k]));
+      }
+    }
+    const double inside = std::log2(error[0][0] / error[1][0]), boundary = std::log2(error[0][1] / error[1][1]);
+    // The element's own stresses have order p. Measured: 2.0 (Q1 in 3D, coarser: 1.7) and 2.9.
+    EXPECT_GT(inside, element.order + (element.dim == 3 ? 0.6 : 0.8));
+    EXPECT_GT(boundary, element.order + 0.8);
+    EXPECT_LT(error[1][1], 6 * error[1][0]); // extrapolated, but not wildly: measured 1.9 to 3.6
+    RecordProperty("order_inside_" + text_of(element), std::to_string(inside));
+    RecordProperty("order_boundary_" + text_of(element), std::to_string(boundary));
   }
 }
 
 TEST(NodalStresses, RigidMotionGivesNone)
 {
-  const auto d = bulged_body({2, 2}, world());
-  const auto all = stresses(d, *interpolate(d, [](const Point &x) {
-                              return Point{1 - 0.1 * x[1], 2 + 0.1 * x[0], 0};
-                            }));
-  EXPECT_LT(difference(all, std::vector<double>(all.size(), 0)), 1e-13 * steel.youngs_modulus);
+  for (const auto &element : recoverable()) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = bulged_body(element, world());
+    const auto all = stresses(d, *interpolate(d, [](const Point &x) {
+                                return Point{1 - 0.1 * x[1], 2 + 0.1 * x[0], 0};
+                              }));
+    EXPECT_LT(difference(all, std::vector<double>(all.size(), 0)), 1e-12 * steel.youngs_modulus);
+  }
 }
 
 TEST(NodalStresses, AreTheSameOnAnyNumberOfRanks)
 {
-  for (const auto &element : elements()) {
+  for (const auto &element : recoverable()) {
     SCOPED_TRACE(text_of(element));
     const auto all = bulged_body(element, world()), one = bulged_body(element, alone());
-    EXPECT_LT(difference(stresses(all, *interpolate(all, wild)), stresses(one, *interpolate(one, wild))), 1e-13);
+    EXPECT_LT(difference(stresses(all, *interpolate(all, wild)), stresses(one, *interpolate(one, wild))), 1e-12);
   }
 }
 
-TEST(NodalStresses, AreTheMeanOfTheCellsByVolume)
+TEST(NodalStresses, HaveAValueWhereNoVertexIsInside)
 {
-  // Two Q1 cells with lengths 1 and 3, u_x = 0, 1, 1: strain_xx is 1, then 0. The node between sees int N over each.
-  const auto d = body({{0, 0}, {2, 1}, {2, 1}, {2, 1}}, alone(), [](const Point &x) {
-    return Point{x[0] > 1.5 ? 4 : x[0], x[1], 0};
-  });
-  const auto all = stresses(d, *interpolate(d, [](const Point &x) { return Point{std::min(x[0], 1.), 0, 0}; }));
-  const double stretched = steel.lambda() + 2 * steel.mu();
-  for (const int row : {0, 1}) {
-    EXPECT_NEAR(all[4 * (3 * row)], stretched, 1e-13 * stretched);
-    EXPECT_NEAR(all[4 * (3 * row + 1)], stretched / 4, 1e-13 * stretched);
-    EXPECT_NEAR(all[4 * (3 * row + 2)], 0, 1e-13 * stretched);
+  for (const auto &element : recoverable()) {
+    for (const int cells : {1, 3}) { // one cell, and a row of them
+      SCOPED_TRACE(text_of(element) + ", " + std::to_string(cells));
+      auto box = small_box(element);
+      box.cells.assign(element.dim, 1);
+      box.cells[0] = cells;
+      const auto d = body(box, alone());
+      const auto all = stresses(d, *interpolate(d, [&](const Point &x) { return linear(x, element.dim); }));
+      EXPECT_LT(difference(all, repeated(hookes_law(element.dim), all.size())), 1e-12);
+      for (const double value : stresses(d, *interpolate(d, wild)))
+        EXPECT_LT(std::abs(value), 1e2 * steel.youngs_modulus); // not so for NaN
+    }
+  }
+}
+
+TEST(NodalStresses, VonMisesCountsTheStressAcrossThePlane)
+{
+  const auto d = bulged_body({2, 1}, world());
+  const auto last = [&](const Point &x_strain, const Point &y_strain) { // du/dx, du/dy
+    const auto all =
+        stresses(d, *interpolate(d, [&](const Point &x) {
+                   return Point{x[0] * x_strain[0] + x[1] * y_strain[0], x[0] * x_strain[1] + x[1] * y_strain[1], 0};
+                 }));
+    return all.back();
+  };
+  const double mu = steel.mu();
+  EXPECT_NEAR(last({0.01, 0, 0}, {0, 0, 0}), 2 * mu * 0.01, 1e-12 * mu); // (lambda + 2 mu, lambda, lambda) e
+  EXPECT_NEAR(last({0.01, 0, 0}, {0, 0.01, 0}), 2 * mu * 0.01, 1e-12 * mu);
+  EXPECT_NEAR(last({0, 0, 0}, {0.01, 0, 0}), std::sqrt(3.) * mu * 0.01, 1e-12 * mu);
+}
+
+TEST(NodalStresses, OfOneBlockDoNotReachIntoAnother)
+{
+  constexpr fem::Material rubber{50, 0.45};
+  fem::Materials materials(steel);
+  materials.block["right"] = rubber;
+  for (const auto &element : recoverable()) {
+    if (element.dim == 3) continue;
+    SCOPED_TRACE(text_of(element));
+    const auto box = small_box(element);
+    auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, world()));
+    const double border = 0.5 * (box.lower[0] + box.upper[0]); // between the second and the third of four columns
+    const auto coords = to_host(mesh->coords);
+    const auto cells = to_host(mesh->cells);
+    const auto block = Kokkos::create_mirror_view(mesh->block);
+    for (LO cell = 0; cell < mesh->num_cells(); ++cell)
+      for (int a = block(cell) = 0; a < element.num_vertices(); ++a)
+        if (coords(cells(cell, a), 0) > border + 1e-9) block(cell) = 1;
+    Kokkos::deep_copy(mesh->block, block);
+    mesh->blocks = {"left", "right"};
+    const auto d = fem::discretize(mesh);
+    const auto stress = fem::nodal_stresses(d, materials, *interpolate(d, [](const Point &x) {
+                                              return Point{0.01 * x[0], 0, 0};
+                                            }));
+    const auto values = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
+    const double left = 0.01 * (steel.lambda() + 2 * steel.mu()), right = 0.01 * (rubber.lambda() + 2 * rubber.mu());
+    for (LO n = 0; n < mesh->num_owned_nodes(); ++n) {
+      const double x = coords(n, 0) - border;
+      if (std::abs(x) > 1e-9) {
+        EXPECT_NEAR(values(n, 0), x < 0 ? left : right, 1e-11 * left);
+      } else { // a mean of both
+        EXPECT_LT(values(n, 0), left - 0.1 * (left - right));
+        EXPECT_GT(values(n, 0), right + 0.1 * (left - right));
+      }
+    }
   }
 }
 

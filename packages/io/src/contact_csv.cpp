@@ -1,9 +1,9 @@
 #include "rpc/io/contact_csv.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/on_root.hpp"
 #include "rpc/io/atomic_file.hpp"
 #include "rpc/io/gather.hpp"
-#include "rpc/io/on_root.hpp"
 
 #include <algorithm>
 #include <array>
@@ -126,17 +126,26 @@ void append(std::string &text, const double value)
   text += ',';
 }
 
-std::string csv(const std::vector<Row> &rows, const int dim)
+/// As RFC 4180 has it: in quotes if it holds a comma, a quote or a line's end.
+std::string quoted(const std::string &text)
+{
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
+
+std::string csv(const std::vector<Row> &rows, const int dim, const std::string &side)
 {
   static const std::array<const char *, 3> states = {"open", "stuck", "yielded"};
-  std::string text = dim == 2 ? "x,y,s,u_nu,gap,pressure,state\n" : "x,y,z,u_nu,gap,pressure,state\n";
+  std::string text;
   for (const Row &row : rows) {
     RPC_REQUIRE_CODE(row.state >= 0 && row.state < 3, ExitCode::internal_error,
                      "output: the contact state of node " << row.id << " must be 0, 1 or 2, got " << row.state);
     for (const double value : {row.x[0], row.x[1], dim == 2 ? row.s : row.x[2], row.u_nu, row.gap, row.pressure})
       append(text, value);
     text += states[row.state];
-    text += '\n';
+    text += ',' + side + '\n';
   }
   return text;
 }
@@ -162,19 +171,23 @@ void require_unique(const std::vector<Row> &rows)
 
 } // namespace
 
-void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const ContactTable &table,
-                       const HostView<GO **> &facets)
+void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const std::vector<ContactTable> &tables)
 {
-  require_equal_lengths(*comm, table);
-  const int dim = max_all(*comm, static_cast<int>(table.position.extent(1)));
-  const int width = max_all(*comm, static_cast<int>(facets.extent(1)));
-  std::vector<Row> rows = gather_rows(*comm, table, dim);
-  const std::vector<GO> all_facets = gather(*comm, facets.data(), facets.size());
-  on_root(*comm, ExitCode::internal_error, [&] {
-    require_unique(rows);
-    if (dim == 2) rows = along_the_surface(rows, edges_of(rows, all_facets, width));
-    write_text(path, csv(rows, dim));
-  });
+  std::string text;
+  for (const ContactTable &table : tables) {
+    require_equal_lengths(*comm, table);
+    const int dim = max_all(*comm, static_cast<int>(table.position.extent(1)));
+    const int width = max_all(*comm, static_cast<int>(table.facets.extent(1)));
+    std::vector<Row> rows = gather_rows(*comm, table, dim);
+    const std::vector<GO> facets = gather(*comm, table.facets.data(), table.facets.size());
+    on_root(*comm, ExitCode::internal_error, [&] {
+      require_unique(rows);
+      if (dim == 2) rows = along_the_surface(rows, edges_of(rows, facets, width));
+      if (text.empty()) text = std::string(dim == 2 ? "x,y,s" : "x,y,z") + ",u_nu,gap,pressure,state,side\n";
+      text += csv(rows, dim, quoted(table.side));
+    });
+  }
+  on_root(*comm, ExitCode::internal_error, [&] { write_text(path, text); });
 }
 
 } // namespace rpc::io

@@ -1,9 +1,9 @@
 #include "rpc/io/exodus.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/on_root.hpp"
 #include "rpc/io/atomic_file.hpp"
 #include "rpc/io/gather.hpp"
-#include "rpc/io/on_root.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,6 @@ namespace rpc::io
 namespace
 {
 
-constexpr int block_id = 1;
-
 /// Facets of the whole mesh, 1-based as Exodus counts, ordered by cell and ordinal; rank 0 only.
 struct SideSet {
   std::string name;
@@ -31,6 +29,8 @@ struct Header {
   std::string title;
   std::vector<std::string> info, field_names;
   mesh::Element element;
+  std::vector<std::string> blocks;
+  std::vector<GO> block_sizes; // cells in each
   GO num_nodes, num_cells;
 };
 
@@ -80,7 +80,11 @@ public:
   }
   void put_cells(const std::vector<int> &nodes)
   {
-    check(ex_put_conn(id_, EX_ELEM_BLOCK, block_id, nodes.data(), nullptr, nullptr), "write the cells of");
+    const int *first = nodes.data(); // cells run block by block
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      if (blocks_[b] > 0) check(ex_put_conn(id_, EX_ELEM_BLOCK, b + 1, first, nullptr, nullptr), "write the cells of");
+      first += blocks_[b] * nodes_per_cell_;
+    }
   }
   void put_field(const int index, const std::vector<double> &values)
   {
@@ -97,15 +101,19 @@ private:
   {
     const auto &element = header.element;
     check(ex_put_init(id_, header.title.substr(0, MAX_LINE_LENGTH).c_str(), element.dim, header.num_nodes,
-                      header.num_cells, 1, 0, static_cast<int64_t>(sides.size())),
+                      header.num_cells, static_cast<int64_t>(header.blocks.size()), 0,
+                      static_cast<int64_t>(sides.size())),
           "define");
     std::string program = "rpc", version = RPC_VERSION, date, time;
     char *qa[1][4] = {{program.data(), version.data(), date.data(), time.data()}};
     check(ex_put_qa(id_, 1, qa), "define");
     auto info = cut(header.info, MAX_LINE_LENGTH);
     if (!info.empty()) check(ex_put_info(id_, static_cast<int>(info.size()), pointers(info).data()), "define");
-    check(ex_put_block(id_, EX_ELEM_BLOCK, block_id, element.exodus_name().c_str(), header.num_cells,
-                       element.num_nodes(), 0, 0, 0),
+    blocks_ = header.block_sizes;
+    nodes_per_cell_ = element.num_nodes();
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      check(
+          ex_put_block(id_, EX_ELEM_BLOCK, b + 1, element.exodus_name().c_str(), blocks_[b], nodes_per_cell_, 0, 0, 0),
           "define");
     for (std::size_t s = 0; s < sides.size(); ++s)
       check(ex_put_set_param(id_, EX_SIDE_SET, s + 1, static_cast<int64_t>(sides[s].cell.size()), 0), "define");
@@ -117,7 +125,8 @@ private:
   {
     std::vector<std::string> coordinates = {"x", "y", "z"}, fields = header.field_names;
     check(ex_put_coord_names(id_, pointers(coordinates).data()), "name the coordinates of");
-    check(ex_put_name(id_, EX_ELEM_BLOCK, block_id, "body"), "name the block of");
+    for (std::size_t b = 0; b < header.blocks.size(); ++b)
+      check(ex_put_name(id_, EX_ELEM_BLOCK, b + 1, header.blocks[b].c_str()), "name the blocks of");
     for (std::size_t s = 0; s < sides.size(); ++s)
       check(ex_put_name(id_, EX_SIDE_SET, s + 1, sides[s].name.c_str()), "name the sides of");
     if (!fields.empty())
@@ -153,6 +162,8 @@ private:
   std::string path_;
   AtomicFile file_;
   int id_ = -1;
+  std::vector<GO> blocks_; // cells in each
+  int nodes_per_cell_ = 0;
 };
 
 void require_writable(const mesh::Mesh &mesh, const std::vector<NodalField> &fields)
@@ -163,6 +174,7 @@ void require_writable(const mesh::Mesh &mesh, const std::vector<NodalField> &fie
       message = "output: an Exodus name must have 1 to 32 characters, got \"" + name + "\"";
   };
   for (const auto &side : mesh.sides) check_name(side.name);
+  for (const auto &block : mesh.blocks) check_name(block);
   for (const auto &field : fields) {
     check_name(field.name);
     if (static_cast<LO>(field.values.extent(0)) != mesh.num_owned_nodes())
@@ -170,6 +182,16 @@ void require_writable(const mesh::Mesh &mesh, const std::vector<NodalField> &fie
                 std::to_string(mesh.num_owned_nodes()) + " owned nodes, got " + std::to_string(field.values.extent(0));
   }
   throw_if_any(mesh.comm(), ExitCode::internal_error, message);
+}
+
+/// Number of cells in each block, over all ranks.
+std::vector<GO> block_sizes(const mesh::Mesh &mesh)
+{
+  const auto block = to_host(mesh.block);
+  std::vector<GO> mine(mesh.blocks.size(), 0), all(mesh.blocks.size());
+  for (LO c = 0; c < mesh.num_owned_cells; ++c) ++mine[block(c)];
+  Teuchos::reduceAll(mesh.comm(), Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), all.data());
+  return all;
 }
 
 SideSet gather_side(const mesh::Mesh &mesh, const mesh::Side &side)
@@ -221,7 +243,7 @@ void write_exodus(const std::string &path, const std::string &title, const mesh:
   const CanonicalOrder nodes(shared_comm, mesh.node_id, "node"), cells(shared_comm, mesh.cell_id, "cell");
   std::vector<SideSet> sides;
   for (const auto &side : mesh.sides) sides.push_back(gather_side(mesh, side));
-  Header header{title, info, {}, mesh.element, nodes.size(), cells.size()};
+  Header header{title, info, {}, mesh.element, mesh.blocks, block_sizes(mesh), nodes.size(), cells.size()};
   for (const auto &field : fields) header.field_names.push_back(field.name);
 
   std::unique_ptr<Writer> writer; // rank 0 only

@@ -1,6 +1,5 @@
 #include "rpc/io/gather.hpp"
-
-#include "rpc/io/on_root.hpp"
+#include "rpc/core/on_root.hpp"
 
 #include <algorithm>
 

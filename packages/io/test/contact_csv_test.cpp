@@ -29,14 +29,21 @@ struct Vertex {
   double x, y;
 };
 
+ContactTable empty_table(const std::size_t n, const int dim)
+{
+  return {"side",
+          HostView<GO *>("id", n),
+          HostView<double **>("position", n, dim),
+          HostView<double *>("u_nu", n),
+          HostView<double *>("gap", n),
+          HostView<double *>("pressure", n),
+          HostView<int *>("state", n),
+          {}};
+}
+
 /// The vertices and facets dealt out to the ranks like cards, from the last one on, so that no order survives by
 /// chance.
-struct Dealt {
-  ContactTable table;
-  HostView<GO **> facets;
-};
-
-Dealt deal(const Comm &comm, std::vector<Vertex> vertices, std::vector<std::vector<GO>> facets)
+ContactTable deal(const Comm &comm, std::vector<Vertex> vertices, std::vector<std::vector<GO>> facets)
 {
   const auto mine = [&](auto &items) {
     auto all = items;
@@ -47,14 +54,13 @@ Dealt deal(const Comm &comm, std::vector<Vertex> vertices, std::vector<std::vect
   mine(vertices);
   mine(facets);
   const std::size_t n = vertices.size();
-  Dealt dealt{{HostView<GO *>("id", n), HostView<double **>("position", n, 2), HostView<double *>("u_nu", n),
-               HostView<double *>("gap", n), HostView<double *>("pressure", n), HostView<int *>("state", n)},
-              HostView<GO **>("facets", facets.size(), width)};
+  ContactTable dealt = empty_table(n, 2);
+  dealt.facets = HostView<GO **>("facets", facets.size(), width);
   for (std::size_t k = 0; k < n; ++k) {
-    dealt.table.id(k) = vertices[k].id;
-    dealt.table.position(k, 0) = vertices[k].x;
-    dealt.table.position(k, 1) = vertices[k].y;
-    dealt.table.pressure(k) = static_cast<double>(vertices[k].id);
+    dealt.id(k) = vertices[k].id;
+    dealt.position(k, 0) = vertices[k].x;
+    dealt.position(k, 1) = vertices[k].y;
+    dealt.pressure(k) = static_cast<double>(vertices[k].id);
   }
   for (std::size_t f = 0; f < facets.size(); ++f)
     for (std::size_t a = 0; a < width; ++a) dealt.facets(f, a) = facets[f][a];
@@ -82,13 +88,13 @@ protected:
   void expect_walk(const std::vector<Vertex> &vertices, const std::vector<std::vector<GO>> &facets,
                    const std::vector<GO> &ids, const Column &lengths)
   {
-    const Dealt dealt = deal(*comm_, vertices, facets);
-    write_contact_csv(path_, comm_, dealt.table, dealt.facets);
+    const ContactTable dealt = deal(*comm_, vertices, facets);
+    write_contact_csv(path_, comm_, {dealt});
     comm_->barrier();
     const auto rows = cells_of(text_of(path_));
     ASSERT_EQ(rows.size(), ids.size() + 1);
     for (std::size_t k = 0; k < ids.size(); ++k) {
-      ASSERT_EQ(rows[k + 1].size(), 7u);
+      ASSERT_EQ(rows[k + 1].size(), 8u);
       EXPECT_EQ(std::stod(rows[k + 1][5]), ids[k]) << "row " << k;
       EXPECT_NEAR(std::stod(rows[k + 1][2]), lengths[k], 1e-14) << "row " << k;
     }
@@ -102,18 +108,18 @@ protected:
 
 TEST_F(ContactCsv, WritesOneRowPerNodeExactly)
 {
-  const Dealt dealt = deal(*comm_, {{0, 0.1, 0}, {1, 1. / 3, 0}, {2, 1, 0}}, {{0, 1}, {1, 2}});
-  for (std::size_t k = 0; k < dealt.table.id.extent(0); ++k) {
-    const int id = static_cast<int>(dealt.table.id(k));
-    dealt.table.u_nu(k) = 1e-300 * id;
-    dealt.table.gap(k) = M_PI * id;
-    dealt.table.pressure(k) = 2. / 3 * id;
-    dealt.table.state(k) = id;
+  const ContactTable dealt = deal(*comm_, {{0, 0.1, 0}, {1, 1. / 3, 0}, {2, 1, 0}}, {{0, 1}, {1, 2}});
+  for (std::size_t k = 0; k < dealt.id.extent(0); ++k) {
+    const int id = static_cast<int>(dealt.id(k));
+    dealt.u_nu(k) = 1e-300 * id;
+    dealt.gap(k) = M_PI * id;
+    dealt.pressure(k) = 2. / 3 * id;
+    dealt.state(k) = id;
   }
-  write_contact_csv(path_, comm_, dealt.table, dealt.facets);
+  write_contact_csv(path_, comm_, {dealt});
   comm_->barrier();
   const std::string text = text_of(path_);
-  EXPECT_EQ(text.substr(0, text.find('\n')), "x,y,s,u_nu,gap,pressure,state");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "x,y,s,u_nu,gap,pressure,state,side");
   const auto rows = cells_of(text);
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(std::stod(rows[2][0]), 1. / 3);
@@ -162,6 +168,20 @@ TEST_F(ContactCsv, NodeThatTheTableLacksIsPassedOver)
   expect_walk({{1, 1, 0}, {2, 2, 0}}, {{0, 1}, {1, 2}, {2, 3}}, {1, 2}, {0, 1});
 }
 
+TEST_F(ContactCsv, SidesFollowEachOtherUnderTheirNames)
+{
+  ContactTable left = deal(*comm_, {{0, 0, 0}, {1, 0, 1}}, {{0, 1}});
+  ContactTable bottom = deal(*comm_, {{0, 0, 0}, {2, 1, 0}}, {{0, 2}}); // shares a node with the other
+  left.side = "left, or \"west\"";
+  write_contact_csv(path_, comm_, {left, bottom});
+  comm_->barrier();
+  EXPECT_EQ(text_of(path_), "x,y,s,u_nu,gap,pressure,state,side\n"
+                            "0,0,0,0,0,0,open,\"left, or \"\"west\"\"\"\n"
+                            "0,1,1,0,0,1,open,\"left, or \"\"west\"\"\"\n"
+                            "0,0,0,0,0,0,open,side\n"
+                            "1,0,1,0,0,2,open,side\n");
+}
+
 TEST_F(ContactCsv, EmptyTableGivesAHeaderOnly)
 {
   expect_walk({}, {}, {}, {});
@@ -177,14 +197,13 @@ TEST_F(ContactCsv, BottomOfABoxIsSortedForAnyNumberOfRanks)
     for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
       if (coords(n, 1) == 0) bottom.push_back(n);
     const std::size_t count = bottom.size();
-    const ContactTable table{HostView<GO *>("id", count),           HostView<double **>("position", count, 2),
-                             HostView<double *>("u_nu", count),     HostView<double *>("gap", count),
-                             HostView<double *>("pressure", count), HostView<int *>("state", count)};
+    ContactTable table = empty_table(count, 2);
     for (std::size_t k = 0; k < count; ++k) {
       table.id(k) = ids(bottom[k]);
       for (int d = 0; d < 2; ++d) table.position(k, d) = coords(bottom[k], d);
     }
-    write_contact_csv(path_, comm_, table, rpc::io::owned_facets(mesh, mesh.side("bottom", "test"), ids));
+    table.facets = rpc::io::owned_facets(mesh, mesh.side("bottom", "test"), ids);
+    write_contact_csv(path_, comm_, {table});
     comm_->barrier();
     const auto rows = cells_of(text_of(path_));
     ASSERT_EQ(rows.size(), std::size_t(10 * order + 2));
@@ -199,31 +218,27 @@ TEST_F(ContactCsv, BottomOfABoxIsSortedForAnyNumberOfRanks)
 TEST_F(ContactCsv, In3dRowsComeById)
 {
   const std::size_t count = comm_->getRank() == comm_->getSize() - 1 ? 2 : 0;
-  const ContactTable table{HostView<GO *>("id", count),           HostView<double **>("position", count, 3),
-                           HostView<double *>("u_nu", count),     HostView<double *>("gap", count),
-                           HostView<double *>("pressure", count), HostView<int *>("state", count)};
+  const ContactTable table = empty_table(count, 3);
   for (std::size_t k = 0; k < count; ++k) {
     table.id(k) = 9 - static_cast<GO>(k);
     table.position(k, 2) = static_cast<double>(9 - k);
   }
-  write_contact_csv(path_, comm_, table, HostView<GO **>());
+  write_contact_csv(path_, comm_, {table});
   comm_->barrier();
-  EXPECT_EQ(text_of(path_), "x,y,z,u_nu,gap,pressure,state\n0,0,8,0,0,0,open\n0,0,9,0,0,0,open\n");
+  EXPECT_EQ(text_of(path_), "x,y,z,u_nu,gap,pressure,state,side\n0,0,8,0,0,0,open,side\n0,0,9,0,0,0,open,side\n");
 }
 
 TEST_F(ContactCsv, BadTableIsRefusedOnEveryRank)
 {
-  const Dealt twice = deal(*comm_, {{4, 0, 0}, {4, 1, 0}}, {});
+  const ContactTable twice = deal(*comm_, {{4, 0, 0}, {4, 1, 0}}, {});
   expect_error(ExitCode::internal_error, "node 4 is on several ranks",
-               [&] { write_contact_csv(path_, comm_, twice.table, twice.facets); });
-  const Dealt state = deal(*comm_, {{4, 0, 0}}, {});
-  if (state.table.state.extent(0) > 0) state.table.state(0) = 3;
-  expect_error(ExitCode::internal_error, "must be 0, 1 or 2, got 3",
-               [&] { write_contact_csv(path_, comm_, state.table, state.facets); });
-  Dealt shorter = deal(*comm_, {{4, 0, 0}}, {});
-  if (comm_->getRank() == 0) shorter.table.gap = HostView<double *>("gap", 0);
-  expect_error(ExitCode::internal_error, "columns",
-               [&] { write_contact_csv(path_, comm_, shorter.table, shorter.facets); });
+               [&] { write_contact_csv(path_, comm_, {twice}); });
+  const ContactTable state = deal(*comm_, {{4, 0, 0}}, {});
+  if (state.state.extent(0) > 0) state.state(0) = 3;
+  expect_error(ExitCode::internal_error, "must be 0, 1 or 2, got 3", [&] { write_contact_csv(path_, comm_, {state}); });
+  ContactTable shorter = deal(*comm_, {{4, 0, 0}}, {});
+  if (comm_->getRank() == 0) shorter.gap = HostView<double *>("gap", 0);
+  expect_error(ExitCode::internal_error, "columns", [&] { write_contact_csv(path_, comm_, {shorter}); });
   comm_->barrier();
   EXPECT_EQ(scratch_.num_files(), 0);
 }

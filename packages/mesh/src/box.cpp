@@ -18,21 +18,32 @@ namespace
 
 using Teuchos::Array;
 
-/// The six (four) sides of a box: name, direction, upper or lower end, and the facet number of the cells there.
+/// The six (four) sides of a box: name, direction, upper or lower end, and which facet of which of a lattice cell's
+/// parts lies there.
 struct BoxSide {
   const char *name;
   int direction;
   bool upper;
   int facet;
+  int part = 0;
 };
 constexpr std::array<BoxSide, 4> sides_2d{
     {{"left", 0, false, 3}, {"right", 0, true, 1}, {"bottom", 1, false, 0}, {"top", 1, true, 2}}};
+constexpr std::array<BoxSide, 4> sides_2d_triangles{
+    {{"left", 0, false, 2, 0}, {"right", 0, true, 2, 1}, {"bottom", 1, false, 0, 0}, {"top", 1, true, 0, 1}}};
 constexpr std::array<BoxSide, 6> sides_3d{{{"left", 0, false, 3},
                                            {"right", 0, true, 1},
                                            {"bottom", 1, false, 0},
                                            {"top", 1, true, 2},
                                            {"back", 2, false, 4},
                                            {"front", 2, true, 5}}};
+
+/// Cells of the mesh in one cell of the lattice: a rectangle is itself, or two triangles, the first at its lower left
+/// corner and the second the same turned by 180 degrees.
+int parts_of(const Element &element)
+{
+  return element.shape == Shape::simplex ? 2 : 1;
+}
 
 /// Numbers and places of one rank's nodes and cells, for kernels.
 struct Numbering {
@@ -96,12 +107,14 @@ void fill_cells(const Numbering &n, const Element &element, const DeviceView<LO 
   for (int a = 0; a < nodes; ++a)
     for (int d = 0; d < dim; ++d) lattice_host(a, d) = element.lattice()[a][d];
   const auto lattice = to_device(lattice_host);
+  const int parts = parts_of(element);
   Kokkos::parallel_for(
       "rpc::mesh::box_cells", device_range(static_cast<LO>(cells.extent(0))), KOKKOS_LAMBDA(const LO cell) {
-        const Index corner = n.cell_at(cell);
+        const Index corner = n.cell_at(cell / parts);
+        const bool turned = cell % parts == 1;
         for (int a = 0; a < nodes; ++a) {
           Index node{};
-          for (int d = 0; d < dim; ++d) node[d] = order * corner[d] + lattice(a, d);
+          for (int d = 0; d < dim; ++d) node[d] = order * corner[d] + (turned ? order - lattice(a, d) : lattice(a, d));
           cells(cell, a) = n.lid_of(node);
         }
       });
@@ -126,13 +139,15 @@ Side make_side(const BoxSide &box_side, const Grid &grid, const Numbering &numbe
   Side side;
   side.name = box_side.name;
   const LO num_facets = static_cast<LO>(layer.size());
+  const int parts = parts_of(mesh.element);
   const auto &facet_nodes = mesh.element.facets()[box_side.facet];
   HostView<LO *> cell("rpc::mesh::side_cell", num_facets);
   HostView<int *> ordinal("rpc::mesh::side_ordinal", num_facets);
   for (LO f = 0; f < num_facets; ++f) {
     const Index at = layer.at(f);
-    cell(f) = numbering.owned_cells.contains(at) ? static_cast<LO>(numbering.owned_cells.index_of(at))
-                                                 : halo_cell.at(local_cells.index_of(at));
+    const LO lattice_cell = numbering.owned_cells.contains(at) ? static_cast<LO>(numbering.owned_cells.index_of(at))
+                                                               : halo_cell.at(local_cells.index_of(at));
+    cell(f) = parts * lattice_cell + box_side.part;
     ordinal(f) = box_side.facet;
   }
   side.cell = to_device(cell);
@@ -154,22 +169,18 @@ Side make_side(const BoxSide &box_side, const Grid &grid, const Numbering &numbe
 
 } // namespace
 
-Teuchos::ParameterList valid_parameters()
+void add_box_parameters(Teuchos::ParameterList &valid)
 {
-  Teuchos::ParameterList valid("Mesh");
-  valid.set("Type", "box", "Kind of mesh: `box`.");
   valid.set("Lower", Array<double>(Teuchos::tuple(0., 0.)), "Lower corner of the box, 2 or 3 numbers [m].");
   valid.set("Upper", Array<double>(Teuchos::tuple(1., 1.)),
             "Upper corner of the box, above the lower one in each direction [m].");
   valid.set("Cells", Array<int>(Teuchos::tuple(8, 8)), "Number of cells in each direction, > 0.");
-  valid.set("Element", "Q1", "Element: `Q1`, or in 2D `Q2`.");
-  return valid;
+  valid.set("Element", "Q1",
+            "Element of the box: `Q1`, or in 2D also `Q2` (quadrilaterals), `P1`, `P2` (two triangles to a cell).");
 }
 
 BoxOptions box_options(const Teuchos::ParameterList &list)
 {
-  RPC_REQUIRE(list.get<std::string>("Type") == "box",
-              "deck: \"Mesh->Type\" must be one of box, got \"" << list.get<std::string>("Type") << "\"");
   BoxOptions options;
   const auto &lower = list.get<Array<double>>("Lower");
   const auto &upper = list.get<Array<double>>("Upper");
@@ -239,9 +250,13 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   mesh.owned_nodes = rcp(new Map(total, num_owned, 0, comm));
   mesh.overlap_nodes = mesh.owned_nodes;
   if (comm->getSize() > 1) mesh.overlap_nodes = rcp(new Map(invalid, gids(), 0, comm));
-  mesh.num_owned_cells = numbering.num_owned_cells;
+  const int parts = parts_of(options.element);
+  mesh.num_owned_cells = parts * numbering.num_owned_cells;
   mesh.coords = DeviceView<double **>("rpc::mesh::coords", num_nodes, mesh.dim());
-  mesh.cells = DeviceView<LO **>("rpc::mesh::cells", numbering.num_owned_cells + halo.size(), mesh.element.num_nodes());
+  const std::size_t num_cells = parts * (numbering.num_owned_cells + halo.size());
+  mesh.cells = DeviceView<LO **>("rpc::mesh::cells", num_cells, mesh.element.num_nodes());
+  mesh.blocks = {"body"};
+  mesh.block = DeviceView<int *>("rpc::mesh::block", num_cells);
   fill_coords(numbering, options, mesh.coords);
   fill_cells(numbering, mesh.element, mesh.cells);
 
@@ -255,15 +270,18 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
     return at[0] + extent[0] * (at[1] + extent[1] * at[2]);
   };
   mesh.node_id = HostView<GO *>("rpc::mesh::node_id", num_owned);
-  mesh.cell_id = HostView<GO *>("rpc::mesh::cell_id", numbering.num_owned_cells);
+  mesh.cell_id = HostView<GO *>("rpc::mesh::cell_id", mesh.num_owned_cells);
   for (LO n = 0; n < num_owned; ++n) mesh.node_id(n) = lattice_id(numbering.owned_nodes.at(n), nodes);
-  for (LO c = 0; c < numbering.num_owned_cells; ++c) mesh.cell_id(c) = lattice_id(numbering.owned_cells.at(c), cells);
+  for (LO c = 0; c < mesh.num_owned_cells; ++c)
+    mesh.cell_id(c) = parts * lattice_id(numbering.owned_cells.at(c / parts), cells) + c % parts;
 
   const auto add_sides = [&](const auto &box_sides) {
     for (const BoxSide &box_side : box_sides)
       mesh.sides.push_back(make_side(box_side, grid, numbering, halo, local_cells, mesh));
   };
-  if (mesh.dim() == 2)
+  if (parts == 2)
+    add_sides(sides_2d_triangles);
+  else if (mesh.dim() == 2)
     add_sides(sides_2d);
   else
     add_sides(sides_3d);

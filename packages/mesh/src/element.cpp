@@ -54,6 +54,19 @@ Table hex_lattice(const int p)
   return nodes;
 }
 
+Table triangle_lattice(const int p)
+{
+  Table nodes = {{0, 0}, {p, 0}, {0, p}};
+  if (p == 2) nodes.insert(nodes.end(), {{1, 0}, {1, 1}, {0, 1}});
+  return nodes;
+}
+
+Table triangle_facets(const int p)
+{
+  if (p == 1) return {{0, 1}, {1, 2}, {2, 0}};
+  return {{0, 1, 3}, {1, 2, 4}, {2, 0, 5}};
+}
+
 Table lattice_of(const int dim, const int order)
 {
   return dim == 2 ? quad_lattice(order) : hex_lattice(order);
@@ -103,15 +116,20 @@ Table facets_of(const int dim, const int order)
 
 std::string Element::name() const
 {
-  return "Q" + std::to_string(order);
+  return (shape == Shape::simplex ? "P" : "Q") + std::to_string(order);
 }
 std::string Element::exodus_name() const
 {
-  return (dim == 2 ? "QUAD" : "HEX") + std::to_string(num_nodes());
+  const char *const cell = shape == Shape::simplex ? "TRI" : (dim == 2 ? "QUAD" : "HEX");
+  return cell + std::to_string(num_nodes());
 }
 int Element::num_nodes() const
 {
-  return power(order + 1, dim);
+  return shape == Shape::simplex ? (order + 1) * (order + 2) / 2 : power(order + 1, dim);
+}
+int Element::num_vertices() const
+{
+  return shape == Shape::simplex ? dim + 1 : power(2, dim);
 }
 int Element::num_facet_nodes() const
 {
@@ -119,28 +137,31 @@ int Element::num_facet_nodes() const
 }
 int Element::num_facets() const
 {
-  return 2 * dim;
+  return shape == Shape::simplex ? dim + 1 : 2 * dim;
 }
 
 const std::vector<std::vector<int>> &Element::lattice() const
 {
   static const std::array<std::array<Table, 2>, 2> tables = {
       {{lattice_of(2, 1), lattice_of(2, 2)}, {lattice_of(3, 1), lattice_of(3, 2)}}};
-  return tables[dim - 2][order - 1];
+  static const std::array<Table, 2> triangles = {triangle_lattice(1), triangle_lattice(2)};
+  return shape == Shape::simplex ? triangles[order - 1] : tables[dim - 2][order - 1];
 }
 
 const std::vector<std::vector<int>> &Element::facets() const
 {
   static const std::array<std::array<Table, 2>, 2> tables = {
       {{facets_of(2, 1), facets_of(2, 2)}, {facets_of(3, 1), facets_of(3, 2)}}};
-  return tables[dim - 2][order - 1];
+  static const std::array<Table, 2> triangles = {triangle_facets(1), triangle_facets(2)};
+  return shape == Shape::simplex ? triangles[order - 1] : tables[dim - 2][order - 1];
 }
 
 Element parse_element(const std::string &name, const int dim)
 {
-  RPC_REQUIRE(name == "Q1" || name == "Q2", "deck: \"Mesh->Element\" must be one of Q1, Q2, got \"" << name << "\"");
+  const bool known = name == "P1" || name == "P2" || name == "Q1" || name == "Q2";
+  RPC_REQUIRE(known, "deck: \"Mesh->Element\" must be one of P1, P2, Q1, Q2, got \"" << name << "\"");
   RPC_REQUIRE(name == "Q1" || dim == 2, "deck: \"Mesh->Element\" must be Q1 in 3D, got \"" << name << "\"");
-  return Element{dim, name == "Q1" ? 1 : 2};
+  return Element{dim, name[1] == '1' ? 1 : 2, name[0] == 'P' ? Shape::simplex : Shape::tensor};
 }
 
 } // namespace rpc::mesh

@@ -1,7 +1,11 @@
 #include "expect_error.hpp"
-#include "rpc/mesh/box.hpp"
+#include "rpc/core/parameters.hpp"
+#include "rpc/mesh/make_mesh.hpp"
 
 #include <Teuchos_Array.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 
 namespace
@@ -9,34 +13,60 @@ namespace
 
 using rpc::ExitCode;
 using rpc::mesh::BoxOptions;
+using rpc::mesh::GmshOptions;
+using rpc::mesh::MeshOptions;
 using rpc::test::expect_error;
 using Teuchos::Array;
+using Teuchos::ParameterList;
 using Teuchos::tuple;
+
+/// What a deck gives, read as the program does.
+MeshOptions read(ParameterList list, const std::string &folder = ".")
+{
+  rpc::validate(list, rpc::mesh::valid_parameters());
+  return rpc::mesh::mesh_options(list, folder);
+}
+BoxOptions read_box(const ParameterList &list)
+{
+  return std::get<BoxOptions>(read(list));
+}
 
 /// The defaults with one parameter changed.
 template <class T>
-Teuchos::ParameterList deck(const std::string &name, const T &value)
+ParameterList deck(const std::string &name, const T &value)
 {
-  auto list = rpc::mesh::valid_parameters();
+  ParameterList list;
   list.set(name, value);
   return list;
 }
 
+void expect_refused(const ParameterList &list, const std::initializer_list<std::string> parts,
+                    const std::string &folder = ".")
+{
+  expect_error(ExitCode::bad_input, parts, [&] { read(list, folder); });
+}
+
 TEST(BoxOptions, DefaultsAreTheUnitSquare)
 {
-  const BoxOptions options = rpc::mesh::box_options(rpc::mesh::valid_parameters());
+  const BoxOptions options = read_box(ParameterList());
   EXPECT_EQ(options.lower, (std::vector<double>{0, 0}));
   EXPECT_EQ(options.upper, (std::vector<double>{1, 1}));
   EXPECT_EQ(options.cells, (std::vector<int>{8, 8}));
+  EXPECT_EQ(options.element.name(), "Q1");
   EXPECT_EQ(options.element.dim, 2);
-  EXPECT_EQ(options.element.order, 1);
+}
+
+TEST(BoxOptions, ElementIsReadByItsName)
+{
+  for (const std::string name : {"P1", "P2", "Q1", "Q2"})
+    EXPECT_EQ(read_box(deck("Element", name)).element.name(), name);
 }
 
 TEST(BoxOptions, ThreeNumbersMakeItThreeDimensional)
 {
   auto list = deck("Lower", Array<double>(tuple(0., 0., -1.)));
   list.set("Upper", Array<double>(tuple(1., 2., 3.))).set("Cells", Array<int>(tuple(1, 2, 3)));
-  const BoxOptions options = rpc::mesh::box_options(list);
+  const BoxOptions options = read_box(list);
   EXPECT_EQ(options.element.dim, 3);
   EXPECT_EQ(options.element.order, 1);
   EXPECT_EQ(options.upper, (std::vector<double>{1, 2, 3}));
@@ -45,23 +75,118 @@ TEST(BoxOptions, ThreeNumbersMakeItThreeDimensional)
 
 TEST(BoxOptions, BadValuesAreRefusedByName)
 {
-  const auto refused = [](const Teuchos::ParameterList &list, const std::initializer_list<std::string> parts) {
-    expect_error(ExitCode::bad_input, parts, [&] { rpc::mesh::box_options(list); });
-  };
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
-  refused(deck("Type", "sphere"), {"\"Mesh->Type\"", "box", "\"sphere\""});
-  refused(deck("Element", "Q3"), {"\"Mesh->Element\"", "\"Q3\""});
-  refused(deck("Lower", Array<double>(tuple(0.))), {"\"Mesh->Lower\"", "2 or 3", "got 1"});
-  refused(deck("Lower", Array<double>()), {"\"Mesh->Lower\"", "got 0"});
-  refused(deck("Upper", Array<double>(tuple(1., 1., 1.))), {"one length", "2, 3 and 2"});
-  refused(deck("Cells", Array<int>(tuple(1))), {"one length", "2, 2 and 1"});
-  refused(deck("Upper", Array<double>(tuple(1., 0.))), {"\"Mesh->Upper\"", "direction 2"});
-  refused(deck("Upper", Array<double>(tuple(-1., 1.))), {"\"Mesh->Upper\"", "direction 1"});
-  refused(deck("Upper", Array<double>(tuple(inf, 1.))), {"\"Mesh->Upper\"", "inf"});
-  refused(deck("Lower", Array<double>(tuple(nan, 0.))), {"\"Mesh->Upper\"", "nan"});
-  refused(deck("Cells", Array<int>(tuple(8, 0))), {"\"Mesh->Cells\"", "got 0", "direction 2"});
-  refused(deck("Cells", Array<int>(tuple(-8, 8))), {"\"Mesh->Cells\"", "got -8"});
-  refused(deck("Cells", Array<int>(tuple(100000, 100000))), {"\"Mesh->Cells\"", "nodes", "supported"});
+  expect_refused(deck("Type", "sphere"), {"\"Mesh->Type\"", "box, gmsh", "\"sphere\""});
+  expect_refused(deck("Element", "Q3"), {"\"Mesh->Element\"", "\"Q3\""});
+  expect_refused(deck("Lower", Array<double>(tuple(0.))), {"\"Mesh->Lower\"", "2 or 3", "got 1"});
+  expect_refused(deck("Lower", Array<double>()), {"\"Mesh->Lower\"", "got 0"});
+  expect_refused(deck("Upper", Array<double>(tuple(1., 1., 1.))), {"one length", "2, 3 and 2"});
+  expect_refused(deck("Cells", Array<int>(tuple(1))), {"one length", "2, 2 and 1"});
+  expect_refused(deck("Upper", Array<double>(tuple(1., 0.))), {"\"Mesh->Upper\"", "direction 2"});
+  expect_refused(deck("Upper", Array<double>(tuple(-1., 1.))), {"\"Mesh->Upper\"", "direction 1"});
+  expect_refused(deck("Upper", Array<double>(tuple(inf, 1.))), {"\"Mesh->Upper\"", "inf"});
+  expect_refused(deck("Lower", Array<double>(tuple(nan, 0.))), {"\"Mesh->Upper\"", "nan"});
+  expect_refused(deck("Cells", Array<int>(tuple(8, 0))), {"\"Mesh->Cells\"", "got 0", "direction 2"});
+  expect_refused(deck("Cells", Array<int>(tuple(-8, 8))), {"\"Mesh->Cells\"", "got -8"});
+  expect_refused(deck("Cells", Array<int>(tuple(100000, 100000))), {"\"Mesh->Cells\"", "nodes", "supported"});
+}
+
+TEST(BoxOptions, ParametersOfGmshAreRefusedByNameEvenAtTheirDefaults)
+{
+  expect_refused(deck("File", "a.msh"), {"\"Mesh->File\"", "does not go with \"Mesh->Type\" = box"});
+  expect_refused(deck("Size Factor", 1.), {"\"Mesh->Size Factor\"", "does not go with"});
+  expect_refused(deck("Order", 0), {"\"Mesh->Order\"", "does not go with"});
+}
+
+/// An own folder with a file in it, gone at the end.
+struct Folder {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / "rpc_box_options_test";
+  explicit Folder(const std::string &file)
+  {
+    path += std::to_string(reinterpret_cast<std::uintptr_t>(this)); // others may run this test at the same time
+    std::filesystem::create_directories(path);
+    std::ofstream(path / file) << "// empty\n";
+  }
+  Folder(const Folder &) = delete;
+  Folder &operator=(const Folder &) = delete;
+  ~Folder() { std::filesystem::remove_all(path); }
+};
+
+ParameterList gmsh_deck(const std::string &file)
+{
+  ParameterList list;
+  list.set("Type", "gmsh").set("File", file);
+  return list;
+}
+
+TEST(GmshOptions, FileIsLookedForBesideTheDeckThenInTheCurrentFolder)
+{
+  const Folder folder("body.geo");
+  const auto beside = std::get<GmshOptions>(read(gmsh_deck("body.geo"), folder.path.string()));
+  EXPECT_TRUE(std::filesystem::equivalent(beside.file, folder.path / "body.geo")) << beside.file;
+  EXPECT_EQ(beside.size_factor, 1);
+  EXPECT_EQ(beside.order, 0);
+  const std::string here = std::filesystem::relative(folder.path / "body.geo").string();
+  EXPECT_EQ(std::get<GmshOptions>(read(gmsh_deck(here), "no such folder")).file, here);
+  const std::string absolute = (folder.path / "body.geo").string();
+  EXPECT_EQ(std::get<GmshOptions>(read(gmsh_deck(absolute), "no such folder")).file, absolute);
+}
+
+TEST(GmshOptions, FileThatIsNotThereIsRefusedWithThePlacesLookedAt)
+{
+  const Folder folder("body.geo");
+  expect_refused(gmsh_deck("other.msh"), {"\"Mesh->File\"", "\"other.msh\"", folder.path.string(), "current folder"},
+                 folder.path.string());
+  expect_refused(deck("Type", "gmsh"), {"\"Mesh->File\"", "must name"});
+}
+
+TEST(GmshOptions, OtherExtensionsAreRefused)
+{
+  const Folder folder("body.stl");
+  expect_refused(gmsh_deck("body.stl"), {"\"Mesh->File\"", ".geo or .msh", "\"body.stl\""}, folder.path.string());
+  expect_refused(gmsh_deck("body"), {".geo or .msh"}, folder.path.string());
+}
+
+TEST(GmshOptions, SizeFactorAndOrderHaveTheirRanges)
+{
+  const Folder folder("body.geo");
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double factor : {0., -1., inf, nan}) {
+    auto list = gmsh_deck("body.geo");
+    expect_refused(list.set("Size Factor", factor), {"\"Mesh->Size Factor\"", "> 0"}, folder.path.string());
+  }
+  for (const int order : {-1, 3}) {
+    auto list = gmsh_deck("body.geo");
+    expect_refused(list.set("Order", order), {"\"Mesh->Order\"", "got " + std::to_string(order)}, folder.path.string());
+  }
+  auto list = gmsh_deck("body.geo");
+  list.set("Size Factor", 0.25).set("Order", 2);
+  const auto options = std::get<GmshOptions>(read(list, folder.path.string()));
+  EXPECT_EQ(options.size_factor, 0.25);
+  EXPECT_EQ(options.order, 2);
+}
+
+TEST(GmshOptions, ParametersOfTheBoxAreRefusedByNameEvenAtTheirDefaults)
+{
+  const Folder folder("body.geo");
+  const auto refused = [&](const std::string &name, const auto &value) {
+    auto list = gmsh_deck("body.geo");
+    expect_refused(list.set(name, value), {"\"Mesh->" + name + "\"", "does not go with \"Mesh->Type\" = gmsh"},
+                   folder.path.string());
+  };
+  refused("Lower", Array<double>(tuple(0., 0.)));
+  refused("Upper", Array<double>(tuple(1., 1.)));
+  refused("Cells", Array<int>(tuple(8, 8)));
+  refused("Element", std::string("Q1"));
+}
+
+TEST(MeshOptions, TellTheDimensionBeforeThereIsAMesh)
+{
+  auto solid = deck("Lower", Array<double>(tuple(0., 0., 0.)));
+  solid.set("Upper", Array<double>(tuple(1., 1., 1.))).set("Cells", Array<int>(tuple(1, 1, 1)));
+  EXPECT_EQ(rpc::mesh::dimension(read(ParameterList())), 2);
+  EXPECT_EQ(rpc::mesh::dimension(read(solid)), 3);
+  EXPECT_EQ(rpc::mesh::dimension(GmshOptions()), 2);
 }
 
 } // namespace

@@ -3,8 +3,10 @@
 #include "expect_error.hpp"
 
 #include <Tpetra_Core.hpp>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -18,9 +20,16 @@ using rpc::mesh::BoxOptions;
 using rpc::mesh::Element;
 using rpc::mesh::make_box;
 using rpc::mesh::Mesh;
+using rpc::mesh::Shape;
 using rpc::mesh::Side;
 using rpc::test::expect_error;
 using Position = std::array<GO, 3>;
+
+/// A cell of the lattice, or of a mesh of triangles one of its two: the second is the first turned by 180 degrees.
+struct Cell {
+  Position corner{};
+  int part = 0;
+};
 
 /// Boxes of different shapes, flat and thin ones too, all divisible among up to 4 ranks.
 std::vector<BoxOptions> boxes()
@@ -30,7 +39,11 @@ std::vector<BoxOptions> boxes()
           {{0, 0}, {7, 1}, {7, 1}, Element{2, 1}},
           {{0, 0}, {1, 7}, {1, 7}, Element{2, 2}},
           {{-1, 2, 0.5}, {0, 3, 4}, {3, 2, 4}, Element{3, 1}},
-          {{-1, 2, 0.5}, {0, 3, 4}, {2, 2, 3}, Element{3, 2}}};
+          {{-1, 2, 0.5}, {0, 3, 4}, {2, 2, 3}, Element{3, 2}},
+          {{-1, 2}, {1.5, 3}, {5, 3}, Element{2, 1, Shape::simplex}},
+          {{-1, 2}, {1.5, 3}, {3, 4}, Element{2, 2, Shape::simplex}},
+          {{0, 0}, {1, 7}, {1, 7}, Element{2, 1, Shape::simplex}},
+          {{0, 0}, {7, 1}, {7, 1}, Element{2, 2, Shape::simplex}}};
 }
 
 std::string text_of(const BoxOptions &box)
@@ -45,10 +58,11 @@ std::string text_of(const BoxOptions &box)
 struct Lattice {
   const BoxOptions &box;
   int dim = box.element.dim, order = box.element.order;
+  int parts = box.element.shape == Shape::simplex ? 2 : 1; // cells of the mesh in one of the lattice
 
   GO extent(const int d, const int per_cell) const { return GO(per_cell) * box.cells[d]; }
   GO num_nodes() const { return count(order, 1); }
-  GO num_cells() const { return count(1, 0); }
+  GO num_cells() const { return parts * count(1, 0); } // of the mesh
   GO count(const int per_cell, const int more) const
   {
     GO n = 1;
@@ -87,15 +101,21 @@ struct Lattice {
     return at;
   }
   GO node_id(const Position &at) const { return id(at, order, 1); }
-  GO cell_id(const Position &at) const { return id(at, 1, 0); }
-  std::set<GO> nodes_of(const Position &cell) const
+  GO cell_id(const Cell &cell) const { return parts * id(cell.corner, 1, 0) + cell.part; }
+  Cell cell(const GO cell_id) const { return {position(cell_id / parts, 1, 0), static_cast<int>(cell_id % parts)}; }
+  Position node_of(const Cell &cell, const int a) const
+  {
+    Position at{};
+    for (int d = 0; d < dim; ++d) {
+      const int step = box.element.lattice()[a][d];
+      at[d] = order * cell.corner[d] + (cell.part == 0 ? step : order - step);
+    }
+    return at;
+  }
+  std::set<GO> nodes_of(const Cell &cell) const
   {
     std::set<GO> nodes;
-    for (const auto &step : box.element.lattice()) {
-      Position at{};
-      for (int d = 0; d < dim; ++d) at[d] = order * cell[d] + step[d];
-      nodes.insert(node_id(at));
-    }
+    for (int a = 0; a < box.element.num_nodes(); ++a) nodes.insert(node_id(node_of(cell, a)));
     return nodes;
   }
 };
@@ -107,7 +127,8 @@ struct Made {
   Mesh mesh = make_box(box, Tpetra::getDefaultComm());
   rpc::HostView<double **> coords{"coords", mesh.coords.extent(0), mesh.coords.extent(1)};
   rpc::HostView<LO **> cells{"cells", mesh.cells.extent(0), mesh.cells.extent(1)};
-  std::vector<Position> node, cell;
+  std::vector<Position> node;
+  std::vector<Cell> cell;
 
   explicit Made(const BoxOptions &options) : box(options)
   {
@@ -115,9 +136,10 @@ struct Made {
     Kokkos::deep_copy(cells, rpc::to_host(mesh.cells));
     for (LO n = 0; n < mesh.num_local_nodes(); ++n) node.push_back(lattice.node_position(coords, n));
     for (LO c = 0; c < mesh.num_cells(); ++c) {
-      Position corner = node[cells(c, 0)]; // node 0 is the lattice's lowest
-      for (int d = 0; d < mesh.dim(); ++d) corner[d] /= mesh.element.order;
-      cell.push_back(corner);
+      Cell place{node[cells(c, 0)], node[cells(c, 1)][0] < node[cells(c, 0)][0] ? 1 : 0};
+      for (int d = 0; d < mesh.dim(); ++d) // node 0 is the lattice's lowest, in a turned triangle its highest
+        place.corner[d] = place.corner[d] / mesh.element.order - place.part;
+      cell.push_back(place);
     }
   }
   GO node_id(const LO lid) const { return lattice.node_id(node[lid]); }
@@ -219,11 +241,49 @@ TEST(Box, LocalCellsAreThoseThatTouchAnOwnedNodeAndNoOthers)
     std::set<GO> owned, touching, local;
     for (LO n = 0; n < made.mesh.num_owned_nodes(); ++n) owned.insert(made.node_id(n));
     for (GO c = 0; c < made.lattice.num_cells(); ++c)
-      for (const GO node : made.lattice.nodes_of(made.lattice.position(c, 1, 0)))
+      for (const GO node : made.lattice.nodes_of(made.lattice.cell(c)))
         if (owned.count(node) > 0) touching.insert(c);
-    for (const Position &cell : made.cell) local.insert(made.lattice.cell_id(cell));
-    EXPECT_EQ(local, touching);
+    const int parts = made.lattice.parts;
+    std::set<GO> expected; // two triangles of one rectangle go together
+    for (const GO c : touching)
+      for (int part = 0; part < parts; ++part) expected.insert(c - c % parts + part);
+    for (const Cell &cell : made.cell) local.insert(made.lattice.cell_id(cell));
+    EXPECT_EQ(local, expected);
     EXPECT_EQ(local.size(), made.cell.size()); // each once
+  });
+}
+
+TEST(Box, AreasOfPlaneCellsArePositiveAndSumToTheBox)
+{
+  for_each_box([](const Made &made) {
+    if (made.mesh.dim() == 3) return; // has no areas
+    const int vertices = made.mesh.element.num_vertices();
+    double mine = 0, largest = 0, least = std::numeric_limits<double>::max();
+    for (LO c = 0; c < made.mesh.num_cells(); ++c) {
+      double area = 0;
+      for (int a = 0; a < vertices; ++a) {
+        const LO from = made.cells(c, a), to = made.cells(c, (a + 1) % vertices);
+        area += 0.5 * (made.coords(from, 0) * made.coords(to, 1) - made.coords(from, 1) * made.coords(to, 0));
+      }
+      largest = std::max(largest, area);
+      least = std::min(least, area);
+      if (c < made.mesh.num_owned_cells) mine += area;
+    }
+    double whole = 1, equal = 1. / made.lattice.num_cells();
+    for (int d = 0; d < 2; ++d) whole *= made.box.upper[d] - made.box.lower[d];
+    EXPECT_NEAR(largest, equal * whole, 1e-13 * whole);
+    EXPECT_NEAR(least, equal * whole, 1e-13 * whole);
+    EXPECT_NEAR(rpc::sum_all(made.mesh.comm(), mine), whole, 1e-13 * whole);
+  });
+}
+
+TEST(Box, IsOneBlock)
+{
+  for_each_box([](const Made &made) {
+    EXPECT_EQ(made.mesh.blocks, std::vector<std::string>{"body"});
+    const auto block = rpc::to_host(made.mesh.block);
+    ASSERT_EQ(static_cast<LO>(block.extent(0)), made.mesh.num_cells());
+    for (LO c = 0; c < made.mesh.num_cells(); ++c) EXPECT_EQ(block(c), 0);
   });
 }
 
@@ -232,9 +292,7 @@ TEST(Box, CellNodesFollowTheElementsLattice)
   for_each_box([](const Made &made) {
     for (LO c = 0; c < made.mesh.num_cells(); ++c)
       for (int a = 0; a < made.mesh.element.num_nodes(); ++a)
-        for (int d = 0; d < made.mesh.dim(); ++d)
-          EXPECT_EQ(made.node[made.cells(c, a)][d],
-                    made.mesh.element.order * made.cell[c][d] + made.mesh.element.lattice()[a][d]);
+        EXPECT_EQ(made.node[made.cells(c, a)], made.lattice.node_of(made.cell[c], a));
   });
 }
 
@@ -242,7 +300,7 @@ TEST(Box, LocalNodesAreThoseOfLocalCellsEachOnce)
 {
   for_each_box([](const Made &made) {
     std::set<GO> of_cells, local;
-    for (const Position &cell : made.cell) of_cells.merge(made.lattice.nodes_of(cell));
+    for (const Cell &cell : made.cell) of_cells.merge(made.lattice.nodes_of(cell));
     for (LO n = 0; n < made.mesh.num_local_nodes(); ++n) local.insert(made.node_id(n));
     EXPECT_EQ(local, of_cells);
     EXPECT_EQ(static_cast<LO>(local.size()), made.mesh.num_local_nodes());
@@ -287,12 +345,13 @@ TEST(Box, SidesHoldEachFacetThatTouchesAnOwnedNodeOnce)
       for (GO c = 0; c < made.lattice.num_cells(); ++c) {
         std::set<GO> facet;
         bool touches = false;
-        for (const GO node : made.lattice.nodes_of(made.lattice.position(c, 1, 0))) {
+        for (const GO node : made.lattice.nodes_of(made.lattice.cell(c))) {
           if (!on_side(node)) continue;
           facet.insert(node);
           touches = touches || owned.count(node) > 0;
         }
-        if (touches) expected.insert(facet);
+        // a triangle may have a vertex on the side, and no edge
+        if (touches && static_cast<int>(facet.size()) == made.mesh.element.num_facet_nodes()) expected.insert(facet);
       }
       const auto facets = rpc::to_host(made.mesh.side(direction.name, "test").facets);
       for (std::size_t f = 0; f < facets.extent(0); ++f) {
@@ -302,6 +361,20 @@ TEST(Box, SidesHoldEachFacetThatTouchesAnOwnedNodeOnce)
       }
       EXPECT_EQ(found, expected);
       EXPECT_EQ(facets.extent(0), expected.size());
+    }
+  });
+}
+
+TEST(Box, EachFacetOfASideHasItsCellOwnedByOneRank)
+{
+  for_each_box([](const Made &made) {
+    for (int k = 0; k < 2 * made.mesh.dim(); ++k) {
+      const Side &side = made.mesh.side(directions()[k].name, "test");
+      const auto cell = rpc::to_host(side.cell);
+      GO mine = 0, all = 1;
+      for (std::size_t f = 0; f < cell.extent(0); ++f) mine += cell(f) < made.mesh.num_owned_cells ? 1 : 0;
+      for (int d = 0; d < made.mesh.dim(); ++d) all *= d == directions()[k].d ? 1 : made.box.cells[d];
+      EXPECT_EQ(rpc::sum_all(made.mesh.comm(), mine), all) << side.name;
     }
   });
 }

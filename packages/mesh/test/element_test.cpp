@@ -4,17 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <set>
 
 namespace
 {
 
 using rpc::mesh::Element;
+using rpc::mesh::Shape;
 using Nodes = std::vector<std::vector<int>>;
 
 std::vector<Element> all_elements()
 {
-  return {{2, 1}, {2, 2}, {3, 1}, {3, 2}};
+  return {{2, 1}, {2, 2}, {3, 1}, {3, 2}, {2, 1, Shape::simplex}, {2, 2, Shape::simplex}};
 }
 
 std::string text_of(const Element &element)
@@ -35,11 +37,13 @@ TEST(Element, LatticeHasEachPositionOnceVerticesFirst)
     const auto &lattice = element.lattice();
     ASSERT_EQ(static_cast<int>(lattice.size()), element.num_nodes());
     EXPECT_EQ(std::set(lattice.begin(), lattice.end()).size(), lattice.size());
-    const int vertices = 1 << element.dim;
+    const bool simplex = element.shape == Shape::simplex;
+    EXPECT_EQ(element.num_vertices(), simplex ? element.dim + 1 : 1 << element.dim);
     for (int a = 0; a < element.num_nodes(); ++a) {
       ASSERT_EQ(static_cast<int>(lattice[a].size()), element.dim);
       for (const int k : lattice[a]) EXPECT_TRUE(0 <= k && k <= element.order);
-      EXPECT_EQ(is_vertex(element, a), a < vertices);
+      EXPECT_TRUE(!simplex || std::accumulate(lattice[a].begin(), lattice[a].end(), 0) <= element.order);
+      EXPECT_EQ(is_vertex(element, a), a < element.num_vertices());
     }
   }
 }
@@ -62,26 +66,41 @@ TEST(Element, NodesAreNumberedAsInExodus)
   EXPECT_EQ(quad[8], (std::vector<int>{1, 1}));
 }
 
+TEST(Element, NodesOfTrianglesAreNumberedAsInExodus)
+{
+  EXPECT_EQ((Element{2, 1, Shape::simplex}.lattice()), (Nodes{{0, 0}, {1, 0}, {0, 1}}));
+  const auto &triangle = Element{2, 2, Shape::simplex}.lattice();
+  EXPECT_EQ(Nodes(triangle.begin(), triangle.begin() + 3), (Nodes{{0, 0}, {2, 0}, {0, 2}}));
+  for (int a = 0; a < 3; ++a) // TRI6 has its further nodes in the middle of the edges 0-1, 1-2, 2-0
+    for (int d = 0; d < 2; ++d) EXPECT_EQ(2 * triangle[3 + a][d], triangle[a][d] + triangle[(a + 1) % 3][d]);
+}
+
 TEST(Element, FacetsAreTheSidesOfTheLatticeEachOnce)
 {
   for (const Element &element : all_elements()) {
     SCOPED_TRACE(text_of(element));
     ASSERT_EQ(static_cast<int>(element.facets().size()), element.num_facets());
-    std::set<std::pair<int, int>> sides; // direction, position
+    std::set<std::pair<int, int>> sides; // direction, position; the last direction is that of the coordinates' sum
     for (const auto &facet : element.facets()) {
       ASSERT_EQ(static_cast<int>(facet.size()), element.num_facet_nodes());
       EXPECT_EQ(std::set(facet.begin(), facet.end()).size(), facet.size());
       for (int a = 0; a < element.num_facet_nodes(); ++a)
         EXPECT_EQ(is_vertex(element, facet[a]), a < 1 << (element.dim - 1));
-      for (int d = 0; d < element.dim; ++d) {
-        const auto position = [&](const int node) { return element.lattice()[node][d]; };
+      for (int d = 0; d <= element.dim; ++d) {
+        const auto position = [&](const int node) {
+          const auto &at = element.lattice()[node];
+          return d < element.dim ? at[d] : std::accumulate(at.begin(), at.end(), 0);
+        };
         const int first = position(facet[0]);
         if (std::all_of(facet.begin(), facet.end(), [&](const int a) { return position(a) == first; }))
           sides.insert({d, first});
       }
     }
     std::set<std::pair<int, int>> expected;
-    for (int d = 0; d < element.dim; ++d) expected.insert({{d, 0}, {d, element.order}});
+    const bool simplex = element.shape == Shape::simplex;
+    for (int d = 0; d < element.dim; ++d) expected.insert({d, 0});
+    for (int d = 0; d < element.dim && !simplex; ++d) expected.insert({d, element.order});
+    if (simplex) expected.insert({element.dim, element.order});
     EXPECT_EQ(sides, expected);
   }
 }
@@ -90,6 +109,8 @@ TEST(Element, FacetsComeInTheOrderOfExodusSides)
 {
   EXPECT_EQ((Element{2, 1}.facets()), (Nodes{{0, 1}, {1, 2}, {2, 3}, {3, 0}}));
   EXPECT_EQ((Element{2, 2}.facets()), (Nodes{{0, 1, 4}, {1, 2, 5}, {2, 3, 6}, {3, 0, 7}}));
+  EXPECT_EQ((Element{2, 1, Shape::simplex}.facets()), (Nodes{{0, 1}, {1, 2}, {2, 0}}));
+  EXPECT_EQ((Element{2, 2, Shape::simplex}.facets()), (Nodes{{0, 1, 3}, {1, 2, 4}, {2, 0, 5}}));
   EXPECT_EQ((Element{3, 1}.facets()),
             (Nodes{{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}, {0, 3, 2, 1}, {4, 5, 6, 7}}));
 }
@@ -109,9 +130,10 @@ TEST(Element, FacetNodesWalkTheFacetsOwnLatticeWithTheNormalOutward)
       const auto s = tangent(1), t = element.dim == 3 ? tangent(3) : std::array<int, 3>{};
       std::array<int, 3> normal{s[1], -s[0], 0};
       if (element.dim == 3) normal = {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]};
-      int outward = 0;
-      for (int d = 0; d < element.dim; ++d) outward += normal[d] * (2 * x0[d] - element.order);
-      EXPECT_EQ(outward, element.order);
+      int outward = 0; // from the mean of the vertices to the facet, times their number
+      for (int a = 0; a < element.num_vertices(); ++a)
+        for (int d = 0; d < element.dim; ++d) outward += normal[d] * (x0[d] - lattice[a][d]);
+      EXPECT_EQ(outward, element.order * element.num_vertices() / (element.shape == Shape::simplex ? 3 : 2));
       // the facet's lattice, with (1, 0) along s and (0, 1) along t
       const Nodes own =
           element.dim == 3 ? Element{2, element.order}.lattice() : Nodes{{0, 0}, {element.order, 0}, {1, 0}};
@@ -126,19 +148,37 @@ TEST(Element, NamesAreThoseOfTheDeckAndOfExodus)
 {
   EXPECT_EQ((Element{2, 1}.name()), "Q1");
   EXPECT_EQ((Element{3, 2}.name()), "Q2");
-  const std::vector<std::string> expected = {"QUAD4", "QUAD9", "HEX8", "HEX27"};
+  EXPECT_EQ((Element{2, 1, Shape::simplex}.name()), "P1");
+  EXPECT_EQ((Element{2, 2, Shape::simplex}.name()), "P2");
+  const std::vector<std::string> expected = {"QUAD4", "QUAD9", "HEX8", "HEX27", "TRI3", "TRI6"};
+  ASSERT_EQ(all_elements().size(), expected.size());
   for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_EQ(all_elements()[k].exodus_name(), expected[k]);
 }
 
-TEST(ParseElement, KnowsQ1AndQ2AndListsThemOtherwise)
+TEST(Element, EqualMeansDimensionOrderAndShape)
 {
-  EXPECT_EQ(rpc::mesh::parse_element("Q1", 3).order, 1);
-  EXPECT_EQ(rpc::mesh::parse_element("Q2", 2).order, 2);
-  EXPECT_EQ(rpc::mesh::parse_element("Q1", 3).dim, 3);
-  rpc::test::expect_error(rpc::ExitCode::bad_input, {"\"Mesh->Element\"", "Q1, Q2", "\"P1\""},
-                          [] { rpc::mesh::parse_element("P1", 2); });
-  rpc::test::expect_error(rpc::ExitCode::bad_input, {"\"Mesh->Element\"", "3D", "\"Q2\""},
-                          [] { rpc::mesh::parse_element("Q2", 3); });
+  for (std::size_t a = 0; a < all_elements().size(); ++a)
+    for (std::size_t b = 0; b < all_elements().size(); ++b) EXPECT_EQ(all_elements()[a] == all_elements()[b], a == b);
+}
+
+TEST(ParseElement, KnowsTheElementsByTheirNames)
+{
+  for (const Element &element : all_elements()) {
+    if (element.dim == 2 || element.order == 1) {
+      EXPECT_TRUE(rpc::mesh::parse_element(element.name(), element.dim) == element) << text_of(element);
+    }
+  }
+}
+
+TEST(ParseElement, RefusesOthersWithTheListOfThoseThatExist)
+{
+  using rpc::test::expect_error;
+  for (const std::string name : {"Q3", "P0", "P3", "p1", "", "T3"})
+    expect_error(rpc::ExitCode::bad_input, {"\"Mesh->Element\"", "P1, P2, Q1, Q2", "\"" + name + "\""},
+                 [&] { rpc::mesh::parse_element(name, 2); });
+  for (const std::string name : {"Q2", "P1", "P2"})
+    expect_error(rpc::ExitCode::bad_input, {"\"Mesh->Element\"", "3D", "\"" + name + "\""},
+                 [&] { rpc::mesh::parse_element(name, 3); });
 }
 
 } // namespace

@@ -215,6 +215,8 @@ Teuchos::ParameterList valid_newton_parameters()
   Teuchos::ParameterList valid("NOX");
   valid.set("Step Tolerance", 1e-10, "Newton stops at |step|_2/|u|_2 below this, > 0: the paper's test.");
   valid.set("Residual Tolerance", 1e-11, "Newton also stops at |F|_2/|load|_2 below this, > 0.");
+  valid.set("Active Set Start", true,
+            "Whether an active-set iteration looks for the contact states before the first Newton iteration.");
   valid.set("Maximum Iterations", 200, "Newton steps per Uzawa iteration at most, > 0.");
   for (const char *name : passed_to_nox)
     set_pass_through(valid, name,
@@ -232,6 +234,7 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
   options.step_tolerance = list.get<double>("Step Tolerance");
   options.residual_tolerance = list.get<double>("Residual Tolerance");
   options.max_iterations = list.get<int>("Maximum Iterations");
+  options.active_set_start = list.get<bool>("Active Set Start");
   RPC_REQUIRE(options.step_tolerance > 0, "deck: \"NOX->Step Tolerance\" must be > 0, got " << options.step_tolerance);
   RPC_REQUIRE(options.residual_tolerance > 0,
               "deck: \"NOX->Residual Tolerance\" must be > 0, got " << options.residual_tolerance);

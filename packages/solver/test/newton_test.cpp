@@ -93,12 +93,12 @@ struct Beam {
     const auto load = rcp(new Vector(d.owned_dofs));
     const ScalarField push("push", [](const Point &x) { return -20 * std::sin(std::acos(-1.) * x[0] / 5); });
     fem::add_traction(d, d.mesh->side("top", ""), {ScalarField(0.), push, ScalarField(0.)}, "Traction", *load);
-    auto problem =
-        fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, {2000, 0.3}), load, fem::dirichlet_dofs(d, held));
+    auto problem = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, fem::Material{2000, 0.3}), load,
+                                            fem::dirichlet_dofs(d, held));
     contact::ContactOptions contact;
     contact.side = "bottom";
     contact.yield_stress = ScalarField(xi);
-    auto nodes = contact::contact_nodes(d, contact, problem.dirichlet);
+    auto nodes = contact::contact_nodes(d, {contact}, problem.dirichlet);
     functional = std::make_shared<contact::SmoothedFunctional>(d.mesh->owned_nodes->getComm(), std::move(problem),
                                                                std::move(nodes));
     linear = std::make_shared<solver::LinearSolver>(options, functional->hessian(), fem::node_coordinates(d),

@@ -1,29 +1,44 @@
 #pragma once
 
+#include "rpc/contact/obstacle.hpp"
 #include "rpc/core/field.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <string>
+#include <vector>
 
 namespace rpc::contact
 {
 
+/// The normal nu along which penetration is measured.
+enum class Normal {
+  surface,    ///< outward normal of the body
+  foundation, ///< of the obstacle, into the foundation
+  fixed       ///< one direction for all nodes
+};
+
 /// A side that may touch the foundation, and the foundation's law there.
 struct ContactOptions {
-  std::string side;         ///< empty: nothing touches
+  std::string path = "Contact"; ///< in the deck, for messages
+  std::string side;
   ScalarField yield_stress; ///< xi > 0 [Pa], may be inf
-  ScalarField gap;          ///< g [m], distance to the foundation along the outward normal; < 0 is initial penetration
-  double penalty = 1e8;     ///< r > 0 [Pa/m]
+  ScalarField gap; ///< g [m], distance to the foundation along the normal; < 0 is initial penetration. Without obstacle
+  Obstacle obstacle; ///< the foundation's surface, from which the gap follows
+  Normal normal = Normal::surface;
+  Point direction{};    ///< unit, of Normal::fixed
+  double penalty = 1e8; ///< r > 0 [Pa/m]
 };
 
 /// Parameters of the deck's `Contact` sublist.
 Teuchos::ParameterList valid_contact_parameters();
+/// One entry per contact side; none if nothing touches.
 /// @throws rpc::Error (bad_input) on anything out of range that needs no mesh to be seen
-ContactOptions contact_options(const Teuchos::ParameterList &list, const FieldParser &parse);
+std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse);
 
-/// The nodes of one contact side that this rank owns, each a point with a weight. doc/theory.md (2.6), (3.4)
+/// The nodes of the contact sides that this rank owns, each a point with a weight; side by side, so that a node of two
+/// sides is two points. doc/theory.md (2.6), (3.4)
 ///
 /// v_i = direction_i . u_i - free_gap_i is the penetration of node i, where `direction` is the normal without its
 /// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether
@@ -31,9 +46,10 @@ ContactOptions contact_options(const Teuchos::ParameterList &list, const FieldPa
 /// and open to choice at v = 0.
 struct ContactNodes {
   int dim = 2;
-  DeviceView<LO *> node;           ///< (n) owned node lids, ascending
+  HostView<LO *> first;            ///< (sides + 1) where each side's points begin
+  DeviceView<LO *> node;           ///< (n) owned node lids, ascending on each side
   DeviceView<double *> weight;     ///< (n) [m^(dim-1)]
-  DeviceView<double **> normal;    ///< (n, dim) outward unit normal
+  DeviceView<double **> normal;    ///< (n, dim) unit normal nu, from the body into the foundation
   DeviceView<double **> direction; ///< (n, dim) normal, prescribed components 0
   DeviceView<double *> gap;        ///< (n) g [m]
   DeviceView<double *> free_gap;   ///< (n) g - normal . u_prescribed [m]
@@ -43,14 +59,15 @@ struct ContactNodes {
   GO num_total = 0;                ///< over all ranks
   GO num_fixed = 0;                ///< over all ranks
 
+  int num_sides() const { return static_cast<int>(first.extent(0)) - 1; }
   LO size() const { return static_cast<LO>(node.extent(0)); }
 };
 
-/// Collective. An empty side name gives no nodes.
-/// @throws rpc::Error bad_input if the side does not exist, xi <= 0 or NaN, or the gap is not finite somewhere (the
-/// place is named);
-///         no_solution if a prescribed displacement presses a node into a rigid foundation
-ContactNodes contact_nodes(const fem::Discretization &d, const ContactOptions &options,
+/// Collective.
+/// @throws rpc::Error bad_input if a side does not exist or comes twice, xi <= 0 or NaN, the gap is not finite somewhere,
+/// or the normal does not lead to the obstacle (the place is named); no_solution if a prescribed displacement presses a
+/// node into a rigid foundation
+ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
                            const fem::DirichletDofs &dirichlet);
 
 /// direction_i . u_i at one node, for kernels [m].

@@ -3,30 +3,43 @@
 #include "rpc/contact/smoothed_functional.hpp"
 
 #include <array>
+#include <vector>
 
 namespace rpc::contact
 {
 
-/// What a user reads off the contact side: values at this rank's contact nodes, and sums over all ranks.
-struct ContactResult {
-  DeviceView<double *> normal_displacement; ///< (n) u_nu [m]
-  DeviceView<double *> penetration;         ///< (n) u_nu - g [m]; > 0: the foundation has given way
-  DeviceView<double *> pressure;            ///< (n) [Pa] >= 0
-  DeviceView<int *> state;                  ///< (n) State: open where p = 0, yielded where p = xi, else stuck
-
+/// Sums and maxima over a contact side, or all of them, on all ranks.
+struct ContactSums {
+  GO num_nodes = 0;
   std::array<double, 3> force{};      ///< of the foundation on the body, sum of -w p normal [N], in 2D per m
   double max_pressure = 0;            ///< [Pa]
   double max_penetration = 0;         ///< largest u_nu - g where > 0 [m]
   double max_initial_penetration = 0; ///< largest -g where > 0 [m]
   double contact_length = 0;          ///< sum of weights with p > 0 [m^(dim-1)]
   double yielded_length = 0;          ///< sum of weights with p = xi [m^(dim-1)]
+
+  ContactSums &operator+=(const ContactSums &other);
+};
+
+/// What a user reads off the contact sides: values at this rank's contact nodes, and sums over all ranks.
+struct ContactResult {
+  DeviceView<double *> normal_displacement; ///< (n) u_nu [m]
+  DeviceView<double *> penetration;         ///< (n) u_nu - g [m]; > 0: the foundation has given way
+  DeviceView<double *> pressure;            ///< (n) [Pa] >= 0
+  DeviceView<int *> state;                  ///< (n) State: open where p = 0, yielded where p = xi, else stuck
+
+  std::vector<ContactSums> sides; ///< in the order of the contact sides
+  ContactSums total;
 };
 
 /// Reads displacement u and the functional's multipliers. Nodes whose normal displacement is prescribed get their
 /// pressure as told at ContactNodes, and where the law leaves it open from their neighbours. doc/theory.md (3.5);
 /// collective
-/// @param side  the side that the contact nodes were made from; null where there are none
-ContactResult contact_result(const fem::Discretization &d, const mesh::Side *side, const SmoothedFunctional &functional,
-                             const Vector &u);
+/// @param sides  that the contact nodes were made from
+ContactResult contact_result(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
+                             const SmoothedFunctional &functional, const Vector &u);
+
+/// Nodal forces of the foundation on the body, -w p normal (owned dofs, [N]), prescribed components included.
+Vector contact_forces(const fem::Discretization &d, const ContactNodes &contact, const ContactResult &result);
 
 } // namespace rpc::contact

@@ -3,6 +3,8 @@
 #include "rpc/contact/contact_nodes.hpp"
 #include "rpc/contact/foundation_law.hpp"
 
+#include <cstdint>
+
 namespace rpc::contact
 {
 
@@ -10,6 +12,13 @@ namespace rpc::contact
 /// counted.
 struct StateCounts {
   GO open = 0, stuck = 0, yielded = 0;
+};
+
+/// What a choice of states has changed, over all ranks.
+struct StateChange {
+  GO nodes = 0;                  ///< that have another state than before
+  GO stiffness = 0;              ///< of them, those that began or ceased to stick
+  std::uint64_t fingerprint = 0; ///< of all states: equal for equal ones
 };
 
 /// The functional along a line t -> u + t d, as far as its slope goes: convex, piecewise quadratic. doc/theory.md (4.3)
@@ -58,10 +67,16 @@ public:
   double energy(const Vector &u) const;
   void gradient(const Vector &u, Vector &F) const;
   /// The gradient at u of the quadratic piece that hessian() belongs to: stuck nodes carry lambda + r v, whatever that
-  /// is. (5.4)
+  /// is, open ones 0, yielded ones xi. (5.4)
   void piece_gradient(const Vector &u, Vector &F) const;
   /// Brings hessian() to H(u). @return number of contact nodes whose stiffness changed, over all ranks
   GO update_hessian(const Vector &u);
+  /// One choice of the active-set iteration: takes the piece's pressures p for multipliers, and brings hessian() to the
+  /// states of p + rho v. (5.7) Where no state changes, nothing is done.
+  /// @param rho  [Pa/m]
+  StateChange choose_states(const Vector &u, double rho);
+  /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
+  void reset_multipliers();
   const RCP<CrsMatrix> &hessian() const { return problem_.stiffness; }
   /// @param F  gradient at u
   LineModel along(const Vector &u, const Vector &d, const Vector &F) const;
@@ -92,10 +107,11 @@ private:
   RCP<const Comm> comm_;
   fem::ElasticProblem problem_;
   ContactNodes contact_;
-  double applied_force_ = 0;           // |applied load|_2 on free unknowns [N]
-  double lifted_force_ = 0;            // the same with the forces of prescribed displacements [N]
-  DeviceView<double *> lambda_;        // (contact nodes) [Pa]
-  DeviceView<char *> stuck_in_matrix_; // (contact nodes) whose blocks hold r w m m^T
+  double applied_force_ = 0;    // |applied load|_2 on free unknowns [N]
+  double lifted_force_ = 0;     // the same with the forces of prescribed displacements [N]
+  DeviceView<double *> lambda_; // (contact nodes) [Pa]
+  DeviceView<State *> piece_;   // (contact nodes) states that the matrix belongs to: stuck ones' blocks hold r w m m^T
+  bool piece_chosen_ = false;   // else piece_ is that of K itself, and says nothing about pressures
   DeviceView<std::size_t **> block_; // (contact nodes, dim) entry where the node's own block begins in each of its rows
   DeviceView<double ***> elastic_;   // (contact nodes, dim, dim) that block of K
 };

@@ -29,7 +29,8 @@ void set_pass_through(Teuchos::ParameterList &valid, const std::string &name, co
 void set_named_entries(Teuchos::ParameterList &valid, const std::string &name, const Teuchos::ParameterList &entry,
                        const std::string &doc);
 
-/// Checks names and types of `list` against `valid`, recursively, and fills in the defaults.
+/// Checks names and types of `list` against `valid`, recursively, and fills in the defaults, whose entries
+/// then say isDefault().
 ///
 /// An int is taken where a double is asked for. Path in messages: "Contact->Yield Stress".
 /// @throws rpc::Error (bad_input) naming the parameter, what is allowed and, for a misspelt name, the nearest valid one

@@ -28,8 +28,10 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
 /// Which unknowns are prescribed, and their values.
 struct DirichletDofs {
   DeviceView<char *> fixed; ///< (overlap dofs) 1 where prescribed
-  RCP<Vector> value;        ///< (owned dofs) [m], 0 where free
-  GO num_fixed = 0;         ///< over all ranks
+  DeviceView<int *>
+      condition;     ///< (owned dofs) index of the condition that prescribes it, the last of several; -1 if free
+  RCP<Vector> value; ///< (owned dofs) [m], 0 where free
+  GO num_fixed = 0;  ///< over all ranks
 };
 
 /// Collective.
@@ -43,7 +45,7 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
 struct ElasticProblem {
   RCP<CrsMatrix> stiffness; ///< symmetric positive definite if rigid motions are held
   RCP<Vector> load;         ///< [N]
-  RCP<Vector> applied_load; ///< before elimination [N]; the same object as load if nothing is moved
+  RCP<Vector> applied_load; ///< before elimination [N]
   DirichletDofs dirichlet;
   double energy_offset =
       0; ///< Pi(u) = u.(stiffness u)/2 - load.u + energy_offset, Pi being that of the problem before elimination [J]
@@ -55,5 +57,11 @@ struct ElasticProblem {
 /// Consumes its arguments. Collective.
 ElasticProblem eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> stiffness, RCP<Vector> load,
                                    DirichletDofs dirichlet);
+
+/// Force with which each condition holds the body: the sum of internal - external forces over the unknowns that it
+/// prescribes [N], in 2D per m. Collective. (2.10)
+/// @param out_of_balance  (owned dofs) internal minus all external forces, contact included [N]
+std::vector<std::array<double, 3>> reaction_forces(const Discretization &d, const DirichletDofs &dirichlet,
+                                                   int num_conditions, const Vector &out_of_balance);
 
 } // namespace rpc::fem

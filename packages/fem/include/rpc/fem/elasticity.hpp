@@ -5,6 +5,8 @@
 
 #include <Teuchos_ParameterList.hpp>
 #include <array>
+#include <map>
+#include <string>
 
 namespace rpc::fem
 {
@@ -18,10 +20,24 @@ struct Material {
   double mu() const { return youngs_modulus / (2 * (1 + poissons_ratio)); }
 };
 
+/// What a body is made of: one material, or several, by the names of the mesh's blocks.
+struct Materials {
+  Material common;                       ///< of all blocks that are not named
+  std::map<std::string, Material> block; ///< by block name
+
+  Materials() = default;
+  Materials(const Material &material) : common(material) {}
+  double largest_youngs_modulus() const; ///< [Pa]
+};
+
 /// Parameters of the deck's `Material` sublist.
 Teuchos::ParameterList valid_material_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
-Material material_options(const Teuchos::ParameterList &list);
+Materials material_options(const Teuchos::ParameterList &list);
+
+/// Lame's constants of each block of a mesh: (blocks; lambda, mu) [Pa].
+/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
+DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materials);
 
 using VectorField = std::array<ScalarField, 3>;
 
@@ -44,12 +60,17 @@ VectorField body_force_options(const Teuchos::ParameterList &list, int dim, cons
 ///
 /// Each rank fills its own rows from its local cells; no communication but the check. [N/m], in 2D per m of thickness
 /// [Pa].
-/// @throws rpc::Error (bad_mesh) on every rank if a cell has a Jacobian <= 0 at a quadrature point
-RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Material &material);
+/// @throws rpc::Error (bad_mesh) on every rank if a cell has a Jacobian <= 0 at a quadrature point, naming the first
+RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &materials);
 
 /// a(u, u), twice the elastic energy [J], in 2D per m, summed over the cells: rigid motion cancels cell by cell.      (1.2)
 /// @param u  (owned dofs) [m], prescribed ones included; collective
-double strain_energy(const Discretization &d, const Material &material, const Vector &u);
+double strain_energy(const Discretization &d, const Materials &materials, const Vector &u);
+
+/// f(ai) = int sigma(u) : grad(N_a e_i), the forces that hold the body in the state u (owned dofs, [N]), summed over the
+/// cells: rigid motion cancels cell by cell, and no row is eliminated. (2.9)
+/// @param u  (owned dofs) [m]; collective
+Vector internal_forces(const Discretization &d, const Materials &materials, const Vector &u);
 
 /// load(ai) += int N_a f_i, over the body, for a force per volume f [N/m^3] (owned dofs, [N], in 2D per m). (2.5)
 /// @param parameter  deck path for messages; collective

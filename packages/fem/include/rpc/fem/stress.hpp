@@ -5,14 +5,16 @@
 namespace rpc::fem
 {
 
-/// Nodal stresses by lumped L2 projection: the volume-weighted mean of the quadrature points' stresses. doc/theory.md
-/// (2.8)
+/// Nodal stresses by polynomial preserving recovery (Zhang and Naga, SIAM J. Sci. Comput. 26, 2005).    doc/theory.md (2.8)
 ///
-/// Second order inside on even meshes, first order at the boundary: for pictures. Columns: xx, yy, xy (2D); xx, yy, zz,
-/// xy, yz, xz (3D); and last the von Mises stress, which in plane strain counts sigma_zz = nu (sigma_xx + sigma_yy).
-/// [Pa]
+/// Around each vertex a polynomial of degree p + 1 is fitted to the nodal displacements, and Hooke's law applied to its
+/// gradient. Exact for displacements of degree p + 1, hence of order p + 1 for smooth ones, at the boundary too; the
+/// element's own stresses have order p. No polynomial mixes blocks; where blocks meet, a node has a mean of both sides.
+/// Columns: xx, yy, xy (2D); xx, yy, zz, xy, yz, xz (3D); and last the von Mises stress, which in plane strain counts
+/// sigma_zz = lambda (eps_xx + eps_yy). [Pa]
 /// @param u  (owned dofs) [m]     @return (owned nodes; 4 or 7); collective
-RCP<MultiVector> nodal_stresses(const Discretization &d, const Material &material, const Vector &u);
+/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
+RCP<MultiVector> nodal_stresses(const Discretization &d, const Materials &materials, const Vector &u);
 
 /// Names of its columns: stress_xx, ..., von_mises.
 std::vector<std::string> stress_names(int dim);

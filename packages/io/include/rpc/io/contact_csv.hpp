@@ -3,34 +3,35 @@
 #include "rpc/core/tpetra.hpp"
 
 #include <string>
+#include <vector>
 
 namespace rpc::io
 {
 
-/// What is known of this rank's contact nodes; each contact node is on one rank.
+/// What is known of this rank's nodes of one contact side; each node is on one rank.
 struct ContactTable {
+  std::string side;
   HostView<GO *> id;            ///< (nodes) rank-independent node id
   HostView<double **> position; ///< (nodes, dim)                     [m]
   HostView<double *> u_nu;      ///< (nodes) normal displacement       [m]
   HostView<double *> gap;       ///< (nodes)                           [m]
   HostView<double *> pressure;  ///< (nodes) compression is > 0        [Pa]
   HostView<int *> state;        ///< (nodes) 0 open, 1 stuck, 2 yielded
+  HostView<GO **> facets; ///< (facets, facet nodes) node ids, the two ends first; each facet of the side once over
+                          ///< all ranks. A node that the table lacks is passed over. Not used in 3D. See
+                          ///< owned_facets()
 };
 
 /// Writes the contact nodes as comma-separated values, whole or not at all; collective on comm.
 ///
-/// 2D: columns x, y, s, u_nu, gap, pressure, state; rows follow the chain of facets from its end with the smaller x,
+/// Sides come one after another. 2D: columns x, y, s, u_nu, gap, pressure, state, side; rows follow the chain of facets from its end with the smaller x,
 /// then y, and s is the length of the way from there, straight from node to node [m]. Several chains follow each other
 /// by their first point, each with its own s; a closed one starts at its point with the smallest x, then y. 3D: columns
-/// x, y, z, u_nu, gap, pressure, state; rows by id. Numbers read back as the same doubles; the file does not depend on
+/// x, y, z, u_nu, gap, pressure, state, side; rows by id. Numbers read back as the same doubles; the file does not depend on
 /// the number of ranks.
-/// @param facets  (facets, facet nodes) node ids, the two ends first; each facet of the contact side once over all
-/// ranks. A node
-///                that the table lacks is passed over. Not used in 3D. See owned_facets()
 /// @throws rpc::Error on every rank: bad_input for a folder that cannot be written to, internal_error for a failed
 /// write, columns
 ///         of different lengths, an id that comes twice or a state that does not exist
-void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const ContactTable &table,
-                       const HostView<GO **> &facets);
+void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const std::vector<ContactTable> &tables);
 
 } // namespace rpc::io

@@ -18,7 +18,7 @@ struct NodalField {
 /// Writes mesh and fields as one Exodus file, whole or not at all; collective.
 ///
 /// Rank 0 writes, in the order of Mesh::node_id and Mesh::cell_id, so that the file does not depend on the number of
-/// ranks: one element block "body", a side set for each side of the mesh with its name, one time step at time 0.
+/// ranks: the mesh's blocks and, as side sets, its sides with their names, one time step at time 0.
 /// Coordinates and fields are collected one at a time. No date is written: equal results give equal files. 64-bit
 /// offsets, for files beyond 2 GiB.
 /// @param title  cut at 80 characters

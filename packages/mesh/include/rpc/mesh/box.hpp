@@ -16,15 +16,15 @@ struct BoxOptions {
   Element element;
 };
 
-/// Parameters of the deck's `Mesh` sublist.
-Teuchos::ParameterList valid_parameters();
+/// Adds the box's parameters to a valid list.
+void add_box_parameters(Teuchos::ParameterList &valid);
 
 /// @throws rpc::Error (bad_input) on anything out of range
 BoxOptions box_options(const Teuchos::ParameterList &list);
 
 /// Makes this rank's part of a box; no communication of mesh data, and no rank holds the whole.
 ///
-/// Ranks form a grid of blocks chosen for the least number of shared cell faces. Sides are named left, right (x),
+/// P1 and P2 cut each cell of the grid into two triangles. Ranks form a grid of blocks chosen for the least number of shared cell faces. Sides are named left, right (x),
 /// bottom, top (y), and in 3D back, front (z). Node ids run over the lattice, x fastest. Collective on comm.
 /// @throws rpc::Error (bad_mesh) if there are fewer cells than ranks in every direction
 Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm);

@@ -9,7 +9,8 @@
 namespace rpc::mesh
 {
 
-/// A named part of the boundary: those of its facets that touch a node which this rank owns.
+/// A named part of the boundary: those of its facets that touch a node which this rank owns, or belong to a cell which
+/// it owns. Over all ranks each facet has an owned cell once.
 struct Side {
   std::string name;
   DeviceView<LO **>
@@ -30,10 +31,12 @@ struct Mesh {
   RCP<const Map> overlap_nodes; ///< all nodes of local cells, owned first
   DeviceView<double **> coords; ///< (overlap nodes, dim) [m]
   DeviceView<LO **> cells;      ///< (local cells, nodes per cell) overlap node lids
+  DeviceView<int *> block;      ///< (local cells) index into blocks
   HostView<GO *> node_id;       ///< (owned nodes)
-  HostView<GO *> cell_id;       ///< (owned cells)
+  HostView<GO *> cell_id;       ///< (owned cells); over the whole mesh they run block by block
   LO num_owned_cells = 0;
-  std::vector<Side> sides;
+  std::vector<std::string> blocks; ///< names of the parts of the body, the same on all ranks
+  std::vector<Side> sides;         ///< the same on all ranks, though a rank may have no facets of one
 
   int dim() const { return element.dim; }
   LO num_owned_nodes() const { return num_local(*owned_nodes); }

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-namespace rpc::io
+namespace rpc
 {
 
 /// Runs `work` on rank 0 only; collective on comm.
@@ -12,4 +12,4 @@ namespace rpc::io
 /// exception
 void on_root(const Teuchos::Comm<int> &comm, ExitCode default_code, const std::function<void()> &work);
 
-} // namespace rpc::io
+} // namespace rpc

@@ -1,7 +1,7 @@
-#include "rpc/io/on_root.hpp"
+#include "rpc/core/on_root.hpp"
 
+#include "expect_error.hpp"
 #include "rpc/core/tpetra.hpp"
-#include "scratch.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace
 
 using rpc::Error;
 using rpc::ExitCode;
-using rpc::io::on_root;
+using rpc::on_root;
 using rpc::test::expect_error;
 
 TEST(OnRoot, WorkRunsOnceOnRankZero)

@@ -1,10 +1,10 @@
-#include "rpc/io/on_root.hpp"
+#include "rpc/core/on_root.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 #include <optional>
 #include <string>
 
-namespace rpc::io
+namespace rpc
 {
 
 void on_root(const Teuchos::Comm<int> &comm, const ExitCode default_code, const std::function<void()> &work)
@@ -26,4 +26,4 @@ void on_root(const Teuchos::Comm<int> &comm, const ExitCode default_code, const 
   if (shared_code >= 0) throw_if_any(comm, static_cast<ExitCode>(shared_code), message);
 }
 
-} // namespace rpc::io
+} // namespace rpc

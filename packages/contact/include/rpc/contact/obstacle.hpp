@@ -1,0 +1,37 @@
+#pragma once
+
+#include "rpc/core/field.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <optional>
+#include <string>
+
+namespace rpc::contact
+{
+
+/// The foundation's surface where it has a simple shape; in 3D a circle is a sphere.
+struct Obstacle {
+  enum class Kind { none, plane, circle };
+
+  Kind kind = Kind::none;
+  Point point{};         ///< of a plane, or the centre of a circle [m]
+  Point normal{};        ///< of a plane, unit, out of the foundation towards the body
+  double radius = 0;     ///< of a circle [m]
+  bool encloses = false; ///< the body lies inside of the circle, the foundation outside
+};
+
+/// Parameters of an `Obstacle` sublist.
+Teuchos::ParameterList valid_obstacle_parameters();
+/// @param path  of the sublist, for messages
+/// @throws rpc::Error (bad_input) on anything out of range, or given for another type of obstacle
+Obstacle obstacle_options(const Teuchos::ParameterList &list, int dim, const std::string &path);
+
+/// Unit normal of the foundation at the point of its surface nearest to x, pointing into the foundation; nothing at the
+/// centre of a circle. doc/theory.md (3.6)
+std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x);
+
+/// How far it is from x to the foundation's surface along a unit direction that points into the foundation [m]; negative
+/// if x lies in the foundation. Nothing if that way does not lead into it. doc/theory.md (3.7)
+std::optional<double> distance_along(const Obstacle &obstacle, const Point &x, const Point &direction);
+
+} // namespace rpc::contact

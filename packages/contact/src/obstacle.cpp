@@ -1,0 +1,117 @@
+#include "rpc/contact/obstacle.hpp"
+
+#include "rpc/core/error.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <cmath>
+#include <vector>
+
+namespace rpc::contact
+{
+namespace
+{
+
+using Teuchos::Array;
+
+double dot(const Point &a, const Point &b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Point difference(const Point &a, const Point &b)
+{
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Point scaled(const double s, const Point &a)
+{
+  return {s * a[0], s * a[1], s * a[2]};
+}
+
+Point point_of(const Teuchos::ParameterList &list, const std::string &name, const int dim, const std::string &path)
+{
+  const auto &numbers = list.get<Array<double>>(name);
+  RPC_REQUIRE(numbers.size() == dim,
+              "deck: \"" << path << "->" << name << "\" must hold " << dim << " numbers, got " << numbers.size());
+  Point point{};
+  for (int c = 0; c < dim; ++c) {
+    RPC_REQUIRE(std::isfinite(numbers[c]),
+                "deck: \"" << path << "->" << name << "\" must be finite, got " << numbers[c]);
+    point[c] = numbers[c];
+  }
+  return point;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_obstacle_parameters()
+{
+  Teuchos::ParameterList valid("Obstacle");
+  valid.set("Type", "none",
+            "Shape of the foundation's surface: `plane`, `circle` (in 3D a sphere), or `none`: see Gap.");
+  valid.set("Point", Array<double>(), "plane: a point on it [m].");
+  valid.set("Normal", Array<double>(), "plane: its normal, out of the foundation towards the body, of any length.");
+  valid.set("Centre", Array<double>(), "circle: its centre [m].");
+  valid.set("Radius", 0., "circle: its radius, > 0 [m].");
+  valid.set("Encloses Body", false, "circle: whether the body lies inside of it and the foundation outside.");
+  return valid;
+}
+
+Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, const std::string &path)
+{
+  const auto &type = list.get<std::string>("Type");
+  RPC_REQUIRE(type == "none" || type == "plane" || type == "circle",
+              "deck: \"" << path << "->Type\" must be one of none, plane, circle, got \"" << type << "\"");
+  const auto refuse = [&](const std::vector<std::string> &names) {
+    for (const auto &name : names)
+      RPC_REQUIRE(list.getEntry(name).isDefault(),
+                  "deck: \"" << path << "->" << name << "\" does not go with \"" << path << "->Type\" = " << type);
+  };
+  Obstacle obstacle;
+  if (type == "circle") refuse({"Point", "Normal"}); // `none` switches an obstacle off, whatever it was
+  if (type == "plane") refuse({"Centre", "Radius", "Encloses Body"});
+  if (type == "plane") {
+    obstacle.kind = Obstacle::Kind::plane;
+    obstacle.point = point_of(list, "Point", dim, path);
+    obstacle.normal = point_of(list, "Normal", dim, path);
+    const double length = std::hypot(obstacle.normal[0], obstacle.normal[1], obstacle.normal[2]);
+    RPC_REQUIRE(length > 0 && std::isfinite(length),
+                "deck: \"" << path << "->Normal\" must have a length > 0, got " << length);
+    obstacle.normal = scaled(1 / length, obstacle.normal);
+  }
+  if (type == "circle") {
+    obstacle.kind = Obstacle::Kind::circle;
+    obstacle.point = point_of(list, "Centre", dim, path);
+    obstacle.radius = list.get<double>("Radius");
+    obstacle.encloses = list.get<bool>("Encloses Body");
+    RPC_REQUIRE(obstacle.radius > 0 && std::isfinite(obstacle.radius),
+                "deck: \"" << path << "->Radius\" must be > 0 and finite [m], got " << obstacle.radius);
+  }
+  return obstacle;
+}
+
+std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x)
+{
+  if (obstacle.kind == Obstacle::Kind::plane) return scaled(-1, obstacle.normal);
+  const Point from_centre = difference(x, obstacle.point);
+  const double distance = std::sqrt(dot(from_centre, from_centre));
+  if (!(distance > 0)) return std::nullopt;
+  return scaled((obstacle.encloses ? 1 : -1) / distance, from_centre);
+}
+
+std::optional<double> distance_along(const Obstacle &obstacle, const Point &x, const Point &direction)
+{
+  const Point from = difference(x, obstacle.point);
+  if (obstacle.kind == Obstacle::Kind::plane) {
+    const double descent = -dot(direction, obstacle.normal);
+    if (!(descent > 0)) return std::nullopt;
+    return dot(from, obstacle.normal) / descent;
+  }
+  // |x + g direction - centre| = radius: the root that crosses the circle from the body's part of the plane.
+  const double along = dot(from, direction);
+  const double discriminant = along * along - dot(from, from) + obstacle.radius * obstacle.radius;
+  const bool leads_in = obstacle.encloses || along < 0;
+  if (!(discriminant >= 0) || !leads_in) return std::nullopt;
+  const double root = std::sqrt(discriminant);
+  return obstacle.encloses ? root - along : -root - along;
+}
+
+} // namespace rpc::contact

@@ -1,0 +1,331 @@
+#include "rpc/contact/contact_nodes.hpp"
+
+#include "expect_error.hpp"
+#include "rpc/mesh/box.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+
+namespace
+{
+
+using namespace rpc;
+using contact::ContactNodes;
+using contact::ContactOptions;
+using contact::Normal;
+using contact::Obstacle;
+using rpc::test::expect_error;
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+/// A box of 2 x 1 (x 1) m with its lower corner at the origin.
+fem::Discretization body(const mesh::Element &element = {2, 1})
+{
+  mesh::BoxOptions box{{0, 0}, {2, 1}, {4, 2}, element};
+  if (element.dim == 3) box = {{0, 0, 0}, {2, 1, 1}, {4, 2, 2}, element};
+  return fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
+}
+
+/// A rigid foundation without gap.
+ContactOptions touching(const std::string &side)
+{
+  ContactOptions options;
+  options.side = side;
+  options.yield_stress = ScalarField(inf);
+  return options;
+}
+
+ContactNodes nodes_of(const fem::Discretization &d, const std::vector<ContactOptions> &options)
+{
+  return contact::contact_nodes(d, options, fem::dirichlet_dofs(d, {}));
+}
+
+/// A plane through a point, with a unit normal out of the foundation.
+Obstacle plane(const Point &point, const Point &normal)
+{
+  return {Obstacle::Kind::plane, point, normal};
+}
+Obstacle circle(const Point &centre, const double radius, const bool encloses = false)
+{
+  return {Obstacle::Kind::circle, centre, {}, radius, encloses};
+}
+
+/// What every point of a side must have.
+struct Expected {
+  Point normal{};
+  double gap = 0;
+};
+void expect_points(const fem::Discretization &d, const ContactNodes &c,
+                   const std::function<Expected(const Point &)> &at, const int side = 0)
+{
+  const auto coords = to_host(d.mesh->coords);
+  const auto node = to_host(c.node);
+  const auto gap = to_host(c.gap), free_gap = to_host(c.free_gap);
+  const auto normal = to_host(c.normal), direction = to_host(c.direction);
+  for (LO i = c.first(side); i < c.first(side + 1); ++i) {
+    Point x{};
+    for (int k = 0; k < d.dim(); ++k) x[k] = coords(node(i), k);
+    const Expected expected = at(x);
+    EXPECT_NEAR(gap(i), expected.gap, 1e-14) << testing::PrintToString(x);
+    EXPECT_EQ(free_gap(i), gap(i));
+    for (int k = 0; k < d.dim(); ++k) {
+      EXPECT_NEAR(normal(i, k), expected.normal[k], 1e-15) << testing::PrintToString(x);
+      EXPECT_EQ(direction(i, k), normal(i, k));
+    }
+  }
+}
+
+TEST(ContactNodes, AreNoneWithoutSides)
+{
+  const auto c = nodes_of(body(), {});
+  EXPECT_EQ(c.num_sides(), 0);
+  EXPECT_EQ(c.size(), 0);
+  EXPECT_EQ(c.num_total, 0);
+}
+
+TEST(ContactNodes, OfSeveralSidesComeSideBySideEachWithItsOwnLaw)
+{
+  const auto d = body();
+  auto floor = touching("bottom"), wall = touching("left");
+  floor.yield_stress = ScalarField("1+x", [](const Point &x) { return 1 + x[0]; });
+  floor.gap = ScalarField(0.1);
+  floor.penalty = 10;
+  wall.yield_stress = ScalarField(7.);
+  wall.gap = ScalarField("y-1", [](const Point &x) { return x[1] - 1; });
+  wall.penalty = 20;
+  const auto c = nodes_of(d, {floor, wall});
+  const Comm &comm = d.mesh->comm();
+  ASSERT_EQ(c.num_sides(), 2);
+  EXPECT_EQ(c.first(0), 0);
+  EXPECT_EQ(c.first(2), c.size());
+  EXPECT_EQ(sum_all(comm, GO(c.first(1))), 5);
+  EXPECT_EQ(sum_all(comm, GO(c.first(2) - c.first(1))), 3);
+  EXPECT_EQ(c.num_total, 8);
+  EXPECT_EQ(c.num_fixed, 0);
+  const auto coords = to_host(d.mesh->coords);
+  const auto node = to_host(c.node);
+  const auto yield = to_host(c.yield), penalty = to_host(c.penalty), weight = to_host(c.weight);
+  double length[2] = {0, 0};
+  GO at_corner = 0;
+  for (int side = 0; side < 2; ++side) {
+    for (LO i = c.first(side); i < c.first(side + 1); ++i) {
+      const double x = coords(node(i), 0), y = coords(node(i), 1);
+      EXPECT_TRUE(i == c.first(side) || node(i - 1) < node(i)); // ascending
+      EXPECT_EQ(side == 0 ? y : x, 0);
+      EXPECT_NEAR(yield(i), side == 0 ? 1 + x : 7, 1e-15);
+      EXPECT_EQ(penalty(i), side == 0 ? 10 : 20);
+      length[side] += weight(i);
+      if (x == 0 && y == 0) ++at_corner;
+    }
+  }
+  EXPECT_EQ(sum_all(comm, at_corner), 2); // one node, two points
+  EXPECT_NEAR(sum_all(comm, length[0]), 2, 1e-14);
+  EXPECT_NEAR(sum_all(comm, length[1]), 1, 1e-14);
+  expect_points(
+      d, c,
+      [](const Point &) {
+        return Expected{{0, -1, 0}, 0.1};
+      },
+      0);
+  expect_points(
+      d, c,
+      [](const Point &x) {
+        return Expected{{-1, 0, 0}, x[1] - 1};
+      },
+      1);
+}
+
+TEST(ContactNodes, FixedNormalTakesTheGapAlongItself)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.normal = Normal::fixed;
+  options.direction = {0.6, -0.8, 0};
+  options.gap = ScalarField("x/4", [](const Point &x) { return x[0] / 4; });
+  expect_points(d, nodes_of(d, {options}), [](const Point &x) { return Expected{{0.6, -0.8, 0}, x[0] / 4}; });
+}
+
+/// A slope below the bottom, which it cuts at x = 2/3: n . (x - p) = 0.4 - 0.6 x at (x, 0).
+Obstacle slope()
+{
+  return plane({0, -0.5, 0}, {-0.6, 0.8, 0});
+}
+
+TEST(ContactNodes, GapToAPlaneIsMeasuredAlongTheSurfaceNormal)
+{
+  for (const mesh::Element element : {mesh::Element{2, 1}, mesh::Element{2, 2, mesh::Shape::simplex}}) {
+    const auto d = body(element);
+    auto options = touching("bottom");
+    options.obstacle = slope(); // straight down to it
+    expect_points(d, nodes_of(d, {options}), [](const Point &x) { return Expected{{0, -1, 0}, 0.5 - 0.75 * x[0]}; });
+  }
+}
+
+TEST(ContactNodes, GapToAPlaneIsMeasuredAlongTheNormalOfTheFoundation)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.obstacle = slope();
+  options.normal = Normal::foundation;
+  expect_points(d, nodes_of(d, {options}), [](const Point &x) { return Expected{{0.6, -0.8, 0}, 0.4 - 0.6 * x[0]}; });
+}
+
+TEST(ContactNodes, GapToAPlaneIsMeasuredAlongAFixedNormal)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.obstacle = slope();
+  options.normal = Normal::fixed;
+  options.direction = {0.28, -0.96, 0}; // falls 0.936 towards the plane per metre
+  expect_points(d, nodes_of(d, {options}), [](const Point &x) {
+    return Expected{{0.28, -0.96, 0}, (0.4 - 0.6 * x[0]) / 0.936};
+  });
+}
+
+TEST(ContactNodes, GapToACircleIsMeasuredAlongTheSurfaceNormal)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.obstacle = circle({1, -2.5, 0}, 2);
+  expect_points(d, nodes_of(d, {options}), [](const Point &x) {
+    return Expected{{0, -1, 0}, 2.5 - std::sqrt(4 - (x[0] - 1) * (x[0] - 1))};
+  });
+}
+
+TEST(ContactNodes, GapToACircleIsMeasuredTowardsItsCentre)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.obstacle = circle({1, -2.5, 0}, 2.6); // reaches into the body
+  options.normal = Normal::foundation;
+  expect_points(d, nodes_of(d, {options}), [](const Point &x) {
+    const double distance = std::hypot(x[0] - 1, 2.5);
+    return Expected{{(1 - x[0]) / distance, -2.5 / distance, 0}, distance - 2.6};
+  });
+}
+
+TEST(ContactNodes, GapToAnEnclosingSphereIsMeasuredAwayFromItsCentre)
+{
+  const auto d = body({3, 1});
+  auto options = touching("front");
+  options.obstacle = circle({1, 0.5, -1}, 3, true);
+  options.normal = Normal::foundation;
+  expect_points(d, nodes_of(d, {options}), [](const Point &x) {
+    const double distance = std::hypot(x[0] - 1, x[1] - 0.5, 2);
+    return Expected{{(x[0] - 1) / distance, (x[1] - 0.5) / distance, 2 / distance}, 3 - distance};
+  });
+}
+
+TEST(ContactNodes, RefuseANormalThatPassesTheObstacleByWithThePlace)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.path = "Contact->Sides->ball";
+  options.obstacle = circle({0, -3, 0}, 1.2); // below the nodes at x = 0, 0.5, 1
+  expect_error(ExitCode::bad_input,
+               {"\"Contact->Sides->ball\"", "(1.5, 0)", "\"bottom\"", "-1)", "does not lead into the obstacle",
+                "\"Normal\" = foundation"},
+               [&] {
+                 nodes_of(d, {touching("left"), options});
+               });
+}
+
+TEST(ContactNodes, RefuseANormalThatLeadsAwayFromTheObstacle)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.obstacle = plane({0, -1, 0}, {0, 1, 0});
+  options.normal = Normal::fixed;
+  for (const Point &direction : {Point{0, 1, 0}, Point{1, 0, 0}}) {
+    options.direction = direction;
+    expect_error(ExitCode::bad_input, {"\"Contact\"", "(0, 0)", "does not lead into the obstacle"},
+                 [&] { nodes_of(d, {options}); });
+  }
+}
+
+TEST(ContactNodes, RefuseTheCentreOfACircleWhichHasNoNormal)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.obstacle = circle({1.5, 0, 0}, 1, true);
+  options.normal = Normal::foundation;
+  expect_error(ExitCode::bad_input, {"(1.5, 0)", "does not lead into the obstacle"}, [&] { nodes_of(d, {options}); });
+}
+
+TEST(ContactNodes, RefuseBadValuesOfAFurtherSideByItsPath)
+{
+  const auto d = body();
+  auto wall = touching("lft");
+  wall.path = "Contact->Sides->wall";
+  expect_error(ExitCode::bad_input, {"\"Contact->Sides->wall->Side\"", "\"lft\"", "left, right, bottom, top"}, [&] {
+    nodes_of(d, {touching("bottom"), wall});
+  });
+  wall.side = "left";
+  wall.yield_stress = ScalarField("y-0.5", [](const Point &x) { return x[1] - 0.5; });
+  expect_error(ExitCode::bad_input, {"\"Contact->Sides->wall->Yield Stress\"", "\"y-0.5\"", "(0, 0)"}, [&] {
+    nodes_of(d, {touching("bottom"), wall});
+  });
+  wall.yield_stress = ScalarField(inf);
+  wall.gap = ScalarField("1/x", [](const Point &x) { return 1 / x[0]; });
+  expect_error(ExitCode::bad_input, {"\"Contact->Sides->wall->Gap\"", "\"1/x\"", "inf"}, [&] {
+    nodes_of(d, {touching("bottom"), wall});
+  });
+}
+
+TEST(ContactNodes, PrescribedNormalDisplacementTakesANodeOutOfTheSolution)
+{
+  const auto d = body();
+  const auto held = fem::dirichlet_dofs(d, {{"left", "left", {ScalarField(0.), ScalarField(-0.1)}}});
+  auto options = touching("bottom");
+  options.yield_stress = ScalarField(3.);
+  const auto c = contact::contact_nodes(d, {options}, held);
+  EXPECT_EQ(c.num_total, 5);
+  EXPECT_EQ(c.num_fixed, 1);
+  // Pressed by 0.1 into what cannot give way.
+  expect_error(ExitCode::no_solution, {"(0, 0)", "0.1", "\"bottom\""},
+               [&] { contact::contact_nodes(d, {touching("bottom")}, held); });
+}
+
+TEST(ContactNodes, OfOneSideMayBeHeldWhileThoseOfAnotherAreFree)
+{
+  // The left side is held in x: its points are fixed, and its corner moves along the bottom's normal alone.
+  const auto d = body();
+  auto floor = touching("bottom"), wall = touching("left");
+  floor.normal = Normal::fixed;
+  floor.direction = {0.6, -0.8, 0};
+  floor.gap = ScalarField(0.1);
+  wall.gap = ScalarField(0.3);
+  fem::DirichletCondition held{"held", "left", {}};
+  held.displacement[0] = ScalarField(-0.05);
+  const auto c = contact::contact_nodes(d, {floor, wall}, fem::dirichlet_dofs(d, {held}));
+  EXPECT_EQ(c.num_fixed, 3);
+  const auto coords = to_host(d.mesh->coords);
+  const auto node = to_host(c.node);
+  const auto fixed = to_host(c.fixed);
+  const auto free_gap = to_host(c.free_gap);
+  const auto direction = to_host(c.direction), normal = to_host(c.normal);
+  for (LO i = 0; i < c.size(); ++i) {
+    const bool of_floor = i < c.first(1), corner = of_floor && coords(node(i), 0) == 0;
+    EXPECT_EQ(fixed(i) != 0, !of_floor);
+    // g - nu . u: the floor's corner goes 0.03 away from it, the wall's points 0.05 towards it
+    EXPECT_NEAR(free_gap(i), corner ? 0.1 + 0.6 * 0.05 : of_floor ? 0.1 : 0.3 - 0.05, 1e-15);
+    EXPECT_EQ(direction(i, 0), corner || !of_floor ? 0 : 0.6);
+    EXPECT_EQ(direction(i, 1), of_floor ? -0.8 : 0);
+    EXPECT_NEAR(normal(i, 0), of_floor ? 0.6 : -1, 1e-15);
+  }
+}
+
+TEST(ContactNodes, PressedIntoARigidFoundationNameItsSide)
+{
+  const auto d = body();
+  fem::DirichletCondition held{"held", "left", {}};
+  held.displacement[0] = ScalarField(-0.05);
+  expect_error(ExitCode::no_solution, {"(0, 0", "0.05", "\"left\"", "yield stress"}, [&] {
+    contact::contact_nodes(d, {touching("bottom"), touching("left")}, fem::dirichlet_dofs(d, {held}));
+  });
+}
+
+} // namespace

@@ -1,0 +1,188 @@
+#include "expect_error.hpp"
+#include "rpc/contact/contact_nodes.hpp"
+#include "rpc/core/parameters.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <cmath>
+#include <limits>
+
+namespace
+{
+
+using namespace rpc;
+using contact::ContactOptions;
+using contact::Normal;
+using contact::Obstacle;
+using rpc::test::expect_error;
+using Teuchos::ParameterList;
+
+/// Reads constants only, as a deck without expressions.
+ScalarField parse_constant(const std::string &text, const std::string &)
+{
+  ScalarField constant(std::stod(text));
+  constant.text = text;
+  return constant;
+}
+
+std::vector<ContactOptions> read(ParameterList list, const int dim = 2)
+{
+  validate(list, contact::valid_contact_parameters());
+  return contact::contact_options(list, dim, parse_constant);
+}
+
+void expect_refused(const ParameterList &list, const std::initializer_list<std::string> parts, const int dim = 2)
+{
+  expect_error(ExitCode::bad_input, parts, [&] { read(list, dim); });
+}
+
+/// A deck of one side.
+ParameterList bottom()
+{
+  ParameterList list;
+  list.set("Side", "bottom");
+  return list;
+}
+ParameterList bottom_with_normal(const std::string &text)
+{
+  ParameterList list = bottom();
+  list.set("Normal", text);
+  return list;
+}
+
+/// A horizontal floor.
+void add_floor(ParameterList &list)
+{
+  ParameterList &obstacle = list.sublist("Obstacle");
+  obstacle.set("Type", "plane");
+  obstacle.set("Point", Teuchos::Array<double>(Teuchos::tuple(0., -1.)));
+  obstacle.set("Normal", Teuchos::Array<double>(Teuchos::tuple(0., 2.)));
+}
+
+TEST(ContactOptions, NothingTouchesWithoutASide)
+{
+  EXPECT_TRUE(read(ParameterList()).empty());
+}
+
+TEST(ContactOptions, DefaultsAreARigidFoundationWithoutGapAlongTheSurfaceNormal)
+{
+  const auto options = read(bottom());
+  ASSERT_EQ(options.size(), 1u);
+  EXPECT_EQ(options[0].path, "Contact");
+  EXPECT_EQ(options[0].side, "bottom");
+  EXPECT_EQ(options[0].yield_stress.constant, std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(options[0].gap.is_zero());
+  EXPECT_EQ(options[0].penalty, 1e8);
+  EXPECT_EQ(options[0].normal, Normal::surface);
+  EXPECT_EQ(options[0].obstacle.kind, Obstacle::Kind::none);
+}
+
+TEST(ContactOptions, NormalIsThatOfTheFoundationByDefaultWhereThereIsAnObstacle)
+{
+  auto list = bottom();
+  add_floor(list);
+  const auto options = read(list);
+  EXPECT_EQ(options[0].normal, Normal::foundation);
+  EXPECT_EQ(options[0].obstacle.kind, Obstacle::Kind::plane);
+  EXPECT_EQ(options[0].obstacle.normal, (Point{0, 1, 0}));
+  EXPECT_EQ(read(list.set("Normal", "surface"))[0].normal, Normal::surface);
+  EXPECT_EQ(read(list.set("Normal", "foundation"))[0].normal, Normal::foundation);
+  EXPECT_EQ(read(list.set("Normal", "0, -1"))[0].normal, Normal::fixed);
+}
+
+TEST(ContactOptions, FixedNormalIsReadFromNumbersOfAnyLength)
+{
+  const auto direction = [](const std::string &text, const int dim = 2) {
+    const auto options = read(bottom_with_normal(text), dim);
+    EXPECT_EQ(options[0].normal, Normal::fixed) << text;
+    return options[0].direction;
+  };
+  EXPECT_EQ(direction("0, -1"), (Point{0, -1, 0}));
+  EXPECT_EQ(direction(" 0,-2.5 "), (Point{0, -1, 0}));
+  EXPECT_EQ(direction("0, 0, -2", 3), (Point{0, 0, -1}));
+  const Point slanted = direction("3e-7, -4e-7");
+  EXPECT_NEAR(slanted[0], 0.6, 1e-15);
+  EXPECT_NEAR(slanted[1], -0.8, 1e-15);
+}
+
+TEST(ContactOptions, NormalsThatAreNoDirectionAreRefusedWithAnExample)
+{
+  for (const std::string text : {"0", "0,", "0, 0", "0; -1", "0 -1", "0, -1, 0", "0, -1,", "0, -1 x", "down", ", 1",
+                                 "nan, 1", "inf, 1", "1e400, 0", "Surface"})
+    expect_refused(bottom_with_normal(text), {"\"Contact->Normal\"", "2 numbers", "\"0, -1\"", "got \"" + text + "\""});
+  expect_refused(bottom_with_normal("0, -1"), {"\"Contact->Normal\"", "3 numbers", "\"0, 0, -1\""}, 3);
+}
+
+TEST(ContactOptions, NormalOfTheFoundationNeedsAnObstacle)
+{
+  expect_refused(bottom_with_normal("foundation"), {"\"Contact->Normal\"", "needs an \"Contact->Obstacle\""});
+}
+
+TEST(ContactOptions, GapDoesNotGoWithAnObstacleEvenAtItsDefault)
+{
+  auto list = bottom();
+  add_floor(list);
+  list.set("Gap", 0);
+  expect_refused(list, {"\"Contact->Gap\"", "does not go with \"Contact->Obstacle\""});
+}
+
+TEST(ContactOptions, FurtherSidesAreNamedAfterTheirEntriesUnlessGiven)
+{
+  auto list = bottom();
+  list.sublist("Sides").sublist("left").set("Yield Stress", 3);
+  list.sublist("Sides").sublist("wall").set("Side", "right").set("Gap", 0.25).set("Penalty", 40.);
+  add_floor(list.sublist("Sides").sublist("ceiling").set("Side", "top"));
+  const auto options = read(list);
+  ASSERT_EQ(options.size(), 4u);
+  const std::vector<std::string> paths = {"Contact", "Contact->Sides->left", "Contact->Sides->wall",
+                                          "Contact->Sides->ceiling"},
+                                 sides = {"bottom", "left", "right", "top"};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(options[k].path, paths[k]);
+    EXPECT_EQ(options[k].side, sides[k]);
+  }
+  EXPECT_EQ(options[1].yield_stress.constant, 3);
+  EXPECT_EQ(options[1].penalty, 1e8);
+  EXPECT_EQ(options[2].gap.constant, 0.25);
+  EXPECT_EQ(options[2].penalty, 40);
+  EXPECT_EQ(options[3].normal, Normal::foundation);
+  EXPECT_EQ(options[0].normal, Normal::surface);
+}
+
+TEST(ContactOptions, SidesStandWithoutAFirstOne)
+{
+  ParameterList list;
+  list.sublist("Sides").sublist("left");
+  const auto options = read(list);
+  ASSERT_EQ(options.size(), 1u);
+  EXPECT_EQ(options[0].side, "left");
+}
+
+TEST(ContactOptions, OneSideTwiceIsRefusedWithBothEntries)
+{
+  auto list = bottom();
+  list.sublist("Sides").sublist("floor").set("Side", "bottom");
+  expect_refused(list, {"\"Contact\" and \"Contact->Sides->floor\"", "the side \"bottom\""});
+  ParameterList entries;
+  entries.sublist("Sides").sublist("left");
+  entries.sublist("Sides").sublist("wall").set("Side", "left");
+  expect_refused(entries, {"\"Contact->Sides->left\" and \"Contact->Sides->wall\"", "the side \"left\""});
+}
+
+TEST(ContactOptions, ValuesOutOfRangeAreRefusedByPathOnASideOrNone)
+{
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [](const std::string &name, const double value) {
+    ParameterList list, entry;
+    list.set(name, value);
+    entry.sublist("Sides").sublist("wall").set(name, value);
+    expect_refused(list, {"\"Contact->" + name + "\"", "> 0"});
+    expect_refused(entry, {"\"Contact->Sides->wall->" + name + "\"", "> 0"});
+  };
+  for (const double value : {0., -1., nan}) refused("Yield Stress", value);
+  for (const double value : {0., -1., nan, inf}) refused("Penalty", value);
+  ParameterList obstacle;
+  obstacle.sublist("Sides").sublist("wall").sublist("Obstacle").set("Type", "cone");
+  expect_refused(obstacle, {"\"Contact->Sides->wall->Obstacle->Type\"", "\"cone\""});
+}
+
+} // namespace

@@ -1,0 +1,116 @@
+#include "rpc/contact/obstacle.hpp"
+
+#include "expect_error.hpp"
+#include "rpc/core/parameters.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace rpc;
+using contact::direction_into;
+using contact::distance_along;
+using contact::Obstacle;
+using rpc::test::expect_error;
+
+using Numbers = Teuchos::Array<double>;
+
+Obstacle read(Teuchos::ParameterList list, const int dim = 2)
+{
+  validate(list, contact::valid_obstacle_parameters());
+  return contact::obstacle_options(list, dim, "Contact->Obstacle");
+}
+
+Obstacle plane(const Numbers &point, const Numbers &normal)
+{
+  Teuchos::ParameterList list;
+  list.set("Type", "plane");
+  list.set("Point", point);
+  list.set("Normal", normal);
+  return read(list, static_cast<int>(point.size()));
+}
+
+Obstacle circle(const double radius, const bool encloses)
+{
+  Teuchos::ParameterList list;
+  list.set("Type", "circle");
+  list.set("Centre", Numbers(Teuchos::tuple(1., 2.)));
+  list.set("Radius", radius);
+  list.set("Encloses Body", encloses);
+  return read(list);
+}
+
+void expect_point(const std::optional<Point> &found, const Point &expected)
+{
+  ASSERT_TRUE(found);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR((*found)[c], expected[c], 1e-15);
+}
+
+TEST(Plane, DistanceIsMeasuredAlongTheDirection)
+{
+  const Obstacle floor = plane(Teuchos::tuple(5., 1.), Teuchos::tuple(0., 4.));
+  expect_point(direction_into(floor, {2, 3}), {0, -1});
+  EXPECT_DOUBLE_EQ(*distance_along(floor, {2, 3}, {0, -1}), 2);
+  EXPECT_DOUBLE_EQ(*distance_along(floor, {2, 3}, {0.6, -0.8}), 2.5);
+  EXPECT_DOUBLE_EQ(*distance_along(floor, {2, 0.5}, {0, -1}), -0.5); // in the foundation
+  EXPECT_FALSE(distance_along(floor, {2, 3}, {1, 0}));
+  EXPECT_FALSE(distance_along(floor, {2, 3}, {0, 1}));
+}
+
+TEST(Plane, StandsInSpaceToo)
+{
+  const Obstacle wall = plane(Teuchos::tuple(0., 0., 3.), Teuchos::tuple(0., 0., -1.));
+  expect_point(direction_into(wall, {7, 8, 1}), {0, 0, 1});
+  EXPECT_DOUBLE_EQ(*distance_along(wall, {7, 8, 1}, {0, 0, 1}), 2);
+}
+
+TEST(Circle, OutsideOfItTheNormalLeadsToTheCentre)
+{
+  const Obstacle disc = circle(2, false);
+  expect_point(direction_into(disc, {4, 6}), {-0.6, -0.8});
+  EXPECT_DOUBLE_EQ(*distance_along(disc, {4, 6}, {-0.6, -0.8}), 3);
+  EXPECT_DOUBLE_EQ(*distance_along(disc, {1, 5}, {0, -1}), 1);
+  EXPECT_DOUBLE_EQ(*distance_along(disc, {1, 3.5}, {0, -1}), -0.5); // in the foundation
+  // Along a fixed direction the near point of the circle counts: at x = 1 + sqrt(3) it lies 1 above the centre.
+  EXPECT_NEAR(*distance_along(disc, {1 + std::sqrt(3.), 5}, {0, -1}), 2, 1e-15);
+  EXPECT_FALSE(distance_along(disc, {4, 5}, {0, -1})); // passes it by
+  EXPECT_FALSE(distance_along(disc, {1, 5}, {0, 1}));  // leads away
+  EXPECT_FALSE(direction_into(disc, {1, 2}));          // the centre is as far from everywhere
+}
+
+TEST(Circle, InsideOfItTheNormalLeadsOut)
+{
+  const Obstacle hole = circle(10, true);
+  expect_point(direction_into(hole, {4, 6}), {0.6, 0.8});
+  EXPECT_DOUBLE_EQ(*distance_along(hole, {4, 6}, {0.6, 0.8}), 5);
+  EXPECT_DOUBLE_EQ(*distance_along(hole, {7, 10}, {0, -1}), 16); // down through it: y = 2 - 8
+  EXPECT_DOUBLE_EQ(*distance_along(hole, {1, -9}, {0, -1}), -1); // in the foundation
+}
+
+TEST(ObstacleOptions, RefuseWhatDoesNotFit)
+{
+  const auto refuse = [](const std::string &words, const std::function<void(Teuchos::ParameterList &)> &change) {
+    Teuchos::ParameterList list;
+    list.set("Type", "plane");
+    list.set("Point", Numbers(Teuchos::tuple(0., 0.)));
+    list.set("Normal", Numbers(Teuchos::tuple(0., 1.)));
+    change(list);
+    expect_error(ExitCode::bad_input, words, [&] { read(list); });
+  };
+  refuse("one of none, plane, circle", [](auto &list) { list.set("Type", "cone"); });
+  refuse("must hold 2 numbers, got 3", [](auto &list) { list.set("Point", Numbers(Teuchos::tuple(0., 0., 0.))); });
+  refuse("must hold 2 numbers, got 0", [](auto &list) { list.remove("Normal"); });
+  refuse("length > 0", [](auto &list) { list.set("Normal", Numbers(Teuchos::tuple(0., 0.))); });
+  refuse("does not go with", [](auto &list) { list.set("Radius", 1.); });
+  refuse("does not go with", [](auto &list) { list.set("Type", "circle"); });
+  refuse("must be > 0", [](auto &list) {
+    list = Teuchos::ParameterList();
+    list.set("Type", "circle");
+    list.set("Centre", Numbers(Teuchos::tuple(0., 0.)));
+  });
+}
+
+} // namespace

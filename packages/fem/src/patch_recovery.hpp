@@ -1,0 +1,284 @@
+#pragma once
+
+#include "kernels.hpp"
+#include "patch_polynomial.hpp"
+
+/// The kernels of the recovery of stresses, (2.8): fit, adopt, evaluate.
+namespace rpc::fem
+{
+
+using ReadVector = decltype(device_read(std::declval<const Vector &>()));
+using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadOnly));
+using WriteColumns = decltype(std::declval<MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadWrite));
+
+/// Stress components as they are recovered: in the order of stress_names, in 2D followed by zz.
+template <int Dim>
+struct Components {
+  static constexpr int size = Dim == 2 ? 4 : 6;
+  static KOKKOS_INLINE_FUNCTION int row(const int k)
+  {
+    constexpr int r2[] = {0, 1, 0, 2}, r3[] = {0, 1, 2, 0, 1, 0};
+    return Dim == 2 ? r2[k % 4] : r3[k];
+  }
+  static KOKKOS_INLINE_FUNCTION int col(const int k)
+  {
+    constexpr int c2[] = {0, 1, 1, 2}, c3[] = {0, 1, 2, 1, 2, 2};
+    return Dim == 2 ? c2[k % 4] : c3[k];
+  }
+};
+
+/// The table of polynomials: a row per vertex, and its columns.
+///
+/// A polynomial is one of the displacement, of a degree more than the element's, in xi = L^-1 (x - centre): coordinates
+/// in which a patch has size 1 in every direction, however thin its cells are.
+template <int Dim, int Nodes>
+struct PatchTable {
+  static constexpr int degree = Nodes <= (1 << Dim) ? 2 : 3;
+  using Terms = Monomials<Dim, degree>;
+  static constexpr int trust = 0, centre = 1, frame = centre + Dim, coefficients = frame + Dim * (Dim + 1) / 2;
+  static constexpr int columns = coefficients + (Terms::size - 1) * Dim; // without the constants
+
+  /// Trust is the degree that could be fitted; more than that if cells close all around the vertex, in between for a
+  /// polynomial taken over from such a vertex; less than any where blocks meet.
+  static constexpr int across_blocks = 0, adopted = degree + 1, inside = degree + 2;
+};
+
+/// Place of a node in one of its cells.
+KOKKOS_INLINE_FUNCTION int place_in(const DeviceView<LO **> &cells, const LO cell, const LO node)
+{
+  int a = 0;
+  while (cells(cell, a) != node) ++a;
+  return a;
+}
+
+/// The polynomial of a vertex, by least squares from the displacements of all nodes that share a cell with it.
+template <int Dim, int Nodes>
+struct FitPatch {
+  using Table = PatchTable<Dim, Nodes>;
+  using Terms = typename Table::Terms;
+  /// What lower terms must leave of a term's square. Patches inside leave 3e-2 at least on meshes that are fit for use.
+  static constexpr double threshold = 1e-3;
+
+  DeviceView<double **> coords;       // (overlap nodes, Dim)            [m]   in
+  DeviceView<LO **> cells;            // (cells, Nodes)                        in
+  DeviceView<int *> block;            // (cells)                               in
+  ReadVector u;                       // (overlap dofs)                  [m]   in
+  DeviceView<std::size_t *> node_row; // (owned nodes + 1)                     in
+  DeviceView<LO *> node_cell;         // cells around nodes                    in
+  NodeGraph graph;                    //                                       in
+  DeviceView<int **> mate;            // (vertices, Dim), see facet_mates      in
+  WriteColumns table;                 // (owned nodes, PatchTable)             out, at vertices
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    const LO first = node_cell(node_row(node));
+    if (place_in(cells, first, node) >= static_cast<int>(mate.extent(0))) return;
+    double L[Dim][Dim] = {}; // second moments of the patch, then their root
+    const std::size_t begin = graph.row(node), end = graph.row(node + 1);
+    for (std::size_t k = begin; k < end; ++k) {
+      double dx[Dim][1];
+      step(node, graph.col(k), dx);
+      for (int i = 0; i < Dim; ++i)
+        for (int j = 0; j <= i; ++j) L[i][j] += dx[i][0] * dx[j][0] / (end - begin);
+    }
+    cholesky(L, 0);
+
+    double normal[Terms::size][Terms::size] = {}, c[Terms::size][Dim] = {};
+    for (std::size_t k = begin; k < end; ++k) {
+      double dx[Dim][1], xi[Dim], term[Terms::size];
+      step(node, graph.col(k), dx);
+      solve_lower(L, Dim, dx);
+      for (int i = 0; i < Dim; ++i) xi[i] = dx[i][0];
+      Terms::evaluate(xi, term);
+      for (int s = 0; s < Terms::size; ++s) {
+        for (int t = 0; t <= s; ++t) normal[s][t] += term[s] * term[t];
+        for (int i = 0; i < Dim; ++i) c[s][i] += term[s] * (u(Dim * graph.col(k) + i) - u(Dim * node + i));
+      }
+    }
+    bool one_block = true;
+    for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
+      one_block = one_block && block(node_cell(k)) == block(first);
+    const int fitted = cholesky(normal, threshold);
+    int degree = one_block ? Table::degree : 1;
+    while (degree > 1 && Terms::up_to(degree) > fitted) --degree;
+    const int terms = Terms::up_to(degree);
+    solve_lower(normal, terms, c);
+    solve_lower_transposed(normal, terms, c);
+
+    const int trust = degree == Table::degree && is_inside(node) ? Table::inside : degree;
+    table(node, Table::trust) = one_block ? trust : Table::across_blocks;
+    for (int i = 0; i < Dim; ++i) table(node, Table::centre + i) = coords(node, i);
+    int column = Table::frame;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j <= i; ++j) table(node, column++) = L[i][j];
+    for (int s = 1; s < Terms::size; ++s)
+      for (int i = 0; i < Dim; ++i) table(node, column++) = s < terms ? c[s][i] : 0;
+  }
+
+  KOKKOS_FUNCTION void step(const LO from, const LO to, double (&dx)[Dim][1]) const
+  {
+    for (int i = 0; i < Dim; ++i) dx[i][0] = coords(to, i) - coords(from, i);
+  }
+
+  /// Whether cells close all around a vertex: every facet at it is shared by two of them.
+  KOKKOS_FUNCTION bool is_inside(const LO node) const
+  {
+    for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
+      const int a = place_in(cells, node_cell(k), node);
+      for (int f = 0; f < Dim; ++f)
+        if (!shares(node, k, cells(node_cell(k), mate(a, f)))) return false;
+    }
+    return true;
+  }
+  KOKKOS_FUNCTION bool shares(const LO node, const std::size_t except, const LO other) const
+  {
+    for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
+      for (std::size_t a = 0; a < mate.extent(0) && k != except; ++a)
+        if (cells(node_cell(k), a) == other) return true;
+    return false;
+  }
+};
+
+/// Vertices at the boundary take the polynomial of the nearest vertex inside, for the sake of their neighbours that have
+/// no vertex inside around them: corners.
+template <int Dim, int Nodes>
+struct AdoptPolynomial {
+  using Table = PatchTable<Dim, Nodes>;
+
+  DeviceView<LO **> cells;            // (cells, Nodes)                        in
+  DeviceView<std::size_t *> node_row; // (owned nodes + 1)                     in
+  DeviceView<LO *> node_cell;         // cells around nodes                    in
+  ReadColumns from;                   // (overlap nodes, PatchTable)           in
+  WriteColumns table;                 // (owned nodes, PatchTable)             inout
+  int vertices;                       // per cell
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    const double own = table(node, Table::trust);
+    if (own == Table::across_blocks || own == Table::inside) return; // nodes that are no vertices have the former
+    LO nearest = -1;
+    for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
+      for (int a = 0; a < vertices; ++a) {
+        const LO other = cells(node_cell(k), a);
+        if (from(other, Table::trust) == Table::inside && (nearest < 0 || nearer(node, other, nearest)))
+          nearest = other;
+      }
+    }
+    if (nearest < 0) return;
+    for (int c = 0; c < Table::columns; ++c) table(node, c) = from(nearest, c);
+    table(node, Table::trust) = Table::adopted;
+  }
+
+  /// Of equally near ones the first by coordinates, which does not depend on the number of ranks.
+  KOKKOS_FUNCTION bool nearer(const LO node, const LO a, const LO b) const
+  {
+    double square[2] = {}, first = 0;
+    for (int i = 0; i < Dim; ++i) {
+      const double xa = from(a, Table::centre + i), xb = from(b, Table::centre + i), x = table(node, Table::centre + i);
+      square[0] += (xa - x) * (xa - x);
+      square[1] += (xb - x) * (xb - x);
+      if (first == 0) first = xa - xb;
+    }
+    return square[0] == square[1] ? first < 0 : square[0] < square[1];
+  }
+};
+
+/// Stresses of a node from the polynomials around it.
+template <int Dim, int Nodes>
+struct EvaluatePatches {
+  using Table = PatchTable<Dim, Nodes>;
+  using Terms = typename Table::Terms;
+  static constexpr int components = Components<Dim>::size;
+
+  DeviceView<double **> coords;       // (overlap nodes, Dim)       [m]   in
+  DeviceView<LO **> cells;            // (cells, Nodes)                   in
+  DeviceView<int *> block;            // (cells)                          in
+  DeviceView<double **> lame;         // (blocks; lambda, mu)       [Pa]  in
+  DeviceView<std::size_t *> node_row; // (owned nodes + 1)                in
+  DeviceView<LO *> node_cell;         // cells around nodes               in
+  DeviceView<int **> carries;         // (Nodes, vertices)                in, see carrying_vertices
+  ReadColumns table;                  // (overlap nodes, PatchTable)      in
+  WriteColumns result;                // (owned nodes, stress_names) [Pa] out
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    const LO first = node_cell(node_row(node));
+    const int vertices = static_cast<int>(carries.extent(1)), place = place_in(cells, first, node);
+    double best = 0, own = 0; // trust in the polynomials around, and in those of the vertices that carry the node
+    for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
+      best = Kokkos::Experimental::fmax(best, best_of(node_cell(k), vertices));
+    for (int a = 0; a < vertices; ++a)
+      if (carries(place, a)) own = Kokkos::Experimental::fmax(own, table(cells(first, a), Table::trust));
+
+    double s[components] = {};
+    int count = 0;
+    if (own == best && own != Table::across_blocks) {
+      for (int a = 0; a < vertices; ++a)
+        if (carries(place, a)) add(node, first, a, best, s, count);
+    } else {
+      for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
+        // Between blocks each side has its say, however well it is fitted.
+        const double of_cell = best_of(node_cell(k), vertices);
+        const double trust = own == Table::across_blocks && of_cell > Table::across_blocks ? of_cell : best;
+        for (int a = 0; a < vertices; ++a) add(node, node_cell(k), a, trust, s, count);
+      }
+    }
+    constexpr int columns = Dim == 2 ? 3 : 6;
+    for (int m = 0; m < components; ++m) s[m] /= count;
+    for (int m = 0; m < columns; ++m) result(node, m) = s[m];
+    result(node, columns) = von_mises(s);
+  }
+
+  KOKKOS_FUNCTION double best_of(const LO cell, const int vertices) const
+  {
+    double best = 0;
+    for (int a = 0; a < vertices; ++a) best = Kokkos::Experimental::fmax(best, table(cells(cell, a), Table::trust));
+    return best;
+  }
+
+  /// s += the stress at a node by the polynomial of a cell's vertex and the material of that cell, if it is trusted
+  /// enough.
+  KOKKOS_FUNCTION void add(const LO node, const LO cell, const int a, const double trust, double (&s)[components],
+                           int &count) const
+  {
+    const LO vertex = cells(cell, a);
+    if (table(vertex, Table::trust) < trust) return;
+    double L[Dim][Dim], dx[Dim][1], xi[Dim], term[Terms::size], slope[Terms::size][Dim];
+    int column = Table::frame;
+    for (int i = 0; i < Dim; ++i) {
+      dx[i][0] = coords(node, i) - table(vertex, Table::centre + i);
+      for (int j = 0; j <= i; ++j) L[i][j] = table(vertex, column++);
+    }
+    solve_lower(L, Dim, dx);
+    for (int i = 0; i < Dim; ++i) xi[i] = dx[i][0];
+    Terms::evaluate(xi, term, slope);
+    double grad[Dim][Dim] = {}; // (j, i) = du_i / dxi_j, then / dx_j
+    for (int t = 1; t < Terms::size; ++t)
+      for (int i = 0; i < Dim; ++i, ++column)
+        for (int j = 0; j < Dim; ++j) grad[j][i] += slope[t][j] * table(vertex, column);
+    solve_lower_transposed(L, Dim, grad);
+
+    const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
+    double strain2[3][3] = {}, trace = 0; // twice the strain; across the plane it is 0
+    for (int i = 0; i < Dim; ++i) {
+      trace += grad[i][i];
+      for (int j = 0; j < Dim; ++j) strain2[i][j] = grad[i][j] + grad[j][i];
+    }
+    for (int m = 0; m < components; ++m) {
+      const int i = Components<Dim>::row(m), j = Components<Dim>::col(m);
+      s[m] += mu * strain2[i][j] + (i == j ? lambda * trace : 0);
+    }
+    ++count;
+  }
+
+  static KOKKOS_FUNCTION double von_mises(const double (&s)[components])
+  {
+    const double xx = s[0], yy = s[1], zz = s[Dim == 2 ? 3 : 2];
+    double shear = s[Dim == 2 ? 2 : 3] * s[Dim == 2 ? 2 : 3];
+    if constexpr (Dim == 3) shear += s[4] * s[4] + s[5] * s[5];
+    const double spread = (xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx);
+    return Kokkos::Experimental::sqrt(0.5 * spread + 3 * shear);
+  }
+};
+
+} // namespace rpc::fem

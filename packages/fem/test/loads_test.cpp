@@ -1,0 +1,169 @@
+#include "rpc/fem/elasticity.hpp"
+
+#include "bodies.hpp"
+#include "rpc/core/parameters.hpp"
+
+#include <limits>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+using Teuchos::ParameterList;
+
+/// int of x_i^p over the box along direction i.
+double moment(const mesh::BoxOptions &box, const int i, const int p)
+{
+  return (std::pow(box.upper[i], p + 1) - std::pow(box.lower[i], p + 1)) / (p + 1);
+}
+
+TEST(BodyForce, ResultantIsTheIntegral)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto box = small_box(element);
+    const auto d = body(box, world());
+    Vector load(d.owned_dofs);
+    // The points in P1 triangles are exact to degree 2, in P2 to 4; in quadrilaterals to 3 in each direction.
+    const int p = element.shape == mesh::Shape::simplex && element.order == 1 ? 1 : 2;
+    const fem::VectorField force{field([p](const Point &x) { return std::pow(x[0] * x[1], p); }), ScalarField(-9.81),
+                                 field([](const Point &x) { return x[2] * x[0]; })};
+    fem::add_body_force(d, force, "Body Force", load);
+    const double depth = element.dim == 3 ? moment(box, 2, 0) : 1;
+    const Point sum = resultant(d, load);
+    const Point expected{moment(box, 0, p) * moment(box, 1, p) * depth,
+                         -9.81 * moment(box, 0, 0) * moment(box, 1, 0) * depth,
+                         element.dim == 3 ? moment(box, 0, 1) * moment(box, 1, 0) * moment(box, 2, 1) : 0};
+    for (int c = 0; c < d.dim(); ++c) EXPECT_NEAR(sum[c], expected[c], 1e-13 * std::abs(expected[1]));
+  }
+}
+
+TEST(BodyForce, ResultantOnBulgedCellsIsForceTimesVolume)
+{
+  for (const auto &element : elements()) {
+    const auto box = small_box(element);
+    const auto d = bulged_body(element, world());
+    Vector load(d.owned_dofs);
+    fem::add_body_force(d, {ScalarField(1), ScalarField(2), ScalarField(0)}, "Body Force", load);
+    const double depth = element.dim == 3 ? moment(box, 2, 0) : 1;
+    const double volume = moment(box, 0, 0) * moment(box, 1, 0) * depth;
+    const Point sum = resultant(d, load);
+    EXPECT_NEAR(sum[0], volume, 1e-13 * volume) << text_of(element);
+    EXPECT_NEAR(sum[1], 2 * volume, 1e-13 * volume) << text_of(element);
+  }
+}
+
+TEST(Traction, ResultantAndMomentAreTheIntegrals)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto box = small_box(element);
+    const auto d = body(box, world());
+    Vector load(d.owned_dofs);
+    const fem::VectorField traction{field([](const Point &x) { return x[0] * x[0] * x[0] + x[1]; }), ScalarField(-20),
+                                    field([](const Point &x) { return x[0] * x[2] * x[2]; })};
+    fem::add_traction(d, d.mesh->side("top", "test"), traction, "Traction->top", load);
+    const double depth = element.dim == 3 ? moment(box, 2, 0) : 1, scale = 20 * moment(box, 0, 0);
+    const Point sum = resultant(d, load);
+    EXPECT_NEAR(sum[0], (moment(box, 0, 3) + box.upper[1] * moment(box, 0, 0)) * depth, 1e-13 * scale);
+    EXPECT_NEAR(sum[1], -20 * moment(box, 0, 0) * depth, 1e-13 * scale);
+    if (element.dim == 3) {
+      EXPECT_NEAR(sum[2], moment(box, 0, 1) * moment(box, 2, 2), 1e-13 * scale);
+    }
+    const auto lever = interpolate(d, [](const Point &x) { return Point{0, x[0], 0}; });
+    EXPECT_NEAR(lever->dot(load), -20 * moment(box, 0, 1) * depth, 1e-13 * scale);
+  }
+}
+
+TEST(Traction, LoadsOnlyTheNodesOfItsSide)
+{
+  const mesh::BoxOptions box = small_box({2, 1});
+  const auto d = body(box, world());
+  Vector load(d.owned_dofs);
+  fem::add_traction(d, d.mesh->side("right", "test"), {ScalarField(3), ScalarField(0), ScalarField(0)}, "T", load);
+  const auto loads = by_node_id(d, load);
+  const double h = (box.upper[1] - box.lower[1]) / box.cells[1];
+  for (int y = 0; y <= box.cells[1]; ++y) {
+    for (int x = 0; x <= box.cells[0]; ++x) {
+      const double share = x < box.cells[0] ? 0 : y == 0 || y == box.cells[1] ? 0.5 : 1;
+      EXPECT_NEAR(loads[2 * (x + (box.cells[0] + 1) * y)], 3 * h * share, 1e-14);
+      EXPECT_EQ(loads[2 * (x + (box.cells[0] + 1) * y) + 1], 0);
+    }
+  }
+}
+
+TEST(Loads, AddUpAndAreTheSameOnAnyNumberOfRanks)
+{
+  for (const auto &element : elements()) {
+    const fem::VectorField f{field([](const Point &x) { return wild(x)[0]; }),
+                             field([](const Point &x) { return wild(x)[1]; }),
+                             field([](const Point &x) { return wild(x)[2]; })};
+    const auto loads = [&](const RCP<const Comm> &comm) {
+      const auto d = bulged_body(element, comm);
+      Vector load(d.owned_dofs), traction(d.owned_dofs), volume(d.owned_dofs);
+      fem::add_body_force(d, f, "B", load);
+      fem::add_traction(d, d.mesh->side("top", "test"), f, "T", load);
+      fem::add_body_force(d, f, "B", volume);
+      fem::add_traction(d, d.mesh->side("top", "test"), f, "T", traction);
+      const double scale = load.normInf();
+      load.update(-1., volume, -1., traction, 1.);
+      EXPECT_LT(load.normInf(), 1e-14 * scale) << text_of(element);
+      volume.update(1., traction, 1.);
+      return by_node_id(d, volume);
+    };
+    EXPECT_LT(difference(loads(world()), loads(alone())), 1e-13) << text_of(element);
+  }
+}
+
+TEST(Loads, NanNamesTheParameterOnEveryRank)
+{
+  const auto d = body(small_box({2, 1}), world());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Vector load(d.owned_dofs);
+  const fem::VectorField bad{ScalarField(0), field([&](const Point &x) { return x[0] > 1 ? nan : 1; }, "1/0"),
+                             ScalarField(0)};
+  expect_error(ExitCode::bad_input, {"\"Body Force->Y\"", "\"1/0\"", "nan at"},
+               [&] { fem::add_body_force(d, bad, "Body Force", load); });
+  expect_error(ExitCode::bad_input, {"\"Traction->a->Y\"", "nan at"},
+               [&] { fem::add_traction(d, d.mesh->side("right", "test"), bad, "Traction->a", load); });
+}
+
+/// A deck's sublist with its defaults.
+ParameterList completed(ParameterList list, const ParameterList &valid)
+{
+  validate(list, valid);
+  return list;
+}
+
+TEST(TractionOptions, SideIsTheNameUnlessGiven)
+{
+  ParameterList list;
+  list.sublist("top").set("Y", -2.5);
+  list.sublist("push").set("Side", "left").set("X", "4");
+  const auto loads = fem::traction_options(completed(list, fem::valid_traction_parameters()), 2, parse_constant);
+  ASSERT_EQ(loads.size(), 2u);
+  EXPECT_EQ(loads[0].side, "top");
+  EXPECT_EQ(loads[0].traction[1].constant, -2.5);
+  EXPECT_TRUE(loads[0].traction[0].is_zero());
+  EXPECT_EQ(loads[1].name, "push");
+  EXPECT_EQ(loads[1].side, "left");
+  EXPECT_EQ(loads[1].traction[0].constant, 4);
+}
+
+TEST(LoadOptions, ThirdComponentIn2dIsRefusedByName)
+{
+  ParameterList traction, volume;
+  traction.sublist("top").set("Z", 1);
+  volume.set("Z", 1);
+  const auto tractions = completed(traction, fem::valid_traction_parameters());
+  const auto volumes = completed(volume, fem::valid_body_force_parameters());
+  expect_error(ExitCode::bad_input, {"\"Traction->top->Z\"", "2D"},
+               [&] { fem::traction_options(tractions, 2, parse_constant); });
+  expect_error(ExitCode::bad_input, {"\"Body Force->Z\"", "2D"},
+               [&] { fem::body_force_options(volumes, 2, parse_constant); });
+  EXPECT_EQ(fem::traction_options(tractions, 3, parse_constant)[0].traction[2].constant, 1);
+  EXPECT_EQ(fem::body_force_options(volumes, 3, parse_constant)[2].constant, 1);
+}
+
+} // namespace

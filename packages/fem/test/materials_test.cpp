@@ -1,0 +1,227 @@
+#include "rpc/fem/elasticity.hpp"
+
+#include "bodies.hpp"
+#include "rpc/core/parameters.hpp"
+
+#include <limits>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+using Teuchos::ParameterList;
+
+constexpr fem::Material steel{2000, 0.3}, rubber{50, 0.45}, nothing{0, 0};
+
+/// The small box in two blocks, "soft" to the left of this plane and "hard" to the right.
+double boundary(const mesh::Element &element)
+{
+  const auto box = small_box(element);
+  return box.lower[0] + (box.upper[0] - box.lower[0]) / box.cells[0]; // after the first cell
+}
+fem::Discretization in_two_blocks(const fem::Discretization &whole)
+{
+  auto mesh = std::make_shared<mesh::Mesh>(*whole.mesh);
+  mesh->blocks = {"soft", "hard"};
+  mesh->block = DeviceView<int *>("block", mesh->num_cells());
+  const auto block = Kokkos::create_mirror_view(mesh->block);
+  const auto cells = to_host(mesh->cells);
+  const int vertices = mesh->element.num_vertices();
+  for (LO c = 0; c < mesh->num_cells(); ++c) {
+    double centre = 0;
+    for (int a = 0; a < vertices; ++a) centre += point_of(whole, cells(c, a))[0] / vertices;
+    block(c) = centre < boundary(mesh->element) ? 0 : 1;
+  }
+  Kokkos::deep_copy(mesh->block, block);
+  return fem::discretize(mesh);
+}
+
+fem::Materials soft_and_hard(const fem::Material &soft, const fem::Material &hard)
+{
+  fem::Materials materials(soft);
+  materials.block["hard"] = hard;
+  return materials;
+}
+
+/// K u, where nothing is eliminated.
+std::vector<double> stiffness_times(const fem::Discretization &d, const fem::Materials &materials, const Vector &u)
+{
+  Vector force(d.owned_dofs);
+  fem::assemble_stiffness(d, materials)->apply(u, force);
+  return by_node_id(d, force);
+}
+
+/// sigma : eps of the linear displacement.
+double linear_energy_density(const fem::Material &material, const int dim)
+{
+  double trace = 0, square = 0;
+  for (int i = 0; i < dim; ++i) {
+    trace += slope[i][i];
+    for (int j = 0; j < dim; ++j) square += std::pow(0.5 * (slope[i][j] + slope[j][i]), 2);
+  }
+  return material.lambda() * trace * trace + 2 * material.mu() * square;
+}
+
+/// A deck's sublist with its defaults.
+ParameterList completed(ParameterList list, const ParameterList &valid)
+{
+  validate(list, valid);
+  return list;
+}
+
+fem::Materials read_materials(const ParameterList &list)
+{
+  return fem::material_options(completed(list, fem::valid_material_parameters()));
+}
+
+TEST(MaterialOptions, LameConstantsFollowFromYoungAndPoisson)
+{
+  ParameterList list;
+  list.set("Young's Modulus", 5.).set("Poisson's Ratio", 0.25);
+  const auto materials = read_materials(list);
+  EXPECT_NEAR(materials.common.lambda(), 2, 1e-15 * 4);
+  EXPECT_NEAR(materials.common.mu(), 2, 1e-15 * 4);
+  EXPECT_TRUE(materials.block.empty());
+}
+
+TEST(MaterialOptions, BlocksHaveMaterialsOfTheirOwn)
+{
+  ParameterList list;
+  list.set("Young's Modulus", 5.).set("Poisson's Ratio", 0.25);
+  list.sublist("Blocks").sublist("hard").set("Young's Modulus", 70.).set("Poisson's Ratio", 0.1);
+  list.sublist("Blocks").sublist("soft").set("Young's Modulus", 2.);
+  const auto materials = read_materials(list);
+  ASSERT_EQ(materials.block.size(), 2u);
+  EXPECT_EQ(materials.common.youngs_modulus, 5);
+  EXPECT_EQ(materials.block.at("hard").youngs_modulus, 70);
+  EXPECT_EQ(materials.block.at("hard").poissons_ratio, 0.1);
+  EXPECT_EQ(materials.block.at("soft").youngs_modulus, 2);
+  EXPECT_EQ(materials.block.at("soft").poissons_ratio, 0.3); // the deck's default, not that of the common material
+  EXPECT_EQ(materials.largest_youngs_modulus(), 70);
+  EXPECT_EQ(fem::Materials(steel).largest_youngs_modulus(), 2000);
+}
+
+TEST(MaterialOptions, ValuesOutOfRangeAreRefused)
+{
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [](const std::string &name, const double value) {
+    ParameterList list, block;
+    list.set(name, value);
+    block.sublist("Blocks").sublist("hard").set(name, value);
+    expect_error(ExitCode::bad_input, {"\"Material->" + name + "\""}, [&] { read_materials(list); });
+    expect_error(ExitCode::bad_input, {"\"Material->Blocks->hard->" + name + "\""}, [&] { read_materials(block); });
+  };
+  for (const double e : {0., -1., inf, nan}) refused("Young's Modulus", e);
+  for (const double nu : {-1., 0.5, 0.7, nan, -inf}) refused("Poisson's Ratio", nu);
+}
+
+TEST(LameTable, HasARowForEachBlockOfTheMesh)
+{
+  const auto d = in_two_blocks(body(small_box({2, 1}), world()));
+  const auto table = to_host(fem::lame_table(*d.mesh, soft_and_hard(rubber, steel)));
+  ASSERT_EQ(table.extent(0), 2u);
+  ASSERT_EQ(table.extent(1), 2u);
+  EXPECT_EQ(table(0, 0), rubber.lambda());
+  EXPECT_EQ(table(0, 1), rubber.mu());
+  EXPECT_EQ(table(1, 0), steel.lambda());
+  EXPECT_EQ(table(1, 1), steel.mu());
+}
+
+TEST(LameTable, MaterialOfABlockThatTheMeshLacksIsRefusedWithTheListOfBlocks)
+{
+  const auto d = in_two_blocks(body(small_box({2, 1}), world()));
+  fem::Materials materials(steel);
+  materials.block["hrad"] = rubber;
+  const std::initializer_list<std::string> parts = {"\"Material->Blocks->hrad\"", "soft, hard"};
+  expect_error(ExitCode::bad_input, parts, [&] { fem::lame_table(*d.mesh, materials); });
+  expect_error(ExitCode::bad_input, parts, [&] { fem::assemble_stiffness(d, materials); });
+}
+
+TEST(Stiffness, OfTwoBlocksIsTheSumOfTheirs)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = in_two_blocks(bulged_body(element, world()));
+    const auto u = interpolate(d, wild);
+    const auto both = stiffness_times(d, soft_and_hard(rubber, steel), *u);
+    const auto soft = stiffness_times(d, soft_and_hard(rubber, nothing), *u);
+    const auto hard = stiffness_times(d, soft_and_hard(nothing, steel), *u);
+    std::vector<double> sum;
+    for (std::size_t k = 0; k < both.size(); ++k) sum.push_back(soft[k] + hard[k]);
+    EXPECT_LT(difference(both, sum), 1e-14);
+    EXPECT_LT(difference(stiffness_times(d, soft_and_hard(steel, steel), *u), stiffness_times(d, steel, *u)), 1e-15);
+    // Each is at home on its side of the boundary alone.
+    const auto straight = body(small_box(element), world()); // where the boundary is a plane
+    const auto places = by_node_id(*d.mesh, 1, [&](const LO n, int) { return point_of(straight, n)[0]; });
+    double of_soft = 0, of_hard = 0;
+    for (std::size_t node = 0; node < places.size(); ++node) {
+      for (int c = 0; c < d.dim(); ++c) {
+        const std::size_t dof = d.dim() * node + c;
+        if (places[node] > boundary(element) + 1e-9) {
+          EXPECT_EQ(soft[dof], 0);
+          of_hard = std::max(of_hard, std::abs(hard[dof]));
+        } else if (places[node] < boundary(element) - 1e-9) {
+          EXPECT_EQ(hard[dof], 0);
+          of_soft = std::max(of_soft, std::abs(soft[dof]));
+        }
+      }
+    }
+    EXPECT_GT(of_soft, 0.01 * rubber.youngs_modulus);
+    EXPECT_GT(of_hard, 0.01 * steel.youngs_modulus);
+  }
+}
+
+TEST(Stiffness, OfTwoBlocksIsTheSameOnAnyNumberOfRanks)
+{
+  for (const auto &element : elements()) {
+    const auto force = [&](const RCP<const Comm> &comm) {
+      const auto d = in_two_blocks(bulged_body(element, comm));
+      return stiffness_times(d, soft_and_hard(rubber, steel), *interpolate(d, wild));
+    };
+    EXPECT_LT(difference(force(world()), force(alone())), 1e-13) << text_of(element);
+  }
+}
+
+TEST(StrainEnergy, OfALinearDisplacementIsSummedOverTheVolumesOfTheBlocks)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto box = small_box(element);
+    const auto d = in_two_blocks(body(box, world()));
+    const auto u = interpolate(d, [&](const Point &x) { return linear(x, element.dim); });
+    double across = 1;
+    for (int i = 1; i < element.dim; ++i) across *= box.upper[i] - box.lower[i];
+    const double energy = across * ((boundary(element) - box.lower[0]) * linear_energy_density(rubber, element.dim) +
+                                    (box.upper[0] - boundary(element)) * linear_energy_density(steel, element.dim));
+    EXPECT_NEAR(fem::strain_energy(d, soft_and_hard(rubber, steel), *u), energy, 1e-13 * energy);
+    Vector force(d.owned_dofs);
+    fem::assemble_stiffness(d, soft_and_hard(rubber, steel))->apply(*u, force);
+    EXPECT_NEAR(u->dot(force), energy, 1e-13 * energy);
+  }
+}
+
+TEST(InternalForces, OfTwoBlocksAreTheStiffnessTimesTheDisplacement)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = in_two_blocks(bulged_body(element, world()));
+    const auto u = interpolate(d, wild);
+    const auto materials = soft_and_hard(rubber, steel);
+    EXPECT_LT(difference(by_node_id(d, fem::internal_forces(d, materials, *u)), stiffness_times(d, materials, *u)),
+              1e-13);
+  }
+}
+
+TEST(InternalForces, OfTwoBlocksAreTheSameOnAnyNumberOfRanks)
+{
+  for (const auto &element : elements()) {
+    const auto forces = [&](const RCP<const Comm> &comm) {
+      const auto d = in_two_blocks(bulged_body(element, comm));
+      return by_node_id(d, fem::internal_forces(d, soft_and_hard(rubber, steel), *interpolate(d, wild)));
+    };
+    EXPECT_LT(difference(forces(world()), forces(alone())), 1e-13) << text_of(element);
+  }
+}
+
+} // namespace

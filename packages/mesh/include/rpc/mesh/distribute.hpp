@@ -1,0 +1,18 @@
+#pragma once
+
+#include "rpc/mesh/mesh.hpp"
+#include "rpc/mesh/mesh_data.hpp"
+
+namespace rpc::mesh
+{
+
+/// Deals a mesh that rank 0 holds out to all ranks, each of which keeps its part only; collective on comm.
+///
+/// METIS cuts the cells into one part per rank with the fewest shared nodes; a node belongs to the lowest of the parts
+/// around it. Each rank numbers its own nodes and cells so that neighbours lie close in memory. The result depends on
+/// nothing but the mesh and the number of ranks.
+/// @param whole  read on rank 0 only
+/// @throws rpc::Error (bad_mesh) on every rank if there are fewer cells than ranks
+Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm);
+
+} // namespace rpc::mesh

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "rpc/mesh/element.hpp"
+
+#include <string>
+#include <vector>
+
+namespace rpc::mesh
+{
+
+/// A named part of the boundary of a whole mesh, each facet once.
+struct SideData {
+  std::string name;
+  std::vector<int> cell;    ///< (facets) cell that the facet belongs to, 0-based
+  std::vector<int> ordinal; ///< (facets) which facet of that cell, see Element::facets
+};
+
+/// A whole mesh on one rank, as a generator or a file gives it: plain arrays, row by row. distribute() deals it out.
+///
+/// All nodes are used by cells, none twice; every cell belongs to one block. Numbers are 0-based and become
+/// Mesh::node_id and Mesh::cell_id.
+struct MeshData {
+  Element element;
+  std::vector<double> coords;      ///< (nodes, dim) [m]
+  std::vector<int> cells;          ///< (cells, nodes per cell)
+  std::vector<std::string> blocks; ///< names of the parts of the body, at least one
+  std::vector<int> block;          ///< (cells) index into blocks
+  std::vector<SideData> sides;
+
+  int num_nodes() const { return static_cast<int>(coords.size()) / element.dim; }
+  int num_cells() const { return static_cast<int>(cells.size()) / element.num_nodes(); }
+};
+
+} // namespace rpc::mesh

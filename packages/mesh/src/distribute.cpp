@@ -1,0 +1,231 @@
+#include "rpc/mesh/distribute.hpp"
+
+#include "division.hpp"
+#include "rpc/core/on_root.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <sstream>
+#include <utility>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+/// What one rank gets.
+struct Part {
+  MeshData mesh;            // its local nodes and cells, in local numbers
+  std::vector<int> node_id; // (owned nodes)
+  std::vector<int> cell_id; // (owned cells)
+  std::vector<int> gid;     // (local nodes) owned first, then ascending, which is by owner: what Tpetra packs best
+};
+
+/// Calls each(array) for all arrays of a part.
+template <class AnyPart, class Each>
+void for_each_array(AnyPart &part, const Each &each)
+{
+  each(part.mesh.coords);
+  each(part.mesh.cells);
+  each(part.mesh.block);
+  for (auto &side : part.mesh.sides) {
+    each(side.cell);
+    each(side.ordinal);
+  }
+  each(part.node_id);
+  each(part.cell_id);
+  each(part.gid);
+}
+
+Part part_of(const MeshData &whole, const Division &division, const int rank)
+{
+  const Lists &nodes = division.nodes;
+  const int width = whole.element.num_nodes(), dim = whole.element.dim;
+  const auto nodes_of = [&](const int cell) { return whole.cells.data() + std::size_t(width) * cell; };
+  Part part;
+  part.mesh.element = whole.element;
+  part.mesh.blocks = whole.blocks;
+  part.node_id.assign(nodes.first(rank), nodes.last(rank));
+
+  const int num_owned = nodes.size_of(rank), first_gid = static_cast<int>(nodes.begin[rank]);
+  std::vector<int> ghosts;
+  for (const Lists *cells : {&division.cells, &division.halo})
+    for (const int *cell = cells->first(rank); cell != cells->last(rank); ++cell)
+      for (int a = 0; a < width; ++a) {
+        const int node = nodes_of(*cell)[a];
+        if (division.node_owner[node] != rank) ghosts.push_back(division.gid[node]);
+      }
+  std::sort(ghosts.begin(), ghosts.end());
+  ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
+  const auto lid_of = [&](const int node) {
+    const int gid = division.gid[node];
+    if (division.node_owner[node] == rank) return gid - first_gid;
+    return num_owned + static_cast<int>(std::lower_bound(ghosts.begin(), ghosts.end(), gid) - ghosts.begin());
+  };
+  part.gid.resize(num_owned);
+  std::iota(part.gid.begin(), part.gid.end(), first_gid);
+  part.gid.insert(part.gid.end(), ghosts.begin(), ghosts.end());
+  for (const int gid : part.gid)
+    for (int d = 0; d < dim; ++d) part.mesh.coords.push_back(whole.coords[std::size_t(dim) * nodes.value[gid] + d]);
+
+  std::vector<int> cell_lid(whole.num_cells(), -1);
+  int num_cells = 0;
+  for (const Lists *cells : {&division.cells, &division.halo}) {
+    std::vector<std::pair<int, int>> by_node; // lowest node lid, cell: in the order of the nodes
+    for (const int *cell = cells->first(rank); cell != cells->last(rank); ++cell) {
+      int lowest = lid_of(*nodes_of(*cell));
+      for (int a = 1; a < width; ++a) lowest = std::min(lowest, lid_of(nodes_of(*cell)[a]));
+      by_node.emplace_back(lowest, *cell);
+    }
+    std::sort(by_node.begin(), by_node.end());
+    for (const auto &[lowest, cell] : by_node) {
+      cell_lid[cell] = num_cells++;
+      if (cells == &division.cells) part.cell_id.push_back(cell);
+      part.mesh.block.push_back(whole.block[cell]);
+      for (int a = 0; a < width; ++a) part.mesh.cells.push_back(lid_of(nodes_of(cell)[a]));
+    }
+  }
+
+  for (const SideData &side : whole.sides) {
+    SideData mine{side.name, {}, {}};
+    for (std::size_t f = 0; f < side.cell.size(); ++f) {
+      const int cell = side.cell[f], lid = cell_lid[cell];
+      if (lid < 0) continue;
+      const auto &facet = whole.element.facets()[side.ordinal[f]];
+      const bool here = lid < static_cast<int>(part.cell_id.size()) ||
+                        std::any_of(facet.begin(), facet.end(),
+                                    [&](const int a) { return division.node_owner[nodes_of(cell)[a]] == rank; });
+      if (!here) continue;
+      mine.cell.push_back(lid);
+      mine.ordinal.push_back(side.ordinal[f]);
+    }
+    part.mesh.sides.push_back(mine);
+  }
+  return part;
+}
+
+/// Rank 0's values on all ranks.
+void broadcast(const Comm &comm, std::vector<std::string> &names)
+{
+  std::string text;
+  for (const std::string &name : names) text += name + '\0';
+  int size = static_cast<int>(text.size());
+  Teuchos::broadcast(comm, 0, Teuchos::outArg(size));
+  text.resize(size);
+  Teuchos::broadcast(comm, 0, size, text.data());
+  names.clear();
+  std::istringstream in(text);
+  for (std::string name; std::getline(in, name, '\0');) names.push_back(name);
+}
+
+void broadcast(const Comm &comm, Element &element)
+{
+  int values[] = {element.dim, element.order, static_cast<int>(element.shape)};
+  Teuchos::broadcast(comm, 0, 3, values);
+  element = {values[0], values[1], static_cast<Shape>(values[2])};
+}
+
+/// Calls message(first, count) for each piece of [0, total): MPI counts bytes in an int.
+template <class Message>
+void in_pieces(const std::size_t total, const Message &message)
+{
+  constexpr std::size_t most = std::size_t(1) << 26;
+  for (std::size_t first = 0; first < total; first += most)
+    message(first, static_cast<int>(std::min(most, total - first)));
+}
+
+void send(const Comm &comm, const Part &part, const int rank)
+{
+  for_each_array(part, [&](const auto &array) {
+    const GO size = static_cast<GO>(array.size());
+    Teuchos::send(comm, 1, &size, rank);
+    in_pieces(array.size(),
+              [&](const std::size_t first, const int n) { Teuchos::send(comm, n, array.data() + first, rank); });
+  });
+}
+
+void receive(const Comm &comm, Part &part)
+{
+  for_each_array(part, [&](auto &array) {
+    GO size = 0;
+    Teuchos::receive(comm, 0, 1, &size);
+    array.resize(size);
+    in_pieces(array.size(),
+              [&](const std::size_t first, const int n) { Teuchos::receive(comm, 0, n, array.data() + first); });
+  });
+}
+
+Part deal(const MeshData &whole, const Comm &comm)
+{
+  Division division;
+  on_root(comm, ExitCode::internal_error, [&] { division = divide(whole, comm.getSize()); });
+  Part part;
+  std::vector<std::string> sides;
+  if (comm.getRank() == 0) {
+    part.mesh.element = whole.element;
+    part.mesh.blocks = whole.blocks;
+    for (const SideData &side : whole.sides) sides.push_back(side.name);
+  }
+  broadcast(comm, part.mesh.element);
+  broadcast(comm, part.mesh.blocks);
+  broadcast(comm, sides);
+  if (comm.getRank() == 0) {
+    for (int rank = 1; rank < comm.getSize(); ++rank) send(comm, part_of(whole, division, rank), rank);
+    return part_of(whole, division, 0);
+  }
+  for (const std::string &name : sides) part.mesh.sides.push_back({name, {}, {}});
+  receive(comm, part);
+  return part;
+}
+
+template <class T>
+HostView<T *> host_array(const std::string &label, const std::vector<int> &values)
+{
+  HostView<T *> view(label, values.size());
+  std::copy(values.begin(), values.end(), view.data());
+  return view;
+}
+
+template <class T>
+DeviceView<T **> device_table(const std::string &label, const std::vector<T> &values, const int width)
+{
+  DeviceView<T **> table(label, values.size() / width, width);
+  const auto host = Kokkos::create_mirror_view(table);
+  for (std::size_t k = 0; k < values.size(); ++k) host(k / width, k % width) = values[k];
+  Kokkos::deep_copy(table, host);
+  return table;
+}
+
+} // namespace
+
+Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm)
+{
+  const Part part = deal(whole, *comm);
+  Mesh mesh;
+  mesh.element = part.mesh.element;
+  const Teuchos::Array<GO> gids(part.gid.begin(), part.gid.end());
+  const GO invalid = Teuchos::OrdinalTraits<GO>::invalid();
+  mesh.owned_nodes = rcp(new Map(invalid, part.node_id.size(), 0, comm));
+  mesh.overlap_nodes = mesh.owned_nodes;
+  if (comm->getSize() > 1) mesh.overlap_nodes = rcp(new Map(invalid, gids(), 0, comm));
+  mesh.coords = device_table("rpc::mesh::coords", part.mesh.coords, mesh.dim());
+  mesh.cells = device_table("rpc::mesh::cells", part.mesh.cells, mesh.element.num_nodes());
+  mesh.block = to_device(host_array<int>("rpc::mesh::block", part.mesh.block));
+  mesh.node_id = host_array<GO>("rpc::mesh::node_id", part.node_id);
+  mesh.cell_id = host_array<GO>("rpc::mesh::cell_id", part.cell_id);
+  mesh.num_owned_cells = static_cast<LO>(part.cell_id.size());
+  mesh.blocks = part.mesh.blocks;
+  for (const SideData &side : part.mesh.sides) {
+    std::vector<LO> facets;
+    for (std::size_t f = 0; f < side.cell.size(); ++f)
+      for (const int a : mesh.element.facets()[side.ordinal[f]])
+        facets.push_back(part.mesh.cells[std::size_t(mesh.element.num_nodes()) * side.cell[f] + a]);
+    mesh.sides.push_back({side.name, device_table("rpc::mesh::side_facets", facets, mesh.element.num_facet_nodes()),
+                          to_device(host_array<LO>("rpc::mesh::side_cell", side.cell)),
+                          to_device(host_array<int>("rpc::mesh::side_ordinal", side.ordinal))});
+  }
+  Kokkos::fence();
+  return mesh;
+}
+
+} // namespace rpc::mesh

@@ -1,0 +1,187 @@
+#include "division.hpp"
+
+#include "rpc/core/error.hpp"
+
+#include <algorithm>
+#include <metis.h>
+#include <numeric>
+#include <utility>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+/// Numbers 0, 1, ... in the lists that `list_of` names for them, ascending in each.
+Lists sorted_into_lists(const std::vector<int> &list_of, const int num_lists)
+{
+  Lists lists;
+  lists.begin.assign(num_lists + 1, 0);
+  for (const int list : list_of) ++lists.begin[list + 1];
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.value.resize(list_of.size());
+  std::vector<std::size_t> next(lists.begin.begin(), lists.begin.end() - 1);
+  for (std::size_t n = 0; n < list_of.size(); ++n) lists.value[next[list_of[n]]++] = static_cast<int>(n);
+  return lists;
+}
+
+/// A part of the mesh for each cell, none of them empty.
+std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts)
+{
+  const int num_cells = whole.num_cells(), width = whole.element.num_nodes();
+  RPC_REQUIRE_CODE(num_cells >= num_parts, ExitCode::bad_mesh,
+                   "mesh: " << num_cells << " cells cannot be divided among " << num_parts
+                            << " ranks. Use fewer ranks or more cells.");
+  std::vector<int> part(num_cells, 0);
+  if (num_parts == 1) return part; // METIS wants two or more
+
+  const int vertices = whole.element.num_vertices();
+  idx_t cells = num_cells, nodes = whole.num_nodes(), parts = num_parts, cut = 0;
+  idx_t common = Element{whole.element.dim, 1, whole.element.shape}.num_facet_nodes(); // vertices of neighbours
+  std::vector<idx_t> begin, vertex, cell_part(num_cells), node_part(nodes);
+  for (int c = 0; c <= num_cells; ++c) begin.push_back(idx_t(vertices) * c);
+  for (int c = 0; c < num_cells; ++c)
+    for (int v = 0; v < vertices; ++v) vertex.push_back(whole.cells[std::size_t(width) * c + v]);
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED] = 1; // the same cut in every run
+  const int status = METIS_PartMeshDual(&cells, &nodes, begin.data(), vertex.data(), nullptr, nullptr, &common, &parts,
+                                        nullptr, options, &cut, cell_part.data(), node_part.data());
+  RPC_REQUIRE_CODE(status == METIS_OK, ExitCode::internal_error,
+                   "mesh: METIS could not divide " << num_cells << " cells among " << num_parts
+                                                   << " ranks: its status is " << status);
+  std::copy(cell_part.begin(), cell_part.end(), part.begin());
+
+  // Where there are hardly more cells than parts, METIS leaves parts empty.
+  std::vector<int> size(num_parts, 0);
+  for (const int p : part) ++size[p];
+  for (int p = 0; p < num_parts; ++p) {
+    if (size[p] > 0) continue;
+    const int largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+    *std::find(part.begin(), part.end(), largest) = p;
+    --size[largest];
+    ++size[p];
+  }
+  return part;
+}
+
+Lists cells_around_nodes(const MeshData &whole)
+{
+  Lists around = sorted_into_lists(whole.cells, whole.num_nodes());
+  for (int &entry : around.value) entry /= whole.element.num_nodes(); // of an entry of `cells`, its cell
+  return around;
+}
+
+/// For each node those of the same owner that share a cell with it, without itself.
+Lists neighbours(const MeshData &whole, const Lists &cells_around, const std::vector<int> &owner)
+{
+  const int width = whole.element.num_nodes();
+  Lists graph;
+  std::vector<int> seen_by(owner.size(), -1);
+  for (int node = 0; node < whole.num_nodes(); ++node) {
+    seen_by[node] = node;
+    for (const int *cell = cells_around.first(node); cell != cells_around.last(node); ++cell)
+      for (int a = 0; a < width; ++a) {
+        const int other = whole.cells[std::size_t(width) * *cell + a];
+        if (seen_by[other] == node || owner[other] != owner[node]) continue;
+        seen_by[other] = node;
+        graph.value.push_back(other);
+      }
+    graph.begin.push_back(graph.value.size());
+  }
+  return graph;
+}
+
+/// A connected part of a graph, breadth first.
+struct Sweep {
+  std::vector<int> nodes;
+  int depth = 0;              // number of levels
+  std::size_t last_level = 0; // where it begins in `nodes`
+};
+
+Sweep breadth_first(const Lists &graph, const int start, std::vector<char> &seen)
+{
+  Sweep sweep{{start}};
+  seen[start] = 1;
+  for (std::size_t level = 0, end = 1; level < end; level = end, end = sweep.nodes.size()) {
+    ++sweep.depth;
+    sweep.last_level = level;
+    for (std::size_t n = level; n < end; ++n)
+      for (const int *other = graph.first(sweep.nodes[n]); other != graph.last(sweep.nodes[n]); ++other)
+        if (!seen[*other]) {
+          seen[*other] = 1;
+          sweep.nodes.push_back(*other);
+        }
+  }
+  return sweep;
+}
+
+/// The nodes of a graph in the reverse Cuthill-McKee order, which puts neighbours close to each other: breadth first
+/// from one end of each connected part, backwards. (E. Cuthill, J. McKee, 1969; the ends: A. George, J. Liu, 1979.)
+std::vector<int> reverse_cuthill_mckee(Lists graph)
+{
+  const auto lower_degree = [&](const int a, const int b) {
+    return std::pair(graph.size_of(a), a) < std::pair(graph.size_of(b), b);
+  };
+  for (int n = 0; n < graph.size(); ++n) std::sort(graph.first(n), graph.last(n), lower_degree);
+
+  std::vector<int> order;
+  std::vector<char> seen(graph.size(), 0);
+  for (int n = 0; n < graph.size(); ++n) {
+    if (seen[n]) continue;
+    Sweep sweep = breadth_first(graph, n, seen);
+    for (int depth = 0; sweep.depth > depth;) { // from end to end, until they move apart no more
+      depth = sweep.depth;
+      const int end = *std::min_element(sweep.nodes.begin() + sweep.last_level, sweep.nodes.end(), lower_degree);
+      for (const int node : sweep.nodes) seen[node] = 0;
+      sweep = breadth_first(graph, end, seen);
+    }
+    order.insert(order.end(), sweep.nodes.begin(), sweep.nodes.end());
+  }
+  std::reverse(order.begin(), order.end());
+  return order;
+}
+
+} // namespace
+
+Division divide(const MeshData &whole, const int num_ranks)
+{
+  Division division;
+  const std::vector<int> part = parts_of_cells(whole, num_ranks);
+  division.cells = sorted_into_lists(part, num_ranks);
+  const Lists cells_around = cells_around_nodes(whole);
+  auto &owner = division.node_owner;
+  for (int n = 0; n < whole.num_nodes(); ++n) {
+    int lowest = num_ranks;
+    for (const int *cell = cells_around.first(n); cell != cells_around.last(n); ++cell)
+      lowest = std::min(lowest, part[*cell]);
+    owner.push_back(lowest);
+  }
+
+  // No edge of the graph leads from rank to rank: one call orders the nodes of each.
+  const std::vector<int> order = reverse_cuthill_mckee(neighbours(whole, cells_around, owner));
+  std::vector<int> owner_in_order;
+  for (const int node : order) owner_in_order.push_back(owner[node]);
+  division.nodes = sorted_into_lists(owner_in_order, num_ranks);
+  division.gid.resize(owner.size());
+  for (std::size_t gid = 0; gid < order.size(); ++gid) {
+    int &node = division.nodes.value[gid];
+    node = order[node];
+    division.gid[node] = static_cast<int>(gid);
+  }
+
+  std::vector<std::vector<int>> halo(num_ranks);
+  const int width = whole.element.num_nodes();
+  for (int c = 0; c < whole.num_cells(); ++c)
+    for (int a = 0; a < width; ++a) {
+      const int rank = owner[whole.cells[std::size_t(width) * c + a]];
+      if (rank != part[c] && (halo[rank].empty() || halo[rank].back() != c)) halo[rank].push_back(c);
+    }
+  for (const auto &cells : halo) {
+    division.halo.value.insert(division.halo.value.end(), cells.begin(), cells.end());
+    division.halo.begin.push_back(division.halo.value.size());
+  }
+  return division;
+}
+
+} // namespace rpc::mesh

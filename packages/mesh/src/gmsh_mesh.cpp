@@ -1,0 +1,243 @@
+#include "gmsh_mesh.hpp"
+
+#include "gmsh_types.hpp"
+#include "plane_mesh_checks.hpp"
+#include "rpc/core/error.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+constexpr const char *kind_of_group[] = {"point", "curve", "surface"};
+
+void check_groups(const std::string &where, const GmshContents &contents)
+{
+  RPC_REQUIRE_CODE(!contents.solid, ExitCode::bad_mesh,
+                   where << "has cells of dimension 3; only plane meshes of triangles or quadrilaterals can be read");
+  std::map<std::pair<int, std::string>, int> tags;
+  bool body = false;
+  for (const auto &[dim, tag, name] : contents.groups) {
+    const char *const kind = kind_of_group[dim];
+    RPC_REQUIRE_CODE(!name.empty(), ExitCode::bad_mesh,
+                     where << "physical " << kind << " " << tag << " has no name; give it one: Physical "
+                           << (dim == 1 ? "Curve(\"contact\"" : "Surface(\"body\"") << ", " << tag << ") = {...};");
+    const auto [same, fresh] = tags.insert({{dim, name}, tag});
+    RPC_REQUIRE_CODE(fresh, ExitCode::bad_mesh,
+                     where << "physical " << kind << "s " << same->second << " and " << tag << " share the name \""
+                           << name << "\"");
+    body = body || dim == 2;
+  }
+  RPC_REQUIRE_CODE(body, ExitCode::bad_mesh,
+                   where << "has no physical surface; name what is the body: Physical Surface(\"body\") = {...};");
+  std::set<int> filled;
+  for (const auto &elements : contents.elements) filled.insert(elements.group);
+  for (int g = 0; g < static_cast<int>(contents.groups.size()); ++g)
+    RPC_REQUIRE_CODE(filled.count(g), ExitCode::bad_mesh,
+                     where << "physical " << kind_of_group[contents.groups[g].dim] << " \"" << contents.groups[g].name
+                           << "\" has no elements");
+}
+
+std::optional<Element> element_of_type(const int type)
+{
+  switch (type) {
+  case 2:
+    return Element{2, 1, Shape::simplex};
+  case 3:
+    return Element{2, 1, Shape::tensor};
+  case 9:
+    return Element{2, 2, Shape::simplex};
+  case 10:
+    return Element{2, 2, Shape::tensor};
+  default:
+    return std::nullopt;
+  }
+}
+
+std::string name_of_type(const int number)
+{
+  const GmshType *const type = gmsh_type(number);
+  return type ? type->name() : std::to_string(number);
+}
+
+/// The one kind of cell that all surfaces have.
+Element element_of(const std::string &where, const GmshContents &contents)
+{
+  const GmshElements *first = nullptr;
+  for (const auto &elements : contents.elements) {
+    const auto &group = contents.groups[elements.group];
+    if (group.dim != 2) continue;
+    const bool serendipity = elements.type == 16;
+    RPC_REQUIRE_CODE(element_of_type(elements.type), ExitCode::bad_mesh,
+                     where << "cells of type \"" << name_of_type(elements.type) << "\" in physical surface \""
+                           << group.name << "\"; triangles of 3 or 6 nodes and quadrilaterals of 4 or 9 can be read"
+                           << (serendipity ? "; mesh with Mesh.SecondOrderIncomplete = 0" : ""));
+    if (!first) first = &elements;
+  }
+  const auto summary = [&](const int type) {
+    std::size_t count = 0;
+    std::set<std::string> names;
+    for (const auto &elements : contents.elements) {
+      if (elements.type != type) continue;
+      count += elements.tags.size();
+      names.insert("\"" + contents.groups[elements.group].name + "\"");
+    }
+    std::string text = std::to_string(count) + " of type \"" + name_of_type(type) + "\" in ";
+    for (const auto &group : names) text += (group == *names.begin() ? "" : ", ") + group;
+    return text;
+  };
+  for (const auto &elements : contents.elements)
+    RPC_REQUIRE_CODE(contents.groups[elements.group].dim != 2 || elements.type == first->type, ExitCode::bad_mesh,
+                     where << "cells must be of one kind, got " << summary(first->type) << " and "
+                           << summary(elements.type)
+                           << "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = 1");
+  return *element_of_type(first->type);
+}
+
+void take_nodes(const GmshContents &contents, TaggedMesh &draft)
+{
+  for (const auto &elements : contents.elements)
+    if (contents.groups[elements.group].dim == 2)
+      draft.node_tag.insert(draft.node_tag.end(), elements.nodes.begin(), elements.nodes.end());
+  std::sort(draft.node_tag.begin(), draft.node_tag.end());
+  draft.node_tag.erase(std::unique(draft.node_tag.begin(), draft.node_tag.end()), draft.node_tag.end());
+
+  std::vector<std::pair<std::size_t, std::size_t>> places; // tag, where in contents.coords
+  for (std::size_t n = 0; n < contents.node_tags.size(); ++n) places.push_back({contents.node_tags[n], n});
+  std::sort(places.begin(), places.end());
+  for (std::size_t n = 1; n < places.size(); ++n)
+    RPC_REQUIRE_CODE(places[n].first != places[n - 1].first, ExitCode::bad_mesh,
+                     draft.where << "there are two nodes " << places[n].first);
+  for (const std::size_t tag : draft.node_tag) {
+    const auto place = std::lower_bound(places.begin(), places.end(), std::pair(tag, std::size_t{0}));
+    RPC_REQUIRE_CODE(place != places.end() && place->first == tag, ExitCode::bad_mesh,
+                     draft.where << "cells use node " << tag << ", which the file lacks");
+    const double *const x = &contents.coords[3 * place->second];
+    draft.mesh.coords.insert(draft.mesh.coords.end(), x, x + 2);
+    draft.z.push_back(x[2]);
+  }
+}
+
+/// Position of a tag in the sorted list, -1 if it is not there.
+int find_node(const TaggedMesh &draft, const std::size_t tag)
+{
+  const auto it = std::lower_bound(draft.node_tag.begin(), draft.node_tag.end(), tag);
+  return it == draft.node_tag.end() || *it != tag ? -1 : static_cast<int>(it - draft.node_tag.begin());
+}
+
+void take_cells(const GmshContents &contents, TaggedMesh &draft)
+{
+  int block = -1, group = -1;
+  for (const auto &elements : contents.elements) {
+    if (contents.groups[elements.group].dim != 2) continue;
+    if (elements.group != group) {
+      group = elements.group;
+      block = static_cast<int>(draft.mesh.blocks.size());
+      draft.mesh.blocks.push_back(contents.groups[group].name);
+    }
+    for (const std::size_t tag : elements.nodes) draft.mesh.cells.push_back(find_node(draft, tag));
+    draft.mesh.block.insert(draft.mesh.block.end(), elements.tags.size(), block);
+    draft.cell_tag.insert(draft.cell_tag.end(), elements.tags.begin(), elements.tags.end());
+  }
+}
+
+void check_blocks(const TaggedMesh &draft)
+{
+  std::vector<std::pair<std::size_t, int>> cells; // tag, cell
+  for (std::size_t c = 0; c < draft.cell_tag.size(); ++c) cells.push_back({draft.cell_tag[c], static_cast<int>(c)});
+  std::sort(cells.begin(), cells.end());
+  for (std::size_t c = 1; c < cells.size(); ++c) {
+    const auto block = [&](const std::size_t at) { return draft.mesh.blocks[draft.mesh.block[cells[at].second]]; };
+    RPC_REQUIRE_CODE(cells[c].first != cells[c - 1].first || block(c - 1) == block(c), ExitCode::bad_mesh,
+                     draft.where << "cell " << cells[c].first << " belongs to the physical surfaces \"" << block(c - 1)
+                                 << "\" and \"" << block(c) << "\"; each cell must belong to one");
+    RPC_REQUIRE_CODE(cells[c].first != cells[c - 1].first, ExitCode::bad_mesh,
+                     draft.where << "there are two cells " << cells[c].first << " in \"" << block(c) << "\"");
+  }
+}
+
+/// The facet that a line element lies on.
+const Edge &edge_of_line(const TaggedMesh &draft, const std::vector<Edge> &edges, const std::string &side,
+                         const std::size_t line, const std::size_t *const tags)
+{
+  const auto label = [&] {
+    return draft.where + "line " + std::to_string(line) + " of physical curve \"" + side + "\", between nodes " +
+           std::to_string(tags[0]) + " and " + std::to_string(tags[1]) + ", ";
+  };
+  const int a = find_node(draft, tags[0]), b = find_node(draft, tags[1]);
+  const auto [first, last] = std::equal_range(edges.begin(), edges.end(), Edge{std::min(a, b), std::max(a, b)},
+                                              [](const Edge &l, const Edge &r) { return l.nodes() < r.nodes(); });
+  RPC_REQUIRE_CODE(first != last, ExitCode::bad_mesh, label() << "is an edge of no cell");
+  RPC_REQUIRE_CODE(last - first == 1, ExitCode::bad_mesh,
+                   label() << "lies inside the body, between the cells " << draft.cell_tag[first->cell] << " and "
+                           << draft.cell_tag[(last - 1)->cell] << "; a side must be part of the boundary");
+  RPC_REQUIRE_CODE(draft.mesh.element.order == 1 || find_node(draft, tags[2]) == first->middle, ExitCode::bad_mesh,
+                   label() << "has the middle node " << tags[2] << ", but the cell there has "
+                           << draft.node_tag[first->middle]);
+  return *first;
+}
+
+void take_sides(const GmshContents &contents, const std::vector<Edge> &edges, TaggedMesh &draft)
+{
+  const int order = draft.mesh.element.order;
+  const int line_type = order == 1 ? 1 : 8;
+  int group = -1;
+  std::set<std::pair<int, int>> taken;
+  for (const auto &elements : contents.elements) {
+    if (contents.groups[elements.group].dim != 1) continue;
+    const std::string &name = contents.groups[elements.group].name;
+    RPC_REQUIRE_CODE(elements.type == line_type, ExitCode::bad_mesh,
+                     draft.where << "lines of type \"" << name_of_type(elements.type) << "\" in physical curve \""
+                                 << name << "\", which do not fit cells of order " << order);
+    if (elements.group != group) {
+      group = elements.group;
+      draft.mesh.sides.push_back({name, {}, {}});
+      taken.clear();
+    }
+    SideData &side = draft.mesh.sides.back();
+    for (std::size_t l = 0; l < elements.tags.size(); ++l) {
+      const Edge &edge = edge_of_line(draft, edges, name, elements.tags[l], &elements.nodes[(order + 1) * l]);
+      if (!taken.insert({edge.cell, edge.ordinal}).second) continue;
+      side.cell.push_back(edge.cell);
+      side.ordinal.push_back(edge.ordinal);
+    }
+  }
+}
+
+void check_unused_nodes(const GmshContents &contents, const TaggedMesh &draft)
+{
+  const std::set<std::size_t> elsewhere(contents.ungrouped_nodes.begin(), contents.ungrouped_nodes.end());
+  for (std::size_t n = 0; n < contents.node_tags.size(); ++n) {
+    const std::size_t tag = contents.node_tags[n];
+    const double *const x = &contents.coords[3 * n];
+    RPC_REQUIRE_CODE(find_node(draft, tag) >= 0 || elsewhere.count(tag), ExitCode::bad_mesh,
+                     draft.where << "no cell uses node " << tag << " at (" << x[0] << ", " << x[1] << ", " << x[2]
+                                 << "); leave it out (gmsh does unless Mesh.SaveAll = 1)");
+  }
+}
+
+} // namespace
+
+MeshData mesh_of_gmsh(const std::string &file, const GmshContents &contents, const bool any_nodes)
+{
+  TaggedMesh draft;
+  draft.where = "mesh: \"" + file + "\": ";
+  check_groups(draft.where, contents);
+  draft.mesh.element = element_of(draft.where, contents);
+  take_nodes(contents, draft);
+  take_cells(contents, draft);
+  check_blocks(draft);
+  check_nodes(draft);
+  check_cells(draft);
+  take_sides(contents, checked_edges(draft), draft);
+  if (!any_nodes) check_unused_nodes(contents, draft);
+  return std::move(draft.mesh);
+}
+
+} // namespace rpc::mesh

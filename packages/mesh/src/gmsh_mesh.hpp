@@ -1,0 +1,15 @@
+#pragma once
+
+#include "gmsh_module.hpp"
+#include "rpc/mesh/mesh_data.hpp"
+
+namespace rpc::mesh
+{
+
+/// The mesh in what gmsh gave, checked: blocks, sides and nodes as read_gmsh() promises.
+/// @param file       for messages
+/// @param any_nodes  whether nodes that no cell uses are no fault: a .geo has points that only serve to construct
+/// @throws rpc::Error (bad_mesh)
+MeshData mesh_of_gmsh(const std::string &file, const GmshContents &contents, bool any_nodes);
+
+} // namespace rpc::mesh

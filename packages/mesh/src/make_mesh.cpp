@@ -1,0 +1,97 @@
+#include "rpc/mesh/make_mesh.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/on_root.hpp"
+#include "rpc/core/parameters.hpp"
+#include "rpc/mesh/distribute.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+void add_gmsh_parameters(Teuchos::ParameterList &valid)
+{
+  valid.set(
+      "File", "",
+      "gmsh: a .geo to be meshed or a .msh (2.2 or 4.1), looked for in the deck's folder, then in the current one. "
+      "Its physical surfaces become blocks, its physical curves sides, by their names.");
+  valid.set("Size Factor", 1., "gmsh: factor on all cell sizes that a .geo asks for, > 0.");
+  valid.set(
+      "Order", 0,
+      "gmsh: order of the elements that a .geo is meshed with, 1 or 2 (curved); 0: 2 for a .geo, for a .msh what it "
+      "has.");
+}
+
+GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &folder)
+{
+  GmshOptions options;
+  options.file = list.get<std::string>("File");
+  options.size_factor = list.get<double>("Size Factor");
+  options.order = list.get<int>("Order");
+  RPC_REQUIRE(!options.file.empty(), "deck: \"Mesh->File\" must name a .geo or .msh for a mesh of type gmsh, got none");
+  const std::string extension = std::filesystem::path(options.file).extension().string();
+  RPC_REQUIRE(extension == ".geo" || extension == ".msh",
+              "deck: \"Mesh->File\" must end in .geo or .msh, got \"" << options.file << "\"");
+  RPC_REQUIRE(options.size_factor > 0 && std::isfinite(options.size_factor),
+              "deck: \"Mesh->Size Factor\" must be > 0 and finite, got " << options.size_factor);
+  RPC_REQUIRE(options.order >= 0 && options.order <= 2,
+              "deck: \"Mesh->Order\" must be 1 or 2, or 0 for the default, got " << options.order);
+  const auto beside_deck = std::filesystem::path(folder) / options.file;
+  std::error_code ignored;
+  if (std::filesystem::exists(beside_deck, ignored)) options.file = beside_deck.string();
+  RPC_REQUIRE(std::filesystem::exists(options.file, ignored), "deck: \"Mesh->File\": there is no file \""
+                                                                  << options.file << "\" in \"" << folder
+                                                                  << "\" or in the current folder");
+  return options;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_parameters()
+{
+  Teuchos::ParameterList valid("Mesh");
+  valid.set("Type", "box", "Kind of mesh: `box`, or `gmsh` for a geometry or mesh file.");
+  add_box_parameters(valid);
+  add_gmsh_parameters(valid);
+  return valid;
+}
+
+MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &folder)
+{
+  const auto &type = list.get<std::string>("Type");
+  RPC_REQUIRE(type == "box" || type == "gmsh", "deck: \"Mesh->Type\" must be one of box, gmsh, got \"" << type << "\"");
+  const bool box = type == "box";
+  const Teuchos::ParameterList others = [&] {
+    Teuchos::ParameterList valid;
+    if (box)
+      add_gmsh_parameters(valid);
+    else
+      add_box_parameters(valid);
+    return valid;
+  }();
+  for (auto it = others.begin(); it != others.end(); ++it)
+    RPC_REQUIRE(list.getEntry(others.name(it)).isDefault(),
+                "deck: \"Mesh->" << others.name(it) << "\" does not go with \"Mesh->Type\" = " << type);
+  if (box) return box_options(list);
+  return gmsh_options(list, folder);
+}
+
+int dimension(const MeshOptions &options)
+{
+  const auto *box = std::get_if<BoxOptions>(&options);
+  return box ? box->element.dim : 2;
+}
+
+Mesh make_mesh(const MeshOptions &options, const RCP<const Comm> &comm)
+{
+  if (const auto *box = std::get_if<BoxOptions>(&options)) return make_box(*box, comm);
+  MeshData whole;
+  on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(std::get<GmshOptions>(options)); });
+  return distribute(whole, comm);
+}
+
+} // namespace rpc::mesh

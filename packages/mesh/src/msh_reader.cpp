@@ -1,0 +1,356 @@
+#include "msh_reader.hpp"
+
+#include "gmsh_types.hpp"
+#include "rpc/core/error.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <regex>
+#include <set>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+constexpr const char *blanks = " \t\r\n";
+
+/// A piece of the file for a message.
+std::string in_quotes(const std::string_view piece)
+{
+  std::string text = "\"" + std::string(piece.substr(0, 40)) + "\"";
+  for (char &c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return text;
+}
+
+bool is_letter(const unsigned char c)
+{
+  return std::isalpha(c) != 0;
+}
+
+/// The file from front to back.
+class Reader
+{
+public:
+  Reader(const std::string &where, const std::string &text) : where_(where), text_(text) {}
+
+  bool binary = false;
+
+  [[noreturn]] void refuse(const std::string &what) const
+  {
+    throw Error(ExitCode::bad_mesh, where_ + (section_.empty() ? "" : "in $" + section_ + ", ") + what);
+  }
+
+  /// The rest of the line.
+  std::string_view line()
+  {
+    const std::size_t begin = at_, end = std::min(text_.find('\n', at_), text_.size());
+    at_ = std::min(end + 1, text_.size());
+    const std::string_view all = text_.substr(begin, end - begin);
+    return all.substr(0, all.find_last_not_of(blanks) + 1);
+  }
+
+  /// Goes to the next section and returns its name without $; empty at the end of the file.
+  std::string next_section()
+  {
+    section_.clear();
+    skip_blanks();
+    if (at_ == text_.size()) return "";
+    const std::string_view name = line();
+    const bool good = name.size() > 1 && name[0] == '$' && std::all_of(name.begin() + 1, name.end(), is_letter);
+    if (!good) refuse("a section must begin with its name, as $Nodes does, got " + in_quotes(name));
+    section_ = name.substr(1);
+    return section_;
+  }
+
+  void end_section()
+  {
+    skip_blanks();
+    const std::size_t here = at_;
+    const std::string_view name = line();
+    if (name == "$End" + section_) return;
+    if (here == text_.size()) refuse("the file ends early: it is truncated");
+    refuse("its contents must be followed by $End" + section_ + ", got " + in_quotes(name) + ": counts do not fit");
+  }
+
+  /// Passes over a section that does not matter.
+  void skip_section()
+  {
+    const std::size_t end = text_.find("$End" + section_, at_);
+    if (end == text_.npos) refuse("there is no $End" + section_ + ": the file is truncated");
+    at_ = end;
+    line();
+  }
+
+  double real() { return binary ? bytes<double>() : word<double>(); }
+  int small_integer() { return binary ? bytes<std::int32_t>() : word<int>(); }
+  std::int64_t large_integer() { return binary ? bytes<std::int64_t>() : word<std::int64_t>(); }
+
+  /// An integer that is text even in a binary file, with the end of its line.
+  std::int64_t text_integer()
+  {
+    const auto value = word<std::int64_t>();
+    line();
+    return value;
+  }
+
+  std::size_t node(const std::int64_t tag) const
+  {
+    if (tag < 1) refuse("a node's number must be > 0, got " + std::to_string(tag));
+    return static_cast<std::size_t>(tag);
+  }
+
+private:
+  void skip_blanks() { at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size()); }
+
+  template <class T>
+  T bytes()
+  {
+    T value;
+    if (text_.size() - at_ < sizeof value) refuse("the file ends early: it is truncated");
+    std::memcpy(&value, text_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+
+  template <class T>
+  T word()
+  {
+    skip_blanks();
+    if (at_ == text_.size()) refuse("the file ends early: it is truncated");
+    const std::string_view word = text_.substr(at_, std::min(text_.find_first_of(blanks, at_), text_.size()) - at_);
+    T value{};
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      refuse(std::string(std::is_integral_v<T> ? "a whole number" : "a number") + " was expected, got " +
+             in_quotes(word));
+    at_ += word.size();
+    return value;
+  }
+
+  std::string where_;
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::string section_;
+};
+
+using Key = std::tuple<int, int, int, int>; // dimension, physical tag, entity, type
+
+struct Draft {
+  GmshContents contents;
+  std::map<std::pair<int, int>, std::string> groups;                // dimension and tag -> name
+  std::map<std::pair<int, int>, std::vector<int>> groups_of_entity; // dimension and entity -> tags; 4.1
+  std::map<Key, GmshElements> elements;
+};
+
+/// Whether it is version 4.1.
+bool read_format(Reader &reader)
+{
+  if (reader.next_section() != "MeshFormat") reader.refuse("a .msh must begin with $MeshFormat");
+  const std::string line(reader.line());
+  std::smatch part;
+  if (!std::regex_match(line, part, std::regex(R"((\S+)\s+([01])\s+(\d+))")))
+    reader.refuse("there must be version, file type (0 or 1) and data size, got " + in_quotes(line));
+  const bool known = part[1] == "2.2" || part[1] == "4.1";
+  if (!known)
+    reader.refuse("the version must be 2.2 or 4.1, got " + in_quotes(part[1].str()) +
+                  "; convert it: gmsh old.msh -save -format msh41 -o new.msh");
+  if (part[3] != "8") reader.refuse("the data size must be 8, got " + part[3].str());
+  reader.binary = part[2] == "1";
+  if (reader.binary && reader.small_integer() != 1) reader.refuse("the file was written on another kind of machine");
+  reader.end_section();
+  return part[1] == "4.1";
+}
+
+void read_names(Reader &reader, Draft &draft)
+{
+  static const std::regex form(R"re(\s*([0-3])\s+([1-9]\d{0,8})\s+"(.*)")re");
+  for (auto count = reader.text_integer(); count > 0; --count) {
+    const std::string line(reader.line());
+    std::smatch part;
+    if (!std::regex_match(line, part, form))
+      reader.refuse("a line must be dimension (0 to 3), number and name in quotes, got " + in_quotes(line));
+    draft.groups[{std::stoi(part[1]), std::stoi(part[2])}] = part[3];
+  }
+}
+
+/// A negative number in the file says that the entity is turned around.
+int group_tag(const std::int64_t number)
+{
+  return static_cast<int>(std::abs(number));
+}
+
+/// Which physical groups the entities of a 4.1 belong to.
+void read_entities(Reader &reader, Draft &draft)
+{
+  std::int64_t count[4];
+  for (auto &c : count) c = reader.large_integer();
+  for (int dim = 0; dim < 4; ++dim)
+    for (; count[dim] > 0; --count[dim]) {
+      const int entity = reader.small_integer();
+      for (int x = 0; x < (dim == 0 ? 3 : 6); ++x) reader.real(); // the box around it
+      for (auto groups = reader.large_integer(); groups > 0; --groups) {
+        const int tag = group_tag(reader.small_integer());
+        draft.groups[{dim, tag}];
+        draft.groups_of_entity[{dim, entity}].push_back(tag);
+      }
+      if (dim > 0)
+        for (auto bounds = reader.large_integer(); bounds > 0; --bounds) reader.small_integer();
+    }
+}
+
+void read_nodes_22(Reader &reader, GmshContents &contents)
+{
+  for (auto count = reader.text_integer(); count > 0; --count) {
+    contents.node_tags.push_back(reader.node(reader.small_integer()));
+    for (int d = 0; d < 3; ++d) contents.coords.push_back(reader.real());
+  }
+}
+
+void read_nodes_41(Reader &reader, GmshContents &contents)
+{
+  auto blocks = reader.large_integer();
+  for (int unused = 0; unused < 3; ++unused) reader.large_integer(); // number of nodes, least and greatest tag
+  for (; blocks > 0; --blocks) {
+    const auto dim = reader.small_integer();
+    reader.small_integer(); // entity
+    const bool parametric = reader.small_integer() != 0;
+    if (dim < 0 || dim > 3) reader.refuse("a dimension must be 0 to 3, got " + std::to_string(dim));
+    const auto count = reader.large_integer();
+    for (auto n = count; n > 0; --n) contents.node_tags.push_back(reader.node(reader.large_integer()));
+    for (auto n = count; n > 0; --n) {
+      for (int d = 0; d < 3; ++d) contents.coords.push_back(reader.real());
+      for (int d = 0; parametric && d < dim; ++d) reader.real();
+    }
+  }
+}
+
+const GmshType &known_type(const Reader &reader, const int number)
+{
+  const GmshType *const type = gmsh_type(number);
+  if (!type) reader.refuse("elements of type " + std::to_string(number) + " are unknown");
+  return *type;
+}
+
+/// One element, into each of its groups.
+void add_element(Draft &draft, const int type, const int entity, const std::vector<int> &groups, const std::size_t tag,
+                 const std::vector<std::size_t> &nodes)
+{
+  const int dim = gmsh_type(type)->dim;
+  draft.contents.solid = draft.contents.solid || dim == 3;
+  if (dim == 2 && groups.empty())
+    draft.contents.ungrouped_nodes.insert(draft.contents.ungrouped_nodes.end(), nodes.begin(), nodes.end());
+  if (dim != 1 && dim != 2) return;
+  for (const int group : groups) {
+    GmshElements &elements = draft.elements[{dim, group, entity, type}];
+    elements.type = type;
+    elements.tags.push_back(tag);
+    elements.nodes.insert(elements.nodes.end(), nodes.begin(), nodes.end());
+  }
+}
+
+void read_elements_22(Reader &reader, Draft &draft)
+{
+  auto count = reader.text_integer();
+  while (count > 0) {
+    // ASCII: number, type, number of tags, then the tags and nodes; binary: type, length of a run, number of tags,
+    // then for each element of the run its number, tags and nodes.
+    const auto first = reader.small_integer(), second = reader.small_integer(), num_tags = reader.small_integer();
+    const auto number = reader.binary ? first : second;
+    const GmshType &type = known_type(reader, number);
+    const auto run = reader.binary ? second : 1;
+    if (run < 1 || run > count) reader.refuse("a run of " + std::to_string(run) + " elements does not fit the count");
+    for (auto e = run; e > 0; --e, --count) {
+      const auto tag = reader.binary ? reader.small_integer() : first;
+      int group = 0, entity = 0;
+      for (std::int64_t t = 0; t < num_tags; ++t) {
+        const int value = reader.small_integer();
+        if (t == 0) group = group_tag(value);
+        if (t == 1) entity = value;
+      }
+      std::vector<std::size_t> nodes;
+      for (int a = 0; a < type.num_nodes; ++a) nodes.push_back(reader.node(reader.small_integer()));
+      std::vector<int> groups;
+      if (group != 0) groups.push_back(group);
+      if (group != 0) draft.groups[{type.dim, group}];
+      add_element(draft, number, entity, groups, static_cast<std::size_t>(tag), nodes);
+    }
+  }
+}
+
+void read_elements_41(Reader &reader, Draft &draft)
+{
+  auto blocks = reader.large_integer();
+  for (int unused = 0; unused < 3; ++unused) reader.large_integer(); // number of elements, least and greatest tag
+  for (; blocks > 0; --blocks) {
+    const auto dim = reader.small_integer();
+    const int entity = reader.small_integer();
+    const auto number = reader.small_integer();
+    const GmshType &type = known_type(reader, number);
+    if (dim != type.dim)
+      reader.refuse("elements of type \"" + type.name() + "\" cannot be of dimension " + std::to_string(dim));
+    const std::vector<int> &groups = draft.groups_of_entity[{type.dim, entity}];
+    for (auto count = reader.large_integer(); count > 0; --count) {
+      const auto tag = reader.large_integer();
+      std::vector<std::size_t> nodes;
+      for (int a = 0; a < type.num_nodes; ++a) nodes.push_back(reader.node(reader.large_integer()));
+      add_element(draft, number, entity, groups, static_cast<std::size_t>(tag), nodes);
+    }
+  }
+}
+
+GmshContents finished(Draft draft)
+{
+  for (const auto &[key, name] : draft.groups)
+    if (key.first == 1 || key.first == 2) draft.contents.groups.push_back({key.first, key.second, name});
+  for (auto &[key, elements] : draft.elements) {
+    const auto &groups = draft.contents.groups;
+    const auto group = std::find_if(groups.begin(), groups.end(), [&key = key](const GmshGroup &g) {
+      return g.dim == std::get<0>(key) && g.tag == std::get<1>(key);
+    });
+    elements.group = static_cast<int>(group - groups.begin());
+    draft.contents.elements.push_back(std::move(elements));
+  }
+  return std::move(draft.contents);
+}
+
+} // namespace
+
+GmshContents read_msh(const std::string &where, const std::string &text)
+{
+  Reader reader(where, text);
+  const bool version_41 = read_format(reader);
+  Draft draft;
+  std::set<std::string> seen;
+  for (std::string name = reader.next_section(); !name.empty(); name = reader.next_section()) {
+    if (!seen.insert(name).second) reader.refuse("which comes twice");
+    if (name == "PhysicalNames")
+      read_names(reader, draft);
+    else if (name == "Entities" && version_41)
+      read_entities(reader, draft);
+    else if (name == "Nodes")
+      version_41 ? read_nodes_41(reader, draft.contents) : read_nodes_22(reader, draft.contents);
+    else if (name == "Elements")
+      version_41 ? read_elements_41(reader, draft) : read_elements_22(reader, draft);
+    else {
+      reader.skip_section();
+      continue;
+    }
+    reader.end_section();
+  }
+  for (const char *const name : {"Nodes", "Elements"})
+    if (!seen.count(name)) reader.refuse("there is no $" + std::string(name));
+  return finished(std::move(draft));
+}
+
+} // namespace rpc::mesh

@@ -1,0 +1,249 @@
+#include "plane_mesh_checks.hpp"
+
+#include "rpc/core/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+using Point = std::array<double, 2>;
+using Gradients = std::vector<Point>; // of the shape functions, at one point of the reference cell
+
+Point point_of(const TaggedMesh &draft, const int node)
+{
+  return {draft.mesh.coords[2 * node], draft.mesh.coords[2 * node + 1]};
+}
+
+std::string label_of_node(const TaggedMesh &draft, const int node)
+{
+  const Point x = point_of(draft, node);
+  std::ostringstream text;
+  text << "node " << draft.node_tag[node] << " at (" << x[0] << ", " << x[1];
+  if (draft.z[node] != 0) text << ", " << draft.z[node];
+  text << ")";
+  return text.str();
+}
+
+std::string label_of_cell(const TaggedMesh &draft, const int cell)
+{
+  return "cell " + std::to_string(draft.cell_tag[cell]) + " of \"" + draft.mesh.blocks[draft.mesh.block[cell]] + "\"";
+}
+
+/// Lower and upper corner of the box around nodes.
+std::array<Point, 2> bounds(const TaggedMesh &draft, const int *const nodes, const int count)
+{
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  std::array<Point, 2> box{{{inf, inf}, {-inf, -inf}}};
+  for (int n = 0; n < count; ++n) {
+    const Point x = point_of(draft, nodes ? nodes[n] : n);
+    for (int d = 0; d < 2; ++d) {
+      box[0][d] = std::min(box[0][d], x[d]);
+      box[1][d] = std::max(box[1][d], x[d]);
+    }
+  }
+  return box;
+}
+
+double diameter(const std::array<Point, 2> &box)
+{
+  return std::hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]);
+}
+
+/// Nodes are sorted into squares as wide as the tolerance: only those in adjacent ones can be too close.
+void check_distinct(const TaggedMesh &draft, const std::array<Point, 2> &box)
+{
+  const double tolerance = 1e-12 * diameter(box);
+  using Square = std::tuple<std::int64_t, std::int64_t, int>; // column, row, node
+  std::vector<Square> squares;
+  for (int n = 0; n < draft.mesh.num_nodes(); ++n) {
+    const Point x = point_of(draft, n);
+    squares.push_back({static_cast<std::int64_t>((x[0] - box[0][0]) / tolerance),
+                       static_cast<std::int64_t>((x[1] - box[0][1]) / tolerance), n});
+  }
+  std::sort(squares.begin(), squares.end());
+  for (const auto &[column, row, node] : squares)
+    for (const std::int64_t beside : {column, column + 1}) { // the left neighbour's search finds this one
+      auto other = std::lower_bound(squares.begin(), squares.end(), Square{beside, row - 1, 0});
+      for (; other != squares.end() && *other <= Square{beside, row + 1, std::numeric_limits<int>::max()}; ++other) {
+        const int near = std::get<2>(*other);
+        const Point x = point_of(draft, node), y = point_of(draft, near);
+        RPC_REQUIRE_CODE(near == node || std::hypot(x[0] - y[0], x[1] - y[1]) > tolerance, ExitCode::bad_mesh,
+                         draft.where << label_of_node(draft, std::min(node, near)) << " and node "
+                                     << draft.node_tag[std::max(node, near)]
+                                     << " are at one place; join the parts (BooleanFragments, or Coherence Mesh;)");
+      }
+    }
+}
+
+/// Factor R_m of a shape function of order p on a simplex, in one barycentric coordinate s, and its derivative.
+Point simplex_factor(const int p, const int m, const double s)
+{
+  if (m == 0) return {1, 0};
+  if (m == 1) return {p * s, static_cast<double>(p)};
+  return {s * (2 * s - 1), 4 * s - 1};
+}
+
+/// Lagrange polynomial of order p on [0, 1] that is 1 at m / p, and its derivative.
+Point interval_factor(const int p, const int m, const double s)
+{
+  if (p == 1) return m == 0 ? Point{1 - s, -1} : Point{s, 1};
+  if (m == 0) return {(1 - s) * (1 - 2 * s), 4 * s - 3};
+  if (m == 1) return {4 * s * (1 - s), 4 - 8 * s};
+  return {s * (2 * s - 1), 4 * s - 1};
+}
+
+Gradients gradients(const Element &element, const Point &at)
+{
+  const int p = element.order;
+  Gradients result;
+  for (const auto &node : element.lattice()) {
+    if (element.shape == Shape::simplex) {
+      const Point x = simplex_factor(p, node[0], at[0]), y = simplex_factor(p, node[1], at[1]);
+      const Point rest = simplex_factor(p, p - node[0] - node[1], 1 - at[0] - at[1]);
+      result.push_back({(x[1] * rest[0] - x[0] * rest[1]) * y[0], (y[1] * rest[0] - y[0] * rest[1]) * x[0]});
+    } else {
+      const Point x = interval_factor(p, node[0], at[0]), y = interval_factor(p, node[1], at[1]);
+      result.push_back({x[1] * y[0], x[0] * y[1]});
+    }
+  }
+  return result;
+}
+
+/// The nodes, and with order 2 the quadrature points of the stiffness.
+std::vector<Gradients> gradients_where_checked(const Element &element)
+{
+  std::vector<Point> points;
+  for (const auto &node : element.lattice())
+    points.push_back({static_cast<double>(node[0]) / element.order, static_cast<double>(node[1]) / element.order});
+  if (element.order == 2 && element.shape == Shape::simplex)
+    points.insert(points.end(), {{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}});
+  if (element.order == 2 && element.shape == Shape::tensor) {
+    const double step = std::sqrt(.15);
+    for (const double x : {.5 - step, .5, .5 + step})
+      for (const double y : {.5 - step, .5, .5 + step}) points.push_back({x, y});
+  }
+  std::vector<Gradients> result;
+  for (const auto &point : points) result.push_back(gradients(element, point));
+  return result;
+}
+
+double jacobian(const TaggedMesh &draft, const int *const nodes, const Gradients &gradient)
+{
+  double J[2][2] = {};
+  for (std::size_t a = 0; a < gradient.size(); ++a) {
+    const Point x = point_of(draft, nodes[a]);
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) J[i][j] += x[i] * gradient[a][j];
+  }
+  return J[0][0] * J[1][1] - J[0][1] * J[1][0];
+}
+
+/// Of the polygon of the vertices, > 0 if they run counterclockwise.
+double signed_area(const TaggedMesh &draft, const int *const nodes, const int num_vertices)
+{
+  const Point origin = point_of(draft, nodes[0]);
+  double area = 0;
+  for (int v = 1; v + 1 < num_vertices; ++v) {
+    const Point a = point_of(draft, nodes[v]), b = point_of(draft, nodes[v + 1]);
+    area += ((a[0] - origin[0]) * (b[1] - origin[1]) - (a[1] - origin[1]) * (b[0] - origin[0])) / 2;
+  }
+  return area;
+}
+
+[[noreturn]] void refuse_cell(const TaggedMesh &draft, const int cell, const double area, const double size)
+{
+  const Element &element = draft.mesh.element;
+  std::ostringstream text;
+  text << draft.where << label_of_cell(draft, cell) << ", with "
+       << label_of_node(draft, draft.mesh.cells[static_cast<std::size_t>(cell) * element.num_nodes()]) << ", is ";
+  if (std::abs(area) <= size)
+    text << "degenerate: its area is " << area;
+  else if (area < 0)
+    text << "inverted: its vertices run clockwise; reverse the curve loop of its surface";
+  else if (element.order == 2)
+    text << "inverted: its curved edges bend too far; make smaller cells there, or set Mesh.HighOrderOptimize = 1";
+  else
+    text << "inverted: an angle between its edges is 180 degrees or more";
+  throw Error(ExitCode::bad_mesh, text.str());
+}
+
+} // namespace
+
+void check_nodes(const TaggedMesh &draft)
+{
+  for (int n = 0; n < draft.mesh.num_nodes(); ++n) {
+    const Point x = point_of(draft, n);
+    RPC_REQUIRE_CODE(std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(draft.z[n]), ExitCode::bad_mesh,
+                     draft.where << label_of_node(draft, n) << ": coordinates must be finite");
+  }
+  const std::array<Point, 2> box = bounds(draft, nullptr, draft.mesh.num_nodes());
+  const double size = diameter(box);
+  for (int n = 0; n < draft.mesh.num_nodes(); ++n)
+    RPC_REQUIRE_CODE(std::abs(draft.z[n]) <= 1e-10 * size, ExitCode::bad_mesh,
+                     draft.where << label_of_node(draft, n) << " is off the plane; z must be 0");
+  RPC_REQUIRE_CODE(size > 0 && std::isfinite(size), ExitCode::bad_mesh,
+                   draft.where << "the body's size must be > 0 and finite [m], got " << size);
+  check_distinct(draft, box);
+}
+
+void check_cells(const TaggedMesh &draft)
+{
+  const Element &element = draft.mesh.element;
+  const int num_nodes = element.num_nodes();
+  const std::vector<Gradients> where = gradients_where_checked(element);
+  for (int c = 0; c < draft.mesh.num_cells(); ++c) {
+    const int *const nodes = &draft.mesh.cells[static_cast<std::size_t>(c) * num_nodes];
+    for (int a = 0; a < num_nodes; ++a)
+      RPC_REQUIRE_CODE(std::find(nodes, nodes + a, nodes[a]) == nodes + a, ExitCode::bad_mesh,
+                       draft.where << label_of_cell(draft, c) << " has " << label_of_node(draft, nodes[a]) << " twice");
+    const double size = 1e-14 * std::pow(diameter(bounds(draft, nodes, num_nodes)), 2);
+    const bool good = std::all_of(where.begin(), where.end(),
+                                  [&](const Gradients &gradient) { return jacobian(draft, nodes, gradient) > size; });
+    if (!good) refuse_cell(draft, c, signed_area(draft, nodes, element.num_vertices()), size);
+  }
+}
+
+std::vector<Edge> checked_edges(const TaggedMesh &draft)
+{
+  const Element &element = draft.mesh.element;
+  const auto ends = [&](const Edge &edge) {
+    const auto &facet = element.facets()[edge.ordinal];
+    const int *const nodes = &draft.mesh.cells[static_cast<std::size_t>(edge.cell) * element.num_nodes()];
+    return std::array<int, 3>{nodes[facet[0]], nodes[facet[1]], facet.size() > 2 ? nodes[facet[2]] : -1};
+  };
+  std::vector<Edge> edges;
+  for (int c = 0; c < draft.mesh.num_cells(); ++c)
+    for (int f = 0; f < element.num_facets(); ++f) {
+      Edge edge{0, 0, -1, c, f};
+      const auto [a, b, middle] = ends(edge);
+      edge.low = std::min(a, b);
+      edge.high = std::max(a, b);
+      edge.middle = middle;
+      edges.push_back(edge);
+    }
+  std::stable_sort(edges.begin(), edges.end(), [](const Edge &l, const Edge &r) { return l.nodes() < r.nodes(); });
+  for (std::size_t e = 1; e < edges.size(); ++e) {
+    const Edge &edge = edges[e], &before = edges[e - 1];
+    if (edge.nodes() != before.nodes()) continue;
+    const auto label = [&](const char *const both) {
+      return draft.where + label_of_cell(draft, before.cell) + " and " + label_of_cell(draft, edge.cell) + both +
+             label_of_node(draft, edge.low) + " and " + label_of_node(draft, edge.high);
+    };
+    // Of two neighbours, both counterclockwise, one runs along their edge and the other against it.
+    RPC_REQUIRE_CODE(ends(edge)[0] != ends(before)[0], ExitCode::bad_mesh,
+                     label(" overlap: they lie on the same side of the edge between "));
+    RPC_REQUIRE_CODE(edge.middle == before.middle, ExitCode::bad_mesh,
+                     label(" have different middle nodes on the edge between "));
+  }
+  return edges;
+}
+
+} // namespace rpc::mesh

@@ -1,0 +1,273 @@
+// Reading .msh files: needs no gmsh.
+
+#include "expect_error.hpp"
+#include "rpc/mesh/gmsh.hpp"
+#include "same_mesh.hpp"
+#include "scratch_file.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+namespace
+{
+
+using rpc::ExitCode;
+using rpc::mesh::GmshOptions;
+using rpc::mesh::MeshData;
+using rpc::mesh::read_gmsh;
+using rpc::test::expect_error;
+using rpc::test::expect_same_mesh;
+using rpc::test::ScratchFile;
+
+MeshData read_data(const std::string &name)
+{
+  return read_gmsh({std::string(RPC_TEST_DATA_DIR) + "/" + name, 1, 0});
+}
+
+std::string text_of_data(const std::string &name)
+{
+  std::ifstream file(std::string(RPC_TEST_DATA_DIR) + "/" + name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+MeshData read_text(const std::string &text)
+{
+  const ScratchFile file("mesh.msh", text);
+  return read_gmsh({file.path(), 1, 0});
+}
+
+void expect_refused(const std::string &text, const std::initializer_list<std::string> &parts)
+{
+  expect_error(ExitCode::bad_mesh, "mesh.msh\": ", [&] { read_text(text); });
+  expect_error(ExitCode::bad_mesh, parts, [&] { read_text(text); });
+}
+
+/// A .msh 2.2 from its parts, with the counts that go with them.
+struct Msh {
+  std::vector<std::string> names = {"1 1 \"left\"", "1 2 \"right\"", "2 3 \"steel\"", "2 4 \"rubber\""};
+  std::vector<std::string> nodes = {"1 0 0 0", "2 1 0 0", "3 2 0 0", "4 0 1 0", "5 1 1 0", "6 2 1 0"};
+  std::vector<std::string> elements = {"1 1 2 1 0 1 4", "2 1 2 2 0 3 6", "3 3 2 3 0 1 2 5 4", "4 3 2 4 0 2 3 6 5"};
+
+  std::string text() const
+  {
+    std::string all = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+    const auto add = [&](const std::string &section, const std::vector<std::string> &lines) {
+      all += "$" + section + "\n" + std::to_string(lines.size()) + "\n";
+      for (const auto &line : lines) all += line + "\n";
+      all += "$End" + section + "\n";
+    };
+    add("PhysicalNames", names);
+    add("Nodes", nodes);
+    add("Elements", elements);
+    return all;
+  }
+};
+
+/// The two squares side by side of Msh, with one list changed.
+template <class Change>
+std::string squares_with(const Change &change)
+{
+  Msh msh;
+  change(msh);
+  return msh.text();
+}
+
+TEST(Msh, AllFormatsGiveTheSameMesh)
+{
+  const MeshData mesh = read_data("sector_41.msh");
+  for (const char *const name : {"sector_22.msh", "sector_22_binary.msh", "sector_41_binary.msh", "sector_meshio.msh"})
+    expect_same_mesh(read_data(name), mesh, name);
+}
+
+TEST(Msh, QuadraticTrianglesFollowTheArc)
+{
+  const MeshData mesh = read_data("sector_41.msh");
+  EXPECT_EQ(mesh.element.name(), "P2");
+  EXPECT_EQ(mesh.num_nodes(), 29);
+  EXPECT_EQ(mesh.num_cells(), 10);
+  EXPECT_EQ(mesh.blocks, std::vector<std::string>{"body"});
+  ASSERT_EQ(mesh.sides.size(), 2u);
+  EXPECT_EQ(mesh.sides[0].name, "arc");
+  EXPECT_EQ(mesh.sides[1].name, "straight");
+  ASSERT_EQ(mesh.sides[0].cell.size(), 4u);
+  EXPECT_EQ(mesh.sides[1].cell.size(), 4u);
+  for (std::size_t f = 0; f < 4; ++f)
+    for (const int local : mesh.element.facets()[mesh.sides[0].ordinal[f]]) {
+      const int node = mesh.cells[mesh.sides[0].cell[f] * 6 + local];
+      EXPECT_NEAR(std::hypot(mesh.coords[2 * node], mesh.coords[2 * node + 1]), 1, 1e-12);
+    }
+}
+
+// gmsh itself would put both lines into both sides: their elementary number, the second, is the same.
+TEST(Msh, EachElementIsInItsOwnPhysicalGroupOnly)
+{
+  const MeshData mesh = read_text(Msh().text());
+  EXPECT_EQ(mesh.element.name(), "Q1");
+  EXPECT_EQ(mesh.coords, (std::vector<double>{0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1}));
+  EXPECT_EQ(mesh.cells, (std::vector<int>{0, 1, 4, 3, 1, 2, 5, 4}));
+  EXPECT_EQ(mesh.blocks, (std::vector<std::string>{"steel", "rubber"}));
+  EXPECT_EQ(mesh.block, (std::vector<int>{0, 1}));
+  ASSERT_EQ(mesh.sides.size(), 2u);
+  EXPECT_EQ(mesh.sides[0].name, "left");
+  EXPECT_EQ(mesh.sides[0].cell, std::vector<int>{0});
+  EXPECT_EQ(mesh.sides[0].ordinal, std::vector<int>{3});
+  EXPECT_EQ(mesh.sides[1].name, "right");
+  EXPECT_EQ(mesh.sides[1].cell, std::vector<int>{1});
+  EXPECT_EQ(mesh.sides[1].ordinal, std::vector<int>{1});
+}
+
+TEST(Msh, NumbersWithGapsInAnyOrderBecomeCompact)
+{
+  const MeshData mesh = read_text(squares_with([](Msh &msh) {
+    msh.nodes = {"60 2 1 0", "10 0 0 0", "30 2 0 0", "40 0 1 0", "20 1 0 0", "50 1 1 0"};
+    msh.elements = {"70 3 2 4 8 20 30 60 50", "9 3 2 3 9 10 20 50 40", "7 1 2 2 0 60 30", "1 1 2 1 0 10 40"};
+  }));
+  expect_same_mesh(mesh, read_text(Msh().text()), "gaps");
+}
+
+TEST(Msh, FacetsListedTwiceCountOnce)
+{
+  const MeshData mesh = read_text(squares_with([](Msh &msh) { msh.elements.push_back("5 1 2 1 7 4 1"); }));
+  EXPECT_EQ(mesh.sides[0].cell.size(), 1u);
+}
+
+TEST(Msh, CellsOutsideEveryPhysicalSurfaceAreLeftOut)
+{
+  const MeshData mesh = read_text(squares_with([](Msh &msh) {
+    msh.names = {"2 3 \"steel\""};
+    msh.elements = {"3 3 2 3 0 1 2 5 4", "4 3 2 0 0 2 3 6 5"};
+  }));
+  EXPECT_EQ(mesh.num_cells(), 1);
+  EXPECT_EQ(mesh.num_nodes(), 4);
+}
+
+TEST(Msh, OptionsThatOnlyGoWithAGeoAreRefused)
+{
+  const std::string file = std::string(RPC_TEST_DATA_DIR) + "/sector_41.msh";
+  expect_error(ExitCode::bad_input, {"only goes with a .geo", "got 2"}, [&] { read_gmsh({file, 2, 0}); });
+  expect_error(ExitCode::bad_input, {"order 2", "\"Order\" = 1"}, [&] { read_gmsh({file, 1, 1}); });
+  EXPECT_NO_THROW(read_gmsh({file, 1, 2}));
+}
+
+TEST(Msh, FilesThatCannotBeOpenedAreBadInput)
+{
+  expect_error(ExitCode::bad_input, {"\"none.msh\"", "cannot be opened", "No such file"}, [] {
+    read_gmsh({"none.msh", 1, 0});
+  });
+  expect_error(ExitCode::bad_input, ".geo or .msh", [] { read_gmsh({"none.stl", 1, 0}); });
+}
+
+TEST(Msh, WhatIsNoMeshIsRefused)
+{
+  expect_refused("", {"$MeshFormat"});
+  expect_refused("hello", {"$Nodes", "\"hello\""});
+  expect_refused("$Nodes\n", {"$MeshFormat"});
+  expect_refused("$MeshFormat\n3 0 8\n$EndMeshFormat\n", {"2.2 or 4.1", "\"3\"", "convert"});
+  expect_refused("$MeshFormat\nx\n$EndMeshFormat\n", {"version", "\"x\""});
+  expect_refused("$MeshFormat\n4.1 0 4\n$EndMeshFormat\n", {"data size must be 8", "got 4"});
+  expect_refused("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", {"no $Nodes"});
+  const std::string good = Msh().text();
+  const auto replaced = [&](const std::string &from, const std::string &to) {
+    return std::regex_replace(good, std::regex(from), to);
+  };
+  expect_refused(replaced("Nodes\n6", "Nodes\n7"), {"$Nodes", "\"$EndNodes\""});
+  expect_refused(replaced("Nodes\n6", "Nodes\n5"), {"$Nodes", "counts do not fit", "\"6 2 1 0\""});
+  expect_refused(replaced("2 1 0 0", "2 1 zero 0"), {"$Nodes", "a number was expected", "\"zero\""});
+  expect_refused(replaced("1 1 2 1 0 1 4", "1 99 2 1 0 1 4"), {"$Elements", "type 99"});
+  expect_refused(replaced("2 3 \"steel\"", "5 3 \"steel\""), {"$PhysicalNames", "0 to 3"});
+  expect_refused(good + "$Nodes\n", {"$Nodes", "twice"});
+  expect_refused(good + "$Comment\n", {"no $EndComment"});
+}
+
+TEST(Msh, TruncatedFilesAreRefusedWhereverTheyEnd)
+{
+  for (const char *const name : {"sector_22.msh", "sector_22_binary.msh", "sector_41.msh", "sector_41_binary.msh"}) {
+    const std::string text = text_of_data(name);
+    const std::size_t whole = text.find("$EndElements") + std::string("$EndElements").size();
+    for (std::size_t size = 0; size < whole; size += 19) {
+      SCOPED_TRACE(std::string(name) + ", " + std::to_string(size) + " bytes");
+      expect_error(ExitCode::bad_mesh, "mesh.msh\": ", [&] { read_text(text.substr(0, size)); });
+    }
+  }
+}
+
+TEST(Msh, GroupsMustBeNamedOnceAndFilled)
+{
+  expect_refused(squares_with([](Msh &msh) { msh.names.erase(msh.names.begin()); }),
+                 {"physical curve 1", "no name", "Physical Curve(\"contact\", 1)"});
+  expect_refused(squares_with([](Msh &msh) { msh.names.pop_back(); }),
+                 {"physical surface 4", "no name", "Physical Surface(\"body\", 4)"});
+  expect_refused(squares_with([](Msh &msh) { msh.names[1] = "1 2 \"left\""; }),
+                 {"physical curves 1 and 2", "\"left\""});
+  expect_refused(squares_with([](Msh &msh) { msh.names.push_back("2 5 \"air\""); }),
+                 {"physical surface \"air\"", "no elements"});
+  expect_refused(squares_with([](Msh &msh) {
+                   msh.names.resize(2);
+                   msh.elements.resize(2);
+                 }),
+                 {"no physical surface", "Physical Surface(\"body\")"});
+}
+
+TEST(Msh, CellsMustBePlaneAndOfOneKind)
+{
+  expect_refused(squares_with([](Msh &msh) { msh.elements.push_back("5 4 2 0 0 1 2 4 5"); }), {"dimension 3", "plane"});
+  expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 2 2 4 0 2 3 6"; }),
+                 {"one kind", "1 of type \"Quadrilateral 4\" in \"steel\"", "1 of type \"Triangle 3\" in \"rubber\""});
+  expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 16 2 4 0 2 3 6 5 1 1 1 1"; }),
+                 {"\"Quadrilateral 8\"", "\"rubber\"", "Mesh.SecondOrderIncomplete = 0"});
+  expect_refused(squares_with([](Msh &msh) { msh.elements[0] = "1 8 2 1 0 1 4 5"; }),
+                 {"\"Line 3\"", "\"left\"", "order 1"});
+}
+
+TEST(Msh, NodesMustBeInThePlaneAndApart)
+{
+  const auto node_6 = [](const std::string &line) { return squares_with([&](Msh &msh) { msh.nodes[5] = line; }); };
+  expect_refused(node_6("6 2 1 0.1"), {"node 6 at (2, 1, 0.1)", "z must be 0"});
+  expect_refused(node_6("6 2 nan 0"), {"node 6", "finite"});
+  expect_refused(node_6("6 2 inf 0"), {"node 6", "finite"});
+  expect_refused(node_6("6 2 1e400 0"), {"\"1e400\""});
+  expect_refused(node_6("5 2 1 0"), {"two nodes 5"});
+  expect_refused(node_6("7 2 1 0"), {"node 6", "lacks"});
+  expect_refused(node_6("6 1 1.0000000000001 0"), {"node 5 at (1, 1) and node 6", "one place"});
+  expect_refused(squares_with([](Msh &msh) { msh.nodes.push_back("7 5 5 0"); }), {"no cell uses node 7 at (5, 5, 0)"});
+}
+
+TEST(Msh, CellsMustBeConvexCounterclockwiseAndApart)
+{
+  const auto cell_4 = [](const std::string &line) { return squares_with([&](Msh &msh) { msh.elements[3] = line; }); };
+  expect_refused(cell_4("4 3 2 4 0 2 5 6 3"), {"cell 4 of \"rubber\"", "inverted", "clockwise", "curve loop"});
+  expect_refused(cell_4("4 3 2 4 0 2 3 3 5"), {"cell 4 of \"rubber\"", "node 3 at (2, 0)", "twice"});
+  expect_refused(squares_with([](Msh &msh) { msh.nodes[5] = "6 1.2 0.3 0"; }),
+                 {"cell 4 of \"rubber\"", "inverted", "180 degrees"});
+  expect_refused(squares_with([](Msh &msh) {
+                   msh.nodes = {"1 0 0 0", "2 1 0 0", "3 2 0 0", "4 0 1 0", "5 1 1 0", "6 1 0.5 0"};
+                   msh.elements[3] = "4 2 2 4 0 2 6 5";
+                   msh.elements[2] = "3 2 2 3 0 1 2 5";
+                 }),
+                 {"cell 4 of \"rubber\"", "degenerate", "area"});
+  expect_refused(cell_4("4 3 2 4 0 1 2 5 4"), {"cell 3 of \"steel\" and cell 4 of \"rubber\" overlap"});
+  expect_refused(cell_4("3 3 2 4 0 2 3 6 5"), {"cell 3", "\"steel\" and \"rubber\""});
+  expect_refused(squares_with([](Msh &msh) { msh.elements.push_back("4 3 2 4 0 2 3 6 5"); }), {"two cells 4"});
+}
+
+TEST(Msh, SidesMustLieOnTheBoundary)
+{
+  const auto line_1 = [](const std::string &line) { return squares_with([&](Msh &msh) { msh.elements[0] = line; }); };
+  expect_refused(line_1("1 1 2 1 0 2 5"), {"line 1 of physical curve \"left\"", "inside the body", "cells 3 and 4"});
+  expect_refused(line_1("1 1 2 1 0 1 5"), {"line 1 of physical curve \"left\"", "nodes 1 and 5", "edge of no cell"});
+  expect_refused(line_1("1 1 2 1 0 1 99"), {"nodes 1 and 99", "edge of no cell"});
+}
+
+TEST(Msh, MiddleNodesMustAgree)
+{
+  const std::string good = text_of_data("sector_22.msh");
+  std::smatch line;
+  ASSERT_TRUE(std::regex_search(good, line, std::regex(R"(\n(\d+ 8 2 5 \d+ \d+ \d+ )(\d+))")));
+  std::string text = good;
+  text.replace(line.position(2), line.length(2), "14");
+  expect_refused(text, {"physical curve \"arc\"", "middle node 14"});
+}
+
+} // namespace

@@ -1,0 +1,21 @@
+// Two layers of one unit square: stiff below y = 0.25, soft above.
+Point(1) = {0, 0, 0, 0.2}; Point(2) = {1, 0, 0, 0.2};
+Point(3) = {0, 0.25, 0, 0.2}; Point(4) = {1, 0.25, 0, 0.2};
+Point(5) = {0, 1, 0, 0.2}; Point(6) = {1, 1, 0, 0.2};
+Line(1) = {1, 2};
+Line(2) = {2, 4};
+Line(3) = {4, 3};
+Line(4) = {3, 1};
+Line(5) = {4, 6};
+Line(6) = {6, 5};
+Line(7) = {5, 3};
+Curve Loop(1) = {1, 2, 3, 4};
+Curve Loop(2) = {-3, 5, 6, 7};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2};
+Physical Surface("stiff") = {1};
+Physical Surface("soft") = {2};
+Physical Curve("bottom") = {1};
+Physical Curve("right") = {2, 5};
+Physical Curve("top") = {6};
+Physical Curve("left") = {4, 7};

@@ -1,0 +1,186 @@
+#include "run_scene.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <map>
+
+// input/manufactured.xml against its exact solution (doc/theory.md, section 7): open, stuck and yielded parts.
+
+namespace
+{
+
+using namespace rpc;
+
+constexpr double lambda = 1.5, mu = 1;
+
+double cube(const double x)
+{
+  return x > 0 ? x * x * x : 0;
+}
+double square(const double x)
+{
+  return x > 0 ? x * x : 0;
+}
+double exact_pressure(const double x)
+{
+  return 0.05 * cube(x - 1);
+}
+/// grad[i][j] = du_i / dx_j
+void exact_gradient(const double x, const double y, double (&grad)[2][2])
+{
+  grad[0][0] = 0.1 * y * std::sin(x);
+  grad[0][1] = -0.1 * std::cos(x);
+  grad[1][0] = 0.1 * std::cos(x) - y * 0.15 * square(x - 1) / 3.5;
+  grad[1][1] = -0.05 * cube(x - 1) / 3.5;
+}
+
+/// sigma(e) : eps(e) of a displacement gradient.
+double energy_density(const double (&grad)[2][2])
+{
+  const double trace = grad[0][0] + grad[1][1], shear = 0.5 * (grad[0][1] + grad[1][0]);
+  return lambda * trace * trace + 2 * mu * (grad[0][0] * grad[0][0] + grad[1][1] * grad[1][1] + 2 * shear * shear);
+}
+
+struct Errors {
+  double energy;   // norm of the displacement error, relative
+  double pressure; // L2 over the contact side, relative
+};
+
+/// ((u_h - u)' a (u_h - u), u' a u), integrated with the element's rule for loads; this rank's cells.
+std::array<double, 2> energy_errors(const Solution &s)
+{
+  const fem::Discretization &d = s.discretization;
+  const mesh::Mesh &mesh = *d.mesh;
+  Vector u_overlap(d.overlap_dofs);
+  u_overlap.doImport(*s.u, *d.dof_import, Tpetra::INSERT);
+  const auto u = to_host(device_read(u_overlap));
+  const auto coords = to_host(mesh.coords);
+  const auto cells = to_host(mesh.cells);
+  const auto value = to_host(d.reference.cell_load.value);
+  const auto gradient = to_host(d.reference.cell_load.gradient);
+  const auto weight = to_host(d.reference.cell_load.weight);
+  const int nodes = mesh.element.num_nodes();
+  std::array<double, 2> sums{};
+  for (LO cell = 0; cell < mesh.num_owned_cells; ++cell)
+    for (std::size_t q = 0; q < weight.extent(0); ++q) {
+      double x[2] = {}, jacobian[2][2] = {}, reference[2][2] = {};
+      for (int a = 0; a < nodes; ++a)
+        for (int i = 0; i < 2; ++i) {
+          x[i] += value(q, a) * coords(cells(cell, a), i);
+          for (int j = 0; j < 2; ++j) {
+            jacobian[i][j] += gradient(q, a, j) * coords(cells(cell, a), i);
+            reference[i][j] += gradient(q, a, j) * u(2 * cells(cell, a) + i);
+          }
+        }
+      const double det = jacobian[0][0] * jacobian[1][1] - jacobian[0][1] * jacobian[1][0];
+      const double inverse[2][2] = {{jacobian[1][1] / det, -jacobian[0][1] / det},
+                                    {-jacobian[1][0] / det, jacobian[0][0] / det}};
+      double exact[2][2], error[2][2];
+      exact_gradient(x[0], x[1], exact);
+      for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j)
+          error[i][j] = reference[i][0] * inverse[0][j] + reference[i][1] * inverse[1][j] - exact[i][j];
+      sums[0] += weight(q) * det * energy_density(error);
+      sums[1] += weight(q) * det * energy_density(exact);
+    }
+  return sums;
+}
+
+/// (|p_h - p|^2, |p|^2) over the contact side, of the nodal pressures interpolated by the facets' shape functions; Gauss
+/// points of this rank's facets.
+std::array<double, 2> pressure_errors(const Solution &s)
+{
+  const fem::Discretization &d = s.discretization;
+  const mesh::Mesh &mesh = *d.mesh;
+  Vector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes);
+  {
+    const auto node = to_host(s.functional->contact().node);
+    const auto p = to_host(s.contact.pressure);
+    const auto to = owned.getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t i = 0; i < node.extent(0); ++i) to(node(i), 0) = p(i);
+  }
+  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+  const auto p = to_host(device_read(overlap));
+  const auto coords = to_host(mesh.coords);
+  const mesh::Side &side = mesh.side("bottom", "test");
+  const auto facets = to_host(side.facets);
+  const auto cell = to_host(side.cell);
+  const auto value = to_host(d.reference.facet.value);
+  const auto weight = to_host(d.reference.facet.weight);
+  std::array<double, 2> sums{};
+  for (std::size_t f = 0; f < facets.extent(0); ++f) {
+    if (cell(f) >= mesh.num_owned_cells) continue;
+    const double half = 0.5 * std::abs(coords(facets(f, 1), 0) - coords(facets(f, 0), 0)); // a straight side
+    for (std::size_t q = 0; q < weight.extent(0); ++q) {
+      double x = 0, pressure = 0;
+      for (std::size_t a = 0; a < facets.extent(1); ++a) {
+        x += value(q, a) * coords(facets(f, a), 0);
+        pressure += value(q, a) * p(facets(f, a));
+      }
+      sums[0] += weight(q) * half * std::pow(pressure - exact_pressure(x), 2);
+      sums[1] += weight(q) * half * std::pow(exact_pressure(x), 2);
+    }
+  }
+  return sums;
+}
+
+Errors errors(const std::vector<std::string> &assignments)
+{
+  const Solution s = run_scene(std::string(RPC_TEST_DECKS) + "/../../../input/manufactured.xml", assignments);
+  EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+  const auto energy = energy_errors(s), pressure = pressure_errors(s);
+  const double mine[4] = {energy[0], energy[1], pressure[0], pressure[1]};
+  double all[4];
+  Teuchos::reduceAll(s.discretization.mesh->comm(), Teuchos::REDUCE_SUM, 4, mine, all);
+  return {std::sqrt(all[0] / all[1]), std::sqrt(all[2] / all[3])};
+}
+
+class Manufactured : public testing::TestWithParam<std::string>
+{
+};
+
+TEST_P(Manufactured, ErrorsFallAtTheElementsRates)
+{
+  const std::string element = GetParam();
+  const bool quadratic = element[1] == '2';
+  std::vector<Errors> found;
+  for (const int n : {8, 16, 32})
+    found.push_back(
+        errors({"Mesh->Element=" + element, "Mesh->Cells={" + std::to_string(3 * n) + "," + std::to_string(n) + "}"}));
+  for (std::size_t k = 1; k < found.size(); ++k) {
+    const double energy = std::log2(found[k - 1].energy / found[k].energy);
+    const double pressure = std::log2(found[k - 1].pressure / found[k].pressure);
+    EXPECT_NEAR(energy, quadratic ? 2 : 1, 0.15) << element << " error " << found[k].energy;
+    EXPECT_GE(pressure, quadratic ? 1.5 : 1) << element << " error " << found[k].pressure;
+    RecordProperty("energy_rate_" + std::to_string(k), std::to_string(energy));
+    RecordProperty("pressure_rate_" + std::to_string(k), std::to_string(pressure));
+  }
+  EXPECT_LT(found.back().energy, quadratic ? 2e-3 : 5e-2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, Manufactured, testing::Values("P1", "Q1", "P2", "Q2"),
+                         [](const auto &info) { return info.param; });
+
+TEST(ManufacturedStates, AreWhereTheyShouldBe)
+{
+  const Solution s = run_scene(std::string(RPC_TEST_DECKS) + "/../../../input/manufactured.xml", {});
+  const auto node = to_host(s.functional->contact().node);
+  const auto coords = to_host(s.discretization.mesh->coords);
+  const auto state = to_host(s.contact.state);
+  const auto v = to_host(s.contact.penetration);
+  for (std::size_t i = 0; i < node.extent(0); ++i) {
+    const double x = coords(node(i), 0);
+    if (x < 0.9) {
+      EXPECT_EQ(state(i), 0) << x;
+      EXPECT_NEAR(v(i), -0.1 * square(1 - x), 1e-4) << x;
+    } else if (x > 1.1 && x < 1.9) {
+      EXPECT_EQ(state(i), 1) << x;
+      EXPECT_NEAR(v(i), 0, 1e-9) << x;
+    } else if (x > 2.1) {
+      EXPECT_EQ(state(i), 2) << x;
+      EXPECT_NEAR(v(i), 0.1 * square(x - 2), 1e-4) << x;
+    }
+  }
+}
+
+} // namespace
