@@ -64,7 +64,7 @@ struct ContactNodes {
 };
 
 /// Collective.
-/// @throws rpc::Error bad_input if a side does not exist or comes twice, xi <= 0 or NaN, the gap is not finite somewhere,
+/// @throws rpc::Error bad_input if a side does not exist, xi <= 0 or NaN, the gap is not finite somewhere,
 /// or the normal does not lead to the obstacle (the place is named); no_solution if a prescribed displacement presses a
 /// node into a rigid foundation
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,

@@ -68,7 +68,7 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
 double strain_energy(const Discretization &d, const Materials &materials, const Vector &u);
 
 /// f(ai) = int sigma(u) : grad(N_a e_i), the forces that hold the body in the state u (owned dofs, [N]), summed over the
-/// cells: rigid motion cancels cell by cell, and no row is eliminated. (2.9)
+/// cells; no row is eliminated. (2.9)
 /// @param u  (owned dofs) [m]; collective
 Vector internal_forces(const Discretization &d, const Materials &materials, const Vector &u);
 
