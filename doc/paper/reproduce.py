@@ -21,7 +21,8 @@ import fields  # noqa: E402
 HERE = os.path.dirname(os.path.abspath(__file__))
 INPUT = os.path.join(HERE, "../../input")
 PAPERS_TEST = {"Uzawa->Stopping Test": "multiplier change"}
-SURFACE_NORMAL = {"Contact->Normal": "surface"}
+# The paper's gap is vertical; an obstacle's would be measured along the normal.
+SURFACE_NORMAL = {"Contact->Normal": "surface", "Contact->Obstacle->Type": "none", "Contact->Gap": "8-sqrt(64-x^2)"}
 YOUNG, POISSON, RADIUS = 2000.0, 0.3, 8.0  # [Pa], 1, [m] of input/hertz.xml
 FINE = 128  # 1/h of the paper's Table 2 and of the figures
 AMPLIFICATION = 10  # of positions in Fig. 6b
