@@ -1,5 +1,7 @@
 #include "rpc/core/on_root.hpp"
 
+#include "rpc/core/message.hpp"
+
 #include <Teuchos_CommHelpers.hpp>
 #include <optional>
 #include <string>
@@ -18,7 +20,9 @@ void on_root(const Teuchos::Comm<int> &comm, const ExitCode default_code, const 
       message = error.what();
       code = error.code();
     } catch (const std::exception &error) {
-      message = error.what();
+      const bool full = is_out_of_memory(error);
+      message = full ? "out of memory" : error.what();
+      if (full) code = ExitCode::internal_error;
     }
   }
   int shared_code = message ? static_cast<int>(code) : -1; // -1: no error

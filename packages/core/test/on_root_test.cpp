@@ -5,6 +5,7 @@
 
 #include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
+#include <new>
 
 namespace
 {
@@ -35,6 +36,13 @@ TEST(OnRoot, OtherExceptionsGetTheDefaultCodeOnEveryRank)
   const auto comm = Tpetra::getDefaultComm();
   expect_error(ExitCode::bad_mesh, "out of paper",
                [&] { on_root(*comm, ExitCode::bad_mesh, [] { throw std::runtime_error("out of paper"); }); });
+}
+
+TEST(OnRoot, MemoryThatRunsOutIsAnInternalErrorOnEveryRank)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  expect_error(ExitCode::internal_error, "out of memory",
+               [&] { on_root(*comm, ExitCode::bad_mesh, [] { throw std::bad_alloc(); }); });
 }
 
 } // namespace

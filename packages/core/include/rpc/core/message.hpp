@@ -1,0 +1,16 @@
+#pragma once
+
+#include <exception>
+#include <string>
+
+namespace rpc
+{
+
+/// A message as a terminal should get it, in one line of at most 900 bytes. What it quotes of a user's files may be
+/// anything: control characters become "?", tabs blanks, and what is too much is cut out of the middle.
+std::string for_terminal(std::string message);
+
+/// Whether an exception says that memory ran out; Kokkos has a runtime_error of its own for it.
+bool is_out_of_memory(const std::exception &error);
+
+} // namespace rpc

@@ -1,0 +1,35 @@
+#include "rpc/core/interrupt.hpp"
+
+#include "expect_error.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <csignal>
+#include <gtest/gtest.h>
+
+namespace
+{
+
+void (*handler_of(const int signal))(int)
+{
+  struct sigaction action = {};
+  sigaction(signal, nullptr, &action);
+  return action.sa_handler;
+}
+
+TEST(Interrupt, OfOneRankStopsAllAndTheNextSignalHasItsDefaultAction)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  rpc::install_interrupt_handlers();
+  EXPECT_FALSE(rpc::interrupted(*comm));
+  EXPECT_NO_THROW(rpc::throw_if_interrupted(*comm, "here"));
+  const bool asked = comm->getRank() == comm->getSize() - 1;
+  if (asked) std::raise(SIGTERM);
+  EXPECT_TRUE(rpc::interrupted(*comm));
+  EXPECT_TRUE(rpc::interrupted(*comm));
+  EXPECT_EQ(rpc::interruption(), "interrupted by SIGTERM");
+  rpc::test::expect_error(rpc::ExitCode::not_converged, "interrupted by SIGTERM here",
+                          [&] { rpc::throw_if_interrupted(*comm, "here"); });
+  for (const int signal : {SIGINT, SIGTERM}) EXPECT_EQ(handler_of(signal) == SIG_DFL, asked);
+}
+
+} // namespace

@@ -1,0 +1,28 @@
+#include "rpc/core/memory.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+namespace
+{
+
+TEST(MemoryLimit, IsThatOfAMachine)
+{
+  EXPECT_GT(rpc::memory_limit(), 1e8);
+}
+
+TEST(MemoryLimit, TheShellsBoundCounts)
+{
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  if (before.rlim_max != RLIM_INFINITY) GTEST_SKIP() << "the address space is bound already";
+  const double machine = rpc::memory_limit();
+  rlimit bound = before;
+  bound.rlim_cur = static_cast<rlim_t>(machine / 2);
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &bound), 0);
+  const double found = rpc::memory_limit();
+  setrlimit(RLIMIT_AS, &before);
+  EXPECT_NEAR(found, machine / 2, 1);
+}
+
+} // namespace
