@@ -46,7 +46,9 @@ bool is_bad_folder(const int error)
 class Descriptor
 {
 public:
-  Descriptor(const std::string &path, const int flags) : path_(path), fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666))
+  /// @param path  what the user knows the file by
+  Descriptor(const std::string &file, const std::string &path, const int flags)
+      : path_(path), fd_(::open(file.c_str(), flags | O_CLOEXEC, 0666))
   {
     if (fd_ < 0) fail(errno, flags & O_CREAT ? "create" : "open", path_);
   }
@@ -91,7 +93,8 @@ std::string temporary_name(const std::string &path)
 
 AtomicFile::AtomicFile(const std::string &path) : path_(path), temporary_(temporary_name(path))
 {
-  Descriptor(temporary_, O_WRONLY | O_CREAT | O_TRUNC).close();
+  require_replaceable(path_);
+  Descriptor(temporary_, path_, O_WRONLY | O_CREAT | O_TRUNC).close();
 }
 
 AtomicFile::~AtomicFile()
@@ -101,7 +104,7 @@ AtomicFile::~AtomicFile()
 
 void AtomicFile::commit()
 {
-  Descriptor file(temporary_, O_RDWR);
+  Descriptor file(temporary_, path_, O_RDWR);
   file.sync();
   file.close();
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno, "replace", path_);
@@ -111,10 +114,18 @@ void AtomicFile::commit()
 void write_text(const std::string &path, const std::string &text)
 {
   AtomicFile output(path);
-  Descriptor file(output.temporary(), O_WRONLY);
+  Descriptor file(output.temporary(), path, O_WRONLY);
   file.write(text);
   file.close();
   output.commit();
+}
+
+void require_replaceable(const std::string &path)
+{
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) fail(EISDIR, "replace", path);
+  const int reason = ::access(path.c_str(), W_OK) == 0 ? 0 : errno;
+  if (reason == EACCES || reason == EPERM || reason == EROFS) fail(reason, "replace", path);
 }
 
 void require_writable_folder(const std::string &folder)

@@ -48,6 +48,34 @@ std::string read_text(const std::string &path)
   return text;
 }
 
+/// Teuchos' readers call themselves for a list within a list, and run out of stack.
+constexpr int deepest = 100;
+
+bool is_name_start(const unsigned char c)
+{
+  return std::isalpha(c) || c == '_';
+}
+
+/// Refuses a text with too many lists within lists. What stands in quotes does not count.
+void check_depth(const std::string &path, const std::string &text, const bool yaml)
+{
+  int depth = 0;
+  char quote = 0;
+  for (std::size_t n = 0; n + 1 < text.size() && depth <= deepest; ++n) {
+    const char c = text[n], next = text[n + 1];
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+      continue;
+    }
+    if (c == '"') quote = c;
+    if (yaml)
+      depth += (c == '{' || c == '[') - (c == '}' || c == ']');
+    else
+      depth += (c == '<' && is_name_start(next)) - (c == '<' && next == '/') - (c == '/' && next == '>');
+  }
+  RPC_REQUIRE(depth <= deepest, "deck: \"" << path << "\": lists within lists must not be deeper than " << deepest);
+}
+
 bool is_yaml(const std::string &path)
 {
   std::string extension = std::filesystem::path(path).extension().string();
@@ -75,6 +103,8 @@ std::vector<std::string> lines_of(const std::string &text)
     if (number > 0) where = ", line " + std::to_string(number);
   }
   std::string reason = one_line(what);
+  static const std::regex anonymous(R"( in list "ANONYMOUS"$)"); // the root that a deck need not name
+  reason = std::regex_replace(reason, anonymous, "");
   if (reason.empty()) reason = "malformed";
   if (reason.rfind("Expected one of", 0) == 0) reason += " (in YAML a text with special characters needs quotes)";
   throw Error(ExitCode::bad_input, "deck: \"" + path + "\"" + where + ": " + reason);
@@ -165,6 +195,7 @@ void check_list(const XMLObject &xml, const std::string &file, const std::string
 ParameterList read_xml(const std::string &path)
 {
   const std::string text = read_text(path);
+  check_depth(path, text, false);
   try {
     Teuchos::StringInputSource source(text);
     const XMLObject xml = source.getObject();
@@ -187,7 +218,9 @@ int count_root_names(const std::vector<std::string> &lines)
 
 ParameterList read_yaml(const std::string &path)
 {
-  const std::vector<std::string> lines = lines_of(read_text(path));
+  const std::string whole = read_text(path);
+  check_depth(path, whole, true);
+  const std::vector<std::string> lines = lines_of(whole);
   // Teuchos wants one name at the outermost level, and loses parameters without a word if there are more.
   const bool anonymous = count_root_names(lines) > 1;
   std::string text = anonymous ? "ANONYMOUS:\n" : "";

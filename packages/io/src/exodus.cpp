@@ -4,6 +4,7 @@
 #include "rpc/core/on_root.hpp"
 #include "rpc/io/atomic_file.hpp"
 #include "rpc/io/gather.hpp"
+#include "rpc/mesh/mesh_data.hpp"
 
 #include <algorithm>
 #include <array>
@@ -48,16 +49,17 @@ std::vector<std::string> cut(std::vector<std::string> texts, const std::size_t l
   return texts;
 }
 
-/// An open Exodus file on rank 0, under its temporary name until commit().
+/// An open Exodus file on rank 0, under its temporary name until commit(). `longest` is the length of its names.
 class Writer
 {
 public:
-  explicit Writer(const std::string &path) : path_(path), file_(path)
+  Writer(const std::string &path, const std::size_t longest) : path_(path), file_(path)
   {
     ex_opts(EX_DEFAULT); // errors come as return codes, not on the console
     int word_size = sizeof(double), file_word_size = sizeof(double);
     id_ = ex_create(file_.temporary().c_str(), EX_CLOBBER | EX_LARGE_MODEL, &word_size, &file_word_size);
     if (id_ < 0) fail("create");
+    check(ex_set_max_name_length(id_, static_cast<int>(longest)), "define the names of");
   }
   ~Writer()
   {
@@ -166,17 +168,27 @@ private:
   int nodes_per_cell_ = 0;
 };
 
+/// Length of the names, 32 unless the mesh has longer ones: what readers expect.
+std::size_t longest_name(const mesh::Mesh &mesh)
+{
+  std::size_t longest = MAX_NAME_LENGTH;
+  for (const auto &side : mesh.sides) longest = std::max(longest, side.name.size());
+  for (const auto &block : mesh.blocks) longest = std::max(longest, block.size());
+  return longest;
+}
+
 void require_writable(const mesh::Mesh &mesh, const std::vector<NodalField> &fields)
 {
   std::optional<std::string> message;
-  const auto check_name = [&](const std::string &name) {
-    if (name.empty() || name.size() > MAX_NAME_LENGTH)
-      message = "output: an Exodus name must have 1 to 32 characters, got \"" + name + "\"";
+  const auto check_name = [&](const std::string &name, const std::size_t longest) {
+    if (name.empty() || name.size() > longest)
+      message =
+          "output: an Exodus name must have 1 to " + std::to_string(longest) + " characters, got \"" + name + "\"";
   };
-  for (const auto &side : mesh.sides) check_name(side.name);
-  for (const auto &block : mesh.blocks) check_name(block);
+  for (const auto &side : mesh.sides) check_name(side.name, mesh::longest_name);
+  for (const auto &block : mesh.blocks) check_name(block, mesh::longest_name);
   for (const auto &field : fields) {
-    check_name(field.name);
+    check_name(field.name, MAX_NAME_LENGTH);
     if (static_cast<LO>(field.values.extent(0)) != mesh.num_owned_nodes())
       message = "output: the field \"" + field.name + "\" must have a value for each of " +
                 std::to_string(mesh.num_owned_nodes()) + " owned nodes, got " + std::to_string(field.values.extent(0));
@@ -248,7 +260,7 @@ void write_exodus(const std::string &path, const std::string &title, const mesh:
 
   std::unique_ptr<Writer> writer; // rank 0 only
   on_root(comm, ExitCode::internal_error, [&] {
-    writer = std::make_unique<Writer>(path);
+    writer = std::make_unique<Writer>(path, longest_name(mesh));
     writer->put_header(header, sides);
   });
   {

@@ -74,7 +74,7 @@ TEST_F(AtomicFileTest, FailedWriteKeepsTheOldFile)
   write_text(scratch_.path("a.txt"), "old");
   {
     const FileSizeLimit limit(1000);
-    expect_error(ExitCode::internal_error, "cannot write",
+    expect_error(ExitCode::internal_error, "cannot write \"" + scratch_.path("a.txt") + "\": File too large",
                  [&] { write_text(scratch_.path("a.txt"), std::string(5000, 'a')); });
   }
   EXPECT_EQ(text_of(scratch_.path("a.txt")), "old");
@@ -91,6 +91,16 @@ TEST_F(AtomicFileTest, UnusableFolderIsBadInputWithTheRemedy)
   std::filesystem::create_directory(scratch_.path("folder"));
   expect_error(ExitCode::bad_input, "Is a directory", [&] { write_text(scratch_.path("folder"), "text"); });
   EXPECT_EQ(scratch_.num_files(), 2);
+}
+
+TEST_F(AtomicFileTest, FileWithoutPermissionToWriteIsNotReplaced)
+{
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  const std::string path = scratch_.write("a.txt", "old");
+  std::filesystem::permissions(path, std::filesystem::perms::owner_read);
+  expect_error(ExitCode::bad_input, {"a.txt\": Permission denied", "--output=DIR"}, [&] { write_text(path, "new"); });
+  EXPECT_EQ(text_of(path), "old");
+  EXPECT_EQ(scratch_.num_files(), 1);
 }
 
 TEST_F(AtomicFileTest, WritableFolderIsMadeWithItsParents)

@@ -161,6 +161,26 @@ TEST_F(Deck, NameGivenTwiceIsRefused)
   expect_refusal("d.yaml", replaced(good_yaml, "    Type: box\n", "    Type: box\n    Type: box\n"),
                  "\"Type\" already exists");
   expect_refusal("d.yaml", replaced(good_yaml, "Contact", "Mesh"), "\"Mesh\" already exists");
+  const std::string twice = unindented(replaced(good_yaml, "Contact", "Mesh"));
+  expect_refusal("d.yaml", twice, "\"Mesh\" already exists");
+  EXPECT_EQ(std::string(error_of([&] { read_deck(file("d.yaml", twice)); }).what()).find("ANONYMOUS"),
+            std::string::npos);
+}
+
+TEST_F(Deck, ListsWithinListsHaveABound)
+{
+  const auto nested = [](const int depth, const std::string &open, const std::string &close) {
+    std::string text;
+    for (int n = 0; n < depth; ++n) text += open;
+    for (int n = 0; n < depth; ++n) text += close;
+    return text;
+  };
+  const std::string open = "<ParameterList name=\"a>\">", close = "</ParameterList>";
+  EXPECT_NO_THROW(read_deck(file("d.xml", nested(100, open, close))));
+  for (const int depth : {101, 20000}) expect_refusal("d.xml", nested(depth, open, close), "deeper than 100");
+  expect_refusal("d.yaml", "a: " + nested(20000, "{a: ", "}"), "deeper than 100");
+  const std::string many = nested(200, "", "<Parameter name=\"a\" type=\"int\" value=\"1\"/>");
+  expect_refusal("d.xml", "<!-- 0 < x < 1 -->" + open + many + close, "given twice");
 }
 
 TEST_F(Deck, MalformedYamlIsRefusedWithItsLine)

@@ -76,7 +76,8 @@ struct Content {
     nodes_per_cell = static_cast<int>(block.num_nodes_per_entry);
     conn.resize(block.num_entry * nodes_per_cell);
     EXPECT_EQ(ex_get_conn(id, EX_ELEM_BLOCK, 1, conn.data(), nullptr, nullptr), 0);
-    char name[MAX_STR_LENGTH + 1] = {};
+    ex_set_max_name_length(id, 255);
+    char name[256] = {};
     EXPECT_EQ(ex_get_name(id, EX_ELEM_BLOCK, 1, name), 0);
     block_name = name;
     read_sides(id);
@@ -91,7 +92,7 @@ struct Content {
   void read_sides(const int id)
   {
     for (int s = 1; s <= side_sets; ++s) {
-      char name[MAX_STR_LENGTH + 1] = {};
+      char name[256] = {};
       EXPECT_EQ(ex_get_name(id, EX_SIDE_SET, s, name), 0);
       side_names.push_back(name);
       int count = 0, factors = 0;
@@ -243,12 +244,30 @@ TEST_F(Exodus, NamesOf32CharactersAreKept)
   EXPECT_EQ(file.title, std::string(80, 't'));
 }
 
+TEST_F(Exodus, SidesAndBlocksMayHaveLongerNames)
+{
+  auto mesh = box({2, 1}, comm_);
+  const std::string side(255, 's'), block(40, 'b');
+  mesh.sides[1].name = side;
+  mesh.blocks[0] = block;
+  write_exodus(scratch_.path("a.e"), "t", mesh, {{"u", fields_of(mesh)[0].values}});
+  if (!root_) return;
+  const Content file(scratch_.path("a.e"));
+  EXPECT_EQ(file.side_names[1], side);
+  EXPECT_EQ(file.field_names, std::vector<std::string>{"u"});
+}
+
 TEST_F(Exodus, LongNameOrShortFieldIsRefusedOnEveryRank)
 {
   const auto mesh = box({2, 1}, comm_);
   const auto values = fields_of(mesh)[0].values;
   expect_error(ExitCode::internal_error, "1 to 32 characters", [&] {
     write_exodus(scratch_.path("a.e"), "t", mesh, {{std::string(33, 'n'), values}});
+  });
+  auto renamed = mesh;
+  renamed.sides[0].name = std::string(256, 's');
+  expect_error(ExitCode::internal_error, "1 to 255 characters", [&] {
+    write_exodus(scratch_.path("a.e"), "t", renamed, {{"u", values}});
   });
   const HostView<double *> shorter("shorter", values.extent(0) - (root_ ? 1 : 0));
   expect_error(ExitCode::internal_error, "\"u\" must have a value for each of", [&] {

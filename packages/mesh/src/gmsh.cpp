@@ -1,13 +1,12 @@
 #include "rpc/mesh/gmsh.hpp"
 
 #include "gmsh_mesh.hpp"
-#include "gmsh_module.hpp"
+#include "gmsh_process.hpp"
 #include "msh_reader.hpp"
 #include "rpc/core/error.hpp"
 
 #include <cerrno>
 #include <cstring>
-#include <dlfcn.h>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -18,37 +17,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-#ifdef RPC_GMSH_MODULE
-/// Where the module may lie: in an install tree, wherever that was moved, or where it was built.
-fs::path find_module()
-{
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed = (program.parent_path() / RPC_GMSH_MODULE_FROM_BIN).lexically_normal();
-  return !error && fs::exists(installed, error) ? installed : fs::path(RPC_GMSH_MODULE);
-}
-
-LoadGmsh *load_module()
-{
-  const std::string path = find_module().string();
-  // Never closed: the next .geo needs it again.
-  void *const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void *const function = module ? dlsym(module, load_gmsh_symbol) : nullptr;
-  if (!function) {
-    const char *const reason = dlerror();
-    throw Error(ExitCode::bad_input, "mesh: gmsh cannot be loaded: " + std::string(reason ? reason : path) +
-                                         "; install gmsh's library (on Debian libgmsh4.8), or rpc anew");
-  }
-  return reinterpret_cast<LoadGmsh *>(function);
-}
-#else
-LoadGmsh *load_module()
-{
-  throw Error(ExitCode::bad_input, "mesh: this rpc was built without gmsh, which meshes a .geo; build it with gmsh (on "
-                                   "Debian libgmsh-dev), or run gmsh -2 and give the .msh");
-}
-#endif
 
 std::string read_text(const std::string &where, const std::string &path)
 {
@@ -74,9 +42,7 @@ void check_last_line(const std::string &where, const std::string &geo)
 GmshContents made_by_gmsh(const std::string &where, const std::string &geo, const GmshOptions &options)
 {
   check_last_line(where, geo);
-  static LoadGmsh *const load = load_module();
-  GmshContents contents;
-  load({options.file, options.size_factor, options.order == 0 ? 2 : options.order}, contents);
+  GmshContents contents = run_gmsh(where, {options.file, options.size_factor, options.order == 0 ? 2 : options.order});
   const std::string file = "'" + options.file + "', "; // which the message has named
   if (contents.complaint.compare(0, file.size(), file) == 0) contents.complaint.erase(0, file.size());
   RPC_REQUIRE_CODE(contents.complaint.empty(), ExitCode::bad_mesh, where << "gmsh: " << contents.complaint);

@@ -5,6 +5,7 @@
 #include "rpc/core/error.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <optional>
 #include <set>
@@ -17,6 +18,11 @@ namespace
 
 constexpr const char *kind_of_group[] = {"point", "curve", "surface"};
 
+bool is_control(const unsigned char c)
+{
+  return std::iscntrl(c) != 0;
+}
+
 void check_groups(const std::string &where, const GmshContents &contents)
 {
   RPC_REQUIRE_CODE(!contents.solid, ExitCode::bad_mesh,
@@ -28,6 +34,10 @@ void check_groups(const std::string &where, const GmshContents &contents)
     RPC_REQUIRE_CODE(!name.empty(), ExitCode::bad_mesh,
                      where << "physical " << kind << " " << tag << " has no name; give it one: Physical "
                            << (dim == 1 ? "Curve(\"contact\"" : "Surface(\"body\"") << ", " << tag << ") = {...};");
+    RPC_REQUIRE_CODE(name.size() <= longest_name && std::none_of(name.begin(), name.end(), is_control),
+                     ExitCode::bad_mesh,
+                     where << "physical " << kind << " " << tag << " must have a name of at most " << longest_name
+                           << " characters, none of them a control character, got \"" << name << "\"");
     const auto [same, fresh] = tags.insert({{dim, name}, tag});
     RPC_REQUIRE_CODE(fresh, ExitCode::bad_mesh,
                      where << "physical " << kind << "s " << same->second << " and " << tag << " share the name \""

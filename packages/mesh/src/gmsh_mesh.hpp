@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gmsh_module.hpp"
+#include "gmsh_contents.hpp"
 #include "rpc/mesh/mesh_data.hpp"
 
 namespace rpc::mesh

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gmsh_module.hpp"
+#include "gmsh_contents.hpp"
 
 namespace rpc::mesh
 {

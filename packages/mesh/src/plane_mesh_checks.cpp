@@ -186,11 +186,12 @@ void check_nodes(const TaggedMesh &draft)
   }
   const std::array<Point, 2> box = bounds(draft, nullptr, draft.mesh.num_nodes());
   const double size = diameter(box);
+  RPC_REQUIRE_CODE(size >= least_size && size <= greatest_size, ExitCode::bad_mesh,
+                   draft.where << "the body's size must be " << least_size << " to " << greatest_size << " [m], got "
+                               << size);
   for (int n = 0; n < draft.mesh.num_nodes(); ++n)
     RPC_REQUIRE_CODE(std::abs(draft.z[n]) <= 1e-10 * size, ExitCode::bad_mesh,
                      draft.where << label_of_node(draft, n) << " is off the plane; z must be 0");
-  RPC_REQUIRE_CODE(size > 0 && std::isfinite(size), ExitCode::bad_mesh,
-                   draft.where << "the body's size must be > 0 and finite [m], got " << size);
   check_distinct(draft, box);
 }
 

@@ -88,6 +88,11 @@ TEST(BoxOptions, BadValuesAreRefusedByName)
   expect_refused(deck("Lower", Array<double>(tuple(nan, 0.))), {"\"Mesh->Upper\"", "nan"});
   expect_refused(deck("Cells", Array<int>(tuple(8, 0))), {"\"Mesh->Cells\"", "got 0", "direction 2"});
   expect_refused(deck("Cells", Array<int>(tuple(-8, 8))), {"\"Mesh->Cells\"", "got -8"});
+  expect_refused(deck("Upper", Array<double>(tuple(1e308, 1.))), {"\"Mesh->Upper\"", "1e+50 [m]", "got 1e+308"});
+  expect_refused(deck("Upper", Array<double>(tuple(1., 1e-200))), {"\"Mesh->Upper\"", "by 1e-50", "direction 2"});
+  ParameterList far = deck("Lower", Array<double>(tuple(1e10, 0.)));
+  far.set("Upper", Array<double>(tuple(1e10 + 1e-3, 1.)));
+  expect_refused(far, {"\"Mesh->Cells\"", "1e-12 times", "1e+10 [m] in direction 1"});
   expect_refused(deck("Cells", Array<int>(tuple(100000, 100000))), {"\"Mesh->Cells\"", "nodes", "supported"});
 }
 

@@ -148,6 +148,24 @@ TEST(Gmsh, RefusalsNameFileRuleAndRemedy)
   refused(square() + square() + body, {"gmsh: "});
 }
 
+TEST(Gmsh, AbsurdSizesAreRefusedInGoodTime)
+{
+  const auto line_to = [](const std::string &x, const std::string &size) {
+    return "Point(8) = {0, 0, 0, " + size + "}; Point(9) = {" + x + ", 0, 0, " + size + "}; Line(9) = {8, 9};\n";
+  };
+  const auto refused = [](const std::string &text, const double factor, const std::string &part) {
+    expect_error(ExitCode::bad_mesh, {"mesh.geo\": gmsh: ", part}, [&] { read_geo(text, factor); });
+  };
+  refused(square() + body + line_to("1e308", ".5"), 1, "at most 1e+50 [m]");
+  refused(square() + body + line_to("2", "1e-300"), 1, "too small for a body of size");
+  refused(square() + body, 1e-300, "1e-09 to 1e+09, got 1e-300");
+}
+
+TEST(Gmsh, ThatEndsWithoutAMeshIsABadMesh)
+{
+  expect_error(ExitCode::bad_mesh, {"mesh.geo\": gmsh ended without a mesh"}, [] { read_geo("Exit;\n"); });
+}
+
 TEST(Gmsh, AnErrorDoesNotSpoilTheNextFile)
 {
   const MeshData before = read_gmsh({sector, 1, 0});

@@ -201,6 +201,11 @@ TEST(Msh, GroupsMustBeNamedOnceAndFilled)
                  {"physical surface 4", "no name", "Physical Surface(\"body\", 4)"});
   expect_refused(squares_with([](Msh &msh) { msh.names[1] = "1 2 \"left\""; }),
                  {"physical curves 1 and 2", "\"left\""});
+  expect_refused(squares_with([](Msh &msh) { msh.names[1] = "1 2 \"" + std::string(256, 'n') + "\""; }),
+                 {"physical curve 2", "at most 255 characters"});
+  expect_refused(squares_with([](Msh &msh) { msh.names[2] = std::string("2 3 \"a\0b\"", 9); }),
+                 {"physical surface 3", "control character"});
+  EXPECT_NO_THROW(read_text(squares_with([](Msh &msh) { msh.names[1] = "1 2 \"" + std::string(255, 'n') + "\""; })));
   expect_refused(squares_with([](Msh &msh) { msh.names.push_back("2 5 \"air\""); }),
                  {"physical surface \"air\"", "no elements"});
   expect_refused(squares_with([](Msh &msh) {

@@ -12,7 +12,8 @@ class AtomicFile
 {
 public:
   /// Creates the temporary file, empty.
-  /// @throws rpc::Error: bad_input if the folder cannot be written to, internal_error otherwise (disk full)
+  /// @throws rpc::Error: bad_input if the folder or an older file cannot be written to, internal_error otherwise (disk
+  /// full)
   explicit AtomicFile(const std::string &path);
   /// Removes the temporary file unless commit() has run.
   ~AtomicFile();
@@ -36,6 +37,11 @@ private:
 /// Writes a whole text file or none; one rank only.
 /// @throws rpc::Error: bad_input if the folder cannot be written to, internal_error otherwise (disk full)
 void write_text(const std::string &path, const std::string &text);
+
+/// Proves that nothing stands in the way of a file: no folder of its name, no older file without permission to write to
+/// it, which renaming would not respect; one rank only.
+/// @throws rpc::Error (bad_input) with the system's reason and the remedy
+void require_replaceable(const std::string &path);
 
 /// Makes the folder, and those above it, if it is missing, and proves that files can be made in it; one rank only.
 /// @throws rpc::Error (bad_input) with the system's reason and the remedy

@@ -9,7 +9,7 @@ namespace rpc::mesh
 
 /// A mesh that gmsh makes or made.
 struct GmshOptions {
-  std::string file;       ///< .geo, meshed in process, or .msh (2.2 or 4.1, ASCII or binary)
+  std::string file;       ///< .geo, meshed by gmsh, or .msh (2.2 or 4.1, ASCII or binary)
   double size_factor = 1; ///< of all cell sizes that a .geo asks for, > 0
   int order = 0;          ///< 1 or 2; 0: 2 for a .geo, for a .msh what it has
 };
@@ -18,7 +18,7 @@ struct GmshOptions {
 ///
 /// Physical surfaces become blocks and physical curves sides, by their names, in the order of their tags; cells outside
 /// every physical surface are not part of the body. Nodes keep gmsh's order.
-/// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint; no physical surface, or a
+/// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no physical surface, or a
 ///         group without a name; cells off the plane z = 0, of different or unsupported kinds, in two blocks, degenerate or
 ///         inverted; a side with facets that belong to no cell or to two; nodes that no cell uses, or two at one place.
 ///         (bad_input) if the file cannot be opened, a .msh comes with a size factor or another order, or a .geo with an

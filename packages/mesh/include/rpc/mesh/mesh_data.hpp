@@ -2,11 +2,18 @@
 
 #include "rpc/mesh/element.hpp"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace rpc::mesh
 {
+
+/// A body's size must be within these, or products of lengths would leave the doubles [m].
+constexpr double least_size = 1e-50, greatest_size = 1e50;
+
+/// Characters of the name of a side or block; an Exodus file holds no more.
+constexpr std::size_t longest_name = 255;
 
 /// A named part of the boundary of a whole mesh, each facet once.
 struct SideData {

@@ -7,8 +7,7 @@
 namespace rpc::mesh
 {
 
-// What read_gmsh() and the module rpc_gmsh tell each other. The module is loaded at the first use of gmsh, whose own
-// libraries take a tenth of a second to load; it knows nothing else of rpc.
+// What read_gmsh() and the program rpc_gmsh tell each other. The program knows nothing else of rpc.
 
 /// A .geo to be meshed.
 struct GmshRequest {
@@ -42,8 +41,7 @@ struct GmshContents {
   std::vector<std::size_t> ungrouped_nodes; ///< tags of the nodes of cells outside every physical surface
 };
 
-/// The module's only symbol.
-using LoadGmsh = void(const GmshRequest &request, GmshContents &contents) noexcept;
-constexpr const char *load_gmsh_symbol = "rpc_load_gmsh";
+/// Where rpc_gmsh writes its mesh, packed: a file descriptor that nothing else of gmsh writes to.
+constexpr int gmsh_output = 3;
 
 } // namespace rpc::mesh

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "gmsh_contents.hpp"
+
+namespace rpc::mesh
+{
+
+/// Has the program rpc_gmsh mesh a .geo, and waits for it. Whatever happens to gmsh, this process goes on.
+/// @param where  begin of messages
+/// @throws rpc::Error (bad_mesh) if gmsh breaks down, (bad_input) if it cannot be started
+GmshContents run_gmsh(const std::string &where, const GmshRequest &request);
+
+} // namespace rpc::mesh
