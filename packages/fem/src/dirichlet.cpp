@@ -66,9 +66,6 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
     RPC_REQUIRE(any, "deck: \"" << path << "\" prescribes nothing. Give X, Y or Z [m].");
     conditions.push_back(condition);
   }
-  RPC_REQUIRE(
-      !conditions.empty(),
-      "deck: there is no Dirichlet condition, so nothing holds the body. Give at least one entry in \"Dirichlet\".");
   return conditions;
 }
 

@@ -1,7 +1,7 @@
 #include "rpc/fem/elasticity.hpp"
 
 #include "component_name.hpp"
-#include "kernels.hpp"
+#include "elastic_kernels.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
 
@@ -13,151 +13,6 @@ namespace rpc::fem
 {
 namespace
 {
-
-/// K += stiffness of one cell. Entries are found once per pair of nodes: a node's rows share their columns.
-template <int Dim, int Nodes>
-struct Stiffness {
-  static constexpr int dofs = Dim * Nodes;
-
-  DeviceView<double **> coords;       // (overlap nodes, Dim)        [m]    in
-  DeviceView<LO **> cells;            // (cells, Nodes)                     in, overlap lids
-  DeviceView<double ***> gradient;    // (points, Nodes, Dim)               in
-  DeviceView<double *> weight;        // (points)                           in
-  DeviceView<std::size_t *> node_row; // (owned nodes + 1)                  in
-  DeviceView<LO *> node_col;          // (node graph)                       in
-  LO num_owned;                       // rows of nodes >= this are another rank's
-  DeviceView<double **> lame;         // (blocks; lambda, mu)        [Pa]   in
-  DeviceView<int *> block;            // (cells)                            in
-  DeviceView<double *> values;        // (matrix entries)            [N/m]  inout
-
-  /// @param bad  counts cells whose Jacobian is <= 0 somewhere
-  KOKKOS_FUNCTION void operator()(const LO cell, LO &bad) const
-  {
-    double product[dofs][dofs]; // int dN_ai dN_bj
-    if (!integrate(cell, product)) {
-      ++bad;
-      return;
-    }
-    const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
-    for (int a = 0; a < Nodes; ++a) {
-      const LO node = cells(cell, a);
-      if (node >= num_owned) continue;
-      const std::size_t begin = node_row(node), length = node_row(node + 1) - begin;
-      for (int b = 0; b < Nodes; ++b) {
-        double trace = 0;
-        for (int k = 0; k < Dim; ++k) trace += product[Dim * a + k][Dim * b + k];
-        const std::size_t at = find(begin, length, cells(cell, b));
-        for (int i = 0; i < Dim; ++i) {
-          double *const entry = &values(Dim * (Dim * begin + i * length + at));
-          for (int j = 0; j < Dim; ++j) {
-            double k = lambda * product[Dim * a + i][Dim * b + j] + mu * product[Dim * a + j][Dim * b + i];
-            if (i == j) k += mu * trace;
-            add_shared(entry[j], k); // cells share rows
-          }
-        }
-      }
-    }
-  }
-
-  KOKKOS_FUNCTION bool integrate(const LO cell, double (&product)[dofs][dofs]) const
-  {
-    const CellCoords<Dim, Nodes> x(coords, cells, cell);
-    for (int r = 0; r < dofs; ++r)
-      for (int c = 0; c < dofs; ++c) product[r][c] = 0;
-    for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
-      double dN[Nodes][Dim];
-      const double det = physical_gradients(x, gradient, q, dN);
-      if (!(det > 0)) return false;
-      const double volume = weight(q) * det;
-      for (int a = 0; a < Nodes; ++a)
-        for (int i = 0; i < Dim; ++i)
-          for (int b = 0; b < Nodes; ++b)
-            for (int j = 0; j < Dim; ++j) product[Dim * a + i][Dim * b + j] += volume * dN[a][i] * dN[b][j];
-    }
-    return true;
-  }
-
-  /// Place of a node in a row of the node graph; it is there, for the graph was made of these cells.
-  KOKKOS_FUNCTION std::size_t find(const std::size_t begin, const std::size_t length, const LO node) const
-  {
-    std::size_t low = 0, high = length;
-    while (high - low > 1) {
-      const std::size_t middle = (low + high) / 2;
-      if (node_col(begin + middle) <= node)
-        low = middle;
-      else
-        high = middle;
-    }
-    return low;
-  }
-};
-
-/// energy += int sigma(u) : eps(u) over one cell.
-template <int Dim, int Nodes>
-struct StrainEnergy {
-  DeviceView<double **> coords;                            // (overlap nodes, Dim)  [m]   in
-  DeviceView<LO **> cells;                                 // (cells, Nodes)              in
-  DeviceView<double ***> gradient;                         // (points, Nodes, Dim)        in
-  DeviceView<double *> weight;                             // (points)                    in
-  decltype(device_read(std::declval<const Vector &>())) u; // (overlap dofs)        [m]   in
-  DeviceView<double **> lame;                              // (blocks; lambda, mu)  [Pa]  in
-  DeviceView<int *> block;                                 // (cells)                     in
-
-  KOKKOS_FUNCTION void operator()(const LO cell, double &energy) const
-  {
-    const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
-    const CellCoords<Dim, Nodes> x(coords, cells, cell);
-    for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
-      double dN[Nodes][Dim];
-      const double volume = weight(q) * physical_gradients(x, gradient, q, dN);
-      double grad[Dim][Dim];
-      displacement_gradient(u, cells, cell, dN, grad);
-      double trace = 0, product = 0;
-      for (int i = 0; i < Dim; ++i) {
-        trace += grad[i][i];
-        for (int j = 0; j < Dim; ++j) product += 0.25 * (grad[i][j] + grad[j][i]) * (grad[i][j] + grad[j][i]);
-      }
-      energy += volume * (lambda * trace * trace + 2 * mu * product);
-    }
-  }
-};
-
-/// f(ai) += int sigma(u) : grad(N_a e_i) over one cell.
-template <int Dim, int Nodes>
-struct InternalForces {
-  DeviceView<double **> coords;                            // (overlap nodes, Dim)  [m]   in
-  DeviceView<LO **> cells;                                 // (cells, Nodes)              in
-  DeviceView<double ***> gradient;                         // (points, Nodes, Dim)        in
-  DeviceView<double *> weight;                             // (points)                    in
-  decltype(device_read(std::declval<const Vector &>())) u; // (overlap dofs)        [m]   in
-  DeviceView<double **> lame;                              // (blocks; lambda, mu)  [Pa]  in
-  DeviceView<int *> block;                                 // (cells)                     in
-  LO num_owned;                                            // nodes
-  decltype(device_write(std::declval<Vector &>())) force;  // (owned dofs)          [N]   inout
-
-  KOKKOS_FUNCTION void operator()(const LO cell) const
-  {
-    const CellCoords<Dim, Nodes> x(coords, cells, cell);
-    const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
-    for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
-      double dN[Nodes][Dim];
-      const double volume = weight(q) * physical_gradients(x, gradient, q, dN);
-      double grad[Dim][Dim];
-      displacement_gradient(u, cells, cell, dN, grad);
-      double trace = 0;
-      for (int i = 0; i < Dim; ++i) trace += grad[i][i];
-      for (int a = 0; a < Nodes; ++a) {
-        const LO node = cells(cell, a);
-        if (node >= num_owned) continue;
-        for (int i = 0; i < Dim; ++i) {
-          double sum = lambda * trace * dN[a][i];
-          for (int j = 0; j < Dim; ++j) sum += mu * (grad[i][j] + grad[j][i]) * dN[a][j];
-          add_shared(force(Dim * node + i), volume * sum);
-        }
-      }
-    }
-  }
-};
 
 /// Names the first owned cell whose Jacobian determinant is not positive at a quadrature point; nothing if there is none
 /// on this rank.
@@ -227,6 +82,15 @@ DeviceView<double **> evaluate_vector(const VectorField &field, const DeviceView
   return result;
 }
 
+Dilatation parse_dilatation(const std::string &text, const std::string &path)
+{
+  if (text == "auto") return Dilatation::automatic;
+  if (text == "full") return Dilatation::full;
+  if (text == "projected") return Dilatation::projected;
+  throw Error(ExitCode::bad_input,
+              "deck: \"" + path + "->Dilatation\" must be auto, full or projected, got \"" + text + "\"");
+}
+
 Material one_material(const Teuchos::ParameterList &list, const std::string &path)
 {
   Material material;
@@ -236,6 +100,7 @@ Material one_material(const Teuchos::ParameterList &list, const std::string &pat
               "deck: \"" << path << "->Young's Modulus\" must be > 0 and finite [Pa], got " << material.youngs_modulus);
   RPC_REQUIRE(material.poissons_ratio > -1 && material.poissons_ratio < 0.5,
               "deck: \"" << path << "->Poisson's Ratio\" must be in (-1, 0.5), got " << material.poissons_ratio);
+  material.dilatation = parse_dilatation(list.get<std::string>("Dilatation"), path);
   return material;
 }
 
@@ -336,6 +201,11 @@ Teuchos::ParameterList valid_material_parameters()
   Teuchos::ParameterList valid("Material");
   valid.set("Young's Modulus", 1., "E > 0 [Pa].");
   valid.set("Poisson's Ratio", 0.3, "nu, in (-1, 0.5).");
+  valid.set(
+      "Dilatation", "auto",
+      "What counts as div u in a cell: `full`, itself; `projected`, its L2 projection on constants (Q1, P2) or linear "
+      "functions (Q2), which does not lock as nu nears 0.5; `auto`: projected where nu > 0.4 (P2: 0.48). All the same "
+      "for P1.");
   Teuchos::ParameterList entry = valid;
   set_named_entries(valid, "Blocks", entry,
                     "Materials of single blocks of the mesh, each entry named after its block; other blocks have the "
@@ -353,11 +223,10 @@ Materials material_options(const Teuchos::ParameterList &list)
   return materials;
 }
 
-double Materials::largest_youngs_modulus() const
+const Material &Materials::of(const std::string &name) const
 {
-  double largest = common.youngs_modulus;
-  for (const auto &[name, material] : block) largest = std::max(largest, material.youngs_modulus);
-  return largest;
+  const auto own = block.find(name);
+  return own == block.end() ? common : own->second;
 }
 
 DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materials)
@@ -369,13 +238,59 @@ DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materi
   DeviceView<double **> table("rpc::fem::lame", mesh.blocks.size(), 2);
   const auto host = Kokkos::create_mirror_view(table);
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-    const auto own = materials.block.find(mesh.blocks[b]);
-    const Material &material = own == materials.block.end() ? materials.common : own->second;
+    const Material &material = materials.of(mesh.blocks[b]);
     host(b, 0) = material.lambda();
     host(b, 1) = material.mu();
   }
   Kokkos::deep_copy(table, host);
   return table;
+}
+
+DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials)
+{
+  const LO num_owned = d.mesh->num_owned_nodes();
+  const auto lame = lame_table(*d.mesh, materials);
+  const auto cells = d.mesh->cells;
+  const auto block = d.mesh->block;
+  DeviceView<double *> modulus("rpc::fem::youngs_modulus", num_owned);
+  Kokkos::parallel_for(
+      "rpc::fem::youngs_modulus", device_range(d.mesh->num_cells()), KOKKOS_LAMBDA(const LO cell) {
+        const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
+        const double own = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+        for (std::size_t a = 0; a < cells.extent(1); ++a)
+          if (cells(cell, a) < num_owned) Kokkos::atomic_fetch_max(&modulus(cells(cell, a)), own);
+      });
+  Kokkos::fence();
+  return modulus;
+}
+
+DeviceView<int *> projected_dilatation_table(const mesh::Mesh &mesh, const Materials &materials)
+{
+  // P2 with one constant per cell loses its order: up to 0.48 it does better without.
+  const bool p2 = mesh.element.shape == mesh::Shape::simplex && mesh.element.order == 2;
+  const double bound = p2 ? 0.48 : 0.4;
+  DeviceView<int *> table("rpc::fem::projected_dilatation", mesh.blocks.size());
+  const auto host = Kokkos::create_mirror_view(table);
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const Material &material = materials.of(mesh.blocks[b]);
+    const bool automatic = material.dilatation == Dilatation::automatic && material.poissons_ratio > bound;
+    host(b) = automatic || material.dilatation == Dilatation::projected ? 1 : 0;
+  }
+  Kokkos::deep_copy(table, host);
+  return table;
+}
+
+std::string locking_note(const mesh::Mesh &mesh, const Materials &materials)
+{
+  if (mesh.element.shape != mesh::Shape::simplex || mesh.element.order != 1) return "";
+  for (const std::string &block : mesh.blocks) {
+    if (!(materials.of(block).poissons_ratio > 0.4)) continue;
+    std::ostringstream note;
+    note << "P1 triangles lock in block \"" << block << "\" with nu = " << materials.of(block).poissons_ratio
+         << ": displacements and stresses are wrong there; take Q2, P2 or Q1";
+    return note.str();
+  }
+  return "";
 }
 
 Teuchos::ParameterList valid_traction_parameters()
@@ -419,17 +334,8 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
   const mesh::Mesh &mesh = *d.mesh;
   LO bad = 0;
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    Stiffness<dim, nodes> kernel;
-    kernel.coords = mesh.coords;
-    kernel.cells = mesh.cells;
-    kernel.gradient = d.reference.cell.gradient;
-    kernel.weight = d.reference.cell.weight;
-    kernel.node_row = d.nodes.row;
-    kernel.node_col = d.nodes.col;
-    kernel.num_owned = mesh.num_owned_nodes();
-    kernel.lame = lame_table(mesh, materials);
-    kernel.block = mesh.block;
-    kernel.values = matrix->getLocalMatrixDevice().values;
+    const Stiffness<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), d.nodes.row, d.nodes.col,
+                                       mesh.num_owned_nodes(), matrix->getLocalMatrixDevice().values};
     Kokkos::parallel_reduce("rpc::fem::stiffness", device_range(mesh.num_cells()), kernel, bad);
   });
   if (sum_all(mesh.comm(), GO(bad)) > 0) throw_if_any(mesh.comm(), ExitCode::bad_mesh, describe_bad_cell(d));
@@ -444,10 +350,7 @@ double strain_energy(const Discretization &d, const Materials &materials, const 
   u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
   double energy = 0;
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const BasisTable &table = d.reference.cell;
-    const StrainEnergy<dim, nodes> kernel{
-        mesh.coords, mesh.cells, table.gradient, table.weight, device_read(u_overlap), lame_table(mesh, materials),
-        mesh.block};
+    const StrainEnergy<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(u_overlap)};
     Kokkos::parallel_reduce("rpc::fem::strain_energy", device_range(mesh.num_owned_cells), kernel, energy);
   });
   return sum_all(mesh.comm(), energy);
@@ -459,20 +362,25 @@ Vector internal_forces(const Discretization &d, const Materials &materials, cons
   Vector u_overlap(d.overlap_dofs), force(d.owned_dofs);
   u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const BasisTable &table = d.reference.cell;
-    const InternalForces<dim, nodes> kernel{mesh.coords,
-                                            mesh.cells,
-                                            table.gradient,
-                                            table.weight,
-                                            device_read(u_overlap),
-                                            lame_table(mesh, materials),
-                                            mesh.block,
-                                            mesh.num_owned_nodes(),
-                                            device_write(force)};
+    const InternalForces<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(u_overlap),
+                                            mesh.num_owned_nodes(), device_write(force)};
     Kokkos::parallel_for("rpc::fem::internal_forces", device_range(mesh.num_cells()), kernel);
   });
   Kokkos::fence();
   return force;
+}
+
+double internal_force_norm(const Discretization &d, const Materials &materials, const Vector &u)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  Vector u_overlap(d.overlap_dofs);
+  u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
+  double squares = 0;
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    const CellForceSquares<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(u_overlap)};
+    Kokkos::parallel_reduce("rpc::fem::internal_force_norm", device_range(mesh.num_owned_cells), kernel, squares);
+  });
+  return std::sqrt(sum_all(mesh.comm(), squares));
 }
 
 void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load)

@@ -69,6 +69,18 @@ KOKKOS_INLINE_FUNCTION double physical_gradients(const CellCoords<Dim, Nodes> &c
   return det;
 }
 
+/// at(i) = x_i at a point of a cell [m].
+/// @param value  (points, Nodes) shape functions
+template <int Dim, int Nodes>
+KOKKOS_INLINE_FUNCTION void position(const CellCoords<Dim, Nodes> &cell, const DeviceView<double **> &value,
+                                     const int q, double (&at)[Dim])
+{
+  for (int i = 0; i < Dim; ++i) {
+    at[i] = 0;
+    for (int a = 0; a < Nodes; ++a) at[i] += value(q, a) * cell.x[a][i];
+  }
+}
+
 /// grad(i, j) = du_i / dx_j at a point of a cell, from the gradients dN there.
 /// @param u  (overlap dofs) [m]
 template <int Dim, int Nodes, class U>
@@ -78,8 +90,26 @@ KOKKOS_INLINE_FUNCTION void displacement_gradient(const U &u, const DeviceView<L
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j) {
       grad[i][j] = 0;
-      for (int a = 0; a < Nodes; ++a) grad[i][j] += u(Dim * cells(cell, a) + i) * dN[a][j];
+      // Gradients sum to 0 over the nodes; differences let a translation vanish to the last digit.
+      const double first = u(Dim * cells(cell, 0) + i);
+      for (int a = 1; a < Nodes; ++a) grad[i][j] += (u(Dim * cells(cell, a) + i) - first) * dN[a][j];
     }
+}
+
+/// sum of u_ai D(a, i): div u at a point for D the gradients there, its projection for projected ones.
+/// @param u  (overlap dofs) [m]
+template <int Dim, int Nodes, class U>
+KOKKOS_INLINE_FUNCTION double divergence(const U &u, const DeviceView<LO **> &cells, const LO cell,
+                                         const double (&D)[Nodes][Dim])
+{
+  double sum = 0;
+  for (int i = 0; i < Dim; ++i) {
+    double slope = 0;
+    const double first = u(Dim * cells(cell, 0) + i);
+    for (int a = 1; a < Nodes; ++a) slope += (u(Dim * cells(cell, a) + i) - first) * D[a][i];
+    sum += slope;
+  }
+  return sum;
 }
 
 /// Outward normal at a facet's point times the ratio of area to reference area [m^(dim-1)].

@@ -1,13 +1,12 @@
 #pragma once
 
-#include "kernels.hpp"
+#include "elastic_kernels.hpp"
 #include "patch_polynomial.hpp"
 
 /// The kernels of the recovery of stresses, (2.8): fit, adopt, evaluate.
 namespace rpc::fem
 {
 
-using ReadVector = decltype(device_read(std::declval<const Vector &>()));
 using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadOnly));
 using WriteColumns = decltype(std::declval<MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadWrite));
 
@@ -30,13 +29,16 @@ struct Components {
 /// The table of polynomials: a row per vertex, and its columns.
 ///
 /// A polynomial is one of the displacement, of a degree more than the element's, in xi = L^-1 (x - centre): coordinates
-/// in which a patch has size 1 in every direction, however thin its cells are.
+/// in which a patch has size 1 in every direction, however thin its cells are. Where the dilatation is projected, (2.11), a polynomial of that, of a
+/// degree more, goes with it.
 template <int Dim, int Nodes>
 struct PatchTable {
   static constexpr int degree = Nodes <= (1 << Dim) ? 2 : 3;
   using Terms = Monomials<Dim, degree>;
   static constexpr int trust = 0, centre = 1, frame = centre + Dim, coefficients = frame + Dim * (Dim + 1) / 2;
-  static constexpr int columns = coefficients + (Terms::size - 1) * Dim; // without the constants
+  using Dilatation = Monomials<Dim, (Projection<Dim, Nodes>::modes > 1 ? 2 : 1)>;
+  static constexpr int dilatation = coefficients + (Terms::size - 1) * Dim; // those before without the constants
+  static constexpr int columns = dilatation + (ElasticCells<Dim, Nodes>::may_project ? Dilatation::size : 0);
 
   /// Trust is the degree that could be fitted; more than that if cells close all around the vertex, in between for a
   /// polynomial taken over from such a vertex; less than any where blocks meet.
@@ -59,9 +61,8 @@ struct FitPatch {
   /// What lower terms must leave of a term's square. Patches inside leave 3e-2 at least on meshes that are fit for use.
   static constexpr double threshold = 1e-3;
 
-  DeviceView<double **> coords;       // (overlap nodes, Dim)            [m]   in
-  DeviceView<LO **> cells;            // (cells, Nodes)                        in
-  DeviceView<int *> block;            // (cells)                               in
+  ElasticCells<Dim, Nodes> body;      //                                       in
+  DeviceView<double **> recovery;     // (points, Nodes)                       in, shape functions
   ReadVector u;                       // (overlap dofs)                  [m]   in
   DeviceView<std::size_t *> node_row; // (owned nodes + 1)                     in
   DeviceView<LO *> node_cell;         // cells around nodes                    in
@@ -72,7 +73,7 @@ struct FitPatch {
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
     const LO first = node_cell(node_row(node));
-    if (place_in(cells, first, node) >= static_cast<int>(mate.extent(0))) return;
+    if (place_in(body.cells, first, node) >= static_cast<int>(mate.extent(0))) return;
     double L[Dim][Dim] = {}; // second moments of the patch, then their root
     const std::size_t begin = graph.row(node), end = graph.row(node + 1);
     for (std::size_t k = begin; k < end; ++k) {
@@ -97,7 +98,7 @@ struct FitPatch {
     }
     bool one_block = true;
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
-      one_block = one_block && block(node_cell(k)) == block(first);
+      one_block = one_block && body.block(node_cell(k)) == body.block(first);
     const int fitted = cholesky(normal, threshold);
     int degree = one_block ? Table::degree : 1;
     while (degree > 1 && Terms::up_to(degree) > fitted) --degree;
@@ -107,26 +108,62 @@ struct FitPatch {
 
     const int trust = degree == Table::degree && is_inside(node) ? Table::inside : degree;
     table(node, Table::trust) = one_block ? trust : Table::across_blocks;
-    for (int i = 0; i < Dim; ++i) table(node, Table::centre + i) = coords(node, i);
+    for (int i = 0; i < Dim; ++i) table(node, Table::centre + i) = body.coords(node, i);
     int column = Table::frame;
     for (int i = 0; i < Dim; ++i)
       for (int j = 0; j <= i; ++j) table(node, column++) = L[i][j];
     for (int s = 1; s < Terms::size; ++s)
       for (int i = 0; i < Dim; ++i) table(node, column++) = s < terms ? c[s][i] : 0;
+    if constexpr (ElasticCells<Dim, Nodes>::may_project)
+      if (body.projects(first)) fit_dilatation(node, L);
+  }
+
+  /// The polynomial of the projected dilatation, by least squares from its values at the points for recovery.
+  KOKKOS_FUNCTION void fit_dilatation(const LO node, const double (&L)[Dim][Dim]) const
+  {
+    using Terms = typename Table::Dilatation;
+    double normal[Terms::size][Terms::size] = {}, c[Terms::size][1] = {};
+    for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
+      const LO cell = node_cell(k);
+      const CellCoords<Dim, Nodes> x(body.coords, body.cells, cell);
+      Projection<Dim, Nodes> projection;
+      if (!body.project(cell, projection)) continue;
+      for (int q = 0; q < static_cast<int>(recovery.extent(0)); ++q) {
+        double at[Dim], dilatation[Nodes][Dim], dx[Dim][1], xi[Dim], term[Terms::size];
+        position(x, recovery, q, at);
+        projection.gradients(at, dilatation);
+        const double value = divergence(u, body.cells, cell, dilatation);
+        for (int i = 0; i < Dim; ++i) dx[i][0] = at[i] - body.coords(node, i);
+        solve_lower(L, Dim, dx);
+        for (int i = 0; i < Dim; ++i) xi[i] = dx[i][0];
+        Terms::evaluate(xi, term);
+        for (int s = 0; s < Terms::size; ++s) {
+          for (int t = 0; t <= s; ++t) normal[s][t] += term[s] * term[t];
+          c[s][0] += term[s] * value;
+        }
+      }
+    }
+    const int fitted = cholesky(normal, threshold);
+    int degree = 2;
+    while (degree > 0 && Terms::up_to(degree) > fitted) --degree;
+    const int terms = Terms::up_to(degree);
+    solve_lower(normal, terms, c);
+    solve_lower_transposed(normal, terms, c);
+    for (int s = 0; s < Terms::size; ++s) table(node, Table::dilatation + s) = s < terms ? c[s][0] : 0;
   }
 
   KOKKOS_FUNCTION void step(const LO from, const LO to, double (&dx)[Dim][1]) const
   {
-    for (int i = 0; i < Dim; ++i) dx[i][0] = coords(to, i) - coords(from, i);
+    for (int i = 0; i < Dim; ++i) dx[i][0] = body.coords(to, i) - body.coords(from, i);
   }
 
   /// Whether cells close all around a vertex: every facet at it is shared by two of them.
   KOKKOS_FUNCTION bool is_inside(const LO node) const
   {
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
-      const int a = place_in(cells, node_cell(k), node);
+      const int a = place_in(body.cells, node_cell(k), node);
       for (int f = 0; f < Dim; ++f)
-        if (!shares(node, k, cells(node_cell(k), mate(a, f)))) return false;
+        if (!shares(node, k, body.cells(node_cell(k), mate(a, f)))) return false;
     }
     return true;
   }
@@ -134,7 +171,7 @@ struct FitPatch {
   {
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
       for (std::size_t a = 0; a < mate.extent(0) && k != except; ++a)
-        if (cells(node_cell(k), a) == other) return true;
+        if (body.cells(node_cell(k), a) == other) return true;
     return false;
   }
 };
@@ -190,10 +227,7 @@ struct EvaluatePatches {
   using Terms = typename Table::Terms;
   static constexpr int components = Components<Dim>::size;
 
-  DeviceView<double **> coords;       // (overlap nodes, Dim)       [m]   in
-  DeviceView<LO **> cells;            // (cells, Nodes)                   in
-  DeviceView<int *> block;            // (cells)                          in
-  DeviceView<double **> lame;         // (blocks; lambda, mu)       [Pa]  in
+  ElasticCells<Dim, Nodes> body;      //                                  in
   DeviceView<std::size_t *> node_row; // (owned nodes + 1)                in
   DeviceView<LO *> node_cell;         // cells around nodes               in
   DeviceView<int **> carries;         // (Nodes, vertices)                in, see carrying_vertices
@@ -203,12 +237,12 @@ struct EvaluatePatches {
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
     const LO first = node_cell(node_row(node));
-    const int vertices = static_cast<int>(carries.extent(1)), place = place_in(cells, first, node);
+    const int vertices = static_cast<int>(carries.extent(1)), place = place_in(body.cells, first, node);
     double best = 0, own = 0; // trust in the polynomials around, and in those of the vertices that carry the node
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
       best = Kokkos::Experimental::fmax(best, best_of(node_cell(k), vertices));
     for (int a = 0; a < vertices; ++a)
-      if (carries(place, a)) own = Kokkos::Experimental::fmax(own, table(cells(first, a), Table::trust));
+      if (carries(place, a)) own = Kokkos::Experimental::fmax(own, table(body.cells(first, a), Table::trust));
 
     double s[components] = {};
     int count = 0;
@@ -232,7 +266,8 @@ struct EvaluatePatches {
   KOKKOS_FUNCTION double best_of(const LO cell, const int vertices) const
   {
     double best = 0;
-    for (int a = 0; a < vertices; ++a) best = Kokkos::Experimental::fmax(best, table(cells(cell, a), Table::trust));
+    for (int a = 0; a < vertices; ++a)
+      best = Kokkos::Experimental::fmax(best, table(body.cells(cell, a), Table::trust));
     return best;
   }
 
@@ -241,12 +276,12 @@ struct EvaluatePatches {
   KOKKOS_FUNCTION void add(const LO node, const LO cell, const int a, const double trust, double (&s)[components],
                            int &count) const
   {
-    const LO vertex = cells(cell, a);
+    const LO vertex = body.cells(cell, a);
     if (table(vertex, Table::trust) < trust) return;
     double L[Dim][Dim], dx[Dim][1], xi[Dim], term[Terms::size], slope[Terms::size][Dim];
     int column = Table::frame;
     for (int i = 0; i < Dim; ++i) {
-      dx[i][0] = coords(node, i) - table(vertex, Table::centre + i);
+      dx[i][0] = body.coords(node, i) - table(vertex, Table::centre + i);
       for (int j = 0; j <= i; ++j) L[i][j] = table(vertex, column++);
     }
     solve_lower(L, Dim, dx);
@@ -258,11 +293,20 @@ struct EvaluatePatches {
         for (int j = 0; j < Dim; ++j) grad[j][i] += slope[t][j] * table(vertex, column);
     solve_lower_transposed(L, Dim, grad);
 
-    const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
+    const double lambda = body.lambda(cell), mu = body.mu(cell);
     double strain2[3][3] = {}, trace = 0; // twice the strain; across the plane it is 0
     for (int i = 0; i < Dim; ++i) {
       trace += grad[i][i];
       for (int j = 0; j < Dim; ++j) strain2[i][j] = grad[i][j] + grad[j][i];
+    }
+    if constexpr (ElasticCells<Dim, Nodes>::may_project) {
+      if (body.projects(cell)) {
+        double of_dilatation[Table::Dilatation::size];
+        Table::Dilatation::evaluate(xi, of_dilatation);
+        trace = 0;
+        for (int t = 0; t < Table::Dilatation::size; ++t)
+          trace += of_dilatation[t] * table(vertex, Table::dilatation + t);
+      }
     }
     for (int m = 0; m < components; ++m) {
       const int i = Components<Dim>::row(m), j = Components<Dim>::col(m);

@@ -61,7 +61,7 @@ RCP<const MultiVector> with_overlap(const mesh::Mesh &mesh, const RCP<const Mult
 }
 
 template <int Dim, int Nodes>
-RCP<MultiVector> recover(const Discretization &d, const DeviceView<double **> &lame, const Vector &u_overlap)
+RCP<MultiVector> recover(const Discretization &d, const ElasticCells<Dim, Nodes> &body, const Vector &u_overlap)
 {
   using Table = PatchTable<Dim, Nodes>;
   const mesh::Mesh &mesh = *d.mesh;
@@ -70,9 +70,8 @@ RCP<MultiVector> recover(const Discretization &d, const DeviceView<double **> &l
   const Import import(mesh.owned_nodes, mesh.overlap_nodes);
   const auto table = rcp(new MultiVector(mesh.owned_nodes, Table::columns)); // zero
   {
-    const FitPatch<Dim, Nodes> fit{mesh.coords,
-                                   mesh.cells,
-                                   mesh.block,
+    const FitPatch<Dim, Nodes> fit{body,
+                                   d.reference.recovery.value,
                                    device_read(u_overlap),
                                    around.row,
                                    around.cell,
@@ -95,10 +94,7 @@ RCP<MultiVector> recover(const Discretization &d, const DeviceView<double **> &l
   }
   const auto result = rcp(new MultiVector(mesh.owned_nodes, stress_names(Dim).size()));
   const auto all = with_overlap(mesh, table, import);
-  const EvaluatePatches<Dim, Nodes> evaluate{mesh.coords,
-                                             mesh.cells,
-                                             mesh.block,
-                                             lame,
+  const EvaluatePatches<Dim, Nodes> evaluate{body,
                                              around.row,
                                              around.cell,
                                              carrying_vertices(mesh.element),
@@ -121,10 +117,10 @@ RCP<MultiVector> nodal_stresses(const Discretization &d, const Materials &materi
 {
   Vector u_overlap(d.overlap_dofs);
   u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
-  const auto lame = lame_table(*d.mesh, materials);
   RCP<MultiVector> result;
-  with_static_extents(d.mesh->element,
-                      [&](const auto dim, const auto nodes) { result = recover<dim, nodes>(d, lame, u_overlap); });
+  with_static_extents(d.mesh->element, [&](const auto dim, const auto nodes) {
+    result = recover(d, elastic_cells<dim, nodes>(d, materials), u_overlap);
+  });
   return result;
 }
 

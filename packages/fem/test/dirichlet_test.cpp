@@ -328,12 +328,16 @@ TEST(DirichletOptions, AbsentComponentsAreFreeAndTheNameIsTheDefaultSide)
   EXPECT_EQ(conditions[1].displacement[1]->constant, -1);
 }
 
-TEST(DirichletOptions, NoEntryAnEmptyEntryAndAMissingDirectionAreRefused)
+TEST(DirichletOptions, MayBeNone)
 {
-  ParameterList empty, nothing, depth;
+  EXPECT_TRUE(options_of({}).empty());
+}
+
+TEST(DirichletOptions, AnEmptyEntryAndAMissingDirectionAreRefused)
+{
+  ParameterList nothing, depth;
   nothing.sublist("left");
   depth.sublist("left").set("Z", 0);
-  expect_error(ExitCode::bad_input, {"Dirichlet"}, [&] { options_of(empty); });
   expect_error(ExitCode::bad_input, {"\"Dirichlet->left\"", "nothing"}, [&] { options_of(nothing); });
   expect_error(ExitCode::bad_input, {"\"Dirichlet->left->Z\"", "2D"}, [&] { options_of(depth); });
   EXPECT_TRUE(options_of(depth, 3)[0].displacement[2]);

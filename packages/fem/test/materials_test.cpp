@@ -98,8 +98,8 @@ TEST(MaterialOptions, BlocksHaveMaterialsOfTheirOwn)
   EXPECT_EQ(materials.block.at("hard").poissons_ratio, 0.1);
   EXPECT_EQ(materials.block.at("soft").youngs_modulus, 2);
   EXPECT_EQ(materials.block.at("soft").poissons_ratio, 0.3); // the deck's default, not that of the common material
-  EXPECT_EQ(materials.largest_youngs_modulus(), 70);
-  EXPECT_EQ(fem::Materials(steel).largest_youngs_modulus(), 2000);
+  EXPECT_EQ(materials.of("hard").youngs_modulus, 70);
+  EXPECT_EQ(materials.of("elsewhere").youngs_modulus, 5);
 }
 
 TEST(MaterialOptions, ValuesOutOfRangeAreRefused)
@@ -180,6 +180,102 @@ TEST(Stiffness, OfTwoBlocksIsTheSameOnAnyNumberOfRanks)
       return stiffness_times(d, soft_and_hard(rubber, steel), *interpolate(d, wild));
     };
     EXPECT_LT(difference(force(world()), force(alone())), 1e-13) << text_of(element);
+  }
+}
+
+TEST(YoungsModulusAtNodes, IsTheLargestAmongTheCellsAround)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = in_two_blocks(body(small_box(element), world()));
+    for (const bool swapped : {false, true}) {
+      const fem::Material left = swapped ? steel : rubber, right = swapped ? rubber : steel;
+      const auto modulus = to_host(fem::youngs_modulus_at_nodes(d, soft_and_hard(left, right)));
+      ASSERT_EQ(static_cast<LO>(modulus.extent(0)), d.mesh->num_owned_nodes());
+      for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n) {
+        const double x = point_of(d, n)[0] - boundary(element);
+        const double expected = std::abs(x) < 1e-9 ? steel.youngs_modulus : (x < 0 ? left : right).youngs_modulus;
+        EXPECT_NEAR(modulus(n), expected, 1e-13 * expected) << x;
+      }
+    }
+  }
+}
+
+TEST(YoungsModulusAtNodes, RefusesABlockThatIsNotThere)
+{
+  const auto d = body(small_box({2, 1}), world());
+  expect_error(ExitCode::bad_input, "Blocks->hard\" names a block that the mesh does not have",
+               [&] { fem::youngs_modulus_at_nodes(d, soft_and_hard(rubber, steel)); });
+}
+
+/// sigma_ij of the linear displacement, in plane strain in 2D.
+double linear_stress(const fem::Material &material, const int dim, const int i, const int j)
+{
+  double trace = 0;
+  for (int k = 0; k < dim; ++k) trace += slope[k][k];
+  return (i == j ? material.lambda() * trace : 0) + material.mu() * (slope[i][j] + slope[j][i]);
+}
+
+TEST(InternalForceNorm, OfALinearDisplacementIsTheStressOnTheFacesOfEachCell)
+{
+  // A node of a brick takes 2^(1 - dim) of the stress on each of the dim faces that meet in it, +- by its corner: cross
+  // terms cancel over the corners.
+  for (const mesh::Element element : {mesh::Element{2, 1}, mesh::Element{3, 1}}) {
+    SCOPED_TRACE(text_of(element));
+    const int dim = element.dim;
+    const auto box = small_box(element);
+    double volume = 1, squares[2] = {0, 0}, others = 1; // of one soft and one hard cell
+    double width[3];
+    for (int k = 0; k < dim; ++k) {
+      width[k] = (box.upper[k] - box.lower[k]) / box.cells[k];
+      volume *= width[k];
+      if (k > 0) others *= box.cells[k];
+    }
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        for (int hard = 0; hard < 2; ++hard)
+          squares[hard] +=
+              std::pow(2, dim) *
+              std::pow(linear_stress(hard ? steel : rubber, dim, i, j) * volume / width[j] * std::pow(2, 1 - dim), 2);
+    const double expected = std::sqrt(others * (squares[0] + (box.cells[0] - 1) * squares[1]));
+    const auto d = in_two_blocks(body(box, world()));
+    const auto u = interpolate(d, [&](const Point &x) { return linear(x, dim); });
+    const double norm = fem::internal_force_norm(d, soft_and_hard(rubber, steel), *u);
+    EXPECT_NEAR(norm, expected, 1e-13 * expected);
+  }
+}
+
+TEST(InternalForceNorm, OfOneCellIsThatOfTheForcesOnItsNodes)
+{
+  for (auto element : elements()) {
+    if (element.shape == mesh::Shape::simplex) continue; // a box has two of them at least
+    SCOPED_TRACE(text_of(element));
+    auto box = small_box(element);
+    box.cells.assign(element.dim, 1);
+    const auto d = body(box, alone());
+    const auto u = interpolate(d, wild);
+    const double expected = fem::internal_forces(d, steel, *u).norm2();
+    EXPECT_NEAR(fem::internal_force_norm(d, steel, *u), expected, 1e-13 * expected);
+  }
+}
+
+TEST(InternalForceNorm, IsTheSameOnAnyNumberOfRanksAndDoesNotSeeTranslations)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto norm = [&](const RCP<const Comm> &comm, const double shift) {
+      const auto d = in_two_blocks(bulged_body(element, comm));
+      const auto u = interpolate(d, [&](const Point &x) {
+        Point value = wild(x);
+        for (double &component : value) component += shift;
+        return value;
+      });
+      return fem::internal_force_norm(d, soft_and_hard(rubber, steel), *u);
+    };
+    const double serial = norm(alone(), 0);
+    EXPECT_GT(serial, 0);
+    EXPECT_NEAR(norm(world(), 0), serial, 1e-13 * serial);
+    EXPECT_NEAR(norm(world(), 1000), serial, 1e-11 * serial);
   }
 }
 

@@ -21,7 +21,7 @@ struct DirichletCondition {
 
 /// Parameters of the deck's `Dirichlet` sublist.
 Teuchos::ParameterList valid_dirichlet_parameters();
-/// @throws rpc::Error (bad_input) if there is no entry, or one that prescribes nothing
+/// @throws rpc::Error (bad_input) if an entry prescribes nothing
 std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &list, int dim,
                                                   const FieldParser &parse);
 

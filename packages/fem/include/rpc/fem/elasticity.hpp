@@ -11,10 +11,15 @@
 namespace rpc::fem
 {
 
+/// What counts as div u in a cell: itself, or its L2 projection on constants (Q1, P2) or linear functions (Q2), which does
+/// not lock as nu nears 0.5, (2.11). Automatic is projected where nu > 0.4, for P2 0.48. P1 has constants anyway.
+enum class Dilatation { automatic, full, projected };
+
 /// Linear isotropic elasticity; plane strain in 2D.
 struct Material {
   double youngs_modulus = 1; ///< E [Pa] > 0
   double poissons_ratio = 0; ///< nu     in (-1, 0.5)
+  Dilatation dilatation = Dilatation::automatic;
 
   double lambda() const { return youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio)); }
   double mu() const { return youngs_modulus / (2 * (1 + poissons_ratio)); }
@@ -27,7 +32,7 @@ struct Materials {
 
   Materials() = default;
   Materials(const Material &material) : common(material) {}
-  double largest_youngs_modulus() const; ///< [Pa]
+  const Material &of(const std::string &name) const; ///< that of a block
 };
 
 /// Parameters of the deck's `Material` sublist.
@@ -38,6 +43,16 @@ Materials material_options(const Teuchos::ParameterList &list);
 /// Lame's constants of each block of a mesh: (blocks; lambda, mu) [Pa].
 /// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
 DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materials);
+
+/// The largest Young's modulus among the cells around each owned node (owned nodes, [Pa]).
+/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
+DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials);
+
+/// Blocks in which the projection stands for the dilatation: (blocks) 0 or 1.
+DeviceView<int *> projected_dilatation_table(const mesh::Mesh &mesh, const Materials &materials);
+
+/// What a user should know: that elements which lock meet a nearly incompressible material; empty if there is nothing.
+std::string locking_note(const mesh::Mesh &mesh, const Materials &materials);
 
 using VectorField = std::array<ScalarField, 3>;
 
@@ -58,6 +73,7 @@ VectorField body_force_options(const Teuchos::ParameterList &list, int dim, cons
 ///
 ///     K(ai,bj) = sum over cells, int lambda dN_ai dN_bj + mu (dN_aj dN_bi + delta_ij dN_a . dN_b) doc/theory.md (2.4)
 ///
+/// with the projection of div u in the blocks of projected_dilatation_table, (2.11), here and in the functions below.
 /// Each rank fills its own rows from its local cells; no communication but the check. [N/m], in 2D per m of thickness
 /// [Pa].
 /// @throws rpc::Error (bad_mesh) on every rank if a cell has a Jacobian <= 0 at a quadrature point, naming the first
@@ -71,6 +87,11 @@ double strain_energy(const Discretization &d, const Materials &materials, const 
 /// cells; no row is eliminated. (2.9)
 /// @param u  (owned dofs) [m]; collective
 Vector internal_forces(const Discretization &d, const Materials &materials, const Vector &u);
+
+/// The 2-norm over all forces between cells and their nodes, each cell's by itself [N]: what is at work inside the body,
+/// where internal_forces() are what is left at the nodes. (2.13)
+/// @param u  (owned dofs) [m]; collective
+double internal_force_norm(const Discretization &d, const Materials &materials, const Vector &u);
 
 /// load(ai) += int N_a f_i, over the body, for a force per volume f [N/m^3] (owned dofs, [N], in 2D per m). (2.5)
 /// @param parameter  deck path for messages; collective

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "rpc/core/field.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace rpc::fem
+{
+
+/// "(1, 0.5)" for messages; what is rounding against `scale` is 0.
+inline std::string point_text(const Point &x, const int dim, const double scale)
+{
+  std::ostringstream text;
+  for (int c = 0; c < dim; ++c) text << (c > 0 ? ", " : "(") << (std::abs(x[c]) > 1e-7 * scale ? x[c] : 0.);
+  text << ")";
+  return text.str();
+}
+
+} // namespace rpc::fem

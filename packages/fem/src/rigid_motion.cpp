@@ -1,0 +1,272 @@
+#include "rpc/fem/rigid_motion.hpp"
+
+#include "numbers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rpc::fem
+{
+namespace
+{
+
+double norm(const RigidMotion &a)
+{
+  return std::sqrt(dot(a, a));
+}
+
+/// a -= (a.unit) unit for each; twice, so that the rest is orthogonal to rounding.
+RigidMotion without(RigidMotion a, const std::vector<RigidMotion> &units)
+{
+  for (int pass = 0; pass < 2; ++pass)
+    for (const RigidMotion &unit : units) {
+      const double part = dot(a, unit);
+      for (int k = 0; k < 6; ++k) a[k] -= part * unit[k];
+    }
+  return a;
+}
+
+/// Which rows independent_rows() picks, and the orthonormal basis of their span.
+struct Picked {
+  std::vector<RigidMotion> rows, units;
+};
+Picked pick(const std::vector<RigidMotion> &rows, const double tolerance)
+{
+  Picked picked;
+  std::vector<RigidMotion> rest = rows;
+  while (picked.rows.size() < 6) {
+    std::size_t best = rows.size();
+    double largest = tolerance;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      if (!picked.units.empty()) rest[i] = without(rest[i], {picked.units.back()});
+      const double size = norm(rest[i]);
+      if (!(size > largest)) continue;
+      largest = size;
+      best = i;
+    }
+    if (best == rows.size()) break;
+    RigidMotion unit = without(rest[best], picked.units);
+    const double size = norm(unit);
+    for (double &entry : unit) entry /= size;
+    picked.rows.push_back(rows[best]);
+    picked.units.push_back(unit);
+  }
+  return picked;
+}
+
+RigidMotion combination(const std::vector<RigidMotion> &space, const RigidMotion &coefficients)
+{
+  RigidMotion sum{};
+  for (std::size_t j = 0; j < space.size(); ++j)
+    for (int k = 0; k < 6; ++k) sum[k] += coefficients[j] * space[j][k];
+  return sum;
+}
+
+/// omega of r(x) = t + omega x (x - centre) [1/m]; in 2D its z component.
+Point angular_velocity(const RigidMotion &q, const double radius, const int dim)
+{
+  if (dim == 2) return {0, 0, q[2] / radius};
+  return {q[5] / radius, -q[4] / radius, q[3] / radius};
+}
+
+double length(const Point &a)
+{
+  return std::hypot(a[0], a[1], a[2]);
+}
+
+Point scaled(const Point &a, const double factor)
+{
+  return {factor * a[0], factor * a[1], factor * a[2]};
+}
+
+Point cross(const Point &a, const Point &b)
+{
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+} // namespace
+
+std::vector<RigidMotion> independent_rows(const std::vector<RigidMotion> &rows, const double tolerance)
+{
+  return pick(rows, tolerance).rows;
+}
+
+std::vector<std::vector<RigidMotion>>
+independent_rows_of_all(const Comm &comm, const std::vector<std::vector<RigidMotion>> &rows, const double tolerance)
+{
+  const std::size_t num_lists = rows.size();
+  std::vector<double> mine(num_lists * 36, 0.), all(mine.size() * comm.getSize());
+  std::vector<std::vector<RigidMotion>> picked(num_lists);
+  for (std::size_t list = 0; list < num_lists; ++list) {
+    picked[list] = independent_rows(rows[list], tolerance);
+    for (std::size_t i = 0; i < picked[list].size(); ++i)
+      std::copy(picked[list][i].begin(), picked[list][i].end(), &mine[36 * list + 6 * i]);
+  }
+  if (comm.getSize() == 1) return picked;
+  // What each rank has picked, raw: remainders would carry their rounding to the other ranks.
+  Teuchos::gatherAll(comm, static_cast<int>(mine.size()), mine.data(), static_cast<int>(all.size()), all.data());
+  for (std::size_t list = 0; list < num_lists; ++list) {
+    std::vector<RigidMotion> together(6 * comm.getSize());
+    for (int rank = 0; rank < comm.getSize(); ++rank)
+      for (int i = 0; i < 6; ++i)
+        std::copy_n(&all[mine.size() * rank + 36 * list + 6 * i], 6, together[6 * rank + i].begin());
+    picked[list] = independent_rows(together, tolerance);
+  }
+  return picked;
+}
+
+std::vector<RigidMotion> null_space(const std::vector<RigidMotion> &rows, const std::vector<RigidMotion> &space,
+                                    const double tolerance)
+{
+  std::vector<RigidMotion> inside; // rows in the coordinates of the space
+  for (const RigidMotion &row : rows) {
+    RigidMotion coefficients{};
+    for (std::size_t j = 0; j < space.size(); ++j) coefficients[j] = dot(row, space[j]);
+    inside.push_back(coefficients);
+  }
+  std::vector<RigidMotion> units = pick(inside, tolerance).units;
+  std::vector<RigidMotion> basis;
+  while (units.size() < space.size()) { // completed by what is left of the unit vectors
+    RigidMotion best{};
+    for (std::size_t j = 0; j < space.size(); ++j) {
+      RigidMotion unit{};
+      unit[j] = 1;
+      const RigidMotion rest = without(unit, units);
+      if (norm(rest) > norm(best) * (1 + 1e-12)) best = rest;
+    }
+    const double size = norm(best);
+    for (double &entry : best) entry /= size;
+    units.push_back(best);
+    basis.push_back(combination(space, best));
+  }
+  return basis;
+}
+
+std::vector<RigidMotion> all_motions(const int dim)
+{
+  std::vector<RigidMotion> units(num_rigid_modes(dim), RigidMotion{});
+  for (std::size_t k = 0; k < units.size(); ++k) units[k][k] = 1;
+  return units;
+}
+
+std::vector<std::vector<RigidMotion>> free_motions(const Discretization &d, const Parts &parts,
+                                                   const DirichletDofs &dirichlet)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  const int dim = d.dim();
+  const auto coords = to_host(mesh.coords);
+  const auto fixed = to_host(dirichlet.fixed);
+  const auto of_node = to_host(parts.of_node);
+  std::vector<std::vector<RigidMotion>> rows(parts.size());
+  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) {
+    for (int i = 0; i < dim; ++i) {
+      if (!fixed(dim * n + i)) continue;
+      const Part &part = parts.part[of_node(n)];
+      double arm[3] = {0, 0, 0}, unit[3] = {0, 0, 0};
+      for (int c = 0; c < dim; ++c) arm[c] = (coords(n, c) - part.centre[c]) / part.radius;
+      unit[i] = 1;
+      RigidMotion row{};
+      along_modes(dim, arm, unit, row.data());
+      rows[of_node(n)].push_back(row);
+    }
+  }
+  rows = independent_rows_of_all(mesh.comm(), rows, rigid_tolerance);
+  std::vector<std::vector<RigidMotion>> motions;
+  for (const auto &stopped : rows) motions.push_back(null_space(stopped, all_motions(dim), rigid_tolerance));
+  return motions;
+}
+
+std::vector<Resultant> resultants(const Discretization &d, const Parts &parts, const Vector &force)
+{
+  const int dim = d.dim();
+  DeviceView<double *[7]> sums("rpc::fem::resultants", parts.size());
+  const auto coords = d.mesh->coords;
+  const auto of_node = parts.of_node;
+  const auto centre = parts.centre;
+  const auto radius = parts.radius;
+  const auto f = device_read(force);
+  Kokkos::parallel_for(
+      "rpc::fem::resultants", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO n) {
+        double arm[3] = {0, 0, 0}, at[3] = {0, 0, 0}, along[6], size = 0;
+        const int p = of_node(n);
+        for (int c = 0; c < dim; ++c) {
+          arm[c] = (coords(n, c) - centre(p, c)) / radius(p);
+          at[c] = f(dim * n + c);
+          size += at[c] < 0 ? -at[c] : at[c];
+        }
+        if (size == 0) return;
+        along_modes(dim, arm, at, along);
+        for (int k = 0; k < 6; ++k) add_shared(sums(p, k), along[k]);
+        add_shared(sums(p, 6), size);
+      });
+  const auto host = to_host(sums);
+  std::vector<double> mine(7 * parts.size()), all(mine.size());
+  for (std::size_t k = 0; k < mine.size(); ++k) mine[k] = host(k / 7, k % 7);
+  Teuchos::reduceAll(d.mesh->comm(), Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), all.data());
+  std::vector<Resultant> result(parts.size());
+  for (int p = 0; p < parts.size(); ++p) {
+    std::copy_n(&all[7 * p], 6, result[p].force.begin());
+    result[p].magnitude = all[7 * p + 6];
+  }
+  return result;
+}
+
+std::vector<RigidMotion> readable_basis(std::vector<RigidMotion> motions, const int dim)
+{
+  // Reduced row echelon form with the rotations' columns first: the rows that get no pivot there are translations.
+  std::size_t done = 0;
+  const int modes = num_rigid_modes(dim);
+  for (int step = 0; step < modes && done < motions.size(); ++step) {
+    const int column = step < modes - dim ? dim + step : step - (modes - dim);
+    const auto larger = [column](const RigidMotion &a, const RigidMotion &b) {
+      return std::abs(a[column]) < std::abs(b[column]);
+    };
+    std::swap(*std::max_element(motions.begin() + done, motions.end(), larger), motions[done]);
+    RigidMotion &pivot = motions[done];
+    const double value = pivot[column];
+    if (!(std::abs(value) > 1e-6)) continue;
+    for (double &entry : pivot) entry /= value;
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const double factor = motions[i][column];
+      for (int k = 0; i != done && k < 6; ++k) motions[i][k] -= factor * pivot[k];
+    }
+    ++done;
+  }
+  const auto turns = [dim](const RigidMotion &q) {
+    return std::any_of(q.begin() + dim, q.end(), [](const double entry) { return std::abs(entry) > 1e-6; });
+  };
+  std::stable_partition(motions.begin(), motions.end(), [&](const RigidMotion &q) { return !turns(q); });
+  return motions;
+}
+
+MotionInWords in_words(const RigidMotion &q, const Part &part, const int dim)
+{
+  const Point t{q[0], q[1], dim == 3 ? q[2] : 0.};
+  const Point omega = angular_velocity(q, part.radius, dim);
+  MotionInWords words;
+  words.rotates = length(omega) * part.radius > 1e-6 * length(t);
+  words.size = words.rotates ? length(omega) : length(t);
+  if (!words.rotates) {
+    words.where = "along " + point_text(scaled(t, 1 / words.size), dim, 1);
+    return words;
+  }
+  // r = 0 at centre + omega x t / |omega|^2, in 3D up to what advances along the axis
+  const Point offset = scaled(cross(omega, t), 1 / (words.size * words.size));
+  const Point at{part.centre[0] + offset[0], part.centre[1] + offset[1], part.centre[2] + offset[2]};
+  const std::string place = point_text(at, dim, part.radius);
+  if (dim == 2) {
+    words.where = "about " + place + (omega[2] > 0 ? ", counterclockwise" : ", clockwise");
+    return words;
+  }
+  const Point axis = scaled(omega, 1 / words.size);
+  words.where = "about the axis through " + place + " along " + point_text(axis, dim, 1);
+  const double advance = (t[0] * axis[0] + t[1] * axis[1] + t[2] * axis[2]) / words.size;
+  if (std::abs(advance) > 1e-6 * part.radius) {
+    std::ostringstream screw;
+    screw << " that advances " << advance << " m per radian";
+    words.where += screw.str();
+  }
+  return words;
+}
+
+} // namespace rpc::fem
