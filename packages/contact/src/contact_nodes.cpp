@@ -13,6 +13,8 @@ namespace rpc::contact
 namespace
 {
 
+constexpr double largest_gap = 1e50; // [m], as that of meshes: squares must not overflow
+
 std::string place(const HostPoints &points, const LO i)
 {
   std::ostringstream text;
@@ -79,9 +81,10 @@ void add_side_parameters(Teuchos::ParameterList &valid)
             "obstacle), or a fixed one as numbers, `0, -1`. Default: `foundation` with an obstacle, else `surface`.");
   valid.sublist("Obstacle", false, "Surface of the foundation, from which the gap follows.") =
       valid_obstacle_parameters();
-  valid.set(
-      "Penalty", 1e8,
-      "r > 0 [Pa/m] of the modified Lagrangian. The solution does not depend on it, the number of iterations does.");
+  set_field(valid, "Penalty", "auto",
+            "r of the modified Lagrangian: `auto` (from the stiffness and the weight of each node), or a number > 0 "
+            "[Pa/m] to "
+            "start from. It is raised where the iteration is slow; the solution does not depend on it.");
 }
 
 /// Unit vector from a text like "0, -1".
@@ -98,6 +101,18 @@ std::optional<Point> direction_from(const std::string &text, const int dim)
   return direction;
 }
 
+/// @return 0 for auto
+double penalty_from(const std::string &text, const std::string &path)
+{
+  if (text == "auto") return 0;
+  std::istringstream in(text);
+  double penalty = 0;
+  const bool number = (in >> penalty) && in.eof();
+  RPC_REQUIRE(number && penalty > 0 && std::isfinite(penalty),
+              "deck: \"" << path << "->Penalty\" must be `auto` or a finite number > 0 [Pa/m], got " << text);
+  return penalty;
+}
+
 ContactOptions side_options(const Teuchos::ParameterList &list, const std::string &path, const std::string &side,
                             const int dim, const FieldParser &parse)
 {
@@ -107,11 +122,9 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
   options.yield_stress = parse(field_text(list, "Yield Stress"), path + "->Yield Stress");
   options.gap = parse(field_text(list, "Gap"), path + "->Gap");
   options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle");
-  options.penalty = list.get<double>("Penalty");
+  options.penalty = penalty_from(field_text(list, "Penalty"), path);
   const bool obstacle = options.obstacle.kind != Obstacle::Kind::none;
   const auto &normal = list.get<std::string>("Normal");
-  RPC_REQUIRE(options.penalty > 0 && std::isfinite(options.penalty),
-              "deck: \"" << path << "->Penalty\" must be > 0 and finite [Pa/m], got " << options.penalty);
   RPC_REQUIRE(!options.yield_stress.is_constant() || options.yield_stress.constant > 0,
               "deck: \"" << path << "->Yield Stress\" must be > 0 [Pa] (inf for a rigid foundation), got "
                          << options.yield_stress.text);
@@ -185,6 +198,13 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
 
   std::optional<std::string> bad;
   for (LO i = 0; i < n && !bad; ++i) {
+    if (std::abs(values.gap(i)) <= largest_gap) continue;
+    std::ostringstream message;
+    message << "deck: \"" << options.path << "->Gap\" must be at most " << largest_gap << " [m] in size, got "
+            << values.gap(i) << " at " << place(points, i);
+    bad = message.str();
+  }
+  for (LO i = 0; i < n && !bad; ++i) {
     if (values.yield(i) > 0) continue;
     std::ostringstream message;
     message << "deck: \"" << options.path << "->Yield Stress\" must be > 0 [Pa] (inf for a rigid foundation), got "
@@ -195,6 +215,22 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
   }
   throw_if_any(comm, ExitCode::bad_input, bad);
   return values;
+}
+
+/// Refuses a direction that leads from the side into the body, seen over the whole side; collective.
+void require_outward(const ContactOptions &options, const fem::SurfaceNodes &surface, const SideValues &values,
+                     const Comm &comm)
+{
+  const auto outward = to_host(surface.normal);
+  const auto weight = to_host(surface.weight);
+  double facing = 0;
+  for (std::size_t i = 0; i < weight.extent(0); ++i)
+    for (std::size_t c = 0; c < outward.extent(1); ++c) facing += weight(i) * outward(i, c) * values.normal(i, c);
+  facing = sum_all(comm, facing);
+  RPC_REQUIRE(facing > 0 || sum_all(comm, GO(weight.extent(0))) == 0,
+              "deck: \"" << options.path << "->Normal\" must lead out of the body, from side \"" << options.side
+                         << "\" into the foundation; it leads into the body. Turn it round"
+                         << (options.obstacle.kind == Obstacle::Kind::none ? "." : ", or the obstacle's."));
 }
 
 /// (n) of the device, from a vector.
@@ -214,6 +250,19 @@ DeviceView<double **> device_rows(const std::vector<double> &values, const int d
   for (std::size_t k = 0; k < values.size(); ++k) host(k / dim, k % dim) = values[k];
   Kokkos::deep_copy(device, host);
   return device;
+}
+
+/// (points) E / diameter, with the largest Young's modulus among the cells around each point; collective.
+DeviceView<double *> stiffness_of(const fem::Discretization &d, const fem::Materials &materials,
+                                  const DeviceView<LO *> &node)
+{
+  const auto modulus = fem::youngs_modulus_at_nodes(d, materials);
+  const double diameter = mesh::diameter(*d.mesh);
+  DeviceView<double *> stiffness("rpc::contact::stiffness", node.extent(0));
+  Kokkos::parallel_for(
+      "rpc::contact::stiffness", device_range(static_cast<LO>(node.extent(0))),
+      KOKKOS_LAMBDA(const LO i) { stiffness(i) = modulus(node(i)) / diameter; });
+  return stiffness;
 }
 
 /// On this rank.
@@ -281,7 +330,7 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
 }
 
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                           const fem::DirichletDofs &dirichlet)
+                           const fem::DirichletDofs &dirichlet, const fem::Materials &materials)
 {
   const mesh::Mesh &mesh = *d.mesh;
   const Comm &comm = mesh.comm();
@@ -293,6 +342,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   for (std::size_t k = 0; k < options.size(); ++k) {
     const auto surface = fem::surface_nodes(d, mesh.side(options[k].side, options[k].path + "->Side"));
     const SideValues values = side_values(options[k], positions(mesh, surface.node), surface.normal, comm);
+    require_outward(options[k], surface, values, comm);
     const auto side_node = to_host(surface.node);
     const auto side_weight = to_host(surface.weight);
     for (std::size_t i = 0; i < side_node.extent(0); ++i) {
@@ -310,6 +360,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   c.gap = device_values(gap, "rpc::contact::gap");
   c.yield = device_values(yield, "rpc::contact::yield");
   c.penalty = device_values(penalty, "rpc::contact::penalty");
+  c.stiffness = stiffness_of(d, materials, c.node);
   c.normal = device_rows(normal, c.dim, "rpc::contact::normal");
   c.direction = DeviceView<double **>("rpc::contact::direction", node.size(), c.dim);
   c.free_gap = DeviceView<double *>("rpc::contact::free_gap", node.size());

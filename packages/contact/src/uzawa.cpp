@@ -1,17 +1,38 @@
 #include "rpc/contact/uzawa.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/interrupt.hpp"
 
+#include <cmath>
 #include <sstream>
 
 namespace rpc::contact
 {
+namespace
+{
+
+constexpr double enough = 0.1; ///< an update that leaves more of the violation calls for a higher penalty
+
+std::string verdict(const UzawaResult &result, const UzawaOptions &options)
+{
+  std::ostringstream text;
+  const Certificate &c = result.certificate;
+  if (result.converged)
+    text << "contact law, equilibrium and energies hold to " << options.tolerance;
+  else
+    text << result.iterations << " Uzawa iterations were not enough: KKT residual " << c.kkt_residual
+         << ", equilibrium residual " << c.equilibrium_residual << ", energy balance " << c.energy_balance
+         << ", duality gap " << c.duality_gap << ", tolerance " << options.tolerance;
+  return text.str();
+}
+
+} // namespace
 
 Teuchos::ParameterList valid_uzawa_parameters()
 {
   Teuchos::ParameterList valid("Uzawa");
   valid.set("Tolerance", 1e-8,
-            "Bound on the certificate (KKT and equilibrium residual) and on the stopping test, dimensionless, > 0.");
+            "Bound on the certificate (its four parts) and on the stopping test, dimensionless, > 0.");
   valid.set("Maximum Iterations", 50, "Multiplier updates at most, > 0.");
   valid.set("Stopping Test", "certificate",
             "`certificate`: stop as soon as contact law and equilibrium hold; `multiplier change`: the paper's test, "
@@ -36,36 +57,41 @@ UzawaOptions uzawa_options(const Teuchos::ParameterList &list)
 }
 
 UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function<MinimizeResult(int)> &minimize,
-                  const double stiffness_scale, const UzawaOptions &options,
+                  const std::function<Certificate(const Vector &)> &certify, const UzawaOptions &options,
                   const std::function<void(const UzawaResult &)> &report)
 {
   UzawaResult result;
   bool stop = false;
   while (!stop && result.iterations < options.max_iterations) {
+    if (result.iterations > 0) functional.move_origin(u); // what is left is small, and wants its digits
     const MinimizeResult inner = minimize(result.iterations + 1);
     result.newton_iterations.push_back(inner.newton_iterations);
     ++result.iterations;
     result.multiplier_change = functional.update_multipliers(u);
-    result.certificate = {functional.equilibrium_residual(u), functional.contact_law_residual(u, stiffness_scale)};
+    const Certificate previous = result.certificate;
+    result.certificate = certify(functional.displacement(u));
     const bool holds = result.certificate.holds(options.tolerance);
     const bool changes = result.multiplier_change >= options.tolerance;
     stop = holds && (options.test == UzawaTest::certificate || !changes);
     report(result);
-    // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from.
-    if (!inner.converged && !(result.certificate.equilibrium_residual <= options.tolerance)) {
-      result.reason = inner.reason;
-      return result;
+    if (holds) continue;
+    if (interrupted(*u.getMap()->getComm())) {
+      result.reason = interruption() + " in Uzawa iteration " + std::to_string(result.iterations);
+      break;
+    }
+    const bool slow = result.iterations > 1 && !(result.certificate.worst() <= enough * previous.worst());
+    const bool raised = slow && functional.raise_penalty();
+    // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from, while that helps.
+    if ((slow && !raised) || std::isnan(result.certificate.worst())) {
+      result.reason = inner.converged
+                          ? verdict(result, options) + ": more iterations do not help, it is rounding that is left"
+                          : inner.reason;
+      break;
     }
   }
+  u.assign(functional.displacement(u));
   result.converged = stop;
-  std::ostringstream reason;
-  if (stop)
-    reason << "contact law and equilibrium hold to " << options.tolerance;
-  else
-    reason << options.max_iterations << " Uzawa iterations were not enough: KKT residual "
-           << result.certificate.kkt_residual << ", equilibrium residual " << result.certificate.equilibrium_residual
-           << ", tolerance " << options.tolerance;
-  result.reason = reason.str();
+  if (stop || result.reason.empty()) result.reason = verdict(result, options);
   return result;
 }
 

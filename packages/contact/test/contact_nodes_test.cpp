@@ -1,9 +1,11 @@
 #include "rpc/contact/contact_nodes.hpp"
 
+#include "drawn_mesh.hpp"
 #include "expect_error.hpp"
 #include "rpc/mesh/box.hpp"
 
 #include <Tpetra_Core.hpp>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -136,6 +138,33 @@ TEST(ContactNodes, OfSeveralSidesComeSideBySideEachWithItsOwnLaw)
         return Expected{{-1, 0, 0}, x[1] - 1};
       },
       1);
+}
+
+TEST(ContactNodes, StiffnessIsYoungsModulusOverTheDiameterOfTheBody)
+{
+  const auto d = body();
+  const auto stiffness = to_host(
+      contact::contact_nodes(d, {touching("bottom")}, fem::dirichlet_dofs(d, {}), fem::Material{70, 0.2}).stiffness);
+  for (std::size_t i = 0; i < stiffness.extent(0); ++i) EXPECT_NEAR(stiffness(i), 70 / std::sqrt(5.), 1e-13 * 70);
+}
+
+TEST(ContactNodes, StiffnessIsThatOfTheHardestCellAroundTheNode)
+{
+  const auto d = fem::discretize(rpc::test::distributed(rpc::test::drawn({"abb"})));
+  for (const double of_b : {0.5, 200.}) {
+    fem::Materials materials(fem::Material{20, 0.3});
+    materials.block["b"] = fem::Material{of_b, 0.45};
+    const auto c =
+        contact::contact_nodes(d, {touching("a bottom"), touching("b bottom")}, fem::dirichlet_dofs(d, {}), materials);
+    const auto coords = to_host(d.mesh->coords);
+    const auto node = to_host(c.node);
+    const auto stiffness = to_host(c.stiffness);
+    for (LO i = 0; i < c.size(); ++i) {
+      const double x = coords(node(i), 0);
+      const double modulus = x < 0.5 ? 20 : x > 1.5 ? of_b : std::max(20., of_b);
+      EXPECT_NEAR(stiffness(i), modulus / std::sqrt(10.), 1e-13 * modulus) << x;
+    }
+  }
 }
 
 TEST(ContactNodes, FixedNormalTakesTheGapAlongItself)

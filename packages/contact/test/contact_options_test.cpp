@@ -71,7 +71,7 @@ TEST(ContactOptions, DefaultsAreARigidFoundationWithoutGapAlongTheSurfaceNormal)
   EXPECT_EQ(options[0].side, "bottom");
   EXPECT_EQ(options[0].yield_stress.constant, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(options[0].gap.is_zero());
-  EXPECT_EQ(options[0].penalty, 1e8);
+  EXPECT_EQ(options[0].penalty, 0); // auto
   EXPECT_EQ(options[0].normal, Normal::surface);
   EXPECT_EQ(options[0].obstacle.kind, Obstacle::Kind::none);
 }
@@ -141,7 +141,7 @@ TEST(ContactOptions, FurtherSidesAreNamedAfterTheirEntriesUnlessGiven)
     EXPECT_EQ(options[k].side, sides[k]);
   }
   EXPECT_EQ(options[1].yield_stress.constant, 3);
-  EXPECT_EQ(options[1].penalty, 1e8);
+  EXPECT_EQ(options[1].penalty, 0);
   EXPECT_EQ(options[2].gap.constant, 0.25);
   EXPECT_EQ(options[2].penalty, 40);
   EXPECT_EQ(options[3].normal, Normal::foundation);

@@ -42,27 +42,34 @@ inline contact::ContactOptions beside(const double penalty)
   return options;
 }
 
-/// A block of 6 x 3 cells, 2 m by 1 m, between foundations, held at its top.
+/// Holds all points of a side at a displacement.
+inline fem::DirichletCondition held(const std::string &side, const Point &displacement = {})
+{
+  return {side, side, {ScalarField(displacement[0]), ScalarField(displacement[1])}};
+}
+
+/// A block of 6 x 3 square cells, 2 m by 1 m, between foundations, held at its top.
 struct Scene {
   fem::Discretization d;
   std::shared_ptr<contact::SmoothedFunctional> functional;
+  fem::Material material{10, 0.3};
 
-  explicit Scene(const std::vector<contact::ContactOptions> &foundations)
+  explicit Scene(const std::vector<contact::ContactOptions> &foundations,
+                 const fem::DirichletCondition &condition = held("top"))
   {
     mesh::BoxOptions box{{0, 0}, {2, 1}, {6, 3}, {2, 1}};
     d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
-    const std::vector<fem::DirichletCondition> held{{"top", "top", {ScalarField(0.), ScalarField(0.)}}};
     const auto load = rcp(new Vector(d.owned_dofs));
     fem::add_body_force(d, {ScalarField(0.3), ScalarField(-2.), ScalarField(0.)}, "Body Force", *load);
-    auto problem = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, fem::Material{10, 0.3}), load,
-                                            fem::dirichlet_dofs(d, held));
-    auto nodes = contact::contact_nodes(d, foundations, problem.dirichlet);
+    auto problem =
+        fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), load, fem::dirichlet_dofs(d, {condition}));
+    auto nodes = contact::contact_nodes(d, foundations, problem.dirichlet, material);
     functional = std::make_shared<contact::SmoothedFunctional>(d.mesh->owned_nodes->getComm(), std::move(problem),
                                                                std::move(nodes));
   }
   explicit Scene(const double penalty = 40) : Scene(std::vector{below(penalty)}) {}
 
-  /// A displacement u(x) that is 0 where prescribed.
+  /// A change of displacement u(x): 0 where prescribed.
   RCP<Vector> vector(const std::function<Point(const Point &)> &u) const
   {
     const auto v = rcp(new Vector(d.owned_dofs));
@@ -84,5 +91,13 @@ struct Scene {
     });
   }
 };
+
+/// One choice of states, taken unless it confirms the present ones.
+inline contact::StateChoice choose(contact::SmoothedFunctional &functional, const Vector &u, const double weight)
+{
+  const auto choice = functional.choose_states(u, weight);
+  if (!choice.confirmed) functional.take_states(choice);
+  return choice;
+}
 
 } // namespace rpc::test

@@ -3,6 +3,7 @@
 #include "rpc/contact/obstacle.hpp"
 #include "rpc/core/field.hpp"
 #include "rpc/fem/dirichlet.hpp"
+#include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <Teuchos_ParameterList.hpp>
@@ -27,8 +28,8 @@ struct ContactOptions {
   ScalarField gap; ///< g [m], distance to the foundation along the normal; < 0 is initial penetration. Without obstacle
   Obstacle obstacle; ///< the foundation's surface, from which the gap follows
   Normal normal = Normal::surface;
-  Point direction{};    ///< unit, of Normal::fixed
-  double penalty = 1e8; ///< r > 0 [Pa/m]
+  Point direction{};  ///< unit, of Normal::fixed
+  double penalty = 0; ///< r > 0 [Pa/m]; 0: chosen at each node, see SmoothedFunctional
 };
 
 /// Parameters of the deck's `Contact` sublist.
@@ -54,7 +55,8 @@ struct ContactNodes {
   DeviceView<double *> gap;        ///< (n) g [m]
   DeviceView<double *> free_gap;   ///< (n) g - normal . u_prescribed [m]
   DeviceView<double *> yield;      ///< (n) xi [Pa]
-  DeviceView<double *> penalty;    ///< (n) r [Pa/m]
+  DeviceView<double *> stiffness;  ///< (n) rho = E / diameter, with the largest E around the node [Pa/m]
+  DeviceView<double *> penalty;    ///< (n) r [Pa/m], 0 where it is to be chosen
   DeviceView<char *> fixed;        ///< (n) 1 where direction = 0
   GO num_total = 0;                ///< over all ranks
   GO num_fixed = 0;                ///< over all ranks
@@ -64,11 +66,12 @@ struct ContactNodes {
 };
 
 /// Collective.
+/// @param materials  what the body is made of, for `stiffness`
 /// @throws rpc::Error bad_input if a side does not exist, xi <= 0 or NaN, the gap is not finite somewhere,
 /// or the normal does not lead to the obstacle (the place is named); no_solution if a prescribed displacement presses a
 /// node into a rigid foundation
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                           const fem::DirichletDofs &dirichlet);
+                           const fem::DirichletDofs &dirichlet, const fem::Materials &materials = {});
 
 /// direction_i . u_i at one node, for kernels [m].
 template <class U>

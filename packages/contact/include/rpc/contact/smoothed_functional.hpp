@@ -14,11 +14,20 @@ struct StateCounts {
   GO open = 0, stuck = 0, yielded = 0;
 };
 
-/// What a choice of states has changed, over all ranks.
-struct StateChange {
-  GO nodes = 0;                  ///< that have another state than before
-  GO stiffness = 0;              ///< of them, those that began or ceased to stick
-  std::uint64_t fingerprint = 0; ///< of all states: equal for equal ones
+/// Energies of (u, lambda) at the contact nodes, over all ranks.
+struct ContactEnergy {
+  double dissipated = 0; ///< sum_i w_i lambda_i v_i+ [J]
+  double gap = 0; ///< sum_i w_i (xi_i v_i+ - lambda_i v_i) [J], each term >= 0: what the contact law misses, with
+                  ///< twice the largest multiplier in place of any higher xi                             (5.12)
+};
+
+/// States to go on with, and the pressures of the piece that they were read from.
+struct StateChoice {
+  DeviceView<State *> state;     ///< (contact nodes)
+  DeviceView<double *> pressure; ///< (contact nodes) [Pa]
+  GO changes = 0;                ///< points on all ranks that p + weight rho v gives another state than hessian()'s
+  bool confirmed = false; ///< no changes: u and the pressures obey the contact law, up to what the penalty leaves
+  std::uint64_t fingerprint = 0; ///< of all states on all ranks: equal for equal ones
 };
 
 /// The functional along a line t -> u + t d, as far as its slope goes: convex, piecewise quadratic. doc/theory.md (4.3)
@@ -54,30 +63,54 @@ private:
 /// with m_i the node's direction. One matrix serves as K and as H: it holds K with the contact blocks of the states
 /// last given to update_hessian, whose elastic values are kept aside; products with K subtract what was added. Contact
 /// terms touch only contact rows. All vectors are on owned dofs; all members are collective.
+///
+/// Penalties that the contact nodes leave open are chosen here, as a multiple of the node's own stiffness over its
+/// weight; none exceeds what double precision bears. doc/theory.md (5.8)
+///
+/// Where the iteration goes on, `u` is the displacement from an origin, at first 0, and penetrations are kept to digits of
+/// their own: r v would make r eps |u| of the rounding of u. (5.9)
 class SmoothedFunctional
 {
 public:
   SmoothedFunctional(RCP<const Comm> comm, fem::ElasticProblem problem, ContactNodes contact);
 
-  /// M(u) [J], with the energy of prescribed displacements.
+  /// M(u) [J], with the energy of prescribed displacements, up to a constant once the origin has moved.
   double value(const Vector &u) const;
   /// Energy of the problem itself, J(u) = Pi(u) + sum_i w_i xi_i v_i+ [J], computed as Pi(u) + sum_i w_i lambda_i v_i:
   /// the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a stuck node. (1.4),
   /// (5.5)
+  /// @param u  displacement from 0
   double energy(const Vector &u) const;
   void gradient(const Vector &u, Vector &F) const;
   /// The gradient at u of the quadratic piece that hessian() belongs to: stuck nodes carry lambda + r v, whatever that
   /// is, open ones 0, yielded ones xi. (5.4)
   void piece_gradient(const Vector &u, Vector &F) const;
-  /// Brings hessian() to H(u). @return number of contact nodes whose stiffness changed, over all ranks
+  /// Brings hessian() to H(u). @return number of contact nodes whose stiffness in it changed, over all ranks
   GO update_hessian(const Vector &u);
-  /// One choice of the active-set iteration: takes the piece's pressures p for multipliers, and brings hessian() to the
-  /// states of p + rho v. (5.7) Where no state changes, nothing is done.
-  /// @param rho  [Pa/m]
-  StateChange choose_states(const Vector &u, double rho);
+  /// One choice of the active-set iteration: the states of p + weight rho v, with p the pressures of hessian()'s piece at
+  /// its minimum u. (5.7)
+  /// @param weight  of penetration against pressure, in units of the nodes' `stiffness` rho; dimensionless
+  StateChoice choose_states(const Vector &u, double weight) const;
+  /// Takes the choice's pressures for multipliers, as far as its states allow, and brings hessian() to its states.
+  void take_states(const StateChoice &choice);
+  /// For bodies with rigid motions that only contact can hold: keeps a weak spring at nodes that do not stick in
+  /// hessian(), so that it stays positive definite, and lets all nodes stick in the first choice of states. The functional
+  /// and its gradients do not change. (9.8)
+  void hold_by_contact();
+  /// Weakens these springs, if there are any, from the next update of hessian() on: for bodies that bend so easily that
+  /// they feel them.
+  void weaken_springs();
+  /// Raises the penalties, as far as double precision bears it. @return whether any rose, on any rank   (5.8)
+  bool raise_penalty();
+  /// Moves the origin to where u is, and sets u to 0.                                                     (5.9)
+  void move_origin(Vector &u);
+  /// Where u is, seen from 0: what results are read from.
+  Vector displacement(const Vector &u) const;
   /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
   void reset_multipliers();
   const RCP<CrsMatrix> &hessian() const { return problem_.stiffness; }
+  /// Whether hessian() has changed since the last call: time for a new preconditioner.
+  bool take_hessian_change();
   /// @param F  gradient at u
   LineModel along(const Vector &u, const Vector &d, const Vector &F) const;
   StateCounts count_states(const Vector &u) const;
@@ -85,33 +118,45 @@ public:
   /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   (5.1)
   double update_multipliers(const Vector &u);
 
-  /// |K u - b + sum_i w_i lambda_i m_i|_2 over the larger of the norms of load and contact force.              (5.2)
-  double equilibrium_residual(const Vector &u) const;
   /// Largest violation of the contact law by (u, lambda), dimensionless.                                         (5.3)
-  /// @param stiffness_scale  rho [Pa/m] that turns a distance into a pressure
-  double contact_law_residual(const Vector &u, double stiffness_scale) const;
+  /// @param u  displacement from 0
+  double contact_law_residual(const Vector &u) const;
+  /// @param u  displacement from 0
+  ContactEnergy contact_energy(const Vector &u) const;
+  /// sum_i w_i lambda_i m_i, what contact takes off the load (owned dofs, [N]).
+  Vector multiplier_forces() const;
 
   /// |applied load|_2 on the free unknowns; without any, |contact force|_2; without that, what prescribed displacements do
   /// to the free unknowns [N]; 1 if nothing acts. A rigid shift of the whole scene leaves it as it is where anything is
   /// applied or touches.
   double force_scale() const;
 
-  const ContactNodes &contact() const { return contact_; }
+  const ContactNodes &contact() const { return contact_; } ///< with penetration from 0
   const fem::ElasticProblem &problem() const { return problem_; }
   const DeviceView<double *> &multipliers() const { return lambda_; }
 
 private:
-  void apply_stiffness(const Vector &u, Vector &Ku) const;
-  double potential(const Vector &u) const; // Pi(u) [J]
+  void apply_stiffness(const Vector &u, Vector &Ku) const;         // less what was added: rounds as r w |u| does
+  void apply_elastic_stiffness(const Vector &u, Vector &Ku) const; // with K in the matrix: rounds as K |u| does
+  GO update_stiffness(); // brings the matrix to piece_; number of nodes whose stiffness changed
 
   RCP<const Comm> comm_;
   fem::ElasticProblem problem_;
   ContactNodes contact_;
-  double applied_force_ = 0;    // |applied load|_2 on free unknowns [N]
-  double lifted_force_ = 0;     // the same with the forces of prescribed displacements [N]
-  DeviceView<double *> lambda_; // (contact nodes) [Pa]
-  DeviceView<State *> piece_;   // (contact nodes) states that the matrix belongs to: stuck ones' blocks hold r w m m^T
-  bool piece_chosen_ = false;   // else piece_ is that of K itself, and says nothing about pressures
+  ContactNodes near_;                  // the same, its free_gap less what the origin has used up
+  RCP<Vector> origin_;                 // null: 0
+  RCP<Vector> load_;                   // problem_.load less K origin
+  double applied_force_ = 0;           // |applied load|_2 on free unknowns [N]
+  double lifted_force_ = 0;            // the same with the forces of prescribed displacements [N]
+  double reach_ = 0;                   // pressure that the load will hardly reach anywhere [Pa]
+  DeviceView<double *> lambda_;        // (contact nodes) [Pa]
+  DeviceView<State *> piece_;          // (contact nodes) states that the matrix belongs to
+  DeviceView<double *> added_;         // (contact nodes) the matrix holds K + added w m m^T [Pa/m]
+  DeviceView<double *> own_stiffness_; // (contact nodes) m . K_ii m / (w m . m), of the node's own block [Pa/m]
+  double spring_ = 0;                  // weak springs at nodes that do not stick, in units of contact_.stiffness
+  bool hessian_changed_ = false;
+  bool second_choice_ = false;       // multipliers of stuck nodes are the last piece's pressures
+  bool piece_chosen_ = false;        // else piece_ is that of K itself, and says nothing about pressures
   DeviceView<std::size_t **> block_; // (contact nodes, dim) entry where the node's own block begins in each of its rows
   DeviceView<double ***> elastic_;   // (contact nodes, dim, dim) that block of K
 };

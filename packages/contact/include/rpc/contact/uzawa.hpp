@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/contact/certificate.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <functional>
@@ -27,14 +27,6 @@ Teuchos::ParameterList valid_uzawa_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
 UzawaOptions uzawa_options(const Teuchos::ParameterList &list);
 
-/// How well (u, lambda) solves the discrete problem; both dimensionless.                    doc/theory.md (5.2), (5.3)
-struct Certificate {
-  double equilibrium_residual = 0;
-  double kkt_residual = 0;
-
-  bool holds(const double tolerance) const { return equilibrium_residual <= tolerance && kkt_residual <= tolerance; }
-};
-
 /// What came out of one minimization of the smoothed functional.
 struct MinimizeResult {
   bool converged = false;
@@ -54,12 +46,13 @@ struct UzawaResult {
 /// Alternates minimization over u and multiplier update until the certificate holds.            doc/theory.md (5.1)
 ///
 /// Without a contact node there is nothing to alternate with: one minimization.
-/// @param minimize         (iteration, from 1) brings u to the minimum of the functional for its present multipliers;
-/// collective
-/// @param stiffness_scale  rho [Pa/m] of the contact law's residual
-/// @param report           called after each iteration, for the console
+/// @param[in,out] u  start, then solution: displacement from 0
+/// @param minimize   (iteration, from 1) brings u, as seen from the functional's origin, to the minimum for its present
+/// multipliers; collective
+/// @param certify    judges a displacement from 0, with the functional's multipliers
+/// @param report     called after each iteration, for the console
 UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function<MinimizeResult(int)> &minimize,
-                  double stiffness_scale, const UzawaOptions &options,
+                  const std::function<Certificate(const Vector &)> &certify, const UzawaOptions &options,
                   const std::function<void(const UzawaResult &)> &report);
 
 } // namespace rpc::contact

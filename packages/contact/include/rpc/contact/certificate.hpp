@@ -1,0 +1,28 @@
+#pragma once
+
+#include "rpc/contact/smoothed_functional.hpp"
+
+#include <functional>
+
+namespace rpc::contact
+{
+
+/// How well (u, lambda) solves the discrete problem: all dimensionless, 0 at the solution.    doc/theory.md (5.2) to (5.12)
+struct Certificate {
+  double equilibrium_residual = 0; ///< forces out of balance, over the forces at work                        (5.2)
+  double kkt_residual = 0;         ///< largest violation of the contact law, over the largest pressure        (5.3)
+  double energy_balance = 0;       ///< twice the strain energy less the work of all forces, over their sum   (5.11)
+  double duality_gap = 0;          ///< primal less dual energy, over the energy at work                       (5.12)
+
+  /// The largest of the four; NaN if one is.
+  double worst() const;
+  bool holds(const double tolerance) const { return worst() <= tolerance; }
+};
+
+/// Judges (u, lambda) by sums over cells, not by the matrix that the solution came from; collective.
+/// @param u                displacement from 0 (owned dofs) [m]
+/// @param residual_energy  F -> about F . K^-1 F [J], for a residual F (owned dofs, 0 where prescribed) [N]
+Certificate certify(const fem::Discretization &d, const fem::Materials &materials, const SmoothedFunctional &functional,
+                    const Vector &u, const std::function<double(const Vector &)> &residual_energy);
+
+} // namespace rpc::contact

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "rpc/contact/contact_nodes.hpp"
+
+#include <vector>
+
+namespace rpc::contact
+{
+
+/// What holds the body.
+struct Support {
+  int num_parts = 1;            ///< of the body that share no node
+  bool by_contact_only = false; ///< some part has rigid motions that nothing but contact stops
+};
+
+/// Looks for rigid motions that neither prescribed displacements nor the foundation stop, before anything is solved.
+///
+/// The discrete problem has a solution if and only if, part by part, what the load does along the free rigid motions lies
+/// in the set Z of what the foundation can do against it; it is determined only if it lies inside.
+///                                                                                         doc/theory.md (9.2) - (9.6)
+/// Costs O(nodes) small if prescribed displacements hold every part, else some hundred sums over the contact nodes.
+/// @param applied_load  (owned dofs) [N], before elimination; collective
+/// @throws rpc::Error (no_solution) on every rank, naming part, motion and forces: a motion that nothing stops; a load
+///         beyond what the foundation carries, or away from it; a load that leaves the position open
+Support check_support(const fem::Discretization &d, const fem::DirichletDofs &dirichlet, const Vector &applied_load,
+                      const ContactNodes &contact, const std::vector<ContactOptions> &options);
+
+} // namespace rpc::contact

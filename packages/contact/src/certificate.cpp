@@ -1,0 +1,118 @@
+#include "rpc/contact/certificate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rpc::contact
+{
+namespace
+{
+
+/// u less the mean of its prescribed values, component by component: energies do not see translations, but rounding does.
+Vector without_translation(const fem::DirichletDofs &dirichlet, const int dim, const Vector &u)
+{
+  const auto fixed = dirichlet.fixed;
+  Vector rest(u, Teuchos::Copy);
+  const auto x = device_write(rest);
+  const LO n = static_cast<LO>(u.getLocalLength());
+  double sums[3] = {0, 0, 0}, counts[3] = {0, 0, 0};
+  for (int component = 0; component < dim; ++component)
+    Kokkos::parallel_reduce(
+        "rpc::contact::mean_prescribed", device_range(n / dim),
+        KOKKOS_LAMBDA(const LO node, double &sum, double &count) {
+          const LO dof = dim * node + component;
+          if (!fixed(dof)) return;
+          sum += x(dof);
+          count += 1;
+        },
+        sums[component], counts[component]);
+  Kokkos::Array<double, 3> mean;
+  for (int component = 0; component < 3; ++component) {
+    const double count = sum_all(*u.getMap()->getComm(), counts[component]);
+    const double sum = sum_all(*u.getMap()->getComm(), sums[component]);
+    mean[component] = count > 0 ? sum / count : 0;
+  }
+  Kokkos::parallel_for(
+      "rpc::contact::without_translation", device_range(n), KOKKOS_LAMBDA(const LO dof) { x(dof) -= mean[dof % dim]; });
+  Kokkos::fence();
+  return rest;
+}
+
+/// u . f over the unknowns that are prescribed, or over the others; collective.
+double work(const fem::DirichletDofs &dirichlet, const bool prescribed, const Vector &u, const Vector &f)
+{
+  const auto fixed = dirichlet.fixed;
+  const auto x = device_read(u);
+  const auto force = device_read(f);
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::work", device_range(static_cast<LO>(u.getLocalLength())),
+      KOKKOS_LAMBDA(const LO dof, double &part) {
+        if ((fixed(dof) != 0) == prescribed) part += x(dof) * force(dof);
+      },
+      sum);
+  return sum_all(*u.getMap()->getComm(), sum);
+}
+
+void clear_prescribed(const fem::DirichletDofs &dirichlet, Vector &f)
+{
+  const auto fixed = dirichlet.fixed;
+  const auto to = device_write(f);
+  Kokkos::parallel_for(
+      "rpc::contact::clear_prescribed", device_range(static_cast<LO>(f.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
+        if (fixed(dof)) to(dof) = 0;
+      });
+  Kokkos::fence();
+}
+
+/// 0 over 0 is 0: nothing happens, and nothing is wrong.
+double ratio(const double part, const double whole)
+{
+  return part == 0 ? 0 : part / whole;
+}
+
+} // namespace
+
+double Certificate::worst() const
+{
+  double worst = 0;
+  for (const double part : {equilibrium_residual, kkt_residual, energy_balance, duality_gap})
+    if (!std::isnan(worst) && !(part <= worst)) worst = part;
+  return worst;
+}
+
+Certificate certify(const fem::Discretization &d, const fem::Materials &materials, const SmoothedFunctional &functional,
+                    const Vector &u, const std::function<double(const Vector &)> &residual_energy)
+{
+  const fem::ElasticProblem &problem = functional.problem();
+  const fem::DirichletDofs &dirichlet = problem.dirichlet;
+  const Vector internal = fem::internal_forces(d, materials, u), contact = functional.multiplier_forces();
+  Vector external(*problem.applied_load, Teuchos::Copy), residual(internal, Teuchos::Copy);
+  external.update(-1., contact, 1.);
+  residual.update(-1., external, 1.);
+  clear_prescribed(dirichlet, residual);
+
+  Certificate certificate;
+  certificate.kkt_residual = functional.contact_law_residual(u);
+  certificate.equilibrium_residual = residual.norm2() / std::max({functional.force_scale(), contact.norm2(),
+                                                                  fem::internal_force_norm(d, materials, u)});
+
+  const double strain = fem::strain_energy(d, materials, u);
+  const Vector moved = without_translation(dirichlet, d.dim(), u);
+  const double of_load = work(dirichlet, false, moved, *problem.applied_load),
+               of_contact = work(dirichlet, false, moved, contact),
+               of_supports = work(dirichlet, true, moved, internal);
+  // Where the strain energy is this small against the work of prescribed displacements on a body that stays behind, the
+  // body moves as a whole, and what is left is rounding.
+  const double lifted = std::abs(problem.load->dot(u));
+  const double at_work =
+      std::max({strain, std::abs(of_load), std::abs(of_contact), std::abs(of_supports), 1e-7 * lifted});
+  certificate.energy_balance = ratio(std::abs(strain - of_load + of_contact - of_supports), at_work);
+
+  const ContactEnergy energy = functional.contact_energy(u);
+  certificate.duality_gap = ratio(energy.gap + 0.5 * std::max(0., residual_energy(residual)),
+                                  std::max({0.5 * strain, energy.dissipated, 1e-12 * lifted}));
+  return certificate;
+}
+
+} // namespace rpc::contact

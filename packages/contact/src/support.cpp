@@ -1,0 +1,215 @@
+#include "rpc/contact/support.hpp"
+
+#include "held_part.hpp"
+#include "rpc/core/error.hpp"
+
+#include <Teuchos_TimeMonitor.hpp>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace rpc::contact
+{
+namespace
+{
+
+using fem::dot;
+using fem::RigidMotion;
+using Motions = std::vector<RigidMotion>;
+using Numbers = std::vector<double>;
+
+/// The scene, for messages.
+struct Context {
+  const fem::Discretization &d;
+  const fem::Parts &parts;
+  const ContactNodes &contact;
+  const std::vector<ContactOptions> &options;
+
+  std::string name(const int part) const { return fem::name_of(*d.mesh, parts, part); }
+  fem::MotionInWords words(const RigidMotion &r, const int part) const
+  {
+    return fem::in_words(r, parts.part[part], d.dim());
+  }
+  /// "20 [N/m]", a force along a translation or a moment about a rotation's axis.
+  std::string amount(const double value, const fem::MotionInWords &words) const
+  {
+    std::ostringstream text;
+    text << value << (words.rotates ? " [N m" : " [N") << (d.dim() == 2 ? "/m]" : "]");
+    return text.str();
+  }
+};
+
+/// "side "bottom"", "sides "bottom", "left"".
+std::string sides_text(const std::vector<std::string> &sides)
+{
+  std::ostringstream text;
+  text << (sides.size() > 1 ? "sides" : "side");
+  for (std::size_t k = 0; k < sides.size(); ++k) text << (k > 0 ? ", \"" : " \"") << sides[k] << "\"";
+  return text.str();
+}
+
+/// The contact sides that carry something against a motion; collective.
+std::vector<int> carrying_sides(const Context &context, const HeldPart &held, const RigidMotion &motion)
+{
+  std::vector<int> sides;
+  const double all = dot(held.carried(motion), motion);
+  for (int k = 0; k < context.contact.num_sides(); ++k)
+    if (dot(held.carried(motion, context.contact.first(k), context.contact.first(k + 1)), motion) > 1e-9 * all)
+      sides.push_back(k);
+  return sides;
+}
+
+[[noreturn]] void refuse(const std::string &message)
+{
+  throw Error(ExitCode::no_solution, "support: " + message);
+}
+
+[[noreturn]] void refuse_free(const Context &context, const int part, const Motions &free, const fem::Resultant &load)
+{
+  std::ostringstream message;
+  message << "nothing holds " << context.name(part) << " against";
+  bool first = true;
+  for (const RigidMotion &r : fem::readable_basis(free, context.d.dim())) {
+    const auto words = context.words(r, part);
+    const double along = dot(load.force, r);
+    message << (first ? " " : "; ") << words.text();
+    if (std::abs(along) > 1e-9 * load.magnitude * std::sqrt(dot(r, r)))
+      message << ", along which the load is " << context.amount(along / words.size, words);
+    first = false;
+  }
+  message << ". Prescribe a displacement in \"Dirichlet\" that stops " << (free.size() > 1 ? "them" : "it") << ".";
+  refuse(message.str());
+}
+
+/// The load along `motion` is more than the foundation does against it; collective.
+[[noreturn]] void refuse_load(const Context &context, const HeldPart &held, const RigidMotion &motion,
+                              const fem::Resultant &load)
+{
+  const auto words = context.words(motion, held.part());
+  const double pushed = dot(load.force, motion), carried = dot(held.carried(motion), motion);
+  const std::string name = context.name(held.part());
+  const std::string resultant = context.amount(pushed / words.size, words);
+  std::ostringstream message;
+  if (carried > 1e-6 * pushed) {
+    std::vector<std::string> names;
+    const auto sides = carrying_sides(context, held, motion);
+    for (const int k : sides) names.push_back(context.options[k].side);
+    if (words.rotates)
+      message << "the load turns " << name << " " << words.where << ", with a moment of " << resultant
+              << "; against it ";
+    else
+      message << "the load pushes " << name << " against " << sides_text(names) << " with a resultant of " << resultant
+              << " " << words.where << "; ";
+    message << "the foundation " << (words.rotates ? "of " + sides_text(names) + " " : "") << "carries at most "
+            << context.amount(carried / words.size, words) << ", where all of it yields. Lower the load, or raise";
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      message << (k > 0 ? ", \"" : " \"") << context.options[sides[k]].path << "->Yield Stress\"";
+    message << ".";
+  } else {
+    if (words.rotates)
+      message << "the load turns " << name << " away from the foundation: " << words.where << ", its moment is "
+              << resultant;
+    else
+      message << "the load pulls " << name << " away from the foundation: its resultant is " << resultant << " "
+              << words.where;
+    message
+        << ", and nothing holds against it. Change the load, or prescribe a displacement in \"Dirichlet\" that stops "
+           "this motion.";
+  }
+  refuse(message.str());
+}
+
+/// The load is on the edge of what the foundation can do: moved along `motion` the part costs no energy; collective.
+[[noreturn]] void refuse_edge(const Context &context, const HeldPart &held, const RigidMotion &motion,
+                              const double scale)
+{
+  const auto words = context.words(motion, held.part());
+  const double carried = dot(held.carried(motion), motion);
+  const std::string name = context.name(held.part());
+  std::ostringstream message;
+  if (carried > 1e-3 * scale * std::sqrt(dot(motion, motion)))
+    message << "the load is all that the foundation carries, " << context.amount(carried / words.size, words)
+            << ", against a " << words.text() << " of " << name
+            << ", whose position is then not determined. Lower the load, or raise the yield stress.";
+  else
+    message << "nothing presses " << name << " on the foundation against a " << words.text()
+            << ": its position is not determined. Apply a load that does, or prescribe a displacement in \"Dirichlet\" "
+               "that stops this motion.";
+  refuse(message.str());
+}
+
+/// Whether the load lies inside of Z; collective.                                                          (9.4)
+void check_part(const Context &context, const HeldPart &held, const fem::Resultant &load, const double strength)
+{
+  const auto size_of = [](const Numbers &q) {
+    double squares = 0;
+    for (const double entry : q) squares += entry * entry;
+    return std::sqrt(squares);
+  };
+  const ConvexSet set = [&](const Numbers &q) { return held.furthest(q); };
+  Numbers b = held.coordinates(load.force);
+  if (size_of(b) <= 1e-11 * load.magnitude) std::fill(b.begin(), b.end(), 0.); // rounding of loads that cancel
+  const double size = size_of(b);
+  const double scale = size > 0 ? size : strength > 0 ? strength : 1;
+  const Nearest nearest = nearest_point(set, b, 1e-9 * scale);
+  if (nearest.distance > 0) refuse_load(context, held, held.motion(nearest.away), load);
+
+  const double shift = 1e-6 * scale;
+  Nearest worst;
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    for (const double sign : {1., -1.}) {
+      Numbers near = b;
+      near[j] += sign * shift;
+      const Nearest outside = nearest_point(set, near, 1e-3 * shift);
+      if (outside.distance > worst.distance * (1 + 1e-6)) worst = outside;
+    }
+  }
+  if (worst.distance > 0) refuse_edge(context, held, held.motion(worst.away), scale);
+}
+
+/// Motions that change no gap: neither prescribed displacements nor contact stop them; collective.            (9.2)
+std::vector<Motions> sliding_motions(const Comm &comm, const Reactions &reactions, const std::vector<Motions> &motions)
+{
+  const auto along = to_host(reactions.along);
+  const auto part = to_host(reactions.part);
+  std::vector<Motions> rows(motions.size());
+  for (std::size_t i = 0; i < part.extent(0); ++i) {
+    if (part(i) < 0 || motions[part(i)].empty()) continue;
+    RigidMotion row;
+    for (int k = 0; k < 6; ++k) row[k] = along(i, k);
+    rows[part(i)].push_back(row);
+  }
+  rows = fem::independent_rows_of_all(comm, rows, fem::rigid_tolerance);
+  std::vector<Motions> sliding;
+  for (std::size_t p = 0; p < motions.size(); ++p)
+    sliding.push_back(fem::null_space(rows[p], motions[p], fem::rigid_tolerance));
+  return sliding;
+}
+
+} // namespace
+
+Support check_support(const fem::Discretization &d, const fem::DirichletDofs &dirichlet, const Vector &applied_load,
+                      const ContactNodes &contact, const std::vector<ContactOptions> &options)
+{
+  const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::support"));
+  const Comm &comm = d.mesh->comm();
+  const fem::Parts parts = fem::connected_parts(d);
+  const std::vector<Motions> motions = fem::free_motions(d, parts, dirichlet);
+  Support support;
+  support.num_parts = parts.size();
+  for (const Motions &free : motions) support.by_contact_only = support.by_contact_only || !free.empty();
+  if (!support.by_contact_only) return support;
+
+  const Context context{d, parts, contact, options};
+  const Reactions reactions = reactions_of(d, parts, contact);
+  const auto loads = fem::resultants(d, parts, applied_load);
+  const std::vector<Motions> sliding = sliding_motions(comm, reactions, motions);
+  for (int p = 0; p < parts.size(); ++p) {
+    if (!sliding[p].empty()) refuse_free(context, p, sliding[p], loads[p]);
+    if (!motions[p].empty())
+      check_part(context, HeldPart(comm, reactions, p, motions[p]), loads[p], reactions.strength[p]);
+  }
+  return support;
+}
+
+} // namespace rpc::contact

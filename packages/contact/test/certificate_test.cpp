@@ -1,0 +1,324 @@
+#include "rpc/contact/certificate.hpp"
+
+#include "dense.hpp"
+#include "scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+using contact::Certificate;
+
+/// The block with its stiffness kept as it is without contact, and residual energies by a direct solver.
+struct Judged : Scene {
+  CrsMatrix K;
+  DenseInverse inverse;
+
+  explicit Judged(const std::vector<contact::ContactOptions> &foundations = {below(40)}, const Point &top = {})
+      : Scene(foundations, held("top", top)), K(*functional->hessian(), Teuchos::Copy), inverse(K)
+  {
+  }
+  Certificate certificate(const Vector &u) const
+  {
+    return contact::certify(d, material, *functional, u, [&](const Vector &F) { return F.dot(inverse.times(F)); });
+  }
+  /// K u - b + B lambda: 0 where prescribed.
+  Vector residual(const Vector &u) const
+  {
+    Vector F(u.getMap());
+    K.apply(u, F);
+    F.update(1., functional->multiplier_forces(), -1., *functional->problem().load, 1.);
+    return F;
+  }
+  /// Pi(u) [J]
+  double elastic_energy(const Vector &u) const
+  {
+    Vector Ku(u.getMap());
+    K.apply(u, Ku);
+    return 0.5 * u.dot(Ku) - functional->problem().load->dot(u) + functional->problem().energy_offset;
+  }
+  /// sum_i w_i energy(v_i, lambda_i, xi_i)
+  template <class Energy>
+  double over_contact(const Vector &u, const Energy &energy) const
+  {
+    const auto &c = functional->contact();
+    const auto node = to_host(c.node);
+    const auto m = to_host(c.direction);
+    const auto w = to_host(c.weight), gap = to_host(c.free_gap), xi = to_host(c.yield),
+               lambda = to_host(functional->multipliers());
+    const auto x = u.getLocalViewHost(Tpetra::Access::ReadOnly);
+    double sum = 0;
+    for (LO i = 0; i < c.size(); ++i)
+      sum += w(i) * energy(m(i, 0) * x(2 * node(i), 0) + m(i, 1) * x(2 * node(i) + 1, 0) - gap(i), lambda(i), xi(i));
+    return sum_all(*u.getMap()->getComm(), sum);
+  }
+  /// An admissible displacement.
+  RCP<Vector> displacement(const double scale, const double phase) const
+  {
+    const auto u = vector(scale, phase);
+    u->update(1., *functional->problem().dirichlet.value, 1.);
+    return u;
+  }
+  /// The solution, with its multipliers: Newton with a line search, and many updates of a penalty that is easy on both.
+  RCP<Vector> solution() const
+  {
+    const auto u = rcp(new Vector(*functional->problem().dirichlet.value, Teuchos::Copy));
+    Vector F(u->getMap());
+    for (int uzawa = 0; uzawa < 150; ++uzawa) {
+      for (int newton = 0; newton < 30; ++newton) {
+        functional->update_hessian(*u);
+        functional->gradient(*u, F);
+        Vector d = DenseInverse(*functional->hessian()).times(F);
+        d.scale(-1.);
+        u->update(step_along(functional->along(*u, d, F)), d, 1.);
+        if (d.normInf() < 1e-15) break;
+      }
+      functional->update_multipliers(*u);
+    }
+    return u;
+  }
+
+private:
+  /// 1, or where the slope vanishes before.
+  static double step_along(const contact::LineModel &line)
+  {
+    double low = 0, high = 1;
+    if (!(line.at(high).slope > 1e-12 * std::abs(line.at(0).slope))) return high;
+    for (int halving = 0; halving < 50; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (line.at(middle).slope < 0 ? low : high) = middle;
+    }
+    return high;
+  }
+};
+
+RCP<Vector> plus(const Vector &u, const double t, const Vector &d)
+{
+  const auto sum = rcp(new Vector(u, Teuchos::Copy));
+  sum->update(t, d, 1.);
+  return sum;
+}
+
+void expect_certificate(const Certificate &c, const Certificate &expected, const double tolerance)
+{
+  EXPECT_NEAR(c.equilibrium_residual, expected.equilibrium_residual, tolerance);
+  EXPECT_NEAR(c.kkt_residual, expected.kkt_residual, tolerance);
+  EXPECT_NEAR(c.energy_balance, expected.energy_balance, tolerance);
+  EXPECT_NEAR(c.duality_gap, expected.duality_gap, tolerance);
+}
+
+TEST(Certificate, WorstIsTheLargestPartAndNaNIfOneIs)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(Certificate().worst(), 0);
+  for (int k = 0; k < 4; ++k) {
+    const auto with = [k](const double value) {
+      double parts[4] = {0.1, 0.1, 0.1, 0.1};
+      parts[k] = value;
+      return Certificate{parts[0], parts[1], parts[2], parts[3]};
+    };
+    EXPECT_EQ(with(0.3).worst(), 0.3);
+    EXPECT_TRUE(with(0.3).holds(0.3));
+    EXPECT_FALSE(with(0.3).holds(0.29));
+    EXPECT_TRUE(std::isnan(with(nan).worst()));
+    EXPECT_FALSE(with(nan).holds(inf));
+    EXPECT_EQ(with(inf).worst(), inf);
+  }
+}
+
+TEST(Certificate, EquilibriumResidualIsThatOfTheMatrix)
+{
+  for (const Point top : {Point{}, Point{0.03, -0.02, 0}}) {
+    const Judged scene({below(40), beside(25)}, top);
+    const auto u = scene.displacement(0.05, 0.4);
+    scene.functional->update_multipliers(*u);
+    const double scale = std::max({scene.functional->force_scale(), scene.functional->multiplier_forces().norm2(),
+                                   fem::internal_force_norm(scene.d, scene.material, *u)});
+    const double expected = scene.residual(*u).norm2() / scale;
+    ASSERT_GT(expected, 0.01);
+    EXPECT_NEAR(scene.certificate(*u).equilibrium_residual, expected, 1e-13 * expected);
+  }
+}
+
+TEST(Certificate, EnergyBalanceIsWhatTheResidualDoesAlongTheFreeUnknowns)
+{
+  for (const Point top : {Point{}, Point{0.03, -0.02, 0}}) {
+    const Judged scene({below(40), beside(25)}, top);
+    const auto u = scene.displacement(0.05, 0.4);
+    scene.functional->update_multipliers(*u);
+    // Less the translation by the prescribed displacement, nothing is left of that.
+    const auto translated = scene.vector([&](const Point &) { return top; }); // 0 where prescribed
+    const Vector free = *plus(*plus(*u, -1, *scene.functional->problem().dirichlet.value), -1, *translated);
+    Vector internal(u->getMap());
+    fem::assemble_stiffness(scene.d, scene.material)->apply(*u, internal);
+    const double at_work = std::max({u->dot(internal), std::abs(free.dot(*scene.functional->problem().applied_load)),
+                                     std::abs(free.dot(scene.functional->multiplier_forces()))});
+    const double expected = std::abs(free.dot(scene.residual(*u))) / at_work;
+    ASSERT_GT(expected, 0.01);
+    EXPECT_NEAR(scene.certificate(*u).energy_balance, expected, 1e-12 * expected);
+  }
+}
+
+TEST(Certificate, DualityGapIsThePrimalLessTheDualEnergy)
+{
+  for (const Point top : {Point{}, Point{0.03, -0.02, 0}}) {
+    const Judged scene({below(40)}, top);
+    const auto u = scene.displacement(0.05, 0.4);
+    scene.functional->update_multipliers(*u);
+    const auto lambda = to_host(scene.functional->multipliers());
+    double largest = 0;
+    for (std::size_t i = 0; i < lambda.extent(0); ++i) largest = std::max(largest, lambda(i));
+    ASSERT_GE(2 * max_all(scene.d.mesh->comm(), largest), 3); // else the highest yield limit would be cut
+
+    const double primal = scene.elastic_energy(*u) +
+                          scene.over_contact(*u, [](double v, double, double xi) { return xi * std::max(v, 0.); });
+    Vector load(*scene.functional->problem().load, Teuchos::Copy);
+    load.update(-1., scene.functional->multiplier_forces(), 1.);
+    const Vector lowest = scene.inverse.times(load);
+    const double dual =
+        scene.elastic_energy(lowest) + scene.over_contact(lowest, [](double v, double p, double) { return p * v; });
+    const double strain = fem::strain_energy(scene.d, scene.material, *u);
+    const double dissipated = scene.over_contact(*u, [](double v, double p, double) { return p * std::max(v, 0.); });
+    const double expected = (primal - dual) / std::max(0.5 * strain, dissipated);
+    ASSERT_GT(expected, 0.01);
+    EXPECT_NEAR(scene.certificate(*u).duality_gap, expected, 1e-12 * expected);
+  }
+}
+
+TEST(Certificate, ContactEnergyIsSummedOverThePointsWithTwiceTheLargestMultiplierForHigherLimits)
+{
+  auto rigid = below(40);
+  rigid.yield_stress = ScalarField(std::numeric_limits<double>::infinity());
+  const Judged scene({rigid});
+  const auto u = scene.displacement(0.05, 0.4);
+  scene.functional->update_multipliers(*u);
+  double largest = 0;
+  const auto lambda = to_host(scene.functional->multipliers());
+  for (std::size_t i = 0; i < lambda.extent(0); ++i) largest = std::max(largest, lambda(i));
+  largest = max_all(scene.d.mesh->comm(), largest);
+  ASSERT_GT(largest, 0.1);
+  const auto energy = scene.functional->contact_energy(*u);
+  const double gap =
+      scene.over_contact(*u, [&](double v, double p, double) { return 2 * largest * std::max(v, 0.) - p * v; });
+  EXPECT_NEAR(energy.gap, gap, 1e-13 * gap);
+  const double dissipated = scene.over_contact(*u, [](double v, double p, double) { return p * std::max(v, 0.); });
+  EXPECT_NEAR(energy.dissipated, dissipated, 1e-13 * dissipated);
+}
+
+TEST(Certificate, OfTheSolutionIsZero)
+{
+  contact::StateCounts seen;
+  for (const Point top : {Point{}, Point{0.3, -0.2, 0}, Point{-0.1, 0.1, 0}}) {
+    const Judged scene({below(40), beside(25)}, top);
+    const auto u = scene.solution();
+    const auto states = scene.functional->count_states(*u);
+    seen.open += states.open;
+    seen.stuck += states.stuck;
+    seen.yielded += states.yielded;
+    expect_certificate(scene.certificate(*u), {}, 1e-12);
+  }
+  EXPECT_GT(seen.open, 0);
+  EXPECT_GT(seen.stuck, 0);
+  EXPECT_GT(seen.yielded, 0);
+}
+
+/// log2 of how much each part falls where the disturbance is halved.
+Certificate orders(const Certificate &whole, const Certificate &half)
+{
+  return {std::log2(whole.equilibrium_residual / half.equilibrium_residual),
+          std::log2(whole.kkt_residual / half.kkt_residual), std::log2(whole.energy_balance / half.energy_balance),
+          std::log2(whole.duality_gap / half.duality_gap)};
+}
+
+TEST(Certificate, GrowsLinearlyWithADisturbanceOfTheContactNodes)
+{
+  const Judged scene;
+  const auto u = scene.solution(), d = scene.vector(1, 2);
+  const auto order = orders(scene.certificate(*plus(*u, 1e-5, *d)), scene.certificate(*plus(*u, 5e-6, *d)));
+  EXPECT_NEAR(order.equilibrium_residual, 1, 0.01);
+  EXPECT_NEAR(order.kkt_residual, 1, 0.01);
+  EXPECT_NEAR(order.energy_balance, 1, 0.01);
+  EXPECT_NEAR(order.duality_gap, 1, 0.01); // (xi - lambda) v+ where a node sticks
+}
+
+TEST(Certificate, GapGrowsQuadraticallyWhereOnlyEquilibriumIsDisturbed)
+{
+  const Judged scene;
+  const auto u = scene.solution();
+  const auto d = scene.vector([](const Point &x) {
+    return Point{std::sin(5 * x[0] + 3 * x[1]), x[1] > 0 ? std::cos(4 * x[0]) : 0, 0};
+  });
+  const auto whole = scene.certificate(*plus(*u, 1e-6, *d)), half = scene.certificate(*plus(*u, 5e-7, *d));
+  const auto order = orders(whole, half);
+  EXPECT_NEAR(order.equilibrium_residual, 1, 0.01);
+  EXPECT_LT(whole.kkt_residual, 1e-12);
+  EXPECT_NEAR(order.energy_balance, 1, 0.01);
+  EXPECT_NEAR(order.duality_gap, 2, 0.01);
+  Vector Kd(d->getMap());
+  scene.K.apply(*d, Kd);
+  const double strain = fem::strain_energy(scene.d, scene.material, *plus(*u, 1e-6, *d)),
+               dissipated = scene.functional->contact_energy(*u).dissipated;
+  const double expected = 0.5e-12 * d->dot(Kd) / std::max(0.5 * strain, dissipated);
+  EXPECT_NEAR(whole.duality_gap, expected, 1e-5 * expected);
+}
+
+TEST(Certificate, GrowsWithADisturbanceOfTheMultipliers)
+{
+  // At stuck nodes, where v = 0, any multiplier within the limits satisfies the contact law.
+  const auto disturbed = [](const double t) {
+    const Judged scene;
+    const auto u = scene.solution();
+    scene.functional->update_multipliers(*plus(*u, t, *scene.vector(1, 2)));
+    return scene.certificate(*u);
+  };
+  const auto whole = disturbed(1e-5);
+  const auto order = orders(whole, disturbed(5e-6));
+  EXPECT_NEAR(order.equilibrium_residual, 1, 0.01);
+  EXPECT_LT(whole.kkt_residual, 1e-12);
+  EXPECT_NEAR(order.energy_balance, 1, 0.01);
+  EXPECT_NEAR(order.duality_gap, 2, 0.01);
+}
+
+TEST(Certificate, IsNaNWhereADisplacementIsAndHoldsAtNoTolerance)
+{
+  for (const double height : {0., 1. / 3}) { // a contact node, a node inside
+    const Judged scene;
+    const auto u = scene.solution();
+    const auto nan = scene.vector([&](const Point &x) {
+      const bool there = std::abs(x[0] - 1) < 1e-9 && std::abs(x[1] - height) < 1e-9;
+      return Point{0, there ? std::numeric_limits<double>::quiet_NaN() : 0, 0};
+    });
+    const auto c = scene.certificate(*plus(*u, 1, *nan));
+    EXPECT_TRUE(std::isnan(c.worst()));
+    EXPECT_FALSE(c.holds(std::numeric_limits<double>::infinity()));
+  }
+}
+
+TEST(Certificate, DoesNotSeeATranslationOfBodyAndFoundation)
+{
+  const auto disturbed = [](const Point &shift, const double t) {
+    auto foundation = below(40);
+    foundation.gap = field([shift](const Point &x) { return 0.02 * (1 - x[0]) - shift[1]; }); // normal (0, -1)
+    const Judged scene({foundation}, shift);
+    const auto u = scene.solution(), d = scene.vector(1, 2);
+    scene.functional->update_multipliers(*plus(*u, t, *d));
+    return scene.certificate(*plus(*u, t, *scene.vector(1, 0.5)));
+  };
+  for (const Point shift : {Point{0.5, -0.25, 0}, Point{-30, 20, 0}}) {
+    const double rounding = 1e-12 * (1 + std::hypot(shift[0], shift[1]) / 0.02); // the body deforms by 0.02
+    expect_certificate(disturbed(shift, 0), {}, rounding);
+    const auto at_rest = disturbed({}, 1e-3);
+    ASSERT_GT(
+        std::min({at_rest.equilibrium_residual, at_rest.kkt_residual, at_rest.energy_balance, at_rest.duality_gap}),
+        1e-5);
+    expect_certificate(disturbed(shift, 1e-3), at_rest, rounding);
+  }
+}
+
+} // namespace

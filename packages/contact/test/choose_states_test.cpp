@@ -1,0 +1,210 @@
+#include "rpc/contact/smoothed_functional.hpp"
+
+#include "scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <memory>
+#include <optional>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+
+constexpr double yield = 3, penalty = 40;
+constexpr int num_nodes = 7;
+
+/// A body on its foundation; multipliers start at yield / 2 unless there is a gap.
+contact::ContactOptions foundation(const double gap = 0)
+{
+  contact::ContactOptions options;
+  options.side = "bottom";
+  options.yield_stress = ScalarField(yield);
+  options.gap = ScalarField(gap);
+  options.penalty = penalty;
+  return options;
+}
+
+/// Presses lambda + r v up by these pressures, at the node x = 0 and at all others [Pa].
+RCP<Vector> pressing(const Scene &scene, const double first, const double others)
+{
+  return scene.vector([&](const Point &x) { return Point{0, -(x[0] == 0 ? first : others) / penalty, 0}; });
+}
+
+/// Multipliers at the node x = 0 and at all others.
+void expect_multipliers(const Scene &scene, const double first, const double others)
+{
+  const auto &c = scene.functional->contact();
+  const auto coords = to_host(scene.d.mesh->coords);
+  const auto node = to_host(c.node);
+  const auto lambda = to_host(scene.functional->multipliers());
+  for (LO i = 0; i < c.size(); ++i)
+    EXPECT_NEAR(lambda(i), coords(node(i), 0) == 0 ? first : others, 1e-14) << coords(node(i), 0);
+}
+
+/// A scene whose nodes all stick, by a first choice without any penetration.
+std::unique_ptr<Scene> all_stuck()
+{
+  auto scene = std::make_unique<Scene>(std::vector{foundation()});
+  EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 0, 0), 1).changes, num_nodes);
+  expect_multipliers(*scene, 1.5, 1.5);
+  return scene;
+}
+
+TEST(ChooseStates, TakesThePressuresOfThePieceForMultipliersUpToTheLimits)
+{
+  auto scene = all_stuck();
+  EXPECT_EQ(choose(*scene->functional, *pressing(*scene, -1.6, 1.2), 1).changes, 1);
+  expect_multipliers(*scene, 0, 2.7);
+  scene = all_stuck();
+  EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 1, 1.6), 1).changes, num_nodes - 1);
+  expect_multipliers(*scene, 2.5, yield);
+}
+
+TEST(ChooseStates, OpenNodesStickOrYieldByTheWeightOfTheirPenetration)
+{
+  // rho = E / diameter = 10 / sqrt(5); with the weight 10, v = 0.1 makes 4.47 of it, beyond the yield limit.
+  for (const double weight : {1., 10.}) {
+    const auto scene = all_stuck();
+    choose(*scene->functional, *pressing(*scene, -1.6, 0), weight); // opens the first
+    const auto change = choose(*scene->functional, *pressing(*scene, 0.1 * penalty, 0), weight);
+    EXPECT_EQ(change.changes, 1);
+    expect_multipliers(*scene, weight == 1 ? 0 : yield, 1.5);
+  }
+}
+
+TEST(ChooseStates, DoNothingWhereNoStateChanges)
+{
+  const auto scene = all_stuck();
+  const auto change = choose(*scene->functional, *pressing(*scene, 1, -1), 1);
+  EXPECT_EQ(change.changes, 0);
+  expect_multipliers(*scene, 1.5, 1.5);
+}
+
+TEST(ChooseStates, FirstMultipliersAreNoBasisToExtrapolateFrom)
+{
+  const auto scene = all_stuck();
+  choose(*scene->functional, *pressing(*scene, -1.6, 1.2), 1);
+  expect_multipliers(*scene, 0, 2.7); // 1.5 -> 2.7 and half as much again would yield
+}
+
+/// All stuck, then the first node open and the others' pressure at 1.8 from a choice.
+std::unique_ptr<Scene> chosen_twice()
+{
+  auto scene = all_stuck();
+  EXPECT_EQ(choose(*scene->functional, *pressing(*scene, -1.6, 0.3), 1).changes, 1);
+  expect_multipliers(*scene, 0, 1.8);
+  return scene;
+}
+
+TEST(ChooseStates, HalfOfTheLastChangeIsExpectedToFollow)
+{
+  // The others' pressures go to p: yielded where p + (p - 1.8) / 2 > 3, p > 2.6; open where < 0, p < 0.6. The plain choice
+  // would keep them all. The first node, open and pressed in a little, sticks: the choice is not confirmed.
+  const double in = 0.01 * penalty;
+  struct Case {
+    double p, multiplier;
+  };
+  for (const Case c : {Case{2.7, yield}, Case{2.5, 2.5}, Case{0.7, 0.7}, Case{0.5, 0}}) {
+    const auto scene = chosen_twice();
+    const auto change = choose(*scene->functional, *pressing(*scene, in, c.p - 1.8), 1);
+    EXPECT_EQ(change.changes, 1) << "by the plain choice";
+    expect_multipliers(*scene, 0, c.multiplier);
+  }
+}
+
+TEST(ChooseStates, ExpectedChangesDoNotContradictAConfirmation)
+{
+  const auto scene = chosen_twice();
+  EXPECT_EQ(choose(*scene->functional, *pressing(*scene, -1, 0.9), 1).changes, 0);
+  expect_multipliers(*scene, 0, 1.8);
+}
+
+TEST(ChooseStates, FingerprintsAreEqualForEqualStates)
+{
+  const auto scene = all_stuck();
+  auto &functional = *scene->functional;
+  const auto at = [&](const double first, const double others) {
+    return choose(functional, *pressing(*scene, first, others), 1).fingerprint;
+  };
+  const auto stuck = at(0, 0), first_open = at(-1.6, 0), again = at(-1.6, 0);
+  EXPECT_NE(stuck, first_open);
+  EXPECT_EQ(first_open, again);
+  EXPECT_EQ(at(0.01 * penalty, 0), stuck);
+}
+
+TEST(ChooseStates, AllStickFirstWhereContactMustHoldTheBody)
+{
+  const Scene free(std::vector{foundation(0.1)}), held_by_contact(std::vector{foundation(0.1)});
+  held_by_contact.functional->hold_by_contact();
+  EXPECT_EQ(choose(*free.functional, *pressing(free, 0, 0), 1).changes, 0);
+  EXPECT_EQ(choose(*held_by_contact.functional, *pressing(held_by_contact, 0, 0), 1).changes, num_nodes);
+  // p = 0 + r v with v = -0.1: pulled, they open again.
+  EXPECT_EQ(choose(*held_by_contact.functional, *pressing(held_by_contact, 0, 0), 1).changes, num_nodes);
+}
+
+/// On rollers at its left, so that only contact stops it from going down.
+struct OnRollers : Scene {
+  OnRollers() : Scene({foundation(0.1)}, {"left", "left", {ScalarField(0.), std::nullopt}}) {}
+  RCP<Vector> down(const double by) const
+  {
+    return vector([&](const Point &) { return Point{0, -by, 0}; });
+  }
+  double stiffness_down() const
+  {
+    const auto d = down(1);
+    Vector Hd(d->getMap());
+    functional->hessian()->apply(*d, Hd);
+    return d->dot(Hd);
+  }
+};
+
+TEST(HoldByContact, KeepsTheHessianPositiveDefiniteWhereNoNodeSticks)
+{
+  const OnRollers loose, held;
+  held.functional->hold_by_contact();
+  for (const OnRollers *scene : {&loose, &held}) {
+    scene->functional->update_hessian(*scene->down(0.2)); // yield or stick
+    scene->functional->update_hessian(*scene->down(0));
+    EXPECT_EQ(scene->functional->count_states(*scene->down(0)).open, num_nodes);
+  }
+  const double rounding = 1e-12 * held.material.youngs_modulus;
+  EXPECT_NEAR(loose.stiffness_down(), 0, rounding);
+  EXPECT_GT(held.stiffness_down(), 1e6 * rounding);
+  // but weak against the body's own: E / diameter over 2 m of side
+  EXPECT_LT(held.stiffness_down(), 1e-2 * 2 * held.material.youngs_modulus / std::sqrt(5.));
+}
+
+TEST(HoldByContact, ChangesNeitherTheFunctionalNorItsGradients)
+{
+  const OnRollers loose, held;
+  held.functional->hold_by_contact();
+  for (const double depth : {0., 0.12, 0.3}) { // open, stuck, yielded
+    const auto u = loose.down(depth), d = loose.vector(0.01, 0.7);
+    u->update(1., *d, 1.);
+    Vector F(u->getMap()), G(u->getMap());
+    for (const bool piece : {false, true}) {
+      const auto gradient = [&](const OnRollers &scene, Vector &to) {
+        scene.functional->update_hessian(*u);
+        if (piece)
+          scene.functional->piece_gradient(*u, to);
+        else
+          scene.functional->gradient(*u, to);
+      };
+      gradient(loose, F);
+      gradient(held, G);
+      G.update(-1., F, 1.);
+      EXPECT_LT(G.norm2(), 1e-13 * F.norm2()) << depth;
+    }
+    const double value = loose.functional->value(*u);
+    EXPECT_NEAR(held.functional->value(*u), value, 1e-13 * std::abs(value));
+    const auto line = loose.functional->along(*u, *d, F), same = held.functional->along(*u, *d, F);
+    EXPECT_NEAR(same.at(1).slope, line.at(1).slope, 1e-13 * std::abs(line.at(1).slope));
+    EXPECT_NEAR(same.at(1).curvature, line.at(1).curvature, 1e-12 * line.at(1).curvature);
+  }
+}
+
+} // namespace

@@ -1,0 +1,270 @@
+#include "rpc/contact/support.hpp"
+
+#include "drawn_mesh.hpp"
+#include "expect_error.hpp"
+#include "rpc/fem/elasticity.hpp"
+#include "rpc/mesh/box.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <sstream>
+
+namespace
+{
+
+using namespace rpc;
+using contact::ContactOptions;
+using contact::Normal;
+using contact::Obstacle;
+using contact::Support;
+using rpc::test::expect_error;
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+fem::DirichletCondition hold(const std::string &side, const std::vector<int> &components)
+{
+  fem::DirichletCondition condition{side, side, {}};
+  for (const int c : components) condition.displacement[c] = ScalarField(0.);
+  return condition;
+}
+
+ContactOptions on(const std::string &side, const double yield)
+{
+  ContactOptions options;
+  options.path = "Contact->Sides->" + side;
+  options.side = side;
+  options.yield_stress = ScalarField(yield);
+  return options;
+}
+
+fem::TractionLoad pull(const std::string &side, const double x, const double y, const double z = 0)
+{
+  return {side, side, {ScalarField(x), ScalarField(y), ScalarField(z)}};
+}
+
+/// A body, what holds it, and what acts on it.
+struct Scene {
+  std::shared_ptr<const mesh::Mesh> mesh;
+  std::vector<fem::DirichletCondition> held;
+  std::vector<ContactOptions> foundations;
+  std::vector<fem::TractionLoad> tractions;
+
+  Support check() const
+  {
+    const auto d = fem::discretize(mesh);
+    const auto dirichlet = fem::dirichlet_dofs(d, held);
+    Vector load(d.owned_dofs);
+    for (const auto &t : tractions) fem::add_traction(d, mesh->side(t.side, "test"), t.traction, "test", load);
+    return contact::check_support(d, dirichlet, load, contact::contact_nodes(d, foundations, dirichlet), foundations);
+  }
+  void refuses(const std::initializer_list<std::string> &parts) const
+  {
+    expect_error(ExitCode::no_solution, parts, [&] { check(); });
+  }
+};
+
+/// 4 m x 1 m, its lower left corner at the origin, scaled.
+std::shared_ptr<const mesh::Mesh> plate(const double scale = 1)
+{
+  const mesh::BoxOptions box{{0, 0}, {4 * scale, scale}, {8, 3}, {2, 1}};
+  return std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+}
+std::shared_ptr<const mesh::Mesh> brick()
+{
+  const mesh::BoxOptions box{{0, 0, 0}, {2, 1, 1}, {4, 2, 3}, {3, 1}};
+  return std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+}
+
+TEST(Support, OfAClampedBodyNeedsNoContact)
+{
+  for (const auto &mesh : {plate(), brick()}) {
+    const Support s = Scene{mesh, {hold("left", {0, 1, 2})}, {on("bottom", 1)}, {pull("top", 0, -1e9)}}.check();
+    EXPECT_FALSE(s.by_contact_only);
+    EXPECT_EQ(s.num_parts, 1);
+  }
+}
+
+TEST(Support, OfARolledBodyIsTheFoundationUpToItsLimit)
+{
+  // 4 m that carry 25 N/m^2 each, at any size of the body.
+  for (const double scale : {1., 1e-6, 1e6}) {
+    const auto with = [&](const double y) {
+      return Scene{plate(scale), {hold("left", {0})}, {on("bottom", 25)}, {pull("top", 0, y)}};
+    };
+    EXPECT_TRUE(with(-0.99 * 25).check().by_contact_only);
+    EXPECT_TRUE(with(-1e-9).check().by_contact_only);
+    const Scene too_much = with(-1.01 * 25);
+    std::ostringstream pushed, carried;
+    pushed << 101 * scale << " [N/m] along (0, -1)";
+    carried << "carries at most " << 100 * scale << " [N/m]";
+    too_much.refuses({"support: the load pushes the body against side \"bottom\"", pushed.str(), carried.str(),
+                      "\"Contact->Sides->bottom->Yield Stress\""});
+    with(-25).refuses({"all that the foundation carries", "translation along (0, -1)", "not determined"});
+    with(1).refuses({"pulls the body away from the foundation", " [N/m] along (0, 1)", "\"Dirichlet\""});
+    with(0).refuses({"nothing presses the body on the foundation against a translation along (0, 1)"});
+  }
+}
+
+TEST(Support, OfARigidFoundationHasNoLimit)
+{
+  const auto with = [](const double y) {
+    return Scene{plate(), {hold("left", {0})}, {on("bottom", inf)}, {pull("top", 0, y)}};
+  };
+  EXPECT_TRUE(with(-1e15).check().by_contact_only);
+  EXPECT_TRUE(with(-1e-15).check().by_contact_only);
+  with(1e-15).refuses({"pulls the body away from the foundation"});
+  with(0).refuses({"nothing presses the body"});
+}
+
+/// A plate on a floor between two walls.
+Scene tipping(const double yield, const double left, const double right) // [Pa] on the halves of its top
+{
+  Scene scene{plate(), {}, {on("bottom", yield)}, {}};
+  scene.tractions = {{"top",
+                      "top",
+                      {ScalarField(0.), ScalarField("f", [=](const Point &x) { return x[0] < 2 ? -left : -right; }),
+                       ScalarField(0.)}}};
+  for (const char *wall : {"left", "right"}) scene.foundations.push_back(on(wall, inf));
+  return scene;
+}
+
+TEST(Support, OfABodyBetweenWallsIsJudgedInEveryDirection)
+{
+  // Walls keep it from moving sideways as far as they press: without a load they press on neither side, but both hold.
+  EXPECT_TRUE(tipping(inf, 3, 3).check().by_contact_only);
+  EXPECT_TRUE(tipping(10, 3, 3).check().by_contact_only);
+  tipping(10, 12, 12).refuses({"against side \"bottom\"", "48 [N/m] along (0, -1)", "at most 40 [N/m]"});
+  tipping(10, -3, -3).refuses({"pulls the body away", "12 [N/m] along (0, 1)"});
+}
+
+/// A plate with a floor under x < 2 alone, on which it cannot slide, with 10 N/m on 1 m of its top around x = at.
+Scene overhanging(const double yield, const double at)
+{
+  Scene scene{test::distributed(test::drawn({"aabb"})), {hold("a bottom", {0})}, {on("a bottom", yield)}, {}};
+  const auto share = [at](const Point &x) { return std::abs(x[0] - at) < 0.5 ? -10. : 0.; };
+  for (const char *top : {"a top", "b top"})
+    scene.tractions.push_back({top, top, {ScalarField(0.), ScalarField("f", share), ScalarField(0.)}});
+  return scene;
+}
+
+TEST(Support, OfAnEccentricLoadIsAMatterOfItsMoment)
+{
+  EXPECT_TRUE(overhanging(inf, 0.5).check().by_contact_only);
+  EXPECT_TRUE(overhanging(inf, 1.5).check().by_contact_only);
+  overhanging(inf, 3.5).refuses(
+      {"turns the body away from the foundation: about (2, 0), clockwise, its moment is 15 [N m/m]"});
+  EXPECT_TRUE(overhanging(20, 0.5).check().by_contact_only);
+  // 2.6 + 5.2 + 2.6 N at 0, 1, 2 m would carry 10 N, though not at 0.5 m
+  overhanging(5.2, 0.5).refuses({"the load turns the body about (", "), counterclockwise, with a moment of", "[N m/m]",
+                                 "the foundation of side \"a bottom\" carries at most"});
+}
+
+TEST(Support, OfABodyThatMaySlideIsNone)
+{
+  Scene{plate(), {}, {on("bottom", 5)}, {pull("top", 1, -1)}}.refuses(
+      {"nothing holds the body against translation along (1, 0), along which the load is 4 [N/m]",
+       "Prescribe a displacement"});
+  Scene{plate(), {}, {}, {}}.refuses({"translation along (1, 0); translation along (0, 1); rotation about (2, 0.5)"});
+  Scene{plate(), {hold("left", {0})}, {}, {pull("top", 0, 2)}}.refuses(
+      {"translation along (0, 1), along which the load is 8 [N/m]"});
+}
+
+TEST(Support, OfABodyWithForgottenZIsNone)
+{
+  Scene{brick(), {hold("left", {0}), hold("bottom", {1})}, {on("top", 5)}, {pull("right", 0, 0, 3)}}.refuses(
+      {"nothing holds the body against translation along (0, 0, 1), along which the load is 3 [N]."});
+}
+
+/// A brick on a floor, kept in the plane by one roller each way.
+Scene brick_on_floor(const double yield, const std::function<double(const Point &)> &down)
+{
+  Scene scene{brick(), {hold("left", {0}), hold("back", {2})}, {on("bottom", yield)}, {}};
+  scene.tractions = {{"top", "top", {ScalarField(0.), ScalarField("f", down), ScalarField(0.)}}};
+  return scene;
+}
+
+TEST(Support, OfABrickOnAFloorCountsForces)
+{
+  const auto even = [](const double p) { return [p](const Point &) { return -p; }; };
+  EXPECT_TRUE(brick_on_floor(3, even(2.97)).check().by_contact_only);
+  brick_on_floor(3, even(3.03)).refuses({"6.06 [N] along (0, -1, 0)", "at most 6 [N]"});
+}
+
+TEST(Support, OfABrickThatMayTipOverAnEdgeCountsMoments)
+{
+  // 2 N down in the middle, 1 m from the edge x = 2, and a force in x at a height of 1 m; it cannot slide.
+  const auto with = [](const double force) {
+    return Scene{brick(), {hold("bottom", {0, 2})}, {on("bottom", inf)}, {pull("top", force / 2, -1)}};
+  };
+  EXPECT_TRUE(with(1.99).check().by_contact_only);
+  with(2.01).refuses({"away from the foundation: about the axis through (2, 0, 0.5) along (0, 0, -1)", "0.01 [N m]"});
+}
+
+TEST(Support, OfABrickBetweenFloorAndWallsNeedsNoDirichletCondition)
+{
+  Scene scene{brick(), {}, {on("bottom", 3)}, {pull("top", 0, -1)}};
+  for (const char *side : {"left", "right", "back", "front"}) scene.foundations.push_back(on(side, inf));
+  EXPECT_TRUE(scene.check().by_contact_only);
+  scene.tractions = {pull("top", 0, 1)};
+  scene.refuses({"pulls the body away", "2 [N] along (0, 1, 0)"});
+}
+
+TEST(Support, OfEachPartIsItsOwn)
+{
+  // The left block is clamped, the right one stands on rollers.
+  Scene scene{test::distributed(test::drawn({"aa.bb", "aa.bb"})),
+              {hold("a left", {0, 1}), hold("b right", {0})},
+              {on("a bottom", 5), on("b bottom", 7)},
+              {pull("b top", 0, -6.93)}};
+  const Support s = scene.check();
+  EXPECT_TRUE(s.by_contact_only);
+  EXPECT_EQ(s.num_parts, 2);
+  scene.tractions = {pull("b top", 0, -7.07)};
+  scene.refuses({"the part in block \"b\" (4 cells around (4, 1)) against side \"b bottom\"", "14.14 [N/m]", "14 [N/m]",
+                 "\"Contact->Sides->b bottom->Yield Stress\""});
+  scene.held.pop_back();
+  scene.tractions = {pull("b top", 0, -1)};
+  scene.refuses({"nothing holds the part in block \"b\"", "translation along (1, 0)."});
+}
+
+TEST(Support, OfAWedgeInAVShapedFoundationNeedsNoDirichletCondition)
+{
+  // Normals that meet in three different points hold all motions of a body that is pressed into them.
+  auto left = on("left", inf), right = on("right", inf);
+  left.normal = right.normal = Normal::fixed;
+  left.direction = {-0.8, -0.6, 0};
+  right.direction = {0.8, -0.6, 0};
+  const Scene scene{plate(), {}, {left, right}, {pull("top", 0, -1)}};
+  EXPECT_TRUE(scene.check().by_contact_only);
+  Scene aside = scene;
+  aside.tractions = {pull("top", 0.2, -1)};
+  EXPECT_TRUE(aside.check().by_contact_only);
+  aside.tractions = {pull("top", 2, -1)};
+  aside.refuses({"away from the foundation"});
+  aside.tractions = {};
+  aside.refuses({"nothing presses the body on the foundation"});
+}
+
+TEST(Support, OfABallInABowlIsNotDetermined)
+{
+  auto floor = on("bottom", inf);
+  floor.obstacle = {Obstacle::Kind::circle, {2, 5, 0}, {}, 6, true};
+  floor.normal = Normal::foundation;
+  Scene{plate(), {}, {floor}, {pull("top", 0, -1)}}.refuses({"nothing holds the body against rotation about (2, 5)"});
+}
+
+TEST(Support, SeesAWeakFloorBesideAStrongWall)
+{
+  // Half of the weight leans on a slope that is all but rigid.
+  auto slope = on("left", 1e14), floor = on("bottom", 1);
+  slope.normal = Normal::fixed;
+  slope.direction = {-1, 0, 0};
+  const Scene scene{plate(), {hold("right", {0})}, {slope, floor}, {pull("top", 0, -0.9)}};
+  EXPECT_TRUE(scene.check().by_contact_only);
+  Scene heavy = scene;
+  heavy.tractions = {pull("top", 0, -1.1)};
+  heavy.refuses({"side \"bottom\"", "4.4 [N/m]", "4 [N/m]"});
+}
+
+} // namespace

@@ -1,0 +1,156 @@
+#include "rpc/contact/uzawa.hpp"
+
+#include "scene.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+using contact::Certificate;
+using contact::MinimizeResult;
+using contact::UzawaOptions;
+using contact::UzawaResult;
+using contact::UzawaTest;
+
+constexpr double given_penalty = 40;
+
+/// The KKT residual of each iteration, the last one for all that follow.
+using Residuals = std::vector<double>;
+
+/// Uzawa with a minimization and certificates of our own making.
+struct Stubbed {
+  Scene scene{given_penalty};
+  RCP<Vector> u = scene.vector(0, 0), step = scene.vector(0.05, 0.4);
+  UzawaOptions options;
+  std::vector<double> judged;    ///< |u|_inf that each certificate was asked for
+  std::vector<double> penalties; ///< the largest one at each minimization
+  int reports = 0;
+
+  UzawaResult run(const Residuals &residuals, const MinimizeResult &inner, const bool move = false)
+  {
+    const auto minimize = [&, inner, move](const int iteration) {
+      EXPECT_EQ(iteration, static_cast<int>(penalties.size()) + 1);
+      penalties.push_back(largest_penalty());
+      if (move) u->update(iteration, *step, 1.);
+      return inner;
+    };
+    const auto certify = [&, residuals](const Vector &from_0) {
+      judged.push_back(from_0.normInf());
+      Certificate c;
+      c.kkt_residual = judged.size() <= residuals.size() ? residuals[judged.size() - 1] : residuals.back();
+      return c;
+    };
+    return contact::uzawa(*scene.functional, *u, minimize, certify, options, [&](const UzawaResult &) { ++reports; });
+  }
+  double largest_penalty() const
+  {
+    const auto penalty = to_host(scene.functional->contact().penalty);
+    double largest = 0;
+    for (std::size_t i = 0; i < penalty.extent(0); ++i) largest = std::max(largest, penalty(i));
+    return max_all(scene.d.mesh->comm(), largest);
+  }
+};
+
+const MinimizeResult converged{true, 3, ""}, stuck{false, 7, "rounding has the last word"};
+
+TEST(Uzawa, StopsAtTheFirstCertificateThatHolds)
+{
+  Stubbed stubbed;
+  const auto result = stubbed.run({1e-3, 1e-5, 1e-9}, converged);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.iterations, 3);
+  EXPECT_EQ(stubbed.reports, 3);
+  EXPECT_EQ(result.newton_iterations, (std::vector<int>{3, 3, 3}));
+  EXPECT_EQ(result.certificate.kkt_residual, 1e-9);
+  EXPECT_EQ(stubbed.largest_penalty(), given_penalty); // fast enough: nothing to raise
+}
+
+TEST(Uzawa, AMinimizationThatFailedDoesNotMatterWhereTheCertificateHolds)
+{
+  Stubbed stubbed;
+  const auto result = stubbed.run({1e-9}, stuck);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.iterations, 1);
+  EXPECT_EQ(result.reason.find(stuck.reason), std::string::npos) << result.reason;
+}
+
+TEST(Uzawa, RaisesThePenaltyWhereAnUpdateLeavesMoreThanATenth)
+{
+  Stubbed stubbed;
+  stubbed.options.max_iterations = 5;
+  const auto result = stubbed.run({1, 0.05, 0.006, 0.0001, 0.0001}, converged);
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.reason.find("5 Uzawa iterations were not enough"), std::string::npos) << result.reason;
+  const double first = stubbed.penalties[0], raised = stubbed.penalties[3];
+  EXPECT_EQ(stubbed.penalties, (std::vector<double>{first, first, first, raised, raised}));
+  EXPECT_GT(raised, 1e3 * first);
+  EXPECT_GT(stubbed.largest_penalty(), raised); // the last iteration was slow again
+}
+
+TEST(Uzawa, OneIterationIsNotSlow)
+{
+  Stubbed stubbed;
+  stubbed.options.max_iterations = 1;
+  stubbed.run({1}, converged);
+  EXPECT_EQ(stubbed.largest_penalty(), given_penalty);
+}
+
+TEST(Uzawa, GoesOnFromAMinimizationThatFailedAsLongAsThatHelps)
+{
+  Stubbed stubbed;
+  const auto result = stubbed.run({1e-2, 5e-4, 2e-5, 1e-6, 5e-8, 1e-9}, stuck);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.iterations, 6);
+}
+
+TEST(Uzawa, EndsWithTheReasonOfTheMinimizationWhenNothingIsLeftToRaise)
+{
+  Stubbed stubbed;
+  const auto result = stubbed.run({1e-3}, stuck);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.reason, stuck.reason);
+  EXPECT_EQ(result.iterations, 5); // 40 -> 1e5, 1e7, 1e8 times the own stiffness
+  EXPECT_EQ(stubbed.penalties[4], stubbed.largest_penalty());
+  EXPECT_LT(stubbed.penalties[3], stubbed.penalties[4]);
+}
+
+TEST(Uzawa, EndsAtOnceWhereNumbersAreNotFinite)
+{
+  Stubbed stubbed;
+  const auto result = stubbed.run({std::numeric_limits<double>::quiet_NaN()}, stuck);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.reason, stuck.reason);
+  EXPECT_EQ(result.iterations, 1);
+}
+
+TEST(Uzawa, CertificatesAndTheResultAreDisplacementsFromZero)
+{
+  Stubbed stubbed;
+  const auto result = stubbed.run({1e-3, 1e-5, 1e-9}, converged, true); // moves by 1, 2, 3 steps
+  EXPECT_EQ(result.iterations, 3);
+  const double length = stubbed.step->normInf();
+  ASSERT_EQ(stubbed.judged.size(), 3u);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(stubbed.judged[k], (k + 1) * (k + 2) / 2 * length, 1e-14 * length);
+  stubbed.u->update(-6., *stubbed.step, 1.);
+  EXPECT_LT(stubbed.u->normInf(), 1e-14 * length);
+}
+
+TEST(Uzawa, ThePapersTestAsksForMultipliersAtRestAsWell)
+{
+  Stubbed stubbed;
+  stubbed.options.test = UzawaTest::multiplier_change;
+  stubbed.u->assign(*stubbed.step);
+  const auto result = stubbed.run({1e-9}, converged);
+  EXPECT_TRUE(result.converged);
+  EXPECT_GT(result.iterations, 1);
+  EXPECT_LT(result.multiplier_change, stubbed.options.tolerance);
+}
+
+} // namespace
