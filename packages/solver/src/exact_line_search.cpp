@@ -9,6 +9,9 @@
 namespace rpc::solver
 {
 
+// The step of a quadratic is 1; longer ones say that the Hessian is too stiff.
+constexpr double long_step = 1.1;
+
 double exact_step(const contact::LineModel &line)
 {
   const double start = line.at(0).slope;
@@ -42,6 +45,7 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
   const auto line = from.context().functional.along(tpetra(from.getX()), tpetra(direction), tpetra(from.getF()));
   step = exact_step(line);
   from.context().step_length = step;
+  if (step > long_step) from.context().functional.weaken_springs();
   group.computeX(from, direction, step);
   if (!(step > 0) && from.context().failure.empty())
     from.context().failure = "the functional does not fall along the Newton direction";

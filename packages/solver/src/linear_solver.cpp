@@ -1,6 +1,8 @@
 #include "rpc/solver/linear_solver.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/finite.hpp"
+#include "rpc/core/interrupt.hpp"
 #include "rpc/core/parameters.hpp"
 
 #include <BelosSolverFactory.hpp>
@@ -13,16 +15,47 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 namespace rpc::solver
 {
 namespace
 {
 
+// CG iterations after which a stronger preconditioner takes over, and up to how many unknowns that is a factorization.
+constexpr int patience = 150;
+constexpr GO most_direct_rows = 100000;
+
 using Operator = Tpetra::Operator<double, LO, GO, Node>;
 using Preconditioner = MueLu::TpetraOperator<double, LO, GO, Node>;
 using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
 using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
+
+/// Thrown through Belos on all ranks; no std::exception, of which Belos would tell the console.
+struct Interrupted {
+};
+
+/// A preconditioner that now and then looks whether the run is to stop: the solves of a big scene take minutes.
+class Interruptible : public Operator
+{
+public:
+  explicit Interruptible(RCP<const Operator> preconditioner) : preconditioner_(std::move(preconditioner)) {}
+
+  RCP<const Map> getDomainMap() const override { return preconditioner_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return preconditioner_->getRangeMap(); }
+  bool hasTransposeApply() const override { return preconditioner_->hasTransposeApply(); }
+  void apply(const MultiVector &x, MultiVector &y, const Teuchos::ETransp mode, const double alpha,
+             const double beta) const override
+  {
+    constexpr int applications_between = 8; // a sum over all ranks each time
+    if (++applications_ % applications_between == 0 && interrupted(*getDomainMap()->getComm())) throw Interrupted();
+    preconditioner_->apply(x, y, mode, alpha, beta);
+  }
+
+private:
+  RCP<const Operator> preconditioner_;
+  mutable int applications_ = 0;
+};
 
 /// Smoothed aggregation with a polynomial smoother, which is the same on every backend and number of ranks.
 Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_node)
@@ -119,6 +152,7 @@ struct LinearSolver::Impl {
   Teuchos::ParameterList muelu;
   RCP<Preconditioner> preconditioner;
   bool stale = true;
+  bool strengthened = false;
   RCP<LinearProblem> problem;
   RCP<SolverManager> manager;
 };
@@ -134,8 +168,11 @@ Teuchos::ParameterList valid_linear_solver_parameters()
             "What of the multigrid hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
             "tentative prolongator), `RP` (transfer operators).");
   set_pass_through(valid, "Belos", "Handed to Belos as it is.");
-  set_pass_through(valid, "MueLu",
-                   "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing.");
+  set_pass_through(
+      valid, "MueLu",
+      "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing. Where CG takes more "
+      "than 150 iterations, a factorization takes over on one rank up to 100000 unknowns, else a stronger "
+      "smoother, unless the coarse size or the smoother are given here.");
   return valid;
 }
 
@@ -182,6 +219,11 @@ LinearSolver::LinearSolver(LinearSolverOptions options, RCP<CrsMatrix> A, RCP<Mu
 
 LinearSolver::~LinearSolver() = default;
 
+const MultiVector &LinearSolver::coordinates() const
+{
+  return *impl_->coordinates;
+}
+
 void LinearSolver::matrix_changed()
 {
   impl_->stale = true;
@@ -191,7 +233,7 @@ void LinearSolver::set_up()
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
   const double start = Teuchos::Time::wallTime();
-  if (impl_->preconditioner.is_null() || options_.reuse == "none") {
+  if (impl_->preconditioner.is_null() || impl_->muelu.get<std::string>("reuse: type") == "none") {
     Teuchos::ParameterList list = impl_->muelu; // MueLu adds to its list
     list.sublist("user data").set("Coordinates", impl_->coordinates);
     list.sublist("user data").set("Nullspace", impl_->null_space);
@@ -201,7 +243,7 @@ void LinearSolver::set_up()
       if (options_.muelu.numParams() == 0 || counts_.preconditioner_setups > 0) throw;
       throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
     }
-    impl_->problem->setLeftPrec(impl_->preconditioner);
+    impl_->problem->setLeftPrec(rcp(new Interruptible(impl_->preconditioner)));
   } else {
     MueLu::ReuseTpetraPreconditioner(impl_->A, *impl_->preconditioner);
   }
@@ -210,10 +252,48 @@ void LinearSolver::set_up()
   counts_.setup_seconds += Teuchos::Time::wallTime() - start;
 }
 
+double LinearSolver::inverse_energy(const Vector &F)
+{
+  if (!(F.norm2() > 0)) return 0;
+  if (impl_->preconditioner.is_null()) set_up();
+  Vector x(F.getMap());
+  impl_->preconditioner->apply(F, x);
+  return F.dot(x);
+}
+
+/// For nearly incompressible or badly shaped cells, where aggregation misses slow modes: at most once, and not against what
+/// the deck asks for.
+bool LinearSolver::strengthen()
+{
+  for (const char *name : {"coarse: max size", "smoother: type", "smoother: params"})
+    if (options_.muelu.isParameter(name)) return false;
+  if (std::exchange(impl_->strengthened, true)) return false;
+  const GO rows = static_cast<GO>(impl_->A->getGlobalNumRows());
+  if (impl_->A->getComm()->getSize() == 1 && rows <= most_direct_rows) {
+    impl_->muelu.set("coarse: max size", static_cast<int>(rows) + 1);
+    impl_->muelu.set("reuse: type", "none");
+  } else {
+    Teuchos::ParameterList &smoother = impl_->muelu.sublist("smoother: params");
+    smoother.set("chebyshev: degree", 8);
+    smoother.set("chebyshev: ratio eigenvalue", 50.);
+  }
+  impl_->preconditioner = Teuchos::null;
+  impl_->stale = true;
+  return true;
+}
+
 LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const double tolerance)
+{
+  const Result result = try_to_solve(b, x, tolerance);
+  if (result.iterations <= patience || result.broken || !strengthen() || result.converged) return result;
+  return try_to_solve(b, x, tolerance);
+}
+
+LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, const double tolerance)
 {
   Result result;
   try {
+    if (interrupted(*impl_->A->getComm())) throw Interrupted();
     if (impl_->stale) set_up();
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
@@ -229,6 +309,15 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const doubl
     if (!result.converged)
       result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(impl_->manager->achievedTol()) +
                       " after " + std::to_string(result.iterations) + " iterations";
+    if (!std::isfinite(x.norm2())) {
+      result.converged = false;
+      result.broken = true;
+      result.reason = describe_not_finite("the solution of linear solve " + std::to_string(counts_.iterations.size()),
+                                          x, *impl_->coordinates);
+    }
+  } catch (const Interrupted &) {
+    result.broken = true;
+    result.reason = interruption();
   } catch (const Error &) {
     throw;
   } catch (const std::bad_alloc &) { // on this rank alone

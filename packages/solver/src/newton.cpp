@@ -1,6 +1,7 @@
 #include "rpc/solver/newton.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/interrupt.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/solver/exact_line_search.hpp"
 #include "rpc/solver/newton_group.hpp"
@@ -32,7 +33,8 @@ public:
   {
     status_ = NOX::StatusTest::Unconverged;
     if (solver.getNumIterations() > 0) {
-      ratio_ = context_->direction_norm / solver.getSolutionGroup().getX().norm();
+      const Vector u = context_->functional.displacement(tpetra(solver.getSolutionGroup().getX()));
+      ratio_ = context_->direction_norm / u.norm2();
       if (ratio_ < tolerance_) status_ = NOX::StatusTest::Converged;
     }
     return status_;
@@ -59,11 +61,11 @@ public:
   {
     const auto &group = solver.getSolutionGroup();
     const auto states = context_->functional.count_states(tpetra(group.getX()));
-    const bool falls = solver.getNumIterations() == 0 || group.getNormF() < 0.9 * residual_;
+    const bool falls = solver.getNumIterations() == 0 || group.getNormF() < 0.9 * least_residual_;
     const bool same = states.stuck == states_.stuck && states.open == states_.open && context_->step_length > 0.5;
     idle_steps_ = same && !falls ? idle_steps_ + 1 : 0;
     status_ = idle_steps_ >= 2 ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
-    residual_ = group.getNormF();
+    least_residual_ = falls || !same ? group.getNormF() : std::min(least_residual_, group.getNormF());
     states_ = states;
     if (status_ == NOX::StatusTest::Failed && context_->failure.empty())
       context_->failure = "the residual stagnates: the scene is too ill-conditioned for this accuracy";
@@ -77,9 +79,29 @@ public:
 
 private:
   RCP<NewtonContext> context_;
-  double residual_ = 0;
+  double least_residual_ = 0; // since the states last changed
   contact::StateCounts states_;
   int idle_steps_ = 0;
+  NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
+};
+
+/// Fails as soon as the run is to stop.
+class InterruptTest : public NOX::StatusTest::Generic
+{
+public:
+  NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic &solver, NOX::StatusTest::CheckType) override
+  {
+    const auto &u = tpetra(solver.getSolutionGroup().getX());
+    status_ = interrupted(*u.getMap()->getComm()) ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
+    return status_;
+  }
+  NOX::StatusTest::StatusType getStatus() const override { return status_; }
+  std::ostream &print(std::ostream &out, const int indent) const override
+  {
+    return out << std::string(indent, ' ') << status_ << "no interrupt\n";
+  }
+
+private:
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
@@ -144,6 +166,7 @@ RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const R
   using namespace NOX::StatusTest;
   const RCP<Combo> tests = rcp(new Combo(Combo::OR));
   tests->addStatusTest(rcp(new FiniteValue));
+  tests->addStatusTest(rcp(new InterruptTest));
   if (options.nox.isSublist("Status Tests")) { // the user's, instead of ours
     Teuchos::ParameterList list = options.nox.sublist("Status Tests");
     tests->addStatusTest(buildStatusTests(list, NOX::Utils()));
@@ -162,6 +185,7 @@ RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const R
 int predict(NewtonContext &context, Vector &u)
 {
   Vector F(u.getMap()), d(u.getMap());
+  if (context.functional.take_hessian_change()) context.linear_solver.matrix_changed();
   context.functional.piece_gradient(u, F);
   const auto solved = context.linear_solver.solve(F, d, std::min(0.1, 0.1 * context.target_residual / F.norm2()));
   context.linear_iterations = solved.iterations;

@@ -1,5 +1,7 @@
 #include "rpc/solver/newton_group.hpp"
 
+#include "rpc/core/finite.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -57,13 +59,17 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeF()
   if (has_F_) return Ok;
   context_->functional.gradient(u_.data(), F_.data());
   norm_F_ = F_.data().norm2();
+  if (!std::isfinite(norm_F_) && context_->failure.empty())
+    context_->failure = describe_not_finite("the forces on the nodes, contact forces included", F_.data(),
+                                            context_->linear_solver.coordinates());
   has_F_ = true;
   return Ok;
 }
 
 NOX::Abstract::Group::ReturnType NewtonGroup::computeJacobian()
 {
-  if (context_->functional.update_hessian(u_.data()) > 0) context_->linear_solver.matrix_changed();
+  context_->functional.update_hessian(u_.data());
+  if (context_->functional.take_hessian_change()) context_->linear_solver.matrix_changed();
   has_jacobian_ = true;
   return Ok;
 }

@@ -1,8 +1,7 @@
-#include "rpc/fem/elasticity.hpp"
-#include "rpc/mesh/box.hpp"
-#include "rpc/solver/exact_line_search.hpp"
-#include "rpc/solver/linear_solver.hpp"
 #include "rpc/solver/newton.hpp"
+
+#include "beam.hpp"
+#include "rpc/solver/exact_line_search.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <algorithm>
@@ -18,6 +17,9 @@ namespace
 using namespace rpc;
 using contact::ContactNodes;
 using contact::LineModel;
+using rpc::test::Beam;
+using rpc::test::below;
+using rpc::test::ignore;
 
 /// A line model of given kinks, all on rank 0; the elastic part is slope(0) and curvature.
 struct Line {
@@ -77,42 +79,10 @@ TEST(ExactStep, IsZeroWithoutDescent)
   EXPECT_EQ(solver::exact_step(line.model(std::nan(""), 2)), 0);
 }
 
-/// The paper's beam at 1/h = 16, xi = 16, where the states are many.
-struct Beam {
-  fem::Discretization d;
-  std::shared_ptr<contact::SmoothedFunctional> functional;
-  std::shared_ptr<solver::LinearSolver> linear;
-  RCP<Vector> u;
-
-  explicit Beam(const solver::LinearSolverOptions &options = {}, const double xi = 16)
-  {
-    mesh::BoxOptions box{{0, 0}, {5, 1}, {80, 16}, {2, 1}};
-    d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
-    std::vector<fem::DirichletCondition> held;
-    for (const char *side : {"left", "right"}) held.push_back({side, side, {ScalarField(0.), ScalarField(0.)}});
-    const auto load = rcp(new Vector(d.owned_dofs));
-    const ScalarField push("push", [](const Point &x) { return -20 * std::sin(std::acos(-1.) * x[0] / 5); });
-    fem::add_traction(d, d.mesh->side("top", ""), {ScalarField(0.), push, ScalarField(0.)}, "Traction", *load);
-    auto problem = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, fem::Material{2000, 0.3}), load,
-                                            fem::dirichlet_dofs(d, held));
-    contact::ContactOptions contact;
-    contact.side = "bottom";
-    contact.yield_stress = ScalarField(xi);
-    auto nodes = contact::contact_nodes(d, {contact}, problem.dirichlet);
-    functional = std::make_shared<contact::SmoothedFunctional>(d.mesh->owned_nodes->getComm(), std::move(problem),
-                                                               std::move(nodes));
-    linear = std::make_shared<solver::LinearSolver>(options, functional->hessian(), fem::node_coordinates(d),
-                                                    fem::rigid_body_modes(d));
-    u = rcp(new Vector(d.owned_dofs));
-  }
-};
-
-void ignore(const solver::NewtonStep &) {}
-
 TEST(Newton, FullStepsCycleWhereExactStepsConverge)
 {
   for (const double xi : {16., 18.}) {
-    Beam full({}, xi), exact({}, xi);
+    Beam full({}, below(ScalarField(xi), 1e8)), exact({}, below(ScalarField(xi), 1e8));
     solver::NewtonOptions full_steps;
     full_steps.nox.sublist("Line Search").set("Method", "Full Step");
     full_steps.max_iterations = 30;
@@ -186,6 +156,21 @@ TEST(LinearSolver, SetsUpAgainOnlyWhenTheMatrixHasChanged)
   beam.functional->hessian()->apply(x, r);
   r.update(1., *beam.functional->problem().load, -1.);
   EXPECT_LT(r.norm2(), 1.01e-8 * beam.functional->problem().load->norm2());
+}
+
+TEST(LinearSolver, InverseEnergyIsThatOfASolveUpToOneMultigridCycle)
+{
+  Beam beam;
+  const Vector &F = *beam.functional->problem().load;
+  Vector x(F.getMap()), zero(F.getMap());
+  EXPECT_EQ(beam.linear->inverse_energy(zero), 0);
+  EXPECT_TRUE(beam.linear->solve(F, x, 1e-8).converged);
+  const double exact = F.dot(x), estimate = beam.linear->inverse_energy(F);
+  EXPECT_GT(estimate, 0.5 * exact);
+  EXPECT_LT(estimate, 1.5 * exact);
+  Vector tenfold(F, Teuchos::Copy);
+  tenfold.scale(-10.);
+  EXPECT_NEAR(beam.linear->inverse_energy(tenfold), 100 * estimate, 1e-10 * 100 * estimate);
 }
 
 TEST(LinearSolver, StopsEarlyWhereLessAccuracyIsAskedFor)

@@ -11,10 +11,9 @@ namespace rpc::solver
 /// Ends when a choice of states confirms the last one, which is then the solution up to what the penalty leaves to a
 /// multiplier update; or, unconfirmed, after some steps or when states come back: nothing is lost then, for Newton with
 /// its line search goes on from wherever this ends.
-/// @param stiffness_scale  E / diameter [Pa/m]; multiples of it weigh penetration against pressure in the choice
-/// @param report           called after each step
+/// @param report  called after each step
 /// @return number of steps, each one linear solve
-int find_states(contact::SmoothedFunctional &functional, LinearSolver &linear_solver, Vector &u, double stiffness_scale,
+int find_states(contact::SmoothedFunctional &functional, LinearSolver &linear_solver, Vector &u,
                 const NewtonOptions &options, const std::function<void(const NewtonStep &)> &report);
 
 } // namespace rpc::solver

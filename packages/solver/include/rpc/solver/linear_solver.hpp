@@ -57,12 +57,18 @@ public:
   /// @param tolerance  |r| / |b|; never taken below the options' one
   Result solve(const Vector &b, Vector &x, double tolerance);
 
+  /// About F . A^-1 F: one multigrid cycle stands for A^-1. 0 where F is 0; collective.
+  double inverse_energy(const Vector &F);
+
   void matrix_changed();
   const LinearSolverCounts &counts() const { return counts_; }
   double tolerance() const { return options_.tolerance; }
+  const MultiVector &coordinates() const; ///< (nodes; dim) [m]
 
 private:
   void set_up();
+  bool strengthen();
+  Result try_to_solve(const Vector &b, Vector &x, double tolerance);
 
   struct Impl;
   LinearSolverOptions options_;

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "rpc/fem/elasticity.hpp"
+#include "rpc/mesh/box.hpp"
+#include "rpc/solver/linear_solver.hpp"
+#include "rpc/solver/newton.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace rpc::test
+{
+
+/// The beam's foundation.
+inline contact::ContactOptions below(const ScalarField &xi, const double penalty,
+                                     const ScalarField &gap = ScalarField(0.))
+{
+  contact::ContactOptions contact;
+  contact.side = "bottom";
+  contact.yield_stress = xi;
+  contact.gap = gap;
+  contact.penalty = penalty;
+  return contact;
+}
+
+/// The paper's beam at 1/h = 16, by default with xi = 16, where the states are many.
+struct Beam {
+  fem::Discretization d;
+  std::shared_ptr<contact::SmoothedFunctional> functional;
+  std::shared_ptr<solver::LinearSolver> linear;
+  RCP<Vector> u;
+
+  explicit Beam(const solver::LinearSolverOptions &options = {},
+                const contact::ContactOptions &foundation = below(ScalarField(16.), 1e8))
+  {
+    const fem::Material material{2000, 0.3};
+    mesh::BoxOptions box{{0, 0}, {5, 1}, {80, 16}, {2, 1}};
+    d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
+    std::vector<fem::DirichletCondition> held;
+    for (const char *side : {"left", "right"}) held.push_back({side, side, {ScalarField(0.), ScalarField(0.)}});
+    const auto load = rcp(new Vector(d.owned_dofs));
+    const ScalarField push("push", [](const Point &x) { return -20 * std::sin(std::acos(-1.) * x[0] / 5); });
+    fem::add_traction(d, d.mesh->side("top", ""), {ScalarField(0.), push, ScalarField(0.)}, "Traction", *load);
+    auto problem =
+        fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), load, fem::dirichlet_dofs(d, held));
+    auto nodes = contact::contact_nodes(d, {foundation}, problem.dirichlet, material);
+    functional = std::make_shared<contact::SmoothedFunctional>(d.mesh->owned_nodes->getComm(), std::move(problem),
+                                                               std::move(nodes));
+    linear = std::make_shared<solver::LinearSolver>(options, functional->hessian(), fem::node_coordinates(d),
+                                                    fem::rigid_body_modes(d));
+    u = rcp(new Vector(d.owned_dofs));
+  }
+};
+
+inline void ignore(const solver::NewtonStep &) {}
+
+} // namespace rpc::test
