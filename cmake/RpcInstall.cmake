@@ -9,4 +9,4 @@ install(FILES ${PROJECT_BINARY_DIR}/rpcConfig.cmake ${PROJECT_BINARY_DIR}/rpcCon
               ${CMAKE_CURRENT_LIST_DIR}/RpcDependencies.cmake ${CMAKE_CURRENT_LIST_DIR}/RpcTrilinos.cmake
         DESTINATION ${destination})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/input/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rpc/input
-        FILES_MATCHING PATTERN *.xml PATTERN *.yaml)
+        FILES_MATCHING PATTERN *.xml PATTERN *.yaml PATTERN *.geo)

@@ -6,6 +6,7 @@ find_package(GTest QUIET)
 rpc_require("GoogleTest" libgtest-dev GTest_FOUND)
 
 set(RPC_TEST_THREADS 1 CACHE STRING "OpenMP threads per rank in tests")
+set(RPC_TEST_TIMEOUT_FACTOR 1 CACHE STRING "Factor on the tests' time limits, an integer")
 
 add_library(rpc_test_main OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/test/support/gtest_main.cpp)
 target_include_directories(rpc_test_main PUBLIC ${PROJECT_SOURCE_DIR}/test/support)
@@ -45,7 +46,8 @@ function(rpc_add_run_test name np)
   list(POP_FRONT arg_COMMAND target)
   add_test(NAME ${name}.np${np} COMMAND ${launch} $<TARGET_FILE:${target}> ${arg_COMMAND})
   math(EXPR processors "${np} * ${RPC_TEST_THREADS}")
-  set_tests_properties(${name}.np${np} PROPERTIES LABELS ${arg_LABEL} PROCESSORS ${processors} TIMEOUT ${arg_TIMEOUT}
+  math(EXPR timeout "${arg_TIMEOUT} * ${RPC_TEST_TIMEOUT_FACTOR}")
+  set_tests_properties(${name}.np${np} PROPERTIES LABELS ${arg_LABEL} PROCESSORS ${processors} TIMEOUT ${timeout}
                        ENVIRONMENT "${rpc_test_environment}")
 endfunction()
 

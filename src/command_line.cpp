@@ -166,8 +166,8 @@ Exit codes: 0 converged
             1 internal error
             2 bad input
             3 bad mesh
-            4 not converged
-            5 no solution exists
+            4 not converged, or interrupted
+            5 no solution exists, or none that is determined
 )";
 }
 

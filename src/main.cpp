@@ -2,9 +2,10 @@
 #include "output.hpp"
 #include "report.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/interrupt.hpp"
+#include "rpc/core/message.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parameters.hpp"
-#include "rpc/io/atomic_file.hpp"
 #include "rpc/io/deck.hpp"
 #include "scene.hpp"
 #include "solve.hpp"
@@ -14,6 +15,8 @@
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <Tpetra_Core.hpp>
+#include <csignal>
+#include <cstdio>
 #include <iostream>
 #include <malloc.h>
 
@@ -55,7 +58,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     out << deck << ": nothing wrong with it\n";
     return ExitCode::converged;
   }
-  rpc::on_root(*comm, ExitCode::bad_input, [&] { rpc::io::require_writable_folder(line.output); });
+  rpc::require_writable_results(scene, line.output, *comm);
 
   const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
@@ -76,6 +79,8 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
 int main(int argc, char *argv[])
 {
   keep_freed_memory();
+  rpc::install_interrupt_handlers();
+  std::signal(SIGXFSZ, SIG_IGN); // a file beyond the shell's limit is a write that fails, not the end
   const Teuchos::GlobalMPISession mpi(&argc, &argv, nullptr);
   const bool root = Teuchos::GlobalMPISession::getRank() == 0;
   std::ostream out(root ? std::cout.rdbuf() : nullptr);
@@ -91,14 +96,19 @@ int main(int argc, char *argv[])
     const rpc::CommandLine line = rpc::parse_command_line(arguments.own);
     const auto kokkos = rpc::start_kokkos(arguments.kokkos, root);
     if (arguments.kokkos_help) return 0;
-    return static_cast<int>(run(line, Tpetra::getDefaultComm(), out));
+    const auto comm = Tpetra::getDefaultComm();
+    const ExitCode code = run(line, comm, out);
+    rpc::on_root(*comm, ExitCode::internal_error, [] {
+      RPC_REQUIRE_CODE(std::fflush(stdout) == 0 && !std::ferror(stdout), ExitCode::internal_error,
+                       "output: cannot write to standard output");
+    });
+    return static_cast<int>(code);
   } catch (const rpc::Error &error) { // on all ranks
-    if (root) std::cerr << "rpc: error: " << error.what() << std::endl;
+    if (root) std::cerr << "rpc: error: " << rpc::for_terminal(error.what()) << std::endl;
     return static_cast<int>(error.code());
-  } catch (const std::bad_alloc &) {
-    return stop("out of memory; more ranks on more machines, or fewer cells, help");
   } catch (const std::exception &error) {
-    return stop(rpc::one_line(error.what()).c_str());
+    return stop(rpc::is_out_of_memory(error) ? "out of memory; more ranks on more machines, or fewer cells, help"
+                                             : rpc::for_terminal(rpc::one_line(error.what())).c_str());
   } catch (const char *message) { // NOX throws these
     return stop(message);
   }

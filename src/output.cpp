@@ -15,6 +15,19 @@ namespace rpc
 namespace
 {
 
+/// Where the results of a scene go; empty what is not asked for.
+struct ResultPaths {
+  std::string exodus, csv, json;
+
+  ResultPaths(const Scene &scene, const std::string &folder)
+  {
+    const std::string stem = (std::filesystem::path(folder) / scene.name).string();
+    if (scene.output.exodus) exodus = stem + ".e";
+    if (scene.output.csv && !scene.contact.empty()) csv = stem + ".contact.csv";
+    if (scene.output.json) json = stem + ".json";
+  }
+};
+
 HostView<double *> column(const MultiVector &v, const int stride, const int offset, const LO n, const int col)
 {
   HostView<double *> values("rpc::output::column", n);
@@ -147,6 +160,8 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
     json["reaction_force"][scene.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());
   json["kkt_residual"] = s.uzawa.certificate.kkt_residual;
   json["equilibrium_residual"] = s.uzawa.certificate.equilibrium_residual;
+  json["energy_balance"] = s.uzawa.certificate.energy_balance;
+  json["duality_gap"] = s.uzawa.certificate.duality_gap;
   json["multiplier_change"] = s.uzawa.multiplier_change;
   json["uzawa_iterations"] = s.uzawa.iterations;
   json["newton_iterations"] = s.uzawa.newton_iterations;
@@ -160,30 +175,35 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   return json;
 }
 
+void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm)
+{
+  on_root(comm, ExitCode::bad_input, [&] {
+    io::require_writable_folder(folder);
+    const ResultPaths paths(scene, folder);
+    for (const std::string &path : {paths.exodus, paths.csv, paths.json})
+      if (!path.empty()) io::require_replaceable(path);
+  });
+}
+
 std::vector<std::string> write_results(const Scene &scene, Solution &s, const std::string &folder, const double start)
 {
   const double begin = Teuchos::Time::wallTime();
-  const std::string stem = (std::filesystem::path(folder) / scene.name).string();
+  const ResultPaths paths(scene, folder);
   const mesh::Mesh &mesh = *s.discretization.mesh;
-  std::vector<std::string> files;
-  if (scene.output.exodus) {
-    files.push_back(stem + ".e");
-    io::write_exodus(files.back(), scene.name, mesh, nodal_fields(scene, s));
-  }
-  if (scene.output.csv && !scene.contact.empty()) {
-    files.push_back(stem + ".contact.csv");
-    write_csv(files.back(), scene, s);
-  }
+  if (!paths.exodus.empty()) io::write_exodus(paths.exodus, scene.name, mesh, nodal_fields(scene, s));
+  if (!paths.csv.empty()) write_csv(paths.csv, scene, s);
   const double now = Teuchos::Time::wallTime();
   s.seconds.output = now - begin;
   s.seconds.total = now - start;
-  if (scene.output.json) { // last: its presence says that the others are complete
-    files.push_back(stem + ".json");
+  if (!paths.json.empty()) { // last: its presence says that the others are complete
     // Collective, hence outside. A deck's name may be no valid UTF-8.
     const auto json = summary(scene, s);
     const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-    on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(files.back(), text); });
+    on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.json, text); });
   }
+  std::vector<std::string> files;
+  for (const std::string &path : {paths.exodus, paths.csv, paths.json})
+    if (!path.empty()) files.push_back(path);
   return files;
 }
 

@@ -46,6 +46,8 @@ void ConsoleTable::scene(const Scene &scene, const Solution &solution)
           "note: the normal displacement of %lld contact nodes is prescribed by \"Dirichlet\", which wins over contact "
           "there\n",
           static_cast<long long>(contact.num_fixed));
+  const std::string locking = fem::locking_note(mesh, scene.materials);
+  if (!locking.empty()) print(out_, "note: %s\n", locking.c_str());
   print(out_, "uzawa newton   |F|/|b|     step    open   stuck yielded krylov   time [s]\n");
   out_ << std::flush;
 }
@@ -65,8 +67,9 @@ void ConsoleTable::newton(const solver::NewtonStep &step)
 
 void ConsoleTable::uzawa(const contact::UzawaResult &result)
 {
-  print(out_, "%5d     -- kkt residual %.1e, equilibrium residual %.1e, multiplier change %.1e\n", result.iterations,
-        result.certificate.kkt_residual, result.certificate.equilibrium_residual, result.multiplier_change);
+  const auto &c = result.certificate;
+  print(out_, "%5d     -- kkt %.1e, equilibrium %.1e, energy balance %.1e, duality gap %.1e\n", result.iterations,
+        c.kkt_residual, c.equilibrium_residual, c.energy_balance, c.duality_gap);
   out_ << std::flush;
 }
 
@@ -75,6 +78,9 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
   const bool flat = s.discretization.dim() == 2;
   const auto &c = s.contact.total;
   print(out, "\n%s: %s\n", s.uzawa.converged ? "converged" : "NOT CONVERGED", s.uzawa.reason.c_str());
+  const auto &held = s.uzawa.certificate;
+  print(out, "  certificate         kkt %.1e, equilibrium %.1e, energy balance %.1e, duality gap %.1e\n",
+        held.kkt_residual, held.equilibrium_residual, held.energy_balance, held.duality_gap);
   print(out, "  energy J            %.9g %s\n", s.energy, flat ? "J/m" : "J");
   if (!scene.contact.empty()) {
     print(out, "  contact force       (%.6g, %.6g%s) %s\n", c.force[0], c.force[1],

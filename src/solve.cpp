@@ -1,11 +1,12 @@
 #include "solve.hpp"
 
 #include "report.hpp"
+#include "rpc/core/finite.hpp"
+#include "rpc/core/interrupt.hpp"
 #include "rpc/solver/active_set.hpp"
 
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
-#include <sstream>
 
 namespace rpc
 {
@@ -29,16 +30,25 @@ private:
   double start_;
 };
 
+/// Collective. @throws rpc::Error (bad_input) where numbers overflow, naming what they belong to
 fem::ElasticProblem assemble(const Scene &scene, const fem::Discretization &d)
 {
+  const auto coordinates = [&d] { return fem::node_coordinates(d); };
   auto dirichlet = fem::dirichlet_dofs(d, scene.dirichlet);
+  require_finite(*dirichlet.value, "the displacements that \"Dirichlet\" prescribes", coordinates);
   const auto load = rcp(new Vector(d.owned_dofs));
   fem::add_body_force(d, scene.body_force, "Body Force", *load);
+  require_finite(*load, "the forces of \"Body Force\"", coordinates);
   for (const auto &traction : scene.tractions) {
     const std::string path = "Traction->" + traction.name;
     fem::add_traction(d, d.mesh->side(traction.side, path + "->Side"), traction.traction, path, *load);
+    require_finite(*load, "the forces of \"" + path + "\"", coordinates);
   }
-  return fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, scene.materials), load, std::move(dirichlet));
+  const auto stiffness = fem::assemble_stiffness(d, scene.materials);
+  require_finite(*stiffness, "the stiffness matrix, from \"Material\" and \"Mesh\"", coordinates);
+  auto problem = fem::eliminate_dirichlet(d, stiffness, load, std::move(dirichlet));
+  require_finite(*problem.load, "the forces of prescribed displacements", coordinates);
+  return problem;
 }
 
 /// Forces with which the Dirichlet conditions hold the body.
@@ -67,17 +77,23 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   Solution s;
   {
     const Phase phase("mesh", s.seconds.mesh);
+    throw_if_interrupted(*comm, "before the mesh was made; no results are written");
     s.discretization.mesh = std::make_shared<mesh::Mesh>(mesh::make_mesh(scene.mesh, comm));
   }
   {
     const Phase phase("assembly", s.seconds.assembly);
+    throw_if_interrupted(*comm, "before the assembly; no results are written");
     s.discretization = fem::discretize(s.discretization.mesh);
     fem::ElasticProblem problem = assemble(scene, s.discretization);
-    auto contact = contact::contact_nodes(s.discretization, scene.contact, problem.dirichlet);
+    auto contact = contact::contact_nodes(s.discretization, scene.contact, problem.dirichlet, scene.materials);
+    s.support =
+        contact::check_support(s.discretization, problem.dirichlet, *problem.applied_load, contact, scene.contact);
     s.matrix_assemblies = 1;
     s.u = rcp(new Vector(*problem.dirichlet.value, Teuchos::Copy));
     s.functional = std::make_shared<contact::SmoothedFunctional>(comm, std::move(problem), std::move(contact));
+    if (s.support.by_contact_only) s.functional->hold_by_contact();
   }
+  throw_if_interrupted(*comm, "before the first solve; no results are written");
   const fem::Discretization &d = s.discretization;
   ConsoleTable table(console);
   table.scene(scene, s);
@@ -85,26 +101,22 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     const Phase phase("solve", s.seconds.solve);
     solver::LinearSolver linear(tuned(scene.linear_solver, d.mesh->element), s.functional->hessian(),
                                 fem::node_coordinates(d), fem::rigid_body_modes(d));
-    const double stiffness_scale = scene.materials.largest_youngs_modulus() / mesh::diameter(*d.mesh);
     const auto minimize = [&](const int iteration) {
       const auto report = [&](const solver::NewtonStep &step) { table.newton(step); };
       table.next_uzawa();
       int steps = 0;
       if (iteration == 1 && scene.newton.active_set_start)
-        steps = solver::find_states(*s.functional, linear, *s.u, stiffness_scale, scene.newton, report);
+        steps = solver::find_states(*s.functional, linear, *s.u, scene.newton, report);
       auto result = solver::minimize(*s.functional, linear, s.u, scene.newton, iteration > 1, report);
       result.newton_iterations += steps;
       return result;
     };
-    s.uzawa = contact::uzawa(*s.functional, *s.u, minimize, stiffness_scale, scene.uzawa,
+    const auto certify = [&](const Vector &u) {
+      return contact::certify(d, scene.materials, *s.functional, u,
+                              [&](const Vector &residual) { return linear.inverse_energy(residual); });
+    };
+    s.uzawa = contact::uzawa(*s.functional, *s.u, minimize, certify, scene.uzawa,
                              [&](const contact::UzawaResult &result) { table.uzawa(result); });
-    if (!s.uzawa.converged && s.uzawa.iterations == scene.uzawa.max_iterations && !scene.contact.empty()) {
-      std::ostringstream hint; // the penalty has a unit, and no default fits all
-      const double penalty = scene.contact[0].penalty;
-      hint << "; \"" << scene.contact[0].path << "->Penalty\" = " << penalty << " [Pa/m] is "
-           << penalty / stiffness_scale << " times E/diameter of the body, where 1e3 to 1e9 usually works";
-      s.uzawa.reason += hint.str();
-    }
     s.linear = linear.counts();
     std::vector<const mesh::Side *> sides;
     for (const auto &contact : scene.contact) sides.push_back(&d.mesh->side(contact.side, contact.path + "->Side"));

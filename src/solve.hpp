@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/contact/result.hpp"
+#include "rpc/contact/support.hpp"
 #include "scene.hpp"
 
 #include <array>
@@ -19,6 +20,7 @@ struct PhaseSeconds {
 /// All that a run has found.
 struct Solution {
   fem::Discretization discretization;
+  contact::Support support;
   RCP<Vector> u; ///< (owned dofs) [m]
   std::shared_ptr<contact::SmoothedFunctional> functional;
   contact::UzawaResult uzawa;

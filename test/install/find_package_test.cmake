@@ -28,7 +28,8 @@ foreach(file IN LISTS installed)
 endforeach()
 
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${consumer} -G ${generator} -D CMAKE_PREFIX_PATH=${prefix}
-    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher} -D CMAKE_BUILD_TYPE=${config})
+    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher} -D CMAKE_BUILD_TYPE=${config}
+    "-D CMAKE_CXX_FLAGS=${flags}")
 run(${CMAKE_COMMAND} --build ${consumer} --config ${config})
 run(${consumer}/consumer)
 if(NOT output MATCHES "nodes: 24\n")

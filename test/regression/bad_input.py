@@ -4,7 +4,7 @@ and no file left. On several ranks only what has to be agreed upon among them.""
 import re
 import unittest
 
-from rpc_run import BEAM, RANKS, SMALL, RpcTestCase, files, run_all
+from rpc_run import BEAM, RANKS, SMALL, SOURCE, RpcTestCase, files, run_all
 
 LEVELS = "Linear Solver->MueLu->coarse: max size=20"  # small meshes are solved directly by default
 
@@ -46,6 +46,8 @@ ASSIGNMENTS = [
     (["Mesh->Cells={2000000000,2000000000}"], ['"Mesh->Cells"', "nodes; at most"]),
     (["Mesh->Cells={20}"], ['"Mesh->Lower", "Upper" and "Cells" must be of one length, got 2, 2 and 1']),
     (["Mesh->Upper={0,1}"], ['"Mesh->Upper" must be above "Mesh->Lower"', "0 and 0 in direction 1"]),
+    (["Mesh->Upper={1e308,1}"], ['"Mesh->Upper" must be above "Mesh->Lower" by 1e-50 to 1e+50 [m]', "got 1e+308"]),
+    (["Mesh->Lower={1e10,0}", "Mesh->Upper={10000000000.001,1}"], ['"Mesh->Cells": nodes must be at least 1e-12 times']),
     (["Mesh->Upper={5,-1}"], ['"Mesh->Upper" must be above "Mesh->Lower"', "0 and -1 in direction 2"]),
     # material
     (["Material->Young's Modulus=0"], ['"Material->Young\'s Modulus" must be > 0', "[Pa]", "got 0"]),
@@ -60,7 +62,7 @@ ASSIGNMENTS = [
     (["Contact->Yield Stress=16+*2"], ['"Contact->Yield Stress" = "16+*2"', "at character 4", "Variables: x, y, z"]),
     (["Contact->Yield Stress=2*t"], ['"Contact->Yield Stress" = "2*t"', '"t"', "Variables: x, y, z"]),
     (["Contact->Gap=inf"], ['"Contact->Gap" = "inf" must be a finite number']),
-    (["Contact->Penalty=0"], ['"Contact->Penalty" must be > 0', "[Pa/m]", "got 0"]),
+    (["Contact->Penalty=0"], ['"Contact->Penalty" must be `auto` or a finite number > 0', "[Pa/m]", "got 0"]),
     (["Dirichlet->left->Z=0"], ['"Dirichlet->left->Z"', "2D"]),
     (["Traction->top->Z=3"], ['"Traction->top->Z" must be 0 in 2D', "got 3"]),
     # solvers
@@ -87,6 +89,10 @@ ASSIGNMENTS = [
 
 # The same, where the ranks have to agree on what is wrong.
 COLLECTIVE_ASSIGNMENTS = [
+    (["Mesh->Lower={0,0,0}", "Mesh->Upper={5,1,1}", "Mesh->Cells={880,880,880}"],
+     ['"Mesh->Cells" give a rank', "nodes, which take at least", "GiB", "Use fewer cells"]),
+    (["Contact->Side=" + "n" * 10000], ['"Contact->Side" names the side "nnn', "nnn [...] nnn", "left, right, bottom, top"]),
+    (["Contact->Side=a\nb\x1b[31mc"], ['names the side "a?b?[31mc"']),
     (["Material->Young's Modulus=-3"], ['"Material->Young\'s Modulus" must be > 0', "got -3"]),
     (["Contact->Side=nowhere"], ['"Contact->Side"', '"nowhere"', "left, right, bottom, top"]),
     (["Traction->roof->Y=3"], ['"Traction->roof->Side"', '"roof"', "left, right, bottom, top"]),
@@ -99,6 +105,13 @@ COLLECTIVE_ASSIGNMENTS = [
     (["Traction->top->Y=log(4.5-x)"], ['"Traction->top->Y" = "log(4.5-x)" must be a finite number', "got nan at (4.", ", 1)"]),
     (["Traction->top->Y=1/(x>4)"], ['"Traction->top->Y" = "1/(x>4)" must be a finite number', "got inf at (0.", ", 1)"]),
     (["Body Force->Y=1/(x<4)"], ['"Body Force->Y" = "1/(x<4)" must be a finite number', "got inf at (4."]),
+    (["Traction->top->Y=-1e300"], ['the forces of "Traction->top": ', "in direction Y of the node at (", "units"]),
+    (["Body Force->Y=-1e300*(1+x)"], ['the forces of "Body Force": ', "in direction Y of the node at ("]),
+    (["Material->Young's Modulus=1e308"], ["not finite appeared first in the stiffness matrix", "node at (", "units"]),
+    (["Material->Young's Modulus=1e300"], ["squares overflow appeared first in the stiffness matrix", "node at ("]),
+    (["Mesh->Upper={1e200,1e200}"], ['"Mesh->Upper" must be above "Mesh->Lower" by 1e-50 to 1e+50 [m]', "got 1e+200 in direction 1"]),
+    (["Dirichlet->left->X=1e300"], ['the displacements that "Dirichlet" prescribes', "1e+300 in direction X of the node at (0, "]),
+    (["Dirichlet->left->X=1e153", "Material->Young's Modulus=1e10"], ["forces of prescribed displacements"]),
     (["NOX->Line Search->Method=Guess"], ['"NOX"', '"Method" in "Line Search"']),
     (["NOX->Line Search->Metod=Exact"], ['"NOX->Line Search->Metod"']),
     (["NOX->Line Search->Method=3"], ['"NOX"', '"Method"', '"int"']),
@@ -131,15 +144,15 @@ DECKS = [
     ("empty.yaml", b"", ['empty.yaml" is empty']),
     ("binary.yaml", bytes(range(256)), ["binary.yaml"]),
     ("open.yaml", b"beam:\n  Mesh: {Type: box", ["open.yaml"]),
+    ("deep.xml", b'<ParameterList name="n">' * 20000, ['deep.xml": lists within lists must not be deeper than 100']),
+    ("deep.yaml", b"a: " + b"{a: " * 20000, ['deep.yaml": lists within lists must not be deeper than 100']),
     ("twice.xml", beam("Upper", "Lower"), ['"Mesh->Lower" is given twice']),
-    ("misspelt.xml", beam("Penalty", "Penality"), ['"Contact->Penality"', 'Did you mean "Penalty"?']),
+    ("misspelt.xml", beam("Yield Stress", "Yeild Stress"), ['"Contact->Yeild Stress"', 'Did you mean "Yield Stress"?']),
     ("text.xml", beam(E, E.replace("2000", "stiff")), ['"Material->Young\'s Modulus" = "stiff"', "double"]),
     ("nan.xml", beam(E, E.replace("2000", "nan")), ['"Material->Young\'s Modulus" must be a double, and finite', "nan"]),
     ("type.xml", beam(E, E.replace("double", "string")), ['"Material->Young\'s Modulus" must be a double', "string"]),
     ("flat.xml", beam(E, E.replace("double", "Array(double)").replace("2000", "{2000}")), ["Young's", "array of double"]),
     ("cells.xml", beam("{160, 32}", "{160, 3.2}"), ['"Mesh->Cells" = "{160, 3.2}"', "Array(int)"]),
-    ("free.xml", re.sub(rb'  <ParameterList name="Dirichlet">.*?\n  </ParameterList>\n', b"", BEAM.read_bytes(),
-                        flags=re.S), ["no Dirichlet condition"]),
     ("nothing.xml", beam('<Parameter name="X" type="double" value="0"/>', "").replace(
         b'<Parameter name="Y" type="double" value="0"/>', b""), ['"Dirichlet->left" prescribes nothing']),
 ]
@@ -201,6 +214,24 @@ class BadInput(RpcTestCase):
         self.expect_refusals([("press", ["--input=beam.xml", SMALL, "--set=Contact->Yield Stress=inf",
                                          "--set=Dirichlet->right->Y=-0.1", "--output=out"],
                                NO_SOLUTION, ['side "bottom"', "rigid", "(5, 0)", "0.1 [m]"])])
+
+    def test_what_nothing_holds_has_no_solution(self):
+        free = self.folder / "free.xml"
+        free.write_bytes(re.sub(rb'  <ParameterList name="Dirichlet">.*?\n  </ParameterList>\n', b"", BEAM.read_bytes(),
+                                flags=re.S))
+        block = f"--input={SOURCE / 'test' / 'verification' / 'decks' / 'block.xml'}"
+        cases = [
+            ([f"--input={free}", SMALL], ['nothing holds the body against translation along (1, 0). Prescribe']),
+            ([block, "--set=Traction->top->Y=-10.1"],
+             ['the load pushes the body against side "bottom" with a resultant of 10.1 [N/m] along (0, -1)',
+              "carries at most 10 [N/m]", '"Contact->Yield Stress"']),
+            ([block, "--set=Traction->top->Y=1"], ["pulls the body away from the foundation", "1 [N/m] along (0, 1)"]),
+            ([block, "--set=Traction->top->Y=0", "--set=Contact->Gap=0.1"],
+             ["nothing presses the body on the foundation against a translation along (0, 1)", '"Dirichlet"']),
+            ([block, "--set=Contact->Side="], ["nothing holds the body against translation along (0, 1)", "-4 [N/m]"]),
+        ]
+        self.expect_refusals([(parts[0], [*arguments, "--output=out"], NO_SOLUTION, parts)
+                              for arguments, parts in cases])
 
     @unittest.skipIf(RANKS == 1, "needs several ranks: there are to be more of them than cells")
     def test_more_ranks_than_cells_is_a_bad_mesh(self):

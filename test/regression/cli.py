@@ -198,9 +198,12 @@ class Results(RpcTestCase):
                 self.assertIn(reason, summary["reason"])
                 self.assertEqual(len(files(self.folder / assignment[:3])), 3)
 
-    def test_numbers_that_are_not_finite_do_not_break_the_summary(self):
-        summary = self.solve("--set=Traction->top->Y=-1e300", code=4)  # json.loads has refused nothing
+    def test_numbers_that_are_not_finite_do_not_break_the_summary_and_are_named(self):
+        summary = self.solve("--set=NOX->Active Set Start=false", "--set=NOX->Line Search->Method=Full Step",
+                             "--set=NOX->Line Search->Full Step->Full Step=1.7e308", code=4)  # json.loads has refused nothing
         self.assertFalse(summary["converged"])
+        self.assertRegex(summary["reason"], r"not finite appeared first in the forces on the nodes.* of the node at \([\d.]+, [\d.]+\)")
+        self.assertIsNone(summary["energy_J"])
 
 
 class PassThrough(RpcTestCase):

@@ -1,0 +1,123 @@
+"""SIGINT and SIGTERM: the run stops with what it has found so far; a second signal ends it at once. On several ranks the
+signal goes to the last one alone."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import time
+import unittest
+
+from rpc_run import LAUNCH, PROGRAM, RANKS, RpcTestCase, errors, files, ranks_below
+
+SIGNALS = [signal.SIGINT, signal.SIGTERM]
+NOT_CONVERGED = 4
+RESULTS = [f"out/beam.{end}" for end in ("contact.csv", "e", "json")]
+LARGE = "--set=Mesh->Cells={640,128}"
+NO_MULTIGRID = ["--set=Linear Solver->MueLu->max levels=1", "--set=Linear Solver->MueLu->coarse: type=RELAXATION",
+                "--set=Linear Solver->Maximum Iterations=100000"]
+
+
+def catches(pid, number):
+    status = pathlib.Path(f"/proc/{pid}/status").read_text()
+    mask = next(line.split()[1] for line in status.splitlines() if line.startswith("SigCgt:"))
+    return bool(int(mask, 16) >> (number - 1) & 1)
+
+
+@unittest.skipUnless(pathlib.Path(f"/proc/self/task/{os.getpid()}/children").exists(), "needs Linux' /proc")
+class Interrupt(RpcTestCase):
+    def start(self, *arguments):
+        process = subprocess.Popen(LAUNCH + [PROGRAM, "--input=beam.xml", "--output=out", *arguments], cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL,
+                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_for(self, process, condition):
+        while process.poll() is None:
+            try:
+                found = condition()
+            except (FileNotFoundError, ProcessLookupError):  # a process that has just ended
+                found = False
+            if found:
+                return
+            time.sleep(0.001)
+        self.fail(f"ended before its time\n{process.communicate()}")
+
+    def last_rank(self, process):
+        """The last rank, as soon as all of them catch signals."""
+        def ready():
+            ranks = ranks_below(process.pid)
+            return len(ranks) == RANKS and all(catches(rank, n) for rank in ranks for n in SIGNALS)
+        self.wait_for(process, ready)
+        return max(ranks_below(process.pid))
+
+    def end(self, process, code):
+        out, err = process.communicate(timeout=100)
+        self.assertEqual(process.returncode, code, f"{out}\n{err}")
+        return subprocess.CompletedProcess(process.args, code, out, err)
+
+    def test_before_there_is_anything_to_write_leaves_nothing(self):
+        for number in SIGNALS:
+            with self.subTest(number.name):
+                process = self.start(LARGE)
+                os.kill(self.last_rank(process), number)
+                result = self.end(process, NOT_CONVERGED)
+                self.expect_refusal(result, NOT_CONVERGED, [f"interrupted by {number.name} before", "no results are written"])
+                self.assertEqual(files(self.folder), [])
+
+    def expect_results(self, process, number):
+        result = self.end(process, NOT_CONVERGED)
+        self.assertEqual(errors(result), [])
+        self.assertIn(f"NOT CONVERGED: interrupted by {number.name} in Uzawa iteration 1", result.stdout)
+        self.assertEqual(files(self.folder), RESULTS)
+        summary = json.loads((self.folder / "out" / "beam.json").read_text())
+        self.assertFalse(summary["converged"])
+        self.assertEqual(summary["reason"], f"interrupted by {number.name} in Uzawa iteration 1")
+        return summary
+
+    def interrupt_solve(self, number, line, *arguments):
+        process = self.start(LARGE, *arguments)
+        rank = self.last_rank(process)
+        for text in process.stdout:
+            if text.startswith(line):
+                break
+        os.kill(rank, number)
+        return self.expect_results(process, number)
+
+    def test_in_the_active_set_iteration_results_are_written(self):
+        for number in SIGNALS:
+            with self.subTest(number.name):
+                summary = self.interrupt_solve(number, "    1      1")
+                self.assertGreater(summary["newton_iterations"][0], 0)
+                self.assertGreater(summary["max_penetration"], 0)
+
+    def test_in_newton_results_are_written(self):
+        self.interrupt_solve(signal.SIGTERM, "    1      1", "--set=NOX->Active Set Start=false")
+
+    def test_within_a_long_linear_solve_results_are_written(self):
+        summary = self.interrupt_solve(signal.SIGTERM, "uzawa newton", *NO_MULTIGRID)
+        self.assertEqual(summary["newton_iterations"], [0])
+
+    def test_while_results_are_written_lets_them_be_finished(self):
+        process = self.start("--set=Mesh->Cells={160,32}")
+        rank = self.last_rank(process)
+        self.wait_for(process, lambda: list(self.folder.glob("out/beam.*.tmp.*")))
+        os.kill(rank, signal.SIGTERM)
+        self.end(process, 0)
+        self.assertEqual(files(self.folder), RESULTS)
+        self.assertTrue(json.loads((self.folder / "out" / "beam.json").read_text())["converged"])
+
+    @unittest.skipIf(RANKS > 1, "needs one rank: mpiexec has an exit code of its own")
+    def test_second_signal_ends_the_run_at_once(self):
+        process = self.start(LARGE, *NO_MULTIGRID)
+        rank = self.last_rank(process)
+        for number in SIGNALS:
+            os.kill(rank, number)
+        process.communicate(timeout=100)
+        self.assertIn(-process.returncode, SIGNALS)
+
+
+if __name__ == "__main__":
+    unittest.main()

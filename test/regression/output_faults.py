@@ -1,0 +1,146 @@
+"""Results that cannot be written: one message with the file and the system's reason, the right exit code, nothing
+half-written and nothing left behind."""
+
+import os
+import resource
+import shutil
+import subprocess
+import unittest
+
+from rpc_run import LAUNCH, PROGRAM, RANKS, SMALL, RpcTestCase, errors, files, ranks_below
+
+FULL, BAD_INPUT = 1, 2
+SLOW = "--set=Mesh->Cells={160,32}"
+NAMES = ["beam.contact.csv", "beam.e", "beam.json"]
+
+
+class OutputFaults(RpcTestCase):
+    def during(self, fault, *arguments):
+        """The result of a run at whose start `fault` happens: a function of the processes' ids."""
+        process = subprocess.Popen(LAUNCH + [PROGRAM, "--input=beam.xml", "--output=out", *arguments], cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        for line in process.stdout:
+            if line.startswith("uzawa newton"):
+                break
+        fault(ranks_below(process.pid))
+        out, err = process.communicate(timeout=100)
+        return subprocess.CompletedProcess(process.args, process.returncode, out, err)
+
+    def limited(self, size):
+        def limit(processes):
+            for process in processes:
+                resource.prlimit(process, resource.RLIMIT_FSIZE, (size, size))
+        return self.during(limit, SLOW)
+
+    def sizes(self):
+        self.rpc("--input=beam.xml", SLOW, "--output=out")
+        return {name: (self.folder / "out" / name).stat().st_size for name in NAMES}
+
+    def test_file_that_cannot_grow_is_not_left_half_written(self):
+        sizes = self.sizes()
+        whole = {name: (self.folder / "out" / name).read_bytes() for name in NAMES}
+        shutil.rmtree(self.folder / "out")
+        limits = [500, *(sizes["beam.e"] * k // 8 for k in range(1, 8)), sizes["beam.e"] - 1]
+        for limit in limits if RANKS == 1 else limits[4:5]:
+            with self.subTest(limit):
+                result = self.limited(limit)
+                self.expect_error(result, FULL, ['"out/beam.e"', "File too large"])
+                self.assertEqual(files(self.folder), [])
+        self.assertEqual(self.limited(sizes["beam.e"]).returncode, 0)
+        for name in NAMES[:2]:
+            self.assertEqual((self.folder / "out" / name).read_bytes(), whole[name])
+
+    def expect_error(self, result, code, parts):
+        self.assertEqual(result.returncode, code, f"{result.stdout}\n{result.stderr}")
+        self.assertEqual(len(errors(result)), 1, result.stderr)
+        for part in ["rpc: error: output: ", *parts]:
+            self.assertIn(part, errors(result)[0])
+
+    def test_full_disk(self):
+        disk = self.folder / "out"
+        disk.mkdir()
+        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4k", "tmpfs", disk], capture_output=True, check=False)
+        if mount.returncode:
+            self.skipTest("needs the right to mount a small file system")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        sizes = self.pages()
+        for blocks in range(1, sum(sizes.values()) + 1):
+            subprocess.run(["mount", "-o", f"remount,size={4 * blocks}k", disk], check=True)
+            with self.subTest(blocks):
+                result = self.rpc("--input=beam.xml", SMALL, "--output=out", code=None)
+                enough = blocks >= sum(sizes.values())
+                if enough:
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                else:
+                    self.expect_error(result, FULL, ["No space left on device"])
+                    self.assertNotIn("beam.json", files(disk))
+                for name in files(disk):
+                    self.assertIn(name, NAMES)
+                    self.assertEqual(self.page_count(disk / name), sizes[name])
+                    (disk / name).unlink()
+
+    @staticmethod
+    def page_count(path):
+        return -(-path.stat().st_size // 4096)
+
+    def pages(self):
+        """4 kB blocks that each file of the small beam takes."""
+        self.rpc("--input=beam.xml", SMALL, "--output=whole")
+        return {name: self.page_count(self.folder / "whole" / name) for name in NAMES}
+
+    def test_folder_that_vanishes(self):
+        result = self.during(lambda _: shutil.rmtree(self.folder / "out"), SLOW)
+        self.expect_error(result, BAD_INPUT, ['"out/beam.e"', "No such file or directory", "--output=DIR"])
+        self.assertEqual(files(self.folder), [])
+
+    def test_folder_in_place_of_a_file_is_refused_before_the_run(self):
+        for name in NAMES:
+            with self.subTest(name):
+                (self.folder / "out" / name).mkdir(parents=True)
+                result = self.rpc("--input=beam.xml", SMALL, "--output=out", code=BAD_INPUT)
+                self.expect_refusal(result, BAD_INPUT, [f'cannot replace "out/{name}": Is a directory'])
+                self.assertNotIn("newton", result.stdout)
+                self.assertEqual(files(self.folder), [])
+                (self.folder / "out" / name).rmdir()
+
+    def test_folder_that_comes_in_place_of_a_file(self):
+        result = self.during(lambda _: (self.folder / "out" / "beam.contact.csv").mkdir(), SLOW)
+        self.expect_error(result, BAD_INPUT, ['"out/beam.contact.csv"', "Is a directory"])
+        self.assertEqual(files(self.folder), ["out/beam.e"])
+
+    @unittest.skipIf(RANKS > 1, "needs one rank: mpiexec of another user needs a home")
+    def test_without_permission_nothing_is_touched(self):
+        user = {}
+        if os.geteuid() == 0:  # who may write anywhere
+            user = {"user": 65534, "group": 65534, "extra_groups": []}
+        os.chmod(self.folder, 0o777)
+        folder = self.folder / "out"
+        folder.mkdir()
+        file = folder / "beam.json"
+        file.write_text("old")
+        file.chmod(0o444)
+        for folder_mode, parts in [(0o777, ['cannot replace "out/beam.json": Permission denied']),
+                                   (0o555, ['cannot write to the folder "out": Permission denied'])]:
+            folder.chmod(folder_mode)
+            try:
+                result = subprocess.run([PROGRAM, "--input=beam.xml", SMALL, "--output=out"], cwd=self.folder, text=True,
+                                        capture_output=True, timeout=100, check=False, **user)
+            except PermissionError:
+                self.skipTest("another user cannot start the program")
+            self.expect_refusal(result, BAD_INPUT, [*parts, "--output=DIR"])
+            self.assertEqual(file.read_text(), "old")
+            self.assertEqual(files(self.folder), ["out/beam.json"])
+
+    @unittest.skipIf(RANKS > 1, "needs one rank: mpiexec is between the program and its output")
+    def test_console_that_is_full(self):
+        for arguments in (["--print-parameters"], ["--input=beam.xml", SMALL, "--output=out"]):
+            with open("/dev/full", "w") as full, self.subTest(arguments):
+                result = subprocess.run([PROGRAM, *arguments], cwd=self.folder, text=True, stdout=full,
+                                        stderr=subprocess.PIPE, timeout=100, check=False)
+                self.expect_error(result, FULL, ["cannot write to standard output"])
+        self.assertEqual(sorted(os.listdir(self.folder / "out")), NAMES)
+
+
+if __name__ == "__main__":
+    unittest.main()
