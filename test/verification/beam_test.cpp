@@ -74,7 +74,7 @@ TEST(Beam, WorkStaysInItsRangeOnEveryMesh)
   // Everything yields: one solve each for the start, the yielded state and polish. Rigid: nothing to find out. Between:
   // states to find.
   for (const Range &range :
-       {Range{"2", 1, 3, 2}, Range{"12", 1, 8, 7}, Range{"16", 2, 13, 11}, Range{"inf", 2, 4, 1}}) {
+       {Range{"2", 1, 3, 2}, Range{"12", 1, 7, 6}, Range{"13", 2, 10, 9}, Range{"16", 2, 10, 9}, Range{"inf", 2, 4, 1}}) {
     for (const int n : {16, 32, 64}) {
       const Solution s = beam(n, range.xi);
       EXPECT_LE(s.uzawa.iterations, range.uzawa) << range.xi << " " << n;
@@ -84,7 +84,7 @@ TEST(Beam, WorkStaysInItsRangeOnEveryMesh)
       EXPECT_LE(s.linear.preconditioner_setups, range.setups) << range.xi << " " << n;
       EXPECT_LE(largest(s.linear.iterations), 20) << range.xi << " " << n;
       EXPECT_EQ(s.matrix_assemblies, 1);
-      EXPECT_LE(s.uzawa.certificate.kkt_residual, 1e-8);
+      EXPECT_LE(s.uzawa.certificate.worst(), 1e-8);
       EXPECT_LE(s.uzawa.certificate.equilibrium_residual, 1e-10);
     }
   }
