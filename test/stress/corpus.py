@@ -1,0 +1,136 @@
+"""Small scenes to start mutations from: a deck, with the mesh or geometry that it names."""
+
+import dataclasses
+import pathlib
+import re
+
+# One deck with a bit of everything that a deck may hold.
+FULL = """<ParameterList name="full">
+  <ParameterList name="Mesh">
+    <Parameter name="Type" type="string" value="gmsh"/>
+    <Parameter name="File" type="string" value="layers.geo"/>
+    <Parameter name="Size Factor" type="double" value="2"/>
+    <Parameter name="Order" type="int" value="1"/>
+  </ParameterList>
+  <ParameterList name="Material">
+    <Parameter name="Young's Modulus" type="double" value="2000"/>
+    <Parameter name="Poisson's Ratio" type="double" value="0.3"/>
+    <ParameterList name="Blocks">
+      <ParameterList name="stiff"><Parameter name="Young's Modulus" type="double" value="2e4"/></ParameterList>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Dirichlet">
+    <ParameterList name="press">
+      <Parameter name="Side" type="string" value="top"/>
+      <Parameter name="X" type="int" value="0"/>
+      <Parameter name="Y" type="string" value="-0.01*(1 + x^2)"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Body Force">
+    <Parameter name="Y" type="string" value="x &lt; 0.5 ? -3 : sin(x*y)"/>
+  </ParameterList>
+  <ParameterList name="Contact">
+    <Parameter name="Side" type="string" value="bottom"/>
+    <Parameter name="Yield Stress" type="string" value="10 + x"/>
+    <Parameter name="Normal" type="string" value="0, -1"/>
+    <Parameter name="Penalty" type="double" value="1e7"/>
+    <ParameterList name="Obstacle">
+      <Parameter name="Type" type="string" value="circle"/>
+      <Parameter name="Centre" type="Array(double)" value="{0.5, -3}"/>
+      <Parameter name="Radius" type="double" value="3"/>
+      <Parameter name="Encloses Body" type="bool" value="false"/>
+    </ParameterList>
+    <ParameterList name="Sides">
+      <ParameterList name="wall">
+        <Parameter name="Side" type="string" value="right"/>
+        <Parameter name="Gap" type="string" value="0.001*y"/>
+        <Parameter name="Yield Stress" type="string" value="inf"/>
+      </ParameterList>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Uzawa">
+    <Parameter name="Tolerance" type="double" value="1e-6"/>
+    <Parameter name="Stopping Test" type="string" value="certificate"/>
+  </ParameterList>
+  <ParameterList name="NOX">
+    <Parameter name="Active Set Start" type="bool" value="true"/>
+    <ParameterList name="Line Search"><Parameter name="Method" type="string" value="Backtrack"/></ParameterList>
+  </ParameterList>
+  <ParameterList name="Linear Solver">
+    <Parameter name="Method" type="string" value="Block CG"/>
+    <Parameter name="Reuse" type="string" value="none"/>
+    <ParameterList name="Belos"><Parameter name="Block Size" type="int" value="1"/></ParameterList>
+    <ParameterList name="MueLu">
+      <Parameter name="coarse: max size" type="int" value="20"/>
+      <Parameter name="smoother: type" type="string" value="CHEBYSHEV"/>
+      <ParameterList name="smoother: params"><Parameter name="chebyshev: degree" type="int" value="2"/></ParameterList>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Output"><Parameter name="Timers" type="bool" value="true"/></ParameterList>
+</ParameterList>
+"""
+
+SECTOR = """<ParameterList name="sector">
+  <ParameterList name="Mesh">
+    <Parameter name="Type" type="string" value="gmsh"/>
+    <Parameter name="File" type="string" value="MESH"/>
+  </ParameterList>
+  <ParameterList name="Dirichlet">
+    <ParameterList name="straight">
+      <Parameter name="X" type="double" value="0"/>
+      <Parameter name="Y" type="double" value="0"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Body Force"><Parameter name="Y" type="double" value="0.01"/></ParameterList>
+  <ParameterList name="Contact">
+    <Parameter name="Side" type="string" value="arc"/>
+    <Parameter name="Yield Stress" type="double" value="0.02"/>
+  </ParameterList>
+</ParameterList>
+"""
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    deck: str
+    files: dict  # name -> bytes, the deck among them
+
+
+def replaced(text, *changes):
+    """The text after (pattern, replacement) pairs, each of which must fit."""
+    for pattern, replacement in changes:
+        text, count = re.subn(pattern, replacement, text)
+        assert count, pattern
+    return text
+
+
+def scenes(source):
+    """All scenes by name, out of the source tree."""
+    source = pathlib.Path(source)
+    beam = (source / "input/beam.xml").read_text()
+    manufactured = (source / "input/manufactured.xml").read_text()
+    hertz = (source / "input/hertz.xml").read_text()
+    decks = source / "test/verification/decks"
+    layers = (decks / "layers.xml").read_text()
+    data = source / "packages/mesh/test/data"
+    coarse = r'\g<0>\n    <Parameter name="Size Factor" type="double" value="12"/>'
+
+    beam = replaced(beam, (r"\{160, 32\}", "{10, 2}"))
+    cube = replaced(beam, (r"\{0, 0\}", "{0, 0, 0}"), (r"\{5, 1\}", "{5, 1, 1}"), (r"\{10, 2\}", "{5, 2, 2}"))
+    texts = {
+        "beam.xml": [beam],
+        "triangles.xml": [replaced(beam, ("Q1", "P2"))],
+        "cube.xml": [cube],
+        "manufactured.xml": [replaced(manufactured, (r"\{48, 16\}", "{6, 2}"))],
+        "block.xml": [(decks / "block.xml").read_text()],
+        "beam.yaml": [replaced((source / "test/regression/decks/beam.yaml").read_text(), (r"160, 32", "10, 2"))],
+        "hertz.xml": [replaced(hertz, (r"<Parameter name=\"File\".*/>", coarse)), source / "input/hertz.geo"],
+        "layers.xml": [layers, decks / "layers.geo"],
+        "quads.xml": [replaced(layers, (r"layers\.geo", "layers_quads.geo")), decks / "layers_quads.geo"],
+        "full.xml": [FULL, decks / "layers.geo"],
+        "sector_geo.xml": [SECTOR.replace("MESH", "sector.geo"), data / "sector.geo"],
+    }
+    for mesh in sorted(data.glob("*.msh")):
+        texts[f"{mesh.stem}.xml"] = [SECTOR.replace("MESH", mesh.name), mesh]
+    return {name: Scene(name, {name: text.encode(), **{path.name: path.read_bytes() for path in paths}})
+            for name, (text, *paths) in texts.items()}

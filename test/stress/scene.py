@@ -1,0 +1,299 @@
+"""A scene in base units, its deck in scaled ones, and whether it has a solution: known from the data alone, without rpc."""
+import dataclasses
+import math
+from xml.sax.saxutils import quoteattr
+
+from fields import Constant
+
+COMPONENTS = "XYZ"
+# What a refusal's message must say, one of the alternatives.
+REASONS = {
+    "limit": [["at most"]],
+    "mode": [["rotation"], ["translation"]],
+    "tilted": [["at most"], ["turns"], ["pulls"]],
+    "lifted": [["at most"], ["turns"], ["pulls"], ["rotation"], ["translation"]],
+    "part": [["part"]],
+    "pressed": [["presses"], ["yield stress"]],
+}
+MARGIN = 0.03  # of the limit load, on both sides: no scene comes closer
+
+
+@dataclasses.dataclass
+class ContactSide:
+    side: str
+    xi: object  # Field [stress]
+    gap: object = Constant(0.0)  # Field [length], without an obstacle
+    normal: object = None  # None: rpc's default; "surface", "foundation", or a vector
+    obstacle: dict = None  # Type, and Point, Normal or Centre, Radius, Encloses Body
+
+    def at(self, x, y, outward):
+        """Normal and gap of a node."""
+        if not self.obstacle:
+            return (self.normal if isinstance(self.normal, tuple) else outward), self.gap(x, y)
+        if self.obstacle["Type"] == "plane":
+            n = self.obstacle["Normal"]
+            size = math.hypot(*n)
+            n = (n[0] / size, n[1] / size)
+            nu = self._direction(outward, (-n[0], -n[1]))
+            p = self.obstacle["Point"]
+            return nu, ((x - p[0]) * n[0] + (y - p[1]) * n[1]) / -(nu[0] * n[0] + nu[1] * n[1])
+        c, radius = self.obstacle["Centre"], self.obstacle["Radius"]
+        sign = 1 if self.obstacle.get("Encloses Body") else -1
+        m = (x - c[0], y - c[1])
+        size = math.hypot(*m)
+        nu = self._direction(outward, (sign * m[0] / size, sign * m[1] / size))
+        along = m[0] * nu[0] + m[1] * nu[1]
+        return nu, -along + sign * math.sqrt(along * along - m[0] ** 2 - m[1] ** 2 + radius * radius)
+
+    def _direction(self, outward, foundation):
+        if self.normal == "surface":
+            return outward
+        return self.normal if isinstance(self.normal, tuple) else foundation
+
+
+@dataclasses.dataclass
+class Scene:
+    mesh: dict  # of the deck, without lengths: see `lengths`
+    contact: list
+    material: dict = dataclasses.field(default_factory=lambda: {"E": 1000.0, "nu": 0.3, "blocks": {}})
+    dirichlet: dict = dataclasses.field(default_factory=dict)  # {side: {component: Field}}
+    traction: dict = dataclasses.field(default_factory=dict)  # {side: [Field per component]}
+    body_force: list = None  # numbers
+    body: object = None  # Body; None where the suite does not know the mesh
+    lengths: dict = dataclasses.field(default_factory=dict)  # mesh parameters that are lengths
+    file: object = None  # f(length) -> text of Mesh->File
+    dim: int = 2
+    cell: float = 0.1  # size of the smallest cell, where there is no body
+    expect: str = None  # "solution" or a key of REASONS where `body` is None
+    applied: list = None  # resultant of the load, where known
+    units: tuple = (1.0, 1.0)  # of length and stress
+    exodus: bool = False
+
+    def stiffest(self):
+        return max([self.material["E"]] + [e for e, _ in self.material["blocks"].values()])
+
+    def softening(self):
+        """1/(1 - 2 nu): how much stiffer the body is in volume than in shape."""
+        return max(1 / (1 - 2 * nu) for nu in [self.material["nu"]] + [v for _, v in self.material["blocks"].values()])
+
+
+def _parameter(name, kind, value):
+    return f"<Parameter name={quoteattr(name)} type={quoteattr(kind)} value={quoteattr(value)}/>"
+
+
+def _list(name, entries):
+    lines = [f"<ParameterList name={quoteattr(name)}>"]
+    for key, value in entries.items():
+        lines.append(_list(key, value) if isinstance(value, dict) else _entry(key, value))
+    return "\n".join(lines + ["</ParameterList>"])
+
+
+def _entry(name, value):
+    if isinstance(value, bool):
+        return _parameter(name, "bool", str(value).lower())
+    if isinstance(value, (tuple, list)):
+        kind = "int" if all(isinstance(v, int) for v in value) else "double"
+        return _parameter(name, f"Array({kind})", "{" + ", ".join(repr(v) for v in value) + "}")
+    kind = {float: "double", int: "int", str: "string"}[type(value)]
+    return _parameter(name, kind, value if kind == "string" else repr(value))
+
+
+def _field(field, length, unit):
+    if isinstance(field, Constant) and not math.isinf(field.value):
+        return field.value * unit
+    return field.deck(length, unit)
+
+
+def _contact(side, length, stress):
+    entries = {"Side": side.side, "Yield Stress": "inf" if side.xi(0) == math.inf else _field(side.xi, length, stress)}
+    if isinstance(side.normal, str):
+        entries["Normal"] = side.normal
+    elif side.normal:
+        entries["Normal"] = ", ".join(repr(v) for v in side.normal)
+    if not side.obstacle:
+        return {**entries, "Gap": _field(side.gap, length, length)}
+    scaled = {"Point": length, "Centre": length, "Radius": length}
+    times = lambda v, f: [float(x) * f for x in v] if isinstance(v, (list, tuple)) else float(v) * f
+    obstacle = {k: times(v, scaled[k]) if k in scaled else v for k, v in side.obstacle.items()}
+    return {**entries, "Obstacle": obstacle}
+
+
+def deck(scene, mesh_file=None):
+    """The deck's XML."""
+    length, stress = scene.units
+    mesh = {**scene.mesh, **{k: [float(x) * length for x in v] for k, v in scene.lengths.items()}}
+    if mesh_file:
+        mesh["File"] = mesh_file
+    material = {"Young's Modulus": scene.material["E"] * stress, "Poisson's Ratio": scene.material["nu"]}
+    if scene.material["blocks"]:
+        material["Blocks"] = {name: {"Young's Modulus": e * stress, "Poisson's Ratio": nu}
+                              for name, (e, nu) in scene.material["blocks"].items()}
+    lists = {"Mesh": mesh, "Material": material}
+    lists["Dirichlet"] = {side: {c: _field(f, length, length) for c, f in components.items()}
+                          for side, components in scene.dirichlet.items()}
+    lists["Traction"] = {side: {c: _field(f, length, stress) for c, f in zip(COMPONENTS, fields)}
+                         for side, fields in scene.traction.items()}
+    if scene.body_force:
+        lists["Body Force"] = {c: f * stress / length for c, f in zip(COMPONENTS, scene.body_force)}
+    contact = _contact(scene.contact[0], length, stress)
+    for number, side in enumerate(scene.contact[1:]):
+        contact.setdefault("Sides", {})[f"further {number}"] = _contact(side, length, stress)
+    lists["Contact"] = contact
+    lists["Output"] = {"Exodus": scene.exodus}
+    return _list("scene", lists) + "\n"
+
+
+# --- whether there is a solution -------------------------------------------------------------------------------------------
+
+
+def _null_space(rows, size):
+    """Basis of the vectors that all rows, of size about 1, annihilate; by elimination with full pivoting."""
+    rows, done = [list(row) for row in rows], []
+    pivots = lambda: [c for c, _ in done]
+    while len(done) < size:
+        best = max(((abs(row[c]), k, c) for k, row in enumerate(rows) for c in range(size) if c not in pivots()), default=(0, 0, 0))
+        if best[0] < 1e-9:
+            break
+        _, k, c = best
+        pivot = [v / rows[k][c] for v in rows[k]]
+        rows = [[a - row[c] * b for a, b in zip(row, pivot)] for n, row in enumerate(rows) if n != k]
+        done.append((c, pivot))
+    basis = []
+    for free in (c for c in range(size) if c not in pivots()):
+        x = [1.0 if c == free else 0.0 for c in range(size)]
+        for c, pivot in reversed(done):
+            x[c] = -sum(pivot[d] * x[d] for d in range(size) if d != c)
+        scale = math.sqrt(sum(v * v for v in x))
+        basis.append([v / scale for v in x])
+    return basis
+
+
+def _extreme_rays(points, dim):
+    """Directions in which the cones of {d: a.d >= 0 or <= 0 for each a} end; the points span all of the space."""
+    if dim == 1:
+        return [[1.0], [-1.0]]
+    planes = []
+    for a in points:
+        size = math.sqrt(sum(v * v for v in a))
+        if size > 1e-12:
+            planes.append([v / size for v in a])
+    if dim == 2:
+        rays = [[-b, a] for a, b in planes]
+    else:
+        rays = []
+        for k, (a, b, c) in enumerate(planes):
+            for d, e, f in planes[:k]:
+                ray = [b * f - c * e, c * d - a * f, a * e - b * d]
+                size = math.sqrt(sum(v * v for v in ray))
+                if size > 1e-9:
+                    rays.append([v / size for v in ray])
+    return rays + [[-v for v in ray] for ray in rays]
+
+
+class _Part:
+    """A connected part of a body: its free rigid motions, (u, v, w) -> (u - w y, v + w x) in coordinates scaled by its size."""
+
+    def __init__(self, scene, grid):
+        self.scene, self.grid = scene, grid
+        used = grid.used_nodes()
+        lows = [min(grid.nodes[k][c] for k in used) for c in (0, 1)]
+        highs = [max(grid.nodes[k][c] for k in used) for c in (0, 1)]
+        self.centre, self.size = [(a + b) / 2 for a, b in zip(lows, highs)], math.dist(lows, highs) / 2
+        rows, self.prescribed = [], {}
+        for side, components in scene.dirichlet.items():
+            for k in grid.side_nodes(side):
+                x, y = self.relative(*grid.nodes[k])
+                for component, field in components.items():
+                    rows.append([1, 0, -y] if component == "X" else [0, 1, x])
+                    self.prescribed.setdefault(k, {})[component] = field(*grid.nodes[k])
+        self.modes = _null_space(rows, 3)
+
+    def relative(self, x, y):
+        return (x - self.centre[0]) / self.size, (y - self.centre[1]) / self.size
+
+    def work(self, fx, fy, x, y):
+        """Of a force at (x, y) on each free motion."""
+        x, y = self.relative(x, y)
+        return [fx * m[0] + fy * m[1] + (fy * x - fx * y) * m[2] for m in self.modes]
+
+    def contact(self):
+        """([work of the normal on each motion], force that the foundation can bear) of nodes that can move along the normal;
+        with what is wrong about the others: None, "pressed" or "close"."""
+        points, trouble = [], None
+        for contact in self.scene.contact:
+            for k, (w, outward) in self.grid.contact_nodes(contact.side).items():
+                x, y = self.grid.nodes[k]
+                nu, gap = contact.at(x, y, outward)
+                fixed = self.prescribed.get(k, {})
+                if math.hypot(*(0 if c in fixed else v for c, v in zip("XY", nu))) > 1e-9:
+                    points.append((self.work(*nu, x, y), w * contact.xi(x, y)))
+                    continue
+                v = sum(fixed.get(c, 0) * n for c, n in zip("XY", nu)) - gap
+                scale = max([abs(gap)] + [abs(u) for u in fixed.values()])
+                if v > 1e-13 * scale and math.isinf(contact.xi(x, y)):
+                    trouble = "pressed" if v > 1e-6 * scale or trouble == "pressed" else "close"
+        return points, trouble
+
+    def load(self):
+        """Work of the load on each motion, and the sum of its forces' sizes."""
+        forces = [(w * f[0](x, y), w * f[1](x, y), x, y) for side, f in self.scene.traction.items()
+                  for x, y, w in self.grid.side_points(side)]
+        if self.scene.body_force:
+            forces += [(w * self.scene.body_force[0], w * self.scene.body_force[1], x, y) for x, y, w in self.grid.body_points()]
+        works = [self.work(*force) for force in forces]
+        return [sum(w[m] for w in works) for m in range(len(self.modes))], sum(math.hypot(*f[:2]) for f in forces)
+
+    def verdict(self):
+        """J is bounded below and grows in all directions if and only if for each free motion d
+        load.d < sum_i w_i xi_i (nu_i.d)+. Both sides are linear on cones, so that the rays where these end are enough."""
+        points, trouble = self.contact()
+        if trouble:
+            return "pressed" if trouble == "pressed" else None
+        if not self.modes:
+            return "solution"
+        if _null_space([a for a, _ in points], len(self.modes)):
+            return "mode"
+        load, total = self.load()
+        verdicts = {self._verdict_of_ray(d, points, load, total) for d in _extreme_rays([a for a, _ in points], len(self.modes))}
+        return next((v for v in (None, "lifted", "mode", "limit", "tilted") if v in verdicts), "solution")
+
+    def _verdict_of_ray(self, d, points, load, total):
+        dot = lambda a: sum(u * v for u, v in zip(a, d))
+        held = sum(c * dot(a) for a, c in points if dot(a) > 1e-9)
+        pull = dot(load)
+        if held == 0:
+            if abs(pull) <= 1e-9 * total:
+                return "mode"
+            return "lifted" if pull > 0.02 * total else "solution" if pull < -0.02 * total else None
+        if math.isinf(held) or pull <= held * (1 - MARGIN):
+            return "solution"
+        if pull < held * (1 + MARGIN):
+            return None
+        return "limit" if len(self.modes) == 1 else "tilted"
+
+
+def verdict(scene):
+    """"solution", a key of REASONS, or None: too close to call."""
+    if scene.body is None:
+        return scene.expect
+    verdicts = [_Part(scene, grid).verdict() for grid in scene.body.parts]
+    if None in verdicts:
+        return None
+    bad = [v for v in verdicts if v != "solution"]
+    if not bad:
+        return "solution"
+    return "part" if len(verdicts) > 1 and bad[0] in ("mode", "lifted", "tilted") and len(bad) < len(verdicts) else bad[0]
+
+
+def applied_resultant(scene):
+    """Of tractions and body forces, in base units; None where it is not known."""
+    if scene.body is None:
+        return scene.applied
+    total = [0.0, 0.0]
+    for grid in scene.body.parts:
+        for side, fields in scene.traction.items():
+            for x, y, w in grid.side_points(side):
+                total = [total[0] + w * fields[0](x, y), total[1] + w * fields[1](x, y)]
+        for x, y, w in grid.body_points() if scene.body_force else []:
+            total = [total[0] + w * scene.body_force[0], total[1] + w * scene.body_force[1]]
+    return total

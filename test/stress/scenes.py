@@ -1,0 +1,274 @@
+"""Random scenes against rpc: each must be solved, or refused for the right reason.
+
+    python3 scenes.py --rpc=build/rpc [--seed=1] [--scenes=500] [--first=0] [--only=K] [--family=NAME] [--jobs=2] [--np=1] [--keep=DIR]
+
+Scene K comes from the seed and K alone. A scene that has a solution must exit 0, converged, with all certificates below 1e-8 and
+at most 40 Newton steps, and its files must hold finite numbers, pressures in [0, xi] and forces that balance. One without must
+exit 5 with one message that gives the reason. Which is which is known from the data (scene.py). Where |K||u|, rounded, is above
+1e-8 of the load, no program in double precision can tell, and residuals up to that rounding pass: the column `rounding` counts
+those scenes. The exit code is 1 if a scene failed. --keep=DIR keeps the folders of failed scenes, and of --only.
+"""
+import argparse
+import concurrent.futures
+import csv
+import dataclasses
+import json
+import math
+import os
+import pathlib
+import random
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import generate
+from scene import REASONS, applied_resultant, deck
+
+TIME_LIMIT = 120  # [s]
+TOLERANCE = 1e-8  # on each certificate
+CERTIFICATES = ["kkt_residual", "equilibrium_residual", "energy_balance", "duality_gap"]
+MOST_NEWTON = 40
+BALANCE = 1e-6  # forces, relative to the largest of them
+NULLABLE = {"multiplier_change"}
+os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT", "1")  # Open MPI refuses root, as in a container, unless told twice
+os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+
+@dataclasses.dataclass
+class Outcome:
+    number: int
+    family: str
+    verdict: str
+    seconds: float = 0.0
+    newton: int = 0
+    uzawa: int = 0
+    cg: int = 0
+    at_rounding: bool = False
+    complaints: list = dataclasses.field(default_factory=list)
+
+
+def launch(options):
+    if options.np == 1:
+        return [options.rpc]
+    return shlex.split(options.mpiexec) + ["-n", str(options.np), options.rpc]
+
+
+def run(command, folder):
+    """Exit code (None if out of time), stdout, stderr."""
+    with subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          errors="replace", start_new_session=True) as process:
+        try:
+            stdout, stderr = process.communicate(timeout=TIME_LIMIT)
+            return process.returncode, stdout, stderr
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)  # with the ranks that mpiexec has started
+            return None, "", f"still running after {TIME_LIMIT} s"
+
+
+def write(scene, folder):
+    mesh_file = None
+    if scene.file:
+        mesh_file = "scene.msh" if scene.body else "scene.geo"
+        (folder / mesh_file).write_text(scene.file(scene.units[0]))
+    (folder / "scene.xml").write_text(deck(scene, mesh_file))
+
+
+def numbers(value, path=""):
+    """(path, number) of all leaves of a JSON value that are numbers or null."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from numbers(item, f"{path}.{key}" if path else key)
+    elif isinstance(value, list):
+        for item in value:
+            yield from numbers(item, path)
+    elif value is None or (isinstance(value, (int, float)) and not isinstance(value, bool)):
+        yield path, value
+
+
+def contact_rows(folder):
+    with open(folder / "scene.contact.csv", newline="") as file:
+        return [{k: v if k in ("state", "side") else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+
+
+def rounding(scene, summary, rows):
+    """What rounding of u leaves of equilibrium: eps |K||u| over the load, in the terms of one cell."""
+    length, stress = scene.units
+    cell = (scene.body.smallest_cell() if scene.body else scene.cell) * length
+    u = max([abs(row["u_nu"]) for row in rows] + [abs(row["gap"]) for row in rows if row["pressure"] > 0]
+            + [abs(f(x, 0)) * length for c in scene.dirichlet.values() for f in c.values() for x in (0, 0.5, 1)])
+    load = max([summary["max_pressure"]] + [abs(f(x, 0)) * stress for fs in scene.traction.values() for f in fs for x in (0, 0.5, 1)])
+    return 4 * 2.0 ** -53 * scene.stiffest() * stress * scene.softening() * u / cell / load if load > 0 else 0.0
+
+
+def check_solution(scene, folder, outcome, code, stdout, stderr):
+    complain = outcome.complaints.append
+    path = folder / "scene.json"
+    if code not in (0, 4) or not path.exists():
+        lines = (stderr or stdout).strip().splitlines()
+        complain(f"exit {'-' if code is None else code}: " + (lines[-1][:200] if lines else ""))
+        return
+    summary = json.loads(path.read_text())
+    rows = contact_rows(folder)
+    outcome.newton, outcome.uzawa = sum(summary["newton_iterations"]), summary["uzawa_iterations"]
+    outcome.cg = max(summary["linear_iterations"], default=0)
+    floor = rounding(scene, summary, rows)
+    worst = {key: summary[key] for key in CERTIFICATES if key in summary}
+    at_most = lambda bound: all(value is not None and value <= bound for value in worst.values())
+    outcome.at_rounding = not at_most(TOLERANCE) and at_most(10 * floor)
+    if outcome.at_rounding:
+        return
+    if code != 0 or not summary["converged"]:
+        complain(f"exit {code}: {summary['reason']}; " + ", ".join(f"{k} {v}" for k, v in worst.items()) + f"; rounding {floor:.0e}")
+    elif not at_most(TOLERANCE):
+        complain(", ".join(f"{k} {v}" for k, v in worst.items()))
+    if outcome.newton > MOST_NEWTON:
+        complain(f"{outcome.newton} Newton steps")
+    if code == 0:
+        check_numbers(scene, summary, rows, floor, complain)
+
+
+def check_numbers(scene, summary, rows, floor, complain):
+    for path, value in numbers(summary):
+        if path not in NULLABLE and (value is None or not math.isfinite(value)):
+            complain(f"{path} is {value}")
+    length, stress = scene.units
+    sides = {contact.side: contact for contact in scene.contact}
+    for row in rows:
+        xi = sides[row["side"]].xi(row["x"] / length, row["y"] / length) * stress
+        if not 0 <= row["pressure"] <= xi * (1 + 1e-7) or any(not math.isfinite(v) for v in row.values() if isinstance(v, float)):
+            complain(f"contact node at ({row['x']}, {row['y']}): pressure {row['pressure']}, xi {xi}")
+            break
+    applied = None if unknown_load(scene) else applied_resultant(scene)
+    if applied is None:
+        return
+    forces = list(summary["reaction_force"].values()) + [summary["contact_force"]]
+    forces.append([a * stress * length ** (scene.dim - 1) for a in applied])
+    rest = math.hypot(*(sum(force[c] for force in forces) for c in range(scene.dim)))
+    scale = max(math.hypot(*force) for force in forces)
+    if not rest <= max(BALANCE, 100 * floor) * scale:
+        complain(f"forces do not balance: {rest:.3g} is left of {scale:.3g}")
+
+
+def unknown_load(scene):
+    """Body forces on curved cells are integrated by another rule here."""
+    return bool(scene.body_force and scene.body and scene.file and scene.body.parts[0].order == 2)
+
+
+def check_refusal(verdict, outcome, code, stderr):
+    messages = [line for line in stderr.splitlines() if line.startswith("rpc: ")]
+    if code != 5:
+        outcome.complaints.append(f"exit {code} instead of 5 ({verdict}): {messages[0][:200] if messages else ''}")
+    elif len(messages) != 1:
+        outcome.complaints.append(f"{len(messages)} messages instead of one")
+    elif not any(all(part in messages[0] for part in parts) for parts in REASONS[verdict]):
+        outcome.complaints.append(f"message without the reason ({verdict}): {messages[0][:300]}")
+    elif verdict == "limit" and len(re.findall(r"\d(?:\.\d+)?(?:e[-+]?\d+)?", messages[0])) < 2:
+        outcome.complaints.append(f"message without load and limit: {messages[0][:300]}")
+
+
+def judge(options, number):
+    family, scene, verdict = generate.make(random.Random(f"{options.seed}/{number}"), number)
+    folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_scene_{number}_"))
+    outcome = Outcome(number, family, verdict)
+    try:
+        write(scene, folder)
+        start = time.monotonic()
+        code, stdout, stderr = run(launch(options) + ["--input=scene.xml"], folder)
+        outcome.seconds = time.monotonic() - start
+        if verdict == "solution":
+            check_solution(scene, folder, outcome, code, stdout, stderr)
+        else:
+            check_refusal(verdict, outcome, code, stderr)
+        if options.keep and (outcome.complaints or options.only is not None):
+            kept = pathlib.Path(options.keep) / f"{number:04d}_{family}"
+            shutil.rmtree(kept, ignore_errors=True)
+            shutil.copytree(folder, kept)
+            (kept / "stdout.txt").write_text(stdout)
+            (kept / "stderr.txt").write_text(stderr)
+            (kept / "verdict.txt").write_text("\n".join([f"must be: {verdict}"] + outcome.complaints) + "\n")
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    return outcome
+
+
+# --- the report ------------------------------------------------------------------------------------------------------------
+
+
+def median(values):
+    return sorted(values)[len(values) // 2] if values else 0
+
+
+def table(outcomes):
+    lines = ["| family | scenes | converged | rounding | refused | failed | Newton median | worst | Uzawa worst | CG worst | s worst |",
+             "|---|---|---|---|---|---|---|---|---|---|---|"]
+    families = [f for f in generate.FAMILIES if any(o.family == f for o in outcomes)]
+    for name in families + ["all"]:
+        mine = [o for o in outcomes if name in (o.family, "all")]
+        good = [o for o in mine if not o.complaints]
+        solved = [o for o in good if o.verdict == "solution"]
+        counts = [len(mine), sum(not o.at_rounding for o in solved), sum(o.at_rounding for o in solved), len(good) - len(solved),
+                  len(mine) - len(good), median([o.newton for o in solved]), max((o.newton for o in mine), default=0),
+                  max((o.uzawa for o in mine), default=0), max((o.cg for o in mine), default=0)]
+        lines.append(f"| {name} | " + " | ".join(map(str, counts)) + f" | {max(o.seconds for o in mine):.1f} |")
+    return "\n".join(lines)
+
+
+def rerun(options, outcome):
+    return f"{sys.argv[0]} --rpc={options.rpc} --seed={options.seed} --only={outcome.number} --keep=DIR"
+
+
+def report(options, outcomes):
+    failed = [o for o in outcomes if o.complaints]
+    print(f"\nseed {options.seed}, {len(outcomes)} scenes\n\n{table(outcomes)}\n")
+    for o in failed:
+        print(f"FAILED {o.number} {o.family}: {'; '.join(o.complaints)}")
+    if failed:
+        print(f"\nOne alone, with its files: {rerun(options, failed[0])}")
+    solved = [o for o in outcomes if o.verdict == "solution" and not o.complaints]
+    for what, key in [("Newton steps", "newton"), ("CG iterations", "cg"), ("seconds", "seconds")]:
+        worst = sorted(solved, key=lambda o: -getattr(o, key))[:3]
+        print(f"most {what}: " + ", ".join(f"{getattr(o, key):.4g} ({o.family}, --only={o.number})" for o in worst))
+    print(f"\n{len(failed)} of {len(outcomes)} scenes failed")
+    return 1 if failed else 0
+
+
+def chosen(options):
+    if options.only is not None:
+        return [options.only]
+    numbers_ = range(options.first, options.first + options.scenes)
+    names = list(generate.FAMILIES)
+    return [k for k in numbers_ if not options.family or names[k % len(names)] in options.family.split(",")]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rpc", required=True)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--scenes", type=int, default=500)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--only", type=int)
+    parser.add_argument("--family", help="only these of the scenes, separated by commas: " + ", ".join(generate.FAMILIES))
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--np", type=int, default=1)
+    parser.add_argument("--mpiexec", default="mpiexec --oversubscribe --bind-to none")
+    parser.add_argument("--keep", help="folder for the files of failed scenes")
+    options = parser.parse_args()
+    options.rpc = os.path.abspath(options.rpc)
+    print(f"seed {options.seed}", flush=True)
+    outcomes = []
+    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
+        for outcome in pool.map(lambda number: judge(options, number), chosen(options)):
+            outcomes.append(outcome)
+            if outcome.complaints:
+                print(f"{outcome.number} {outcome.family}: {'; '.join(outcome.complaints)}", file=sys.stderr, flush=True)
+    return report(options, outcomes)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
