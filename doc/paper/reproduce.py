@@ -20,7 +20,7 @@ import fields  # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 INPUT = os.path.join(HERE, "../../input")
-PAPERS_TEST = {"Uzawa->Stopping Test": "multiplier change"}
+PAPERS_TEST = {"Uzawa->Stopping Test": "multiplier change", "Contact->Penalty": "1e8"}
 # The paper's gap is vertical; an obstacle's would be measured along the normal.
 SURFACE_NORMAL = {"Contact->Normal": "surface", "Contact->Obstacle->Type": "none", "Contact->Gap": "8-sqrt(64-x^2)"}
 YOUNG, POISSON, RADIUS = 2000.0, 0.3, 8.0  # [Pa], 1, [m] of input/hertz.xml
