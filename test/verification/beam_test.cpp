@@ -73,8 +73,8 @@ TEST(Beam, WorkStaysInItsRangeOnEveryMesh)
   };
   // Everything yields: one solve each for the start, the yielded state and polish. Rigid: nothing to find out. Between:
   // states to find.
-  for (const Range &range :
-       {Range{"2", 1, 3, 2}, Range{"12", 1, 7, 6}, Range{"13", 2, 10, 9}, Range{"16", 2, 10, 9}, Range{"inf", 2, 4, 1}}) {
+  for (const Range &range : {Range{"2", 1, 3, 2}, Range{"12", 1, 7, 6}, Range{"13", 2, 10, 9}, Range{"16", 2, 10, 9},
+                             Range{"inf", 2, 4, 1}}) {
     for (const int n : {16, 32, 64}) {
       const Solution s = beam(n, range.xi);
       EXPECT_LE(s.uzawa.iterations, range.uzawa) << range.xi << " " << n;
