@@ -14,6 +14,7 @@
 #include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -255,10 +256,18 @@ void LinearSolver::set_up()
 double LinearSolver::inverse_energy(const Vector &F)
 {
   if (!(F.norm2() > 0)) return 0;
-  if (impl_->preconditioner.is_null()) set_up();
-  Vector x(F.getMap());
-  impl_->preconditioner->apply(F, x);
-  return F.dot(x);
+  try {
+    if (impl_->preconditioner.is_null()) set_up();
+    Vector x(F.getMap());
+    impl_->preconditioner->apply(F, x);
+    return F.dot(x);
+  } catch (const Error &) {
+    throw;
+  } catch (const std::bad_alloc &) { // on this rank alone
+    throw;
+  } catch (const std::exception &) { // a breakdown, such as a singular coarse matrix; the same on all ranks
+    return std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 /// For nearly incompressible or badly shaped cells, where aggregation misses slow modes: at most once, and not against what

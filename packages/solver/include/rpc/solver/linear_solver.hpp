@@ -57,7 +57,8 @@ public:
   /// @param tolerance  |r| / |b|; never taken below the options' one
   Result solve(const Vector &b, Vector &x, double tolerance);
 
-  /// About F . A^-1 F: one multigrid cycle stands for A^-1. 0 where F is 0; collective.
+  /// About F . A^-1 F: one multigrid cycle stands for A^-1. 0 where F is 0, NaN where the cycle breaks
+  /// down; collective.
   double inverse_energy(const Vector &F);
 
   void matrix_changed();
