@@ -107,7 +107,7 @@ struct FitPatch {
     solve_lower_transposed(normal, terms, c);
 
     const int trust = degree == Table::degree && is_inside(node) ? Table::inside : degree;
-    table(node, Table::trust) = one_block ? trust : Table::across_blocks;
+    table(node, int(Table::trust)) = one_block ? trust : Table::across_blocks;
     for (int i = 0; i < Dim; ++i) table(node, Table::centre + i) = body.coords(node, i);
     int column = Table::frame;
     for (int i = 0; i < Dim; ++i)
@@ -191,19 +191,19 @@ struct AdoptPolynomial {
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
-    const double own = table(node, Table::trust);
+    const double own = table(node, int(Table::trust));
     if (own == Table::across_blocks || own == Table::inside) return; // nodes that are no vertices have the former
     LO nearest = -1;
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
       for (int a = 0; a < vertices; ++a) {
         const LO other = cells(node_cell(k), a);
-        if (from(other, Table::trust) == Table::inside && (nearest < 0 || nearer(node, other, nearest)))
+        if (from(other, int(Table::trust)) == Table::inside && (nearest < 0 || nearer(node, other, nearest)))
           nearest = other;
       }
     }
     if (nearest < 0) return;
     for (int c = 0; c < Table::columns; ++c) table(node, c) = from(nearest, c);
-    table(node, Table::trust) = Table::adopted;
+    table(node, int(Table::trust)) = Table::adopted;
   }
 
   /// Of equally near ones the first by coordinates, which does not depend on the number of ranks.
@@ -242,7 +242,7 @@ struct EvaluatePatches {
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
       best = Kokkos::Experimental::fmax(best, best_of(node_cell(k), vertices));
     for (int a = 0; a < vertices; ++a)
-      if (carries(place, a)) own = Kokkos::Experimental::fmax(own, table(body.cells(first, a), Table::trust));
+      if (carries(place, a)) own = Kokkos::Experimental::fmax(own, table(body.cells(first, a), int(Table::trust)));
 
     double s[components] = {};
     int count = 0;
@@ -267,7 +267,7 @@ struct EvaluatePatches {
   {
     double best = 0;
     for (int a = 0; a < vertices; ++a)
-      best = Kokkos::Experimental::fmax(best, table(body.cells(cell, a), Table::trust));
+      best = Kokkos::Experimental::fmax(best, table(body.cells(cell, a), int(Table::trust)));
     return best;
   }
 
@@ -277,7 +277,7 @@ struct EvaluatePatches {
                            int &count) const
   {
     const LO vertex = body.cells(cell, a);
-    if (table(vertex, Table::trust) < trust) return;
+    if (table(vertex, int(Table::trust)) < trust) return;
     double L[Dim][Dim], dx[Dim][1], xi[Dim], term[Terms::size], slope[Terms::size][Dim];
     int column = Table::frame;
     for (int i = 0; i < Dim; ++i) {
