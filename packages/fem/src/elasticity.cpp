@@ -194,6 +194,21 @@ void add_load(const DeviceView<LO **> &entities, const DeviceView<double **> &va
   Kokkos::fence();
 }
 
+/// Sum over the cells of all ranks of what a kernel of body and displacement adds up.
+template <template <int, int> class Kernel>
+double sum_over_cells(const char *label, const Discretization &d, const Materials &materials, const Vector &u)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  Vector u_overlap(d.overlap_dofs);
+  u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
+  double sum = 0;
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    const Kernel<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(u_overlap)};
+    Kokkos::parallel_reduce(label, device_range(mesh.num_owned_cells), kernel, sum);
+  });
+  return sum_all(mesh.comm(), sum);
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_material_parameters()
@@ -345,15 +360,7 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
 
 double strain_energy(const Discretization &d, const Materials &materials, const Vector &u)
 {
-  const mesh::Mesh &mesh = *d.mesh;
-  Vector u_overlap(d.overlap_dofs);
-  u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
-  double energy = 0;
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const StrainEnergy<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(u_overlap)};
-    Kokkos::parallel_reduce("rpc::fem::strain_energy", device_range(mesh.num_owned_cells), kernel, energy);
-  });
-  return sum_all(mesh.comm(), energy);
+  return sum_over_cells<StrainEnergy>("rpc::fem::strain_energy", d, materials, u);
 }
 
 Vector internal_forces(const Discretization &d, const Materials &materials, const Vector &u)
@@ -372,15 +379,7 @@ Vector internal_forces(const Discretization &d, const Materials &materials, cons
 
 double internal_force_norm(const Discretization &d, const Materials &materials, const Vector &u)
 {
-  const mesh::Mesh &mesh = *d.mesh;
-  Vector u_overlap(d.overlap_dofs);
-  u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
-  double squares = 0;
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const CellForceSquares<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(u_overlap)};
-    Kokkos::parallel_reduce("rpc::fem::internal_force_norm", device_range(mesh.num_owned_cells), kernel, squares);
-  });
-  return std::sqrt(sum_all(mesh.comm(), squares));
+  return std::sqrt(sum_over_cells<CellForceSquares>("rpc::fem::internal_force_norm", d, materials, u));
 }
 
 void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load)
