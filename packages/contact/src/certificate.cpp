@@ -54,17 +54,6 @@ double work(const fem::DirichletDofs &dirichlet, const bool prescribed, const Ve
   return sum_all(*u.getMap()->getComm(), sum);
 }
 
-void clear_prescribed(const fem::DirichletDofs &dirichlet, Vector &f)
-{
-  const auto fixed = dirichlet.fixed;
-  const auto to = device_write(f);
-  Kokkos::parallel_for(
-      "rpc::contact::clear_prescribed", device_range(static_cast<LO>(f.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
-        if (fixed(dof)) to(dof) = 0;
-      });
-  Kokkos::fence();
-}
-
 /// 0 over 0 is 0: nothing happens, and nothing is wrong.
 double ratio(const double part, const double whole)
 {
@@ -86,18 +75,20 @@ Certificate certify(const fem::Discretization &d, const fem::Materials &material
 {
   const fem::ElasticProblem &problem = functional.problem();
   const fem::DirichletDofs &dirichlet = problem.dirichlet;
-  const Vector internal = fem::internal_forces(d, materials, u), contact = functional.multiplier_forces();
+  Certificate certificate;
+  certificate.internal = fem::internal_work(d, materials, u);
+  const Vector &internal = *certificate.internal.forces;
+  const double strain = certificate.internal.strain_energy;
+  const Vector contact = functional.multiplier_forces();
   Vector external(*problem.applied_load, Teuchos::Copy), residual(internal, Teuchos::Copy);
   external.update(-1., contact, 1.);
   residual.update(-1., external, 1.);
-  clear_prescribed(dirichlet, residual);
+  fem::clear_prescribed(dirichlet, residual);
 
-  Certificate certificate;
   certificate.kkt_residual = functional.contact_law_residual(u);
-  certificate.equilibrium_residual = residual.norm2() / std::max({functional.force_scale(), contact.norm2(),
-                                                                  fem::internal_force_norm(d, materials, u)});
+  certificate.equilibrium_residual =
+      residual.norm2() / std::max({functional.force_scale(), contact.norm2(), certificate.internal.force_norm});
 
-  const double strain = fem::strain_energy(d, materials, u);
   const Vector moved = without_translation(dirichlet, d.dim(), u);
   const double of_load = work(dirichlet, false, moved, *problem.applied_load),
                of_contact = work(dirichlet, false, moved, contact),

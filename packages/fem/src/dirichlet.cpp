@@ -142,6 +142,17 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
   return dirichlet;
 }
 
+void clear_prescribed(const DirichletDofs &dirichlet, Vector &f)
+{
+  const auto fixed = dirichlet.fixed;
+  const auto to = device_write(f);
+  Kokkos::parallel_for(
+      "rpc::fem::clear_prescribed", device_range(static_cast<LO>(f.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
+        if (fixed(dof)) to(dof) = 0;
+      });
+  Kokkos::fence();
+}
+
 ElasticProblem eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> stiffness, RCP<Vector> load,
                                    DirichletDofs dirichlet)
 {
@@ -160,18 +171,26 @@ ElasticProblem eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> stiff
   const auto value = device_read(prescribed);
   const auto b = device_write(*load);
   const auto A = stiffness->getLocalMatrixDevice();
+  const auto nodes = d.nodes;
+  const int dim = d.dim();
   double own_energy = 0; // of the prescribed unknowns in the eliminated problem: -u_D diag(K) u_D / 2
   Kokkos::parallel_reduce(
-      "rpc::fem::eliminate_dirichlet", device_range(A.numRows()),
-      KOKKOS_LAMBDA(const LO row, double &energy) {
-        for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k) {
-          const LO col = A.graph.entries(k);
-          if (col == row) { // a row's own column has its lid in both maps
-            if (!fixed(row)) continue;
-            b(row) = A.values(k) * value(row);
-            energy -= 0.5 * value(row) * b(row);
-          } else if (fixed(row) || fixed(col)) {
-            A.values(k) = 0;
+      "rpc::fem::eliminate_dirichlet", device_range(d.mesh->num_owned_nodes()),
+      KOKKOS_LAMBDA(const LO node, double &energy) {
+        int touched = 0; // few nodes are: the others' entries need not be read
+        for (auto k = nodes.row(node); k < nodes.row(node + 1); ++k)
+          for (int c = 0; c < dim; ++c) touched |= fixed(dim * nodes.col(k) + c);
+        if (touched == 0) return;
+        for (LO row = dim * node; row < dim * (node + 1); ++row) {
+          for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k) {
+            const LO col = A.graph.entries(k);
+            if (col == row) { // a row's own column has its lid in both maps
+              if (!fixed(row)) continue;
+              b(row) = A.values(k) * value(row);
+              energy -= 0.5 * value(row) * b(row);
+            } else if (fixed(row) || fixed(col)) {
+              A.values(k) = 0;
+            }
           }
         }
       },

@@ -1,6 +1,7 @@
 #include "rpc/fem/discretization.hpp"
 
-#include "node_cells.hpp"
+#include "cell_shapes.hpp"
+#include "offsets.hpp"
 
 #include <array>
 
@@ -9,30 +10,35 @@ namespace rpc::fem
 namespace
 {
 
-/// Exclusive prefix sum of counts (n) into offsets (n + 1).
-template <class Count>
-DeviceView<std::size_t *> offsets_of(const DeviceView<Count *> &count, const std::string &label)
+NodeCells cells_around_nodes(const mesh::Mesh &mesh)
 {
-  const LO n = static_cast<LO>(count.extent(0));
-  DeviceView<std::size_t *> offset(label, n + 1);
-  Kokkos::parallel_scan(
-      "rpc::fem::offsets", device_range(n), KOKKOS_LAMBDA(const LO i, std::size_t &sum, const bool last) {
-        sum += count(i);
-        if (last) offset(i + 1) = sum;
+  const auto cells = mesh.cells;
+  const LO num_owned = mesh.num_owned_nodes();
+  const int nodes = mesh.element.num_nodes();
+  DeviceView<LO *> count("rpc::fem::cells_per_node", num_owned);
+  Kokkos::parallel_for(
+      "rpc::fem::count_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
+        for (int a = 0; a < nodes; ++a)
+          if (cells(cell, a) < num_owned) Kokkos::atomic_increment(&count(cells(cell, a)));
       });
-  return offset;
+  NodeCells around;
+  around.row = offsets_of(count, "rpc::fem::node_cells_row");
+  around.cell = DeviceView<LO *>("rpc::fem::node_cells", last_of(around.row));
+  Kokkos::deep_copy(count, 0);
+  const auto row = around.row;
+  const auto list = around.cell;
+  Kokkos::parallel_for(
+      "rpc::fem::list_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
+        for (int a = 0; a < nodes; ++a) {
+          const LO node = cells(cell, a);
+          if (node < num_owned) list(row(node) + Kokkos::atomic_fetch_add(&count(node), 1)) = cell;
+        }
+      });
+  return around;
 }
 
-std::size_t last_of(const DeviceView<std::size_t *> &offset)
+NodeGraph node_graph(const mesh::Mesh &mesh, const NodeCells &around)
 {
-  std::size_t last = 0;
-  Kokkos::deep_copy(last, Kokkos::subview(offset, offset.extent(0) - 1));
-  return last;
-}
-
-NodeGraph node_graph(const mesh::Mesh &mesh)
-{
-  const NodeCells around = cells_around_nodes(mesh);
   const auto cells = mesh.cells;
   const auto row = around.row;
   const auto list = around.cell;
@@ -82,26 +88,39 @@ RCP<const Map> dof_map(const Map &nodes, const int dim)
   return rcp(new Map(Teuchos::OrdinalTraits<GO>::invalid(), dofs(), 0, nodes.getComm()));
 }
 
+/// The rows of a node's unknowns.
+template <int Dim>
+struct FillDofGraph {
+  using LocalGraph = CrsGraph::local_graph_device_type;
+
+  NodeGraph nodes;                                  //                         in
+  LocalGraph::row_map_type::non_const_type row;     // (owned dofs + 1), row(0) = 0  out
+  LocalGraph::entries_type::non_const_type entries; // (matrix entries)        out
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    const std::size_t begin = nodes.row(node), length = nodes.row(node + 1) - begin;
+    for (int i = 0; i < Dim; ++i) {
+      const std::size_t start = Dim * (Dim * begin + i * length);
+      row(Dim * node + i + 1) = start + Dim * length;
+      for (std::size_t k = 0; k < length; ++k)
+        for (int j = 0; j < Dim; ++j) entries(start + Dim * k + j) = Dim * nodes.col(begin + k) + j;
+    }
+  }
+};
+
 RCP<const CrsGraph> dof_graph(const Discretization &d)
 {
   using LocalGraph = CrsGraph::local_graph_device_type;
   const LO num_nodes = d.mesh->num_owned_nodes();
   const int dim = d.dim();
-  const auto node_row = d.nodes.row;
-  const auto node_col = d.nodes.col;
   LocalGraph::row_map_type::non_const_type row("rpc::fem::graph_row", dim * num_nodes + 1);
   LocalGraph::entries_type::non_const_type col(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_col"),
-                                               std::size_t(dim) * dim * node_col.extent(0));
-  Kokkos::parallel_for(
-      "rpc::fem::dof_graph", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
-        const std::size_t begin = node_row(node), length = node_row(node + 1) - begin;
-        for (int i = 0; i < dim; ++i) {
-          const std::size_t start = dim * (dim * begin + i * length);
-          row(dim * node + i + 1) = start + dim * length;
-          for (std::size_t k = 0; k < length; ++k)
-            for (int j = 0; j < dim; ++j) col(start + dim * k + j) = dim * node_col(begin + k) + j;
-        }
-      });
+                                               std::size_t(dim) * dim * d.nodes.col.extent(0));
+  if (dim == 2)
+    Kokkos::parallel_for("rpc::fem::dof_graph", device_range(num_nodes), FillDofGraph<2>{d.nodes, row, col});
+  else
+    Kokkos::parallel_for("rpc::fem::dof_graph", device_range(num_nodes), FillDofGraph<3>{d.nodes, row, col});
   Kokkos::fence();
   const RCP<CrsGraph> graph = rcp(new CrsGraph(d.owned_dofs, d.overlap_dofs, row, col));
   graph->expertStaticFillComplete(
@@ -112,33 +131,6 @@ RCP<const CrsGraph> dof_graph(const Discretization &d)
 
 } // namespace
 
-NodeCells cells_around_nodes(const mesh::Mesh &mesh)
-{
-  const auto cells = mesh.cells;
-  const LO num_owned = mesh.num_owned_nodes();
-  const int nodes = mesh.element.num_nodes();
-  DeviceView<LO *> count("rpc::fem::cells_per_node", num_owned);
-  Kokkos::parallel_for(
-      "rpc::fem::count_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
-        for (int a = 0; a < nodes; ++a)
-          if (cells(cell, a) < num_owned) Kokkos::atomic_increment(&count(cells(cell, a)));
-      });
-  NodeCells around;
-  around.row = offsets_of(count, "rpc::fem::node_cells_row");
-  around.cell = DeviceView<LO *>("rpc::fem::node_cells", last_of(around.row));
-  Kokkos::deep_copy(count, 0);
-  const auto row = around.row;
-  const auto list = around.cell;
-  Kokkos::parallel_for(
-      "rpc::fem::list_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
-        for (int a = 0; a < nodes; ++a) {
-          const LO node = cells(cell, a);
-          if (node < num_owned) list(row(node) + Kokkos::atomic_fetch_add(&count(node), 1)) = cell;
-        }
-      });
-  return around;
-}
-
 Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
 {
   Discretization d;
@@ -148,7 +140,9 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
   d.overlap_dofs =
       d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
   d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
-  d.nodes = node_graph(*d.mesh);
+  d.shapes = cell_shapes(*d.mesh);
+  d.around = cells_around_nodes(*d.mesh);
+  d.nodes = node_graph(*d.mesh, d.around);
   d.graph = dof_graph(d);
   return d;
 }

@@ -58,13 +58,18 @@ struct ElasticCells {
   DeviceView<double *> weight;     // (points)                    in
   DeviceView<double **> lame;      // (blocks; lambda, mu)  [Pa]  in
   DeviceView<int *> projected;     // (blocks) 0 or 1             in
+  // Of cells that are alike, (shapes, points): gradients [1/m], and what a point stands for [m^Dim]. Empty: cells differ.
+  DeviceView<signed char *> shape; // (cells)                            in
+  DeviceView<double **[Nodes][Dim]> shape_gradient;
+  DeviceView<double **> shape_volume;
 
   KOKKOS_FUNCTION double lambda(const LO cell) const { return lame(block(cell), 0); }
   KOKKOS_FUNCTION double mu(const LO cell) const { return lame(block(cell), 1); }
-  KOKKOS_FUNCTION bool projects(const LO cell) const
+  KOKKOS_FUNCTION bool projects(const LO cell) const { return projects_in(block(cell)); }
+  KOKKOS_FUNCTION bool projects_in(const int of_block) const
   {
     if constexpr (!may_project) return false;
-    return projected(block(cell)) != 0;
+    return projected(of_block) != 0;
   }
 
   /// Calls work(volume, dN, dilatation) at each quadrature point: what the point stands for [m^Dim], the gradients dN(a, i)
@@ -125,14 +130,43 @@ struct ElasticCells {
   template <class Work>
   KOKKOS_FUNCTION bool at_plain_points(const LO cell, const Work &work) const
   {
+    const int points = static_cast<int>(weight.extent(0));
+    Gradients dN;
+    if (shape_volume.extent(0) > 0) {
+      const int s = shape(cell);
+      for (int q = 0; q < points; ++q) {
+        if (!(shape_volume(s, q) > 0)) return false;
+        for (int a = 0; a < Nodes; ++a)
+          for (int i = 0; i < Dim; ++i) dN[a][i] = shape_gradient(s, q, a, i);
+        work(q, shape_volume(s, q), dN);
+      }
+      return true;
+    }
     const Coords x(coords, cells, cell);
-    for (int q = 0; q < static_cast<int>(weight.extent(0)); ++q) {
-      Gradients dN;
+    for (int q = 0; q < points; ++q) {
       const double det = physical_gradients(x, gradient, q, dN);
       if (!(det > 0)) return false;
       work(q, weight(q) * det, dN);
     }
     return true;
+  }
+};
+
+/// Gradients and volumes at the points of each shape; 0 from the first point on whose Jacobian is <= 0.
+template <int Dim, int Nodes>
+struct TabulateShape {
+  ElasticCells<Dim, Nodes> body;                    //                                     in, without a table
+  DeviceView<LO *> example;                         // (shapes)                            in
+  DeviceView<double **[Nodes][Dim]> shape_gradient; // (shapes, points, Nodes, Dim) [1/m]  out
+  DeviceView<double **> shape_volume;               // (shapes, points)           [m^Dim]  out
+
+  KOKKOS_FUNCTION void operator()(const LO s) const
+  {
+    body.at_plain_points(example(s), [&](const int q, const double volume, const double(&dN)[Nodes][Dim]) {
+      shape_volume(s, q) = volume;
+      for (int a = 0; a < Nodes; ++a)
+        for (int i = 0; i < Dim; ++i) shape_gradient(s, q, a, i) = dN[a][i];
+    });
   }
 };
 
@@ -142,62 +176,61 @@ ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials 
 {
   const mesh::Mesh &mesh = *d.mesh;
   const BasisTable &table = d.reference.cell;
-  return {mesh.coords,
-          mesh.cells,
-          mesh.block,
-          table.value,
-          table.gradient,
-          table.weight,
-          lame_table(mesh, materials),
-          projected_dilatation_table(mesh, materials)};
+  ElasticCells<Dim, Nodes> body;
+  body.coords = mesh.coords;
+  body.cells = mesh.cells;
+  body.block = mesh.block;
+  body.value = table.value;
+  body.gradient = table.gradient;
+  body.weight = table.weight;
+  body.lame = lame_table(mesh, materials);
+  body.projected = projected_dilatation_table(mesh, materials);
+  if (d.shapes.size() == 0) return body;
+  const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::shape_gradient", d.shapes.size(), table.num_points());
+  const DeviceView<double **> volume("rpc::fem::shape_volume", d.shapes.size(), table.num_points());
+  const TabulateShape<Dim, Nodes> tabulate{body, d.shapes.example, gradient, volume};
+  Kokkos::parallel_for("rpc::fem::tabulate_shapes", device_range(d.shapes.size()), tabulate);
+  body.shape = d.shapes.of_cell;
+  body.shape_gradient = gradient;
+  body.shape_volume = volume;
+  return body;
 }
 
-/// K += stiffness of one cell. Entries are found once per pair of nodes: a node's rows share their columns.
+/// The stiffness of one cell, if it was of a block's material.                                     doc/theory.md (2.4)
 template <int Dim, int Nodes>
-struct Stiffness {
+struct CellStiffness {
   static constexpr int dofs = Dim * Nodes;
   using Gradients = double[Nodes][Dim];
 
-  ElasticCells<Dim, Nodes> body;      //                                    in
-  DeviceView<std::size_t *> node_row; // (owned nodes + 1)                  in
-  DeviceView<LO *> node_col;          // (node graph)                       in
-  LO num_owned;                       // rows of nodes >= this are another rank's
-  DeviceView<double *> values;        // (matrix entries)            [N/m]  inout
+  ElasticCells<Dim, Nodes> body; // in
 
-  /// @param bad  counts cells whose Jacobian is <= 0 somewhere
-  KOKKOS_FUNCTION void operator()(const LO cell, LO &bad) const
+  /// @param[out] k  (dofs, dofs) [N/m]
+  /// @return false if the Jacobian is <= 0 somewhere
+  KOKKOS_FUNCTION bool operator()(const LO cell, const int block, double (&k)[dofs][dofs]) const
   {
-    double product[dofs][dofs];
-    if (!integrate(cell, product)) {
-      ++bad;
-      return;
-    }
+    if (!integrate(cell, k)) return false;
     Projection<Dim, Nodes> projection;
-    const bool projects = body.projects(cell) && body.project(cell, projection);
-    const double lambda = body.lambda(cell), mu = body.mu(cell);
-    for (int a = 0; a < Nodes; ++a) {
-      const LO node = body.cells(cell, a);
-      if (node >= num_owned) continue;
-      const std::size_t begin = node_row(node), length = node_row(node + 1) - begin;
+    const bool projects = body.projects_in(block) && body.project(cell, projection);
+    const double lambda = body.lame(block, 0), mu = body.lame(block, 1);
+    for (int a = 0; a < Nodes; ++a)
       for (int b = 0; b < Nodes; ++b) {
-        double trace = 0;
-        for (int k = 0; k < Dim; ++k) trace += product[Dim * a + k][Dim * b + k];
-        const std::size_t at = find(begin, length, body.cells(cell, b));
-        for (int i = 0; i < Dim; ++i) {
-          double *const entry = &values(Dim * (Dim * begin + i * length + at));
+        double product[Dim][Dim], trace = 0;
+        for (int i = 0; i < Dim; ++i)
+          for (int j = 0; j < Dim; ++j) product[i][j] = k[Dim * a + i][Dim * b + j];
+        for (int i = 0; i < Dim; ++i) trace += product[i][i];
+        for (int i = 0; i < Dim; ++i)
           for (int j = 0; j < Dim; ++j) {
-            double dilatation = product[Dim * a + i][Dim * b + j];
+            double dilatation = product[i][j];
             if (projects) {
               dilatation = 0;
               for (const auto &Z : projection.Z) dilatation += Z[a][i] * Z[b][j];
             }
-            double k = lambda * dilatation + mu * product[Dim * a + j][Dim * b + i];
-            if (i == j) k += mu * trace;
-            add_shared(entry[j], k); // cells share rows
+            double &entry = k[Dim * a + i][Dim * b + j];
+            entry = lambda * dilatation + mu * product[j][i];
+            if (i == j) entry += mu * trace;
           }
-        }
       }
-    }
+    return true;
   }
 
   /// product(ai, bj) = int dN_a/dx_i dN_b/dx_j.    @return false if the Jacobian is <= 0 somewhere
@@ -212,95 +245,241 @@ struct Stiffness {
             for (int j = 0; j < Dim; ++j) product[Dim * a + i][Dim * b + j] += volume * dN[a][i] * dN[b][j];
     });
   }
+};
 
-  /// Place of a node in a row of the node graph; it is there, for the graph was made of these cells.
-  KOKKOS_FUNCTION std::size_t find(const std::size_t begin, const std::size_t length, const LO node) const
+/// Place of a node in its row of the node graph, sorted; it is there, for the graph was made of these cells.
+KOKKOS_INLINE_FUNCTION LO place_in_row(const DeviceView<LO *> &col, const std::size_t begin, const LO length,
+                                       const LO node)
+{
+  LO low = 0;
+  for (LO rest = length; rest > 1;) { // no branch on what is found: searches of a row overlap
+    const LO half = rest / 2;
+    low += half * (col(begin + low + half) <= node);
+    rest -= half;
+  }
+  return low;
+}
+
+/// K += stiffness of one cell. Entries are found once per pair of nodes: a node's rows share their columns.
+template <int Dim, int Nodes>
+struct AddStiffness {
+  static constexpr int dofs = Dim * Nodes;
+
+  CellStiffness<Dim, Nodes> stiffness; //                             in
+  NodeGraph nodes;                     //                             in
+  LO num_owned;                        // rows of nodes >= this are another rank's
+  DeviceView<double *> values;         // (matrix entries)     [N/m]  inout
+
+  /// @param bad  counts cells whose Jacobian is <= 0 somewhere
+  KOKKOS_FUNCTION void operator()(const LO cell, LO &bad) const
   {
-    std::size_t low = 0, high = length;
-    while (high - low > 1) {
-      const std::size_t middle = (low + high) / 2;
-      if (node_col(begin + middle) <= node)
-        low = middle;
-      else
-        high = middle;
+    const auto &cells = stiffness.body.cells;
+    double k[dofs][dofs];
+    if (!stiffness(cell, stiffness.body.block(cell), k)) {
+      ++bad;
+      return;
     }
-    return low;
+    for (int a = 0; a < Nodes; ++a) {
+      const LO node = cells(cell, a);
+      if (node >= num_owned) continue;
+      const std::size_t begin = nodes.row(node);
+      const LO length = static_cast<LO>(nodes.row(node + 1) - begin);
+      for (int b = 0; b < Nodes; ++b) {
+        const LO at = place_in_row(nodes.col, begin, length, cells(cell, b));
+        for (int i = 0; i < Dim; ++i) {
+          double *const entry = &values(Dim * (Dim * begin + i * length + at));
+          for (int j = 0; j < Dim; ++j) add_shared(entry[j], k[Dim * a + i][Dim * b + j]); // cells share rows
+        }
+      }
+    }
   }
 };
 
-/// energy += int sigma(u) : eps(u) over one cell.
+/// Rounds the entries of a cell's stiffness so that they, and sums over the cells around a node, are exact, and lets a
+/// translation have no force at all. The rounding of a cell by itself is noise, but that of a shape is the same force on all
+/// its cells: 1e-16 of each would be as much as a spring of 1e-16 times the number of cells on the whole body.
+template <int Nodes, int Dofs>
+KOKKOS_INLINE_FUNCTION void balance(double (&k)[Dofs][Dofs])
+{
+  constexpr int dim = Dofs / Nodes;
+  double largest = 0, power = 1;
+  for (int r = 0; r < Dofs; ++r)
+    for (int c = 0; c < Dofs; ++c) {
+      const double size = k[r][c] < 0 ? -k[r][c] : k[r][c];
+      if (!(size <= largest)) largest = size;
+    }
+  if (!(largest > 1e-290 && largest < 1e290)) return;
+  while (power < largest) power *= 2;
+  while (power > largest) power /= 2;
+  const double coarse = 24 * power; // whose last digit all entries are multiples of; 16 entries add up without rounding
+  for (int r = 0; r < Dofs; ++r)
+    for (int c = r + 1; c < Dofs; ++c) k[r][c] = k[c][r] = (k[r][c] + coarse) - coarse;
+  for (int r = 0; r < Dofs; ++r)
+    for (int j = 0; j < dim; ++j) {
+      double others = 0;
+      for (int b = 0; b < Nodes; ++b)
+        if (b != r / dim) others += k[r][dim * b + j];
+      k[r][dim * (r / dim) + j] = -others;
+    }
+}
+
+/// The stiffness of a cell of each shape in each block: matrix(shape * blocks + block).
 template <int Dim, int Nodes>
-struct StrainEnergy {
+struct TabulateStiffness {
+  static constexpr int dofs = Dim * Nodes;
+
+  CellStiffness<Dim, Nodes> stiffness;     //                                 in
+  DeviceView<LO *> example;                // (shapes)                        in
+  int num_blocks;                          //                                 in
+  DeviceView<double *[dofs][dofs]> matrix; // (shapes * blocks, dofs, dofs)  [N/m]  out
+
+  /// @param bad  counts shapes whose Jacobian is <= 0 somewhere
+  KOKKOS_FUNCTION void operator()(const LO m, LO &bad) const
+  {
+    double k[dofs][dofs];
+    if (!stiffness(example(m / num_blocks), m % num_blocks, k)) ++bad;
+    balance<Nodes>(k);
+    for (int r = 0; r < dofs; ++r)
+      for (int c = 0; c < dofs; ++c) matrix(m, r, c) = k[r][c];
+  }
+};
+
+/// The rows of one node of K, from the tabulated stiffness of the cells around it: each entry is written by one thread alone,
+/// and leaves the cache once.
+template <int Dim, int Nodes>
+struct NodeStiffness {
+  static constexpr int dofs = Dim * Nodes;
+
+  DeviceView<LO **> cells;                 // (cells, Nodes)                         in, overlap lids
+  DeviceView<int *> block;                 // (cells)                                in
+  DeviceView<signed char *> shape;         // (cells)                                in
+  DeviceView<double *[dofs][dofs]> matrix; // (shapes * blocks, dofs, dofs)   [N/m]  in
+  int num_blocks;                          //                                        in
+  LO num_owned;                            // nodes
+  NodeCells around;                        //                                        in
+  NodeGraph nodes;                         //                                        in
+  DeviceView<double *> values;             // (matrix entries)                [N/m]  out
+
+  KOKKOS_FUNCTION void gather(const LO node) const
+  {
+    const std::size_t begin = nodes.row(node);
+    const LO length = static_cast<LO>(nodes.row(node + 1) - begin);
+    double *const rows = &values(Dim * Dim * begin);
+    for (LO k = 0; k < Dim * Dim * length; ++k) rows[k] = 0;
+    for (std::size_t k = around.row(node); k < around.row(node + 1); ++k) {
+      const LO cell = around.cell(k);
+      const int m = shape(cell) * num_blocks + block(cell);
+      int a = 0;
+      while (cells(cell, a) != node) ++a;
+      for (int b = 0; b < Nodes; ++b) {
+        const LO at = place_in_row(nodes.col, begin, length, cells(cell, b));
+        for (int i = 0; i < Dim; ++i)
+          for (int j = 0; j < Dim; ++j) rows[Dim * (i * length + at) + j] += matrix(m, Dim * a + i, Dim * b + j);
+      }
+    }
+  }
+
+  /// Whether the cells around two nodes are the same ones, but for a shift of all numbers: then so are the rows.
+  KOKKOS_FUNCTION bool same_rows(const LO node, const LO other) const
+  {
+    const std::size_t first = around.row(node), of_other = around.row(other), count = around.row(node + 1) - first;
+    if (around.row(other + 1) - of_other != count) return false;
+    int differs = 0;
+    for (std::size_t k = 0; k < count && differs == 0; ++k) {
+      const LO c = around.cell(first + k), d = around.cell(of_other + k);
+      differs = (shape(c) != shape(d)) | (block(c) != block(d));
+      for (int b = 0; b < Nodes; ++b) differs |= cells(c, b) - cells(d, b) != node - other;
+    }
+    return differs == 0;
+  }
+
+  KOKKOS_FUNCTION void copy(const LO node, const LO from) const
+  {
+    const std::size_t begin = nodes.row(from), size = Dim * Dim * (nodes.row(from + 1) - begin);
+    const double *const source = &values(Dim * Dim * begin);
+    double *const rows = &values(Dim * Dim * nodes.row(node));
+    for (std::size_t k = 0; k < size; ++k) rows[k] = source[k];
+  }
+};
+
+/// The rows of one cell's nodes, for others to copy.
+template <int Dim, int Nodes>
+struct GatherExamples {
+  NodeStiffness<Dim, Nodes> stiffness;
+  LO example; // cell
+
+  KOKKOS_FUNCTION void operator()(const LO a) const
+  {
+    const LO node = stiffness.cells(example, a);
+    if (node < stiffness.num_owned) stiffness.gather(node);
+  }
+};
+
+/// All other rows: copied where a mesh repeats itself, which costs a third of gathering them.
+template <int Dim, int Nodes>
+struct GatherStiffness {
+  NodeStiffness<Dim, Nodes> stiffness;
+  LO example; // cell
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    for (int a = 0; a < Nodes; ++a) {
+      const LO other = stiffness.cells(example, a);
+      if (other == node) return;
+      if (other < stiffness.num_owned && stiffness.same_rows(node, other)) return stiffness.copy(node, other);
+    }
+    stiffness.gather(node);
+  }
+};
+
+/// What a displacement does in one cell: f(ai) += int sigma(u) : grad(N_a e_i) to the cell's nodes, and sums over the cells
+/// that this rank owns.
+template <int Dim, int Nodes>
+struct InternalWorkOfCell {
   using Gradients = double[Nodes][Dim];
 
   ElasticCells<Dim, Nodes> body; //                       in
   ReadVector u;                  // (overlap dofs)  [m]   in
-
-  KOKKOS_FUNCTION void operator()(const LO cell, double &energy) const
-  {
-    const double lambda = body.lambda(cell), mu = body.mu(cell);
-    body.at_points(cell, [&](const double volume, const Gradients &dN, const Gradients &dilatation) {
-      double grad[Dim][Dim];
-      displacement_gradient(u, body.cells, cell, dN, grad);
-      const double trace = divergence(u, body.cells, cell, dilatation);
-      double product = 0;
-      for (int i = 0; i < Dim; ++i)
-        for (int j = 0; j < Dim; ++j) product += 0.25 * (grad[i][j] + grad[j][i]) * (grad[i][j] + grad[j][i]);
-      energy += volume * (lambda * trace * trace + 2 * mu * product);
-    });
-  }
-};
-
-/// f(a, i) = int sigma(u) : grad(N_a e_i) over one cell [N].
-template <int Dim, int Nodes>
-KOKKOS_FUNCTION void cell_forces(const ElasticCells<Dim, Nodes> &body, const LO cell, const ReadVector &u,
-                                 double (&force)[Nodes][Dim])
-{
-  for (int a = 0; a < Nodes; ++a)
-    for (int i = 0; i < Dim; ++i) force[a][i] = 0;
-  const double lambda = body.lambda(cell), mu = body.mu(cell);
-  body.at_points(cell, [&](const double volume, const double(&dN)[Nodes][Dim], const double(&dilatation)[Nodes][Dim]) {
-    double grad[Dim][Dim];
-    displacement_gradient(u, body.cells, cell, dN, grad);
-    const double trace = divergence(u, body.cells, cell, dilatation);
-    for (int a = 0; a < Nodes; ++a)
-      for (int i = 0; i < Dim; ++i) {
-        double sum = lambda * trace * dilatation[a][i];
-        for (int j = 0; j < Dim; ++j) sum += mu * (grad[i][j] + grad[j][i]) * dN[a][j];
-        force[a][i] += volume * sum;
-      }
-  });
-}
-
-/// f(ai) += cell_forces of one cell.
-template <int Dim, int Nodes>
-struct InternalForces {
-  ElasticCells<Dim, Nodes> body; //                       in
-  ReadVector u;                  // (overlap dofs)  [m]   in
   LO num_owned;                  // nodes
-  WriteVector force;             // (owned dofs)    [N]   inout
+  LO num_owned_cells;
+  WriteVector force; // (owned dofs)    [N]   inout
 
-  KOKKOS_FUNCTION void operator()(const LO cell) const
+  /// @param squares  += |forces of this cell|^2 [N^2]
+  /// @param energy   += int sigma(u) : eps(u) [J]
+  KOKKOS_FUNCTION void operator()(const LO cell, double &squares, double &energy) const
   {
-    double own[Nodes][Dim];
-    cell_forces(body, cell, u, own);
+    const int block = body.block(cell);
+    const double lambda = body.lame(block, 0), mu = body.lame(block, 1);
+    double own[Nodes][Dim] = {}, moved[Nodes][Dim], of_cell = 0;
+    // Gradients sum to 0 over the nodes; differences let a translation vanish to the last digit.
+    for (int a = 0; a < Nodes; ++a)
+      for (int i = 0; i < Dim; ++i) moved[a][i] = u(Dim * body.cells(cell, a) + i) - u(Dim * body.cells(cell, 0) + i);
+    body.at_points(cell, [&](const double volume, const Gradients &dN, const Gradients &dilatation) {
+      double stress[Dim][Dim], trace = 0, product = 0; // without the part of the dilatation
+      for (int i = 0; i < Dim; ++i)
+        for (int a = 1; a < Nodes; ++a) trace += moved[a][i] * dilatation[a][i];
+      for (int i = 0; i < Dim; ++i)
+        for (int j = 0; j <= i; ++j) {
+          double strain = 0; // twice
+          for (int a = 1; a < Nodes; ++a) strain += moved[a][i] * dN[a][j] + moved[a][j] * dN[a][i];
+          stress[i][j] = stress[j][i] = volume * mu * strain;
+          product += (i == j ? 0.25 : 0.5) * strain * strain;
+        }
+      of_cell += volume * (lambda * trace * trace + 2 * mu * product);
+      for (int a = 1; a < Nodes; ++a)
+        for (int i = 0; i < Dim; ++i) {
+          own[a][i] += volume * lambda * trace * dilatation[a][i];
+          for (int j = 0; j < Dim; ++j) own[a][i] += stress[i][j] * dN[a][j];
+        }
+    });
+    for (int a = 1; a < Nodes; ++a) // together they move nothing
+      for (int i = 0; i < Dim; ++i) own[0][i] -= own[a][i];
     for (int a = 0; a < Nodes; ++a) {
       const LO node = body.cells(cell, a);
       for (int i = 0; i < Dim && node < num_owned; ++i) add_shared(force(Dim * node + i), own[a][i]);
     }
-  }
-};
-
-/// squares += |cell_forces|^2 of one cell [N^2].
-template <int Dim, int Nodes>
-struct CellForceSquares {
-  ElasticCells<Dim, Nodes> body; //                       in
-  ReadVector u;                  // (overlap dofs)  [m]   in
-
-  KOKKOS_FUNCTION void operator()(const LO cell, double &squares) const
-  {
-    double own[Nodes][Dim];
-    cell_forces(body, cell, u, own);
+    if (cell >= num_owned_cells) return;
+    energy += of_cell;
     for (int a = 0; a < Nodes; ++a)
       for (int i = 0; i < Dim; ++i) squares += own[a][i] * own[a][i];
   }

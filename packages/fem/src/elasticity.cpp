@@ -194,19 +194,38 @@ void add_load(const DeviceView<LO **> &entities, const DeviceView<double **> &va
   Kokkos::fence();
 }
 
-/// Sum over the cells of all ranks of what a kernel of body and displacement adds up.
-template <template <int, int> class Kernel>
-double sum_over_cells(const char *label, const Discretization &d, const Materials &materials, const Vector &u)
+/// The matrix's values where cells are alike: few cells are integrated, and each entry is written once.
+/// @param[out] bad  number of shapes with a Jacobian <= 0
+template <int Dim, int Nodes>
+DeviceView<double *> gather_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes> &stiffness,
+                                      const std::size_t num_entries, LO &bad)
 {
+  constexpr int dofs = Dim * Nodes;
   const mesh::Mesh &mesh = *d.mesh;
-  Vector u_overlap(d.overlap_dofs);
-  u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
-  double sum = 0;
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const Kernel<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(u_overlap)};
-    Kokkos::parallel_reduce(label, device_range(mesh.num_owned_cells), kernel, sum);
-  });
-  return sum_all(mesh.comm(), sum);
+  const int num_blocks = static_cast<int>(mesh.blocks.size()), num_matrices = d.shapes.size() * num_blocks;
+  const DeviceView<double *[dofs][dofs]> matrix("rpc::fem::shape_stiffness", num_matrices);
+  const TabulateStiffness<Dim, Nodes> tabulate{stiffness, d.shapes.example, num_blocks, matrix};
+  Kokkos::parallel_reduce("rpc::fem::tabulate_stiffness", device_range(num_matrices), tabulate, bad);
+  const DeviceView<double *> values(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::stiffness"), num_entries);
+  const LO num_owned = mesh.num_owned_nodes(), example = mesh.num_cells() / 2;
+  const NodeStiffness<Dim, Nodes> rows{mesh.cells, mesh.block, d.shapes.of_cell, matrix, num_blocks,
+                                       num_owned,  d.around,   d.nodes,          values};
+  Kokkos::parallel_for("rpc::fem::gather_examples", device_range(Nodes), GatherExamples<Dim, Nodes>{rows, example});
+  Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
+                       GatherStiffness<Dim, Nodes>{rows, example});
+  return values;
+}
+
+/// The matrix's values where each cell is integrated by itself.
+/// @param[out] bad  number of cells with a Jacobian <= 0
+template <int Dim, int Nodes>
+DeviceView<double *> add_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes> &stiffness,
+                                   const std::size_t num_entries, LO &bad)
+{
+  const DeviceView<double *> values("rpc::fem::stiffness", num_entries);
+  const AddStiffness<Dim, Nodes> add{stiffness, d.nodes, d.mesh->num_owned_nodes(), values};
+  Kokkos::parallel_reduce("rpc::fem::add_stiffness", device_range(d.mesh->num_cells()), add, bad);
+  return values;
 }
 
 } // namespace
@@ -261,19 +280,20 @@ DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materi
   return table;
 }
 
-DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials)
+DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials,
+                                             const DeviceView<LO *> &nodes)
 {
-  const LO num_owned = d.mesh->num_owned_nodes();
   const auto lame = lame_table(*d.mesh, materials);
-  const auto cells = d.mesh->cells;
+  const auto around = d.around;
   const auto block = d.mesh->block;
-  DeviceView<double *> modulus("rpc::fem::youngs_modulus", num_owned);
+  DeviceView<double *> modulus("rpc::fem::youngs_modulus", nodes.extent(0));
   Kokkos::parallel_for(
-      "rpc::fem::youngs_modulus", device_range(d.mesh->num_cells()), KOKKOS_LAMBDA(const LO cell) {
-        const double lambda = lame(block(cell), 0), mu = lame(block(cell), 1);
-        const double own = mu * (3 * lambda + 2 * mu) / (lambda + mu);
-        for (std::size_t a = 0; a < cells.extent(1); ++a)
-          if (cells(cell, a) < num_owned) Kokkos::atomic_fetch_max(&modulus(cells(cell, a)), own);
+      "rpc::fem::youngs_modulus", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        for (std::size_t k = around.row(nodes(i)); k < around.row(nodes(i) + 1); ++k) {
+          const double lambda = lame(block(around.cell(k)), 0), mu = lame(block(around.cell(k)), 1);
+          const double own = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+          if (own > modulus(i)) modulus(i) = own;
+        }
       });
   Kokkos::fence();
   return modulus;
@@ -345,41 +365,40 @@ VectorField body_force_options(const Teuchos::ParameterList &list, const int dim
 
 RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &materials)
 {
-  const auto matrix = rcp(new CrsMatrix(d.graph));
   const mesh::Mesh &mesh = *d.mesh;
+  const std::size_t num_entries = d.graph->getLocalGraphDevice().entries.extent(0);
+  DeviceView<double *> values;
   LO bad = 0;
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const Stiffness<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), d.nodes.row, d.nodes.col,
-                                       mesh.num_owned_nodes(), matrix->getLocalMatrixDevice().values};
-    Kokkos::parallel_reduce("rpc::fem::stiffness", device_range(mesh.num_cells()), kernel, bad);
+    const CellStiffness<dim, nodes> stiffness{elastic_cells<dim, nodes>(d, materials)};
+    values = d.shapes.size() > 0 ? gather_stiffness(d, stiffness, num_entries, bad)
+                                 : add_stiffness(d, stiffness, num_entries, bad);
   });
+  Kokkos::fence();
   if (sum_all(mesh.comm(), GO(bad)) > 0) throw_if_any(mesh.comm(), ExitCode::bad_mesh, describe_bad_cell(d));
+  const auto matrix = rcp(new CrsMatrix(d.graph, values));
   matrix->fillComplete(d.owned_dofs, d.owned_dofs);
   return matrix;
 }
 
-double strain_energy(const Discretization &d, const Materials &materials, const Vector &u)
-{
-  return sum_over_cells<StrainEnergy>("rpc::fem::strain_energy", d, materials, u);
-}
-
-Vector internal_forces(const Discretization &d, const Materials &materials, const Vector &u)
+InternalWork internal_work(const Discretization &d, const Materials &materials, const Vector &u)
 {
   const mesh::Mesh &mesh = *d.mesh;
-  Vector u_overlap(d.overlap_dofs), force(d.owned_dofs);
-  u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
+  RCP<const Vector> u_overlap = Teuchos::rcpFromRef(u);
+  if (d.overlap_dofs != d.owned_dofs) {
+    const auto imported = rcp(new Vector(d.overlap_dofs));
+    imported->doImport(u, *d.dof_import, Tpetra::INSERT);
+    u_overlap = imported;
+  }
+  const auto forces = rcp(new Vector(d.owned_dofs));
+  double squares = 0, energy = 0;
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const InternalForces<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(u_overlap),
-                                            mesh.num_owned_nodes(), device_write(force)};
-    Kokkos::parallel_for("rpc::fem::internal_forces", device_range(mesh.num_cells()), kernel);
+    const InternalWorkOfCell<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(*u_overlap),
+                                                mesh.num_owned_nodes(), mesh.num_owned_cells, device_write(*forces)};
+    Kokkos::parallel_reduce("rpc::fem::internal_work", device_range(mesh.num_cells()), kernel, squares, energy);
   });
   Kokkos::fence();
-  return force;
-}
-
-double internal_force_norm(const Discretization &d, const Materials &materials, const Vector &u)
-{
-  return std::sqrt(sum_over_cells<CellForceSquares>("rpc::fem::internal_force_norm", d, materials, u));
+  return {forces, std::sqrt(sum_all(mesh.comm(), squares)), sum_all(mesh.comm(), energy)};
 }
 
 void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load)

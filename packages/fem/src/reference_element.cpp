@@ -1,6 +1,7 @@
 #include "rpc/fem/reference_element.hpp"
 
 #include "rpc/core/error.hpp"
+#include "shape_functions.hpp"
 
 #include <array>
 #include <cmath>
@@ -37,28 +38,6 @@ Rule1d gauss(const int points)
 Rule1d lobatto(const int order)
 {
   return order == 1 ? Rule1d{{-1, 1}, {1, 1}} : Rule1d{{-1, 0, 1}, {1. / 3, 4. / 3, 1. / 3}};
-}
-
-double node_1d(const int i, const int order)
-{
-  return -1 + 2. * i / order;
-}
-
-/// Value and derivative at x of the Lagrange polynomial of node i.
-struct Shape1d {
-  double value, slope;
-};
-Shape1d lagrange(const int i, const int order, const double x)
-{
-  Shape1d shape{1, 0};
-  for (int k = 0; k <= order; ++k) {
-    if (k == i) continue;
-    const double span = node_1d(i, order) - node_1d(k, order);
-    const double factor = (x - node_1d(k, order)) / span;
-    shape.slope = shape.slope * factor + shape.value / span;
-    shape.value *= factor;
-  }
-  return shape;
 }
 
 /// Nodes of a facet on its own lattice {0..order}^d, in the order of Element::facets.
@@ -109,9 +88,10 @@ BasisTable tensor_table(const std::vector<std::vector<int>> &lattice, const int 
       value(q, a) = 1;
       for (int g = 0; g < d; ++g) gradient(q, a, g) = 1;
       for (int k = 0; k < d; ++k) {
-        const Shape1d shape = lagrange(lattice[a][k], order, rule.point[at[k]]);
-        value(q, a) *= shape.value;
-        for (int g = 0; g < d; ++g) gradient(q, a, g) *= g == k ? shape.slope : shape.value;
+        const Lagrange shape = lagrange(order, rule.point[at[k]]);
+        const int node = lattice[a][k];
+        value(q, a) *= shape.value[node];
+        for (int g = 0; g < d; ++g) gradient(q, a, g) *= g == k ? shape.slope[node] : shape.value[node];
       }
     }
   }
@@ -146,27 +126,29 @@ TriangleRule triangle_rule(const int points)
   return rule;
 }
 
-BasisTable triangle_table(const int order, const TriangleRule &rule)
+template <int Nodes>
+BasisTable triangle_table(const TriangleRule &rule)
 {
-  const int points = static_cast<int>(rule.weight.size()), nodes = order == 1 ? 3 : 6;
-  HostView<double **> value("rpc::fem::value", points, nodes);
-  HostView<double ***> gradient("rpc::fem::gradient", points, nodes, 2);
+  const int points = static_cast<int>(rule.weight.size());
+  HostView<double **> value("rpc::fem::value", points, Nodes);
+  HostView<double ***> gradient("rpc::fem::gradient", points, Nodes, 2);
   HostView<double *> weight("rpc::fem::weight", points);
-  constexpr double slope[3][2] = {{-1, -1}, {1, 0}, {0, 1}}; // of the barycentric coordinates
   for (int q = 0; q < points; ++q) {
-    const double x = rule.point[q][0], y = rule.point[q][1];
-    const double L[3] = {1 - x - y, x, y};
+    const double X[2] = {rule.point[q][0], rule.point[q][1]};
+    double N[Nodes], dN[Nodes][2];
+    triangle_shapes(X, N, dN);
     weight(q) = rule.weight[q];
-    for (int a = 0; a < 3; ++a) {
-      value(q, a) = order == 1 ? L[a] : L[a] * (2 * L[a] - 1);
-      for (int g = 0; g < 2; ++g) gradient(q, a, g) = slope[a][g] * (order == 1 ? 1 : 4 * L[a] - 1);
-      if (order == 1) continue;
-      const int b = (a + 1) % 3; // the node in the middle of edge a
-      value(q, 3 + a) = 4 * L[a] * L[b];
-      for (int g = 0; g < 2; ++g) gradient(q, 3 + a, g) = 4 * (L[a] * slope[b][g] + L[b] * slope[a][g]);
+    for (int a = 0; a < Nodes; ++a) {
+      value(q, a) = N[a];
+      for (int g = 0; g < 2; ++g) gradient(q, a, g) = dN[a][g];
     }
   }
   return device_table(value, gradient, weight);
+}
+
+BasisTable triangle_table(const int order, const TriangleRule &rule)
+{
+  return order == 1 ? triangle_table<3>(rule) : triangle_table<6>(rule);
 }
 
 } // namespace

@@ -1,6 +1,5 @@
 #include "rpc/fem/stress.hpp"
 
-#include "node_cells.hpp"
 #include "patch_recovery.hpp"
 
 namespace rpc::fem
@@ -66,7 +65,7 @@ RCP<MultiVector> recover(const Discretization &d, const ElasticCells<Dim, Nodes>
   using Table = PatchTable<Dim, Nodes>;
   const mesh::Mesh &mesh = *d.mesh;
   const auto nodes = device_range(mesh.num_owned_nodes());
-  const NodeCells around = cells_around_nodes(mesh);
+  const NodeCells &around = d.around;
   const Import import(mesh.owned_nodes, mesh.overlap_nodes);
   const auto table = rcp(new MultiVector(mesh.owned_nodes, Table::columns)); // zero
   {

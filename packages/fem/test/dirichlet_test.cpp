@@ -231,6 +231,20 @@ TEST(DirichletDofs, MarkThePrescribedComponentsOfOwnedAndGhostNodes)
   }
 }
 
+TEST(DirichletDofs, ForcesOnThemAreCleared)
+{
+  const auto d = body(small_box({2, 1}), world());
+  const auto dirichlet = fem::dirichlet_dofs(d, held_and_pushed(d));
+  const auto full = interpolate(d, [](const Point &) { return Point{3, 4}; });
+  Vector force(*full, Teuchos::Copy);
+  fem::clear_prescribed(dirichlet, force);
+  const auto cleared = interpolate(d, [](const Point &x) {
+    const bool left = x[0] == -1, right = x[0] == 1.5;
+    return Point{left || right ? 0. : 3., left ? 0. : 4.};
+  });
+  EXPECT_EQ(by_node_id(d, force), by_node_id(d, *cleared));
+}
+
 TEST(DirichletDofs, TellWhichConditionPrescribesAnUnknownTheLastOfSeveral)
 {
   for (const auto &element : elements()) {

@@ -255,7 +255,7 @@ TEST(InternalForces, AreTheStiffnessTimesTheDisplacement)
     const auto u = interpolate(d, wild);
     Vector force(d.owned_dofs);
     fem::assemble_stiffness(d, steel)->apply(*u, force);
-    EXPECT_LT(difference(by_node_id(d, fem::internal_forces(d, steel, *u)), by_node_id(d, force)), 1e-13)
+    EXPECT_LT(difference(by_node_id(d, *fem::internal_work(d, steel, *u).forces), by_node_id(d, force)), 1e-13)
         << text_of(element);
   }
 }
@@ -271,7 +271,7 @@ TEST(InternalForces, OfRigidMotionVanishHoweverFarItLeads)
       for (std::size_t mode = 0; mode < modes->getNumVectors(); ++mode) u.update(far, *modes->getVector(mode), 1.);
       // The displacement itself is rounded.
       const double rounding = std::numeric_limits<double>::epsilon() * u.normInf();
-      EXPECT_LT(fem::internal_forces(d, steel, u).normInf(), 100 * rounding * steel.youngs_modulus) << far;
+      EXPECT_LT(fem::internal_work(d, steel, u).forces->normInf(), 100 * rounding * steel.youngs_modulus) << far;
     }
   }
 }
@@ -281,10 +281,10 @@ TEST(InternalForces, SumToZeroAndHaveNoMoment)
   for (const auto &element : elements()) {
     SCOPED_TRACE(text_of(element));
     const auto d = bulged_body(element, world());
-    const auto force = fem::internal_forces(d, steel, *interpolate(d, wild));
+    const auto force = fem::internal_work(d, steel, *interpolate(d, wild)).forces;
     const auto modes = fem::rigid_body_modes(d);
     for (std::size_t mode = 0; mode < modes->getNumVectors(); ++mode)
-      EXPECT_LT(std::abs(modes->getVector(mode)->dot(force)), 1e-13 * force.norm1()) << "mode " << mode;
+      EXPECT_LT(std::abs(modes->getVector(mode)->dot(*force)), 1e-13 * force->norm1()) << "mode " << mode;
   }
 }
 

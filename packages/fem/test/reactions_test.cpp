@@ -46,7 +46,7 @@ TEST(ReactionForces, OfAStretchedBoxAreStressTimesArea)
       return Point{strain[0] * x[0], strain[1] * x[1], strain[2] * x[2]};
     });
     const auto reactions =
-        fem::reaction_forces(d, fem::dirichlet_dofs(d, rollers(d)), 2 * dim, fem::internal_forces(d, steel, *u));
+        fem::reaction_forces(d, fem::dirichlet_dofs(d, rollers(d)), 2 * dim, *fem::internal_work(d, steel, *u).forces);
     ASSERT_EQ(static_cast<int>(reactions.size()), 2 * dim);
     double trace = 0, volume = 1;
     for (int c = 0; c < dim; ++c) {
@@ -107,7 +107,7 @@ TEST(ReactionForces, BalanceTheLoad)
     SCOPED_TRACE(text_of(element));
     const auto d = bulged_body(element, world());
     const auto dirichlet = fem::dirichlet_dofs(d, held_and_pushed(d));
-    Vector out_of_balance = fem::internal_forces(d, steel, *interpolate(d, wild));
+    Vector out_of_balance(*fem::internal_work(d, steel, *interpolate(d, wild)).forces, Teuchos::Copy);
     const double scale = out_of_balance.norm1();
     Vector load(out_of_balance, Teuchos::Copy);
     {

@@ -5,6 +5,7 @@
 #include "rpc/core/parameters.hpp"
 #include "rpc/mesh/distribute.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -84,6 +85,21 @@ int dimension(const MeshOptions &options)
 {
   const auto *box = std::get_if<BoxOptions>(&options);
   return box ? box->element.dim : 2;
+}
+
+std::optional<MeshOptions> coarser(const MeshOptions &options, const double factor)
+{
+  RPC_REQUIRE(factor >= 1 && std::isfinite(factor),
+              "mesh: the factor on the size of cells must be >= 1 and finite for a coarser mesh, got " << factor);
+  MeshOptions result = options;
+  if (auto *const box = std::get_if<BoxOptions>(&result)) {
+    for (int &cells : box->cells) cells = std::max(1, static_cast<int>(std::lround(cells / factor)));
+    return result;
+  }
+  auto &gmsh = std::get<GmshOptions>(result);
+  if (std::filesystem::path(gmsh.file).extension() != ".geo") return std::nullopt;
+  gmsh.size_factor *= factor;
+  return result;
 }
 
 Mesh make_mesh(const MeshOptions &options, const RCP<const Comm> &comm)

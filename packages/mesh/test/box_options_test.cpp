@@ -194,4 +194,36 @@ TEST(MeshOptions, TellTheDimensionBeforeThereIsAMesh)
   EXPECT_EQ(rpc::mesh::dimension(GmshOptions()), 2);
 }
 
+TEST(Coarser, BoxHasFewerCellsInEachDirectionButOneAtLeast)
+{
+  const BoxOptions box{{-1, 2, 0}, {1, 3, 0.5}, {320, 7, 2}, {3, 1}};
+  const auto options = std::get<BoxOptions>(rpc::mesh::coarser(box, 4).value());
+  EXPECT_EQ(options.cells, (std::vector<int>{80, 2, 1}));
+  EXPECT_EQ(options.lower, box.lower);
+  EXPECT_EQ(options.upper, box.upper);
+  EXPECT_TRUE(options.element == box.element);
+  EXPECT_EQ(std::get<BoxOptions>(rpc::mesh::coarser(box, 1).value()).cells, box.cells);
+  EXPECT_EQ(std::get<BoxOptions>(rpc::mesh::coarser(box, 1e300).value()).cells, (std::vector<int>{1, 1, 1}));
+}
+
+TEST(Coarser, GeometryIsMeshedWithLargerCells)
+{
+  const auto options = std::get<GmshOptions>(rpc::mesh::coarser(GmshOptions{"body.geo", 0.5, 1}, 3).value());
+  EXPECT_EQ(options.file, "body.geo");
+  EXPECT_EQ(options.size_factor, 1.5);
+  EXPECT_EQ(options.order, 1);
+}
+
+TEST(Coarser, MeshFileCannotBeCoarsened)
+{
+  EXPECT_FALSE(rpc::mesh::coarser(GmshOptions{"body.msh"}, 2));
+}
+
+TEST(Coarser, FactorBelowOneIsRefused)
+{
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double factor : {0.5, 0., -2., inf, nan})
+    expect_error(ExitCode::bad_input, {"factor", ">= 1"}, [&] { rpc::mesh::coarser(BoxOptions(), factor); });
+}
+
 } // namespace

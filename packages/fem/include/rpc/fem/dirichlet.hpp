@@ -40,6 +40,9 @@ struct DirichletDofs {
 ///         values at one node
 DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<DirichletCondition> &conditions);
 
+/// f, (owned dofs), becomes 0 where displacements are prescribed; fences.
+void clear_prescribed(const DirichletDofs &dirichlet, Vector &f);
+
 /// The discrete elastic problem with its boundary conditions built in: find u with stiffness u = load, where nothing
 /// touches.
 struct ElasticProblem {

@@ -16,6 +16,21 @@ struct NodeGraph {
   DeviceView<LO *> col;          ///< (entries) overlap node lids, ascending in each row
 };
 
+/// Cells around each owned node, as offsets and list; the order within a node is not fixed.
+struct NodeCells {
+  DeviceView<std::size_t *> row; ///< (owned nodes + 1)
+  DeviceView<LO *> cell;         ///< (entries) local cells
+};
+
+/// Which local cells are alike: each other's translates, up to the rounding of coordinates. What depends on a cell's shape
+/// alone is worked out once for each. No shapes where cells differ: then each is worked out by itself.
+struct CellShapes {
+  DeviceView<signed char *> of_cell; ///< (local cells)
+  DeviceView<LO *> example;          ///< (shapes) a cell of each
+
+  int size() const { return static_cast<int>(example.extent(0)); }
+};
+
 /// A mesh with its displacement unknowns: `dim` per node, unknown c of node n is dim n + c in every numbering.
 struct Discretization {
   std::shared_ptr<const mesh::Mesh> mesh;
@@ -23,6 +38,8 @@ struct Discretization {
   RCP<const Map> owned_dofs;    ///< rows
   RCP<const Map> overlap_dofs;  ///< columns
   RCP<const Import> dof_import; ///< owned -> overlap
+  CellShapes shapes;
+  NodeCells around;
   NodeGraph nodes;
   RCP<const CrsGraph> graph; ///< fill-complete, columns ascending
 

@@ -44,9 +44,10 @@ Materials material_options(const Teuchos::ParameterList &list);
 /// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
 DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materials);
 
-/// The largest Young's modulus among the cells around each owned node (owned nodes, [Pa]).
+/// The largest Young's modulus among the cells around each of some owned nodes (nodes, [Pa]).
 /// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
-DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials);
+DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials,
+                                             const DeviceView<LO *> &nodes);
 
 /// Blocks in which the projection stands for the dilatation: (blocks) 0 or 1.
 DeviceView<int *> projected_dilatation_table(const mesh::Mesh &mesh, const Materials &materials);
@@ -79,19 +80,20 @@ VectorField body_force_options(const Teuchos::ParameterList &list, int dim, cons
 /// @throws rpc::Error (bad_mesh) on every rank if a cell has a Jacobian <= 0 at a quadrature point, naming the first
 RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &materials);
 
-/// a(u, u), twice the elastic energy [J], in 2D per m, summed over the cells: rigid motion cancels cell by cell.      (1.2)
+/// What a displacement does inside the body, from one pass over the cells.
+struct InternalWork {
+  RCP<const Vector>
+      forces; ///< f(ai) = int sigma(u) : grad(N_a e_i), the forces that hold the body in the state u (owned
+              ///< dofs, [N]); no row is eliminated.                                             (2.9)
+  double force_norm =
+      0; ///< 2-norm over all forces between cells and their nodes, each cell's by itself [N]: what is at
+         ///< work inside the body, where `forces` are what is left at the nodes. (2.13)
+  double strain_energy =
+      0; ///< a(u, u), twice the elastic energy [J], in 2D per m: rigid motion cancels cell by cell. (1.2)
+};
+
 /// @param u  (owned dofs) [m], prescribed ones included; collective
-double strain_energy(const Discretization &d, const Materials &materials, const Vector &u);
-
-/// f(ai) = int sigma(u) : grad(N_a e_i), the forces that hold the body in the state u (owned dofs, [N]), summed over the
-/// cells; no row is eliminated. (2.9)
-/// @param u  (owned dofs) [m]; collective
-Vector internal_forces(const Discretization &d, const Materials &materials, const Vector &u);
-
-/// The 2-norm over all forces between cells and their nodes, each cell's by itself [N]: what is at work inside the body,
-/// where internal_forces() are what is left at the nodes. (2.13)
-/// @param u  (owned dofs) [m]; collective
-double internal_force_norm(const Discretization &d, const Materials &materials, const Vector &u);
+InternalWork internal_work(const Discretization &d, const Materials &materials, const Vector &u);
 
 /// load(ai) += int N_a f_i, over the body, for a force per volume f [N/m^3] (owned dofs, [N], in 2D per m). (2.5)
 /// @param parameter  deck path for messages; collective

@@ -1,0 +1,230 @@
+#include "rpc/fem/interpolation.hpp"
+
+#include "bodies.hpp"
+
+#include <algorithm>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+
+/// f(x), up to three numbers, at all owned nodes: (owned nodes; dim).
+template <class Function>
+MultiVector at_nodes(const fem::Discretization &d, const Function &f)
+{
+  MultiVector result(d.mesh->owned_nodes, d.dim());
+  const auto values = result.getLocalViewHost(Tpetra::Access::OverwriteAll);
+  for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n) {
+    const Point value = f(point_of(d, n));
+    for (int c = 0; c < d.dim(); ++c) values(n, c) = value[c];
+  }
+  return result;
+}
+
+std::vector<double> by_node_id(const fem::Discretization &d, const MultiVector &nodal)
+{
+  const auto values = nodal.getLocalViewHost(Tpetra::Access::ReadOnly);
+  return rpc::test::by_node_id(*d.mesh, d.dim(), [&](const LO n, const int c) { return values(n, c); });
+}
+
+/// f, known at the coarse nodes, at the fine ones.
+template <class Function>
+std::vector<double> interpolated(const fem::Discretization &coarse, const fem::Discretization &fine, const Function &f)
+{
+  MultiVector result(fine.mesh->owned_nodes, fine.dim());
+  fem::interpolation(coarse, fine)->apply(at_nodes(coarse, f), result);
+  return by_node_id(fine, result);
+}
+
+/// The largest error of f's interpolation, relative to f.
+template <class Function>
+double error_of(const fem::Discretization &coarse, const fem::Discretization &fine, const Function &f)
+{
+  return difference(interpolated(coarse, fine, f), by_node_id(fine, at_nodes(fine, f)));
+}
+
+/// The small box with more cells; ranks divide it along another direction than the small one.
+mesh::BoxOptions finer_box(const mesh::Element &element)
+{
+  auto box = small_box(element);
+  box.cells = element.dim == 2 ? std::vector<int>{7, 11} : std::vector<int>{4, 3, 5};
+  return box;
+}
+
+/// Calls work(coarse element, fine element) for all pairs of one dimension.
+template <class Work>
+void for_each_pair(const Work &work)
+{
+  for (const mesh::Element &coarse : elements())
+    for (const mesh::Element &fine : elements())
+      if (coarse.dim == fine.dim) {
+        SCOPED_TRACE(text_of(coarse) + " to " + text_of(fine));
+        work(coarse, fine);
+      }
+}
+
+TEST(Interpolation, AffineFunctionsAreExactInCellsOfAnyShape)
+{
+  for_each_pair([](const mesh::Element &coarse, const mesh::Element &fine) {
+    const auto from = bulged_body(coarse, world());
+    const auto to = body(finer_box(fine), world());
+    EXPECT_LT(error_of(from, to, [&](const Point &x) { return linear(x, from.dim()); }), 1e-13);
+  });
+}
+
+TEST(Interpolation, ReproducesTheCoarseSpace)
+{
+  for_each_pair([](const mesh::Element &coarse, const mesh::Element &fine) {
+    const auto from = body(small_box(coarse), world()), to = body(finer_box(fine), world());
+    const auto f = [&](const Point &x) {
+      const double product = coarse.shape == mesh::Shape::tensor ? x[0] * x[1] * (from.dim() == 3 ? x[2] : 1) : 0;
+      return coarse.order == 1 ? Point{product + x[1], x[0] - 1, product - x[0]}
+                               : Point{x[0] * x[0] - x[0] * x[1] + product, 2 + x[1] * x[1]};
+    };
+    EXPECT_LT(error_of(from, to, f), 1e-13);
+  });
+}
+
+TEST(Interpolation, RowsSumToOneEvenOutsideTheMesh)
+{
+  for_each_pair([](const mesh::Element &coarse, const mesh::Element &fine) {
+    auto larger = finer_box(fine);
+    for (int d = 0; d < fine.dim; ++d) larger.upper[d] += 0.4, larger.lower[d] -= 0.3;
+    EXPECT_LT(error_of(bulged_body(coarse, world()), body(larger, world()),
+                       [](const Point &) {
+                         return Point{1, -2, 0.5};
+                       }),
+              1e-15);
+  });
+}
+
+TEST(Interpolation, TakesTheNearestPointsValueOutside)
+{
+  for (const mesh::Element &element : elements()) {
+    if (element.shape == mesh::Shape::simplex) continue; // not the nearest point
+    SCOPED_TRACE(text_of(element));
+    const auto box = small_box(element);
+    auto larger = finer_box(element);
+    for (int d = 0; d < element.dim; ++d) larger.upper[d] += 0.7, larger.lower[d] -= 3;
+    const auto from = body(box, world()), to = body(larger, world());
+    const auto expected = at_nodes(to, [&](Point x) {
+      for (int d = 0; d < element.dim; ++d) x[d] = std::min(std::max(x[d], box.lower[d]), box.upper[d]);
+      return linear(x, element.dim);
+    });
+    EXPECT_LT(difference(interpolated(from, to, [&](const Point &x) { return linear(x, element.dim); }),
+                         by_node_id(to, expected)),
+              1e-13);
+  }
+}
+
+/// [0, 1] x [0, 1] becomes a quarter of a ring, of radii 1 and 2.
+Point ring(const Point &x)
+{
+  const double angle = std::acos(0.) * x[0], radius = 2 - x[1];
+  return {radius * std::cos(angle), radius * std::sin(angle), 0};
+}
+
+TEST(Interpolation, DeviatesAtCurvedBoundariesNoMoreThanTheBoundaryDoes)
+{
+  for (const mesh::Element &element : elements()) {
+    if (element.dim == 3) continue;
+    SCOPED_TRACE(text_of(element));
+    const auto from = body({{0, 0}, {1, 1}, {8, 4}, element}, world(), ring);
+    const auto to = body({{0, 0}, {1, 1}, {37, 19}, element}, world(), ring);
+    const double angle = std::acos(0.) / 8, deviation = 2 * (1 - std::cos(angle / 2)); // of a chord from its arc
+    const double error = error_of(from, to, [](const Point &x) { return Point{1 + x[0], 2 - x[1]}; });
+    EXPECT_LT(error, deviation / 2);
+    EXPECT_LT(element.order == 2 ? error : 0, deviation / 20); // edges of order 2 follow the arc
+  }
+}
+
+TEST(Interpolation, IsExactAtPointsOfCurvedCells)
+{
+  for (const mesh::Element &element : elements()) {
+    if (element.dim == 3) continue;
+    SCOPED_TRACE(text_of(element));
+    const mesh::BoxOptions box{{0, 0}, {1, 1}, {2, 1}, element}, finer{{0, 0}, {1, 1}, {15, 13}, {2, 2}};
+    const auto straight = body(box, alone()), curved = body(box, alone(), ring), fine = body(finer, alone());
+    MultiVector x(fine.mesh->owned_nodes, 2);
+    fem::interpolation(straight, fine)->apply(*fem::node_coordinates(curved), x); // where the cells' own maps take them
+    Kokkos::deep_copy(fine.mesh->coords, x.getLocalViewDevice(Tpetra::Access::ReadOnly));
+    EXPECT_LT(error_of(curved, fine, [](const Point &at) { return linear(at, 2); }), 1e-12);
+  }
+}
+
+TEST(Interpolation, FindsCellsOfVeryDifferentSizes)
+{
+  const auto graded = [](const Point &x) { return Point{x[0] * x[0] * x[0] * x[0] + 1e3, std::pow(x[1], 6), 0}; };
+  for (const mesh::Element &element : elements()) {
+    if (element.dim == 3) continue;
+    SCOPED_TRACE(text_of(element));
+    const auto from = body({{0, 0}, {1, 1}, {20, 10}, element}, world(), graded);
+    const auto to = body({{0, 0}, {1, 1}, {40, 30}, element}, world(), graded);
+    const auto f = [](const Point &x) { return Point{x[0] - 1e3, x[1]}; };
+    EXPECT_LT(error_of(from, to, f), element.order == 1 ? 2e-12 : 1e-2); // curved edges stay behind the finer ones
+  }
+}
+
+TEST(Interpolation, BetweenEqualMeshesIsTheIdentity)
+{
+  for (const mesh::Element &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto d = bulged_body(element, world());
+    const auto matrix = fem::interpolation(d, d);
+    EXPECT_EQ(matrix->getGlobalNumEntries(), d.mesh->owned_nodes->getGlobalNumElements());
+    EXPECT_LT(error_of(d, d, wild), 1e-14);
+  }
+}
+
+TEST(Interpolation, HasTheMapsOfBothMeshesAndAscendingColumns)
+{
+  const auto from = bulged_body({2, 2}, world()), to = body(finer_box({2, 1}), world());
+  const auto matrix = fem::interpolation(from, to);
+  EXPECT_TRUE(matrix->isFillComplete());
+  EXPECT_TRUE(matrix->getRowMap()->isSameAs(*to.mesh->owned_nodes));
+  EXPECT_TRUE(matrix->getRangeMap()->isSameAs(*to.mesh->owned_nodes));
+  EXPECT_TRUE(matrix->getDomainMap()->isSameAs(*from.mesh->owned_nodes));
+  const auto local = matrix->getLocalMatrixHost();
+  for (LO row = 0; row < local.numRows(); ++row)
+    for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k) {
+      EXPECT_GT(std::abs(local.values(k)), 1e-12);
+      const bool first = k == local.graph.row_map(row);
+      EXPECT_LT(first ? -1 : local.graph.entries(k - 1), local.graph.entries(k));
+    }
+}
+
+TEST(Interpolation, IsTheSameOnAnyNumberOfRanks)
+{
+  for_each_pair([](const mesh::Element &coarse, const mesh::Element &fine) {
+    auto larger = finer_box(fine);
+    larger.upper[0] += 0.2;
+    const auto serial = interpolated(bulged_body(coarse, alone()), body(larger, alone(), bulge(larger)), wild);
+    const auto parallel = interpolated(bulged_body(coarse, world()), body(larger, world(), bulge(larger)), wild);
+    EXPECT_LT(difference(parallel, serial), 1e-15);
+  });
+}
+
+TEST(Interpolation, ItsTransposeKeepsSums)
+{
+  const auto from = bulged_body({2, 1}, world()), to = body(finer_box({2, 2}), world());
+  const auto fine = at_nodes(to, wild);
+  MultiVector coarse(from.mesh->owned_nodes, 2);
+  fem::interpolation(from, to)->apply(fine, coarse, Teuchos::TRANS);
+  const auto sum = [](const std::vector<double> &values) {
+    double total = 0;
+    for (const double value : values) total += value;
+    return total;
+  };
+  const auto values = by_node_id(to, fine);
+  EXPECT_NEAR(sum(by_node_id(from, coarse)), sum(values), 1e-13 * values.size());
+}
+
+TEST(Interpolation, BetweenDifferentDimensionsIsRefused)
+{
+  const auto plane = body(small_box({2, 1}), world()), solid = body(small_box({3, 1}), world());
+  expect_error(ExitCode::bad_input, {"2D", "3D"}, [&] { fem::interpolation(plane, solid); });
+}
+
+} // namespace
