@@ -168,10 +168,20 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["linear_solves"] = s.linear.iterations.size();
   json["linear_iterations"] = s.linear.iterations;
   json["preconditioner_setups"] = s.linear.preconditioner_setups;
+  json["local_corrections"] = s.linear.local_corrections;
   json["matrix_assemblies"] = s.matrix_assemblies;
+  json["skipped"] = s.skipped;
+  json["levels"] = nlohmann::ordered_json::array();
+  for (const auto &level : s.levels)
+    json["levels"].push_back({{"dofs", level.dofs},
+                              {"newton_iterations", level.newton_iterations},
+                              {"linear_iterations", level.linear_iterations},
+                              {"preconditioner_setups", level.preconditioner_setups},
+                              {"seconds", level.seconds}});
   const auto &t = s.seconds;
-  json["seconds"] = {{"mesh", t.mesh},   {"assembly", t.assembly}, {"setup", t.setup},
-                     {"solve", t.solve}, {"output", t.output},     {"total", t.total}};
+  json["seconds"] = {{"mesh", t.mesh},   {"assembly", t.assembly}, {"prediction", t.prediction},
+                     {"setup", t.setup}, {"solve", t.solve},       {"output", t.output},
+                     {"total", t.total}};
   return json;
 }
 

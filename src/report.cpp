@@ -101,9 +101,15 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
         "  work                %d Uzawa, %d Newton, %zu linear solves, %d CG iterations, %d preconditioner set-ups\n",
         s.uzawa.iterations, sum(s.uzawa.newton_iterations), s.linear.iterations.size(), sum(s.linear.iterations),
         s.linear.preconditioner_setups);
+  for (const auto &level : s.levels)
+    print(out, "    predicted by      %zu dofs: %d Newton, %d CG iterations, %.3f s\n", level.dofs,
+          level.newton_iterations, sum(level.linear_iterations), level.seconds);
+  for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
   const auto &t = s.seconds;
-  print(out, "  time [s]            mesh %.3f, assembly %.3f, set-up %.3f, solve %.3f, output %.3f, total %.3f\n",
-        t.mesh, t.assembly, t.setup, t.solve, t.output, t.total);
+  print(out,
+        "  time [s]            mesh %.3f, assembly %.3f, prediction %.3f, set-up %.3f, solve %.3f, output %.3f, total "
+        "%.3f\n",
+        t.mesh, t.assembly, t.prediction, t.setup, t.solve, t.output, t.total);
   for (const auto &file : files) print(out, "  wrote %s\n", file.c_str());
 }
 

@@ -1,5 +1,6 @@
 #include "scene.hpp"
 
+#include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/io/deck.hpp"
 #include "rpc/io/expression.hpp"
@@ -21,6 +22,28 @@ Teuchos::ParameterList valid_output_parameters()
   return valid;
 }
 
+Teuchos::ParameterList valid_nested_parameters()
+{
+  Teuchos::ParameterList valid("Nested Iteration");
+  valid.set("Enabled", true,
+            "Whether a solution on a coarser mesh, itself predicted by one on a still coarser mesh, is the start: for "
+            "boxes and "
+            ".geo files of 2000 nodes and more.");
+  valid.set("Coarsening", 4., "Ratio of cell lengths from one mesh to the next, in [1.5, 100].");
+  valid.set("Tolerance", 1e-4, "Bound on |F|_2/|load|_2 on the coarser meshes, in (0, 1).");
+  return valid;
+}
+
+NestedOptions nested_options(const Teuchos::ParameterList &list)
+{
+  const NestedOptions options{list.get<bool>("Enabled"), list.get<double>("Coarsening"), list.get<double>("Tolerance")};
+  RPC_REQUIRE(options.coarsening >= 1.5 && options.coarsening <= 100,
+              "deck: \"Nested Iteration->Coarsening\" must be in [1.5, 100], got " << options.coarsening);
+  RPC_REQUIRE(options.tolerance > 0 && options.tolerance < 1,
+              "deck: \"Nested Iteration->Tolerance\" must be in (0, 1), got " << options.tolerance);
+  return options;
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_deck()
@@ -32,6 +55,7 @@ Teuchos::ParameterList valid_deck()
   valid.sublist("Traction") = fem::valid_traction_parameters();
   valid.sublist("Body Force") = fem::valid_body_force_parameters();
   valid.sublist("Contact") = contact::valid_contact_parameters();
+  valid.sublist("Nested Iteration") = valid_nested_parameters();
   valid.sublist("Uzawa") = contact::valid_uzawa_parameters();
   valid.sublist("NOX") = solver::valid_newton_parameters();
   valid.sublist("Linear Solver") = solver::valid_linear_solver_parameters();
@@ -55,6 +79,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.tractions = fem::traction_options(deck.sublist("Traction"), dim, io::parse_field);
   scene.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, io::parse_field);
   scene.contact = contact::contact_options(deck.sublist("Contact"), dim, io::parse_field);
+  scene.nested = nested_options(deck.sublist("Nested Iteration"));
   scene.uzawa = contact::uzawa_options(deck.sublist("Uzawa"));
   scene.newton = solver::newton_options(deck.sublist("NOX"));
   scene.linear_solver = solver::linear_solver_options(deck.sublist("Linear Solver"));

@@ -20,6 +20,13 @@ struct OutputOptions {
   bool timers = false;
 };
 
+/// Solutions on coarser meshes to start from.
+struct NestedOptions {
+  bool enabled = true;
+  double coarsening = 4;   ///< ratio of cell lengths from one mesh to the next, > 1
+  double tolerance = 1e-4; ///< |F|_2 / |load|_2 there
+};
+
 /// A deck, read and checked: all that a run needs to know.
 struct Scene {
   std::string name; ///< of the deck's file, without folder and extension
@@ -30,6 +37,7 @@ struct Scene {
   fem::VectorField body_force;
   std::vector<contact::ContactOptions> contact; ///< one per contact side
   contact::UzawaOptions uzawa;
+  NestedOptions nested;
   solver::NewtonOptions newton;
   solver::LinearSolverOptions linear_solver;
   OutputOptions output;

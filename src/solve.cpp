@@ -1,8 +1,10 @@
 #include "solve.hpp"
 
 #include "report.hpp"
+#include "rpc/contact/prediction.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/fem/interpolation.hpp"
 #include "rpc/solver/active_set.hpp"
 
 #include <Teuchos_Time.hpp>
@@ -12,6 +14,9 @@ namespace rpc
 {
 namespace
 {
+
+// Below, a solution costs about as much as its prediction.
+constexpr std::size_t least_nodes_predicted = 2000;
 
 /// Adds the time of its scope to a phase, and to the timer tree.
 class Phase
@@ -55,7 +60,7 @@ fem::ElasticProblem assemble(const Scene &scene, const fem::Discretization &d)
 std::vector<std::array<double, 3>> reactions(const Scene &scene, const Solution &s)
 {
   const fem::ElasticProblem &problem = s.functional->problem();
-  Vector out_of_balance = fem::internal_forces(s.discretization, scene.materials, *s.u);
+  Vector out_of_balance(*s.uzawa.certificate.internal.forces, Teuchos::Copy);
   out_of_balance.update(-1., *problem.applied_load, -1.,
                         contact::contact_forces(s.discretization, s.functional->contact(), s.contact), 1.);
   return fem::reaction_forces(s.discretization, problem.dirichlet, static_cast<int>(scene.dirichlet.size()),
@@ -70,45 +75,137 @@ solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const mes
   return options;
 }
 
+/// A mesh with all that is solved on it.
+struct Level {
+  fem::Discretization discretization;
+  contact::Support support;
+  RCP<Vector> u; ///< (owned dofs) [m]
+  std::shared_ptr<contact::SmoothedFunctional> functional;
+  std::shared_ptr<solver::LinearSolver> linear;
+};
+
+Level make_level(const Scene &scene, const mesh::MeshOptions &options, const RCP<const Comm> &comm,
+                 PhaseSeconds &seconds)
+{
+  Level level;
+  fem::Discretization &d = level.discretization;
+  {
+    const Phase phase("mesh", seconds.mesh);
+    throw_if_interrupted(*comm, "before the mesh was made; no results are written");
+    d.mesh = std::make_shared<mesh::Mesh>(mesh::make_mesh(options, comm));
+  }
+  const Phase phase("assembly", seconds.assembly);
+  throw_if_interrupted(*comm, "before the assembly; no results are written");
+  d = fem::discretize(d.mesh);
+  fem::ElasticProblem problem = assemble(scene, d);
+  auto contact = contact::contact_nodes(d, scene.contact, problem.dirichlet, scene.materials);
+  level.support = contact::check_support(d, problem.dirichlet, *problem.applied_load, contact, scene.contact);
+  level.u = rcp(new Vector(*problem.dirichlet.value, Teuchos::Copy));
+  level.functional = std::make_shared<contact::SmoothedFunctional>(comm, std::move(problem), std::move(contact));
+  if (level.support.by_contact_only) level.functional->hold_by_contact();
+  level.linear =
+      std::make_shared<solver::LinearSolver>(tuned(scene.linear_solver, d.mesh->element), level.functional->hessian(),
+                                             fem::node_coordinates(d), fem::rigid_body_modes(d));
+  return level;
+}
+
+/// Why no coarser mesh is to predict the solution on this one; empty if one is.
+std::string no_prediction(const Scene &scene, const Level &level)
+{
+  const auto &contact = level.functional->contact();
+  if (contact.num_total == contact.num_fixed) return "no node can touch";
+  if (!scene.nested.enabled) return "switched off";
+  if (level.discretization.mesh->owned_nodes->getGlobalNumElements() < least_nodes_predicted)
+    return "the mesh is small";
+  return "";
+}
+
+/// Starts a level from the solution on a coarser mesh, which a still coarser one predicts. Nothing is lost where that
+/// fails. @return why it did not; empty if it did
+std::string predict(const Scene &scene, const mesh::MeshOptions &options, const RCP<const Comm> &comm, Level &level,
+                    std::vector<LevelWork> &work)
+{
+  std::string reason = no_prediction(scene, level);
+  if (!reason.empty()) return reason;
+  const auto coarse_options = mesh::coarser(options, scene.nested.coarsening);
+  if (!coarse_options) return "a mesh from a file cannot be made coarser";
+  try {
+    const double start = Teuchos::Time::wallTime();
+    PhaseSeconds seconds;
+    Level coarse = make_level(scene, *coarse_options, comm, seconds);
+    predict(scene, *coarse_options, comm, coarse, work);
+    solver::NewtonOptions options_there = scene.newton;
+    options_there.start_tolerance = scene.nested.tolerance;
+    const auto found = solver::find_states(*coarse.functional, *coarse.linear, *coarse.u, options_there,
+                                           [](const solver::NewtonStep &) {});
+    if (!found.confirmed) return "no solution was found on the next coarser one";
+    const auto interpolation = fem::interpolation(coarse.discretization, level.discretization);
+    contact::start_from(*interpolation, *coarse.functional, coarse.functional->displacement(*coarse.u),
+                        *level.functional, *level.u);
+    const auto &counts = coarse.linear->counts();
+    work.push_back({coarse.discretization.owned_dofs->getGlobalNumElements(), found.steps, counts.iterations,
+                    counts.preconditioner_setups, Teuchos::Time::wallTime() - start});
+  } catch (const Error &failure) { // an interrupt too: the finest mesh is where a run stops with what it has found
+    return one_line(failure.what());
+  }
+  return "";
+}
+
+/// Adds what the way through the scene did not tell by itself; collective.
+void note_skipped(const Scene &scene, Solution &s)
+{
+  const mesh::Mesh &mesh = *s.discretization.mesh;
+  const auto &contact = s.functional->contact();
+  const LO shapes = static_cast<LO>(s.discretization.shapes.example.extent(0));
+  const auto skip = [&s](const bool skipped, const std::string &what) {
+    if (skipped) s.skipped.push_back(what);
+  };
+  skip(scene.contact.empty(), "contact: no side may touch");
+  skip(contact.num_total > contact.num_fixed && s.uzawa.iterations == 1,
+       "multiplier updates: pressures of the chosen states obey the contact law");
+  skip(s.linear.local_corrections > 0, "multigrid set-ups: " + std::to_string(s.linear.local_corrections) +
+                                           " changes of states did with solves around the changed nodes");
+  skip(min_all(mesh.comm(), shapes) > 0, "cell matrices: cells are alike, one for each shape is enough");
+  skip(!scene.output.exodus, "stress recovery and nodal fields: no Exodus file");
+  skip(!scene.output.csv && !scene.contact.empty(), "contact tables: no CSV file");
+}
+
 } // namespace
 
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console)
 {
   Solution s;
-  {
-    const Phase phase("mesh", s.seconds.mesh);
-    throw_if_interrupted(*comm, "before the mesh was made; no results are written");
-    s.discretization.mesh = std::make_shared<mesh::Mesh>(mesh::make_mesh(scene.mesh, comm));
-  }
-  {
-    const Phase phase("assembly", s.seconds.assembly);
-    throw_if_interrupted(*comm, "before the assembly; no results are written");
-    s.discretization = fem::discretize(s.discretization.mesh);
-    fem::ElasticProblem problem = assemble(scene, s.discretization);
-    auto contact = contact::contact_nodes(s.discretization, scene.contact, problem.dirichlet, scene.materials);
-    s.support =
-        contact::check_support(s.discretization, problem.dirichlet, *problem.applied_load, contact, scene.contact);
-    s.matrix_assemblies = 1;
-    s.u = rcp(new Vector(*problem.dirichlet.value, Teuchos::Copy));
-    s.functional = std::make_shared<contact::SmoothedFunctional>(comm, std::move(problem), std::move(contact));
-    if (s.support.by_contact_only) s.functional->hold_by_contact();
-  }
+  Level level = make_level(scene, scene.mesh, comm, s.seconds);
+  s.matrix_assemblies = 1;
+  s.discretization = level.discretization;
+  s.support = level.support;
+  s.u = level.u;
+  s.functional = level.functional;
   throw_if_interrupted(*comm, "before the first solve; no results are written");
   const fem::Discretization &d = s.discretization;
+  solver::check_nox_parameters(*level.functional, *level.linear, level.u, scene.newton);
   ConsoleTable table(console);
   table.scene(scene, s);
   {
+    const Phase phase("prediction", s.seconds.prediction);
+    const std::string reason = predict(scene, scene.mesh, comm, level, s.levels);
+    if (!reason.empty()) s.skipped.push_back("coarser meshes: " + reason);
+  }
+  {
     const Phase phase("solve", s.seconds.solve);
-    solver::LinearSolver linear(tuned(scene.linear_solver, d.mesh->element), s.functional->hessian(),
-                                fem::node_coordinates(d), fem::rigid_body_modes(d));
+    solver::LinearSolver &linear = *level.linear;
     const auto minimize = [&](const int iteration) {
       const auto report = [&](const solver::NewtonStep &step) { table.newton(step); };
       table.next_uzawa();
-      int steps = 0;
+      solver::ActiveSetResult start;
       if (iteration == 1 && scene.newton.active_set_start)
-        steps = solver::find_states(*s.functional, linear, *s.u, scene.newton, report);
+        start = solver::find_states(*s.functional, linear, *s.u, scene.newton, report);
+      if (start.confirmed) {
+        s.skipped.push_back("generalized Newton with line search: the choice of states was confirmed");
+        return contact::MinimizeResult{true, start.steps, ""};
+      }
       auto result = solver::minimize(*s.functional, linear, s.u, scene.newton, iteration > 1, report);
-      result.newton_iterations += steps;
+      result.newton_iterations += start.steps;
       return result;
     };
     const auto certify = [&](const Vector &u) {
@@ -122,9 +219,10 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     for (const auto &contact : scene.contact) sides.push_back(&d.mesh->side(contact.side, contact.path + "->Side"));
     s.contact = contact::contact_result(d, sides, *s.functional, *s.u);
     s.energy = s.functional->energy(*s.u);
-    s.strain_energy = fem::strain_energy(d, scene.materials, *s.u);
+    s.strain_energy = s.uzawa.certificate.internal.strain_energy;
     s.reactions = reactions(scene, s);
   }
+  note_skipped(scene, s);
   s.seconds.setup = s.linear.setup_seconds;
   s.seconds.solve -= s.seconds.setup;
   return s;

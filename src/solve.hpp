@@ -14,7 +14,16 @@ namespace rpc
 
 /// Wall-clock time of a run's phases [s].
 struct PhaseSeconds {
-  double mesh = 0, assembly = 0, setup = 0, solve = 0, output = 0, total = 0;
+  double mesh = 0, assembly = 0, prediction = 0, setup = 0, solve = 0, output = 0, total = 0;
+};
+
+/// What was done on a coarser mesh.
+struct LevelWork {
+  std::size_t dofs = 0;
+  int newton_iterations = 0;
+  std::vector<int> linear_iterations; ///< per solve
+  int preconditioner_setups = 0;
+  double seconds = 0; ///< with all coarser ones
 };
 
 /// All that a run has found.
@@ -28,7 +37,9 @@ struct Solution {
   double energy = 0;                            ///< J(u) [J]
   double strain_energy = 0;                     ///< a(u, u) [J]
   std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
-  solver::LinearSolverCounts linear;
+  solver::LinearSolverCounts linear;            ///< on the finest mesh
+  std::vector<LevelWork> levels;                ///< coarser meshes that predicted the solution, from the coarsest
+  std::vector<std::string> skipped;             ///< what the scene allowed to leave out, and why
   int matrix_assemblies = 0;
   PhaseSeconds seconds;
 };

@@ -19,7 +19,8 @@ SUMMARY = {"converged": bool, "reason": str, "dofs": int, "contact_nodes": int, 
            "strain_energy": NUMBER, "contact_force": NUMBERS, "max_pressure": NUMBER, "max_penetration": NUMBER,
            "contact_length": NUMBER, "yielded_length": NUMBER, "kkt_residual": NUMBER, "uzawa_iterations": int,
            "newton_iterations": INTEGERS, "linear_solves": int, "linear_iterations": INTEGERS,
-           "preconditioner_setups": int, "matrix_assemblies": int, "seconds": dict}
+           "preconditioner_setups": int, "local_corrections": int, "matrix_assemblies": int,
+           "skipped": list, "levels": list, "seconds": dict}
 
 
 class CommandLine(RpcTestCase):

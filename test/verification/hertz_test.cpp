@@ -83,7 +83,7 @@ TEST_P(Hertz, ForceAndPressureAreThoseOfIndependentCode)
     EXPECT_NEAR(s.contact.total.force[1], reference.force, (holds ? 0.001 : 0.007) * reference.force) << xi;
     EXPECT_NEAR(s.contact.total.max_pressure, reference.max_pressure, 0.001 * reference.max_pressure) << xi;
     EXPECT_LE(s.uzawa.iterations, 4) << xi;
-    EXPECT_LE(newton_steps(s), 12) << xi;
+    EXPECT_LE(newton_steps(s), 16) << xi; // most of them rough
     EXPECT_LE(*std::max_element(s.linear.iterations.begin(), s.linear.iterations.end()), 40) << xi;
     if (holds) {
       EXPECT_LT(s.contact.total.max_penetration, 1e-9) << xi;
@@ -111,7 +111,7 @@ TEST(HertzYielding, SmallYieldLimitsTakeFewSteps)
   for (const char *xi : {"2", "5", "10"}) {
     const Solution s = hertz(xi);
     EXPECT_NEAR(s.contact.total.max_pressure, std::stod(xi), 1e-12);
-    EXPECT_LE(newton_steps(s), 12) << xi;
+    EXPECT_LE(newton_steps(s), 16) << xi; // most of them rough
     EXPECT_LE(s.uzawa.iterations, 4) << xi;
   }
 }

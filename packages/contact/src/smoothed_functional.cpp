@@ -46,20 +46,6 @@ void start_multipliers(const ContactNodes &c, const double reach, const DeviceVi
       });
 }
 
-/// v, 0 where prescribed.
-Vector free_part(const fem::ElasticProblem &problem, const Vector &v)
-{
-  Vector free(v, Teuchos::Copy);
-  const auto fixed = problem.dirichlet.fixed;
-  const auto to = device_write(free);
-  Kokkos::parallel_for(
-      "rpc::contact::free_part", device_range(static_cast<LO>(v.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
-        if (fixed(dof)) to(dof) = 0;
-      });
-  Kokkos::fence();
-  return free;
-}
-
 /// This rank's sum of the weights of nodes that take part in the solution.
 double free_weight(const ContactNodes &c)
 {
@@ -68,40 +54,6 @@ double free_weight(const ContactNodes &c)
       "rpc::contact::free_weight", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &part) { part += c.fixed(i) ? 0 : c.weight(i); }, sum);
   return sum;
-}
-
-/// Where each contact node's own block of K lies, and what it holds.
-void find_diagonal_blocks(const ContactNodes &c, const CrsMatrix &K, const DeviceView<std::size_t **> &block,
-                          const DeviceView<double ***> &elastic)
-{
-  const auto A = K.getLocalMatrixDevice();
-  Kokkos::parallel_for(
-      "rpc::contact::find_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) {
-          const LO row = c.dim * c.node(i) + k;
-          std::size_t at = A.graph.row_map(row);
-          while (A.graph.entries(at) != c.dim * c.node(i)) ++at; // an owned node's first column has its first row's lid
-          block(i, k) = at;
-          for (int l = 0; l < c.dim; ++l) elastic(i, k, l) = A.values(at + l);
-        }
-      });
-  Kokkos::fence();
-}
-
-/// (contact nodes) m . K_ii m / (w m . m) of the node's own block; 0 where the direction is.
-DeviceView<double *> own_stiffness(const ContactNodes &c, const DeviceView<double ***> &elastic)
-{
-  DeviceView<double *> stiffness("rpc::contact::own_stiffness", c.size());
-  Kokkos::parallel_for(
-      "rpc::contact::own_stiffness", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        double along = 0, length = 0;
-        for (int k = 0; k < c.dim; ++k) {
-          length += c.direction(i, k) * c.direction(i, k);
-          for (int l = 0; l < c.dim; ++l) along += c.direction(i, k) * elastic(i, k, l) * c.direction(i, l);
-        }
-        stiffness(i) = length > 0 ? along / (length * c.weight(i)) : 0;
-      });
-  return stiffness;
 }
 
 /// Whether a direction lies along an axis, up to rounding.
@@ -132,58 +84,16 @@ ContactNodes with_penalties(ContactNodes c, const DeviceView<double *> &own)
   return c;
 }
 
-/// Brings the contact nodes' own blocks to those of K + sum over points, added w m m^T. All of them, for a node of two
-/// sides is two points with one block.
-void write_diagonal_blocks(const ContactNodes &c, const DeviceView<double *> &added,
-                           const DeviceView<std::size_t **> &block, const DeviceView<double ***> &elastic, CrsMatrix &H)
+/// (contact nodes) What the states add to K: r where a node sticks, else the weak spring [Pa/m].
+DeviceView<double *> added_stiffness(const ContactNodes &c, const DeviceView<State *> &piece, const double spring)
 {
-  const auto values = H.getLocalMatrixDevice().values;
+  DeviceView<double *> added("rpc::contact::added", c.size());
   Kokkos::parallel_for(
-      "rpc::contact::elastic_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k)
-          for (int l = 0; l < c.dim; ++l) values(block(i, k) + l) = elastic(i, k, l);
-      });
-  Kokkos::parallel_for(
-      "rpc::contact::stuck_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (added(i) == 0) return;
-        for (int k = 0; k < c.dim; ++k)
-          for (int l = 0; l < c.dim; ++l)
-            add_shared(values(block(i, k) + l), added(i) * c.weight(i) * c.direction(i, k) * c.direction(i, l));
+      "rpc::contact::stiffen", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        if (!c.fixed(i)) added(i) = piece(i) == State::stuck ? c.penalty(i) : spring * c.stiffness(i);
       });
   Kokkos::fence();
-}
-
-/// Brings `added` to what the states ask for: r where a node sticks, else the weak spring [Pa/m].
-/// @return number of nodes where it changed, on this rank
-LO stiffen(const ContactNodes &c, const DeviceView<State *> &piece, const double spring,
-           const DeviceView<double *> &added)
-{
-  LO changed = 0;
-  Kokkos::parallel_reduce(
-      "rpc::contact::stiffen", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, LO &count) {
-        if (c.fixed(i)) return;
-        const double next = piece(i) == State::stuck ? c.penalty(i) : spring * c.stiffness(i);
-        count += next != added(i);
-        added(i) = next;
-      },
-      changed);
-  return changed;
-}
-
-/// Ku -= sum over points, added w m (m . u).
-void subtract_contact(const ContactNodes &c, const DeviceView<double *> &added, const Vector &u, Vector &Ku)
-{
-  const auto from = device_read(u);
-  const auto to = device_write(Ku);
-  Kokkos::parallel_for(
-      "rpc::contact::without_contact", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (added(i) == 0) return;
-        const double along = along_direction(c, i, from);
-        for (int k = 0; k < c.dim; ++k) // a node of two sides is two points
-          add_shared(to(c.dim * c.node(i) + k), -added(i) * c.weight(i) * along * c.direction(i, k));
-      });
-  Kokkos::fence();
+  return added;
 }
 
 /// This rank's sum_i w_i Psi_i(v_i) (smoothed) or sum_i w_i lambda_i v_i.
@@ -312,18 +222,17 @@ LineModel::Value LineModel::at(const double t) const
 SmoothedFunctional::SmoothedFunctional(RCP<const Comm> comm, fem::ElasticProblem problem, ContactNodes contact)
     : comm_(std::move(comm)), problem_(std::move(problem)), contact_(std::move(contact)),
       lambda_("rpc::contact::multiplier", contact_.size()), piece_("rpc::contact::piece", contact_.size()),
-      added_("rpc::contact::added", contact_.size()), block_("rpc::contact::block", contact_.size(), contact_.dim),
-      elastic_("rpc::contact::elastic", contact_.size(), contact_.dim, contact_.dim)
+      hessian_(rcp(new ContactStiffness(problem_.stiffness, contact_)))
 {
-  const Vector lifted = free_part(problem_, *problem_.load);
-  applied_force_ = free_part(problem_, *problem_.applied_load).norm2();
+  Vector applied(*problem_.applied_load, Teuchos::Copy), lifted(*problem_.load, Teuchos::Copy);
+  fem::clear_prescribed(problem_.dirichlet, applied);
+  fem::clear_prescribed(problem_.dirichlet, lifted);
+  applied_force_ = applied.norm2();
   lifted_force_ = lifted.norm2();
   const double weight = sum_all(*comm_, free_weight(contact_));
   reach_ = weight > 0 ? beyond_reach * lifted.norm1() / weight : 0;
   reset_multipliers();
-  find_diagonal_blocks(contact_, *problem_.stiffness, block_, elastic_);
-  own_stiffness_ = own_stiffness(contact_, elastic_);
-  contact_ = with_penalties(contact_, own_stiffness_);
+  contact_ = with_penalties(contact_, hessian_->own_stiffness());
   near_ = contact_;
   load_ = problem_.load;
 }
@@ -341,7 +250,7 @@ void SmoothedFunctional::weaken_springs()
 bool SmoothedFunctional::raise_penalty()
 {
   const ContactNodes c = contact_;
-  const auto own = own_stiffness_;
+  const auto own = hessian_->own_stiffness();
   LO raised = 0;
   Kokkos::parallel_reduce(
       "rpc::contact::raise_penalty", device_range(c.size()),
@@ -359,16 +268,17 @@ bool SmoothedFunctional::raise_penalty()
 
 GO SmoothedFunctional::update_stiffness()
 {
-  const LO changed = stiffen(contact_, piece_, spring_, added_);
-  if (changed > 0) write_diagonal_blocks(contact_, added_, block_, elastic_, *problem_.stiffness);
-  const GO all = sum_all(*comm_, GO(changed));
-  hessian_changed_ = hessian_changed_ || all > 0;
-  return all;
+  return hessian_->set(added_stiffness(contact_, piece_, spring_));
 }
 
-bool SmoothedFunctional::take_hessian_change()
+void SmoothedFunctional::set_multipliers(const DeviceView<double *> &lambda)
 {
-  return std::exchange(hessian_changed_, false);
+  const ContactNodes c = contact_;
+  const auto to = lambda_;
+  Kokkos::parallel_for(
+      "rpc::contact::set_multipliers", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { to(i) = c.fixed(i) ? 0 : clamp(lambda(i), 0, c.yield(i)); });
+  Kokkos::fence();
 }
 
 void SmoothedFunctional::reset_multipliers()
@@ -377,25 +287,11 @@ void SmoothedFunctional::reset_multipliers()
     start_multipliers(contact_, reach_, lambda_); // else nothing acts, and lambda = 0 is the solution
 }
 
-void SmoothedFunctional::apply_stiffness(const Vector &u, Vector &Ku) const
-{
-  problem_.stiffness->apply(u, Ku);
-  subtract_contact(contact_, added_, u, Ku);
-}
-
-void SmoothedFunctional::apply_elastic_stiffness(const Vector &u, Vector &Ku) const
-{
-  const DeviceView<double *> nothing("rpc::contact::nothing_added", contact_.size());
-  write_diagonal_blocks(contact_, nothing, block_, elastic_, *problem_.stiffness);
-  problem_.stiffness->apply(u, Ku);
-  write_diagonal_blocks(contact_, added_, block_, elastic_, *problem_.stiffness);
-}
-
 void SmoothedFunctional::move_origin(Vector &u)
 {
   const auto moved = rcp(new Vector(*load_, Teuchos::Copy));
   Vector Ku(u.getMap());
-  apply_elastic_stiffness(u, Ku);
+  hessian_->apply_elastic(u, Ku);
   moved->update(-1., Ku, 1.);
   load_ = moved;
   near_.free_gap = left_of_gap(near_, u);
@@ -416,7 +312,7 @@ Vector SmoothedFunctional::displacement(const Vector &u) const
 double SmoothedFunctional::value(const Vector &u) const
 {
   Vector Ku(u.getMap());
-  apply_stiffness(u, Ku);
+  hessian_->apply_elastic(u, Ku);
   return 0.5 * u.dot(Ku) - load_->dot(u) + problem_.energy_offset +
          sum_all(*comm_, energy_at_nodes(near_, lambda_, u, true));
 }
@@ -424,22 +320,26 @@ double SmoothedFunctional::value(const Vector &u) const
 double SmoothedFunctional::energy(const Vector &u) const
 {
   Vector Ku(u.getMap());
-  apply_elastic_stiffness(u, Ku);
+  hessian_->apply_elastic(u, Ku);
   return 0.5 * u.dot(Ku) - problem_.load->dot(u) + problem_.energy_offset +
          sum_all(*comm_, energy_at_nodes(contact_, lambda_, u, false));
 }
 
 void SmoothedFunctional::gradient(const Vector &u, Vector &F) const
 {
-  apply_stiffness(u, F);
-  F.update(-1., *load_, 1.);
+  elastic_gradient(u, F);
   add_contact_force(near_, pressures(near_, lambda_, u), F);
 }
 
-void SmoothedFunctional::piece_gradient(const Vector &u, Vector &F) const
+void SmoothedFunctional::elastic_gradient(const Vector &u, Vector &G) const
 {
-  apply_stiffness(u, F);
-  F.update(-1., *load_, 1.);
+  hessian_->apply_elastic(u, G);
+  G.update(-1., *load_, 1.);
+}
+
+void SmoothedFunctional::piece_gradient(const Vector &u, const Vector &G, Vector &F) const
+{
+  F.update(1., G, 0.);
   add_contact_force(near_, piece_pressures(near_, lambda_, u, piece_), F);
 }
 
@@ -480,10 +380,11 @@ StateChoice SmoothedFunctional::choose_states(const Vector &u, const double weig
       },
       changed);
   const GO changes = sum_all(*comm_, GO(changed));
+  if (changes == 0) Kokkos::deep_copy(next, piece); // what was expected is not to come
   return {next, p, changes, changes == 0 && chosen, fingerprint_of(*comm_, c, next)};
 }
 
-void SmoothedFunctional::take_states(const StateChoice &choice)
+void SmoothedFunctional::take_states(const StateChoice &choice, Vector &u)
 {
   const ContactNodes c = near_;
   const auto lambda = lambda_;
@@ -492,9 +393,16 @@ void SmoothedFunctional::take_states(const StateChoice &choice)
   const auto p = choice.pressure;
   second_choice_ = piece_chosen_; // before, lambda is the start and no solution of a piece
   piece_chosen_ = true;
+  const auto x = device_write(u);
   Kokkos::parallel_for(
       "rpc::contact::take_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         if (c.fixed(i)) return;
+        if (next(i) == State::stuck && piece(i) != State::stuck) {
+          double length = 0;
+          for (int k = 0; k < c.dim; ++k) length += c.direction(i, k) * c.direction(i, k);
+          const double move = penetration(c, i, x) / length;
+          for (int k = 0; k < c.dim; ++k) add_shared(x(c.dim * c.node(i) + k), -move * c.direction(i, k));
+        }
         piece(i) = next(i);
         if (next(i) == State::stuck)
           lambda(i) = clamp(p(i), 0, c.yield(i));
@@ -508,7 +416,7 @@ void SmoothedFunctional::take_states(const StateChoice &choice)
 LineModel SmoothedFunctional::along(const Vector &u, const Vector &d, const Vector &F) const
 {
   Vector Kd(d.getMap());
-  apply_stiffness(d, Kd);
+  hessian_->apply_elastic(d, Kd);
   const ContactNodes c = near_;
   DeviceView<double *> v("rpc::contact::v", c.size()), dv("rpc::contact::dv", c.size());
   const auto from = device_read(u);
@@ -563,6 +471,28 @@ double SmoothedFunctional::update_multipliers(const Vector &u)
   Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, sums, all);
   if (all[0] == 0) return 0;
   return std::sqrt(all[0] / std::max(all[1], all[0])); // all multipliers gone to zero is a change of 1, not of infinity
+}
+
+double SmoothedFunctional::pressure_error(const Vector &u) const
+{
+  const ContactNodes c = near_;
+  const auto lambda = lambda_;
+  const auto piece = piece_;
+  const auto own = hessian_->own_stiffness();
+  const auto x = device_read(u);
+  double error = 0, largest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::pressure_error", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &worst, double &scale) {
+        if (c.fixed(i)) return;
+        scale = larger(scale, lambda(i));
+        if (piece(i) == State::stuck) worst = larger(worst, own(i) * magnitude(penetration(c, i, x)));
+      },
+      Kokkos::Max<double>(error), Kokkos::Max<double>(largest));
+  const double mine[2] = {error, largest};
+  double all[2];
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_MAX, 2, mine, all);
+  return all[0] > 0 && all[1] > 0 ? all[0] / all[1] : 0;
 }
 
 double SmoothedFunctional::force_scale() const

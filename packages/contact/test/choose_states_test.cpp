@@ -190,7 +190,7 @@ TEST(HoldByContact, ChangesNeitherTheFunctionalNorItsGradients)
       const auto gradient = [&](const OnRollers &scene, Vector &to) {
         scene.functional->update_hessian(*u);
         if (piece)
-          scene.functional->piece_gradient(*u, to);
+          piece_gradient(*scene.functional, *u, to);
         else
           scene.functional->gradient(*u, to);
       };

@@ -48,16 +48,17 @@ inline fem::DirichletCondition held(const std::string &side, const Point &displa
   return {side, side, {ScalarField(displacement[0]), ScalarField(displacement[1])}};
 }
 
-/// A block of 6 x 3 square cells, 2 m by 1 m, between foundations, held at its top.
+/// A block of 6 x 3 square cells, or each cut into refinement x refinement, 2 m by 1 m, between foundations, held at its
+/// top.
 struct Scene {
   fem::Discretization d;
   std::shared_ptr<contact::SmoothedFunctional> functional;
   fem::Material material{10, 0.3};
 
   explicit Scene(const std::vector<contact::ContactOptions> &foundations,
-                 const fem::DirichletCondition &condition = held("top"))
+                 const fem::DirichletCondition &condition = held("top"), const int refinement = 1)
   {
-    mesh::BoxOptions box{{0, 0}, {2, 1}, {6, 3}, {2, 1}};
+    mesh::BoxOptions box{{0, 0}, {2, 1}, {6 * refinement, 3 * refinement}, {2, 1}};
     d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
     const auto load = rcp(new Vector(d.owned_dofs));
     fem::add_body_force(d, {ScalarField(0.3), ScalarField(-2.), ScalarField(0.)}, "Body Force", *load);
@@ -96,8 +97,16 @@ struct Scene {
 inline contact::StateChoice choose(contact::SmoothedFunctional &functional, const Vector &u, const double weight)
 {
   const auto choice = functional.choose_states(u, weight);
-  if (!choice.confirmed) functional.take_states(choice);
+  Vector moved(u, Teuchos::Copy);
+  if (!choice.confirmed) functional.take_states(choice, moved);
   return choice;
+}
+
+inline void piece_gradient(const contact::SmoothedFunctional &functional, const Vector &u, Vector &F)
+{
+  Vector G(u.getMap());
+  functional.elastic_gradient(u, G);
+  functional.piece_gradient(u, G, F);
 }
 
 } // namespace rpc::test

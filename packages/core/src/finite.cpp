@@ -47,6 +47,24 @@ Vector largest_in_rows(const CrsMatrix &A)
   return result;
 }
 
+/// Whether the sum of all entries' squares stays finite, for sure: none is more than its share; collective.
+bool squares_are_finite(const CrsMatrix &A)
+{
+  const auto local = A.getLocalMatrixDevice();
+  const double share = std::numeric_limits<double>::max() / static_cast<double>(A.getGlobalNumEntries());
+  LO bad = 0;
+  Kokkos::parallel_reduce(
+      "rpc::core::large_entries", device_range(local.numRows()),
+      KOKKOS_LAMBDA(const LO i, LO &count) {
+        LO of_row = 0;
+        for (auto k = local.graph.row_map(i); k < local.graph.row_map(i + 1); ++k)
+          of_row += !(local.values(k) * local.values(k) <= share);
+        count += of_row;
+      },
+      bad);
+  return max_all(*A.getComm(), bad) == 0;
+}
+
 /// "nan in direction Y of the node at (0.5, 1)"
 std::string describe(const Vector &v, const MultiVector &coordinates, const LO lid)
 {
@@ -98,7 +116,7 @@ void require_finite(const Vector &v, const std::string &what, const std::functio
 
 void require_finite(const CrsMatrix &A, const std::string &what, const std::function<RCP<MultiVector>()> &coordinates)
 {
-  if (!std::isfinite(A.getFrobeniusNorm())) refuse(what, largest_in_rows(A), *coordinates());
+  if (!squares_are_finite(A)) refuse(what, largest_in_rows(A), *coordinates());
 }
 
 } // namespace rpc

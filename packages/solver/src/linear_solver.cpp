@@ -1,5 +1,6 @@
 #include "rpc/solver/linear_solver.hpp"
 
+#include "local_correction.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -27,8 +28,12 @@ namespace
 constexpr int patience = 150;
 constexpr GO most_direct_rows = 100000;
 
-using Operator = Tpetra::Operator<double, LO, GO, Node>;
-using Preconditioner = MueLu::TpetraOperator<double, LO, GO, Node>;
+// Rows up to which multigrid is nearly a factorization, and made anew whenever contact changes.
+constexpr GO most_rows_set_up_anew = 2500;
+// CG iterations per digit, over those with multigrid alone, at which corrections have worn out; fewer digits tell little.
+constexpr double worn_at = 2, few_digits = 3;
+
+using Multigrid = MueLu::TpetraOperator<double, LO, GO, Node>;
 using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
 using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
 
@@ -36,25 +41,38 @@ using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
 struct Interrupted {
 };
 
-/// A preconditioner that now and then looks whether the run is to stop: the solves of a big scene take minutes.
-class Interruptible : public Operator
+/// A multigrid cycle, corrected where contact has changed since it was set up. Now and then it looks whether the run is to
+/// stop: the solves of a big scene take minutes.
+class Preconditioner : public Operator
 {
 public:
-  explicit Interruptible(RCP<const Operator> preconditioner) : preconditioner_(std::move(preconditioner)) {}
+  explicit Preconditioner(RCP<const Map> map) : map_(std::move(map)) {}
 
-  RCP<const Map> getDomainMap() const override { return preconditioner_->getDomainMap(); }
-  RCP<const Map> getRangeMap() const override { return preconditioner_->getRangeMap(); }
-  bool hasTransposeApply() const override { return preconditioner_->hasTransposeApply(); }
-  void apply(const MultiVector &x, MultiVector &y, const Teuchos::ETransp mode, const double alpha,
-             const double beta) const override
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+  /// y <- B x; Belos asks for no more.
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
   {
     constexpr int applications_between = 8; // a sum over all ranks each time
-    if (++applications_ % applications_between == 0 && interrupted(*getDomainMap()->getComm())) throw Interrupted();
-    preconditioner_->apply(x, y, mode, alpha, beta);
+    if (++applications_ % applications_between == 0 && interrupted(*map_->getComm())) throw Interrupted();
+    cycle(x, y);
+  }
+  /// The same, to its end.
+  void cycle(const MultiVector &x, MultiVector &y) const
+  {
+    if (!correction) {
+      multigrid->apply(x, y);
+      return;
+    }
+    for (std::size_t k = 0; k < x.getNumVectors(); ++k)
+      correction->apply(*multigrid, *x.getVector(k), *y.getVectorNonConst(k));
   }
 
+  RCP<Multigrid> multigrid; ///< null: to be made anew
+  std::optional<LocalCorrection> correction;
+
 private:
-  RCP<const Operator> preconditioner_;
+  RCP<const Map> map_;
   mutable int applications_ = 0;
 };
 
@@ -148,11 +166,13 @@ void check_muelu(const Teuchos::ParameterList &user)
 } // namespace
 
 struct LinearSolver::Impl {
-  RCP<CrsMatrix> A;
+  RCP<contact::ContactStiffness> H;
   RCP<MultiVector> coordinates, null_space;
   Teuchos::ParameterList muelu;
   RCP<Preconditioner> preconditioner;
-  bool stale = true;
+  int revision = -1;           // of H, that the preconditioner fits
+  double usual_iterations = 0; // per digit, with multigrid alone
+  bool worn = false;           // corrections do not suffice any more
   bool strengthened = false;
   RCP<LinearProblem> problem;
   RCP<SolverManager> manager;
@@ -163,7 +183,7 @@ Teuchos::ParameterList valid_linear_solver_parameters()
   Teuchos::ParameterList valid("Linear Solver");
   valid.set("Method", "Pseudoblock CG",
             "Krylov method by its name in Belos; the matrix is symmetric positive definite.");
-  valid.set("Tolerance", 1e-8, "|r|/|b| of a linear solve, in (0, 1).");
+  valid.set("Tolerance", 1e-11, "|r|/|b| of a linear solve at least, in (0, 1): most need not be as good.");
   valid.set("Maximum Iterations", 500, "of a linear solve, > 0.");
   valid.set("Reuse", "tP",
             "What of the multigrid hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
@@ -197,12 +217,12 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-LinearSolver::LinearSolver(LinearSolverOptions options, RCP<CrsMatrix> A, RCP<MultiVector> coordinates,
+LinearSolver::LinearSolver(LinearSolverOptions options, RCP<contact::ContactStiffness> H, RCP<MultiVector> coordinates,
                            RCP<MultiVector> null_space)
     : options_(std::move(options)), impl_(std::make_unique<Impl>())
 {
-  impl_->A = A;
-  impl_->muelu = muelu_defaults(*A, static_cast<int>(coordinates->getNumVectors()));
+  impl_->H = H;
+  impl_->muelu = muelu_defaults(*H->matrix(), static_cast<int>(coordinates->getNumVectors()));
   impl_->muelu.set("reuse: type", options_.reuse);
   if (options_.muelu.isParameter("smoother: type")) impl_->muelu.remove("smoother: params"); // of another type
   impl_->muelu.setParameters(options_.muelu);
@@ -213,7 +233,9 @@ LinearSolver::LinearSolver(LinearSolverOptions options, RCP<CrsMatrix> A, RCP<Mu
   belos->set("Verbosity", static_cast<int>(Belos::Errors));
   belos->set("Maximum Iterations", options_.max_iterations);
   belos->setParameters(options_.belos);
-  impl_->problem = rcp(new LinearProblem(A, Teuchos::null, Teuchos::null));
+  impl_->preconditioner = rcp(new Preconditioner(H->getDomainMap()));
+  impl_->problem = rcp(new LinearProblem(H, Teuchos::null, Teuchos::null));
+  impl_->problem->setRightPrec(impl_->preconditioner);
   impl_->manager = Belos::SolverFactory<double, MultiVector, Operator>().create(options_.method, belos);
   impl_->manager->setProblem(impl_->problem);
 }
@@ -225,31 +247,45 @@ const MultiVector &LinearSolver::coordinates() const
   return *impl_->coordinates;
 }
 
-void LinearSolver::matrix_changed()
-{
-  impl_->stale = true;
-}
-
 void LinearSolver::set_up()
 {
-  const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
-  const double start = Teuchos::Time::wallTime();
-  if (impl_->preconditioner.is_null() || impl_->muelu.get<std::string>("reuse: type") == "none") {
+  RCP<Multigrid> &multigrid = impl_->preconditioner->multigrid;
+  const RCP<CrsMatrix> &A = impl_->H->matrix();
+  impl_->H->write();
+  impl_->preconditioner->correction.reset();
+  if (multigrid.is_null() || impl_->muelu.get<std::string>("reuse: type") == "none") {
     Teuchos::ParameterList list = impl_->muelu; // MueLu adds to its list
     list.sublist("user data").set("Coordinates", impl_->coordinates);
     list.sublist("user data").set("Nullspace", impl_->null_space);
     try {
-      impl_->preconditioner = MueLu::CreateTpetraPreconditioner(RCP<Operator>(impl_->A), list);
+      multigrid = MueLu::CreateTpetraPreconditioner(RCP<Operator>(A), list);
     } catch (const std::exception &failure) {
       if (options_.muelu.numParams() == 0 || counts_.preconditioner_setups > 0) throw;
       throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
     }
-    impl_->problem->setLeftPrec(rcp(new Interruptible(impl_->preconditioner)));
   } else {
-    MueLu::ReuseTpetraPreconditioner(impl_->A, *impl_->preconditioner);
+    MueLu::ReuseTpetraPreconditioner(A, *multigrid);
   }
-  impl_->stale = false;
+  impl_->worn = false;
   ++counts_.preconditioner_setups;
+}
+
+void LinearSolver::prepare()
+{
+  const int revision = impl_->H->revision();
+  if (!impl_->preconditioner->multigrid.is_null() && revision == impl_->revision) return;
+  const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
+  const double start = Teuchos::Time::wallTime();
+  auto &correction = impl_->preconditioner->correction;
+  const bool tiny = static_cast<GO>(impl_->H->matrix()->getGlobalNumRows()) <= most_rows_set_up_anew;
+  bool fits = false;
+  if (!impl_->preconditioner->multigrid.is_null() && !impl_->worn && !tiny) {
+    correction = LocalCorrection::around(*impl_->H);
+    counts_.local_corrections += correction.has_value();
+    fits = correction || sum_all(*impl_->H->getDomainMap()->getComm(), GO(impl_->H->changes().size())) == 0;
+  }
+  if (!fits) set_up();
+  impl_->revision = revision;
   counts_.setup_seconds += Teuchos::Time::wallTime() - start;
 }
 
@@ -257,9 +293,9 @@ double LinearSolver::inverse_energy(const Vector &F)
 {
   if (!(F.norm2() > 0)) return 0;
   try {
-    if (impl_->preconditioner.is_null()) set_up();
+    prepare();
     Vector x(F.getMap());
-    impl_->preconditioner->apply(F, x);
+    impl_->preconditioner->cycle(F, x);
     return F.dot(x);
   } catch (const Error &) {
     throw;
@@ -270,6 +306,23 @@ double LinearSolver::inverse_energy(const Vector &F)
   }
 }
 
+void LinearSolver::judge_preconditioner(const int iterations, const double residual)
+{
+  const double digits = -std::log10(residual);
+  if (!(digits > few_digits)) return;
+  const double per_digit = iterations / digits;
+  if (!impl_->preconditioner->correction)
+    impl_->usual_iterations = per_digit;
+  else if (per_digit > worn_at * impl_->usual_iterations && impl_->usual_iterations > 0)
+    impl_->worn = true;
+}
+
+void LinearSolver::set_up_anew()
+{
+  impl_->worn = true;
+  impl_->revision = -1;
+}
+
 /// For nearly incompressible or badly shaped cells, where aggregation misses slow modes: at most once, and not against what
 /// the deck asks for.
 bool LinearSolver::strengthen()
@@ -277,8 +330,8 @@ bool LinearSolver::strengthen()
   for (const char *name : {"coarse: max size", "smoother: type", "smoother: params"})
     if (options_.muelu.isParameter(name)) return false;
   if (std::exchange(impl_->strengthened, true)) return false;
-  const GO rows = static_cast<GO>(impl_->A->getGlobalNumRows());
-  if (impl_->A->getComm()->getSize() == 1 && rows <= most_direct_rows) {
+  const GO rows = static_cast<GO>(impl_->H->matrix()->getGlobalNumRows());
+  if (impl_->H->getDomainMap()->getComm()->getSize() == 1 && rows <= most_direct_rows) {
     impl_->muelu.set("coarse: max size", static_cast<int>(rows) + 1);
     impl_->muelu.set("reuse: type", "none");
   } else {
@@ -286,14 +339,17 @@ bool LinearSolver::strengthen()
     smoother.set("chebyshev: degree", 8);
     smoother.set("chebyshev: ratio eigenvalue", 50.);
   }
-  impl_->preconditioner = Teuchos::null;
-  impl_->stale = true;
+  impl_->preconditioner->multigrid = Teuchos::null;
   return true;
 }
 
 LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const double tolerance)
 {
-  const Result result = try_to_solve(b, x, tolerance);
+  Result result = try_to_solve(b, x, tolerance);
+  if (impl_->preconditioner->correction && !result.interrupted && (result.iterations > patience || !result.converged)) {
+    set_up_anew();
+    result = try_to_solve(b, x, tolerance);
+  }
   if (result.iterations <= patience || result.broken || !strengthen() || result.converged) return result;
   return try_to_solve(b, x, tolerance);
 }
@@ -302,8 +358,8 @@ LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, cons
 {
   Result result;
   try {
-    if (interrupted(*impl_->A->getComm())) throw Interrupted();
-    if (impl_->stale) set_up();
+    if (interrupted(*impl_->H->getDomainMap()->getComm())) throw Interrupted();
+    prepare();
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
     const auto list = Teuchos::parameterList();
@@ -313,6 +369,7 @@ LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, cons
     impl_->problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b));
     result.converged = impl_->manager->solve() == Belos::Converged;
     result.iterations = impl_->manager->getNumIters();
+    judge_preconditioner(result.iterations, impl_->manager->achievedTol());
     counts_.iterations.push_back(result.iterations);
     counts_.solve_seconds += Teuchos::Time::wallTime() - start;
     if (!result.converged)
@@ -325,7 +382,7 @@ LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, cons
                                           x, *impl_->coordinates);
     }
   } catch (const Interrupted &) {
-    result.broken = true;
+    result.broken = result.interrupted = true;
     result.reason = interruption();
   } catch (const Error &) {
     throw;

@@ -184,9 +184,9 @@ RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const R
 /// @return number of steps done, 0 or 1
 int predict(NewtonContext &context, Vector &u)
 {
-  Vector F(u.getMap()), d(u.getMap());
-  if (context.functional.take_hessian_change()) context.linear_solver.matrix_changed();
-  context.functional.piece_gradient(u, F);
+  Vector G(u.getMap()), F(u.getMap()), d(u.getMap());
+  context.functional.elastic_gradient(u, G);
+  context.functional.piece_gradient(u, G, F);
   const auto solved = context.linear_solver.solve(F, d, std::min(0.1, 0.1 * context.target_residual / F.norm2()));
   context.linear_iterations = solved.iterations;
   d.scale(-1.);
@@ -257,6 +257,9 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
   NewtonOptions options;
   options.step_tolerance = list.get<double>("Step Tolerance");
   options.residual_tolerance = list.get<double>("Residual Tolerance");
+  // Newton's default is near what rounding leaves; who asks for more gets it.
+  const double given = options.residual_tolerance;
+  options.start_tolerance = given < 1e-11 ? given : std::max(given, options.start_tolerance);
   options.max_iterations = list.get<int>("Maximum Iterations");
   options.active_set_start = list.get<bool>("Active Set Start");
   RPC_REQUIRE(options.step_tolerance > 0, "deck: \"NOX->Step Tolerance\" must be > 0, got " << options.step_tolerance);
@@ -267,6 +270,15 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
   for (const char *name : passed_to_nox)
     if (list.isSublist(name) && list.sublist(name).numParams() > 0) options.nox.sublist(name) = list.sublist(name);
   return options;
+}
+
+void check_nox_parameters(contact::SmoothedFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
+                          const NewtonOptions &options)
+{
+  if (options.nox.numParams() == 0) return;
+  const auto context = rcp(new NewtonContext{functional, linear_solver, 0, 0, 1, 0, ""});
+  const auto reporter = rcp(new Reporter(context, 1, [](const NewtonStep &) {}));
+  build_solver(rcp(new NewtonGroup(context, u)), options, context, nox_list(options.nox, reporter));
 }
 
 contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, LinearSolver &linear_solver,

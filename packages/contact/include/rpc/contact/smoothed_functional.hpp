@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/contact/contact_nodes.hpp"
+#include "rpc/contact/contact_stiffness.hpp"
 #include "rpc/contact/foundation_law.hpp"
 
 #include <cstdint>
@@ -60,9 +60,8 @@ private:
 ///     M(u) = u.Ku/2 - b.u + sum_i w_i Psi_i(v_i(u))                                                doc/theory.md (4.1)
 ///     F(u) = Ku - b + sum_i w_i Psi_i'(v_i) m_i,     H(u) = K + sum over stuck i of r_i w_i m_i m_i^T      (4.2)
 ///
-/// with m_i the node's direction. One matrix serves as K and as H: it holds K with the contact blocks of the states
-/// last given to update_hessian, whose elastic values are kept aside; products with K subtract what was added. Contact
-/// terms touch only contact rows. All vectors are on owned dofs; all members are collective.
+/// with m_i the node's direction. Contact terms touch only contact rows. All vectors are on owned dofs; all members are
+/// collective.
 ///
 /// Penalties that the contact nodes leave open are chosen here, as a multiple of the node's own stiffness over its
 /// weight; none exceeds what double precision bears. doc/theory.md (5.8)
@@ -82,21 +81,26 @@ public:
   /// @param u  displacement from 0
   double energy(const Vector &u) const;
   void gradient(const Vector &u, Vector &F) const;
+  /// G <- Ku - b, all of a gradient that takes a product with K.
+  void elastic_gradient(const Vector &u, Vector &G) const;
   /// The gradient at u of the quadratic piece that hessian() belongs to: stuck nodes carry lambda + r v, whatever that
   /// is, open ones 0, yielded ones xi. (5.4)
-  void piece_gradient(const Vector &u, Vector &F) const;
+  /// @param G  elastic_gradient at u
+  void piece_gradient(const Vector &u, const Vector &G, Vector &F) const;
   /// Brings hessian() to H(u). @return number of contact nodes whose stiffness in it changed, over all ranks
   GO update_hessian(const Vector &u);
   /// One choice of the active-set iteration: the states of p + weight rho v, with p the pressures of hessian()'s piece at
   /// its minimum u. (5.7)
   /// @param weight  of penetration against pressure, in units of the nodes' `stiffness` rho; dimensionless
   StateChoice choose_states(const Vector &u, double weight) const;
-  /// Takes the choice's pressures for multipliers, as far as its states allow, and brings hessian() to its states.
-  void take_states(const StateChoice &choice);
+  /// Takes the choice's pressures for multipliers, as far as its states allow, and brings hessian() to its states. Nodes
+  /// that come to stick are moved onto the foundation: r v would be a large residual for what is a small step.
+  void take_states(const StateChoice &choice, Vector &u);
   /// For bodies with rigid motions that only contact can hold: keeps a weak spring at nodes that do not stick in
   /// hessian(), so that it stays positive definite, and lets all nodes stick in the first choice of states. The functional
   /// and its gradients do not change. (9.8)
   void hold_by_contact();
+  bool held_by_contact() const { return spring_ > 0; }
   /// Weakens these springs, if there are any, from the next update of hessian() on: for bodies that bend so easily that
   /// they feel them.
   void weaken_springs();
@@ -106,17 +110,22 @@ public:
   void move_origin(Vector &u);
   /// Where u is, seen from 0: what results are read from.
   Vector displacement(const Vector &u) const;
+  /// A guess to start from, such as another mesh's solution; brought into [0, xi].
+  /// @param lambda  (contact nodes) [Pa]
+  void set_multipliers(const DeviceView<double *> &lambda);
   /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
   void reset_multipliers();
-  const RCP<CrsMatrix> &hessian() const { return problem_.stiffness; }
-  /// Whether hessian() has changed since the last call: time for a new preconditioner.
-  bool take_hessian_change();
+  const RCP<ContactStiffness> &hessian() const { return hessian_; }
   /// @param F  gradient at u
   LineModel along(const Vector &u, const Vector &d, const Vector &F) const;
   StateCounts count_states(const Vector &u) const;
 
   /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   (5.1)
   double update_multipliers(const Vector &u);
+
+  /// About the largest error of the pressures lambda + r v at stuck nodes, over the largest pressure: the share k/r that the
+  /// penalty leaves of the last change, with k the node's own stiffness.                                       (5.15)
+  double pressure_error(const Vector &u) const;
 
   /// Largest violation of the contact law by (u, lambda), dimensionless.                                         (5.3)
   /// @param u  displacement from 0
@@ -136,29 +145,23 @@ public:
   const DeviceView<double *> &multipliers() const { return lambda_; }
 
 private:
-  void apply_stiffness(const Vector &u, Vector &Ku) const;         // less what was added: rounds as r w |u| does
-  void apply_elastic_stiffness(const Vector &u, Vector &Ku) const; // with K in the matrix: rounds as K |u| does
-  GO update_stiffness(); // brings the matrix to piece_; number of nodes whose stiffness changed
+  GO update_stiffness(); // brings hessian() to piece_; number of nodes whose stiffness changed
 
   RCP<const Comm> comm_;
   fem::ElasticProblem problem_;
   ContactNodes contact_;
-  ContactNodes near_;                  // the same, its free_gap less what the origin has used up
-  RCP<Vector> origin_;                 // null: 0
-  RCP<Vector> load_;                   // problem_.load less K origin
-  double applied_force_ = 0;           // |applied load|_2 on free unknowns [N]
-  double lifted_force_ = 0;            // the same with the forces of prescribed displacements [N]
-  double reach_ = 0;                   // pressure that the load will hardly reach anywhere [Pa]
-  DeviceView<double *> lambda_;        // (contact nodes) [Pa]
-  DeviceView<State *> piece_;          // (contact nodes) states that the matrix belongs to
-  DeviceView<double *> added_;         // (contact nodes) the matrix holds K + added w m m^T [Pa/m]
-  DeviceView<double *> own_stiffness_; // (contact nodes) m . K_ii m / (w m . m), of the node's own block [Pa/m]
-  double spring_ = 0;                  // weak springs at nodes that do not stick, in units of contact_.stiffness
-  bool hessian_changed_ = false;
-  bool second_choice_ = false;       // multipliers of stuck nodes are the last piece's pressures
-  bool piece_chosen_ = false;        // else piece_ is that of K itself, and says nothing about pressures
-  DeviceView<std::size_t **> block_; // (contact nodes, dim) entry where the node's own block begins in each of its rows
-  DeviceView<double ***> elastic_;   // (contact nodes, dim, dim) that block of K
+  ContactNodes near_;           // the same, its free_gap less what the origin has used up
+  RCP<Vector> origin_;          // null: 0
+  RCP<Vector> load_;            // problem_.load less K origin
+  double applied_force_ = 0;    // |applied load|_2 on free unknowns [N]
+  double lifted_force_ = 0;     // the same with the forces of prescribed displacements [N]
+  double reach_ = 0;            // pressure that the load will hardly reach anywhere [Pa]
+  DeviceView<double *> lambda_; // (contact nodes) [Pa]
+  DeviceView<State *> piece_;   // (contact nodes) states that hessian() belongs to
+  RCP<ContactStiffness> hessian_;
+  double spring_ = 0;          // weak springs at nodes that do not stick, in units of contact_.stiffness
+  bool second_choice_ = false; // multipliers of stuck nodes are the last piece's pressures
+  bool piece_chosen_ = false;  // else piece_ is that of K itself, and says nothing about pressures
 };
 
 } // namespace rpc::contact

@@ -10,6 +10,7 @@
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Map.hpp>
 #include <Tpetra_MultiVector.hpp>
+#include <Tpetra_Operator.hpp>
 #include <Tpetra_Vector.hpp>
 
 /// Tpetra types of this project, and the only place that knows names which differ between Trilinos versions.
@@ -25,6 +26,7 @@ using Vector = Tpetra::Vector<double, LO, GO, Node>;
 using MultiVector = Tpetra::MultiVector<double, LO, GO, Node>;
 using CrsGraph = Tpetra::CrsGraph<LO, GO, Node>;
 using CrsMatrix = Tpetra::CrsMatrix<double, LO, GO, Node>;
+using Operator = Tpetra::Operator<double, LO, GO, Node>;
 
 /// Number of indices that this rank holds (getLocalNumElements since Trilinos 13.4).
 inline LO num_local(const Map &map)

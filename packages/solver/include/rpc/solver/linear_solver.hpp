@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/tpetra.hpp"
+#include "rpc/contact/contact_stiffness.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <memory>
@@ -13,7 +13,7 @@ namespace rpc::solver
 /// Krylov method and preconditioner for symmetric positive definite systems.
 struct LinearSolverOptions {
   std::string method = "Pseudoblock CG"; ///< name in Belos' solver factory
-  double tolerance = 1e-8;               ///< |r| / |b|, dimensionless, > 0
+  double tolerance = 1e-11;              ///< |r| / |b|, dimensionless, > 0
   int max_iterations = 500;              ///< > 0
   std::string reuse = "tP";              ///< what of a hierarchy outlives a change of the matrix: none, tP, RP
   Teuchos::ParameterList belos;          ///< on top of the defaults
@@ -28,47 +28,52 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list);
 /// What was done, for the summary.
 struct LinearSolverCounts {
   std::vector<int> iterations;   ///< per solve
-  int preconditioner_setups = 0; ///< of any kind
+  int preconditioner_setups = 0; ///< of multigrid, of any kind
+  int local_corrections = 0;     ///< changes of contact that did with a correction of the preconditioner
   double setup_seconds = 0;
   double solve_seconds = 0;
 };
 
 /// Belos with a smoothed-aggregation MueLu hierarchy that knows the rigid body modes.
 ///
-/// The hierarchy is set up at the first solve and again, reusing what `reuse` allows, at the first solve after
-/// matrix_changed().
+/// The hierarchy is set up at the first solve. Where contact states change afterwards, it is corrected by exact solves
+/// around the changed nodes, doc/theory.md (4.8); it is set up again, reusing what `reuse` allows, when these get too many or
+/// CG says so.
 class LinearSolver
 {
 public:
-  /// @param A            SPD; its values may change between solves, its graph not
+  /// @param H            may change between solves; its matrix is written when the hierarchy is set up
   /// @param coordinates  (nodes; dim)          @param null_space  (rows of A; rigid body modes)
   /// Collective.
-  LinearSolver(LinearSolverOptions options, RCP<CrsMatrix> A, RCP<MultiVector> coordinates,
+  LinearSolver(LinearSolverOptions options, RCP<contact::ContactStiffness> H, RCP<MultiVector> coordinates,
                RCP<MultiVector> null_space);
   ~LinearSolver();
 
   struct Result {
     bool converged = false;
     bool broken = false; ///< x is no approximation of anything
+    bool interrupted = false;
     int iterations = 0;
     std::string reason; ///< why not, if not
   };
-  /// x <- approximately A^-1 b, from x = 0; collective. Failure is a result, not an exception.
+  /// x <- approximately H^-1 b, from x = 0; collective. Failure is a result, not an exception.
   /// @param tolerance  |r| / |b|; never taken below the options' one
   Result solve(const Vector &b, Vector &x, double tolerance);
 
-  /// About F . A^-1 F: one multigrid cycle stands for A^-1. 0 where F is 0, NaN where the cycle breaks
+  /// About F . H^-1 F: one multigrid cycle stands for H^-1. 0 where F is 0, NaN where the cycle breaks
   /// down; collective.
   double inverse_energy(const Vector &F);
 
-  void matrix_changed();
   const LinearSolverCounts &counts() const { return counts_; }
   double tolerance() const { return options_.tolerance; }
   const MultiVector &coordinates() const; ///< (nodes; dim) [m]
 
 private:
+  void prepare();
   void set_up();
+  void set_up_anew();
   bool strengthen();
+  void judge_preconditioner(int iterations, double residual);
   Result try_to_solve(const Vector &b, Vector &x, double tolerance);
 
   struct Impl;

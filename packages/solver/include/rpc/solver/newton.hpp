@@ -13,6 +13,7 @@ namespace rpc::solver
 struct NewtonOptions {
   double step_tolerance = 1e-10;     ///< |d|_2 / |u|_2 of a full Newton step, > 0: the paper's test
   double residual_tolerance = 1e-11; ///< |F|_2 / |load|_2, > 0
+  double start_tolerance = 1e-10;    ///< |F|_2 / |load|_2 at which the search for states is content, > 0
   int max_iterations = 200;          ///< > 0
   bool active_set_start = true;      ///< look for the contact states first, see find_states()
   Teuchos::ParameterList nox;        ///< sublists for NOX, on top of the defaults
@@ -32,6 +33,11 @@ struct NewtonStep {
   int linear_iterations = 0;
   contact::StateCounts states;
 };
+
+/// Lets NOX read its part of the deck, which a scene may not come to; collective.
+/// @throws rpc::Error (bad_input) if NOX refuses it
+void check_nox_parameters(contact::SmoothedFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
+                          const NewtonOptions &options);
 
 /// Minimizes the smoothed functional over u, in place; collective. Failure is a result, not an exception.
 /// @param same_states  start with a step on the piece that the last minimization ended on, doc/theory.md (5.4): after a

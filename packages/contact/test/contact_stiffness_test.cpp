@@ -1,0 +1,116 @@
+#include "rpc/contact/contact_stiffness.hpp"
+
+#include "scene.hpp"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+using contact::ContactStiffness;
+
+/// K of the block before contact, and a stiffness that starts from it.
+struct Stiffness {
+  Scene scene{std::vector{below(40), beside(40)}};
+  CrsMatrix K{*scene.functional->hessian()->matrix(), Teuchos::Copy};
+  ContactStiffness H{rcp(new CrsMatrix(K, Teuchos::Copy)), scene.functional->contact()};
+  RCP<Vector> u = scene.vector(1, 0.3);
+
+  /// (contact nodes) value(i) where the node is to be stiffened, 0 at held ones.
+  DeviceView<double *> added(const std::function<double(LO)> &value) const
+  {
+    const auto fixed = to_host(scene.functional->contact().fixed);
+    HostView<double *> host("added", fixed.extent(0));
+    for (std::size_t i = 0; i < host.extent(0); ++i) host(i) = fixed(i) ? 0 : value(static_cast<LO>(i));
+    return to_device(host);
+  }
+  /// K u + sum_i added_i w_i m_i (m_i . u), by hand.
+  Vector by_hand(const DeviceView<double *> &added) const
+  {
+    Vector y(u->getMap());
+    K.apply(*u, y);
+    const auto &c = scene.functional->contact();
+    const auto node = to_host(c.node);
+    const auto m = to_host(c.direction);
+    const auto w = to_host(c.weight), s = to_host(added);
+    const auto x = u->getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto to = y.getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (LO i = 0; i < c.size(); ++i) {
+      const double along = m(i, 0) * x(2 * node(i), 0) + m(i, 1) * x(2 * node(i) + 1, 0);
+      for (int k = 0; k < 2; ++k) to(2 * node(i) + k, 0) += s(i) * w(i) * along * m(i, k);
+    }
+    return y;
+  }
+  double difference(const Operator &A, const Vector &y) const
+  {
+    Vector Au(u->getMap());
+    A.apply(*u, Au);
+    Au.update(-1., y, 1.);
+    return Au.norm2() / y.norm2();
+  }
+};
+
+TEST(ContactStiffness, AppliesWhatWasAddedWhetherWrittenOrNot)
+{
+  Stiffness s;
+  const auto some = s.added([](const LO i) { return i % 2 ? 30. : 0.; });
+  EXPECT_GT(s.H.set(some), 0);
+  EXPECT_LT(s.difference(s.H, s.by_hand(some)), 1e-14);
+  EXPECT_LT(s.difference(*s.H.matrix(), s.by_hand(s.added([](LO) { return 0.; }))), 1e-14);
+  s.H.write();
+  EXPECT_LT(s.difference(s.H, s.by_hand(some)), 1e-14);
+  EXPECT_LT(s.difference(*s.H.matrix(), s.by_hand(some)), 1e-14);
+}
+
+TEST(ContactStiffness, HasARevisionForEachChange)
+{
+  Stiffness s;
+  const int first = s.H.revision();
+  const auto all = s.added([](LO) { return 7.; });
+  const GO free = s.scene.functional->contact().num_total - s.scene.functional->contact().num_fixed;
+  EXPECT_EQ(s.H.set(all), free);
+  EXPECT_EQ(s.H.revision(), first + 1);
+  EXPECT_EQ(s.H.set(all), 0);
+  s.H.write();
+  EXPECT_EQ(s.H.revision(), first + 1);
+}
+
+TEST(ContactStiffness, ListsNodesThatDifferFromTheMatrix)
+{
+  Stiffness s;
+  const auto all = s.added([](LO) { return 7.; });
+  const GO free = s.scene.functional->contact().num_total - s.scene.functional->contact().num_fixed;
+  const auto &comm = *s.u->getMap()->getComm();
+  EXPECT_EQ(sum_all(comm, GO(s.H.changes().size())), 0);
+  s.H.set(all);
+  EXPECT_EQ(sum_all(comm, GO(s.H.changes().size())), free);
+  s.H.write();
+  EXPECT_EQ(sum_all(comm, GO(s.H.changes().size())), 0);
+  s.H.set(s.added([](const LO i) { return i == 0 ? 0. : 7.; }));
+  const auto changes = s.H.changes();
+  const auto coefficient = to_host(changes.coefficient), w = to_host(s.scene.functional->contact().weight);
+  const auto node = to_host(changes.node), of = to_host(s.scene.functional->contact().node);
+  ASSERT_LE(changes.size(), 1);
+  if (changes.size() == 1) {
+    EXPECT_EQ(node(0), of(0));
+    EXPECT_DOUBLE_EQ(coefficient(0), -7 * w(0));
+  }
+}
+
+TEST(ContactStiffness, OfLargePenaltiesLeavesNoRoundingInTheElasticProduct)
+{
+  Stiffness s;
+  Vector Ku(s.u->getMap()), same(s.u->getMap());
+  s.K.apply(*s.u, Ku);
+  s.H.set(s.added([](LO) { return 1e12; }));
+  s.H.write();
+  s.H.apply_elastic(*s.u, same);
+  same.update(-1., Ku, 1.);
+  EXPECT_EQ(same.normInf(), 0);
+  s.H.set(s.added([](LO) { return 0.; })); // released, with the penalty still in the matrix
+  EXPECT_EQ(s.difference(s.H, Ku), 0);
+}
+
+} // namespace

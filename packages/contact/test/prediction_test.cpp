@@ -1,0 +1,72 @@
+#include "rpc/contact/prediction.hpp"
+
+#include "rpc/fem/interpolation.hpp"
+#include "scene.hpp"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+
+/// (contact nodes) side(k) at a point of side k.
+DeviceView<double *> at_contact_nodes(const Scene &scene, const std::vector<std::function<double(const Point &)>> &side)
+{
+  const auto &c = scene.functional->contact();
+  const auto node = to_host(c.node);
+  const auto coords = to_host(scene.d.mesh->coords);
+  HostView<double *> values("values", c.size());
+  for (int k = 0; k < c.num_sides(); ++k)
+    for (LO i = c.first(k); i < c.first(k + 1); ++i) values(i) = side[k]({coords(node(i), 0), coords(node(i), 1), 0});
+  return to_device(values);
+}
+
+TEST(StartFrom, CarriesAffineDisplacementsAndMultipliersSideBySide)
+{
+  // Another factor than the partition's divisions: fine nodes lie on other ranks than their coarse cells.
+  const std::vector<contact::ContactOptions> foundations{below(40), beside(40)};
+  const Scene coarse(foundations), fine(foundations, held("top"), 3);
+  const auto displacement = [](const Point &x) { return Point{0.2 * (1 - x[1]), -0.3 * (1 - x[1]), 0}; };
+  const std::vector<std::function<double(const Point &)>> pressure{[](const Point &x) { return 0.3 + 0.4 * x[0]; },
+                                                                   [](const Point &x) { return 2.5 - 2 * x[1]; }};
+  coarse.functional->set_multipliers(at_contact_nodes(coarse, pressure));
+  Vector u(fine.d.owned_dofs);
+  contact::start_from(*fem::interpolation(coarse.d, fine.d), *coarse.functional, *coarse.vector(displacement),
+                      *fine.functional, u);
+  u.update(-1., *fine.vector(displacement), 1.);
+  EXPECT_LT(u.normInf(), 1e-14);
+  const auto found = to_host(fine.functional->multipliers()), expected = to_host(at_contact_nodes(fine, pressure));
+  const auto fixed = to_host(fine.functional->contact().fixed);
+  const auto coords = to_host(fine.d.mesh->coords);
+  const auto node = to_host(fine.functional->contact().node);
+  for (LO i = 0; i < fine.functional->contact().size(); ++i) {
+    if (coords(node(i), 1) > 1 - 1. / 3 - 1e-9) continue; // beside a held node, whose multiplier is 0 by convention
+    EXPECT_NEAR(found(i), fixed(i) ? 0 : expected(i), 1e-14) << i;
+  }
+}
+
+TEST(StartFrom, LeavesPrescribedDisplacementsAndStaysWithinTheYieldLimit)
+{
+  const std::vector<contact::ContactOptions> foundations{below(40)};
+  const Scene coarse(foundations, held("top", {0.5, 0, 0})), fine(foundations, held("top", {0, 0.25, 0}), 2);
+  coarse.functional->set_multipliers(at_contact_nodes(coarse, {[](const Point &) { return 100.; }}));
+  Vector u(*fine.functional->problem().dirichlet.value, Teuchos::Copy);
+  contact::start_from(*fem::interpolation(coarse.d, fine.d), *coarse.functional, *coarse.vector(1, 2), *fine.functional,
+                      u);
+  const auto fixed = to_host(fine.functional->problem().dirichlet.fixed);
+  const auto prescribed = fine.functional->problem().dirichlet.value->getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto now = u.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t dof = 0; dof < now.extent(0); ++dof)
+    if (fixed(dof)) {
+      EXPECT_EQ(now(dof, 0), prescribed(dof, 0)) << dof;
+    }
+  const auto lambda = to_host(fine.functional->multipliers()), xi = to_host(fine.functional->contact().yield);
+  for (std::size_t i = 0; i < lambda.extent(0); ++i) {
+    EXPECT_GE(lambda(i), 0);
+    EXPECT_LE(lambda(i), xi(i));
+  }
+}
+
+} // namespace

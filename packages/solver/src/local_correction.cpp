@@ -1,0 +1,328 @@
+#include "local_correction.hpp"
+
+#include <KokkosBlas1_axpby.hpp>
+#include <Teuchos_LAPACK.hpp>
+#include <Teuchos_TimeMonitor.hpp>
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace rpc::solver
+{
+namespace
+{
+
+// Layers of cells around the changed nodes: with 2, ten nodes in a row cost CG two iterations. And the most unknowns whose
+// dense inverse is cheap against a set-up, of no large part of the rows.
+constexpr int layers = 2;
+constexpr GO most_unknowns = 500, least_rows_per_unknown = 8;
+
+using contact::ContactStiffness;
+
+/// (owned dofs) 1 at the changed nodes, else 0.
+void mark_changed(const ContactStiffness::Changes &changes, const int dim, Vector &mark)
+{
+  const auto to = device_write(mark);
+  const auto node = changes.node;
+  Kokkos::parallel_for(
+      "rpc::solver::mark_changed", device_range(changes.size()), KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < dim; ++k) to(dim * node(i) + k) = 1;
+      });
+  Kokkos::fence();
+}
+
+/// What a vector on owned dofs holds at the matrix's columns.
+Vector at_columns(const CrsMatrix &A, const Vector &x)
+{
+  Vector columns(A.getColMap());
+  const auto importer = A.getGraph()->getImporter();
+  if (importer.is_null())
+    columns.update(1., x, 0.);
+  else
+    columns.doImport(x, *importer, Tpetra::INSERT);
+  return columns;
+}
+
+/// Marks the rows that share an entry with a marked one.
+void add_layer(const CrsMatrix &A, Vector &mark)
+{
+  const Vector columns = at_columns(A, mark);
+  const auto from = device_read(columns);
+  const auto to = device_write(mark);
+  const auto matrix = A.getLocalMatrixDevice();
+  Kokkos::parallel_for(
+      "rpc::solver::add_layer", device_range(matrix.numRows()), KOKKOS_LAMBDA(const LO row) {
+        if (to(row) != 0) return;
+        for (auto at = matrix.graph.row_map(row); at < matrix.graph.row_map(row + 1); ++at)
+          if (from(matrix.graph.entries(at)) != 0) {
+            to(row) = 2; // apart from 1, for rows read others' columns only
+            return;
+          }
+      });
+  Kokkos::fence();
+}
+
+LO count_marked(const Vector &mark)
+{
+  const auto from = device_read(mark);
+  LO count = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::count_marked", device_range(static_cast<LO>(mark.getLocalLength())),
+      KOKKOS_LAMBDA(const LO row, LO &part) { part += from(row) != 0; }, count);
+  return count;
+}
+
+/// Turns marks into places in the patch, from 1, and lists this rank's.
+void number_members(Vector &mark, const int first, const DeviceView<LO *> &row, const DeviceView<int *> &member)
+{
+  const auto to = device_write(mark);
+  Kokkos::parallel_scan(
+      "rpc::solver::number_members", device_range(static_cast<LO>(mark.getLocalLength())),
+      KOKKOS_LAMBDA(const LO i, LO &at, const bool last) {
+        if (to(i) == 0) return;
+        if (last) {
+          row(at) = i;
+          member(at) = first + at;
+        }
+        ++at;
+      });
+  Kokkos::fence();
+  Kokkos::parallel_for(
+      "rpc::solver::place_members", device_range(static_cast<LO>(row.extent(0))),
+      KOKKOS_LAMBDA(const LO i) { to(row(i)) = member(i) + 1; });
+  Kokkos::fence();
+}
+
+/// @param place  (owned dofs) from 1, 0 outside the patch; collective
+PatchColumns patch_columns(const CrsMatrix &A, const Vector &place)
+{
+  const Vector columns = at_columns(A, place);
+  const auto at = device_read(columns);
+  const auto matrix = A.getLocalMatrixDevice();
+  const LO n = matrix.numRows();
+  const DeviceView<LO *> entries("rpc::solver::entries_in_patch", n);
+  LO num_rows = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::count_patch_columns", device_range(n),
+      KOKKOS_LAMBDA(const LO row, LO &rows) {
+        LO count = 0;
+        for (auto e = matrix.graph.row_map(row); e < matrix.graph.row_map(row + 1); ++e)
+          count += at(matrix.graph.entries(e)) != 0;
+        entries(row) = count;
+        rows += count > 0;
+      },
+      num_rows);
+  PatchColumns list{DeviceView<LO *>("rpc::solver::patch_row", num_rows),
+                    DeviceView<std::size_t *>("rpc::solver::patch_begin", num_rows + 1),
+                    {},
+                    {}};
+  const auto rows = list.row;
+  Kokkos::parallel_scan(
+      "rpc::solver::patch_rows", device_range(n), KOKKOS_LAMBDA(const LO row, LO &next, const bool last) {
+        if (entries(row) == 0) return;
+        if (last) rows(next) = row;
+        ++next;
+      });
+  const auto begin = list.begin;
+  std::size_t num_entries = 0;
+  Kokkos::parallel_scan(
+      "rpc::solver::patch_begins", device_range(num_rows),
+      KOKKOS_LAMBDA(const LO i, std::size_t &sum, const bool last) {
+        sum += entries(rows(i));
+        if (last) begin(i + 1) = sum;
+      },
+      num_entries);
+  const DeviceView<int *> column("rpc::solver::patch_column", num_entries);
+  const DeviceView<double *> value("rpc::solver::patch_value", num_entries);
+  Kokkos::parallel_for(
+      "rpc::solver::patch_entries", device_range(num_rows), KOKKOS_LAMBDA(const LO i) {
+        std::size_t next = begin(i);
+        for (auto e = matrix.graph.row_map(rows(i)); e < matrix.graph.row_map(rows(i) + 1); ++e) {
+          const double place_of_column = at(matrix.graph.entries(e));
+          if (place_of_column == 0) continue;
+          column(next) = static_cast<int>(place_of_column) - 1;
+          value(next++) = matrix.values(e);
+        }
+      });
+  Kokkos::fence();
+  list.column = column;
+  list.value = value;
+  return list;
+}
+
+/// Adds the changes, which lie in the diagonal blocks of patch nodes, to the entries of their rows.
+void add_changes(const ContactStiffness::Changes &changes, const int dim, const Vector &place, const PatchColumns &list)
+{
+  const auto at = device_read(place);
+  const LO num_rows = static_cast<LO>(list.row.extent(0));
+  Kokkos::parallel_for(
+      "rpc::solver::add_changes", device_range(changes.size()), KOKKOS_LAMBDA(const LO i) {
+        const LO first = dim * changes.node(i);
+        LO low = 0, high = num_rows; // rows ascend
+        while (low < high) {
+          const LO middle = (low + high) / 2;
+          if (list.row(middle) < first)
+            low = middle + 1;
+          else
+            high = middle;
+        }
+        for (int k = 0; k < dim; ++k)
+          for (std::size_t e = list.begin(low + k); e < list.begin(low + k + 1); ++e)
+            for (int l = 0; l < dim; ++l)
+              if (list.column(e) == static_cast<int>(at(first + l)) - 1)
+                add_shared(list.value(e), changes.coefficient(i) * changes.direction(i, k) * changes.direction(i, l));
+      });
+  Kokkos::fence();
+}
+
+/// (size, size) The inverse of the patch's own block of H, from this rank's rows and all others'.
+/// @return an empty view where it is not positive definite
+HostView<double **> inverse_of_patch(const Comm &comm, const int size, const PatchColumns &list, const Vector &place)
+{
+  const auto rows = to_host(list.row);
+  const auto begin = to_host(list.begin);
+  const auto column = to_host(list.column);
+  const auto value = to_host(list.value);
+  const auto at = place.getLocalViewHost(Tpetra::Access::ReadOnly);
+  std::vector<double> mine(static_cast<std::size_t>(size) * size), block(mine.size());
+  for (std::size_t i = 0; i < rows.extent(0); ++i) {
+    const int member = static_cast<int>(at(rows(i), 0)) - 1;
+    if (member < 0) continue;
+    for (std::size_t e = begin(i); e < begin(i + 1); ++e)
+      mine[static_cast<std::size_t>(member) * size + column(e)] += value(e);
+  }
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), block.data());
+  const Teuchos::LAPACK<int, double> lapack;
+  int info = 0;
+  lapack.POTRF('L', size, block.data(), size, &info);
+  if (info == 0) lapack.POTRI('L', size, block.data(), size, &info);
+  if (info != 0) return {};
+  HostView<double **> inverse("rpc::solver::patch_inverse", size, size);
+  for (int j = 0; j < size; ++j)
+    for (int i = j; i < size; ++i) // LAPACK's columns, lower half
+      inverse(i, j) = inverse(j, i) = block[static_cast<std::size_t>(j) * size + i];
+  return inverse;
+}
+
+/// out <- sum over all ranks.
+DeviceView<double *> summed(const Comm &comm, const DeviceView<double *> &mine)
+{
+  if (comm.getSize() == 1) return mine;
+  const auto part = to_host(mine);
+  HostView<double *> sum("rpc::solver::patch_sum", mine.extent(0));
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(sum.extent(0)), part.data(), sum.data());
+  return to_device(sum);
+}
+
+DeviceView<double *> product(const DeviceView<double **> &matrix, const DeviceView<double *> &x)
+{
+  const int n = static_cast<int>(x.extent(0));
+  const DeviceView<double *> y("rpc::solver::patch_product", n);
+  Kokkos::parallel_for(
+      "rpc::solver::patch_product", device_range(n), KOKKOS_LAMBDA(const LO i) {
+        double sum = 0;
+        for (int j = 0; j < n; ++j) sum += matrix(j, i) * x(j); // symmetric: neighbouring threads read neighbours
+        y(i) = sum;
+      });
+  return y;
+}
+
+/// This rank's part of x, R x.
+DeviceView<double *> restricted(const DeviceView<LO *> &row, const DeviceView<int *> &member, const int size,
+                                const Vector &x)
+{
+  const DeviceView<double *> part("rpc::solver::restricted", size);
+  const auto from = device_read(x);
+  Kokkos::parallel_for(
+      "rpc::solver::restrict", device_range(static_cast<LO>(row.extent(0))),
+      KOKKOS_LAMBDA(const LO i) { part(member(i)) = from(row(i)); });
+  Kokkos::fence();
+  return part;
+}
+
+/// y += R^T q on this rank.
+void prolong(const DeviceView<LO *> &row, const DeviceView<int *> &member, const DeviceView<double *> &q, Vector &y)
+{
+  const auto to = device_write(y);
+  Kokkos::parallel_for(
+      "rpc::solver::prolong", device_range(static_cast<LO>(row.extent(0))),
+      KOKKOS_LAMBDA(const LO i) { to(row(i)) += q(member(i)); });
+  Kokkos::fence();
+}
+
+/// y -= H R^T q on this rank.
+void subtract_columns(const PatchColumns &list, const DeviceView<double *> &q, Vector &y)
+{
+  const auto to = device_write(y);
+  Kokkos::parallel_for(
+      "rpc::solver::subtract_columns", device_range(static_cast<LO>(list.row.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        double sum = 0;
+        for (std::size_t e = list.begin(i); e < list.begin(i + 1); ++e) sum += list.value(e) * q(list.column(e));
+        to(list.row(i)) -= sum;
+      });
+  Kokkos::fence();
+}
+
+/// This rank's part of R H x, by the columns of the symmetric H: needs no halo of x.
+DeviceView<double *> times_columns(const PatchColumns &list, const int size, const Vector &x)
+{
+  const DeviceView<double *> sum("rpc::solver::times_columns", size);
+  const auto from = device_read(x);
+  Kokkos::parallel_for(
+      "rpc::solver::times_columns", device_range(static_cast<LO>(list.row.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        for (std::size_t e = list.begin(i); e < list.begin(i + 1); ++e)
+          add_shared(sum(list.column(e)), list.value(e) * from(list.row(i)));
+      });
+  Kokkos::fence();
+  return sum;
+}
+
+} // namespace
+
+std::optional<LocalCorrection> LocalCorrection::around(const ContactStiffness &H)
+{
+  const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::local_correction"));
+  const CrsMatrix &A = *H.matrix();
+  const Comm &comm = *A.getComm();
+  const auto changes = H.changes();
+  const GO num_changes = sum_all(comm, GO(changes.size()));
+  if (num_changes == 0 || H.dim() * num_changes > most_unknowns) return std::nullopt;
+  Vector place(A.getRowMap());
+  mark_changed(changes, H.dim(), place);
+  for (int layer = 0; layer < layers; ++layer) add_layer(A, place);
+  const LO members = count_marked(place);
+  const GO size = sum_all(comm, GO(members));
+  if (size > std::min(most_unknowns, static_cast<GO>(A.getGlobalNumRows()) / least_rows_per_unknown))
+    return std::nullopt;
+  int through = 0;
+  Teuchos::scan(comm, Teuchos::REDUCE_SUM, static_cast<int>(members), Teuchos::outArg(through));
+
+  LocalCorrection correction;
+  correction.size_ = static_cast<int>(size);
+  correction.member_row_ = DeviceView<LO *>("rpc::solver::member_row", members);
+  correction.member_ = DeviceView<int *>("rpc::solver::member", members);
+  number_members(place, through - members, correction.member_row_, correction.member_);
+  const PatchColumns list = patch_columns(A, place);
+  add_changes(changes, H.dim(), place, list);
+  const auto inverse = inverse_of_patch(comm, correction.size_, list, place);
+  if (inverse.extent(0) == 0) return std::nullopt;
+  correction.columns_ = list;
+  correction.inverse_ = to_device(inverse);
+  return correction;
+}
+
+void LocalCorrection::apply(const Operator &M, const Vector &x, Vector &y) const
+{
+  const Comm &comm = *x.getMap()->getComm();
+  const auto q = product(inverse_, summed(comm, restricted(member_row_, member_, size_, x)));
+  Vector rest(x, Teuchos::Copy);
+  subtract_columns(columns_, q, rest);
+  M.apply(rest, y);
+  const auto p = product(inverse_, summed(comm, times_columns(columns_, size_, y)));
+  const DeviceView<double *> correction("rpc::solver::correction", size_);
+  Kokkos::deep_copy(correction, q);
+  KokkosBlas::axpy(-1., p, correction);
+  prolong(member_row_, member_, correction, y);
+}
+
+} // namespace rpc::solver

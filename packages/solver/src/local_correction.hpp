@@ -1,0 +1,42 @@
+#pragma once
+
+#include "rpc/contact/contact_stiffness.hpp"
+
+#include <optional>
+
+namespace rpc::solver
+{
+
+/// Columns of a matrix that belong to a patch: rows with an entry in them, ascending, and their entries. Of this rank.
+struct PatchColumns {
+  DeviceView<LO *> row;            ///< (rows) owned rows
+  DeviceView<std::size_t *> begin; ///< (rows + 1) where their entries begin
+  DeviceView<int *> column;        ///< (entries) place in the patch
+  DeviceView<double *> value;      ///< (entries)
+};
+
+/// Carries a preconditioner M of a stiffness's matrix over to the stiffness itself, H, by exact solves on a patch, the
+/// unknowns around the changed contact nodes:
+///
+///     B = Q + (I - Q H) M (I - H Q),    Q = R^T (R H R^T)^-1 R                                    doc/theory.md (4.8)
+///
+/// B is SPD if M is, and costs M and two dense products more. The patch's inverse lies on all ranks.
+class LocalCorrection
+{
+public:
+  /// Collective. @return nothing where nothing has changed, or the patch would be too large
+  static std::optional<LocalCorrection> around(const contact::ContactStiffness &H);
+
+  /// y <- B x; collective.
+  void apply(const Operator &M, const Vector &x, Vector &y) const;
+  int size() const { return size_; } ///< unknowns in the patch, over all ranks
+
+private:
+  int size_ = 0;
+  PatchColumns columns_;          ///< of H
+  DeviceView<LO *> member_row_;   ///< (own members) owned rows in the patch ...
+  DeviceView<int *> member_;      ///< (own members) ... and where
+  DeviceView<double **> inverse_; ///< (size, size)
+};
+
+} // namespace rpc::solver

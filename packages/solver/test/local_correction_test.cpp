@@ -1,0 +1,102 @@
+#include "../src/local_correction.hpp"
+
+#include "beam.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace rpc;
+using rpc::test::Beam;
+using solver::LocalCorrection;
+
+/// Lets the nodes between two places open, the others stick.
+void open_between(Beam &beam, const double from, const double to)
+{
+  const auto coordinates = fem::node_coordinates(beam.d);
+  {
+    const auto x = coordinates->getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto u = beam.u->getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t n = 0; n < x.extent(0); ++n) u(2 * n + 1, 0) = x(n, 0) > from && x(n, 0) < to ? 1 : 0;
+  }
+  beam.functional->update_hessian(*beam.u);
+}
+
+/// A diagonal stands for multigrid.
+class Diagonal : public Operator
+{
+public:
+  explicit Diagonal(const CrsMatrix &A) : inverse_(A.getRowMap())
+  {
+    A.getLocalDiagCopy(inverse_);
+    inverse_.reciprocal(inverse_);
+  }
+  RCP<const Map> getDomainMap() const override { return inverse_.getMap(); }
+  RCP<const Map> getRangeMap() const override { return inverse_.getMap(); }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
+  {
+    y.elementWiseMultiply(1., inverse_, x, 0.);
+  }
+
+private:
+  Vector inverse_;
+};
+
+TEST(LocalCorrection, IsNoneWithoutChangesAndWhereTheyAreMany)
+{
+  Beam beam;
+  open_between(beam, 2, 2.1);
+  beam.functional->hessian()->write();
+  EXPECT_FALSE(LocalCorrection::around(*beam.functional->hessian()));
+  open_between(beam, 2, 2.2);
+  EXPECT_TRUE(LocalCorrection::around(*beam.functional->hessian()));
+  open_between(beam, 0.01, 4.99);
+  EXPECT_FALSE(LocalCorrection::around(*beam.functional->hessian()));
+}
+
+TEST(LocalCorrection, HoldsTwoLayersAroundTheNode)
+{
+  Beam beam;
+  open_between(beam, 2, 2.001);
+  beam.functional->hessian()->write();
+  open_between(beam, 1.99, 2.01); // the node at 2
+  const auto correction = LocalCorrection::around(*beam.functional->hessian());
+  ASSERT_TRUE(correction);
+  EXPECT_EQ(correction->size(), 2 * 5 * 3);
+}
+
+TEST(LocalCorrection, IsSymmetricPositiveAndExactOnThePatch)
+{
+  Beam beam;
+  open_between(beam, 2, 2.001);
+  beam.functional->hessian()->write();
+  open_between(beam, 1.9, 2.2);
+  const auto &H = *beam.functional->hessian();
+  const Diagonal M(*H.matrix());
+  const auto correction = LocalCorrection::around(H);
+  ASSERT_TRUE(correction);
+  const auto map = beam.u->getMap();
+  Vector x(map), y(map), Bx(map), By(map), HBx(map);
+  for (LO i = 0; i < num_local(*map); ++i) {
+    const double angle = 0.7 * static_cast<double>(map->getGlobalElement(i));
+    x.replaceLocalValue(i, std::sin(angle));
+    y.replaceLocalValue(i, std::cos(1 + 1.3 * angle));
+  }
+  correction->apply(M, x, Bx);
+  correction->apply(M, y, By);
+  EXPECT_NEAR(Bx.dot(y), By.dot(x), 1e-13 * std::sqrt(Bx.dot(x) * By.dot(y)));
+  EXPECT_GT(Bx.dot(x), 0);
+  H.apply(Bx, HBx);
+  HBx.update(-1., x, 1.);
+  const auto rest = HBx.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto coordinates = fem::node_coordinates(beam.d);
+  const auto at = coordinates->getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t n = 0; n < at.extent(0); ++n) // one layer around the changed nodes, which the patch holds for sure
+    if (at(n, 0) > 1.85 && at(n, 0) < 2.2 && at(n, 1) < 0.1) {
+      EXPECT_LT(std::abs(rest(2 * n, 0)) + std::abs(rest(2 * n + 1, 0)), 1e-9) << at(n, 0) << " " << at(n, 1);
+    }
+}
+
+} // namespace
