@@ -1,4 +1,4 @@
-"""Runs one rank's command and leaves its peak memory, in KiB, in a file of its own.
+"""Runs one process and leaves its peak memory, in KiB, its duration and its CPU time, in s, in a file of its own.
 
     mpirun -n 2 python3 measure.py FOLDER rpc --input=beam.xml
 
@@ -7,13 +7,15 @@ A launcher per rank: mpirun's children are not the benchmark's, and only a paren
 import os
 import subprocess
 import sys
+import time
 
 
 def main(folder, *command):
+    start = time.perf_counter()
     process = subprocess.Popen(command)
     _, status, usage = os.wait4(process.pid, 0)
-    with open(os.path.join(folder, "%d.maxrss" % os.getpid()), "w") as file:
-        file.write(str(usage.ru_maxrss))
+    with open(os.path.join(folder, "%d.measured" % os.getpid()), "w") as file:
+        file.write("%d %g %g" % (usage.ru_maxrss, time.perf_counter() - start, usage.ru_utime + usage.ru_stime))
     return os.waitstatus_to_exitcode(status) if os.WIFEXITED(status) else 1
 
 

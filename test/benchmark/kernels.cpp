@@ -1,0 +1,209 @@
+/// Times of the kernels that a solve consists of, beside the memory bandwidth that a STREAM triad reaches in the same run.
+///
+///     kernels [--cells=256,512] [Google Benchmark's options]
+///     mpirun -n 2 kernels    # the triad alone, on all ranks at once
+///
+/// Each kernel reports the bytes that it must move at least (every array once), the least time per item (cell or row), the
+/// bandwidth that follows, and its fraction of the triad's. Q2 and P2 take half the cells in each direction: as many nodes.
+
+#include "rpc/fem/elasticity.hpp"
+#include "rpc/mesh/box.hpp"
+
+#include <Ifpack2_Chebyshev.hpp>
+#include <Kokkos_Timer.hpp>
+#include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <benchmark/benchmark.h>
+#include <limits>
+#include <malloc.h>
+#include <sstream>
+
+namespace
+{
+
+using namespace rpc;
+
+/// GB/s of a[i] = b[i] + s c[i] over all ranks, 24 bytes an entry as STREAM counts; the best of some repetitions.
+double triad(const Comm &comm)
+{
+  constexpr LO entries = 1 << 25; // 256 MiB an array, beyond every cache
+  constexpr int repetitions = 10;
+  const DeviceView<double *> a("rpc::benchmark::a", entries), b("rpc::benchmark::b", entries),
+      c("rpc::benchmark::c", entries);
+  Kokkos::deep_copy(b, 1.);
+  Kokkos::deep_copy(c, 2.);
+  double best = 0;
+  for (int k = 0; k < repetitions; ++k) {
+    comm.barrier();
+    const Kokkos::Timer timer;
+    Kokkos::parallel_for(
+        "rpc::benchmark::triad", device_range(entries), KOKKOS_LAMBDA(const LO i) { a(i) = b(i) + 3 * c(i); });
+    Kokkos::fence();
+    const double seconds = max_all(comm, timer.seconds());
+    best = std::max(best, 24e-9 * entries * comm.getSize() / seconds);
+  }
+  return best;
+}
+
+/// The beam's body, its stiffness matrix and what a kernel needs of them.
+struct Body {
+  fem::Discretization d;
+  fem::Material material{2000, 0.3};
+  RCP<CrsMatrix> K;
+
+  Body(const std::string &element, int n)
+  {
+    mesh::BoxOptions box{{0, 0}, {5, 1}, {}, mesh::parse_element(element, 2)};
+    n /= box.element.order;
+    box.cells = {5 * n, n};
+    d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
+    K = fem::assemble_stiffness(d, material);
+  }
+  double cells() const { return d.mesh->num_cells(); }
+  double rows() const { return num_local(*d.owned_dofs); }
+  double entries() const { return static_cast<double>(K->getLocalMatrixDevice().nnz()); }
+  /// Coordinates, and nodes and block of each cell.
+  double mesh_bytes() const { return 8 * rows() + sizeof(LO) * cells() * (d.mesh->element.num_nodes() + 1); }
+  /// Values, columns and row offsets.
+  double matrix_bytes() const { return (8 + sizeof(LO)) * entries() + sizeof(std::size_t) * (rows() + 1); }
+  /// Neighbours of each node, the pattern that the assembly goes by.
+  double node_graph_bytes() const
+  {
+    return sizeof(std::size_t) * d.nodes.row.extent(0) + sizeof(LO) * d.nodes.col.extent(0);
+  }
+};
+
+/// Runs a kernel as often as Google Benchmark asks for. @param bytes  moved at least; @param items  cells or rows
+template <class Kernel>
+void measure(benchmark::State &state, const double stream, const double bytes, const double items, const Kernel &kernel)
+{
+  kernel();                                              // page faults, lazy set-up
+  double best = std::numeric_limits<double>::infinity(); // as of the triad
+  for (auto _ : state) {
+    const Kokkos::Timer timer;
+    kernel();
+    Kokkos::fence();
+    const double seconds = timer.seconds();
+    state.SetIterationTime(seconds);
+    best = std::min(best, seconds);
+  }
+  state.counters["items"] = items;
+  state.counters["bytes"] = bytes;
+  state.counters["ns_per_item"] = 1e9 * best / items;
+  state.counters["GB/s"] = 1e-9 * bytes / best;
+  state.counters["of_triad"] = 1e-9 * bytes / best / stream;
+}
+
+void assembly(benchmark::State &state, const double stream, const Body &body)
+{
+  // The pattern is that of the graph: of the matrix only values are written.
+  const double bytes = body.mesh_bytes() + body.node_graph_bytes() + 8 * body.entries();
+  measure(state, stream, bytes, body.cells(), [&] { fem::assemble_stiffness(body.d, body.material); });
+}
+
+void internal_work(benchmark::State &state, const double stream, const Body &body)
+{
+  Vector u(body.d.owned_dofs);
+  u.randomize();
+  const double bytes = body.mesh_bytes() + 8 * 2 * body.rows(); // reads u, writes f
+  measure(state, stream, bytes, body.cells(), [&] { fem::internal_work(body.d, body.material, u); });
+}
+
+void spmv(benchmark::State &state, const double stream, const Body &body)
+{
+  Vector x(body.d.owned_dofs), y(body.d.owned_dofs);
+  x.randomize();
+  const double bytes = body.matrix_bytes() + 8 * 2 * body.rows(); // reads x, writes y
+  measure(state, stream, bytes, body.rows(), [&] { body.K->apply(x, y); });
+}
+
+/// As MueLu's smoother after the coarse correction: a degree of 2 from an approximation that is not zero.
+void chebyshev(benchmark::State &state, const double stream, const Body &body)
+{
+  Ifpack2::Chebyshev<Tpetra::RowMatrix<double, LO, GO, Node>> smoother(body.K);
+  Teuchos::ParameterList list;
+  list.set("chebyshev: degree", 2);
+  list.set("chebyshev: ratio eigenvalue", 7.);
+  list.set("chebyshev: zero starting solution", false);
+  smoother.setParameters(list);
+  smoother.initialize();
+  smoother.compute();
+  Vector b(body.d.owned_dofs), x(body.d.owned_dofs);
+  b.randomize();
+  // Each of the 2 steps reads the matrix, its diagonal, b, the step before (the first has none) and x, and writes the step
+  // (the last need not) and x.
+  const double bytes = 2 * body.matrix_bytes() + 8 * 10 * body.rows();
+  measure(state, stream, bytes, body.rows(), [&] { smoother.apply(b, x); });
+}
+
+using Kernel = void (*)(benchmark::State &, double, const Body &);
+
+/// Bodies as they are asked for, one at a time for the memory's sake.
+class Bodies
+{
+public:
+  const Body &get(const std::string &element, const int n)
+  {
+    const std::string name = element + std::to_string(n);
+    if (name != name_) {
+      body_.reset();
+      body_ = std::make_unique<Body>(element, n);
+      name_ = name;
+    }
+    return *body_;
+  }
+
+private:
+  std::string name_;
+  std::unique_ptr<Body> body_;
+};
+
+void register_kernels(const int n, const std::string &element, const double stream, Bodies &bodies)
+{
+  const std::pair<const char *, Kernel> kernels[] = {
+      {"assembly", assembly}, {"internal work", internal_work}, {"SpMV", spmv}, {"Chebyshev", chebyshev}};
+  for (const auto &[name, kernel] : kernels)
+    benchmark::RegisterBenchmark((std::to_string(n) + "/" + element + "/" + name).c_str(),
+                                 [n, element, stream, kernel = kernel, &bodies](benchmark::State &state) {
+                                   kernel(state, stream, bodies.get(element, n));
+                                 })
+        ->UseManualTime();
+}
+
+std::vector<int> numbers(const std::string &text)
+{
+  std::vector<int> result;
+  std::istringstream stream(text);
+  for (std::string number; std::getline(stream, number, ',');) result.push_back(std::stoi(number));
+  return result;
+}
+
+} // namespace
+
+int main(int argc, char *argv[])
+{
+#ifdef __GLIBC__ // as in the program: freed memory stays with the process
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 2000 << 20);
+  mallopt(M_TOP_PAD, 256 << 20);
+#endif
+  benchmark::Initialize(&argc, argv);
+  std::string cells = "256,512";
+  const std::string option = "--cells=";
+  for (int i = 1; i < argc; ++i)
+    if (std::string(argv[i]).rfind(option, 0) == 0) cells = std::string(argv[i]).substr(option.size());
+  const Tpetra::ScopeGuard scope(&argc, &argv);
+  const auto comm = Tpetra::getDefaultComm();
+  const double stream = triad(*comm);
+  benchmark::RegisterBenchmark("triad", [stream](benchmark::State &state) {
+    for (auto _ : state) {
+    }
+    state.counters["GB/s"] = stream;
+  })->Iterations(1);
+  Bodies bodies;
+  if (comm->getSize() == 1) // the program's own runs show what more ranks bring
+    for (const int n : numbers(cells))
+      for (const char *element : {"Q1", "P1", "Q2", "P2"}) register_kernels(n, element, stream, bodies);
+  if (comm->getRank() == 0) benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

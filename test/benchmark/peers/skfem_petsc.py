@@ -1,0 +1,67 @@
+"""The beam with scikit-fem and PETSc: python3 skfem_petsc.py N XI mumps|hypre|gamg
+
+mumps: Cholesky factorization in every Newton step. hypre, gamg: CG with algebraic multigrid that knows the rigid body modes, with
+inexact early steps (relative residual 1e-2).
+"""
+import sys
+
+from beam import R, Beam, newton
+from petsc4py import PETSc
+from report import Clock, report
+
+FORCING = {"mumps": 0.0, "hypre": 1e-2, "gamg": 1e-2}
+SETTINGS = {"mumps": {}, "hypre": {"pc_hypre_boomeramg_strong_threshold": 0.5}, "gamg": {"pc_gamg_reuse_interpolation": True}}
+
+
+class Solver:
+    """(K + diagonal)^-1, set up anew where the diagonal has changed."""
+
+    def __init__(self, beam, name):
+        K = beam.K
+        self.matrix = PETSc.Mat().createAIJ(K.shape, csr=(K.indptr, K.indices, K.data))
+        self.matrix.setBlockSize(2)
+        self.matrix.setOption(PETSc.Mat.Option.SPD, True)
+        self.matrix.setNearNullSpace(PETSc.NullSpace().createRigidBody(
+            PETSc.Vec().createWithArray(beam.points.ravel(), bsize=2)))
+        self.diagonal, self.added, self.iterations = self.matrix.getDiagonal(), None, []
+        options = PETSc.Options()
+        for key, value in SETTINGS[name].items():
+            options[key] = value
+        self.ksp = PETSc.KSP().create()
+        self.ksp.setOperators(self.matrix)
+        if name == "mumps":
+            self.ksp.setType("preonly")
+            self.ksp.getPC().setType("cholesky")
+            self.ksp.getPC().setFactorSolverType("mumps")
+        else:
+            self.ksp.setType("cg")
+            self.ksp.setNormType(PETSc.KSP.NormType.UNPRECONDITIONED)
+            self.ksp.getPC().setType(name)
+        self.ksp.setFromOptions()
+
+    def __call__(self, added, rhs, tolerance):
+        if self.added is None or (added != self.added).any():
+            diagonal = self.diagonal.copy()
+            diagonal.setArray(self.diagonal.getArray() + added)
+            self.matrix.setDiagonal(diagonal)
+            self.matrix.assemble()
+            self.added = added
+        b = PETSc.Vec().createWithArray(rhs)
+        x = b.duplicate()
+        self.ksp.setTolerances(rtol=tolerance)
+        self.ksp.solve(b, x)
+        self.iterations.append(self.ksp.getIterationNumber())
+        return x.getArray()
+
+
+def main(n, xi, name):
+    clock = Clock()
+    beam = Beam(int(n))
+    clock.phase("assembly")
+    solver = Solver(beam, name)
+    _, energy, counts = newton(beam, float(xi), R, solver, FORCING[name])
+    report(clock, energy, beam.dofs, **counts, linear_iterations=solver.iterations)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,1 @@
+"""Tables of doc/benchmarks.md: a module for each kind."""

@@ -1,0 +1,41 @@
+"""Kernels against the memory bandwidth of a STREAM triad in the same run."""
+import json
+
+from .program import execute
+from .table import Table, skipped
+
+
+def run(bench, ranks, *arguments):
+    """The kernels' program: {name: its counters}."""
+    command = [bench.kernels, "--benchmark_format=json", *arguments]
+    return {entry["name"].split("/iterations")[0].replace("/manual_time", ""): entry
+            for entry in json.loads(execute(command, bench.program.launcher(ranks)).output)["benchmarks"]}
+
+
+def triad(bench, ranks):
+    """GB/s on all ranks together; None without the kernels' program."""
+    if not bench.kernels:
+        return None
+    if ranks not in bench.triads:
+        bench.triads[ranks] = run(bench, ranks, "--benchmark_filter=triad")["triad"]["GB/s"]
+    return bench.triads[ranks]
+
+
+def kernels(bench):
+    title = "Kernels on one rank"
+    if not bench.kernels:
+        return skipped(title, "it takes Google Benchmark (libbenchmark-dev)")
+    found = run(bench, 1, "--cells=" + ",".join(map(str, bench.sizes["kernels"])))
+    table = Table(title,
+                  "Bytes: what must move at least, every array once (kernels.cpp counts them). Times: the least of many, also the "
+                  "triad's. A Chebyshev sweep has degree 2 and starts from a given vector, as after a coarse correction. Items: "
+                  "cells for assembly and internal work, rows for the others. Q2 and P2 have half of 1/h cells each way: "
+                  "as many nodes. STREAM triad in the same run: %.1f GB/s." % found["triad"]["GB/s"],
+                  ["1/h", "element", "kernel", "items", "bytes per item", "ns per item", "GB/s", "of triad"])
+    for name, entry in found.items():
+        if name == "triad":
+            continue
+        n, element, kernel = name.split("/")
+        table.add(n, element, kernel, "%d" % entry["items"], "%.0f" % (entry["bytes"] / entry["items"]),
+                  "%.1f" % entry["ns_per_item"], "%.2f" % entry["GB/s"], "%.0f %%" % (100 * entry["of_triad"]))
+    return table
