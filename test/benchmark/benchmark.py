@@ -21,9 +21,9 @@ TABLES = {"table-1": paper.table_1, "table-2": paper.table_2, "figure-2": paper.
           "accuracy": accuracy.accuracy, "peers": peers.peers}
 # Meshes: 1/h. The last number of "ranks" and "peers": where the criterion is judged; of "contact": whether it is.
 FULL = {"table 1": [8, 16, 32, 64, 128, 256, 512], "table 2": 128, "figure 2": [8, 16, 32, 64, 128, 256], "two ranks from": 256,
-        "cg": ([32, 64, 128, 256], [1, 2, 3]), "mesh size": [32, 64, 128, 256, 512], "ranks": ([128, 256], 3, 256),
-        "contact": (256, 3, True), "kernels": [256, 512], "peers": ([64, 128], 3, 128),
-        "accuracy": {"box": [16, 32, 64, 128, 256], "graded": ([0.05, 0.025, 0.0125, 0.00625], [0.2, 0.1, 0.05, 0.025]),
+        "cg": ([32, 64, 128], [1, 2, 3]), "mesh size": [32, 64, 128, 256, 512], "ranks": ([128, 256], 3, 256),
+        "contact": (256, 3, True), "kernels": [256, 512], "peers": ([128], 2, 128),
+        "accuracy": {"box": [16, 32, 64, 128], "graded": ([0.05, 0.025, 0.0125, 0.00625], [0.2, 0.1, 0.05, 0.025]),
                      "hertz": [4, 2, 1, 0.5]}}
 QUICK = {"table 1": [8, 16, 32], "table 2": 32, "figure 2": [8, 16, 32], "two ranks from": 32, "cg": ([16, 32], [1, 2]),
          "mesh size": [16, 32], "ranks": ([32], 1, None), "contact": (32, 1, False), "kernels": [32], "peers": ([16], 1, None),

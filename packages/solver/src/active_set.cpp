@@ -21,8 +21,8 @@ constexpr double weights[] = {10, 1, 0.1};
 constexpr int most_steps = 24;
 // While states change, solves bring the residual below this part of what it was, and of the load: three to five CG
 // iterations. With 1e-1 pressures are too rough to choose states by, 1e-4 saves no step. What the multipliers of the last
-// rough solve miss, the penalty leaves a part of, k/r, in the final pressures: 1e-8 of them.
-constexpr double forcing = 2e-3;
+// rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
+constexpr double forcing = 5e-3;
 constexpr double pressure_tolerance = 1e-7; // else multipliers are updated once more, at most twice
 constexpr int most_updates = 2;
 constexpr double enough = 0.3; // of the tolerance: recomputed residuals are a little larger than CG's
