@@ -10,19 +10,8 @@ namespace
 
 using namespace rpc;
 using rpc::test::Beam;
+using rpc::test::open_between;
 using solver::LocalCorrection;
-
-/// Lets the nodes between two places open, the others stick.
-void open_between(Beam &beam, const double from, const double to)
-{
-  const auto coordinates = fem::node_coordinates(beam.d);
-  {
-    const auto x = coordinates->getLocalViewHost(Tpetra::Access::ReadOnly);
-    const auto u = beam.u->getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (std::size_t n = 0; n < x.extent(0); ++n) u(2 * n + 1, 0) = x(n, 0) > from && x(n, 0) < to ? 1 : 0;
-  }
-  beam.functional->update_hessian(*beam.u);
-}
 
 /// A diagonal stands for multigrid.
 class Diagonal : public Operator

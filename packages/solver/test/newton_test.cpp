@@ -20,6 +20,7 @@ using contact::LineModel;
 using rpc::test::Beam;
 using rpc::test::below;
 using rpc::test::ignore;
+using rpc::test::open_between;
 
 /// A line model of given kinks, all on rank 0; the elastic part is slope(0) and curvature.
 struct Line {
@@ -147,18 +148,6 @@ double residual_of(const Beam &beam, const Vector &x)
   beam.functional->hessian()->apply(x, r);
   r.update(-1., load, 1.);
   return r.norm2() / load.norm2();
-}
-
-/// All nodes stick but those between two places, which open.
-void open_between(Beam &beam, const double from, const double to)
-{
-  const auto coordinates = fem::node_coordinates(beam.d);
-  {
-    const auto x = coordinates->getLocalViewHost(Tpetra::Access::ReadOnly);
-    const auto u = beam.u->getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (std::size_t n = 0; n < x.extent(0); ++n) u(2 * n + 1, 0) = x(n, 0) > from && x(n, 0) < to ? 1 : 0;
-  }
-  beam.functional->update_hessian(*beam.u);
 }
 
 TEST(LinearSolver, SolvesAroundTheNodesThatChangeAndSetsUpAgainWhereTheyAreMany)
