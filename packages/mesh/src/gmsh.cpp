@@ -2,14 +2,18 @@
 
 #include "gmsh_mesh.hpp"
 #include "gmsh_process.hpp"
+#include "middle_nodes.hpp"
 #include "msh_reader.hpp"
 #include "rpc/core/error.hpp"
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 namespace rpc::mesh
 {
@@ -39,29 +43,93 @@ void check_last_line(const std::string &where, const std::string &geo)
                    where << "the last line must end in a line break, or gmsh would ignore a part of it");
 }
 
-GmshContents made_by_gmsh(const std::string &where, const std::string &geo, const GmshOptions &options)
+void check_sizes(const std::string &where, const SizeField &field, const double factor)
 {
-  check_last_line(where, geo);
-  GmshContents contents = run_gmsh(where, {options.file, options.size_factor, options.order == 0 ? 2 : options.order});
+  const std::size_t nodes = field.size.size();
+  RPC_REQUIRE_CODE(field.coords.size() == 2 * nodes && !field.triangles.empty() && field.triangles.size() % 3 == 0 &&
+                       std::all_of(field.triangles.begin(), field.triangles.end(),
+                                   [&](const int n) { return n >= 0 && std::size_t(n) < nodes; }),
+                   ExitCode::bad_mesh,
+                   where << "a size field must have one triangle or more, of its nodes, got "
+                         << field.triangles.size() / 3 << " triangles of " << nodes << " nodes");
+  const auto bad = std::find_if(field.size.begin(), field.size.end(),
+                                [](const double size) { return !(size > 0 && std::isfinite(size)); });
+  RPC_REQUIRE_CODE(bad == field.size.end(), ExitCode::bad_mesh,
+                   where << "cell sizes must be > 0 and finite [m], got " << *bad);
+  RPC_REQUIRE_CODE(
+      std::all_of(field.coords.begin(), field.coords.end(), [](const double x) { return std::isfinite(x); }),
+      ExitCode::bad_mesh, where << "the nodes of a size field must have finite coordinates");
+  constexpr double most_cells = 5e6;
+  const double cells = expected_cells(field) / (factor * factor);
+  RPC_REQUIRE_CODE(cells <= most_cells, ExitCode::bad_mesh,
+                   where << "cell sizes are too small: they ask for about " << cells << " cells; at most " << most_cells
+                         << " are made");
+}
+
+/// One attempt at a mesh, checked. @param[out] again  whether another one may do better where it fails
+MeshData attempt(const std::string &where, const GmshOptions &options, const GmshRequest &request, bool &again)
+{
+  GmshContents contents = run_gmsh(where, request);
+  again = contents.again || contents.complaint.empty();
   const std::string file = "'" + options.file + "', "; // which the message has named
   if (contents.complaint.compare(0, file.size(), file) == 0) contents.complaint.erase(0, file.size());
   RPC_REQUIRE_CODE(contents.complaint.empty(), ExitCode::bad_mesh, where << "gmsh: " << contents.complaint);
-  return contents;
+  return mesh_of_gmsh(where, contents, true);
+}
+
+MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
+{
+  GmshRequest request;
+  std::error_code ignored;
+  request.folder = fs::current_path(ignored).string();
+  request.file = options.file;
+  request.size_factor = options.size_factor;
+  request.order = options.order == 0 ? 2 : options.order;
+  if (options.box) {
+    std::copy_n(options.box->lower.begin(), 2, request.lower.begin());
+    std::copy_n(options.box->upper.begin(), 2, request.upper.begin());
+    request.quadrilaterals = options.box->element.shape == Shape::tensor;
+    request.order = 1; // middle nodes of straight edges are made faster than gmsh does it
+  }
+  if (options.sizes) {
+    check_sizes(where, *options.sizes, options.size_factor);
+    request.sizes = *options.sizes;
+  }
+  constexpr int most_attempts = 5;
+  for (;; ++request.attempt) {
+    bool again = false;
+    try {
+      return attempt(where, options, request, again);
+    } catch (const Error &) {
+      if (!again || !options.sizes || request.attempt + 1 == most_attempts) throw;
+    }
+  }
+}
+
+MeshData read_box(const GmshOptions &options)
+{
+  const std::string where = "mesh: box: ";
+  RPC_REQUIRE(options.file.empty() && options.box->element.dim == 2 && options.sizes,
+              where << "gmsh meshes a plane one by a field of sizes only, and not along with a file");
+  MeshData mesh = made_by_gmsh(where, options);
+  return options.box->element.order == 2 ? with_middle_nodes(std::move(mesh)) : mesh;
 }
 
 } // namespace
 
 MeshData read_gmsh(const GmshOptions &options)
 {
+  if (options.box) return read_box(options);
   const std::string where = "mesh: \"" + options.file + "\": ";
   const std::string extension = fs::path(options.file).extension().string();
   RPC_REQUIRE(extension == ".geo" || extension == ".msh", where << "must end in .geo or .msh");
   const bool make = extension == ".geo";
   RPC_REQUIRE(make || options.size_factor == 1,
               where << "a size factor only goes with a .geo, got " << options.size_factor);
+  RPC_REQUIRE(make || !options.sizes, where << "cell sizes only go with a .geo");
   const std::string text = read_text(where, options.file);
-  const GmshContents contents = make ? made_by_gmsh(where, text, options) : read_msh(where, text);
-  MeshData mesh = mesh_of_gmsh(options.file, contents, make);
+  if (make) check_last_line(where, text);
+  MeshData mesh = make ? made_by_gmsh(where, options) : mesh_of_gmsh(where, read_msh(where, text), false);
   RPC_REQUIRE(options.order == 0 || options.order == mesh.element.order,
               where << "its cells are of order " << mesh.element.order << ", which \"Order\" = " << options.order
                     << " does not change; that only goes with a .geo");

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "rpc/mesh/size_field.hpp"
+
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -9,11 +12,16 @@ namespace rpc::mesh
 
 // What read_gmsh() and the program rpc_gmsh tell each other. The program knows nothing else of rpc.
 
-/// A .geo to be meshed.
+/// A body to be meshed: a .geo, or where `file` is empty a box.
 struct GmshRequest {
+  std::string folder; ///< in which relative paths begin
   std::string file;
-  double size_factor = 1; ///< of all cell sizes
+  std::array<double, 2> lower{}, upper{}; ///< of the box
+  bool quadrilaterals = false;            ///< in the box; a .geo has its own kind
+  double size_factor = 1;                 ///< of all cell sizes
   int order = 2;
+  int attempt = 0; ///< by a field of sizes: each breaks ties in another way
+  SizeField sizes; ///< without triangles: those that the .geo asks for
 };
 
 /// Physical group of curves or surfaces.
@@ -33,6 +41,7 @@ struct GmshElements {
 /// All tags are gmsh's numbers.
 struct GmshContents {
   std::string complaint;              ///< gmsh's; nothing else counts if there is one
+  bool again = false;                 ///< whether another attempt may do better
   bool solid = false;                 ///< whether there are elements of dimension 3
   std::vector<GmshGroup> groups;      ///< by dimension, then tag
   std::vector<GmshElements> elements; ///< by group, then entity tag
@@ -40,8 +49,5 @@ struct GmshContents {
   std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags
   std::vector<std::size_t> ungrouped_nodes; ///< tags of the nodes of cells outside every physical surface
 };
-
-/// Where rpc_gmsh writes its mesh, packed: a file descriptor that nothing else of gmsh writes to.
-constexpr int gmsh_output = 3;
 
 } // namespace rpc::mesh

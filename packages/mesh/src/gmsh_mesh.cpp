@@ -110,22 +110,46 @@ Element element_of(const std::string &where, const GmshContents &contents)
   return *element_of_type(first->type);
 }
 
-void take_nodes(const GmshContents &contents, TaggedMesh &draft)
+/// The tags of cells' nodes, once each.
+void number_nodes(const GmshContents &contents, TaggedMesh &draft)
 {
-  for (const auto &elements : contents.elements)
-    if (contents.groups[elements.group].dim == 2)
-      draft.node_tag.insert(draft.node_tag.end(), elements.nodes.begin(), elements.nodes.end());
+  std::size_t count = 0, greatest = 0;
+  const auto each_tag = [&](const auto &call) {
+    for (const auto &elements : contents.elements)
+      if (contents.groups[elements.group].dim == 2) std::for_each(elements.nodes.begin(), elements.nodes.end(), call);
+  };
+  each_tag([&](const std::size_t tag) {
+    ++count;
+    greatest = std::max(greatest, tag);
+  });
+  if (greatest <= count) { // as gmsh numbers them: a table is faster than to sort and to search
+    draft.node_of_tag.assign(greatest + 1, -1);
+    each_tag([&](const std::size_t tag) { draft.node_of_tag[tag] = 0; });
+    for (std::size_t tag = 0; tag <= greatest; ++tag)
+      if (draft.node_of_tag[tag] == 0) {
+        draft.node_of_tag[tag] = static_cast<int>(draft.node_tag.size());
+        draft.node_tag.push_back(tag);
+      }
+    return;
+  }
+  each_tag([&](const std::size_t tag) { draft.node_tag.push_back(tag); });
   std::sort(draft.node_tag.begin(), draft.node_tag.end());
   draft.node_tag.erase(std::unique(draft.node_tag.begin(), draft.node_tag.end()), draft.node_tag.end());
+}
+
+void take_nodes(const GmshContents &contents, TaggedMesh &draft)
+{
+  number_nodes(contents, draft);
 
   std::vector<std::pair<std::size_t, std::size_t>> places; // tag, where in contents.coords
   for (std::size_t n = 0; n < contents.node_tags.size(); ++n) places.push_back({contents.node_tags[n], n});
-  std::sort(places.begin(), places.end());
+  if (!std::is_sorted(places.begin(), places.end())) std::sort(places.begin(), places.end());
   for (std::size_t n = 1; n < places.size(); ++n)
     RPC_REQUIRE_CODE(places[n].first != places[n - 1].first, ExitCode::bad_mesh,
                      draft.where << "there are two nodes " << places[n].first);
+  auto place = places.begin(); // both run upwards
   for (const std::size_t tag : draft.node_tag) {
-    const auto place = std::lower_bound(places.begin(), places.end(), std::pair(tag, std::size_t{0}));
+    while (place != places.end() && place->first < tag) ++place;
     RPC_REQUIRE_CODE(place != places.end() && place->first == tag, ExitCode::bad_mesh,
                      draft.where << "cells use node " << tag << ", which the file lacks");
     const double *const x = &contents.coords[3 * place->second];
@@ -134,9 +158,10 @@ void take_nodes(const GmshContents &contents, TaggedMesh &draft)
   }
 }
 
-/// Position of a tag in the sorted list, -1 if it is not there.
+/// The node with that tag, -1 if cells use none.
 int find_node(const TaggedMesh &draft, const std::size_t tag)
 {
+  if (!draft.node_of_tag.empty()) return tag < draft.node_of_tag.size() ? draft.node_of_tag[tag] : -1;
   const auto it = std::lower_bound(draft.node_tag.begin(), draft.node_tag.end(), tag);
   return it == draft.node_tag.end() || *it != tag ? -1 : static_cast<int>(it - draft.node_tag.begin());
 }
@@ -161,7 +186,7 @@ void check_blocks(const TaggedMesh &draft)
 {
   std::vector<std::pair<std::size_t, int>> cells; // tag, cell
   for (std::size_t c = 0; c < draft.cell_tag.size(); ++c) cells.push_back({draft.cell_tag[c], static_cast<int>(c)});
-  std::sort(cells.begin(), cells.end());
+  if (!std::is_sorted(cells.begin(), cells.end())) std::sort(cells.begin(), cells.end());
   for (std::size_t c = 1; c < cells.size(); ++c) {
     const auto block = [&](const std::size_t at) { return draft.mesh.blocks[draft.mesh.block[cells[at].second]]; };
     RPC_REQUIRE_CODE(cells[c].first != cells[c - 1].first || block(c - 1) == block(c), ExitCode::bad_mesh,
@@ -234,10 +259,10 @@ void check_unused_nodes(const GmshContents &contents, const TaggedMesh &draft)
 
 } // namespace
 
-MeshData mesh_of_gmsh(const std::string &file, const GmshContents &contents, const bool any_nodes)
+MeshData mesh_of_gmsh(const std::string &where, const GmshContents &contents, const bool any_nodes)
 {
   TaggedMesh draft;
-  draft.where = "mesh: \"" + file + "\": ";
+  draft.where = where;
   check_groups(draft.where, contents);
   draft.mesh.element = element_of(draft.where, contents);
   take_nodes(contents, draft);

@@ -7,9 +7,9 @@ namespace rpc::mesh
 {
 
 /// The mesh in what gmsh gave, checked: blocks, sides and nodes as read_gmsh() promises.
-/// @param file       for messages
+/// @param where      what messages begin with
 /// @param any_nodes  whether nodes that no cell uses are no fault: a .geo has points that only serve to construct
 /// @throws rpc::Error (bad_mesh)
-MeshData mesh_of_gmsh(const std::string &file, const GmshContents &contents, bool any_nodes);
+MeshData mesh_of_gmsh(const std::string &where, const GmshContents &contents, bool any_nodes);
 
 } // namespace rpc::mesh

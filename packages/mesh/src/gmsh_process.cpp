@@ -2,17 +2,18 @@
 
 #include "gmsh_wire.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/mesh/gmsh.hpp"
 
 #ifdef RPC_GMSH_PROGRAM
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
-#include <iomanip>
-#include <limits>
 #include <optional>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #endif
@@ -36,65 +37,33 @@ std::string find_program()
   return !error && fs::exists(installed, error) ? installed.string() : RPC_GMSH_PROGRAM;
 }
 
-/// A pipe that no other child of this process inherits.
-class Pipe
+/// The program rpc_gmsh, alive from its first start to the end of this process: it need not load gmsh for each mesh.
+class Program
 {
 public:
-  explicit Pipe(const std::string &where)
+  static Program &instance()
   {
-    RPC_REQUIRE_CODE(::pipe2(ends_, O_CLOEXEC) == 0, ExitCode::internal_error,
-                     where << "there is no pipe to gmsh: " << std::strerror(errno));
+    static Program program;
+    return program;
   }
-  ~Pipe()
-  {
-    close(0);
-    close(1);
-  }
-  Pipe(const Pipe &) = delete;
-  Pipe &operator=(const Pipe &) = delete;
+  Program(const Program &) = delete;
+  Program &operator=(const Program &) = delete;
+  ~Program() { stop(); }
 
-  int write_end() const { return ends_[1]; }
+  /// @return why it cannot be started; "" if it can, or runs already
+  std::string start();
 
-  /// All that comes until the other side closes.
-  std::string read_all()
-  {
-    close(1);
-    std::string text;
-    std::array<char, 1 << 16> buffer;
-    for (;;) {
-      const ssize_t count = ::read(ends_[0], buffer.data(), buffer.size());
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) return text;
-      text.append(buffer.data(), static_cast<std::size_t>(count));
-    }
-  }
+  /// @param[out] status  of the process that answered, as waitpid() gives it; none if the system does not tell
+  std::string answer(const std::string &request, std::optional<int> &status);
 
 private:
-  void close(const int end)
-  {
-    if (ends_[end] >= 0) ::close(ends_[end]);
-    ends_[end] = -1;
-  }
-  int ends_[2] = {-1, -1};
-};
+  Program() = default;
+  void stop();
+  void close_socket();
 
-/// Starts the program, mute, with the pipe as its gmsh_output.
-pid_t start(const std::string &where, const GmshRequest &request, const Pipe &pipe)
-{
-  std::ostringstream factor;
-  factor << std::setprecision(std::numeric_limits<double>::max_digits10) << request.size_factor;
-  std::string program = find_program(), file = request.file, size = factor.str(), order = std::to_string(request.order);
-  std::array<char *, 5> arguments{program.data(), file.data(), size.data(), order.data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, pipe.write_end(), gmsh_output);
-  for (const int console : {0, 1, 2}) posix_spawn_file_actions_addopen(&actions, console, "/dev/null", O_RDWR, 0);
-  pid_t child = -1;
-  const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  RPC_REQUIRE(error == 0, where << "gmsh cannot be started: \"" << program << "\": " << std::strerror(error) << remedy);
-  return child;
-}
+  pid_t pid_ = -1, owner_ = -1;
+  int socket_ = -1;
+};
 
 /// What a child ended with; none if the system does not tell.
 std::optional<int> wait_for(const pid_t child)
@@ -106,14 +75,81 @@ std::optional<int> wait_for(const pid_t child)
   return ended == child ? std::optional<int>(status) : std::nullopt;
 }
 
+void Program::close_socket()
+{
+  if (socket_ >= 0) ::close(socket_);
+  socket_ = -1;
+}
+
+void Program::stop()
+{
+  close_socket();
+  if (pid_ > 0 && owner_ == ::getpid()) { // a fork of this process leaves the program to it
+    ::kill(pid_, SIGKILL);
+    wait_for(pid_);
+  }
+  pid_ = -1;
+}
+
+std::string Program::start()
+{
+  int status = 0;
+  if (pid_ > 0 && owner_ == ::getpid() && ::waitpid(pid_, &status, WNOHANG) == 0) return "";
+  if (owner_ == ::getpid()) pid_ = -1; // it has ended, and its number may be another's by now
+  stop();
+  int ends[2]; // no other child of this process inherits them
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+    return std::string("there is no socket: ") + std::strerror(errno);
+  std::string program = find_program();
+  std::array<char *, 2> arguments{program.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], gmsh_socket);
+  for (const int console : {0, 1, 2}) posix_spawn_file_actions_addopen(&actions, console, "/dev/null", O_RDWR, 0);
+  const int error = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(ends[1]);
+  socket_ = ends[0];
+  owner_ = ::getpid();
+  if (error == 0) return "";
+  pid_ = -1;
+  stop();
+  return "\"" + program + "\": " + std::strerror(error);
+}
+
+std::string Program::answer(const std::string &request, std::optional<int> &status)
+{
+  std::string bytes;
+  int number = 0;
+  try {
+    if (send_bytes(socket_, request) && send_end(socket_, 0) && receive(socket_, bytes, number)) {
+      status = number;
+      return bytes;
+    }
+  } catch (...) { // out of memory: what is still to come would be taken for the next answer
+    stop();
+    throw;
+  }
+  status = wait_for(pid_);
+  pid_ = -1;
+  close_socket();
+  return bytes;
+}
+
 } // namespace
+
+void start_gmsh_early()
+{
+  Program::instance().start();
+}
 
 GmshContents run_gmsh(const std::string &where, const GmshRequest &request)
 {
-  Pipe pipe(where);
-  const pid_t child = start(where, request, pipe);
-  const std::string bytes = pipe.read_all();
-  const std::optional<int> status = wait_for(child);
+  Program &program = Program::instance();
+  const std::string obstacle = program.start();
+  RPC_REQUIRE(obstacle.empty(), where << "gmsh cannot be started: " << obstacle << remedy);
+  std::optional<int> status;
+  const std::string bytes = program.answer(packed(request), status);
   constexpr int no_library = 127; // of the system's loader
   RPC_REQUIRE(!status || !WIFEXITED(*status) || WEXITSTATUS(*status) != no_library,
               where << "gmsh cannot be loaded" << remedy);
@@ -121,9 +157,11 @@ GmshContents run_gmsh(const std::string &where, const GmshRequest &request)
   if (status && WIFSIGNALED(*status)) end = std::string("broke down (") + strsignal(WTERMSIG(*status)) + ")";
   RPC_REQUIRE_CODE(!bytes.empty() && (!status || *status == 0), ExitCode::bad_mesh,
                    where << "gmsh " << end << ", as it does when memory runs out or when sizes or numbers are absurd");
-  return unpacked(bytes);
+  return unpacked_contents(bytes);
 }
 #else
+void start_gmsh_early() {}
+
 GmshContents run_gmsh(const std::string &where, const GmshRequest &)
 {
   throw Error(ExitCode::bad_input, where +

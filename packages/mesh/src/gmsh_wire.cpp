@@ -1,7 +1,10 @@
 #include "gmsh_wire.hpp"
 
+#include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <sys/socket.h>
 #include <type_traits>
 
 namespace rpc::mesh
@@ -10,7 +13,26 @@ namespace
 {
 
 /// Last of the bytes: without it they are not whole.
-constexpr char end_mark[] = "end of gmsh's mesh";
+constexpr char end_mark[] = "end of what gmsh is told or tells";
+
+/// First byte of a message.
+enum class Kind : char { bytes, end };
+
+constexpr std::size_t longest_piece = 1 << 16; // a fraction of what a socket holds
+
+bool send_message(const int socket, const Kind kind, const void *const data, const std::size_t size)
+{
+  Kind first = kind;
+  iovec parts[2] = {{&first, 1}, {const_cast<void *>(data), size}};
+  msghdr message{};
+  message.msg_iov = parts;
+  message.msg_iovlen = 2;
+  for (;;) {
+    const ssize_t sent = ::sendmsg(socket, &message, MSG_NOSIGNAL);
+    if (sent >= 0) return true;
+    if (errno != EINTR) return false;
+  }
+}
 
 class Packer
 {
@@ -94,6 +116,28 @@ private:
   std::size_t at_ = 0;
 };
 
+template <class Sizes, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Sizes>, SizeField>, int> = 0>
+void each_part(Sizes &sizes, Each &each)
+{
+  each(sizes.coords);
+  each(sizes.triangles);
+  each(sizes.size);
+}
+
+template <class Request, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Request>, GmshRequest>, int> = 0>
+void each_part(Request &request, Each &each)
+{
+  each(request.folder);
+  each(request.file);
+  for (auto *const corner : {&request.lower, &request.upper})
+    for (auto &x : *corner) each(x);
+  each(request.quadrilaterals);
+  each(request.size_factor);
+  each(request.order);
+  each(request.attempt);
+  each_part(request.sizes, each);
+}
+
 template <class Group, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Group>, GmshGroup>, int> = 0>
 void each_part(Group &group, Each &each)
 {
@@ -115,6 +159,7 @@ template <class Contents, class Each, std::enable_if_t<std::is_same_v<std::decay
 void each_part(Contents &contents, Each &each)
 {
   each(contents.complaint);
+  each(contents.again);
   each(contents.solid);
   each(contents.groups);
   each(contents.elements);
@@ -123,25 +168,81 @@ void each_part(Contents &contents, Each &each)
   each(contents.ungrouped_nodes);
 }
 
-} // namespace
-
-std::string packed(const GmshContents &contents)
+template <class T>
+std::string all_packed(const T &value)
 {
   Packer pack;
-  each_part(contents, pack);
+  each_part(value, pack);
   pack(std::string(end_mark));
   return std::move(pack.bytes);
 }
 
-GmshContents unpacked(const std::string &bytes)
+template <class T>
+T all_unpacked(const std::string &bytes)
 {
   Unpacker unpack(bytes);
-  GmshContents contents;
+  T value;
   std::string end;
-  each_part(contents, unpack);
+  each_part(value, unpack);
   unpack(end);
   if (end != end_mark) throw std::runtime_error("its mesh is not whole");
-  return contents;
+  return value;
+}
+
+} // namespace
+
+std::string packed(const GmshRequest &request)
+{
+  return all_packed(request);
+}
+std::string packed(const GmshContents &contents)
+{
+  return all_packed(contents);
+}
+
+GmshRequest unpacked_request(const std::string &bytes)
+{
+  return all_unpacked<GmshRequest>(bytes);
+}
+GmshContents unpacked_contents(const std::string &bytes)
+{
+  return all_unpacked<GmshContents>(bytes);
+}
+
+bool send_bytes(const int socket, const std::string &bytes)
+{
+  for (std::size_t done = 0; done < bytes.size(); done += longest_piece)
+    if (!send_message(socket, Kind::bytes, bytes.data() + done, std::min(longest_piece, bytes.size() - done)))
+      return false;
+  return true;
+}
+
+bool send_end(const int socket, const int number)
+{
+  return send_message(socket, Kind::end, &number, sizeof number);
+}
+
+bool receive(const int socket, std::string &bytes, int &number)
+{
+  std::string piece(longest_piece, '\0');
+  for (;;) {
+    Kind first{};
+    iovec parts[2] = {{&first, 1}, {piece.data(), piece.size()}};
+    msghdr message{};
+    message.msg_iov = parts;
+    message.msg_iovlen = 2;
+    const ssize_t count = ::recvmsg(socket, &message, 0);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    const std::size_t size = static_cast<std::size_t>(count) - 1;
+    if (first == Kind::bytes) {
+      bytes.append(piece.data(), size);
+    } else {
+      if (size != sizeof number) return false;
+      std::memcpy(&number, piece.data(), size);
+      return true;
+    }
+  }
 }
 
 } // namespace rpc::mesh

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 namespace rpc::mesh
 {
@@ -48,6 +49,12 @@ GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &
                                                                   << options.file << "\" in \"" << folder
                                                                   << "\" or in the current folder");
   return options;
+}
+
+/// By gmsh, as often as one likes.
+bool can_be_meshed(const GmshOptions &options)
+{
+  return options.box || std::filesystem::path(options.file).extension() == ".geo";
 }
 
 } // namespace
@@ -97,8 +104,23 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, const double fact
     return result;
   }
   auto &gmsh = std::get<GmshOptions>(result);
-  if (std::filesystem::path(gmsh.file).extension() != ".geo") return std::nullopt;
+  if (!can_be_meshed(gmsh)) return std::nullopt;
   gmsh.size_factor *= factor;
+  return result;
+}
+
+std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes)
+{
+  GmshOptions result;
+  if (const auto *const box = std::get_if<BoxOptions>(&options)) {
+    if (box->element.dim != 2) return std::nullopt;
+    result.box = *box;
+  } else {
+    result = std::get<GmshOptions>(options);
+    if (!can_be_meshed(result)) return std::nullopt;
+  }
+  result.size_factor = 1;
+  result.sizes = std::move(sizes);
   return result;
 }
 

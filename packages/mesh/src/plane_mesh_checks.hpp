@@ -16,6 +16,7 @@ struct TaggedMesh {
   MeshData mesh;
   std::vector<double> z;             ///< (nodes) [m], 0 in a good mesh
   std::vector<std::size_t> node_tag; ///< (nodes) the file's numbers, ascending
+  std::vector<int> node_of_tag;      ///< (tags) -1 where there is none; empty if tags are far apart
   std::vector<std::size_t> cell_tag; ///< (cells)
 };
 

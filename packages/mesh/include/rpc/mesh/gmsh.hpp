@@ -1,7 +1,11 @@
 #pragma once
 
+#include "rpc/mesh/box.hpp"
 #include "rpc/mesh/mesh_data.hpp"
+#include "rpc/mesh/size_field.hpp"
 
+#include <memory>
+#include <optional>
 #include <string>
 
 namespace rpc::mesh
@@ -10,17 +14,29 @@ namespace rpc::mesh
 /// A mesh that gmsh makes or made.
 struct GmshOptions {
   std::string file;       ///< .geo, meshed by gmsh, or .msh (2.2 or 4.1, ASCII or binary)
-  double size_factor = 1; ///< of all cell sizes that a .geo asks for, > 0
+  double size_factor = 1; ///< of all cell sizes that a .geo or `sizes` ask for, > 0
   int order = 0;          ///< 1 or 2; 0: 2 for a .geo, for a .msh what it has
+  std::optional<BoxOptions> box =
+      std::nullopt; ///< a plane one, meshed by `sizes`; no file then, its cells and `order` do not count
+  std::shared_ptr<const SizeField> sizes = nullptr; ///< of cells, instead of those that a .geo asks for
 };
+
+/// Begins to load gmsh, which takes a tenth of a second, while this process does other things; the first mesh would do it.
+/// Says nothing where that fails: the first mesh does. To be called in a thread that lives as long as meshes are made.
+void start_gmsh_early();
 
 /// Reads a plane mesh of triangles or quadrilaterals, of order 1 or 2, curved where the file's geometry is. One rank only.
 ///
 /// Physical surfaces become blocks and physical curves sides, by their names, in the order of their tags; cells outside
-/// every physical surface are not part of the body. Nodes keep gmsh's order.
+/// every physical surface are not part of the body. Nodes keep gmsh's order. A box has the block and sides of make_box().
+///
+/// With `sizes`, a .geo's own cell sizes are out of play, but for an explicit Mesh.MeshSizeFromCurvature. Quadrilaterals
+/// come from triangles, by recombination and division. Equal options give equal meshes, bit by bit.
 /// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no physical surface, or a
 ///         group without a name; cells off the plane z = 0, of different or unsupported kinds, in two blocks, degenerate or
-///         inverted; a side with facets that belong to no cell or to two; nodes that no cell uses, or two at one place.
+///         inverted; a side with facets that belong to no cell or to two; nodes that no cell uses, or two at one place;
+///         sizes that are not > 0 and finite, or ask for more than 5 million cells, or come with a .geo that
+///         divides curves by Transfinite or Layers.
 ///         (bad_input) if the file cannot be opened, a .msh comes with a size factor or another order, or a .geo with an
 ///         rpc that was built without gmsh: that only meshes, .msh files are read without it
 MeshData read_gmsh(const GmshOptions &options);

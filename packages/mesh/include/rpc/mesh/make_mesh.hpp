@@ -3,6 +3,7 @@
 #include "rpc/mesh/box.hpp"
 #include "rpc/mesh/gmsh.hpp"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -23,11 +24,17 @@ MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &
 int dimension(const MeshOptions &options);
 
 /// A mesh of the same body and elements with cells about `factor` times as long: a box has that many cells fewer in each
-/// direction, at least one, a .geo is meshed with that many times its size factor. A .msh cannot be coarsened: none.
+/// direction, at least one; a .geo, or a field of sizes, has that many times the size factor. A .msh cannot be coarsened: none.
 ///
 /// It may have too few cells for the ranks, which make_mesh() tells.
 /// @throws rpc::Error (bad_input) unless factor >= 1 and finite
 std::optional<MeshOptions> coarser(const MeshOptions &options, double factor);
+
+/// The options with which gmsh meshes the same body, with the same elements, sides and blocks, by cell sizes of a field: an
+/// edge is about as long as the field says there. A size factor is 1 then, and sizes that the options had are replaced.
+/// None for what gmsh cannot mesh anew: a .msh, a box in 3D.
+/// @param sizes  read on rank 0 only, may be null on others
+std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes);
 
 /// This rank's part of the mesh; collective.
 /// @throws rpc::Error on every rank, as make_box() and read_gmsh() do

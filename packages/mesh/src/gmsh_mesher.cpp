@@ -1,0 +1,339 @@
+#include "gmsh_mesher.hpp"
+
+#include "size_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <gmsh.h>
+#include <initializer_list>
+#include <new>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+/// The first error in gmsh's log; those after it tend to follow from it.
+std::string first_error()
+{
+  std::vector<std::string> log;
+  gmsh::logger::get(log);
+  const std::string mark = "Error: ";
+  for (const auto &line : log)
+    if (line.compare(0, mark.size(), mark) == 0) return line.substr(mark.size());
+  return "";
+}
+
+double number_option(const char *name)
+{
+  double value = 0;
+  gmsh::option::getNumber(name, value);
+  return value;
+}
+
+/// Of the box around the model, 0 if there is nothing.
+double diameter()
+{
+  gmsh::vectorpair entities;
+  gmsh::model::getEntities(entities);
+  if (entities.empty()) return 0;
+  double low[3], high[3];
+  gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
+  return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+}
+
+std::size_t num_nodes()
+{
+  std::vector<std::size_t> nodes;
+  std::vector<double> coords, parametric;
+  gmsh::model::mesh::getNodes(nodes, coords, parametric, -1, -1, false, false);
+  return nodes.size();
+}
+
+/// Meshes the curves; gmsh would do that for ever, or until memory ends, if sizes are absurd. So a bound on sizes goes down
+/// from 1e-4 of the body in steps of ten, until it makes no difference or there are too many nodes.
+/// @return whether there is an end to it
+bool mesh_curves(const double body, const double factor)
+{
+  constexpr std::size_t most_nodes = 100000;
+  constexpr double least_share = 1e-12;
+  const double own_bound = number_option("Mesh.MeshSizeMin");
+  bool done = false;
+  std::size_t before = 0;
+  for (double share = 1e-4; !done && share > least_share; share /= 10) {
+    gmsh::model::mesh::clear();
+    gmsh::option::setNumber("Mesh.MeshSizeMin", std::max(own_bound, share * body / factor));
+    gmsh::model::mesh::generate(1);
+    const std::size_t nodes = num_nodes();
+    if (nodes > most_nodes) return false;
+    done = nodes == before;
+    before = nodes;
+  }
+  gmsh::option::setNumber("Mesh.MeshSizeMin", own_bound);
+  return done;
+}
+
+/// By cell sizes of the .geo's own. @return whether they have an end
+bool mesh_by_own_sizes(const double body, const double factor)
+{
+  gmsh::option::setNumber("Mesh.MeshSizeFactor", factor);
+  if (!mesh_curves(body, factor)) return false;
+  gmsh::model::mesh::generate(2);
+  return true;
+}
+
+/// Whether the .geo recombines triangles to quadrilaterals, which nothing but a mesh tells: a coarse one.
+bool recombines()
+{
+  const double order = number_option("Mesh.ElementOrder");
+  gmsh::option::setNumber("Mesh.ElementOrder", 1);
+  gmsh::model::mesh::setSizeCallback([](int, int, double, double, double) { return 1e22; });
+  gmsh::model::mesh::generate(2);
+  gmsh::option::setNumber("Mesh.ElementOrder", order);
+  std::vector<std::size_t> tags, nodes;
+  constexpr int quadrilateral = 3;
+  gmsh::model::mesh::getElementsByType(quadrilateral, tags, nodes);
+  gmsh::model::mesh::clear();
+  return !tags.empty();
+}
+
+/// What belongs to a .geo's own cell sizes goes out of play, but for curvature where it asks for cells by it.
+void set_field_options(const GmshRequest &request)
+{
+  // Frontal-Delaunay: of all algorithms the one whose cells are the best and about as many as asked for. Delaunay takes two
+  // thirds of the time, but leaves cells without area where boundary sizes are a millionth of the body; so do both of them
+  // where nodes are moved by more than 1e-12 of the body to avoid ties. Where they are moved by less, some ties remain.
+  constexpr double frontal = 6;
+  const double tie_breaker = 1e-13 * std::pow(10, request.attempt);
+  gmsh::model::mesh::field::setAsBackgroundMesh(-1); // none
+  gmsh::vectorpair surfaces;
+  gmsh::model::getEntities(surfaces, 2);
+  for (const auto &[dim, surface] : surfaces) {
+    gmsh::model::mesh::setSizeFromBoundary(dim, surface, 0);
+    gmsh::model::mesh::setAlgorithm(dim, surface, static_cast<int>(frontal));
+  }
+  const std::initializer_list<std::pair<const char *, double>> options = {
+      {"MeshSizeFromPoints", 0},
+      {"MeshSizeFromParametricPoints", 0},
+      {"MeshSizeExtendFromBoundary", 0},
+      {"MeshSizeMin", 0},
+      {"MeshSizeMax", 1e22},
+      {"MeshSizeFactor", 1},
+      {"Algorithm", frontal},
+      {"RandomFactor", tie_breaker},
+      {"Smoothing", 0},                 // it takes half as long as all the rest, and triangles are good without
+      {"LcIntegrationPrecision", 1e-4}, // cells, per step along a curve: the default takes a thousand times the steps
+      {"SubdivisionAlgorithm", 0}};
+  for (const auto &[name, value] : options) gmsh::option::setNumber(std::string("Mesh.") + name, value);
+  if (request.quadrilaterals || (!request.file.empty() && recombines())) {
+    gmsh::option::setNumber("Mesh.SubdivisionAlgorithm", 1); // or some triangles would be left
+    gmsh::option::setNumber("Mesh.Smoothing", 1);            // or some quadrilaterals would be inverted
+    if (request.quadrilaterals) gmsh::option::setNumber("Mesh.RecombineAll", 1);
+  }
+}
+
+/// @param asked  tags of curves
+/// @return the tag of another one, 0 if there is none but copies of others
+int curve_that_asked_for_no_size(const std::set<int> &asked)
+{
+  gmsh::vectorpair curves;
+  gmsh::model::getEntities(curves, 1);
+  for (const auto &[dim, curve] : curves) {
+    if (asked.count(curve)) continue;
+    int master = curve;
+    std::vector<std::size_t> nodes, master_nodes;
+    std::vector<double> transformation;
+    gmsh::model::mesh::getPeriodicNodes(dim, curve, master, nodes, master_nodes, transformation);
+    if (master == curve) return curve;
+  }
+  return 0;
+}
+
+/// @return what the .geo does that leaves no room for a field; "" if nothing
+std::string mesh_by_field(const GmshRequest &request)
+{
+  set_field_options(request);
+  // Two triangles make a quadrilateral with somewhat shorter edges, and then each edge is halved.
+  constexpr double for_quadrilaterals = 2.3;
+  const bool quadrilaterals = number_option("Mesh.SubdivisionAlgorithm") != 0;
+  const double factor = request.size_factor * (quadrilaterals ? for_quadrilaterals : 1);
+  const SizeTree tree(request.sizes);
+  std::size_t calls = 0;
+  std::set<int> curves;
+  const auto size = [&](const int dimension, const int entity, const double x, const double y, double) {
+    constexpr std::size_t most_calls =
+        50'000'000; // of one or two per cell: where the field does not reach, no other bound is
+    if (++calls > most_calls) throw std::string("cell sizes are too small where the size field does not reach");
+    if (dimension == 1) curves.insert(entity);
+    return factor * tree(x, y);
+  };
+  gmsh::model::mesh::setSizeCallback(size);
+  gmsh::model::mesh::generate(1);
+  const int fixed = curve_that_asked_for_no_size(curves);
+  if (fixed != 0)
+    return "curve " + std::to_string(fixed) +
+           " is divided by Transfinite or Layers; where cells are to have sizes of a field, leave these out";
+  gmsh::model::mesh::generate(2);
+  gmsh::model::mesh::removeSizeCallback();
+  return "";
+}
+
+/// Makes the mesh. @return what is absurd about its sizes; "" if nothing is
+std::string make_mesh(const GmshRequest &request)
+{
+  constexpr double greatest_factor = 1e9, greatest_body = 1e50;
+  const bool field = !request.sizes.triangles.empty();
+  const double own_factor = field ? 1 : number_option("Mesh.MeshSizeFactor");
+  const double factor = own_factor * request.size_factor, body = diameter();
+  std::ostringstream complaint;
+  if (!(factor >= 1 / greatest_factor && factor <= greatest_factor))
+    complaint << "the factor on cell sizes must be " << 1 / greatest_factor << " to " << greatest_factor << ", got "
+              << factor;
+  else if (!(body <= greatest_body))
+    complaint << "the geometry's size must be at most " << greatest_body << " [m], got " << body;
+  if (!complaint.str().empty()) return complaint.str();
+  gmsh::option::setNumber("Mesh.ElementOrder", request.order);
+  gmsh::option::setNumber("Mesh.SecondOrderIncomplete", 0);
+  if (field)
+    complaint << mesh_by_field(request);
+  else if (!mesh_by_own_sizes(body, factor))
+    complaint << "cell sizes are too small for a body of size " << body
+              << " [m]: its curves would have more than 100000 nodes";
+  return complaint.str();
+}
+
+/// The box, its block and its sides, as make_box() names and orders them.
+void add_box(const GmshRequest &request)
+{
+  namespace geo = gmsh::model::geo;
+  gmsh::model::add("box");
+  const auto &[left, bottom] = request.lower;
+  const auto &[right, top] = request.upper;
+  geo::addPoint(left, bottom, 0, 0, 1);
+  geo::addPoint(right, bottom, 0, 0, 2);
+  geo::addPoint(right, top, 0, 0, 3);
+  geo::addPoint(left, top, 0, 0, 4);
+  for (int line = 1; line <= 4; ++line) geo::addLine(line, line % 4 + 1, line);
+  geo::addCurveLoop({1, 2, 3, 4}, 1);
+  geo::addPlaneSurface({1}, 1);
+  geo::synchronize();
+  const std::initializer_list<std::pair<const char *, int>> sides = {
+      {"left", 4}, {"right", 2}, {"bottom", 1}, {"top", 3}};
+  for (const auto &[name, line] : sides)
+    gmsh::model::setPhysicalName(1, gmsh::model::addPhysicalGroup(1, {line}), name);
+  gmsh::model::setPhysicalName(2, gmsh::model::addPhysicalGroup(2, {1}), "body");
+}
+
+struct EntityElements {
+  std::vector<int> types;
+  std::vector<std::vector<std::size_t>> tags, nodes;
+};
+
+EntityElements elements_of(const int dim, const int entity)
+{
+  EntityElements elements;
+  gmsh::model::mesh::getElements(elements.types, elements.tags, elements.nodes, dim, entity);
+  return elements;
+}
+
+void take_groups(GmshContents &contents, std::set<int> &surfaces)
+{
+  gmsh::vectorpair groups;
+  gmsh::model::getPhysicalGroups(groups);
+  std::sort(groups.begin(), groups.end());
+  for (const auto &[dim, tag] : groups) {
+    if (dim != 1 && dim != 2) continue;
+    GmshGroup group{dim, tag, ""};
+    gmsh::model::getPhysicalName(dim, tag, group.name);
+    contents.groups.push_back(group);
+    std::vector<int> entities;
+    gmsh::model::getEntitiesForPhysicalGroup(dim, tag, entities);
+    for (int &entity : entities) entity = std::abs(entity); // a curve's sign is its direction
+    std::sort(entities.begin(), entities.end());
+    entities.erase(std::unique(entities.begin(), entities.end()), entities.end());
+    for (const int entity : entities) {
+      if (dim == 2) surfaces.insert(entity);
+      EntityElements elements = elements_of(dim, entity);
+      for (std::size_t t = 0; t < elements.types.size(); ++t)
+        contents.elements.push_back({static_cast<int>(contents.groups.size()) - 1, elements.types[t],
+                                     std::move(elements.tags[t]), std::move(elements.nodes[t])});
+    }
+  }
+}
+
+void take_mesh(GmshContents &contents)
+{
+  contents.solid = !elements_of(3, -1).types.empty();
+  std::set<int> surfaces;
+  take_groups(contents, surfaces);
+  gmsh::vectorpair all_surfaces;
+  gmsh::model::getEntities(all_surfaces, 2);
+  for (const auto &[dim, surface] : all_surfaces) {
+    if (surfaces.count(surface)) continue;
+    for (const auto &nodes : elements_of(dim, surface).nodes)
+      contents.ungrouped_nodes.insert(contents.ungrouped_nodes.end(), nodes.begin(), nodes.end());
+  }
+  std::vector<double> parametric;
+  gmsh::model::mesh::getNodes(contents.node_tags, contents.coords, parametric, -1, -1, false, false);
+}
+
+void load(const GmshRequest &request, GmshContents &contents)
+{
+  gmsh::logger::start();
+  if (request.file.empty())
+    add_box(request);
+  else
+    gmsh::open(request.file);
+  contents.complaint = first_error();
+  if (!contents.complaint.empty()) return;
+  const std::string absurdity = make_mesh(request);
+  contents.complaint = first_error();
+  contents.again = !contents.complaint.empty();
+  if (contents.complaint.empty()) contents.complaint = absurdity;
+  if (contents.complaint.empty()) take_mesh(contents);
+}
+
+} // namespace
+
+void start_gmsh()
+{
+  // A first mesh, which is thrown away, has the system load what meshing needs; each later process would do that anew.
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  GmshContents unused;
+  GmshRequest request;
+  request.upper = {1, 1};
+  request.sizes = {{0, 0, 1, 0, 0, 1}, {0, 1, 2}, {.3, .3, .3}};
+  load(request, unused);
+  gmsh::logger::stop();
+  gmsh::finalize();
+
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  // An exception out of the middle of gmsh's parser would leave it in disorder: errors are logged.
+  gmsh::option::setNumber("General.AbortOnError", 0);
+  gmsh::option::setNumber("General.NumThreads", 1);
+}
+
+GmshContents made_mesh(const GmshRequest &request)
+{
+  GmshContents contents;
+  try {
+    load(request, contents);
+  } catch (const std::string &message) { // gmsh throws plain strings
+    contents.complaint = message;
+  } catch (const std::bad_alloc &) {
+    contents.complaint = "out of memory";
+  } catch (const std::exception &error) {
+    contents.complaint = error.what();
+  } catch (...) {
+    contents.complaint = "unknown error";
+  }
+  return contents;
+}
+
+} // namespace rpc::mesh
