@@ -73,7 +73,13 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
 
   const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
-  rpc::Solution solution = rpc::solve(scene, comm, out);
+  int cycle = 0;
+  const auto keep = [&](const rpc::Scene &of, rpc::Solution &solution) {
+    rpc::Scene named = of;
+    named.name += ".cycle" + std::to_string(++cycle);
+    if (scene.adapt.write_all) rpc::write_results(named, solution, line.output, start);
+  };
+  rpc::Solution solution = rpc::solve(scene, comm, out, keep);
   const auto files = rpc::write_results(scene, solution, line.output, start);
   rpc::print_summary(out, scene, solution, files);
   if (scene.output.timers) {
@@ -82,7 +88,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     options.output_fraction = options.output_minmax = true;
     timers->report(out, comm, options);
   }
-  return solution.uzawa.converged ? ExitCode::converged : ExitCode::not_converged;
+  return rpc::succeeded(solution) ? ExitCode::converged : ExitCode::not_converged;
 }
 
 } // namespace

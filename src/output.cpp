@@ -8,6 +8,7 @@
 #include "rpc/io/gather.hpp"
 
 #include <Teuchos_Time.hpp>
+#include <cmath>
 #include <filesystem>
 
 namespace rpc
@@ -67,7 +68,7 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const Solution &s)
   std::vector<io::NodalField> fields;
   const char *const displacement[] = {"disp_x", "disp_y", "disp_z"};
   for (int c = 0; c < dim; ++c) fields.push_back({displacement[c], column(*s.u, dim, c, n, 0)});
-  const auto stress = fem::nodal_stresses(d, scene.materials.common, *s.u);
+  const auto stress = fem::RecoveredStress(d, scene.materials, *s.u).at_nodes();
   const auto names = fem::stress_names(dim);
   for (std::size_t k = 0; k < names.size(); ++k)
     fields.push_back({names[k], column(*stress, 1, 0, n, static_cast<int>(k))});
@@ -133,6 +134,44 @@ void add_sums(nlohmann::ordered_json &json, const contact::ContactSums &sums, co
   json["yielded_length"] = sums.yielded_length;
 }
 
+/// A number that may be unknown: null then.
+nlohmann::ordered_json maybe(const double value)
+{
+  return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+}
+
+void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution &s)
+{
+  if (!s.estimate) return;
+  const double relative = relative_estimate(s), exact = exact_error(scene, s);
+  json["error_estimate"] = {{"energy_norm", std::sqrt(s.estimate->total())},
+                            {"relative", relative},
+                            {"recovery", std::sqrt(s.estimate->recovery)},
+                            {"contact_equilibrium", std::sqrt(s.estimate->equilibrium)},
+                            {"contact_complementarity", std::sqrt(s.estimate->complementarity)},
+                            {"exact_relative", maybe(exact)},
+                            {"effectivity", maybe(relative / exact)}};
+  if (!s.adaptation) return;
+  const Adaptation &a = *s.adaptation;
+  json["adaptation"] = {{"target", scene.adapt.target}, {"reached", a.reached}, {"reason", a.reason}};
+  json["adaptation"]["errors"] = {{"energy_J", maybe(a.errors.energy)},
+                                  {"contact_force", maybe(a.errors.contact_force)},
+                                  {"max_pressure", maybe(a.errors.max_pressure)},
+                                  {"contact_pressure_l2_relative", maybe(a.errors.contact_pressure)},
+                                  {"contact_length", maybe(a.errors.contact_length)}};
+  auto &cycles = json["adaptation"]["cycles"] = nlohmann::ordered_json::array();
+  for (const Cycle &c : a.cycles)
+    cycles.push_back({{"dofs", c.dofs},
+                      {"relative_estimate", c.estimate},
+                      {"energy_J", c.energy},
+                      {"contact_force", vector_json(c.contact_force, s.discretization.dim())},
+                      {"max_pressure", c.max_pressure},
+                      {"contact_length", c.contact_length},
+                      {"newton_iterations", c.newton_iterations},
+                      {"linear_iterations", c.linear_iterations},
+                      {"seconds", c.seconds}});
+}
+
 } // namespace
 
 nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
@@ -170,6 +209,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["preconditioner_setups"] = s.linear.preconditioner_setups;
   json["local_corrections"] = s.linear.local_corrections;
   json["matrix_assemblies"] = s.matrix_assemblies;
+  add_errors(json, scene, s);
   json["skipped"] = s.skipped;
   json["levels"] = nlohmann::ordered_json::array();
   for (const auto &level : s.levels)
@@ -179,9 +219,8 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
                               {"preconditioner_setups", level.preconditioner_setups},
                               {"seconds", level.seconds}});
   const auto &t = s.seconds;
-  json["seconds"] = {{"mesh", t.mesh},   {"assembly", t.assembly}, {"prediction", t.prediction},
-                     {"setup", t.setup}, {"solve", t.solve},       {"output", t.output},
-                     {"total", t.total}};
+  json["seconds"] = {{"mesh", t.mesh},   {"assembly", t.assembly}, {"prediction", t.prediction}, {"setup", t.setup},
+                     {"solve", t.solve}, {"estimate", t.estimate}, {"output", t.output},         {"total", t.total}};
   return json;
 }
 

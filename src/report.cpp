@@ -1,6 +1,7 @@
 #include "report.hpp"
 
 #include <Teuchos_Time.hpp>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <numeric>
@@ -24,6 +25,24 @@ namespace
 int sum(const std::vector<int> &values)
 {
   return std::accumulate(values.begin(), values.end(), 0);
+}
+
+void print_adaptation(std::ostream &out, const Adaptation &adaptation, const bool flat)
+{
+  print(out, "  adapted             %s\n",
+        adaptation.reached ? "the error is what was asked for" : ("NOT TO THE TARGET: " + adaptation.reason).c_str());
+  print(out, "    cycle     dofs    error            J    max. p  Newton  krylov  time [s]\n");
+  for (std::size_t k = 0; k < adaptation.cycles.size(); ++k) {
+    const Cycle &c = adaptation.cycles[k];
+    print(out, "    %5zu %8zu %8.2e %12.6g %9.4g %7d %7d %9.3f\n", k + 1, c.dofs, c.estimate, c.energy, c.max_pressure,
+          c.newton_iterations, sum(c.linear_iterations), c.seconds);
+  }
+  const auto &e = adaptation.errors;
+  print(out,
+        "    errors by the sequence: J %.1e %s, contact force %.1e %s, max. pressure %.1e Pa, pressure in L2 %.1e, "
+        "in contact %.1e %s\n",
+        e.energy, flat ? "J/m" : "J", e.contact_force, flat ? "N/m" : "N", e.max_pressure, e.contact_pressure,
+        e.contact_length, flat ? "m" : "m^2");
 }
 
 } // namespace
@@ -73,6 +92,15 @@ void ConsoleTable::uzawa(const contact::UzawaResult &result)
   out_ << std::flush;
 }
 
+void print_estimate(std::ostream &out, const Scene &scene, const Solution &s)
+{
+  print(out, "estimated error %.3e of the energy norm", relative_estimate(s));
+  if (scene.adapt.adapts()) print(out, ", asked for: %.3e", scene.adapt.target);
+  const double exact = exact_error(scene, s);
+  if (!std::isnan(exact)) print(out, "; by the exact energy %.3e", exact);
+  out << std::endl;
+}
+
 void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &files)
 {
   const bool flat = s.discretization.dim() == 2;
@@ -90,6 +118,10 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
     if (c.max_initial_penetration > 0) print(out, "  initial penetration %.6g m\n", c.max_initial_penetration);
     print(out, "  in contact          %.6g, yielded %.6g %s\n", c.contact_length, c.yielded_length, flat ? "m" : "m^2");
   }
+  if (s.estimate) {
+    print(out, "  ");
+    print_estimate(out, scene, s);
+  }
   for (std::size_t k = 0; k < scene.contact.size() && scene.contact.size() > 1; ++k) {
     const auto &side = s.contact.sides[k];
     print(out, "    on \"%s\": force (%.6g, %.6g%s), max. pressure %.6g, in contact %.6g, yielded %.6g\n",
@@ -104,12 +136,13 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
   for (const auto &level : s.levels)
     print(out, "    predicted by      %zu dofs: %d Newton, %d CG iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
+  if (s.adaptation) print_adaptation(out, *s.adaptation, flat);
   for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
   const auto &t = s.seconds;
   print(out,
-        "  time [s]            mesh %.3f, assembly %.3f, prediction %.3f, set-up %.3f, solve %.3f, output %.3f, total "
-        "%.3f\n",
-        t.mesh, t.assembly, t.prediction, t.setup, t.solve, t.output, t.total);
+        "  time [s]            mesh %.3f, assembly %.3f, prediction %.3f, set-up %.3f, solve %.3f, estimate %.3f, "
+        "output %.3f, total %.3f\n",
+        t.mesh, t.assembly, t.prediction, t.setup, t.solve, t.estimate, t.output, t.total);
   for (const auto &file : files) print(out, "  wrote %s\n", file.c_str());
 }
 

@@ -24,6 +24,9 @@ private:
   int uzawa_ = 0;
 };
 
+/// A line on the error that a mesh is estimated to leave.
+void print_estimate(std::ostream &out, const Scene &scene, const Solution &solution);
+
 /// @param files  what was written
 void print_summary(std::ostream &out, const Scene &scene, const Solution &solution,
                    const std::vector<std::string> &files);

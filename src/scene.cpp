@@ -56,6 +56,7 @@ Teuchos::ParameterList valid_deck()
   valid.sublist("Body Force") = fem::valid_body_force_parameters();
   valid.sublist("Contact") = contact::valid_contact_parameters();
   valid.sublist("Nested Iteration") = valid_nested_parameters();
+  valid.sublist("Adapt") = adapt::valid_adapt_parameters();
   valid.sublist("Uzawa") = contact::valid_uzawa_parameters();
   valid.sublist("NOX") = solver::valid_newton_parameters();
   valid.sublist("Linear Solver") = solver::valid_linear_solver_parameters();
@@ -80,12 +81,17 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, io::parse_field);
   scene.contact = contact::contact_options(deck.sublist("Contact"), dim, io::parse_field);
   scene.nested = nested_options(deck.sublist("Nested Iteration"));
+  scene.adapt = adapt::adapt_options(deck.sublist("Adapt"));
   scene.uzawa = contact::uzawa_options(deck.sublist("Uzawa"));
   scene.newton = solver::newton_options(deck.sublist("NOX"));
   scene.linear_solver = solver::linear_solver_options(deck.sublist("Linear Solver"));
   const Teuchos::ParameterList &output = deck.sublist("Output");
   scene.output = {output.get<bool>("Exodus"), output.get<bool>("CSV"), output.get<bool>("JSON"),
                   output.get<bool>("Timers")};
+  RPC_REQUIRE(
+      !scene.adapt.adapts() || mesh::with_sizes(scene.mesh, nullptr),
+      "deck: \"Adapt->Target Relative Error\" goes with a 2D box or a .geo, which can be meshed anew; the mesh is a "
+          << (dim == 3 ? "box in 3D" : ".msh"));
   return scene;
 }
 

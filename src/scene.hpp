@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/adapt/refinement.hpp"
 #include "rpc/contact/contact_nodes.hpp"
 #include "rpc/contact/uzawa.hpp"
 #include "rpc/fem/dirichlet.hpp"
@@ -38,6 +39,7 @@ struct Scene {
   std::vector<contact::ContactOptions> contact; ///< one per contact side
   contact::UzawaOptions uzawa;
   NestedOptions nested;
+  adapt::AdaptOptions adapt;
   solver::NewtonOptions newton;
   solver::LinearSolverOptions linear_solver;
   OutputOptions output;

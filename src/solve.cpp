@@ -1,4 +1,4 @@
-#include "solve.hpp"
+#include "solve_on.hpp"
 
 #include "report.hpp"
 #include "rpc/contact/prediction.hpp"
@@ -9,6 +9,7 @@
 
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
+#include <cmath>
 
 namespace rpc
 {
@@ -151,6 +152,29 @@ std::string predict(const Scene &scene, const mesh::MeshOptions &options, const 
   return "";
 }
 
+/// The sides that the contact nodes were made from.
+std::vector<const mesh::Side *> contact_sides(const Scene &scene, const mesh::Mesh &mesh)
+{
+  std::vector<const mesh::Side *> sides;
+  for (const auto &contact : scene.contact) sides.push_back(&mesh.side(contact.side, contact.path + "->Side"));
+  return sides;
+}
+
+/// |p - q|_2 over the contact sides, by the weights of their nodes; collective. An empty q is 0.
+double pressure_distance(const Comm &comm, const contact::ContactNodes &c, const DeviceView<double *> &p,
+                         const DeviceView<double *> &q)
+{
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::pressure_distance", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) {
+        const double difference = p(i) - (q.extent(0) > 0 ? q(i) : 0);
+        if (!c.fixed(i)) part += c.weight(i) * difference * difference;
+      },
+      sum);
+  return std::sqrt(sum_all(comm, sum));
+}
+
 /// Adds what the way through the scene did not tell by itself; collective.
 void note_skipped(const Scene &scene, Solution &s)
 {
@@ -168,14 +192,16 @@ void note_skipped(const Scene &scene, Solution &s)
   skip(min_all(mesh.comm(), shapes) > 0, "cell matrices: cells are alike, one for each shape is enough");
   skip(!scene.output.exodus, "stress recovery and nodal fields: no Exodus file");
   skip(!scene.output.csv && !scene.contact.empty(), "contact tables: no CSV file");
+  skip(!scene.adapt.estimate, "error estimate: not asked for");
 }
 
 } // namespace
 
-Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console)
+Solution solve_on(const Scene &scene, const mesh::MeshOptions &options, const Solution *const previous,
+                  const RCP<const Comm> &comm, std::ostream &console)
 {
   Solution s;
-  Level level = make_level(scene, scene.mesh, comm, s.seconds);
+  Level level = make_level(scene, options, comm, s.seconds);
   s.matrix_assemblies = 1;
   s.discretization = level.discretization;
   s.support = level.support;
@@ -184,12 +210,20 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   throw_if_interrupted(*comm, "before the first solve; no results are written");
   const fem::Discretization &d = s.discretization;
   solver::check_nox_parameters(*level.functional, *level.linear, level.u, scene.newton);
+  DeviceView<double *> start_pressure;
   ConsoleTable table(console);
   table.scene(scene, s);
   {
     const Phase phase("prediction", s.seconds.prediction);
-    const std::string reason = predict(scene, scene.mesh, comm, level, s.levels);
-    if (!reason.empty()) s.skipped.push_back("coarser meshes: " + reason);
+    if (previous) {
+      contact::start_from(*fem::interpolation(previous->discretization, d), *previous->functional, *previous->u,
+                          *s.functional, *s.u);
+      start_pressure = DeviceView<double *>("rpc::start_pressure", s.functional->contact().size());
+      Kokkos::deep_copy(start_pressure, s.functional->multipliers());
+    } else {
+      const std::string reason = predict(scene, options, comm, level, s.levels);
+      if (!reason.empty()) s.skipped.push_back("coarser meshes: " + reason);
+    }
   }
   {
     const Phase phase("solve", s.seconds.solve);
@@ -215,12 +249,18 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     s.uzawa = contact::uzawa(*s.functional, *s.u, minimize, certify, scene.uzawa,
                              [&](const contact::UzawaResult &result) { table.uzawa(result); });
     s.linear = linear.counts();
-    std::vector<const mesh::Side *> sides;
-    for (const auto &contact : scene.contact) sides.push_back(&d.mesh->side(contact.side, contact.path + "->Side"));
-    s.contact = contact::contact_result(d, sides, *s.functional, *s.u);
+    s.contact = contact::contact_result(d, contact_sides(scene, *d.mesh), *s.functional, *s.u);
+    s.pressure_norm = pressure_distance(*comm, s.functional->contact(), s.contact.pressure, {});
+    if (previous)
+      s.pressure_change = pressure_distance(*comm, s.functional->contact(), s.contact.pressure, start_pressure);
     s.energy = s.functional->energy(*s.u);
     s.strain_energy = s.uzawa.certificate.internal.strain_energy;
     s.reactions = reactions(scene, s);
+  }
+  if (scene.adapt.estimate) {
+    const Phase phase("estimate", s.seconds.estimate);
+    s.estimate = adapt::estimate_error(d, scene.materials, contact_sides(scene, *d.mesh), scene.tractions,
+                                       s.functional->contact(), s.contact, *s.u);
   }
   note_skipped(scene, s);
   s.seconds.setup = s.linear.setup_seconds;

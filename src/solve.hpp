@@ -1,10 +1,12 @@
 #pragma once
 
+#include "rpc/adapt/error_estimate.hpp"
 #include "rpc/contact/result.hpp"
 #include "rpc/contact/support.hpp"
 #include "scene.hpp"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -12,9 +14,11 @@
 namespace rpc
 {
 
-/// Wall-clock time of a run's phases [s].
+/// Wall-clock time of a run's phases [s], of an adaptive one on all meshes.
 struct PhaseSeconds {
-  double mesh = 0, assembly = 0, prediction = 0, setup = 0, solve = 0, output = 0, total = 0;
+  double mesh = 0, assembly = 0, prediction = 0, setup = 0, solve = 0, estimate = 0, output = 0, total = 0;
+
+  PhaseSeconds &operator+=(const PhaseSeconds &other);
 };
 
 /// What was done on a coarser mesh.
@@ -26,6 +30,40 @@ struct LevelWork {
   double seconds = 0; ///< with all coarser ones
 };
 
+/// One mesh of an adaptive run.
+struct Cycle {
+  std::size_t dofs = 0;
+  double estimate = 0;                   ///< of the error in the energy norm, over that of the solution
+  double energy = 0;                     ///< J [J]
+  std::array<double, 3> contact_force{}; ///< [N], in 2D per m
+  double max_pressure = 0;               ///< [Pa]
+  double contact_length = 0;             ///< [m]
+  double pressure_change = 0;            ///< of the contact pressure since the mesh before, over its norm, both in L2
+  double recovered_pressure = 0;         ///< what that of the recovered stress differs by, over its norm, both in L2
+  double recovered_max_pressure = 0;     ///< the same of the largest pressures [Pa]
+  int newton_iterations = 0;
+  std::vector<int> linear_iterations; ///< per solve
+  double seconds = 0;
+};
+
+/// Errors of results as the sequence of meshes shows them, and for pressures the recovered stress if that shows more; each
+/// like the number that it belongs to, NaN from one mesh alone. doc/theory.md (10.7)
+struct ObservedErrors {
+  double energy = 0;           ///< J [J]
+  double contact_force = 0;    ///< 2-norm [N]
+  double max_pressure = 0;     ///< [Pa]
+  double contact_pressure = 0; ///< L2 norm over the contact sides, over that of the pressure
+  double contact_length = 0;   ///< [m]
+};
+
+/// What became of "Adapt".
+struct Adaptation {
+  bool reached = false; ///< the target
+  std::string reason;
+  std::vector<Cycle> cycles; ///< from the first mesh
+  ObservedErrors errors;     ///< of the last of them
+};
+
 /// All that a run has found.
 struct Solution {
   fem::Discretization discretization;
@@ -34,19 +72,34 @@ struct Solution {
   std::shared_ptr<contact::SmoothedFunctional> functional;
   contact::UzawaResult uzawa;
   contact::ContactResult contact;
+  double pressure_norm = 0;                     ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]
+  double pressure_change = 0;                   ///< the same of its change since the mesh before, if there was one
   double energy = 0;                            ///< J(u) [J]
   double strain_energy = 0;                     ///< a(u, u) [J]
   std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
   solver::LinearSolverCounts linear;            ///< on the finest mesh
   std::vector<LevelWork> levels;                ///< coarser meshes that predicted the solution, from the coarsest
   std::vector<std::string> skipped;             ///< what the scene allowed to leave out, and why
+  std::optional<adapt::ErrorEstimate> estimate; ///< where it is asked for
+  std::optional<Adaptation> adaptation;         ///< where the mesh is adapted
   int matrix_assemblies = 0;
   PhaseSeconds seconds;
 };
 
-/// Mesh, assembly, Uzawa and Newton: from a scene to its solution. Collective on comm.
+/// Mesh, assembly, Uzawa and Newton: from a scene to its solution. With a target for the error, on as many meshes as that takes;
+/// the solution is the last one's. Collective on comm.
 /// @param console  where the table of the iteration goes; a stream without a buffer prints nothing
+/// @param keep     called with the solution on each mesh of an adaptive run, from the first
 /// @throws rpc::Error on every rank if the scene does not fit its mesh; failing to converge is in the result
-Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console);
+Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
+               const std::function<void(const Scene &, Solution &)> &keep = {});
+
+/// Whether all that was asked for came out.
+bool succeeded(const Solution &solution);
+
+/// The estimated error in the energy norm over that of the solution, where there is an estimate.
+double relative_estimate(const Solution &solution);
+/// What it really is, sqrt(2 |J_h - J| / a(u_h, u_h)), where the deck tells the exact J; else NaN.
+double exact_error(const Scene &scene, const Solution &solution);
 
 } // namespace rpc

@@ -170,7 +170,7 @@ Errors errors_of(const Body &body, const double nu, const int n)
   const mesh::Mesh &mesh = *s.discretization.mesh;
   const int dim = mesh.dim();
   const auto u = s.u->getLocalViewHost(Tpetra::Access::ReadOnly);
-  const auto stress = fem::nodal_stresses(s.discretization, scene.materials, *s.u);
+  const auto stress = fem::RecoveredStress(s.discretization, scene.materials, *s.u).at_nodes();
   const auto sigma = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto coords = to_host(mesh.coords);
   const int column[3] = {0, 1, dim == 2 ? 2 : 3};

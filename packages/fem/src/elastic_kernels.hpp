@@ -72,7 +72,7 @@ struct ElasticCells {
     return projected(of_block) != 0;
   }
 
-  /// Calls work(volume, dN, dilatation) at each quadrature point: what the point stands for [m^Dim], the gradients dN(a, i)
+  /// Calls work(q, volume, dN, dilatation) at each quadrature point: what the point stands for [m^Dim], the gradients dN(a, i)
   /// [1/m], and those whose sum with u_ai is the dilatation: dN again, or the projected ones.
   /// @return false if the Jacobian is <= 0 somewhere; points from there on have been left out
   template <class Work>
@@ -88,11 +88,12 @@ struct ElasticCells {
           Gradients dilatation;
           position(x, value, q, at);
           projection.gradients(at, dilatation);
-          work(volume, dN, dilatation);
+          work(q, volume, dN, dilatation);
         });
       }
     }
-    return at_plain_points(cell, [&](int, const double volume, const Gradients &dN) { work(volume, dN, dN); });
+    return at_plain_points(cell,
+                           [&](const int q, const double volume, const Gradients &dN) { work(q, volume, dN, dN); });
   }
 
   /// @return false if the Jacobian is <= 0 somewhere
@@ -170,12 +171,12 @@ struct TabulateShape {
   }
 };
 
+/// @param table  points in a cell
 /// @throws rpc::Error (bad_input) if the materials do not fit the mesh
 template <int Dim, int Nodes>
-ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials &materials)
+ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials &materials, const BasisTable &table)
 {
   const mesh::Mesh &mesh = *d.mesh;
-  const BasisTable &table = d.reference.cell;
   ElasticCells<Dim, Nodes> body;
   body.coords = mesh.coords;
   body.cells = mesh.cells;
@@ -194,6 +195,11 @@ ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials 
   body.shape_gradient = gradient;
   body.shape_volume = volume;
   return body;
+}
+template <int Dim, int Nodes>
+ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials &materials)
+{
+  return elastic_cells<Dim, Nodes>(d, materials, d.reference.cell);
 }
 
 /// The stiffness of one cell, if it was of a block's material.                                     doc/theory.md (2.4)
@@ -454,7 +460,7 @@ struct InternalWorkOfCell {
     // Gradients sum to 0 over the nodes; differences let a translation vanish to the last digit.
     for (int a = 0; a < Nodes; ++a)
       for (int i = 0; i < Dim; ++i) moved[a][i] = u(Dim * body.cells(cell, a) + i) - u(Dim * body.cells(cell, 0) + i);
-    body.at_points(cell, [&](const double volume, const Gradients &dN, const Gradients &dilatation) {
+    body.at_points(cell, [&](int, const double volume, const Gradients &dN, const Gradients &dilatation) {
       double stress[Dim][Dim], trace = 0, product = 0; // without the part of the dilatation
       for (int i = 0; i < Dim; ++i)
         for (int a = 1; a < Nodes; ++a) trace += moved[a][i] * dilatation[a][i];

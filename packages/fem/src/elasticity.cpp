@@ -4,6 +4,7 @@
 #include "elastic_kernels.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/fem/surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -152,21 +153,6 @@ DeviceView<double *> cell_measure(const mesh::Mesh &mesh, const BasisTable &tabl
     const CellMeasure<dim, nodes> kernel{mesh.coords, mesh.cells, table.gradient, table.weight, measure};
     Kokkos::parallel_for("rpc::fem::cell_measure", device_range(mesh.num_cells()), kernel);
   });
-  return measure;
-}
-
-DeviceView<double *> facet_measure(const DeviceView<double **> &coords, const DeviceView<LO **> &facets,
-                                   const BasisTable &table)
-{
-  const int points = table.num_points();
-  const auto gradient = table.gradient;
-  const auto weight = table.weight;
-  DeviceView<double *> measure("rpc::fem::facet_measure", facets.extent(0) * points);
-  Kokkos::parallel_for(
-      "rpc::fem::facet_measure", device_range(static_cast<LO>(facets.extent(0))), KOKKOS_LAMBDA(const LO facet) {
-        for (int q = 0; q < points; ++q)
-          measure(facet * points + q) = weight(q) * norm(area_normal(coords, facets, facet, gradient, q));
-      });
   return measure;
 }
 
@@ -411,6 +397,27 @@ void add_body_force(const Discretization &d, const VectorField &force, const std
   add_load(mesh.cells, table.value, cell_measure(mesh, table), f, mesh.num_owned_nodes(), load);
 }
 
+DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &side,
+                                    const std::vector<TractionLoad> &loads)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  const BasisTable &table = d.reference.facet;
+  const int points = table.num_points(), dim = d.dim();
+  const DeviceView<double ***> sum("rpc::fem::tractions_on", side.facets.extent(0), points, dim);
+  for (const auto &load : loads) {
+    if (load.side != side.name || is_zero(load.traction, dim)) continue;
+    const auto t = evaluate_vector(load.traction, quadrature_points(mesh.coords, side.facets, table.value),
+                                   "Traction->" + load.name, mesh.comm());
+    Kokkos::parallel_for(
+        "rpc::fem::add_tractions", device_range(static_cast<LO>(side.facets.extent(0))), KOKKOS_LAMBDA(const LO f) {
+          for (int q = 0; q < points; ++q)
+            for (int i = 0; i < dim; ++i) sum(f, q, i) += t(f * points + q, i);
+        });
+    Kokkos::fence();
+  }
+  return sum;
+}
+
 void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,
                   const std::string &parameter, Vector &load)
 {
@@ -419,7 +426,7 @@ void add_traction(const Discretization &d, const mesh::Side &side, const VectorF
   const BasisTable &table = d.reference.facet;
   const auto points = quadrature_points(mesh.coords, side.facets, table.value);
   const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
-  add_load(side.facets, table.value, facet_measure(mesh.coords, side.facets, table), t, mesh.num_owned_nodes(), load);
+  add_load(side.facets, table.value, facet_measure(d, side), t, mesh.num_owned_nodes(), load);
 }
 
 } // namespace rpc::fem

@@ -2,6 +2,7 @@
 
 #include "elastic_kernels.hpp"
 #include "patch_polynomial.hpp"
+#include "shape_functions.hpp"
 
 /// The kernels of the recovery of stresses, (2.8): fit, adopt, evaluate.
 namespace rpc::fem
@@ -220,39 +221,149 @@ struct AdoptPolynomial {
   }
 };
 
+/// The polynomials as they are read: at a vertex, and blended over a cell.
+template <int Dim, int Nodes>
+struct Polynomials {
+  using Table = PatchTable<Dim, Nodes>;
+  using Terms = typename Table::Terms;
+  static constexpr int vertices = ShapeFunctions<Dim, Nodes>::simplex ? Dim + 1 : 1 << Dim;
+
+  ElasticCells<Dim, Nodes> body; //                                in
+  ReadColumns table;             // (overlap nodes, PatchTable)    in
+
+  KOKKOS_FUNCTION double trust(const LO vertex) const { return table(vertex, int(Table::trust)); }
+  KOKKOS_FUNCTION double best_of(const LO cell) const
+  {
+    double best = 0;
+    for (int a = 0; a < vertices; ++a) best = Kokkos::Experimental::fmax(best, trust(body.cells(cell, a)));
+    return best;
+  }
+
+  /// grad[j][i] += weight du_i / dx_j by the polynomial of a vertex at x, and dilatation += weight that which Hooke's law
+  /// takes in a cell's block.
+  KOKKOS_FUNCTION void add_at(const LO vertex, const LO cell, const double (&x)[Dim], const double weight,
+                              double (&grad)[Dim][Dim], double &dilatation) const
+  {
+    double L[Dim][Dim], dx[Dim][1], xi[Dim], term[Terms::size], slope[Terms::size][Dim];
+    int column = Table::frame;
+    for (int i = 0; i < Dim; ++i) {
+      dx[i][0] = x[i] - table(vertex, Table::centre + i);
+      for (int j = 0; j <= i; ++j) L[i][j] = table(vertex, column++);
+    }
+    solve_lower(L, Dim, dx);
+    for (int i = 0; i < Dim; ++i) xi[i] = dx[i][0];
+    Terms::evaluate(xi, term, slope);
+    double own[Dim][Dim] = {}; // (j, i) = du_i / dxi_j, then / dx_j
+    for (int t = 1; t < Terms::size; ++t)
+      for (int i = 0; i < Dim; ++i, ++column)
+        for (int j = 0; j < Dim; ++j) own[j][i] += slope[t][j] * table(vertex, column);
+    solve_lower_transposed(L, Dim, own);
+    double trace = 0;
+    for (int i = 0; i < Dim; ++i) trace += own[i][i];
+    if constexpr (ElasticCells<Dim, Nodes>::may_project) {
+      if (body.projects(cell)) {
+        double of_dilatation[Table::Dilatation::size];
+        Table::Dilatation::evaluate(xi, of_dilatation);
+        trace = 0;
+        for (int t = 0; t < Table::Dilatation::size; ++t)
+          trace += of_dilatation[t] * table(vertex, Table::dilatation + t);
+      }
+    }
+    dilatation += weight * trace;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) grad[j][i] += weight * own[j][i];
+  }
+
+  /// The same of the whole cell: each vertex's polynomial by its linear shape function, among those trusted as polynomials
+  /// from inside or, where there are none, trusted most.                                              doc/theory.md (10.2)
+  KOKKOS_FUNCTION void blend(const LO cell, const double (&x)[Dim], const double (&linear)[vertices],
+                             double (&grad)[Dim][Dim], double &dilatation) const
+  {
+    const double least = Kokkos::Experimental::fmin(best_of(cell), double(Table::adopted));
+    double sum = 0;
+    for (int a = 0; a < vertices; ++a)
+      if (trust(body.cells(cell, a)) >= least) sum += linear[a];
+    // At a vertex that alone is not trusted, all others have the weight 0: then they count alike.
+    const bool even = !(sum > 1e-8);
+    int count = 0;
+    for (int a = 0; a < vertices; ++a) count += trust(body.cells(cell, a)) >= least;
+    dilatation = 0;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) grad[j][i] = 0;
+    for (int a = 0; a < vertices; ++a)
+      if (trust(body.cells(cell, a)) >= least)
+        add_at(body.cells(cell, a), cell, x, even ? 1. / count : linear[a] / sum, grad, dilatation);
+  }
+
+  /// Twice the strain: strain2[i][j] = grad[i][j] + grad[j][i].
+  static KOKKOS_FUNCTION void twice_strain(const double (&grad)[Dim][Dim], double (&strain2)[3][3])
+  {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        strain2[i][j] = i < Dim && j < Dim ? grad[i % Dim][j % Dim] + grad[j % Dim][i % Dim] : 0;
+  }
+};
+
+/// What the linear shape functions of a cell's vertices are at its nodes: their values anywhere are sums with the shape
+/// functions of the nodes.
+template <int Dim, int Nodes>
+struct LinearShapes {
+  static constexpr int vertices = Polynomials<Dim, Nodes>::vertices;
+
+  double at_node[Nodes][vertices];
+
+  /// Whether a node lies inside the edge, face or cell that ends in a vertex, or is that vertex.
+  KOKKOS_INLINE_FUNCTION bool carries(const int node, const int vertex) const { return at_node[node][vertex] > 0; }
+
+  explicit LinearShapes(const mesh::Element &element)
+  {
+    const auto &lattice = element.lattice();
+    for (int a = 0; a < Nodes; ++a)
+      for (int v = 0; v < vertices; ++v) {
+        double shape = 1, rest = element.order;
+        for (int i = 0; i < Dim; ++i) {
+          rest -= lattice[a][i];
+          shape *=
+              lattice[v][i] == 0 ? 1 - double(lattice[a][i]) / element.order : double(lattice[a][i]) / element.order;
+        }
+        if (ShapeFunctions<Dim, Nodes>::simplex) shape = (v == 0 ? rest : lattice[a][v - 1]) / element.order;
+        at_node[a][v] = shape;
+      }
+  }
+};
+
 /// Stresses of a node from the polynomials around it.
 template <int Dim, int Nodes>
 struct EvaluatePatches {
   using Table = PatchTable<Dim, Nodes>;
-  using Terms = typename Table::Terms;
-  static constexpr int components = Components<Dim>::size;
+  static constexpr int components = Components<Dim>::size, vertices = Polynomials<Dim, Nodes>::vertices;
 
-  ElasticCells<Dim, Nodes> body;      //                                  in
-  DeviceView<std::size_t *> node_row; // (owned nodes + 1)                in
-  DeviceView<LO *> node_cell;         // cells around nodes               in
-  DeviceView<int **> carries;         // (Nodes, vertices)                in, see carrying_vertices
-  ReadColumns table;                  // (overlap nodes, PatchTable)      in
-  WriteColumns result;                // (owned nodes, stress_names) [Pa] out
+  Polynomials<Dim, Nodes> polynomials; //                                 in
+  DeviceView<std::size_t *> node_row;  // (owned nodes + 1)                in
+  DeviceView<LO *> node_cell;          // cells around nodes               in
+  LinearShapes<Dim, Nodes> linear;     //                                  in
+  WriteColumns result;                 // (owned nodes, stress_names) [Pa] out
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
     const LO first = node_cell(node_row(node));
-    const int vertices = static_cast<int>(carries.extent(1)), place = place_in(body.cells, first, node);
+    const int place = place_in(polynomials.body.cells, first, node);
+    const auto &cells = polynomials.body.cells;
     double best = 0, own = 0; // trust in the polynomials around, and in those of the vertices that carry the node
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
-      best = Kokkos::Experimental::fmax(best, best_of(node_cell(k), vertices));
+      best = Kokkos::Experimental::fmax(best, polynomials.best_of(node_cell(k)));
     for (int a = 0; a < vertices; ++a)
-      if (carries(place, a)) own = Kokkos::Experimental::fmax(own, table(body.cells(first, a), int(Table::trust)));
+      if (linear.carries(place, a)) own = Kokkos::Experimental::fmax(own, polynomials.trust(cells(first, a)));
 
     double s[components] = {};
     int count = 0;
     if (own == best && own != Table::across_blocks) {
       for (int a = 0; a < vertices; ++a)
-        if (carries(place, a)) add(node, first, a, best, s, count);
+        if (linear.carries(place, a)) add(node, first, a, best, s, count);
     } else {
       for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
         // Between blocks each side has its say, however well it is fitted.
-        const double of_cell = best_of(node_cell(k), vertices);
+        const double of_cell = polynomials.best_of(node_cell(k));
         const double trust = own == Table::across_blocks && of_cell > Table::across_blocks ? of_cell : best;
         for (int a = 0; a < vertices; ++a) add(node, node_cell(k), a, trust, s, count);
       }
@@ -263,51 +374,19 @@ struct EvaluatePatches {
     result(node, columns) = von_mises(s);
   }
 
-  KOKKOS_FUNCTION double best_of(const LO cell, const int vertices) const
-  {
-    double best = 0;
-    for (int a = 0; a < vertices; ++a)
-      best = Kokkos::Experimental::fmax(best, table(body.cells(cell, a), int(Table::trust)));
-    return best;
-  }
-
   /// s += the stress at a node by the polynomial of a cell's vertex and the material of that cell, if it is trusted
   /// enough.
   KOKKOS_FUNCTION void add(const LO node, const LO cell, const int a, const double trust, double (&s)[components],
                            int &count) const
   {
+    const ElasticCells<Dim, Nodes> &body = polynomials.body;
     const LO vertex = body.cells(cell, a);
-    if (table(vertex, int(Table::trust)) < trust) return;
-    double L[Dim][Dim], dx[Dim][1], xi[Dim], term[Terms::size], slope[Terms::size][Dim];
-    int column = Table::frame;
-    for (int i = 0; i < Dim; ++i) {
-      dx[i][0] = body.coords(node, i) - table(vertex, Table::centre + i);
-      for (int j = 0; j <= i; ++j) L[i][j] = table(vertex, column++);
-    }
-    solve_lower(L, Dim, dx);
-    for (int i = 0; i < Dim; ++i) xi[i] = dx[i][0];
-    Terms::evaluate(xi, term, slope);
-    double grad[Dim][Dim] = {}; // (j, i) = du_i / dxi_j, then / dx_j
-    for (int t = 1; t < Terms::size; ++t)
-      for (int i = 0; i < Dim; ++i, ++column)
-        for (int j = 0; j < Dim; ++j) grad[j][i] += slope[t][j] * table(vertex, column);
-    solve_lower_transposed(L, Dim, grad);
-
+    if (polynomials.trust(vertex) < trust) return;
+    double x[Dim], grad[Dim][Dim] = {}, trace = 0, strain2[3][3]; // across the plane the strain is 0
+    for (int i = 0; i < Dim; ++i) x[i] = body.coords(node, i);
+    polynomials.add_at(vertex, cell, x, 1, grad, trace);
+    polynomials.twice_strain(grad, strain2);
     const double lambda = body.lambda(cell), mu = body.mu(cell);
-    double strain2[3][3] = {}, trace = 0; // twice the strain; across the plane it is 0
-    for (int i = 0; i < Dim; ++i) {
-      trace += grad[i][i];
-      for (int j = 0; j < Dim; ++j) strain2[i][j] = grad[i][j] + grad[j][i];
-    }
-    if constexpr (ElasticCells<Dim, Nodes>::may_project) {
-      if (body.projects(cell)) {
-        double of_dilatation[Table::Dilatation::size];
-        Table::Dilatation::evaluate(xi, of_dilatation);
-        trace = 0;
-        for (int t = 0; t < Table::Dilatation::size; ++t)
-          trace += of_dilatation[t] * table(vertex, Table::dilatation + t);
-      }
-    }
     for (int m = 0; m < components; ++m) {
       const int i = Components<Dim>::row(m), j = Components<Dim>::col(m);
       s[m] += mu * strain2[i][j] + (i == j ? lambda * trace : 0);
@@ -322,6 +401,77 @@ struct EvaluatePatches {
     if constexpr (Dim == 3) shear += s[4] * s[4] + s[5] * s[5];
     const double spread = (xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx);
     return Kokkos::Experimental::sqrt(0.5 * spread + 3 * shear);
+  }
+};
+
+/// e(cell) = int (s* - s) : C^-1 (s* - s), s* the recovered stress and s that of u.                   doc/theory.md (10.2)
+template <int Dim, int Nodes>
+struct RecoveryDifference {
+  Polynomials<Dim, Nodes> polynomials; //                         in, the body with a rule for the difference's square
+  LinearShapes<Dim, Nodes> linear;     //                         in
+  ReadVector u;                        // (overlap dofs)    [m]   in
+  DeviceView<double *> energy;         // (owned cells)     [J]   out
+
+  KOKKOS_FUNCTION void operator()(const LO cell) const
+  {
+    constexpr int vertices = Polynomials<Dim, Nodes>::vertices;
+    const ElasticCells<Dim, Nodes> &body = polynomials.body;
+    const CellCoords<Dim, Nodes> coords(body.coords, body.cells, cell);
+    const double lambda = body.lambda(cell), mu = body.mu(cell);
+    double sum = 0;
+    body.at_points(cell, [&](const int q, const double volume, const double(&dN)[Nodes][Dim],
+                             const double(&of_dilatation)[Nodes][Dim]) {
+      double x[Dim], weight[vertices] = {}, grad[Dim][Dim], own[Dim][Dim], dilatation = 0;
+      position(coords, body.value, q, x);
+      for (int a = 0; a < Nodes; ++a)
+        for (int v = 0; v < vertices; ++v) weight[v] += body.value(q, a) * linear.at_node[a][v];
+      polynomials.blend(cell, x, weight, grad, dilatation);
+      displacement_gradient(u, body.cells, cell, dN, own); // (i, j) = du_i / dx_j
+      dilatation -= divergence(u, body.cells, cell, of_dilatation);
+      double density = lambda * dilatation * dilatation;
+      for (int i = 0; i < Dim; ++i)
+        for (int j = 0; j < Dim; ++j) {
+          const double strain2 = grad[i][j] + grad[j][i] - own[i][j] - own[j][i];
+          density += mu / 2 * strain2 * strain2;
+        }
+      sum += volume * density;
+    });
+    energy(cell) = sum;
+  }
+};
+
+/// s* n at the points of a side's facets, n the body's outward normal.
+template <int Dim, int Nodes>
+struct RecoveredTraction {
+  Polynomials<Dim, Nodes> polynomials; //                                             in
+  LinearShapes<Dim, Nodes> linear;     //                                             in
+  DeviceView<LO **> facets;            // (facets, facet nodes)                       in
+  DeviceView<LO *> cell;               // (facets)                                    in
+  DeviceView<double **> value;         // (points, facet nodes)                       in
+  DeviceView<double ***> gradient;     // (points, facet nodes, Dim - 1)              in
+  DeviceView<double ***> traction;     // (facets, points, Dim)                 [Pa]  out
+
+  KOKKOS_FUNCTION void operator()(const LO f) const
+  {
+    constexpr int vertices = Polynomials<Dim, Nodes>::vertices;
+    const ElasticCells<Dim, Nodes> &body = polynomials.body;
+    const double lambda = body.lambda(cell(f)), mu = body.mu(cell(f));
+    for (int q = 0; q < static_cast<int>(value.extent(0)); ++q) {
+      double x[Dim] = {}, weight[vertices] = {}, grad[Dim][Dim], trace = 0, strain2[3][3];
+      for (std::size_t b = 0; b < facets.extent(1); ++b) {
+        const int a = place_in(body.cells, cell(f), facets(f, b));
+        for (int i = 0; i < Dim; ++i) x[i] += value(q, b) * body.coords(facets(f, b), i);
+        for (int v = 0; v < vertices; ++v) weight[v] += value(q, b) * linear.at_node[a][v];
+      }
+      polynomials.blend(cell(f), x, weight, grad, trace);
+      polynomials.twice_strain(grad, strain2);
+      const auto area = area_normal(body.coords, facets, f, gradient, q);
+      const double length = norm(area);
+      for (int i = 0; i < Dim; ++i) {
+        traction(f, q, i) = lambda * trace * area[i] / length;
+        for (int j = 0; j < Dim; ++j) traction(f, q, i) += mu * strain2[i][j] * area[j] / length;
+      }
+    }
   }
 };
 

@@ -28,28 +28,6 @@ DeviceView<int **> facet_mates(const mesh::Element &element)
   return device_table(mates, "rpc::fem::facet_mates");
 }
 
-/// (nodes, vertices): 1 for the vertices of the edge, face or cell inside which a node lies, or which it is itself;
-/// those are the ones whose linear shape function is not 0 there.
-DeviceView<int **> carrying_vertices(const mesh::Element &element)
-{
-  std::vector<std::vector<int>> carries;
-  const auto &lattice = element.lattice();
-  for (const auto &node : lattice) {
-    carries.emplace_back();
-    for (int v = 0; v < element.num_vertices(); ++v) {
-      int shape = 1, rest = element.order;
-      for (int i = 0; i < element.dim; ++i) rest -= node[i];
-      if (element.shape == mesh::Shape::tensor) {
-        for (int i = 0; i < element.dim; ++i) shape *= lattice[v][i] == 0 ? element.order - node[i] : node[i];
-      } else {
-        shape = v == 0 ? rest : node[v - 1];
-      }
-      carries.back().push_back(shape > 0 ? 1 : 0);
-    }
-  }
-  return device_table(carries, "rpc::fem::carrying_vertices");
-}
-
 /// The table of the owned nodes with those of the overlap; the table itself on one rank.
 RCP<const MultiVector> with_overlap(const mesh::Mesh &mesh, const RCP<const MultiVector> &owned, const Import &import)
 {
@@ -59,8 +37,9 @@ RCP<const MultiVector> with_overlap(const mesh::Mesh &mesh, const RCP<const Mult
   return overlap;
 }
 
+/// The polynomials of all vertices (overlap nodes).
 template <int Dim, int Nodes>
-RCP<MultiVector> recover(const Discretization &d, const ElasticCells<Dim, Nodes> &body, const Vector &u_overlap)
+RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Nodes> &body, const Vector &u_overlap)
 {
   using Table = PatchTable<Dim, Nodes>;
   const mesh::Mesh &mesh = *d.mesh;
@@ -91,17 +70,13 @@ RCP<MultiVector> recover(const Discretization &d, const ElasticCells<Dim, Nodes>
     Kokkos::parallel_for("rpc::fem::adopt_polynomial", nodes, adopt);
     Kokkos::fence();
   }
-  const auto result = rcp(new MultiVector(mesh.owned_nodes, stress_names(Dim).size()));
-  const auto all = with_overlap(mesh, table, import);
-  const EvaluatePatches<Dim, Nodes> evaluate{body,
-                                             around.row,
-                                             around.cell,
-                                             carrying_vertices(mesh.element),
-                                             all->getLocalViewDevice(Tpetra::Access::ReadOnly),
-                                             result->getLocalViewDevice(Tpetra::Access::ReadWrite)};
-  Kokkos::parallel_for("rpc::fem::evaluate_patches", nodes, evaluate);
-  Kokkos::fence();
-  return result;
+  return with_overlap(mesh, table, import);
+}
+
+template <int Dim, int Nodes>
+Polynomials<Dim, Nodes> polynomials(const ElasticCells<Dim, Nodes> &body, const MultiVector &table)
+{
+  return {body, table.getLocalViewDevice(Tpetra::Access::ReadOnly)};
 }
 
 } // namespace
@@ -112,15 +87,60 @@ std::vector<std::string> stress_names(const int dim)
   return {"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_yz", "stress_xz", "von_mises"};
 }
 
-RCP<MultiVector> nodal_stresses(const Discretization &d, const Materials &materials, const Vector &u)
+RecoveredStress::RecoveredStress(Discretization d, Materials materials, const Vector &u)
+    : d_(std::move(d)), materials_(std::move(materials)), u_(rcp(new Vector(d_.overlap_dofs)))
 {
-  Vector u_overlap(d.overlap_dofs);
-  u_overlap.doImport(u, *d.dof_import, Tpetra::INSERT);
-  RCP<MultiVector> result;
-  with_static_extents(d.mesh->element, [&](const auto dim, const auto nodes) {
-    result = recover(d, elastic_cells<dim, nodes>(d, materials), u_overlap);
+  u_->doImport(u, *d_.dof_import, Tpetra::INSERT);
+  with_static_extents(d_.mesh->element, [&](const auto dim, const auto nodes) {
+    polynomials_ = fit(d_, elastic_cells<dim, nodes>(d_, materials_), *u_);
+  });
+}
+
+RCP<MultiVector> RecoveredStress::at_nodes() const
+{
+  const mesh::Mesh &mesh = *d_.mesh;
+  const auto result = rcp(new MultiVector(mesh.owned_nodes, stress_names(d_.dim()).size()));
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    const EvaluatePatches<dim, nodes> evaluate{polynomials(elastic_cells<dim, nodes>(d_, materials_), *polynomials_),
+                                               d_.around.row, d_.around.cell, LinearShapes<dim, nodes>(mesh.element),
+                                               result->getLocalViewDevice(Tpetra::Access::ReadWrite)};
+    Kokkos::parallel_for("rpc::fem::evaluate_patches", device_range(mesh.num_owned_nodes()), evaluate);
+    Kokkos::fence();
   });
   return result;
+}
+
+DeviceView<double *> RecoveredStress::squared_difference() const
+{
+  const mesh::Mesh &mesh = *d_.mesh;
+  const DeviceView<double *> energy("rpc::fem::squared_difference", mesh.num_owned_cells);
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    const RecoveryDifference<dim, nodes> difference{
+        polynomials(elastic_cells<dim, nodes>(d_, materials_, d_.reference.cell_load), *polynomials_),
+        LinearShapes<dim, nodes>(mesh.element), device_read(*u_), energy};
+    Kokkos::parallel_for("rpc::fem::recovery_difference", device_range(mesh.num_owned_cells), difference);
+    Kokkos::fence();
+  });
+  return energy;
+}
+
+DeviceView<double ***> RecoveredStress::tractions(const mesh::Side &side) const
+{
+  const BasisTable &table = d_.reference.facet;
+  const LO facets = static_cast<LO>(side.facets.extent(0));
+  const DeviceView<double ***> traction("rpc::fem::recovered_traction", facets, table.num_points(), d_.dim());
+  with_static_extents(d_.mesh->element, [&](const auto dim, const auto nodes) {
+    const RecoveredTraction<dim, nodes> recovered{polynomials(elastic_cells<dim, nodes>(d_, materials_), *polynomials_),
+                                                  LinearShapes<dim, nodes>(d_.mesh->element),
+                                                  side.facets,
+                                                  side.cell,
+                                                  table.value,
+                                                  table.gradient,
+                                                  traction};
+    Kokkos::parallel_for("rpc::fem::recovered_traction", device_range(facets), recovered);
+    Kokkos::fence();
+  });
+  return traction;
 }
 
 } // namespace rpc::fem

@@ -5,6 +5,22 @@
 namespace rpc::fem
 {
 
+DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &side)
+{
+  const int points = d.reference.facet.num_points();
+  const auto gradient = d.reference.facet.gradient;
+  const auto weight = d.reference.facet.weight;
+  const auto coords = d.mesh->coords;
+  const auto facets = side.facets;
+  DeviceView<double *> measure("rpc::fem::facet_measure", facets.extent(0) * points);
+  Kokkos::parallel_for(
+      "rpc::fem::facet_measure", device_range(static_cast<LO>(facets.extent(0))), KOKKOS_LAMBDA(const LO facet) {
+        for (int q = 0; q < points; ++q)
+          measure(facet * points + q) = weight(q) * norm(area_normal(coords, facets, facet, gradient, q));
+      });
+  return measure;
+}
+
 SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
 {
   const mesh::Mesh &mesh = *d.mesh;

@@ -180,7 +180,7 @@ TEST(ProjectedDilatation, IsTheSameOnAnyNumberOfRanks)
       const auto u = interpolate(d, wild);
       Vector Ku(d.owned_dofs);
       fem::assemble_stiffness(d, rubber)->apply(*u, Ku);
-      const auto stress = fem::nodal_stresses(d, rubber, *u);
+      const auto stress = fem::RecoveredStress(d, rubber, *u).at_nodes();
       const auto values = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
       const int columns = static_cast<int>(values.extent(1));
       return std::pair(by_node_id(d, Ku),
@@ -201,7 +201,7 @@ TEST(ProjectedDilatation, NodalStressesOfALinearDisplacementAreExact)
     row.cells[0] = 3;
     for (const auto &d : {bulged_body(element, alone()), body(row, alone())}) {
       const auto u = interpolate(d, [&](const Point &x) { return linear(x, element.dim); });
-      const auto stress = fem::nodal_stresses(d, rubber, *u);
+      const auto stress = fem::RecoveredStress(d, rubber, *u).at_nodes();
       const auto values = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
       double trace = 0;
       for (int i = 0; i < element.dim; ++i) trace += slope[i][i];

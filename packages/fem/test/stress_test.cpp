@@ -15,7 +15,7 @@ constexpr fem::Material steel{2000, 0.3};
 /// Stresses of all nodes by node id, a row per node.
 std::vector<double> stresses(const fem::Discretization &d, const Vector &u)
 {
-  const auto stress = fem::nodal_stresses(d, steel, u);
+  const auto stress = fem::RecoveredStress(d, steel, u).at_nodes();
   const auto values = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
   EXPECT_EQ(values.extent(1), fem::stress_names(d.dim()).size());
   return by_node_id(*d.mesh, static_cast<int>(values.extent(1)), [&](const LO n, const int k) { return values(n, k); });
@@ -54,7 +54,7 @@ std::vector<double> repeated(const std::vector<double> &row, const std::size_t s
 
 using Gradient = std::array<std::array<double, 3>, 3>; // [i][j] = du_i / dx_j
 
-/// Hooke's stress at all nodes, without von Mises, and that of nodal_stresses.
+/// Hooke's stress at all nodes, without von Mises, and the recovered one.
 struct Compared {
   std::vector<double> exact, recovered; // (nodes, columns)
   std::vector<double> boundary;         // (nodes) 1 on the faces of the box
@@ -63,7 +63,7 @@ Compared compare(const fem::Discretization &d, const mesh::BoxOptions &box, cons
                  const std::function<Gradient(const Point &)> &gradient)
 {
   const int dim = d.dim(), columns = dim == 2 ? 3 : 6;
-  const auto stress = fem::nodal_stresses(d, steel, *u);
+  const auto stress = fem::RecoveredStress(d, steel, *u).at_nodes();
   const auto values = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
   Compared result;
   result.recovered = by_node_id(*d.mesh, columns, [&](const LO n, const int k) { return values(n, k); });
@@ -232,9 +232,8 @@ TEST(NodalStresses, OfOneBlockDoNotReachIntoAnother)
     Kokkos::deep_copy(mesh->block, block);
     mesh->blocks = {"left", "right"};
     const auto d = fem::discretize(mesh);
-    const auto stress = fem::nodal_stresses(d, materials, *interpolate(d, [](const Point &x) {
-                                              return Point{0.01 * x[0], 0, 0};
-                                            }));
+    const auto u = interpolate(d, [](const Point &x) { return Point{0.01 * x[0], 0, 0}; });
+    const auto stress = fem::RecoveredStress(d, materials, *u).at_nodes();
     const auto values = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
     const double left = 0.01 * (steel.lambda() + 2 * steel.mu()), right = 0.01 * (rubber.lambda() + 2 * rubber.mu());
     for (LO n = 0; n < mesh->num_owned_nodes(); ++n) {

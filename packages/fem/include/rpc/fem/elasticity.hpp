@@ -99,6 +99,11 @@ InternalWork internal_work(const Discretization &d, const Materials &materials, 
 /// @param parameter  deck path for messages; collective
 void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load);
 
+/// The sum of those of some tractions that act on a side, at the points of ReferenceElement::facet: (facets, points, dim)
+/// [Pa]; collective.
+DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &side,
+                                    const std::vector<TractionLoad> &loads);
+
 /// load(ai) += int N_a t_i, over a side, for a traction t [Pa].                                                  (2.5)
 /// @param parameter  deck path for messages; collective
 void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,

@@ -5,6 +5,9 @@
 namespace rpc::fem
 {
 
+/// What the points of ReferenceElement::facet stand for on a side: (facets * points), facet by facet [m^(dim-1)].
+DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &side);
+
 /// Owned nodes of a side with what nodal quadrature needs: int f ds ~ sum_i weight_i f(x_i). doc/theory.md (2.6)
 struct SurfaceNodes {
   DeviceView<LO *> node;       ///< (n) owned node lids, ascending

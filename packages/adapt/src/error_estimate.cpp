@@ -1,0 +1,186 @@
+#include "rpc/adapt/error_estimate.hpp"
+
+#include "rpc/fem/stress.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rpc::adapt
+{
+namespace
+{
+
+using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadOnly));
+
+// Columns of what a side's facets read at their nodes.
+enum Column { pressure, penetration, yield, normal };
+
+/// What the contact nodes of one side know, at the nodes of its facets (overlap nodes; columns).
+RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::ContactNodes &c,
+                                        const contact::ContactResult &result, const int side)
+{
+  // A yield stress out of reach, maybe infinite, gives way to one that no pressure reaches either.
+  const double highest_yield = 2 * std::max(result.total.max_pressure, 1e-300);
+  MultiVector owned(mesh.owned_nodes, normal + c.dim);
+  const LO begin = c.first(side);
+  const auto p = result.pressure, v = result.penetration;
+  {
+    const auto to = owned.getLocalViewDevice(Tpetra::Access::ReadWrite);
+    Kokkos::parallel_for(
+        "rpc::adapt::contact_fields", device_range(c.first(side + 1) - begin), KOKKOS_LAMBDA(const LO k) {
+          const LO i = begin + k, node = c.node(i);
+          to(node, int(pressure)) = p(i);
+          to(node, int(penetration)) = v(i);
+          to(node, int(yield)) = c.yield(i) < highest_yield ? c.yield(i) : highest_yield;
+          for (int j = 0; j < c.dim; ++j) to(node, normal + j) = c.normal(i, j);
+        });
+    Kokkos::fence();
+  }
+  const auto overlap = rcp(new MultiVector(mesh.overlap_nodes, owned.getNumVectors()));
+  overlap->doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+  return overlap;
+}
+
+/// The contact terms of one side.
+struct ContactTerms {
+  DeviceView<LO **> facets;        // (facets, facet nodes)                    in
+  DeviceView<LO *> cell;           // (facets)                                 in
+  DeviceView<double **> value;     // (points, facet nodes)                    in
+  DeviceView<double *> measure;    // (facets * points)           [m^(dim-1)]  in
+  DeviceView<double ***> traction; // (facets, points, dim), recovered   [Pa]  in
+  DeviceView<double ***> applied;  // (facets, points, dim)              [Pa]  in
+  DeviceView<int *> block;         // (cells)                                  in
+  DeviceView<double **> lame;      // (blocks; lambda, mu)               [Pa]  in
+  ReadColumns field;               // (overlap nodes; Column)                  in
+  LO num_owned_cells;
+  DeviceView<double *> squared; // (owned cells)               [J]       inout
+
+  /// The state of the contact law at the nodes of a facet, or mixed: then what lies between them is not told.
+  enum class FacetState { open = 1, stuck = 2, yielded = 4, mixed };
+  KOKKOS_FUNCTION FacetState state_of(const LO f) const
+  {
+    int state = 0;
+    for (std::size_t a = 0; a < facets.extent(1); ++a) {
+      const double p = field(facets(f, a), int(pressure)), xi = field(facets(f, a), int(yield));
+      state |= int(p >= xi ? FacetState::yielded : (p > 0 ? FacetState::stuck : FacetState::open));
+    }
+    return state == 1 || state == 2 || state == 4 ? FacetState(state) : FacetState::mixed;
+  }
+
+  /// Fields at a point of a facet, and what the recovered stress leaves for the foundation to bear there.
+  struct Point {
+    double at[normal + 3] = {}, rest[3] = {}, recovered = 0; // recovered: pressure
+  };
+  KOKKOS_FUNCTION Point point(const LO f, const int q) const
+  {
+    const int dim = static_cast<int>(traction.extent(2));
+    Point x;
+    for (std::size_t a = 0; a < facets.extent(1); ++a)
+      for (int k = 0; k < normal + dim; ++k) x.at[k] += value(q, a) * field(facets(f, a), k);
+    for (int i = 0; i < dim; ++i) {
+      x.rest[i] = traction(f, q, i) - applied(f, q, i);
+      x.recovered -= x.rest[i] * x.at[normal + i];
+    }
+    return x;
+  }
+
+  KOKKOS_FUNCTION void operator()(const LO f, double &equilibrium, double &complementarity, double &difference) const
+  {
+    if (cell(f) >= num_owned_cells) return;
+    const int dim = static_cast<int>(traction.extent(2)), points = static_cast<int>(value.extent(0));
+    double size = 0;
+    for (int q = 0; q < points; ++q) size += measure(f * points + q);
+    const int of = block(cell(f));
+    // Stresses that balance r and fall to 0 over the depth h have the energy h/3 r^2 / (lambda + 2 mu).
+    const double compliance =
+        (dim == 2 ? size : Kokkos::Experimental::sqrt(size)) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
+    const FacetState state = state_of(f);
+    double out_of_balance = 0, product = 0;
+    for (int q = 0; q < points; ++q) {
+      const Point x = point(f, q);
+      const double xi = x.at[yield], v = x.at[penetration], share = measure(f * points + q);
+      // Of all pressures that the law admits, that of the least sum of both terms will do where the multiplier tells none.
+      const double p =
+          contact::clamp(state == FacetState::mixed ? v / compliance + x.recovered : x.at[pressure], 0, xi);
+      product += share * (v > 0 ? (xi - p) * v : -p * v);
+      for (int i = 0; i < dim; ++i) {
+        const double r = x.rest[i] + p * x.at[normal + i];
+        out_of_balance += compliance * share * r * r;
+      }
+      const double other = x.at[pressure] - contact::clamp(x.recovered, 0, xi);
+      if (state == FacetState::stuck || state == FacetState::mixed) difference += share * other * other;
+    }
+    add_shared(squared(cell(f)), out_of_balance + 2 * product); // a cell may have several facets on the side
+    equilibrium += out_of_balance;
+    complementarity += 2 * product;
+  }
+};
+
+/// How far the multiplier's pressure and that of the recovered stress lie apart where the former is near its largest value.
+struct PeakDifference {
+  ContactTerms terms; // in
+  double highest = 0; // pressure  [Pa]  in
+  static constexpr double share = 0.9;
+
+  KOKKOS_FUNCTION void operator()(const LO f, double &most) const
+  {
+    for (int q = 0; q < static_cast<int>(terms.value.extent(0)); ++q) {
+      const auto x = terms.point(f, q);
+      const double p = x.at[pressure];
+      if (p < share * highest) continue;
+      const double difference = p - contact::clamp(x.recovered, 0, x.at[yield]);
+      most = Kokkos::Experimental::fmax(most, difference < 0 ? -difference : difference);
+    }
+  }
+};
+
+} // namespace
+
+ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials &materials,
+                             const std::vector<const mesh::Side *> &sides, const std::vector<fem::TractionLoad> &loads,
+                             const contact::ContactNodes &contact, const contact::ContactResult &result,
+                             const Vector &u)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  const fem::RecoveredStress recovered(d, materials, u);
+  ErrorEstimate estimate;
+  estimate.squared = recovered.squared_difference();
+  const auto squared = estimate.squared;
+  double sums[4] = {}, peak = 0; // Kokkos' maximum over no facets is -DBL_MAX
+  Kokkos::parallel_reduce(
+      "rpc::adapt::recovery", device_range(mesh.num_owned_cells),
+      KOKKOS_LAMBDA(const LO cell, double &sum) { sum += squared(cell); }, sums[0]);
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const mesh::Side &side = *sides[k];
+    const auto fields = at_overlap_nodes(mesh, contact, result, static_cast<int>(k));
+    const ContactTerms terms{side.facets,
+                             side.cell,
+                             d.reference.facet.value,
+                             fem::facet_measure(d, side),
+                             recovered.tractions(side),
+                             fem::tractions_on(d, side, loads),
+                             mesh.block,
+                             fem::lame_table(mesh, materials),
+                             fields->getLocalViewDevice(Tpetra::Access::ReadOnly),
+                             mesh.num_owned_cells,
+                             squared};
+    double of_side[3] = {}, peak_of_side = 0;
+    Kokkos::parallel_reduce("rpc::adapt::contact_terms", device_range(static_cast<LO>(side.facets.extent(0))), terms,
+                            of_side[0], of_side[1], of_side[2]);
+    for (int m = 0; m < 3; ++m) sums[1 + m] += of_side[m];
+    if (result.sides[k].yielded_length > 0) continue; // the largest pressure is the yield stress
+    Kokkos::parallel_reduce("rpc::adapt::peak_difference", device_range(static_cast<LO>(side.facets.extent(0))),
+                            PeakDifference{terms, result.total.max_pressure}, Kokkos::Max<double>(peak_of_side));
+    peak = std::max(peak, peak_of_side);
+  }
+  double all[4];
+  Teuchos::reduceAll(mesh.comm(), Teuchos::REDUCE_SUM, 4, sums, all);
+  estimate.recovery = all[0];
+  estimate.equilibrium = all[1];
+  estimate.complementarity = all[2];
+  estimate.pressure = std::sqrt(all[3]);
+  estimate.max_pressure = max_all(mesh.comm(), peak);
+  return estimate;
+}
+
+} // namespace rpc::adapt

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "rpc/adapt/refinement.hpp"
+
+#include <vector>
+
+namespace rpc::adapt
+{
+
+/// A plane mesh with the error of each cell, whole and on the host, rows by id.
+struct EstimatedMesh {
+  int order = 1;               ///< of the elements
+  int vertices = 3;            ///< per cell, 3 or 4
+  std::vector<double> coords;  ///< (nodes, 2) [m]; only vertices matter
+  std::vector<int> cells;      ///< (cells, vertices) nodes, counter-clockwise
+  std::vector<double> squared; ///< (cells) eta_T^2 [J]
+
+  int num_cells() const { return static_cast<int>(squared.size()); }
+  int num_nodes() const { return static_cast<int>(coords.size()) / 2; }
+};
+
+/// New cell sizes.
+struct SizePlan {
+  mesh::SizeField
+      field;        ///< the mesh's vertices in the order of their first appearance in its cells, then further points
+  double cells = 0; ///< expected number
+};
+
+/// See new_sizes().                                                                      doc/theory.md (10.5), (10.6)
+SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request);
+
+/// The exponent lambda of |u| ~ r^lambda about each vertex at the boundary, as far as the decay of the errors around it shows;
+/// the order plus 1 or more where u is smooth, and at all other nodes. (nodes)                                    (10.6)
+std::vector<double> local_exponents(const EstimatedMesh &mesh);
+
+} // namespace rpc::adapt

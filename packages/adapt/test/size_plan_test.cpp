@@ -1,0 +1,142 @@
+#include "size_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numeric>
+
+namespace
+{
+
+using namespace rpc::adapt;
+
+/// (0, 1) x (0, 1) in n x n squares, each cut in two for triangles; no errors yet.
+EstimatedMesh square(const int n, const int order, const int vertices)
+{
+  EstimatedMesh mesh;
+  mesh.order = order;
+  mesh.vertices = vertices;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) mesh.coords.insert(mesh.coords.end(), {double(i) / n, double(j) / n});
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = a + n + 1;
+      if (vertices == 4)
+        mesh.cells.insert(mesh.cells.end(), {a, b, c, d});
+      else
+        mesh.cells.insert(mesh.cells.end(), {a, b, c, a, c, d});
+    }
+  mesh.squared.assign(mesh.cells.size() / vertices, 0);
+  return mesh;
+}
+
+/// Errors of a solution like |x|^lambda, at the corner.
+void set_singular_errors(EstimatedMesh &mesh, const double lambda, const double h)
+{
+  for (int cell = 0; cell < mesh.num_cells(); ++cell) {
+    double x[2] = {};
+    for (int a = 0; a < mesh.vertices; ++a)
+      for (int i = 0; i < 2; ++i) x[i] += mesh.coords[2 * mesh.cells[mesh.vertices * cell + a] + i] / mesh.vertices;
+    const double r = std::hypot(x[0], x[1]);
+    mesh.squared[cell] = h * h * std::pow(std::pow(h, mesh.order) * std::pow(r, lambda - 1 - mesh.order), 2);
+  }
+}
+
+double size_at(const SizePlan &plan, const double x, const double y)
+{
+  for (std::size_t n = 0; n < plan.field.size.size(); ++n)
+    if (std::hypot(plan.field.coords[2 * n] - x, plan.field.coords[2 * n + 1] - y) < 1e-12) return plan.field.size[n];
+  ADD_FAILURE() << "no vertex at " << x << ", " << y;
+  return 0;
+}
+
+double sum(const std::vector<double> &v)
+{
+  return std::accumulate(v.begin(), v.end(), 0.);
+}
+
+constexpr double rounding = 1.006; // half a step of 1/64 octave
+
+TEST(SizePlan, EqualErrorsShrinkAllCellsAlikeAsTheOrderTells)
+{
+  for (const int vertices : {3, 4})
+    for (const int order : {1, 2}) {
+      auto mesh = square(6, order, vertices);
+      std::fill(mesh.squared.begin(), mesh.squared.end(), 2.);
+      const SizePlan plan = plan_sizes(mesh, {sum(mesh.squared) / std::pow(4, 2 * order), 1e9});
+      const double h = 1. / 6 * (vertices == 3 ? std::sqrt(2 / std::sqrt(3.)) : 1); // of a cell of the same area
+      for (const double size : plan.field.size) {
+        EXPECT_LT(size / (h / 4), rounding);
+        EXPECT_GT(size / (h / 4), 1 / rounding);
+      }
+      EXPECT_NEAR(plan.cells / mesh.num_cells(), 16, 0.2); // sizes are rounded
+    }
+}
+
+TEST(SizePlan, CellsThatHardlyErrGrowWhileOthersShrink)
+{
+  auto mesh = square(12, 2, 3);
+  for (int cell = 0; cell < mesh.num_cells(); ++cell) mesh.squared[cell] = cell < mesh.num_cells() / 2 ? 1 : 1e-2;
+  const SizePlan plan = plan_sizes(mesh, {sum(mesh.squared) / 16, 1e9});
+  EXPECT_LT(size_at(plan, 0.5, 0), 0.7 / 12);
+  EXPECT_NEAR(size_at(plan, 0.5, 1) / size_at(plan, 0.5, 0), std::pow(1e2, 1. / 6), 0.05);
+}
+
+TEST(SizePlan, KeepsToTheNumberOfCells)
+{
+  auto mesh = square(8, 2, 3);
+  std::fill(mesh.squared.begin(), mesh.squared.end(), 1.);
+  EXPECT_NEAR(plan_sizes(mesh, {1e-12, 500}).cells, 500, 10);
+  EXPECT_GT(plan_sizes(mesh, {1e-12, 1e9}).cells, 5000);
+}
+
+TEST(SizePlan, SizesGrowByNoMoreThanHalfTheDistance)
+{
+  auto mesh = square(10, 1, 3);
+  std::fill(mesh.squared.begin(), mesh.squared.end(), 1e-6);
+  mesh.squared[105] = 1;
+  const SizePlan plan = plan_sizes(mesh, {0.01, 1e9});
+  const double least = *std::min_element(plan.field.size.begin(), plan.field.size.end());
+  EXPECT_LT(least, 0.03);
+  const auto &x = plan.field.coords;
+  for (std::size_t n = 0; n < plan.field.size.size(); ++n)
+    for (std::size_t m = 0; m < plan.field.size.size(); ++m) {
+      // Along edges at most, which is up to sqrt(2) times as far.
+      const double r = std::hypot(x[2 * n] - x[2 * m], x[2 * n + 1] - x[2 * m + 1]);
+      EXPECT_LT(plan.field.size[n], rounding * rounding * (plan.field.size[m] + 0.5 * std::sqrt(2.) * r + 1e-12));
+    }
+}
+
+TEST(SizePlan, NoErrorLetsCellsGrow)
+{
+  const auto mesh = square(4, 1, 4);
+  for (const double size : plan_sizes(mesh, {1, 1e9}).field.size) EXPECT_NEAR(size, 2.5 / 4, 0.01);
+}
+
+TEST(LocalExponents, TellASingularCornerFromSmoothBoundary)
+{
+  for (const int order : {1, 2})
+    for (const double lambda : {0.5, 0.7}) {
+      auto mesh = square(12, order, 3);
+      set_singular_errors(mesh, lambda, 1. / 12);
+      const auto exponent = local_exponents(mesh);
+      EXPECT_NEAR(exponent[0], lambda, 0.3);
+      EXPECT_GT(exponent[12], order);     // a corner where nothing happens
+      EXPECT_GT(exponent[6 * 13], order); // the middle of a side
+    }
+}
+
+TEST(SizePlan, SizesFallTowardsASingularCorner)
+{
+  auto mesh = square(12, 2, 3);
+  const double h = 1. / 12, lambda = 0.7;
+  set_singular_errors(mesh, lambda, h);
+  const SizePlan plan = plan_sizes(mesh, {sum(mesh.squared) / 1000, 1e9});
+  EXPECT_LT(size_at(plan, 0, 0), h / 25); // the error of the corner cell falls like h^0.7 only
+  EXPECT_GT(size_at(plan, 0, 0), h / 10000);
+  EXPECT_GT(size_at(plan, 1, 1), h);
+  // Like r^(1 - lambda / 3) along the first edge, where points halve the way again and again.
+  EXPECT_NEAR(std::log2(size_at(plan, h / 2, 0) / size_at(plan, h / 4, 0)), 1 - lambda / 3, 0.15);
+}
+
+} // namespace

@@ -1,0 +1,188 @@
+#include "report.hpp"
+#include "rpc/adapt/observed_error.hpp"
+#include "rpc/core/error.hpp"
+#include "solve_on.hpp"
+
+#include <Teuchos_Time.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rpc
+{
+namespace
+{
+
+// A new mesh is to come that much below the target: what is predicted is met to some ten percent.
+constexpr double aim = 0.95;
+// The estimate falls by no more from one mesh to the next: a coarse mesh knows little of where a fine one is to be fine.
+constexpr double greatest_reduction = 4;
+// Near the target, what came out above what was planned is allowed for in the next plan, up to a factor, and cells hardly
+// grow, lest the next mesh loses what this one has.
+constexpr double near = 2, greatest_correction = 3, growth_near = 1.25, growth = 2.5;
+// A mesh has no more than so many times the cells that the order of the elements asks for: where a coarse one is to be
+// refined in many more, it has not seen what it estimates.
+constexpr double greatest_excess = 1.5;
+// Meshes are planned that much smaller than allowed: gmsh makes more cells or fewer than it is asked for.
+constexpr double share_of_max_dofs = 0.75;
+
+Cycle cycle_of(const Solution &s, const double seconds)
+{
+  Cycle cycle;
+  cycle.dofs = s.discretization.owned_dofs->getGlobalNumElements();
+  cycle.estimate = relative_estimate(s);
+  cycle.energy = s.energy;
+  cycle.contact_force = s.contact.total.force;
+  cycle.max_pressure = s.contact.total.max_pressure;
+  cycle.contact_length = s.contact.total.contact_length;
+  cycle.pressure_change = s.pressure_norm > 0 ? s.pressure_change / s.pressure_norm : 0;
+  for (const int steps : s.uzawa.newton_iterations) cycle.newton_iterations += steps;
+  cycle.linear_iterations = s.linear.iterations;
+  cycle.recovered_pressure = s.pressure_norm > 0 ? s.estimate->pressure / s.pressure_norm : 0;
+  cycle.recovered_max_pressure = s.estimate->max_pressure;
+  cycle.seconds = seconds;
+  return cycle;
+}
+
+ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
+{
+  std::vector<double> eta;
+  for (const auto &cycle : cycles) eta.push_back(cycle.estimate);
+  const auto error = [&](const auto &change_between) {
+    std::vector<double> change;
+    for (std::size_t k = 1; k < cycles.size(); ++k) change.push_back(change_between(cycles[k - 1], cycles[k]));
+    return adapt::observed_error(change, eta);
+  };
+  ObservedErrors errors;
+  errors.energy = error([](const Cycle &a, const Cycle &b) { return std::abs(b.energy - a.energy); });
+  errors.contact_force = error([](const Cycle &a, const Cycle &b) {
+    return std::hypot(b.contact_force[0] - a.contact_force[0], b.contact_force[1] - a.contact_force[1],
+                      b.contact_force[2] - a.contact_force[2]);
+  });
+  errors.max_pressure = error([](const Cycle &a, const Cycle &b) { return std::abs(b.max_pressure - a.max_pressure); });
+  errors.contact_pressure = error([](const Cycle &, const Cycle &b) { return b.pressure_change; });
+  errors.max_pressure = std::max(errors.max_pressure, cycles.back().recovered_max_pressure); // a NaN stays
+  errors.contact_pressure = std::max(errors.contact_pressure, cycles.back().recovered_pressure);
+  errors.contact_length =
+      error([](const Cycle &a, const Cycle &b) { return std::abs(b.contact_length - a.contact_length); });
+  return errors;
+}
+
+/// Plans mesh after mesh.
+class Planner
+{
+public:
+  explicit Planner(const Scene &scene) : scene_(scene) {}
+
+  /// The mesh after that of a solution; none, and the reason, if there is none to be had. Collective.
+  std::optional<mesh::MeshOptions> next(const Solution &s, std::string &reason)
+  {
+    const double eta = std::sqrt(s.estimate->total());
+    const double wanted = aim * scene_.adapt.target * std::sqrt(s.strain_energy);
+    const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
+    const bool is_near = eta < near * wanted;
+    const double missed = is_near ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
+    planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
+    const double bound = planned_ / missed;
+
+    const double dofs = static_cast<double>(s.discretization.owned_dofs->getGlobalNumElements());
+    const mesh::Mesh &mesh = *s.discretization.mesh;
+    const double cells = static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
+    const double most_dofs = share_of_max_dofs * static_cast<double>(scene_.adapt.max_dofs);
+    const double allowed = most_dofs * cells / dofs;
+    const double sensible = greatest_excess * cells * std::pow(eta / bound, 2. / mesh.element.order);
+    const auto sizes = adapt::new_sizes(s.discretization, *s.estimate,
+                                        {bound * bound, std::min(allowed, sensible), is_near ? growth_near : growth});
+    if (dofs > 0.9 * most_dofs && sizes.predicted_cells > 0.9 * allowed) {
+      reason = "a mesh for the target would exceed \"Adapt->Max Dofs\" = " + std::to_string(scene_.adapt.max_dofs);
+      return std::nullopt;
+    }
+    return mesh::with_sizes(scene_.mesh, sizes.field);
+  }
+
+private:
+  const Scene &scene_;
+  double planned_ = std::numeric_limits<double>::infinity(); // estimate that the present mesh was to have
+};
+
+Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
+                          const std::function<void(const Scene &, Solution &)> &keep)
+{
+  if (comm->getRank() == 0) mesh::start_gmsh_early();
+  Adaptation adaptation;
+  Planner planner(scene);
+  std::optional<mesh::MeshOptions> options = scene.mesh;
+  std::optional<Solution> best;
+  PhaseSeconds seconds;
+  while (options) {
+    const double start = Teuchos::Time::wallTime();
+    std::optional<Solution> next;
+    try {
+      next = solve_on(scene, *options, best ? &*best : nullptr, comm, console);
+    } catch (const Error &failure) { // on all ranks
+      if (!best) throw;
+      adaptation.reason = failure.what();
+      break;
+    }
+    seconds += next->seconds;
+    if (best && !next->uzawa.converged) {
+      adaptation.reason = "no solution on the next mesh: " + next->uzawa.reason;
+      break;
+    }
+    best = std::move(next);
+    adaptation.cycles.push_back(cycle_of(*best, Teuchos::Time::wallTime() - start));
+    if (keep) keep(scene, *best);
+    if (!best->uzawa.converged) {
+      adaptation.reason = "there is no solution to estimate an error of";
+      break;
+    }
+    print_estimate(console, scene, *best);
+    adaptation.reached = relative_estimate(*best) <= scene.adapt.target;
+    if (adaptation.reached) break;
+    if (static_cast<int>(adaptation.cycles.size()) == scene.adapt.max_cycles) {
+      adaptation.reason = "there were \"Adapt->Max Cycles\" = " + std::to_string(scene.adapt.max_cycles) + " meshes";
+      break;
+    }
+    options = planner.next(*best, adaptation.reason);
+  }
+  adaptation.errors = observed_errors(adaptation.cycles);
+  best->adaptation = std::move(adaptation);
+  best->seconds = seconds;
+  return std::move(*best);
+}
+
+} // namespace
+
+Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
+               const std::function<void(const Scene &, Solution &)> &keep)
+{
+  if (scene.adapt.adapts()) return solve_adaptively(scene, comm, console, keep);
+  return solve_on(scene, scene.mesh, nullptr, comm, console);
+}
+
+PhaseSeconds &PhaseSeconds::operator+=(const PhaseSeconds &other)
+{
+  for (double PhaseSeconds::*const phase :
+       {&PhaseSeconds::mesh, &PhaseSeconds::assembly, &PhaseSeconds::prediction, &PhaseSeconds::setup,
+        &PhaseSeconds::solve, &PhaseSeconds::estimate, &PhaseSeconds::output, &PhaseSeconds::total})
+    this->*phase += other.*phase;
+  return *this;
+}
+
+double relative_estimate(const Solution &s)
+{
+  const double squared = s.estimate->total();
+  return squared > 0 ? std::sqrt(squared / s.strain_energy) : 0;
+}
+
+double exact_error(const Scene &scene, const Solution &s)
+{
+  return std::sqrt(2 * std::abs(s.energy - scene.adapt.exact_energy) / s.strain_energy);
+}
+
+bool succeeded(const Solution &s)
+{
+  return s.uzawa.converged && (!s.adaptation || s.adaptation->reached);
+}
+
+} // namespace rpc
