@@ -124,15 +124,30 @@ std::array<double, 2> pressure_errors(const Solution &s)
   return sums;
 }
 
-Errors errors(const std::vector<std::string> &assignments)
+/// (energy, its norm, pressure, its norm), squared, over all ranks.
+std::array<double, 4> squared_errors(const Solution &s)
 {
-  const Solution s = run_scene(std::string(RPC_TEST_DECKS) + "/../../../input/manufactured.xml", assignments);
-  EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
   const auto energy = energy_errors(s), pressure = pressure_errors(s);
   const double mine[4] = {energy[0], energy[1], pressure[0], pressure[1]};
-  double all[4];
-  Teuchos::reduceAll(s.discretization.mesh->comm(), Teuchos::REDUCE_SUM, 4, mine, all);
+  std::array<double, 4> all;
+  Teuchos::reduceAll(s.discretization.mesh->comm(), Teuchos::REDUCE_SUM, 4, mine, all.data());
+  return all;
+}
+
+const std::string deck = std::string(RPC_TEST_DECKS) + "/../../../input/manufactured.xml";
+
+Errors errors(const std::vector<std::string> &assignments)
+{
+  const Solution s = run_scene(deck, assignments);
+  EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+  const auto all = squared_errors(s);
   return {std::sqrt(all[0] / all[1]), std::sqrt(all[2] / all[3])};
+}
+
+/// Estimated over real error in the energy norm.
+double effectivity(const Solution &s)
+{
+  return std::sqrt(s.estimate->total() / squared_errors(s)[0]);
 }
 
 class Manufactured : public testing::TestWithParam<std::string>
@@ -158,12 +173,39 @@ TEST_P(Manufactured, ErrorsFallAtTheElementsRates)
   EXPECT_LT(found.back().energy, quadratic ? 2e-3 : 5e-2);
 }
 
+TEST_P(Manufactured, EstimateIsAboutTheError)
+{
+  for (const int n : {8, 16, 32}) {
+    const std::string cells = "Mesh->Cells={" + std::to_string(3 * n) + "," + std::to_string(n) + "}";
+    const Solution s = run_scene(deck, {"Mesh->Element=" + GetParam(), cells, "Adapt->Estimate Error=true"});
+    EXPECT_GT(effectivity(s), 0.7) << cells;
+    EXPECT_LT(effectivity(s), 2) << cells;
+  }
+}
+
+TEST_P(Manufactured, EstimateIsAboutTheErrorOnAdaptedMeshes)
+{
+  const bool quadratic = GetParam()[1] == '2';
+  std::ostream nowhere(nullptr);
+  const Scene scene = read_scene(deck, {"Mesh->Element=" + GetParam(), "Mesh->Cells={6,2}",
+                                        std::string("Adapt->Target Relative Error=") + (quadratic ? "0.001" : "0.03")});
+  int mesh = 0;
+  const Solution last = solve(scene, Tpetra::getDefaultComm(), nowhere, [&](const Scene &, Solution &s) {
+    const double found = effectivity(s);
+    RecordProperty("effectivity_" + std::to_string(++mesh), std::to_string(found));
+    if (mesh < 3) return;
+    EXPECT_GT(found, 0.7) << "mesh " << mesh;
+    EXPECT_LT(found, 2) << "mesh " << mesh;
+  });
+  EXPECT_TRUE(last.adaptation->reached) << last.adaptation->reason;
+}
+
 INSTANTIATE_TEST_SUITE_P(Elements, Manufactured, testing::Values("P1", "Q1", "P2", "Q2"),
                          [](const auto &info) { return info.param; });
 
 TEST(ManufacturedStates, AreWhereTheyShouldBe)
 {
-  const Solution s = run_scene(std::string(RPC_TEST_DECKS) + "/../../../input/manufactured.xml", {});
+  const Solution s = run_scene(deck, {});
   const auto node = to_host(s.functional->contact().node);
   const auto coords = to_host(s.discretization.mesh->coords);
   const auto state = to_host(s.contact.state);

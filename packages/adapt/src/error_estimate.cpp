@@ -67,16 +67,29 @@ struct ContactTerms {
     return state == 1 || state == 2 || state == 4 ? FacetState(state) : FacetState::mixed;
   }
 
+  /// The shape function of a facet's node at a point, or the one that is linear between neighbouring nodes: quadratic ones
+  /// dip to the wrong side of 0 between the nodes where a state ends, which nodal quadrature does not see.
+  KOKKOS_FUNCTION double shape(const int q, const std::size_t a, const bool linear) const
+  {
+    constexpr std::size_t quadratic_edge = 3; // ends, middle
+    if (!linear || facets.extent(1) != quadratic_edge) return value(q, a);
+    const double x = value(q, 1) - value(q, 0); // the reference coordinate, in [-1, 1]
+    const double at_end = a == 0 ? -x : x, middle = x < 0 ? 1 + x : 1 - x;
+    return a == 2 ? middle : (at_end > 0 ? at_end : 0);
+  }
+
   /// Fields at a point of a facet, and what the recovered stress leaves for the foundation to bear there.
   struct Point {
     double at[normal + 3] = {}, rest[3] = {}, recovered = 0; // recovered: pressure
   };
-  KOKKOS_FUNCTION Point point(const LO f, const int q) const
+  /// @param linear  for all fields, not for the penetration only
+  KOKKOS_FUNCTION Point point(const LO f, const int q, const bool linear) const
   {
     const int dim = static_cast<int>(traction.extent(2));
     Point x;
     for (std::size_t a = 0; a < facets.extent(1); ++a)
-      for (int k = 0; k < normal + dim; ++k) x.at[k] += value(q, a) * field(facets(f, a), k);
+      for (int k = 0; k < normal + dim; ++k)
+        x.at[k] += shape(q, a, linear || k == penetration) * field(facets(f, a), k);
     for (int i = 0; i < dim; ++i) {
       x.rest[i] = traction(f, q, i) - applied(f, q, i);
       x.recovered -= x.rest[i] * x.at[normal + i];
@@ -97,7 +110,7 @@ struct ContactTerms {
     const FacetState state = state_of(f);
     double out_of_balance = 0, product = 0;
     for (int q = 0; q < points; ++q) {
-      const Point x = point(f, q);
+      const Point x = point(f, q, state == FacetState::mixed);
       const double xi = x.at[yield], v = x.at[penetration], share = measure(f * points + q);
       // Of all pressures that the law admits, that of the least sum of both terms will do where the multiplier tells none.
       const double p =
@@ -125,7 +138,7 @@ struct PeakDifference {
   KOKKOS_FUNCTION void operator()(const LO f, double &most) const
   {
     for (int q = 0; q < static_cast<int>(terms.value.extent(0)); ++q) {
-      const auto x = terms.point(f, q);
+      const auto x = terms.point(f, q, false);
       const double p = x.at[pressure];
       if (p < share * highest) continue;
       const double difference = p - contact::clamp(x.recovered, 0, x.at[yield]);
