@@ -65,6 +65,14 @@ ASSIGNMENTS = [
     (["Contact->Penalty=0"], ['"Contact->Penalty" must be `auto` or a finite number > 0', "[Pa/m]", "got 0"]),
     (["Dirichlet->left->Z=0"], ['"Dirichlet->left->Z"', "2D"]),
     (["Traction->top->Z=3"], ['"Traction->top->Z" must be 0 in 2D', "got 3"]),
+    # adaptive meshes
+    (["Adapt->Target Relative Error=1"], ['"Adapt->Target Relative Error" must be in (0, 1), or 0 for none', "got 1"]),
+    (["Adapt->Target Relative Error=-0.1"], ['"Adapt->Target Relative Error" must be in (0, 1)', "got -0.1"]),
+    (["Adapt->Max Dofs=0"], ['"Adapt->Max Dofs" must be > 0', "got 0"]),
+    (["Adapt->Max Cycles=-2"], ['"Adapt->Max Cycles" must be > 0', "got -2"]),
+    (["Adapt->Exact Energy=inf"], ['"Adapt->Exact Energy" must be a double, and finite', '"inf"']),
+    (["Adapt->Target Relative Error=0.1", "Mesh->Lower={0,0,0}", "Mesh->Upper={5,1,1}", "Mesh->Cells={4,2,2}"],
+     ['"Adapt->Target Relative Error"', "2D box or a .geo", "box in 3D"]),
     # solvers
     (["Uzawa->Tolerance=-1"], ['"Uzawa->Tolerance" must be in (0, 1)', "got -1"]),
     (["Uzawa->Maximum Iterations=0"], ['"Uzawa->Maximum Iterations" must be > 0', "got 0"]),

@@ -11,7 +11,7 @@ from rpc_run import BEAM, SMALL, SOURCE, RpcTestCase, errors, files, run_all
 
 YAML = SOURCE / "test" / "regression" / "decks" / "beam.yaml"
 OPTIONS = ["--input", "--output", "--set", "--check", "--print-parameters", "--version", "--help", "--kokkos-"]
-SUBLISTS = ["Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact", "Uzawa", "NOX", "Linear Solver",
+SUBLISTS = ["Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact", "Nested Iteration", "Adapt", "Uzawa", "NOX", "Linear Solver",
             "Linear Solver->Belos", "Linear Solver->MueLu", "Output"]
 
 NUMBER, INTEGERS, NUMBERS = (int, float), [int], [(int, float)]
@@ -205,6 +205,52 @@ class Results(RpcTestCase):
         self.assertFalse(summary["converged"])
         self.assertRegex(summary["reason"], r"not finite appeared first in the forces on the nodes.* of the node at \([\d.]+, [\d.]+\)")
         self.assertIsNone(summary["energy_J"])
+
+
+class AdaptiveRuns(RpcTestCase):
+    def adapt(self, *arguments, code=0):
+        result = self.rpc("--input=beam_adaptive.xml", "--output=out", *arguments, code=code)
+        return result, json.loads((self.folder / "out" / "beam_adaptive.json").read_text())
+
+    def test_the_summary_tells_the_way_to_the_target(self):
+        result, summary = self.adapt("--set=Adapt->Target Relative Error=0.01", "--set=Adapt->Exact Energy=-0.21344083")
+        adaptation, estimate = summary["adaptation"], summary["error_estimate"]
+        self.assertTrue(adaptation["reached"])
+        self.assertLessEqual(estimate["relative"], 0.01)
+        self.assertAlmostEqual(estimate["effectivity"], 1, delta=0.5)
+        self.assertAlmostEqual(estimate["energy_norm"] ** 2, sum(estimate[part] ** 2 for part in (
+            "recovery", "contact_equilibrium", "contact_complementarity")), delta=1e-9 * estimate["energy_norm"] ** 2)
+        cycles = adaptation["cycles"]
+        self.assertEqual(cycles[-1]["dofs"], summary["dofs"])
+        self.assertEqual(cycles[-1]["relative_estimate"], estimate["relative"])
+        self.assertGreater(cycles[0]["relative_estimate"], 0.01)
+        for error in adaptation["errors"].values():
+            self.assertIsInstance(error, float)
+        self.assertIn("the error is what was asked for", result.stdout)
+        self.assertEqual(files(self.folder / "out"), ["beam_adaptive.contact.csv", "beam_adaptive.e", "beam_adaptive.json"])
+
+    def test_a_target_out_of_reach_ends_with_code_4_and_the_best_result(self):
+        result, summary = self.adapt("--set=Adapt->Target Relative Error=1e-6", "--set=Adapt->Max Dofs=3000", code=4)
+        self.assertEqual(errors(result), [])
+        self.assertIn("NOT TO THE TARGET", result.stdout)
+        self.assertTrue(summary["converged"])
+        self.assertFalse(summary["adaptation"]["reached"])
+        self.assertIn("Max Dofs", summary["adaptation"]["reason"])
+        self.assertLessEqual(summary["dofs"], 3000)
+        self.assertLess(summary["error_estimate"]["relative"], 0.01)
+        self.assertTrue((self.folder / "out" / "beam_adaptive.e").exists())
+
+    def test_every_mesh_is_written_on_request(self):
+        _, summary = self.adapt("--set=Adapt->Target Relative Error=0.01", "--set=Adapt->Write All=true")
+        for cycle in range(1, 1 + len(summary["adaptation"]["cycles"])):
+            for ending in (".e", ".json", ".contact.csv"):
+                self.assertTrue((self.folder / "out" / f"beam_adaptive.cycle{cycle}{ending}").exists())
+
+    def test_a_single_mesh_has_an_estimate_on_request(self):
+        summary = self.solve("--set=Adapt->Estimate Error=true", "--set=Adapt->Exact Energy=-0.21344083")
+        self.assertAlmostEqual(summary["error_estimate"]["effectivity"], 1, delta=0.1)
+        self.assertNotIn("adaptation", summary)
+        self.assertNotIn("error_estimate", self.solve())
 
 
 class PassThrough(RpcTestCase):
