@@ -7,7 +7,7 @@ root=$(cd "$here/../.." && pwd)
 rpc=$(realpath "${1:-$root/build/rpc}")
 
 missing=()
-for package in paraview python3-paraview xvfb xauth python3-matplotlib; do
+for package in paraview python3-paraview xvfb xauth python3-matplotlib python3-scipy; do
   dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
 done
 if [ ${#missing[@]} -gt 0 ]; then
@@ -27,7 +27,13 @@ for xi in 12 16 18 20; do
   curves+=("$xi=$work/$xi/beam.contact.csv")
 done
 
+for deck in beam_adaptive hertz_adaptive; do
+  "$rpc" --input="$root/input/$deck.xml" --output="$work" --set="Adapt->Target Relative Error=0.002" >"$work/log" ||
+    { cat "$work/log" >&2; exit 1; }
+done
+
 # Debian's ParaView draws through X only; Xvfb is an X server without a screen.
 xvfb-run -a pvbatch --force-offscreen-rendering "$here/beam_von_mises.py" "$work/16/beam.e" "$here/beam_von_mises.png"
 /usr/bin/python3 "$here/beam_contact.py" "$here/beam_contact.png" "${curves[@]}"
+/usr/bin/python3 "$here/adapted_meshes.py" "$here/adapted_meshes.png" "$work"/{beam,hertz}_adaptive{.e,.contact.csv}
 ls -l "$here"/*.png
