@@ -1,6 +1,7 @@
 #include "report.hpp"
 #include "rpc/adapt/observed_error.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/interrupt.hpp"
 #include "solve_on.hpp"
 
 #include <Teuchos_Time.hpp>
@@ -105,47 +106,56 @@ private:
   double planned_ = std::numeric_limits<double>::infinity(); // estimate that the present mesh was to have
 };
 
+/// The mesh with the least estimate; with the target met that is the last one.
+std::size_t best_of(const std::vector<Cycle> &cycles)
+{
+  const auto less = [](const Cycle &a, const Cycle &b) { return a.estimate < b.estimate; };
+  return std::min_element(cycles.begin(), cycles.end(), less) - cycles.begin();
+}
+
 Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
                           const std::function<void(const Scene &, Solution &)> &keep)
 {
   if (comm->getRank() == 0) mesh::start_gmsh_early();
   Adaptation adaptation;
+  std::vector<Cycle> &cycles = adaptation.cycles;
   Planner planner(scene);
   std::optional<mesh::MeshOptions> options = scene.mesh;
-  std::optional<Solution> best;
+  std::optional<Solution> last, best;
   PhaseSeconds seconds;
   while (options) {
     const double start = Teuchos::Time::wallTime();
     std::optional<Solution> next;
     try {
-      next = solve_on(scene, *options, best ? &*best : nullptr, comm, console);
+      next = solve_on(scene, *options, last ? &*last : nullptr, comm, console);
     } catch (const Error &failure) { // on all ranks
-      if (!best) throw;
-      adaptation.reason = failure.what();
+      if (!last) throw;
+      adaptation.reason = interrupted(*comm) ? interruption() + " before the next mesh" : failure.what();
       break;
     }
     seconds += next->seconds;
-    if (best && !next->uzawa.converged) {
+    if (last && !next->uzawa.converged) {
       adaptation.reason = "no solution on the next mesh: " + next->uzawa.reason;
       break;
     }
-    best = std::move(next);
-    adaptation.cycles.push_back(cycle_of(*best, Teuchos::Time::wallTime() - start));
-    if (keep) keep(scene, *best);
-    if (!best->uzawa.converged) {
+    last = std::move(next);
+    cycles.push_back(cycle_of(*last, Teuchos::Time::wallTime() - start));
+    if (!best || best_of(cycles) + 1 == cycles.size()) best = last;
+    if (keep) keep(scene, *last);
+    if (!last->uzawa.converged || !std::isfinite(cycles.back().estimate)) {
       adaptation.reason = "there is no solution to estimate an error of";
       break;
     }
-    print_estimate(console, scene, *best);
-    adaptation.reached = relative_estimate(*best) <= scene.adapt.target;
+    print_estimate(console, scene, *last);
+    adaptation.reached = cycles.back().estimate <= scene.adapt.target;
     if (adaptation.reached) break;
-    if (static_cast<int>(adaptation.cycles.size()) == scene.adapt.max_cycles) {
+    if (static_cast<int>(cycles.size()) == scene.adapt.max_cycles) {
       adaptation.reason = "there were \"Adapt->Max Cycles\" = " + std::to_string(scene.adapt.max_cycles) + " meshes";
       break;
     }
-    options = planner.next(*best, adaptation.reason);
+    options = planner.next(*last, adaptation.reason);
   }
-  adaptation.errors = observed_errors(adaptation.cycles);
+  adaptation.errors = observed_errors({cycles.begin(), cycles.begin() + best_of(cycles) + 1});
   best->adaptation = std::move(adaptation);
   best->seconds = seconds;
   return std::move(*best);

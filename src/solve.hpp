@@ -61,7 +61,7 @@ struct Adaptation {
   bool reached = false; ///< the target
   std::string reason;
   std::vector<Cycle> cycles; ///< from the first mesh
-  ObservedErrors errors;     ///< of the last of them
+  ObservedErrors errors;     ///< of the one whose results these are
 };
 
 /// All that a run has found.
@@ -87,7 +87,7 @@ struct Solution {
 };
 
 /// Mesh, assembly, Uzawa and Newton: from a scene to its solution. With a target for the error, on as many meshes as that takes;
-/// the solution is the last one's. Collective on comm.
+/// the solution is the last one's, or where the target is not reached that with the least estimate. Collective on comm.
 /// @param console  where the table of the iteration goes; a stream without a buffer prints nothing
 /// @param keep     called with the solution on each mesh of an adaptive run, from the first
 /// @throws rpc::Error on every rank if the scene does not fit its mesh; failing to converge is in the result

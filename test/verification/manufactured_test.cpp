@@ -1,3 +1,4 @@
+#include "energy_of_difference.hpp"
 #include "run_scene.hpp"
 
 #include <cmath>
@@ -10,8 +11,6 @@ namespace
 {
 
 using namespace rpc;
-
-constexpr double lambda = 1.5, mu = 1;
 
 double cube(const double x)
 {
@@ -26,65 +25,19 @@ double exact_pressure(const double x)
   return 0.05 * cube(x - 1);
 }
 /// grad[i][j] = du_i / dx_j
-void exact_gradient(const double x, const double y, double (&grad)[2][2])
+void exact_gradient(const Point &at, double (&grad)[3][3])
 {
+  const double x = at[0], y = at[1];
   grad[0][0] = 0.1 * y * std::sin(x);
   grad[0][1] = -0.1 * std::cos(x);
   grad[1][0] = 0.1 * std::cos(x) - y * 0.15 * square(x - 1) / 3.5;
   grad[1][1] = -0.05 * cube(x - 1) / 3.5;
 }
 
-/// sigma(e) : eps(e) of a displacement gradient.
-double energy_density(const double (&grad)[2][2])
-{
-  const double trace = grad[0][0] + grad[1][1], shear = 0.5 * (grad[0][1] + grad[1][0]);
-  return lambda * trace * trace + 2 * mu * (grad[0][0] * grad[0][0] + grad[1][1] * grad[1][1] + 2 * shear * shear);
-}
-
 struct Errors {
   double energy;   // norm of the displacement error, relative
   double pressure; // L2 over the contact side, relative
 };
-
-/// ((u_h - u)' a (u_h - u), u' a u), integrated with the element's rule for loads; this rank's cells.
-std::array<double, 2> energy_errors(const Solution &s)
-{
-  const fem::Discretization &d = s.discretization;
-  const mesh::Mesh &mesh = *d.mesh;
-  Vector u_overlap(d.overlap_dofs);
-  u_overlap.doImport(*s.u, *d.dof_import, Tpetra::INSERT);
-  const auto u = to_host(device_read(u_overlap));
-  const auto coords = to_host(mesh.coords);
-  const auto cells = to_host(mesh.cells);
-  const auto value = to_host(d.reference.cell_load.value);
-  const auto gradient = to_host(d.reference.cell_load.gradient);
-  const auto weight = to_host(d.reference.cell_load.weight);
-  const int nodes = mesh.element.num_nodes();
-  std::array<double, 2> sums{};
-  for (LO cell = 0; cell < mesh.num_owned_cells; ++cell)
-    for (std::size_t q = 0; q < weight.extent(0); ++q) {
-      double x[2] = {}, jacobian[2][2] = {}, reference[2][2] = {};
-      for (int a = 0; a < nodes; ++a)
-        for (int i = 0; i < 2; ++i) {
-          x[i] += value(q, a) * coords(cells(cell, a), i);
-          for (int j = 0; j < 2; ++j) {
-            jacobian[i][j] += gradient(q, a, j) * coords(cells(cell, a), i);
-            reference[i][j] += gradient(q, a, j) * u(2 * cells(cell, a) + i);
-          }
-        }
-      const double det = jacobian[0][0] * jacobian[1][1] - jacobian[0][1] * jacobian[1][0];
-      const double inverse[2][2] = {{jacobian[1][1] / det, -jacobian[0][1] / det},
-                                    {-jacobian[1][0] / det, jacobian[0][0] / det}};
-      double exact[2][2], error[2][2];
-      exact_gradient(x[0], x[1], exact);
-      for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j)
-          error[i][j] = reference[i][0] * inverse[0][j] + reference[i][1] * inverse[1][j] - exact[i][j];
-      sums[0] += weight(q) * det * energy_density(error);
-      sums[1] += weight(q) * det * energy_density(exact);
-    }
-  return sums;
-}
 
 /// (|p_h - p|^2, |p|^2) over the contact side, of the nodal pressures interpolated by the facets' shape functions; Gauss
 /// points of this rank's facets.
@@ -127,8 +80,12 @@ std::array<double, 2> pressure_errors(const Solution &s)
 /// (energy, its norm, pressure, its norm), squared, over all ranks.
 std::array<double, 4> squared_errors(const Solution &s)
 {
-  const auto energy = energy_errors(s), pressure = pressure_errors(s);
-  const double mine[4] = {energy[0], energy[1], pressure[0], pressure[1]};
+  constexpr fem::Material material{2.6, 0.3}; // lambda = 1.5, mu = 1
+  const Vector zero(s.discretization.owned_dofs);
+  const auto pressure = pressure_errors(s);
+  const double mine[4] = {test::energy_of_difference(s.discretization, material, *s.u, exact_gradient),
+                          test::energy_of_difference(s.discretization, material, zero, exact_gradient), pressure[0],
+                          pressure[1]};
   std::array<double, 4> all;
   Teuchos::reduceAll(s.discretization.mesh->comm(), Teuchos::REDUCE_SUM, 4, mine, all.data());
   return all;

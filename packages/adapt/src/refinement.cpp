@@ -47,7 +47,7 @@ Teuchos::ParameterList valid_adapt_parameters()
       "Target Relative Error", 0.,
       "Bound on the estimated error in the energy norm over that of the solution, in (0, 1): meshes are refined where "
       "the error is until it holds. 0: one mesh, as \"Mesh\" gives it.");
-  valid.set("Max Dofs", 2000000, "Unknowns that no mesh is to exceed, > 0.");
+  valid.set("Max Dofs", 2000000, "Unknowns that no mesh but the first is to exceed, > 0.");
   valid.set("Max Cycles", 12, "Meshes, > 0.");
   valid.set("Estimate Error", false, "Estimate the error without refining; with a target that is done anyway.");
   valid.set("Exact Energy", std::numeric_limits<double>::quiet_NaN(),

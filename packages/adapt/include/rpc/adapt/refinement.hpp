@@ -11,7 +11,7 @@ namespace rpc::adapt
 
 struct AdaptOptions {
   double target = 0;       ///< of the relative error in the energy norm, in (0, 1); 0: one mesh, as it is given
-  long long max_dofs = 0;  ///< of any mesh, > 0
+  long long max_dofs = 0;  ///< of any mesh but the first, > 0
   int max_cycles = 0;      ///< meshes, > 0
   double exact_energy = 0; ///< J of the exact solution [J], in 2D per m; NaN: unknown
   bool estimate = false;   ///< an estimate of the error without adapting
