@@ -65,7 +65,6 @@ public:
   double inverse_energy(const Vector &F);
 
   const LinearSolverCounts &counts() const { return counts_; }
-  double tolerance() const { return options_.tolerance; }
   const MultiVector &coordinates() const; ///< (nodes; dim) [m]
 
 private:
