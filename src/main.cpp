@@ -38,12 +38,14 @@ void keep_freed_memory()
 }
 
 /// One process without mpirun talks to nobody: Open MPI need not start a daemon for it and look for network cards, which
-/// takes it 0.35 s. The user's own settings win; other MPIs know nothing of these.
+/// takes it 0.35 s; nor make a folder, which processes without a daemon would share and remove under each other. The user's
+/// own settings win; other MPIs know nothing of these.
 void start_mpi_alone()
 {
   for (const char *const launched : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
     if (std::getenv(launched)) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);
 }
 
