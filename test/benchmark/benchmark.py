@@ -8,26 +8,33 @@ Each table goes to the screen and to a Markdown file. The exit code is 0 if ever
 takes beyond Python and rpc and does not find is skipped, with the reason.
 """
 import argparse
+import functools
 import json
 import os
 import sys
 
-from suite import accuracy, contact, kernels, paper, peers, scaling
+from suite import accuracy, adaptive, contact, kernels, paper, peers, scaling
 from suite.program import Failure, Program
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TABLES = {"table-1": paper.table_1, "table-2": paper.table_2, "figure-2": paper.figure_2, "cg": scaling.cg_iterations,
           "mesh-size": scaling.mesh_size, "ranks": scaling.ranks, "contact": contact.contact_cost, "kernels": kernels.kernels,
-          "accuracy": accuracy.accuracy, "peers": peers.peers}
-# Meshes: 1/h. The last number of "ranks" and "peers": where the criterion is judged; of "contact": whether it is.
+          "accuracy": accuracy.accuracy, "adaptive": adaptive.adaptive, "peers": peers.peers}
+# Meshes: 1/h; of "accuracy" also sizes of cells, and targets; of "adaptive" first the least target. The last number of "ranks",
+# "peers" and "adaptive": where the criterion is judged; of "contact": whether it is.
 FULL = {"table 1": [8, 16, 32, 64, 128, 256, 512], "table 2": 128, "figure 2": [8, 16, 32, 64, 128, 256], "two ranks from": 256,
         "cg": ([32, 64, 128], [1, 2, 3]), "mesh size": [32, 64, 128, 256, 512], "ranks": ([128, 256], 3, 256),
         "contact": (256, 3, True), "kernels": [256, 512], "peers": ([128], 2, 128),
-        "accuracy": {"box": [16, 32, 64, 128], "graded": ([0.05, 0.025, 0.0125, 0.00625], [0.2, 0.1, 0.05, 0.025]),
-                     "hertz": [4, 2, 1, 0.5]}}
+        "accuracy": {"elements": ("P1", "Q1", "P2", "Q2"), "box": [16, 32, 64, 128], "finer Q1": [256, 512],
+                     "peers": [16, 32, 64, 128],
+                     "graded": ([0.05, 0.025, 0.0125, 0.00625], [0.2, 0.1, 0.05, 0.025]), "hertz": [4, 2, 1, 0.5],
+                     "targets": [0.02, 0.01, 0.005, 0.002, 0.001, 0.0005]},
+        "adaptive": (0, 3, 512)}
 QUICK = {"table 1": [8, 16, 32], "table 2": 32, "figure 2": [8, 16, 32], "two ranks from": 32, "cg": ([16, 32], [1, 2]),
          "mesh size": [16, 32], "ranks": ([32], 1, None), "contact": (32, 1, False), "kernels": [32], "peers": ([16], 1, None),
-         "accuracy": {"box": [8, 16], "graded": ([0.2, 0.1], [0.4, 0.2]), "hertz": [8]}}
+         "accuracy": {"elements": ("Q1", "P2"), "box": [8, 16], "finer Q1": [], "peers": [16], "graded": ([0.2], [0.4]),
+                      "hertz": [8], "targets": [0.05, 0.02]},
+         "adaptive": (0.02, 1, None)}
 HEADING = """# Benchmarks
 
 Example 1 of the paper is input/beam.xml, its Example 2 input/hertz.xml. Every figure below was printed by
@@ -49,9 +56,18 @@ class Bench:
         with open(os.path.join(HERE, "reference.json")) as file:
             self.reference = json.load(file)
 
-    def beam_reference(self, xi):
-        """[J, its tolerance, a(u, u)] of the beam."""
-        return next(row[1:] for row in self.reference["beam"]["rows"] if row[0] == xi)
+    @functools.cached_property
+    def python(self):
+        """The interpreter for the peers."""
+        return peers.Python(self.output)
+
+    def energy_reference(self, problem, xi):
+        """[J, its tolerance, a(u, u)] of the problem, beam or hertz."""
+        return self.row(problem, xi)[1:4]
+
+    def row(self, problem, xi):
+        """Of the reference."""
+        return next(row for row in self.reference[problem]["rows"] if row[0] == xi)
 
 
 def machine(bench):
@@ -75,7 +91,8 @@ def cut(sizes, largest):
 
     plain = {name: kept(sizes[name]) for name in ("table 1", "table 2", "figure 2", "mesh size", "kernels")}
     first = {name: (kept(sizes[name][0]), *sizes[name][1:]) for name in ("cg", "ranks", "contact", "peers")}
-    return {**sizes, **plain, **first, "accuracy": {**sizes["accuracy"], "box": kept(sizes["accuracy"]["box"])}}
+    boxes = {name: kept(sizes["accuracy"][name]) for name in ("box", "finer Q1", "peers")}
+    return {**sizes, **plain, **first, "accuracy": {**sizes["accuracy"], **boxes}}
 
 
 def parse(arguments):

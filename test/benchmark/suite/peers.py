@@ -13,12 +13,12 @@ HERE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "peers")
 LEAST_RATIO = 15.0  # peer's time over rpc's on one rank
 ENERGY_TOLERANCE = 1e-7  # [J/m] between peer and rpc: the same discrete problem
 TIMEOUT = 600  # [s]
-# name, modules, xi, command, whether its libraries have threads
-PEERS = (("scikit-fem, SuperLU", ("skfem",), "16", ("skfem_superlu.py", "{n}", "16"), False),
-         ("scikit-fem, PETSc MUMPS", ("skfem", "petsc4py"), "16", ("skfem_petsc.py", "{n}", "16", "mumps"), True),
-         ("scikit-fem, PETSc hypre", ("skfem", "petsc4py"), "16", ("skfem_petsc.py", "{n}", "16", "hypre"), False),
-         ("scikit-fem, PETSc GAMG", ("skfem", "petsc4py"), "16", ("skfem_petsc.py", "{n}", "16", "gamg"), False),
-         ("scikit-fem, MUMPS Schur complement", ("skfem", "petsc4py"), "16", ("skfem_schur.py", "{n}", "16"), True),
+# name, modules, xi [Pa], command, whether its libraries have threads
+PEERS = (("scikit-fem, SuperLU", ("skfem",), "16", ("skfem_superlu.py", "{n}", "{xi}"), False),
+         ("scikit-fem, PETSc MUMPS", ("skfem", "petsc4py"), "16", ("skfem_petsc.py", "{n}", "{xi}", "mumps"), True),
+         ("scikit-fem, PETSc hypre", ("skfem", "petsc4py"), "16", ("skfem_petsc.py", "{n}", "{xi}", "hypre"), False),
+         ("scikit-fem, PETSc GAMG", ("skfem", "petsc4py"), "16", ("skfem_petsc.py", "{n}", "{xi}", "gamg"), False),
+         ("scikit-fem, MUMPS Schur complement", ("skfem", "petsc4py"), "16", ("skfem_schur.py", "{n}", "{xi}"), True),
          ("GetFEM, MUMPS", ("getfem",), "inf", ("getfem_contact.py", "{n}"), True))
 
 
@@ -26,7 +26,7 @@ class Python:
     """The interpreter for the peers: Debian's modules are those of its own Python, scikit-fem comes from PyPI."""
 
     def __init__(self, output):
-        self.environment, self.reasons = {}, {}
+        self.environment, self.reasons, self.results = {}, {}, {}
         petsc = sorted(glob.glob("/usr/lib/petscdir/*/*-real/lib/python3/dist-packages/petsc4py"))
         if "PETSC_DIR" not in os.environ and petsc:  # Debian's petsc4py finds itself through it
             self.environment["PETSC_DIR"] = petsc[-1].split("/lib/python3")[0]
@@ -56,7 +56,19 @@ class Python:
             self.reasons.setdefault(module, "%s cannot import %s" % (self.base, module))
         return found
 
-    def run(self, script, arguments, threads):
+    def lacks(self, modules):
+        """Why the first of the modules that is missing is missing; None if all are there."""
+        return next((self.reasons[module] for module in modules if not self.has(module)), None)
+
+    def run(self, command, n, xi, threads, fresh=False):
+        """Equal runs once, unless fresh. A result is what the script reports, with `process` and `cpu` [s]."""
+        key = (command, n, xi, threads)
+        if fresh or key not in self.results:
+            self.results[key] = self._run(command[0], [argument.format(n=n, xi=xi) for argument in command[1:]], threads)
+        return self.results[key]
+
+    def _run(self, script, arguments, threads):
+        print("  %s, %d thread(s)" % (" ".join([script, *arguments]), threads), file=sys.stderr, flush=True)
         environment = {**self.environment, "OMP_NUM_THREADS": str(threads), "OPENBLAS_NUM_THREADS": str(threads)}
         run = execute([self.path, os.path.join(HERE, script), *arguments], environment=environment, timeout=TIMEOUT)
         return {**json.loads(run.output.splitlines()[-1]), "process": run.seconds, "cpu": run.cpu_seconds}
@@ -65,11 +77,10 @@ class Python:
 def compare(bench, python, n, xi, command, threads, repeats):
     """A peer in turns with rpc: its last result with medians of its time (process), of its time over rpc's on 1 and 2 ranks
     (over 1, over 2) and of its CPU time over that of 1 rank (cpu), and the difference of J."""
-    arguments = [argument.format(n=n) for argument in command[1:]]
     runs = []
     for _ in range(repeats):
         ours = [bench.program.beam(n, xi, ranks, fresh=True) for ranks in (1, 2)]
-        runs.append((python.run(command[0], arguments, threads), *ours))
+        runs.append((python.run(command, n, xi, threads, fresh=True), *ours))
     peer, ours, _ = runs[-1]
     return {**peer, "threads": threads, "difference": peer["J"] - ours["energy_J"],
             "process": statistics.median(peer["process"] for peer, _, _ in runs),
@@ -81,7 +92,7 @@ def compare(bench, python, n, xi, command, threads, repeats):
 def peers(bench):
     meshes, repeats, judged = bench.sizes["peers"]
     title = "Peers: the beam, Q1"
-    python = Python(bench.output)
+    python = bench.python
     cores = len(os.sched_getaffinity(0))
     table = Table(title,
                   "Whole processes, taken in turns with rpc's on 1 and 2 ranks (the latter with mpirun's start); medians of %d. "
@@ -96,9 +107,9 @@ def peers(bench):
     for n in meshes:
         ratios = []
         for name, modules, xi, command, threaded in PEERS:
-            absent = [module for module in modules if not python.has(module)]
-            if absent:
-                missing.append("%s: %s" % (name, python.reasons[absent[0]]))
+            reason = python.lacks(modules)
+            if reason:
+                missing.append("%s: %s" % (name, reason))
                 continue
             try:
                 best = min((compare(bench, python, n, xi, command, threads, repeats)
