@@ -14,7 +14,7 @@ namespace rpc::adapt
 namespace
 {
 
-// From one mesh to the next a cell of a smooth solution shrinks or grows by no more: the estimate knows no better.
+// From one mesh to the next a cell of a smooth solution shrinks by no more: the estimate knows no better.
 constexpr double least_ratio = 0.1;
 // The same at a singular vertex, where cells shrink towards a point and cost little.
 constexpr double least_vertex_ratio = 1e-4;
