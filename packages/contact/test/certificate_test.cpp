@@ -122,7 +122,7 @@ TEST(Certificate, WorstIsTheLargestPartAndNaNIfOneIs)
     const auto with = [k](const double value) {
       double parts[4] = {0.1, 0.1, 0.1, 0.1};
       parts[k] = value;
-      return Certificate{parts[0], parts[1], parts[2], parts[3]};
+      return Certificate{parts[0], parts[1], parts[2], parts[3], {}};
     };
     EXPECT_EQ(with(0.3).worst(), 0.3);
     EXPECT_TRUE(with(0.3).holds(0.3));
@@ -234,7 +234,7 @@ Certificate orders(const Certificate &whole, const Certificate &half)
 {
   return {std::log2(whole.equilibrium_residual / half.equilibrium_residual),
           std::log2(whole.kkt_residual / half.kkt_residual), std::log2(whole.energy_balance / half.energy_balance),
-          std::log2(whole.duality_gap / half.duality_gap)};
+          std::log2(whole.duality_gap / half.duality_gap), {}};
 }
 
 TEST(Certificate, GrowsLinearlyWithADisturbanceOfTheContactNodes)
