@@ -17,6 +17,7 @@ target_link_libraries(rpc_test_main PUBLIC rpc::trilinos GTest::gtest)
 set(rpc_test_environment
     OMP_NUM_THREADS=${RPC_TEST_THREADS}
     OMP_PROC_BIND=false
+    OMP_WAIT_POLICY=passive # threads that spin while they wait take the cores from those that they wait for
     OMPI_ALLOW_RUN_AS_ROOT=1
     OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     OMPI_MCA_rmaps_base_oversubscribe=1

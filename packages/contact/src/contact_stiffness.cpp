@@ -54,12 +54,12 @@ void write_diagonal_blocks(const ContactNodes &c, const DeviceView<double *> &ad
         for (int k = 0; k < c.dim; ++k)
           for (int l = 0; l < c.dim; ++l) values(block(i, k) + l) = elastic(i, k, l);
       });
-  Kokkos::parallel_for(
-      "rpc::contact::stuck_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+  for_each_point_by_side(
+      "rpc::contact::stuck_blocks", c, KOKKOS_LAMBDA(const LO i) {
         if (added(i) == 0) return;
         for (int k = 0; k < c.dim; ++k)
           for (int l = 0; l < c.dim; ++l)
-            add_shared(values(block(i, k) + l), added(i) * c.weight(i) * c.direction(i, k) * c.direction(i, l));
+            values(block(i, k) + l) += added(i) * c.weight(i) * c.direction(i, k) * c.direction(i, l);
       });
   Kokkos::fence();
 }

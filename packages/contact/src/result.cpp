@@ -136,9 +136,9 @@ Vector contact_forces(const fem::Discretization &d, const ContactNodes &contact,
   const ContactNodes c = contact;
   const auto p = result.pressure;
   const auto to = device_write(force);
-  Kokkos::parallel_for(
-      "rpc::contact::forces", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) add_shared(to(c.dim * c.node(i) + k), -c.weight(i) * p(i) * c.normal(i, k));
+  for_each_point_by_side(
+      "rpc::contact::forces", c, KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) -= c.weight(i) * p(i) * c.normal(i, k);
       });
   Kokkos::fence();
   return force;

@@ -119,9 +119,9 @@ double energy_at_nodes(const ContactNodes &c, const DeviceView<double *> &lambda
 void add_contact_force(const ContactNodes &c, const DeviceView<double *> &p, Vector &F)
 {
   const auto to = device_write(F);
-  Kokkos::parallel_for(
-      "rpc::contact::force", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) add_shared(to(c.dim * c.node(i) + k), c.weight(i) * p(i) * c.direction(i, k));
+  for_each_point_by_side(
+      "rpc::contact::force", c, KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) += c.weight(i) * p(i) * c.direction(i, k);
       });
   Kokkos::fence();
 }
@@ -394,14 +394,14 @@ void SmoothedFunctional::take_states(const StateChoice &choice, Vector &u)
   second_choice_ = piece_chosen_; // before, lambda is the start and no solution of a piece
   piece_chosen_ = true;
   const auto x = device_write(u);
-  Kokkos::parallel_for(
-      "rpc::contact::take_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+  for_each_point_by_side( // a node of two sides is moved for one after the other
+      "rpc::contact::take_states", c, KOKKOS_LAMBDA(const LO i) {
         if (c.fixed(i)) return;
         if (next(i) == State::stuck && piece(i) != State::stuck) {
           double length = 0;
           for (int k = 0; k < c.dim; ++k) length += c.direction(i, k) * c.direction(i, k);
           const double move = penetration(c, i, x) / length;
-          for (int k = 0; k < c.dim; ++k) add_shared(x(c.dim * c.node(i) + k), -move * c.direction(i, k));
+          for (int k = 0; k < c.dim; ++k) x(c.dim * c.node(i) + k) -= move * c.direction(i, k);
         }
         piece(i) = next(i);
         if (next(i) == State::stuck)

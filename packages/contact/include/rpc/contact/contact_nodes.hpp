@@ -73,6 +73,14 @@ struct ContactNodes {
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
                            const fem::DirichletDofs &dirichlet, const fem::Materials &materials = {});
 
+/// Runs work(i) for all points, side after side: on one side each node is one point, and no other thread meets it.
+template <class Work>
+void for_each_point_by_side(const char *label, const ContactNodes &c, const Work &work)
+{
+  for (int side = 0; side < c.num_sides(); ++side)
+    Kokkos::parallel_for(label, Kokkos::RangePolicy<ExecutionSpace, LO>(c.first(side), c.first(side + 1)), work);
+}
+
 /// direction_i . u_i at one node, for kernels [m].
 template <class U>
 KOKKOS_INLINE_FUNCTION double along_direction(const ContactNodes &c, const LO i, const U &u)
