@@ -212,11 +212,16 @@ TEST(Adaptive, RunsAreRepeatableAndTheSameOnAnyNumberOfRanks)
     const std::vector<std::string> scene = {"Mesh->Element=" + element};
     const Adapted here("beam_adaptive.xml", scene, exact, 0.003), again("beam_adaptive.xml", scene, exact, 0.003);
     const Adapted serial("beam_adaptive.xml", scene, exact, 0.003, alone);
-    EXPECT_EQ(here.dofs, again.dofs);
-    EXPECT_EQ(here.estimate, again.estimate);
+    ASSERT_EQ(here.dofs, again.dofs);
     ASSERT_EQ(here.dofs, serial.dofs);
-    for (std::size_t k = 0; k < here.dofs.size(); ++k)
+    for (std::size_t k = 0; k < here.dofs.size(); ++k) {
+      // MueLu's threads aggregate and transpose in any order: then only to the tolerance of solves, as between ranks.
+      if (ExecutionSpace().concurrency() == 1) {
+        EXPECT_EQ(here.estimate[k], again.estimate[k]) << "mesh " << k + 1;
+      }
+      EXPECT_NEAR(here.estimate[k] / again.estimate[k], 1, 1e-6) << "mesh " << k + 1;
       EXPECT_NEAR(here.estimate[k] / serial.estimate[k], 1, 1e-6) << "mesh " << k + 1;
+    }
   }
 }
 

@@ -53,7 +53,7 @@ struct ContactTerms {
   DeviceView<double **> lame;      // (blocks; lambda, mu)               [Pa]  in
   ReadColumns field;               // (overlap nodes; Column)                  in
   LO num_owned_cells;
-  DeviceView<double *> squared; // (owned cells)               [J]       inout
+  DeviceView<double *> squared; // (facets), of owned cells    [J]       out
 
   /// The state of the contact law at the nodes of a facet, or mixed: then what lies between them is not told.
   enum class FacetState { open = 1, stuck = 2, yielded = 4, mixed };
@@ -123,11 +123,24 @@ struct ContactTerms {
       const double other = x.at[pressure] - contact::clamp(x.recovered, 0, xi);
       if (state == FacetState::stuck || state == FacetState::mixed) difference += share * other * other;
     }
-    add_shared(squared(cell(f)), out_of_balance + 2 * product); // a cell may have several facets on the side
+    squared(f) = out_of_balance + 2 * product;
     equilibrium += out_of_balance;
     complementarity += 2 * product;
   }
 };
+
+/// Adds what its facets have to each cell, which may have several: one after the other, for an order of the sums.
+void add_to_cells(const mesh::Side &side, const DeviceView<double *> &of_facet, const DeviceView<double *> &squared)
+{
+  const auto cell = side.cell;
+  const LO num_facets = static_cast<LO>(cell.extent(0)), num_owned_cells = static_cast<LO>(squared.extent(0));
+  Kokkos::parallel_for(
+      "rpc::adapt::add_to_cells", device_range(1), KOKKOS_LAMBDA(const LO) {
+        for (LO f = 0; f < num_facets; ++f)
+          if (cell(f) < num_owned_cells) squared(cell(f)) += of_facet(f);
+      });
+  Kokkos::fence();
+}
 
 /// How far the multiplier's pressure and that of the recovered stress lie apart where the former is near its largest value.
 struct PeakDifference {
@@ -176,10 +189,11 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
                              fem::lame_table(mesh, materials),
                              fields->getLocalViewDevice(Tpetra::Access::ReadOnly),
                              mesh.num_owned_cells,
-                             squared};
+                             DeviceView<double *>("rpc::adapt::contact_terms", side.facets.extent(0))};
     double of_side[3] = {}, peak_of_side = 0;
     Kokkos::parallel_reduce("rpc::adapt::contact_terms", device_range(static_cast<LO>(side.facets.extent(0))), terms,
                             of_side[0], of_side[1], of_side[2]);
+    add_to_cells(side, terms.squared, squared);
     for (int m = 0; m < 3; ++m) sums[1 + m] += of_side[m];
     if (result.sides[k].yielded_length > 0) continue; // the largest pressure is the yield stress
     Kokkos::parallel_reduce("rpc::adapt::peak_difference", device_range(static_cast<LO>(side.facets.extent(0))),

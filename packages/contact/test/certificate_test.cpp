@@ -233,8 +233,10 @@ TEST(Certificate, OfTheSolutionIsZero)
 Certificate orders(const Certificate &whole, const Certificate &half)
 {
   return {std::log2(whole.equilibrium_residual / half.equilibrium_residual),
-          std::log2(whole.kkt_residual / half.kkt_residual), std::log2(whole.energy_balance / half.energy_balance),
-          std::log2(whole.duality_gap / half.duality_gap), {}};
+          std::log2(whole.kkt_residual / half.kkt_residual),
+          std::log2(whole.energy_balance / half.energy_balance),
+          std::log2(whole.duality_gap / half.duality_gap),
+          {}};
 }
 
 TEST(Certificate, GrowsLinearlyWithADisturbanceOfTheContactNodes)

@@ -1,7 +1,7 @@
 #include "rpc/fem/discretization.hpp"
 
+#include "around_nodes.hpp"
 #include "cell_shapes.hpp"
-#include "offsets.hpp"
 
 #include <array>
 
@@ -9,33 +9,6 @@ namespace rpc::fem
 {
 namespace
 {
-
-NodeCells cells_around_nodes(const mesh::Mesh &mesh)
-{
-  const auto cells = mesh.cells;
-  const LO num_owned = mesh.num_owned_nodes();
-  const int nodes = mesh.element.num_nodes();
-  DeviceView<LO *> count("rpc::fem::cells_per_node", num_owned);
-  Kokkos::parallel_for(
-      "rpc::fem::count_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
-        for (int a = 0; a < nodes; ++a)
-          if (cells(cell, a) < num_owned) Kokkos::atomic_increment(&count(cells(cell, a)));
-      });
-  NodeCells around;
-  around.row = offsets_of(count, "rpc::fem::node_cells_row");
-  around.cell = DeviceView<LO *>("rpc::fem::node_cells", last_of(around.row));
-  Kokkos::deep_copy(count, 0);
-  const auto row = around.row;
-  const auto list = around.cell;
-  Kokkos::parallel_for(
-      "rpc::fem::list_cells", device_range(mesh.num_cells()), KOKKOS_LAMBDA(const LO cell) {
-        for (int a = 0; a < nodes; ++a) {
-          const LO node = cells(cell, a);
-          if (node < num_owned) list(row(node) + Kokkos::atomic_fetch_add(&count(node), 1)) = cell;
-        }
-      });
-  return around;
-}
 
 NodeGraph node_graph(const mesh::Mesh &mesh, const NodeCells &around)
 {
@@ -141,7 +114,7 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
       d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
   d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
   d.shapes = cell_shapes(*d.mesh);
-  d.around = cells_around_nodes(*d.mesh);
+  d.around = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
   d.nodes = node_graph(*d.mesh, d.around);
   d.graph = dof_graph(d);
   return d;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "around_nodes.hpp"
 #include "kernels.hpp"
 #include "patch_polynomial.hpp"
 #include "rpc/fem/elasticity.hpp"
@@ -266,7 +267,7 @@ KOKKOS_INLINE_FUNCTION LO place_in_row(const DeviceView<LO *> &col, const std::s
   return low;
 }
 
-/// K += stiffness of one cell. Entries are found once per pair of nodes: a node's rows share their columns.
+/// K += stiffness of one cell, by one thread. Entries are found once per pair of nodes, whose rows share their columns.
 template <int Dim, int Nodes>
 struct AddStiffness {
   static constexpr int dofs = Dim * Nodes;
@@ -294,8 +295,61 @@ struct AddStiffness {
         const LO at = place_in_row(nodes.col, begin, length, cells(cell, b));
         for (int i = 0; i < Dim; ++i) {
           double *const entry = &values(Dim * (Dim * begin + i * length + at));
-          for (int j = 0; j < Dim; ++j) add_shared(entry[j], k[Dim * a + i][Dim * b + j]); // cells share rows
+          for (int j = 0; j < Dim; ++j) entry[j] += k[Dim * a + i][Dim * b + j]; // cells share rows
         }
+      }
+    }
+  }
+};
+
+/// The stiffness of each cell from a first one on: what many threads, which must not share rows, add node by node.
+template <int Dim, int Nodes>
+struct TabulateCells {
+  static constexpr int dofs = Dim * Nodes;
+
+  CellStiffness<Dim, Nodes> stiffness;     //                             in
+  LO first;                                // cell
+  DeviceView<double *[dofs][dofs]> matrix; // (cells, dofs, dofs)  [N/m]  out
+
+  /// @param bad  counts cells whose Jacobian is <= 0 somewhere
+  KOKKOS_FUNCTION void operator()(const LO m, LO &bad) const
+  {
+    double k[dofs][dofs];
+    if (!stiffness(first + m, stiffness.body.block(first + m), k)) {
+      ++bad;
+      return;
+    }
+    for (int r = 0; r < dofs; ++r)
+      for (int c = 0; c < dofs; ++c) matrix(m, r, c) = k[r][c];
+  }
+};
+
+/// The rows of one node of K += its tabulated cells, in their order.
+template <int Dim, int Nodes>
+struct AddTabulated {
+  static constexpr int dofs = Dim * Nodes;
+
+  DeviceView<LO **> cells;                 // (cells, Nodes)                       in, overlap lids
+  LO first, last;                          // tabulated cells, without the last
+  DeviceView<double *[dofs][dofs]> matrix; // (tabulated cells, dofs, dofs) [N/m]  in
+  NodeCells around;                        //                                      in
+  NodeGraph nodes;                         //                                      in
+  DeviceView<double *> values;             // (matrix entries)              [N/m]  inout
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    const std::size_t begin = nodes.row(node);
+    const LO length = static_cast<LO>(nodes.row(node + 1) - begin);
+    double *const rows = &values(Dim * Dim * begin);
+    for (std::size_t k = around.row(node); k < around.row(node + 1); ++k) {
+      const LO cell = around.cell(k);
+      if (cell < first || cell >= last) continue;
+      const int a = place_in(cells, cell, node);
+      for (int b = 0; b < Nodes; ++b) {
+        const LO at = place_in_row(nodes.col, begin, length, cells(cell, b));
+        for (int i = 0; i < Dim; ++i)
+          for (int j = 0; j < Dim; ++j)
+            rows[Dim * (i * length + at) + j] += matrix(cell - first, Dim * a + i, Dim * b + j);
       }
     }
   }
@@ -448,7 +502,8 @@ struct InternalWorkOfCell {
   ReadVector u;                  // (overlap dofs)  [m]   in
   LO num_owned;                  // nodes
   LO num_owned_cells;
-  WriteVector force; // (owned dofs)    [N]   inout
+  WriteVector force;                      // (owned dofs)           [N]  inout, by one thread
+  DeviceView<double *[Nodes][Dim]> share; // (cells, Nodes, Dim)    [N]  out, by many: what the cell adds to force
 
   /// @param squares  += |forces of this cell|^2 [N^2]
   /// @param energy   += int sigma(u) : eps(u) [J]
@@ -482,12 +537,35 @@ struct InternalWorkOfCell {
       for (int i = 0; i < Dim; ++i) own[0][i] -= own[a][i];
     for (int a = 0; a < Nodes; ++a) {
       const LO node = body.cells(cell, a);
-      for (int i = 0; i < Dim && node < num_owned; ++i) add_shared(force(Dim * node + i), own[a][i]);
+      for (int i = 0; i < Dim; ++i)
+        if constexpr (!one_thread)
+          share(cell, a, i) = own[a][i];
+        else if (node < num_owned)
+          force(Dim * node + i) += own[a][i];
     }
     if (cell >= num_owned_cells) return;
     energy += of_cell;
     for (int a = 0; a < Nodes; ++a)
       for (int i = 0; i < Dim; ++i) squares += own[a][i] * own[a][i];
+  }
+};
+
+/// What the cells around a node add to the force there, in their order.
+template <int Dim, int Nodes>
+struct SumShares {
+  DeviceView<LO **> cells;                // (cells, Nodes)               in, overlap lids
+  DeviceView<double *[Nodes][Dim]> share; // (cells, Nodes, Dim)    [N]   in
+  NodeCells around;                       //                              in
+  WriteVector force;                      // (owned dofs)           [N]   out
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    double sum[Dim] = {};
+    for (std::size_t k = around.row(node); k < around.row(node + 1); ++k) {
+      const int a = place_in(cells, around.cell(k), node);
+      for (int i = 0; i < Dim; ++i) sum[i] += share(around.cell(k), a, i);
+    }
+    for (int i = 0; i < Dim; ++i) force(Dim * node + i) = sum[i];
   }
 };
 

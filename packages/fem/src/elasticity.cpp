@@ -157,23 +157,24 @@ DeviceView<double *> cell_measure(const mesh::Mesh &mesh, const BasisTable &tabl
 }
 
 /// load(ai) += sum over entities (cells or facets) and their points q, measure_q N_a(q) f_i(q).
+/// @param around  entities around the owned nodes
 /// @param f  (entities * points, dim)
-void add_load(const DeviceView<LO **> &entities, const DeviceView<double **> &value,
-              const DeviceView<double *> &measure, const DeviceView<double **> &f, const LO num_owned_nodes,
-              Vector &load)
+void add_load(const DeviceView<LO **> &entities, const NodeCells &around, const DeviceView<double **> &value,
+              const DeviceView<double *> &measure, const DeviceView<double **> &f, Vector &load)
 {
   const auto b = device_write(load);
   const int dim = static_cast<int>(f.extent(1)), points = static_cast<int>(value.extent(0));
-  const int nodes = static_cast<int>(entities.extent(1));
+  const LO num_nodes = static_cast<LO>(around.row.extent(0)) - 1;
   Kokkos::parallel_for(
-      "rpc::fem::add_load", device_range(static_cast<LO>(entities.extent(0))), KOKKOS_LAMBDA(const LO entity) {
-        for (int a = 0; a < nodes; ++a) {
-          const LO node = entities(entity, a);
-          for (int i = 0; i < dim && node < num_owned_nodes; ++i) {
+      "rpc::fem::add_load", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
+        for (std::size_t k = around.row(node); k < around.row(node + 1); ++k) {
+          const LO entity = around.cell(k);
+          const int a = place_in(entities, entity, node);
+          for (int i = 0; i < dim; ++i) {
             double sum = 0;
             for (int q = 0; q < points; ++q)
               sum += measure(entity * points + q) * value(q, a) * f(entity * points + q, i);
-            add_shared(b(dim * node + i), sum);
+            b(dim * node + i) += sum;
           }
         }
       });
@@ -209,9 +210,42 @@ DeviceView<double *> add_stiffness(const Discretization &d, const CellStiffness<
                                    const std::size_t num_entries, LO &bad)
 {
   const DeviceView<double *> values("rpc::fem::stiffness", num_entries);
-  const AddStiffness<Dim, Nodes> add{stiffness, d.nodes, d.mesh->num_owned_nodes(), values};
-  Kokkos::parallel_reduce("rpc::fem::add_stiffness", device_range(d.mesh->num_cells()), add, bad);
+  const LO num_cells = d.mesh->num_cells(), num_owned = d.mesh->num_owned_nodes();
+  if constexpr (one_thread) {
+    const AddStiffness<Dim, Nodes> add{stiffness, d.nodes, num_owned, values};
+    Kokkos::parallel_reduce("rpc::fem::add_stiffness", device_range(num_cells), add, bad);
+  } else {
+    constexpr int dofs = Dim * Nodes;
+    constexpr LO most = (1 << 28) / static_cast<LO>(sizeof(double[dofs][dofs])); // cells in 256 MB
+    const DeviceView<double *[dofs][dofs]> matrix(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::cell_stiffness"),
+                                                  std::min(most, num_cells));
+    for (LO first = 0; first < num_cells; first += most) {
+      const LO last = first + std::min(most, num_cells - first);
+      LO bad_here = 0;
+      Kokkos::parallel_reduce("rpc::fem::tabulate_cells", device_range(last - first),
+                              TabulateCells<Dim, Nodes>{stiffness, first, matrix}, bad_here);
+      bad += bad_here;
+      const AddTabulated<Dim, Nodes> add{d.mesh->cells, first, last, matrix, d.around, d.nodes, values};
+      Kokkos::parallel_for("rpc::fem::add_tabulated", device_range(num_owned), add);
+      Kokkos::fence();
+    }
+  }
   return values;
+}
+
+/// @param[in,out] force  0
+template <int Dim, int Nodes>
+void add_internal_work(const Discretization &d, const ElasticCells<Dim, Nodes> &body, const Vector &u_overlap,
+                       Vector &force, double &squares, double &energy)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  const DeviceView<double *[Nodes][Dim]> share("rpc::fem::force_share", one_thread ? 0 : mesh.num_cells());
+  const InternalWorkOfCell<Dim, Nodes> kernel{
+      body, device_read(u_overlap), mesh.num_owned_nodes(), mesh.num_owned_cells, device_write(force), share};
+  Kokkos::parallel_reduce("rpc::fem::internal_work", device_range(mesh.num_cells()), kernel, squares, energy);
+  if constexpr (!one_thread)
+    Kokkos::parallel_for("rpc::fem::sum_shares", device_range(mesh.num_owned_nodes()),
+                         SumShares<Dim, Nodes>{mesh.cells, share, d.around, device_write(force)});
 }
 
 } // namespace
@@ -379,9 +413,7 @@ InternalWork internal_work(const Discretization &d, const Materials &materials, 
   const auto forces = rcp(new Vector(d.owned_dofs));
   double squares = 0, energy = 0;
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const InternalWorkOfCell<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(*u_overlap),
-                                                mesh.num_owned_nodes(), mesh.num_owned_cells, device_write(*forces)};
-    Kokkos::parallel_reduce("rpc::fem::internal_work", device_range(mesh.num_cells()), kernel, squares, energy);
+    add_internal_work(d, elastic_cells<dim, nodes>(d, materials), *u_overlap, *forces, squares, energy);
   });
   Kokkos::fence();
   return {forces, std::sqrt(sum_all(mesh.comm(), squares)), sum_all(mesh.comm(), energy)};
@@ -394,7 +426,7 @@ void add_body_force(const Discretization &d, const VectorField &force, const std
   const BasisTable &table = d.reference.cell_load;
   const auto points = quadrature_points(mesh.coords, mesh.cells, table.value);
   const auto f = evaluate_vector(force, points, parameter, mesh.comm());
-  add_load(mesh.cells, table.value, cell_measure(mesh, table), f, mesh.num_owned_nodes(), load);
+  add_load(mesh.cells, d.around, table.value, cell_measure(mesh, table), f, load);
 }
 
 DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &side,
@@ -426,7 +458,8 @@ void add_traction(const Discretization &d, const mesh::Side &side, const VectorF
   const BasisTable &table = d.reference.facet;
   const auto points = quadrature_points(mesh.coords, side.facets, table.value);
   const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
-  add_load(side.facets, table.value, facet_measure(d, side), t, mesh.num_owned_nodes(), load);
+  const NodeCells around = around_nodes(side.facets, mesh.num_owned_nodes());
+  add_load(side.facets, around, table.value, facet_measure(d, side), t, load);
 }
 
 } // namespace rpc::fem

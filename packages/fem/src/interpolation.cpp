@@ -1,7 +1,7 @@
 #include "rpc/fem/interpolation.hpp"
 
+#include "around_nodes.hpp"
 #include "cell_search.hpp"
-#include "offsets.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -147,6 +147,7 @@ Bins<Dim> bins_of(const DeviceView<double **> &box)
         bins.over(box, c).for_each(
             bins.count, nullptr, [&](const int bin) { list(row(bin) + Kokkos::atomic_fetch_add(&size(bin), 1)) = c; });
       });
+  sort_lists(row, list);
   Kokkos::fence();
   return bins;
 }

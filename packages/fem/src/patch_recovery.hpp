@@ -46,14 +46,6 @@ struct PatchTable {
   static constexpr int across_blocks = 0, adopted = degree + 1, inside = degree + 2;
 };
 
-/// Place of a node in one of its cells.
-KOKKOS_INLINE_FUNCTION int place_in(const DeviceView<LO **> &cells, const LO cell, const LO node)
-{
-  int a = 0;
-  while (cells(cell, a) != node) ++a;
-  return a;
-}
-
 /// The polynomial of a vertex, by least squares from the displacements of all nodes that share a cell with it.
 template <int Dim, int Nodes>
 struct FitPatch {

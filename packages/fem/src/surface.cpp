@@ -1,5 +1,6 @@
 #include "rpc/fem/surface.hpp"
 
+#include "around_nodes.hpp"
 #include "kernels.hpp"
 
 namespace rpc::fem
@@ -27,25 +28,14 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
   const LO num_owned = mesh.num_owned_nodes();
   const int dim = d.dim();
   const auto facets = side.facets;
-  const LO num_facets = static_cast<LO>(facets.extent(0));
-
-  // Slot of each owned node of the side, in ascending order of lids.
-  DeviceView<LO *> slot("rpc::fem::surface_slot", num_owned + 1);
-  Kokkos::parallel_for(
-      "rpc::fem::mark_surface", device_range(num_facets), KOKKOS_LAMBDA(const LO f) {
-        for (std::size_t a = 0; a < facets.extent(1); ++a)
-          if (facets(f, a) < num_owned) Kokkos::atomic_exchange(&slot(facets(f, a)), LO(1));
-      });
+  const NodeCells around = around_nodes(facets, num_owned);
   LO count = 0;
   DeviceView<LO *> node(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::surface_node"), num_owned);
   Kokkos::parallel_scan(
       "rpc::fem::number_surface", device_range(num_owned),
       KOKKOS_LAMBDA(const LO n, LO &sum, const bool last) {
-        const LO present = slot(n);
-        if (last) {
-          if (present) node(sum) = n;
-          slot(n) = sum;
-        }
+        const bool present = around.row(n) < around.row(n + 1);
+        if (last && present) node(sum) = n;
         sum += present;
       },
       count);
@@ -55,19 +45,20 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
   Kokkos::deep_copy(surface.node, Kokkos::subview(node, Kokkos::make_pair(LO(0), count)));
   surface.weight = DeviceView<double *>("rpc::fem::surface_weight", count);
   surface.normal = DeviceView<double **>("rpc::fem::surface_normal", count, dim);
+  const auto lid = surface.node;
   const auto weight = surface.weight;
   const auto normal = surface.normal;
   const auto coords = mesh.coords;
   const auto gradient = d.reference.facet_nodal.gradient;
   const auto rule = d.reference.facet_nodal.weight;
   Kokkos::parallel_for(
-      "rpc::fem::surface_weights", device_range(num_facets), KOKKOS_LAMBDA(const LO f) {
-        for (int a = 0; a < static_cast<int>(facets.extent(1)); ++a) { // the rule's points are the nodes
-          if (facets(f, a) >= num_owned) continue;
-          const LO i = slot(facets(f, a));
+      "rpc::fem::surface_weights", device_range(count), KOKKOS_LAMBDA(const LO i) {
+        for (std::size_t k = around.row(lid(i)); k < around.row(lid(i) + 1); ++k) {
+          const LO f = around.cell(k);
+          const int a = place_in(facets, f, lid(i)); // the rule's points are the nodes
           const auto area = area_normal(coords, facets, f, gradient, a);
-          add_shared(weight(i), rule(a) * norm(area));
-          for (int c = 0; c < dim; ++c) add_shared(normal(i, c), rule(a) * area[c]);
+          weight(i) += rule(a) * norm(area);
+          for (int c = 0; c < dim; ++c) normal(i, c) += rule(a) * area[c];
         }
       });
   LO bad = 0;
@@ -96,27 +87,25 @@ void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &
   Vector value_overlap(mesh.overlap_nodes), known_overlap(mesh.overlap_nodes);
   value_overlap.doImport(value, import, Tpetra::INSERT);
   known_overlap.doImport(known, import, Tpetra::INSERT);
-  DeviceView<double *> sum("rpc::fem::extension_sum", num_owned), count("rpc::fem::extension_count", num_owned);
   const auto v = device_read(value_overlap);
   const auto k = device_read(known_overlap);
   const auto facets = side.facets;
   const int nodes = static_cast<int>(facets.extent(1));
-  Kokkos::parallel_for(
-      "rpc::fem::extend", device_range(static_cast<LO>(facets.extent(0))), KOKKOS_LAMBDA(const LO f) {
-        for (int a = 0; a < nodes; ++a) {
-          const LO to = facets(f, a);
-          if (to >= num_owned || k(to) != 0) continue;
-          for (int b = 0; b < nodes; ++b) {
-            if (k(facets(f, b)) == 0) continue;
-            add_shared(sum(to), v(facets(f, b)));
-            add_shared(count(to), 1);
-          }
-        }
-      });
+  const NodeCells around = around_nodes(facets, num_owned);
   const auto out = device_write(value);
   Kokkos::parallel_for(
-      "rpc::fem::extend_mean", device_range(num_owned), KOKKOS_LAMBDA(const LO n) {
-        if (k(n) == 0) out(n) = count(n) > 0 ? sum(n) / count(n) : 0;
+      "rpc::fem::extend", device_range(num_owned), KOKKOS_LAMBDA(const LO n) {
+        if (k(n) != 0) return;
+        double sum = 0;
+        int count = 0;
+        for (std::size_t m = around.row(n); m < around.row(n + 1); ++m)
+          for (int b = 0; b < nodes; ++b) {
+            const LO other = facets(around.cell(m), b);
+            if (k(other) == 0) continue;
+            sum += v(other);
+            ++count;
+          }
+        out(n) = count > 0 ? sum / count : 0;
       });
   Kokkos::fence();
 }

@@ -263,15 +263,36 @@ void subtract_columns(const PatchColumns &list, const DeviceView<double *> &q, V
   Kokkos::fence();
 }
 
+PatchEntries column_after_column(const PatchColumns &list, const int size)
+{
+  const auto rows = to_host(list.row);
+  const auto begin = to_host(list.begin);
+  const auto column = to_host(list.column);
+  const auto value = to_host(list.value);
+  const HostView<std::size_t *> next("rpc::solver::patch_next", size + 1), first("rpc::solver::patch_first", size + 1);
+  const HostView<LO *> row("rpc::solver::patch_row", column.extent(0));
+  const HostView<double *> sorted("rpc::solver::patch_value", column.extent(0));
+  for (std::size_t e = 0; e < column.extent(0); ++e) ++first(column(e) + 1);
+  for (int c = 0; c < size; ++c) next(c + 1) = first(c + 1) += first(c);
+  for (std::size_t i = 0; i < rows.extent(0); ++i)
+    for (std::size_t e = begin(i); e < begin(i + 1); ++e) {
+      const std::size_t to = next(column(e))++;
+      row(to) = rows(i);
+      sorted(to) = value(e);
+    }
+  return {to_device(first), to_device(row), to_device(sorted)};
+}
+
 /// This rank's part of R H x, by the columns of the symmetric H: needs no halo of x.
-DeviceView<double *> times_columns(const PatchColumns &list, const int size, const Vector &x)
+DeviceView<double *> times_columns(const PatchEntries &list, const int size, const Vector &x)
 {
   const DeviceView<double *> sum("rpc::solver::times_columns", size);
   const auto from = device_read(x);
   Kokkos::parallel_for(
-      "rpc::solver::times_columns", device_range(static_cast<LO>(list.row.extent(0))), KOKKOS_LAMBDA(const LO i) {
-        for (std::size_t e = list.begin(i); e < list.begin(i + 1); ++e)
-          add_shared(sum(list.column(e)), list.value(e) * from(list.row(i)));
+      "rpc::solver::times_columns", device_range(size), KOKKOS_LAMBDA(const int c) {
+        double own = 0;
+        for (std::size_t e = list.begin(c); e < list.begin(c + 1); ++e) own += list.value(e) * from(list.row(e));
+        sum(c) = own;
       });
   Kokkos::fence();
   return sum;
@@ -307,6 +328,7 @@ std::optional<LocalCorrection> LocalCorrection::around(const ContactStiffness &H
   const auto inverse = inverse_of_patch(comm, correction.size_, list, place);
   if (inverse.extent(0) == 0) return std::nullopt;
   correction.columns_ = list;
+  correction.entries_ = column_after_column(list, correction.size_);
   correction.inverse_ = to_device(inverse);
   return correction;
 }
@@ -318,7 +340,7 @@ void LocalCorrection::apply(const Operator &M, const Vector &x, Vector &y) const
   Vector rest(x, Teuchos::Copy);
   subtract_columns(columns_, q, rest);
   M.apply(rest, y);
-  const auto p = product(inverse_, summed(comm, times_columns(columns_, size_, y)));
+  const auto p = product(inverse_, summed(comm, times_columns(entries_, size_, y)));
   const DeviceView<double *> correction("rpc::solver::correction", size_);
   Kokkos::deep_copy(correction, q);
   KokkosBlas::axpy(-1., p, correction);

@@ -15,6 +15,13 @@ struct PatchColumns {
   DeviceView<double *> value;      ///< (entries)
 };
 
+/// The same entries, column after column.
+struct PatchEntries {
+  DeviceView<std::size_t *> begin; ///< (columns + 1) where a column's entries begin
+  DeviceView<LO *> row;            ///< (entries) owned rows, ascending in each column
+  DeviceView<double *> value;      ///< (entries)
+};
+
 /// Carries a preconditioner M of a stiffness's matrix over to the stiffness itself, H, by exact solves on a patch, the
 /// unknowns around the changed contact nodes:
 ///
@@ -34,6 +41,7 @@ public:
 private:
   int size_ = 0;
   PatchColumns columns_;          ///< of H
+  PatchEntries entries_;          ///< of these columns
   DeviceView<LO *> member_row_;   ///< (own members) owned rows in the patch ...
   DeviceView<int *> member_;      ///< (own members) ... and where
   DeviceView<double **> inverse_; ///< (size, size)

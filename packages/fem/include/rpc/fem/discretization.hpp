@@ -16,7 +16,7 @@ struct NodeGraph {
   DeviceView<LO *> col;          ///< (entries) overlap node lids, ascending in each row
 };
 
-/// Cells around each owned node, as offsets and list; the order within a node is not fixed.
+/// Cells around each owned node, as offsets and list, ascending within a node.
 struct NodeCells {
   DeviceView<std::size_t *> row; ///< (owned nodes + 1)
   DeviceView<LO *> cell;         ///< (entries) local cells
