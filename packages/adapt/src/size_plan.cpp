@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <queue>
 #include <utility>
@@ -282,13 +281,6 @@ double vertex_size(const EstimatedMesh &mesh, const Geometry &geometry, const in
   return std::exp(reach / count) * std::max(std::min(graded, equal), least_vertex_ratio);
 }
 
-} // namespace
-
-std::vector<double> local_exponents(const EstimatedMesh &mesh)
-{
-  return local_exponents(mesh, Geometry(mesh));
-}
-
 /// Where the exponent is that of a singularity, and no vertex nearby has a lower one.
 std::vector<char> singular_vertices(const EstimatedMesh &mesh, const Geometry &geometry,
                                     const std::vector<double> &exponent)
@@ -301,6 +293,13 @@ std::vector<char> singular_vertices(const EstimatedMesh &mesh, const Geometry &g
         if (exponent[mesh.cells[mesh.vertices * cell + a]] < exponent[n]) singular[n] = 0;
   }
   return singular;
+}
+
+} // namespace
+
+std::vector<double> local_exponents(const EstimatedMesh &mesh)
+{
+  return local_exponents(mesh, Geometry(mesh));
 }
 
 SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)

@@ -14,7 +14,7 @@ struct AdaptOptions {
   long long max_dofs = 0;  ///< of any mesh but the first, > 0
   int max_cycles = 0;      ///< meshes, > 0
   double exact_energy = 0; ///< J of the exact solution [J], in 2D per m; NaN: unknown
-  bool estimate = false;   ///< an estimate of the error without adapting
+  bool estimate = false;   ///< whether the error is estimated; adapting implies it
   bool write_all = false;  ///< results of every mesh, not of the last only
 
   bool adapts() const { return target > 0; }
