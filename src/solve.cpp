@@ -250,7 +250,8 @@ Solution solve_on(const Scene &scene, const mesh::MeshOptions &options, const So
                              [&](const contact::UzawaResult &result) { table.uzawa(result); });
     s.linear = linear.counts();
     s.contact = contact::contact_result(d, contact_sides(scene, *d.mesh), *s.functional, *s.u);
-    s.pressure_norm = pressure_distance(*comm, s.functional->contact(), s.contact.pressure, {});
+    if (scene.adapt.adapts())
+      s.pressure_norm = pressure_distance(*comm, s.functional->contact(), s.contact.pressure, {});
     if (previous)
       s.pressure_change = pressure_distance(*comm, s.functional->contact(), s.contact.pressure, start_pressure);
     s.energy = s.functional->energy(*s.u);

@@ -72,10 +72,10 @@ struct Solution {
   std::shared_ptr<contact::SmoothedFunctional> functional;
   contact::UzawaResult uzawa;
   contact::ContactResult contact;
-  double pressure_norm = 0;                     ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]
-  double pressure_change = 0;                   ///< the same of its change since the mesh before, if there was one
-  double energy = 0;                            ///< J(u) [J]
-  double strain_energy = 0;                     ///< a(u, u) [J]
+  double pressure_norm = 0;   ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]; where meshes are adapted
+  double pressure_change = 0; ///< the same of its change since the mesh before, if there was one
+  double energy = 0;          ///< J(u) [J]
+  double strain_energy = 0;   ///< a(u, u) [J]
   std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
   solver::LinearSolverCounts linear;            ///< on the finest mesh
   std::vector<LevelWork> levels;                ///< coarser meshes that predicted the solution, from the coarsest
