@@ -15,6 +15,8 @@ namespace rpc::fem
 namespace
 {
 
+using MatrixValues = CrsMatrix::local_matrix_device_type::values_type::non_const_type; // in Tpetra's memory
+
 /// Names the first owned cell whose Jacobian determinant is not positive at a quadrature point; nothing if there is none
 /// on this rank.
 template <int Dim, int Nodes>
@@ -184,8 +186,8 @@ void add_load(const DeviceView<LO **> &entities, const NodeCells &around, const 
 /// The matrix's values where cells are alike: few cells are integrated, and each entry is written once.
 /// @param[out] bad  number of shapes with a Jacobian <= 0
 template <int Dim, int Nodes>
-DeviceView<double *> gather_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes> &stiffness,
-                                      const std::size_t num_entries, LO &bad)
+MatrixValues gather_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes> &stiffness,
+                              const std::size_t num_entries, LO &bad)
 {
   constexpr int dofs = Dim * Nodes;
   const mesh::Mesh &mesh = *d.mesh;
@@ -193,7 +195,7 @@ DeviceView<double *> gather_stiffness(const Discretization &d, const CellStiffne
   const DeviceView<double *[dofs][dofs]> matrix("rpc::fem::shape_stiffness", num_matrices);
   const TabulateStiffness<Dim, Nodes> tabulate{stiffness, d.shapes.example, num_blocks, matrix};
   Kokkos::parallel_reduce("rpc::fem::tabulate_stiffness", device_range(num_matrices), tabulate, bad);
-  const DeviceView<double *> values(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::stiffness"), num_entries);
+  const MatrixValues values(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::stiffness"), num_entries);
   const LO num_owned = mesh.num_owned_nodes(), example = mesh.num_cells() / 2;
   const NodeStiffness<Dim, Nodes> rows{mesh.cells, mesh.block, d.shapes.of_cell, matrix, num_blocks,
                                        num_owned,  d.around,   d.nodes,          values};
@@ -206,10 +208,10 @@ DeviceView<double *> gather_stiffness(const Discretization &d, const CellStiffne
 /// The matrix's values where each cell is integrated by itself.
 /// @param[out] bad  number of cells with a Jacobian <= 0
 template <int Dim, int Nodes>
-DeviceView<double *> add_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes> &stiffness,
-                                   const std::size_t num_entries, LO &bad)
+MatrixValues add_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes> &stiffness,
+                           const std::size_t num_entries, LO &bad)
 {
-  const DeviceView<double *> values("rpc::fem::stiffness", num_entries);
+  const MatrixValues values("rpc::fem::stiffness", num_entries);
   const LO num_cells = d.mesh->num_cells(), num_owned = d.mesh->num_owned_nodes();
   if constexpr (one_thread) {
     const AddStiffness<Dim, Nodes> add{stiffness, d.nodes, num_owned, values};
@@ -387,7 +389,7 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
 {
   const mesh::Mesh &mesh = *d.mesh;
   const std::size_t num_entries = d.graph->getLocalGraphDevice().entries.extent(0);
-  DeviceView<double *> values;
+  MatrixValues values;
   LO bad = 0;
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
     const CellStiffness<dim, nodes> stiffness{elastic_cells<dim, nodes>(d, materials)};

@@ -176,25 +176,26 @@ Columns columns(const RCP<const Map> &domain, const DeviceView<char *> &occurs)
       },
       num_others);
   if (domain->getComm()->getSize() == 1) return result;
-  const DeviceView<GO *> gids("rpc::fem::column_gid", num_owned + num_others);
+  const Kokkos::View<GO *, Map::device_type> gids("rpc::fem::column_gid", num_owned + num_others);
   Kokkos::parallel_for(
       "rpc::fem::column_gids", device_range(total), KOKKOS_LAMBDA(const LO gid) {
         if (occurs(gid) || (gid >= first && gid < first + num_owned)) gids(lid(gid)) = gid;
       });
   Kokkos::fence();
-  result.map = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), DeviceView<const GO *>(gids), 0,
-                           domain->getComm()));
+  const Kokkos::View<const GO *, Map::device_type> indices = gids;
+  result.map = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), indices, 0, domain->getComm()));
   return result;
 }
 
 /// The matrix from the places of its rows' nodes.
 template <int Dim, int Nodes>
 struct FillRows {
+  using Rows = CrsMatrix::local_matrix_device_type::row_map_type::non_const_type;
   using Entries = CrsMatrix::local_matrix_device_type::index_type::non_const_type;
   using Values = CrsMatrix::local_matrix_device_type::values_type::non_const_type;
   FindPlaces<Dim, Nodes> places; //                         in
   DeviceView<LO *> lid;          // (coarse nodes) columns  in
-  DeviceView<std::size_t *> row; // (rows + 1)              in
+  Rows row;                      // (rows + 1)              in
   Entries col;                   // (entries)               out
   Values value;                  // (entries)               out
 
@@ -251,9 +252,12 @@ RCP<CrsMatrix> interpolate(const mesh::Mesh &from, const mesh::Mesh &to)
       });
   const Columns column = columns(from.owned_nodes, occurs);
 
-  const auto row = offsets_of(places.length, "rpc::fem::interpolation_row");
-  const std::size_t num_entries = last_of(row);
+  const auto offsets = offsets_of(places.length, "rpc::fem::interpolation_offsets");
+  const std::size_t num_entries = last_of(offsets);
   using Kokkos::ViewAllocateWithoutInitializing;
+  const typename FillRows<Dim, Nodes>::Rows row(ViewAllocateWithoutInitializing("rpc::fem::interpolation_row"),
+                                                num_rows + 1);
+  Kokkos::deep_copy(row, offsets);
   const typename FillRows<Dim, Nodes>::Entries col(ViewAllocateWithoutInitializing("rpc::fem::interpolation_col"),
                                                    num_entries);
   const typename FillRows<Dim, Nodes>::Values value(ViewAllocateWithoutInitializing("rpc::fem::interpolation"),

@@ -177,7 +177,7 @@ void add_changes(const ContactStiffness::Changes &changes, const int dim, const 
 
 /// (size, size) The inverse of the patch's own block of H, from this rank's rows and all others'.
 /// @return an empty view where it is not positive definite
-HostView<double **> inverse_of_patch(const Comm &comm, const int size, const PatchColumns &list, const Vector &place)
+DeviceView<double **> inverse_of_patch(const Comm &comm, const int size, const PatchColumns &list, const Vector &place)
 {
   const auto rows = to_host(list.row);
   const auto begin = to_host(list.begin);
@@ -197,10 +197,12 @@ HostView<double **> inverse_of_patch(const Comm &comm, const int size, const Pat
   lapack.POTRF('L', size, block.data(), size, &info);
   if (info == 0) lapack.POTRI('L', size, block.data(), size, &info);
   if (info != 0) return {};
-  HostView<double **> inverse("rpc::solver::patch_inverse", size, size);
+  const DeviceView<double **> inverse("rpc::solver::patch_inverse", size, size);
+  const auto host = Kokkos::create_mirror_view(inverse);
   for (int j = 0; j < size; ++j)
     for (int i = j; i < size; ++i) // LAPACK's columns, lower half
-      inverse(i, j) = inverse(j, i) = block[static_cast<std::size_t>(j) * size + i];
+      host(i, j) = host(j, i) = block[static_cast<std::size_t>(j) * size + i];
+  Kokkos::deep_copy(inverse, host);
   return inverse;
 }
 
@@ -329,7 +331,7 @@ std::optional<LocalCorrection> LocalCorrection::around(const ContactStiffness &H
   if (inverse.extent(0) == 0) return std::nullopt;
   correction.columns_ = list;
   correction.entries_ = column_after_column(list, correction.size_);
-  correction.inverse_ = to_device(inverse);
+  correction.inverse_ = inverse;
   return correction;
 }
 

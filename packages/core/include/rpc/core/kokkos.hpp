@@ -11,9 +11,18 @@ namespace rpc
 using LO = Tpetra::Map<>::local_ordinal_type;  ///< index on one rank
 using GO = Tpetra::Map<>::global_ordinal_type; ///< index over all ranks
 using Node = Tpetra::Map<>::node_type;
-using Device = Node::device_type; ///< where kernels run and their views live
-using ExecutionSpace = Device::execution_space;
+using ExecutionSpace = Node::execution_space; ///< where kernels run
 using HostSpace = Kokkos::HostSpace;
+
+/// Where this project's views live: beside the kernels. Tpetra 13.2 takes managed memory with CUDA, which the host can read
+/// too, page by page and slowly; here that is a crash instead of a slow program. Tpetra's views can be assigned to these.
+#ifdef KOKKOS_ENABLE_CUDA
+using MemorySpace =
+    std::conditional_t<std::is_same_v<Node::memory_space, Kokkos::CudaUVMSpace>, Kokkos::CudaSpace, Node::memory_space>;
+#else
+using MemorySpace = Node::memory_space;
+#endif
+using Device = Kokkos::Device<ExecutionSpace, MemorySpace>;
 
 template <class Data>
 using DeviceView = Kokkos::View<Data, Device>;
