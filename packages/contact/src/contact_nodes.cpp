@@ -1,5 +1,6 @@
 #include "rpc/contact/contact_nodes.hpp"
 
+#include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
@@ -22,17 +23,6 @@ std::string place(const HostPoints &points, const LO i)
   if (points.extent(1) == 3) text << ", " << points(i, 2);
   text << ")";
   return text.str();
-}
-
-HostPoints positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node)
-{
-  DeviceView<double **> points("rpc::contact::points", node.extent(0), mesh.dim());
-  const auto coords = mesh.coords;
-  Kokkos::parallel_for(
-      "rpc::contact::points", device_range(static_cast<LO>(node.extent(0))), KOKKOS_LAMBDA(const LO i) {
-        for (std::size_t c = 0; c < coords.extent(1); ++c) points(i, c) = coords(node(i), c);
-      });
-  return to_host(points);
 }
 
 /// Splits each normal into the free components and those that are prescribed; collective.
@@ -233,15 +223,6 @@ void require_outward(const ContactOptions &options, const fem::SurfaceNodes &sur
                          << (options.obstacle.kind == Obstacle::Kind::none ? "." : ", or the obstacle's."));
 }
 
-/// (n) of the device, from a vector.
-template <class T>
-DeviceView<T *> device_values(const std::vector<T> &values, const std::string &label)
-{
-  HostView<T *> host(label, values.size());
-  std::copy(values.begin(), values.end(), host.data());
-  return to_device(host);
-}
-
 /// (n, dim) of the device, from a vector row by row.
 DeviceView<double **> device_rows(const std::vector<double> &values, const int dim, const std::string &label)
 {
@@ -278,7 +259,7 @@ GO count_fixed(const ContactNodes &c)
 /// Refuses nodes that a prescribed displacement presses into a foundation that cannot give way; collective.
 void require_room(const ContactNodes &c, const std::vector<ContactOptions> &options, const mesh::Mesh &mesh)
 {
-  const HostPoints points = positions(mesh, c.node);
+  const HostPoints points = fem::node_positions(mesh, c.node);
   const auto fixed = to_host(c.fixed);
   const auto free_gap = to_host(c.free_gap);
   const auto xi = to_host(c.yield);
@@ -341,7 +322,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   std::vector<double> weight, normal, gap, yield, penalty;
   for (std::size_t k = 0; k < options.size(); ++k) {
     const auto surface = fem::surface_nodes(d, mesh.side(options[k].side, options[k].path + "->Side"));
-    const SideValues values = side_values(options[k], positions(mesh, surface.node), surface.normal, comm);
+    const SideValues values = side_values(options[k], fem::node_positions(mesh, surface.node), surface.normal, comm);
     require_outward(options[k], surface, values, comm);
     const auto side_node = to_host(surface.node);
     const auto side_weight = to_host(surface.weight);

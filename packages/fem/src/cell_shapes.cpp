@@ -1,5 +1,7 @@
 #include "cell_shapes.hpp"
 
+#include "rpc/core/device_values.hpp"
+
 #include <algorithm>
 #include <vector>
 
@@ -87,9 +89,7 @@ CellShapes cell_shapes(const mesh::Mesh &mesh)
     if (took < num_cells / 8) return {};
     count += took;
   }
-  HostView<LO *> example("rpc::fem::shape_example", examples.size());
-  std::copy(examples.begin(), examples.end(), example.data());
-  return {of_cell, to_device(example)};
+  return {of_cell, device_values(examples, "rpc::fem::shape_example")};
 }
 
 } // namespace rpc::fem

@@ -1,13 +1,16 @@
 #include "rpc/fem/dirichlet.hpp"
 
 #include "component_name.hpp"
+#include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/fem/surface.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <unordered_map>
 
 namespace rpc::fem
 {
@@ -18,14 +21,59 @@ namespace
 std::vector<LO> owned_nodes_of(const mesh::Mesh &mesh, const mesh::Side &side)
 {
   const auto facets = to_host(side.facets);
-  std::vector<char> seen(mesh.num_owned_nodes(), 0);
   std::vector<LO> nodes;
   for (std::size_t f = 0; f < facets.extent(0); ++f)
     for (std::size_t a = 0; a < facets.extent(1); ++a)
-      if (facets(f, a) < mesh.num_owned_nodes()) seen[facets(f, a)] = 1;
-  for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
-    if (seen[n]) nodes.push_back(n);
+      if (facets(f, a) < mesh.num_owned_nodes()) nodes.push_back(facets(f, a));
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
+}
+
+/// What is prescribed of an unknown, and by which condition.
+struct Prescribed {
+  double value = 0; // [m]
+  int condition = -1;
+};
+
+/// The prescribed unknowns that this rank owns; a node's last condition wins. Collective.
+std::unordered_map<LO, Prescribed> prescribed_dofs(const mesh::Mesh &mesh,
+                                                   const std::vector<DirichletCondition> &conditions)
+{
+  const int dim = mesh.dim();
+  std::unordered_map<LO, Prescribed> prescribed;
+  std::vector<std::array<double, 3>> scale(conditions.size()); // largest value: sin(pi) is 0 up to the round-off of sin
+  std::optional<std::string> conflict;
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    const DirichletCondition &condition = conditions[k];
+    const std::string path = "Dirichlet->" + condition.name;
+    const auto nodes = owned_nodes_of(mesh, mesh.side(condition.side, path + "->Side"));
+    const HostPoints points = node_positions(mesh, device_values(nodes, "rpc::fem::side_nodes"));
+    for (int c = 0; c < dim; ++c) {
+      if (!condition.displacement[c]) continue;
+      const auto values = evaluate(*condition.displacement[c], points, path + "->" + component_name[c], mesh.comm());
+      double largest = 0;
+      for (std::size_t n = 0; n < nodes.size(); ++n) largest = std::max(largest, std::abs(values(n)));
+      scale[k][c] = max_all(mesh.comm(), largest);
+      for (std::size_t n = 0; n < nodes.size(); ++n) {
+        Prescribed &dof = prescribed[dim * nodes[n] + c];
+        const int other = dof.condition;
+        const bool differs =
+            other >= 0 && std::abs(dof.value - values(n)) > 1e-12 * std::max(scale[other][c], scale[k][c]);
+        if (differs && !conflict) {
+          std::ostringstream message;
+          message << "deck: \"Dirichlet->" << conditions[other].name << "\" and \"" << path << "\" prescribe different "
+                  << component_name[c] << " at one node (" << points(n, 0) << ", " << points(n, 1)
+                  << (dim == 3 ? ", " + std::to_string(points(n, 2)) : "") << "): " << dof.value << " and " << values(n)
+                  << " [m]";
+          conflict = message.str();
+        }
+        dof = {values(n), static_cast<int>(k)};
+      }
+    }
+  }
+  throw_if_any(mesh.comm(), ExitCode::bad_input, conflict);
+  return prescribed;
 }
 
 } // namespace
@@ -71,73 +119,45 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
 
 DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<DirichletCondition> &conditions)
 {
-  const mesh::Mesh &mesh = *d.mesh;
-  const int dim = d.dim();
-  const LO num_owned = dim * mesh.num_owned_nodes();
-  const auto coords = to_host(mesh.coords);
-  HostView<double *> value("rpc::fem::dirichlet_value", num_owned);
-  std::vector<int> owner(num_owned, -1);                       // condition that prescribed the unknown
-  std::vector<std::array<double, 3>> scale(conditions.size()); // largest value: sin(pi) is 0 up to the round-off of sin
-  std::optional<std::string> conflict;
-
-  for (std::size_t k = 0; k < conditions.size(); ++k) {
-    const DirichletCondition &condition = conditions[k];
-    const std::string path = "Dirichlet->" + condition.name;
-    const auto nodes = owned_nodes_of(mesh, mesh.side(condition.side, path + "->Side"));
-    HostView<double **> points("rpc::fem::side_points", nodes.size(), dim);
-    for (std::size_t n = 0; n < nodes.size(); ++n)
-      for (int c = 0; c < dim; ++c) points(n, c) = coords(nodes[n], c);
-    for (int c = 0; c < dim; ++c) {
-      if (!condition.displacement[c]) continue;
-      const auto values = evaluate(*condition.displacement[c], points, path + "->" + component_name[c], mesh.comm());
-      double largest = 0;
-      for (std::size_t n = 0; n < nodes.size(); ++n) largest = std::max(largest, std::abs(values(n)));
-      scale[k][c] = max_all(mesh.comm(), largest);
-      for (std::size_t n = 0; n < nodes.size(); ++n) {
-        const LO dof = dim * nodes[n] + c;
-        const int other = owner[dof];
-        const bool differs =
-            other >= 0 && std::abs(value(dof) - values(n)) > 1e-12 * std::max(scale[other][c], scale[k][c]);
-        if (differs && !conflict) {
-          std::ostringstream message;
-          message << "deck: \"Dirichlet->" << conditions[other].name << "\" and \"" << path << "\" prescribe different "
-                  << component_name[c] << " at one node (" << points(n, 0) << ", " << points(n, 1)
-                  << (dim == 3 ? ", " + std::to_string(points(n, 2)) : "") << "): " << value(dof) << " and "
-                  << values(n) << " [m]";
-          conflict = message.str();
-        }
-        owner[dof] = static_cast<int>(k);
-        value(dof) = values(n);
-      }
-    }
+  const auto prescribed = prescribed_dofs(*d.mesh, conditions);
+  std::vector<LO> dofs;
+  std::vector<double> values;
+  std::vector<int> owners;
+  for (const auto &[dof, what] : prescribed) {
+    dofs.push_back(dof);
+    values.push_back(what.value);
+    owners.push_back(what.condition);
   }
-  throw_if_any(mesh.comm(), ExitCode::bad_input, conflict);
-
   DirichletDofs dirichlet;
+  dirichlet.num_fixed = sum_all(d.mesh->comm(), GO(dofs.size()));
   dirichlet.value = rcp(new Vector(d.owned_dofs));
-  Vector fixed(d.owned_dofs), fixed_overlap(d.overlap_dofs);
-  GO count = 0;
-  {
-    const auto value_to = dirichlet.value->getLocalViewHost(Tpetra::Access::OverwriteAll);
-    const auto fixed_to = fixed.getLocalViewHost(Tpetra::Access::OverwriteAll);
-    for (LO dof = 0; dof < num_owned; ++dof) {
-      value_to(dof, 0) = value(dof);
-      fixed_to(dof, 0) = owner[dof] >= 0 ? 1 : 0;
-      count += owner[dof] >= 0 ? 1 : 0;
-    }
-  }
-  HostView<int *> condition("rpc::fem::dirichlet_condition", num_owned);
-  std::copy(owner.begin(), owner.end(), condition.data());
-  dirichlet.condition = to_device(condition);
-  dirichlet.num_fixed = sum_all(mesh.comm(), count);
-  fixed_overlap.doImport(fixed, *d.dof_import,
-                         Tpetra::INSERT); // a neighbour's node may lie on a side whose facets are not here
+  dirichlet.condition = DeviceView<int *>(
+      Kokkos::view_alloc("rpc::fem::dirichlet_condition", Kokkos::WithoutInitializing), num_local(*d.owned_dofs));
   dirichlet.fixed = DeviceView<char *>("rpc::fem::dirichlet_fixed", num_local(*d.overlap_dofs));
+  Kokkos::deep_copy(dirichlet.condition, -1);
+  Vector mark(d.owned_dofs), mark_overlap(d.overlap_dofs);
+  const auto dof = device_values(dofs, "rpc::fem::prescribed_dofs");
+  const auto value = device_values(values, "rpc::fem::prescribed_values");
+  const auto owner = device_values(owners, "rpc::fem::prescribed_by");
+  {
+    const auto condition = dirichlet.condition;
+    const auto value_to = device_write(*dirichlet.value);
+    const auto mark_to = device_write(mark);
+    Kokkos::parallel_for(
+        "rpc::fem::prescribe", device_range(static_cast<LO>(dofs.size())), KOKKOS_LAMBDA(const LO i) {
+          value_to(dof(i)) = value(i);
+          condition(dof(i)) = owner(i);
+          mark_to(dof(i)) = 1;
+        });
+    Kokkos::fence();
+  }
+  // A neighbour's node may lie on a side whose facets are not here.
+  mark_overlap.doImport(mark, *d.dof_import, Tpetra::INSERT);
   const auto flag = dirichlet.fixed;
-  const auto from = device_read(fixed_overlap);
+  const auto from = device_read(mark_overlap);
   Kokkos::parallel_for(
       "rpc::fem::dirichlet_flags", device_range(num_local(*d.overlap_dofs)),
-      KOKKOS_LAMBDA(const LO dof) { flag(dof) = from(dof) != 0; });
+      KOKKOS_LAMBDA(const LO i) { flag(i) = from(i) != 0; });
   Kokkos::fence();
   return dirichlet;
 }

@@ -1,10 +1,11 @@
 #include "rpc/fem/parts.hpp"
 
 #include "numbers.hpp"
+#include "rpc/core/device_values.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <sstream>
 
 namespace rpc::fem
@@ -12,49 +13,89 @@ namespace rpc::fem
 namespace
 {
 
-/// Sets of nodes that cells have joined.
-class DisjointSets
-{
-public:
-  explicit DisjointSets(const LO size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  LO find(LO n)
+/// Joins the nodes of each cell, any number of cells at once: the root of a set is its smallest node, in whatever order sets
+/// meet, for a root gives way to smaller ones only.
+struct JoinNodes {
+  DeviceView<LO **> cells; // (cells, nodes)     in
+  DeviceView<LO *> parent; // (overlap nodes)    inout, of a root itself
+
+  /// The root, as far as others have come; halves the way for those who follow.
+  KOKKOS_FUNCTION LO find(LO n) const
   {
-    for (; parent_[n] != n; n = parent_[n]) parent_[n] = parent_[parent_[n]];
+    for (LO next = parent(n); next != n;) {
+      const LO after = parent(next);
+      parent(n) = after;
+      n = next;
+      next = after;
+    }
     return n;
   }
-  void join(const LO a, const LO b)
+  KOKKOS_FUNCTION void join(LO a, LO b) const
   {
-    const LO first = find(a), second = find(b);
-    parent_[std::max(first, second)] = std::min(first, second);
+    a = find(a);
+    b = find(b);
+    while (a != b) {
+      const LO large = a > b ? a : b, small = a > b ? b : a;
+      const LO seen = Kokkos::atomic_compare_exchange(&parent(large), large, small);
+      if (seen == large) return;
+      a = find(seen); // somebody else has joined it, to a smaller node
+      b = small;
+    }
   }
-
-private:
-  std::vector<LO> parent_;
+  KOKKOS_FUNCTION void operator()(const LO cell) const
+  {
+    for (std::size_t a = 1; a < cells.extent(1); ++a) join(cells(cell, 0), cells(cell, a));
+  }
 };
 
-/// The set of each local node, 0-based.
-std::vector<int> local_sets(const mesh::Mesh &mesh)
-{
-  const auto cells = to_host(mesh.cells);
-  DisjointSets sets(mesh.num_local_nodes());
-  for (LO cell = 0; cell < mesh.num_cells(); ++cell)
-    for (std::size_t a = 1; a < cells.extent(1); ++a) sets.join(cells(cell, 0), cells(cell, a));
-  std::vector<int> set(mesh.num_local_nodes());
+/// Sets of nodes that cells of this rank join.
+struct LocalSets {
+  DeviceView<int *> of_node; ///< (overlap nodes) from 0, in the order of their smallest nodes
   int count = 0;
-  for (LO n = 0; n < mesh.num_local_nodes(); ++n) { // the smallest node of a set is its root
-    const LO root = sets.find(n);
-    set[n] = root == n ? count++ : set[root];
-  }
-  return set;
+};
+
+LocalSets local_sets(const mesh::Mesh &mesh)
+{
+  const LO n = mesh.num_local_nodes();
+  const DeviceView<LO *> parent(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::parent"), n);
+  Kokkos::parallel_for(
+      "rpc::fem::nodes_alone", device_range(n), KOKKOS_LAMBDA(const LO i) { parent(i) = i; });
+  Kokkos::parallel_for("rpc::fem::join_nodes", device_range(mesh.num_cells()), JoinNodes{mesh.cells, parent});
+  for (LO moved = 1; moved > 0;) // every node to its root
+    Kokkos::parallel_reduce(
+        "rpc::fem::find_roots", device_range(n),
+        KOKKOS_LAMBDA(const LO i, LO &count) {
+          const LO next = parent(i), after = parent(next);
+          if (next == after) return;
+          parent(i) = after;
+          ++count;
+        },
+        moved);
+  LocalSets sets{DeviceView<int *>(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::part_of_node"), n)};
+  const auto set = sets.of_node;
+  Kokkos::parallel_scan(
+      "rpc::fem::number_sets", device_range(n),
+      KOKKOS_LAMBDA(const LO i, int &sum, const bool last) {
+        if (parent(i) != i) return;
+        if (last) set(i) = sum;
+        ++sum;
+      },
+      sets.count);
+  Kokkos::parallel_for(
+      "rpc::fem::sets_of_nodes", device_range(n), KOKKOS_LAMBDA(const LO i) {
+        if (parent(i) != i) set(i) = set(parent(i));
+      });
+  return sets;
 }
 
 /// The smallest node id of the part that each local set of nodes belongs to; collective.
-std::vector<GO> smallest_ids(const Discretization &d, const std::vector<int> &set)
+std::vector<GO> smallest_ids(const Discretization &d, const LocalSets &sets)
 {
   const mesh::Mesh &mesh = *d.mesh;
-  const int dim = d.dim(), num_sets = set.empty() ? 0 : 1 + *std::max_element(set.begin(), set.end());
-  std::vector<GO> smallest(num_sets, std::numeric_limits<GO>::max());
-  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) smallest[set[n]] = std::min(smallest[set[n]], mesh.node_id(n));
+  const int dim = d.dim();
+  const auto set = to_host(sets.of_node);
+  std::vector<GO> smallest(sets.count, std::numeric_limits<GO>::max());
+  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) smallest[set(n)] = std::min(smallest[set(n)], mesh.node_id(n));
   if (mesh.comm().getSize() == 1) return smallest;
   Vector owned(d.owned_dofs), overlap(d.overlap_dofs); // doubles hold node ids exactly
   for (int changed = 1; changed; changed = max_all(mesh.comm(), changed)) {
@@ -62,14 +103,14 @@ std::vector<GO> smallest_ids(const Discretization &d, const std::vector<int> &se
     {
       const auto to = owned.getLocalViewHost(Tpetra::Access::OverwriteAll);
       for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
-        for (int c = 0; c < dim; ++c) to(dim * n + c, 0) = static_cast<double>(smallest[set[n]]);
+        for (int c = 0; c < dim; ++c) to(dim * n + c, 0) = static_cast<double>(smallest[set(n)]);
     }
     overlap.doImport(owned, *d.dof_import, Tpetra::INSERT);
     const auto from = overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
     for (LO n = mesh.num_owned_nodes(); n < mesh.num_local_nodes(); ++n) {
       const GO heard = static_cast<GO>(from(dim * n, 0));
-      if (heard >= smallest[set[n]]) continue;
-      smallest[set[n]] = heard;
+      if (heard >= smallest[set(n)]) continue;
+      smallest[set(n)] = heard;
       changed = 1;
     }
   }
@@ -102,7 +143,45 @@ void reduce(const Comm &comm, const Teuchos::EReductionType type, std::vector<T>
   Teuchos::reduceAll(comm, type, static_cast<int>(mine.size()), mine.data(), values.data());
 }
 
-/// Centre, radius, cells and blocks of each part; collective.
+/// Centre, radius, cells and blocks of the only part; collective.
+Part whole_body(const mesh::Mesh &mesh)
+{
+  const auto coords = mesh.coords;
+  const int dim = mesh.dim();
+  Part body;
+  body.num_cells = sum_all(mesh.comm(), GO(mesh.num_owned_cells));
+  const double num_nodes = static_cast<double>(mesh.owned_nodes->getGlobalNumElements());
+  for (int c = 0; c < dim; ++c) {
+    double sum = 0;
+    Kokkos::parallel_reduce(
+        "rpc::fem::centre_of_body", device_range(mesh.num_owned_nodes()),
+        KOKKOS_LAMBDA(const LO n, double &part) { part += coords(n, c); }, sum);
+    body.centre[c] = sum_all(mesh.comm(), sum) / num_nodes;
+  }
+  const Kokkos::Array<double, 3> centre{{body.centre[0], body.centre[1], body.centre[2]}};
+  double farthest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::fem::radius_of_body", device_range(mesh.num_owned_nodes()),
+      KOKKOS_LAMBDA(const LO n, double &most) {
+        double squares = 0;
+        for (int c = 0; c < dim; ++c) squares += (coords(n, c) - centre[c]) * (coords(n, c) - centre[c]);
+        if (squares > most) most = squares;
+      },
+      Kokkos::Max<double>(farthest));
+  body.radius = std::sqrt(max_all(mesh.comm(), std::max(0., farthest)));
+
+  const auto block = mesh.block;
+  const DeviceView<int *> occurs("rpc::fem::block_occurs", mesh.blocks.size());
+  Kokkos::parallel_for(
+      "rpc::fem::blocks_of_body", device_range(mesh.num_owned_cells),
+      KOKKOS_LAMBDA(const LO cell) { occurs(block(cell)) = 1; }); // the same from all threads
+  const auto mine = to_host(occurs);
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b)
+    if (max_all(mesh.comm(), mine(b)) > 0) body.blocks.push_back(static_cast<int>(b));
+  return body;
+}
+
+/// The same of each of several parts, one after the other on the host; collective.
 void describe_parts(const mesh::Mesh &mesh, const std::vector<int> &part_of_node, std::vector<Part> &parts)
 {
   const std::size_t num_parts = parts.size(), num_blocks = mesh.blocks.size();
@@ -145,23 +224,31 @@ void describe_parts(const mesh::Mesh &mesh, const std::vector<int> &part_of_node
 Parts connected_parts(const Discretization &d)
 {
   const mesh::Mesh &mesh = *d.mesh;
-  std::vector<int> part_of_node = local_sets(mesh);
-  const std::vector<GO> smallest = smallest_ids(d, part_of_node);
-  const std::vector<GO> ids = all_different(mesh.comm(), smallest);
-  for (int &part : part_of_node)
-    part = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), smallest[part]) - ids.begin());
+  const LocalSets sets = local_sets(mesh);
   Parts parts;
-  parts.part.resize(ids.size());
-  describe_parts(mesh, part_of_node, parts.part);
-
-  HostView<int *> of_node("rpc::fem::part_of_node", part_of_node.size());
-  std::copy(part_of_node.begin(), part_of_node.end(), of_node.data());
-  parts.of_node = to_device(of_node);
-  parts.centre = DeviceView<double **>("rpc::fem::part_centre", ids.size(), mesh.dim());
-  parts.radius = DeviceView<double *>("rpc::fem::part_radius", ids.size());
+  parts.of_node = sets.of_node;
+  if (sets.count == 1 && mesh.comm().getSize() == 1) {
+    parts.part.push_back(whole_body(mesh));
+  } else {
+    const std::vector<GO> smallest = smallest_ids(d, sets);
+    const std::vector<GO> ids = all_different(mesh.comm(), smallest);
+    const auto set = to_host(sets.of_node);
+    std::vector<int> part_of_node(set.extent(0));
+    for (std::size_t n = 0; n < part_of_node.size(); ++n)
+      part_of_node[n] = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), smallest[set(n)]) - ids.begin());
+    parts.part.resize(ids.size());
+    if (ids.size() == 1)
+      parts.part[0] = whole_body(mesh);
+    else
+      describe_parts(mesh, part_of_node, parts.part);
+    parts.of_node = device_values(part_of_node, "rpc::fem::part_of_node");
+  }
+  const int num_parts = parts.size();
+  parts.centre = DeviceView<double **>("rpc::fem::part_centre", num_parts, mesh.dim());
+  parts.radius = DeviceView<double *>("rpc::fem::part_radius", num_parts);
   const auto centre = Kokkos::create_mirror_view(parts.centre);
   const auto radius = Kokkos::create_mirror_view(parts.radius);
-  for (int p = 0; p < parts.size(); ++p) {
+  for (int p = 0; p < num_parts; ++p) {
     for (int c = 0; c < mesh.dim(); ++c) centre(p, c) = parts.part[p].centre[c];
     radius(p) = parts.part[p].radius;
   }

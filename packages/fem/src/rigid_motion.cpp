@@ -1,6 +1,7 @@
 #include "rpc/fem/rigid_motion.hpp"
 
 #include "numbers.hpp"
+#include "rpc/fem/surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -84,6 +85,45 @@ Point cross(const Point &a, const Point &b)
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+/// Lists the owned nodes with a prescribed unknown, ascending. @return how many there are; an empty list stays empty
+LO list_held_nodes(const DeviceView<char *> &fixed, const int dim, const LO num_owned, const DeviceView<LO *> &list)
+{
+  LO count = 0;
+  Kokkos::parallel_scan(
+      "rpc::fem::held_nodes", device_range(num_owned),
+      KOKKOS_LAMBDA(const LO n, LO &at, const bool last) {
+        bool held = false;
+        for (int c = 0; c < dim; ++c) held = held || fixed(dim * n + c);
+        if (!held) return;
+        if (last && list.extent(0) > 0) list(at) = n;
+        ++at;
+      },
+      count);
+  return count;
+}
+
+DeviceView<LO *> held_nodes(const DirichletDofs &dirichlet, const int dim, const LO num_owned)
+{
+  const DeviceView<LO *> nodes("rpc::fem::held_nodes", list_held_nodes(dirichlet.fixed, dim, num_owned, {}));
+  list_held_nodes(dirichlet.fixed, dim, num_owned, nodes);
+  return nodes;
+}
+
+/// (nodes, dim + 1) 1 for prescribed components, else 0; then the node's part.
+DeviceView<int **> what_is_held(const DirichletDofs &dirichlet, const Parts &parts, const DeviceView<LO *> &nodes,
+                                const int dim)
+{
+  const DeviceView<int **> held("rpc::fem::what_is_held", nodes.extent(0), dim + 1);
+  const auto fixed = dirichlet.fixed;
+  const auto of_node = parts.of_node;
+  Kokkos::parallel_for(
+      "rpc::fem::what_is_held", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        for (int c = 0; c < dim; ++c) held(i, c) = fixed(dim * nodes(i) + c) ? 1 : 0;
+        held(i, dim) = of_node(nodes(i));
+      });
+  return held;
+}
+
 } // namespace
 
 std::vector<RigidMotion> independent_rows(const std::vector<RigidMotion> &rows, const double tolerance)
@@ -154,20 +194,21 @@ std::vector<std::vector<RigidMotion>> free_motions(const Discretization &d, cons
 {
   const mesh::Mesh &mesh = *d.mesh;
   const int dim = d.dim();
-  const auto coords = to_host(mesh.coords);
-  const auto fixed = to_host(dirichlet.fixed);
-  const auto of_node = to_host(parts.of_node);
+  const DeviceView<LO *> nodes = held_nodes(dirichlet, dim, mesh.num_owned_nodes());
+  const HostPoints x = node_positions(mesh, nodes);
+  const auto held = to_host(what_is_held(dirichlet, parts, nodes, dim));
   std::vector<std::vector<RigidMotion>> rows(parts.size());
-  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) {
+  for (std::size_t n = 0; n < x.extent(0); ++n) {
+    const int p = held(n, dim);
     for (int i = 0; i < dim; ++i) {
-      if (!fixed(dim * n + i)) continue;
-      const Part &part = parts.part[of_node(n)];
+      if (!held(n, i)) continue;
+      const Part &part = parts.part[p];
       double arm[3] = {0, 0, 0}, unit[3] = {0, 0, 0};
-      for (int c = 0; c < dim; ++c) arm[c] = (coords(n, c) - part.centre[c]) / part.radius;
+      for (int c = 0; c < dim; ++c) arm[c] = (x(n, c) - part.centre[c]) / part.radius;
       unit[i] = 1;
       RigidMotion row{};
       along_modes(dim, arm, unit, row.data());
-      rows[of_node(n)].push_back(row);
+      rows[p].push_back(row);
     }
   }
   rows = independent_rows_of_all(mesh.comm(), rows, rigid_tolerance);

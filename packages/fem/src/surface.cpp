@@ -6,6 +6,17 @@
 namespace rpc::fem
 {
 
+HostPoints node_positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node)
+{
+  const DeviceView<double **> points("rpc::fem::node_positions", node.extent(0), mesh.dim());
+  const auto coords = mesh.coords;
+  Kokkos::parallel_for(
+      "rpc::fem::node_positions", device_range(static_cast<LO>(node.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        for (std::size_t c = 0; c < coords.extent(1); ++c) points(i, c) = coords(node(i), c);
+      });
+  return to_host(points);
+}
+
 DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &side)
 {
   const int points = d.reference.facet.num_points();

@@ -1,9 +1,13 @@
 #pragma once
 
+#include "rpc/core/evaluate.hpp"
 #include "rpc/fem/discretization.hpp"
 
 namespace rpc::fem
 {
+
+/// (n, dim) Where nodes are [m], on the host.
+HostPoints node_positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node);
 
 /// What the points of ReferenceElement::facet stand for on a side: (facets * points), facet by facet [m^(dim-1)].
 DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &side);
