@@ -1,0 +1,155 @@
+#include "multigrid.hpp"
+
+#include <MueLu_AmalgamationFactory.hpp>
+#include <MueLu_AmalgamationInfo.hpp>
+#include <MueLu_CreateTpetraPreconditioner.hpp>
+#include <MueLu_FactoryManager.hpp>
+#include <MueLu_SingleLevelFactoryBase.hpp>
+#ifdef HAVE_MUELU_KOKKOS_REFACTOR
+#include <MueLu_AmalgamationFactory_kokkos.hpp>
+#include <MueLu_AmalgamationInfo_kokkos.hpp>
+#endif
+
+namespace rpc::solver
+{
+namespace
+{
+
+using XpetraMap = Xpetra::Map<LO, GO, Node>;
+using XpetraMatrix = Xpetra::Matrix<double, LO, GO, Node>;
+using XpetraVectors = Xpetra::MultiVector<double, LO, GO, Node>;
+using Translation = Teuchos::Array<LO>;
+
+/// Nodes of unknowns, as MueLu wants them told.
+struct Nodes {
+  RCP<const XpetraMap> map;
+  RCP<Translation> of_unknown; // local node of a local unknown
+};
+
+/// Whether unknown k of a map's local node n has the gid size * (the node's gid) + k, for all of them on this rank.
+bool node_by_node(const XpetraMap &unknowns, const LO size)
+{
+  if (unknowns.getIndexBase() != 0 || unknowns.getNodeNumElements() % size != 0) return false;
+  if (unknowns.isContiguous()) return unknowns.getNodeNumElements() == 0 || unknowns.getMinGlobalIndex() % size == 0;
+  const auto gids = unknowns.getNodeElementList();
+  for (Teuchos_Ordinal k = 0; k < gids.size(); ++k)
+    if (gids[k] % size != k % size || gids[k] != gids[k - k % size] + k % size) return false;
+  return true;
+}
+
+/// Collective.
+Nodes nodes_of(const XpetraMap &unknowns, const LO size)
+{
+  Nodes nodes{Teuchos::null, rcp(new Translation(unknowns.getNodeNumElements()))};
+  LO n = 0;
+  for (auto to = nodes.of_unknown->begin(); to != nodes.of_unknown->end(); ++n)
+    for (LO k = 0; k < size; ++k) *to++ = n;
+  using MapFactory = Xpetra::MapFactory<LO, GO, Node>;
+  if (unknowns.isContiguous()) {
+    nodes.map = MapFactory::Build(unknowns.lib(), unknowns.getGlobalNumElements() / size,
+                                  unknowns.getNodeNumElements() / size, 0, unknowns.getComm());
+  } else {
+    const auto gids = unknowns.getNodeElementList();
+    Teuchos::Array<GO> of_nodes(gids.size() / size);
+    for (Teuchos_Ordinal k = 0; k < of_nodes.size(); ++k) of_nodes[k] = gids[size * k] / size;
+    nodes.map = MapFactory::Build(unknowns.lib(), Teuchos::OrdinalTraits<Xpetra::global_size_t>::invalid(), of_nodes(),
+                                  0, unknowns.getComm());
+  }
+  return nodes;
+}
+
+/// Stands in for MueLu's AmalgamationFactory or AmalgamationFactory_kokkos.
+template <class Info, class Original>
+class NodeByNode : public MueLu::SingleLevelFactoryBase
+{
+public:
+  RCP<const Teuchos::ParameterList> GetValidParameterList() const override { return original_.GetValidParameterList(); }
+  void DeclareInput(MueLu::Level &level) const override { Input(level, "A"); }
+
+  void Build(MueLu::Level &level) const override
+  {
+    const auto A = Get<RCP<XpetraMatrix>>(level, "A");
+    const LO size = A->GetFixedBlockSize();
+    const XpetraMap &rows = *A->getRowMap(), &columns = *A->getColMap();
+    const bool simple = size > 1 && node_by_node(rows, size) && node_by_node(columns, size);
+    if (min_all(*rows.getComm(), simple ? 1 : 0) == 0) {
+      Set(level, "UnAmalgamationInfo", by_muelu(*A, size));
+      return;
+    }
+    const Nodes row_nodes = nodes_of(rows, size);
+    const Nodes column_nodes = A->getRowMap() == A->getColMap() ? row_nodes : nodes_of(columns, size);
+    Set(level, "UnAmalgamationInfo", info(*A, row_nodes, column_nodes, size));
+  }
+
+private:
+  static RCP<Info> info(const XpetraMatrix &A, const Nodes &rows, const Nodes &columns, const LO size)
+  {
+    return rcp(
+        new Info(rows.of_unknown, columns.of_unknown, rows.map, columns.map, A.getColMap(), size, 0, -1, 0, size));
+  }
+  /// In MueLu's way, for any other numbering; collective.
+  static RCP<Info> by_muelu(const XpetraMatrix &A, const LO size)
+  {
+    if (size == 1) return info(A, {A.getRowMap(), Teuchos::null}, {A.getColMap(), Teuchos::null}, 1);
+    Nodes rows{Teuchos::null, rcp(new Translation)}, columns{Teuchos::null, rcp(new Translation)};
+    Original::AmalgamateMap(*A.getRowMap(), A, rows.map, *rows.of_unknown);
+    Original::AmalgamateMap(*A.getColMap(), A, columns.map, *columns.of_unknown);
+    return info(A, rows, columns, size);
+  }
+
+  Original original_;
+};
+
+/// For levels that use MueLu's Kokkos factories, or not.
+RCP<const MueLu::FactoryBase> node_by_node_factory(const bool kokkos)
+{
+#ifdef HAVE_MUELU_KOKKOS_REFACTOR
+  if (kokkos)
+    return rcp(new NodeByNode<MueLu::AmalgamationInfo_kokkos<LO, GO, Node>,
+                              MueLu::AmalgamationFactory_kokkos<double, LO, GO, Node>>);
+#else
+  (void)kokkos;
+#endif
+  return rcp(new NodeByNode<MueLu::AmalgamationInfo<LO, GO, Node>, MueLu::AmalgamationFactory<double, LO, GO, Node>>);
+}
+
+/// A Tpetra multivector of the "user data" as MueLu takes it.
+void wrap(Teuchos::ParameterList &user_data, const std::string &name)
+{
+  if (!user_data.isParameter(name)) return;
+  const auto vectors = user_data.get<RCP<MultiVector>>(name);
+  user_data.set(name, RCP<XpetraVectors>(MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(vectors)));
+}
+
+} // namespace
+
+RCP<Multigrid> make_multigrid(const RCP<CrsMatrix> &A, Teuchos::ParameterList list)
+{
+  if (list.isSublist("Hierarchy") || list.isParameter("parameterlist: syntax"))
+    return MueLu::CreateTpetraPreconditioner(RCP<Operator>(A), list);
+  wrap(list.sublist("user data"), "Coordinates");
+  wrap(list.sublist("user data"), "Nullspace");
+  Teuchos::ParameterList plain, user_data;
+  MueLu::ExtractNonSerializableData(list, plain, user_data);
+  MueLu::ParameterListInterpreter<double, LO, GO, Node> interpreter(plain, A->getComm());
+  for (std::size_t level = 0; level < interpreter.getNumFactoryManagers(); ++level) {
+    const auto manager = Teuchos::rcp_dynamic_cast<MueLu::FactoryManager<double, LO, GO, Node>>(
+        interpreter.GetFactoryManager(static_cast<int>(level)), true);
+    manager->SetFactory("UnAmalgamationInfo", node_by_node_factory(manager->GetKokkosRefactor()));
+  }
+  const auto hierarchy = interpreter.CreateHierarchy();
+  const RCP<XpetraMatrix> matrix = MueLu::TpetraCrs_To_XpetraMatrix<double, LO, GO, Node>(A);
+  hierarchy->setlib(Xpetra::UseTpetra);
+  MueLu::HierarchyUtils<double, LO, GO, Node>::AddNonSerializableDataToHierarchy(interpreter, *hierarchy, user_data);
+  hierarchy->GetLevel(0)->Set("A", matrix);
+  hierarchy->SetProcRankVerbose(A->getComm()->getRank());
+  interpreter.SetupHierarchy(*hierarchy);
+  return rcp(new Multigrid(hierarchy));
+}
+
+void renew_multigrid(const RCP<CrsMatrix> &A, Multigrid &multigrid)
+{
+  MueLu::ReuseTpetraPreconditioner(A, multigrid);
+}
+
+} // namespace rpc::solver
