@@ -1,17 +1,21 @@
-# rpc_add_test(<package> <name> [LABEL unit] [NP 1 2 3] [SOURCES extra.cpp] [LIBRARIES libs] [TIMEOUT seconds])
-# One executable <package>_<name>_test from <name>_test.cpp, with the common main of test/support, linked to rpc::<package>
-# where there is such a target; one CTest entry <package>.<name>.np<k> per number of ranks.
-# LABEL is unit, verification, regression or performance.
+# rpc_add_test(<package> <name> [LABEL unit] [NP 1 2 3] [LIBRARIES libs] [TIMEOUT seconds])
+# The GoogleTests of <name>_test.cpp, linked to rpc::<package> where there is such a target; one CTest entry
+# <package>.<name>.np<k> per number of ranks. LABEL is unit, verification, regression or performance.
 find_package(GTest QUIET)
 rpc_require("GoogleTest" libgtest-dev GTest_FOUND)
 
 set(RPC_TEST_THREADS 1 CACHE STRING "OpenMP threads per rank in tests")
 set(RPC_TEST_TIMEOUT_FACTOR 1 CACHE STRING "Factor on the tests' time limits, an integer")
 
-add_library(rpc_test_main OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/test/support/gtest_main.cpp)
-target_include_directories(rpc_test_main PUBLIC ${PROJECT_SOURCE_DIR}/test/support)
-target_compile_features(rpc_test_main PUBLIC cxx_std_17)
-target_link_libraries(rpc_test_main PUBLIC rpc::trilinos GTest::gtest)
+# One program has all GoogleTests, and runs those of one file at a time: of static libraries with GPU code, each of sixty
+# programs would hold a copy of 100 MB. rpc_test_main is what the tests themselves need.
+add_library(rpc_test_main INTERFACE)
+target_include_directories(rpc_test_main INTERFACE ${PROJECT_SOURCE_DIR}/test/support)
+target_compile_features(rpc_test_main INTERFACE cxx_std_17)
+target_link_libraries(rpc_test_main INTERFACE rpc::trilinos GTest::gtest)
+add_executable(rpc_tests ${PROJECT_SOURCE_DIR}/test/support/gtest_main.cpp)
+target_compile_options(rpc_tests PRIVATE -Wall -Wextra)
+target_link_libraries(rpc_tests PRIVATE rpc_test_main)
 
 # More ranks than cores, and root in a container: Open MPI refuses both unless told.
 set(rpc_test_environment
@@ -53,7 +57,7 @@ function(rpc_add_run_test name np)
 endfunction()
 
 function(rpc_add_test package name)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "" "LABEL;TIMEOUT" "NP;SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "LABEL;TIMEOUT" "NP;LIBRARIES")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "rpc_add_test(${package} ${name}): unknown argument ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -67,10 +71,12 @@ function(rpc_add_test package name)
     list(PREPEND arg_LIBRARIES rpc::${package})
   endif()
   set(target ${package}_${name}_test)
-  add_executable(${target} ${name}_test.cpp ${arg_SOURCES})
+  add_library(${target} OBJECT ${name}_test.cpp)
   target_compile_options(${target} PRIVATE -Wall -Wextra)
-  target_link_libraries(${target} PRIVATE rpc_test_main ${arg_LIBRARIES})
+  target_link_libraries(${target} PUBLIC rpc_test_main ${arg_LIBRARIES})
+  target_link_libraries(rpc_tests PRIVATE ${target})
+  file(RELATIVE_PATH source ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
   foreach(np IN LISTS arg_NP)
-    rpc_add_run_test(${package}.${name} ${np} LABEL ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} COMMAND ${target})
+    rpc_add_run_test(${package}.${name} ${np} LABEL ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} COMMAND rpc_tests --source=${source})
   endforeach()
 endfunction()

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <iostream>
 #include <sstream>
+#include <string>
+#include <string_view>
 
 namespace
 {
@@ -32,7 +34,34 @@ private:
   const testing::TestInfo *test_ = nullptr;
 };
 
-/// Runs all tests on every rank; the exit code is 1 on every rank if a test failed on any.
+/// Takes --source=PATH out of the arguments, and makes the tests of source files whose path ends so the only ones.
+void choose_source(int &argc, char **argv)
+{
+  constexpr std::string_view option = "--source=";
+  const auto ends = [](const std::string_view text, const std::string_view end) {
+    return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+  };
+  int kept = 1;
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view argument = argv[k];
+    if (argument.substr(0, option.size()) != option) {
+      argv[kept++] = argv[k];
+      continue;
+    }
+    std::string filter = "none"; // lest an empty one run all
+    const auto &unit_test = *testing::UnitTest::GetInstance();
+    for (int s = 0; s < unit_test.total_test_suite_count(); ++s)
+      for (int t = 0; t < unit_test.GetTestSuite(s)->total_test_count(); ++t) {
+        const testing::TestInfo &test = *unit_test.GetTestSuite(s)->GetTestInfo(t);
+        if (ends(test.file(), argument.substr(option.size())))
+          filter += std::string(":") + test.test_suite_name() + "." + test.name();
+      }
+    testing::GTEST_FLAG(filter) = filter;
+  }
+  argc = kept;
+}
+
+/// Runs the chosen tests on every rank; the exit code is 1 on every rank if a test failed on any.
 int run_on_all(const Teuchos::Comm<int> &comm)
 {
   const int rank = comm.getRank();
@@ -44,7 +73,7 @@ int run_on_all(const Teuchos::Comm<int> &comm)
   } else {
     std::cout << "[   RANKS  ] " << comm.getSize() << ", Kokkos " << Kokkos::DefaultExecutionSpace::name() << std::endl;
   }
-  const bool failed_here = RUN_ALL_TESTS() != 0 || unit_test.total_test_count() == 0;
+  const bool failed_here = RUN_ALL_TESTS() != 0 || unit_test.test_to_run_count() == 0;
   const int mine = failed_here ? 1 : 0;
   int failed_ranks = 0;
   Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, mine, Teuchos::outArg(failed_ranks));
@@ -58,6 +87,7 @@ int run_on_all(const Teuchos::Comm<int> &comm)
 int main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv); // takes its options out of argv before Kokkos sees them
+  choose_source(argc, argv);
   const Tpetra::ScopeGuard scope(&argc, &argv);
   return run_on_all(*Tpetra::getDefaultComm());
 }
