@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs the program: bash cmake/run.sh --input=beam.xml [more options of rpc]
-# Environment: NP=2 runs on 2 MPI ranks; see also setup.sh.
+# Environment: NP=2 runs on 2 MPI ranks; see also common.sh.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 set_up rpc
