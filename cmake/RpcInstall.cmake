@@ -7,6 +7,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/rpcConfigVersion.cmake CO
 install(EXPORT rpcTargets NAMESPACE rpc:: DESTINATION ${destination})
 install(FILES ${PROJECT_BINARY_DIR}/rpcConfig.cmake ${PROJECT_BINARY_DIR}/rpcConfigVersion.cmake
               ${CMAKE_CURRENT_LIST_DIR}/RpcDependencies.cmake ${CMAKE_CURRENT_LIST_DIR}/RpcTrilinos.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/RpcTrilinosCheck.cmake
         DESTINATION ${destination})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/input/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rpc/input
         FILES_MATCHING PATTERN *.xml PATTERN *.yaml PATTERN *.geo)

@@ -6,17 +6,10 @@ include_guard()
 set(CMAKE_CXX_EXTENSIONS OFF) # KokkosConfig.cmake warns otherwise
 # Only the packages in use and what they pull in: a full Trilinos costs link time, and Debian may have but a part installed.
 set(rpc_packages Teuchos Kokkos KokkosKernels Tpetra Xpetra Belos Amesos2 Ifpack2 MueLu NOX)
+set(Kokkos_FIND_QUIETLY ON) # RpcTrilinosCheck.cmake says more
 # Zoltan2 repartitions MueLu's coarse levels; Intrepid2 gives tests their reference values.
 find_package(Trilinos 13.2 QUIET COMPONENTS ${rpc_packages} OPTIONAL_COMPONENTS Zoltan2 Intrepid2)
-if(NOT Trilinos_DIR)
-  message(FATAL_ERROR "Trilinos 13.2 or newer was not found. On Debian: bash cmake/install_packages.sh (or apt-get install "
-                      "trilinos-all-dev); elsewhere: -DTrilinos_ROOT=<install prefix>.")
-endif()
-foreach(package IN LISTS rpc_packages)
-  if(NOT Trilinos_${package}_FOUND)
-    message(FATAL_ERROR "Trilinos in ${Trilinos_DIR} lacks the package ${package}, which rpc needs.")
-  endif()
-endforeach()
+include(${CMAKE_CURRENT_LIST_DIR}/RpcTrilinosCheck.cmake)
 
 set(RPC_TRILINOS_HAS_MPI OFF)
 if(MPI IN_LIST Trilinos_TPL_LIST)
@@ -49,7 +42,6 @@ function(rpc_system_include target)
 endfunction()
 
 if(NOT TARGET rpc_trilinos)
-  message(STATUS "Trilinos ${Trilinos_VERSION}: ${Trilinos_DIR}")
   add_library(rpc_trilinos INTERFACE IMPORTED GLOBAL)
   add_library(rpc::trilinos ALIAS rpc_trilinos)
   rpc_system_include(rpc_trilinos ${Trilinos_INCLUDE_DIRS} ${Trilinos_TPL_INCLUDE_DIRS})

@@ -3,13 +3,23 @@
 # Debian's Trilinos is not visible at this point yet; it needs no certain compiler, RpcTrilinos.cmake links MPI by itself.
 set(CMAKE_CXX_EXTENSIONS OFF) # KokkosConfig.cmake warns otherwise
 
-# A function, so that none of Trilinos' variables stays: RpcTrilinos.cmake asks again, for certain components.
-function(rpc_take_compiler language environment)
+# A function, so that none of Trilinos' variables stays: RpcTrilinos.cmake asks again, for all its components.
+function(rpc_take_compilers)
   set_property(GLOBAL PROPERTY TARGET_SUPPORTS_SHARED_LIBS TRUE) # else each of Trilinos' libraries warns; project() sets it anew
-  find_package(Trilinos 13.2 QUIET)
-  if(Trilinos_${language}_COMPILER AND NOT CMAKE_${language}_COMPILER AND NOT DEFINED ENV{${environment}})
-    set(CMAKE_${language}_COMPILER ${Trilinos_${language}_COMPILER} PARENT_SCOPE)
+  set(Kokkos_FIND_QUIETLY ON)
+  find_package(Trilinos 13.2 QUIET COMPONENTS Kokkos)
+  if(CUDA IN_LIST Kokkos_DEVICES)
+    find_program(nvcc nvcc HINTS $ENV{CUDA_ROOT}/bin NO_CACHE) # where nvcc_wrapper looks
+    if(NOT nvcc)
+      message(FATAL_ERROR "Kokkos in ${Trilinos_DIR} has CUDA, and nvcc is not there to compile for it. Where it is installed: "
+                          "export CUDA_ROOT=/usr/local/cuda PATH=/usr/local/cuda/bin:$PATH, as cmake --preset cuda does.")
+    endif()
+  endif()
+  if(Trilinos_C_COMPILER AND NOT CMAKE_C_COMPILER AND NOT DEFINED ENV{CC})
+    set(CMAKE_C_COMPILER ${Trilinos_C_COMPILER} PARENT_SCOPE)
+  endif()
+  if(Trilinos_CXX_COMPILER AND NOT CMAKE_CXX_COMPILER AND NOT DEFINED ENV{CXX})
+    set(CMAKE_CXX_COMPILER ${Trilinos_CXX_COMPILER} PARENT_SCOPE)
   endif()
 endfunction()
-rpc_take_compiler(C CC)
-rpc_take_compiler(CXX CXX)
+rpc_take_compilers()
