@@ -104,7 +104,7 @@ say "Trilinos 13.2, $title"
 say "  from     $from; patches in cmake/patches"
 say "  built in $build: up to $(((build_mb + 1020) / 100))00 MB, which may be removed afterwards"
 say "  to       $prefix: $install_mb MB"
-say "  time     about $((job_seconds / jobs / 60 + 3)) minutes with $jobs job(s) of an idle machine; a run that is interrupted can be repeated and goes on"
+say "  time     about $((job_seconds / jobs / 60 + 3)) minutes with $jobs job(s) of an idle machine; repeated, an interrupted run goes on"
 
 # existing <folder>: itself or the nearest folder above that exists
 existing() {
@@ -198,7 +198,8 @@ options=(-DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$prefix" -DBUILD_SHA
   -DTrilinos_ENABLE_{EXPLICIT_INSTANTIATION,INSTALL_CMAKE_CONFIG_FILES}=ON
   # double, int, long long: one instantiation of each class
   -DTpetra_INST_{INT_INT,INT_UNSIGNED,INT_UNSIGNED_LONG,INT_LONG}=OFF -DTpetra_INST_INT_LONG_LONG=ON
-  -DTrilinos_ENABLE_{Teuchos,TeuchosKokkosCompat,TeuchosKokkosComm,Kokkos,KokkosKernels,Tpetra,TpetraTSQR,Belos,Xpetra,Amesos2,Ifpack2,MueLu,NOX}=ON
+  -DTrilinos_ENABLE_{Teuchos,TeuchosKokkosCompat,TeuchosKokkosComm,Kokkos,KokkosKernels,Tpetra,TpetraTSQR}=ON
+  -DTrilinos_ENABLE_{Belos,Xpetra,Amesos2,Ifpack2,MueLu,NOX}=ON
   -DBelos_ENABLE_{Tpetra,Xpetra}=ON -DXpetra_ENABLE_{Tpetra,KokkosKernels}=ON -DAmesos2_ENABLE_KLU2=ON -DIfpack2_ENABLE_{Xpetra,Amesos2}=ON
   -DMueLu_ENABLE_{Tpetra,Belos,Ifpack2,Amesos2,Kokkos_Refactor}=ON -DNOX_ENABLE_{LOCA,ABSTRACT_IMPLEMENTATION_LAPACK}=OFF
   -DTPL_ENABLE_{BLAS,LAPACK}=ON)
