@@ -45,7 +45,10 @@ done
 case $prefix$build$source in
   *[!A-Za-z0-9_./+-]*) misused "folders must be named with letters, digits and _ . + - only: Trilinos' scripts split others" ;;
 esac
-case $build/ in "$source"/*) [ -z "$source" ] || misused "--build must be outside --source, which stays as it is" ;; esac
+if [ -n "$source" ]; then
+  grep -qs 'Trilinos_VERSION 13\.2' "$source/Version.cmake" || misused "$source is not the source of Trilinos 13.2: Version.cmake does not say so"
+  case $build/ in "$source"/*) misused "--build must be outside --source, which stays as it is" ;; esac
+fi
 
 # What the processor has to have: programs for x86-64-v3 (AVX2, FMA) run on any made since 2015.
 march() {
@@ -161,7 +164,6 @@ copy() {
 # A patch that the tree has already is passed over.
 apply_patches() {
   local patch options=(--directory="$part" --strip=1 --force --silent --no-backup-if-mismatch)
-  grep -q 'Trilinos_VERSION 13\.2' "$part/Version.cmake" || stop "$from is not Trilinos 13.2, says Version.cmake"
   for patch in "$root"/cmake/patches/*.patch; do
     if patch "${options[@]}" --reverse --fuzz=0 --dry-run <"$patch" >/dev/null 2>&1; then
       say "  $(basename "$patch"): already there"
@@ -213,8 +215,11 @@ else
   export CUDA_ROOT PATH="$CUDA_ROOT/bin:$PATH" # for nvcc_wrapper
   options+=(-DCMAKE_C_COMPILER="$(command -v gcc)" -DCMAKE_CXX_COMPILER="$tree/packages/kokkos/bin/nvcc_wrapper" -DTPL_ENABLE_MPI=OFF
     -DTPL_ENABLE_CUDA=ON -DCUDA_TOOLKIT_ROOT_DIR="$CUDA_ROOT" -DTPL_ENABLE_{CUBLAS,CUSPARSE,CUSOLVER}=OFF
-    -DKokkos_ENABLE_{CUDA,CUDA_LAMBDA,CUDA_UVM,SERIAL}=ON -DKokkos_ENABLE_CUDA_RELOCATABLE_DEVICE_CODE=OFF -DKokkos_ARCH_"$gpu"=ON
+    -DKokkos_ENABLE_{CUDA,CUDA_LAMBDA,CUDA_UVM,SERIAL}=ON -DKokkos_ENABLE_CUDA_RELOCATABLE_DEVICE_CODE=OFF
     -DKokkosKernels_INST_MEMSPACE_CUDASPACE=OFF -DTpetra_INST_CUDA=ON -DTpetra_INST_{SERIAL,OPENMP}=OFF)
+  for name in $known; do # another --arch than last time
+    options+=(-DKokkos_ARCH_"$name"="$([ "$name" = "$gpu" ] && echo ON || echo OFF)")
+  done
 fi
 objects=$build/$backend
 mkdir -p "$objects"
