@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and runs the tests: bash cmake/test.sh [more options of ctest]
+# Environment: RPC_TEST_THREADS=2 gives each rank two OpenMP threads; see also setup.sh.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 set_up
+cmake -DRPC_TEST_THREADS="${RPC_TEST_THREADS:-1}" "$build" >/dev/null
 say "testing"
 cd "$build"
 exec ctest --output-on-failure --no-tests=error --parallel "$(nproc)" -LE 'performance|stress' "$@"

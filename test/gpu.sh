@@ -10,8 +10,8 @@
 #
 # Exit code 77, and the reason, where there is no GPU.
 set -euo pipefail
+RPC_PRESET=cuda
 source "$(dirname "${BASH_SOURCE[0]}")/../cmake/setup.sh"
-build=$root/build-cuda
 
 pack= unpack= sanitizer= options=()
 for argument in "$@"; do
@@ -27,22 +27,12 @@ for argument in "$@"; do
   esac
 done
 
-# build_cuda: leaves the programs and the tests in build-cuda/
 build_cuda() {
   if [ -z "${RPC_TRILINOS_CUDA:-}" ]; then
     say "RPC_TRILINOS_CUDA must name a Trilinos with CUDA; bash cmake/trilinos.sh --backend=cuda --prefix=DIR makes one"
     exit 2
   fi
-  mkdir -p "$build"
-  export CUDA_ROOT=${CUDA_ROOT:-/usr/local/cuda}
-  export PATH=$CUDA_ROOT/bin:$PATH
-  local launcher=()
-  if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-  if [ ! -e "$build/build.ninja" ]; then
-    (cd "$root" && quietly "$build/configure.log" cmake --preset cuda "${launcher[@]}")
-  fi
-  say "building for CUDA with $(build_jobs) job(s), which takes an hour or two on a small machine the first time"
-  quietly "$build/build.log" cmake --build "$build" --parallel "$(build_jobs)"
+  set_up
 }
 
 # Libraries that programs load, except the C library's own, which belong to the system that they run on.
