@@ -1,6 +1,7 @@
 #include "command_line.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/kokkos.hpp"
 #include "rpc/core/parameters.hpp"
 
 #include <Teuchos_CommandLineProcessor.hpp>
@@ -134,7 +135,12 @@ std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, 
   try {
     guard = std::make_unique<Tpetra::ScopeGuard>(&argc, &argv);
   } catch (const std::exception &error) {
-    if (given.empty()) throw;
+    if (given.empty())
+      throw Error(ExitCode::internal_error,
+                  std::string("start: Kokkos cannot run on ") + ExecutionSpace::name() + " here (" +
+                      one_line(error.what()) +
+                      "). A program built for CUDA takes an NVIDIA GPU that nvidia-smi lists; " +
+                      "elsewhere build for the host, see doc/portability.md.");
     throw Error(ExitCode::bad_input, "command line: Kokkos refuses its options" + given + " (" +
                                          one_line(error.what()) + "). See rpc --kokkos-help.");
   }
