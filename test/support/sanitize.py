@@ -2,7 +2,8 @@
 
     python3 sanitize.py --tool=memcheck|racecheck [--jobs=N] -- [options of ctest that choose tests]
 
-One line for each test; the report of those that fail. The pool of device memory is off, so that each view has a block of its own,
+Kokkos 3.4 sums through shared memory without the barriers that racecheck wants between the lanes of a warp, and is warned of it: such
+warnings count only outside of Kokkos' reductions and scans. One line for each test; the report of those that fail. The pool of device memory is off, so that each view has a block of its own,
 and what lies beyond it is seen. The exit code is 1 if any test fails or any error is found.
 """
 
@@ -10,6 +11,7 @@ import argparse
 import concurrent.futures
 import json
 import os
+import re
 import subprocess
 import sys
 import time
@@ -28,9 +30,13 @@ def run(tool, name, command, environment):
     """One test: (name, whether all is well, seconds, output)."""
     start = time.time()
     sanitizer = ["compute-sanitizer", f"--tool={tool}", "--error-exitcode=99", "--target-processes=application-only"]
+    if tool == "racecheck":
+        sanitizer[2] = "--error-exitcode=0"  # by its summary: warnings would count
     result = subprocess.run(sanitizer + command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    checked = "ERROR SUMMARY: 0 errors" in result.stdout or "RACECHECK SUMMARY: 0 hazards" in result.stdout
-    return name, result.returncode == 0 and checked, time.time() - start, result.stdout
+    checked = "ERROR SUMMARY: 0 errors" in result.stdout or re.search(r"RACECHECK SUMMARY: .*\b0 errors", result.stdout)
+    of_kokkos = re.compile("Kokkos::Impl::Parallel(Reduce|Scan)")
+    strange = [line for line in result.stdout.splitlines() if "Race reported" in line and not of_kokkos.search(line)]
+    return name, result.returncode == 0 and checked and not strange, time.time() - start, result.stdout
 
 
 def main():

@@ -14,6 +14,9 @@ constexpr bool one_thread = std::is_same_v<ExecutionSpace, Kokkos::Serial>;
 constexpr bool one_thread = false;
 #endif
 
+/// Whether kernels run beside the host, with memory of their own.
+constexpr bool on_gpu = !std::is_same_v<MemorySpace, Kokkos::HostSpace>;
+
 /// Lists that threads have filled, each ascending.
 inline void sort_lists(const DeviceView<std::size_t *> &row, const DeviceView<LO *> &list)
 {

@@ -492,6 +492,47 @@ struct GatherStiffness {
   }
 };
 
+/// The same in two passes, for GPUs: threads that write whole rows each for itself share no line of memory.
+template <int Dim, int Nodes>
+struct GatherOrFindSource {
+  NodeStiffness<Dim, Nodes> stiffness;
+  LO example;              // cell
+  DeviceView<LO *> source; // (owned nodes) whose rows are to be copied; -1 where nothing is left to do   out
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    source(node) = -1;
+    for (int a = 0; a < Nodes; ++a) {
+      const LO other = stiffness.cells(example, a);
+      if (other == node) return;
+      if (other < stiffness.num_owned && stiffness.same_rows(node, other)) {
+        source(node) = other;
+        return;
+      }
+    }
+    stiffness.gather(node);
+  }
+};
+
+/// One entry: neighbouring threads write neighbouring entries.
+template <int Dim>
+struct CopyRows {
+  NodeGraph nodes;             //                                              in
+  DeviceView<LO *> source;     // (owned nodes)                                in
+  std::size_t most;            // entries in the rows of any node
+  DeviceView<double *> values; // (matrix entries)                      [N/m]  inout
+
+  /// @param item  node * most + entry in the node's rows
+  KOKKOS_FUNCTION void operator()(const std::size_t item) const
+  {
+    const LO node = static_cast<LO>(item / most), from = source(node);
+    if (from < 0) return;
+    const std::size_t entry = item % most, begin = nodes.row(node);
+    if (entry < Dim * Dim * (nodes.row(node + 1) - begin))
+      values(Dim * Dim * begin + entry) = values(Dim * Dim * nodes.row(from) + entry);
+  }
+};
+
 /// What a displacement does in one cell: f(ai) += int sigma(u) : grad(N_a e_i) to the cell's nodes, and sums over the cells
 /// that this rank owns.
 template <int Dim, int Nodes>

@@ -183,6 +183,20 @@ void add_load(const DeviceView<LO **> &entities, const NodeCells &around, const 
   Kokkos::fence();
 }
 
+/// Nodes that share a cell with a node, at most on this rank.
+std::size_t longest_row(const NodeGraph &nodes)
+{
+  std::size_t longest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::fem::longest_row", device_range(static_cast<LO>(nodes.row.extent(0)) - 1),
+      KOKKOS_LAMBDA(const LO node, std::size_t &most) {
+        const std::size_t length = nodes.row(node + 1) - nodes.row(node);
+        if (length > most) most = length;
+      },
+      Kokkos::Max<std::size_t>(longest));
+  return longest;
+}
+
 /// The matrix's values where cells are alike: few cells are integrated, and each entry is written once.
 /// @param[out] bad  number of shapes with a Jacobian <= 0
 template <int Dim, int Nodes>
@@ -200,8 +214,17 @@ MatrixValues gather_stiffness(const Discretization &d, const CellStiffness<Dim, 
   const NodeStiffness<Dim, Nodes> rows{mesh.cells, mesh.block, d.shapes.of_cell, matrix, num_blocks,
                                        num_owned,  d.around,   d.nodes,          values};
   Kokkos::parallel_for("rpc::fem::gather_examples", device_range(Nodes), GatherExamples<Dim, Nodes>{rows, example});
-  Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
-                       GatherStiffness<Dim, Nodes>{rows, example});
+  if constexpr (on_gpu) {
+    const DeviceView<LO *> source(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::source_of_rows"), num_owned);
+    Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
+                         GatherOrFindSource<Dim, Nodes>{rows, example, source});
+    const std::size_t most = Dim * Dim * longest_row(d.nodes);
+    const Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<std::size_t>> items(0, most * num_owned);
+    Kokkos::parallel_for("rpc::fem::copy_stiffness", items, CopyRows<Dim>{d.nodes, source, most, values});
+  } else {
+    Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
+                         GatherStiffness<Dim, Nodes>{rows, example});
+  }
   return values;
 }
 
