@@ -16,6 +16,7 @@
 #include <MueLu_UncoupledAggregationFactory_kokkos.hpp>
 #include <MueLu_Utilities_kokkos.hpp>
 #endif
+#include <algorithm>
 
 namespace rpc::solver
 {
@@ -116,14 +117,12 @@ using DeviceAggregates = MueLu::Aggregates_kokkos<LO, GO, Node>;
 using HostAggregation = MueLu::UncoupledAggregationFactory<LO, GO, Node>;
 using DeviceAggregation = MueLu::UncoupledAggregationFactory_kokkos<LO, GO, Node>;
 
-/// A host array as MueLu takes it, from a device view.
-template <class T, class View>
-Teuchos::ArrayRCP<T> host_array(const View &device)
+/// A host copy as MueLu takes it.
+template <class View>
+auto host_array(const View &device)
 {
   const auto host = to_host(device);
-  Teuchos::ArrayRCP<T> array(host.extent(0));
-  for (std::size_t k = 0; k < host.extent(0); ++k) array[k] = static_cast<T>(host(k));
-  return array;
+  return Teuchos::arcpWithEmbeddedObj(host.data(), 0, host.extent(0), host, false);
 }
 
 /// The nodes' graph for MueLu's factories of one thread, from that for many.
@@ -146,9 +145,12 @@ public:
     const auto A = Get<RCP<XpetraMatrix>>(level, "A");
     const auto graph = Get<RCP<DeviceGraph>>(level, "Graph");
     const LO size = A->GetFixedBlockSize();
+    const auto offsets = host_array(graph->getRowPtrs());
+    const auto columns = host_array(graph->getEntries());
+    const Teuchos::ArrayRCP<LO> rows(offsets.size());
+    std::copy(offsets.begin(), offsets.end(), rows.begin());
     const RCP<MueLu::GraphBase<LO, GO, Node>> host =
-        rcp(new HostGraph(host_array<LO>(graph->getRowPtrs()), host_array<LO>(graph->getEntries()),
-                          graph->GetDomainMap(), graph->GetImportMap()));
+        rcp(new HostGraph(rows, Teuchos::arcp_const_cast<LO>(columns), graph->GetDomainMap(), graph->GetImportMap()));
     host->SetBoundaryNodeMap(prescribed_nodes(*A, size));
     Set(level, "Graph", host);
     Set(level, "DofsPerNode", size);
@@ -183,21 +185,11 @@ public:
         taken.setEntry(options.name(it), options.entry(it));
     host_->SetParameterList(taken);
   }
-  RCP<const Teuchos::ParameterList> GetValidParameterList() const override
-  {
-    const auto valid = Teuchos::parameterList();
-    valid->set<RCP<const MueLu::FactoryBase>>("Graph", Teuchos::null);
-    return valid;
-  }
-  void DeclareInput(MueLu::Level &level) const override
-  {
-    Input(level, "Graph");
-    level.DeclareInput("Aggregates", host_.get(), this);
-  }
+  void DeclareInput(MueLu::Level &level) const override { level.DeclareInput("Aggregates", host_.get(), this); }
   void Build(MueLu::Level &level) const override
   {
     const auto from = level.Get<RCP<HostAggregates>>("Aggregates", host_.get());
-    const auto to = rcp(new DeviceAggregates(*Get<RCP<DeviceGraph>>(level, "Graph")));
+    const auto to = rcp(new DeviceAggregates(from->GetMap()));
     to->SetNumAggregates(from->GetNumAggregates());
     copy(*from->GetVertex2AggId(), *to->GetVertex2AggIdNonConst());
     copy(*from->GetProcWinner(), *to->GetProcWinnerNonConst());
