@@ -109,7 +109,7 @@ struct Content {
     int count = 0;
     EXPECT_EQ(ex_get_variable_param(id, EX_NODAL, &count), 0);
     for (int f = 1; f <= count; ++f) {
-      char name[MAX_STR_LENGTH + 1] = {};
+      char name[256] = {}; // the library writes as many as names may have
       EXPECT_EQ(ex_get_variable_name(id, EX_NODAL, f, name), 0);
       field_names.push_back(name);
       std::vector<double> values(nodes);
