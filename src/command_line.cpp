@@ -7,6 +7,7 @@
 #include <Teuchos_CommandLineProcessor.hpp>
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <regex>
 #include <sstream>
 
@@ -132,6 +133,9 @@ std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, 
   arguments.push_back(nullptr);
   char **argv = arguments.data();
   std::unique_ptr<Tpetra::ScopeGuard> guard;
+#ifdef KOKKOS_ENABLE_CUDA
+  setenv("KOKKOS_DISABLE_WARNINGS", "ON", 0); // it warns of managed memory, which Tpetra 13.2 cannot do without
+#endif
   try {
     guard = std::make_unique<Tpetra::ScopeGuard>(&argc, &argv);
   } catch (const std::exception &error) {

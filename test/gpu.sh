@@ -71,7 +71,9 @@ unpack_tests() {
     fi
   fi
   cd "$source_dir/build-cuda"
-  find . -name CTestTestfile.cmake -exec sed -i "s#\"[^\"]*/python3[.0-9]*\"#\"$(command -v python3)\"#g" {} +
+  for tool in python3 cmake; do
+    find . -name CTestTestfile.cmake -exec sed -i "s#\"/[^\"]*/$tool[.0-9]*\"#\"$(command -v $tool)\"#g" {} +
+  done
   export LD_LIBRARY_PATH=$PWD/libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
   say "install and configure tests SKIPPED: they take compilers and libraries"
   options+=(-E '^(install|configure)\.')

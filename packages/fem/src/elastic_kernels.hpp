@@ -515,19 +515,20 @@ struct GatherOrFindSource {
 };
 
 /// One entry: neighbouring threads write neighbouring entries.
-template <int Dim>
+/// @tparam Index  holds all items; the divisions of 32 bits take less time than the memory
+template <int Dim, class Index>
 struct CopyRows {
   NodeGraph nodes;             //                                              in
   DeviceView<LO *> source;     // (owned nodes)                                in
-  std::size_t most;            // entries in the rows of any node
+  Index most;                  // entries in the rows of any node
   DeviceView<double *> values; // (matrix entries)                      [N/m]  inout
 
   /// @param item  node * most + entry in the node's rows
-  KOKKOS_FUNCTION void operator()(const std::size_t item) const
+  KOKKOS_FUNCTION void operator()(const Index item) const
   {
     const LO node = static_cast<LO>(item / most), from = source(node);
     if (from < 0) return;
-    const std::size_t entry = item % most, begin = nodes.row(node);
+    const std::size_t entry = item - node * most, begin = nodes.row(node);
     if (entry < Dim * Dim * (nodes.row(node + 1) - begin))
       values(Dim * Dim * begin + entry) = values(Dim * Dim * nodes.row(from) + entry);
   }

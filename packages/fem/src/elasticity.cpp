@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace rpc::fem
@@ -197,6 +198,15 @@ std::size_t longest_row(const NodeGraph &nodes)
   return longest;
 }
 
+template <int Dim, class Index>
+void copy_rows(const NodeGraph &nodes, const DeviceView<LO *> &source, const std::size_t most,
+               const MatrixValues &values)
+{
+  const Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>> items(0, most * source.extent(0));
+  Kokkos::parallel_for("rpc::fem::copy_stiffness", items,
+                       CopyRows<Dim, Index>{nodes, source, static_cast<Index>(most), values});
+}
+
 /// The matrix's values where cells are alike: few cells are integrated, and each entry is written once.
 /// @param[out] bad  number of shapes with a Jacobian <= 0
 template <int Dim, int Nodes>
@@ -219,8 +229,10 @@ MatrixValues gather_stiffness(const Discretization &d, const CellStiffness<Dim, 
     Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
                          GatherOrFindSource<Dim, Nodes>{rows, example, source});
     const std::size_t most = Dim * Dim * longest_row(d.nodes);
-    const Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<std::size_t>> items(0, most * num_owned);
-    Kokkos::parallel_for("rpc::fem::copy_stiffness", items, CopyRows<Dim>{d.nodes, source, most, values});
+    if (most * num_owned <= std::numeric_limits<unsigned>::max())
+      copy_rows<Dim, unsigned>(d.nodes, source, most, values);
+    else
+      copy_rows<Dim, std::size_t>(d.nodes, source, most, values);
   } else {
     Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
                          GatherStiffness<Dim, Nodes>{rows, example});

@@ -173,9 +173,11 @@ private:
 class AggregatesOfOneThread : public MueLu::SingleLevelFactoryBase
 {
 public:
-  explicit AggregatesOfOneThread(const Teuchos::ParameterList &options) : host_(rcp(new HostAggregation))
+  AggregatesOfOneThread(const Teuchos::ParameterList &options, const RCP<const MueLu::FactoryBase> &device_graph)
+      : host_(rcp(new HostAggregation))
   {
     const auto graph = rcp(new GraphOnHost);
+    graph->SetFactory("Graph", device_graph);
     host_->SetFactory("Graph", graph);
     host_->SetFactory("DofsPerNode", graph);
     Teuchos::ParameterList taken;
@@ -221,7 +223,7 @@ void use_one_thread_aggregates(MueLu::FactoryManager<double, LO, GO, Node> &mana
   if (threaded.is_null()) return;
   const Teuchos::ParameterList &options = threaded->GetParameterList();
   if (!options.get<bool>("aggregation: deterministic")) return;
-  const RCP<MueLu::FactoryBase> aggregates = rcp(new AggregatesOfOneThread(options));
+  const RCP<MueLu::FactoryBase> aggregates = rcp(new AggregatesOfOneThread(options, manager.GetFactory("Graph")));
   manager.SetFactory("Aggregates", aggregates);
   for (const char *user : {"Ptent", "CoarseMap"}) // MueLu has told them already
     rcp_const_cast<MueLu::Factory>(rcp_dynamic_cast<const MueLu::Factory>(manager.GetFactory(user), true))
