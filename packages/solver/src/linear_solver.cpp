@@ -1,5 +1,6 @@
 #include "rpc/solver/linear_solver.hpp"
 
+#include "gathered_solver.hpp"
 #include "local_correction.hpp"
 #include "multigrid.hpp"
 #include "rpc/core/error.hpp"
@@ -92,7 +93,12 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
   // On several ranks there is always a level below the finest one, so that what is solved directly has gone to one rank.
   const GO rows = static_cast<GO>(A.getGlobalNumRows());
   const bool alone = A.getComm()->getSize() == 1;
-  list.set("coarse: max size", alone ? 1000 : static_cast<int>(std::clamp<GO>(rows / 4, 1, 1000)));
+#ifdef HAVE_MUELU_ZOLTAN2
+  constexpr GO most = 1000;
+#else
+  constexpr GO most = most_gathered_rows;
+#endif
+  list.set("coarse: max size", alone ? 1000 : static_cast<int>(std::clamp<GO>(rows / 4, 1, most)));
 #ifdef HAVE_MUELU_ZOLTAN2
   if (!alone) { // the direct coarse solvers of 13.2 are wrong on a distributed matrix
     list.set("repartition: enable", true);
@@ -104,8 +110,6 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
     Teuchos::ParameterList &partitioner = list.sublist("repartition: params");
     partitioner.set("algorithm", "multijagged");
   }
-#else
-  if (!alone) list.set("coarse: type", "CHEBYSHEV");
 #endif
   return list;
 }

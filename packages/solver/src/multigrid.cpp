@@ -1,10 +1,13 @@
 #include "multigrid.hpp"
 
+#include "gathered_solver.hpp"
+
 #include <MueLu_AmalgamationFactory.hpp>
 #include <MueLu_AmalgamationInfo.hpp>
 #include <MueLu_CreateTpetraPreconditioner.hpp>
 #include <MueLu_FactoryManager.hpp>
 #include <MueLu_SingleLevelFactoryBase.hpp>
+#include <MueLu_SmootherFactory.hpp>
 #ifdef HAVE_MUELU_KOKKOS_REFACTOR
 #include <MueLu_Aggregates.hpp>
 #include <MueLu_Aggregates_kokkos.hpp>
@@ -24,8 +27,6 @@ namespace
 {
 
 using XpetraMap = Xpetra::Map<LO, GO, Node>;
-using XpetraMatrix = Xpetra::Matrix<double, LO, GO, Node>;
-using XpetraVectors = Xpetra::MultiVector<double, LO, GO, Node>;
 using Translation = Teuchos::Array<LO>;
 
 /// Nodes of unknowns, as MueLu wants them told.
@@ -249,6 +250,18 @@ void replace_factories(MueLu::FactoryManager<double, LO, GO, Node> &manager)
       rcp(new NodeByNode<MueLu::AmalgamationInfo<LO, GO, Node>, MueLu::AmalgamationFactory<double, LO, GO, Node>>));
 }
 
+/// Whether the coarsest level lies on several ranks, and the user has not said how to solve there.
+bool needs_gathered_solver(const CrsMatrix &A, const Teuchos::ParameterList &list)
+{
+#ifdef HAVE_MUELU_ZOLTAN2
+  (void)A;
+  (void)list;
+  return false;
+#else
+  return A.getComm()->getSize() > 1 && !list.isParameter("coarse: type");
+#endif
+}
+
 /// A Tpetra multivector of the "user data" as MueLu takes it.
 void wrap(Teuchos::ParameterList &user_data, const std::string &name)
 {
@@ -269,8 +282,12 @@ RCP<Multigrid> make_multigrid(const RCP<CrsMatrix> &A, Teuchos::ParameterList li
   MueLu::ExtractNonSerializableData(list, plain, user_data);
   MueLu::ParameterListInterpreter<double, LO, GO, Node> interpreter(plain, A->getComm());
   for (std::size_t level = 0; level < interpreter.getNumFactoryManagers(); ++level) {
-    replace_factories(*Teuchos::rcp_dynamic_cast<MueLu::FactoryManager<double, LO, GO, Node>>(
-        interpreter.GetFactoryManager(static_cast<int>(level)), true));
+    auto &manager = *Teuchos::rcp_dynamic_cast<MueLu::FactoryManager<double, LO, GO, Node>>(
+        interpreter.GetFactoryManager(static_cast<int>(level)), true);
+    replace_factories(manager);
+    if (needs_gathered_solver(*A, plain))
+      manager.SetFactory("CoarseSolver",
+                         rcp(new MueLu::SmootherFactory<double, LO, GO, Node>(rcp(new GatheredSolver))));
   }
   const auto hierarchy = interpreter.CreateHierarchy();
   const RCP<XpetraMatrix> matrix = MueLu::TpetraCrs_To_XpetraMatrix<double, LO, GO, Node>(A);

@@ -1,0 +1,80 @@
+#include "gathered_solver.hpp"
+
+#include <MueLu_Level.hpp>
+#include <MueLu_Utilities.hpp>
+#include <Teuchos_LAPACK.hpp>
+#include <stdexcept>
+
+namespace rpc::solver
+{
+namespace
+{
+
+using Conversions = MueLu::Utilities<double, LO, GO, Node>;
+
+/// Sums over all ranks.
+std::vector<double> summed(const Comm &comm, const std::vector<double> &mine)
+{
+  std::vector<double> all(mine.size());
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), all.data());
+  return all;
+}
+
+} // namespace
+
+RCP<const Teuchos::ParameterList> GatheredSolver::GetValidParameterList() const
+{
+  const auto valid = Teuchos::parameterList();
+  valid->set<RCP<const MueLu::FactoryBase>>("A", Teuchos::null);
+  return valid;
+}
+
+void GatheredSolver::DeclareInput(MueLu::Level &level) const
+{
+  Input(level, "A");
+}
+
+void GatheredSolver::Setup(MueLu::Level &level)
+{
+  const auto A = Get<RCP<XpetraMatrix>>(level, "A");
+  const auto &rows = *A->getRowMap(), &columns = *A->getColMap();
+  size_ = static_cast<int>(rows.getGlobalNumElements());
+  std::vector<double> mine(static_cast<std::size_t>(size_) * size_);
+  for (int row = 0; row < static_cast<int>(rows.getNodeNumElements()); ++row) {
+    Teuchos::ArrayView<const int> column;
+    Teuchos::ArrayView<const double> value;
+    A->getLocalRowView(row, column, value);
+    for (Teuchos_Ordinal k = 0; k < column.size(); ++k) // coarse levels number their unknowns from 0
+      mine[columns.getGlobalElement(column[k]) * size_ + rows.getGlobalElement(row)] += value[k];
+  }
+  factor_ = summed(*rows.getComm(), mine);
+  int info = 0;
+  Teuchos::LAPACK<int, double>().POTRF('L', size_, factor_.data(), size_, &info);
+  if (info != 0) throw std::runtime_error("the coarse matrix is not positive definite");
+  IsSetup(true);
+}
+
+void GatheredSolver::Apply(XpetraVectors &x, const XpetraVectors &b, bool) const
+{
+  const rpc::MultiVector &from = Conversions::MV2TpetraMV(b);
+  rpc::MultiVector &to = Conversions::MV2NonConstTpetraMV(x);
+  const rpc::Map &map = *from.getMap();
+  const int num_local = static_cast<int>(from.getLocalLength());
+  const auto right = from.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto left = to.getLocalViewHost(Tpetra::Access::OverwriteAll);
+  for (std::size_t k = 0; k < from.getNumVectors(); ++k) {
+    std::vector<double> mine(size_, 0.);
+    for (int i = 0; i < num_local; ++i) mine[map.getGlobalElement(i)] = right(i, k);
+    std::vector<double> all = summed(*map.getComm(), mine);
+    int info = 0;
+    Teuchos::LAPACK<int, double>().POTRS('L', size_, 1, factor_.data(), size_, all.data(), size_, &info);
+    for (int i = 0; i < num_local; ++i) left(i, k) = all[map.getGlobalElement(i)];
+  }
+}
+
+RCP<CoarseSolver> GatheredSolver::Copy() const
+{
+  return rcp(new GatheredSolver(*this));
+}
+
+} // namespace rpc::solver

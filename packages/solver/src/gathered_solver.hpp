@@ -1,0 +1,38 @@
+#pragma once
+
+#include "rpc/core/tpetra.hpp"
+
+#include <MueLu_SmootherPrototype.hpp>
+#include <Xpetra_Matrix.hpp>
+#include <vector>
+
+namespace rpc::solver
+{
+
+using XpetraMatrix = Xpetra::Matrix<double, LO, GO, Node>;
+using XpetraVectors = Xpetra::MultiVector<double, LO, GO, Node>;
+using CoarseSolver = MueLu::SmootherPrototype<double, LO, GO, Node>;
+
+/// Most rows that the ranks keep a dense factor of.
+constexpr int most_gathered_rows = 300;
+
+/// MueLu's coarse solver on several ranks where there is no Zoltan2, which would bring the coarse level to one: each rank
+/// factors the whole coarse matrix, dense. (MueLu 13.2's direct solvers are wrong on a distributed matrix, and a polynomial
+/// leaves the smoothest modes to CG.)
+class GatheredSolver : public CoarseSolver
+{
+public:
+  RCP<const Teuchos::ParameterList> GetValidParameterList() const override;
+  void DeclareInput(MueLu::Level &level) const override;
+  /// Collective. @throws std::runtime_error on all ranks where the matrix is not positive definite
+  void Setup(MueLu::Level &level) override;
+  void Apply(XpetraVectors &x, const XpetraVectors &b, bool initial_guess_is_zero) const override;
+  RCP<CoarseSolver> Copy() const override;
+  std::size_t getNodeSmootherComplexity() const override { return factor_.size(); }
+
+private:
+  int size_ = 0;
+  std::vector<double> factor_; // (size, size) Cholesky's, lower half, by columns
+};
+
+} // namespace rpc::solver
