@@ -4,7 +4,7 @@ signal nor as an internal error, one message that names what is wrong, and no ha
     mutations.py --rpc=build/rpc [--seed=1] [--count=2000] [--first=0] [--jobs=2] [--keep=DIR]
     mutations.py --rpc=build/rpc --seed=1 --only=17 --keep=DIR      mutation 17 alone, its files left in DIR
 
-Mutation K depends on the seed and K alone. --memory=0 lifts the bound on memory, which AddressSanitizer does not bear.
+Mutation K depends on the seed and K alone. --memory=0 lifts the bound on memory, which AddressSanitizer and CUDA do not bear.
 """
 
 import argparse
