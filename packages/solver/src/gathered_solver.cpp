@@ -1,5 +1,7 @@
 #include "gathered_solver.hpp"
 
+#include "rpc/core/error.hpp"
+
 #include <MueLu_Level.hpp>
 #include <MueLu_Utilities.hpp>
 #include <Teuchos_LAPACK.hpp>
@@ -9,6 +11,8 @@ namespace rpc::solver
 {
 namespace
 {
+
+constexpr std::size_t most_dense_rows = 5000; // 200 MB on each rank
 
 using Conversions = MueLu::Utilities<double, LO, GO, Node>;
 
@@ -38,6 +42,11 @@ void GatheredSolver::Setup(MueLu::Level &level)
 {
   const auto A = Get<RCP<XpetraMatrix>>(level, "A");
   const auto &rows = *A->getRowMap(), &columns = *A->getColMap();
+  RPC_REQUIRE(rows.getGlobalNumElements() <= most_dense_rows,
+              "deck: multigrid ends with a level of "
+                  << rows.getGlobalNumElements() << " rows; without Zoltan2 several ranks can solve at most "
+                  << most_dense_rows << " of them together. Lower \"Linear Solver->MueLu->coarse: max size\", raise "
+                  << "\"max levels\", or give a \"coarse: type\".");
   size_ = static_cast<int>(rows.getGlobalNumElements());
   std::vector<double> mine(static_cast<std::size_t>(size_) * size_);
   for (int row = 0; row < static_cast<int>(rows.getNodeNumElements()); ++row) {

@@ -13,7 +13,7 @@ using XpetraMatrix = Xpetra::Matrix<double, LO, GO, Node>;
 using XpetraVectors = Xpetra::MultiVector<double, LO, GO, Node>;
 using CoarseSolver = MueLu::SmootherPrototype<double, LO, GO, Node>;
 
-/// Most rows that the ranks keep a dense factor of.
+/// Rows to which multigrid coarsens then: their dense factor costs next to nothing.
 constexpr int most_gathered_rows = 300;
 
 /// MueLu's coarse solver on several ranks where there is no Zoltan2, which would bring the coarse level to one: each rank
@@ -24,7 +24,8 @@ class GatheredSolver : public CoarseSolver
 public:
   RCP<const Teuchos::ParameterList> GetValidParameterList() const override;
   void DeclareInput(MueLu::Level &level) const override;
-  /// Collective. @throws std::runtime_error on all ranks where the matrix is not positive definite
+  /// Collective. @throws on all ranks: rpc::Error (bad_input) where the level has too many rows, std::runtime_error where the
+  /// matrix is not positive definite
   void Setup(MueLu::Level &level) override;
   void Apply(XpetraVectors &x, const XpetraVectors &b, bool initial_guess_is_zero) const override;
   RCP<CoarseSolver> Copy() const override;
