@@ -14,7 +14,7 @@ from rpc_run import LAUNCH, PROGRAM, RANKS, RpcTestCase, errors, files, ranks_be
 SIGNALS = [signal.SIGINT, signal.SIGTERM]
 NOT_CONVERGED = 4
 RESULTS = [f"out/beam.{end}" for end in ("contact.csv", "e", "json")]
-LARGE = "--set=Mesh->Cells={640,128}"
+LARGE = "--set=Mesh->Cells={1280,256}"  # seconds are left when the signal comes, on a busy machine too
 NO_MULTIGRID = ["--set=Linear Solver->MueLu->max levels=1", "--set=Linear Solver->MueLu->coarse: type=RELAXATION",
                 "--set=Linear Solver->Maximum Iterations=100000"]
 
