@@ -45,6 +45,8 @@ done
 case $prefix$build$source in
   *[!A-Za-z0-9_./+-]*) misused "folders must be named with letters, digits and _ . + - only: Trilinos' scripts split others" ;;
 esac
+case $build/ in "$prefix"/*) misused "--build must be outside --prefix" ;; esac
+case $prefix/ in "$build"/*) misused "--prefix must be outside --build" ;; esac
 if [ -n "$source" ]; then
   grep -qs 'Trilinos_VERSION 13\.2' "$source/Version.cmake" || misused "$source is not the source of Trilinos 13.2: Version.cmake does not say so"
   case $build/ in "$source"/*) misused "--build must be outside --source, which stays as it is" ;; esac
@@ -72,7 +74,7 @@ else
   title="Kokkos OpenMP with MPI" variable=RPC_TRILINOS_OPENMP
   job_seconds=4800 build_mb=2200 install_mb=450
 fi
-flags="-w $(march)"     # 13.2 has warnings by the thousand; -march belongs to all build types
+flags="-w $(march)" # 13.2 has warnings by the thousand; -march belongs to all build types
 note="$prefix/rpc_trilinos.txt"
 if [ -n "$(ls -A "$prefix" 2>/dev/null)" ] && [ "$(head -n 1 "$note" 2>/dev/null)" != "Trilinos 13.2, $title" ]; then
   misused "$prefix holds something else than Trilinos for $title: remove it or name a new folder"
@@ -242,6 +244,7 @@ find "$stage$prefix/lib/cmake" -name '*.cmake' -exec sed -i "s|$prefix|\${CMAKE_
   (cd "$root/cmake/patches" && ls -- *.patch)
 } >"$stage$note"
 mkdir -p "$prefix"
+cp "$stage$note" "$prefix/" # first: it says whose folder this is, should the rest be interrupted
 cp -a "$stage$prefix/." "$prefix/"
 rm -rf "$stage"
 
