@@ -69,10 +69,10 @@ if [ "$backend" = cuda ]; then
   done
   [ -n "$gpu" ] || misused "--arch=$arch is none of sm_60, sm_61, sm_70, sm_72, sm_75, sm_80, sm_86, sm_90 or ${known// /, }"
   title="Kokkos CUDA for sm_${gpu: -2}, without MPI" variable=RPC_TRILINOS_CUDA
-  job_seconds=10600 build_mb=3000 install_mb=600
+  job_seconds=10600 build_mb=1500 install_mb=600
 else
   title="Kokkos OpenMP with MPI" variable=RPC_TRILINOS_OPENMP
-  job_seconds=4800 build_mb=2200 install_mb=450
+  job_seconds=5700 build_mb=800 install_mb=400
 fi
 flags="-w $(march)" # 13.2 has warnings by the thousand; -march belongs to all build types
 note="$prefix/rpc_trilinos.txt"
@@ -104,10 +104,11 @@ if [ "$backend" = cuda ]; then
   "$nvcc" --list-gpu-arch | grep -qx "compute_${gpu: -2}" || stop "$nvcc does not know sm_${gpu: -2}: take another --arch or CUDA toolkit"
 fi
 
+source_mb=$([ -n "$source" ] && echo 830 || echo 1010) # the tree, the download
 from=${source:-"Debian's source package, 166 MB to download"}
 say "Trilinos 13.2, $title"
 say "  from     $from; patches in cmake/patches"
-say "  built in $build: up to $(((build_mb + 1020) / 100))00 MB, which may be removed afterwards"
+say "  built in $build: up to $(((source_mb + build_mb + install_mb) / 100))00 MB, which may be removed afterwards"
 say "  to       $prefix: $install_mb MB"
 say "  time     about $((job_seconds / jobs / 60 + 3)) minutes with $jobs job(s) of an idle machine; repeated, an interrupted run goes on"
 
@@ -126,14 +127,10 @@ room_for() {
   if [ -d "$2" ]; then free=$((free + $(du -sm "$2" | cut -f 1))); fi
   [ $free -ge "$1" ] || stop "$there has $free MB of free disk, but $1 are needed: free some, or take another --build or --prefix"
 }
-download_mb=$([ -n "$source" ] || echo 190)
-source_mb=830
-if [ "$(df -P "$(existing "$build")" | awk 'END {print $6}')" = "$(df -P "$(existing "$prefix")" | awk 'END {print $6}')" ]; then
-  room_for $((download_mb + source_mb + build_mb + 2 * install_mb)) "$build"
-else
-  room_for $((download_mb + source_mb + build_mb + install_mb)) "$build"
-fi
+on_disk() { df -P "$(existing "$1")" | awk 'END {print $6}'; }
 room_for "$install_mb" "$prefix"
+if [ "$(on_disk "$build")" = "$(on_disk "$prefix")" ]; then build_mb=$((build_mb + install_mb)); fi
+room_for $((source_mb + build_mb + install_mb)) "$build" # the installation is made there first
 
 mkdir -p "$build"
 exec 9>"$build/lock"
