@@ -16,9 +16,7 @@ inline double energy_of_difference(const fem::Discretization &d, const fem::Mate
 {
   const mesh::Mesh &mesh = *d.mesh;
   const int dim = d.dim();
-  Vector overlap(d.overlap_dofs);
-  overlap.doImport(u_h, *d.dof_import, Tpetra::INSERT);
-  const auto u = to_host(device_read(overlap));
+  const auto u = to_host(device_read(*on_overlap(d, u_h)));
   const auto coords = to_host(mesh.coords);
   const auto cells = to_host(mesh.cells);
   const auto value = to_host(d.reference.cell_load.value);

@@ -120,9 +120,7 @@ std::array<double, 2> strain_errors(const Solution &s, const Exact &exact)
   const fem::Discretization &d = s.discretization;
   const mesh::Mesh &mesh = *d.mesh;
   const fem::BasisTable &table = d.reference.cell_load;
-  Vector u_overlap(d.overlap_dofs);
-  u_overlap.doImport(*s.u, *d.dof_import, Tpetra::INSERT);
-  const auto u = to_host(device_read(u_overlap));
+  const auto u = to_host(device_read(*fem::on_overlap(d, *s.u)));
   const auto coords = to_host(mesh.coords);
   const auto cells = to_host(mesh.cells);
   const auto value = to_host(table.value);

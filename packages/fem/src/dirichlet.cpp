@@ -135,7 +135,7 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
       Kokkos::view_alloc("rpc::fem::dirichlet_condition", Kokkos::WithoutInitializing), num_local(*d.owned_dofs));
   dirichlet.fixed = DeviceView<char *>("rpc::fem::dirichlet_fixed", num_local(*d.overlap_dofs));
   Kokkos::deep_copy(dirichlet.condition, -1);
-  Vector mark(d.owned_dofs), mark_overlap(d.overlap_dofs);
+  Vector mark(d.owned_dofs);
   const auto dof = device_values(dofs, "rpc::fem::prescribed_dofs");
   const auto value = device_values(values, "rpc::fem::prescribed_values");
   const auto owner = device_values(owners, "rpc::fem::prescribed_by");
@@ -152,9 +152,9 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
     Kokkos::fence();
   }
   // A neighbour's node may lie on a side whose facets are not here.
-  mark_overlap.doImport(mark, *d.dof_import, Tpetra::INSERT);
+  const auto mark_overlap = on_overlap(d, mark);
   const auto flag = dirichlet.fixed;
-  const auto from = device_read(mark_overlap);
+  const auto from = device_read(*mark_overlap);
   Kokkos::parallel_for(
       "rpc::fem::dirichlet_flags", device_range(num_local(*d.overlap_dofs)),
       KOKKOS_LAMBDA(const LO i) { flag(i) = from(i) != 0; });

@@ -2,6 +2,7 @@
 
 #include "around_nodes.hpp"
 #include "cell_shapes.hpp"
+#include "fill_entries.hpp"
 
 #include <array>
 
@@ -66,9 +67,9 @@ template <int Dim>
 struct FillDofGraph {
   using LocalGraph = CrsGraph::local_graph_device_type;
 
-  NodeGraph nodes;                                  //                         in
+  NodeGraph nodes;                                  //                               in
   LocalGraph::row_map_type::non_const_type row;     // (owned dofs + 1), row(0) = 0  out
-  LocalGraph::entries_type::non_const_type entries; // (matrix entries)        out
+  LocalGraph::entries_type::non_const_type entries; // (matrix entries)              out, not on GPUs
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
@@ -76,11 +77,37 @@ struct FillDofGraph {
     for (int i = 0; i < Dim; ++i) {
       const std::size_t start = Dim * (Dim * begin + i * length);
       row(Dim * node + i + 1) = start + Dim * length;
+      if constexpr (on_gpu) continue;
       for (std::size_t k = 0; k < length; ++k)
         for (int j = 0; j < Dim; ++j) entries(start + Dim * k + j) = Dim * nodes.col(begin + k) + j;
     }
   }
 };
+
+/// The columns of these rows.                                                  for fill_entries()
+template <int Dim>
+struct DofColumns {
+  NodeGraph nodes; // in
+
+  KOKKOS_FUNCTION bool has(LO) const { return true; }
+  KOKKOS_FUNCTION LO value(const LO node, const std::size_t entry) const
+  {
+    const std::size_t begin = nodes.row(node);
+    const unsigned length = Dim * static_cast<unsigned>(nodes.row(node + 1) - begin),
+                   k = static_cast<unsigned>(entry) % length;
+    return Dim * nodes.col(begin + k / Dim) + k % Dim;
+  }
+};
+
+template <int Dim>
+void fill_dof_graph(const FillDofGraph<Dim> &fill)
+{
+  const LO num_nodes = static_cast<LO>(fill.nodes.row.extent(0)) - 1;
+  Kokkos::parallel_for("rpc::fem::dof_graph", device_range(num_nodes), fill);
+  if constexpr (on_gpu)
+    fill_entries<Dim>("rpc::fem::dof_columns", fill.nodes, DofColumns<Dim>{fill.nodes}, fill.entries);
+  Kokkos::fence();
+}
 
 RCP<const CrsGraph> dof_graph(const Discretization &d)
 {
@@ -91,14 +118,11 @@ RCP<const CrsGraph> dof_graph(const Discretization &d)
   LocalGraph::entries_type::non_const_type col(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_col"),
                                                std::size_t(dim) * dim * d.nodes.col.extent(0));
   if (dim == 2)
-    Kokkos::parallel_for("rpc::fem::dof_graph", device_range(num_nodes), FillDofGraph<2>{d.nodes, row, col});
+    fill_dof_graph(FillDofGraph<2>{d.nodes, row, col});
   else
-    Kokkos::parallel_for("rpc::fem::dof_graph", device_range(num_nodes), FillDofGraph<3>{d.nodes, row, col});
-  Kokkos::fence();
+    fill_dof_graph(FillDofGraph<3>{d.nodes, row, col});
   const RCP<CrsGraph> graph = rcp(new CrsGraph(d.owned_dofs, d.overlap_dofs, row, col));
-  graph->expertStaticFillComplete(
-      d.owned_dofs, d.owned_dofs,
-      d.dof_import->getNumRemoteIDs() == 0 && d.owned_dofs->getComm()->getSize() == 1 ? Teuchos::null : d.dof_import);
+  graph->expertStaticFillComplete(d.owned_dofs, d.owned_dofs, d.dof_import);
   return graph;
 }
 
@@ -112,12 +136,20 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
   d.owned_dofs = dof_map(*d.mesh->owned_nodes, d.dim());
   d.overlap_dofs =
       d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
-  d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
+  if (d.overlap_dofs != d.owned_dofs) d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
   d.shapes = cell_shapes(*d.mesh);
   d.around = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
   d.nodes = node_graph(*d.mesh, d.around);
   d.graph = dof_graph(d);
   return d;
+}
+
+RCP<const Vector> on_overlap(const Discretization &d, const Vector &owned)
+{
+  if (d.dof_import.is_null()) return Teuchos::rcpFromRef(owned);
+  const auto overlap = rcp(new Vector(d.overlap_dofs));
+  overlap->doImport(owned, *d.dof_import, Tpetra::INSERT);
+  return overlap;
 }
 
 RCP<MultiVector> node_coordinates(const Discretization &d)

@@ -492,7 +492,7 @@ struct GatherStiffness {
   }
 };
 
-/// The same in two passes, for GPUs: threads that write whole rows each for itself share no line of memory.
+/// The same in two passes, for GPUs: where rows repeat, fill_entries() copies them.
 template <int Dim, int Nodes>
 struct GatherOrFindSource {
   NodeStiffness<Dim, Nodes> stiffness;
@@ -514,23 +514,17 @@ struct GatherOrFindSource {
   }
 };
 
-/// One entry: neighbouring threads write neighbouring entries.
-/// @tparam Index  holds all items; the divisions of 32 bits take less time than the memory
-template <int Dim, class Index>
-struct CopyRows {
+/// The rows that repeat those of another node.                                        for fill_entries()
+template <int Dim>
+struct CopiedRows {
   NodeGraph nodes;             //                                              in
-  DeviceView<LO *> source;     // (owned nodes)                                in
-  Index most;                  // entries in the rows of any node
-  DeviceView<double *> values; // (matrix entries)                      [N/m]  inout
+  DeviceView<LO *> source;     // (owned nodes) as of GatherOrFindSource       in
+  DeviceView<double *> values; // (matrix entries)                      [N/m]  in
 
-  /// @param item  node * most + entry in the node's rows
-  KOKKOS_FUNCTION void operator()(const Index item) const
+  KOKKOS_FUNCTION bool has(const LO node) const { return source(node) >= 0; }
+  KOKKOS_FUNCTION double value(const LO node, const std::size_t entry) const
   {
-    const LO node = static_cast<LO>(item / most), from = source(node);
-    if (from < 0) return;
-    const std::size_t entry = item - node * most, begin = nodes.row(node);
-    if (entry < Dim * Dim * (nodes.row(node + 1) - begin))
-      values(Dim * Dim * begin + entry) = values(Dim * Dim * nodes.row(from) + entry);
+    return values(Dim * Dim * nodes.row(source(node)) + entry);
   }
 };
 

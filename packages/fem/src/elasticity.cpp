@@ -2,13 +2,13 @@
 
 #include "component_name.hpp"
 #include "elastic_kernels.hpp"
+#include "fill_entries.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace rpc::fem
@@ -184,29 +184,6 @@ void add_load(const DeviceView<LO **> &entities, const NodeCells &around, const 
   Kokkos::fence();
 }
 
-/// Nodes that share a cell with a node, at most on this rank.
-std::size_t longest_row(const NodeGraph &nodes)
-{
-  std::size_t longest = 0;
-  Kokkos::parallel_reduce(
-      "rpc::fem::longest_row", device_range(static_cast<LO>(nodes.row.extent(0)) - 1),
-      KOKKOS_LAMBDA(const LO node, std::size_t &most) {
-        const std::size_t length = nodes.row(node + 1) - nodes.row(node);
-        if (length > most) most = length;
-      },
-      Kokkos::Max<std::size_t>(longest));
-  return longest;
-}
-
-template <int Dim, class Index>
-void copy_rows(const NodeGraph &nodes, const DeviceView<LO *> &source, const std::size_t most,
-               const MatrixValues &values)
-{
-  const Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>> items(0, most * source.extent(0));
-  Kokkos::parallel_for("rpc::fem::copy_stiffness", items,
-                       CopyRows<Dim, Index>{nodes, source, static_cast<Index>(most), values});
-}
-
 /// The matrix's values where cells are alike: few cells are integrated, and each entry is written once.
 /// @param[out] bad  number of shapes with a Jacobian <= 0
 template <int Dim, int Nodes>
@@ -228,11 +205,7 @@ MatrixValues gather_stiffness(const Discretization &d, const CellStiffness<Dim, 
     const DeviceView<LO *> source(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::source_of_rows"), num_owned);
     Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
                          GatherOrFindSource<Dim, Nodes>{rows, example, source});
-    const std::size_t most = Dim * Dim * longest_row(d.nodes);
-    if (most * num_owned <= std::numeric_limits<unsigned>::max())
-      copy_rows<Dim, unsigned>(d.nodes, source, most, values);
-    else
-      copy_rows<Dim, std::size_t>(d.nodes, source, most, values);
+    fill_entries<Dim>("rpc::fem::copy_stiffness", d.nodes, CopiedRows<Dim>{d.nodes, source, values}, values);
   } else {
     Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
                          GatherStiffness<Dim, Nodes>{rows, example});
@@ -441,16 +414,10 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
 InternalWork internal_work(const Discretization &d, const Materials &materials, const Vector &u)
 {
   const mesh::Mesh &mesh = *d.mesh;
-  RCP<const Vector> u_overlap = Teuchos::rcpFromRef(u);
-  if (d.overlap_dofs != d.owned_dofs) {
-    const auto imported = rcp(new Vector(d.overlap_dofs));
-    imported->doImport(u, *d.dof_import, Tpetra::INSERT);
-    u_overlap = imported;
-  }
   const auto forces = rcp(new Vector(d.owned_dofs));
   double squares = 0, energy = 0;
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    add_internal_work(d, elastic_cells<dim, nodes>(d, materials), *u_overlap, *forces, squares, energy);
+    add_internal_work(d, elastic_cells<dim, nodes>(d, materials), *on_overlap(d, u), *forces, squares, energy);
   });
   Kokkos::fence();
   return {forces, std::sqrt(sum_all(mesh.comm(), squares)), sum_all(mesh.comm(), energy)};

@@ -97,7 +97,7 @@ std::vector<GO> smallest_ids(const Discretization &d, const LocalSets &sets)
   std::vector<GO> smallest(sets.count, std::numeric_limits<GO>::max());
   for (LO n = 0; n < mesh.num_owned_nodes(); ++n) smallest[set(n)] = std::min(smallest[set(n)], mesh.node_id(n));
   if (mesh.comm().getSize() == 1) return smallest;
-  Vector owned(d.owned_dofs), overlap(d.overlap_dofs); // doubles hold node ids exactly
+  Vector owned(d.owned_dofs); // doubles hold node ids exactly
   for (int changed = 1; changed; changed = max_all(mesh.comm(), changed)) {
     changed = 0;
     {
@@ -105,8 +105,8 @@ std::vector<GO> smallest_ids(const Discretization &d, const LocalSets &sets)
       for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
         for (int c = 0; c < dim; ++c) to(dim * n + c, 0) = static_cast<double>(smallest[set(n)]);
     }
-    overlap.doImport(owned, *d.dof_import, Tpetra::INSERT);
-    const auto from = overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto overlap = on_overlap(d, owned);
+    const auto from = overlap->getLocalViewHost(Tpetra::Access::ReadOnly);
     for (LO n = mesh.num_owned_nodes(); n < mesh.num_local_nodes(); ++n) {
       const GO heard = static_cast<GO>(from(dim * n, 0));
       if (heard >= smallest[set(n)]) continue;

@@ -88,9 +88,8 @@ std::vector<std::string> stress_names(const int dim)
 }
 
 RecoveredStress::RecoveredStress(Discretization d, Materials materials, const Vector &u)
-    : d_(std::move(d)), materials_(std::move(materials)), u_(rcp(new Vector(d_.overlap_dofs)))
+    : d_(std::move(d)), materials_(std::move(materials)), u_(rcp(new Vector(*on_overlap(d_, u), Teuchos::Copy)))
 {
-  u_->doImport(u, *d_.dof_import, Tpetra::INSERT);
   with_static_extents(d_.mesh->element, [&](const auto dim, const auto nodes) {
     polynomials_ = fit(d_, elastic_cells<dim, nodes>(d_, materials_), *u_);
   });

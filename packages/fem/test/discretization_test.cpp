@@ -107,9 +107,8 @@ TEST(Discretization, ImportBringsOwnedValuesToTheGhosts)
   for (const auto &element : elements()) {
     const auto d = body(small_box(element), world());
     const auto owned = interpolate(d, wild);
-    Vector overlap(d.overlap_dofs);
-    overlap.doImport(*owned, *d.dof_import, Tpetra::INSERT);
-    const auto values = overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto overlap = fem::on_overlap(d, *owned);
+    const auto values = overlap->getLocalViewHost(Tpetra::Access::ReadOnly);
     for (LO n = 0; n < d.mesh->num_local_nodes(); ++n)
       for (int c = 0; c < d.dim(); ++c) EXPECT_NEAR(values(d.dim() * n + c, 0), wild(point_of(d, n))[c], 1e-13);
   }

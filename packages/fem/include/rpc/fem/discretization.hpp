@@ -37,7 +37,7 @@ struct Discretization {
   ReferenceElement reference;
   RCP<const Map> owned_dofs;    ///< rows
   RCP<const Map> overlap_dofs;  ///< columns
-  RCP<const Import> dof_import; ///< owned -> overlap
+  RCP<const Import> dof_import; ///< owned -> overlap; null in one process, where these are the same
   CellShapes shapes;
   NodeCells around;
   NodeGraph nodes;
@@ -48,6 +48,10 @@ struct Discretization {
 
 /// Collective.
 Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh);
+
+/// Values with those of the neighbours' nodes, (overlap dofs), from those of the owned ones; collective. The same vector where
+/// there are no neighbours: for reading while the one given lives.
+RCP<const Vector> on_overlap(const Discretization &d, const Vector &owned);
 
 /// Coordinates of the owned nodes, (owned nodes; dim) [m]: what multigrid partitions by.
 RCP<MultiVector> node_coordinates(const Discretization &d);
