@@ -36,7 +36,7 @@ std::size_t block_size(const std::size_t bytes)
   return (bytes + step - 1) / step * step;
 }
 
-/// Brings a managed block to the GPU before kernels touch it; a hint, so that failure does not matter.
+/// Brings a fresh managed block to the GPU before kernels touch it; a hint, so that failure does not matter.
 void prefetch(void *const pointer, const std::size_t bytes)
 {
   constexpr std::size_t least = 1 << 21; // the driver's own granularity
@@ -77,8 +77,8 @@ public:
       }
       if (error != cudaSuccess) return error;
       reserved_bytes_ += block.second;
+      if (kind == Kind::managed) prefetch(*pointer, block.second); // once: 1 ms per GB even where all is there
     }
-    if (kind == Kind::managed) prefetch(*pointer, block.second);
     used_.emplace(*pointer, block);
     return cudaSuccess;
   }
