@@ -4,7 +4,7 @@
 ///
 /// At the end the table goes to the file that RPC_PROFILE names, or else to standard error. With CUPTI: the GPU's own times of
 /// all kernels and copies, those of allocations and waiting, and what managed memory moves between host and GPU. Without: the
-/// kernels' times on the host's clock, and nothing else.
+/// kernels' times on the host's clock, and nothing else. RPC_TRACE names a file for kernels and CUDA's calls one by one, as CSV.
 
 #include <algorithm>
 #include <chrono>
@@ -69,7 +69,8 @@ struct Profile {
   std::map<std::string, std::uint64_t> label_id;
   std::map<std::string, Sum> by_label;
   std::map<std::uint32_t, std::uint64_t> label_of_launch; // by CUPTI's correlation
-  Time started = 0;                                       // the kernel under way
+  std::FILE *trace = nullptr;
+  Time started = 0; // the kernel under way
 
   void enter(const std::string &name)
   {
@@ -84,6 +85,7 @@ struct Profile {
     if (current == 0) return;
     const Time time = now();
     regions[current].wall.add(1e-9 * (time - entered.back()));
+    write("region", entered.back(), time, regions[current].name);
     entered.pop_back();
     current = regions[current].parent;
     changes.emplace_back(time, current);
@@ -92,6 +94,11 @@ struct Profile {
   {
     const auto after = std::upper_bound(changes.begin(), changes.end(), std::make_pair(when, 1 << 30));
     for (int r = std::prev(after)->second; r >= 0; r = regions[r].parent) regions[r].sums[kind].add(amount);
+  }
+  /// @param what  kernel, call or region
+  void write(const char *const what, const Time start, const Time end, const std::string &name) const
+  {
+    if (trace) std::fprintf(trace, "%s,%.6f,%.6f,\"%s\"\n", what, 1e-9 * start, 1e-9 * (end - start), name.c_str());
   }
   std::uint64_t id_of(const std::string &label)
   {
@@ -119,6 +126,7 @@ void take_call(const CUpti_ActivityAPI &call)
   cuptiGetCallbackName(CUPTI_CB_DOMAIN_RUNTIME_API, call.cbid, &name);
   const std::string text = name;
   const double seconds = 1e-9 * (call.end - call.start);
+  profile->write("call", call.start, call.end, text);
   if (text.find("Malloc") != std::string::npos || text.find("Free") != std::string::npos)
     profile->add(allocations, call.start, seconds);
   else if (text.find("Synchronize") != std::string::npos)
@@ -153,10 +161,11 @@ void take(const CUpti_Activity *const record)
     const auto &kernel = *reinterpret_cast<const CUpti_ActivityKernel10 *>(record);
     const double seconds = 1e-9 * (kernel.end - kernel.start);
     const auto label = profile->label_of_launch.find(kernel.correlationId);
+    const std::string name =
+        label == profile->label_of_launch.end() ? readable(kernel.name) : profile->labels[label->second - 1];
     profile->add(kernels, kernel.start, seconds);
-    profile
-        ->by_label[label == profile->label_of_launch.end() ? readable(kernel.name) : profile->labels[label->second - 1]]
-        .add(seconds);
+    profile->by_label[name].add(seconds);
+    profile->write("kernel", kernel.start, kernel.end, name);
     return;
   }
   case CUPTI_ACTIVITY_KIND_MEMCPY: {
@@ -243,6 +252,7 @@ void end_kernel(const std::uint64_t id)
 #else
   const double seconds = 1e-9 * (now() - profile->started);
   profile->add(kernels, profile->started, seconds);
+  profile->write("kernel", profile->started, now(), profile->labels[id - 1]);
   profile->by_label[profile->labels[id - 1]].add(seconds);
 #endif
 }
@@ -289,6 +299,8 @@ void kokkosp_init_library(const int, const std::uint64_t, const std::uint32_t, v
   start_records();
 #endif
   profile = new Profile;
+  if (const char *const path = std::getenv("RPC_TRACE")) profile->trace = std::fopen(path, "w");
+  if (profile->trace) std::fprintf(profile->trace, "what,start [s],seconds,name\n");
 }
 
 void kokkosp_finalize_library()
@@ -300,6 +312,7 @@ void kokkosp_finalize_library()
   take_records();
 #endif
   print();
+  if (profile->trace) std::fclose(profile->trace);
   delete profile;
   profile = nullptr;
 }
