@@ -1,11 +1,11 @@
 """The same scenes by programs of different backends: do they agree, and how fast are they?
 
-    python3 portability.py run --output=DIR [--hertz-mesh=hertz.msh] [--repeats=N] NAME=COMMAND ...
+    python3 portability.py run --output=DIR [--hertz-mesh=hertz.msh] [--repeats=N] [--set=PATH=VALUE ...] NAME=COMMAND ...
     python3 portability.py compare --output=DIR --reference=NAME NAME ...
     python3 portability.py speed [--cells=256] [--yield-stress=16] [--repeats=3] NAME=COMMAND ...
 
 COMMAND starts rpc: "OMP_NUM_THREADS=2 build-openmp/rpc", "mpirun -n 2 build/rpc", "build-cuda/rpc". `run` keeps the results in
-DIR/NAME; `compare` prints a table from them, on any machine, and its exit code is 1 where a criterion does not hold; `speed` takes
+DIR/NAME, of decks with what --set changes in them; `compare` prints a table from them, on any machine, and its exit code is 1 where a criterion does not hold; `speed` takes
 turns and prints medians. A mesh of hertz.geo in a file is for machines without gmsh.
 """
 
@@ -62,8 +62,9 @@ def execute(command, arguments):
 
 
 def run(arguments):
+    changes = ["--set=" + text for text in arguments.set]
     for name, command in arguments.programs:
-        results = {case: [execute(command, words) for _ in range(1 + arguments.repeats)]
+        results = {case: [execute(command, [*words, *changes]) for _ in range(1 + arguments.repeats)]
                    for case, words in cases(arguments.hertz_mesh)}
         os.makedirs(os.path.join(arguments.output, name), exist_ok=True)
         with open(os.path.join(arguments.output, name, "results.json"), "w") as file:
@@ -148,6 +149,7 @@ def main():
             command.add_argument("--reference", required=True)
         if work is run:
             command.add_argument("--hertz-mesh")
+            command.add_argument("--set", action="append", default=[])
         if work is not compare:
             command.add_argument("--repeats", type=int, default=0 if work is run else 3)
         if work is speed:
