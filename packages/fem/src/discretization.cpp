@@ -77,9 +77,9 @@ struct FillDofGraph {
     for (int i = 0; i < Dim; ++i) {
       const std::size_t start = Dim * (Dim * begin + i * length);
       row(Dim * node + i + 1) = start + Dim * length;
-      if constexpr (on_gpu) continue;
-      for (std::size_t k = 0; k < length; ++k)
-        for (int j = 0; j < Dim; ++j) entries(start + Dim * k + j) = Dim * nodes.col(begin + k) + j;
+      if constexpr (!on_gpu)
+        for (std::size_t k = 0; k < length; ++k)
+          for (int j = 0; j < Dim; ++j) entries(start + Dim * k + j) = Dim * nodes.col(begin + k) + j;
     }
   }
 };

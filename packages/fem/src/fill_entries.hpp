@@ -65,7 +65,7 @@ void fill_entries(const std::string &label, const NodeGraph &nodes, const Source
 {
   const LO num_nodes = static_cast<LO>(nodes.row.extent(0)) - 1;
   const std::size_t most = Dim * Dim * longest_row(nodes);
-  const auto run = [&](const auto index) {
+  const auto run = [&](auto index) {
     using Index = decltype(index);
     using Fill = FillEntries<Dim, Source, Values, Index>;
     const Fill fill{nodes, num_nodes, static_cast<Index>(most), source, values};
