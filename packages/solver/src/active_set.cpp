@@ -23,9 +23,8 @@ constexpr int most_steps = 24;
 // iterations. With 1e-1 pressures are too rough to choose states by, 1e-4 saves no step. What the multipliers of the last
 // rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
 constexpr double forcing = 5e-3;
-constexpr double pressure_tolerance = 1e-7; // else multipliers are updated once more, at most twice
-constexpr int most_updates = 2;
-constexpr double enough = 0.3; // of the tolerance: recomputed residuals are a little larger than CG's
+constexpr int most_updates = 2; // of multipliers at the end, for the sake of the pressures
+constexpr double enough = 0.3;  // of the tolerance: recomputed residuals are a little larger than CG's
 
 /// A choice of states that has not been there yet, with the first weight that leads to one; nothing otherwise.
 std::optional<contact::StateChoice> new_choice(const contact::SmoothedFunctional &functional, const Vector &u,
@@ -58,8 +57,8 @@ ActiveSetResult find_states(contact::SmoothedFunctional &functional, LinearSolve
   while (result.steps < most_steps) {
     const auto choice = new_choice(functional, u, seen);
     const bool solved_well = choice && choice->confirmed && norm <= target;
-    result.confirmed =
-        solved_well && !held && (functional.pressure_error(u) <= pressure_tolerance || ++updates > most_updates);
+    result.confirmed = solved_well && !held &&
+                       (functional.pressure_error(u) <= options.pressure_tolerance || ++updates > most_updates);
     const bool stalled = !rough && choice && choice->confirmed && (held || (!solved_well && !(norm < 0.5 * before)));
     if (result.confirmed || stalled || (!choice && !rough)) break;
     if (rough && (!choice || choice->changes == 0)) {

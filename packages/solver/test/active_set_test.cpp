@@ -60,6 +60,22 @@ TEST(FindStates, OfTheBeamOnItsFoundationAreConfirmedByNewtonAtOnce)
   }
 }
 
+TEST(FindStates, BringsPressuresToTheirTolerance)
+{
+  std::vector<int> steps;
+  for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
+    Beam beam({}, flat(14, 0));
+    solver::NewtonOptions own;
+    own.pressure_tolerance = tolerance;
+    const auto found = solver::find_states(*beam.functional, *beam.linear, *beam.u, own, ignore);
+    EXPECT_TRUE(found.confirmed);
+    EXPECT_LE(beam.functional->pressure_error(*beam.u), tolerance);
+    steps.push_back(found.steps);
+  }
+  EXPECT_LE(steps[0], steps[1]);
+  EXPECT_LT(steps[1], steps[2]);
+}
+
 TEST(FindStates, AboveAGapAreFoundWhateverTheYieldLimit)
 {
   for (const double gap : {0.001, 0.01}) {

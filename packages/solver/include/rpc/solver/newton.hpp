@@ -14,6 +14,7 @@ struct NewtonOptions {
   double step_tolerance = 1e-10;     ///< |d|_2 / |u|_2 of a full Newton step, > 0: the paper's test
   double residual_tolerance = 1e-11; ///< |F|_2 / |load|_2, > 0
   double start_tolerance = 1e-10;    ///< |F|_2 / |load|_2 at which the search for states is content, > 0
+  double pressure_tolerance = 1e-7;  ///< error of pressures, over the largest, at which that search is content, > 0
   int max_iterations = 200;          ///< > 0
   bool active_set_start = true;      ///< look for the contact states first, see find_states()
   Teuchos::ParameterList nox;        ///< sublists for NOX, on top of the defaults
