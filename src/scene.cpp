@@ -5,6 +5,7 @@
 #include "rpc/io/deck.hpp"
 #include "rpc/io/expression.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace rpc
@@ -84,7 +85,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.adapt = adapt::adapt_options(deck.sublist("Adapt"));
   scene.uzawa = contact::uzawa_options(deck.sublist("Uzawa"));
   scene.newton = solver::newton_options(deck.sublist("NOX"));
-  scene.newton.pressure_tolerance = 10 * scene.uzawa.tolerance;
+  scene.newton.pressure_tolerance = std::min(scene.newton.pressure_tolerance, 10 * scene.uzawa.tolerance); // (5.15)
   scene.linear_solver = solver::linear_solver_options(deck.sublist("Linear Solver"));
   const Teuchos::ParameterList &output = deck.sublist("Output");
   scene.output = {output.get<bool>("Exodus"), output.get<bool>("CSV"), output.get<bool>("JSON"),

@@ -68,7 +68,7 @@ def run(arguments):
                    for case, words in cases(arguments.hertz_mesh)}
         os.makedirs(os.path.join(arguments.output, name), exist_ok=True)
         with open(os.path.join(arguments.output, name, "results.json"), "w") as file:
-            json.dump({"command": command, "cases": results}, file)
+            json.dump({"command": command, "changes": changes, "cases": results}, file)
         print("%s: %d scenes, %d runs of each" % (name, len(results), 1 + arguments.repeats), flush=True)
     return 0
 
@@ -83,8 +83,13 @@ def difference(a, b):
 def compare(arguments):
     def load(name):
         with open(os.path.join(arguments.output, name, "results.json")) as file:
-            return json.load(file)["cases"]
+            results = json.load(file)
+        changes.add(tuple(results["changes"]))
+        if len(changes) > 1:
+            sys.exit("%s: run with other decks than %s: %s" % (name, arguments.reference, changes))
+        return results["cases"]
 
+    changes = set()
     reference = load(arguments.reference)
     bad = 0
     print("| scene | backend | J | dJ | dp | Uzawa | Newton | CG | %s | repeats differ by | |" % arguments.reference)

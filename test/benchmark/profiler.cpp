@@ -4,7 +4,8 @@
 ///
 /// At the end the table goes to the file that RPC_PROFILE names, or else to standard error. With CUPTI: the GPU's own times of
 /// all kernels and copies, those of allocations and waiting, and what managed memory moves between host and GPU. Without: the
-/// kernels' times on the host's clock, and nothing else. RPC_TRACE names a file for kernels and CUDA's calls one by one, as CSV.
+/// kernels' times on the host's clock, and nothing else. RPC_TRACE names a file for timers, kernels and
+/// CUDA's calls one by one, as CSV; starts are seconds since that of the profile.
 
 #include <algorithm>
 #include <chrono>
@@ -98,7 +99,11 @@ struct Profile {
   /// @param what  kernel, call or region
   void write(const char *const what, const Time start, const Time end, const std::string &name) const
   {
-    if (trace) std::fprintf(trace, "%s,%.6f,%.6f,\"%s\"\n", what, 1e-9 * start, 1e-9 * (end - start), name.c_str());
+    if (!trace) return;
+    const double since = start < entered.front() ? -1e-9 * (entered.front() - start) : 1e-9 * (start - entered.front());
+    std::fprintf(trace, "%s,%.9f,%.9f,\"", what, since, 1e-9 * (end - start));
+    for (const char letter : name) std::fputs(letter == '"' ? "\"\"" : std::string(1, letter).c_str(), trace);
+    std::fputs("\"\n", trace);
   }
   std::uint64_t id_of(const std::string &label)
   {
@@ -299,8 +304,11 @@ void kokkosp_init_library(const int, const std::uint64_t, const std::uint32_t, v
   start_records();
 #endif
   profile = new Profile;
-  if (const char *const path = std::getenv("RPC_TRACE")) profile->trace = std::fopen(path, "w");
-  if (profile->trace) std::fprintf(profile->trace, "what,start [s],seconds,name\n");
+  const char *const path = std::getenv("RPC_TRACE");
+  if (!path) return;
+  profile->trace = std::fopen(path, "w");
+  std::fputs(profile->trace ? "what,start [s],seconds,name\n" : "rpc_profiler: RPC_TRACE cannot be written\n",
+             profile->trace ? profile->trace : stderr);
 }
 
 void kokkosp_finalize_library()

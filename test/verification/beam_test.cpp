@@ -111,6 +111,27 @@ TEST(Beam, CostsAboutOneElasticSolveOnTheFinestMesh)
   }
 }
 
+/// Of pressures, over the largest.
+double largest_difference(const Solution &s, const Solution &other)
+{
+  const auto p = to_host(s.contact.pressure), q = to_host(other.contact.pressure);
+  double largest = 0;
+  for (std::size_t i = 0; i < p.extent(0); ++i) largest = std::max(largest, std::abs(p(i) - q(i)));
+  return max_all(s.discretization.mesh->comm(), largest) / s.contact.total.max_pressure;
+}
+
+TEST(Beam, PressuresFollowATighterTolerance)
+{
+  const Solution usual = beam(64, "16"), tight = beam(64, "16", {"Uzawa->Tolerance=1e-10"}),
+                 loose = beam(64, "16", {"Uzawa->Tolerance=1e-5"}),
+                 exact = beam(64, "16", {"Uzawa->Tolerance=1e-11", "NOX->Residual Tolerance=1e-14"});
+  EXPECT_GT(largest_difference(usual, exact), 1e-9); // else there is nothing to follow
+  EXPECT_LE(largest_difference(usual, exact), 1e-7);
+  EXPECT_LE(largest_difference(loose, exact), 1e-7);
+  EXPECT_LE(largest_difference(tight, exact), 1e-9);
+  EXPECT_GT(tight.linear.iterations.size(), usual.linear.iterations.size());
+}
+
 TEST(Beam, IsTheSameWithAndWithoutCoarserMeshes)
 {
   for (const char *xi : {"2", "16", "inf"}) {

@@ -31,9 +31,10 @@ std::string verdict(const UzawaResult &result, const UzawaOptions &options)
 Teuchos::ParameterList valid_uzawa_parameters()
 {
   Teuchos::ParameterList valid("Uzawa");
-  valid.set("Tolerance", 1e-8,
-            "Bound on the certificate (its four parts) and on the stopping test, dimensionless, > 0. Pressures are "
-            "good to about ten times that, of the largest.");
+  valid.set(
+      "Tolerance", 1e-8,
+      "Bound on the certificate (its four parts) and on the stopping test, dimensionless, > 0. Below its "
+      "default the pressures follow: an active-set start aims at ten times that, of the largest, for their errors.");
   valid.set("Maximum Iterations", 50, "Multiplier updates at most, > 0.");
   valid.set("Stopping Test", "certificate",
             "`certificate`: stop as soon as contact law and equilibrium hold; `multiplier change`: the paper's test, "

@@ -9,14 +9,13 @@
 namespace rpc::fem
 {
 
-/// One entry in the rows of some nodes: neighbouring threads write neighbouring entries, which a GPU's memory wants. Threads
-/// that write whole rows each for itself share no line of it.
+/// One entry in the rows of some nodes: neighbouring threads of a GPU write neighbouring entries. With a thread for each row they
+/// would write to as many cache lines at once.
 /// @tparam Source  has(node), whether the node's rows are to be filled, and value(node, entry), what their entry is
 /// @tparam Index  holds all items; the divisions of 32 bits take less time than the memory
-template <int Dim, class Source, class Values, class Index>
+/// @tparam batch  nodes of an item: as many loads are under way at once
+template <int Dim, int batch, class Source, class Values, class Index>
 struct FillEntries {
-  static constexpr int batch = 4; ///< nodes; as many loads are under way at once
-
   NodeGraph nodes; // in
   LO num_nodes;    // owned
   Index most;      // entries in the rows of any node
@@ -64,15 +63,17 @@ template <int Dim, class Source, class Values>
 void fill_entries(const std::string &label, const NodeGraph &nodes, const Source &source, const Values &values)
 {
   const LO num_nodes = static_cast<LO>(nodes.row.extent(0)) - 1;
-  const std::size_t most = Dim * Dim * longest_row(nodes);
+  constexpr int batch = 4;
+  const std::size_t most = Dim * Dim * longest_row(nodes), batches = (std::size_t(num_nodes) + batch - 1) / batch,
+                    items = batches * most;
   const auto run = [&](auto index) {
     using Index = decltype(index);
-    using Fill = FillEntries<Dim, Source, Values, Index>;
-    const Fill fill{nodes, num_nodes, static_cast<Index>(most), source, values};
-    const Index items = (static_cast<Index>(num_nodes) + Fill::batch - 1) / Fill::batch * fill.most;
-    Kokkos::parallel_for(label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, items), fill);
+    const FillEntries<Dim, batch, Source, Values, Index> fill{nodes, num_nodes, static_cast<Index>(most), source,
+                                                              values};
+    const Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>> range(0, static_cast<Index>(items));
+    Kokkos::parallel_for(label, range, fill);
   };
-  if (most * (num_nodes + 1) <= std::numeric_limits<unsigned>::max())
+  if (items <= std::numeric_limits<unsigned>::max() / 2) // Kokkos adds a block of threads
     run(0U);
   else
     run(std::size_t{0});

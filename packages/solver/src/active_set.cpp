@@ -23,7 +23,7 @@ constexpr int most_steps = 24;
 // iterations. With 1e-1 pressures are too rough to choose states by, 1e-4 saves no step. What the multipliers of the last
 // rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
 constexpr double forcing = 5e-3;
-constexpr int most_updates = 2; // of multipliers at the end, for the sake of the pressures
+constexpr int most_updates = 2; // of multipliers at the end, even if pressures miss their tolerance then
 constexpr double enough = 0.3;  // of the tolerance: recomputed residuals are a little larger than CG's
 
 /// A choice of states that has not been there yet, with the first weight that leads to one; nothing otherwise.

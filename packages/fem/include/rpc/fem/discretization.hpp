@@ -50,8 +50,9 @@ struct Discretization {
 Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh);
 
 /// Values with those of the neighbours' nodes, (overlap dofs), from those of the owned ones; collective. The same vector where
-/// there are no neighbours: for reading while the one given lives.
+/// there are no neighbours: for reading while the one given lives and stays as it is.
 RCP<const Vector> on_overlap(const Discretization &d, const Vector &owned);
+RCP<const Vector> on_overlap(const Discretization &d, const Vector &&owned) = delete;
 
 /// Coordinates of the owned nodes, (owned nodes; dim) [m]: what multigrid partitions by.
 RCP<MultiVector> node_coordinates(const Discretization &d);
