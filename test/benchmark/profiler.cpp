@@ -102,7 +102,10 @@ struct Profile {
     if (!trace) return;
     const double since = start < entered.front() ? -1e-9 * (entered.front() - start) : 1e-9 * (start - entered.front());
     std::fprintf(trace, "%s,%.9f,%.9f,\"", what, since, 1e-9 * (end - start));
-    for (const char letter : name) std::fputs(letter == '"' ? "\"\"" : std::string(1, letter).c_str(), trace);
+    for (const char letter : name) {
+      if (letter == '"') std::fputc('"', trace); // twice, as CSV has it
+      std::fputc(letter, trace);
+    }
     std::fputs("\"\n", trace);
   }
   std::uint64_t id_of(const std::string &label)
@@ -255,9 +258,10 @@ void end_kernel(const std::uint64_t id)
   std::uint64_t last = 0;
   cuptiActivityPopExternalCorrelationId(CUPTI_EXTERNAL_CORRELATION_KIND_CUSTOM0, &last);
 #else
-  const double seconds = 1e-9 * (now() - profile->started);
+  const Time end = now();
+  const double seconds = 1e-9 * (end - profile->started);
   profile->add(kernels, profile->started, seconds);
-  profile->write("kernel", profile->started, now(), profile->labels[id - 1]);
+  profile->write("kernel", profile->started, end, profile->labels[id - 1]);
   profile->by_label[profile->labels[id - 1]].add(seconds);
 #endif
 }
