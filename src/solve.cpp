@@ -236,7 +236,7 @@ Solution solve_on(const Scene &scene, const mesh::MeshOptions &options, const So
         start = solver::find_states(*s.functional, linear, *s.u, scene.newton, report);
       if (start.confirmed) {
         s.skipped.push_back("generalized Newton with line search: the choice of states was confirmed");
-        return contact::MinimizeResult{true, start.steps, ""};
+        return contact::MinimizeResult{true, start.steps, "", true};
       }
       auto result = solver::minimize(*s.functional, linear, s.u, scene.newton, iteration > 1, report);
       result.newton_iterations += start.steps;

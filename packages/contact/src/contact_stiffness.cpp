@@ -78,6 +78,22 @@ LO take_over(const DeviceView<double *> &from, const DeviceView<double *> &to)
   return changed;
 }
 
+/// to <- from, at most `most` times a point's own stiffness. @return number of points that it bounds, on this rank
+LO bound(const DeviceView<double *> &from, const DeviceView<double *> &own, const double most,
+         const DeviceView<double *> &to)
+{
+  LO bounded = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::bound", device_range(static_cast<LO>(to.extent(0))),
+      KOKKOS_LAMBDA(const LO i, LO &count) {
+        const bool beyond = from(i) > most * own(i);
+        to(i) = beyond ? most * own(i) : from(i);
+        count += beyond;
+      },
+      bounded);
+  return bounded;
+}
+
 /// (contact nodes) added - written.
 DeviceView<double *> difference(const DeviceView<double *> &added, const DeviceView<double *> &written)
 {
@@ -149,11 +165,10 @@ GO ContactStiffness::set(const DeviceView<double *> &added)
   return changed;
 }
 
-void ContactStiffness::write()
+void ContactStiffness::write(const double most)
 {
-  Kokkos::deep_copy(written_, added_);
+  has_changes_ = sum_all(*getDomainMap()->getComm(), GO(bound(added_, own_stiffness_, most, written_))) > 0;
   write_diagonal_blocks(contact_, written_, block_, elastic_, *matrix_);
-  has_changes_ = false;
 }
 
 ContactStiffness::Changes ContactStiffness::changes() const

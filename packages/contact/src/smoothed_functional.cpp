@@ -21,9 +21,9 @@ constexpr double default_slanting_penalty = 1e3;
 constexpr double weak_spring = 1e-4, weakest_spring = 1e-10, weaken = 1e-2;
 // Multiple of the mean pressure, load over contact area, above which a yield limit counts as out of reach at the start.
 constexpr double beyond_reach = 100;
-// Share of the last change of a stuck node's pressure that is expected to follow. Choices of states approach the solution
-// from one side, step by step; measured on the beam and the half cylinder, 0.5 saves one step in four, 1 begins to cycle.
-constexpr double expected_change = 0.5;
+// Weight of penetration against pressure in the first choice of states, in E / diameter: where a coarser mesh predicts u and
+// lambda, either may be the better known one.
+constexpr double first_weight = 10;
 
 KOKKOS_INLINE_FUNCTION double larger(const double a, const double b)
 {
@@ -153,6 +153,88 @@ DeviceView<double *> piece_pressures(const ContactNodes &c, const DeviceView<dou
   return p;
 }
 
+/// The first states: those of lambda + weight rho v, or all stuck.
+void first_states(const ContactNodes &c, const Vector &u, const DeviceView<double *> &lambda, const bool all_stick,
+                  const DeviceView<State *> &next)
+{
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::first_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        const double rho = first_weight * c.stiffness(i);
+        next(i) = c.fixed(i)  ? State::open
+                  : all_stick ? State::stuck
+                              : state(penetration(c, i, x), lambda(i), rho, c.yield(i));
+      });
+  Kokkos::fence();
+}
+
+/// How much each point's state is at odds with the contact law, as a pressure; k v stands for a penetration, k being the
+/// stiffness of the node alone. @return this rank's largest pressure within the law [Pa]
+double violations(const ContactNodes &c, const Vector &u, const DeviceView<State *> &piece,
+                  const DeviceView<double *> &p, const DeviceView<double *> &own, const DeviceView<double *> &violation)
+{
+  const auto x = device_read(u);
+  double largest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::violations", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &most) {
+        if (c.fixed(i)) return;
+        const double kv = own(i) * penetration(c, i, x), xi = c.yield(i);
+        double by = piece(i) == State::open ? kv : -kv;
+        if (piece(i) == State::stuck) by = p(i) < 0 ? -p(i) : p(i) - xi;
+        violation(i) = by > 0 ? by : 0;
+        most = larger(most, clamp(p(i), 0, xi));
+      },
+      Kokkos::Max<double>(largest));
+  return largest;
+}
+
+/// A point whose violation is beyond the bound changes: from stuck to open or yielded, by the sign of p; else to stuck.
+void next_states(const ContactNodes &c, const DeviceView<State *> &piece, const StateChoice &choice, const double bound)
+{
+  const auto next = choice.state;
+  const auto p = choice.pressure;
+  const auto violation = choice.violation;
+  Kokkos::parallel_for(
+      "rpc::contact::next_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        next(i) = piece(i);
+        if (!(violation(i) > bound)) return;
+        if (piece(i) != State::stuck)
+          next(i) = State::stuck;
+        else
+          next(i) = p(i) < 0 ? State::open : State::yielded;
+      });
+  Kokkos::fence();
+}
+
+LO count_differences(const DeviceView<State *> &a, const DeviceView<State *> &b)
+{
+  LO count = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::count_differences", device_range(static_cast<LO>(a.extent(0))),
+      KOKKOS_LAMBDA(const LO i, LO &part) { part += a(i) != b(i); }, count);
+  return count;
+}
+
+LO count_above(const DeviceView<double *> &values, const double bound)
+{
+  LO count = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::count_above", device_range(static_cast<LO>(values.extent(0))),
+      KOKKOS_LAMBDA(const LO i, LO &part) { part += values(i) > bound; }, count);
+  return count;
+}
+
+/// At least 0.
+double largest_of(const DeviceView<double *> &values)
+{
+  double most = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::largest_of", device_range(static_cast<LO>(values.extent(0))),
+      KOKKOS_LAMBDA(const LO i, double &part) { part = larger(part, values(i)); }, Kokkos::Max<double>(most));
+  return std::max(0., most);
+}
+
 /// (contact nodes) -v_i(u): what is left of the gaps once u is the origin.
 DeviceView<double *> left_of_gap(const ContactNodes &c, const Vector &u)
 {
@@ -273,6 +355,7 @@ GO SmoothedFunctional::update_stiffness()
 
 void SmoothedFunctional::set_multipliers(const DeviceView<double *> &lambda)
 {
+  predicted_ = true;
   const ContactNodes c = contact_;
   const auto to = lambda_;
   Kokkos::parallel_for(
@@ -285,6 +368,7 @@ void SmoothedFunctional::reset_multipliers()
 {
   if (lifted_force_ > 0)
     start_multipliers(contact_, reach_, lambda_); // else nothing acts, and lambda = 0 is the solution
+  predicted_ = false;
 }
 
 void SmoothedFunctional::move_origin(Vector &u)
@@ -357,31 +441,39 @@ GO SmoothedFunctional::update_hessian(const Vector &u)
   return update_stiffness();
 }
 
-StateChoice SmoothedFunctional::choose_states(const Vector &u, const double weight) const
+StateChoice SmoothedFunctional::choose_states(const Vector &u, const double negligible) const
 {
   const ContactNodes c = near_;
-  const auto lambda = lambda_;
-  const auto piece = piece_;
-  const bool chosen = piece_chosen_, all_stick = !chosen && spring_ > 0, extrapolate = second_choice_;
-  const auto p = chosen ? piece_pressures(c, lambda, u, piece) : lambda;
   const DeviceView<State *> next("rpc::contact::next_state", c.size());
-  LO changed = 0;
-  const auto x = device_read(u);
-  Kokkos::parallel_reduce(
-      "rpc::contact::choose_states", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, LO &nodes) {
-        // What the penalty leaves of v at a stuck node says nothing.
-        const bool sticks = chosen && piece(i) == State::stuck;
-        const double v = sticks ? 0 : penetration(c, i, x), rho = weight * c.stiffness(i);
-        nodes += !c.fixed(i) && (all_stick ? State::stuck : state(v, p(i), rho, c.yield(i))) != piece(i);
-        const double expected = sticks && extrapolate ? p(i) + expected_change * (p(i) - lambda(i)) : p(i);
-        next(i) = all_stick ? State::stuck : state(v, expected, rho, c.yield(i));
-        if (c.fixed(i)) next(i) = piece(i);
-      },
-      changed);
-  const GO changes = sum_all(*comm_, GO(changed));
-  if (changes == 0) Kokkos::deep_copy(next, piece); // what was expected is not to come
-  return {next, p, changes, changes == 0 && chosen, fingerprint_of(*comm_, c, next)};
+  StateChoice choice{next, lambda_, DeviceView<double *>("rpc::contact::violation", c.size())};
+  if (piece_chosen_) {
+    choice.pressure = piece_pressures(c, lambda_, u, piece_);
+    const double largest = violations(c, u, piece_, choice.pressure, hessian_->own_stiffness(), choice.violation);
+    next_states(c, piece_, choice, negligible * max_all(*comm_, largest));
+  } else {
+    first_states(c, u, lambda_, spring_ > 0 && !predicted_, next);
+  }
+  choice.changes = sum_all(*comm_, GO(count_differences(next, piece_)));
+  choice.confirmed = choice.changes == 0 && piece_chosen_;
+  choice.fingerprint = fingerprint_of(*comm_, c, next);
+  return choice;
+}
+
+StateChoice SmoothedFunctional::with_most_violated(const StateChoice &choice, const GO most) const
+{
+  double high = max_all(*comm_, largest_of(choice.violation)), low = 0; // above low there are too many, above high none
+  GO above = 0;
+  for (int halving = 0; halving < 60 && above == 0; ++halving) {
+    const double middle = 0.5 * (low + high);
+    const GO count = sum_all(*comm_, GO(count_above(choice.violation, middle)));
+    (count > most ? low : high) = middle;
+    above = count > most ? 0 : count;
+  }
+  StateChoice part{DeviceView<State *>("rpc::contact::next_state", near_.size()), choice.pressure, choice.violation};
+  next_states(near_, piece_, part, above > 0 ? high : low);
+  part.changes = sum_all(*comm_, GO(count_differences(part.state, piece_)));
+  part.fingerprint = fingerprint_of(*comm_, near_, part.state);
+  return part;
 }
 
 void SmoothedFunctional::take_states(const StateChoice &choice, Vector &u)
@@ -391,7 +483,6 @@ void SmoothedFunctional::take_states(const StateChoice &choice, Vector &u)
   const auto piece = piece_;
   const auto next = choice.state;
   const auto p = choice.pressure;
-  second_choice_ = piece_chosen_; // before, lambda is the start and no solution of a piece
   piece_chosen_ = true;
   const auto x = device_write(u);
   for_each_point_by_side( // a node of two sides is moved for one after the other
@@ -453,15 +544,24 @@ StateCounts SmoothedFunctional::count_states(const Vector &u) const
 
 double SmoothedFunctional::update_multipliers(const Vector &u)
 {
+  return replace_multipliers(pressures(near_, lambda_, u));
+}
+
+double SmoothedFunctional::take_piece_pressures(const Vector &u)
+{
+  return replace_multipliers(piece_pressures(near_, lambda_, u, piece_));
+}
+
+double SmoothedFunctional::replace_multipliers(const DeviceView<double *> &pressure)
+{
   const ContactNodes c = near_;
   const auto lambda = lambda_;
-  const auto x = device_read(u);
   double sums[2] = {0, 0};
   Kokkos::parallel_reduce(
-      "rpc::contact::update_multipliers", device_range(c.size()),
+      "rpc::contact::replace_multipliers", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &change, double &size) {
         if (c.fixed(i)) return;
-        const double next = pressure(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i));
+        const double next = clamp(pressure(i), 0, c.yield(i));
         change += (next - lambda(i)) * (next - lambda(i));
         size += next * next;
         lambda(i) = next;

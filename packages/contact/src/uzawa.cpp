@@ -69,7 +69,8 @@ UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function
     const MinimizeResult inner = minimize(result.iterations + 1);
     result.newton_iterations.push_back(inner.newton_iterations);
     ++result.iterations;
-    result.multiplier_change = functional.update_multipliers(u);
+    result.multiplier_change =
+        inner.states_confirmed ? functional.take_piece_pressures(u) : functional.update_multipliers(u);
     const Certificate previous = result.certificate;
     result.certificate = certify(functional.displacement(u));
     const bool holds = result.certificate.holds(options.tolerance);

@@ -2,6 +2,7 @@
 
 #include "numbers.hpp"
 #include "rpc/core/device_values.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -120,19 +121,13 @@ std::vector<GO> smallest_ids(const Discretization &d, const LocalSets &sets)
 /// All different values over all ranks, ascending; collective.
 std::vector<GO> all_different(const Comm &comm, std::vector<GO> values)
 {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  if (comm.getSize() > 1) {
-    const int longest = max_all(comm, static_cast<int>(values.size()));
-    if (longest == 0) return {};
-    values.resize(longest, std::numeric_limits<GO>::max());
-    std::vector<GO> all(static_cast<std::size_t>(longest) * comm.getSize());
-    Teuchos::gatherAll(comm, longest, values.data(), static_cast<int>(all.size()), all.data());
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    if (all.back() == std::numeric_limits<GO>::max()) all.pop_back();
-    return all;
-  }
+  const auto sort = [&values] {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+  };
+  sort();
+  values = gathered_by_all(comm, values);
+  sort();
   return values;
 }
 

@@ -1,26 +1,13 @@
 #pragma once
 
+#include "rpc/core/graph.hpp"
 #include "rpc/mesh/mesh_data.hpp"
 
-#include <cstddef>
 #include <vector>
 
 /// Division of a whole mesh among ranks; private to distribute().
 namespace rpc::mesh
 {
-
-/// Lists of numbers one behind the other: list i is value[begin[i]] .. value[begin[i + 1] - 1].
-struct Lists {
-  std::vector<std::size_t> begin{0};
-  std::vector<int> value;
-
-  int size() const { return static_cast<int>(begin.size()) - 1; }
-  int size_of(const int list) const { return static_cast<int>(begin[list + 1] - begin[list]); }
-  int *first(const int list) { return value.data() + begin[list]; }
-  int *last(const int list) { return value.data() + begin[list + 1]; }
-  const int *first(const int list) const { return value.data() + begin[list]; }
-  const int *last(const int list) const { return value.data() + begin[list + 1]; }
-};
 
 /// Who holds what of a whole mesh.
 struct Division {

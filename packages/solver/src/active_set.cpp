@@ -13,29 +13,37 @@ namespace rpc::solver
 namespace
 {
 
-// Weights of penetration against pressure in the choice of states, in E / diameter. The first is best for a foundation
-// that gives way at once as well as for a rigid one; where it goes in circles, the others stick more and yield later.
-// Measured on the half cylinder at xi = 2 .. inf, with both normals: 11 steps at most for 10, 13 for 20 and 30; at 100
-// and beyond some of them go in circles.
-constexpr double weights[] = {10, 1, 0.1};
-constexpr int most_steps = 24;
+constexpr int most_steps = 60;
 // While states change, solves bring the residual below this part of what it was, and of the load: three to five CG
 // iterations. With 1e-1 pressures are too rough to choose states by, 1e-4 saves no step. What the multipliers of the last
 // rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
 constexpr double forcing = 5e-3;
-constexpr int most_updates = 2; // of multipliers at the end, even if pressures miss their tolerance then
-constexpr double enough = 0.3;  // of the tolerance: recomputed residuals are a little larger than CG's
+constexpr int most_updates = 2;     // of multipliers at the end, even if pressures miss their tolerance then
+constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
+constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 
-/// A choice of states that has not been there yet, with the first weight that leads to one; nothing otherwise.
-std::optional<contact::StateChoice> new_choice(const contact::SmoothedFunctional &functional, const Vector &u,
-                                               std::set<std::uint64_t> &seen)
+/// Sets of states that were there before.
+class Memory
 {
-  for (const double weight : weights) {
-    auto choice = functional.choose_states(u, weight);
-    if (choice.confirmed || seen.insert(choice.fingerprint).second) return choice;
+public:
+  /// The choice, or where it leads back to known states that for the half of the changes with the largest violations, for
+  /// a quarter of them, and so on; nothing where even the largest one alone is known.                          (5.16)
+  std::optional<contact::StateChoice> unknown_part_of(const contact::SmoothedFunctional &functional,
+                                                      contact::StateChoice choice)
+  {
+    while (!seen_.insert(choice.fingerprint).second) {
+      if (choice.changes <= 1) return std::nullopt;
+      const auto part = functional.with_most_violated(choice, choice.changes / 2);
+      if (part.changes >= choice.changes) return std::nullopt; // violations that are all equal
+      choice = part;
+    }
+    return choice;
   }
-  return std::nullopt;
-}
+  void clear() { seen_.clear(); }
+
+private:
+  std::set<std::uint64_t> seen_;
+};
 
 } // namespace
 
@@ -47,33 +55,37 @@ ActiveSetResult find_states(contact::SmoothedFunctional &functional, LinearSolve
   const double scale = functional.force_scale(), target = options.start_tolerance * scale;
   Vector start(u, Teuchos::Copy);
   Vector G(u.getMap()), F(u.getMap()), d(u.getMap());
-  std::set<std::uint64_t> seen;
+  Memory memory;
   NewtonStep step;
-  const bool held =
-      functional.held_by_contact(); // small residuals may be large rigid motions: the last word is Newton's
-  bool rough = !held;
+  bool rough = true;
   double norm = std::numeric_limits<double>::infinity(), before = norm;
   int updates = 0; // of the multipliers alone
   while (result.steps < most_steps) {
-    const auto choice = new_choice(functional, u, seen);
-    const bool solved_well = choice && choice->confirmed && norm <= target;
-    result.confirmed = solved_well && !held &&
-                       (functional.pressure_error(u) <= options.pressure_tolerance || ++updates > most_updates);
-    const bool stalled = !rough && choice && choice->confirmed && (held || (!solved_well && !(norm < 0.5 * before)));
-    if (result.confirmed || stalled || (!choice && !rough)) break;
-    if (rough && (!choice || choice->changes == 0)) {
+    const auto choice = functional.choose_states(u, negligible * options.pressure_tolerance);
+    std::optional<contact::StateChoice> next = choice;
+    if (choice.confirmed) {
+      const bool solved_well = norm <= target;
+      result.confirmed =
+          solved_well && (functional.pressure_error(u) <= options.pressure_tolerance || ++updates > most_updates);
+      const bool stalled = !rough && !solved_well && !(norm < 0.5 * before);
+      if (result.confirmed || stalled) break;
       rough = false;
-      seen.clear(); // what rough solves led to says little
-      if (!choice) continue;
-      seen.insert(choice->fingerprint);
+    } else {
+      next = memory.unknown_part_of(functional, choice);
+      if (!next && !rough) break;
+      if (!next) { // what rough solves led to says little: solve for the present states first
+        rough = false;
+        memory.clear();
+        next = choice;
+      }
     }
-    functional.take_states(*choice, u);
+    functional.take_states(*next, u);
     functional.elastic_gradient(u, G);
     functional.piece_gradient(u, G, F);
     before = norm = F.norm2();
     if (!(norm > target)) continue;
-    if (!rough && !held) {       // a held body may have come far here, and K times that rounds
-      functional.move_origin(u); // what is left is small, and wants its digits
+    if (!rough) {
+      functional.move_origin(u); // the remaining correction is small against u and keeps its relative accuracy
       start.putScalar(0);
     }
     const double needed = std::max(enough * target, rough ? forcing * std::min(scale, norm) : 0.);

@@ -30,8 +30,14 @@ constexpr GO most_direct_rows = 100000;
 
 // Rows up to which multigrid is nearly a factorization, and made anew whenever contact changes.
 constexpr GO most_rows_set_up_anew = 2500;
-// CG iterations per digit, over those with multigrid alone, at which corrections have worn out; fewer digits tell little.
-constexpr double worn_at = 2, few_digits = 3;
+// Multigrid is made for stuck nodes of at most so many times their own stiffness: with all of the penalty, coarse functions
+// could not move near them, and CG would take a third more iterations. The rest is left to the correction.   (4.9)
+constexpr double most_stiffness = 5;
+// Corrections have worn out where they cost a solve of so many digits more CG iterations than a set-up takes the time of. Solves
+// of few digits tell little.
+constexpr double full_digits = 8, few_digits = 2, setup_in_iterations = 12;
+// Set-ups for changed states; then corrections go on until CG runs out of patience.
+constexpr int most_setups_for_states = 1;
 
 using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
 using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
@@ -174,9 +180,13 @@ struct LinearSolver::Impl {
   RCP<MultiVector> coordinates, null_space;
   Teuchos::ParameterList muelu;
   RCP<Preconditioner> preconditioner;
-  int revision = -1;           // of H, that the preconditioner fits
-  double usual_iterations = 0; // per digit, with multigrid alone
-  bool worn = false;           // corrections do not suffice any more
+  int revision = -1;               // of H, that the preconditioner fits
+  bool renewed = false;            // of an older hierarchy some parts are left
+  double usual_iterations = 0;     // per digit, right after a set-up
+  double iterations_per_digit = 0; // of the last solve
+  bool fresh = false;              // no states have changed since multigrid was set up
+  bool worn = false;               // corrections do not suffice any more
+  int setups_for_states = 0;
   bool strengthened = false;
   RCP<LinearProblem> problem;
   RCP<SolverManager> manager;
@@ -255,23 +265,45 @@ void LinearSolver::set_up()
 {
   RCP<Multigrid> &multigrid = impl_->preconditioner->multigrid;
   const RCP<CrsMatrix> &A = impl_->H->matrix();
-  impl_->H->write();
-  impl_->preconditioner->correction.reset();
-  if (multigrid.is_null() || impl_->muelu.get<std::string>("reuse: type") == "none") {
+  auto &correction = impl_->preconditioner->correction;
+  correction.reset();
+  if (static_cast<GO>(A->getGlobalNumRows()) > most_rows_set_up_anew) {
+    impl_->H->write(most_stiffness);
+    correction = LocalCorrection::around(*impl_->H);
+  }
+  if (!correction) impl_->H->write();
+  impl_->renewed = !multigrid.is_null() && impl_->muelu.get<std::string>("reuse: type") != "none" && renew(A);
+  if (!impl_->renewed) {
     Teuchos::ParameterList list = impl_->muelu;
     list.sublist("user data").set("Coordinates", impl_->coordinates);
     list.sublist("user data").set("Nullspace", impl_->null_space);
+    multigrid = Teuchos::null; // two hierarchies would take twice the memory
     try {
       multigrid = make_multigrid(A, list);
     } catch (const std::exception &failure) {
       if (options_.muelu.numParams() == 0 || counts_.preconditioner_setups > 0) throw;
       throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
     }
-  } else {
-    renew_multigrid(A, *multigrid);
   }
   impl_->worn = false;
+  impl_->fresh = true;
   ++counts_.preconditioner_setups;
+}
+
+/// @return whether the old hierarchy could be used again; MueLu leaves it half-cleared where it fails
+bool LinearSolver::renew(const RCP<CrsMatrix> &A)
+{
+  RCP<Multigrid> &multigrid = impl_->preconditioner->multigrid;
+  try {
+    renew_multigrid(A, *multigrid);
+    return true;
+  } catch (const std::bad_alloc &) { // on this rank alone
+    throw;
+  } catch (
+      const std::exception &) { // such as reused prolongators that do not fit a pattern without its zeros; on all ranks
+    multigrid = Teuchos::null;
+    return false;
+  }
 }
 
 void LinearSolver::prepare()
@@ -281,14 +313,19 @@ void LinearSolver::prepare()
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
   const double start = Teuchos::Time::wallTime();
   auto &correction = impl_->preconditioner->correction;
+  const bool exists = !impl_->preconditioner->multigrid.is_null();
   const bool tiny = static_cast<GO>(impl_->H->matrix()->getGlobalNumRows()) <= most_rows_set_up_anew;
   bool fits = false;
-  if (!impl_->preconditioner->multigrid.is_null() && !impl_->worn && !tiny) {
+  if (exists && !impl_->worn && !tiny) {
     correction = LocalCorrection::around(*impl_->H);
     counts_.local_corrections += correction.has_value();
     fits = correction || sum_all(*impl_->H->getDomainMap()->getComm(), GO(impl_->H->changes().size())) == 0;
+    impl_->fresh = false;
   }
-  if (!fits) set_up();
+  if (!fits) {
+    impl_->setups_for_states += exists;
+    set_up();
+  }
   impl_->revision = revision;
   counts_.setup_seconds += Teuchos::Time::wallTime() - start;
 }
@@ -314,17 +351,11 @@ void LinearSolver::judge_preconditioner(const int iterations, const double resid
 {
   const double digits = -std::log10(residual);
   if (!(digits > few_digits)) return;
-  const double per_digit = iterations / digits;
-  if (!impl_->preconditioner->correction)
-    impl_->usual_iterations = per_digit;
-  else if (per_digit > worn_at * impl_->usual_iterations && impl_->usual_iterations > 0)
-    impl_->worn = true;
-}
-
-void LinearSolver::set_up_anew()
-{
-  impl_->worn = true;
-  impl_->revision = -1;
+  impl_->iterations_per_digit = iterations / digits;
+  if (impl_->fresh)
+    impl_->usual_iterations = impl_->iterations_per_digit;
+  else
+    impl_->worn = impl_->setups_for_states < most_setups_for_states && excess(full_digits) > setup_in_iterations;
 }
 
 /// For nearly incompressible or badly shaped cells, where aggregation misses slow modes: at most once, and not against what
@@ -347,14 +378,32 @@ bool LinearSolver::strengthen()
   return true;
 }
 
+/// CG iterations that a solve of so many digits would save right after a set-up.
+double LinearSolver::excess(const double digits) const
+{
+  return impl_->usual_iterations > 0 ? (impl_->iterations_per_digit - impl_->usual_iterations) * digits : 0;
+}
+
+/// Corrections that have worn out make way for a set-up where it pays for the digits that are asked for.
+void LinearSolver::set_up_if_worn(const double tolerance)
+{
+  if (!impl_->worn) return;
+  if (excess(-std::log10(std::max(tolerance, options_.tolerance))) > setup_in_iterations) impl_->revision = -1;
+}
+
 LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const double tolerance)
 {
+  set_up_if_worn(tolerance);
   Result result = try_to_solve(b, x, tolerance);
-  if (impl_->preconditioner->correction && !result.interrupted && (result.iterations > patience || !result.converged)) {
-    set_up_anew();
+  const auto good = [&result] { return result.interrupted || (result.converged && result.iterations <= patience); };
+  if (good()) return result;
+  if (!impl_->fresh || impl_->renewed) { // a hierarchy for these states, from scratch, before anything else is blamed
+    impl_->preconditioner->multigrid = Teuchos::null;
+    if (result.converged) return result;
     result = try_to_solve(b, x, tolerance);
+    if (good()) return result;
   }
-  if (result.iterations <= patience || result.broken || !strengthen() || result.converged) return result;
+  if (result.broken || !strengthen() || result.converged) return result;
   return try_to_solve(b, x, tolerance);
 }
 
@@ -396,8 +445,7 @@ LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, cons
       const std::exception &failure) { // a breakdown, such as an indefinite or singular matrix; the same on all ranks
     counts_.iterations.push_back(0);   // how many there were is not to be had
     result.broken = true;
-    result.reason = "the linear solver broke down, as it does when nothing holds the body in some direction (" +
-                    one_line(failure.what()) + ")";
+    result.reason = "the linear solver broke down: " + one_line(failure.what());
   }
   return result;
 }

@@ -1,7 +1,8 @@
 #include "local_correction.hpp"
 
+#include "rpc/core/parallel.hpp"
+
 #include <KokkosBlas1_axpby.hpp>
-#include <Teuchos_LAPACK.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
 #include <utility>
@@ -12,10 +13,12 @@ namespace rpc::solver
 namespace
 {
 
-// Layers of cells around the changed nodes: with 2, ten nodes in a row cost CG two iterations. And the most unknowns whose
-// dense inverse is cheap against a set-up, of no large part of the rows.
-constexpr int layers = 2;
-constexpr GO most_unknowns = 500, least_rows_per_unknown = 8;
+// Layers of cells around the nodes. In the plane a second one saves up to one CG iteration in ten and costs nothing; in space
+// one saves as much, and its factor costs ten times that of none.
+constexpr int layers_2d = 2, layers_3d = 0;
+// A patch is worth its factor up to so many multiplications for each row of the matrix, a fraction of what multigrid's set-up
+// takes.
+constexpr double work_per_row = 3e3;
 
 using contact::ContactStiffness;
 
@@ -175,58 +178,28 @@ void add_changes(const ContactStiffness::Changes &changes, const int dim, const 
   Kokkos::fence();
 }
 
-/// (size, size) The inverse of the patch's own block of H, from this rank's rows and all others'.
-/// @return an empty view where it is not positive definite
-DeviceView<double **> inverse_of_patch(const Comm &comm, const int size, const PatchColumns &list, const Vector &place)
+/// The factor of the patch's own block of H, from this rank's rows and all others'.
+std::optional<BandCholesky> factor_of_patch(const Comm &comm, const int size, const PatchColumns &list,
+                                            const Vector &place, const double most_work)
 {
   const auto rows = to_host(list.row);
   const auto begin = to_host(list.begin);
   const auto column = to_host(list.column);
   const auto value = to_host(list.value);
   const auto at = place.getLocalViewHost(Tpetra::Access::ReadOnly);
-  std::vector<double> mine(static_cast<std::size_t>(size) * size), block(mine.size());
+  SymmetricEntries mine;
   for (std::size_t i = 0; i < rows.extent(0); ++i) {
     const int member = static_cast<int>(at(rows(i), 0)) - 1;
-    if (member < 0) continue;
-    for (std::size_t e = begin(i); e < begin(i + 1); ++e)
-      mine[static_cast<std::size_t>(member) * size + column(e)] += value(e);
+    for (std::size_t e = begin(i); e < begin(i + 1); ++e) {
+      if (column(e) > member) continue; // the other half, or outside the patch
+      mine.row.push_back(member);
+      mine.column.push_back(column(e));
+      mine.value.push_back(value(e));
+    }
   }
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), block.data());
-  const Teuchos::LAPACK<int, double> lapack;
-  int info = 0;
-  lapack.POTRF('L', size, block.data(), size, &info);
-  if (info == 0) lapack.POTRI('L', size, block.data(), size, &info);
-  if (info != 0) return {};
-  const DeviceView<double **> inverse("rpc::solver::patch_inverse", size, size);
-  const auto host = Kokkos::create_mirror_view(inverse);
-  for (int j = 0; j < size; ++j)
-    for (int i = j; i < size; ++i) // LAPACK's columns, lower half
-      host(i, j) = host(j, i) = block[static_cast<std::size_t>(j) * size + i];
-  Kokkos::deep_copy(inverse, host);
-  return inverse;
-}
-
-/// out <- sum over all ranks.
-DeviceView<double *> summed(const Comm &comm, const DeviceView<double *> &mine)
-{
-  if (comm.getSize() == 1) return mine;
-  const auto part = to_host(mine);
-  HostView<double *> sum("rpc::solver::patch_sum", mine.extent(0));
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(sum.extent(0)), part.data(), sum.data());
-  return to_device(sum);
-}
-
-DeviceView<double *> product(const DeviceView<double **> &matrix, const DeviceView<double *> &x)
-{
-  const int n = static_cast<int>(x.extent(0));
-  const DeviceView<double *> y("rpc::solver::patch_product", n);
-  Kokkos::parallel_for(
-      "rpc::solver::patch_product", device_range(n), KOKKOS_LAMBDA(const LO i) {
-        double sum = 0;
-        for (int j = 0; j < n; ++j) sum += matrix(j, i) * x(j); // symmetric: neighbouring threads read neighbours
-        y(i) = sum;
-      });
-  return y;
+  const SymmetricEntries all{gathered_by_all(comm, mine.row), gathered_by_all(comm, mine.column),
+                             gathered_by_all(comm, mine.value)};
+  return BandCholesky::factor(size, all, most_work);
 }
 
 /// This rank's part of x, R x.
@@ -309,40 +282,52 @@ std::optional<LocalCorrection> LocalCorrection::around(const ContactStiffness &H
   const Comm &comm = *A.getComm();
   const auto changes = H.changes();
   const GO num_changes = sum_all(comm, GO(changes.size()));
-  if (num_changes == 0 || H.dim() * num_changes > most_unknowns) return std::nullopt;
+  if (num_changes == 0) return std::nullopt;
   Vector place(A.getRowMap());
   mark_changed(changes, H.dim(), place);
-  for (int layer = 0; layer < layers; ++layer) add_layer(A, place);
+  for (int layer = 0; layer < (H.dim() == 2 ? layers_2d : layers_3d); ++layer) add_layer(A, place);
   const LO members = count_marked(place);
   const GO size = sum_all(comm, GO(members));
-  if (size > std::min(most_unknowns, static_cast<GO>(A.getGlobalNumRows()) / least_rows_per_unknown))
-    return std::nullopt;
+  const double most_work = work_per_row * static_cast<double>(A.getGlobalNumRows());
   int through = 0;
   Teuchos::scan(comm, Teuchos::REDUCE_SUM, static_cast<int>(members), Teuchos::outArg(through));
 
   LocalCorrection correction;
+  correction.comm_ = A.getComm();
   correction.size_ = static_cast<int>(size);
   correction.member_row_ = DeviceView<LO *>("rpc::solver::member_row", members);
   correction.member_ = DeviceView<int *>("rpc::solver::member", members);
   number_members(place, through - members, correction.member_row_, correction.member_);
   const PatchColumns list = patch_columns(A, place);
   add_changes(changes, H.dim(), place, list);
-  const auto inverse = inverse_of_patch(comm, correction.size_, list, place);
-  if (inverse.extent(0) == 0) return std::nullopt;
+  const auto factor = factor_of_patch(comm, correction.size_, list, place, most_work);
+  if (!factor) return std::nullopt;
   correction.columns_ = list;
   correction.entries_ = column_after_column(list, correction.size_);
-  correction.inverse_ = inverse;
+  correction.factor_ = std::make_shared<const BandCholesky>(*factor);
   return correction;
+}
+
+/// (size) The patch's solution for the sum of all ranks' parts of the right side.
+DeviceView<double *> LocalCorrection::solve(const DeviceView<double *> &mine) const
+{
+  const auto part = to_host(mine);
+  const HostView<double *> x("rpc::solver::patch_solution", mine.extent(0));
+  if (comm_->getSize() == 1)
+    Kokkos::deep_copy(x, part);
+  else
+    Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, size_, part.data(), x.data());
+  factor_->solve(x.data());
+  return to_device(x);
 }
 
 void LocalCorrection::apply(const Operator &M, const Vector &x, Vector &y) const
 {
-  const Comm &comm = *x.getMap()->getComm();
-  const auto q = product(inverse_, summed(comm, restricted(member_row_, member_, size_, x)));
+  const auto q = solve(restricted(member_row_, member_, size_, x));
   Vector rest(x, Teuchos::Copy);
   subtract_columns(columns_, q, rest);
   M.apply(rest, y);
-  const auto p = product(inverse_, summed(comm, times_columns(entries_, size_, y)));
+  const auto p = solve(times_columns(entries_, size_, y));
   const DeviceView<double *> correction("rpc::solver::correction", size_);
   Kokkos::deep_copy(correction, q);
   KokkosBlas::axpy(-1., p, correction);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "band_cholesky.hpp"
 #include "rpc/contact/contact_stiffness.hpp"
 
+#include <memory>
 #include <optional>
 
 namespace rpc::solver
@@ -23,15 +25,15 @@ struct PatchEntries {
 };
 
 /// Carries a preconditioner M of a stiffness's matrix over to the stiffness itself, H, by exact solves on a patch, the
-/// unknowns around the changed contact nodes:
+/// unknowns of the contact nodes where the two differ and, in the plane, of some layers of cells around them:
 ///
 ///     B = Q + (I - Q H) M (I - H Q),    Q = R^T (R H R^T)^-1 R                                    doc/theory.md (4.8)
 ///
-/// B is SPD if M is, and costs M and two dense products more. The patch's inverse lies on all ranks.
+/// B is SPD if M is, and costs M and two solves on the patch more. The patch's factor lies on all ranks.
 class LocalCorrection
 {
 public:
-  /// Collective. @return nothing where nothing has changed, or the patch would be too large
+  /// Collective. @return nothing where H is its matrix, or the patch would be too large
   static std::optional<LocalCorrection> around(const contact::ContactStiffness &H);
 
   /// y <- B x; collective.
@@ -39,12 +41,15 @@ public:
   int size() const { return size_; } ///< unknowns in the patch, over all ranks
 
 private:
+  DeviceView<double *> solve(const DeviceView<double *> &mine) const;
+
+  RCP<const Comm> comm_;
   int size_ = 0;
-  PatchColumns columns_;          ///< of H
-  PatchEntries entries_;          ///< of these columns
-  DeviceView<LO *> member_row_;   ///< (own members) owned rows in the patch ...
-  DeviceView<int *> member_;      ///< (own members) ... and where
-  DeviceView<double **> inverse_; ///< (size, size)
+  PatchColumns columns_;                       ///< of H
+  PatchEntries entries_;                       ///< of these columns
+  DeviceView<LO *> member_row_;                ///< (own members) owned rows in the patch ...
+  DeviceView<int *> member_;                   ///< (own members) ... and where
+  std::shared_ptr<const BandCholesky> factor_; ///< of R H R^T
 };
 
 } // namespace rpc::solver

@@ -2,6 +2,8 @@
 
 #include "rpc/contact/contact_nodes.hpp"
 
+#include <limits>
+
 namespace rpc::contact
 {
 
@@ -31,8 +33,8 @@ public:
   /// @param added  (contact nodes) [Pa/m], >= 0
   /// @return number of nodes where it changed, over all ranks
   GO set(const DeviceView<double *> &added);
-  /// Brings the matrix to H: time for a new preconditioner.
-  void write();
+  /// Brings the matrix to H, with at most `most` times a node's own stiffness added at each: time for a new preconditioner.
+  void write(double most = std::numeric_limits<double>::infinity());
   const RCP<CrsMatrix> &matrix() const { return matrix_; }
   /// Grows with each change of H.
   int revision() const { return revision_; }

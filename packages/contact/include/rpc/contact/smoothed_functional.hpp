@@ -23,9 +23,10 @@ struct ContactEnergy {
 
 /// States to go on with, and the pressures of the piece that they were read from.
 struct StateChoice {
-  DeviceView<State *> state;     ///< (contact nodes)
-  DeviceView<double *> pressure; ///< (contact nodes) [Pa]
-  GO changes = 0;                ///< points on all ranks that p + weight rho v gives another state than hessian()'s
+  DeviceView<State *> state;      ///< (contact nodes)
+  DeviceView<double *> pressure;  ///< (contact nodes) [Pa]
+  DeviceView<double *> violation; ///< (contact nodes) of the contact law by the present state, 0 where it stays [Pa]
+  GO changes = 0;                 ///< points on all ranks whose state is to change
   bool confirmed = false; ///< no changes: u and the pressures obey the contact law, up to what the penalty leaves
   std::uint64_t fingerprint = 0; ///< of all states on all ranks: equal for equal ones
 };
@@ -89,16 +90,19 @@ public:
   void piece_gradient(const Vector &u, const Vector &G, Vector &F) const;
   /// Brings hessian() to H(u). @return number of contact nodes whose stiffness in it changed, over all ranks
   GO update_hessian(const Vector &u);
-  /// One choice of the active-set iteration: the states of p + weight rho v, with p the pressures of hessian()'s piece at
-  /// its minimum u. (5.7)
-  /// @param weight  of penetration against pressure, in units of the nodes' `stiffness` rho; dimensionless
-  StateChoice choose_states(const Vector &u, double weight) const;
+  /// One choice of the active-set iteration at the minimum u of hessian()'s piece: a point goes from open to yielded, or
+  /// back, only by way of stuck. The first choice, before there is a piece, is made from the multipliers. (5.7)
+  /// @param negligible  violations up to this part of the largest pressure change no state; dimensionless, >= 0
+  StateChoice choose_states(const Vector &u, double negligible) const;
+  /// The same choice for the `most` points with the largest violations; all of several equal ones. (5.16)
+  /// @param most  of all ranks, > 0
+  StateChoice with_most_violated(const StateChoice &choice, GO most) const;
   /// Takes the choice's pressures for multipliers, as far as its states allow, and brings hessian() to its states. Nodes
   /// that come to stick are moved onto the foundation: r v would be a large residual for what is a small step.
   void take_states(const StateChoice &choice, Vector &u);
   /// For bodies with rigid motions that only contact can hold: keeps a weak spring at nodes that do not stick in
-  /// hessian(), so that it stays positive definite, and lets all nodes stick in the first choice of states. The functional
-  /// and its gradients do not change. (9.8)
+  /// hessian(), so that it stays positive definite, and lets all nodes stick in the first choice of states, unless
+  /// multipliers were given. The functional and its gradients do not change. (9.8)
   void hold_by_contact();
   bool held_by_contact() const { return spring_ > 0; }
   /// Weakens these springs, if there are any, from the next update of hessian() on: for bodies that bend so easily that
@@ -122,6 +126,9 @@ public:
 
   /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   (5.1)
   double update_multipliers(const Vector &u);
+  /// The same with the pressures of hessian()'s piece, brought into [0, xi]: where its states are confirmed, a rounding error
+  /// of v at an open or yielded point does not count r times.
+  double take_piece_pressures(const Vector &u);
 
   /// About the largest error of the pressures lambda + r v at stuck nodes, over the largest pressure: the share k/r that the
   /// penalty leaves of the last change, with k the node's own stiffness.                                       (5.15)
@@ -145,6 +152,7 @@ public:
   const DeviceView<double *> &multipliers() const { return lambda_; }
 
 private:
+  double replace_multipliers(const DeviceView<double *> &pressure);
   GO update_stiffness(); // brings hessian() to piece_; number of nodes whose stiffness changed
 
   RCP<const Comm> comm_;
@@ -159,9 +167,9 @@ private:
   DeviceView<double *> lambda_; // (contact nodes) [Pa]
   DeviceView<State *> piece_;   // (contact nodes) states that hessian() belongs to
   RCP<ContactStiffness> hessian_;
-  double spring_ = 0;          // weak springs at nodes that do not stick, in units of contact_.stiffness
-  bool second_choice_ = false; // multipliers of stuck nodes are the last piece's pressures
-  bool piece_chosen_ = false;  // else piece_ is that of K itself, and says nothing about pressures
+  double spring_ = 0;         // weak springs at nodes that do not stick, in units of contact_.stiffness
+  bool predicted_ = false;    // multipliers are a guess to start from
+  bool piece_chosen_ = false; // else piece_ is that of K itself, and says nothing about pressures
 };
 
 } // namespace rpc::contact

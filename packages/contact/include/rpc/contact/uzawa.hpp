@@ -31,7 +31,8 @@ UzawaOptions uzawa_options(const Teuchos::ParameterList &list);
 struct MinimizeResult {
   bool converged = false;
   int newton_iterations = 0;
-  std::string reason; ///< why not, if not
+  std::string reason;            ///< why not, if not
+  bool states_confirmed = false; ///< u is the minimum of the functional's present piece, whose pressures obey the law
 };
 
 struct UzawaResult {

@@ -36,9 +36,10 @@ struct LinearSolverCounts {
 
 /// Belos with a smoothed-aggregation MueLu hierarchy that knows the rigid body modes.
 ///
-/// The hierarchy is set up at the first solve. Where contact states change afterwards, it is corrected by exact solves
-/// around the changed nodes, doc/theory.md (4.8); it is set up again, reusing what `reuse` allows, when these get too many or
-/// CG says so.
+/// The hierarchy is set up at the first solve, for contact nodes that are at most a little stiffer than the body. Exact solves
+/// around them bring in the rest of their stiffness and follow changes of the contact states, doc/theory.md (4.8), (4.9). The
+/// hierarchy is set up again, reusing what `reuse` allows, when these get too large or CG says so, and from scratch where a
+/// solve fails.
 class LinearSolver
 {
 public:
@@ -70,7 +71,9 @@ public:
 private:
   void prepare();
   void set_up();
-  void set_up_anew();
+  bool renew(const RCP<CrsMatrix> &A);
+  double excess(double digits) const;
+  void set_up_if_worn(double tolerance);
   bool strengthen();
   void judge_preconditioner(int iterations, double residual);
   Result try_to_solve(const Vector &b, Vector &x, double tolerance);
