@@ -59,16 +59,16 @@ def launch(options):
     return shlex.split(options.mpiexec) + ["-n", str(options.np), options.rpc]
 
 
-def run(command, folder):
-    """Exit code (None if out of time), stdout, stderr."""
+def run(command, folder, limit=TIME_LIMIT):
+    """Exit code (None if out of time [s]), stdout, stderr."""
     with subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           errors="replace", start_new_session=True) as process:
         try:
-            stdout, stderr = process.communicate(timeout=TIME_LIMIT)
+            stdout, stderr = process.communicate(timeout=limit)
             return process.returncode, stdout, stderr
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)  # with the ranks that mpiexec has started
-            return None, "", f"still running after {TIME_LIMIT} s"
+            return None, "", f"still running after {limit:g} s"
 
 
 def write(scene, folder):
@@ -140,7 +140,7 @@ def check_numbers(scene, summary, rows, floor, complain):
     length, stress = scene.units
     sides = {contact.side: contact for contact in scene.contact}
     for row in rows:
-        xi = sides[row["side"]].xi(row["x"] / length, row["y"] / length) * stress
+        xi = sides[row["side"]].xi(*(row[c] / length for c in "xyz"[:scene.dim])) * stress
         if not 0 <= row["pressure"] <= xi * (1 + 1e-7) or any(not math.isfinite(v) for v in row.values() if isinstance(v, float)):
             complain(f"contact node at ({row['x']}, {row['y']}): pressure {row['pressure']}, xi {xi}")
             break
