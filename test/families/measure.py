@@ -1,0 +1,90 @@
+"""Random scenes by family: contact over the elastic solve of the same mesh, steps, CG iterations, set-ups, residuals.
+
+    python3 measure.py --rpc=build/rpc [--seed=1] [--scenes=200] [--size=full] [--only=K] [--family=NAME,...] [--csv=FILE] [--keep=DIR]
+
+Scene K comes from the seed and K alone (families.py). Each is run with contact, without its Contact list, and with contact but
+without coarser meshes; times are of whole processes. A table by family, the bars, and each failed scene with its command. The exit
+code is 1 if a scene failed or a bar does not hold. --size=small has meshes of a few thousand dofs of the same scenes; times mean
+nothing there, and their bars are left out. --steps-only leaves out the runs without contact.
+"""
+import argparse
+import concurrent.futures
+import os
+import sys
+
+import families
+import report
+import runs
+
+
+def arguments(parser):
+    parser.add_argument("--rpc", required=True)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--scenes", type=int, default=200)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--only", type=int)
+    parser.add_argument("--family", help="only these of the scenes, separated by commas: " + ", ".join(families.FAMILIES))
+    parser.add_argument("--size", choices=list(families.SIZES), default="full")
+    parser.add_argument("--steps-only", dest="elastic", action="store_false")
+    parser.add_argument("--time-limit", type=float, default=300.0, help="of a run [s] (%(default)s)")
+    parser.add_argument("--jobs", type=int, default=1, help="scenes at a time; more than one disturbs the times")
+    parser.add_argument("--np", type=int, default=1)
+    parser.add_argument("--mpiexec", default="mpiexec --oversubscribe --bind-to none")
+    parser.add_argument("--csv", help="file for a row a scene")
+    parser.add_argument("--keep", help="folder for the files of failed scenes, and of --only")
+
+
+def chosen(options):
+    if options.only is not None:
+        return [options.only]
+    numbers = range(options.first, options.first + options.scenes)
+    return [k for k in numbers if not options.family or families.family_of(k) in options.family.split(",")]
+
+
+def measured(options):
+    """The Rows of the scenes, in order; a line each on standard error."""
+    rows = []
+    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
+        for row in pool.map(lambda number: runs.measure(options, number), chosen(options)):
+            rows.append(row)
+            print("  %d %s %s: %d dofs, %d points (%d open, %d closed, %d yielding), ratio %s, steps %s, cold %s%s"
+                  % (row.number, row.family, row.element, row.dofs, row.points, row.open, row.stuck, row.yielded, report.short(row.ratio),
+                     report.short(row.steps, "%.0f"), report.short(row.cold_steps, "%.0f"), row.failure and "; FAILED: " + row.failure),
+                  file=sys.stderr, flush=True)
+    return rows
+
+
+def note(options):
+    return ("Seed %d, size %s, %d rank(s). Ratio: time of the whole process over that of the same deck without its Contact list%s. Steps: "
+            "active-set and Newton steps on the finest mesh, from a coarser mesh's solution; cold: without coarser meshes. CG "
+            "iterations and set-ups on the finest mesh." % (options.seed, options.size, options.np,
+                                                            ", best of 2 where short" if options.elastic else ""))
+
+
+def tables(options, rows):
+    bars = report.STEP_BARS + (report.TIME_BARS if options.elastic and options.size == "full" else [])
+    return [report.family_table(rows, note(options), options.elastic), report.bar_table(rows, bars)]
+
+
+def failures(options, rows):
+    """A line for each failed scene, with its command."""
+    return ["FAILED %d %s: %s\n    %s" % (row.number, row.family, row.failure, runs.command(options, row)) for row in rows if row.failure]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments(parser)
+    options = parser.parse_args()
+    options.rpc = os.path.abspath(options.rpc)
+    rows = measured(options)
+    if options.csv:
+        report.write_csv(rows, options.csv)
+    results = tables(options, rows)
+    for table in results:
+        print("\n" + table.text())
+    print("\n".join(failures(options, rows)))
+    return 0 if all(table.good for table in results) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

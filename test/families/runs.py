@@ -1,0 +1,164 @@
+"""Runs a scene three ways: with contact from a coarser mesh's solution, with contact cold, and without contact."""
+import collections
+import dataclasses
+import json
+import math
+import pathlib
+import shlex
+import sys
+import tempfile
+import time
+
+import families
+from scenes import CERTIFICATES, TOLERANCE, contact_rows, launch, run, write
+from suite.program import without_contact
+
+HERE = pathlib.Path(__file__).resolve().parent
+COLD = "--set=Nested Iteration->Enabled=false"
+SHORT = 5.0  # [s]: runs below are measured twice, and the best counts
+STATES = ("open", "stuck", "yielded")
+
+
+@dataclasses.dataclass
+class Row:
+    """What a scene took. A count that no run gave is infinite, so that it stands above all bounds; None: does not apply."""
+
+    number: int
+    family: str
+    element: str = ""
+    dofs: int = 0
+    points: int = 0
+    open: int = 0
+    stuck: int = 0
+    yielded: int = 0
+    seconds: float = math.inf  # of the whole process
+    elastic_seconds: float = math.inf
+    steps: float = None  # from a coarser mesh
+    cold_steps: float = math.inf
+    levels: int = 0
+    cg: float = math.inf
+    elastic_cg: float = math.inf
+    setups: float = math.inf
+    residual: float = math.inf  # the worst of the four of all runs with contact
+    failure: str = ""
+
+    @property
+    def dim(self):
+        return 3 if self.family in families.SPACE else 2
+
+    @property
+    def ratio(self):
+        return self.seconds / self.elastic_seconds if math.isfinite(self.seconds) else math.inf
+
+    @property
+    def cg_ratio(self):
+        return self.cg / self.elastic_cg if math.isfinite(self.cg) else math.inf
+
+    @property
+    def states(self):
+        return sum(getattr(self, state) > 0 for state in STATES)
+
+
+@dataclasses.dataclass
+class Result:
+    """Of one run: rpc's summary, {} without one, the whole process' time, and what is wrong."""
+
+    summary: dict
+    seconds: float
+    complaint: str
+
+    @property
+    def steps(self):
+        return sum(self.summary["newton_iterations"]) if self.summary else math.inf
+
+
+def solve(options, folder, deck, *settings):
+    """Runs a deck of a folder. Not converged, with a residual above 1e-8 or out of time: has a complaint."""
+    path = folder / (pathlib.Path(deck).stem + ".json")
+    path.unlink(missing_ok=True)
+    start = time.perf_counter()
+    code, stdout, stderr = run([*launch(options), f"--input={deck}", "--set=Output->Exodus=false", *settings], folder, options.time_limit)
+    seconds = time.perf_counter() - start
+    if code is None or not path.exists():
+        lines = (stderr or stdout).strip().splitlines()
+        return Result({}, math.inf, f"exit {'-' if code is None else code}: " + (lines[-1][:200] if lines else ""))
+    summary = json.loads(path.read_text())
+    if code != 0 or not summary["converged"]:
+        return Result(summary, seconds, f"exit {code}: {summary['reason']}")
+    residual = worst_residual(summary)
+    return Result(summary, seconds, "" if residual <= TOLERANCE else f"residual {residual:.1e}")
+
+
+def worst_residual(summary):
+    values = [summary.get(key) for key in CERTIFICATES]
+    return max(math.inf if value is None or not math.isfinite(value) else value for value in values)
+
+
+def measure(options, number):
+    """The Row of scene `number`."""
+    with tempfile.TemporaryDirectory(prefix=f"rpc_family_{number}_") as folder:
+        return measure_scene(options, number, *families.make(options.seed, number, options.size), pathlib.Path(folder))
+
+
+def measure_scene(options, number, family, scene, folder):
+    write(scene, folder)
+    row, complaints = Row(number, family), []
+    contact = solve(options, folder, "scene.xml")
+    if contact.summary:
+        row.element, row.dofs, row.points = (contact.summary[key] for key in ("element", "dofs", "contact_nodes"))
+        states = collections.Counter(point["state"] for point in contact_rows(folder))
+        row.open, row.stuck, row.yielded = (states[state] for state in STATES)
+        row.cg, row.setups = sum(contact.summary["linear_iterations"]), contact.summary["preconditioner_setups"]
+        row.residual, row.levels = worst_residual(contact.summary), len(contact.summary["levels"])
+    complain(complaints, "", contact)
+    if options.elastic:
+        elastic(options, folder, row, complaints, contact)
+    cold = contact
+    if row.levels or not contact.summary:
+        row.steps = contact.steps
+        cold = solve(options, folder, "scene.xml", COLD)
+        complain(complaints, "cold: ", cold)
+        row.residual = max(row.residual, worst_residual(cold.summary)) if cold.summary else math.inf
+    row.cold_steps = cold.steps
+    row.failure = "; ".join(complaints)
+    keep(options, row, folder)
+    return row
+
+
+def elastic(options, folder, row, complaints, contact):
+    """Both times: in turns, twice where runs are short."""
+    deck = pathlib.Path(without_contact(str(folder / "scene.xml"), str(folder))).name
+    times = [contact.seconds], []
+    for turn in range(2 if contact.seconds < SHORT else 1):
+        if turn:
+            times[0].append(solve(options, folder, "scene.xml").seconds)
+        result = solve(options, folder, deck)
+        times[1].append(result.seconds)
+        complain(complaints, "without contact: ", result)
+        if result.summary:
+            row.elastic_cg = sum(result.summary["linear_iterations"])
+    row.seconds, row.elastic_seconds = (min(values) for values in times)
+    if not row.elastic_cg:  # nothing to solve: no measure of what contact adds
+        complaints.append("without contact: no CG iterations")
+
+
+def complain(complaints, where, result):
+    if result.complaint and where + result.complaint not in complaints:
+        complaints.append(where + result.complaint)
+
+
+def keep(options, row, folder):
+    """The files of a failed scene, or of one that was asked for alone."""
+    if not options.keep or not (row.failure or options.only is not None):
+        return
+    kept = pathlib.Path(options.keep) / f"{row.number:04d}_{row.family}"
+    kept.mkdir(parents=True, exist_ok=True)
+    for path in folder.iterdir():
+        (kept / path.name).write_bytes(path.read_bytes())
+
+
+def command(options, row):
+    """The command that runs a scene alone."""
+    words = [sys.executable, str(HERE / "measure.py"), f"--rpc={options.rpc}", f"--seed={options.seed}", f"--size={options.size}",
+             f"--np={options.np}", f"--only={row.number}", "--keep=DIR"]
+    return shlex.join(words)
