@@ -184,9 +184,9 @@ def cantilever(rng, sizes):
     length, q = rng.uniform(2, 5), strain(rng)
     sag = sag_of_cantilever(q, length) * log_uniform(rng, -2, -0.3)
     bent = rng.choice([f.Constant(sag), f.parabola(sag / length ** 2, 0.0), f.parabola(sag / length ** 2, length, -sag / 4)])
-    gap = bent + wave(rng, q, rng.uniform(0.2, 2)) if rng.random() < 0.5 else bent
+    gap = bent + wave(rng, q, rng.uniform(0.2, 2)) if rng.random() < 0.7 else bent
     return Scene(material=solid(rng), dirichlet={"left": CLAMPED}, traction={"top": [ZERO, load(rng, q, length) * -1]},
-                 contact=[ContactSide("bottom", yield_stress(rng, 2 * q, length), gap)], **sizes.box((length, 1.0)))
+                 contact=[ContactSide("bottom", yield_stress(rng, 1.2 * q, length), gap)], **sizes.box((length, 1.0)))
 
 
 def clamped_beam(rng, sizes):
@@ -217,7 +217,7 @@ def wavy(rng, sizes):
     gap = wave(rng, q, rng.uniform(2, 10)) + wave(rng, q, rng.uniform(0.5, 2)) * rng.uniform(0, 1)
     holders = rng.choice([{"left": CLAMPED}, {"left": CLAMPED, "right": CLAMPED}, {"right": CLAMPED}])
     return Scene(material=solid(rng), dirichlet=holders, traction={"top": [ZERO, load(rng, q, length) * -1]},
-                 contact=[ContactSide("bottom", yield_stress(rng, 2 * q, length), gap)], **sizes.box((length, 1.0)))
+                 contact=[ContactSide("bottom", yield_stress(rng, 1.5 * q, length), gap)], **sizes.box((length, 1.0)))
 
 
 def rough(rng, sizes):
@@ -226,7 +226,7 @@ def rough(rng, sizes):
     gap = f.noise(q * 0.01 * log_uniform(rng, -0.5, 1), rng.uniform(8, 16)) + wave(rng, q, rng.uniform(0.3, 2)) * rng.uniform(0, 1)
     holders = rng.choice([{"left": CLAMPED}, {"left": CLAMPED, "right": CLAMPED}])
     return Scene(material=solid(rng), dirichlet=holders, traction={"top": [ZERO, load(rng, q, length) * -1]},
-                 contact=[ContactSide("bottom", yield_stress(rng, 3 * q, length), gap)], **sizes.box((length, 1.0)))
+                 contact=[ContactSide("bottom", yield_stress(rng, 1.5 * q, length), gap)], **sizes.box((length, 1.0)))
 
 
 def two_sides(rng, sizes):
@@ -259,7 +259,7 @@ def half_cylinder(rng, sizes):
         gap = gap + wave(rng, p, waves) * rng.uniform(0.1, 1)
     top = {"X": ZERO, "Y": f.sine(-depth, 0.2 * depth * rng.uniform(0.1, 1), rng.uniform(0.03, 0.1), rng.uniform(0, 6))}
     return Scene(material={"E": 1.0, "nu": nu, "blocks": {}}, dirichlet={"top": top},
-                 contact=[ContactSide("contact", f.Constant(p * log_uniform(rng, -0.7, -0.05)), gap, (0.0, -1.0))],
+                 contact=[ContactSide("contact", f.Constant(p * log_uniform(rng, -0.4, -0.05)), gap, (0.0, -1.0))],
                  **sizes.hertz((INPUT / "hertz.geo").read_text(), half_width))
 
 
@@ -280,7 +280,7 @@ def gmsh(rng, sizes):
         parts, gap = sizes.geo(LAYERS % {"width": width, "middle": rng.uniform(0.3, 0.7)}, width, width), wave(rng, q, rng.uniform(0.3, 4))
     holders = rng.choice([{"left": CLAMPED}, {"left": CLAMPED, "right": CLAMPED}])
     return Scene(material=material, dirichlet=holders, traction={"top": [ZERO, load(rng, q, width) * -1]},
-                 contact=[ContactSide("bottom", yield_stress(rng, 2 * q, width), gap, normal)], **parts)
+                 contact=[ContactSide("bottom", yield_stress(rng, 1.5 * q, width), gap, normal)], **parts)
 
 
 def bodies(rng, sizes):
@@ -310,7 +310,7 @@ def block(rng, sizes):
     centre = rng.uniform(0.3, 1.0) * lengths[0], rng.uniform(0.2, 0.8) * lengths[2]
     gap = f.paraboloid(sag / (0.5 * lengths[0]) ** 2, *centre) + f.Constant(sag * rng.uniform(-0.3, 0.5))
     return Scene(material=solid(rng), dirichlet={"left": CLAMPED_3D}, traction={"top": [ZERO, load(rng, q, lengths[0]) * -1, ZERO]},
-                 contact=[ContactSide("bottom", rising(rng, 3 * q, lengths[0]), gap)], **sizes.box(lengths))
+                 contact=[ContactSide("bottom", rising(rng, 1.5 * q, lengths[0]), gap)], **sizes.box(lengths))
 
 
 def plate(rng, sizes):
@@ -334,7 +334,7 @@ def pressed_block(rng, sizes):
     if rng.random() < 0.4:
         gap = gap + f.noise(q * 0.05 * log_uniform(rng, -0.5, 1), rng.uniform(8, 16))
     return Scene(material=solid(rng), dirichlet={"top": top}, traction={"right": [f.Constant(q * rng.uniform(-0.5, 0.5)), ZERO, ZERO]},
-                 contact=[ContactSide("bottom", rising(rng, q, lengths[0]), gap)], **sizes.box(lengths))
+                 contact=[ContactSide("bottom", rising(rng, 0.6 * q, lengths[0]), gap)], **sizes.box(lengths))
 
 
 PLANE = {"cantilever": cantilever, "clamped_beam": clamped_beam, "footing": footing, "wavy": wavy, "rough": rough,
