@@ -13,15 +13,17 @@ import json
 import os
 import sys
 
-from suite import accuracy, adaptive, contact, kernels, paper, peers, scaling
+from suite import accuracy, adaptive, contact, families, kernels, paper, peers, scaling
 from suite.program import Failure, Program
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TABLES = {"table-1": paper.table_1, "table-2": paper.table_2, "figure-2": paper.figure_2, "cg": scaling.cg_iterations,
           "mesh-size": scaling.mesh_size, "ranks": scaling.ranks, "contact": contact.contact_cost, "kernels": kernels.kernels,
-          "accuracy": accuracy.accuracy, "adaptive": adaptive.adaptive, "peers": peers.peers}
+          "accuracy": accuracy.accuracy, "adaptive": adaptive.adaptive, "peers": peers.peers, "families": families.families,
+          "growth": families.steps_over_mesh}
 # Meshes: 1/h; of "accuracy" also sizes of cells, and targets; of "adaptive" first the least target. The last number of "ranks",
-# "peers" and "adaptive": where the criterion is judged; of "contact": whether it is.
+# "peers" and "adaptive": where the criterion is judged; of "contact": whether it is. "families": scenes and their size; "growth":
+# the finest meshes.
 FULL = {"table 1": [8, 16, 32, 64, 128, 256, 512], "table 2": 128, "figure 2": [8, 16, 32, 64, 128, 256], "two ranks from": 256,
         "cg": ([32, 64, 128], [1, 2, 3]), "mesh size": [32, 64, 128, 256, 512], "ranks": ([128, 256], 3, 256),
         "contact": (256, 3, True), "kernels": [256, 512], "peers": ([128], 2, 128),
@@ -29,12 +31,12 @@ FULL = {"table 1": [8, 16, 32, 64, 128, 256, 512], "table 2": 128, "figure 2": [
                      "peers": [16, 32, 64, 128],
                      "graded": ([0.05, 0.025, 0.0125, 0.00625], [0.2, 0.1, 0.05, 0.025]), "hertz": [4, 2, 1, 0.5],
                      "targets": [0.02, 0.01, 0.005, 0.002, 0.001, 0.0005]},
-        "adaptive": (0, 3, 512)}
+        "adaptive": (0, 3, 512), "families": (200, "full"), "growth": {"plane": 256, "space": 32}}
 QUICK = {"table 1": [8, 16, 32], "table 2": 32, "figure 2": [8, 16, 32], "two ranks from": 32, "cg": ([16, 32], [1, 2]),
          "mesh size": [16, 32], "ranks": ([32], 1, None), "contact": (32, 1, False), "kernels": [32], "peers": ([16], 1, None),
          "accuracy": {"elements": ("Q1", "P2"), "box": [8, 16], "finer Q1": [], "peers": [16], "graded": ([0.2], [0.4]),
                       "hertz": [8], "targets": [0.05, 0.02]},
-         "adaptive": (0.02, 1, None)}
+         "adaptive": (0.02, 1, None), "families": (24, "small"), "growth": {"plane": 32, "space": 16}}
 HEADING = """# Benchmarks
 
 Example 1 of the paper is input/beam.xml, its Example 2 input/hertz.xml. Every figure below was printed by
@@ -50,7 +52,7 @@ class Bench:
     """What a table needs."""
 
     def __init__(self, options, sizes):
-        self.output, self.kernels, self.sizes = options.output, options.kernels, sizes
+        self.output, self.kernels, self.sizes, self.seed = options.output, options.kernels, sizes, options.seed
         self.program = Program(options.rpc, options.input, options.mpiexec)
         self.triads = {}
         with open(os.path.join(HERE, "reference.json")) as file:
@@ -106,6 +108,7 @@ def parse(arguments):
     parser.add_argument("--only", default=",".join(TABLES), help="tables, as cg,peers (all)")
     parser.add_argument("--quick", action="store_true", help="coarse meshes: a test of these scripts")
     parser.add_argument("--largest", type=int, default=512, help="leave out meshes finer than 1/h = LARGEST")
+    parser.add_argument("--seed", type=int, default=1, help="of the random scenes of families (%(default)s)")
     options = parser.parse_args(arguments)
     options.only = options.only.split(",")
     unknown = [name for name in options.only if name not in TABLES]
