@@ -263,7 +263,7 @@ def half_cylinder(rng, sizes):
                  **sizes.hertz((INPUT / "hertz.geo").read_text(), half_width))
 
 
-def gmsh(rng, sizes):
+def shapes(rng, sizes):
     """A body with a round bottom, with a hole, or of two layers, meshed by gmsh."""
     shape, width, q = rng.choice(["rounded", "hole", "layers"]), rng.uniform(1.5, 3), strain(rng)
     material, normal = solid(rng), None
@@ -338,7 +338,7 @@ def pressed_block(rng, sizes):
 
 
 PLANE = {"cantilever": cantilever, "clamped_beam": clamped_beam, "footing": footing, "wavy": wavy, "rough": rough,
-         "two_sides": two_sides, "half_cylinder": half_cylinder, "gmsh": gmsh, "bodies": bodies}
+         "two_sides": two_sides, "half_cylinder": half_cylinder, "shapes": shapes, "bodies": bodies}
 SPACE = {"block": block, "plate": plate, "pressed_block": pressed_block}
 FAMILIES = {**PLANE, **SPACE}
 
