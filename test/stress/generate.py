@@ -543,11 +543,11 @@ def large_scene(rng):
 FAMILIES = {**PLAIN, "units": units_scene, "large": large_scene}
 
 
-def make(rng, number):
+def make(rng, number, families):
     """(family, scene, verdict): families take turns; what is too close to call is drawn again."""
-    family = list(FAMILIES)[number % len(FAMILIES)]
+    family = list(families)[number % len(families)]
     while True:
-        scene = FAMILIES[family](rng)
+        scene = families[family](rng)
         if scene is None:
             continue
         scene.exodus = rng.random() < 0.05

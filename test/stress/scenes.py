@@ -1,10 +1,10 @@
 """Random scenes against rpc: each must be solved, or refused for the right reason.
 
-    python3 scenes.py --rpc=build/rpc [--seed=1] [--scenes=500] [--first=0] [--only=K] [--family=NAME] [--jobs=2] [--np=1] [--keep=DIR]
+    python3 scenes.py --rpc=build/rpc [--seed=1] [--scenes=510] [--first=0] [--only=K] [--family=NAME] [--jobs=2] [--np=1] [--keep=DIR]
 
 Scene K comes from the seed and K alone. A scene that has a solution must exit 0, converged, with all certificates below 1e-8 and
-at most 40 Newton steps, and its files must hold finite numbers, pressures in [0, xi] and forces that balance. One without must
-exit 5 with one message that gives the reason. Which is which is known from the data (scene.py). Where |K||u|, rounded, is above
+at most 40 Newton steps (60 in the families of test/families), and its files must hold finite numbers, pressures in [0, xi] and
+forces that balance. One without must exit 5 with one message that gives the reason. Which is which is known from the data (scene.py). Where |K||u|, rounded, is above
 1e-8 of the load, no program in double precision can tell, and residuals up to that rounding pass: the column `rounding` counts
 those scenes. The exit code is 1 if a scene failed. --keep=DIR keeps the folders of failed scenes, and of --only.
 """
@@ -26,18 +26,32 @@ import sys
 import tempfile
 import time
 
-import generate
-from scene import REASONS, applied_resultant, deck
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "families"))
+
+import families  # noqa: E402, after its folder
+import generate  # noqa: E402
+from scene import REASONS, applied_resultant, deck  # noqa: E402
 
 TIME_LIMIT = 120  # [s]
 TOLERANCE = 1e-8  # on each certificate
 CERTIFICATES = ["kkt_residual", "equilibrium_residual", "energy_balance", "duality_gap"]
-MOST_NEWTON = 40
+MOST_NEWTON, MOST_IN_FAMILIES = 40, 60
+LARGER = 0.2  # of the scenes of test/families: meshes of their size "middle"
+ZONES = (50, 150, 500, math.inf)  # contact points
 BALANCE = 1e-6  # forces, relative to the largest of them
 NULLABLE = {"multiplier_change"}
 os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT", "1")  # Open MPI refuses root, as in a container, unless told twice
 os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+
+def family_scene(name):
+    """A generator of scenes of a family of test/families."""
+    return lambda rng: families.scene(name, rng, "middle" if rng.random() < LARGER else "small")
+
+
+FAMILIES = {**generate.FAMILIES, **{name: family_scene(name) for name in families.FAMILIES}}
+assert len(FAMILIES) == len(generate.FAMILIES) + len(families.FAMILIES), "two families of one name"
 
 
 @dataclasses.dataclass
@@ -46,6 +60,7 @@ class Outcome:
     family: str
     verdict: str
     seconds: float = 0.0
+    points: int = 0
     newton: int = 0
     uzawa: int = 0
     cg: int = 0
@@ -115,6 +130,7 @@ def check_solution(scene, folder, outcome, code, stdout, stderr):
         return
     summary = json.loads(path.read_text())
     rows = contact_rows(folder)
+    outcome.points = len(rows)
     outcome.newton, outcome.uzawa = sum(summary["newton_iterations"]), summary["uzawa_iterations"]
     outcome.cg = max(summary["linear_iterations"], default=0)
     floor = rounding(scene, summary, rows)
@@ -127,7 +143,7 @@ def check_solution(scene, folder, outcome, code, stdout, stderr):
         complain(f"exit {code}: {summary['reason']}; " + ", ".join(f"{k} {v}" for k, v in worst.items()) + f"; rounding {floor:.0e}")
     elif not at_most(TOLERANCE):
         complain(", ".join(f"{k} {v}" for k, v in worst.items()))
-    if outcome.newton > MOST_NEWTON:
+    if outcome.newton > (MOST_IN_FAMILIES if outcome.family in families.FAMILIES else MOST_NEWTON):
         complain(f"{outcome.newton} Newton steps")
     if code == 0:
         check_numbers(scene, summary, rows, floor, complain)
@@ -173,7 +189,7 @@ def check_refusal(verdict, outcome, code, stderr):
 
 
 def judge(options, number):
-    family, scene, verdict = generate.make(random.Random(f"{options.seed}/{number}"), number)
+    family, scene, verdict = generate.make(random.Random(f"{options.seed}/{number}"), number, FAMILIES)
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_scene_{number}_"))
     outcome = Outcome(number, family, verdict)
     try:
@@ -207,8 +223,8 @@ def median(values):
 def table(outcomes):
     lines = ["| family | scenes | converged | rounding | refused | failed | Newton median | worst | Uzawa worst | CG worst | s worst |",
              "|---|---|---|---|---|---|---|---|---|---|---|"]
-    families = [f for f in generate.FAMILIES if any(o.family == f for o in outcomes)]
-    for name in families + ["all"]:
+    names = [f for f in FAMILIES if any(o.family == f for o in outcomes)]
+    for name in names + ["all"]:
         mine = [o for o in outcomes if name in (o.family, "all")]
         good = [o for o in mine if not o.complaints]
         solved = [o for o in good if o.verdict == "solution"]
@@ -219,13 +235,24 @@ def table(outcomes):
     return "\n".join(lines)
 
 
+def zone_table(outcomes):
+    """Steps by the size of the contact zone, of all scenes with results, failed ones too."""
+    lines = ["| contact points | scenes | steps median | 95 % | worst |", "|---|---|---|---|---|"]
+    for low, high in zip((0,) + ZONES, ZONES):
+        steps = sorted(o.newton for o in outcomes if o.points and low <= o.points < high)
+        label = f"{low} to {high - 1}" if high < math.inf else f"{low} and more"
+        if steps:
+            lines.append(f"| {label} | {len(steps)} | {median(steps)} | {steps[math.ceil(0.95 * len(steps)) - 1]} | {steps[-1]} |")
+    return "\n".join(lines)
+
+
 def rerun(options, outcome):
     return f"{sys.argv[0]} --rpc={options.rpc} --seed={options.seed} --only={outcome.number} --keep=DIR"
 
 
 def report(options, outcomes):
     failed = [o for o in outcomes if o.complaints]
-    print(f"\nseed {options.seed}, {len(outcomes)} scenes\n\n{table(outcomes)}\n")
+    print(f"\nseed {options.seed}, {len(outcomes)} scenes\n\n{table(outcomes)}\n\n{zone_table(outcomes)}\n")
     for o in failed:
         print(f"FAILED {o.number} {o.family}: {'; '.join(o.complaints)}")
     if failed:
@@ -242,7 +269,7 @@ def chosen(options):
     if options.only is not None:
         return [options.only]
     numbers_ = range(options.first, options.first + options.scenes)
-    names = list(generate.FAMILIES)
+    names = list(FAMILIES)
     return [k for k in numbers_ if not options.family or names[k % len(names)] in options.family.split(",")]
 
 
@@ -250,10 +277,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rpc", required=True)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--scenes", type=int, default=500)
+    parser.add_argument("--scenes", type=int, default=510)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", type=int)
-    parser.add_argument("--family", help="only these of the scenes, separated by commas: " + ", ".join(generate.FAMILIES))
+    parser.add_argument("--family", help="only these of the scenes, separated by commas: " + ", ".join(FAMILIES))
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--np", type=int, default=1)
     parser.add_argument("--mpiexec", default="mpiexec --oversubscribe --bind-to none")
