@@ -1,0 +1,95 @@
+"""What the generator promises: scenes come from seed and number alone, and all are held, with yield stresses > 0; and that the bars
+can fail."""
+import math
+import pathlib
+import random
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import families
+import growth
+import report
+from runs import Row
+from scene import deck, verdict
+
+SCENES = 5 * len(families.FAMILIES)
+
+
+def text(scene):
+    return deck(scene, "scene.geo" if scene.file else None) + (scene.file(scene.units[0]) if scene.file else "")
+
+
+def points(scene):
+    """Some of the coordinates that a body may have."""
+    rng = random.Random(1)
+    return [[rng.uniform(-8, 8) for _ in range(3)] for _ in range(200)]
+
+
+class Generator(unittest.TestCase):
+    def test_a_scene_comes_from_its_seed_and_number_alone(self):
+        for k in range(SCENES):
+            self.assertEqual(text(families.make(7, k, "full")[1]), text(families.make(7, k, "full")[1]))
+        self.assertNotEqual(text(families.make(7, 0, "full")[1]), text(families.make(8, 0, "full")[1]))
+        self.assertNotEqual(text(families.make(7, 0, "full")[1]), text(families.make(7, len(families.FAMILIES), "full")[1]))
+
+    def test_sizes_are_meshes_of_one_scene(self):
+        def without_mesh(scene):
+            root = ElementTree.fromstring(deck(scene, "scene.geo" if scene.file else None))
+            root.remove(root.find("ParameterList[@name='Mesh']"))
+            return ElementTree.tostring(root)
+        for k in range(SCENES):
+            small, full = (families.make(7, k, size)[1] for size in ("small", "full"))
+            self.assertEqual(without_mesh(small), without_mesh(full))
+            self.assertNotEqual(text(small), text(full))
+
+    def test_every_body_is_held_and_every_yield_stress_is_positive(self):
+        for k in range(SCENES):
+            family, scene = families.make(7, k, "small")
+            holders = [side for side, held in scene.dirichlet.items() if len(held) == scene.dim]
+            self.assertEqual(len(holders) >= (2 if family == "bodies" else 1), True, family)
+            self.assertEqual(verdict(scene), "solution", family)
+            for contact in scene.contact:
+                self.assertGreater(min(contact.xi(*point) for point in points(scene)), 0, family)
+                self.assertTrue(all(math.isfinite(contact.xi(*point)) for point in points(scene)), family)
+
+    def test_moduli_and_yield_stresses_span_six_decades(self):
+        made = [families.make(7, k, "small")[1] for k in range(200)]
+        self.assertGreater(max(s.units[1] for s in made) / min(s.units[1] for s in made), 10 ** 5.5)
+        yields = [s.contact[0].xi(1) * s.units[1] for s in made]
+        self.assertGreater(max(yields) / min(yields), 1e6)
+
+
+class Bars(unittest.TestCase):
+    def row(self, number, **values):
+        standard = {"open": 9, "stuck": 9, "yielded": 9, "seconds": 1.0, "elastic_seconds": 1.0, "steps": 3, "cold_steps": 5, "residual": 1e-9}
+        return Row(number, "cantilever", **{**standard, **values})
+
+    def judged(self, *changed):
+        rows = [self.row(k) for k in range(20)] + [self.row(20 + k, **values) for k, values in enumerate(changed)]
+        return report.bar_table(rows, report.STEP_BARS + report.TIME_BARS).good
+
+    def test_bars_hold_or_fail(self):
+        self.assertTrue(self.judged())
+        self.assertTrue(self.judged({"cold_steps": 30}))  # one of 21 is less than 5 %
+        for worse in ({"cold_steps": 61}, {"steps": 61}, {"seconds": 6.1}, {"seconds": math.inf}, {"failure": "exit 4"}):
+            self.assertFalse(self.judged(worse), worse)
+        self.assertFalse(self.judged(*[{"cold_steps": 30}] * 2))
+        self.assertFalse(self.judged(*[{"steps": 13}] * 2))
+        self.assertFalse(self.judged(*[{"seconds": 2.6}] * 3))
+        self.assertFalse(self.judged(*[{"seconds": 1.6}] * 21))
+        self.assertFalse(self.judged(*[{"stuck": 0}] * 25))
+
+    def test_quantiles_are_nearest_ranks(self):
+        self.assertEqual([report.quantile(range(1, 21), share) for share in (0.5, 0.9, 0.95, 1.0)], [10, 18, 19, 20])
+        self.assertEqual(report.quantile([3], 0.5), 3)
+
+    def test_growth_is_at_most_one_step_a_halving(self):
+        def judged(*cold):
+            return growth.table({"cantilever": [(16 * 2 ** k, self.row(k, cold_steps=c)) for k, c in enumerate(cold)]}).good
+        self.assertTrue(judged(5, 6, 6, 7, 5))
+        self.assertFalse(judged(5, 7))
+        self.assertFalse(judged(5, math.inf))
+
+
+if __name__ == "__main__":
+    unittest.main()
