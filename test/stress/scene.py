@@ -221,6 +221,7 @@ class _Part:
         with what is wrong about the others: None, "pressed" or "close"."""
         points, trouble = [], None
         for contact in self.scene.contact:
+            largest = max((abs(contact.at(*self.grid.nodes[k], nu)[1]) for k, (_, nu) in self.grid.contact_nodes(contact.side).items()), default=0)
             for k, (w, outward) in self.grid.contact_nodes(contact.side).items():
                 x, y = self.grid.nodes[k]
                 nu, gap = contact.at(x, y, outward)
@@ -230,8 +231,8 @@ class _Part:
                     continue
                 v = sum(fixed.get(c, 0) * n for c, n in zip("XY", nu)) - gap
                 scale = max([abs(gap)] + [abs(u) for u in fixed.values()])
-                if v > 1e-13 * scale and math.isinf(contact.xi(x, y)):
-                    trouble = "pressed" if v > 1e-6 * scale or trouble == "pressed" else "close"
+                if v > 1e-13 * scale and math.isinf(contact.xi(x, y)):  # far out on a bump the gap may be 1e-88: too close to call
+                    trouble = "pressed" if v > 1e-6 * max(scale, largest) or trouble == "pressed" else "close"
         return points, trouble
 
     def load(self):
