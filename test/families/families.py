@@ -148,7 +148,7 @@ def yield_stress(rng, p, width, low=-0.5, high=0.5):
     """Of about the pressure p, constant or varying along x."""
     kind = rng.choice(["constant", "constant", "exponential", "step", "oscillation"])
     p *= log_uniform(rng, low, high)
-    span = log_uniform(rng, 0.2, 1)
+    span = log_uniform(rng, 0.4, 1.3)
     small, large = p / math.sqrt(span), p * math.sqrt(span)
     if kind == "constant":
         return f.Constant(p)
@@ -186,7 +186,7 @@ def cantilever(rng, sizes):
     bent = rng.choice([f.Constant(sag), f.parabola(sag / length ** 2, 0.0), f.parabola(sag / length ** 2, length, -sag / 4)])
     gap = bent + wave(rng, q, rng.uniform(0.2, 2)) if rng.random() < 0.7 else bent
     return Scene(material=solid(rng), dirichlet={"left": CLAMPED}, traction={"top": [ZERO, load(rng, q, length) * -1]},
-                 contact=[ContactSide("bottom", yield_stress(rng, 1.2 * q, length), gap)], **sizes.box((length, 1.0)))
+                 contact=[ContactSide("bottom", yield_stress(rng, 1.2 * q, length, -0.4, 0.3), gap)], **sizes.box((length, 1.0)))
 
 
 def clamped_beam(rng, sizes):
@@ -197,7 +197,7 @@ def clamped_beam(rng, sizes):
     bent = rng.choice([f.Constant(sag), f.parabola(4 * sag / length ** 2, middle), f.parabola(-4 * sag / length ** 2, middle, sag)])
     gap = bent + wave(rng, q, rng.uniform(0.2, 2)) if rng.random() < 0.5 else bent
     return Scene(material=solid(rng), dirichlet={"left": CLAMPED, "right": CLAMPED}, traction={"top": [ZERO, load(rng, q, length) * -1]},
-                 contact=[ContactSide("bottom", yield_stress(rng, 1.5 * q, length), gap)], **sizes.box((length, 1.0)))
+                 contact=[ContactSide("bottom", yield_stress(rng, 1.2 * q, length, -0.4, 0.3), gap)], **sizes.box((length, 1.0)))
 
 
 def footing(rng, sizes):
