@@ -65,6 +65,9 @@ void ConsoleTable::scene(const Scene &scene, const Solution &solution)
           "note: the normal displacement of %lld contact nodes is prescribed by \"Dirichlet\", which wins over contact "
           "there\n",
           static_cast<long long>(contact.num_fixed));
+  if (contact.num_missing > 0)
+    print(out_, "note: from %lld nodes of the contact sides the normal misses the obstacle: they never touch\n",
+          static_cast<long long>(contact.num_missing));
   const std::string locking = fem::locking_note(mesh, scene.materials);
   if (!locking.empty()) print(out_, "note: %s\n", locking.c_str());
   print(out_, "uzawa newton   |F|/|b|     step    open   stuck yielded krylov   time [s]\n");

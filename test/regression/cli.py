@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import re
 import shutil
 import unittest
@@ -171,6 +172,23 @@ class Results(RpcTestCase):
                                summary["yielded_length"], delta=1e-12)
         self.assertAlmostEqual(sum(w * row["pressure"] for w, row in zip(weights, rows)), summary["contact_force"][1],
                                delta=1e-9)
+
+    def test_nodes_that_miss_the_obstacle_are_no_contact_nodes(self):
+        circle = ["--set=Contact->Obstacle->Type=circle", "--set=Contact->Obstacle->Centre={2.5,-1}",
+                  "--set=Contact->Obstacle->Radius=1", "--set=Contact->Normal=0, -1", "--set=Adapt->Estimate Error=true"]
+        result = self.rpc("--input=beam.xml", SMALL, "--output=out", *circle)
+        self.assertIn("note: from 12 nodes of the contact sides the normal misses the obstacle", result.stdout)
+        summary = json.loads((self.folder / "out" / "beam.json").read_text())
+        self.assertEqual((summary["contact_nodes"], summary["fixed_contact_nodes"]), (9, 0))
+        self.assertTrue(math.isfinite(summary["error_estimate"]["relative"]))
+        rows = list(csv.DictReader((self.folder / "out" / "beam.contact.csv").read_text().splitlines()))
+        self.assertEqual([float(row["x"]) for row in rows], [1.5 + 0.25 * k for k in range(9)])
+        for row in rows:
+            self.assertAlmostEqual(float(row["s"]), float(row["x"]) - 1.5, delta=1e-12)
+            self.assertAlmostEqual(float(row["gap"]), 1 - math.sqrt(1 - (float(row["x"]) - 2.5) ** 2), delta=1e-12)
+        force = sum(0.25 * float(row["pressure"]) for row in rows)
+        self.assertAlmostEqual(force, summary["contact_force"][1], delta=1e-9)
+        self.assertGreater(force, 0)
 
     def test_folder_is_made_and_holds_the_results_alone(self):
         result = self.rpc("--input=beam.xml", SMALL, "--output=new/deeper")

@@ -22,6 +22,7 @@ RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::C
   // A yield stress out of reach, maybe infinite, gives way to one that no pressure reaches either.
   const double highest_yield = 2 * std::max(result.total.max_pressure, 1e-300);
   MultiVector owned(mesh.owned_nodes, normal + c.dim);
+  owned.getVectorNonConst(yield)->putScalar(highest_yield); // a node that is no point is open: no pressure, no normal
   const LO begin = c.first(side);
   const auto p = result.pressure, v = result.penetration;
   {

@@ -49,13 +49,15 @@ struct Squeezed {
   contact::ContactResult result;
   RCP<Vector> u;
 
-  Squeezed(const mesh::Element &element, const double yield, const double gap, const double pressure)
+  Squeezed(const mesh::Element &element, const double yield, const double gap, const double pressure,
+           const contact::Obstacle &obstacle = {})
       : d(body({{0, 0}, {length, 1}, {4, 2}, element}, world()))
   {
     contact::ContactOptions options;
     options.side = "bottom";
     options.yield_stress = ScalarField(yield);
     options.gap = ScalarField(gap);
+    options.obstacle = obstacle;
     nodes = contact::contact_nodes(d, {options}, fem::dirichlet_dofs(d, {}), steel);
     u = interpolate(d, [](const Point &x) { return Point{0, strain * x[1]}; });
     result.pressure = DeviceView<double *>("test::pressure", nodes.size());
@@ -117,6 +119,25 @@ TEST(ErrorEstimate, KnowsWhatContradictsTheContactLaw)
     // No finite yield stress: twice the largest pressure stands for it.
     const double rigid = std::numeric_limits<double>::infinity();
     EXPECT_NEAR(Squeezed(element, rigid, -0.03, p).estimate().complementarity, 2 * Squeezed::length * p * 0.03, 1e-10);
+  }
+}
+
+TEST(ErrorEstimate, TakesNodesThatMissTheObstacleForOpenOnes)
+{
+  // Free of pressure, over a foundation that is far from all nodes, or that some of them miss.
+  const contact::Obstacle below_all{contact::Obstacle::Kind::circle, {1, -9, 0}, {}, 2, false};
+  const contact::Obstacle below_some{contact::Obstacle::Kind::circle, {1, -9, 0}, {}, 0.6, false};
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    const Squeezed all(element, 100, 1, 0, below_all), some(element, 100, 1, 0, below_some);
+    EXPECT_EQ(all.nodes.num_missing, 0);
+    EXPECT_GT(some.nodes.num_missing, 0);
+    const auto expected = all.estimate(), found = some.estimate();
+    EXPECT_GT(expected.equilibrium, 0); // the stress of the strain presses on nothing
+    EXPECT_NEAR(found.equilibrium / expected.equilibrium, 1, 1e-12);
+    EXPECT_EQ(expected.complementarity, 0);
+    EXPECT_EQ(found.complementarity, 0);
+    EXPECT_EQ(found.pressure, expected.pressure);
   }
 }
 

@@ -137,39 +137,65 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
   return options;
 }
 
-/// Values of this rank's points of one side, on the host.
+/// Values at this rank's nodes of one side, on the host.
 struct SideValues {
   HostView<double *> yield, gap;
   HostView<double **> normal;
+  std::vector<bool> misses; // whether the normal misses the obstacle
 };
 
-/// Normal and gap of points that face an obstacle; collective.
+/// What is wrong with the normal at a node from which it does not lead to the obstacle.
+std::string wrong_normal(const ContactOptions &options, const HostPoints &points, const LO i, const Point &normal,
+                         const std::string &fault)
+{
+  std::ostringstream message;
+  message << "deck: \"" << options.path << "\": from the node at " << place(points, i) << " of side \"" << options.side
+          << "\" the normal (" << normal[0] << ", " << normal[1];
+  if (points.extent(1) == 3) message << ", " << normal[2];
+  message << ") " << fault;
+  return message.str();
+}
+
+/// Normal and gap of nodes that face an obstacle; collective.
 void face_obstacle(SideValues &values, const ContactOptions &options, const HostPoints &points, const Comm &comm)
 {
   const int dim = static_cast<int>(points.extent(1));
-  std::optional<std::string> bad;
+  std::optional<std::string> bad, missing;
   for (LO i = 0; i < static_cast<LO>(points.extent(0)) && !bad; ++i) {
     Point x{}, direction{};
     for (int c = 0; c < dim; ++c) {
       x[c] = points(i, c);
       direction[c] = values.normal(i, c);
     }
-    std::optional<Point> into = direction;
-    if (options.normal == Normal::foundation) into = direction_into(options.obstacle, x);
-    const auto gap = into ? distance_along(options.obstacle, x, *into) : std::nullopt;
-    if (!gap) {
-      std::ostringstream message;
-      message << "deck: \"" << options.path << "\": from the node at " << place(points, i) << " of side \""
-              << options.side << "\" the normal (" << direction[0] << ", " << direction[1]
-              << (dim == 3 ? ", " + std::to_string(direction[2]) : "")
-              << ") does not lead into the obstacle. Use \"Normal\" = foundation or a smaller side.";
-      bad = message.str();
-      continue;
+    if (options.normal == Normal::foundation) {
+      const auto into = direction_into(options.obstacle, x);
+      if (!into) {
+        bad = "deck: \"" + options.path + "->Obstacle->Centre\" must be away from the nodes of side \"" + options.side +
+              "\", for it has no normal: there is one at " + place(points, i) +
+              ". Move the centre, or give \"Normal\" as numbers.";
+        continue;
+      }
+      direction = *into;
     }
-    values.gap(i) = *gap;
-    for (int c = 0; c < dim; ++c) values.normal(i, c) = (*into)[c];
+    if (const auto gap = distance_along(options.obstacle, x, direction)) {
+      values.gap(i) = *gap;
+      for (int c = 0; c < dim; ++c) values.normal(i, c) = direction[c];
+    } else if (lies_in(options.obstacle, x)) {
+      bad = wrong_normal(options, points, i, direction,
+                         "does not lead to the obstacle's surface, though the node lies in the foundation. Use "
+                         "\"Normal\" = foundation, or move the obstacle.");
+    } else {
+      values.misses[i] = true;
+      if (!missing) missing = wrong_normal(options, points, i, direction, "does not lead into the obstacle");
+    }
   }
   throw_if_any(comm, ExitCode::bad_input, bad);
+  const GO facing = std::count(values.misses.begin(), values.misses.end(), false);
+  if (sum_all(comm, facing) > 0) return;
+  if (missing)
+    *missing += ", nor from any other node of the side. Use \"Normal\" = foundation, move the obstacle, or make the "
+                "mesh finer.";
+  throw_if_any(comm, ExitCode::bad_input, missing);
 }
 
 SideValues side_values(const ContactOptions &options, const HostPoints &points,
@@ -177,6 +203,7 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
 {
   const LO n = static_cast<LO>(points.extent(0));
   SideValues values;
+  values.misses.assign(n, false);
   values.yield = evaluate(options.yield_stress, points, options.path + "->Yield Stress", comm, true);
   values.gap = evaluate(options.gap, points, options.path + "->Gap", comm);
   values.normal = HostView<double **>("rpc::contact::side_normal", n, points.extent(1));
@@ -327,6 +354,10 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
     const auto side_node = to_host(surface.node);
     const auto side_weight = to_host(surface.weight);
     for (std::size_t i = 0; i < side_node.extent(0); ++i) {
+      if (values.misses[i]) {
+        ++c.num_missing;
+        continue;
+      }
       node.push_back(side_node(i));
       weight.push_back(side_weight(i));
       gap.push_back(values.gap(i));
@@ -347,6 +378,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   c.free_gap = DeviceView<double *>("rpc::contact::free_gap", node.size());
   c.fixed = DeviceView<char *>("rpc::contact::fixed", node.size());
   c.num_total = sum_all(comm, GO(node.size()));
+  c.num_missing = sum_all(comm, c.num_missing);
   take_over_dirichlet(c, dirichlet, comm);
   c.num_fixed = sum_all(comm, count_fixed(c));
   require_room(c, options, mesh);

@@ -13,6 +13,8 @@ namespace
 
 using Teuchos::Array;
 
+constexpr double rounding = 1e-9; ///< of positions and directions, relative
+
 double dot(const Point &a, const Point &b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -97,18 +99,29 @@ std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x)
   return scaled((obstacle.encloses ? 1 : -1) / distance, from_centre);
 }
 
+bool lies_in(const Obstacle &obstacle, const Point &x)
+{
+  const Point from = difference(x, obstacle.point);
+  const double distance = std::sqrt(dot(from, from));
+  if (obstacle.kind == Obstacle::Kind::plane) return dot(from, obstacle.normal) < -rounding * distance;
+  const double beyond = distance - obstacle.radius;
+  return (obstacle.encloses ? beyond : -beyond) > rounding * obstacle.radius;
+}
+
 std::optional<double> distance_along(const Obstacle &obstacle, const Point &x, const Point &direction)
 {
   const Point from = difference(x, obstacle.point);
   if (obstacle.kind == Obstacle::Kind::plane) {
     const double descent = -dot(direction, obstacle.normal);
-    if (!(descent > 0)) return std::nullopt;
+    if (!(descent > rounding)) return std::nullopt;
     return dot(from, obstacle.normal) / descent;
   }
   // |x + g direction - centre| = radius: the root that crosses the circle from the body's part of the plane.
   const double along = dot(from, direction);
-  const double discriminant = along * along - dot(from, from) + obstacle.radius * obstacle.radius;
-  const bool leads_in = obstacle.encloses || along < 0;
+  double discriminant = along * along - dot(from, from) + obstacle.radius * obstacle.radius;
+  // A tangent meets the circle that encloses its point, whatever the rounding.
+  if (obstacle.encloses && discriminant < 0 && !lies_in(obstacle, x)) discriminant = 0;
+  const bool leads_in = obstacle.encloses || along < 0 || lies_in(obstacle, x);
   if (!(discriminant >= 0) || !leads_in) return std::nullopt;
   const double root = std::sqrt(discriminant);
   return obstacle.encloses ? root - along : -root - along;

@@ -12,6 +12,7 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
                        const LO end, const DeviceView<double *> &p)
 {
   Vector value(d.mesh->owned_nodes), known(d.mesh->owned_nodes);
+  known.putScalar(1); // a node of the side that is no point has no pressure
   const Kokkos::RangePolicy<ExecutionSpace, LO> points(begin, end);
   {
     const auto to = device_write(value);
@@ -19,9 +20,10 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
     Kokkos::parallel_for(
         "rpc::contact::known_pressure", points, KOKKOS_LAMBDA(const LO i) {
           if (c.fixed(i) && c.free_gap(i) < 0) p(i) = c.yield(i);
-          if (c.fixed(i) && c.free_gap(i) == 0) return;
-          to(c.node(i)) = p(i);
-          flag(c.node(i)) = 1;
+          if (c.fixed(i) && c.free_gap(i) == 0)
+            flag(c.node(i)) = 0;
+          else
+            to(c.node(i)) = p(i);
         });
     Kokkos::fence();
   }

@@ -248,18 +248,59 @@ TEST(ContactNodes, GapToAnEnclosingSphereIsMeasuredAwayFromItsCentre)
   });
 }
 
-TEST(ContactNodes, RefuseANormalThatPassesTheObstacleByWithThePlace)
+TEST(ContactNodes, FromWhichTheNormalMissesTheObstacleAreNoPoints)
+{
+  for (const mesh::Element element : {mesh::Element{2, 1}, mesh::Element{2, 2}}) {
+    const auto d = body(element);
+    auto options = touching("bottom");
+    options.obstacle = circle({1, -3, 0}, 0.7); // below the nodes at x = 0.5 to 1.5
+    for (const Normal normal : {Normal::surface, Normal::fixed}) {
+      options.normal = normal;
+      options.direction = {0, -1, 0};
+      const auto c = nodes_of(d, {touching("left"), options, touching("right")});
+      EXPECT_EQ(sum_all(d.mesh->comm(), GO(c.first(2) - c.first(1))), element.order == 1 ? 3 : 5);
+      EXPECT_EQ(c.num_missing, element.order == 1 ? 2 : 4);
+      EXPECT_EQ(c.num_total, element.order == 1 ? 9 : 15);
+      EXPECT_EQ(c.num_fixed, 0);
+      expect_points(
+          d, c,
+          [](const Point &p) {
+            return Expected{{0, -1, 0}, 3 - std::sqrt(0.49 - (p[0] - 1) * (p[0] - 1))};
+          },
+          1);
+    }
+  }
+}
+
+TEST(ContactNodes, FromWhichTheNormalMissesTheObstacleMayBeHeldAnyhow)
+{
+  // Held in y: only what may touch counts as prescribed.
+  const auto d = body();
+  auto options = touching("bottom");
+  options.yield_stress = ScalarField(3.);
+  options.obstacle = circle({1, -0.7, 0}, 0.7);
+  fem::DirichletCondition held{"held", "bottom", {}};
+  held.displacement[1] = ScalarField(-0.1);
+  const auto c = contact::contact_nodes(d, {options}, fem::dirichlet_dofs(d, {held}));
+  EXPECT_EQ(c.num_total, 3);
+  EXPECT_EQ(c.num_fixed, 3);
+  EXPECT_EQ(c.num_missing, 2);
+}
+
+TEST(ContactNodes, RefuseASideThatMissesTheObstacleAltogetherWithAPlace)
 {
   const auto d = body();
   auto options = touching("bottom");
   options.path = "Contact->Sides->ball";
-  options.obstacle = circle({0, -3, 0}, 1.2); // below the nodes at x = 0, 0.5, 1
+  options.obstacle = circle({1.25, -3, 0}, 0.2); // between two nodes
   expect_error(ExitCode::bad_input,
-               {"\"Contact->Sides->ball\"", "(1.5, 0)", "\"bottom\"", "-1)", "does not lead into the obstacle",
-                "\"Normal\" = foundation"},
+               {"\"Contact->Sides->ball\"", ", 0)", "\"bottom\"", "-1)", "does not lead into the obstacle",
+                "nor from any other node", "\"Normal\" = foundation", "finer"},
                [&] {
                  nodes_of(d, {touching("left"), options});
                });
+  options.normal = Normal::foundation;
+  EXPECT_EQ(nodes_of(d, {options}).num_total, 5);
 }
 
 TEST(ContactNodes, RefuseANormalThatLeadsAwayFromTheObstacle)
@@ -270,9 +311,18 @@ TEST(ContactNodes, RefuseANormalThatLeadsAwayFromTheObstacle)
   options.normal = Normal::fixed;
   for (const Point &direction : {Point{0, 1, 0}, Point{1, 0, 0}}) {
     options.direction = direction;
-    expect_error(ExitCode::bad_input, {"\"Contact\"", "(0, 0)", "does not lead into the obstacle"},
+    expect_error(ExitCode::bad_input, {"\"Contact\"", ", 0)", "does not lead into the obstacle"},
                  [&] { nodes_of(d, {options}); });
   }
+}
+
+TEST(ContactNodes, RefuseANodeInTheFoundationWhoseNormalDoesNotLeadOut)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.obstacle = plane({0.7, 0, 0}, {1, 0, 0}); // the nodes at x = 0 and 0.5 lie in it
+  expect_error(ExitCode::bad_input, {"\"Contact\"", "(0, 0)", "lies in the foundation", "\"Normal\" = foundation"},
+               [&] { nodes_of(d, {options}); });
 }
 
 TEST(ContactNodes, RefuseTheCentreOfACircleWhichHasNoNormal)
@@ -281,7 +331,8 @@ TEST(ContactNodes, RefuseTheCentreOfACircleWhichHasNoNormal)
   auto options = touching("bottom");
   options.obstacle = circle({1.5, 0, 0}, 1, true);
   options.normal = Normal::foundation;
-  expect_error(ExitCode::bad_input, {"(1.5, 0)", "does not lead into the obstacle"}, [&] { nodes_of(d, {options}); });
+  expect_error(ExitCode::bad_input, {"\"Contact->Obstacle->Centre\"", "(1.5, 0)", "\"bottom\"", "Move the centre"},
+               [&] { nodes_of(d, {options}); });
 }
 
 TEST(ContactNodes, RefuseBadValuesOfAFurtherSideByItsPath)

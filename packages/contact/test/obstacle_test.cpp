@@ -13,6 +13,7 @@ namespace
 using namespace rpc;
 using contact::direction_into;
 using contact::distance_along;
+using contact::lies_in;
 using contact::Obstacle;
 using rpc::test::expect_error;
 
@@ -58,6 +59,16 @@ TEST(Plane, DistanceIsMeasuredAlongTheDirection)
   EXPECT_DOUBLE_EQ(*distance_along(floor, {2, 0.5}, {0, -1}), -0.5); // in the foundation
   EXPECT_FALSE(distance_along(floor, {2, 3}, {1, 0}));
   EXPECT_FALSE(distance_along(floor, {2, 3}, {0, 1}));
+  EXPECT_FALSE(distance_along(floor, {2, 3}, {1, -6e-17})); // level, but for rounding
+  EXPECT_FALSE(distance_along(floor, {2, 0.5}, {0, 1}));
+}
+
+TEST(Plane, TellsWhatLiesBehindIt)
+{
+  const Obstacle floor = plane(Teuchos::tuple(5., 1.), Teuchos::tuple(0., 4.));
+  EXPECT_FALSE(lies_in(floor, {2, 3}));
+  EXPECT_FALSE(lies_in(floor, {2, 1 - 1e-14})); // on it, but for rounding
+  EXPECT_TRUE(lies_in(floor, {2, 0.5}));
 }
 
 TEST(Plane, StandsInSpaceToo)
@@ -81,6 +92,17 @@ TEST(Circle, OutsideOfItTheNormalLeadsToTheCentre)
   EXPECT_FALSE(direction_into(disc, {1, 2}));          // the centre is as far from everywhere
 }
 
+TEST(Circle, FromWithinItTheSurfaceLiesBehind)
+{
+  const Obstacle disc = circle(2, false);
+  EXPECT_FALSE(lies_in(disc, {4, 6}));
+  EXPECT_FALSE(lies_in(disc, {1, 4 - 1e-14})); // on it, but for rounding
+  EXPECT_TRUE(lies_in(disc, {1, 1}));
+  EXPECT_DOUBLE_EQ(*distance_along(disc, {1, 3}, {0, -1}), -1);
+  EXPECT_DOUBLE_EQ(*distance_along(disc, {1, 2}, {0, -1}), -2);
+  EXPECT_DOUBLE_EQ(*distance_along(disc, {1, 1}, {0, -1}), -3); // beyond the centre
+}
+
 TEST(Circle, InsideOfItTheNormalLeadsOut)
 {
   const Obstacle hole = circle(10, true);
@@ -88,6 +110,10 @@ TEST(Circle, InsideOfItTheNormalLeadsOut)
   EXPECT_DOUBLE_EQ(*distance_along(hole, {4, 6}, {0.6, 0.8}), 5);
   EXPECT_DOUBLE_EQ(*distance_along(hole, {7, 10}, {0, -1}), 16); // down through it: y = 2 - 8
   EXPECT_DOUBLE_EQ(*distance_along(hole, {1, -9}, {0, -1}), -1); // in the foundation
+  EXPECT_TRUE(lies_in(hole, {1, -9}));
+  EXPECT_FALSE(lies_in(hole, {1, -7}));
+  EXPECT_NEAR(*distance_along(hole, {1, 12 + 1e-14}, {1, 0}), 0, 1e-6); // a tangent at its point, but for rounding
+  EXPECT_FALSE(distance_along(hole, {1, 13}, {1, 0}));                  // outside of the hole, and passes it by
 }
 
 TEST(ObstacleOptions, RefuseWhatDoesNotFit)

@@ -120,6 +120,33 @@ TEST(ContactResult, IsEmptyWithoutSides)
   EXPECT_EQ(contact::contact_forces(scene.d, scene.functional->contact(), result).norm2(), 0);
 }
 
+TEST(ContactResult, NodesThatMissTheObstacleLendNoPressureToHeldOnes)
+{
+  // A circle below the nodes at x = 1/3, 2/3 and 1. The bottom is held on it, at 2/3 in it.
+  contact::ContactOptions options;
+  options.side = "bottom";
+  options.yield_stress = ScalarField(3.);
+  options.obstacle = {contact::Obstacle::Kind::circle, {2. / 3, -0.7, 0}, {}, 0.6, false};
+  fem::DirichletCondition condition = held("bottom");
+  condition.displacement[1] = field([](const Point &x) {
+    const double across = std::abs(x[0] - 2. / 3);
+    return across > 0.5 ? 0 : std::sqrt(0.36 - across * across) - 0.7 - (across < 0.1 ? 0.01 : 0);
+  });
+  const Scene scene({options}, condition);
+  const auto &c = scene.functional->contact();
+  EXPECT_EQ(c.num_total, 3);
+  EXPECT_EQ(c.num_fixed, 3);
+  const Vector u(*scene.functional->problem().dirichlet.value, Teuchos::Copy);
+  const auto result = contact::contact_result(scene.d, {&scene.d.mesh->side("bottom", "test")}, *scene.functional, u);
+  const auto coords = to_host(scene.d.mesh->coords);
+  const auto node = to_host(c.node);
+  const auto p = to_host(result.pressure);
+  for (LO i = 0; i < c.size(); ++i) // the mean of 3 and nothing beside it
+    EXPECT_NEAR(p(i), std::abs(coords(node(i), 0) - 2. / 3) < 0.1 ? 3 : 1.5, 1e-12);
+  EXPECT_EQ(result.total.num_nodes, 3);
+  EXPECT_NEAR(result.total.force[1], 2, 1e-12);
+}
+
 TEST(ContactForces, SumToTheTotalForce)
 {
   const Solved solved;

@@ -106,6 +106,18 @@ TEST(Support, OfARolledBodyIsTheFoundationUpToItsLimit)
   }
 }
 
+TEST(Support, ComesFromNodesThatFaceTheObstacleAlone)
+{
+  // Of the bottom's nodes, 0.5 m apart, three face the circle.
+  const auto with = [](const double y) {
+    Scene scene{plate(), {hold("left", {0})}, {on("bottom", 2)}, {pull("top", 0, y)}};
+    scene.foundations[0].obstacle = {Obstacle::Kind::circle, {2, -3, 0}, {}, 0.7, false};
+    return scene;
+  };
+  EXPECT_TRUE(with(-0.74).check().by_contact_only);
+  with(-0.76).refuses({"the load pushes the body against side \"bottom\"", "carries at most 3 [N/m]"});
+}
+
 TEST(Support, OfARigidFoundationHasNoLimit)
 {
   const auto with = [](const double y) {

@@ -41,6 +41,8 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
 /// The nodes of the contact sides that this rank owns, each a point with a weight; side by side, so that a node of two
 /// sides is two points. doc/theory.md (2.6), (3.4)
 ///
+/// A node from which the side's normal misses the obstacle never touches: it is no point.
+///
 /// v_i = direction_i . u_i - free_gap_i is the penetration of node i, where `direction` is the normal without its
 /// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether
 /// has direction 0: it takes no part in the solution, and its pressure is 0 if it stays clear, xi if it is pressed in,
@@ -60,6 +62,7 @@ struct ContactNodes {
   DeviceView<char *> fixed;        ///< (n) 1 where direction = 0
   GO num_total = 0;                ///< over all ranks
   GO num_fixed = 0;                ///< over all ranks
+  GO num_missing = 0;              ///< nodes of the sides, over all ranks, from which the normal misses the obstacle
 
   int num_sides() const { return static_cast<int>(first.extent(0)) - 1; }
   LO size() const { return static_cast<LO>(node.extent(0)); }
@@ -68,8 +71,9 @@ struct ContactNodes {
 /// Collective.
 /// @param materials  what the body is made of, for `stiffness`
 /// @throws rpc::Error bad_input if a side does not exist, xi <= 0 or NaN, the gap is not finite somewhere,
-/// or the normal does not lead to the obstacle (the place is named); no_solution if a prescribed displacement presses a
-/// node into a rigid foundation
+/// the normal leads to the obstacle from no node of a side, or a node lies in the foundation and its normal does not cross
+/// the foundation's surface (the place is named); no_solution if a prescribed displacement presses a node into a rigid
+/// foundation
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
                            const fem::DirichletDofs &dirichlet, const fem::Materials &materials = {});
 

@@ -30,8 +30,12 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, int dim, const std
 /// centre of a circle. doc/theory.md (3.6)
 std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x);
 
+/// Whether x lies in the foundation, deeper than rounding.
+bool lies_in(const Obstacle &obstacle, const Point &x);
+
 /// How far it is from x to the foundation's surface along a unit direction that points into the foundation [m]; negative
-/// if x lies in the foundation. Nothing if that way does not lead into it. doc/theory.md (3.7)
+/// if x lies in the foundation. Nothing if that way does not lead into it: it passes the foundation by or leads away from
+/// it, or x lies in the foundation and the way does not cross the surface. doc/theory.md (3.7)
 std::optional<double> distance_along(const Obstacle &obstacle, const Point &x, const Point &direction);
 
 } // namespace rpc::contact
