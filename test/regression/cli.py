@@ -118,6 +118,12 @@ class Decks(RpcTestCase):
                 expected = expected or summary
                 self.assertEqual(summary, expected)
 
+    def test_yamls_infinity_is_a_rigid_foundation(self):
+        expected = self.solve("--set=Contact->Yield Stress=inf")
+        for number in [".inf", "+.INF"]:
+            (self.folder / "rigid.yaml").write_text(YAML.read_text().replace("Yield Stress: 16", f"Yield Stress: {number}"))
+            self.assertEqual(self.solve(deck="rigid.yaml")["energy_J"], expected["energy_J"])
+
     def test_assignments_win_over_the_deck_and_over_earlier_ones(self):
         summary = self.solve("--set=Mesh->Cells={10, 2}", "--set", "Contact->Yield Stress=2", "--set=Output->Exodus=false",
                              "--set=Contact->Yield Stress=10+0*x", "--set=Dirichlet->clamp->Side=left",

@@ -216,9 +216,53 @@ int count_root_names(const std::vector<std::string> &lines)
       std::count_if(lines.begin(), lines.end(), [](const std::string &line) { return std::regex_match(line, name); }));
 }
 
+/// Whether a YAML value starts at text[n]: behind a name's colon, in a list, or as an item of one.
+bool starts_value(const std::string &text, const std::size_t n)
+{
+  const auto before = n == 0 ? std::string::npos : text.find_last_not_of(" \t", n - 1);
+  if (before == std::string::npos) return false;
+  if (std::strchr("[{,", text[before])) return true;
+  if (before + 1 == n) return false; // no blank between
+  if (text[before] != '-') return text[before] == ':';
+  const auto before_item = before == 0 ? std::string::npos : text.find_last_not_of(" \t", before - 1);
+  return before_item == std::string::npos || text[before_item] == '\n';
+}
+
+/// The text with `.inf`, YAML's number, written as `inf`, which Teuchos and the fields know. What stands in quotes is no
+/// number.
+std::string with_infinities(const std::string &text)
+{
+  static const std::regex number(R"(([-+]?)\.(inf|Inf|INF)(?=[ \t\r]*([,\]}\n]|$)|[ \t]+#))");
+  std::string result;
+  char quote = 0;
+  for (std::size_t n = 0; n < text.size(); ++n) {
+    const char c = text[n];
+    const bool behind_blank = n == 0 || std::strchr(" \t\r\n[{,", text[n - 1]);
+    if (quote != 0) {
+      if (c == quote && (quote == '\'' || text[n - 1] != '\\')) quote = 0;
+    } else if (behind_blank && (c == '"' || c == '\'')) {
+      quote = c;
+    } else if (behind_blank && c == '#') {
+      const std::size_t end = std::min(text.find('\n', n), text.size());
+      result.append(text, n, end - n);
+      n = end - 1;
+      continue;
+    } else if ((c == '.' || c == '-' || c == '+') && starts_value(text, n)) {
+      std::smatch found;
+      if (std::regex_search(text.begin() + n, text.end(), found, number, std::regex_constants::match_continuous)) {
+        result += found[1].str() + "inf";
+        n += found.length() - 1;
+        continue;
+      }
+    }
+    result += c;
+  }
+  return result;
+}
+
 ParameterList read_yaml(const std::string &path)
 {
-  const std::string whole = read_text(path);
+  const std::string whole = with_infinities(read_text(path));
   check_depth(path, whole, true);
   const std::vector<std::string> lines = lines_of(whole);
   // Teuchos wants one name at the outermost level, and loses parameters without a word if there are more.

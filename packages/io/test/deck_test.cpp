@@ -153,6 +153,30 @@ TEST_F(Deck, DoubleInfArrivesAsText)
   EXPECT_EQ(list.sublist("Contact").get<std::string>("Penalty"), "inf");
 }
 
+TEST_F(Deck, YamlsInfinityArrivesAsText)
+{
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {".inf", "inf"},         {".Inf", "inf"},     {".INF", "inf"},
+      {"+.inf", "+inf"},       {"-.inf", "-inf"},   {"-.INF", "-inf"},
+      {".inf # rigid", "inf"}, {".inf  \r", "inf"}, {"\"a, .inf\"", "a, .inf"},
+      {"'a: .inf'", "a: .inf"}};
+  for (const auto &[text, value] : cases) {
+    const auto list = read_deck(file("i.yaml", replaced(good_yaml, "1e8", text)));
+    EXPECT_EQ(list.sublist("Contact").get<std::string>("Penalty"), value) << text;
+  }
+  const auto flow = read_deck(file("f.yaml", "rpc:\n  Contact: {Penalty: .inf, Side: \"it's .inf, \"}\n"));
+  EXPECT_EQ(flow.sublist("Contact").get<std::string>("Penalty"), "inf");
+  EXPECT_EQ(flow.sublist("Contact").get<std::string>("Side"), "it's .inf, ");
+  const auto last = read_deck(file("l.yaml", "Young's Modulus: 1\nYield Stress: .inf"));
+  EXPECT_EQ(last.get<std::string>("Yield Stress"), "inf");
+  const auto name = read_deck(file("n.yaml", "rpc:\n  A: x.inf\n  B: a .inf\n"));
+  EXPECT_EQ(name.get<std::string>("A"), "x.inf");
+  EXPECT_EQ(name.get<std::string>("B"), "a .inf");
+  const auto xml =
+      read_deck(file("x.xml", replaced(replaced(good_xml, "1e8", ".inf"), "type=\"double\"", "type=\"string\"")));
+  EXPECT_EQ(xml.sublist("Contact").get<std::string>("Penalty"), ".inf"); // XML has no such number
+}
+
 TEST_F(Deck, NameGivenTwiceIsRefused)
 {
   const std::string type = "<Parameter name=\"Type\" type=\"string\" value=\"box\"/>";
