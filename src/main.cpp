@@ -78,7 +78,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   int cycle = 0;
   const auto keep = [&](const rpc::Scene &of, rpc::Solution &solution) {
     rpc::Scene named = of;
-    named.name += ".cycle" + std::to_string(++cycle);
+    named.name = rpc::cycle_name(of, ++cycle);
     if (scene.adapt.write_all) rpc::write_results(named, solution, line.output, start);
   };
   rpc::Solution solution = rpc::solve(scene, comm, out, keep);

@@ -8,6 +8,7 @@
 #include "rpc/io/gather.hpp"
 
 #include <Teuchos_Time.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -16,16 +17,24 @@ namespace rpc
 namespace
 {
 
-/// Where the results of a scene go; empty what is not asked for.
+/// An adaptive run comes to far fewer meshes.
+constexpr int most_cycles = 1000;
+
+/// Where the results of a scene go under a name; empty what is not asked for.
 struct ResultPaths {
   std::string exodus, csv, json;
 
-  ResultPaths(const Scene &scene, const std::string &folder)
+  ResultPaths(const Scene &scene, const std::string &name, const std::string &folder)
   {
-    const std::string stem = (std::filesystem::path(folder) / scene.name).string();
+    const std::string stem = (std::filesystem::path(folder) / name).string();
     if (scene.output.exodus) exodus = stem + ".e";
     if (scene.output.csv && !scene.contact.empty()) csv = stem + ".contact.csv";
     if (scene.output.json) json = stem + ".json";
+  }
+  void require_replaceable() const
+  {
+    for (const std::string &path : {exodus, csv, json})
+      if (!path.empty()) io::require_replaceable(path);
   }
 };
 
@@ -224,20 +233,26 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   return json;
 }
 
+std::string cycle_name(const Scene &scene, const int cycle)
+{
+  return scene.name + ".cycle" + std::to_string(cycle);
+}
+
 void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm)
 {
   on_root(comm, ExitCode::bad_input, [&] {
     io::require_writable_folder(folder);
-    const ResultPaths paths(scene, folder);
-    for (const std::string &path : {paths.exodus, paths.csv, paths.json})
-      if (!path.empty()) io::require_replaceable(path);
+    ResultPaths(scene, scene.name, folder).require_replaceable();
+    if (!scene.adapt.adapts() || !scene.adapt.write_all) return;
+    for (int cycle = 1; cycle <= std::min(scene.adapt.max_cycles, most_cycles); ++cycle)
+      ResultPaths(scene, cycle_name(scene, cycle), folder).require_replaceable();
   });
 }
 
 std::vector<std::string> write_results(const Scene &scene, Solution &s, const std::string &folder, const double start)
 {
   const double begin = Teuchos::Time::wallTime();
-  const ResultPaths paths(scene, folder);
+  const ResultPaths paths(scene, scene.name, folder);
   const mesh::Mesh &mesh = *s.discretization.mesh;
   if (!paths.exodus.empty()) io::write_exodus(paths.exodus, scene.name, mesh, nodal_fields(scene, s));
   if (!paths.csv.empty()) write_csv(paths.csv, scene, s);

@@ -12,8 +12,12 @@ namespace rpc
 /// The summary of a run as doc/input.md lists it. A value that is not a number (a limit of inf, say) is null.
 nlohmann::ordered_json summary(const Scene &scene, const Solution &solution);
 
-/// Proves that the folder can be made and written to, and that nothing stands in the way of a scene's files: before the
-/// run, not after it. Collective.
+/// The name of one mesh's results, "Adapt->Write All".
+/// @param cycle  from 1
+std::string cycle_name(const Scene &scene, int cycle);
+
+/// Proves that the folder can be made and written to, and that nothing stands in the way of a scene's files, those of
+/// its cycles included: before the run, not after it. Collective.
 /// @throws rpc::Error (bad_input) on every rank
 void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm);
 

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import unittest
 
-from rpc_run import LAUNCH, PROGRAM, RANKS, SMALL, RpcTestCase, errors, files, ranks_below
+from rpc_run import LAUNCH, PROGRAM, RANKS, SMALL, SOURCE, RpcTestCase, errors, files, ranks_below
 
 FULL, BAD_INPUT = 1, 2
 SLOW = "--set=Mesh->Cells={160,32}"
@@ -112,6 +112,36 @@ class OutputFaults(RpcTestCase):
                 self.assertNotIn("newton", result.stdout)
                 self.assertEqual(files(self.folder), [])
                 (self.folder / "out" / name).rmdir()
+
+    def test_what_is_no_file_is_refused_before_the_run(self):
+        (self.folder / "out").mkdir()
+        for name in NAMES:
+            with self.subTest(name):
+                place = self.folder / "out" / name
+                os.mkfifo(place)
+                result = self.rpc("--input=beam.xml", SMALL, "--output=out", code=BAD_INPUT)
+                self.expect_refusal(result, BAD_INPUT, [f'cannot replace "out/{name}": it is a pipe', "--output=DIR"])
+                self.assertNotIn("newton", result.stdout)
+                self.assertTrue(place.is_fifo())
+                place.unlink()
+
+    def test_name_too_long_for_the_file_system_is_refused_before_the_run(self):
+        for length in [237, 250]:  # with .json and what is appended meanwhile; the deck itself fits
+            deck = self.folder / ("n" * length + ".xml")
+            shutil.copy(SOURCE / "input" / "beam.xml", deck)
+            result = self.rpc(f"--input={deck}", SMALL, "--output=out", code=BAD_INPUT)
+            self.expect_refusal(result, BAD_INPUT, ['cannot create "out/nnn', "File name too long", "shorter name"])
+            self.assertNotIn("newton", result.stdout)
+            self.assertEqual(files(self.folder / "out"), [])
+
+    def test_results_of_all_meshes_are_thought_of_before_the_run(self):
+        adaptive = ["--input=beam_adaptive.xml", "--output=out", "--set=Adapt->Max Cycles=3"]
+        (self.folder / "out" / "beam_adaptive.cycle3.e").mkdir(parents=True)
+        result = self.rpc(*adaptive, "--set=Adapt->Write All=true", code=BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, ['cannot replace "out/beam_adaptive.cycle3.e": Is a directory'])
+        self.assertNotIn("newton", result.stdout)
+        self.assertEqual(files(self.folder), [])
+        self.rpc(*adaptive, "--set=Adapt->Target Relative Error=0.1")  # nobody writes a file of that name
 
     def test_folder_that_comes_in_place_of_a_file(self):
         result = self.during(lambda _: (self.folder / "out" / "beam.contact.csv").mkdir(), SLOW)

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace rpc::io
@@ -15,6 +16,8 @@ namespace
 {
 
 constexpr const char *remedy = "; choose a folder that can be written to with --output=DIR";
+constexpr const char *remedy_in_the_way = "; remove it, or choose another folder with --output=DIR";
+constexpr const char *remedy_long = "; give the deck a shorter name, or choose another folder with --output=DIR";
 
 /// Whether the user's choice of folder is at fault rather than the machine.
 bool is_bad_folder(const int error)
@@ -38,8 +41,19 @@ bool is_bad_folder(const int error)
 [[noreturn]] void fail(const int error, const std::string &action, const std::string &path)
 {
   const bool bad_folder = is_bad_folder(error);
+  const char *const help = error == EISDIR ? remedy_in_the_way : error == ENAMETOOLONG ? remedy_long : remedy;
   throw Error(bad_folder ? ExitCode::bad_input : ExitCode::internal_error,
-              "output: cannot " + action + " \"" + path + "\": " + std::strerror(error) + (bad_folder ? remedy : ""));
+              "output: cannot " + action + " \"" + path + "\": " + std::strerror(error) + (bad_folder ? help : ""));
+}
+
+/// What is no ordinary file, in words.
+const char *kind_of(const mode_t mode)
+{
+  return S_ISFIFO(mode)   ? "a pipe"
+         : S_ISSOCK(mode) ? "a socket"
+         : S_ISCHR(mode)  ? "a device"
+         : S_ISBLK(mode)  ? "a device"
+                          : "of another kind";
 }
 
 /// Owns a file descriptor; close() reports what the destructor would swallow.
@@ -122,8 +136,15 @@ void write_text(const std::string &path, const std::string &text)
 
 void require_replaceable(const std::string &path)
 {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) fail(EISDIR, "replace", path);
+  struct stat found = {};
+  if (::lstat(temporary_name(path).c_str(), &found) != 0 && errno == ENAMETOOLONG) fail(errno, "create", path);
+  if (::stat(path.c_str(), &found) != 0) { // no such file, or one that creating it will tell more about
+    if (errno == ENAMETOOLONG) fail(errno, "create", path);
+    return;
+  }
+  if (S_ISDIR(found.st_mode)) fail(EISDIR, "replace", path);
+  RPC_REQUIRE(S_ISREG(found.st_mode), "output: cannot replace \"" << path << "\": it is " << kind_of(found.st_mode)
+                                                                  << ", not a file" << remedy_in_the_way);
   const int reason = ::access(path.c_str(), W_OK) == 0 ? 0 : errno;
   if (reason == EACCES || reason == EPERM || reason == EROFS) fail(reason, "replace", path);
 }

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace
@@ -14,6 +15,7 @@ namespace
 
 using rpc::ExitCode;
 using rpc::io::AtomicFile;
+using rpc::io::require_replaceable;
 using rpc::io::require_writable_folder;
 using rpc::io::write_text;
 using rpc::test::expect_error;
@@ -101,6 +103,45 @@ TEST_F(AtomicFileTest, FileWithoutPermissionToWriteIsNotReplaced)
   expect_error(ExitCode::bad_input, {"a.txt\": Permission denied", "--output=DIR"}, [&] { write_text(path, "new"); });
   EXPECT_EQ(text_of(path), "old");
   EXPECT_EQ(scratch_.num_files(), 1);
+}
+
+TEST_F(AtomicFileTest, NameTooLongIsRefusedBeforeAnythingIsWritten)
+{
+  for (const std::size_t length : {250, 256, 5000}) { // too long meanwhile; on its own; for any system
+    const std::string path = scratch_.path(std::string(length, 'n'));
+    expect_error(ExitCode::bad_input, {"output: cannot create", "File name too long", "shorter name", "--output=DIR"},
+                 [&] { require_replaceable(path); });
+    expect_error(ExitCode::bad_input, "File name too long", [&] { write_text(path, "text"); });
+  }
+  require_replaceable(scratch_.path(std::string(200, 'n')));
+  EXPECT_EQ(scratch_.num_files(), 0);
+}
+
+TEST_F(AtomicFileTest, WhatIsNoOrdinaryFileIsNotReplaced)
+{
+  const std::string pipe = scratch_.path("pipe"), link = scratch_.path("link");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0666), 0);
+  std::filesystem::create_symlink("/dev/null", link);
+  for (const auto &[path, kind] : {std::pair{pipe, "a pipe"}, std::pair{link, "a device"}}) {
+    expect_error(
+        ExitCode::bad_input,
+        {"output: cannot replace \"" + path + "\": it is " + kind + ", not a file", "remove it", "--output=DIR"},
+        [&] { require_replaceable(path); });
+    expect_error(ExitCode::bad_input, kind, [&] { write_text(path, "text"); });
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+}
+
+TEST_F(AtomicFileTest, LinkThatLeadsNowhereIsReplaced)
+{
+  for (const char *target : {"nothing", "link"}) {
+    const std::string link = scratch_.path("link");
+    std::filesystem::remove(link);
+    std::filesystem::create_symlink(target, link);
+    write_text(link, "text");
+    EXPECT_EQ(text_of(link), "text");
+  }
 }
 
 TEST_F(AtomicFileTest, WritableFolderIsMadeWithItsParents)

@@ -38,8 +38,9 @@ private:
 /// @throws rpc::Error: bad_input if the folder cannot be written to, internal_error otherwise (disk full)
 void write_text(const std::string &path, const std::string &text);
 
-/// Proves that nothing stands in the way of a file: no folder of its name, no older file without permission to write to
-/// it, which renaming would not respect; one rank only.
+/// Proves that nothing stands in the way of a file: no folder, pipe, socket or device of its name, no older file without
+/// permission to write to it, which renaming would not respect, and no name that is too long, with what is appended to it
+/// meanwhile; one rank only.
 /// @throws rpc::Error (bad_input) with the system's reason and the remedy
 void require_replaceable(const std::string &path);
 
