@@ -38,6 +38,10 @@ void print_adaptation(std::ostream &out, const Adaptation &adaptation, const boo
           c.newton_iterations, sum(c.linear_iterations), c.seconds);
   }
   const auto &e = adaptation.errors;
+  if (std::isnan(e.energy)) {
+    print(out, "    errors by the sequence: unknown, for these are the results of the first mesh\n");
+    return;
+  }
   print(out,
         "    errors by the sequence: J %.1e %s, contact force %.1e %s, max. pressure %.1e Pa, pressure in L2 %.1e, "
         "in contact %.1e %s\n",

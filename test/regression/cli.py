@@ -264,6 +264,13 @@ class AdaptiveRuns(RpcTestCase):
         self.assertLess(summary["error_estimate"]["relative"], 0.01)
         self.assertTrue((self.folder / "out" / "beam_adaptive.e").exists())
 
+    def test_the_first_mesh_shows_no_errors_by_the_sequence(self):
+        for target, code in [("0.3", 0), ("1e-6", 4)]:
+            result, summary = self.adapt(f"--set=Adapt->Target Relative Error={target}", "--set=Adapt->Max Cycles=1", code=code)
+            self.assertIn("errors by the sequence: unknown, for these are the results of the first mesh", result.stdout)
+            self.assertNotIn("nan", result.stdout)
+            self.assertEqual(set(summary["adaptation"]["errors"].values()), {None})
+
     def test_every_mesh_is_written_on_request(self):
         _, summary = self.adapt("--set=Adapt->Target Relative Error=0.01", "--set=Adapt->Write All=true")
         for cycle in range(1, 1 + len(summary["adaptation"]["cycles"])):
