@@ -122,6 +122,7 @@ Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::
   Planner planner(scene);
   std::optional<mesh::MeshOptions> options = scene.mesh;
   std::optional<Solution> last, best;
+  std::string hint;
   PhaseSeconds seconds;
   while (options) {
     const double start = Teuchos::Time::wallTime();
@@ -139,6 +140,8 @@ Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::
       break;
     }
     last = std::move(next);
+    hint = fem::order_note(*last->discretization.mesh, scene.materials);
+    if (cycles.empty() && !hint.empty()) console << "note: " << hint << std::endl;
     cycles.push_back(cycle_of(*last, Teuchos::Time::wallTime() - start));
     if (!best || best_of(cycles) + 1 == cycles.size()) best = last;
     if (keep) keep(scene, *last);
@@ -155,6 +158,7 @@ Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::
     }
     options = planner.next(*last, adaptation.reason);
   }
+  if (!adaptation.reached && !hint.empty() && !interrupted(*comm)) adaptation.reason += ". " + hint;
   adaptation.errors = observed_errors({cycles.begin(), cycles.begin() + best_of(cycles) + 1});
   best->adaptation = std::move(adaptation);
   best->seconds = seconds;

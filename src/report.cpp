@@ -29,8 +29,8 @@ int sum(const std::vector<int> &values)
 
 void print_adaptation(std::ostream &out, const Adaptation &adaptation, const bool flat)
 {
-  print(out, "  adapted             %s\n",
-        adaptation.reached ? "the error is what was asked for" : ("NOT TO THE TARGET: " + adaptation.reason).c_str());
+  out << "  adapted             "
+      << (adaptation.reached ? "the error is what was asked for" : "NOT TO THE TARGET: " + adaptation.reason) << "\n";
   print(out, "    cycle     dofs    error            J    max. p  Newton  krylov  time [s]\n");
   for (std::size_t k = 0; k < adaptation.cycles.size(); ++k) {
     const Cycle &c = adaptation.cycles[k];

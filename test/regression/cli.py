@@ -264,6 +264,21 @@ class AdaptiveRuns(RpcTestCase):
         self.assertLess(summary["error_estimate"]["relative"], 0.01)
         self.assertTrue((self.folder / "out" / "beam_adaptive.e").exists())
 
+    def test_a_hint_leads_from_p2_to_q2_where_it_loses_an_order(self):
+        hint = 'P2 loses an order in block "body" with nu = 0.49'
+        rubber = ["--set=Material->Poisson's Ratio=0.49", "--set=Adapt->Max Dofs=3000"]
+        result, summary = self.adapt("--set=Adapt->Target Relative Error=0.1", *rubber)
+        self.assertEqual(result.stdout.count(f"note: {hint}"), 1)
+        self.assertTrue(summary["adaptation"]["reached"])
+        self.assertEqual(summary["adaptation"]["reason"], "")
+        result, summary = self.adapt("--set=Adapt->Target Relative Error=1e-6", *rubber, code=4)
+        self.assertEqual(result.stdout.count(f"note: {hint}"), 1)
+        self.assertIn("Max Dofs", summary["adaptation"]["reason"])
+        self.assertIn(hint, summary["adaptation"]["reason"])
+        for other in ["Material->Poisson's Ratio=0.48", "Mesh->Element=Q2"]:
+            result, summary = self.adapt("--set=Adapt->Target Relative Error=1e-6", *rubber, f"--set={other}", code=4)
+            self.assertNotIn("loses an order", result.stdout + summary["adaptation"]["reason"])
+
     def test_the_first_mesh_shows_no_errors_by_the_sequence(self):
         for target, code in [("0.3", 0), ("1e-6", 4)]:
             result, summary = self.adapt(f"--set=Adapt->Target Relative Error={target}", "--set=Adapt->Max Cycles=1", code=code)

@@ -258,6 +258,20 @@ void add_internal_work(const Discretization &d, const ElasticCells<Dim, Nodes> &
                          SumShares<Dim, Nodes>{mesh.cells, share, d.around, device_write(force)});
 }
 
+bool is_p2(const mesh::Element &element)
+{
+  return element.shape == mesh::Shape::simplex && element.order == 2;
+}
+
+/// Whether the projection stands for the dilatation.
+bool projects(const mesh::Element &element, const Material &material)
+{
+  // P2 with one constant per cell loses its order: up to 0.48 it does better without.
+  const double bound = is_p2(element) ? 0.48 : 0.4;
+  const bool automatic = material.dilatation == Dilatation::automatic && material.poissons_ratio > bound;
+  return automatic || material.dilatation == Dilatation::projected;
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_material_parameters()
@@ -331,16 +345,10 @@ DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Mate
 
 DeviceView<int *> projected_dilatation_table(const mesh::Mesh &mesh, const Materials &materials)
 {
-  // P2 with one constant per cell loses its order: up to 0.48 it does better without.
-  const bool p2 = mesh.element.shape == mesh::Shape::simplex && mesh.element.order == 2;
-  const double bound = p2 ? 0.48 : 0.4;
   DeviceView<int *> table("rpc::fem::projected_dilatation", mesh.blocks.size());
   const auto host = Kokkos::create_mirror_view(table);
-  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-    const Material &material = materials.of(mesh.blocks[b]);
-    const bool automatic = material.dilatation == Dilatation::automatic && material.poissons_ratio > bound;
-    host(b) = automatic || material.dilatation == Dilatation::projected ? 1 : 0;
-  }
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b)
+    host(b) = projects(mesh.element, materials.of(mesh.blocks[b])) ? 1 : 0;
   Kokkos::deep_copy(table, host);
   return table;
 }
@@ -353,6 +361,21 @@ std::string locking_note(const mesh::Mesh &mesh, const Materials &materials)
     std::ostringstream note;
     note << "P1 triangles lock in block \"" << block << "\" with nu = " << materials.of(block).poissons_ratio
          << ": displacements and stresses are wrong there; take Q2, P2 or Q1";
+    return note.str();
+  }
+  return "";
+}
+
+std::string order_note(const mesh::Mesh &mesh, const Materials &materials)
+{
+  if (!is_p2(mesh.element)) return "";
+  for (const std::string &block : mesh.blocks) {
+    const Material &material = materials.of(block);
+    if (!projects(mesh.element, material)) continue;
+    std::ostringstream note;
+    note << "P2 loses an order in block \"" << block << "\" with nu = " << material.poissons_ratio
+         << ", where its dilatation is projected, and needs many more cells for the same error; take Q2 (of a .geo: "
+            "\"Recombine Surface\")";
     return note.str();
   }
   return "";

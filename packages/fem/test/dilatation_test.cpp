@@ -273,4 +273,22 @@ TEST(LockingNote, WarnsOfP1InNearlyIncompressibleMaterialsOnly)
   EXPECT_EQ(note(q1, 0.4999), "");
 }
 
+TEST(OrderNote, TellsOfP2WhereItsDilatationIsProjected)
+{
+  const auto note = [](const mesh::Element &element, const double nu,
+                       const fem::Dilatation dilatation = fem::Dilatation::automatic) {
+    fem::Material material{1, nu};
+    material.dilatation = dilatation;
+    return fem::order_note(*body(small_box(element), world()).mesh, material);
+  };
+  const mesh::Element p1{2, 1, mesh::Shape::simplex}, p2{2, 2, mesh::Shape::simplex}, q2{2, 2};
+  EXPECT_EQ(note(p2, 0.48), "");
+  EXPECT_NE(note(p2, 0.49).find("\"body\" with nu = 0.49"), std::string::npos);
+  EXPECT_NE(note(p2, 0.49).find("take Q2"), std::string::npos);
+  EXPECT_NE(note(p2, 0.3, fem::Dilatation::projected), "");
+  EXPECT_EQ(note(p2, 0.49, fem::Dilatation::full), "");
+  EXPECT_EQ(note(p1, 0.49), "");
+  EXPECT_EQ(note(q2, 0.49), "");
+}
+
 } // namespace

@@ -55,6 +55,10 @@ DeviceView<int *> projected_dilatation_table(const mesh::Mesh &mesh, const Mater
 /// What a user should know: that elements which lock meet a nearly incompressible material; empty if there is nothing.
 std::string locking_note(const mesh::Mesh &mesh, const Materials &materials);
 
+/// What a user should know who asks for small errors: that P2 loses an order where its dilatation is projected; empty if
+/// there is nothing.
+std::string order_note(const mesh::Mesh &mesh, const Materials &materials);
+
 using VectorField = std::array<ScalarField, 3>;
 
 /// A force per area on one side.
