@@ -345,6 +345,9 @@ def obstacles_scene(rng):
         centre = (middle, bottom - distance - radius) if kind == "ball" else (middle, bottom - distance + radius)
         contact.obstacle = {"Type": "circle", "Centre": centre, "Radius": radius, "Encloses Body": kind == "bowl"}
         contact.normal = rng.choice([None, None, (0.0, -1.0)])
+        if kind == "ball" and contact.normal and rng.random() < 0.5:  # the normals of outer nodes miss it
+            radius = width * rng.uniform(0.1, 0.45)
+            contact.obstacle.update(Centre=(middle, bottom - distance - radius), Radius=radius)
     contact.xi = yield_stress(rng, q, scene.material["E"])
     return scene
 

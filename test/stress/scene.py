@@ -27,7 +27,7 @@ class ContactSide:
     obstacle: dict = None  # Type, and Point, Normal or Centre, Radius, Encloses Body
 
     def at(self, x, y, outward):
-        """Normal and gap of a node."""
+        """Normal and gap of a node; None if the normal misses the obstacle."""
         if not self.obstacle:
             return (self.normal if isinstance(self.normal, tuple) else outward), self.gap(x, y)
         if self.obstacle["Type"] == "plane":
@@ -43,7 +43,8 @@ class ContactSide:
         size = math.hypot(*m)
         nu = self._direction(outward, (sign * m[0] / size, sign * m[1] / size))
         along = m[0] * nu[0] + m[1] * nu[1]
-        return nu, -along + sign * math.sqrt(along * along - m[0] ** 2 - m[1] ** 2 + radius * radius)
+        within = along * along - m[0] ** 2 - m[1] ** 2 + radius * radius
+        return None if within < 0 else (nu, -along + sign * math.sqrt(within))
 
     def _direction(self, outward, foundation):
         if self.normal == "surface":
@@ -218,13 +219,20 @@ class _Part:
 
     def contact(self):
         """([work of the normal on each motion], force that the foundation can bear) of nodes that can move along the normal;
-        with what is wrong about the others: None, "pressed" or "close"."""
+        with what is wrong about the others: None, "pressed" or "close"; or "missed" if no node of a side faces its obstacle."""
         points, trouble = [], None
         for contact in self.scene.contact:
             largest = max((abs(contact.at(*self.grid.nodes[k], nu)[1]) for k, (_, nu) in self.grid.contact_nodes(contact.side).items()), default=0)
             for k, (w, outward) in self.grid.contact_nodes(contact.side).items():
+            nodes = self.grid.contact_nodes(contact.side)
+            facing = {k: contact.at(*self.grid.nodes[k], outward) for k, (_, outward) in nodes.items()}
+            if nodes and not any(facing.values()):
+                return [], "missed"
+            for k, (w, _) in nodes.items():
+                if not facing[k]:
+                    continue
                 x, y = self.grid.nodes[k]
-                nu, gap = contact.at(x, y, outward)
+                nu, gap = facing[k]
                 fixed = self.prescribed.get(k, {})
                 if math.hypot(*(0 if c in fixed else v for c, v in zip("XY", nu))) > 1e-9:
                     points.append((self.work(*nu, x, y), w * contact.xi(x, y)))
