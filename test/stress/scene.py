@@ -222,12 +222,11 @@ class _Part:
         with what is wrong about the others: None, "pressed" or "close"; or "missed" if no node of a side faces its obstacle."""
         points, trouble = [], None
         for contact in self.scene.contact:
-            largest = max((abs(contact.at(*self.grid.nodes[k], nu)[1]) for k, (_, nu) in self.grid.contact_nodes(contact.side).items()), default=0)
-            for k, (w, outward) in self.grid.contact_nodes(contact.side).items():
             nodes = self.grid.contact_nodes(contact.side)
             facing = {k: contact.at(*self.grid.nodes[k], outward) for k, (_, outward) in nodes.items()}
             if nodes and not any(facing.values()):
                 return [], "missed"
+            largest = max((abs(gap) for _, gap in filter(None, facing.values())), default=0)
             for k, (w, _) in nodes.items():
                 if not facing[k]:
                     continue

@@ -1,5 +1,6 @@
 #include "rpc/contact/contact_stiffness.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace rpc::contact
@@ -41,6 +42,42 @@ DeviceView<double *> own_stiffness_of(const ContactNodes &c, const DeviceView<do
         stiffness(i) = length > 0 ? along / (length * c.weight(i)) : 0;
       });
   return stiffness;
+}
+
+/// (owned dofs) sum of |m_i|/|m_i|, entry by entry, over the points of each node.
+void add_directions(const ContactNodes &c, Vector &directions)
+{
+  const auto to = device_write(directions);
+  for_each_point_by_side(
+      "rpc::contact::directions", c, KOKKOS_LAMBDA(const LO i) {
+        double length = 0;
+        for (int k = 0; k < c.dim; ++k) length += c.direction(i, k) * c.direction(i, k);
+        if (length > 0)
+          for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) += std::fabs(c.direction(i, k)) / std::sqrt(length);
+      });
+  Kokkos::fence();
+}
+
+/// (contact nodes) Sums over the rows of contact nodes of |K| times the directions at the matrix's columns.
+void sum_couplings(const ContactNodes &c, const CrsMatrix &K, const Vector &directions,
+                   const DeviceView<double *> &stiffness)
+{
+  const auto A = K.getLocalMatrixDevice();
+  const auto at = device_read(directions);
+  Kokkos::parallel_for(
+      "rpc::contact::sum_couplings", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        double sum = 0, length = 0;
+        for (int k = 0; k < c.dim; ++k) {
+          const double m = c.direction(i, k);
+          const LO row = c.dim * c.node(i) + k;
+          length += m * m;
+          if (m == 0) continue;
+          for (auto e = A.graph.row_map(row); e < A.graph.row_map(row + 1); ++e)
+            sum += std::fabs(m * A.values(e)) * at(A.graph.entries(e));
+        }
+        stiffness(i) = length > 0 ? sum / (length * std::sqrt(length)) : 0;
+      });
+  Kokkos::fence();
 }
 
 /// Brings the contact nodes' own blocks to those of K + sum over points, added w m m^T. All of them, for a node of two
@@ -154,6 +191,24 @@ void ContactStiffness::apply_elastic(const Vector &u, Vector &Ku) const
   write_diagonal_blocks(contact_, nothing_, block_, elastic_, *matrix_);
   matrix_->apply(u, Ku);
   write_diagonal_blocks(contact_, written_, block_, elastic_, *matrix_);
+}
+
+const DeviceView<double *> &ContactStiffness::sweep_stiffness() const
+{
+  if (sweep_stiffness_.extent(0) == static_cast<std::size_t>(contact_.size()) && contact_.size() > 0)
+    return sweep_stiffness_;
+  Vector owned(getDomainMap()), columns(matrix_->getColMap());
+  add_directions(contact_, owned);
+  const auto importer = matrix_->getGraph()->getImporter();
+  if (importer.is_null())
+    columns.update(1., owned, 0.);
+  else
+    columns.doImport(owned, *importer, Tpetra::INSERT);
+  sweep_stiffness_ = DeviceView<double *>("rpc::contact::sweep_stiffness", contact_.size());
+  write_diagonal_blocks(contact_, nothing_, block_, elastic_, *matrix_);
+  sum_couplings(contact_, *matrix_, columns, sweep_stiffness_);
+  write_diagonal_blocks(contact_, written_, block_, elastic_, *matrix_);
+  return sweep_stiffness_;
 }
 
 GO ContactStiffness::set(const DeviceView<double *> &added)

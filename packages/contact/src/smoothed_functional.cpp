@@ -168,41 +168,33 @@ void first_states(const ContactNodes &c, const Vector &u, const DeviceView<doubl
   Kokkos::fence();
 }
 
-/// How much each point's state is at odds with the contact law, as a pressure; k v stands for a penetration, k being the
-/// stiffness of the node alone. @return this rank's largest pressure within the law [Pa]
-double violations(const ContactNodes &c, const Vector &u, const DeviceView<State *> &piece,
-                  const DeviceView<double *> &p, const DeviceView<double *> &own, const DeviceView<double *> &violation)
+/// This rank's largest pressure, as far as the law allows it [Pa].
+double largest_pressure(const ContactNodes &c, const DeviceView<double *> &p)
 {
-  const auto x = device_read(u);
   double largest = 0;
   Kokkos::parallel_reduce(
-      "rpc::contact::violations", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &most) {
-        if (c.fixed(i)) return;
-        const double kv = own(i) * penetration(c, i, x), xi = c.yield(i);
-        double by = piece(i) == State::open ? kv : -kv;
-        if (piece(i) == State::stuck) by = p(i) < 0 ? -p(i) : p(i) - xi;
-        violation(i) = by > 0 ? by : 0;
-        most = larger(most, clamp(p(i), 0, xi));
-      },
+      "rpc::contact::largest_pressure", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &most) { most = larger(most, clamp(p(i), 0, c.yield(i))); },
       Kokkos::Max<double>(largest));
-  return largest;
+  return std::max(0., largest);
 }
 
-/// A point whose violation is beyond the bound changes: from stuck to open or yielded, by the sign of p; else to stuck.
-void next_states(const ContactNodes &c, const DeviceView<State *> &piece, const StateChoice &choice, const double bound)
+/// A point that violates the contact law by more than a pressure goes from stuck to open or yielded, else to stuck. For a
+/// penetration stands k v, with k the stiffness of the node alone.
+void next_states(const ContactNodes &c, const Vector &u, const DeviceView<State *> &piece,
+                 const DeviceView<double *> &p, const DeviceView<double *> &own, const double bound,
+                 const DeviceView<State *> &next)
 {
-  const auto next = choice.state;
-  const auto p = choice.pressure;
-  const auto violation = choice.violation;
+  const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::next_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         next(i) = piece(i);
-        if (!(violation(i) > bound)) return;
-        if (piece(i) != State::stuck)
+        if (c.fixed(i)) return;
+        const double kv = own(i) * penetration(c, i, x);
+        if (piece(i) == State::stuck)
+          next(i) = p(i) < -bound ? State::open : p(i) > c.yield(i) + bound ? State::yielded : State::stuck;
+        else if ((piece(i) == State::open ? kv : -kv) > bound)
           next(i) = State::stuck;
-        else
-          next(i) = p(i) < 0 ? State::open : State::yielded;
       });
   Kokkos::fence();
 }
@@ -216,23 +208,31 @@ LO count_differences(const DeviceView<State *> &a, const DeviceView<State *> &b)
   return count;
 }
 
-LO count_above(const DeviceView<double *> &values, const double bound)
+/// The moves of a sweep, from the elastic gradient at u; those of two points of one node add up.
+void move_points(const ContactNodes &c, const DeviceView<double *> &lambda, const DeviceView<double *> &stiffness,
+                 const Vector &G, Vector &u)
 {
-  LO count = 0;
-  Kokkos::parallel_reduce(
-      "rpc::contact::count_above", device_range(static_cast<LO>(values.extent(0))),
-      KOKKOS_LAMBDA(const LO i, LO &part) { part += values(i) > bound; }, count);
-  return count;
-}
-
-/// At least 0.
-double largest_of(const DeviceView<double *> &values)
-{
-  double most = 0;
-  Kokkos::parallel_reduce(
-      "rpc::contact::largest_of", device_range(static_cast<LO>(values.extent(0))),
-      KOKKOS_LAMBDA(const LO i, double &part) { part = larger(part, values(i)); }, Kokkos::Max<double>(most));
-  return std::max(0., most);
+  const DeviceView<double *> move("rpc::contact::move", c.size());
+  {
+    const auto slope = device_read(G);
+    const auto x = device_read(u);
+    Kokkos::parallel_for(
+        "rpc::contact::best_moves", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+          if (c.fixed(i)) return;
+          double length = 0;
+          for (int k = 0; k < c.dim; ++k) length += c.direction(i, k) * c.direction(i, k);
+          move(i) = best_move(along_direction(c, i, slope) / length, stiffness(i), c.weight(i), penetration(c, i, x),
+                              lambda(i), c.penalty(i), c.yield(i)) /
+                    length;
+        });
+    Kokkos::fence();
+  }
+  const auto x = device_write(u);
+  for_each_point_by_side(
+      "rpc::contact::move_points", c, KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k) x(c.dim * c.node(i) + k) += move(i) * c.direction(i, k);
+      });
+  Kokkos::fence();
 }
 
 /// (contact nodes) -v_i(u): what is left of the gaps once u is the origin.
@@ -427,6 +427,13 @@ void SmoothedFunctional::piece_gradient(const Vector &u, const Vector &G, Vector
   add_contact_force(near_, piece_pressures(near_, lambda_, u, piece_), F);
 }
 
+void SmoothedFunctional::sweep(Vector &u) const
+{
+  Vector G(u.getMap());
+  elastic_gradient(u, G);
+  move_points(near_, lambda_, hessian_->sweep_stiffness(), G, u);
+}
+
 GO SmoothedFunctional::update_hessian(const Vector &u)
 {
   const ContactNodes c = near_;
@@ -445,11 +452,11 @@ StateChoice SmoothedFunctional::choose_states(const Vector &u, const double negl
 {
   const ContactNodes c = near_;
   const DeviceView<State *> next("rpc::contact::next_state", c.size());
-  StateChoice choice{next, lambda_, DeviceView<double *>("rpc::contact::violation", c.size())};
+  StateChoice choice{next, lambda_};
   if (piece_chosen_) {
     choice.pressure = piece_pressures(c, lambda_, u, piece_);
-    const double largest = violations(c, u, piece_, choice.pressure, hessian_->own_stiffness(), choice.violation);
-    next_states(c, piece_, choice, negligible * max_all(*comm_, largest));
+    const double bound = negligible * max_all(*comm_, largest_pressure(c, choice.pressure));
+    next_states(c, u, piece_, choice.pressure, hessian_->own_stiffness(), bound, next);
   } else {
     first_states(c, u, lambda_, spring_ > 0 && !predicted_, next);
   }
@@ -457,23 +464,6 @@ StateChoice SmoothedFunctional::choose_states(const Vector &u, const double negl
   choice.confirmed = choice.changes == 0 && piece_chosen_;
   choice.fingerprint = fingerprint_of(*comm_, c, next);
   return choice;
-}
-
-StateChoice SmoothedFunctional::with_most_violated(const StateChoice &choice, const GO most) const
-{
-  double high = max_all(*comm_, largest_of(choice.violation)), low = 0; // above low there are too many, above high none
-  GO above = 0;
-  for (int halving = 0; halving < 60 && above == 0; ++halving) {
-    const double middle = 0.5 * (low + high);
-    const GO count = sum_all(*comm_, GO(count_above(choice.violation, middle)));
-    (count > most ? low : high) = middle;
-    above = count > most ? 0 : count;
-  }
-  StateChoice part{DeviceView<State *>("rpc::contact::next_state", near_.size()), choice.pressure, choice.violation};
-  next_states(near_, piece_, part, above > 0 ? high : low);
-  part.changes = sum_all(*comm_, GO(count_differences(part.state, piece_)));
-  part.fingerprint = fingerprint_of(*comm_, near_, part.state);
-  return part;
 }
 
 void SmoothedFunctional::take_states(const StateChoice &choice, Vector &u)

@@ -5,7 +5,6 @@
 #include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <set>
 
 namespace rpc::solver
@@ -13,7 +12,7 @@ namespace rpc::solver
 namespace
 {
 
-constexpr int most_steps = 60;
+constexpr int most_changes = 8; // of states; then Newton with its sweep needs fewer steps
 // While states change, solves bring the residual below this part of what it was, and of the load: three to five CG
 // iterations. With 1e-1 pressures are too rough to choose states by, 1e-4 saves no step. What the multipliers of the last
 // rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
@@ -21,29 +20,6 @@ constexpr double forcing = 5e-3;
 constexpr int most_updates = 2;     // of multipliers at the end, even if pressures miss their tolerance then
 constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
-
-/// Sets of states that were there before.
-class Memory
-{
-public:
-  /// The choice, or where it leads back to known states that for the half of the changes with the largest violations, for
-  /// a quarter of them, and so on; nothing where even the largest one alone is known.                          (5.16)
-  std::optional<contact::StateChoice> unknown_part_of(const contact::SmoothedFunctional &functional,
-                                                      contact::StateChoice choice)
-  {
-    while (!seen_.insert(choice.fingerprint).second) {
-      if (choice.changes <= 1) return std::nullopt;
-      const auto part = functional.with_most_violated(choice, choice.changes / 2);
-      if (part.changes >= choice.changes) return std::nullopt; // violations that are all equal
-      choice = part;
-    }
-    return choice;
-  }
-  void clear() { seen_.clear(); }
-
-private:
-  std::set<std::uint64_t> seen_;
-};
 
 } // namespace
 
@@ -55,14 +31,13 @@ ActiveSetResult find_states(contact::SmoothedFunctional &functional, LinearSolve
   const double scale = functional.force_scale(), target = options.start_tolerance * scale;
   Vector start(u, Teuchos::Copy);
   Vector G(u.getMap()), F(u.getMap()), d(u.getMap());
-  Memory memory;
+  std::set<std::uint64_t> seen; // fingerprints of states
   NewtonStep step;
   bool rough = true;
   double norm = std::numeric_limits<double>::infinity(), before = norm;
-  int updates = 0; // of the multipliers alone
-  while (result.steps < most_steps) {
+  int changes = 0, updates = 0; // of states; of the multipliers alone
+  while (true) {
     const auto choice = functional.choose_states(u, negligible * options.pressure_tolerance);
-    std::optional<contact::StateChoice> next = choice;
     if (choice.confirmed) {
       const bool solved_well = norm <= target;
       result.confirmed =
@@ -70,16 +45,10 @@ ActiveSetResult find_states(contact::SmoothedFunctional &functional, LinearSolve
       const bool stalled = !rough && !solved_well && !(norm < 0.5 * before);
       if (result.confirmed || stalled) break;
       rough = false;
-    } else {
-      next = memory.unknown_part_of(functional, choice);
-      if (!next && !rough) break;
-      if (!next) { // what rough solves led to says little: solve for the present states first
-        rough = false;
-        memory.clear();
-        next = choice;
-      }
+    } else if (!seen.insert(choice.fingerprint).second || ++changes > most_changes) {
+      break; // in circles, or too slow
     }
-    functional.take_states(*next, u);
+    functional.take_states(choice, u);
     functional.elastic_gradient(u, G);
     functional.piece_gradient(u, G, F);
     before = norm = F.norm2();

@@ -5,6 +5,7 @@
 #include "rpc/core/parameters.hpp"
 #include "rpc/solver/exact_line_search.hpp"
 #include "rpc/solver/newton_group.hpp"
+#include "rpc/solver/sweep_direction.hpp"
 
 #include <NOX.H>
 #include <NOX_Abstract_PrePostOperator.H>
@@ -147,7 +148,7 @@ RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
   list->sublist("Printing")
       .set<RCP<std::ostream>>("Output Stream", rcp(new Teuchos::oblackholestream)); // else it warns
   list->sublist("Line Search").set("Method", "Exact");
-  list->sublist("Direction").set("Method", "Newton");
+  list->sublist("Direction").set("Method", "Sweep");
   if (user.isSublist("Printing")) list->remove("Printing");
   list->setParameters(user);
   list->remove("Status Tests", false);
@@ -156,6 +157,12 @@ RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
     search.set("Method", "User Defined");
     search.set<RCP<NOX::LineSearch::UserDefinedFactory>>("User Defined Line Search Factory",
                                                          rcp(new ExactLineSearchFactory));
+  }
+  Teuchos::ParameterList &direction = list->sublist("Direction");
+  if (direction.isType<std::string>("Method") && direction.get<std::string>("Method") == "Sweep") {
+    direction.set("Method", "User Defined");
+    direction.set<RCP<NOX::Direction::UserDefinedFactory>>("User Defined Direction Factory",
+                                                           rcp(new SweepDirectionFactory));
   }
   list->sublist("Solver Options").set("User Defined Pre/Post Operator", reporter);
   return list;
@@ -276,7 +283,7 @@ void check_nox_parameters(contact::SmoothedFunctional &functional, LinearSolver 
                           const NewtonOptions &options)
 {
   if (options.nox.numParams() == 0) return;
-  const auto context = rcp(new NewtonContext{functional, linear_solver, 0, 0, 1, 0, ""});
+  const auto context = rcp(new NewtonContext{functional, linear_solver});
   const auto reporter = rcp(new Reporter(context, 1, [](const NewtonStep &) {}));
   build_solver(rcp(new NewtonGroup(context, u)), options, context, nox_list(options.nox, reporter));
 }
@@ -287,8 +294,7 @@ contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, Linear
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::newton"));
   const double scale = functional.force_scale();
-  const auto context =
-      rcp(new NewtonContext{functional, linear_solver, options.residual_tolerance * scale, 0, 1, 0, ""});
+  const auto context = rcp(new NewtonContext{functional, linear_solver, options.residual_tolerance * scale});
   const auto reporter = rcp(new Reporter(context, scale, report));
   const auto list = nox_list(options.nox, reporter);
   const auto group = rcp(new NewtonGroup(context, u));

@@ -8,6 +8,9 @@
 namespace rpc::solver
 {
 
+// |r|/|F| of a direction while states change.
+constexpr double forcing = 5e-3;
+
 NewtonGroup::NewtonGroup(RCP<NewtonContext> context, RCP<rpc::Vector> u)
     : context_(std::move(context)), u_(u), F_(u_, NOX::ShapeCopy), newton_(u_, NOX::ShapeCopy)
 {
@@ -68,7 +71,7 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeF()
 
 NOX::Abstract::Group::ReturnType NewtonGroup::computeJacobian()
 {
-  context_->functional.update_hessian(u_.data());
+  context_->changed_states = context_->functional.update_hessian(u_.data());
   has_jacobian_ = true;
   return Ok;
 }
@@ -77,8 +80,9 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
 {
   if (has_newton_) return Ok;
   if (!has_F_ || !has_jacobian_) return BadDependency;
-  // A tenth of the target is close enough; far from the solution that is below the linear solver's own tolerance.
-  const double enough = std::min(0.1, 0.1 * context_->target_residual / norm_F_);
+  // A tenth of the target is close enough, and while states change a rough direction leads down as well as an exact one.
+  const double rough = context_->changed_states > 0 ? forcing : 0;
+  const double enough = std::min(0.1, std::max(rough, 0.1 * context_->target_residual / norm_F_));
   const auto result = context_->linear_solver.solve(F_.data(), newton_.data(), enough);
   newton_.scale(-1.);
   context_->linear_iterations = result.iterations;

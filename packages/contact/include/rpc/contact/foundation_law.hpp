@@ -50,6 +50,21 @@ KOKKOS_INLINE_FUNCTION State state(const double v, const double lambda, const do
   return z < 0 ? State::open : (z > xi ? State::yielded : State::stuck);
 }
 
+/// The s that minimizes slope s + stiffness s^2/2 + w (Psi(v + s) - Psi(v)): how far one point moves if all others stay where
+/// they are. (4.6)
+/// @param stiffness  > 0
+KOKKOS_INLINE_FUNCTION double best_move(const double slope, const double stiffness, const double w, const double v,
+                                        const double lambda, const double r, const double xi)
+{
+  const double open = -slope / stiffness;
+  if (lambda + r * (v + open) < 0) return open;
+  if (!is_rigid(xi)) {
+    const double yielded = -(slope + w * xi) / stiffness;
+    if (lambda + r * (v + yielded) > xi) return yielded;
+  }
+  return -(slope + w * (lambda + r * v)) / (stiffness + w * r);
+}
+
 /// Energy that the foundation has taken up, xi v+ [J/m^2]; 0, not NaN, for a rigid one that is not pressed.   (1.3)
 KOKKOS_INLINE_FUNCTION double plastic_energy(const double v, const double xi)
 {

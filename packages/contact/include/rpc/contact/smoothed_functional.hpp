@@ -23,10 +23,9 @@ struct ContactEnergy {
 
 /// States to go on with, and the pressures of the piece that they were read from.
 struct StateChoice {
-  DeviceView<State *> state;      ///< (contact nodes)
-  DeviceView<double *> pressure;  ///< (contact nodes) [Pa]
-  DeviceView<double *> violation; ///< (contact nodes) of the contact law by the present state, 0 where it stays [Pa]
-  GO changes = 0;                 ///< points on all ranks whose state is to change
+  DeviceView<State *> state;     ///< (contact nodes)
+  DeviceView<double *> pressure; ///< (contact nodes) [Pa]
+  GO changes = 0;                ///< points on all ranks whose state is to change
   bool confirmed = false; ///< no changes: u and the pressures obey the contact law, up to what the penalty leaves
   std::uint64_t fingerprint = 0; ///< of all states on all ranks: equal for equal ones
 };
@@ -88,15 +87,15 @@ public:
   /// is, open ones 0, yielded ones xi. (5.4)
   /// @param G  elastic_gradient at u
   void piece_gradient(const Vector &u, const Vector &G, Vector &F) const;
+  /// One nonlinear sweep: each contact node moves along its direction to the minimum of a bound of M, in which nodes do not
+  /// feel each other; M does not grow. All points at once: the result does not depend on an order. (4.7)
+  void sweep(Vector &u) const;
   /// Brings hessian() to H(u). @return number of contact nodes whose stiffness in it changed, over all ranks
   GO update_hessian(const Vector &u);
   /// One choice of the active-set iteration at the minimum u of hessian()'s piece: a point goes from open to yielded, or
   /// back, only by way of stuck. The first choice, before there is a piece, is made from the multipliers. (5.7)
   /// @param negligible  violations up to this part of the largest pressure change no state; dimensionless, >= 0
   StateChoice choose_states(const Vector &u, double negligible) const;
-  /// The same choice for the `most` points with the largest violations; all of several equal ones. (5.16)
-  /// @param most  of all ranks, > 0
-  StateChoice with_most_violated(const StateChoice &choice, GO most) const;
   /// Takes the choice's pressures for multipliers, as far as its states allow, and brings hessian() to its states. Nodes
   /// that come to stick are moved onto the foundation: r v would be a large residual for what is a small step.
   void take_states(const StateChoice &choice, Vector &u);

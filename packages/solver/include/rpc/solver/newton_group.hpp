@@ -20,7 +20,8 @@ struct NewtonContext {
   double direction_norm = 0; ///< |d|_2 of the full Newton step [m]
   double step_length = 1;
   int linear_iterations = 0;
-  std::string failure; ///< of the linear solver or the line search
+  GO changed_states = 0; ///< contact nodes whose stiffness the last Hessian changed
+  std::string failure;   ///< of the linear solver or the line search
 };
 
 /// A point of the Newton iteration: u, F(u) and the Newton direction. NOX holds two of them. doc/theory.md (4.2)

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <NOX_Direction_Generic.H>
+#include <NOX_Direction_UserDefinedFactory.H>
+
+namespace rpc::solver
+{
+
+/// The Newton direction from where a nonlinear sweep over the contact nodes leads, as a NOX direction for NewtonGroup: truncated
+/// nonsmooth Newton, after Graeser, Sander and Kornhuber. The sweep puts points on the kinks of the functional, where a line
+/// search would end at the first of them. doc/theory.md (4.7)
+class SweepDirection : public NOX::Direction::Generic
+{
+public:
+  bool reset(const Teuchos::RCP<NOX::GlobalData> &, Teuchos::ParameterList &) override { return true; }
+  /// Moves the group, too, to where the sweep leads.
+  bool compute(NOX::Abstract::Vector &direction, NOX::Abstract::Group &group,
+               const NOX::Solver::Generic &solver) override;
+};
+
+/// Hands SweepDirection to NOX ("Direction" -> "Method" = "User Defined").
+class SweepDirectionFactory : public NOX::Direction::UserDefinedFactory
+{
+public:
+  Teuchos::RCP<NOX::Direction::Generic> buildDirection(const Teuchos::RCP<NOX::GlobalData> &,
+                                                       Teuchos::ParameterList &) const override;
+};
+
+} // namespace rpc::solver

@@ -1,0 +1,29 @@
+#include "rpc/solver/sweep_direction.hpp"
+
+#include "rpc/solver/newton_group.hpp"
+
+namespace rpc::solver
+{
+
+bool SweepDirection::compute(NOX::Abstract::Vector &direction, NOX::Abstract::Group &group,
+                             const NOX::Solver::Generic &)
+{
+  using Group = NOX::Abstract::Group;
+  const NewtonContext &context = dynamic_cast<const NewtonGroup &>(group).context();
+  NoxVector moved(dynamic_cast<const NoxVector &>(group.getX()), NOX::DeepCopy);
+  context.functional.sweep(moved.data());
+  group.setX(moved);
+  if (group.computeF() != Group::Ok || group.computeJacobian() != Group::Ok) return false;
+  Teuchos::ParameterList none;
+  const auto status = group.computeNewton(none);
+  direction = group.getNewton();
+  return status == Group::Ok || status == Group::NotConverged; // a rough direction leads down as well
+}
+
+Teuchos::RCP<NOX::Direction::Generic> SweepDirectionFactory::buildDirection(const Teuchos::RCP<NOX::GlobalData> &,
+                                                                            Teuchos::ParameterList &) const
+{
+  return Teuchos::rcp(new SweepDirection);
+}
+
+} // namespace rpc::solver
