@@ -137,9 +137,14 @@ std::string predict(const Scene &scene, const mesh::MeshOptions &options, const 
     predict(scene, *coarse_options, comm, coarse, work);
     solver::NewtonOptions options_there = scene.newton;
     options_there.start_tolerance = scene.nested.tolerance;
-    const auto found = solver::find_states(*coarse.functional, *coarse.linear, *coarse.u, options_there,
-                                           [](const solver::NewtonStep &) {});
-    if (!found.confirmed) return "no solution was found on the next coarser one";
+    options_there.residual_tolerance = scene.nested.tolerance;
+    const auto silent = [](const solver::NewtonStep &) {};
+    auto found = solver::find_states(*coarse.functional, *coarse.linear, *coarse.u, options_there, silent);
+    if (!found.confirmed) { // what Newton has at the end is a start in any case
+      found.steps +=
+          solver::minimize(*coarse.functional, *coarse.linear, coarse.u, options_there, false, silent).newton_iterations;
+      coarse.functional->update_multipliers(*coarse.u);
+    }
     const auto interpolation = fem::interpolation(coarse.discretization, level.discretization);
     contact::start_from(*interpolation, *coarse.functional, coarse.functional->displacement(*coarse.u),
                         *level.functional, *level.u);

@@ -113,4 +113,49 @@ TEST(ContactStiffness, OfLargePenaltiesLeavesNoRoundingInTheElasticProduct)
   EXPECT_EQ(s.difference(s.H, Ku), 0);
 }
 
+TEST(ContactStiffness, IsWrittenUpToABound)
+{
+  Stiffness s;
+  const auto own = to_host(s.H.own_stiffness());
+  const auto soft_and_hard = [&](const double hard) {
+    return s.added([&](const LO i) { return (i % 2 ? hard : 0.5) * own(i); });
+  };
+  s.H.set(soft_and_hard(100));
+  s.H.write(5);
+  EXPECT_LT(s.difference(s.H, s.by_hand(soft_and_hard(100))), 1e-13);
+  EXPECT_LT(s.difference(*s.H.matrix(), s.by_hand(soft_and_hard(5))), 1e-14);
+  const auto changes = s.H.changes();
+  const auto coefficient = to_host(changes.coefficient);
+  for (LO i = 0; i < changes.size(); ++i) EXPECT_GT(coefficient(i), 0);
+}
+
+TEST(ContactStiffness, OfSweepsBoundsTheEnergyOfAllMovesAtOnce)
+{
+  Stiffness s;
+  const auto &c = s.scene.functional->contact();
+  const auto node = to_host(c.node);
+  const auto m = to_host(c.direction);
+  const auto kappa = to_host(s.H.sweep_stiffness());
+  const auto coords = to_host(s.scene.d.mesh->coords);
+  for (const double frequency : {0., 1., 20.}) { // moves together, and against each other
+    Vector d(s.u->getMap()), Kd(s.u->getMap());
+    double bound = 0, alone = 0;
+    {
+      const auto to = d.getLocalViewHost(Tpetra::Access::ReadWrite);
+      for (LO i = 0; i < c.size(); ++i) {
+        const double length = std::hypot(m(i, 0), m(i, 1));
+        if (length == 0) continue;
+        const double move = std::cos(frequency * coords(node(i), 0));
+        for (int k = 0; k < 2; ++k) to(2 * node(i) + k, 0) += move * m(i, k) / (length * length);
+        bound += kappa(i) * move * move;
+        alone += to_host(s.H.own_stiffness())(i) * to_host(c.weight)(i) / (length * length) * move * move;
+      }
+    }
+    s.K.apply(d, Kd);
+    const auto &comm = *s.u->getMap()->getComm();
+    EXPECT_LE(d.dot(Kd), sum_all(comm, bound)) << frequency;
+    EXPECT_LE(sum_all(comm, bound), 6 * sum_all(comm, alone)) << "not far above the nodes' own";
+  }
+}
+
 } // namespace

@@ -61,4 +61,16 @@ TEST(FoundationLaw, RigidFoundationNeverYields)
   EXPECT_EQ(plastic_energy(-0.5, 4), 0);
 }
 
+TEST(FoundationLaw, BestMoveEndsWhereTheForceOfOnePointVanishes)
+{
+  const double r = 50, w = 0.3, stiffness = 2;
+  for (const double xi : {3., inf})
+    for (const double lambda : {0., 1.2, 3.})
+      for (const double v : {-0.5, -0.01, 0., 0.01, 0.5})
+        for (const double slope : {-10., -0.5, -0.1, 0., 0.7, 9.}) {
+          const double s = best_move(slope, stiffness, w, v, lambda, r, xi);
+          EXPECT_NEAR(slope + stiffness * s + w * pressure(v + s, lambda, r, xi), 0, 1e-13) << v << " " << slope;
+        }
+}
+
 } // namespace

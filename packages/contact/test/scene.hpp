@@ -94,9 +94,9 @@ struct Scene {
 };
 
 /// One choice of states, taken unless it confirms the present ones.
-inline contact::StateChoice choose(contact::SmoothedFunctional &functional, const Vector &u, const double weight)
+inline contact::StateChoice choose(contact::SmoothedFunctional &functional, const Vector &u, const double negligible = 0)
 {
-  const auto choice = functional.choose_states(u, weight);
+  const auto choice = functional.choose_states(u, negligible);
   Vector moved(u, Teuchos::Copy);
   if (!choice.confirmed) functional.take_states(choice, moved);
   return choice;

@@ -260,4 +260,27 @@ TEST(SmoothedFunctional, ContactLawResidualVanishesExactlyForPairsThatObeyTheLaw
   EXPECT_GT(functional.contact_law_residual(*u), 1e-3);
 }
 
+TEST(SmoothedFunctional, FallsInEachSweepUntilContactForcesBalance)
+{
+  const Scene scene;
+  const auto u = scene.vector(0.02, 0.3);
+  double before = scene.functional->value(*u);
+  for (int sweep = 0; sweep < 200; ++sweep) {
+    scene.functional->sweep(*u);
+    const double now = scene.functional->value(*u);
+    EXPECT_LE(now, before + 1e-13 * std::abs(before)) << sweep;
+    before = now;
+  }
+  Vector F(u->getMap());
+  scene.functional->gradient(*u, F);
+  const auto f = F.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto &c = scene.functional->contact();
+  const auto node = to_host(c.node);
+  const auto m = to_host(c.direction);
+  for (LO i = 0; i < c.size(); ++i) {
+    const double along = m(i, 0) * f(2 * node(i), 0) + m(i, 1) * f(2 * node(i) + 1, 0);
+    EXPECT_LT(std::abs(along), 1e-9) << i;
+  }
+}
+
 } // namespace
