@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace rpc
 {
@@ -106,6 +107,17 @@ private:
   double planned_ = std::numeric_limits<double>::infinity(); // estimate that the present mesh was to have
 };
 
+/// Why there is nothing to adapt a mesh to.
+std::string nothing_strained(const Solution &s)
+{
+  std::ostringstream reason;
+  reason << "nothing is strained";
+  if (s.strain_energy > 0)
+    reason << ": the strain energy " << s.strain_energy << (s.discretization.dim() == 2 ? " J/m" : " J")
+           << " is rounding, which may reach " << s.estimate->rounding;
+  return reason.str();
+}
+
 /// The mesh with the least estimate; with the target met that is the last one.
 std::size_t best_of(const std::vector<Cycle> &cycles)
 {
@@ -151,7 +163,12 @@ Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::
     }
     print_estimate(console, scene, *last);
     adaptation.reached = cycles.back().estimate <= scene.adapt.target;
+    if (only_rounding(*last)) adaptation.reason = nothing_strained(*last);
     if (adaptation.reached) break;
+    if (last->estimate->total() <= last->estimate->rounding) {
+      adaptation.reason = "the estimated error is rounding of the displacements, which finer meshes do not reduce";
+      break;
+    }
     if (static_cast<int>(cycles.size()) == scene.adapt.max_cycles) {
       adaptation.reason = "there were \"Adapt->Max Cycles\" = " + std::to_string(scene.adapt.max_cycles) + " meshes";
       break;
@@ -183,10 +200,15 @@ PhaseSeconds &PhaseSeconds::operator+=(const PhaseSeconds &other)
   return *this;
 }
 
+bool only_rounding(const Solution &s)
+{
+  return s.estimate && std::max(s.strain_energy, s.estimate->total()) <= s.estimate->rounding;
+}
+
 double relative_estimate(const Solution &s)
 {
   const double squared = s.estimate->total();
-  return squared > 0 ? std::sqrt(squared / s.strain_energy) : 0;
+  return squared > 0 && !only_rounding(s) ? std::sqrt(squared / s.strain_energy) : 0;
 }
 
 double exact_error(const Scene &scene, const Solution &s)

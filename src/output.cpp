@@ -158,6 +158,7 @@ void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution
                             {"recovery", std::sqrt(s.estimate->recovery)},
                             {"contact_equilibrium", std::sqrt(s.estimate->equilibrium)},
                             {"contact_complementarity", std::sqrt(s.estimate->complementarity)},
+                            {"rounding", std::sqrt(s.estimate->rounding)},
                             {"exact_relative", maybe(exact)},
                             {"effectivity", maybe(relative / exact)}};
   if (!s.adaptation) return;

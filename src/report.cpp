@@ -22,6 +22,15 @@ namespace
   out << line;
 }
 
+/// An error bar, or that there is none.
+std::string bar_text(const double value, const char *unit)
+{
+  if (std::isnan(value)) return "unknown";
+  char text[60];
+  std::snprintf(text, sizeof text, "%.1e%s", value, unit);
+  return text;
+}
+
 int sum(const std::vector<int> &values)
 {
   return std::accumulate(values.begin(), values.end(), 0);
@@ -29,8 +38,10 @@ int sum(const std::vector<int> &values)
 
 void print_adaptation(std::ostream &out, const Adaptation &adaptation, const bool flat)
 {
-  out << "  adapted             "
-      << (adaptation.reached ? "the error is what was asked for" : "NOT TO THE TARGET: " + adaptation.reason) << "\n";
+  const std::string outcome = !adaptation.reached         ? "NOT TO THE TARGET: " + adaptation.reason
+                              : adaptation.reason.empty() ? "the error is what was asked for"
+                                                          : adaptation.reason;
+  out << "  adapted             " << outcome << "\n";
   print(out, "    cycle     dofs    error            J    max. p  Newton  krylov  time [s]\n");
   for (std::size_t k = 0; k < adaptation.cycles.size(); ++k) {
     const Cycle &c = adaptation.cycles[k];
@@ -42,11 +53,10 @@ void print_adaptation(std::ostream &out, const Adaptation &adaptation, const boo
     print(out, "    errors by the sequence: unknown, for these are the results of the first mesh\n");
     return;
   }
-  print(out,
-        "    errors by the sequence: J %.1e %s, contact force %.1e %s, max. pressure %.1e Pa, pressure in L2 %.1e, "
-        "in contact %.1e %s\n",
-        e.energy, flat ? "J/m" : "J", e.contact_force, flat ? "N/m" : "N", e.max_pressure, e.contact_pressure,
-        e.contact_length, flat ? "m" : "m^2");
+  print(out, "    errors by the sequence: J %s, contact force %s, max. pressure %s, pressure in L2 %s, in contact %s\n",
+        bar_text(e.energy, flat ? " J/m" : " J").c_str(), bar_text(e.contact_force, flat ? " N/m" : " N").c_str(),
+        bar_text(e.max_pressure, " Pa").c_str(), bar_text(e.contact_pressure, "").c_str(),
+        bar_text(e.contact_length, flat ? " m" : " m^2").c_str());
 }
 
 } // namespace
@@ -105,6 +115,7 @@ void print_estimate(std::ostream &out, const Scene &scene, const Solution &s)
   if (scene.adapt.adapts()) print(out, ", asked for: %.3e", scene.adapt.target);
   const double exact = exact_error(scene, s);
   if (!std::isnan(exact)) print(out, "; by the exact energy %.3e", exact);
+  if (only_rounding(s)) print(out, "; nothing is strained, what is estimated is rounding");
   out << std::endl;
 }
 

@@ -286,6 +286,18 @@ class AdaptiveRuns(RpcTestCase):
             self.assertNotIn("nan", result.stdout)
             self.assertEqual(set(summary["adaptation"]["errors"].values()), {None})
 
+    def test_a_beam_that_is_only_lifted_needs_one_mesh_and_the_run_says_why(self):
+        result, summary = self.adapt("--set=Dirichlet->left->Y=0.01", "--set=Dirichlet->right->Y=0.01",
+                                     "--set=Traction->top->Y=0")
+        adaptation, estimate = summary["adaptation"], summary["error_estimate"]
+        self.assertTrue(adaptation["reached"])
+        self.assertEqual(len(adaptation["cycles"]), 1)
+        self.assertEqual(estimate["relative"], 0)
+        self.assertLess(estimate["energy_norm"], estimate["rounding"])
+        self.assertIn("nothing is strained", adaptation["reason"])
+        self.assertIn("nothing is strained", result.stdout)
+        self.assertNotIn("nan", result.stdout)
+
     def test_every_mesh_is_written_on_request(self):
         _, summary = self.adapt("--set=Adapt->Target Relative Error=0.01", "--set=Adapt->Write All=true")
         for cycle in range(1, 1 + len(summary["adaptation"]["cycles"])):

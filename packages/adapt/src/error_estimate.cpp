@@ -1,5 +1,6 @@
 #include "rpc/adapt/error_estimate.hpp"
 
+#include "rpc/fem/rounding.hpp"
 #include "rpc/fem/stress.hpp"
 
 #include <algorithm>
@@ -154,7 +155,7 @@ struct PeakDifference {
     for (int q = 0; q < static_cast<int>(terms.value.extent(0)); ++q) {
       const auto x = terms.point(f, q, false);
       const double p = x.at[pressure];
-      if (p < share * highest) continue;
+      if (!(p > 0 && p >= share * highest)) continue;
       const double difference = p - contact::clamp(x.recovered, 0, x.at[yield]);
       most = Kokkos::Experimental::fmax(most, difference < 0 ? -difference : difference);
     }
@@ -206,6 +207,7 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
   estimate.recovery = all[0];
   estimate.equilibrium = all[1];
   estimate.complementarity = all[2];
+  estimate.rounding = fem::rounding_energy(d, materials, u);
   estimate.pressure = std::sqrt(all[3]);
   estimate.max_pressure = max_all(mesh.comm(), peak);
   return estimate;

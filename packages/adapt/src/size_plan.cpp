@@ -41,10 +41,11 @@ struct Geometry {
     const int nv = mesh.vertices;
     std::map<std::pair<int, int>, int> edges;
     for (int cell = 0; cell < mesh.num_cells(); ++cell) {
+      const double *const first = &mesh.coords[2 * mesh.cells[nv * cell]]; // far from the origin areas need differences
       for (int a = 0; a < nv; ++a) {
         const int n = mesh.cells[nv * cell + a], m = mesh.cells[nv * cell + (a + 1) % nv];
         const double *x = &mesh.coords[2 * n], *y = &mesh.coords[2 * m];
-        area[cell] += (x[0] * y[1] - x[1] * y[0]) / 2;
+        area[cell] += ((x[0] - first[0]) * (y[1] - first[1]) - (x[1] - first[1]) * (y[0] - first[0])) / 2;
         for (int i = 0; i < 2; ++i) centre[cell][i] += x[i] / nv;
         around[n].push_back(cell);
         ++edges[std::minmax(n, m)];

@@ -107,6 +107,23 @@ TEST(SizePlan, SizesGrowByNoMoreThanHalfTheDistance)
     }
 }
 
+TEST(SizePlan, DoesNotDependOnTheOrigin)
+{
+  for (const int vertices : {3, 4}) {
+    auto mesh = square(8, 2, vertices);
+    for (int cell = 0; cell < mesh.num_cells(); ++cell) mesh.squared[cell] = 1 + cell % 5;
+    const SizeRequest request{sum(mesh.squared) / 50, 1e9};
+    const SizePlan here = plan_sizes(mesh, request);
+    for (double &x : mesh.coords) x += 1 << 24; // its eighths are exact there
+    const SizePlan there = plan_sizes(mesh, request);
+    ASSERT_EQ(here.field.size.size(), there.field.size.size());
+    for (std::size_t n = 0; n < here.field.size.size(); ++n) {
+      EXPECT_LT(here.field.size[n] / there.field.size[n], 1.02); // sizes are rounded to 64 steps an octave
+      EXPECT_GT(here.field.size[n] / there.field.size[n], 0.98);
+    }
+  }
+}
+
 TEST(SizePlan, NoErrorLetsCellsGrow)
 {
   const auto mesh = square(4, 1, 4);

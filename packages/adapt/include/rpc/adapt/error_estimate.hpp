@@ -21,6 +21,8 @@ struct ErrorEstimate {
   double recovery = 0;
   double equilibrium = 0;
   double complementarity = 0;
+  double rounding =
+      0; ///< an estimate, or a strain energy, that is no larger than this is rounding; see rounding_energy()
   // What the contact pressure and that of the recovered stress, held to [0, xi], disagree by.
   double pressure = 0; ///< in L2 over facets that are neither all open nor all yielded [Pa m^(1/2)], in 3D [Pa m]
   double max_pressure =
