@@ -42,19 +42,41 @@ Cycle cycle_of(const Solution &s, const double seconds)
   cycle.linear_iterations = s.linear.iterations;
   cycle.recovered_pressure = s.pressure_norm > 0 ? s.estimate->pressure / s.pressure_norm : 0;
   cycle.recovered_max_pressure = s.estimate->max_pressure;
+  cycle.peak = s.estimate->peak;
+  cycle.contact_ends = s.estimate->contact_ends;
   cycle.seconds = seconds;
   return cycle;
 }
 
+/// Changes of a quantity from mesh to mesh.
+template <class Change>
+std::vector<double> changes(const std::vector<Cycle> &cycles, const Change &change)
+{
+  std::vector<double> all;
+  for (std::size_t k = 1; k < cycles.size(); ++k) all.push_back(change(cycles[k - 1], cycles[k]));
+  return all;
+}
+
+/// Why the largest pressure of the last mesh has no error bar; empty if it has one.
+std::string unknown_max_pressure(const std::vector<Cycle> &cycles, const std::vector<double> &eta)
+{
+  const Cycle &last = cycles.back();
+  const std::string reason = last.peak.unknown();
+  if (last.peak.at_bound || !reason.empty()) return reason;
+  const auto growth = changes(cycles, [](const Cycle &a, const Cycle &b) { return b.max_pressure - a.max_pressure; });
+  const bool grows = growth.size() > 1 && growth.back() > 0 && growth[growth.size() - 2] > 0;
+  if (grows && adapt::unsettled(growth, eta, last.recovered_max_pressure))
+    return "the largest pressure grows from mesh to mesh and does not settle";
+  return "";
+}
+
+/// Error bars of the last mesh.
 ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
 {
   std::vector<double> eta;
   for (const auto &cycle : cycles) eta.push_back(cycle.estimate);
-  const auto error = [&](const auto &change_between) {
-    std::vector<double> change;
-    for (std::size_t k = 1; k < cycles.size(); ++k) change.push_back(change_between(cycles[k - 1], cycles[k]));
-    return adapt::observed_error(change, eta);
-  };
+  const auto error = [&](const auto &change) { return adapt::observed_error(changes(cycles, change), eta); };
+  const Cycle &last = cycles.back();
   ObservedErrors errors;
   errors.energy = error([](const Cycle &a, const Cycle &b) { return std::abs(b.energy - a.energy); });
   errors.contact_force = error([](const Cycle &a, const Cycle &b) {
@@ -63,10 +85,27 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
   });
   errors.max_pressure = error([](const Cycle &a, const Cycle &b) { return std::abs(b.max_pressure - a.max_pressure); });
   errors.contact_pressure = error([](const Cycle &, const Cycle &b) { return b.pressure_change; });
-  errors.max_pressure = std::max(errors.max_pressure, cycles.back().recovered_max_pressure); // a NaN stays
-  errors.contact_pressure = std::max(errors.contact_pressure, cycles.back().recovered_pressure);
-  errors.contact_length =
-      error([](const Cycle &a, const Cycle &b) { return std::abs(b.contact_length - a.contact_length); });
+  const auto length = [](const Cycle &a, const Cycle &b) { return std::abs(b.contact_length - a.contact_length); };
+  errors.contact_length = error(length);
+  if (cycles.size() < 2) {
+    for (const char *name :
+         {"energy_J", "contact_force", "max_pressure", "contact_pressure_l2_relative", "contact_length"})
+      errors.unknown[name] = "one mesh shows no change";
+    return errors;
+  }
+  errors.max_pressure = last.peak.at_bound ? 0 : std::max(errors.max_pressure, last.recovered_max_pressure);
+  errors.contact_pressure = std::max(errors.contact_pressure, last.recovered_pressure);
+  // Sums of weights are rounded.
+  errors.contact_length = std::max({errors.contact_length, last.contact_ends, 1e-12 * last.contact_length});
+  const std::string reason = unknown_max_pressure(cycles, eta);
+  if (!reason.empty()) {
+    errors.max_pressure = std::numeric_limits<double>::quiet_NaN();
+    errors.unknown["max_pressure"] = reason;
+  }
+  if (adapt::unsettled(changes(cycles, length), eta, errors.contact_length)) {
+    errors.contact_length = std::numeric_limits<double>::quiet_NaN();
+    errors.unknown["contact_length"] = "the length in contact does not settle from mesh to mesh";
+  }
   return errors;
 }
 
@@ -208,7 +247,7 @@ bool only_rounding(const Solution &s)
 double relative_estimate(const Solution &s)
 {
   const double squared = s.estimate->total();
-  return squared > 0 && !only_rounding(s) ? std::sqrt(squared / s.strain_energy) : 0;
+  return squared == 0 || only_rounding(s) ? 0 : std::sqrt(squared / s.strain_energy);
 }
 
 double exact_error(const Scene &scene, const Solution &s)

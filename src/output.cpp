@@ -169,6 +169,7 @@ void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution
                                   {"max_pressure", maybe(a.errors.max_pressure)},
                                   {"contact_pressure_l2_relative", maybe(a.errors.contact_pressure)},
                                   {"contact_length", maybe(a.errors.contact_length)}};
+  json["adaptation"]["errors_unknown"] = a.errors.unknown;
   auto &cycles = json["adaptation"]["cycles"] = nlohmann::ordered_json::array();
   for (const Cycle &c : a.cycles)
     cycles.push_back({{"dofs", c.dofs},

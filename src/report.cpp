@@ -57,6 +57,7 @@ void print_adaptation(std::ostream &out, const Adaptation &adaptation, const boo
         bar_text(e.energy, flat ? " J/m" : " J").c_str(), bar_text(e.contact_force, flat ? " N/m" : " N").c_str(),
         bar_text(e.max_pressure, " Pa").c_str(), bar_text(e.contact_pressure, "").c_str(),
         bar_text(e.contact_length, flat ? " m" : " m^2").c_str());
+  for (const auto &[name, reason] : e.unknown) print(out, "    no error of %s: %s\n", name.c_str(), reason.c_str());
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -41,19 +42,22 @@ struct Cycle {
   double pressure_change = 0;            ///< of the contact pressure since the mesh before, over its norm, both in L2
   double recovered_pressure = 0;         ///< what that of the recovered stress differs by, over its norm, both in L2
   double recovered_max_pressure = 0;     ///< the same of the largest pressures [Pa]
+  adapt::PressurePeak peak;
+  double contact_ends = 0; ///< of facets that are partly open, half of them [m]
   int newton_iterations = 0;
   std::vector<int> linear_iterations; ///< per solve
   double seconds = 0;
 };
 
 /// Errors of results as the sequence of meshes shows them, and for pressures the recovered stress if that shows more; each
-/// like the number that it belongs to, NaN from one mesh alone. doc/theory.md (10.7)
+/// like the number that it belongs to. NaN where the meshes do not tell, as from one alone. doc/theory.md (10.7), (10.9)
 struct ObservedErrors {
-  double energy = 0;           ///< J [J]
-  double contact_force = 0;    ///< 2-norm [N]
-  double max_pressure = 0;     ///< [Pa]
-  double contact_pressure = 0; ///< L2 norm over the contact sides, over that of the pressure
-  double contact_length = 0;   ///< [m]
+  double energy = 0;                          ///< J [J]
+  double contact_force = 0;                   ///< 2-norm [N]
+  double max_pressure = 0;                    ///< [Pa]
+  double contact_pressure = 0;                ///< L2 norm over the contact sides, over that of the pressure
+  double contact_length = 0;                  ///< [m]
+  std::map<std::string, std::string> unknown; ///< why, by the name in the summary, for those that are NaN
 };
 
 /// What became of "Adapt".

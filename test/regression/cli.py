@@ -250,6 +250,7 @@ class AdaptiveRuns(RpcTestCase):
         self.assertGreater(cycles[0]["relative_estimate"], 0.01)
         for error in adaptation["errors"].values():
             self.assertIsInstance(error, float)
+        self.assertEqual(adaptation["errors_unknown"], {})
         self.assertIn("the error is what was asked for", result.stdout)
         self.assertEqual(files(self.folder / "out"), ["beam_adaptive.contact.csv", "beam_adaptive.e", "beam_adaptive.json"])
 
@@ -297,6 +298,17 @@ class AdaptiveRuns(RpcTestCase):
         self.assertIn("nothing is strained", adaptation["reason"])
         self.assertIn("nothing is strained", result.stdout)
         self.assertNotIn("nan", result.stdout)
+
+    def test_an_error_bar_that_cannot_be_had_is_null_and_the_run_says_why(self):
+        result, summary = self.adapt("--set=Adapt->Target Relative Error=0.02",
+                                     "--set=Contact->Yield Stress=x < 2.5 ? 3 : inf")
+        adaptation = summary["adaptation"]
+        self.assertIsNone(adaptation["errors"]["max_pressure"])
+        self.assertIsInstance(adaptation["errors"]["energy_J"], float)
+        self.assertEqual(list(adaptation["errors_unknown"]), ["max_pressure"])
+        self.assertIn("yield stress jumps", adaptation["errors_unknown"]["max_pressure"])
+        self.assertIn("max. pressure unknown", result.stdout)
+        self.assertIn("no error of max_pressure: the yield stress jumps", result.stdout)
 
     def test_every_mesh_is_written_on_request(self):
         _, summary = self.adapt("--set=Adapt->Target Relative Error=0.01", "--set=Adapt->Write All=true")

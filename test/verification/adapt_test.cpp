@@ -204,6 +204,74 @@ TEST(AdaptiveHertz, ErrorBarsHoldWhatAFineMeshShows)
   }
 }
 
+/// Runs to several targets have bars of the largest pressure and of the length in contact that are true against a fine mesh,
+/// or none for a reason that is told.
+struct BarCounts {
+  int max_pressure = 0, contact_length = 0; // those that there are
+};
+BarCounts expect_true_or_unknown(const std::string &deck, const std::vector<std::string> &scene)
+{
+  const Exact unknown{std::nan(""), 1};
+  const Adapted fine(deck, scene, unknown, 0.001);
+  EXPECT_TRUE(fine.last.adaptation->reached) << fine.last.adaptation->reason;
+  BarCounts bars;
+  for (const double target : {0.02, 0.01, 0.005}) {
+    SCOPED_TRACE("target " + text_of(target));
+    const Adapted run(deck, scene, unknown, target);
+    const auto &errors = run.last.adaptation->errors;
+    const auto &contact = run.last.contact.total, &there = fine.last.contact.total;
+    EXPECT_EQ(std::isnan(errors.max_pressure), errors.unknown.count("max_pressure") == 1);
+    EXPECT_EQ(std::isnan(errors.contact_length), errors.unknown.count("contact_length") == 1);
+    if (!std::isnan(errors.max_pressure)) {
+      EXPECT_LE(std::abs(contact.max_pressure - there.max_pressure), errors.max_pressure);
+      ++bars.max_pressure;
+    }
+    if (!std::isnan(errors.contact_length)) {
+      EXPECT_LE(std::abs(contact.contact_length - there.contact_length), errors.contact_length);
+      ++bars.contact_length;
+    }
+  }
+  return bars;
+}
+
+TEST(ErrorBars, OfASingularPressureAreUnknown)
+{
+  const std::vector<std::vector<std::string>> scenes = {
+      {"Contact->Yield Stress=x < 2.5 ? 3 : inf"},
+      {"Contact->Yield Stress=x < 2.3 ? 15 : inf"},
+      {"Contact->Yield Stress=inf", "Contact->Gap=abs(x - 2.5) < 1 ? 0 : 1"}, // the foundation's edges
+      {"Contact->Yield Stress=inf", "Contact->Gap=x < 2 ? 0 : 0.0005"}};
+  for (const auto &scene : scenes) {
+    SCOPED_TRACE(scene.back());
+    EXPECT_EQ(expect_true_or_unknown("beam_adaptive.xml", scene).max_pressure, 0);
+  }
+}
+
+TEST(ErrorBars, AreTrueWhereThereAreSome)
+{
+  const std::vector<std::vector<std::string>> scenes = {
+      {"Contact->Yield Stress=16"},
+      {"Contact->Yield Stress=x < 2.5 ? 3 : 20"}, // both parts yield
+      {"Contact->Yield Stress=16", "Contact->Gap=x < 2.5 ? 0 : 0.002"},
+      {"Contact->Yield Stress=12", "Contact->Gap=x < 2.2 ? 0 : 0.001"},
+      {"Contact->Yield Stress=inf", "Contact->Gap=0.0003*(x - 2.2)^2"},
+      // A block pressed evenly up to the edges of the foundation.
+      {"Contact->Yield Stress=inf", "Dirichlet->left->Side=top", "Dirichlet->right->Side=top",
+       "Dirichlet->left->Y=-0.001", "Dirichlet->right->Y=-0.001", "Traction->top->Y=0"}};
+  for (const auto &scene : scenes) {
+    SCOPED_TRACE(scene.back());
+    const BarCounts bars = expect_true_or_unknown("beam_adaptive.xml", scene);
+    EXPECT_GE(bars.max_pressure, 2);
+    EXPECT_GE(bars.contact_length, 2);
+  }
+  for (const std::string xi : {"inf", "20", "60 + 30*sin(4*x)"}) {
+    SCOPED_TRACE("half cylinder, xi = " + xi);
+    const BarCounts bars = expect_true_or_unknown("hertz_adaptive.xml", {"Contact->Yield Stress=" + xi});
+    EXPECT_EQ(bars.max_pressure, 3);
+    EXPECT_EQ(bars.contact_length, 3);
+  }
+}
+
 TEST(Adaptive, RunsAreRepeatableAndTheSameOnAnyNumberOfRanks)
 {
   const auto alone = Tpetra::getDefaultComm()->split(Tpetra::getDefaultComm()->getRank(), 0);

@@ -61,11 +61,16 @@ struct ContactTerms {
   enum class FacetState { open = 1, stuck = 2, yielded = 4, mixed };
   KOKKOS_FUNCTION FacetState state_of(const LO f) const
   {
+    constexpr double jump = 0.1; // of the yield stress, over the lower one: its quadratic interpolant would be far off
     int state = 0;
+    double least = field(facets(f, 0), int(yield)), most = least;
     for (std::size_t a = 0; a < facets.extent(1); ++a) {
       const double p = field(facets(f, a), int(pressure)), xi = field(facets(f, a), int(yield));
       state |= int(p >= xi ? FacetState::yielded : (p > 0 ? FacetState::stuck : FacetState::open));
+      least = Kokkos::Experimental::fmin(least, xi);
+      most = Kokkos::Experimental::fmax(most, xi);
     }
+    if (state != int(FacetState::open) && most > (1 + jump) * least) return FacetState::mixed;
     return state == 1 || state == 2 || state == 4 ? FacetState(state) : FacetState::mixed;
   }
 
@@ -113,7 +118,8 @@ struct ContactTerms {
     double out_of_balance = 0, product = 0;
     for (int q = 0; q < points; ++q) {
       const Point x = point(f, q, state == FacetState::mixed);
-      const double xi = x.at[yield], v = x.at[penetration], share = measure(f * points + q);
+      const double xi = Kokkos::Experimental::fmax(0., x.at[yield]); // an interpolant may fall below its nodal values
+      const double v = x.at[penetration], share = measure(f * points + q);
       // Of all pressures that the law admits, that of the least sum of both terms will do where the multiplier tells none.
       const double p =
           contact::clamp(state == FacetState::mixed ? v / compliance + x.recovered : x.at[pressure], 0, xi);
@@ -152,6 +158,7 @@ struct PeakDifference {
 
   KOKKOS_FUNCTION void operator()(const LO f, double &most) const
   {
+    if (terms.state_of(f) == ContactTerms::FacetState::yielded) return; // the pressure is the yield stress
     for (int q = 0; q < static_cast<int>(terms.value.extent(0)); ++q) {
       const auto x = terms.point(f, q, false);
       const double p = x.at[pressure];
@@ -162,7 +169,69 @@ struct PeakDifference {
   }
 };
 
+/// What the nodes of the facets tell of the largest pressure and of the ends of contact.                          (10.9)
+struct NodalPressures {
+  ContactTerms terms; // in
+  double highest = 0; // pressure  [Pa]  in
+  static constexpr double near_peak = 0.98;
+  static constexpr double jump = 0.1; // of the yield stress between nodes of a facet, over the lower one
+
+  KOKKOS_FUNCTION double at(const LO f, const int a, const int column) const
+  {
+    return terms.field(terms.facets(f, a), column);
+  }
+
+  /// @param drop   max of (highest - lowest) / peak over facets at the peak     @param yield_jumps, gap_jumps  numbers
+  /// @param ends   += half of the facets that are partly open [m^(dim-1)]
+  KOKKOS_FUNCTION void operator()(const LO f, double &drop, double &yield_jumps, double &gap_jumps, double &ends) const
+  {
+    if (terms.cell(f) >= terms.num_owned_cells || !(highest > 0)) return;
+    const int nodes = static_cast<int>(terms.facets.extent(1)), points = static_cast<int>(terms.value.extent(0));
+    double size = 0;
+    for (int q = 0; q < points; ++q) size += terms.measure(f * points + q);
+    const double length = terms.traction.extent(2) == 2 ? size : Kokkos::Experimental::sqrt(size);
+    const int block = terms.block(terms.cell(f));
+    const double modulus = terms.lame(block, 0) + 2 * terms.lame(block, 1);
+    double most = at(f, 0, pressure), least = most;
+    for (int a = 0; a < nodes; ++a) {
+      const double p = at(f, a, pressure), xi = at(f, a, yield);
+      most = Kokkos::Experimental::fmax(most, p);
+      least = Kokkos::Experimental::fmin(least, p);
+      for (int b = 0; b < nodes; ++b) {
+        const double other = at(f, b, pressure), other_xi = at(f, b, yield);
+        if (p >= xi && other < other_xi && other_xi > highest && other_xi > (1 + jump) * xi) yield_jumps += 1;
+        if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) * modulus > highest * length) gap_jumps += 1;
+      }
+    }
+    if (most >= near_peak * highest) drop = Kokkos::Experimental::fmax(drop, (most - least) / highest);
+    if (most > 0 && !(least > 0)) ends += size / 2;
+  }
+};
+
+/// The highest yield stress at the points of all contact sides, maybe infinite; collective.
+double highest_yield_stress(const Comm &comm, const contact::ContactNodes &c)
+{
+  const auto yield = c.yield;
+  double highest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::adapt::highest_yield_stress", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &most) { most = Kokkos::Experimental::fmax(most, yield(i)); },
+      Kokkos::Max<double>(highest));
+  return max_all(comm, std::max(0., highest));
+}
+
 } // namespace
+
+std::string PressurePeak::unknown() const
+{
+  constexpr double unresolved = 0.2;
+  if (at_bound) return "";
+  if (yield_jump) return "the yield stress jumps next to a part that yields, where the pressure is singular";
+  if (gap_jump) return "contact ends where the gap jumps, where the pressure is singular";
+  if (drop <= unresolved) return "";
+  return "the pressure falls by " + std::to_string(std::lround(100 * drop)) +
+         " % within one cell where it is largest, as next to a singularity or a jump";
+}
 
 ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials &materials,
                              const std::vector<const mesh::Side *> &sides, const std::vector<fem::TractionLoad> &loads,
@@ -174,7 +243,9 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
   ErrorEstimate estimate;
   estimate.squared = recovered.squared_difference();
   const auto squared = estimate.squared;
-  double sums[4] = {}, peak = 0; // Kokkos' maximum over no facets is -DBL_MAX
+  const double highest = result.total.max_pressure;
+  estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_yield_stress(mesh.comm(), contact);
+  double sums[7] = {}, peak = 0, drop = 0; // Kokkos' maximum over no facets is -DBL_MAX
   Kokkos::parallel_reduce(
       "rpc::adapt::recovery", device_range(mesh.num_owned_cells),
       KOKKOS_LAMBDA(const LO cell, double &sum) { sum += squared(cell); }, sums[0]);
@@ -192,24 +263,31 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
                              fields->getLocalViewDevice(Tpetra::Access::ReadOnly),
                              mesh.num_owned_cells,
                              DeviceView<double *>("rpc::adapt::contact_terms", side.facets.extent(0))};
-    double of_side[3] = {}, peak_of_side = 0;
-    Kokkos::parallel_reduce("rpc::adapt::contact_terms", device_range(static_cast<LO>(side.facets.extent(0))), terms,
-                            of_side[0], of_side[1], of_side[2]);
+    double of_side[6] = {}, peak_of_side = 0, drop_of_side = 0;
+    const auto facets = device_range(static_cast<LO>(side.facets.extent(0)));
+    Kokkos::parallel_reduce("rpc::adapt::contact_terms", facets, terms, of_side[0], of_side[1], of_side[2]);
     add_to_cells(side, terms.squared, squared);
-    for (int m = 0; m < 3; ++m) sums[1 + m] += of_side[m];
-    if (result.sides[k].yielded_length > 0) continue; // the largest pressure is the yield stress
-    Kokkos::parallel_reduce("rpc::adapt::peak_difference", device_range(static_cast<LO>(side.facets.extent(0))),
-                            PeakDifference{terms, result.total.max_pressure}, Kokkos::Max<double>(peak_of_side));
+    Kokkos::parallel_reduce("rpc::adapt::nodal_pressures", facets, NodalPressures{terms, highest},
+                            Kokkos::Max<double>(drop_of_side), of_side[3], of_side[4], of_side[5]);
+    drop = std::max(drop, drop_of_side);
+    for (int m = 0; m < 6; ++m) sums[1 + m] += of_side[m];
+    if (estimate.peak.at_bound) continue;
+    Kokkos::parallel_reduce("rpc::adapt::peak_difference", facets, PeakDifference{terms, highest},
+                            Kokkos::Max<double>(peak_of_side));
     peak = std::max(peak, peak_of_side);
   }
-  double all[4];
-  Teuchos::reduceAll(mesh.comm(), Teuchos::REDUCE_SUM, 4, sums, all);
+  double all[7];
+  Teuchos::reduceAll(mesh.comm(), Teuchos::REDUCE_SUM, 7, sums, all);
   estimate.recovery = all[0];
   estimate.equilibrium = all[1];
   estimate.complementarity = all[2];
   estimate.rounding = fem::rounding_energy(d, materials, u);
   estimate.pressure = std::sqrt(all[3]);
   estimate.max_pressure = max_all(mesh.comm(), peak);
+  estimate.peak.drop = max_all(mesh.comm(), drop);
+  estimate.peak.yield_jump = all[4] > 0;
+  estimate.peak.gap_jump = all[5] > 0;
+  estimate.contact_ends = all[6];
   return estimate;
 }
 

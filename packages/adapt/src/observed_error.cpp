@@ -18,4 +18,13 @@ double observed_error(const std::vector<double> &change, const std::vector<doubl
   return std::max(error(last), error(last - 1) * std::min(1., eta[last] / eta[last - 1]));
 }
 
+bool unsettled(const std::vector<double> &change, const std::vector<double> &eta, const double resolved)
+{
+  constexpr double half = 0.5;
+  const std::size_t last = change.size();
+  if (last < 2 || change[last - 1] <= resolved) return false;
+  const bool to_halve = eta[last] < half * eta[last - 1];
+  return change[last - 1] > (to_halve ? half : 1) * change[last - 2];
+}
+
 } // namespace rpc::adapt

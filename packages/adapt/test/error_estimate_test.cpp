@@ -2,6 +2,7 @@
 
 #include "bodies.hpp"
 #include "energy_of_difference.hpp"
+#include "rpc/fem/surface.hpp"
 
 #include <limits>
 
@@ -138,6 +139,115 @@ TEST(ErrorEstimate, TakesNodesThatMissTheObstacleForOpenOnes)
     EXPECT_EQ(expected.complementarity, 0);
     EXPECT_EQ(found.complementarity, 0);
     EXPECT_EQ(found.pressure, expected.pressure);
+  }
+}
+
+/// The squeezed body with pressures p(x), penetrations v(x) and yield stresses xi(x) at its contact nodes.
+template <class Pressure, class Penetration>
+adapt::ErrorEstimate estimate_with(const mesh::Element &element, const ScalarField &yield, const double highest,
+                                   const Pressure &p, const Penetration &v)
+{
+  Squeezed body(element, 1, 0, highest);
+  contact::ContactOptions options;
+  options.side = "bottom";
+  options.yield_stress = yield;
+  options.gap = ScalarField(0.);
+  body.nodes = contact::contact_nodes(body.d, {options}, fem::dirichlet_dofs(body.d, {}), steel);
+  const auto x = fem::node_positions(*body.d.mesh, body.nodes.node);
+  const auto pressure = Kokkos::create_mirror_view(body.result.pressure);
+  const auto penetration = Kokkos::create_mirror_view(body.result.penetration);
+  for (LO i = 0; i < body.nodes.size(); ++i) {
+    pressure(i) = p(x(i, 0));
+    penetration(i) = v(x(i, 0));
+  }
+  Kokkos::deep_copy(body.result.pressure, pressure);
+  Kokkos::deep_copy(body.result.penetration, penetration);
+  return body.estimate();
+}
+
+ScalarField step(const double at, const double left, const double right)
+{
+  return ScalarField("test", [=](const Point &x) { return x[0] < at ? left : right; });
+}
+
+TEST(PressurePeak, IsExactAtTheHighestYieldStress)
+{
+  const auto nothing = [](double) { return 0.; };
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto half = [](const double x) { return x < 1 ? 7. : 3.; };
+    const auto peak = estimate_with(element, ScalarField(7.), 7, half, nothing).peak;
+    EXPECT_TRUE(peak.at_bound);
+    EXPECT_EQ(peak.unknown(), "");
+    EXPECT_FALSE(estimate_with(element, ScalarField(8.), 7, half, nothing).peak.at_bound);
+    EXPECT_FALSE(estimate_with(element, step(1, 7, 9), 7, half, nothing).peak.at_bound);
+  }
+}
+
+TEST(PressurePeak, HasNoErrorWhereThePressureFallsWithinACell)
+{
+  const auto nothing = [](double) { return 0.; };
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    // Cells have the length 0.5.
+    const auto slow = estimate_with(
+        element, ScalarField(99.), 10, [](const double x) { return 10 - 3 * x; }, nothing);
+    EXPECT_NEAR(slow.peak.drop, 0.15, 1e-12);
+    EXPECT_EQ(slow.peak.unknown(), "");
+    const auto fast = estimate_with(
+        element, ScalarField(99.), 10, [](const double x) { return 10 - 5 * x; }, nothing);
+    EXPECT_NEAR(fast.peak.drop, 0.25, 1e-12);
+    EXPECT_NE(fast.peak.unknown().find("25 %"), std::string::npos) << fast.peak.unknown();
+  }
+}
+
+TEST(PressurePeak, HasNoErrorWhereTheYieldStressJumpsNextToAYieldedPart)
+{
+  const auto nothing = [](double) { return 0.; };
+  const auto p = [](const double x) { return x < 0.9 ? 9. : 10.; };
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    EXPECT_TRUE(estimate_with(element, step(0.9, 9, 12), 10, p, nothing).peak.yield_jump);
+    EXPECT_FALSE(estimate_with(element, step(0.9, 9.5, 12), 10, p, nothing).peak.yield_jump); // nothing yields
+    EXPECT_FALSE(estimate_with(element, step(0.9, 9, 10), 10, p, nothing).peak.yield_jump);   // both sides do
+    const auto lower = [](const double x) { return x < 0.9 ? 9. : 9.5; };
+    EXPECT_FALSE(estimate_with(element, step(0.9, 9, 9.8), 9.5, lower, nothing).peak.yield_jump); // as a slope may
+  }
+}
+
+TEST(PressurePeak, HasNoErrorWhereContactEndsAtAJumpOfTheGap)
+{
+  const auto p = [](const double x) { return x < 0.9 ? 10. : 0.; };
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    const double pressed = 10 / Squeezed::stiffness() * Squeezed::h; // a facet's length under a strain of the pressure
+    const auto opens = [](const double by) { return [by](const double x) { return x < 0.9 ? 0. : -by; }; };
+    EXPECT_TRUE(estimate_with(element, ScalarField(99.), 10, p, opens(1.1 * pressed)).peak.gap_jump);
+    EXPECT_FALSE(estimate_with(element, ScalarField(99.), 10, p, opens(0.9 * pressed)).peak.gap_jump);
+  }
+}
+
+TEST(ErrorEstimate, KnowsWhereTheMeshDoesNotTellTheEndOfContact)
+{
+  const auto nothing = [](double) { return 0.; };
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto part = [](const double x) { return x > 0.4 && x < 1.1 ? 10. : 0.; }; // 0.5 to 1 at the nodes
+    EXPECT_NEAR(estimate_with(element, ScalarField(99.), 10, part, nothing).contact_ends, 2 * Squeezed::h / 2, 1e-12);
+    const auto all = [](double) { return 10.; };
+    EXPECT_EQ(estimate_with(element, ScalarField(99.), 10, all, nothing).contact_ends, 0);
+  }
+}
+
+TEST(ErrorEstimate, HasNoNegativePartWhereTheYieldStressJumps)
+{
+  const auto yields = [](const double x) { return x < 0.6 ? 3. : 100.; };
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto estimate = estimate_with(element, step(0.6, 3, 100), 100, yields, [](double) { return 0.01; });
+    const auto squared = to_host(estimate.squared);
+    for (LO cell = 0; cell < static_cast<LO>(squared.extent(0)); ++cell) EXPECT_GE(squared(cell), 0);
+    EXPECT_GE(estimate.complementarity, 0);
   }
 }
 

@@ -7,6 +7,7 @@ namespace
 {
 
 using rpc::adapt::observed_error;
+using rpc::adapt::unsettled;
 
 TEST(ObservedError, IsExactForAQuantityWhoseErrorIsProportionalToTheEstimate)
 {
@@ -33,6 +34,24 @@ TEST(ObservedError, IsUnknownOfOneMeshAndFiniteWhereTheEstimateDoesNotFall)
   EXPECT_TRUE(std::isnan(observed_error({}, {0.4})));
   EXPECT_TRUE(std::isfinite(observed_error({1}, {0.4, 0.4})));
   EXPECT_GE(observed_error({1}, {0.4, 0.4}), 1);
+}
+
+TEST(Unsettled, IsASequenceWhoseChangesDoNotFallWithTheEstimate)
+{
+  const std::vector<double> eta = {0.4, 0.1, 0.025};
+  EXPECT_TRUE(unsettled({1, 2}, eta, 0));            // like 1 / eta^(1/2)
+  EXPECT_TRUE(unsettled({1, 1}, eta, 0));            // like log(1 / eta)
+  EXPECT_FALSE(unsettled({1, 0.25}, eta, 0));        // like eta
+  EXPECT_FALSE(unsettled({1, 0.06}, eta, 0));        // like eta^2
+  EXPECT_FALSE(unsettled({1, 0.9}, {3, 2, 1.5}, 0)); // the estimate itself hardly falls
+  EXPECT_TRUE(unsettled({1, 1.1}, {3, 2, 1.5}, 0));
+}
+
+TEST(Unsettled, IsNotToldByOneChangeOrByOnesBelowTheResolution)
+{
+  EXPECT_FALSE(unsettled({}, {1}, 0));
+  EXPECT_FALSE(unsettled({1}, {1, 0.1}, 0));
+  EXPECT_FALSE(unsettled({1, 2}, {1, 0.3, 0.1}, 2));
 }
 
 } // namespace

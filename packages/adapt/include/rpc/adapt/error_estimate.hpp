@@ -3,8 +3,22 @@
 #include "rpc/contact/result.hpp"
 #include "rpc/fem/elasticity.hpp"
 
+#include <string>
+
 namespace rpc::adapt
 {
+
+/// Whether the largest contact pressure can have an error bar: what the mesh shows of it.              doc/theory.md (10.9)
+struct PressurePeak {
+  bool at_bound = false; ///< it is the highest yield stress there is, and so exact
+  double drop =
+      0; ///< by how much the pressure falls within a facet whose highest is 0.98 of it, over the largest pressure
+  bool yield_jump = false; ///< a part that yields borders on a higher yield stress: the pressure is singular in between
+  bool gap_jump = false;   ///< contact ends where the gap jumps: the pressure is singular there
+
+  /// Why there is no bar; empty if there is one.
+  std::string unknown() const;
+};
 
 /// Estimated error of a solution in the energy norm, squared: an estimate of 2 (J(u_h) - J(u)), which bounds a(e, e) for the
 /// error e.                                                                                     doc/theory.md (10.1)
@@ -26,7 +40,10 @@ struct ErrorEstimate {
   // What the contact pressure and that of the recovered stress, held to [0, xi], disagree by.
   double pressure = 0; ///< in L2 over facets that are neither all open nor all yielded [Pa m^(1/2)], in 3D [Pa m]
   double max_pressure =
-      0; ///< the most at points with 0.9 of the largest pressure, on sides where nothing has yielded [Pa]
+      0; ///< the most at points with 0.9 of the largest pressure, on facets that have not all yielded [Pa]
+  PressurePeak peak;
+  double contact_ends =
+      0; ///< half of the facets that are partly open: the mesh does not tell where contact ends [m^(dim-1)]
 
   double total() const { return recovery + equilibrium + complementarity; } ///< eta^2
 };
