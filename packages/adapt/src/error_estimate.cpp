@@ -22,6 +22,9 @@ RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::C
 {
   // A yield stress out of reach, maybe infinite, gives way to one that no pressure reaches either.
   const double highest_yield = 2 * std::max(result.total.max_pressure, 1e-300);
+  // Nodes that neither are open nor yield have v = 0. What a solve leaves there, up to 1e-8 of the largest pressure, would
+  // count with p |v|, which is of first order, and differ between numbers of ranks.
+  const double accuracy = 1e-7 * result.total.max_pressure;
   MultiVector owned(mesh.owned_nodes, normal + c.dim);
   owned.getVectorNonConst(yield)->putScalar(highest_yield); // a node that is no point is open: no pressure, no normal
   const LO begin = c.first(side);
@@ -32,7 +35,9 @@ RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::C
         "rpc::adapt::contact_fields", device_range(c.first(side + 1) - begin), KOKKOS_LAMBDA(const LO k) {
           const LO i = begin + k, node = c.node(i);
           to(node, int(pressure)) = p(i);
-          to(node, int(penetration)) = v(i);
+          const bool closed = p(i) > 0 && p(i) < c.yield(i);
+          const double size = v(i) < 0 ? -v(i) : v(i);
+          to(node, int(penetration)) = closed && c.stiffness(i) * size <= accuracy ? 0 : v(i);
           to(node, int(yield)) = c.yield(i) < highest_yield ? c.yield(i) : highest_yield;
           for (int j = 0; j < c.dim; ++j) to(node, normal + j) = c.normal(i, j);
         });

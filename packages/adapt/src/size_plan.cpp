@@ -25,6 +25,10 @@ constexpr int rings = 4;
 constexpr double margin = 0.25;
 // The lowest exponents of elastic bodies: cracks.
 constexpr double least_exponent = 0.5;
+// Exponents are rounded to steps of 1 over this, lest last digits decide which of two like vertices is singular.
+constexpr double exponent_steps = 256;
+// The part of the error asked for that makes no singularity.
+constexpr double negligible_share = 1e-6;
 // Sizes are rounded to steps of this factor, lest the last digits of an estimate change a mesh.
 constexpr double steps_per_octave = 64;
 
@@ -144,8 +148,19 @@ private:
   double sum_[5] = {};
 };
 
-std::vector<double> local_exponents(const EstimatedMesh &mesh, const Geometry &geometry)
+/// What errors are divided by to tell of |u| alone: eta_T^2 / (|T| h_T^2p).
+double error_scale(const EstimatedMesh &mesh, const Geometry &geometry, const int cell)
 {
+  return geometry.area[cell] * std::pow(geometry.length[cell], 2 * mesh.order);
+}
+
+/// @param negligible  a squared error of the whole mesh: what the same |u| everywhere would add up to it counts for no
+///                    singularity. Estimates of cells that hardly strain are rounding, and differ between ranks.
+std::vector<double> local_exponents(const EstimatedMesh &mesh, const Geometry &geometry, const double negligible)
+{
+  double scale = 0;
+  for (int cell = 0; cell < mesh.num_cells(); ++cell) scale += error_scale(mesh, geometry, cell);
+  const double least = negligible / scale;
   std::vector<double> exponent(mesh.num_nodes(), mesh.order + 1.);
   std::vector<int> seen(mesh.num_cells(), -1);
   for (int n = 0; n < mesh.num_nodes(); ++n) {
@@ -156,10 +171,8 @@ std::vector<double> local_exponents(const EstimatedMesh &mesh, const Geometry &g
     for (int k = 0; k < rings; ++k) {
       std::vector<int> next;
       for (const int cell : ring) {
-        if (mesh.squared[cell] > 0)
-          fit.add(std::log(distance(mesh, n, geometry.centre[cell].data())),
-                  std::log(mesh.squared[cell] / geometry.area[cell]) / 2 -
-                      mesh.order * std::log(geometry.length[cell]));
+        const double density = mesh.squared[cell] / error_scale(mesh, geometry, cell) + least;
+        if (density > 0) fit.add(std::log(distance(mesh, n, geometry.centre[cell].data())), std::log(density) / 2);
         for (int a = 0; a < mesh.vertices; ++a)
           for (const int other : geometry.around[mesh.cells[mesh.vertices * cell + a]])
             if (seen[other] != n) {
@@ -169,7 +182,7 @@ std::vector<double> local_exponents(const EstimatedMesh &mesh, const Geometry &g
       }
       ring = std::move(next);
     }
-    exponent[n] += fit.slope();
+    exponent[n] += std::round(fit.slope() * exponent_steps) / exponent_steps;
   }
   return exponent;
 }
@@ -282,7 +295,7 @@ double vertex_size(const EstimatedMesh &mesh, const Geometry &geometry, const in
   return std::exp(reach / count) * std::max(std::min(graded, equal), least_vertex_ratio);
 }
 
-/// Where the exponent is that of a singularity, and no vertex nearby has a lower one.
+/// Where the exponent is that of a singularity, and no vertex nearby has a lower one, or the same and a lower number.
 std::vector<char> singular_vertices(const EstimatedMesh &mesh, const Geometry &geometry,
                                     const std::vector<double> &exponent)
 {
@@ -291,22 +304,24 @@ std::vector<char> singular_vertices(const EstimatedMesh &mesh, const Geometry &g
     singular[n] = exponent[n] < mesh.order - margin;
     for (const int cell : geometry.around[n])
       for (int a = 0; a < mesh.vertices; ++a)
-        if (exponent[mesh.cells[mesh.vertices * cell + a]] < exponent[n]) singular[n] = 0;
+        if (const int m = mesh.cells[mesh.vertices * cell + a];
+            exponent[m] < exponent[n] || (exponent[m] == exponent[n] && m < n))
+          singular[n] = 0;
   }
   return singular;
 }
 
 } // namespace
 
-std::vector<double> local_exponents(const EstimatedMesh &mesh)
+std::vector<double> local_exponents(const EstimatedMesh &mesh, const double negligible)
 {
-  return local_exponents(mesh, Geometry(mesh));
+  return local_exponents(mesh, Geometry(mesh), negligible);
 }
 
 SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
 {
   const Geometry geometry(mesh);
-  std::vector<double> exponent = local_exponents(mesh, geometry);
+  std::vector<double> exponent = local_exponents(mesh, geometry, negligible_share * request.squared_error);
   const std::vector<char> singular = singular_vertices(mesh, geometry, exponent);
   std::vector<char> at_singularity(mesh.num_cells(), 0);
   for (int n = 0; n < mesh.num_nodes(); ++n) {

@@ -31,6 +31,7 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request);
 
 /// The exponent lambda of |u| ~ r^lambda about each vertex at the boundary, as far as the decay of the errors around it shows;
 /// the order plus 1 or more where u is smooth, and at all other nodes. (nodes)                                    (10.6)
-std::vector<double> local_exponents(const EstimatedMesh &mesh);
+/// @param negligible  squared error of the whole mesh [J] that is no sign of a singularity
+std::vector<double> local_exponents(const EstimatedMesh &mesh, double negligible = 0);
 
 } // namespace rpc::adapt

@@ -251,4 +251,19 @@ TEST(ErrorEstimate, HasNoNegativePartWhereTheYieldStressJumps)
   }
 }
 
+TEST(ErrorEstimate, DoesNotCountWhatASolveLeavesOfPenetrationAtClosedNodes)
+{
+  const auto p = [](const double) { return 26.; };
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto with = [&](const double left) {
+      return estimate_with(element, ScalarField(99.), 26, p, [left](const double x) { return x < 1 ? left : -left; });
+    };
+    EXPECT_EQ(with(1e-12).complementarity, 0);
+    EXPECT_EQ(with(1e-12).total(), with(0).total());
+    EXPECT_NEAR(with(1e-6).complementarity / with(1e-5).complementarity, 0.1, 1e-9); // more than a solve leaves
+    EXPECT_GT(with(1e-6).complementarity, 0);
+  }
+}
+
 } // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>
+#include <optional>
+#include <random>
 
 namespace
 {
@@ -154,6 +156,41 @@ TEST(SizePlan, SizesFallTowardsASingularCorner)
   EXPECT_GT(size_at(plan, 1, 1), h);
   // Like r^(1 - lambda / 3) along the first edge, where points halve the way again and again.
   EXPECT_NEAR(std::log2(size_at(plan, h / 2, 0) / size_at(plan, h / 4, 0)), 1 - lambda / 3, 0.15);
+}
+
+TEST(SizePlan, DoesNotDependOnTheLastDigitsNorOnCellsThatHardlyErr)
+{
+  for (const int order : {1, 2}) {
+    auto mesh = square(24, order, 3);
+    set_singular_errors(mesh, 0.7, 1. / 24);
+    const SizeRequest request{sum(mesh.squared) / 100, 1e9};
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> digits(-1e-9, 1e-9), octaves(-3, 3);
+    std::optional<SizePlan> first;
+    for (int k = 0; k < 10; ++k) {
+      auto noisy = mesh;
+      for (int cell = 0; cell < mesh.num_cells(); ++cell) {
+        double x = 0;
+        for (int a = 0; a < 3; ++a) x += mesh.coords[2 * mesh.cells[3 * cell + a]] / 3;
+        // Half of the body is not strained: its errors are rounding.
+        noisy.squared[cell] *= x > 0.5 ? 1e-20 * std::exp2(octaves(random)) : 1 + digits(random);
+      }
+      SizePlan plan = plan_sizes(noisy, request);
+      if (!first)
+        first = std::move(plan);
+      else
+        EXPECT_EQ(plan.field.size, first->field.size) << "order " << order;
+    }
+  }
+}
+
+TEST(LocalExponents, AreNotThoseOfNegligibleErrors)
+{
+  auto mesh = square(12, 2, 3);
+  set_singular_errors(mesh, 0.6, 1. / 12);
+  const double whole = sum(mesh.squared);
+  EXPECT_NEAR(local_exponents(mesh, 1e-6 * whole)[0], local_exponents(mesh)[0], 0.02);
+  EXPECT_GT(local_exponents(mesh, 1e6 * whole)[0], 2.9);
 }
 
 } // namespace

@@ -37,8 +37,8 @@ struct SizeRequest {
 /// Cells where the solution is smooth shrink or grow by (c / eta_T^2)^(1 / (2p + 2)). Towards boundary vertices where the
 /// estimates tell |u| ~ r^lambda with lambda < p, sizes fall like r^(1 - lambda / (p + 1)). (10.6)
 struct Sizes {
-  std::shared_ptr<const mesh::SizeField> field; ///< rank 0 only, null elsewhere; equal up to its last few digits on any
-                                                ///< number of ranks, which are rounded away
+  std::shared_ptr<const mesh::SizeField> field; ///< rank 0 only, null elsewhere; rounded, so that last
+                                                ///< digits, which differ between ranks, hardly ever matter
   double predicted_cells = 0;
 };
 

@@ -1,0 +1,72 @@
+#include "rpc/io/gather.hpp"
+#include "run_scene.hpp"
+
+#include <gtest/gtest.h>
+
+// Adaptive meshes do not depend on the number of ranks.
+
+namespace
+{
+
+using namespace rpc;
+
+/// The meshes of an adaptive run and what they came to.
+struct Meshes {
+  std::vector<std::vector<double>> coords; // of each mesh on rank 0, by node id
+  std::vector<double> estimate;
+  bool reached = false;
+
+  Meshes(const std::string &deck, const std::vector<std::string> &scene, const RCP<const Comm> &comm)
+  {
+    std::ostream nowhere(nullptr);
+    const auto keep = [&](const Scene &, Solution &s) {
+      const mesh::Mesh &mesh = *s.discretization.mesh;
+      const auto at = to_host(mesh.coords);
+      std::vector<double> own;
+      for (LO n = 0; n < mesh.num_owned_nodes(); ++n) own.insert(own.end(), {at(n, 0), at(n, 1)});
+      const io::CanonicalOrder order(mesh.owned_nodes->getComm(), mesh.node_id, "node");
+      coords.push_back(order.gather(own.data(), 2));
+      estimate.push_back(relative_estimate(s));
+    };
+    const Solution last = solve(read_scene(RPC_TEST_DECKS "/" + deck, scene), comm, nowhere, keep);
+    reached = last.adaptation->reached;
+  }
+};
+
+void expect_same_meshes(const std::string &deck, const std::vector<std::vector<std::string>> &scenes)
+{
+  const auto world = Tpetra::getDefaultComm();
+  ASSERT_GT(world->getSize(), 1);
+  const auto alone = world->split(world->getRank(), 0);
+  for (const auto &scene : scenes) {
+    SCOPED_TRACE(deck + (scene.empty() ? "" : ", " + scene[0]));
+    const Meshes here(deck, scene, world), serial(deck, scene, alone);
+    EXPECT_TRUE(serial.reached);
+    EXPECT_GT(serial.estimate.size(), 3u);
+    ASSERT_EQ(here.estimate.size(), serial.estimate.size());
+    for (std::size_t k = 0; k < here.estimate.size(); ++k) {
+      EXPECT_NEAR(here.estimate[k] / serial.estimate[k], 1, 1e-6) << "mesh " << k + 1;
+      if (world->getRank() == 0) {
+        EXPECT_EQ(here.coords[k], serial.coords[k]) << "mesh " << k + 1;
+      }
+    }
+  }
+}
+
+TEST(AdaptiveRanks, GiveABracketTheSameMeshes)
+{
+  // One with a tip that bears nothing, whose errors are rounding, one that yields, and one that bends.
+  expect_same_meshes("bracket.xml", {{},
+                                     {"Contact->Yield Stress=5"},
+                                     {"Traction->end->Y=-0.5", "Dirichlet->top->Y=0", "Contact->Gap=0.001"},
+                                     {"Traction->end->Y=-0.5", "Dirichlet->top->Y=0", "Contact->Gap=10"}});
+}
+
+TEST(AdaptiveRanks, GiveGluedBlocksTheSameMeshes)
+{
+  expect_same_meshes(
+      "glued.xml",
+      {{}, {"Contact->Yield Stress=5"}, {"Contact->Yield Stress=inf", "Material->Blocks->hard->Young's Modulus=2e4"}});
+}
+
+} // namespace

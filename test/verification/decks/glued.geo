@@ -1,0 +1,26 @@
+// Two blocks glued along y = 0.5, the lower one on y = 0; the upper one is narrower.
+Point(1) = {0, 0, 0, 0.25};
+Point(2) = {3, 0, 0, 0.25};
+Point(3) = {3, 0.5, 0, 0.25};
+Point(4) = {2, 0.5, 0, 0.25};
+Point(5) = {1, 0.5, 0, 0.25};
+Point(6) = {0, 0.5, 0, 0.25};
+Point(7) = {2, 1.5, 0, 0.25};
+Point(8) = {1, 1.5, 0, 0.25};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 1};
+Line(7) = {4, 7};
+Line(8) = {7, 8};
+Line(9) = {8, 5};
+Curve Loop(1) = {1, 2, 3, 4, 5, 6};
+Plane Surface(1) = {1};
+Curve Loop(2) = {-4, 7, 8, 9};
+Plane Surface(2) = {2};
+Physical Surface("soft") = {1};
+Physical Surface("hard") = {2};
+Physical Curve("bottom") = {1};
+Physical Curve("top") = {8};
