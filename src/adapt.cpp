@@ -241,7 +241,7 @@ PhaseSeconds &PhaseSeconds::operator+=(const PhaseSeconds &other)
 
 bool only_rounding(const Solution &s)
 {
-  return s.estimate && std::max(s.strain_energy, s.estimate->total()) <= s.estimate->rounding;
+  return s.estimate && s.strain_energy <= s.estimate->rounding;
 }
 
 double relative_estimate(const Solution &s)

@@ -101,9 +101,9 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
 /// Whether all that was asked for came out.
 bool succeeded(const Solution &solution);
 
-/// Whether the strain energy and the estimated error, where there is one, are both rounding: nothing is strained.
+/// Whether an estimate tells that the strain energy is rounding: nothing is strained.
 bool only_rounding(const Solution &solution);
-/// The estimated error in the energy norm over that of the solution, where there is an estimate; 0 if both are rounding.
+/// The estimated error in the energy norm over that of the solution, where there is an estimate; 0 if nothing is strained.
 double relative_estimate(const Solution &solution);
 /// What it really is, sqrt(2 |J_h - J| / a(u_h, u_h)), where the deck tells the exact J; else NaN.
 double exact_error(const Scene &scene, const Solution &solution);

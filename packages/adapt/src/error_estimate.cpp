@@ -155,7 +155,8 @@ void add_to_cells(const mesh::Side &side, const DeviceView<double *> &of_facet, 
   Kokkos::fence();
 }
 
-/// How far the multiplier's pressure and that of the recovered stress lie apart where the former is near its largest value.
+/// How far the multiplier's pressure and that of the recovered stress lie apart where the former is near its largest value;
+/// on a facet that has yielded and has the largest one, how much the yield stress varies.
 struct PeakDifference {
   ContactTerms terms; // in
   double highest = 0; // pressure  [Pa]  in
@@ -163,7 +164,17 @@ struct PeakDifference {
 
   KOKKOS_FUNCTION void operator()(const LO f, double &most) const
   {
-    if (terms.state_of(f) == ContactTerms::FacetState::yielded) return; // the pressure is the yield stress
+    if (terms.state_of(f) ==
+        ContactTerms::FacetState::yielded) { // the pressure is the yield stress, known at the nodes
+      double high = 0, low = highest;
+      for (std::size_t a = 0; a < terms.facets.extent(1); ++a) {
+        const double p = terms.field(terms.facets(f, a), int(pressure));
+        high = Kokkos::Experimental::fmax(high, p);
+        low = Kokkos::Experimental::fmin(low, p);
+      }
+      if (high >= highest) most = Kokkos::Experimental::fmax(most, high - low);
+      return;
+    }
     for (int q = 0; q < static_cast<int>(terms.value.extent(0)); ++q) {
       const auto x = terms.point(f, q, false);
       const double p = x.at[pressure];

@@ -9,8 +9,8 @@ namespace rpc::fem
 namespace
 {
 
-// Relative accuracy of displacements: the default of "Linear Solver->Tolerance".
-constexpr double of_displacements = 1e-11;
+// Relative accuracy of displacements: three times the default of "Linear Solver->Tolerance".
+constexpr double of_displacements = 3e-11;
 // That of the cells' edges over the coordinates: edges are differences, and several of them make a gradient.
 constexpr double of_coordinates = 32 * std::numeric_limits<double>::epsilon();
 
