@@ -152,6 +152,10 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
         "  work                %d Uzawa, %d Newton, %zu linear solves, %d CG iterations, %d preconditioner set-ups\n",
         s.uzawa.iterations, sum(s.uzawa.newton_iterations), s.linear.iterations.size(), sum(s.linear.iterations),
         s.linear.preconditioner_setups);
+  if (s.line_search_steps > 0)
+    print(out,
+          "    %d of the Newton steps with sweep and line search: choices of contact states alone did not settle\n",
+          s.line_search_steps);
   for (const auto &level : s.levels)
     print(out, "    predicted by      %zu dofs: %d Newton, %d CG iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);

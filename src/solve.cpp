@@ -9,6 +9,7 @@
 
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
+#include <algorithm>
 #include <cmath>
 
 namespace rpc
@@ -17,7 +18,10 @@ namespace
 {
 
 // Below, a solution costs about as much as its prediction.
-constexpr std::size_t least_nodes_predicted = 2000;
+constexpr std::size_t least_nodes_predicted = 500;
+// Newton steps on a coarser mesh, where the search for states ends without: with rough solves there they cost no more than a few
+// elastic solves of the finer one, and what they lead to is a start in any case.
+constexpr int most_steps_predicting = 30;
 
 /// Adds the time of its scope to a phase, and to the timer tree.
 class Phase
@@ -138,11 +142,12 @@ std::string predict(const Scene &scene, const mesh::MeshOptions &options, const 
     solver::NewtonOptions options_there = scene.newton;
     options_there.start_tolerance = scene.nested.tolerance;
     options_there.residual_tolerance = scene.nested.tolerance;
+    options_there.max_iterations = std::min(options_there.max_iterations, most_steps_predicting);
     const auto silent = [](const solver::NewtonStep &) {};
     auto found = solver::find_states(*coarse.functional, *coarse.linear, *coarse.u, options_there, silent);
-    if (!found.confirmed) { // what Newton has at the end is a start in any case
-      found.steps +=
-          solver::minimize(*coarse.functional, *coarse.linear, coarse.u, options_there, false, silent).newton_iterations;
+    if (!found.confirmed) {
+      found.steps += solver::minimize(*coarse.functional, *coarse.linear, coarse.u, options_there, false, silent)
+                         .newton_iterations;
       coarse.functional->update_multipliers(*coarse.u);
     }
     const auto interpolation = fem::interpolation(coarse.discretization, level.discretization);
@@ -244,6 +249,7 @@ Solution solve_on(const Scene &scene, const mesh::MeshOptions &options, const So
         return contact::MinimizeResult{true, start.steps, "", true};
       }
       auto result = solver::minimize(*s.functional, linear, s.u, scene.newton, iteration > 1, report);
+      s.line_search_steps += result.newton_iterations;
       result.newton_iterations += start.steps;
       return result;
     };

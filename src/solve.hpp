@@ -87,6 +87,7 @@ struct Solution {
   std::optional<adapt::ErrorEstimate> estimate; ///< where it is asked for
   std::optional<Adaptation> adaptation;         ///< where the mesh is adapted
   int matrix_assemblies = 0;
+  int line_search_steps = 0; ///< of Newton's, where the search for contact states was not enough
   PhaseSeconds seconds;
 };
 

@@ -33,7 +33,7 @@ ActiveSetResult find_states(contact::SmoothedFunctional &functional, LinearSolve
   Vector G(u.getMap()), F(u.getMap()), d(u.getMap());
   std::set<std::uint64_t> seen; // fingerprints of states
   NewtonStep step;
-  bool rough = true;
+  bool rough = functional.contact().num_total > functional.contact().num_fixed; // else there are no states to look for
   double norm = std::numeric_limits<double>::infinity(), before = norm;
   int changes = 0, updates = 0; // of states; of the multipliers alone
   while (true) {

@@ -255,6 +255,9 @@ Teuchos::ParameterList valid_newton_parameters()
                          (name == std::string("Line Search")
                               ? " `Method` = `Exact` (default) minimizes the functional along the step exactly; `Full "
                                 "Step` and NOX's others work as in NOX."
+                          : name == std::string("Direction")
+                              ? " `Method` = `Sweep` (default) starts each Newton step with a nonlinear sweep over the "
+                                "contact nodes; `Newton` and NOX's others work as in NOX."
                               : ""));
   return valid;
 }

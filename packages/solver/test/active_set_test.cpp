@@ -16,7 +16,7 @@ using rpc::test::below;
 using rpc::test::ignore;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr int most_steps = 24; // 12 with either weight
+constexpr int most_steps = 12; // eight changes of states, and multiplier updates
 const solver::NewtonOptions options;
 
 int find_states(Beam &beam)
@@ -89,9 +89,8 @@ TEST(FindStates, AboveAGapAreFoundWhateverTheYieldLimit)
   }
 }
 
-TEST(FindStates, AreSoughtWithTheSecondWeightWhereTheFirstGoesInCircles)
+TEST(FindStates, AboveAGapAreFoundWhereTheLoadReachesTheYieldLimitInPart)
 {
-  // With the first weight all nodes yield and open in turns.
   for (const double xi : {18., 22., 100.}) {
     Beam beam({}, flat(xi, 0.01));
     const int steps = find_states(beam);
@@ -103,17 +102,16 @@ TEST(FindStates, AreSoughtWithTheSecondWeightWhereTheFirstGoesInCircles)
   }
 }
 
-TEST(FindStates, EndWithinTheirStepsWhereBothWeightsGoInCirclesAndNewtonGoesOn)
+TEST(FindStates, LeaveToNewtonWhatDoesNotSettle)
 {
   const ScalarField xi("xi", [](const Point &x) { return 25 * (1 + 0.9 * std::sin(9 + 12 * x[0])); });
   const ScalarField gap("gap",
                         [](const Point &x) { return x[0] == 0 || x[0] == 5 ? 0 : 0.01 * std::sin(11.7 + 11 * x[0]); });
   Beam beam({}, below(xi, 0, gap));
-  const int steps = find_states(beam);
-  EXPECT_LE(steps, most_steps);
+  EXPECT_LE(find_states(beam), most_steps);
   const auto newton = minimize(beam);
   EXPECT_TRUE(newton.converged) << newton.reason;
-  EXPECT_LE(newton.newton_iterations, 60);
+  EXPECT_LE(newton.newton_iterations, 15);
 }
 
 TEST(FindStates, ReportEachStep)

@@ -86,6 +86,7 @@ TEST(Newton, FullStepsCycleWhereExactStepsConverge)
     Beam full({}, below(ScalarField(xi), 1e8)), exact({}, below(ScalarField(xi), 1e8));
     solver::NewtonOptions full_steps;
     full_steps.nox.sublist("Line Search").set("Method", "Full Step");
+    full_steps.nox.sublist("Direction").set("Method", "Newton"); // a sweep leads out of the cycle
     full_steps.max_iterations = 30;
     std::vector<std::array<GO, 3>> states;
     const auto record = [&](const solver::NewtonStep &step) {
@@ -128,6 +129,29 @@ TEST(Newton, FunctionalFallsAtEveryExactStep)
   EXPECT_LT(F.norm2(), 1e-10 * beam.functional->force_scale());
 }
 
+/// A beam, pressed on bumps that are rigid at some points and give way at others: kinks lie close to each other.
+contact::ContactOptions bumps()
+{
+  const ScalarField xi("xi", [](const Point &x) { return 25 * (1 + 0.9 * std::sin(9 + 12 * x[0])); });
+  const ScalarField gap("gap",
+                        [](const Point &x) { return x[0] == 0 || x[0] == 5 ? 0 : 0.01 * std::sin(11.7 + 11 * x[0]); });
+  return below(xi, 0, gap);
+}
+
+TEST(Newton, SweepsTakeItPastTheKinks)
+{
+  Beam with({}, bumps()), without({}, bumps());
+  solver::NewtonOptions plain;
+  plain.nox.sublist("Direction").set("Method", "Newton");
+  const auto swept = solver::minimize(*with.functional, *with.linear, with.u, {}, false, ignore);
+  const auto crept = solver::minimize(*without.functional, *without.linear, without.u, plain, false, ignore);
+  EXPECT_TRUE(swept.converged) << swept.reason;
+  EXPECT_LE(swept.newton_iterations, 15);
+  EXPECT_GE(crept.newton_iterations, 2 * swept.newton_iterations);
+  const double value = without.functional->value(*without.u);
+  EXPECT_LE(with.functional->value(*with.u), value + 1e-10 * std::abs(value));
+}
+
 TEST(Newton, SaysWhyItFailed)
 {
   solver::LinearSolverOptions weak;
@@ -150,13 +174,14 @@ double residual_of(const Beam &beam, const Vector &x)
   return r.norm2() / load.norm2();
 }
 
-TEST(LinearSolver, SolvesAroundTheNodesThatChangeAndSetsUpAgainWhereTheyAreMany)
+TEST(LinearSolver, FollowsChangesOfAFewNodesWithoutASetUp)
 {
   Beam beam;
   Vector x(beam.u->getMap());
   const Vector &load = *beam.functional->problem().load;
   open_between(beam, 2, 2.01);
   const int fresh = beam.linear->solve(load, x, 1e-8).iterations;
+  EXPECT_LT(residual_of(beam, x), 1.01e-8);
   EXPECT_TRUE(beam.linear->solve(load, x, 1e-8).converged);
   EXPECT_EQ(beam.linear->counts().preconditioner_setups, 1);
   EXPECT_EQ(beam.linear->counts().local_corrections, 0);
@@ -164,21 +189,33 @@ TEST(LinearSolver, SolvesAroundTheNodesThatChangeAndSetsUpAgainWhereTheyAreMany)
     open_between(beam, 2, to);
     const auto result = beam.linear->solve(load, x, 1e-8);
     EXPECT_TRUE(result.converged);
-    EXPECT_LE(result.iterations, fresh + 5) << to;
+    EXPECT_LE(result.iterations, fresh + 3) << to;
     EXPECT_LT(residual_of(beam, x), 1.01e-8);
   }
   EXPECT_EQ(beam.linear->counts().preconditioner_setups, 1);
   EXPECT_EQ(beam.linear->counts().local_corrections, 3);
-  open_between(beam, 2, 2.01); // as in the matrix
-  EXPECT_EQ(beam.linear->solve(load, x, 1e-8).iterations, fresh);
-  EXPECT_EQ(beam.linear->counts().local_corrections, 3);
+}
+
+TEST(LinearSolver, SetsUpAgainOnceWhereAllStatesChange)
+{
+  Beam beam;
+  Vector x(beam.u->getMap());
+  const Vector &load = *beam.functional->problem().load;
   open_between(beam, 0.01, 4.99);
-  EXPECT_TRUE(beam.linear->solve(load, x, 1e-8).converged);
-  EXPECT_LT(residual_of(beam, x), 1.01e-8);
-  open_between(beam, 2, 2.1); // corrections wear out
-  const auto result = beam.linear->solve(load, x, 1e-8);
-  EXPECT_LE(result.iterations, fresh + 5);
-  EXPECT_LE(beam.linear->counts().preconditioner_setups, 3);
+  const int open = beam.linear->solve(load, x, 1e-8).iterations;
+  open_between(beam, 2, 2.01); // multigrid was made for a side that moves freely
+  const int worn = beam.linear->solve(load, x, 1e-8).iterations;
+  EXPECT_GT(worn, open);
+  EXPECT_EQ(beam.linear->counts().preconditioner_setups, 1);
+  const auto again = beam.linear->solve(load, x, 1e-8); // for the same states
+  EXPECT_LE(again.iterations, open + 3);
+  EXPECT_EQ(beam.linear->counts().preconditioner_setups, 2);
+  for (int k = 0; k < 3; ++k) {
+    open_between(beam, 0.01, k % 2 ? 4.99 : 2);
+    EXPECT_TRUE(beam.linear->solve(load, x, 1e-8).converged);
+    EXPECT_LT(residual_of(beam, x), 1.01e-8);
+  }
+  EXPECT_EQ(beam.linear->counts().preconditioner_setups, 2);
 }
 
 TEST(LinearSolver, InverseEnergyIsThatOfASolveUpToOneMultigridCycle)
