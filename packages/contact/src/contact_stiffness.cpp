@@ -195,8 +195,7 @@ void ContactStiffness::apply_elastic(const Vector &u, Vector &Ku) const
 
 const DeviceView<double *> &ContactStiffness::sweep_stiffness() const
 {
-  if (sweep_stiffness_.extent(0) == static_cast<std::size_t>(contact_.size()) && contact_.size() > 0)
-    return sweep_stiffness_;
+  if (std::exchange(has_sweep_stiffness_, true)) return sweep_stiffness_;
   Vector owned(getDomainMap()), columns(matrix_->getColMap());
   add_directions(contact_, owned);
   const auto importer = matrix_->getGraph()->getImporter();

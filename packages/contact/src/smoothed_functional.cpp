@@ -235,6 +235,27 @@ void move_points(const ContactNodes &c, const DeviceView<double *> &lambda, cons
   Kokkos::fence();
 }
 
+/// lambda <- p, brought into [0, xi]. @return |change|_2 / |lambda|_2 over all ranks, 0 if nothing changed; collective
+double replace_multipliers(const Comm &comm, const ContactNodes &c, const DeviceView<double *> &p,
+                           const DeviceView<double *> &lambda)
+{
+  double sums[2] = {0, 0};
+  Kokkos::parallel_reduce(
+      "rpc::contact::replace_multipliers", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &change, double &size) {
+        if (c.fixed(i)) return;
+        const double next = clamp(p(i), 0, c.yield(i));
+        change += (next - lambda(i)) * (next - lambda(i));
+        size += next * next;
+        lambda(i) = next;
+      },
+      sums[0], sums[1]);
+  double all[2];
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 2, sums, all);
+  if (all[0] == 0) return 0;
+  return std::sqrt(all[0] / std::max(all[1], all[0])); // all multipliers gone to zero is a change of 1, not of infinity
+}
+
 /// (contact nodes) -v_i(u): what is left of the gaps once u is the origin.
 DeviceView<double *> left_of_gap(const ContactNodes &c, const Vector &u)
 {
@@ -534,33 +555,12 @@ StateCounts SmoothedFunctional::count_states(const Vector &u) const
 
 double SmoothedFunctional::update_multipliers(const Vector &u)
 {
-  return replace_multipliers(pressures(near_, lambda_, u));
+  return replace_multipliers(*comm_, near_, pressures(near_, lambda_, u), lambda_);
 }
 
 double SmoothedFunctional::take_piece_pressures(const Vector &u)
 {
-  return replace_multipliers(piece_pressures(near_, lambda_, u, piece_));
-}
-
-double SmoothedFunctional::replace_multipliers(const DeviceView<double *> &pressure)
-{
-  const ContactNodes c = near_;
-  const auto lambda = lambda_;
-  double sums[2] = {0, 0};
-  Kokkos::parallel_reduce(
-      "rpc::contact::replace_multipliers", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &change, double &size) {
-        if (c.fixed(i)) return;
-        const double next = clamp(pressure(i), 0, c.yield(i));
-        change += (next - lambda(i)) * (next - lambda(i));
-        size += next * next;
-        lambda(i) = next;
-      },
-      sums[0], sums[1]);
-  double all[2];
-  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, sums, all);
-  if (all[0] == 0) return 0;
-  return std::sqrt(all[0] / std::max(all[1], all[0])); // all multipliers gone to zero is a change of 1, not of infinity
+  return replace_multipliers(*comm_, near_, piece_pressures(near_, lambda_, u, piece_), lambda_);
 }
 
 double SmoothedFunctional::pressure_error(const Vector &u) const

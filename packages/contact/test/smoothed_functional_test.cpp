@@ -283,4 +283,15 @@ TEST(SmoothedFunctional, FallsInEachSweepUntilContactForcesBalance)
   }
 }
 
+TEST(SmoothedFunctional, SweepsWhereOneNodeAloneMayTouch)
+{
+  auto foundation = below(40);
+  foundation.gap = field([](const Point &x) { return x[0] == 0 ? 0 : 1; });
+  const Scene scene(std::vector{foundation});
+  const auto u = scene.vector(0.02, 0.3);
+  const double before = scene.functional->value(*u);
+  for (int sweep = 0; sweep < 3; ++sweep) scene.functional->sweep(*u); // ranks that have no contact node take part
+  EXPECT_LT(scene.functional->value(*u), before);
+}
+
 } // namespace

@@ -38,6 +38,7 @@ ActiveSetResult find_states(contact::SmoothedFunctional &functional, LinearSolve
   int changes = 0, updates = 0; // of states; of the multipliers alone
   while (true) {
     const auto choice = functional.choose_states(u, negligible * options.pressure_tolerance);
+    if (choice.changes == 0 && functional.predicted()) rough = false; // nothing touches, as on the coarser mesh
     if (choice.confirmed) {
       const bool solved_well = norm <= target;
       result.confirmed =

@@ -53,16 +53,17 @@ public:
   const DeviceView<double *> &own_stiffness() const { return own_stiffness_; }
 
   /// (contact nodes) kappa_i = sum_j |m_i . K_ij m_j| / |m_i|^2 over the contact nodes j, with |.| entry by entry, made at the
-  /// first call: the elastic energy of moves s_i m_i/|m_i|^2 of all contact nodes at once is at most sum_i kappa_i s_i^2/2. [N/m]
+  /// first call, which is collective: the elastic energy of moves s_i m_i/|m_i|^2 of all contact nodes at once is at most sum_i kappa_i s_i^2/2. [N/m]
   const DeviceView<double *> &sweep_stiffness() const;
 
 private:
   RCP<CrsMatrix> matrix_;
   ContactNodes contact_;
   mutable DeviceView<double *> sweep_stiffness_;
-  DeviceView<double *> added_, written_; // (contact nodes) of H, and of the matrix [Pa/m]
-  bool has_changes_ = false;             // since the matrix was written
-  DeviceView<double *> nothing_;         // (contact nodes) 0
+  mutable bool has_sweep_stiffness_ = false; // on all ranks, those without contact nodes too
+  DeviceView<double *> added_, written_;     // (contact nodes) of H, and of the matrix [Pa/m]
+  bool has_changes_ = false;                 // since the matrix was written
+  DeviceView<double *> nothing_;             // (contact nodes) 0
   DeviceView<double *> own_stiffness_;
   DeviceView<std::size_t **> block_; // (contact nodes, dim) entry where the node's own block begins in each of its rows
   DeviceView<double ***> elastic_;   // (contact nodes, dim, dim) that block of K
