@@ -38,7 +38,8 @@ ActiveSetResult find_states(contact::SmoothedFunctional &functional, LinearSolve
   int changes = 0, updates = 0; // of states; of the multipliers alone
   while (true) {
     const auto choice = functional.choose_states(u, negligible * options.pressure_tolerance);
-    if (choice.changes == 0 && functional.predicted()) rough = false; // nothing touches, as on the coarser mesh
+    // Nothing touches, as far as is known: one solve, for CG in one go keeps the energy balance to rounding.
+    if (choice.changes == 0 && result.steps == 0) rough = false;
     if (choice.confirmed) {
       const bool solved_well = norm <= target;
       result.confirmed =
@@ -48,6 +49,8 @@ ActiveSetResult find_states(contact::SmoothedFunctional &functional, LinearSolve
       rough = false;
     } else if (!seen.insert(choice.fingerprint).second || ++changes > most_changes) {
       break; // in circles, or too slow
+    } else if (result.steps == 1) {
+      rough = true; // it touches after all
     }
     functional.take_states(choice, u);
     functional.elastic_gradient(u, G);

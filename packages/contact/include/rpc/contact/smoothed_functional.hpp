@@ -116,8 +116,6 @@ public:
   /// A guess to start from, such as another mesh's solution; brought into [0, xi].
   /// @param lambda  (contact nodes) [Pa]
   void set_multipliers(const DeviceView<double *> &lambda);
-  /// Whether such a guess was given, and no choice of states has been made of it yet.
-  bool predicted() const { return predicted_ && !piece_chosen_; }
   /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
   void reset_multipliers();
   const RCP<ContactStiffness> &hessian() const { return hessian_; }
