@@ -12,7 +12,7 @@ namespace rpc::solver
 namespace
 {
 
-constexpr int most_changes = 8; // of states; then Newton with its sweep needs fewer steps
+constexpr int most_changes = 10; // of states; then Newton with its sweep needs fewer steps
 // While states change, solves bring the residual below this part of what it was, and of the load: three to five CG
 // iterations. With 1e-1 pressures are too rough to choose states by, 1e-4 saves no step. What the multipliers of the last
 // rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.

@@ -16,7 +16,7 @@ using rpc::test::below;
 using rpc::test::ignore;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr int most_steps = 12; // eight changes of states, and multiplier updates
+constexpr int most_steps = 14; // ten changes of states, and multiplier updates
 const solver::NewtonOptions options;
 
 int find_states(Beam &beam)
