@@ -196,16 +196,11 @@ void ContactStiffness::apply_elastic(const Vector &u, Vector &Ku) const
 const DeviceView<double *> &ContactStiffness::sweep_stiffness() const
 {
   if (std::exchange(has_sweep_stiffness_, true)) return sweep_stiffness_;
-  Vector owned(getDomainMap()), columns(matrix_->getColMap());
-  add_directions(contact_, owned);
-  const auto importer = matrix_->getGraph()->getImporter();
-  if (importer.is_null())
-    columns.update(1., owned, 0.);
-  else
-    columns.doImport(owned, *importer, Tpetra::INSERT);
+  Vector directions(getDomainMap());
+  add_directions(contact_, directions);
   sweep_stiffness_ = DeviceView<double *>("rpc::contact::sweep_stiffness", contact_.size());
   write_diagonal_blocks(contact_, nothing_, block_, elastic_, *matrix_);
-  sum_couplings(contact_, *matrix_, columns, sweep_stiffness_);
+  sum_couplings(contact_, *matrix_, at_columns(*matrix_, directions), sweep_stiffness_);
   write_diagonal_blocks(contact_, written_, block_, elastic_, *matrix_);
   return sweep_stiffness_;
 }

@@ -127,7 +127,9 @@ TEST(ChooseStates, FirstStatesAreThoseOfMultipliersAndPenetrations)
   DeviceView<double *> given("given", c.size());
   Kokkos::deep_copy(given, yield);
   scene.functional->set_multipliers(given); // as a coarser mesh would: all yield or are about to
-  const auto u = scene.vector([](const Point &x) { return Point{0, x[0] == 0 ? 1. : -0.01, 0}; }); // the first is far off
+  const auto u = scene.vector([](const Point &x) {
+    return Point{0, x[0] == 0 ? 1. : -0.01, 0};
+  });                                                              // the first is far off
   EXPECT_EQ(choose(*scene.functional, *u).changes, num_nodes - 1); // open is the state before any choice
   expect_multipliers(scene, 0, yield);
 }

@@ -94,7 +94,8 @@ struct Scene {
 };
 
 /// One choice of states, taken unless it confirms the present ones.
-inline contact::StateChoice choose(contact::SmoothedFunctional &functional, const Vector &u, const double negligible = 0)
+inline contact::StateChoice choose(contact::SmoothedFunctional &functional, const Vector &u,
+                                   const double negligible = 0)
 {
   const auto choice = functional.choose_states(u, negligible);
   Vector moved(u, Teuchos::Copy);

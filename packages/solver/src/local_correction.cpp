@@ -34,18 +34,6 @@ void mark_changed(const ContactStiffness::Changes &changes, const int dim, Vecto
   Kokkos::fence();
 }
 
-/// What a vector on owned dofs holds at the matrix's columns.
-Vector at_columns(const CrsMatrix &A, const Vector &x)
-{
-  Vector columns(A.getColMap());
-  const auto importer = A.getGraph()->getImporter();
-  if (importer.is_null())
-    columns.update(1., x, 0.);
-  else
-    columns.doImport(x, *importer, Tpetra::INSERT);
-  return columns;
-}
-
 /// Marks the rows that share an entry with a marked one.
 void add_layer(const CrsMatrix &A, Vector &mark)
 {

@@ -44,6 +44,18 @@ inline auto device_write(Vector &v)
   return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadWrite), Kokkos::ALL(), 0);
 }
 
+/// What a vector on a matrix's domain holds at its columns, those of other ranks too; collective.
+inline Vector at_columns(const CrsMatrix &A, const Vector &x)
+{
+  Vector columns(A.getColMap());
+  const auto importer = A.getGraph()->getImporter();
+  if (importer.is_null())
+    columns.update(1., x, 0.);
+  else
+    columns.doImport(x, *importer, Tpetra::INSERT);
+  return columns;
+}
+
 /// Sum, maximum or minimum of one number over all ranks; collective.
 template <class T>
 T sum_all(const Comm &comm, const T value)
