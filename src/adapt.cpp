@@ -119,7 +119,7 @@ public:
   std::optional<mesh::MeshOptions> next(const Solution &s, std::string &reason)
   {
     const double eta = std::sqrt(s.estimate->total());
-    const double wanted = aim * scene_.adapt.target * std::sqrt(s.strain_energy);
+    const double wanted = aim * scene_.adapt.target * std::sqrt(s.energy_norm_squared);
     const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
     const bool is_near = eta < near * wanted;
     const double missed = is_near ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
@@ -151,8 +151,8 @@ std::string nothing_strained(const Solution &s)
 {
   std::ostringstream reason;
   reason << "nothing is strained";
-  if (s.strain_energy > 0)
-    reason << ": the strain energy " << s.strain_energy << (s.discretization.dim() == 2 ? " J/m" : " J")
+  if (s.energy_norm_squared > 0)
+    reason << ": the strain energy " << s.energy_norm_squared << (s.discretization.dim() == 2 ? " J/m" : " J")
            << " is rounding, which may reach " << s.estimate->rounding;
   return reason.str();
 }
@@ -191,7 +191,7 @@ Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::
       break;
     }
     last = std::move(next);
-    hint = fem::order_note(*last->discretization.mesh, scene.materials);
+    hint = fem::order_note(*last->discretization.mesh, scene.model.materials);
     if (cycles.empty() && !hint.empty()) console << "note: " << hint << std::endl;
     cycles.push_back(cycle_of(*last, Teuchos::Time::wallTime() - start));
     if (!best || best_of(cycles) + 1 == cycles.size()) best = last;
@@ -241,18 +241,18 @@ PhaseSeconds &PhaseSeconds::operator+=(const PhaseSeconds &other)
 
 bool only_rounding(const Solution &s)
 {
-  return s.estimate && s.strain_energy <= s.estimate->rounding;
+  return s.estimate && s.energy_norm_squared <= s.estimate->rounding;
 }
 
 double relative_estimate(const Solution &s)
 {
   const double squared = s.estimate->total();
-  return squared == 0 || only_rounding(s) ? 0 : std::sqrt(squared / s.strain_energy);
+  return squared == 0 || only_rounding(s) ? 0 : std::sqrt(squared / s.energy_norm_squared);
 }
 
 double exact_error(const Scene &scene, const Solution &s)
 {
-  return std::sqrt(2 * std::abs(s.energy - scene.adapt.exact_energy) / s.strain_energy);
+  return std::sqrt(2 * std::abs(s.energy - scene.adapt.exact_energy) / s.energy_norm_squared);
 }
 
 bool succeeded(const Solution &s)

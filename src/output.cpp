@@ -28,7 +28,7 @@ struct ResultPaths {
   {
     const std::string stem = (std::filesystem::path(folder) / name).string();
     if (scene.output.exodus) exodus = stem + ".e";
-    if (scene.output.csv && !scene.contact.empty()) csv = stem + ".contact.csv";
+    if (scene.output.csv && !scene.model.contact.empty()) csv = stem + ".contact.csv";
     if (scene.output.json) json = stem + ".json";
   }
   void require_replaceable() const
@@ -77,11 +77,11 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const Solution &s)
   std::vector<io::NodalField> fields;
   const char *const displacement[] = {"disp_x", "disp_y", "disp_z"};
   for (int c = 0; c < dim; ++c) fields.push_back({displacement[c], column(*s.u, dim, c, n, 0)});
-  const auto stress = fem::RecoveredStress(d, scene.materials, *s.u).at_nodes();
+  const auto stress = fem::RecoveredStress(d, scene.model.materials, *s.u).at_nodes();
   const auto names = fem::stress_names(dim);
   for (std::size_t k = 0; k < names.size(); ++k)
     fields.push_back({names[k], column(*stress, 1, 0, n, static_cast<int>(k))});
-  if (scene.contact.empty()) return fields;
+  if (scene.model.contact.empty()) return fields;
   const auto shown = shown_points(s.functional->contact(), s.contact, n);
   fields.push_back({"contact_pressure", scatter(shown, s.contact.pressure, 0)});
   fields.push_back({"gap", scatter(shown, s.functional->contact().gap, 0)});
@@ -109,7 +109,7 @@ void write_csv(const std::string &path, const Scene &scene, const Solution &s)
   for (int k = 0; k < contact.num_sides(); ++k) {
     const LO begin = contact.first(k), end = contact.first(k + 1);
     io::ContactTable table;
-    table.side = scene.contact[k].side;
+    table.side = scene.model.contact[k].side;
     table.id = HostView<GO *>("rpc::output::id", end - begin);
     table.position = HostView<double **>("rpc::output::position", end - begin, mesh.dim());
     const auto node = part_of(contact.node, begin, end);
@@ -121,7 +121,7 @@ void write_csv(const std::string &path, const Scene &scene, const Solution &s)
     table.gap = part_of(contact.gap, begin, end);
     table.pressure = part_of(s.contact.pressure, begin, end);
     table.state = part_of(s.contact.state, begin, end);
-    table.facets = io::owned_facets(mesh, mesh.side(table.side, scene.contact[k].path + "->Side"), node_ids);
+    table.facets = io::owned_facets(mesh, mesh.side(table.side, scene.model.contact[k].path + "->Side"), node_ids);
     tables.push_back(table);
   }
   io::write_contact_csv(path, mesh.owned_nodes->getComm(), tables);
@@ -139,8 +139,8 @@ void add_sums(nlohmann::ordered_json &json, const contact::ContactSums &sums, co
   json["max_pressure"] = sums.max_pressure;
   json["max_penetration"] = sums.max_penetration;
   json["max_initial_penetration"] = sums.max_initial_penetration;
-  json["contact_length"] = sums.contact_length;
-  json["yielded_length"] = sums.yielded_length;
+  json[dim == 2 ? "contact_length" : "contact_area"] = sums.contact_length;
+  json[dim == 2 ? "yielded_length" : "yielded_area"] = sums.yielded_length;
 }
 
 /// A number that may be unknown: null then.
@@ -200,18 +200,19 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["ranks"] = mesh.comm().getSize();
   json["execution_space"] = ExecutionSpace::name();
   json["energy_J"] = s.energy;
-  json["strain_energy"] = s.strain_energy;
+  json["strain_energy"] = 0.5 * s.energy_norm_squared;
+  json["energy_norm_squared"] = s.energy_norm_squared;
   add_sums(json, s.contact.total, mesh.dim());
   json["contact_sides"] = nlohmann::ordered_json::object();
-  for (std::size_t k = 0; k < scene.contact.size(); ++k)
-    add_sums(json["contact_sides"][scene.contact[k].side], s.contact.sides[k], mesh.dim());
+  for (std::size_t k = 0; k < scene.model.contact.size(); ++k)
+    add_sums(json["contact_sides"][scene.model.contact[k].side], s.contact.sides[k], mesh.dim());
   json["reaction_force"] = nlohmann::ordered_json::object();
-  for (std::size_t k = 0; k < scene.dirichlet.size(); ++k)
-    json["reaction_force"][scene.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());
-  json["kkt_residual"] = s.uzawa.certificate.kkt_residual;
-  json["equilibrium_residual"] = s.uzawa.certificate.equilibrium_residual;
-  json["energy_balance"] = s.uzawa.certificate.energy_balance;
-  json["duality_gap"] = s.uzawa.certificate.duality_gap;
+  for (std::size_t k = 0; k < scene.model.dirichlet.size(); ++k)
+    json["reaction_force"][scene.model.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());
+  json["kkt_residual"] = s.uzawa.residuals.kkt_residual;
+  json["equilibrium_residual"] = s.uzawa.residuals.equilibrium_residual;
+  json["energy_balance"] = s.uzawa.residuals.energy_balance;
+  json["duality_gap"] = s.uzawa.residuals.duality_gap;
   json["multiplier_change"] = s.uzawa.multiplier_change;
   json["uzawa_iterations"] = s.uzawa.iterations;
   json["newton_iterations"] = s.uzawa.newton_iterations;

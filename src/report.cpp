@@ -64,17 +64,15 @@ void print_adaptation(std::ostream &out, const Adaptation &adaptation, const boo
 
 ConsoleTable::ConsoleTable(std::ostream &out) : out_(out), start_(Teuchos::Time::wallTime()) {}
 
-void ConsoleTable::scene(const Scene &scene, const Solution &solution)
+void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const contact::ContactNodes &contact)
 {
-  const mesh::Mesh &mesh = *solution.discretization.mesh;
-  const auto &contact = solution.functional->contact();
+  const mesh::Mesh &mesh = *d.mesh;
   std::string sides;
-  for (const auto &side : scene.contact) sides += (sides.empty() ? " on \"" : ", \"") + side.side + "\"";
+  for (const auto &side : scene.model.contact) sides += (sides.empty() ? " on \"" : ", \"") + side.side + "\"";
   print(out_, "%s: %lld %s cells, %lld dofs, %lld contact nodes%s, %d rank%s, %s\n", scene.name.c_str(),
         static_cast<long long>(sum_all(mesh.comm(), GO(mesh.num_owned_cells))), mesh.element.name().c_str(),
-        static_cast<long long>(solution.discretization.owned_dofs->getGlobalNumElements()),
-        static_cast<long long>(contact.num_total), sides.c_str(), mesh.comm().getSize(),
-        mesh.comm().getSize() == 1 ? "" : "s", ExecutionSpace::name());
+        static_cast<long long>(d.owned_dofs->getGlobalNumElements()), static_cast<long long>(contact.num_total),
+        sides.c_str(), mesh.comm().getSize(), mesh.comm().getSize() == 1 ? "" : "s", ExecutionSpace::name());
   if (contact.num_fixed > 0)
     print(out_,
           "note: the normal displacement of %lld contact nodes is prescribed by \"Dirichlet\", which wins over contact "
@@ -83,28 +81,27 @@ void ConsoleTable::scene(const Scene &scene, const Solution &solution)
   if (contact.num_missing > 0)
     print(out_, "note: from %lld nodes of the contact sides the normal misses the obstacle: they never touch\n",
           static_cast<long long>(contact.num_missing));
-  const std::string locking = fem::locking_note(mesh, scene.materials);
+  const std::string locking = fem::locking_note(mesh, scene.model.materials);
   if (!locking.empty()) print(out_, "note: %s\n", locking.c_str());
-  print(out_, "uzawa newton   |F|/|b|     step    open   stuck yielded krylov   time [s]\n");
+  print(out_, "uzawa newton   |F|/|b|     step    open  closed  yields krylov   time [s]\n");
   out_ << std::flush;
 }
 
-void ConsoleTable::newton(const solver::NewtonStep &step)
+void ConsoleTable::newton(const int uzawa, const solver::NewtonStep &step, const contact::StateCounts &n)
 {
-  const auto &n = step.states;
-  print(out_, "%5d %6d  %8.2e", uzawa_, step.iteration, step.residual);
+  print(out_, "%5d %6d  %8.2e", uzawa, step.iteration, step.residual);
   if (step.iteration == 0)
     print(out_, "         ");
   else
     print(out_, " %8.2e", step.step_length);
-  print(out_, " %7lld %7lld %7lld %6d %10.3f\n", static_cast<long long>(n.open), static_cast<long long>(n.stuck),
-        static_cast<long long>(n.yielded), step.linear_iterations, Teuchos::Time::wallTime() - start_);
+  print(out_, " %7lld %7lld %7lld %6d %10.3f\n", static_cast<long long>(n.open), static_cast<long long>(n.closed),
+        static_cast<long long>(n.yielding), step.linear_iterations, Teuchos::Time::wallTime() - start_);
   out_ << std::flush;
 }
 
-void ConsoleTable::uzawa(const contact::UzawaResult &result)
+void ConsoleTable::uzawa(const analysis::UzawaResult &result)
 {
-  const auto &c = result.certificate;
+  const auto &c = result.residuals;
   print(out_, "%5d     -- kkt %.1e, equilibrium %.1e, energy balance %.1e, duality gap %.1e\n", result.iterations,
         c.kkt_residual, c.equilibrium_residual, c.energy_balance, c.duality_gap);
   out_ << std::flush;
@@ -125,11 +122,11 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
   const bool flat = s.discretization.dim() == 2;
   const auto &c = s.contact.total;
   print(out, "\n%s: %s\n", s.uzawa.converged ? "converged" : "NOT CONVERGED", s.uzawa.reason.c_str());
-  const auto &held = s.uzawa.certificate;
-  print(out, "  certificate         kkt %.1e, equilibrium %.1e, energy balance %.1e, duality gap %.1e\n",
+  const auto &held = s.uzawa.residuals;
+  print(out, "  optimality          kkt %.1e, equilibrium %.1e, energy balance %.1e, duality gap %.1e\n",
         held.kkt_residual, held.equilibrium_residual, held.energy_balance, held.duality_gap);
   print(out, "  energy J            %.9g %s\n", s.energy, flat ? "J/m" : "J");
-  if (!scene.contact.empty()) {
+  if (!scene.model.contact.empty()) {
     print(out, "  contact force       (%.6g, %.6g%s) %s\n", c.force[0], c.force[1],
           flat ? "" : (", " + std::to_string(c.force[2])).c_str(), flat ? "N/m" : "N");
     print(out, "  max. pressure       %.6g Pa\n", c.max_pressure);
@@ -141,10 +138,10 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
     print(out, "  ");
     print_estimate(out, scene, s);
   }
-  for (std::size_t k = 0; k < scene.contact.size() && scene.contact.size() > 1; ++k) {
+  for (std::size_t k = 0; k < scene.model.contact.size() && scene.model.contact.size() > 1; ++k) {
     const auto &side = s.contact.sides[k];
     print(out, "    on \"%s\": force (%.6g, %.6g%s), max. pressure %.6g, in contact %.6g, yielded %.6g\n",
-          scene.contact[k].side.c_str(), side.force[0], side.force[1],
+          scene.model.contact[k].side.c_str(), side.force[0], side.force[1],
           flat ? "" : (", " + std::to_string(side.force[2])).c_str(), side.max_pressure, side.contact_length,
           side.yielded_length);
   }
@@ -153,8 +150,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
         s.uzawa.iterations, sum(s.uzawa.newton_iterations), s.linear.iterations.size(), sum(s.linear.iterations),
         s.linear.preconditioner_setups);
   if (s.line_search_steps > 0)
-    print(out,
-          "    %d of the Newton steps with sweep and line search: choices of contact states alone did not settle\n",
+    print(out, "    %d of the Newton steps with sweep and line search: the active-set iteration did not settle\n",
           s.line_search_steps);
   for (const auto &level : s.levels)
     print(out, "    predicted by      %zu dofs: %d Newton, %d CG iterations, %.3f s\n", level.dofs,

@@ -13,15 +13,14 @@ class ConsoleTable
 public:
   explicit ConsoleTable(std::ostream &out);
 
-  void scene(const Scene &scene, const Solution &solution);
-  void next_uzawa() { ++uzawa_; }
-  void newton(const solver::NewtonStep &step);
-  void uzawa(const contact::UzawaResult &result);
+  void scene(const Scene &scene, const fem::Discretization &d, const contact::ContactNodes &contact);
+  /// @param uzawa  number of the Uzawa iteration
+  void newton(int uzawa, const solver::NewtonStep &step, const contact::StateCounts &states);
+  void uzawa(const analysis::UzawaResult &result);
 
 private:
   std::ostream &out_;
   double start_;
-  int uzawa_ = 0;
 };
 
 /// A line on the error that a mesh is estimated to leave.

@@ -1,13 +1,8 @@
 #pragma once
 
 #include "rpc/adapt/refinement.hpp"
-#include "rpc/contact/contact_nodes.hpp"
-#include "rpc/contact/uzawa.hpp"
-#include "rpc/fem/dirichlet.hpp"
-#include "rpc/fem/elasticity.hpp"
+#include "rpc/analysis/solve_step.hpp"
 #include "rpc/mesh/make_mesh.hpp"
-#include "rpc/solver/linear_solver.hpp"
-#include "rpc/solver/newton.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <string>
@@ -21,26 +16,14 @@ struct OutputOptions {
   bool timers = false;
 };
 
-/// Solutions on coarser meshes to start from.
-struct NestedOptions {
-  bool enabled = true;
-  double coarsening = 4;   ///< ratio of cell lengths from one mesh to the next, > 1
-  double tolerance = 1e-4; ///< |F|_2 / |load|_2 there
-};
-
 /// A deck, read and checked: all that a run needs to know.
 struct Scene {
   std::string name; ///< of the deck's file, without folder and extension
   mesh::MeshOptions mesh;
-  fem::Materials materials;
-  std::vector<fem::DirichletCondition> dirichlet;
-  std::vector<fem::TractionLoad> tractions;
-  fem::VectorField body_force;
-  std::vector<contact::ContactOptions> contact; ///< one per contact side
-  contact::UzawaOptions uzawa;
-  NestedOptions nested;
+  double time = 1; ///< at which the scene is solved
+  analysis::Model model;
+  analysis::StepOptions step;
   adapt::AdaptOptions adapt;
-  solver::NewtonOptions newton;
   solver::LinearSolverOptions linear_solver;
   OutputOptions output;
 };

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "rpc/adapt/error_estimate.hpp"
-#include "rpc/contact/result.hpp"
-#include "rpc/contact/support.hpp"
+#include "rpc/analysis/solve_step.hpp"
 #include "scene.hpp"
 
 #include <array>
@@ -20,15 +19,6 @@ struct PhaseSeconds {
   double mesh = 0, assembly = 0, prediction = 0, setup = 0, solve = 0, estimate = 0, output = 0, total = 0;
 
   PhaseSeconds &operator+=(const PhaseSeconds &other);
-};
-
-/// What was done on a coarser mesh.
-struct LevelWork {
-  std::size_t dofs = 0;
-  int newton_iterations = 0;
-  std::vector<int> linear_iterations; ///< per solve
-  int preconditioner_setups = 0;
-  double seconds = 0; ///< with all coarser ones
 };
 
 /// One mesh of an adaptive run.
@@ -69,25 +59,14 @@ struct Adaptation {
 };
 
 /// All that a run has found.
-struct Solution {
+struct Solution : analysis::StepSolution {
   fem::Discretization discretization;
-  contact::Support support;
-  RCP<Vector> u; ///< (owned dofs) [m]
-  std::shared_ptr<contact::SmoothedFunctional> functional;
-  contact::UzawaResult uzawa;
-  contact::ContactResult contact;
   double pressure_norm = 0;   ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]; where meshes are adapted
   double pressure_change = 0; ///< the same of its change since the mesh before, if there was one
-  double energy = 0;          ///< J(u) [J]
-  double strain_energy = 0;   ///< a(u, u) [J]
-  std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
-  solver::LinearSolverCounts linear;            ///< on the finest mesh
-  std::vector<LevelWork> levels;                ///< coarser meshes that predicted the solution, from the coarsest
   std::vector<std::string> skipped;             ///< what the scene allowed to leave out, and why
   std::optional<adapt::ErrorEstimate> estimate; ///< where it is asked for
   std::optional<Adaptation> adaptation;         ///< where the mesh is adapted
   int matrix_assemblies = 0;
-  int line_search_steps = 0; ///< of Newton's, where the search for contact states was not enough
   PhaseSeconds seconds;
 };
 

@@ -15,7 +15,7 @@ ASSIGNMENTS = [
     # names
     (["Material->Youngs Modulus=3"], ['"Material->Youngs Modulus"', 'Did you mean "Young\'s Modulus"?']),
     (["Materail->Poisson's Ratio=0.2"], ['"Materail"', 'Did you mean "Material"?']),
-    (["Yield Stress=3"], ['"Yield Stress"', "Valid here: Mesh, Material"]),
+    (["Yield Stress=3"], ['"Yield Stress"', "Valid here: Time, Mesh, Material"]),
     (["Dirichlet->left->W=0"], ['"Dirichlet->left->W"', "X, Y, Z"]),
     (["Output=3"], ['"Output" is a sublist']),
     (["Dirichlet->left=3"], ['"Dirichlet->left" is a sublist']),
@@ -60,7 +60,7 @@ ASSIGNMENTS = [
     (["Contact->Yield Stress=nan"], ['"Contact->Yield Stress"', "not a number"]),
     (["Contact->Yield Stress="], ['"Contact->Yield Stress"', "empty"]),
     (["Contact->Yield Stress=16+*2"], ['"Contact->Yield Stress" = "16+*2"', "at character 4", "Variables: x, y, z"]),
-    (["Contact->Yield Stress=2*t"], ['"Contact->Yield Stress" = "2*t"', '"t"', "Variables: x, y, z"]),
+    (["Contact->Yield Stress=2*s"], ['"Contact->Yield Stress" = "2*s"', '"s"', "Variables: x, y, z, t"]),
     (["Contact->Gap=inf"], ['"Contact->Gap" = "inf" must be a finite number']),
     (["Contact->Penalty=0"], ['"Contact->Penalty" must be `auto` or a finite number > 0', "[Pa/m]", "got 0"]),
     (["Dirichlet->left->Z=0"], ['"Dirichlet->left->Z"', "2D"]),
@@ -76,7 +76,7 @@ ASSIGNMENTS = [
     # solvers
     (["Uzawa->Tolerance=-1"], ['"Uzawa->Tolerance" must be in (0, 1)', "got -1"]),
     (["Uzawa->Maximum Iterations=0"], ['"Uzawa->Maximum Iterations" must be > 0', "got 0"]),
-    (["Uzawa->Stopping Test=none"], ['"Uzawa->Stopping Test" must be one of certificate, multiplier change', '"none"']),
+    (["Uzawa->Stopping Test=none"], ['"Uzawa->Stopping Test" must be one of optimality, multiplier change', '"none"']),
     (["NOX->Step Tolerance=-1"], ['"NOX->Step Tolerance" must be > 0', "got -1"]),
     (["NOX->Residual Tolerance=0"], ['"NOX->Residual Tolerance" must be > 0', "got 0"]),
     (["NOX->Maximum Iterations=0"], ['"NOX->Maximum Iterations" must be > 0', "got 0"]),

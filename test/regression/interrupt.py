@@ -94,7 +94,7 @@ class Interrupt(RpcTestCase):
                 self.assertGreater(summary["max_penetration"], 0)
 
     def test_in_newton_results_are_written(self):
-        self.interrupt_solve(signal.SIGTERM, "    1      1", "--set=NOX->Active Set Start=false")
+        self.interrupt_solve(signal.SIGTERM, "    1      1", "--set=NOX->Direction->Method=Sweep")
 
     def test_within_a_long_linear_solve_results_are_written(self):
         summary = self.interrupt_solve(signal.SIGTERM, "uzawa newton", *NO_MULTIGRID)

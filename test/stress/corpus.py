@@ -50,10 +50,10 @@ FULL = """<ParameterList name="full">
   </ParameterList>
   <ParameterList name="Uzawa">
     <Parameter name="Tolerance" type="double" value="1e-6"/>
-    <Parameter name="Stopping Test" type="string" value="certificate"/>
+    <Parameter name="Stopping Test" type="string" value="optimality"/>
   </ParameterList>
   <ParameterList name="NOX">
-    <Parameter name="Active Set Start" type="bool" value="true"/>
+    <Parameter name="Step Tolerance" type="double" value="1e-9"/>
     <ParameterList name="Line Search"><Parameter name="Method" type="string" value="Backtrack"/></ParameterList>
   </ParameterList>
   <ParameterList name="Linear Solver">

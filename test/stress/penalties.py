@@ -49,7 +49,7 @@ def row(xi, runs, failures):
         if penalty == "auto" and newton > MOST_NEWTON:
             failures.append(f"{where}: {newton} Newton steps")
         if reference["converged"]:
-            scale = max(abs(reference["energy_J"]), reference["strain_energy"])
+            scale = max(abs(reference["energy_J"]), reference["energy_norm_squared"])
             difference = abs(run["energy_J"] - reference["energy_J"]) / scale
             worst = max(worst, difference)
             if difference > MOST_DIFFERENCE:

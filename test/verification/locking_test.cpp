@@ -85,23 +85,23 @@ Scene scene_of(const Body &body, const double nu, const int n)
   mesh::BoxOptions box{{0, 0}, {1, 1}, {n, n}, body.element};
   if (dim == 3) box = {{0, 0, 0}, {1, 1, thickness}, {n, n, 2}, body.element};
   scene.mesh = box;
-  scene.materials = fem::Materials({2 * mu * (1 + nu), nu, body.dilatation});
+  scene.model.materials = fem::Materials({2 * mu * (1 + nu), nu, body.dilatation});
   for (const std::string side : {"left", "right", "bottom"}) {
     fem::DirichletCondition held{side, side, {}};
     for (int c = 0; c < dim; ++c) held.displacement[c] = ScalarField(0.);
-    scene.dirichlet.push_back(held);
+    scene.model.dirichlet.push_back(held);
   }
   for (const std::string side : {"back", "front"}) {
     fem::DirichletCondition in_plane{side, side, {}};
     in_plane.displacement[2] = ScalarField(0.);
-    if (dim == 3) scene.dirichlet.push_back(in_plane);
+    if (dim == 3) scene.model.dirichlet.push_back(in_plane);
   }
-  scene.tractions = {{"top",
-                      "top",
-                      {field([=](const Point &x) { return exact.stress(x[0], x[1])[2]; }),
-                       field([=](const Point &x) { return exact.stress(x[0], x[1])[1]; }), ScalarField(0.)}}};
-  scene.body_force = {field([=](const Point &x) { return exact.force(x[0], x[1])[0]; }),
-                      field([=](const Point &x) { return exact.force(x[0], x[1])[1]; }), ScalarField(0.)};
+  scene.model.tractions = {{"top",
+                            "top",
+                            {field([=](const Point &x) { return exact.stress(x[0], x[1])[2]; }),
+                             field([=](const Point &x) { return exact.stress(x[0], x[1])[1]; }), ScalarField(0.)}}};
+  scene.model.body_force = {field([=](const Point &x) { return exact.force(x[0], x[1])[0]; }),
+                            field([=](const Point &x) { return exact.force(x[0], x[1])[1]; }), ScalarField(0.)};
   scene.linear_solver.max_iterations = 2000;
   return scene;
 }
@@ -168,7 +168,7 @@ Errors errors_of(const Body &body, const double nu, const int n)
   const mesh::Mesh &mesh = *s.discretization.mesh;
   const int dim = mesh.dim();
   const auto u = s.u->getLocalViewHost(Tpetra::Access::ReadOnly);
-  const auto stress = fem::RecoveredStress(s.discretization, scene.materials, *s.u).at_nodes();
+  const auto stress = fem::RecoveredStress(s.discretization, scene.model.materials, *s.u).at_nodes();
   const auto sigma = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto coords = to_host(mesh.coords);
   const int column[3] = {0, 1, dim == 2 ? 2 : 3};

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
-// input/manufactured.xml against its exact solution (doc/theory.md, section 7): open, stuck and yielded parts.
+// input/manufactured.xml against its exact solution (doc/theory.md, section 7): open, closed and yielded parts.
 
 namespace
 {

@@ -37,7 +37,7 @@ RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::C
           to(node, int(pressure)) = p(i);
           const bool closed = p(i) > 0 && p(i) < c.yield(i);
           const double size = v(i) < 0 ? -v(i) : v(i);
-          to(node, int(penetration)) = closed && c.stiffness(i) * size <= accuracy ? 0 : v(i);
+          to(node, int(penetration)) = closed && c.scaling(i) * size <= accuracy ? 0 : v(i);
           to(node, int(yield)) = c.yield(i) < highest_yield ? c.yield(i) : highest_yield;
           for (int j = 0; j < c.dim; ++j) to(node, normal + j) = c.normal(i, j);
         });
@@ -63,7 +63,7 @@ struct ContactTerms {
   DeviceView<double *> squared; // (facets), of owned cells    [J]       out
 
   /// The state of the contact law at the nodes of a facet, or mixed: then what lies between them is not told.
-  enum class FacetState { open = 1, stuck = 2, yielded = 4, mixed };
+  enum class FacetState { open = 1, closed = 2, yielding = 4, mixed };
   KOKKOS_FUNCTION FacetState state_of(const LO f) const
   {
     constexpr double jump = 0.1; // of the yield stress, over the lower one: its quadratic interpolant would be far off
@@ -71,7 +71,7 @@ struct ContactTerms {
     double least = field(facets(f, 0), int(yield)), most = least;
     for (std::size_t a = 0; a < facets.extent(1); ++a) {
       const double p = field(facets(f, a), int(pressure)), xi = field(facets(f, a), int(yield));
-      state |= int(p >= xi ? FacetState::yielded : (p > 0 ? FacetState::stuck : FacetState::open));
+      state |= int(p >= xi ? FacetState::yielding : (p > 0 ? FacetState::closed : FacetState::open));
       least = Kokkos::Experimental::fmin(least, xi);
       most = Kokkos::Experimental::fmax(most, xi);
     }
@@ -134,7 +134,7 @@ struct ContactTerms {
         out_of_balance += compliance * share * r * r;
       }
       const double other = x.at[pressure] - contact::clamp(x.recovered, 0, xi);
-      if (state == FacetState::stuck || state == FacetState::mixed) difference += share * other * other;
+      if (state == FacetState::closed || state == FacetState::mixed) difference += share * other * other;
     }
     squared(f) = out_of_balance + 2 * product;
     equilibrium += out_of_balance;
@@ -156,7 +156,7 @@ void add_to_cells(const mesh::Side &side, const DeviceView<double *> &of_facet, 
 }
 
 /// How far the multiplier's pressure and that of the recovered stress lie apart where the former is near its largest value;
-/// on a facet that has yielded and has the largest one, how much the yield stress varies.
+/// on a facet that has yielding and has the largest one, how much the yield stress varies.
 struct PeakDifference {
   ContactTerms terms; // in
   double highest = 0; // pressure  [Pa]  in
@@ -165,7 +165,7 @@ struct PeakDifference {
   KOKKOS_FUNCTION void operator()(const LO f, double &most) const
   {
     if (terms.state_of(f) ==
-        ContactTerms::FacetState::yielded) { // the pressure is the yield stress, known at the nodes
+        ContactTerms::FacetState::yielding) { // the pressure is the yield stress, known at the nodes
       double high = 0, low = highest;
       for (std::size_t a = 0; a < terms.facets.extent(1); ++a) {
         const double p = terms.field(terms.facets(f, a), int(pressure));

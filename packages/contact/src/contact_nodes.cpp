@@ -261,16 +261,16 @@ DeviceView<double **> device_rows(const std::vector<double> &values, const int d
 }
 
 /// (points) E / diameter, with the largest Young's modulus among the cells around each point; collective.
-DeviceView<double *> stiffness_of(const fem::Discretization &d, const fem::Materials &materials,
-                                  const DeviceView<LO *> &node)
+DeviceView<double *> scaling_of(const fem::Discretization &d, const fem::Materials &materials,
+                                const DeviceView<LO *> &node)
 {
   const auto modulus = fem::youngs_modulus_at_nodes(d, materials, node);
   const double diameter = mesh::diameter(*d.mesh);
-  DeviceView<double *> stiffness("rpc::contact::stiffness", node.extent(0));
+  DeviceView<double *> scaling("rpc::contact::scaling", node.extent(0));
   Kokkos::parallel_for(
-      "rpc::contact::stiffness", device_range(static_cast<LO>(node.extent(0))),
-      KOKKOS_LAMBDA(const LO i) { stiffness(i) = modulus(i) / diameter; });
-  return stiffness;
+      "rpc::contact::scaling", device_range(static_cast<LO>(node.extent(0))),
+      KOKKOS_LAMBDA(const LO i) { scaling(i) = modulus(i) / diameter; });
+  return scaling;
 }
 
 /// On this rank.
@@ -372,7 +372,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   c.gap = device_values(gap, "rpc::contact::gap");
   c.yield = device_values(yield, "rpc::contact::yield");
   c.penalty = device_values(penalty, "rpc::contact::penalty");
-  if (!options.empty()) c.stiffness = stiffness_of(d, materials, c.node);
+  if (!options.empty()) c.scaling = scaling_of(d, materials, c.node);
   c.normal = device_rows(normal, c.dim, "rpc::contact::normal");
   c.direction = DeviceView<double **>("rpc::contact::direction", node.size(), c.dim);
   c.free_gap = DeviceView<double *>("rpc::contact::free_gap", node.size());

@@ -1,6 +1,6 @@
 #include "held_part.hpp"
 
-#include "rpc/contact/foundation_law.hpp"
+#include "rpc/contact/law/rigid_plastic.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "rpc/contact/result.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rpc::contact
 {
@@ -48,7 +49,7 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
         u_nu(i) = 0;
         for (int k = 0; k < c.dim; ++k) u_nu(i) += c.normal(i, k) * x(c.dim * c.node(i) + k);
         v(i) = u_nu(i) - c.gap(i);
-        s(i) = static_cast<int>(p(i) >= c.yield(i) ? State::yielded : (p(i) > 0 ? State::stuck : State::open));
+        s(i) = static_cast<int>(p(i) >= c.yield(i) ? State::yielding : (p(i) > 0 ? State::closed : State::open));
       });
   Kokkos::fence();
 }
@@ -132,13 +133,28 @@ ContactResult contact_result(const fem::Discretization &d, const std::vector<con
   return result;
 }
 
+double pressure_distance(const Comm &comm, const ContactNodes &contact, const DeviceView<double *> &p,
+                         const DeviceView<double *> &q)
+{
+  const ContactNodes c = contact;
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::pressure_distance", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) {
+        const double difference = p(i) - (q.extent(0) > 0 ? clamp(q(i), 0, c.yield(i)) : 0);
+        if (!c.fixed(i)) part += c.weight(i) * difference * difference;
+      },
+      sum);
+  return std::sqrt(sum_all(comm, sum));
+}
+
 Vector contact_forces(const fem::Discretization &d, const ContactNodes &contact, const ContactResult &result)
 {
   Vector force(d.owned_dofs);
   const ContactNodes c = contact;
   const auto p = result.pressure;
   const auto to = device_write(force);
-  for_each_point_by_side(
+  for_each_point_by_group(
       "rpc::contact::forces", c, KOKKOS_LAMBDA(const LO i) {
         for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) -= c.weight(i) * p(i) * c.normal(i, k);
       });

@@ -17,8 +17,9 @@ constexpr double default_penalty = 1e5, largest_penalty = 1e8, penalty_raise = 1
 // Where the direction lies along no axis, the penalty is on the diagonal of unknowns along the surface too, and smoothers
 // that go by the diagonal do too little there: 160 CG iterations instead of 30 on the half cylinder's own normals.
 constexpr double default_slanting_penalty = 1e3;
-// In units of E/diameter: weak enough not to slow Newton down once nodes stick, strong against the rounding of K.
+// In units of E/diameter: weak enough not to slow Newton down once nodes close, strong against the rounding of K.
 constexpr double weak_spring = 1e-4, weakest_spring = 1e-10, weaken = 1e-2;
+constexpr double long_step = 1.1; // the step of a quadratic is 1
 // Multiple of the mean pressure, load over contact area, above which a yield limit counts as out of reach at the start.
 constexpr double beyond_reach = 100;
 // Weight of penetration against pressure in the first choice of states, in E / diameter: where a coarser mesh predicts u and
@@ -36,13 +37,13 @@ KOKKOS_INLINE_FUNCTION double magnitude(const double x)
 
 /// The paper's start l = 0, which is half the yield limit, where the body touches. Where there is a gap, or where the yield
 /// limit is out of reach of the load, no pressure is the better guess.
-/// @param reach  [Pa]
-void start_multipliers(const ContactNodes &c, const double reach, const DeviceView<double *> &lambda)
+/// @param pressure_bound  above which a yield limit is out of reach [Pa]
+void start_multipliers(const ContactNodes &c, const double pressure_bound, const DeviceView<double *> &lambda)
 {
   Kokkos::parallel_for(
       "rpc::contact::start", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        const bool apart = c.stiffness(i) * c.free_gap(i) > 1e-9 * c.yield(i); // more than rounding
-        lambda(i) = c.fixed(i) || apart || c.yield(i) > reach ? 0 : 0.5 * c.yield(i);
+        const bool apart = c.scaling(i) * c.free_gap(i) > 1e-9 * c.yield(i); // more than rounding
+        lambda(i) = c.fixed(i) || apart || c.yield(i) > pressure_bound ? 0 : 0.5 * c.yield(i);
       });
 }
 
@@ -84,13 +85,13 @@ ContactNodes with_penalties(ContactNodes c, const DeviceView<double *> &own)
   return c;
 }
 
-/// (contact nodes) What the states add to K: r where a node sticks, else the weak spring [Pa/m].
-DeviceView<double *> added_stiffness(const ContactNodes &c, const DeviceView<State *> &piece, const double spring)
+/// (contact nodes) What the states add to K: r where a node is closed, else the weak spring [Pa/m].
+DeviceView<double *> added_stiffness(const ContactNodes &c, const DeviceView<State *> &active, const double spring)
 {
   DeviceView<double *> added("rpc::contact::added", c.size());
   Kokkos::parallel_for(
       "rpc::contact::stiffen", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (!c.fixed(i)) added(i) = piece(i) == State::stuck ? c.penalty(i) : spring * c.stiffness(i);
+        if (!c.fixed(i)) added(i) = active(i) == State::closed ? c.penalty(i) : spring * c.scaling(i);
       });
   Kokkos::fence();
   return added;
@@ -119,7 +120,7 @@ double energy_at_nodes(const ContactNodes &c, const DeviceView<double *> &lambda
 void add_contact_force(const ContactNodes &c, const DeviceView<double *> &p, Vector &F)
 {
   const auto to = device_write(F);
-  for_each_point_by_side(
+  for_each_point_by_group(
       "rpc::contact::force", c, KOKKOS_LAMBDA(const LO i) {
         for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) += c.weight(i) * p(i) * c.direction(i, k);
       });
@@ -137,32 +138,32 @@ DeviceView<double *> pressures(const ContactNodes &c, const DeviceView<double *>
   return p;
 }
 
-/// (contact nodes) The pressures of the piece of given states, whether they lie in [0, xi] or not.
-DeviceView<double *> piece_pressures(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u,
-                                     const DeviceView<State *> &piece)
+/// (contact nodes) The pressures of an active set, whether they lie in [0, xi] or not.
+DeviceView<double *> active_set_pressures(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u,
+                                          const DeviceView<State *> &active)
 {
-  DeviceView<double *> p("rpc::contact::piece_pressure", c.size());
+  DeviceView<double *> p("rpc::contact::active_set_pressure", c.size());
   const auto x = device_read(u);
   Kokkos::parallel_for(
-      "rpc::contact::piece_pressure", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (piece(i) == State::stuck)
+      "rpc::contact::active_set_pressure", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        if (active(i) == State::closed)
           p(i) = lambda(i) + c.penalty(i) * penetration(c, i, x);
         else
-          p(i) = piece(i) == State::yielded ? c.yield(i) : 0;
+          p(i) = active(i) == State::yielding ? c.yield(i) : 0;
       });
   return p;
 }
 
-/// The first states: those of lambda + weight rho v, or all stuck.
-void first_states(const ContactNodes &c, const Vector &u, const DeviceView<double *> &lambda, const bool all_stick,
+/// The first states: those of lambda + weight rho v, or all closed.
+void first_states(const ContactNodes &c, const Vector &u, const DeviceView<double *> &lambda, const bool all_close,
                   const DeviceView<State *> &next)
 {
   const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::first_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        const double rho = first_weight * c.stiffness(i);
+        const double rho = first_weight * c.scaling(i);
         next(i) = c.fixed(i)  ? State::open
-                  : all_stick ? State::stuck
+                  : all_close ? State::closed
                               : state(penetration(c, i, x), lambda(i), rho, c.yield(i));
       });
   Kokkos::fence();
@@ -179,22 +180,22 @@ double largest_pressure(const ContactNodes &c, const DeviceView<double *> &p)
   return std::max(0., largest);
 }
 
-/// A point that violates the contact law by more than a pressure goes from stuck to open or yielded, else to stuck. For a
+/// A point that violates the contact law by more than a pressure goes from closed to open or yielding, else to closed. For a
 /// penetration stands k v, with k the stiffness of the node alone.
-void next_states(const ContactNodes &c, const Vector &u, const DeviceView<State *> &piece,
+void next_states(const ContactNodes &c, const Vector &u, const DeviceView<State *> &active,
                  const DeviceView<double *> &p, const DeviceView<double *> &own, const double bound,
                  const DeviceView<State *> &next)
 {
   const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::next_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        next(i) = piece(i);
+        next(i) = active(i);
         if (c.fixed(i)) return;
         const double kv = own(i) * penetration(c, i, x);
-        if (piece(i) == State::stuck)
-          next(i) = p(i) < -bound ? State::open : p(i) > c.yield(i) + bound ? State::yielded : State::stuck;
-        else if ((piece(i) == State::open ? kv : -kv) > bound)
-          next(i) = State::stuck;
+        if (active(i) == State::closed)
+          next(i) = p(i) < -bound ? State::open : p(i) > c.yield(i) + bound ? State::yielding : State::closed;
+        else if ((active(i) == State::open ? kv : -kv) > bound)
+          next(i) = State::closed;
       });
   Kokkos::fence();
 }
@@ -219,8 +220,7 @@ void move_points(const ContactNodes &c, const DeviceView<double *> &lambda, cons
     Kokkos::parallel_for(
         "rpc::contact::best_moves", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
           if (c.fixed(i)) return;
-          double length = 0;
-          for (int k = 0; k < c.dim; ++k) length += c.direction(i, k) * c.direction(i, k);
+          const double length = squared_length(c, i);
           move(i) = best_move(along_direction(c, i, slope) / length, stiffness(i), c.weight(i), penetration(c, i, x),
                               lambda(i), c.penalty(i), c.yield(i)) /
                     length;
@@ -228,9 +228,31 @@ void move_points(const ContactNodes &c, const DeviceView<double *> &lambda, cons
     Kokkos::fence();
   }
   const auto x = device_write(u);
-  for_each_point_by_side(
+  for_each_point_by_group(
       "rpc::contact::move_points", c, KOKKOS_LAMBDA(const LO i) {
         for (int k = 0; k < c.dim; ++k) x(c.dim * c.node(i) + k) += move(i) * c.direction(i, k);
+      });
+  Kokkos::fence();
+}
+
+/// p <- p - q.
+void subtract(const DeviceView<double *> &q, const DeviceView<double *> &p)
+{
+  Kokkos::parallel_for(
+      "rpc::contact::subtract", device_range(static_cast<LO>(p.extent(0))),
+      KOKKOS_LAMBDA(const LO i) { p(i) -= q(i); });
+  Kokkos::fence();
+}
+
+/// u <- from at free unknowns.
+void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &u)
+{
+  const auto fixed = dirichlet.fixed;
+  const auto source = device_read(from);
+  const auto to = device_write(u);
+  Kokkos::parallel_for(
+      "rpc::contact::take_free", device_range(static_cast<LO>(u.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
+        if (!fixed(dof)) to(dof) = source(dof);
       });
   Kokkos::fence();
 }
@@ -314,7 +336,7 @@ LineModel::Value LineModel::at(const double t) const
       KOKKOS_LAMBDA(const LO i, double &slope, double &curvature) {
         const double r = c.penalty(i), xi = c.yield(i), moved = v(i) + t * dv(i);
         slope += c.weight(i) * dv(i) * (pressure(moved, lambda(i), r, xi) - pressure(v(i), lambda(i), r, xi));
-        if (state(moved, lambda(i), r, xi) == State::stuck) curvature += c.weight(i) * r * dv(i) * dv(i);
+        if (state(moved, lambda(i), r, xi) == State::closed) curvature += c.weight(i) * r * dv(i) * dv(i);
       },
       sums[0], sums[1]);
   double all[2];
@@ -322,21 +344,21 @@ LineModel::Value LineModel::at(const double t) const
   return {slope_at_0_ + elastic_curvature_ * t + all[0], elastic_curvature_ + all[1]};
 }
 
-SmoothedFunctional::SmoothedFunctional(RCP<const Comm> comm, fem::ElasticProblem problem, ContactNodes contact)
-    : comm_(std::move(comm)), problem_(std::move(problem)), contact_(std::move(contact)),
-      lambda_("rpc::contact::multiplier", contact_.size()), piece_("rpc::contact::piece", contact_.size()),
-      hessian_(rcp(new ContactStiffness(problem_.stiffness, contact_)))
+SmoothedFunctional::SmoothedFunctional(fem::ElasticProblem problem, ContactNodes contact, RCP<UpdatedOperator> hessian)
+    : comm_(hessian->getDomainMap()->getComm()), problem_(std::move(problem)), contact_(std::move(contact)),
+      lambda_("rpc::contact::multiplier", contact_.size()), active_set_("rpc::contact::active_set", contact_.size()),
+      hessian_(std::move(hessian))
 {
   Vector applied(*problem_.applied_load, Teuchos::Copy), lifted(*problem_.load, Teuchos::Copy);
   fem::clear_prescribed(problem_.dirichlet, applied);
   fem::clear_prescribed(problem_.dirichlet, lifted);
   applied_force_ = applied.norm2();
-  lifted_force_ = lifted.norm2();
+  prescribed_force_ = lifted.norm2();
   const double weight = sum_all(*comm_, free_weight(contact_));
-  reach_ = weight > 0 ? beyond_reach * lifted.norm1() / weight : 0;
+  pressure_bound_ = weight > 0 ? beyond_reach * lifted.norm1() / weight : 0;
   reset_multipliers();
   contact_ = with_penalties(contact_, hessian_->own_stiffness());
-  near_ = contact_;
+  shifted_ = contact_;
   load_ = problem_.load;
 }
 
@@ -345,9 +367,9 @@ void SmoothedFunctional::hold_by_contact()
   spring_ = weak_spring;
 }
 
-void SmoothedFunctional::weaken_springs()
+void SmoothedFunctional::step_taken(const double length)
 {
-  if (spring_ > 0) spring_ = std::max(weaken * spring_, weakest_spring);
+  if (length > long_step && spring_ > 0) spring_ = std::max(weaken * spring_, weakest_spring);
 }
 
 bool SmoothedFunctional::raise_penalty()
@@ -371,35 +393,37 @@ bool SmoothedFunctional::raise_penalty()
 
 GO SmoothedFunctional::update_stiffness()
 {
-  return hessian_->set(added_stiffness(contact_, piece_, spring_));
+  return hessian_->set(added_stiffness(contact_, active_set_, spring_));
 }
 
-void SmoothedFunctional::set_multipliers(const DeviceView<double *> &lambda)
+void SmoothedFunctional::start_from(const ContactState &state, Vector &u)
 {
-  predicted_ = true;
+  warm_start_ = true;
+  take_free(problem_.dirichlet, *state.displacement, u);
+  if (state.multiplier.extent(0) == 0) return; // no contact node on this rank
   const ContactNodes c = contact_;
-  const auto to = lambda_;
+  const auto from = state.multiplier, to = lambda_;
   Kokkos::parallel_for(
-      "rpc::contact::set_multipliers", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i) { to(i) = c.fixed(i) ? 0 : clamp(lambda(i), 0, c.yield(i)); });
+      "rpc::contact::start_from", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { to(i) = c.fixed(i) ? 0 : clamp(from(i), 0, c.yield(i)); });
   Kokkos::fence();
 }
 
 void SmoothedFunctional::reset_multipliers()
 {
-  if (lifted_force_ > 0)
-    start_multipliers(contact_, reach_, lambda_); // else nothing acts, and lambda = 0 is the solution
-  predicted_ = false;
+  if (prescribed_force_ > 0)
+    start_multipliers(contact_, pressure_bound_, lambda_); // else nothing acts, and lambda = 0 is the solution
+  warm_start_ = false;
 }
 
 void SmoothedFunctional::move_origin(Vector &u)
 {
   const auto moved = rcp(new Vector(*load_, Teuchos::Copy));
   Vector Ku(u.getMap());
-  hessian_->apply_elastic(u, Ku);
+  hessian_->apply_base(u, Ku);
   moved->update(-1., Ku, 1.);
   load_ = moved;
-  near_.free_gap = left_of_gap(near_, u);
+  shifted_.free_gap = left_of_gap(shifted_, u);
   if (origin_.is_null())
     origin_ = rcp(new Vector(u, Teuchos::Copy));
   else
@@ -417,15 +441,15 @@ Vector SmoothedFunctional::displacement(const Vector &u) const
 double SmoothedFunctional::value(const Vector &u) const
 {
   Vector Ku(u.getMap());
-  hessian_->apply_elastic(u, Ku);
+  hessian_->apply_base(u, Ku);
   return 0.5 * u.dot(Ku) - load_->dot(u) + problem_.energy_offset +
-         sum_all(*comm_, energy_at_nodes(near_, lambda_, u, true));
+         sum_all(*comm_, energy_at_nodes(shifted_, lambda_, u, true));
 }
 
 double SmoothedFunctional::energy(const Vector &u) const
 {
   Vector Ku(u.getMap());
-  hessian_->apply_elastic(u, Ku);
+  hessian_->apply_base(u, Ku);
   return 0.5 * u.dot(Ku) - problem_.load->dot(u) + problem_.energy_offset +
          sum_all(*comm_, energy_at_nodes(contact_, lambda_, u, false));
 }
@@ -433,93 +457,93 @@ double SmoothedFunctional::energy(const Vector &u) const
 void SmoothedFunctional::gradient(const Vector &u, Vector &F) const
 {
   elastic_gradient(u, F);
-  add_contact_force(near_, pressures(near_, lambda_, u), F);
+  add_contact_force(shifted_, pressures(shifted_, lambda_, u), F);
 }
 
 void SmoothedFunctional::elastic_gradient(const Vector &u, Vector &G) const
 {
-  hessian_->apply_elastic(u, G);
+  hessian_->apply_base(u, G);
   G.update(-1., *load_, 1.);
 }
 
-void SmoothedFunctional::piece_gradient(const Vector &u, const Vector &G, Vector &F) const
+void SmoothedFunctional::active_set_gradient(const Vector &u, const Vector &gradient, Vector &F) const
 {
-  F.update(1., G, 0.);
-  add_contact_force(near_, piece_pressures(near_, lambda_, u, piece_), F);
+  const auto p = active_set_pressures(shifted_, lambda_, u, active_set_);
+  subtract(pressures(shifted_, lambda_, u), p);
+  F.update(1., gradient, 0.);
+  add_contact_force(shifted_, p, F);
 }
 
 void SmoothedFunctional::sweep(Vector &u) const
 {
   Vector G(u.getMap());
   elastic_gradient(u, G);
-  move_points(near_, lambda_, hessian_->sweep_stiffness(), G, u);
+  move_points(shifted_, lambda_, hessian_->coupled_stiffness(), G, u);
 }
 
 GO SmoothedFunctional::update_hessian(const Vector &u)
 {
-  const ContactNodes c = near_;
+  const ContactNodes c = shifted_;
   const auto lambda = lambda_;
-  const auto piece = piece_;
+  const auto active = active_set_;
   const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::update_hessian", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (!c.fixed(i)) piece(i) = state(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i));
+        if (!c.fixed(i)) active(i) = state(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i));
       });
-  piece_chosen_ = true;
+  has_active_set_ = true;
   return update_stiffness();
 }
 
-StateChoice SmoothedFunctional::choose_states(const Vector &u, const double negligible) const
+ActiveSetChoice SmoothedFunctional::choose_active_set(const Vector &u, const double negligible) const
 {
-  const ContactNodes c = near_;
+  const ContactNodes c = shifted_;
   const DeviceView<State *> next("rpc::contact::next_state", c.size());
-  StateChoice choice{next, lambda_};
-  if (piece_chosen_) {
-    choice.pressure = piece_pressures(c, lambda_, u, piece_);
+  ActiveSetChoice choice{next, lambda_};
+  if (has_active_set_) {
+    choice.pressure = active_set_pressures(c, lambda_, u, active_set_);
     const double bound = negligible * max_all(*comm_, largest_pressure(c, choice.pressure));
-    next_states(c, u, piece_, choice.pressure, hessian_->own_stiffness(), bound, next);
+    next_states(c, u, active_set_, choice.pressure, hessian_->own_stiffness(), bound, next);
   } else {
-    first_states(c, u, lambda_, spring_ > 0 && !predicted_, next);
+    first_states(c, u, lambda_, spring_ > 0 && !warm_start_, next);
   }
-  choice.changes = sum_all(*comm_, GO(count_differences(next, piece_)));
-  choice.confirmed = choice.changes == 0 && piece_chosen_;
+  choice.changes = sum_all(*comm_, GO(count_differences(next, active_set_)));
+  choice.confirmed = choice.changes == 0 && has_active_set_;
   choice.fingerprint = fingerprint_of(*comm_, c, next);
   return choice;
 }
 
-void SmoothedFunctional::take_states(const StateChoice &choice, Vector &u)
+void SmoothedFunctional::take_active_set(const ActiveSetChoice &choice, Vector &u)
 {
-  const ContactNodes c = near_;
+  const ContactNodes c = shifted_;
   const auto lambda = lambda_;
-  const auto piece = piece_;
+  const auto active = active_set_;
   const auto next = choice.state;
   const auto p = choice.pressure;
-  piece_chosen_ = true;
+  has_active_set_ = true;
   const auto x = device_write(u);
-  for_each_point_by_side( // a node of two sides is moved for one after the other
-      "rpc::contact::take_states", c, KOKKOS_LAMBDA(const LO i) {
+  for_each_point_by_group( // a node of two sides is moved for one after the other
+      "rpc::contact::take_active_set", c, KOKKOS_LAMBDA(const LO i) {
         if (c.fixed(i)) return;
-        if (next(i) == State::stuck && piece(i) != State::stuck) {
-          double length = 0;
-          for (int k = 0; k < c.dim; ++k) length += c.direction(i, k) * c.direction(i, k);
-          const double move = penetration(c, i, x) / length;
+        if (next(i) == State::closed && active(i) != State::closed) {
+          const double move = penetration(c, i, x) / squared_length(c, i);
           for (int k = 0; k < c.dim; ++k) x(c.dim * c.node(i) + k) -= move * c.direction(i, k);
         }
-        piece(i) = next(i);
-        if (next(i) == State::stuck)
+        active(i) = next(i);
+        if (next(i) == State::closed)
           lambda(i) = clamp(p(i), 0, c.yield(i));
         else
-          lambda(i) = next(i) == State::yielded ? c.yield(i) : 0;
+          lambda(i) = next(i) == State::yielding ? c.yield(i) : 0;
       });
   Kokkos::fence();
   update_stiffness();
 }
 
-LineModel SmoothedFunctional::along(const Vector &u, const Vector &d, const Vector &F) const
+std::unique_ptr<LineFunction> SmoothedFunctional::along(const Vector &u, const Vector &d, const Vector &F) const
 {
   Vector Kd(d.getMap());
-  hessian_->apply_elastic(d, Kd);
-  const ContactNodes c = near_;
+  hessian_->apply_base(d, Kd);
+  const ContactNodes c = shifted_;
   DeviceView<double *> v("rpc::contact::v", c.size()), dv("rpc::contact::dv", c.size());
   const auto from = device_read(u);
   const auto step = device_read(d);
@@ -529,23 +553,23 @@ LineModel SmoothedFunctional::along(const Vector &u, const Vector &d, const Vect
         dv(i) = along_direction(c, i, step);
       });
   Kokkos::fence();
-  return LineModel(comm_, d.dot(F), d.dot(Kd), near_, v, dv, lambda_);
+  return std::make_unique<LineModel>(comm_, d.dot(F), d.dot(Kd), shifted_, v, dv, lambda_);
 }
 
 StateCounts SmoothedFunctional::count_states(const Vector &u) const
 {
-  const ContactNodes c = near_;
+  const ContactNodes c = shifted_;
   const auto lambda = lambda_;
   const auto x = device_read(u);
   GO counts[3] = {0, 0, 0};
   Kokkos::parallel_reduce(
       "rpc::contact::count_states", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, GO &open, GO &stuck, GO &yielded) {
+      KOKKOS_LAMBDA(const LO i, GO &open, GO &closed, GO &yielding) {
         if (c.fixed(i)) return;
         const State s = state(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i));
         open += s == State::open;
-        stuck += s == State::stuck;
-        yielded += s == State::yielded;
+        closed += s == State::closed;
+        yielding += s == State::yielding;
       },
       counts[0], counts[1], counts[2]);
   GO all[3];
@@ -553,21 +577,42 @@ StateCounts SmoothedFunctional::count_states(const Vector &u) const
   return {all[0], all[1], all[2]};
 }
 
-double SmoothedFunctional::update_multipliers(const Vector &u)
+std::uint64_t SmoothedFunctional::piece(const Vector &u) const
 {
-  return replace_multipliers(*comm_, near_, pressures(near_, lambda_, u), lambda_);
+  const StateCounts counts = count_states(u);
+  return scrambled(scrambled(static_cast<std::uint64_t>(counts.open)) + static_cast<std::uint64_t>(counts.closed));
 }
 
-double SmoothedFunctional::take_piece_pressures(const Vector &u)
+double SmoothedFunctional::size(const Vector &u) const
 {
-  return replace_multipliers(*comm_, near_, piece_pressures(near_, lambda_, u, piece_), lambda_);
+  return displacement(u).norm2();
+}
+
+ContactState SmoothedFunctional::current(const Vector &u) const
+{
+  ContactState copy{rcp(new Vector(u, Teuchos::Copy)),
+                    DeviceView<double *>("rpc::contact::multiplier", contact_.size()),
+                    DeviceView<State *>("rpc::contact::active_set", contact_.size())};
+  Kokkos::deep_copy(copy.multiplier, lambda_);
+  Kokkos::deep_copy(copy.active_set, active_set_);
+  return copy;
+}
+
+double SmoothedFunctional::update_multipliers(const Vector &u)
+{
+  return replace_multipliers(*comm_, shifted_, pressures(shifted_, lambda_, u), lambda_);
+}
+
+double SmoothedFunctional::take_active_set_pressures(const Vector &u)
+{
+  return replace_multipliers(*comm_, shifted_, active_set_pressures(shifted_, lambda_, u, active_set_), lambda_);
 }
 
 double SmoothedFunctional::pressure_error(const Vector &u) const
 {
-  const ContactNodes c = near_;
+  const ContactNodes c = shifted_;
   const auto lambda = lambda_;
-  const auto piece = piece_;
+  const auto active = active_set_;
   const auto own = hessian_->own_stiffness();
   const auto x = device_read(u);
   double error = 0, largest = 0;
@@ -576,7 +621,7 @@ double SmoothedFunctional::pressure_error(const Vector &u) const
       KOKKOS_LAMBDA(const LO i, double &worst, double &scale) {
         if (c.fixed(i)) return;
         scale = larger(scale, lambda(i));
-        if (piece(i) == State::stuck) worst = larger(worst, own(i) * magnitude(penetration(c, i, x)));
+        if (active(i) == State::closed) worst = larger(worst, own(i) * magnitude(penetration(c, i, x)));
       },
       Kokkos::Max<double>(error), Kokkos::Max<double>(largest));
   const double mine[2] = {error, largest};
@@ -590,7 +635,7 @@ double SmoothedFunctional::force_scale() const
   if (applied_force_ > 0) return applied_force_;
   const double contact_force = multiplier_forces().norm2();
   if (contact_force > 0) return contact_force;
-  return lifted_force_ > 0 ? lifted_force_ : 1;
+  return prescribed_force_ > 0 ? prescribed_force_ : 1;
 }
 
 Vector SmoothedFunctional::multiplier_forces() const
@@ -610,7 +655,7 @@ double SmoothedFunctional::contact_law_residual(const Vector &u) const
       "rpc::contact::law_residual", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &worst, double &pressure_scale, double &distance_scale) {
         if (c.fixed(i)) return;
-        const double rho_v = c.stiffness(i) * penetration(c, i, x);
+        const double rho_v = c.scaling(i) * penetration(c, i, x);
         const double p = lambda(i);
         const double miss = p - clamp(p + rho_v, 0, c.yield(i));
         worst = larger(worst, magnitude(miss));
@@ -638,11 +683,11 @@ ContactEnergy SmoothedFunctional::contact_energy(const Vector &u) const
   double sums[2] = {0, 0};
   Kokkos::parallel_reduce(
       "rpc::contact::contact_energy", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &dissipated, double &gap) {
+      KOKKOS_LAMBDA(const LO i, double &dissipated, double &duality_gap) {
         if (c.fixed(i)) return;
         const double v = penetration(c, i, x), xi = c.yield(i) < bound ? c.yield(i) : bound;
         dissipated += c.weight(i) * plastic_energy(v, lambda(i));
-        gap += c.weight(i) * (plastic_energy(v, xi) - lambda(i) * v);
+        duality_gap += c.weight(i) * (plastic_energy(v, xi) - lambda(i) * v);
       },
       sums[0], sums[1]);
   double all[2];

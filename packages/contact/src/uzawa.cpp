@@ -16,7 +16,7 @@ constexpr double enough = 0.1; ///< an update that leaves more of the violation 
 std::string verdict(const UzawaResult &result, const UzawaOptions &options)
 {
   std::ostringstream text;
-  const Certificate &c = result.certificate;
+  const OptimalityResiduals &c = result.residuals;
   if (result.converged)
     text << "contact law, equilibrium and energies hold to " << options.tolerance;
   else
@@ -54,13 +54,13 @@ UzawaOptions uzawa_options(const Teuchos::ParameterList &list)
               "deck: \"Uzawa->Maximum Iterations\" must be > 0, got " << options.max_iterations);
   RPC_REQUIRE(test == "certificate" || test == "multiplier change",
               "deck: \"Uzawa->Stopping Test\" must be one of certificate, multiplier change, got \"" << test << "\"");
-  options.test = test == "certificate" ? UzawaTest::certificate : UzawaTest::multiplier_change;
+  options.test = test == "certificate" ? UzawaTest::optimality : UzawaTest::multiplier_change;
   return options;
 }
 
 UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function<MinimizeResult(int)> &minimize,
-                  const std::function<Certificate(const Vector &)> &certify, const UzawaOptions &options,
-                  const std::function<void(const UzawaResult &)> &report)
+                  const std::function<OptimalityResiduals(const Vector &)> &optimality_residuals,
+                  const UzawaOptions &options, const std::function<void(const UzawaResult &)> &report)
 {
   UzawaResult result;
   bool stop = false;
@@ -71,21 +71,21 @@ UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function
     ++result.iterations;
     result.multiplier_change =
         inner.states_confirmed ? functional.take_piece_pressures(u) : functional.update_multipliers(u);
-    const Certificate previous = result.certificate;
-    result.certificate = certify(functional.displacement(u));
-    const bool holds = result.certificate.holds(options.tolerance);
+    const OptimalityResiduals previous = result.residuals;
+    result.residuals = optimality_residuals(functional.displacement(u));
+    const bool holds = result.residuals.holds(options.tolerance);
     const bool changes = result.multiplier_change >= options.tolerance;
-    stop = holds && (options.test == UzawaTest::certificate || !changes);
+    stop = holds && (options.test == UzawaTest::optimality || !changes);
     report(result);
     if (holds) continue;
     if (interrupted(*u.getMap()->getComm())) {
       result.reason = interruption() + " in Uzawa iteration " + std::to_string(result.iterations);
       break;
     }
-    const bool slow = result.iterations > 1 && !(result.certificate.worst() <= enough * previous.worst());
+    const bool slow = result.iterations > 1 && !(result.residuals.worst() <= enough * previous.worst());
     const bool raised = slow && functional.raise_penalty();
     // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from, while that helps.
-    if ((slow && !raised) || std::isnan(result.certificate.worst())) {
+    if ((slow && !raised) || std::isnan(result.residuals.worst())) {
       result.reason = inner.converged
                           ? verdict(result, options) + ": more iterations do not help, it is rounding that is left"
                           : inner.reason;

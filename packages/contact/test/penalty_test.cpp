@@ -1,6 +1,6 @@
 #include "rpc/contact/smoothed_functional.hpp"
 
-#include "scene.hpp"
+#include "foundation_scene.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

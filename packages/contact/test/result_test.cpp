@@ -1,6 +1,6 @@
 #include "rpc/contact/result.hpp"
 
-#include "scene.hpp"
+#include "foundation_scene.hpp"
 
 #include <algorithm>
 #include <array>
@@ -52,8 +52,8 @@ TEST(ContactResult, FieldsFollowFromDisplacementAndPressureAtEachPoint)
       EXPECT_EQ(p(i), lambda(i));
     }
     const auto expected = p(i) == 0          ? contact::State::open
-                          : p(i) == yield(i) ? contact::State::yielded
-                                             : contact::State::stuck;
+                          : p(i) == yield(i) ? contact::State::yielding
+                                             : contact::State::closed;
     EXPECT_EQ(state(i), static_cast<int>(expected));
     ++count[state(i)];
   }

@@ -1,6 +1,6 @@
 #include "rpc/contact/smoothed_functional.hpp"
 
-#include "scene.hpp"
+#include "foundation_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +26,8 @@ TEST(SmoothedFunctional, GradientIsTheDerivativeOfTheValue)
   const auto u = scene.vector(0.05, 0.4), d = scene.vector(1, 2);
   const auto states = scene.functional->count_states(*u);
   ASSERT_GT(states.open, 0); // all three pieces take part
-  ASSERT_GT(states.stuck, 0);
-  ASSERT_GT(states.yielded, 0);
+  ASSERT_GT(states.closed, 0);
+  ASSERT_GT(states.yielding, 0);
   Vector F(u->getMap());
   scene.functional->gradient(*u, F);
   const double exact = F.dot(*d), scale = F.norm2() * d->norm2();
@@ -85,16 +85,16 @@ TEST(SmoothedFunctional, HessianOfANodeOfTwoSidesIsTheDerivativeInEachOfItsState
   const Scene scene(std::vector{below(40), beside(25)});
   auto &functional = *scene.functional;
   // The corner (2, 0) along the normals (0, -1) and (0.8, -0.6) of its two points, the other nodes anyhow. Multipliers
-  // are 1.5 and 1.5: the first point is stuck for v in (-0.0375, 0.0375), the second for v in (-0.06, 0.06).
+  // are 1.5 and 1.5: the first point is closed for v in (-0.0375, 0.0375), the second for v in (-0.06, 0.06).
   struct Case {
     const char *name;
     double below, beside; // u along the normals
   };
-  const Case cases[] = {{"both stuck", 0, 0},      {"open below", -0.2, 0},   {"both open", -0.2, -0.2},
-                        {"open beside", 0, -1},    {"yielded below", 0.3, 0}, {"both yielded", 0.3, 0.3},
-                        {"both stuck again", 0, 0}};
-  const bool stuck[][2] = {{true, true},  {false, true},  {false, false}, {true, false},
-                           {false, true}, {false, false}, {true, true}};
+  const Case cases[] = {{"both closed", 0, 0},      {"open below", -0.2, 0},    {"both open", -0.2, -0.2},
+                        {"open beside", 0, -1},     {"yielding below", 0.3, 0}, {"both yielding", 0.3, 0.3},
+                        {"both closed again", 0, 0}};
+  const bool closed[][2] = {{true, true},  {false, true},  {false, false}, {true, false},
+                            {false, true}, {false, false}, {true, true}};
   const Scene alone(std::vector<contact::ContactOptions>{});
   const auto at_corner = [&](const Point &x, const Point &value, const Point &elsewhere) {
     return x[0] == 2 && x[1] == 0 ? value : elsewhere;
@@ -126,8 +126,8 @@ TEST(SmoothedFunctional, HessianOfANodeOfTwoSidesIsTheDerivativeInEachOfItsState
       });
       Vector Kd(u->getMap());
       alone.functional->hessian()->apply(*d, Kd);
-      const double of_below = stuck[k][0] && c == 1 ? 40. / 6 : 0,
-                   of_beside = stuck[k][1] ? 25. / 6 * (c == 0 ? 0.64 : 0.36) : 0;
+      const double of_below = closed[k][0] && c == 1 ? 40. / 6 : 0,
+                   of_beside = closed[k][1] ? 25. / 6 * (c == 0 ? 0.64 : 0.36) : 0;
       EXPECT_NEAR(along[c], Kd.dot(*d) + of_below + of_beside, 1e-13 * 40);
     }
   }
@@ -137,7 +137,7 @@ TEST(SmoothedFunctional, StatesCountThePointsOfBothSides)
 {
   const Scene scene(std::vector{below(40), beside(25)});
   const auto states = scene.functional->count_states(*scene.vector(0.05, 0.4));
-  EXPECT_EQ(states.open + states.stuck + states.yielded, 7 + 3); // the held point at (2, 1) is in none
+  EXPECT_EQ(states.open + states.closed + states.yielding, 7 + 3); // the held point at (2, 1) is in none
   EXPECT_EQ(scene.functional->contact().num_total, 7 + 4);
   EXPECT_EQ(scene.functional->contact().num_fixed, 1);
 }
@@ -184,10 +184,10 @@ TEST(SmoothedFunctional, LineModelGivesTheSlopeOfTheFunctional)
   for (const double t : {0., 0.3, 0.77, 1.9, -0.6}) {
     Vector G(u->getMap());
     functional.gradient(*plus(*u, t, *d), G);
-    EXPECT_NEAR(line.at(t).slope, G.dot(*d), 1e-12 * G.norm2() * d->norm2()) << t;
+    EXPECT_NEAR(line->at(t).slope, G.dot(*d), 1e-12 * G.norm2() * d->norm2()) << t;
     const double h = 1e-7;
-    const double bend = (line.at(t + h).slope - line.at(t - h).slope) / (2 * h);
-    EXPECT_NEAR(line.at(t).curvature, bend, 1e-5 * std::abs(bend)) << t;
+    const double bend = (line->at(t + h).slope - line->at(t - h).slope) / (2 * h);
+    EXPECT_NEAR(line->at(t).curvature, bend, 1e-5 * std::abs(bend)) << t;
   }
 }
 
@@ -199,10 +199,10 @@ TEST(SmoothedFunctional, PieceGradientIsTheGradientOnThePieceOfTheHessian)
   functional.update_hessian(*u);
   Vector F(u->getMap()), G(u->getMap()), step(u->getMap());
   functional.gradient(*u, F);
-  piece_gradient(functional, *u, G);
+  active_set_gradient(functional, *u, G);
   G.update(-1., F, 1.);
   EXPECT_LT(G.norm2(), 1e-13 * F.norm2()); // the piece at u is the Hessian's own
-  piece_gradient(functional, *far, G);
+  active_set_gradient(functional, *far, G);
   functional.gradient(*far, F);
   G.update(-1., F, 1.);
   EXPECT_GT(G.norm2(), 1e-3 * F.norm2()); // elsewhere it is another one
@@ -245,7 +245,7 @@ TEST(SmoothedFunctional, EnergiesAndResidualsDoNotDependOnTheNumberOfRanks)
   residual.update(1., contact, -1., *functional.problem().load, 1.);
   EXPECT_NEAR(residual.norm2() / std::max(functional.force_scale(), contact.norm2()), 3.4491199932704339, 1e-12);
   const auto states = functional.count_states(*u);
-  EXPECT_EQ(states.open + states.stuck + states.yielded, 7);
+  EXPECT_EQ(states.open + states.closed + states.yielding, 7);
 }
 
 TEST(SmoothedFunctional, ContactLawResidualVanishesExactlyForPairsThatObeyTheLaw)

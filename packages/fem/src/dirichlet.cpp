@@ -76,6 +76,107 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const mesh::Mesh &mesh,
   return prescribed;
 }
 
+/// (owned dofs) Number of a row's entries in the columns of prescribed unknowns.
+DeviceView<LO *> prescribed_columns(const Discretization &d, const CrsMatrix &K, const DeviceView<char *> &fixed)
+{
+  const DeviceView<LO *> count("rpc::fem::prescribed_columns", num_local(*d.owned_dofs));
+  const auto A = K.getLocalMatrixDevice();
+  const auto nodes = d.nodes;
+  const int dim = d.dim();
+  Kokkos::parallel_for(
+      "rpc::fem::count_prescribed_columns", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO node) {
+        int touched = 0; // few nodes are: the others' entries need not be read
+        for (auto k = nodes.row(node); k < nodes.row(node + 1); ++k)
+          for (int c = 0; c < dim; ++c) touched |= fixed(dim * nodes.col(k) + c);
+        if (touched == 0) return;
+        for (LO row = dim * node; row < dim * (node + 1); ++row)
+          for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k)
+            count(row) += fixed(A.graph.entries(k)) != 0;
+      });
+  return count;
+}
+
+/// @param count  see prescribed_columns
+EliminatedStiffness listed_couplings(const CrsMatrix &K, const DeviceView<char *> &fixed, const DeviceView<LO *> &count)
+{
+  const auto A = K.getLocalMatrixDevice();
+  const LO n = static_cast<LO>(count.extent(0));
+  LO num_rows = 0;
+  Kokkos::parallel_reduce(
+      "rpc::fem::count_coupled_rows", device_range(n), KOKKOS_LAMBDA(const LO i, LO &rows) { rows += count(i) > 0; },
+      num_rows);
+  const DeviceView<LO *> row("rpc::fem::coupled_rows", num_rows);
+  Kokkos::parallel_scan(
+      "rpc::fem::list_coupled_rows", device_range(n), KOKKOS_LAMBDA(const LO i, LO &next, const bool last) {
+        if (count(i) == 0) return;
+        if (last) row(next) = i;
+        ++next;
+      });
+  const DeviceView<std::size_t *> begin("rpc::fem::coupling_begin", num_rows + 1);
+  std::size_t num_entries = 0;
+  Kokkos::parallel_scan(
+      "rpc::fem::coupling_begins", device_range(num_rows),
+      KOKKOS_LAMBDA(const LO i, std::size_t &sum, const bool last) {
+        sum += count(row(i));
+        if (last) begin(i + 1) = sum;
+      },
+      num_entries);
+  const DeviceView<LO *> column("rpc::fem::coupling_column", num_entries);
+  const DeviceView<double *> value("rpc::fem::coupling", num_entries);
+  Kokkos::parallel_for(
+      "rpc::fem::list_couplings", device_range(num_rows), KOKKOS_LAMBDA(const LO i) {
+        std::size_t next = begin(i);
+        for (auto k = A.graph.row_map(row(i)); k < A.graph.row_map(row(i) + 1); ++k)
+          if (fixed(A.graph.entries(k))) {
+            column(next) = A.graph.entries(k);
+            value(next++) = A.values(k);
+          }
+      });
+  Kokkos::fence();
+  return {Teuchos::null, row, begin, column, value};
+}
+
+/// Entries between an unknown that is prescribed and any other become 0.
+void clear_couplings(CrsMatrix &K, const DeviceView<char *> &fixed, const DeviceView<LO *> &count)
+{
+  const auto A = K.getLocalMatrixDevice();
+  Kokkos::parallel_for(
+      "rpc::fem::clear_couplings", device_range(static_cast<LO>(count.extent(0))), KOKKOS_LAMBDA(const LO row) {
+        if (count(row) == 0) return; // a prescribed unknown has its own column, at least
+        for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k) {
+          const LO col = A.graph.entries(k); // a row's own column has its lid in both maps
+          if (col != row && (fixed(row) || fixed(col))) A.values(k) = 0;
+        }
+      });
+  Kokkos::fence();
+}
+
+/// load <- load - K u_D at free unknowns, diag(K) u_D at prescribed ones.
+/// @param value  (overlap dofs) u_D
+/// @return this rank's part of u_D K u_D/2 + u_D diag(K) u_D/2, of which diag(K) is in the eliminated problem
+double add_prescribed_forces(const EliminatedStiffness &K, const DeviceView<char *> &fixed, const Vector &value,
+                             Vector &load)
+{
+  const auto u = device_read(value);
+  const auto b = device_write(load);
+  double energy = 0;
+  Kokkos::parallel_reduce(
+      "rpc::fem::prescribed_forces", device_range(static_cast<LO>(K.row.extent(0))),
+      KOKKOS_LAMBDA(const LO i, double &sum) {
+        const LO row = K.row(i);
+        double force = 0, own = 0;
+        for (std::size_t k = K.begin(i); k < K.begin(i + 1); ++k) {
+          const double part = K.value(k) * u(K.column(k));
+          force += part;
+          if (K.column(k) == row) own = part;
+        }
+        b(row) = fixed(row) ? own : b(row) - force;
+        if (fixed(row)) sum += 0.5 * u(row) * (force + own);
+      },
+      energy);
+  return energy;
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_dirichlet_parameters()
@@ -173,51 +274,30 @@ void clear_prescribed(const DirichletDofs &dirichlet, Vector &f)
   Kokkos::fence();
 }
 
-ElasticProblem eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> stiffness, RCP<Vector> load,
-                                   DirichletDofs dirichlet)
+EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DirichletDofs &dirichlet)
+{
+  const auto count = prescribed_columns(d, *K, dirichlet.fixed);
+  EliminatedStiffness eliminated = listed_couplings(*K, dirichlet.fixed, count);
+  clear_couplings(*K, dirichlet.fixed, count);
+  eliminated.matrix = std::move(K);
+  return eliminated;
+}
+
+ElasticProblem elastic_problem(const Discretization &d, const EliminatedStiffness &stiffness, RCP<Vector> applied_load,
+                               DirichletDofs dirichlet)
 {
   ElasticProblem problem;
   const Vector &prescribed = *dirichlet.value;
-  const bool moves = prescribed.normInf() > 0;
-  Vector force(d.owned_dofs); // of the prescribed displacement, K u_D
-  problem.applied_load = rcp(new Vector(*load, Teuchos::Copy));
-  if (moves) {
-    stiffness->apply(prescribed, force);
-    problem.energy_offset = 0.5 * prescribed.dot(force) - load->dot(prescribed);
-    load->update(-1., force, 1.);
+  problem.stiffness = stiffness.matrix;
+  problem.load = rcp(new Vector(*applied_load, Teuchos::Copy));
+  if (prescribed.normInf() > 0) {
+    const double own_energy =
+        add_prescribed_forces(stiffness, dirichlet.fixed, *on_overlap(d, prescribed), *problem.load);
+    problem.energy_offset = sum_all(d.mesh->comm(), own_energy) - applied_load->dot(prescribed);
+  } else {
+    clear_prescribed(dirichlet, *problem.load);
   }
-
-  const auto fixed = dirichlet.fixed;
-  const auto value = device_read(prescribed);
-  const auto b = device_write(*load);
-  const auto A = stiffness->getLocalMatrixDevice();
-  const auto nodes = d.nodes;
-  const int dim = d.dim();
-  double own_energy = 0; // of the prescribed unknowns in the eliminated problem: -u_D diag(K) u_D / 2
-  Kokkos::parallel_reduce(
-      "rpc::fem::eliminate_dirichlet", device_range(d.mesh->num_owned_nodes()),
-      KOKKOS_LAMBDA(const LO node, double &energy) {
-        int touched = 0; // few nodes are: the others' entries need not be read
-        for (auto k = nodes.row(node); k < nodes.row(node + 1); ++k)
-          for (int c = 0; c < dim; ++c) touched |= fixed(dim * nodes.col(k) + c);
-        if (touched == 0) return;
-        for (LO row = dim * node; row < dim * (node + 1); ++row) {
-          for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k) {
-            const LO col = A.graph.entries(k);
-            if (col == row) { // a row's own column has its lid in both maps
-              if (!fixed(row)) continue;
-              b(row) = A.values(k) * value(row);
-              energy -= 0.5 * value(row) * b(row);
-            } else if (fixed(row) || fixed(col)) {
-              A.values(k) = 0;
-            }
-          }
-        }
-      },
-      own_energy);
-  problem.energy_offset -= sum_all(d.mesh->comm(), own_energy);
-  problem.stiffness = stiffness;
-  problem.load = load;
+  problem.applied_load = std::move(applied_load);
   problem.dirichlet = std::move(dirichlet);
   return problem;
 }

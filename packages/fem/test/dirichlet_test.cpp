@@ -51,7 +51,9 @@ RCP<Vector> some_load(const fem::Discretization &d)
 fem::ElasticProblem eliminated(const fem::Discretization &d, const std::vector<DirichletCondition> &conditions,
                                const RCP<Vector> &load)
 {
-  return fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, steel), load, fem::dirichlet_dofs(d, conditions));
+  auto dirichlet = fem::dirichlet_dofs(d, conditions);
+  const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, steel), dirichlet);
+  return fem::elastic_problem(d, K, load, dirichlet);
 }
 
 /// Solution of a dense system by Cholesky's method; fails unless the matrix is positive definite.

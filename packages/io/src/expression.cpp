@@ -17,12 +17,13 @@ namespace rpc::io
 namespace
 {
 
-constexpr const char *known_names = "Variables: x, y, z; constants: pi, e, inf.";
+constexpr const char *known_names = "Variables: x, y, z, t; constants: pi, e, inf.";
 
 /// A muParser with the variables that it points to; neither copied nor moved, or the parser would point astray.
 struct Expression {
   mu::Parser parser;
   Point x{};
+  double t = 1;
 
   explicit Expression(const std::string &text)
   {
@@ -32,14 +33,16 @@ struct Expression {
     parser.DefineVar("x", &x[0]);
     parser.DefineVar("y", &x[1]);
     parser.DefineVar("z", &x[2]);
+    parser.DefineVar("t", &t);
     parser.SetExpr(text);
   }
   Expression(const Expression &) = delete;
   Expression &operator=(const Expression &) = delete;
 
-  double operator()(const Point &at)
+  double operator()(const Point &at, const double time)
   {
     x = at;
+    t = time;
     return parser.Eval();
   }
 
@@ -95,12 +98,12 @@ ScalarField parse_field(const std::string &text, const std::string &parameter)
   if (const auto value = read_number(text)) return constant(*value);
   try {
     const auto expression = std::make_shared<Expression>(text);
-    const double at_origin = (*expression)(Point{});
+    const double at_origin = (*expression)(Point{}, 1);
     RPC_REQUIRE(expression->parser.GetNumResults() == 1,
                 refused(text, parameter, "it has several values, separated by commas"));
     RPC_REQUIRE(!expression->assigns(), refused(text, parameter, "\"=\" assigns; to compare, write \"==\""));
     if (expression->parser.GetUsedVar().empty()) return constant(at_origin);
-    return ScalarField(text, [expression](const Point &x) { return (*expression)(x); });
+    return ScalarField(text, [expression](const Point &x, const double t) { return (*expression)(x, t); });
   } catch (const mu::ParserError &error) {
     throw Error(ExitCode::bad_input, refused(text, parameter, reason_of(error)));
   }

@@ -80,7 +80,7 @@ TEST(Expression, MessageNamesReasonPositionAndVariables)
   expect_refusal("2*(x", "Missing parenthesis at character");
   expect_refusal("sin(x, y)", "Too many parameters");
   for (const char *text : {"", "  ", "x +", "foo(x)", "x y", "1e400", "16 Pa", "\"x\""})
-    expect_refusal(text, "Variables: x, y, z; constants: pi, e, inf.");
+    expect_refusal(text, "Variables: x, y, z, t; constants: pi, e, inf.");
 }
 
 TEST(Expression, AssignmentsAndListsAreRefused)

@@ -9,10 +9,7 @@
 namespace rpc::solver
 {
 
-// The step of a quadratic is 1; longer ones say that the Hessian is too stiff.
-constexpr double long_step = 1.1;
-
-double exact_step(const contact::LineModel &line)
+double exact_step(const LineFunction &line)
 {
   const double start = line.at(0).slope;
   if (!(start < 0)) return 0;
@@ -42,13 +39,17 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
                               const NOX::Solver::Generic &solver)
 {
   const auto &from = dynamic_cast<const NewtonGroup &>(solver.getPreviousSolutionGroup());
-  const auto line = from.context().functional.along(tpetra(from.getX()), tpetra(direction), tpetra(from.getF()));
-  step = exact_step(line);
-  from.context().step_length = step;
-  if (step > long_step) from.context().functional.weaken_springs();
+  NewtonContext &context = from.context();
+  if (context.full_step) {
+    step = 1;
+  } else {
+    step = exact_step(*context.functional.along(tpetra(from.getX()), tpetra(direction), tpetra(from.getF())));
+    context.functional.step_taken(step);
+  }
+  context.step_length = step;
   group.computeX(from, direction, step);
-  if (!(step > 0) && from.context().failure.empty())
-    from.context().failure = "the functional does not fall along the Newton direction";
+  if (!(step > 0) && context.failure.empty())
+    context.failure = "the functional does not fall along the Newton direction";
   return step > 0;
 }
 

@@ -30,7 +30,7 @@ constexpr GO most_direct_rows = 100000;
 
 // Rows up to which multigrid is nearly a factorization, and made anew whenever contact changes.
 constexpr GO most_rows_set_up_anew = 2500;
-// Multigrid is made for stuck nodes of at most so many times their own stiffness: with all of the penalty, coarse functions
+// Multigrid is made for closed nodes of at most so many times their own stiffness: with all of the penalty, coarse functions
 // could not move near them, and CG would take a third more iterations. The rest is left to the correction.   (4.9)
 constexpr double most_stiffness = 5;
 // Corrections have worn out where they cost a solve of so many digits more CG iterations than a set-up takes the time of. Solves
@@ -176,7 +176,7 @@ void check_muelu(const Teuchos::ParameterList &user)
 } // namespace
 
 struct LinearSolver::Impl {
-  RCP<contact::ContactStiffness> H;
+  RCP<UpdatedOperator> H;
   RCP<MultiVector> coordinates, null_space;
   Teuchos::ParameterList muelu;
   RCP<Preconditioner> preconditioner;
@@ -231,7 +231,7 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-LinearSolver::LinearSolver(LinearSolverOptions options, RCP<contact::ContactStiffness> H, RCP<MultiVector> coordinates,
+LinearSolver::LinearSolver(LinearSolverOptions options, RCP<UpdatedOperator> H, RCP<MultiVector> coordinates,
                            RCP<MultiVector> null_space)
     : options_(std::move(options)), impl_(std::make_unique<Impl>())
 {

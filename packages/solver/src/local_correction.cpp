@@ -20,10 +20,8 @@ constexpr int layers_2d = 2, layers_3d = 0;
 // takes.
 constexpr double work_per_row = 3e3;
 
-using contact::ContactStiffness;
-
 /// (owned dofs) 1 at the changed nodes, else 0.
-void mark_changed(const ContactStiffness::Changes &changes, const int dim, Vector &mark)
+void mark_changed(const UpdatedOperator::Changes &changes, const int dim, Vector &mark)
 {
   const auto to = device_write(mark);
   const auto node = changes.node;
@@ -142,7 +140,7 @@ PatchColumns patch_columns(const CrsMatrix &A, const Vector &place)
 }
 
 /// Adds the changes, which lie in the diagonal blocks of patch nodes, to the entries of their rows.
-void add_changes(const ContactStiffness::Changes &changes, const int dim, const Vector &place, const PatchColumns &list)
+void add_changes(const UpdatedOperator::Changes &changes, const int dim, const Vector &place, const PatchColumns &list)
 {
   const auto at = device_read(place);
   const LO num_rows = static_cast<LO>(list.row.extent(0));
@@ -263,7 +261,7 @@ DeviceView<double *> times_columns(const PatchEntries &list, const int size, con
 
 } // namespace
 
-std::optional<LocalCorrection> LocalCorrection::around(const ContactStiffness &H)
+std::optional<LocalCorrection> LocalCorrection::around(const UpdatedOperator &H)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::local_correction"));
   const CrsMatrix &A = *H.matrix();
@@ -272,8 +270,8 @@ std::optional<LocalCorrection> LocalCorrection::around(const ContactStiffness &H
   const GO num_changes = sum_all(comm, GO(changes.size()));
   if (num_changes == 0) return std::nullopt;
   Vector place(A.getRowMap());
-  mark_changed(changes, H.dim(), place);
-  for (int layer = 0; layer < (H.dim() == 2 ? layers_2d : layers_3d); ++layer) add_layer(A, place);
+  mark_changed(changes, H.dofs_per_node(), place);
+  for (int layer = 0; layer < (H.dofs_per_node() == 2 ? layers_2d : layers_3d); ++layer) add_layer(A, place);
   const LO members = count_marked(place);
   const GO size = sum_all(comm, GO(members));
   const double most_work = work_per_row * static_cast<double>(A.getGlobalNumRows());
@@ -287,7 +285,7 @@ std::optional<LocalCorrection> LocalCorrection::around(const ContactStiffness &H
   correction.member_ = DeviceView<int *>("rpc::solver::member", members);
   number_members(place, through - members, correction.member_row_, correction.member_);
   const PatchColumns list = patch_columns(A, place);
-  add_changes(changes, H.dim(), place, list);
+  add_changes(changes, H.dofs_per_node(), place, list);
   const auto factor = factor_of_patch(comm, correction.size_, list, place, most_work);
   if (!factor) return std::nullopt;
   correction.columns_ = list;

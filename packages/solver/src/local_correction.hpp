@@ -1,7 +1,7 @@
 #pragma once
 
 #include "band_cholesky.hpp"
-#include "rpc/contact/contact_stiffness.hpp"
+#include "rpc/core/updated_operator.hpp"
 
 #include <memory>
 #include <optional>
@@ -34,7 +34,7 @@ class LocalCorrection
 {
 public:
   /// Collective. @return nothing where H is its matrix, or the patch would be too large
-  static std::optional<LocalCorrection> around(const contact::ContactStiffness &H);
+  static std::optional<LocalCorrection> around(const UpdatedOperator &H);
 
   /// y <- B x; collective.
   void apply(const Operator &M, const Vector &x, Vector &y) const;

@@ -4,7 +4,6 @@
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/solver/exact_line_search.hpp"
-#include "rpc/solver/newton_group.hpp"
 #include "rpc/solver/sweep_direction.hpp"
 
 #include <NOX.H>
@@ -34,8 +33,7 @@ public:
   {
     status_ = NOX::StatusTest::Unconverged;
     if (solver.getNumIterations() > 0) {
-      const Vector u = context_->functional.displacement(tpetra(solver.getSolutionGroup().getX()));
-      ratio_ = context_->direction_norm / u.norm2();
+      ratio_ = context_->direction_norm / context_->functional.size(tpetra(solver.getSolutionGroup().getX()));
       if (ratio_ < tolerance_) status_ = NOX::StatusTest::Converged;
     }
     return status_;
@@ -52,7 +50,7 @@ private:
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
-/// Stops where rounding ends Newton's progress: two more full steps with the same states, and the residual does not fall.
+/// Stops where rounding ends Newton's progress: two more full steps on the same piece, and the residual does not fall.
 class StagnationTest : public NOX::StatusTest::Generic
 {
 public:
@@ -61,13 +59,13 @@ public:
   NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic &solver, NOX::StatusTest::CheckType) override
   {
     const auto &group = solver.getSolutionGroup();
-    const auto states = context_->functional.count_states(tpetra(group.getX()));
+    const auto piece = context_->functional.piece(tpetra(group.getX()));
     const bool falls = solver.getNumIterations() == 0 || group.getNormF() < 0.9 * least_residual_;
-    const bool same = states.stuck == states_.stuck && states.open == states_.open && context_->step_length > 0.5;
+    const bool same = piece == piece_ && context_->step_length > 0.5;
     idle_steps_ = same && !falls ? idle_steps_ + 1 : 0;
     status_ = idle_steps_ >= 2 ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
     least_residual_ = falls || !same ? group.getNormF() : std::min(least_residual_, group.getNormF());
-    states_ = states;
+    piece_ = piece;
     if (status_ == NOX::StatusTest::Failed && context_->failure.empty())
       context_->failure = "the residual stagnates: the scene is too ill-conditioned for this accuracy";
     return status_;
@@ -75,13 +73,13 @@ public:
   NOX::StatusTest::StatusType getStatus() const override { return status_; }
   std::ostream &print(std::ostream &out, const int indent) const override
   {
-    return out << std::string(indent, ' ') << status_ << "residual falls, or states change\n";
+    return out << std::string(indent, ' ') << status_ << "residual falls, or the piece changes\n";
   }
 
 private:
   RCP<NewtonContext> context_;
-  double least_residual_ = 0; // since the states last changed
-  contact::StateCounts states_;
+  double least_residual_ = 0; // since the piece last changed
+  std::uint64_t piece_ = 0;
   int idle_steps_ = 0;
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
@@ -110,7 +108,7 @@ private:
 class Reporter : public NOX::Abstract::PrePostOperator
 {
 public:
-  Reporter(RCP<NewtonContext> context, const double scale, std::function<void(const NewtonStep &)> report)
+  Reporter(RCP<NewtonContext> context, const double scale, NewtonReport report)
       : context_(std::move(context)), scale_(scale), report_(std::move(report))
   {
   }
@@ -130,14 +128,22 @@ private:
     step.residual = group.isF() ? group.getNormF() / scale_ : 0;
     step.step_length = step_length;
     step.linear_iterations = step.iteration > 0 ? context_->linear_iterations : 0;
-    step.states = context_->functional.count_states(tpetra(group.getX()));
-    report_(step);
+    report_(step, tpetra(group.getX()));
   }
 
   RCP<NewtonContext> context_;
   double scale_;
-  std::function<void(const NewtonStep &)> report_;
+  NewtonReport report_;
 };
+
+/// "Direction" -> "Method" of the deck's list for NOX.
+std::string direction_method(const Teuchos::ParameterList &nox)
+{
+  if (!nox.isSublist("Direction")) return "Active Set";
+  const Teuchos::ParameterList &direction = nox.sublist("Direction");
+  if (!direction.isParameter("Method")) return "Active Set";
+  return direction.isType<std::string>("Method") ? direction.get<std::string>("Method") : "";
+}
 
 RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
                                      const RCP<NOX::Abstract::PrePostOperator> &reporter)
@@ -148,7 +154,7 @@ RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
   list->sublist("Printing")
       .set<RCP<std::ostream>>("Output Stream", rcp(new Teuchos::oblackholestream)); // else it warns
   list->sublist("Line Search").set("Method", "Exact");
-  list->sublist("Direction").set("Method", "Sweep");
+  list->sublist("Direction").set("Method", "Active Set");
   if (user.isSublist("Printing")) list->remove("Printing");
   list->setParameters(user);
   list->remove("Status Tests", false);
@@ -159,10 +165,12 @@ RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
                                                          rcp(new ExactLineSearchFactory));
   }
   Teuchos::ParameterList &direction = list->sublist("Direction");
-  if (direction.isType<std::string>("Method") && direction.get<std::string>("Method") == "Sweep") {
+  RCP<NOX::Direction::UserDefinedFactory> factory;
+  if (direction_method(*list) == "Active Set") factory = rcp(new StagedDirectionFactory);
+  if (direction_method(*list) == "Sweep") factory = rcp(new SweepDirectionFactory);
+  if (!factory.is_null()) {
     direction.set("Method", "User Defined");
-    direction.set<RCP<NOX::Direction::UserDefinedFactory>>("User Defined Direction Factory",
-                                                           rcp(new SweepDirectionFactory));
+    direction.set<RCP<NOX::Direction::UserDefinedFactory>>("User Defined Direction Factory", factory);
   }
   list->sublist("Solver Options").set("User Defined Pre/Post Operator", reporter);
   return list;
@@ -179,28 +187,13 @@ RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const R
     tests->addStatusTest(buildStatusTests(list, NOX::Utils()));
     return tests;
   }
-  tests->addStatusTest(rcp(new NormF(context->target_residual, NOX::Abstract::Vector::TwoNorm, NormF::Unscaled)));
-  tests->addStatusTest(rcp(new StepTest(context, options.step_tolerance)));
-  tests->addStatusTest(rcp(new StagnationTest(context)));
+  const RCP<Combo> newton = rcp(new Combo(Combo::OR));
+  newton->addStatusTest(rcp(new NormF(context->target_residual, NOX::Abstract::Vector::TwoNorm, NormF::Unscaled)));
+  newton->addStatusTest(rcp(new StepTest(context, options.step_tolerance)));
+  newton->addStatusTest(rcp(new StagnationTest(context)));
+  tests->addStatusTest(rcp(new StagedTest(context, newton)));
   tests->addStatusTest(rcp(new MaxIters(options.max_iterations)));
   return tests;
-}
-
-/// Goes to the minimum of the piece that the last solve ended on, as far as the functional falls on the way there.
-/// doc/theory.md (5.4)
-/// @return number of steps done, 0 or 1
-int predict(NewtonContext &context, Vector &u)
-{
-  Vector G(u.getMap()), F(u.getMap()), d(u.getMap());
-  context.functional.elastic_gradient(u, G);
-  context.functional.piece_gradient(u, G, F);
-  const auto solved = context.linear_solver.solve(F, d, std::min(0.1, 0.1 * context.target_residual / F.norm2()));
-  context.linear_iterations = solved.iterations;
-  d.scale(-1.);
-  context.functional.gradient(u, F);
-  const double step = solved.converged ? exact_step(context.functional.along(u, d, F)) : 0;
-  u.update(step, d, 1.);
-  return step > 0 ? 1 : 0;
 }
 
 /// NOX passes over names that it does not know: they stay unread.
@@ -246,19 +239,19 @@ Teuchos::ParameterList valid_newton_parameters()
   Teuchos::ParameterList valid("NOX");
   valid.set("Step Tolerance", 1e-10, "Newton stops at |step|_2/|u|_2 below this, > 0: the paper's test.");
   valid.set("Residual Tolerance", 1e-11, "Newton also stops at |F|_2/|load|_2 below this, > 0.");
-  valid.set("Active Set Start", true,
-            "Whether an active-set iteration looks for the contact states before the first Newton iteration.");
   valid.set("Maximum Iterations", 200, "Newton steps per Uzawa iteration at most, > 0.");
   for (const char *name : passed_to_nox)
-    set_pass_through(valid, name,
-                     std::string("Handed to NOX as it is.") +
-                         (name == std::string("Line Search")
-                              ? " `Method` = `Exact` (default) minimizes the functional along the step exactly; `Full "
-                                "Step` and NOX's others work as in NOX."
-                          : name == std::string("Direction")
-                              ? " `Method` = `Sweep` (default) starts each Newton step with a nonlinear sweep over the "
-                                "contact nodes; `Newton` and NOX's others work as in NOX."
-                              : ""));
+    set_pass_through(
+        valid, name,
+        std::string("Handed to NOX as it is.") +
+            (name == std::string("Line Search")
+                 ? " `Method` = `Exact` (default) minimizes the functional along the step exactly; `Full "
+                   "Step` and NOX's others work as in NOX."
+             : name == std::string("Direction")
+                 ? " `Method` = `Active Set` (default): steps of the primal-dual active-set iteration, then "
+                   "those of `Sweep`, Newton's directions, each after a nonlinear sweep over the contact "
+                   "nodes. `Newton` and NOX's others work as in NOX."
+                 : ""));
   return valid;
 }
 
@@ -267,11 +260,7 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
   NewtonOptions options;
   options.step_tolerance = list.get<double>("Step Tolerance");
   options.residual_tolerance = list.get<double>("Residual Tolerance");
-  // Newton's default is near what rounding leaves; who asks for more gets it.
-  const double given = options.residual_tolerance;
-  options.start_tolerance = given < 1e-11 ? given : std::max(given, options.start_tolerance);
   options.max_iterations = list.get<int>("Maximum Iterations");
-  options.active_set_start = list.get<bool>("Active Set Start");
   RPC_REQUIRE(options.step_tolerance > 0, "deck: \"NOX->Step Tolerance\" must be > 0, got " << options.step_tolerance);
   RPC_REQUIRE(options.residual_tolerance > 0,
               "deck: \"NOX->Residual Tolerance\" must be > 0, got " << options.residual_tolerance);
@@ -282,52 +271,48 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-void check_nox_parameters(contact::SmoothedFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
+void check_nox_parameters(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
                           const NewtonOptions &options)
 {
   if (options.nox.numParams() == 0) return;
   const auto context = rcp(new NewtonContext{functional, linear_solver});
-  const auto reporter = rcp(new Reporter(context, 1, [](const NewtonStep &) {}));
+  const auto reporter = rcp(new Reporter(context, 1, [](const NewtonStep &, const Vector &) {}));
   build_solver(rcp(new NewtonGroup(context, u)), options, context, nox_list(options.nox, reporter));
 }
 
-contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, LinearSolver &linear_solver,
-                                 const RCP<Vector> &u, const NewtonOptions &options, const bool same_states,
-                                 const std::function<void(const NewtonStep &)> &report)
+MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
+                        const double scale, const NewtonOptions &options, FirstStage *const stage,
+                        const NewtonReport &report)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::newton"));
-  const double scale = functional.force_scale();
   const auto context = rcp(new NewtonContext{functional, linear_solver, options.residual_tolerance * scale});
+  if (direction_method(options.nox) == "Active Set") context->stage = stage;
   const auto reporter = rcp(new Reporter(context, scale, report));
   const auto list = nox_list(options.nox, reporter);
   const auto group = rcp(new NewtonGroup(context, u));
 
-  contact::MinimizeResult result;
+  MinimizeResult result;
   try {
     group->computeF(); // so that the start is reported with its residual
-    if (same_states && group->getNormF() > context->target_residual) {
-      result.newton_iterations += predict(*context, *u);
-      group->setX(NoxVector(u));
-      group->computeF();
-    }
     const auto solver = build_solver(group, options, context, list);
     const auto status = solver->solve();
     u->assign(tpetra(solver->getSolutionGroup().getX()));
-    result.newton_iterations += solver->getNumIterations();
+    result.steps = context->steps > 0 ? context->steps : solver->getNumIterations();
     result.converged = status == NOX::StatusTest::Converged;
   } catch (const Error &) { // a mistake in the deck
     throw;
   } catch (const std::bad_alloc &) { // on this rank alone
     throw;
   } catch (const std::exception &failure) { // NOX throws when a direction cannot be had; the same on all ranks
+    result.steps = context->steps;
     result.reason = one_line(failure.what());
   } catch (const char *failure) { // some of NOX's errors are bare strings
+    result.steps = context->steps;
     result.reason = failure;
   }
   if (!result.converged) {
     std::ostringstream reason;
-    reason << "Newton did not converge in " << result.newton_iterations
-           << (result.newton_iterations == 1 ? " step" : " steps");
+    reason << "Newton did not converge in " << result.steps << (result.steps == 1 ? " step" : " steps");
     if (!context->failure.empty())
       reason << "; " << context->failure;
     else if (!result.reason.empty())

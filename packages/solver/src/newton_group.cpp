@@ -8,7 +8,7 @@
 namespace rpc::solver
 {
 
-// |r|/|F| of a direction while states change.
+// |r|/|F| of a direction while the Hessian changes.
 constexpr double forcing = 5e-3;
 
 NewtonGroup::NewtonGroup(RCP<NewtonContext> context, RCP<rpc::Vector> u)
@@ -63,7 +63,7 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeF()
   context_->functional.gradient(u_.data(), F_.data());
   norm_F_ = F_.data().norm2();
   if (!std::isfinite(norm_F_) && context_->failure.empty())
-    context_->failure = describe_not_finite("the forces on the nodes, contact forces included", F_.data(),
+    context_->failure = describe_not_finite("the forces on the nodes, those of the functional included", F_.data(),
                                             context_->linear_solver.coordinates());
   has_F_ = true;
   return Ok;
@@ -71,7 +71,7 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeF()
 
 NOX::Abstract::Group::ReturnType NewtonGroup::computeJacobian()
 {
-  context_->changed_states = context_->functional.update_hessian(u_.data());
+  context_->changes = context_->functional.update_hessian(u_.data());
   has_jacobian_ = true;
   return Ok;
 }
@@ -80,16 +80,23 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
 {
   if (has_newton_) return Ok;
   if (!has_F_ || !has_jacobian_) return BadDependency;
-  // A tenth of the target is close enough, and while states change a rough direction leads down as well as an exact one.
-  const double rough = context_->changed_states > 0 ? forcing : 0;
-  const double enough = std::min(0.1, std::max(rough, 0.1 * context_->target_residual / norm_F_));
-  const auto result = context_->linear_solver.solve(F_.data(), newton_.data(), enough);
+  // A tenth of the target is close enough, and while the Hessian changes a rough direction leads down as well as an exact one.
+  const double rough = context_->changes > 0 ? forcing : 0;
+  const auto result = solve_for_direction(*context_, F_.data(), newton_.data(),
+                                          std::max(rough, 0.1 * context_->target_residual / norm_F_));
+  ++context_->steps;
   newton_.scale(-1.);
-  context_->linear_iterations = result.iterations;
-  context_->direction_norm = newton_.data().norm2();
   context_->failure = result.reason;
   has_newton_ = true;
   return std::isfinite(context_->direction_norm) && !result.broken ? (result.converged ? Ok : NotConverged) : Failed;
+}
+
+LinearSolver::Result solve_for_direction(NewtonContext &context, const Vector &F, Vector &d, const double tolerance)
+{
+  const auto result = context.linear_solver.solve(F, d, std::min(0.1, tolerance));
+  context.linear_iterations = result.iterations;
+  context.direction_norm = d.norm2();
+  return result;
 }
 
 RCP<NOX::Abstract::Group> NewtonGroup::clone(const NOX::CopyType type) const

@@ -2,6 +2,7 @@
 
 #include "rpc/contact/obstacle.hpp"
 #include "rpc/core/field.hpp"
+#include "rpc/core/node_points.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/surface.hpp"
@@ -47,52 +48,29 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
 /// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether
 /// has direction 0: it takes no part in the solution, and its pressure is 0 if it stays clear, xi if it is pressed in,
 /// and open to choice at v = 0.
-struct ContactNodes {
-  int dim = 2;
-  HostView<LO *> first;            ///< (sides + 1) where each side's points begin
-  DeviceView<LO *> node;           ///< (n) owned node lids, ascending on each side
-  DeviceView<double *> weight;     ///< (n) [m^(dim-1)]
+struct ContactNodes : NodePoints { // a group is a side; `direction` is the normal, prescribed components 0
   DeviceView<double **> normal;    ///< (n, dim) unit normal nu, from the body into the foundation
-  DeviceView<double **> direction; ///< (n, dim) normal, prescribed components 0
   DeviceView<double *> gap;        ///< (n) g [m]
   DeviceView<double *> free_gap;   ///< (n) g - normal . u_prescribed [m]
   DeviceView<double *> yield;      ///< (n) xi [Pa]
-  DeviceView<double *> stiffness;  ///< (n) rho = E / diameter, with the largest E around the node [Pa/m]
+  DeviceView<double *> scaling;    ///< (n) rho = E / diameter, with the largest E around the node [Pa/m]
   DeviceView<double *> penalty;    ///< (n) r [Pa/m], 0 where it is to be chosen
   DeviceView<char *> fixed;        ///< (n) 1 where direction = 0
   GO num_total = 0;                ///< over all ranks
   GO num_fixed = 0;                ///< over all ranks
   GO num_missing = 0;              ///< nodes of the sides, over all ranks, from which the normal misses the obstacle
 
-  int num_sides() const { return static_cast<int>(first.extent(0)) - 1; }
-  LO size() const { return static_cast<LO>(node.extent(0)); }
+  int num_sides() const { return num_groups(); }
 };
 
 /// Collective.
-/// @param materials  what the body is made of, for `stiffness`
+/// @param materials  what the body is made of, for `scaling`
 /// @throws rpc::Error bad_input if a side does not exist, xi <= 0 or NaN, the gap is not finite somewhere,
 /// the normal leads to the obstacle from no node of a side, or a node lies in the foundation and its normal does not cross
 /// the foundation's surface (the place is named); no_solution if a prescribed displacement presses a node into a rigid
 /// foundation
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
                            const fem::DirichletDofs &dirichlet, const fem::Materials &materials = {});
-
-/// Runs work(i) for all points, side after side: on one side each node is one point, and no other thread meets it.
-template <class Work>
-void for_each_point_by_side(const char *label, const ContactNodes &c, const Work &work)
-{
-  for (int side = 0; side < c.num_sides(); ++side)
-    Kokkos::parallel_for(label, Kokkos::RangePolicy<ExecutionSpace, LO>(c.first(side), c.first(side + 1)), work);
-}
-
-/// direction_i . u_i at one node, for kernels [m].
-template <class U>
-KOKKOS_INLINE_FUNCTION double along_direction(const ContactNodes &c, const LO i, const U &u)
-{
-  double moved = 0;
-  for (int k = 0; k < c.dim; ++k) moved += c.direction(i, k) * u(c.dim * c.node(i) + k);
-  return moved;
-}
 
 /// v_i = direction_i . u_i - free_gap_i at one node, for kernels [m].
 template <class U>

@@ -26,7 +26,7 @@ struct ContactResult {
   DeviceView<double *> normal_displacement; ///< (n) u_nu [m]
   DeviceView<double *> penetration;         ///< (n) u_nu - g [m]; > 0: the foundation has given way
   DeviceView<double *> pressure;            ///< (n) [Pa] >= 0
-  DeviceView<int *> state;                  ///< (n) State: open where p = 0, yielded where p = xi, else stuck
+  DeviceView<int *> state;                  ///< (n) State: open where p = 0, yielded where p = xi, else closed
 
   std::vector<ContactSums> sides; ///< in the order of the contact sides
   ContactSums total;
@@ -38,6 +38,12 @@ struct ContactResult {
 /// @param sides  that the contact nodes were made from
 ContactResult contact_result(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
                              const SmoothedFunctional &functional, const Vector &u);
+
+/// |p - q|_2 over the contact sides, by the weights of their nodes, but for those whose normal displacement is prescribed
+/// [Pa m^(1/2)], in 3D [Pa m]; collective.
+/// @param q  brought into [0, xi]; an empty one is 0
+double pressure_distance(const Comm &comm, const ContactNodes &c, const DeviceView<double *> &p,
+                         const DeviceView<double *> &q);
 
 /// Nodal forces of the foundation on the body, -w p normal (owned dofs, [N]), prescribed components included.
 Vector contact_forces(const fem::Discretization &d, const ContactNodes &contact, const ContactResult &result);

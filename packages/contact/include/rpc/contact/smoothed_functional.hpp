@@ -1,9 +1,8 @@
 #pragma once
 
-#include "rpc/contact/contact_stiffness.hpp"
-#include "rpc/contact/foundation_law.hpp"
-
-#include <cstdint>
+#include "rpc/contact/contact_nodes.hpp"
+#include "rpc/contact/contact_state.hpp"
+#include "rpc/core/convex_functional.hpp"
 
 namespace rpc::contact
 {
@@ -11,18 +10,19 @@ namespace rpc::contact
 /// How many contact nodes are in each state, over all ranks; nodes with a prescribed normal displacement are not
 /// counted.
 struct StateCounts {
-  GO open = 0, stuck = 0, yielded = 0;
+  GO open = 0, closed = 0, yielding = 0;
 };
 
 /// Energies of (u, lambda) at the contact nodes, over all ranks.
 struct ContactEnergy {
   double dissipated = 0; ///< sum_i w_i lambda_i v_i+ [J]
-  double gap = 0; ///< sum_i w_i (xi_i v_i+ - lambda_i v_i) [J], each term >= 0: what the contact law misses, with
-                  ///< twice the largest multiplier in place of any higher xi                             (5.12)
+  double duality_gap =
+      0; ///< sum_i w_i (xi_i v_i+ - lambda_i v_i) [J], each term >= 0: what the contact law misses, with
+         ///< twice the largest multiplier in place of any higher xi                             (5.12)
 };
 
-/// States to go on with, and the pressures of the piece that they were read from.
-struct StateChoice {
+/// The next active set of the primal-dual active-set iteration, and the pressures that it was chosen by.
+struct ActiveSetChoice {
   DeviceView<State *> state;     ///< (contact nodes)
   DeviceView<double *> pressure; ///< (contact nodes) [Pa]
   GO changes = 0;                ///< points on all ranks whose state is to change
@@ -30,23 +30,19 @@ struct StateChoice {
   std::uint64_t fingerprint = 0; ///< of all states on all ranks: equal for equal ones
 };
 
-/// The functional along a line t -> u + t d, as far as its slope goes: convex, piecewise quadratic. doc/theory.md (4.3)
+/// The functional along a line t -> u + t d: piecewise quadratic.                                       doc/theory.md (4.3)
 ///
 ///     slope(t) = slope(0) + curvature t + sum_i w_i dv_i (Psi_i'(v_i + t dv_i) - Psi_i'(v_i))
 ///
 /// The difference form keeps its digits when slope(0) is small against its parts.
-class LineModel
+class LineModel : public LineFunction
 {
 public:
   LineModel(RCP<const Comm> comm, double slope_at_0, double elastic_curvature, const ContactNodes &contact,
             DeviceView<double *> v, DeviceView<double *> dv, DeviceView<double *> lambda);
 
-  struct Value {
-    double slope;     ///< d/dt [J]
-    double curvature; ///< of the piece that t lies on, >= 0 [J]
-  };
-  /// Collective.
-  Value at(double t) const;
+  /// Slope and curvature in [J].
+  Value at(double t) const override;
 
 private:
   RCP<const Comm> comm_;
@@ -58,7 +54,7 @@ private:
 /// What the generalized Newton iteration minimizes for given multipliers, its gradient and its generalized Hessian.
 ///
 ///     M(u) = u.Ku/2 - b.u + sum_i w_i Psi_i(v_i(u))                                                doc/theory.md (4.1)
-///     F(u) = Ku - b + sum_i w_i Psi_i'(v_i) m_i,     H(u) = K + sum over stuck i of r_i w_i m_i m_i^T      (4.2)
+///     F(u) = Ku - b + sum_i w_i Psi_i'(v_i) m_i,     H(u) = K + sum over closed i of r_i w_i m_i m_i^T      (4.2)
 ///
 /// with m_i the node's direction. Contact terms touch only contact rows. All vectors are on owned dofs; all members are
 /// collective.
@@ -68,68 +64,72 @@ private:
 ///
 /// Where the iteration goes on, `u` is the displacement from an origin, at first 0, and penetrations are kept to digits of
 /// their own: r v would make r eps |u| of the rounding of u. (5.9)
-class SmoothedFunctional
+class SmoothedFunctional : public ConvexFunctional
 {
 public:
-  SmoothedFunctional(RCP<const Comm> comm, fem::ElasticProblem problem, ContactNodes contact);
+  /// @param hessian  K with an update at the contact nodes, which is this functional's from here on
+  SmoothedFunctional(fem::ElasticProblem problem, ContactNodes contact, RCP<UpdatedOperator> hessian);
 
   /// M(u) [J], with the energy of prescribed displacements, up to a constant once the origin has moved.
-  double value(const Vector &u) const;
+  double value(const Vector &u) const override;
   /// Energy of the problem itself, J(u) = Pi(u) + sum_i w_i xi_i v_i+ [J], computed as Pi(u) + sum_i w_i lambda_i v_i:
-  /// the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a stuck node. (1.4),
+  /// the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a closed node. (1.4),
   /// (5.5)
   /// @param u  displacement from 0
   double energy(const Vector &u) const;
-  void gradient(const Vector &u, Vector &F) const;
+  void gradient(const Vector &u, Vector &F) const override;
   /// G <- Ku - b, all of a gradient that takes a product with K.
   void elastic_gradient(const Vector &u, Vector &G) const;
-  /// The gradient at u of the quadratic piece that hessian() belongs to: stuck nodes carry lambda + r v, whatever that
-  /// is, open ones 0, yielded ones xi. (5.4)
-  /// @param G  elastic_gradient at u
-  void piece_gradient(const Vector &u, const Vector &G, Vector &F) const;
+  /// The gradient at u of the quadratic functional that the active set stands for: closed nodes carry lambda + r v, whatever
+  /// that is, open ones 0, yielding ones xi. (5.4)
+  /// @param gradient  of the functional itself at u
+  void active_set_gradient(const Vector &u, const Vector &gradient, Vector &F) const;
   /// One nonlinear sweep: each contact node moves along its direction to the minimum of a bound of M, in which nodes do not
   /// feel each other; M does not grow. All points at once: the result does not depend on an order. (4.7)
-  void sweep(Vector &u) const;
-  /// Brings hessian() to H(u). @return number of contact nodes whose stiffness in it changed, over all ranks
-  GO update_hessian(const Vector &u);
-  /// One choice of the active-set iteration at the minimum u of hessian()'s piece: a point goes from open to yielded, or
-  /// back, only by way of stuck. The first choice, before there is a piece, is made from the multipliers. (5.7)
+  void sweep(Vector &u) const override;
+  /// Takes the states at u for the active set, and brings hessian() to it: that is H(u).
+  GO update_hessian(const Vector &u) override;
+  /// One choice of the active-set iteration at the minimum u for the present active set: a point goes from open to yielding, or
+  /// back, only by way of closed. The first choice, before there is an active set, is made from the multipliers. (5.7)
   /// @param negligible  violations up to this part of the largest pressure change no state; dimensionless, >= 0
-  StateChoice choose_states(const Vector &u, double negligible) const;
-  /// Takes the choice's pressures for multipliers, as far as its states allow, and brings hessian() to its states. Nodes
-  /// that come to stick are moved onto the foundation: r v would be a large residual for what is a small step.
-  void take_states(const StateChoice &choice, Vector &u);
-  /// For bodies with rigid motions that only contact can hold: keeps a weak spring at nodes that do not stick in
-  /// hessian(), so that it stays positive definite, and lets all nodes stick in the first choice of states, unless
+  ActiveSetChoice choose_active_set(const Vector &u, double negligible) const;
+  /// Takes the choice's states for the active set, its pressures for multipliers as far as the states allow, and brings
+  /// hessian() to it. Nodes that close are moved onto the foundation: r v would be a large residual for what is a small step.
+  void take_active_set(const ActiveSetChoice &choice, Vector &u);
+  /// For bodies with rigid motions that only contact can hold: keeps a weak spring at nodes that are not closed in
+  /// hessian(), so that it stays positive definite, and closes all nodes in the first choice of an active set, unless
   /// multipliers were given. The functional and its gradients do not change. (9.8)
   void hold_by_contact();
   bool held_by_contact() const { return spring_ > 0; }
-  /// Weakens these springs, if there are any, from the next update of hessian() on: for bodies that bend so easily that
-  /// they feel them.
-  void weaken_springs();
+  /// Weakens these springs, if there are any, from the next update of hessian() on, where a step beyond 1 tells that the body
+  /// bends so easily that it feels them.
+  void step_taken(double length) override;
   /// Raises the penalties, as far as double precision bears it. @return whether any rose, on any rank   (5.8)
   bool raise_penalty();
   /// Moves the origin to where u is, and sets u to 0.                                                     (5.9)
   void move_origin(Vector &u);
   /// Where u is, seen from 0: what results are read from.
   Vector displacement(const Vector &u) const;
-  /// A guess to start from, such as another mesh's solution; brought into [0, xi].
-  /// @param lambda  (contact nodes) [Pa]
-  void set_multipliers(const DeviceView<double *> &lambda);
+  /// Starts from a state, such as that of the step before or another mesh's: takes its multipliers, brought into [0, xi].
+  /// @param[in,out] u  takes its displacement, but for what is prescribed
+  void start_from(const ContactState &state, Vector &u);
   /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
   void reset_multipliers();
-  const RCP<ContactStiffness> &hessian() const { return hessian_; }
-  /// @param F  gradient at u
-  LineModel along(const Vector &u, const Vector &d, const Vector &F) const;
+  const RCP<UpdatedOperator> &hessian() const override { return hessian_; }
+  std::unique_ptr<LineFunction> along(const Vector &u, const Vector &d, const Vector &F) const override;
   StateCounts count_states(const Vector &u) const;
+  /// By the number of nodes in each state.
+  std::uint64_t piece(const Vector &u) const override;
+  /// Of the displacement from 0.
+  double size(const Vector &u) const override;
 
   /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   (5.1)
   double update_multipliers(const Vector &u);
-  /// The same with the pressures of hessian()'s piece, brought into [0, xi]: where its states are confirmed, a rounding error
-  /// of v at an open or yielded point does not count r times.
-  double take_piece_pressures(const Vector &u);
+  /// The same with the pressures of the active set, brought into [0, xi]: where it is confirmed, a rounding error of v at an open
+  /// or yielding point does not count r times.
+  double take_active_set_pressures(const Vector &u);
 
-  /// About the largest error of the pressures lambda + r v at stuck nodes, over the largest pressure: the share k/r that the
+  /// About the largest error of the pressures lambda + r v at closed nodes, over the largest pressure: the share k/r that the
   /// penalty leaves of the last change, with k the node's own stiffness.                                       (5.15)
   double pressure_error(const Vector &u) const;
 
@@ -149,25 +149,28 @@ public:
   const ContactNodes &contact() const { return contact_; } ///< with penetration from 0
   const fem::ElasticProblem &problem() const { return problem_; }
   const DeviceView<double *> &multipliers() const { return lambda_; }
+  /// The present state, in copies.
+  /// @param u  displacement from 0
+  ContactState current(const Vector &u) const;
 
 private:
-  GO update_stiffness(); // brings hessian() to piece_; number of nodes whose stiffness changed
+  GO update_stiffness(); // brings hessian() to the active set; number of nodes whose stiffness changed
 
   RCP<const Comm> comm_;
   fem::ElasticProblem problem_;
   ContactNodes contact_;
-  ContactNodes near_;           // the same, its free_gap less what the origin has used up
-  RCP<Vector> origin_;          // null: 0
-  RCP<Vector> load_;            // problem_.load less K origin
-  double applied_force_ = 0;    // |applied load|_2 on free unknowns [N]
-  double lifted_force_ = 0;     // the same with the forces of prescribed displacements [N]
-  double reach_ = 0;            // pressure that the load will hardly reach anywhere [Pa]
-  DeviceView<double *> lambda_; // (contact nodes) [Pa]
-  DeviceView<State *> piece_;   // (contact nodes) states that hessian() belongs to
-  RCP<ContactStiffness> hessian_;
-  double spring_ = 0;         // weak springs at nodes that do not stick, in units of contact_.stiffness
-  bool predicted_ = false;    // multipliers are a guess to start from
-  bool piece_chosen_ = false; // else piece_ is that of K itself, and says nothing about pressures
+  ContactNodes shifted_;           // the same, its free_gap less what the origin has used up
+  RCP<Vector> origin_;             // null: 0
+  RCP<Vector> load_;               // problem_.load less K origin
+  double applied_force_ = 0;       // |applied load|_2 on free unknowns [N]
+  double prescribed_force_ = 0;    // the same with the forces of prescribed displacements [N]
+  double pressure_bound_ = 0;      // pressure that the load will hardly reach anywhere [Pa]
+  DeviceView<double *> lambda_;    // (contact nodes) [Pa]
+  DeviceView<State *> active_set_; // (contact nodes) states that hessian() belongs to
+  RCP<UpdatedOperator> hessian_;
+  double spring_ = 0;           // weak springs at nodes that are not closed, in units of contact_.scaling
+  bool warm_start_ = false;     // multipliers are a guess to start from
+  bool has_active_set_ = false; // else active_set_ is that of K itself, and says nothing about pressures
 };
 
 } // namespace rpc::contact

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/contact/certificate.hpp"
+#include "rpc/contact/optimality_residuals.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <functional>
@@ -19,7 +19,7 @@ enum class UzawaTest {
 struct UzawaOptions {
   double tolerance = 1e-8; ///< of the test, and of the certificate, dimensionless, > 0
   int max_iterations = 50; ///< > 0
-  UzawaTest test = UzawaTest::certificate;
+  UzawaTest test = UzawaTest::optimality;
 };
 
 /// Parameters of the deck's `Uzawa` sublist.
@@ -41,7 +41,7 @@ struct UzawaResult {
   int iterations = 0;
   std::vector<int> newton_iterations; ///< per Uzawa iteration
   double multiplier_change = 0;       ///< of the last one, relative
-  Certificate certificate;
+  OptimalityResiduals residuals;
 };
 
 /// Alternates minimization over u and multiplier update until the certificate holds.            doc/theory.md (5.1)
@@ -50,10 +50,10 @@ struct UzawaResult {
 /// @param[in,out] u  start, then solution: displacement from 0
 /// @param minimize   (iteration, from 1) brings u, as seen from the functional's origin, to the minimum for its present
 /// multipliers; collective
-/// @param certify    judges a displacement from 0, with the functional's multipliers
+/// @param optimality_residuals    judges a displacement from 0, with the functional's multipliers
 /// @param report     called after each iteration, for the console
 UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function<MinimizeResult(int)> &minimize,
-                  const std::function<Certificate(const Vector &)> &certify, const UzawaOptions &options,
-                  const std::function<void(const UzawaResult &)> &report);
+                  const std::function<OptimalityResiduals(const Vector &)> &optimality_residuals,
+                  const UzawaOptions &options, const std::function<void(const UzawaResult &)> &report);
 
 } // namespace rpc::contact

@@ -14,7 +14,7 @@
 namespace rpc
 {
 
-/// Declares `name` in a valid_parameters() list as a field: a number, or an expression of x, y, z in a string.
+/// Declares `name` in a valid_parameters() list as a field: a number, or an expression of x, y, z, t in a string.
 void set_field(Teuchos::ParameterList &valid, const std::string &name, const std::string &default_value,
                const std::string &doc);
 

@@ -43,23 +43,37 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
 /// f, (owned dofs), becomes 0 where displacements are prescribed; fences.
 void clear_prescribed(const DirichletDofs &dirichlet, Vector &f);
 
+/// A stiffness matrix without the couplings of prescribed unknowns, and these couplings: what a step with other prescribed values
+/// needs of them. Which unknowns are prescribed is fixed.
+struct EliminatedStiffness {
+  RCP<CrsMatrix> matrix; ///< K_FF, and the diagonal of K_DD; symmetric positive definite if rigid motions are held
+  // The entries of K in the columns of prescribed unknowns, (K_FD; K_DD), row after row.
+  DeviceView<LO *> row;            ///< (rows) owned dofs with such entries, ascending
+  DeviceView<std::size_t *> begin; ///< (rows + 1) where a row's entries begin
+  DeviceView<LO *> column;         ///< (entries) overlap dofs
+  DeviceView<double *> value;      ///< (entries)
+};
+
+/// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays.               doc/theory.md (2.7)
+/// @param K  becomes the matrix; collective
+EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DirichletDofs &dirichlet);
+
 /// The discrete elastic problem with its boundary conditions built in: find u with stiffness u = load, where nothing
 /// touches.
 struct ElasticProblem {
-  RCP<CrsMatrix> stiffness; ///< symmetric positive definite if rigid motions are held
-  RCP<Vector> load;         ///< [N]
-  RCP<Vector> applied_load; ///< before elimination [N]
+  RCP<CrsMatrix> stiffness; ///< without the couplings of prescribed unknowns
+  RCP<Vector> load;         ///< with the forces of prescribed displacements [N]
+  RCP<Vector> applied_load; ///< [N]
   DirichletDofs dirichlet;
   double energy_offset =
       0; ///< Pi(u) = u.(stiffness u)/2 - load.u + energy_offset, Pi being that of the problem before elimination [J]
 };
 
-/// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays, the load takes what moves to the
-/// right.
-///                                                                                                  doc/theory.md (2.7)
-/// Consumes its arguments. Collective.
-ElasticProblem eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> stiffness, RCP<Vector> load,
-                                   DirichletDofs dirichlet);
+/// The problem of one load and one set of prescribed values; costs no more than a few vectors. Collective. (2.7)
+/// @param applied_load  (owned dofs) [N]
+/// @param dirichlet     of the unknowns that were eliminated
+ElasticProblem elastic_problem(const Discretization &d, const EliminatedStiffness &stiffness, RCP<Vector> applied_load,
+                               DirichletDofs dirichlet);
 
 /// Force with which each condition holds the body: the sum of internal - external forces over the unknowns that it
 /// prescribes [N], in 2D per m. Collective. (2.10)

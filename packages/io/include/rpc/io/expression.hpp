@@ -7,7 +7,7 @@
 namespace rpc::io
 {
 
-/// A field of the deck: a number, `inf`, or a muParser expression of x, y, z [m] with the constants pi, e and inf.
+/// A field of the deck: a number, `inf`, or a muParser expression of x, y, z [m] and the time t with the constants pi, e and inf.
 ///
 /// A text without variables becomes a constant. The function is not thread safe: copies share one parser.
 /// @param parameter  deck path for messages, "Contact->Yield Stress"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/core/convex_functional.hpp"
 
 #include <NOX_LineSearch_Generic.H>
 #include <NOX_LineSearch_UserDefinedFactory.H>
@@ -8,15 +8,15 @@
 namespace rpc::solver
 {
 
-/// The t > 0 where a line model's slope vanishes, to rounding. doc/theory.md (4.4)
+/// The t > 0 where the slope of a piecewise quadratic functional vanishes, to rounding. doc/theory.md (4.4)
 ///
 /// The slope is continuous, nondecreasing and piecewise linear: Newton's method, kept inside a bracket and helped by
-/// bisection, ends on the piece that holds the root and is then exact. Each trial costs one sum over the contact nodes.
+/// bisection, ends on the piece that holds the root and is then exact. Each trial evaluates the slope once.
 /// @return 0 if slope(0) >= 0: no descent; collective
-double exact_step(const contact::LineModel &line);
+double exact_step(const LineFunction &line);
 
-/// Exact minimization of the functional along the Newton direction, as a NOX line search for NewtonGroup.
-/// Without it full steps cycle between sets of contact states.
+/// Exact minimization of the functional along the direction, as a NOX line search for NewtonGroup; steps that the context marks
+/// as full are taken as they are. Without it full Newton steps cycle between pieces of the functional.
 class ExactLineSearch : public NOX::LineSearch::Generic
 {
 public:

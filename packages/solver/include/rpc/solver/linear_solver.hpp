@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/contact/contact_stiffness.hpp"
+#include "rpc/core/updated_operator.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <memory>
@@ -46,7 +46,7 @@ public:
   /// @param H            may change between solves; its matrix is written when the hierarchy is set up
   /// @param coordinates  (nodes; dim)          @param null_space  (rows of A; rigid body modes)
   /// Collective.
-  LinearSolver(LinearSolverOptions options, RCP<contact::ContactStiffness> H, RCP<MultiVector> coordinates,
+  LinearSolver(LinearSolverOptions options, RCP<UpdatedOperator> H, RCP<MultiVector> coordinates,
                RCP<MultiVector> null_space);
   ~LinearSolver();
 

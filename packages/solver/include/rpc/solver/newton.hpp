@@ -1,7 +1,6 @@
 #pragma once
 
-#include "rpc/contact/uzawa.hpp"
-#include "rpc/solver/linear_solver.hpp"
+#include "rpc/solver/first_stage.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <functional>
@@ -13,39 +12,42 @@ namespace rpc::solver
 struct NewtonOptions {
   double step_tolerance = 1e-10;     ///< |d|_2 / |u|_2 of a full Newton step, > 0: the paper's test
   double residual_tolerance = 1e-11; ///< |F|_2 / |load|_2, > 0
-  double start_tolerance = 1e-10;    ///< |F|_2 / |load|_2 at which the search for states is content, > 0
-  double pressure_tolerance = 1e-7;  ///< error of pressures, over the largest, at which that search is content, > 0
   int max_iterations = 200;          ///< > 0
-  bool active_set_start = true;      ///< look for the contact states first, see find_states()
   Teuchos::ParameterList nox;        ///< sublists for NOX, on top of the defaults
 };
 
-/// Parameters of the deck's `NOX` sublist. Its sublists pass through; "Line Search" -> "Method" also knows "Exact", the
-/// default.
+/// Parameters of the deck's `NOX` sublist. Its sublists pass through; "Line Search" -> "Method" also knows "Exact" and
+/// "Direction" -> "Method" also knows "Active Set" and "Sweep"; the first of each is the default.
 Teuchos::ParameterList valid_newton_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
 NewtonOptions newton_options(const Teuchos::ParameterList &list);
 
-/// One Newton step, for the console.
+/// One step of the iteration, for the console.
 struct NewtonStep {
   int iteration = 0;   ///< 0 is the start
   double residual = 0; ///< |F|_2 / |load|_2
   double step_length = 0;
   int linear_iterations = 0;
-  contact::StateCounts states;
+};
+using NewtonReport = std::function<void(const NewtonStep &, const Vector &u)>;
+
+/// What came out of one minimization.
+struct MinimizeResult {
+  bool converged = false;
+  int steps = 0;      ///< each one linear solve
+  std::string reason; ///< why not, if not
 };
 
 /// Lets NOX read its part of the deck, which a scene may not come to; collective.
 /// @throws rpc::Error (bad_input) if NOX refuses it
-void check_nox_parameters(contact::SmoothedFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
+void check_nox_parameters(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
                           const NewtonOptions &options);
 
-/// Minimizes the smoothed functional over u, in place; collective. Failure is a result, not an exception.
-/// @param same_states  start with a step on the piece that the last minimization ended on, doc/theory.md (5.4): after a
-///                     multiplier update its states are a better guess than those of lambda + r v at the old v
-/// @param report       called after each step
-contact::MinimizeResult minimize(contact::SmoothedFunctional &functional, LinearSolver &linear_solver,
-                                 const RCP<Vector> &u, const NewtonOptions &options, bool same_states,
-                                 const std::function<void(const NewtonStep &)> &report);
+/// Minimizes a functional over u, in place, by NOX; collective. Failure is a result, not an exception.
+/// @param scale   of forces, to which residuals are relative
+/// @param stage   proposes the first steps, where "Direction" -> "Method" is "Active Set"; null: there is none
+/// @param report  called at the start and after each step
+MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u, double scale,
+                        const NewtonOptions &options, FirstStage *stage, const NewtonReport &report);
 
 } // namespace rpc::solver

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/core/convex_functional.hpp"
 #include "rpc/solver/linear_solver.hpp"
 #include "rpc/solver/nox_vector.hpp"
 
@@ -10,18 +10,24 @@
 namespace rpc::solver
 {
 
-/// What the groups of one Newton iteration share: the functional, the linear solver, and a record of the last step.
+class FirstStage;
+
+/// What the groups of one minimization share: the functional, the linear solver, and a record of the last step.
 struct NewtonContext {
-  contact::SmoothedFunctional &functional;
+  ConvexFunctional &functional;
   LinearSolver &linear_solver;
-  double target_residual = 0; ///< |F|_2 at which Newton stops [N]; no linear solve need be better than this
+  double target_residual = 0;  ///< |F|_2 at which Newton stops; no linear solve need be better than this
+  FirstStage *stage = nullptr; ///< proposes the steps, as long as it is there; then Newton's directions do
+
+  int steps = 0; ///< that took a linear solve
 
   // Last step
-  double direction_norm = 0; ///< |d|_2 of the full Newton step [m]
+  double direction_norm = 0; ///< |d|_2 of the full step
   double step_length = 1;
+  bool full_step = false; ///< the line search takes the direction as it is
   int linear_iterations = 0;
-  GO changed_states = 0; ///< contact nodes whose stiffness the last Hessian changed
-  std::string failure;   ///< of the linear solver or the line search
+  GO changes = 0;      ///< places where the last Hessian changed
+  std::string failure; ///< of the linear solver or the line search
 };
 
 /// A point of the Newton iteration: u, F(u) and the Newton direction. NOX holds two of them. doc/theory.md (4.2)
@@ -67,5 +73,10 @@ private:
   double norm_F_ = 0;
   bool has_F_ = false, has_jacobian_ = false, has_newton_ = false;
 };
+
+/// Solves with the functional's Hessian, and records iterations and the direction's length; collective.
+/// @param[out] d  about H^-1 F
+/// @param tolerance  |r|/|F|; taken no larger than 0.1
+LinearSolver::Result solve_for_direction(NewtonContext &context, const Vector &F, Vector &d, double tolerance);
 
 } // namespace rpc::solver

@@ -62,11 +62,11 @@ struct Scene {
     d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
     const auto load = rcp(new Vector(d.owned_dofs));
     fem::add_body_force(d, {ScalarField(0.3), ScalarField(-2.), ScalarField(0.)}, "Body Force", *load);
-    auto problem =
-        fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), load, fem::dirichlet_dofs(d, {condition}));
-    auto nodes = contact::contact_nodes(d, foundations, problem.dirichlet, material);
-    functional = std::make_shared<contact::SmoothedFunctional>(d.mesh->owned_nodes->getComm(), std::move(problem),
-                                                               std::move(nodes));
+    const auto dirichlet = fem::dirichlet_dofs(d, {condition});
+    const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
+    const auto nodes = contact::contact_nodes(d, foundations, dirichlet, material);
+    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K, load, dirichlet), nodes,
+                                                               rcp(new UpdatedOperator(K.matrix, nodes)));
   }
   explicit Scene(const double penalty = 40) : Scene(std::vector{below(penalty)}) {}
 
@@ -93,21 +93,21 @@ struct Scene {
   }
 };
 
-/// One choice of states, taken unless it confirms the present ones.
-inline contact::StateChoice choose(contact::SmoothedFunctional &functional, const Vector &u,
-                                   const double negligible = 0)
+/// One choice of an active set, taken unless it confirms the present one.
+inline contact::ActiveSetChoice choose(contact::SmoothedFunctional &functional, const Vector &u,
+                                       const double negligible = 0)
 {
-  const auto choice = functional.choose_states(u, negligible);
+  const auto choice = functional.choose_active_set(u, negligible);
   Vector moved(u, Teuchos::Copy);
-  if (!choice.confirmed) functional.take_states(choice, moved);
+  if (!choice.confirmed) functional.take_active_set(choice, moved);
   return choice;
 }
 
-inline void piece_gradient(const contact::SmoothedFunctional &functional, const Vector &u, Vector &F)
+inline void active_set_gradient(const contact::SmoothedFunctional &functional, const Vector &u, Vector &F)
 {
   Vector G(u.getMap());
-  functional.elastic_gradient(u, G);
-  functional.piece_gradient(u, G, F);
+  functional.gradient(u, G);
+  functional.active_set_gradient(u, G, F);
 }
 
 } // namespace rpc::test

@@ -1,4 +1,4 @@
-#include "rpc/contact/prediction.hpp"
+#include "rpc/contact/contact_state.hpp"
 
 namespace rpc::contact
 {
@@ -18,17 +18,15 @@ void to_columns(const Vector &u, const int dim, MultiVector &columns)
   Kokkos::fence();
 }
 
-/// The other way round, but for prescribed dofs.
-void from_columns(const MultiVector &columns, const fem::DirichletDofs &dirichlet, const int dim, Vector &u)
+/// The other way round.
+void from_columns(const MultiVector &columns, const int dim, Vector &u)
 {
-  const auto fixed = dirichlet.fixed;
   const auto from = columns.getLocalViewDevice(Tpetra::Access::ReadOnly);
   const auto to = device_write(u);
   Kokkos::parallel_for(
       "rpc::contact::from_columns", device_range(static_cast<LO>(columns.getLocalLength())),
       KOKKOS_LAMBDA(const LO node) {
-        for (int k = 0; k < dim; ++k)
-          if (!fixed(dim * node + k)) to(dim * node + k) = from(node, k);
+        for (int k = 0; k < dim; ++k) to(dim * node + k) = from(node, k);
       });
   Kokkos::fence();
 }
@@ -62,19 +60,21 @@ DeviceView<double *> gathered(const ContactNodes &c, const MultiVector &columns)
 
 } // namespace
 
-void start_from(const CrsMatrix &interpolation, const SmoothedFunctional &coarse, const Vector &coarse_u,
-                SmoothedFunctional &fine, Vector &u)
+ContactState interpolated(const CrsMatrix &interpolation, const ContactNodes &coarse, const ContactState &state,
+                          const ContactNodes &fine, const RCP<const Map> &fine_dofs)
 {
-  const int dim = fine.contact().dim, sides = fine.contact().num_sides();
+  const int dim = fine.dim, sides = fine.num_sides();
   MultiVector from(interpolation.getDomainMap(), dim), to(interpolation.getRangeMap(), dim);
-  to_columns(coarse_u, dim, from);
+  to_columns(*state.displacement, dim, from);
   interpolation.apply(from, to);
-  from_columns(to, fine.problem().dirichlet, dim, u);
-  if (sides == 0) return;
+  ContactState result{rcp(new Vector(fine_dofs)), {}, {}};
+  from_columns(to, dim, *result.displacement);
+  if (sides == 0) return result;
   MultiVector lambda_from(interpolation.getDomainMap(), sides), lambda_to(interpolation.getRangeMap(), sides);
-  scatter(coarse.contact(), coarse.multipliers(), lambda_from);
+  scatter(coarse, state.multiplier, lambda_from);
   interpolation.apply(lambda_from, lambda_to);
-  fine.set_multipliers(gathered(fine.contact(), lambda_to));
+  result.multiplier = gathered(fine, lambda_to);
+  return result;
 }
 
 } // namespace rpc::contact

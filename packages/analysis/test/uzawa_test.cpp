@@ -1,6 +1,6 @@
-#include "rpc/contact/uzawa.hpp"
+#include "rpc/analysis/uzawa.hpp"
 
-#include "scene.hpp"
+#include "foundation_scene.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -13,27 +13,27 @@ namespace
 
 using namespace rpc;
 using namespace rpc::test;
-using contact::Certificate;
-using contact::MinimizeResult;
-using contact::UzawaOptions;
-using contact::UzawaResult;
-using contact::UzawaTest;
+using analysis::Minimization;
+using analysis::UzawaOptions;
+using analysis::UzawaResult;
+using analysis::UzawaTest;
+using contact::OptimalityResiduals;
 
 constexpr double given_penalty = 40;
 
 /// The KKT residual of each iteration, the last one for all that follow.
 using Residuals = std::vector<double>;
 
-/// Uzawa with a minimization and certificates of our own making.
+/// Uzawa with a minimization and residuals of our own making.
 struct Stubbed {
   Scene scene{given_penalty};
   RCP<Vector> u = scene.vector(0, 0), step = scene.vector(0.05, 0.4);
   UzawaOptions options;
-  std::vector<double> judged;    ///< |u|_inf that each certificate was asked for
+  std::vector<double> judged;    ///< |u|_inf that they were asked for
   std::vector<double> penalties; ///< the largest one at each minimization
   int reports = 0;
 
-  UzawaResult run(const Residuals &residuals, const MinimizeResult &inner, const bool move = false)
+  UzawaResult run(const Residuals &residuals, const Minimization &inner, const bool move = false)
   {
     const auto minimize = [&, inner, move](const int iteration) {
       EXPECT_EQ(iteration, static_cast<int>(penalties.size()) + 1);
@@ -41,13 +41,14 @@ struct Stubbed {
       if (move) u->update(iteration, *step, 1.);
       return inner;
     };
-    const auto certify = [&, residuals](const Vector &from_0) {
+    const auto optimality_residuals = [&, residuals](const Vector &from_0) {
       judged.push_back(from_0.normInf());
-      Certificate c;
+      OptimalityResiduals c;
       c.kkt_residual = judged.size() <= residuals.size() ? residuals[judged.size() - 1] : residuals.back();
       return c;
     };
-    return contact::uzawa(*scene.functional, *u, minimize, certify, options, [&](const UzawaResult &) { ++reports; });
+    return analysis::uzawa(*scene.functional, *u, minimize, optimality_residuals, options,
+                           [&](const UzawaResult &) { ++reports; });
   }
   double largest_penalty() const
   {
@@ -58,9 +59,9 @@ struct Stubbed {
   }
 };
 
-const MinimizeResult converged{true, 3, ""}, stuck{false, 7, "rounding has the last word"};
+const Minimization converged{true, 3, "", false, 0}, at_rounding{false, 7, "rounding has the last word", false, 0};
 
-TEST(Uzawa, StopsAtTheFirstCertificateThatHolds)
+TEST(Uzawa, StopsAtTheFirstOptimalityResidualsThatHolds)
 {
   Stubbed stubbed;
   const auto result = stubbed.run({1e-3, 1e-5, 1e-9}, converged);
@@ -68,17 +69,17 @@ TEST(Uzawa, StopsAtTheFirstCertificateThatHolds)
   EXPECT_EQ(result.iterations, 3);
   EXPECT_EQ(stubbed.reports, 3);
   EXPECT_EQ(result.newton_iterations, (std::vector<int>{3, 3, 3}));
-  EXPECT_EQ(result.certificate.kkt_residual, 1e-9);
+  EXPECT_EQ(result.residuals.kkt_residual, 1e-9);
   EXPECT_EQ(stubbed.largest_penalty(), given_penalty); // fast enough: nothing to raise
 }
 
-TEST(Uzawa, AMinimizationThatFailedDoesNotMatterWhereTheCertificateHolds)
+TEST(Uzawa, AMinimizationThatFailedDoesNotMatterWhereTheyHold)
 {
   Stubbed stubbed;
-  const auto result = stubbed.run({1e-9}, stuck);
+  const auto result = stubbed.run({1e-9}, at_rounding);
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(result.iterations, 1);
-  EXPECT_EQ(result.reason.find(stuck.reason), std::string::npos) << result.reason;
+  EXPECT_EQ(result.reason.find(at_rounding.reason), std::string::npos) << result.reason;
 }
 
 TEST(Uzawa, RaisesThePenaltyWhereAnUpdateLeavesMoreThanATenth)
@@ -105,7 +106,7 @@ TEST(Uzawa, OneIterationIsNotSlow)
 TEST(Uzawa, GoesOnFromAMinimizationThatFailedAsLongAsThatHelps)
 {
   Stubbed stubbed;
-  const auto result = stubbed.run({1e-2, 5e-4, 2e-5, 1e-6, 5e-8, 1e-9}, stuck);
+  const auto result = stubbed.run({1e-2, 5e-4, 2e-5, 1e-6, 5e-8, 1e-9}, at_rounding);
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(result.iterations, 6);
 }
@@ -113,9 +114,9 @@ TEST(Uzawa, GoesOnFromAMinimizationThatFailedAsLongAsThatHelps)
 TEST(Uzawa, EndsWithTheReasonOfTheMinimizationWhenNothingIsLeftToRaise)
 {
   Stubbed stubbed;
-  const auto result = stubbed.run({1e-3}, stuck);
+  const auto result = stubbed.run({1e-3}, at_rounding);
   EXPECT_FALSE(result.converged);
-  EXPECT_EQ(result.reason, stuck.reason);
+  EXPECT_EQ(result.reason, at_rounding.reason);
   EXPECT_EQ(result.iterations, 5); // 40 -> 1e5, 1e7, 1e8 times the own stiffness
   EXPECT_EQ(stubbed.penalties[4], stubbed.largest_penalty());
   EXPECT_LT(stubbed.penalties[3], stubbed.penalties[4]);
@@ -124,9 +125,9 @@ TEST(Uzawa, EndsWithTheReasonOfTheMinimizationWhenNothingIsLeftToRaise)
 TEST(Uzawa, EndsAtOnceWhereNumbersAreNotFinite)
 {
   Stubbed stubbed;
-  const auto result = stubbed.run({std::numeric_limits<double>::quiet_NaN()}, stuck);
+  const auto result = stubbed.run({std::numeric_limits<double>::quiet_NaN()}, at_rounding);
   EXPECT_FALSE(result.converged);
-  EXPECT_EQ(result.reason, stuck.reason);
+  EXPECT_EQ(result.reason, at_rounding.reason);
   EXPECT_EQ(result.iterations, 1);
 }
 

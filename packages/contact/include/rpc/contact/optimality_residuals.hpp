@@ -9,7 +9,7 @@ namespace rpc::contact
 {
 
 /// How well (u, lambda) solves the discrete problem: four numbers without dimension, 0 at the solution.   doc/theory.md (5.2) to (5.12)
-struct Certificate {
+struct OptimalityResiduals {
   double equilibrium_residual = 0; ///< forces out of balance, over the forces at work                        (5.2)
   double kkt_residual = 0;         ///< largest violation of the contact law, over the largest pressure        (5.3)
   double energy_balance = 0;       ///< twice the strain energy less the work of all forces, over their sum   (5.11)
@@ -24,7 +24,8 @@ struct Certificate {
 /// Judges (u, lambda) by sums over cells, not by the matrix that the solution came from; collective.
 /// @param u                displacement from 0 (owned dofs) [m]
 /// @param residual_energy  F -> about F . K^-1 F [J], for a residual F (owned dofs, 0 where prescribed) [N]
-Certificate certify(const fem::Discretization &d, const fem::Materials &materials, const SmoothedFunctional &functional,
-                    const Vector &u, const std::function<double(const Vector &)> &residual_energy);
+OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem::Materials &materials,
+                                         const SmoothedFunctional &functional, const Vector &u,
+                                         const std::function<double(const Vector &)> &residual_energy);
 
 } // namespace rpc::contact

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/contact/smoothed_functional.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/mesh/box.hpp"
 #include "rpc/solver/linear_solver.hpp"
@@ -43,11 +44,11 @@ struct Beam {
     const auto load = rcp(new Vector(d.owned_dofs));
     const ScalarField push("push", [](const Point &x) { return -20 * std::sin(std::acos(-1.) * x[0] / 5); });
     fem::add_traction(d, d.mesh->side("top", ""), {ScalarField(0.), push, ScalarField(0.)}, "Traction", *load);
-    auto problem =
-        fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), load, fem::dirichlet_dofs(d, held));
-    auto nodes = contact::contact_nodes(d, {foundation}, problem.dirichlet, material);
-    functional = std::make_shared<contact::SmoothedFunctional>(d.mesh->owned_nodes->getComm(), std::move(problem),
-                                                               std::move(nodes));
+    const auto dirichlet = fem::dirichlet_dofs(d, held);
+    const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
+    const auto nodes = contact::contact_nodes(d, {foundation}, dirichlet, material);
+    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K, load, dirichlet), nodes,
+                                                               rcp(new UpdatedOperator(K.matrix, nodes)));
     linear = std::make_shared<solver::LinearSolver>(options, functional->hessian(), fem::node_coordinates(d),
                                                     fem::rigid_body_modes(d));
     u = rcp(new Vector(d.owned_dofs));
@@ -66,6 +67,14 @@ inline void open_between(Beam &beam, const double from, const double to)
   beam.functional->update_hessian(*beam.u);
 }
 
-inline void ignore(const solver::NewtonStep &) {}
+inline void ignore(const solver::NewtonStep &, const Vector &) {}
+
+/// Newton's steps alone, or after those of a first stage.
+inline solver::MinimizeResult minimize(Beam &beam, const solver::NewtonOptions &options = {},
+                                       solver::FirstStage *stage = nullptr, const solver::NewtonReport &report = ignore)
+{
+  return solver::minimize(*beam.functional, *beam.linear, beam.u, beam.functional->force_scale(), options, stage,
+                          report);
+}
 
 } // namespace rpc::test

@@ -15,7 +15,7 @@
 namespace rpc::contact
 {
 
-enum class State : int { open = 0, stuck = 1, yielded = 2 };
+enum class State : int { open = 0, closed = 1, yielding = 2 };
 
 /// The foundation never gives way. Numbers that would overflow in products count as infinite.
 KOKKOS_INLINE_FUNCTION bool is_rigid(const double xi)
@@ -43,11 +43,11 @@ KOKKOS_INLINE_FUNCTION double smoothed_energy(const double v, const double lambd
   return xi * v - (xi - lambda) * (xi - lambda) / (2 * r);
 }
 
-/// State of lambda + r v. Both kinks count as stuck, so that a start from rest sees a stiff foundation.
+/// State of lambda + r v. Both kinks count as closed, so that a start from rest sees a stiff foundation.
 KOKKOS_INLINE_FUNCTION State state(const double v, const double lambda, const double r, const double xi)
 {
   const double z = lambda + r * v;
-  return z < 0 ? State::open : (z > xi ? State::yielded : State::stuck);
+  return z < 0 ? State::open : (z > xi ? State::yielding : State::closed);
 }
 
 /// The s that minimizes slope s + stiffness s^2/2 + w (Psi(v + s) - Psi(v)): how far one point moves if all others stay where
@@ -59,8 +59,8 @@ KOKKOS_INLINE_FUNCTION double best_move(const double slope, const double stiffne
   const double open = -slope / stiffness;
   if (lambda + r * (v + open) < 0) return open;
   if (!is_rigid(xi)) {
-    const double yielded = -(slope + w * xi) / stiffness;
-    if (lambda + r * (v + yielded) > xi) return yielded;
+    const double yielding = -(slope + w * xi) / stiffness;
+    if (lambda + r * (v + yielding) > xi) return yielding;
   }
   return -(slope + w * (lambda + r * v)) / (stiffness + w * r);
 }

@@ -1,4 +1,4 @@
-#include "rpc/contact/foundation_law.hpp"
+#include "rpc/contact/law/rigid_plastic.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(FoundationLaw, SmoothedEnergyIsThePapersWithItsLinearPart)
 TEST(FoundationLaw, PressureIsTheDerivativeOfTheEnergyWithSecondOrderDifferences)
 {
   const double xi = 3, r = 50, lambda = 1.2;
-  // Inside the stuck piece the energy is quadratic, central differences are exact; across a kink they are not: sample
+  // Inside the closed piece the energy is quadratic, central differences are exact; across a kink they are not: sample
   // beside it.
   for (const double v : {-0.1, -0.0245, -0.01, 0., 0.02, 0.0355, 0.1}) {
     const double h = 1e-4;
@@ -43,16 +43,16 @@ TEST(FoundationLaw, KinksLieWherePressureReachesZeroAndTheYieldLimit)
 {
   const double xi = 3, r = 50, lambda = 1.2, eps = 1e-9;
   EXPECT_EQ(state(-lambda / r - eps, lambda, r, xi), State::open);
-  EXPECT_EQ(state(-lambda / r + eps, lambda, r, xi), State::stuck);
-  EXPECT_EQ(state((xi - lambda) / r - eps, lambda, r, xi), State::stuck);
-  EXPECT_EQ(state((xi - lambda) / r + eps, lambda, r, xi), State::yielded);
+  EXPECT_EQ(state(-lambda / r + eps, lambda, r, xi), State::closed);
+  EXPECT_EQ(state((xi - lambda) / r - eps, lambda, r, xi), State::closed);
+  EXPECT_EQ(state((xi - lambda) / r + eps, lambda, r, xi), State::yielding);
   EXPECT_EQ(pressure(-1, lambda, r, xi), 0);
   EXPECT_EQ(pressure(1, lambda, r, xi), xi);
 }
 
 TEST(FoundationLaw, RigidFoundationNeverYields)
 {
-  EXPECT_EQ(state(1e6, 5, 1e8, inf), State::stuck);
+  EXPECT_EQ(state(1e6, 5, 1e8, inf), State::closed);
   EXPECT_EQ(pressure(2, 5, 10, inf), 25);
   EXPECT_EQ(pressure(-2, 5, 10, inf), 0);
   EXPECT_DOUBLE_EQ(smoothed_energy(2, 5, 10, inf), 5 * 2 + 0.5 * 10 * 4);

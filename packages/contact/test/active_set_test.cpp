@@ -1,6 +1,6 @@
 #include "rpc/contact/smoothed_functional.hpp"
 
-#include "scene.hpp"
+#include "foundation_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ void expect_multipliers(const Scene &scene, const double first, const double oth
 }
 
 /// A scene whose nodes all stick, by a first choice without any penetration.
-std::unique_ptr<Scene> all_stuck()
+std::unique_ptr<Scene> all_closed()
 {
   auto scene = std::make_unique<Scene>(std::vector{foundation()});
   EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 0, 0)).changes, num_nodes);
@@ -56,10 +56,10 @@ std::unique_ptr<Scene> all_stuck()
 
 TEST(ChooseStates, TakesThePressuresOfThePieceForMultipliersUpToTheLimits)
 {
-  auto scene = all_stuck();
+  auto scene = all_closed();
   EXPECT_EQ(choose(*scene->functional, *pressing(*scene, -1.6, 1.2)).changes, 1);
   expect_multipliers(*scene, 0, 2.7);
-  scene = all_stuck();
+  scene = all_closed();
   EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 1, 1.6)).changes, num_nodes - 1);
   expect_multipliers(*scene, 2.5, yield);
 }
@@ -67,10 +67,10 @@ TEST(ChooseStates, TakesThePressuresOfThePieceForMultipliersUpToTheLimits)
 TEST(ChooseStates, AnOpenNodeSticksBeforeItYieldsHoweverDeepItIs)
 {
   for (const double depth : {1e-9, 0.1, 1e3}) {
-    const auto scene = all_stuck();
+    const auto scene = all_closed();
     choose(*scene->functional, *pressing(*scene, -1.6, 0)); // opens the first
     EXPECT_EQ(choose(*scene->functional, *pressing(*scene, depth * penalty, 0)).changes, 1);
-    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 0, 0)).changes, 0) << "stuck on the foundation, with p = 0";
+    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 0, 0)).changes, 0) << "closed on the foundation, with p = 0";
     EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 3.1, 0)).changes, 1);
     expect_multipliers(*scene, yield, 1.5);
   }
@@ -79,10 +79,10 @@ TEST(ChooseStates, AnOpenNodeSticksBeforeItYieldsHoweverDeepItIs)
 TEST(ChooseStates, AYieldedNodeSticksBeforeItOpensHoweverFarItIs)
 {
   for (const double height : {1e-9, 0.1, 1e3}) {
-    const auto scene = all_stuck();
+    const auto scene = all_closed();
     choose(*scene->functional, *pressing(*scene, 1.6, 0)); // yields at the first
     EXPECT_EQ(choose(*scene->functional, *pressing(*scene, -height * penalty, 0)).changes, 1);
-    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 0, 0)).changes, 0) << "stuck, with p = xi";
+    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 0, 0)).changes, 0) << "closed, with p = xi";
     EXPECT_EQ(choose(*scene->functional, *pressing(*scene, -3.1, 0)).changes, 1);
     expect_multipliers(*scene, 0, 1.5);
   }
@@ -90,7 +90,7 @@ TEST(ChooseStates, AYieldedNodeSticksBeforeItOpensHoweverFarItIs)
 
 TEST(ChooseStates, KeepsOpenAndYieldedNodesOnTheirSidesOfTheSurface)
 {
-  const auto scene = all_stuck();
+  const auto scene = all_closed();
   choose(*scene->functional, *pressing(*scene, -1.6, 1.6)); // the first opens, the others yield
   EXPECT_TRUE(choose(*scene->functional, *pressing(*scene, -0.1, 0.1)).confirmed);
   expect_multipliers(*scene, 0, yield);
@@ -98,7 +98,7 @@ TEST(ChooseStates, KeepsOpenAndYieldedNodesOnTheirSidesOfTheSurface)
 
 TEST(ChooseStates, DoNothingWhereNoStateChanges)
 {
-  const auto scene = all_stuck();
+  const auto scene = all_closed();
   const auto change = choose(*scene->functional, *pressing(*scene, 1, -1));
   EXPECT_EQ(change.changes, 0);
   expect_multipliers(*scene, 1.5, 1.5);
@@ -106,18 +106,18 @@ TEST(ChooseStates, DoNothingWhereNoStateChanges)
 
 TEST(ChooseStates, NegligibleViolationsChangeNoState)
 {
-  const auto scene = all_stuck();
+  const auto scene = all_closed();
   const auto u = pressing(*scene, -1.5 - 1e-3, 1); // p = -0.001 at the first node, 2.5 at the others
-  EXPECT_EQ(scene->functional->choose_states(*u, 1e-3).changes, 0);
-  EXPECT_EQ(scene->functional->choose_states(*u, 3e-4).changes, 1);
+  EXPECT_EQ(scene->functional->choose_active_set(*u, 1e-3).changes, 0);
+  EXPECT_EQ(scene->functional->choose_active_set(*u, 3e-4).changes, 1);
   choose(*scene->functional, *u); // opens it
   const auto own = to_host(scene->functional->hessian()->own_stiffness());
   double k = 0;
   for (std::size_t i = 0; i < own.extent(0); ++i) k = std::max(k, own(i));
   k = max_all(scene->d.mesh->comm(), k);
   const auto in = pressing(*scene, 1e-3 * penalty / k, 0); // k v = 0.001 at most, beside pressures of 2.5
-  EXPECT_EQ(scene->functional->choose_states(*in, 1e-3).changes, 0);
-  EXPECT_EQ(scene->functional->choose_states(*in, 0).changes, 1);
+  EXPECT_EQ(scene->functional->choose_active_set(*in, 1e-3).changes, 0);
+  EXPECT_EQ(scene->functional->choose_active_set(*in, 0).changes, 1);
 }
 
 TEST(ChooseStates, FirstStatesAreThoseOfMultipliersAndPenetrations)
@@ -126,7 +126,9 @@ TEST(ChooseStates, FirstStatesAreThoseOfMultipliersAndPenetrations)
   const auto &c = scene.functional->contact();
   DeviceView<double *> given("given", c.size());
   Kokkos::deep_copy(given, yield);
-  scene.functional->set_multipliers(given); // as a coarser mesh would: all yield or are about to
+  Vector unused(scene.d.owned_dofs);
+  scene.functional->start_from({scene.vector(0, 0), given, {}},
+                               unused); // as of a coarser mesh: all yield or are about to
   const auto u = scene.vector([](const Point &x) {
     return Point{0, x[0] == 0 ? 1. : -0.01, 0};
   });                                                              // the first is far off
@@ -136,15 +138,15 @@ TEST(ChooseStates, FirstStatesAreThoseOfMultipliersAndPenetrations)
 
 TEST(ChooseStates, FingerprintsAreEqualForEqualStates)
 {
-  const auto scene = all_stuck();
+  const auto scene = all_closed();
   auto &functional = *scene->functional;
   const auto at = [&](const double first, const double others) {
     return choose(functional, *pressing(*scene, first, others)).fingerprint;
   };
-  const auto stuck = at(0, 0), first_open = at(-1.6, 0), again = at(-1.6, 0);
-  EXPECT_NE(stuck, first_open);
+  const auto closed = at(0, 0), first_open = at(-1.6, 0), again = at(-1.6, 0);
+  EXPECT_NE(closed, first_open);
   EXPECT_EQ(first_open, again);
-  EXPECT_EQ(at(0.01 * penalty, 0), stuck);
+  EXPECT_EQ(at(0.01 * penalty, 0), closed);
 }
 
 TEST(ChooseStates, AllStickFirstWhereContactMustHoldTheBody)
@@ -193,7 +195,7 @@ TEST(HoldByContact, ChangesNeitherTheFunctionalNorItsGradients)
 {
   const OnRollers loose, held;
   held.functional->hold_by_contact();
-  for (const double depth : {0., 0.12, 0.3}) { // open, stuck, yielded
+  for (const double depth : {0., 0.12, 0.3}) { // open, closed, yielding
     const auto u = loose.down(depth), d = loose.vector(0.01, 0.7);
     u->update(1., *d, 1.);
     Vector F(u->getMap()), G(u->getMap());
@@ -201,7 +203,7 @@ TEST(HoldByContact, ChangesNeitherTheFunctionalNorItsGradients)
       const auto gradient = [&](const OnRollers &scene, Vector &to) {
         scene.functional->update_hessian(*u);
         if (piece)
-          piece_gradient(*scene.functional, *u, to);
+          active_set_gradient(*scene.functional, *u, to);
         else
           scene.functional->gradient(*u, to);
       };
@@ -213,8 +215,8 @@ TEST(HoldByContact, ChangesNeitherTheFunctionalNorItsGradients)
     const double value = loose.functional->value(*u);
     EXPECT_NEAR(held.functional->value(*u), value, 1e-13 * std::abs(value));
     const auto line = loose.functional->along(*u, *d, F), same = held.functional->along(*u, *d, F);
-    EXPECT_NEAR(same.at(1).slope, line.at(1).slope, 1e-13 * std::abs(line.at(1).slope));
-    EXPECT_NEAR(same.at(1).curvature, line.at(1).curvature, 1e-12 * line.at(1).curvature);
+    EXPECT_NEAR(same->at(1).slope, line->at(1).slope, 1e-13 * std::abs(line->at(1).slope));
+    EXPECT_NEAR(same->at(1).curvature, line->at(1).curvature, 1e-12 * line->at(1).curvature);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "rpc/contact/certificate.hpp"
+#include "rpc/contact/optimality_residuals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +62,7 @@ double ratio(const double part, const double whole)
 
 } // namespace
 
-double Certificate::worst() const
+double OptimalityResiduals::worst() const
 {
   double worst = 0;
   for (const double part : {equilibrium_residual, kkt_residual, energy_balance, duality_gap})
@@ -70,24 +70,25 @@ double Certificate::worst() const
   return worst;
 }
 
-Certificate certify(const fem::Discretization &d, const fem::Materials &materials, const SmoothedFunctional &functional,
-                    const Vector &u, const std::function<double(const Vector &)> &residual_energy)
+OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem::Materials &materials,
+                                         const SmoothedFunctional &functional, const Vector &u,
+                                         const std::function<double(const Vector &)> &residual_energy)
 {
   const fem::ElasticProblem &problem = functional.problem();
   const fem::DirichletDofs &dirichlet = problem.dirichlet;
-  Certificate certificate;
-  certificate.internal = fem::internal_work(d, materials, u);
-  const Vector &internal = *certificate.internal.forces;
-  const double strain = certificate.internal.strain_energy;
+  OptimalityResiduals residuals;
+  residuals.internal = fem::internal_work(d, materials, u);
+  const Vector &internal = *residuals.internal.forces;
+  const double strain = residuals.internal.strain_energy;
   const Vector contact = functional.multiplier_forces();
   Vector external(*problem.applied_load, Teuchos::Copy), residual(internal, Teuchos::Copy);
   external.update(-1., contact, 1.);
   residual.update(-1., external, 1.);
   fem::clear_prescribed(dirichlet, residual);
 
-  certificate.kkt_residual = functional.contact_law_residual(u);
-  certificate.equilibrium_residual =
-      residual.norm2() / std::max({functional.force_scale(), contact.norm2(), certificate.internal.force_norm});
+  residuals.kkt_residual = functional.contact_law_residual(u);
+  residuals.equilibrium_residual =
+      residual.norm2() / std::max({functional.force_scale(), contact.norm2(), residuals.internal.force_norm});
 
   const Vector moved = without_translation(dirichlet, d.dim(), u);
   const double of_load = work(dirichlet, false, moved, *problem.applied_load),
@@ -98,12 +99,12 @@ Certificate certify(const fem::Discretization &d, const fem::Materials &material
   const double lifted = std::abs(problem.load->dot(u));
   const double at_work =
       std::max({strain, std::abs(of_load), std::abs(of_contact), std::abs(of_supports), 1e-7 * lifted});
-  certificate.energy_balance = ratio(std::abs(strain - of_load + of_contact - of_supports), at_work);
+  residuals.energy_balance = ratio(std::abs(strain - of_load + of_contact - of_supports), at_work);
 
   const ContactEnergy energy = functional.contact_energy(u);
-  certificate.duality_gap = ratio(energy.gap + 0.5 * std::max(0., residual_energy(residual)),
-                                  std::max({0.5 * strain, energy.dissipated, 1e-12 * lifted}));
-  return certificate;
+  residuals.duality_gap = ratio(energy.duality_gap + 0.5 * std::max(0., residual_energy(residual)),
+                                std::max({0.5 * strain, energy.dissipated, 1e-12 * lifted}));
+  return residuals;
 }
 
 } // namespace rpc::contact

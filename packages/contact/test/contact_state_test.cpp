@@ -1,7 +1,7 @@
-#include "rpc/contact/prediction.hpp"
+#include "rpc/contact/contact_state.hpp"
 
+#include "foundation_scene.hpp"
 #include "rpc/fem/interpolation.hpp"
-#include "scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +23,13 @@ DeviceView<double *> at_contact_nodes(const Scene &scene, const std::vector<std:
   return to_device(values);
 }
 
+contact::ContactState interpolated(const Scene &coarse, const Scene &fine, const RCP<Vector> &u,
+                                   const DeviceView<double *> &multiplier)
+{
+  return contact::interpolated(*fem::interpolation(coarse.d, fine.d), coarse.functional->contact(), {u, multiplier, {}},
+                               fine.functional->contact(), fine.d.owned_dofs);
+}
+
 TEST(StartFrom, CarriesAffineDisplacementsAndMultipliersSideBySide)
 {
   // Another factor than the partition's divisions: fine nodes lie on other ranks than their coarse cells.
@@ -31,10 +38,9 @@ TEST(StartFrom, CarriesAffineDisplacementsAndMultipliersSideBySide)
   const auto displacement = [](const Point &x) { return Point{0.2 * (1 - x[1]), -0.3 * (1 - x[1]), 0}; };
   const std::vector<std::function<double(const Point &)>> pressure{[](const Point &x) { return 0.3 + 0.4 * x[0]; },
                                                                    [](const Point &x) { return 2.5 - 2 * x[1]; }};
-  coarse.functional->set_multipliers(at_contact_nodes(coarse, pressure));
   Vector u(fine.d.owned_dofs);
-  contact::start_from(*fem::interpolation(coarse.d, fine.d), *coarse.functional, *coarse.vector(displacement),
-                      *fine.functional, u);
+  fine.functional->start_from(
+      interpolated(coarse, fine, coarse.vector(displacement), at_contact_nodes(coarse, pressure)), u);
   u.update(-1., *fine.vector(displacement), 1.);
   EXPECT_LT(u.normInf(), 1e-14);
   const auto found = to_host(fine.functional->multipliers()), expected = to_host(at_contact_nodes(fine, pressure));
@@ -51,10 +57,9 @@ TEST(StartFrom, LeavesPrescribedDisplacementsAndStaysWithinTheYieldLimit)
 {
   const std::vector<contact::ContactOptions> foundations{below(40)};
   const Scene coarse(foundations, held("top", {0.5, 0, 0})), fine(foundations, held("top", {0, 0.25, 0}), 2);
-  coarse.functional->set_multipliers(at_contact_nodes(coarse, {[](const Point &) { return 100.; }}));
   Vector u(*fine.functional->problem().dirichlet.value, Teuchos::Copy);
-  contact::start_from(*fem::interpolation(coarse.d, fine.d), *coarse.functional, *coarse.vector(1, 2), *fine.functional,
-                      u);
+  const auto above = at_contact_nodes(coarse, {[](const Point &) { return 100.; }});
+  fine.functional->start_from(interpolated(coarse, fine, coarse.vector(1, 2), above), u);
   const auto fixed = to_host(fine.functional->problem().dirichlet.fixed);
   const auto prescribed = fine.functional->problem().dirichlet.value->getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto now = u.getLocalViewHost(Tpetra::Access::ReadOnly);

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/solver/first_stage.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+
+namespace rpc::analysis
+{
+
+/// When the active-set iteration is content.
+struct ActiveSetTolerances {
+  double residual = 1e-10; ///< |F|_2 / |load|_2, > 0
+  double pressure = 1e-7;  ///< error of pressures, over the largest, > 0
+};
+
+/// The primal-dual active-set iteration as first steps of a NOX solver: the active set is chosen by the last pressures, and the
+/// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.6), (5.7), (5.13)
+///
+/// Converges where a choice confirms the last active set, which is then the solution's up to what the penalty leaves to a
+/// multiplier update. It is over, unconfirmed, after some changes or when an active set comes back: nothing is lost then, for
+/// Newton's directions with their line search go on from wherever it ends.
+class ActiveSetStage : public solver::FirstStage
+{
+public:
+  ActiveSetStage(contact::SmoothedFunctional &functional, const ActiveSetTolerances &tolerances);
+
+  Verdict judge(const solver::NewtonGroup &at) override;
+  Step propose(solver::NewtonGroup &group, Vector &direction) override;
+
+  bool confirmed() const { return confirmed_; } ///< the active set is the solution's
+  int steps() const { return steps_; }
+
+private:
+  Verdict choose(const Vector &u);
+
+  contact::SmoothedFunctional &functional_;
+  double scale_, target_;                          // of forces, and |F|_2 that is small enough [N]
+  double pressure_tolerance_;                      // over the largest pressure
+  std::set<std::uint64_t> seen_;                   // fingerprints of active sets
+  std::optional<contact::ActiveSetChoice> choice_; // at the present point
+  Vector start_;                                   // to go back to
+  bool rough_;                                     // solves are, while the active set changes
+  bool confirmed_ = false, decided_ = false;
+  double norm_ = std::numeric_limits<double>::infinity(),
+         before_ = norm_;                     // |F|_2 for the active set, after and before the step
+  int steps_ = 0, changes_ = 0, updates_ = 0; // updates of the multipliers alone
+};
+
+/// After a multiplier update: one step to the minimum for the active set that the last minimization ended on, as far as the
+/// functional falls on the way there. That is a better guess than the states of lambda + r v at the old v. doc/theory.md (5.4)
+class SameActiveSet : public solver::FirstStage
+{
+public:
+  explicit SameActiveSet(const contact::SmoothedFunctional &functional) : functional_(functional) {}
+
+  Verdict judge(const solver::NewtonGroup &at) override;
+  Step propose(solver::NewtonGroup &group, Vector &direction) override;
+
+private:
+  const contact::SmoothedFunctional &functional_;
+  bool proposed_ = false;
+};
+
+} // namespace rpc::analysis

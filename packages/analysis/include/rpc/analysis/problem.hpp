@@ -1,0 +1,66 @@
+#pragma once
+
+#include "rpc/contact/contact_nodes.hpp"
+#include "rpc/contact/support.hpp"
+#include "rpc/fem/dirichlet.hpp"
+#include "rpc/fem/elasticity.hpp"
+#include "rpc/solver/linear_solver.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rpc::analysis
+{
+
+/// What a scene is made of, but for its mesh. Fields are functions of place and time.
+struct Model {
+  fem::Materials materials;
+  std::vector<fem::DirichletCondition> dirichlet;
+  std::vector<fem::TractionLoad> tractions;
+  fem::VectorField body_force;
+  std::vector<contact::ContactOptions> contact; ///< one per contact side
+
+  /// The same, with all fields seen at one time.
+  Model seen_at(double t) const;
+};
+
+/// What acts on a body at one time: cheap to make again.
+struct Step {
+  double time = 1;
+  fem::ElasticProblem elastic;   ///< loads and prescribed displacements
+  contact::ContactNodes contact; ///< with the gap and the yield stress of the time
+  contact::Support support;      ///< what holds the body
+};
+
+/// A body on its mesh: what stays from step to step, made once. doc/theory.md, section 2
+class Problem
+{
+public:
+  /// Assembles the stiffness matrix and finds the contact nodes. Collective.
+  /// @param t  time of the first step; which displacements are prescribed does not depend on it
+  /// @throws rpc::Error bad_input where the model does not fit the mesh or numbers overflow, naming what they belong to;
+  ///         bad_mesh for a cell with a Jacobian <= 0; no_solution as contact::contact_nodes()
+  Problem(std::shared_ptr<const mesh::Mesh> mesh, Model model, const solver::LinearSolverOptions &linear, double t = 1);
+
+  /// Loads, prescribed displacements and contact nodes at one time. Collective.
+  /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()
+  Step step(double t) const;
+
+  const fem::Discretization &discretization() const { return discretization_; }
+  const Model &model() const { return model_; } ///< seen at the time of the first step
+  /// The contact sides, in the order of the model's.
+  std::vector<const mesh::Side *> contact_sides() const;
+  /// K with an update at the contact nodes: one for all steps, and the linear solver with its preconditioner belongs to it.
+  const RCP<UpdatedOperator> &stiffness() const { return operator_; }
+  solver::LinearSolver &linear_solver() const { return *linear_; }
+
+private:
+  Model model_;
+  fem::Discretization discretization_;
+  fem::EliminatedStiffness eliminated_;
+  RCP<UpdatedOperator> operator_;
+  std::shared_ptr<solver::LinearSolver> linear_;
+};
+
+} // namespace rpc::analysis

@@ -1,0 +1,214 @@
+#include "rpc/analysis/active_set.hpp"
+
+#include "beam.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <vector>
+
+namespace
+{
+
+using namespace rpc;
+using rpc::test::Beam;
+using rpc::test::below;
+using rpc::test::minimize;
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr int most_steps = 14; // ten changes of the active set, and multiplier updates
+
+/// What became of the active-set iteration, and of Newton's steps after it.
+struct Found {
+  int steps = 0;
+  bool confirmed = false;
+  solver::MinimizeResult all;
+
+  int newton_steps() const { return all.steps - steps; }
+};
+Found solve(Beam &beam, const analysis::ActiveSetTolerances &tolerances = {},
+            const solver::NewtonReport &report = rpc::test::ignore)
+{
+  analysis::ActiveSetStage stage(*beam.functional, tolerances);
+  const auto all = minimize(beam, {}, &stage, report);
+  return {stage.steps(), stage.confirmed(), all};
+}
+
+contact::ContactOptions flat(const double xi, const double gap, const double penalty = 0)
+{
+  return below(ScalarField(xi), penalty, ScalarField(gap));
+}
+GO num_points(const contact::StateCounts &states)
+{
+  return states.open + states.closed + states.yielding;
+}
+
+TEST(ActiveSet, OfTheBeamOnItsFoundationIsConfirmedByNewtonAtOnce)
+{
+  for (const double penalty : {0., 1e8}) { // chosen, and the paper's
+    for (const double xi : {0.5, 14., 16., 19., inf}) {
+      Beam beam({}, flat(xi, 0, penalty));
+      const Found found = solve(beam);
+      EXPECT_GE(found.steps, 1) << xi;
+      EXPECT_LE(found.steps, 9) << xi;
+      EXPECT_LE(found.newton_steps(), 1) << xi;
+      const auto states = beam.functional->count_states(*beam.u);
+      EXPECT_EQ(num_points(states), 79);
+      const auto newton = minimize(beam);
+      EXPECT_TRUE(newton.converged) << xi << ": " << newton.reason;
+      EXPECT_LE(newton.steps, 1) << xi;
+      const auto confirmed = beam.functional->count_states(*beam.u);
+      EXPECT_EQ(states.open, confirmed.open) << xi;
+      EXPECT_EQ(states.closed, confirmed.closed) << xi;
+      EXPECT_EQ(states.yielding, confirmed.yielding) << xi;
+      beam.functional->update_multipliers(*beam.u);
+      EXPECT_LT(beam.functional->contact_law_residual(beam.functional->displacement(*beam.u)), 1e-5) << xi;
+    }
+  }
+}
+
+TEST(ActiveSet, BringsPressuresToTheirTolerance)
+{
+  std::vector<int> steps;
+  for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
+    Beam beam({}, flat(14, 0));
+    analysis::ActiveSetTolerances own;
+    own.pressure = tolerance;
+    const Found found = solve(beam, own);
+    EXPECT_TRUE(found.confirmed);
+    EXPECT_TRUE(found.all.converged);
+    EXPECT_LE(beam.functional->pressure_error(*beam.u), tolerance);
+    steps.push_back(found.steps);
+  }
+  EXPECT_LE(steps[0], steps[1]);
+  EXPECT_LT(steps[1], steps[2]);
+}
+
+TEST(ActiveSet, AboveAGapIsFoundWhateverTheYieldLimit)
+{
+  for (const double gap : {0.001, 0.01}) {
+    for (const double xi : {2., 14., inf}) {
+      Beam beam({}, flat(xi, gap));
+      const Found found = solve(beam);
+      EXPECT_LE(found.steps, 12) << xi;
+      EXPECT_TRUE(found.all.converged) << xi << ": " << found.all.reason;
+      EXPECT_LE(found.newton_steps(), 2) << xi;
+    }
+  }
+}
+
+TEST(ActiveSet, AboveAGapIsFoundWhereTheLoadReachesTheYieldLimitInPart)
+{
+  for (const double xi : {18., 22., 100.}) {
+    Beam beam({}, flat(xi, 0.01));
+    const Found found = solve(beam);
+    EXPECT_GE(found.steps, 4) << xi;
+    EXPECT_LE(found.steps, most_steps) << xi;
+    EXPECT_TRUE(found.all.converged) << xi << ": " << found.all.reason;
+    EXPECT_LE(found.newton_steps(), 2) << xi;
+  }
+}
+
+TEST(ActiveSet, LeavesToNewtonWhatDoesNotSettle)
+{
+  const ScalarField xi("xi", [](const Point &x) { return 25 * (1 + 0.9 * std::sin(9 + 12 * x[0])); });
+  const ScalarField gap("gap",
+                        [](const Point &x) { return x[0] == 0 || x[0] == 5 ? 0 : 0.01 * std::sin(11.7 + 11 * x[0]); });
+  Beam beam({}, below(xi, 0, gap));
+  const Found found = solve(beam);
+  EXPECT_LE(found.steps, most_steps);
+  EXPECT_TRUE(found.all.converged) << found.all.reason;
+  EXPECT_LE(found.newton_steps(), 15);
+}
+
+TEST(ActiveSet, StepsAreReportedLikeNewtons)
+{
+  Beam beam;
+  std::vector<solver::NewtonStep> seen;
+  std::vector<GO> points;
+  const Found found = solve(beam, {}, [&](const solver::NewtonStep &step, const Vector &u) {
+    seen.push_back(step);
+    points.push_back(num_points(beam.functional->count_states(u)));
+  });
+  ASSERT_TRUE(found.confirmed);
+  ASSERT_EQ(static_cast<int>(seen.size()), found.steps + 1); // with the start
+  for (int k = 0; k <= found.steps; ++k) {
+    EXPECT_EQ(seen[k].iteration, k);
+    EXPECT_EQ(points[k], 79);
+    EXPECT_EQ(seen[k].linear_iterations > 0, k > 0);
+    EXPECT_GT(seen[k].residual, 0);
+  }
+}
+
+TEST(ActiveSet, OfHeldNodesAloneLeavesNothingToNewton)
+{
+  auto foundation = flat(16, 0);
+  foundation.side = "left"; // held
+  Beam held({}, foundation);
+  const Found found = solve(held);
+  EXPECT_LE(found.steps, 1);
+  EXPECT_EQ(found.newton_steps(), 0);
+  EXPECT_TRUE(found.all.converged);
+}
+
+TEST(ActiveSet, IsUndoneWhereTheSystemCannotBeSolved)
+{
+  solver::LinearSolverOptions weak;
+  weak.max_iterations = 1;
+  Beam beam(weak);
+  analysis::ActiveSetStage stage(*beam.functional, {});
+  solver::NewtonOptions options;
+  options.max_iterations = 1;
+  minimize(beam, options, &stage);
+  EXPECT_EQ(stage.steps(), 0);
+  EXPECT_FALSE(stage.confirmed());
+  const auto lambda = to_host(beam.functional->multipliers());
+  double sum = 0;
+  for (std::size_t i = 0; i < lambda.extent(0); ++i) sum += lambda(i);
+  EXPECT_EQ(sum_all(beam.d.mesh->comm(), sum), 79 * 8.);
+}
+
+TEST(ActiveSet, StepsAreNotTakenWhereTheDeckAsksForOtherDirections)
+{
+  for (const char *method : {"Sweep", "Newton"}) {
+    Beam beam;
+    analysis::ActiveSetStage stage(*beam.functional, {});
+    solver::NewtonOptions options;
+    options.nox.sublist("Direction").set("Method", method);
+    EXPECT_TRUE(minimize(beam, options, &stage).converged) << method;
+    EXPECT_EQ(stage.steps(), 0) << method;
+  }
+}
+
+TEST(ActiveSet, StopsAtTheUsersStatusTests)
+{
+  Beam beam;
+  analysis::ActiveSetStage stage(*beam.functional, {});
+  solver::NewtonOptions options;
+  Teuchos::ParameterList &tests = options.nox.sublist("Status Tests");
+  tests.set("Test Type", "MaxIters");
+  tests.set("Maximum Iterations", 2);
+  const auto result = minimize(beam, options, &stage);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.steps, 2);
+  EXPECT_EQ(stage.steps(), 2);
+}
+
+TEST(SameActiveSet, AfterAMultiplierUpdateTakesAStepFewerThanNewtonAlone)
+{
+  std::vector<int> steps;
+  for (const bool same : {true, false}) {
+    Beam beam({}, flat(16, 0));
+    ASSERT_TRUE(solve(beam).all.converged);
+    beam.functional->update_multipliers(*beam.u);
+    beam.functional->move_origin(*beam.u);
+    analysis::SameActiveSet stage(*beam.functional);
+    const auto result = minimize(beam, {}, same ? &stage : nullptr);
+    EXPECT_TRUE(result.converged) << result.reason;
+    steps.push_back(result.steps);
+  }
+  EXPECT_LE(steps[0], 1);
+  EXPECT_LE(steps[0], steps[1]);
+}
+
+} // namespace

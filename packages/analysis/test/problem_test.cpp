@@ -1,0 +1,109 @@
+#include "rpc/analysis/solve_step.hpp"
+#include "rpc/mesh/box.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <memory>
+
+namespace
+{
+
+using namespace rpc;
+using analysis::Problem;
+using analysis::StepSolution;
+
+ScalarField in_time(std::function<double(const Point &, double)> f)
+{
+  return ScalarField("test", std::move(f));
+}
+
+/// A block on a foundation: what presses it, where it is held, the gap and the yield stress all follow the time.
+analysis::Model model()
+{
+  analysis::Model model;
+  model.materials = fem::Material{100, 0.3};
+  model.body_force[1] = in_time([](const Point &, const double t) { return -3 * t; });
+  model.tractions.push_back(
+      {"top",
+       "top",
+       {ScalarField(0.), in_time([](const Point &x, const double t) { return -6 * t * (1 + std::sin(x[0])); }),
+        ScalarField(0.)}});
+  model.dirichlet.push_back(
+      {"left",
+       "left",
+       {in_time([](const Point &, const double t) { return 0.02 * t; }),
+        in_time([](const Point &x, const double t) { return -0.03 * t * t * x[1]; }), std::nullopt}});
+  contact::ContactOptions foundation;
+  foundation.side = "bottom";
+  foundation.gap = in_time([](const Point &x, const double t) { return 0.02 * x[0] * (1.5 - t); });
+  foundation.yield_stress = in_time([](const Point &, const double t) { return 8 + 2 * t; });
+  model.contact.push_back(foundation);
+  return model;
+}
+
+std::shared_ptr<const mesh::Mesh> block()
+{
+  const mesh::BoxOptions box{{0, 0}, {2, 1}, {24, 12}, {2, 1}};
+  return std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+}
+
+void expect_equal(const StepSolution &a, const StepSolution &b)
+{
+  EXPECT_TRUE(a.uzawa.converged) << a.uzawa.reason;
+  EXPECT_TRUE(b.uzawa.converged) << b.uzawa.reason;
+  EXPECT_NEAR(a.energy, b.energy, 1e-9 * std::abs(b.energy));
+  EXPECT_NEAR(a.energy_norm_squared, b.energy_norm_squared, 1e-8 * b.energy_norm_squared);
+  EXPECT_NEAR(a.contact.total.force[1], b.contact.total.force[1], 1e-8 * b.contact.total.force[1]);
+  EXPECT_NEAR(a.reactions[0][1], b.reactions[0][1], 1e-8 * std::abs(b.reactions[0][1]));
+  Vector difference(*a.u, Teuchos::Copy);
+  difference.update(-1., *b.u, 1.);
+  EXPECT_LT(difference.normInf(), 1e-8 * b.u->normInf());
+}
+
+TEST(Problem, OfOneTimeGivesTheStepsOfAllOthers)
+{
+  const auto mesh = block();
+  const Problem of_start(mesh, model(), {}, 0.25);
+  for (const double t : {1., 0.25, 0.6}) {
+    const Problem of_its_own(mesh, model(), {}, t);
+    const auto step = of_start.step(t);
+    EXPECT_EQ(step.time, t);
+    const auto found = analysis::solve_step(of_start, step, {}),
+               expected = analysis::solve_step(of_its_own, of_its_own.step(t), {});
+    expect_equal(found, expected);
+    EXPECT_GT(found.contact.total.contact_length, 0);
+  }
+}
+
+TEST(Problem, StepStartsFromTheStateOfTheOneBefore)
+{
+  const auto mesh = block();
+  const Problem problem(mesh, model(), {}, 0.9);
+  const auto before = analysis::solve_step(problem, problem.step(0.9), {});
+  const auto state = before.state();
+  const auto step = problem.step(1);
+  const auto warm = analysis::solve_step(problem, step, {}, &state), cold = analysis::solve_step(problem, step, {});
+  expect_equal(warm, cold);
+  EXPECT_EQ(warm.linear.preconditioner_setups, 0) << "K is that of the step before";
+  EXPECT_LE(warm.uzawa.newton_iterations[0], cold.uzawa.newton_iterations[0]);
+}
+
+TEST(Problem, WorkOfTheSupportsAndLoadsIsTheChangeOfEnergy)
+{
+  // u is linear in prescribed displacements where nothing touches: J is quadratic in them, for every one of the steps.
+  analysis::Model apart = model();
+  apart.contact[0].gap = ScalarField(10.);
+  apart.tractions.clear();
+  apart.body_force = {};
+  apart.dirichlet[0].displacement = {in_time([](const Point &, const double t) { return 0.02 * t; }), ScalarField(0.),
+                                     std::nullopt};
+  apart.dirichlet.push_back({"right", "right", {ScalarField(0.), ScalarField(0.), std::nullopt}});
+  const Problem problem(block(), apart, {}, 1);
+  const double one = analysis::solve_step(problem, problem.step(1), {}).energy,
+               three = analysis::solve_step(problem, problem.step(3), {}).energy;
+  EXPECT_GT(one, 0);
+  EXPECT_NEAR(three, 9 * one, 1e-9 * three);
+}
+
+} // namespace

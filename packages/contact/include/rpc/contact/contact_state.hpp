@@ -1,0 +1,23 @@
+#pragma once
+
+#include "rpc/contact/contact_nodes.hpp"
+#include "rpc/contact/law/rigid_plastic.hpp"
+
+namespace rpc::contact
+{
+
+/// Where a body and its foundation are: what one step hands to the next. Plain data.
+struct ContactState {
+  RCP<Vector> displacement;        ///< (owned dofs) from 0 [m]
+  DeviceView<double *> multiplier; ///< (contact nodes) lambda [Pa]
+  DeviceView<State *> active_set;  ///< (contact nodes); empty where it is not known
+};
+
+/// The state on another mesh of the same scene: displacement and multipliers by interpolation, side by side, without an active
+/// set. Collective.
+/// @param interpolation  (fine owned nodes x coarse owned nodes), see fem::interpolation()
+/// @param fine_dofs      owned dofs of the other mesh
+ContactState interpolated(const CrsMatrix &interpolation, const ContactNodes &coarse, const ContactState &state,
+                          const ContactNodes &fine, const RCP<const Map> &fine_dofs);
+
+} // namespace rpc::contact

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "rpc/core/updated_operator.hpp"
+
+#include <cstdint>
+#include <memory>
+
+namespace rpc
+{
+
+/// A convex functional along a line t -> u + t d, as far as its slope goes.
+class LineFunction
+{
+public:
+  struct Value {
+    double slope;     ///< d/dt, nondecreasing in t
+    double curvature; ///< of the piece that t lies on, >= 0
+  };
+  virtual ~LineFunction() = default;
+  /// Collective.
+  virtual Value at(double t) const = 0;
+};
+
+/// A convex functional with a Lipschitz continuous gradient and a generalized Hessian, which a generalized Newton iteration
+/// minimizes. All vectors are on the unknowns that this rank owns; all members are collective.
+class ConvexFunctional
+{
+public:
+  virtual ~ConvexFunctional() = default;
+
+  virtual double value(const Vector &u) const = 0;
+  virtual void gradient(const Vector &u, Vector &F) const = 0;
+  /// Brings hessian() to an element of the generalized Hessian at u. @return number of places where it changed
+  virtual GO update_hessian(const Vector &u) = 0;
+  virtual const RCP<UpdatedOperator> &hessian() const = 0;
+  /// @param F  gradient at u
+  virtual std::unique_ptr<LineFunction> along(const Vector &u, const Vector &d, const Vector &F) const = 0;
+
+  /// Lowers the value by a nonlinear smoother, where there is one: Newton's directions start from there.
+  virtual void sweep(Vector &u) const { (void)u; }
+  /// Told the length of each exact step along a Newton direction: one beyond 1 says that hessian() is too stiff.
+  virtual void step_taken(const double length) { (void)length; }
+  /// Tells pieces of the functional apart: differs where u lie on pieces that are not alike, as far as can be told for little.
+  virtual std::uint64_t piece(const Vector &u) const
+  {
+    (void)u;
+    return 0;
+  }
+  /// |u|_2 against which a step is small.
+  virtual double size(const Vector &u) const { return u.norm2(); }
+};
+
+} // namespace rpc

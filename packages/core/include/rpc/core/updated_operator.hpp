@@ -1,0 +1,79 @@
+#pragma once
+
+#include "rpc/core/node_points.hpp"
+#include "rpc/core/tpetra.hpp"
+
+#include <limits>
+
+namespace rpc
+{
+
+/// A symmetric positive definite operator with an update of rank one at each of some points, which changes often:
+///
+///     H = K + sum_i added_i w_i m_i m_i^T                                                         doc/theory.md (4.2)
+///
+/// with m_i the point's direction. The update lies in the diagonal blocks of the points' nodes.
+///
+/// The assembled matrix is there for preconditioners: it holds K and as much of the update as was last written into it, so
+/// that a preconditioner made for it stays valid while H changes. Products do not see what was written. They take the rows
+/// of the points' nodes from K's own blocks and the present update: to subtract what was written would leave the rounding of
+/// the largest of them. All members are collective.
+class UpdatedOperator : public Operator
+{
+public:
+  /// @param K  assembled, all its own; each node's unknowns are consecutive rows with equal columns
+  UpdatedOperator(RCP<CrsMatrix> K, const NodePoints &points);
+
+  /// y <- alpha H x + beta y.
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
+             double beta = 0) const override;
+  RCP<const Map> getDomainMap() const override { return matrix_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return matrix_->getRangeMap(); }
+  bool hasTransposeApply() const override { return false; }
+
+  /// Ku <- K u.
+  void apply_base(const Vector &u, Vector &Ku) const;
+
+  /// @param added  (points) >= 0
+  /// @return number of points where it changed, over all ranks
+  GO set(const DeviceView<double *> &added);
+  /// Brings the matrix to H, with at most `most` times a point's own stiffness added at each: time for a new preconditioner.
+  void write(double most = std::numeric_limits<double>::infinity());
+  const RCP<CrsMatrix> &matrix() const { return matrix_; }
+  /// Grows with each change of H.
+  int revision() const { return revision_; }
+  int dofs_per_node() const { return points_.dim; }
+
+  /// Points whose part of H is not in the matrix: each adds coefficient m m^T to its node's own block. Of this rank.
+  struct Changes {
+    DeviceView<LO *> node;            ///< (n) owned node lids
+    DeviceView<double **> direction;  ///< (n, dim) m
+    DeviceView<double *> coefficient; ///< (n) (added - written) w, not 0
+    LO size() const { return static_cast<LO>(node.extent(0)); }
+  };
+  Changes changes() const;
+
+  /// (points) m . K_ii m / (w m . m) of the node's own block; 0 where the direction is.
+  const DeviceView<double *> &own_stiffness() const { return own_stiffness_; }
+
+  /// (points) kappa_i = sum_j |m_i . K_ij m_j| / |m_i|^2 over all points j, with |.| entry by entry: the energy of moves
+  /// s_i m_i/|m_i|^2 of all points at once is at most sum_i kappa_i s_i^2/2.                                        (4.7)
+  const DeviceView<double *> &coupled_stiffness() const { return coupled_stiffness_; }
+
+private:
+  void apply_with(const DeviceView<double ***> &blocks, const MultiVector &x, MultiVector &y) const;
+
+  RCP<CrsMatrix> matrix_;
+  NodePoints points_;
+  DeviceView<LO *> lead_;                // (points) first point of the same node
+  DeviceView<double *> added_, written_; // (points) of H, and of the matrix
+  bool has_changes_ = false;             // of H since the matrix was written
+  bool is_written_ = false;              // the matrix is not K
+  DeviceView<double *> own_stiffness_, coupled_stiffness_;
+  DeviceView<std::size_t **> entry_;   // (points, dim) where the node's own block begins in each of its rows
+  DeviceView<double ***> base_blocks_; // (points, dim, dim) own blocks of K, and of H: that of a lead counts
+  DeviceView<double ***> blocks_;
+  int revision_ = 0;
+};
+
+} // namespace rpc

@@ -1,0 +1,176 @@
+#include "rpc/core/convex_functional.hpp"
+
+#include "rpc/solver/newton.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <memory>
+#include <vector>
+
+// The solver knows nothing of contact: here it minimizes a functional of a chain of springs.
+
+namespace
+{
+
+using namespace rpc;
+
+constexpr double push = 0.3, wall = 2, hardness = 50; // wall > 0: the chain meets it at u_i = wall
+
+/// slope + curvature t + sum over the chain's points of what the wall adds, on all ranks.
+class AlongTheChain : public LineFunction
+{
+public:
+  AlongTheChain(RCP<const Comm> comm, std::vector<double> u, std::vector<double> d, const double slope,
+                const double curvature)
+      : comm_(std::move(comm)), u_(std::move(u)), d_(std::move(d)), slope_(slope), curvature_(curvature)
+  {
+  }
+  Value at(const double t) const override
+  {
+    double slope = 0, curvature = 0;
+    for (std::size_t i = 0; i < u_.size(); ++i) {
+      const double now = u_[i] + t * d_[i];
+      slope += d_[i] * hardness * (std::max(0., now - wall) - std::max(0., u_[i] - wall));
+      if (now > wall) curvature += hardness * d_[i] * d_[i];
+    }
+    return {slope_ + curvature_ * t + sum_all(*comm_, slope), curvature_ + sum_all(*comm_, curvature)};
+  }
+
+private:
+  RCP<const Comm> comm_;
+  std::vector<double> u_, d_;
+  double slope_, curvature_;
+};
+
+std::vector<double> values_of(const Vector &v)
+{
+  const auto host = v.getLocalViewHost(Tpetra::Access::ReadOnly);
+  std::vector<double> values(host.extent(0));
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = host(i, 0);
+  return values;
+}
+
+/// u.Ku/2 - push sum_i u_i + hardness/2 sum_i max(0, u_i - wall)^2, with K = tridiag(-1, 2, -1) of n unknowns.
+class Chain : public ConvexFunctional
+{
+public:
+  explicit Chain(const int n)
+  {
+    const auto comm = Tpetra::getDefaultComm();
+    const auto map = rcp(new Map(n, 0, comm));
+    const auto K = rcp(new CrsMatrix(map, 3));
+    for (LO i = 0; i < num_local(*map); ++i) {
+      const GO row = map->getGlobalElement(i);
+      if (row > 0) K->insertGlobalValues(row, Teuchos::tuple<GO>(row - 1), Teuchos::tuple(-1.));
+      K->insertGlobalValues(row, Teuchos::tuple<GO>(row), Teuchos::tuple(2.));
+      if (row < n - 1) K->insertGlobalValues(row, Teuchos::tuple<GO>(row + 1), Teuchos::tuple(-1.));
+    }
+    K->fillComplete();
+    NodePoints points;
+    points.dim = 1;
+    points.first = HostView<LO *>("first", 2);
+    points.first(1) = num_local(*map);
+    points.node = DeviceView<LO *>("node", num_local(*map));
+    points.weight = DeviceView<double *>("weight", num_local(*map));
+    points.direction = DeviceView<double **>("direction", num_local(*map), 1);
+    const auto node = Kokkos::create_mirror_view(points.node);
+    for (LO i = 0; i < num_local(*map); ++i) node(i) = i;
+    Kokkos::deep_copy(points.node, node);
+    Kokkos::deep_copy(points.weight, 1.);
+    Kokkos::deep_copy(points.direction, 1.);
+    hessian_ = rcp(new UpdatedOperator(K, points));
+  }
+
+  double value(const Vector &u) const override
+  {
+    Vector Ku(u.getMap());
+    hessian_->apply_base(u, Ku);
+    double sum = 0;
+    for (const double x : values_of(u)) sum += hardness * std::pow(std::max(0., x - wall), 2) / 2 - push * x;
+    return u.dot(Ku) / 2 + sum_all(*u.getMap()->getComm(), sum);
+  }
+  void gradient(const Vector &u, Vector &F) const override
+  {
+    hessian_->apply_base(u, F);
+    const auto x = values_of(u);
+    const auto to = F.getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t i = 0; i < x.size(); ++i) to(i, 0) += hardness * std::max(0., x[i] - wall) - push;
+  }
+  GO update_hessian(const Vector &u) override
+  {
+    const auto x = values_of(u);
+    HostView<double *> added("added", x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) added(i) = x[i] > wall ? hardness : 0;
+    return hessian_->set(to_device(added));
+  }
+  const RCP<UpdatedOperator> &hessian() const override { return hessian_; }
+  std::unique_ptr<LineFunction> along(const Vector &u, const Vector &d, const Vector &F) const override
+  {
+    Vector Kd(d.getMap());
+    hessian_->apply_base(d, Kd);
+    return std::make_unique<AlongTheChain>(u.getMap()->getComm(), values_of(u), values_of(d), F.dot(d), d.dot(Kd));
+  }
+
+private:
+  RCP<UpdatedOperator> hessian_;
+};
+
+TEST(ConvexFunctional, ThatHasNothingToDoWithContactIsMinimized)
+{
+  for (const int n : {40, 3000}) { // factored, and by multigrid
+    Chain chain(n);
+    const auto map = chain.hessian()->getDomainMap();
+    const auto place = rcp(new MultiVector(map, 1)), constant = rcp(new MultiVector(map, 1));
+    for (LO i = 0; i < num_local(*map); ++i) place->replaceLocalValue(i, 0, double(map->getGlobalElement(i)));
+    constant->putScalar(1);
+    solver::LinearSolver linear({}, chain.hessian(), place, constant);
+    const auto u = rcp(new Vector(map));
+    std::vector<double> values;
+    const auto record = [&](const solver::NewtonStep &, const Vector &at) { values.push_back(chain.value(at)); };
+    const auto result = solver::minimize(chain, linear, u, push * std::sqrt(n), {}, nullptr, record);
+    EXPECT_TRUE(result.converged) << result.reason;
+    EXPECT_GE(result.steps, 2);
+    EXPECT_TRUE(std::is_sorted(values.rbegin(), values.rend())) << "the functional falls";
+    Vector F(map);
+    chain.gradient(*u, F);
+    EXPECT_LE(F.normInf(), 1e-10 * push * std::sqrt(n));
+    GO beyond = 0;
+    for (const double x : values_of(*u)) beyond += x > wall;
+    beyond = sum_all(*map->getComm(), beyond);
+    EXPECT_GT(beyond, n / 2);
+    EXPECT_LT(beyond, n) << "the ends are held at 0";
+  }
+}
+
+TEST(ConvexFunctional, SlopesAlongLinesAreThoseOfTheValue)
+{
+  Chain chain(60);
+  const auto map = chain.hessian()->getDomainMap();
+  Vector u(map), d(map), F(map);
+  for (LO i = 0; i < num_local(*map); ++i) {
+    u.replaceLocalValue(i, 2 + 0.3 * std::sin(double(map->getGlobalElement(i))));
+    d.replaceLocalValue(i, std::cos(2. * double(map->getGlobalElement(i))));
+  }
+  chain.gradient(u, F);
+  const auto line = chain.along(u, d, F);
+  for (const double t : {0., 0.4, 2.}) {
+    double previous = 0;
+    for (const double h : {1e-3, 5e-4}) {
+      const auto at = [&](const double s) {
+        Vector there(u, Teuchos::Copy);
+        there.update(s, d, 1.);
+        return chain.value(there);
+      };
+      const double error = std::abs((at(t + h) - at(t - h)) / (2 * h) - line->at(t).slope);
+      EXPECT_LT(error, 1e-3 * std::abs(line->at(t).slope));
+      if (previous > 1e-7) {
+        EXPECT_LT(error, 0.6 * previous); // kinks of the slope leave first order
+      }
+      previous = error;
+    }
+  }
+}
+
+} // namespace
