@@ -250,6 +250,11 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
 
 Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
 {
+  const std::size_t dim = options.element.dim;
+  RPC_REQUIRE(options.lower.size() == dim && options.upper.size() == dim && options.cells.size() == dim,
+              "mesh: a box of " << dim << "D elements needs " << dim
+                                << " lower and upper coordinates and numbers of cells, got " << options.lower.size()
+                                << ", " << options.upper.size() << " and " << options.cells.size());
   const Grid grid(options, comm->getSize());
   const int rank = comm->getRank();
   Numbering numbering;

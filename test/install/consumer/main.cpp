@@ -1,14 +1,38 @@
+// A block pressed onto a rigid-plastic foundation, from C++: contact force and pressures.
 #include <Tpetra_Core.hpp>
 #include <iostream>
+#include <rpc/analysis/solve_step.hpp>
 #include <rpc/mesh/box.hpp>
 
 int main(int argc, char **argv)
 {
   const Tpetra::ScopeGuard scope(&argc, &argv);
-  rpc::mesh::BoxOptions options;
-  options.lower = {0, 0};
-  options.upper = {5, 3};
-  options.cells = {5, 3};
-  const rpc::mesh::Mesh mesh = rpc::mesh::make_box(options, Tpetra::getDefaultComm());
-  std::cout << "nodes: " << mesh.owned_nodes->getGlobalNumElements() << std::endl;
+  rpc::mesh::BoxOptions box; // 2 m x 1 m
+  box.lower = {0, 0};
+  box.upper = {2, 1};
+  box.cells = {32, 16};
+  const auto mesh = std::make_shared<rpc::mesh::Mesh>(rpc::mesh::make_box(box, Tpetra::getDefaultComm()));
+
+  rpc::analysis::Model model;
+  model.materials = rpc::fem::Material{2000, 0.3}; // E [Pa], nu
+  model.dirichlet = {{"left", "left", {rpc::ScalarField(0.), std::nullopt, std::nullopt}}};
+  const rpc::ScalarField push("push", [](const rpc::Point &x, double t) { return -5 * t * (1 + x[0]); }); // [Pa]
+  model.tractions = {{"top", "top", {rpc::ScalarField(0.), push, rpc::ScalarField(0.)}}};
+  rpc::contact::ContactOptions foundation;
+  foundation.side = "bottom";
+  foundation.yield_stress = rpc::ScalarField(14.); // [Pa]
+  model.contact = {foundation};
+
+  const rpc::analysis::Problem problem(mesh, model, {});
+  std::optional<rpc::contact::ContactState> before; // each step starts from the one before
+  for (const double t : {0.5, 1.}) {
+    const auto solution = rpc::analysis::solve_step(problem, problem.step(t), {}, before ? &*before : nullptr);
+    before = solution.state();
+    if (!solution.uzawa.converged) return 1;
+    const auto pressure = rpc::to_host(solution.contact.pressure);
+    std::cout << "t = " << t << ": contact force " << solution.contact.total.force[1] << " N/m, largest pressure "
+              << solution.contact.total.max_pressure << " Pa, " << solution.contact.total.yielded_length
+              << " m yield, pressure at the first of this rank's " << pressure.extent(0) << " contact nodes "
+              << (pressure.extent(0) > 0 ? pressure(0) : 0) << " Pa" << std::endl;
+  }
 }
