@@ -90,7 +90,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     options.output_fraction = options.output_minmax = true;
     timers->report(out, comm, options);
   }
-  return rpc::succeeded(solution) ? ExitCode::converged : ExitCode::not_converged;
+  return rpc::adapt::succeeded(solution) ? ExitCode::converged : ExitCode::not_converged;
 }
 
 } // namespace

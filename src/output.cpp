@@ -162,7 +162,7 @@ void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution
                             {"exact_relative", maybe(exact)},
                             {"effectivity", maybe(relative / exact)}};
   if (!s.adaptation) return;
-  const Adaptation &a = *s.adaptation;
+  const adapt::Adaptation &a = *s.adaptation;
   json["adaptation"] = {{"target", scene.adapt.target}, {"reached", a.reached}, {"reason", a.reason}};
   json["adaptation"]["errors"] = {{"energy_J", maybe(a.errors.energy)},
                                   {"contact_force", maybe(a.errors.contact_force)},
@@ -171,7 +171,7 @@ void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution
                                   {"contact_length", maybe(a.errors.contact_length)}};
   json["adaptation"]["errors_unknown"] = a.errors.unknown;
   auto &cycles = json["adaptation"]["cycles"] = nlohmann::ordered_json::array();
-  for (const Cycle &c : a.cycles)
+  for (const adapt::Cycle &c : a.cycles)
     cycles.push_back({{"dofs", c.dofs},
                       {"relative_estimate", c.estimate},
                       {"energy_J", c.energy},

@@ -36,7 +36,7 @@ int sum(const std::vector<int> &values)
   return std::accumulate(values.begin(), values.end(), 0);
 }
 
-void print_adaptation(std::ostream &out, const Adaptation &adaptation, const bool flat)
+void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, const bool flat)
 {
   const std::string outcome = !adaptation.reached         ? "NOT TO THE TARGET: " + adaptation.reason
                               : adaptation.reason.empty() ? "the error is what was asked for"
@@ -44,7 +44,7 @@ void print_adaptation(std::ostream &out, const Adaptation &adaptation, const boo
   out << "  adapted             " << outcome << "\n";
   print(out, "    cycle     dofs    error            J    max. p  Newton  krylov  time [s]\n");
   for (std::size_t k = 0; k < adaptation.cycles.size(); ++k) {
-    const Cycle &c = adaptation.cycles[k];
+    const adapt::Cycle &c = adaptation.cycles[k];
     print(out, "    %5zu %8zu %8.2e %12.6g %9.4g %7d %7d %9.3f\n", k + 1, c.dofs, c.estimate, c.energy, c.max_pressure,
           c.newton_iterations, sum(c.linear_iterations), c.seconds);
   }

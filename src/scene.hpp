@@ -1,8 +1,6 @@
 #pragma once
 
-#include "rpc/adapt/refinement.hpp"
-#include "rpc/analysis/solve_step.hpp"
-#include "rpc/mesh/make_mesh.hpp"
+#include "rpc/adapt/solution.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <string>
@@ -17,14 +15,8 @@ struct OutputOptions {
 };
 
 /// A deck, read and checked: all that a run needs to know.
-struct Scene {
+struct Scene : adapt::Task {
   std::string name; ///< of the deck's file, without folder and extension
-  mesh::MeshOptions mesh;
-  double time = 1; ///< at which the scene is solved
-  analysis::Model model;
-  analysis::StepOptions step;
-  adapt::AdaptOptions adapt;
-  solver::LinearSolverOptions linear_solver;
   OutputOptions output;
 };
 

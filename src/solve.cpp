@@ -1,125 +1,31 @@
-#include "report.hpp"
-#include "rpc/core/interrupt.hpp"
-#include "rpc/fem/interpolation.hpp"
-#include "solve_on.hpp"
+#include "solve.hpp"
 
-#include <Teuchos_Time.hpp>
-#include <Teuchos_TimeMonitor.hpp>
-#include <algorithm>
+#include "report.hpp"
+
+#include <optional>
 
 namespace rpc
 {
-namespace
-{
 
-/// Adds the time of its scope to a phase, and to the timer tree.
-class Phase
+Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
+               const std::function<void(const Scene &, Solution &)> &keep)
 {
-public:
-  Phase(const std::string &name, double &seconds)
-      : monitor_(*Teuchos::TimeMonitor::getNewTimer("rpc::" + name)), seconds_(seconds),
-        start_(Teuchos::Time::wallTime())
-  {
-  }
-  ~Phase() { seconds_ += Teuchos::Time::wallTime() - start_; }
-
-private:
-  Teuchos::TimeMonitor monitor_;
-  double &seconds_;
-  double start_;
-};
-
-std::shared_ptr<const analysis::Problem> make_problem(const Scene &scene, const mesh::MeshOptions &options,
-                                                      const RCP<const Comm> &comm, PhaseSeconds &seconds)
-{
-  std::shared_ptr<const mesh::Mesh> mesh;
-  {
-    const Phase phase("mesh", seconds.mesh);
-    throw_if_interrupted(*comm, "before the mesh was made; no results are written");
-    mesh = std::make_shared<mesh::Mesh>(mesh::make_mesh(options, comm));
-  }
-  const Phase phase("assembly", seconds.assembly);
-  throw_if_interrupted(*comm, "before the assembly; no results are written");
-  return std::make_shared<analysis::Problem>(mesh, scene.model, scene.linear_solver, scene.time);
-}
-
-/// The scene on coarser and coarser meshes.
-analysis::CoarserProblem coarser_meshes(const Scene &scene, const mesh::MeshOptions &options,
-                                        const RCP<const Comm> &comm)
-{
-  return [&scene, options, comm](const int level) -> std::shared_ptr<const analysis::Problem> {
-    std::optional<mesh::MeshOptions> coarse = options;
-    for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, scene.step.prediction.coarsening);
-    PhaseSeconds seconds;
-    return coarse ? make_problem(scene, *coarse, comm, seconds) : nullptr;
+  std::optional<ConsoleTable> table; // of one mesh
+  adapt::Listener listener;
+  listener.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &contact) {
+    table.emplace(console).scene(scene, d, contact);
   };
-}
-
-/// Adds what the way through the scene did not tell by itself; collective.
-void note_skipped(const Scene &scene, Solution &s)
-{
-  const mesh::Mesh &mesh = *s.discretization.mesh;
-  const auto &contact = s.functional->contact();
-  const LO shapes = static_cast<LO>(s.discretization.shapes.example.extent(0));
-  const auto skip = [&s](const bool skipped, const std::string &what) {
-    if (skipped) s.skipped.push_back(what);
+  listener.step.newton = [&](const int uzawa, const solver::NewtonStep &step, const contact::StateCounts &states) {
+    table->newton(uzawa, step, states);
   };
-  skip(!s.not_predicted.empty(), "coarser meshes: " + s.not_predicted);
-  skip(s.line_search_steps == 0 && s.uzawa.converged,
-       "generalized Newton with line search: the active set was confirmed");
-  skip(scene.model.contact.empty(), "contact: no side may touch");
-  skip(contact.num_total > contact.num_fixed && s.uzawa.iterations == 1,
-       "multiplier updates: pressures of the chosen states obey the contact law");
-  skip(s.linear.local_corrections > 0, "multigrid set-ups: " + std::to_string(s.linear.local_corrections) +
-                                           " changes of states did with solves around the changed nodes");
-  skip(min_all(mesh.comm(), shapes) > 0, "cell matrices: cells are alike, one for each shape is enough");
-  skip(!scene.output.exodus, "stress recovery and nodal fields: no Exodus file");
-  skip(!scene.output.csv && !scene.model.contact.empty(), "contact tables: no CSV file");
-  skip(!scene.adapt.estimate, "error estimate: not asked for");
-}
-
-} // namespace
-
-Solution solve_on(const Scene &scene, const mesh::MeshOptions &options, const Solution *const previous,
-                  const RCP<const Comm> &comm, std::ostream &console)
-{
-  Solution s;
-  const auto problem = make_problem(scene, options, comm, s.seconds);
-  const fem::Discretization &d = s.discretization = problem->discretization();
-  analysis::Step step;
-  {
-    const Phase phase("assembly", s.seconds.assembly);
-    step = problem->step(scene.time);
-  }
-  throw_if_interrupted(*comm, "before the first solve; no results are written");
-  ConsoleTable table(console);
-  table.scene(scene, d, step.contact);
-  std::optional<contact::ContactState> start;
-  if (previous) {
-    const Phase phase("prediction", s.seconds.prediction);
-    start = contact::interpolated(*fem::interpolation(previous->discretization, d), previous->functional->contact(),
-                                  previous->state(), step.contact, d.owned_dofs);
-  }
-  analysis::Progress progress;
-  progress.newton = [&](const int uzawa, const solver::NewtonStep &newton, const contact::StateCounts &states) {
-    table.newton(uzawa, newton, states);
-  };
-  progress.uzawa = [&](const analysis::UzawaResult &result) { table.uzawa(result); };
-  static_cast<analysis::StepSolution &>(s) = analysis::solve_step(*problem, step, scene.step, start ? &*start : nullptr,
-                                                                  coarser_meshes(scene, options, comm), progress);
-  s.matrix_assemblies = 1;
-  if (scene.adapt.adapts()) s.pressure_norm = contact::pressure_distance(*comm, step.contact, s.contact.pressure, {});
-  if (start) s.pressure_change = contact::pressure_distance(*comm, step.contact, s.contact.pressure, start->multiplier);
-  if (scene.adapt.estimate) {
-    const Phase phase("estimate", s.seconds.estimate);
-    s.estimate = adapt::estimate_error(d, scene.model.materials, problem->contact_sides(), scene.model.tractions,
-                                       s.functional->contact(), s.contact, *s.u);
-  }
-  note_skipped(scene, s);
-  s.seconds.prediction += s.prediction_seconds;
-  s.seconds.setup = s.linear.setup_seconds;
-  s.seconds.solve = s.solve_seconds;
-  return s;
+  listener.step.uzawa = [&](const analysis::UzawaResult &result) { table->uzawa(result); };
+  listener.estimate = [&](const Solution &solution) { print_estimate(console, scene, solution); };
+  listener.note = [&](const std::string &note) { console << "note: " << note << std::endl; };
+  if (keep) listener.cycle = [&](Solution &solution) { keep(scene, solution); };
+  Solution solution = adapt::solve(scene, comm, listener);
+  if (!scene.output.exodus) solution.skipped.push_back("stress recovery and nodal fields: no Exodus file");
+  if (!scene.output.csv && !scene.model.contact.empty()) solution.skipped.push_back("contact tables: no CSV file");
+  return solution;
 }
 
 } // namespace rpc

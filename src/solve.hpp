@@ -1,91 +1,20 @@
 #pragma once
 
-#include "rpc/adapt/error_estimate.hpp"
-#include "rpc/analysis/solve_step.hpp"
 #include "scene.hpp"
 
-#include <array>
 #include <functional>
-#include <map>
-#include <memory>
-#include <optional>
 #include <ostream>
 
 namespace rpc
 {
 
-/// Wall-clock time of a run's phases [s], of an adaptive one on all meshes.
-struct PhaseSeconds {
-  double mesh = 0, assembly = 0, prediction = 0, setup = 0, solve = 0, estimate = 0, output = 0, total = 0;
+using adapt::Solution;
 
-  PhaseSeconds &operator+=(const PhaseSeconds &other);
-};
-
-/// One mesh of an adaptive run.
-struct Cycle {
-  std::size_t dofs = 0;
-  double estimate = 0;                   ///< of the error in the energy norm, over that of the solution
-  double energy = 0;                     ///< J [J]
-  std::array<double, 3> contact_force{}; ///< [N], in 2D per m
-  double max_pressure = 0;               ///< [Pa]
-  double contact_length = 0;             ///< [m]
-  double pressure_change = 0;            ///< of the contact pressure since the mesh before, over its norm, both in L2
-  double recovered_pressure = 0;         ///< what that of the recovered stress differs by, over its norm, both in L2
-  double recovered_max_pressure = 0;     ///< the same of the largest pressures [Pa]
-  adapt::PressurePeak peak;
-  double contact_ends = 0; ///< of facets that are partly open, half of them [m]
-  int newton_iterations = 0;
-  std::vector<int> linear_iterations; ///< per solve
-  double seconds = 0;
-};
-
-/// Errors of results as the sequence of meshes shows them, and for pressures the recovered stress if that shows more; each
-/// like the number that it belongs to. NaN where the meshes do not tell, as from one alone. doc/theory.md (10.7), (10.9)
-struct ObservedErrors {
-  double energy = 0;                          ///< J [J]
-  double contact_force = 0;                   ///< 2-norm [N]
-  double max_pressure = 0;                    ///< [Pa]
-  double contact_pressure = 0;                ///< L2 norm over the contact sides, over that of the pressure
-  double contact_length = 0;                  ///< [m]
-  std::map<std::string, std::string> unknown; ///< why, by the name in the summary, for those that are NaN
-};
-
-/// What became of "Adapt".
-struct Adaptation {
-  bool reached = false;      ///< the target
-  std::string reason;        ///< why not, or why the target counts as reached where nothing is strained; else empty
-  std::vector<Cycle> cycles; ///< from the first mesh
-  ObservedErrors errors;     ///< of the one whose results these are
-};
-
-/// All that a run has found.
-struct Solution : analysis::StepSolution {
-  fem::Discretization discretization;
-  double pressure_norm = 0;   ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]; where meshes are adapted
-  double pressure_change = 0; ///< the same of its change since the mesh before, if there was one
-  std::vector<std::string> skipped;             ///< what the scene allowed to leave out, and why
-  std::optional<adapt::ErrorEstimate> estimate; ///< where it is asked for
-  std::optional<Adaptation> adaptation;         ///< where the mesh is adapted
-  int matrix_assemblies = 0;
-  PhaseSeconds seconds;
-};
-
-/// Mesh, assembly, Uzawa and Newton: from a scene to its solution. With a target for the error, on as many meshes as that takes;
-/// the solution is the last one's, or where the target is not reached that with the least estimate. Collective on comm.
+/// Solves a deck's scene and tells the console about it; collective on comm.
 /// @param console  where the table of the iteration goes; a stream without a buffer prints nothing
 /// @param keep     called with the solution on each mesh of an adaptive run, from the first
 /// @throws rpc::Error on every rank if the scene does not fit its mesh; failing to converge is in the result
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
                const std::function<void(const Scene &, Solution &)> &keep = {});
-
-/// Whether all that was asked for came out.
-bool succeeded(const Solution &solution);
-
-/// Whether an estimate tells that the strain energy is rounding: nothing is strained.
-bool only_rounding(const Solution &solution);
-/// The estimated error in the energy norm over that of the solution, where there is an estimate; 0 if nothing is strained.
-double relative_estimate(const Solution &solution);
-/// What it really is, sqrt(2 |J_h - J| / a(u_h, u_h)), where the deck tells the exact J; else NaN.
-double exact_error(const Scene &scene, const Solution &solution);
 
 } // namespace rpc

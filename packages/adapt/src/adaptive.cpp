@@ -1,8 +1,7 @@
-#include "report.hpp"
 #include "rpc/adapt/observed_error.hpp"
+#include "rpc/adapt/solution.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
-#include "solve_on.hpp"
 
 #include <Teuchos_Time.hpp>
 #include <algorithm>
@@ -10,7 +9,7 @@
 #include <limits>
 #include <sstream>
 
-namespace rpc
+namespace rpc::adapt
 {
 namespace
 {
@@ -65,7 +64,7 @@ std::string unknown_max_pressure(const std::vector<Cycle> &cycles, const std::ve
   if (last.peak.at_bound || !reason.empty()) return reason;
   const auto growth = changes(cycles, [](const Cycle &a, const Cycle &b) { return b.max_pressure - a.max_pressure; });
   const bool grows = growth.size() > 1 && growth.back() > 0 && growth[growth.size() - 2] > 0;
-  if (grows && adapt::unsettled(growth, eta, last.recovered_max_pressure))
+  if (grows && unsettled(growth, eta, last.recovered_max_pressure))
     return "the largest pressure grows from mesh to mesh and does not settle";
   return "";
 }
@@ -102,7 +101,7 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
     errors.max_pressure = std::numeric_limits<double>::quiet_NaN();
     errors.unknown["max_pressure"] = reason;
   }
-  if (adapt::unsettled(changes(cycles, length), eta, errors.contact_length)) {
+  if (unsettled(changes(cycles, length), eta, errors.contact_length)) {
     errors.contact_length = std::numeric_limits<double>::quiet_NaN();
     errors.unknown["contact_length"] = "the length in contact does not settle from mesh to mesh";
   }
@@ -113,13 +112,13 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
 class Planner
 {
 public:
-  explicit Planner(const Scene &scene) : scene_(scene) {}
+  explicit Planner(const Task &task) : task_(task) {}
 
   /// The mesh after that of a solution; none, and the reason, if there is none to be had. Collective.
   std::optional<mesh::MeshOptions> next(const Solution &s, std::string &reason)
   {
     const double eta = std::sqrt(s.estimate->total());
-    const double wanted = aim * scene_.adapt.target * std::sqrt(s.energy_norm_squared);
+    const double wanted = aim * task_.adapt.target * std::sqrt(s.energy_norm_squared);
     const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
     const bool is_near = eta < near * wanted;
     const double missed = is_near ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
@@ -129,20 +128,20 @@ public:
     const double dofs = static_cast<double>(s.discretization.owned_dofs->getGlobalNumElements());
     const mesh::Mesh &mesh = *s.discretization.mesh;
     const double cells = static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
-    const double most_dofs = share_of_max_dofs * static_cast<double>(scene_.adapt.max_dofs);
+    const double most_dofs = share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
     const double allowed = most_dofs * cells / dofs;
     const double sensible = greatest_excess * cells * std::pow(eta / bound, 2. / mesh.element.order);
-    const auto sizes = adapt::new_sizes(s.discretization, *s.estimate,
-                                        {bound * bound, std::min(allowed, sensible), is_near ? growth_near : growth});
+    const auto sizes = new_sizes(s.discretization, *s.estimate,
+                                 {bound * bound, std::min(allowed, sensible), is_near ? growth_near : growth});
     if (dofs > 0.9 * most_dofs && sizes.predicted_cells > 0.9 * allowed) {
-      reason = "a mesh for the target would exceed \"Adapt->Max Dofs\" = " + std::to_string(scene_.adapt.max_dofs);
+      reason = "a mesh for the target would exceed \"Adapt->Max Dofs\" = " + std::to_string(task_.adapt.max_dofs);
       return std::nullopt;
     }
-    return mesh::with_sizes(scene_.mesh, sizes.field);
+    return mesh::with_sizes(task_.mesh, sizes.field);
   }
 
 private:
-  const Scene &scene_;
+  const Task &task_;
   double planned_ = std::numeric_limits<double>::infinity(); // estimate that the present mesh was to have
 };
 
@@ -164,14 +163,13 @@ std::size_t best_of(const std::vector<Cycle> &cycles)
   return std::min_element(cycles.begin(), cycles.end(), less) - cycles.begin();
 }
 
-Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
-                          const std::function<void(const Scene &, Solution &)> &keep)
+Solution solve_adaptively(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
   if (comm->getRank() == 0) mesh::start_gmsh_early();
   Adaptation adaptation;
   std::vector<Cycle> &cycles = adaptation.cycles;
-  Planner planner(scene);
-  std::optional<mesh::MeshOptions> options = scene.mesh;
+  Planner planner(task);
+  std::optional<mesh::MeshOptions> options = task.mesh;
   std::optional<Solution> last, best;
   std::string hint;
   PhaseSeconds seconds;
@@ -179,7 +177,7 @@ Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::
     const double start = Teuchos::Time::wallTime();
     std::optional<Solution> next;
     try {
-      next = solve_on(scene, *options, last ? &*last : nullptr, comm, console);
+      next = solve_on(task, *options, last ? &*last : nullptr, comm, listener);
     } catch (const Error &failure) { // on all ranks
       if (!last) throw;
       adaptation.reason = interrupted(*comm) ? interruption() + " before the next mesh" : failure.what();
@@ -191,25 +189,25 @@ Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::
       break;
     }
     last = std::move(next);
-    hint = fem::order_note(*last->discretization.mesh, scene.model.materials);
-    if (cycles.empty() && !hint.empty()) console << "note: " << hint << std::endl;
+    hint = fem::order_note(*last->discretization.mesh, task.model.materials);
+    if (cycles.empty() && !hint.empty() && listener.note) listener.note(hint);
     cycles.push_back(cycle_of(*last, Teuchos::Time::wallTime() - start));
     if (!best || best_of(cycles) + 1 == cycles.size()) best = last;
-    if (keep) keep(scene, *last);
+    if (listener.cycle) listener.cycle(*last);
     if (!last->uzawa.converged || !std::isfinite(cycles.back().estimate)) {
       adaptation.reason = "there is no solution to estimate an error of";
       break;
     }
-    print_estimate(console, scene, *last);
-    adaptation.reached = cycles.back().estimate <= scene.adapt.target;
+    if (listener.estimate) listener.estimate(*last);
+    adaptation.reached = cycles.back().estimate <= task.adapt.target;
     if (only_rounding(*last)) adaptation.reason = nothing_strained(*last);
     if (adaptation.reached) break;
     if (last->estimate->total() <= last->estimate->rounding) {
       adaptation.reason = "the estimated error is rounding of the displacements, which finer meshes do not reduce";
       break;
     }
-    if (static_cast<int>(cycles.size()) == scene.adapt.max_cycles) {
-      adaptation.reason = "there were \"Adapt->Max Cycles\" = " + std::to_string(scene.adapt.max_cycles) + " meshes";
+    if (static_cast<int>(cycles.size()) == task.adapt.max_cycles) {
+      adaptation.reason = "there were \"Adapt->Max Cycles\" = " + std::to_string(task.adapt.max_cycles) + " meshes";
       break;
     }
     options = planner.next(*last, adaptation.reason);
@@ -223,11 +221,10 @@ Solution solve_adaptively(const Scene &scene, const RCP<const Comm> &comm, std::
 
 } // namespace
 
-Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
-               const std::function<void(const Scene &, Solution &)> &keep)
+Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
-  if (scene.adapt.adapts()) return solve_adaptively(scene, comm, console, keep);
-  return solve_on(scene, scene.mesh, nullptr, comm, console);
+  if (task.adapt.adapts()) return solve_adaptively(task, comm, listener);
+  return solve_on(task, task.mesh, nullptr, comm, listener);
 }
 
 PhaseSeconds &PhaseSeconds::operator+=(const PhaseSeconds &other)
@@ -250,9 +247,9 @@ double relative_estimate(const Solution &s)
   return squared == 0 || only_rounding(s) ? 0 : std::sqrt(squared / s.energy_norm_squared);
 }
 
-double exact_error(const Scene &scene, const Solution &s)
+double exact_error(const Task &task, const Solution &s)
 {
-  return std::sqrt(2 * std::abs(s.energy - scene.adapt.exact_energy) / s.energy_norm_squared);
+  return std::sqrt(2 * std::abs(s.energy - task.adapt.exact_energy) / s.energy_norm_squared);
 }
 
 bool succeeded(const Solution &s)
@@ -260,4 +257,4 @@ bool succeeded(const Solution &s)
   return s.uzawa.converged && (!s.adaptation || s.adaptation->reached);
 }
 
-} // namespace rpc
+} // namespace rpc::adapt

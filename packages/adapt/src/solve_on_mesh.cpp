@@ -1,0 +1,115 @@
+#include "rpc/adapt/solution.hpp"
+#include "rpc/core/interrupt.hpp"
+#include "rpc/fem/interpolation.hpp"
+
+#include <Teuchos_Time.hpp>
+#include <Teuchos_TimeMonitor.hpp>
+#include <algorithm>
+
+namespace rpc::adapt
+{
+namespace
+{
+
+/// Adds the time of its scope to a phase, and to the timer tree.
+class Phase
+{
+public:
+  Phase(const std::string &name, double &seconds)
+      : monitor_(*Teuchos::TimeMonitor::getNewTimer("rpc::" + name)), seconds_(seconds),
+        start_(Teuchos::Time::wallTime())
+  {
+  }
+  ~Phase() { seconds_ += Teuchos::Time::wallTime() - start_; }
+
+private:
+  Teuchos::TimeMonitor monitor_;
+  double &seconds_;
+  double start_;
+};
+
+std::shared_ptr<const analysis::Problem> make_problem(const Task &task, const mesh::MeshOptions &options,
+                                                      const RCP<const Comm> &comm, PhaseSeconds &seconds)
+{
+  std::shared_ptr<const mesh::Mesh> mesh;
+  {
+    const Phase phase("mesh", seconds.mesh);
+    throw_if_interrupted(*comm, "before the mesh was made; no results are written");
+    mesh = std::make_shared<mesh::Mesh>(mesh::make_mesh(options, comm));
+  }
+  const Phase phase("assembly", seconds.assembly);
+  throw_if_interrupted(*comm, "before the assembly; no results are written");
+  return std::make_shared<analysis::Problem>(mesh, task.model, task.linear_solver, task.time);
+}
+
+/// The scene on coarser and coarser meshes.
+analysis::CoarserProblem coarser_meshes(const Task &task, const mesh::MeshOptions &options, const RCP<const Comm> &comm)
+{
+  return [&task, options, comm](const int level) -> std::shared_ptr<const analysis::Problem> {
+    std::optional<mesh::MeshOptions> coarse = options;
+    for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, task.step.prediction.coarsening);
+    PhaseSeconds seconds;
+    return coarse ? make_problem(task, *coarse, comm, seconds) : nullptr;
+  };
+}
+
+/// Adds what the way through the scene did not tell by itself; collective.
+void note_skipped(const Task &task, Solution &s)
+{
+  const mesh::Mesh &mesh = *s.discretization.mesh;
+  const auto &contact = s.functional->contact();
+  const LO shapes = static_cast<LO>(s.discretization.shapes.example.extent(0));
+  const auto skip = [&s](const bool skipped, const std::string &what) {
+    if (skipped) s.skipped.push_back(what);
+  };
+  skip(!s.not_predicted.empty(), "coarser meshes: " + s.not_predicted);
+  skip(s.line_search_steps == 0 && s.uzawa.converged,
+       "generalized Newton with line search: the active set was confirmed");
+  skip(task.model.contact.empty(), "contact: no side may touch");
+  skip(contact.num_total > contact.num_fixed && s.uzawa.iterations == 1,
+       "multiplier updates: pressures of the chosen states obey the contact law");
+  skip(s.linear.local_corrections > 0, "multigrid set-ups: " + std::to_string(s.linear.local_corrections) +
+                                           " changes of states did with solves around the changed nodes");
+  skip(min_all(mesh.comm(), shapes) > 0, "cell matrices: cells are alike, one for each shape is enough");
+  skip(!task.adapt.estimate, "error estimate: not asked for");
+}
+
+} // namespace
+
+Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solution *const previous,
+                  const RCP<const Comm> &comm, const Listener &listener)
+{
+  Solution s;
+  const auto problem = make_problem(task, options, comm, s.seconds);
+  const fem::Discretization &d = s.discretization = problem->discretization();
+  analysis::Step step;
+  {
+    const Phase phase("assembly", s.seconds.assembly);
+    step = problem->step(task.time);
+  }
+  throw_if_interrupted(*comm, "before the first solve; no results are written");
+  if (listener.mesh) listener.mesh(d, step.contact);
+  std::optional<contact::ContactState> start;
+  if (previous) {
+    const Phase phase("prediction", s.seconds.prediction);
+    start = contact::interpolated(*fem::interpolation(previous->discretization, d), previous->functional->contact(),
+                                  previous->state(), step.contact, d.owned_dofs);
+  }
+  static_cast<analysis::StepSolution &>(s) = analysis::solve_step(*problem, step, task.step, start ? &*start : nullptr,
+                                                                  coarser_meshes(task, options, comm), listener.step);
+  s.matrix_assemblies = 1;
+  if (task.adapt.adapts()) s.pressure_norm = contact::pressure_distance(*comm, step.contact, s.contact.pressure, {});
+  if (start) s.pressure_change = contact::pressure_distance(*comm, step.contact, s.contact.pressure, start->multiplier);
+  if (task.adapt.estimate) {
+    const Phase phase("estimate", s.seconds.estimate);
+    s.estimate = estimate_error(d, task.model.materials, problem->contact_sides(), task.model.tractions,
+                                s.functional->contact(), s.contact, *s.u);
+  }
+  note_skipped(task, s);
+  s.seconds.prediction += s.prediction_seconds;
+  s.seconds.setup = s.linear.setup_seconds;
+  s.seconds.solve = s.solve_seconds;
+  return s;
+}
+
+} // namespace rpc::adapt
