@@ -258,7 +258,7 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
   const double begin = Teuchos::Time::wallTime();
   const ResultPaths paths(scene, scene.name, folder);
   const mesh::Mesh &mesh = *s.discretization.mesh;
-  if (!paths.exodus.empty()) io::write_exodus(paths.exodus, scene.name, mesh, nodal_fields(scene, s));
+  if (!paths.exodus.empty()) io::write_exodus(paths.exodus, scene.name, mesh, scene.time, nodal_fields(scene, s));
   if (!paths.csv.empty()) write_csv(paths.csv, scene, s);
   const double now = Teuchos::Time::wallTime();
   s.seconds.output = now - begin;

@@ -88,9 +88,12 @@ public:
       first += blocks_[b] * nodes_per_cell_;
     }
   }
-  void put_field(const int index, const std::vector<double> &values)
+  /// @param step  from 1
+  void put_time(const int step, const double time) { check(ex_put_time(id_, step, &time), "write a time of"); }
+  void put_field(const int step, const int index, const std::vector<double> &values)
   {
-    check(ex_put_nodal_var(id_, 1, index + 1, static_cast<int64_t>(values.size()), values.data()), "write a field of");
+    check(ex_put_nodal_var(id_, step, index + 1, static_cast<int64_t>(values.size()), values.data()),
+          "write a field of");
   }
   void commit()
   {
@@ -141,8 +144,6 @@ private:
     for (std::size_t s = 0; s < sides.size(); ++s)
       if (!sides[s].cell.empty())
         check(ex_put_set(id_, EX_SIDE_SET, s + 1, sides[s].cell.data(), sides[s].ordinal.data()), "write the sides of");
-    const double time = 0;
-    check(ex_put_time(id_, 1, &time), "write the time of");
   }
 
   void check(const int status, const char *action) const
@@ -177,7 +178,8 @@ std::size_t longest_name(const mesh::Mesh &mesh)
   return longest;
 }
 
-void require_writable(const mesh::Mesh &mesh, const std::vector<NodalField> &fields)
+/// Collective.
+void require_names(const mesh::Mesh &mesh, const std::vector<std::string> &fields)
 {
   std::optional<std::string> message;
   const auto check_name = [&](const std::string &name, const std::size_t longest) {
@@ -187,8 +189,22 @@ void require_writable(const mesh::Mesh &mesh, const std::vector<NodalField> &fie
   };
   for (const auto &side : mesh.sides) check_name(side.name, mesh::longest_name);
   for (const auto &block : mesh.blocks) check_name(block, mesh::longest_name);
-  for (const auto &field : fields) {
-    check_name(field.name, MAX_NAME_LENGTH);
+  for (const auto &field : fields) check_name(field, MAX_NAME_LENGTH);
+  throw_if_any(mesh.comm(), ExitCode::internal_error, message);
+}
+
+/// Collective.
+void require_fields(const mesh::Mesh &mesh, const std::vector<std::string> &names,
+                    const std::vector<NodalField> &fields)
+{
+  std::optional<std::string> message;
+  if (fields.size() != names.size())
+    message =
+        "output: each time must have " + std::to_string(names.size()) + " fields, got " + std::to_string(fields.size());
+  for (std::size_t f = 0; f < fields.size() && !message; ++f) {
+    const NodalField &field = fields[f];
+    if (field.name != names[f])
+      message = "output: the fields must be the same at all times, \"" + names[f] + "\", got \"" + field.name + "\"";
     if (static_cast<LO>(field.values.extent(0)) != mesh.num_owned_nodes())
       message = "output: the field \"" + field.name + "\" must have a value for each of " +
                 std::to_string(mesh.num_owned_nodes()) + " owned nodes, got " + std::to_string(field.values.extent(0));
@@ -244,21 +260,37 @@ std::vector<int> owned_connectivity(const mesh::Mesh &mesh)
   return nodes;
 }
 
+std::vector<std::string> names_of(const std::vector<NodalField> &fields)
+{
+  std::vector<std::string> names;
+  for (const auto &field : fields) names.push_back(field.name);
+  return names;
+}
+
 } // namespace
 
-void write_exodus(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
-                  const std::vector<NodalField> &fields, const std::vector<std::string> &info)
+struct ExodusFile::Impl {
+  RCP<const Comm> comm;
+  CanonicalOrder nodes;
+  std::vector<std::string> names; // of the fields
+  std::unique_ptr<Writer> writer; // rank 0 only
+  int steps = 0;
+};
+
+ExodusFile::ExodusFile(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
+                       const std::vector<std::string> &fields, const std::vector<std::string> &info)
+    : mesh_(mesh)
 {
-  require_writable(mesh, fields);
+  require_names(mesh, fields);
   const Comm &comm = mesh.comm();
   const RCP<const Comm> shared_comm = mesh.owned_nodes->getComm();
-  const CanonicalOrder nodes(shared_comm, mesh.node_id, "node"), cells(shared_comm, mesh.cell_id, "cell");
+  impl_.reset(new Impl{shared_comm, CanonicalOrder(shared_comm, mesh.node_id, "node"), fields, nullptr});
+  const CanonicalOrder cells(shared_comm, mesh.cell_id, "cell");
   std::vector<SideSet> sides;
   for (const auto &side : mesh.sides) sides.push_back(gather_side(mesh, side));
-  Header header{title, info, {}, mesh.element, mesh.blocks, block_sizes(mesh), nodes.size(), cells.size()};
-  for (const auto &field : fields) header.field_names.push_back(field.name);
-
-  std::unique_ptr<Writer> writer; // rank 0 only
+  const Header header{title,       info, fields, mesh.element, mesh.blocks, block_sizes(mesh), impl_->nodes.size(),
+                      cells.size()};
+  auto &writer = impl_->writer;
   on_root(comm, ExitCode::internal_error, [&] {
     writer = std::make_unique<Writer>(path, longest_name(mesh));
     writer->put_header(header, sides);
@@ -268,19 +300,39 @@ void write_exodus(const std::string &path, const std::string &title, const mesh:
     std::vector<double> owned(mesh.num_owned_nodes());
     for (int d = 0; d < mesh.dim(); ++d) {
       for (LO n = 0; n < mesh.num_owned_nodes(); ++n) owned[n] = coords(n, d);
-      const auto all = nodes.gather(owned.data());
+      const auto all = impl_->nodes.gather(owned.data());
       on_root(comm, ExitCode::internal_error, [&] { writer->put_coordinate(d, all); });
     }
   }
-  {
-    const auto all = cells.gather(owned_connectivity(mesh).data(), mesh.element.num_nodes());
-    on_root(comm, ExitCode::internal_error, [&] { writer->put_cells(all); });
-  }
+  const auto all = cells.gather(owned_connectivity(mesh).data(), mesh.element.num_nodes());
+  on_root(comm, ExitCode::internal_error, [&] { writer->put_cells(all); });
+}
+
+ExodusFile::~ExodusFile() = default;
+
+void ExodusFile::write(const double time, const std::vector<NodalField> &fields)
+{
+  require_fields(mesh_, impl_->names, fields);
+  const int step = ++impl_->steps;
+  on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->put_time(step, time); });
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    const auto all = nodes.gather(fields[f].values.data());
-    on_root(comm, ExitCode::internal_error, [&] { writer->put_field(static_cast<int>(f), all); });
+    const auto all = impl_->nodes.gather(fields[f].values.data());
+    on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->put_field(step, static_cast<int>(f), all); });
   }
-  on_root(comm, ExitCode::internal_error, [&] { writer->commit(); });
+}
+
+void ExodusFile::commit()
+{
+  on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->commit(); });
+}
+
+void write_exodus(const std::string &path, const std::string &title, const mesh::Mesh &mesh, const double time,
+                  const std::vector<NodalField> &fields, const std::vector<std::string> &info)
+{
+  require_fields(mesh, names_of(fields), fields); // before there is a file
+  ExodusFile file(path, title, mesh, names_of(fields), info);
+  file.write(time, fields);
+  file.commit();
 }
 
 } // namespace rpc::io

@@ -8,6 +8,7 @@
 #include <array>
 #include <csignal>
 #include <exodusII.h>
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -51,7 +52,8 @@ std::vector<NodalField> fields_of(const Mesh &mesh)
 
 /// A file read back whole; rank 0 only.
 struct Content {
-  explicit Content(const std::string &path)
+  /// @param step  time whose fields are read, from 1
+  explicit Content(const std::string &path, const int step = 1)
   {
     int word = sizeof(double), file_word = 0;
     float version = 0;
@@ -81,9 +83,12 @@ struct Content {
     EXPECT_EQ(ex_get_name(id, EX_ELEM_BLOCK, 1, name), 0);
     block_name = name;
     read_sides(id);
-    read_fields(id);
-    EXPECT_EQ(ex_inquire_int(id, EX_INQ_TIME), 1);
-    EXPECT_EQ(ex_get_time(id, 1, &time), 0);
+    read_fields(id, step);
+    const int steps = static_cast<int>(ex_inquire_int(id, EX_INQ_TIME));
+    times.resize(steps);
+    if (steps > 0) {
+      EXPECT_EQ(ex_get_all_times(id, times.data()), 0);
+    }
     EXPECT_EQ(ex_inquire_int(id, EX_INQ_QA), 1);
     num_info = static_cast<int>(ex_inquire_int(id, EX_INQ_INFO));
     ex_close(id);
@@ -104,7 +109,7 @@ struct Content {
     }
   }
 
-  void read_fields(const int id)
+  void read_fields(const int id, const int step)
   {
     int count = 0;
     EXPECT_EQ(ex_get_variable_param(id, EX_NODAL, &count), 0);
@@ -113,14 +118,14 @@ struct Content {
       EXPECT_EQ(ex_get_variable_name(id, EX_NODAL, f, name), 0);
       field_names.push_back(name);
       std::vector<double> values(nodes);
-      EXPECT_EQ(ex_get_nodal_var(id, 1, f, nodes, values.data()), 0);
+      EXPECT_EQ(ex_get_nodal_var(id, step, f, nodes, values.data()), 0);
       fields.push_back(values);
     }
   }
 
   std::string title, topology, block_name;
   int dim = 0, nodes = 0, cells = 0, blocks = 0, node_sets = 0, side_sets = 0, nodes_per_cell = 0, num_info = 0;
-  double time = -1;
+  std::vector<double> times;
   std::array<std::vector<double>, 3> coords;
   std::vector<int> conn;
   std::vector<std::string> side_names, field_names;
@@ -144,7 +149,7 @@ TEST_P(ExodusElements, ReadsBackAsTheBoxItWas)
 {
   const Element element = GetParam();
   const auto mesh = box(element, comm_);
-  write_exodus(scratch_.path("a.e"), "a box", mesh, fields_of(mesh), {"first line", std::string(200, 'i')});
+  write_exodus(scratch_.path("a.e"), "a box", mesh, 0.5, fields_of(mesh), {"first line", std::string(200, 'i')});
   if (!root_) return;
   const Content file(scratch_.path("a.e"));
   const int p = element.order, nx = 6 * p + 1, ny = 3 * p + 1, nz = element.dim == 2 ? 1 : 2 * p + 1;
@@ -155,7 +160,7 @@ TEST_P(ExodusElements, ReadsBackAsTheBoxItWas)
   EXPECT_EQ(file.block_name, "body");
   EXPECT_EQ(file.topology, element.exodus_name());
   EXPECT_EQ(file.nodes_per_cell, element.num_nodes());
-  EXPECT_EQ(file.time, 0);
+  EXPECT_EQ(file.times, std::vector<double>{0.5});
   EXPECT_EQ(file.num_info, 2);
   EXPECT_EQ(file.field_names, (std::vector<std::string>{"disp_x", "contact_pressure"}));
   ASSERT_EQ(file.nodes, nx * ny * nz);
@@ -175,7 +180,7 @@ TEST_P(ExodusElements, CellsKeepTheirPlaceAndNodeOrder)
 {
   const Element element = GetParam();
   const auto mesh = box(element, comm_);
-  write_exodus(scratch_.path("a.e"), "a box", mesh, {});
+  write_exodus(scratch_.path("a.e"), "a box", mesh, 0.5, {});
   if (!root_) return;
   const Content file(scratch_.path("a.e"));
   ASSERT_EQ(file.conn.size(), std::size_t(file.cells) * element.num_nodes());
@@ -196,7 +201,7 @@ TEST_P(ExodusElements, SideSetsHoldEachFacetOnceWithItsName)
 {
   const Element element = GetParam();
   const auto mesh = box(element, comm_);
-  write_exodus(scratch_.path("a.e"), "a box", mesh, {});
+  write_exodus(scratch_.path("a.e"), "a box", mesh, 0.5, {});
   if (!root_) return;
   const Content file(scratch_.path("a.e"));
   ASSERT_EQ(file.side_names.size(), mesh.sides.size());
@@ -219,10 +224,10 @@ TEST_P(ExodusElements, SideSetsHoldEachFacetOnceWithItsName)
 TEST_P(ExodusElements, FileDoesNotDependOnTheNumberOfRanks)
 {
   const auto mesh = box(GetParam(), comm_);
-  write_exodus(scratch_.path("parallel.e"), "a box", mesh, fields_of(mesh));
+  write_exodus(scratch_.path("parallel.e"), "a box", mesh, 0.5, fields_of(mesh));
   const auto serial = box(GetParam(), Teuchos::rcp(new Teuchos::SerialComm<int>));
   const std::string serial_path = scratch_.path("serial" + std::to_string(comm_->getRank()) + ".e");
-  write_exodus(serial_path, "a box", serial, fields_of(serial));
+  write_exodus(serial_path, "a box", serial, 0.5, fields_of(serial));
   comm_->barrier();
   const std::string bytes = text_of(scratch_.path("parallel.e"));
   EXPECT_GT(bytes.size(), 1000u);
@@ -233,11 +238,50 @@ INSTANTIATE_TEST_SUITE_P(All, ExodusElements,
                          testing::Values(Element{2, 1}, Element{2, 2}, Element{3, 1}, Element{3, 2}),
                          [](const auto &info) { return info.param.exodus_name(); });
 
+TEST_F(Exodus, HoldsTheFieldsOfSeveralTimes)
+{
+  const auto mesh = box(Element{}, comm_);
+  const auto scaled = [&](const double factor) {
+    auto fields = fields_of(mesh);
+    for (auto &field : fields)
+      for (std::size_t n = 0; n < field.values.extent(0); ++n) field.values(n) *= factor;
+    return fields;
+  };
+  const std::string path = scratch_.path("steps.e");
+  {
+    rpc::io::ExodusFile file(path, "steps", mesh, {"disp_x", "contact_pressure"});
+    for (const double t : {0.25, 0.5, 1.}) file.write(t, scaled(t));
+    EXPECT_THROW(file.write(2, {fields_of(mesh)[0]}), rpc::Error);
+    EXPECT_THROW(file.write(2, {fields_of(mesh)[1], fields_of(mesh)[0]}), rpc::Error);
+    file.commit();
+  }
+  if (!root_) return;
+  const Content last(path, 3);
+  EXPECT_EQ(last.times, (std::vector<double>{0.25, 0.5, 1}));
+  for (const int step : {1, 2}) {
+    const Content at(path, step);
+    for (std::size_t f = 0; f < 2; ++f)
+      for (int n = 0; n < last.nodes; ++n)
+        EXPECT_NEAR(at.fields[f][n], at.times[step - 1] * last.fields[f][n], 1e-12) << f << " " << n;
+  }
+}
+
+TEST_F(Exodus, AFileThatIsNotCommittedDoesNotAppear)
+{
+  const auto mesh = box(Element{}, comm_);
+  {
+    rpc::io::ExodusFile file(scratch_.path("half.e"), "half", mesh, {"disp_x", "contact_pressure"});
+    file.write(0, fields_of(mesh));
+  }
+  comm_->barrier();
+  EXPECT_FALSE(std::filesystem::exists(scratch_.path("half.e")));
+}
+
 TEST_F(Exodus, NamesOf32CharactersAreKept)
 {
   const auto mesh = box({2, 1}, comm_);
   const std::string name(32, 'n');
-  write_exodus(scratch_.path("a.e"), std::string(200, 't'), mesh, {{name, fields_of(mesh)[0].values}});
+  write_exodus(scratch_.path("a.e"), std::string(200, 't'), mesh, 0.5, {{name, fields_of(mesh)[0].values}});
   if (!root_) return;
   const Content file(scratch_.path("a.e"));
   EXPECT_EQ(file.field_names, std::vector<std::string>{name});
@@ -250,7 +294,7 @@ TEST_F(Exodus, SidesAndBlocksMayHaveLongerNames)
   const std::string side(255, 's'), block(40, 'b');
   mesh.sides[1].name = side;
   mesh.blocks[0] = block;
-  write_exodus(scratch_.path("a.e"), "t", mesh, {{"u", fields_of(mesh)[0].values}});
+  write_exodus(scratch_.path("a.e"), "t", mesh, 0.5, {{"u", fields_of(mesh)[0].values}});
   if (!root_) return;
   const Content file(scratch_.path("a.e"));
   EXPECT_EQ(file.side_names[1], side);
@@ -262,16 +306,16 @@ TEST_F(Exodus, LongNameOrShortFieldIsRefusedOnEveryRank)
   const auto mesh = box({2, 1}, comm_);
   const auto values = fields_of(mesh)[0].values;
   expect_error(ExitCode::internal_error, "1 to 32 characters", [&] {
-    write_exodus(scratch_.path("a.e"), "t", mesh, {{std::string(33, 'n'), values}});
+    write_exodus(scratch_.path("a.e"), "t", mesh, 0.5, {{std::string(33, 'n'), values}});
   });
   auto renamed = mesh;
   renamed.sides[0].name = std::string(256, 's');
   expect_error(ExitCode::internal_error, "1 to 255 characters", [&] {
-    write_exodus(scratch_.path("a.e"), "t", renamed, {{"u", values}});
+    write_exodus(scratch_.path("a.e"), "t", renamed, 0.5, {{"u", values}});
   });
   const HostView<double *> shorter("shorter", values.extent(0) - (root_ ? 1 : 0));
   expect_error(ExitCode::internal_error, "\"u\" must have a value for each of", [&] {
-    write_exodus(scratch_.path("a.e"), "t", mesh, {{"u", shorter}});
+    write_exodus(scratch_.path("a.e"), "t", mesh, 0.5, {{"u", shorter}});
   });
   comm_->barrier();
   EXPECT_EQ(scratch_.num_files(), 0);
@@ -282,7 +326,8 @@ TEST_F(Exodus, UnwritableFolderIsBadInputOnEveryRank)
   const auto mesh = box({2, 1}, comm_);
   if (root_) scratch_.write("file", "");
   comm_->barrier();
-  expect_error(ExitCode::bad_input, "--output=DIR", [&] { write_exodus(scratch_.path("file/a.e"), "t", mesh, {}); });
+  expect_error(ExitCode::bad_input, "--output=DIR",
+               [&] { write_exodus(scratch_.path("file/a.e"), "t", mesh, 0.5, {}); });
 }
 
 TEST_F(Exodus, FullDiskIsToldOnEveryRankAndLeavesTheOldFile)
@@ -297,7 +342,7 @@ TEST_F(Exodus, FullDiskIsToldOnEveryRankAndLeavesTheOldFile)
     limit.rlim_cur = bytes;
     ::setrlimit(RLIMIT_FSIZE, &limit);
     expect_error(ExitCode::internal_error, "cannot",
-                 [&] { write_exodus(scratch_.path("a.e"), "t", mesh, fields_of(mesh)); });
+                 [&] { write_exodus(scratch_.path("a.e"), "t", mesh, 0.5, fields_of(mesh)); });
     ::setrlimit(RLIMIT_FSIZE, &old);
     comm_->barrier();
     EXPECT_EQ(scratch_.num_files(), 1);

@@ -3,6 +3,7 @@
 #include "rpc/core/kokkos.hpp"
 #include "rpc/mesh/mesh.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,18 +16,40 @@ struct NodalField {
   HostView<double *> values; ///< (owned nodes)
 };
 
-/// Writes mesh and fields as one Exodus file, whole or not at all; collective.
+/// An Exodus file of a mesh with fields at several times, which appears whole or not at all; all members are collective.
 ///
 /// Rank 0 writes, in the order of Mesh::node_id and Mesh::cell_id, so that the file does not depend on the number of
-/// ranks: the mesh's blocks and, as side sets, its sides with their names, one time step at time 0.
-/// Coordinates and fields are collected one at a time. No date is written: equal results give equal files. 64-bit
-/// offsets, for files beyond 2 GiB.
-/// @param title  cut at 80 characters
-/// @param info   information records, each cut at 80 characters
-/// @throws rpc::Error on every rank: bad_input for a folder that cannot be written to, internal_error for a name that
-/// is too
-///         long, a field of the wrong length or a failed write
-void write_exodus(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
+/// ranks: the mesh's blocks and, as side sets, its sides with their names. Coordinates and fields are collected one at a time.
+/// No date is written: equal results give equal files. 64-bit offsets, for files beyond 2 GiB.
+class ExodusFile
+{
+public:
+  /// Writes the mesh, under a temporary name.
+  /// @param title   cut at 80 characters
+  /// @param mesh    is to live as long as this does
+  /// @param fields  names, the same at all times
+  /// @param info    information records, each cut at 80 characters
+  /// @throws rpc::Error on every rank: bad_input for a folder that cannot be written to, internal_error for a name that is too
+  ///         long or a failed write
+  ExodusFile(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
+             const std::vector<std::string> &fields, const std::vector<std::string> &info = {});
+  /// Removes the file unless commit() has run.
+  ~ExodusFile();
+
+  /// Adds a time, larger than those before it, with its fields.
+  /// @throws rpc::Error (internal_error) on every rank for other fields, one of the wrong length or a failed write
+  void write(double time, const std::vector<NodalField> &fields);
+  /// Closes the file and gives it its name.
+  void commit();
+
+private:
+  struct Impl;
+  const mesh::Mesh &mesh_;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A file with one time.
+void write_exodus(const std::string &path, const std::string &title, const mesh::Mesh &mesh, double time,
                   const std::vector<NodalField> &fields, const std::vector<std::string> &info = {});
 
 } // namespace rpc::io
