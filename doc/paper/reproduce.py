@@ -190,7 +190,7 @@ def figure_3(program, xis):
     stress.legend(frameon=False, loc="center left", bbox_to_anchor=(1, 0.5))
     save(figure, "figure_3.png")
     sides = {xi: contact(run) for xi, run in runs.items()}
-    return {xi: side["x"][side["state"].index("yielded")] for xi, side in sides.items() if "yielded" in side["state"]}
+    return {xi: side["x"][side["state"].index("yielding")] for xi, side in sides.items() if "yielding" in side["state"]}
 
 
 def figure_4(program, xi, factor):
@@ -221,7 +221,7 @@ def figure_6(program, xi):
     right.set(xlabel="x [m]", xlim=(-2, 2), ylim=(-1.3, 3.1))
     right.legend(frameon=False, loc="upper center")
     save(figure, "figure_6.png")
-    return max(x for x, state in zip(data["x"], data["state"]) if state == "yielded"), data["state"].count("stuck")
+    return max(x for x, state in zip(data["x"], data["state"]) if state == "yielding"), data["state"].count("closed")
 
 
 def figure_7(program, xis):
@@ -271,7 +271,7 @@ def main():
     yielded = figure_3(program, [row[0] for row in paper["table_2"]["rows"]])
     force, a, p0 = figure_7(program, ["2", "5", "10", "20", "50", "100"])
     stress, *place = figure_4(program, "16", 5)
-    half, stuck = figure_6(program, hertz["xi"])
+    half, closed = figure_6(program, hertz["xi"])
     error_table, orders = figure_2(program, reference, meshes)
     compared = reference["beam"]["yielded_from_x"]
     with open(os.path.join(HERE, "README.md.in")) as file:
@@ -284,7 +284,7 @@ def main():
         yielded=", ".join("%.2f m at ξ = %s Pa" % (x, xi) for xi, x in yielded.items() if xi in compared),
         yielded_reference=", ".join("%.2f m at ξ = %s Pa" % (x, xi) for xi, x in compared.items()),
         rigid=rigid,
-        mises=stress, place="(%g, %g)" % tuple(place), half=half, stuck=stuck, cells=example_2["cells"],
+        mises=stress, place="(%g, %g)" % tuple(place), half=half, closed=closed, cells=example_2["cells"],
         nodes=example_2["contact_nodes"], paper_cells=hertz["elements"], paper_nodes=hertz["contact_nodes"],
         uzawa=example_2["uzawa_iterations"], newton=" and ".join(map(str, example_2["newton_iterations"])),
         paper_uzawa=hertz["uzawa_iterations"], paper_newton=hertz["newton_iterations_each"], top=stiff["max_pressure"],

@@ -61,7 +61,7 @@ class Generator(unittest.TestCase):
 
 class Bars(unittest.TestCase):
     def row(self, number, **values):
-        standard = {"open": 9, "stuck": 9, "yielded": 9, "seconds": 1.0, "elastic_seconds": 1.0, "steps": 3, "cold_steps": 5, "residual": 1e-9}
+        standard = {"open": 9, "closed": 9, "yielding": 9, "seconds": 1.0, "elastic_seconds": 1.0, "steps": 3, "cold_steps": 5, "residual": 1e-9}
         return Row(number, "cantilever", **{**standard, **values})
 
     def judged(self, *changed):
@@ -77,7 +77,7 @@ class Bars(unittest.TestCase):
         self.assertFalse(self.judged(*[{"steps": 13}] * 2))
         self.assertFalse(self.judged(*[{"seconds": 2.6}] * 3))
         self.assertFalse(self.judged(*[{"seconds": 1.6}] * 21))
-        self.assertFalse(self.judged(*[{"stuck": 0}] * 25))
+        self.assertFalse(self.judged(*[{"closed": 0}] * 25))
 
     def test_quantiles_are_nearest_ranks(self):
         self.assertEqual([report.quantile(range(1, 21), share) for share in (0.5, 0.9, 0.95, 1.0)], [10, 18, 19, 20])

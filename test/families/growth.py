@@ -73,7 +73,7 @@ def table(measured):
                 worse = grows(before[key], getattr(row, key))
                 cells += [short(getattr(row, key), "%.0f"), "" if worse is None else result.check(not worse)]
                 before[key] = getattr(row, key)
-            result.add(name, n, row.dofs, row.points, f"{row.open}, {row.stuck}, {row.yielded}", *cells, "%.0e" % row.residual,
+            result.add(name, n, row.dofs, row.points, f"{row.open}, {row.closed}, {row.yielding}", *cells, "%.0e" % row.residual,
                        result.check(row.states == 3 and not row.failure) + (": " + row.failure if row.failure else ""))
     return result
 

@@ -48,7 +48,7 @@ def measured(options):
         for row in pool.map(lambda number: runs.measure(options, number), chosen(options)):
             rows.append(row)
             print("  %d %s %s: %d dofs, %d points (%d open, %d closed, %d yielding), ratio %s, steps %s, cold %s%s"
-                  % (row.number, row.family, row.element, row.dofs, row.points, row.open, row.stuck, row.yielded, report.short(row.ratio),
+                  % (row.number, row.family, row.element, row.dofs, row.points, row.open, row.closed, row.yielding, report.short(row.ratio),
                      report.short(row.steps, "%.0f"), report.short(row.cold_steps, "%.0f"), row.failure and "; FAILED: " + row.failure),
                   file=sys.stderr, flush=True)
     return rows

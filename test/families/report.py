@@ -36,7 +36,7 @@ STEP_BARS = [Bar("steps from a coarser mesh", steps, 0.5, 4), Bar("steps from a 
 TIME_BARS = [Bar("contact over elastic solve", ratio, 0.5, 1.5, (2,)), Bar("contact over elastic solve", ratio, 0.9, 2.5, (2,)),
              Bar("contact over elastic solve", ratio, 1.0, 6.0, (2,)), Bar("contact over elastic solve", ratio, 0.5, 2.5, (3,))]
 LEAST_THREE_STATES = 0.6  # share of the scenes: the suite is about those
-FIELDS = ["number", "family", "dim", "element", "dofs", "points", "open", "stuck", "yielded", "seconds", "elastic_seconds", "ratio",
+FIELDS = ["number", "family", "dim", "element", "dofs", "points", "open", "closed", "yielding", "seconds", "elastic_seconds", "ratio",
           "steps", "cold_steps", "levels", "cg", "elastic_cg", "setups", "residual", "failure"]
 
 

@@ -16,7 +16,7 @@ from suite.program import without_contact
 HERE = pathlib.Path(__file__).resolve().parent
 COLD = "--set=Nested Iteration->Enabled=false"
 SHORT = 5.0  # [s]: runs below are measured twice, and the best counts
-STATES = ("open", "stuck", "yielded")
+STATES = ("open", "closed", "yielding")
 
 
 @dataclasses.dataclass
@@ -29,8 +29,8 @@ class Row:
     dofs: int = 0
     points: int = 0
     open: int = 0
-    stuck: int = 0
-    yielded: int = 0
+    closed: int = 0
+    yielding: int = 0
     seconds: float = math.inf  # of the whole process
     elastic_seconds: float = math.inf
     steps: float = None  # from a coarser mesh
@@ -107,7 +107,7 @@ def measure_scene(options, number, family, scene, folder):
     if contact.summary:
         row.element, row.dofs, row.points = (contact.summary[key] for key in ("element", "dofs", "contact_nodes"))
         states = collections.Counter(point["state"] for point in contact_rows(folder))
-        row.open, row.stuck, row.yielded = (states[state] for state in STATES)
+        row.open, row.closed, row.yielding = (states[state] for state in STATES)
         row.cg, row.setups = sum(contact.summary["linear_iterations"]), contact.summary["preconditioner_setups"]
         row.residual, row.levels = worst_residual(contact.summary), len(contact.summary["levels"])
     complain(complaints, "", contact)

@@ -170,11 +170,11 @@ class Results(RpcTestCase):
             self.assertAlmostEqual(row["s"], row["x"], delta=1e-12)
             self.assertEqual(row["y"], 0)
             self.assertTrue(0 <= row["pressure"] <= 16)
-            self.assertEqual(row["state"], "yielded" if row["pressure"] == 16 else "stuck" if row["pressure"] > 0 else "open")
+            self.assertEqual(row["state"], "yielding" if row["pressure"] == 16 else "closed" if row["pressure"] > 0 else "open")
         self.assertEqual(max(row["pressure"] for row in rows), summary["max_pressure"])
         self.assertAlmostEqual(max(row["u_nu"] - row["gap"] for row in rows), summary["max_penetration"], delta=1e-12)
         weights = [0.25 if 0 < row["x"] < 5 else 0.125 for row in rows]
-        self.assertAlmostEqual(sum(w for w, row in zip(weights, rows) if row["state"] == "yielded"),
+        self.assertAlmostEqual(sum(w for w, row in zip(weights, rows) if row["state"] == "yielding"),
                                summary["yielded_length"], delta=1e-12)
         self.assertAlmostEqual(sum(w * row["pressure"] for w, row in zip(weights, rows)), summary["contact_force"][1],
                                delta=1e-9)

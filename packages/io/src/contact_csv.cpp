@@ -137,7 +137,7 @@ std::string quoted(const std::string &text)
 
 std::string csv(const std::vector<Row> &rows, const int dim, const std::string &side)
 {
-  static const std::array<const char *, 3> states = {"open", "stuck", "yielded"};
+  static const std::array<const char *, 3> states = {"open", "closed", "yielding"};
   std::string text;
   for (const Row &row : rows) {
     RPC_REQUIRE_CODE(row.state >= 0 && row.state < 3, ExitCode::internal_error,

@@ -128,8 +128,8 @@ TEST_F(ContactCsv, WritesOneRowPerNodeExactly)
   EXPECT_EQ(std::stod(rows[2][5]), 2. / 3);
   EXPECT_EQ(rows[1][0], "0.1");
   EXPECT_EQ(rows[1][6], "open");
-  EXPECT_EQ(rows[2][6], "stuck");
-  EXPECT_EQ(rows[3][6], "yielded");
+  EXPECT_EQ(rows[2][6], "closed");
+  EXPECT_EQ(rows[3][6], "yielding");
 }
 
 TEST_F(ContactCsv, ChainStartsAtTheEndWithTheSmallerX)

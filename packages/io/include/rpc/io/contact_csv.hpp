@@ -16,7 +16,7 @@ struct ContactTable {
   HostView<double *> u_nu;      ///< (nodes) normal displacement       [m]
   HostView<double *> gap;       ///< (nodes)                           [m]
   HostView<double *> pressure;  ///< (nodes) compression is > 0        [Pa]
-  HostView<int *> state;        ///< (nodes) 0 open, 1 stuck, 2 yielded
+  HostView<int *> state;        ///< (nodes) 0 open, 1 closed, 2 yielding
   HostView<GO **> facets; ///< (facets, facet nodes) node ids, the two ends first; each facet of the side once over
                           ///< all ranks. A node that the table lacks is passed over. Not used in 3D. See
                           ///< owned_facets()
