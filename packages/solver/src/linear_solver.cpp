@@ -55,14 +55,19 @@ public:
 
   RCP<const Map> getDomainMap() const override { return map_; }
   RCP<const Map> getRangeMap() const override { return map_; }
-  /// y <- B x; Belos asks for no more.
+  /// y <- B x, for x that are 0 on the correction's patch; Belos asks for no more.
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
   {
     constexpr int applications_between = 8; // a sum over all ranks each time
     if (++applications_ % applications_between == 0 && interrupted(*map_->getComm())) throw Interrupted();
-    cycle(x, y);
+    if (!correction) {
+      multigrid->apply(x, y);
+      return;
+    }
+    for (std::size_t k = 0; k < x.getNumVectors(); ++k)
+      correction->apply_off_patch(*multigrid, *x.getVector(k), *y.getVectorNonConst(k));
   }
-  /// The same, to its end.
+  /// The same for any x, to its end.
   void cycle(const MultiVector &x, MultiVector &y) const
   {
     if (!correction) {
@@ -415,18 +420,24 @@ LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, cons
     prepare();
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
+    // What a solve on the patch leaves of b is 0 there, and so are all residuals that follow.                      (4.8)
+    const auto &correction = impl_->preconditioner->correction;
+    Vector on_patch(b.getMap()), rest(b, Teuchos::Copy);
+    if (correction) correction->solve_on_patch(b, on_patch, rest);
+    const double left = correction ? rest.norm2() / b.norm2() : 1; // |rest|/|b|
     const auto list = Teuchos::parameterList();
-    list->set("Convergence Tolerance", std::max(tolerance, options_.tolerance));
+    list->set("Convergence Tolerance", std::min(1., std::max(tolerance, options_.tolerance) / left));
     impl_->manager->setParameters(list);
     x.putScalar(0);
-    impl_->problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(b));
+    impl_->problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(rest));
     result.converged = impl_->manager->solve() == Belos::Converged;
+    x.update(1., on_patch, 1.);
     result.iterations = impl_->manager->getNumIters();
-    judge_preconditioner(result.iterations, impl_->manager->achievedTol());
+    judge_preconditioner(result.iterations, left * impl_->manager->achievedTol());
     counts_.iterations.push_back(result.iterations);
     counts_.solve_seconds += Teuchos::Time::wallTime() - start;
     if (!result.converged)
-      result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(impl_->manager->achievedTol()) +
+      result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(left * impl_->manager->achievedTol()) +
                       " after " + std::to_string(result.iterations) + " iterations";
     if (!std::isfinite(x.norm2())) {
       result.converged = false;

@@ -3,6 +3,7 @@
 #include "rpc/core/parallel.hpp"
 
 #include <KokkosBlas1_axpby.hpp>
+#include <KokkosBlas1_scal.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
 #include <utility>
@@ -305,6 +306,23 @@ DeviceView<double *> LocalCorrection::solve(const DeviceView<double *> &mine) co
     Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, size_, part.data(), x.data());
   factor_->solve(x.data());
   return to_device(x);
+}
+
+void LocalCorrection::solve_on_patch(const Vector &b, Vector &q, Vector &rest) const
+{
+  const auto solved = solve(restricted(member_row_, member_, size_, b));
+  q.putScalar(0);
+  prolong(member_row_, member_, solved, q);
+  rest.update(1., b, 0.);
+  subtract_columns(columns_, solved, rest);
+}
+
+void LocalCorrection::apply_off_patch(const Operator &M, const Vector &r, Vector &y) const
+{
+  M.apply(r, y);
+  const auto p = solve(times_columns(entries_, size_, y));
+  KokkosBlas::scal(p, -1., p);
+  prolong(member_row_, member_, p, y);
 }
 
 void LocalCorrection::apply(const Operator &M, const Vector &x, Vector &y) const

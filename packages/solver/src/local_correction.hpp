@@ -38,6 +38,12 @@ public:
 
   /// y <- B x; collective.
   void apply(const Operator &M, const Vector &x, Vector &y) const;
+
+  /// q <- Q b, and rest <- b - H q, which is 0 on the patch; collective.
+  void solve_on_patch(const Vector &b, Vector &q, Vector &rest) const;
+  /// y <- B r where r is 0 on the patch: (I - Q H) M r, with one solve on the patch and one sum over the ranks. H y is 0 on the
+  /// patch, so that the residuals of a Krylov method that starts from `rest` stay 0 there. Collective.
+  void apply_off_patch(const Operator &M, const Vector &r, Vector &y) const;
   int size() const { return size_; } ///< unknowns in the patch, over all ranks
 
 private:

@@ -77,6 +77,15 @@ TEST(LocalCorrection, IsSymmetricPositiveAndExactOnThePatch)
   correction->apply(M, y, By);
   EXPECT_NEAR(Bx.dot(y), By.dot(x), 1e-13 * std::sqrt(Bx.dot(x) * By.dot(y)));
   EXPECT_GT(Bx.dot(x), 0);
+  Vector q(map), off_patch(map), z(map), full(map);
+  correction->solve_on_patch(x, q, off_patch);
+  correction->apply_off_patch(M, off_patch, z);
+  correction->apply(M, off_patch, full);
+  full.update(-1., z, 1.);
+  EXPECT_LT(full.norm2(), 1e-12 * z.norm2()) << "B r, where r is 0 on the patch";
+  z.update(1., q, 1.);
+  z.update(-1., Bx, 1.);
+  EXPECT_LT(z.norm2(), 1e-12 * Bx.norm2()) << "B x = Q x + B (x - H Q x)";
   H.apply(Bx, HBx);
   HBx.update(-1., x, 1.);
   const auto rest = HBx.getLocalViewHost(Tpetra::Access::ReadOnly);
