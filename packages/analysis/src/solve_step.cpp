@@ -336,7 +336,7 @@ ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
 ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &direction)
 {
   if (!choice_ && judge(group) != Verdict::go_on) return Step::none; // a user's status tests do not ask for the verdict
-  const auto u = rcp(new Vector(solver::tpetra(group.getX()), Teuchos::Copy));
+  auto u = rcp(new Vector(solver::tpetra(group.getX()), Teuchos::Copy));
   const auto move_to = [&] {
     group.setX(solver::NoxVector(u));
     group.computeF();
@@ -360,11 +360,12 @@ ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &directi
     start_.putScalar(0);
     move_to();
   }
+  u = Teuchos::null; // a solve needs the memory
   const double needed = std::max(enough * target_, rough_ ? forcing * std::min(scale_, norm_) : 0.);
   const auto solved = solver::solve_for_direction(group.context(), F, direction, needed / norm_); // (5.13)
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {
-      u->assign(start_);
+      u = rcp(new Vector(start_, Teuchos::Copy));
       functional_.reset_multipliers();
       move_to();
     }

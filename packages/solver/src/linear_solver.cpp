@@ -422,16 +422,23 @@ LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, cons
     const double start = Teuchos::Time::wallTime();
     // What a solve on the patch leaves of b is 0 there, and so are all residuals that follow.                      (4.8)
     const auto &correction = impl_->preconditioner->correction;
-    Vector on_patch(b.getMap()), rest(b, Teuchos::Copy);
-    if (correction) correction->solve_on_patch(b, on_patch, rest);
-    const double left = correction ? rest.norm2() / b.norm2() : 1; // |rest|/|b|
+    RCP<const Vector> rest = Teuchos::rcpFromRef(b);
+    RCP<Vector> on_patch;
+    double left = 1; // |rest|/|b|
+    if (correction) {
+      on_patch = rcp(new Vector(b.getMap()));
+      const auto off_patch = rcp(new Vector(b.getMap()));
+      correction->solve_on_patch(b, *on_patch, *off_patch);
+      left = off_patch->norm2() / b.norm2();
+      rest = off_patch;
+    }
     const auto list = Teuchos::parameterList();
     list->set("Convergence Tolerance", std::min(1., std::max(tolerance, options_.tolerance) / left));
     impl_->manager->setParameters(list);
     x.putScalar(0);
-    impl_->problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), Teuchos::rcpFromRef<const MultiVector>(rest));
+    impl_->problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), RCP<const MultiVector>(rest));
     result.converged = impl_->manager->solve() == Belos::Converged;
-    x.update(1., on_patch, 1.);
+    if (correction) x.update(1., *on_patch, 1.);
     result.iterations = impl_->manager->getNumIters();
     judge_preconditioner(result.iterations, left * impl_->manager->achievedTol());
     counts_.iterations.push_back(result.iterations);

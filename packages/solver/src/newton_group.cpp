@@ -12,13 +12,12 @@ namespace rpc::solver
 constexpr double forcing = 5e-3;
 
 NewtonGroup::NewtonGroup(RCP<NewtonContext> context, RCP<rpc::Vector> u)
-    : context_(std::move(context)), u_(u), F_(u_, NOX::ShapeCopy), newton_(u_, NOX::ShapeCopy)
+    : context_(std::move(context)), u_(u), F_(u_, NOX::ShapeCopy)
 {
 }
 
 NewtonGroup::NewtonGroup(const NewtonGroup &source, const NOX::CopyType type)
-    : context_(source.context_), u_(source.u_, type), F_(source.F_, NOX::ShapeCopy),
-      newton_(source.newton_, NOX::ShapeCopy)
+    : context_(source.context_), u_(source.u_, type), F_(source.F_, NOX::ShapeCopy)
 {
   if (type == NOX::DeepCopy) *this = source;
 }
@@ -82,10 +81,11 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
   if (!has_F_ || !has_jacobian_) return BadDependency;
   // A tenth of the target is close enough, and while the Hessian changes a rough direction leads down as well as an exact one.
   const double rough = context_->changes > 0 ? forcing : 0;
-  const auto result = solve_for_direction(*context_, F_.data(), newton_.data(),
+  if (newton_.is_null()) newton_ = rcp(new NoxVector(u_, NOX::ShapeCopy));
+  const auto result = solve_for_direction(*context_, F_.data(), newton_->data(),
                                           std::max(rough, 0.1 * context_->target_residual / norm_F_));
   ++context_->steps;
-  newton_.scale(-1.);
+  newton_->scale(-1.);
   context_->failure = result.reason;
   has_newton_ = true;
   return std::isfinite(context_->direction_norm) && !result.broken ? (result.converged ? Ok : NotConverged) : Failed;

@@ -52,14 +52,14 @@ public:
   const NOX::Abstract::Vector &getX() const override { return u_; }
   const NOX::Abstract::Vector &getF() const override { return F_; }
   double getNormF() const override { return norm_F_; }
-  const NOX::Abstract::Vector &getNewton() const override { return newton_; }
+  const NOX::Abstract::Vector &getNewton() const override { return *newton_; }
   const NOX::Abstract::Vector &getGradient() const override
   {
     return F_;
   } // of the functional; NOX's own would be J^T F
   RCP<const NOX::Abstract::Vector> getXPtr() const override { return Teuchos::rcpFromRef(u_); }
   RCP<const NOX::Abstract::Vector> getFPtr() const override { return Teuchos::rcpFromRef(F_); }
-  RCP<const NOX::Abstract::Vector> getNewtonPtr() const override { return Teuchos::rcpFromRef(newton_); }
+  RCP<const NOX::Abstract::Vector> getNewtonPtr() const override { return newton_; }
   RCP<const NOX::Abstract::Vector> getGradientPtr() const override { return getFPtr(); }
   RCP<NOX::Abstract::Group> clone(NOX::CopyType type) const override;
 
@@ -69,7 +69,8 @@ private:
   void invalidate();
 
   RCP<NewtonContext> context_;
-  NoxVector u_, F_, newton_;
+  NoxVector u_, F_;
+  RCP<NoxVector> newton_; // null until it is asked for
   double norm_F_ = 0;
   bool has_F_ = false, has_jacobian_ = false, has_newton_ = false;
 };
