@@ -11,11 +11,11 @@ namespace rpc::fem
 namespace
 {
 
-NodeGraph node_graph(const mesh::Mesh &mesh, const NodeCells &around)
+NodeGraph node_graph(const mesh::Mesh &mesh, const NodeToCells &node_to_cells)
 {
   const auto cells = mesh.cells;
-  const auto row = around.row;
-  const auto list = around.cell;
+  const auto row = node_to_cells.row;
+  const auto list = node_to_cells.cell;
   const LO num_owned = mesh.num_owned_nodes();
   const int nodes = mesh.element.num_nodes();
   DeviceView<LO *> candidates(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_candidates"),
@@ -138,8 +138,8 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
       d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
   if (d.overlap_dofs != d.owned_dofs) d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
   d.shapes = cell_shapes(*d.mesh);
-  d.around = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
-  d.nodes = node_graph(*d.mesh, d.around);
+  d.node_to_cells = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
+  d.nodes = node_graph(*d.mesh, d.node_to_cells);
   d.graph = dof_graph(d);
   return d;
 }

@@ -332,7 +332,7 @@ struct AddTabulated {
   DeviceView<LO **> cells;                 // (cells, Nodes)                       in, overlap lids
   LO first, last;                          // tabulated cells, without the last
   DeviceView<double *[dofs][dofs]> matrix; // (tabulated cells, dofs, dofs) [N/m]  in
-  NodeCells around;                        //                                      in
+  NodeToCells node_to_cells;               //                                      in
   NodeGraph nodes;                         //                                      in
   DeviceView<double *> values;             // (matrix entries)              [N/m]  inout
 
@@ -341,8 +341,8 @@ struct AddTabulated {
     const std::size_t begin = nodes.row(node);
     const LO length = static_cast<LO>(nodes.row(node + 1) - begin);
     double *const rows = &values(Dim * Dim * begin);
-    for (std::size_t k = around.row(node); k < around.row(node + 1); ++k) {
-      const LO cell = around.cell(k);
+    for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k) {
+      const LO cell = node_to_cells.cell(k);
       if (cell < first || cell >= last) continue;
       const int a = place_in(cells, cell, node);
       for (int b = 0; b < Nodes; ++b) {
@@ -416,7 +416,7 @@ struct NodeStiffness {
   DeviceView<double *[dofs][dofs]> matrix; // (shapes * blocks, dofs, dofs)   [N/m]  in
   int num_blocks;                          //                                        in
   LO num_owned;                            // nodes
-  NodeCells around;                        //                                        in
+  NodeToCells node_to_cells;               //                                        in
   NodeGraph nodes;                         //                                        in
   DeviceView<double *> values;             // (matrix entries)                [N/m]  out
 
@@ -426,8 +426,8 @@ struct NodeStiffness {
     const LO length = static_cast<LO>(nodes.row(node + 1) - begin);
     double *const rows = &values(Dim * Dim * begin);
     for (LO k = 0; k < Dim * Dim * length; ++k) rows[k] = 0;
-    for (std::size_t k = around.row(node); k < around.row(node + 1); ++k) {
-      const LO cell = around.cell(k);
+    for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k) {
+      const LO cell = node_to_cells.cell(k);
       const int m = shape(cell) * num_blocks + block(cell);
       int a = 0;
       while (cells(cell, a) != node) ++a;
@@ -442,11 +442,12 @@ struct NodeStiffness {
   /// Whether the cells around two nodes are the same ones, but for a shift of all numbers: then so are the rows.
   KOKKOS_FUNCTION bool same_rows(const LO node, const LO other) const
   {
-    const std::size_t first = around.row(node), of_other = around.row(other), count = around.row(node + 1) - first;
-    if (around.row(other + 1) - of_other != count) return false;
+    const std::size_t first = node_to_cells.row(node), of_other = node_to_cells.row(other),
+                      count = node_to_cells.row(node + 1) - first;
+    if (node_to_cells.row(other + 1) - of_other != count) return false;
     int differs = 0;
     for (std::size_t k = 0; k < count && differs == 0; ++k) {
-      const LO c = around.cell(first + k), d = around.cell(of_other + k);
+      const LO c = node_to_cells.cell(first + k), d = node_to_cells.cell(of_other + k);
       differs = (shape(c) != shape(d)) | (block(c) != block(d));
       for (int b = 0; b < Nodes; ++b) differs |= cells(c, b) - cells(d, b) != node - other;
     }
@@ -591,15 +592,15 @@ template <int Dim, int Nodes>
 struct SumShares {
   DeviceView<LO **> cells;                // (cells, Nodes)               in, overlap lids
   DeviceView<double *[Nodes][Dim]> share; // (cells, Nodes, Dim)    [N]   in
-  NodeCells around;                       //                              in
+  NodeToCells node_to_cells;              //                              in
   WriteVector force;                      // (owned dofs)           [N]   out
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
     double sum[Dim] = {};
-    for (std::size_t k = around.row(node); k < around.row(node + 1); ++k) {
-      const int a = place_in(cells, around.cell(k), node);
-      for (int i = 0; i < Dim; ++i) sum[i] += share(around.cell(k), a, i);
+    for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k) {
+      const int a = place_in(cells, node_to_cells.cell(k), node);
+      for (int i = 0; i < Dim; ++i) sum[i] += share(node_to_cells.cell(k), a, i);
     }
     for (int i = 0; i < Dim; ++i) force(Dim * node + i) = sum[i];
   }

@@ -160,18 +160,19 @@ DeviceView<double *> cell_measure(const mesh::Mesh &mesh, const BasisTable &tabl
 }
 
 /// load(ai) += sum over entities (cells or facets) and their points q, measure_q N_a(q) f_i(q).
-/// @param around  entities around the owned nodes
+/// @param node_to_entities  those around the owned nodes
 /// @param f  (entities * points, dim)
-void add_load(const DeviceView<LO **> &entities, const NodeCells &around, const DeviceView<double **> &value,
-              const DeviceView<double *> &measure, const DeviceView<double **> &f, Vector &load)
+void add_load(const DeviceView<LO **> &entities, const NodeToCells &node_to_entities,
+              const DeviceView<double **> &value, const DeviceView<double *> &measure, const DeviceView<double **> &f,
+              Vector &load)
 {
   const auto b = device_write(load);
   const int dim = static_cast<int>(f.extent(1)), points = static_cast<int>(value.extent(0));
-  const LO num_nodes = static_cast<LO>(around.row.extent(0)) - 1;
+  const LO num_nodes = static_cast<LO>(node_to_entities.row.extent(0)) - 1;
   Kokkos::parallel_for(
       "rpc::fem::add_load", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
-        for (std::size_t k = around.row(node); k < around.row(node + 1); ++k) {
-          const LO entity = around.cell(k);
+        for (std::size_t k = node_to_entities.row(node); k < node_to_entities.row(node + 1); ++k) {
+          const LO entity = node_to_entities.cell(k);
           const int a = place_in(entities, entity, node);
           for (int i = 0; i < dim; ++i) {
             double sum = 0;
@@ -198,8 +199,8 @@ MatrixValues gather_stiffness(const Discretization &d, const CellStiffness<Dim, 
   Kokkos::parallel_reduce("rpc::fem::tabulate_stiffness", device_range(num_matrices), tabulate, bad);
   const MatrixValues values(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::stiffness"), num_entries);
   const LO num_owned = mesh.num_owned_nodes(), example = mesh.num_cells() / 2;
-  const NodeStiffness<Dim, Nodes> rows{mesh.cells, mesh.block, d.shapes.of_cell, matrix, num_blocks,
-                                       num_owned,  d.around,   d.nodes,          values};
+  const NodeStiffness<Dim, Nodes> rows{mesh.cells, mesh.block,      d.shapes.of_cell, matrix, num_blocks,
+                                       num_owned,  d.node_to_cells, d.nodes,          values};
   Kokkos::parallel_for("rpc::fem::gather_examples", device_range(Nodes), GatherExamples<Dim, Nodes>{rows, example});
   if constexpr (on_gpu) {
     const DeviceView<LO *> source(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::source_of_rows"), num_owned);
@@ -235,7 +236,7 @@ MatrixValues add_stiffness(const Discretization &d, const CellStiffness<Dim, Nod
       Kokkos::parallel_reduce("rpc::fem::tabulate_cells", device_range(last - first),
                               TabulateCells<Dim, Nodes>{stiffness, first, matrix}, bad_here);
       bad += bad_here;
-      const AddTabulated<Dim, Nodes> add{d.mesh->cells, first, last, matrix, d.around, d.nodes, values};
+      const AddTabulated<Dim, Nodes> add{d.mesh->cells, first, last, matrix, d.node_to_cells, d.nodes, values};
       Kokkos::parallel_for("rpc::fem::add_tabulated", device_range(num_owned), add);
       Kokkos::fence();
     }
@@ -255,7 +256,7 @@ void add_internal_work(const Discretization &d, const ElasticCells<Dim, Nodes> &
   Kokkos::parallel_reduce("rpc::fem::internal_work", device_range(mesh.num_cells()), kernel, squares, energy);
   if constexpr (!one_thread)
     Kokkos::parallel_for("rpc::fem::sum_shares", device_range(mesh.num_owned_nodes()),
-                         SumShares<Dim, Nodes>{mesh.cells, share, d.around, device_write(force)});
+                         SumShares<Dim, Nodes>{mesh.cells, share, d.node_to_cells, device_write(force)});
 }
 
 bool is_p2(const mesh::Element &element)
@@ -328,13 +329,13 @@ DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Mate
                                              const DeviceView<LO *> &nodes)
 {
   const auto lame = lame_table(*d.mesh, materials);
-  const auto around = d.around;
+  const auto node_to_cells = d.node_to_cells;
   const auto block = d.mesh->block;
   DeviceView<double *> modulus("rpc::fem::youngs_modulus", nodes.extent(0));
   Kokkos::parallel_for(
       "rpc::fem::youngs_modulus", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO i) {
-        for (std::size_t k = around.row(nodes(i)); k < around.row(nodes(i) + 1); ++k) {
-          const double lambda = lame(block(around.cell(k)), 0), mu = lame(block(around.cell(k)), 1);
+        for (std::size_t k = node_to_cells.row(nodes(i)); k < node_to_cells.row(nodes(i) + 1); ++k) {
+          const double lambda = lame(block(node_to_cells.cell(k)), 0), mu = lame(block(node_to_cells.cell(k)), 1);
           const double own = mu * (3 * lambda + 2 * mu) / (lambda + mu);
           if (own > modulus(i)) modulus(i) = own;
         }
@@ -453,7 +454,7 @@ void add_body_force(const Discretization &d, const VectorField &force, const std
   const BasisTable &table = d.reference.cell_load;
   const auto points = quadrature_points(mesh.coords, mesh.cells, table.value);
   const auto f = evaluate_vector(force, points, parameter, mesh.comm());
-  add_load(mesh.cells, d.around, table.value, cell_measure(mesh, table), f, load);
+  add_load(mesh.cells, d.node_to_cells, table.value, cell_measure(mesh, table), f, load);
 }
 
 DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &side,
@@ -485,8 +486,8 @@ void add_traction(const Discretization &d, const mesh::Side &side, const VectorF
   const BasisTable &table = d.reference.facet;
   const auto points = quadrature_points(mesh.coords, side.facets, table.value);
   const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
-  const NodeCells around = around_nodes(side.facets, mesh.num_owned_nodes());
-  add_load(side.facets, around, table.value, facet_measure(d, side), t, load);
+  const NodeToCells node_to_facets = around_nodes(side.facets, mesh.num_owned_nodes());
+  add_load(side.facets, node_to_facets, table.value, facet_measure(d, side), t, load);
 }
 
 } // namespace rpc::fem

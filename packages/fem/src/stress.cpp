@@ -44,15 +44,15 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
   using Table = PatchTable<Dim, Nodes>;
   const mesh::Mesh &mesh = *d.mesh;
   const auto nodes = device_range(mesh.num_owned_nodes());
-  const NodeCells &around = d.around;
+  const NodeToCells &node_to_cells = d.node_to_cells;
   const Import import(mesh.owned_nodes, mesh.overlap_nodes);
   const auto table = rcp(new MultiVector(mesh.owned_nodes, Table::columns)); // zero
   {
     const FitPatch<Dim, Nodes> fit{body,
                                    d.reference.recovery.value,
                                    device_read(u_overlap),
-                                   around.row,
-                                   around.cell,
+                                   node_to_cells.row,
+                                   node_to_cells.cell,
                                    d.nodes,
                                    facet_mates(mesh.element),
                                    table->getLocalViewDevice(Tpetra::Access::ReadWrite)};
@@ -62,8 +62,8 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
   {
     const auto from = with_overlap(mesh, table, import);
     const AdoptPolynomial<Dim, Nodes> adopt{mesh.cells,
-                                            around.row,
-                                            around.cell,
+                                            node_to_cells.row,
+                                            node_to_cells.cell,
                                             from->getLocalViewDevice(Tpetra::Access::ReadOnly),
                                             table->getLocalViewDevice(Tpetra::Access::ReadWrite),
                                             mesh.element.num_vertices()};
@@ -101,7 +101,8 @@ RCP<MultiVector> RecoveredStress::at_nodes() const
   const auto result = rcp(new MultiVector(mesh.owned_nodes, stress_names(d_.dim()).size()));
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
     const EvaluatePatches<dim, nodes> evaluate{polynomials(elastic_cells<dim, nodes>(d_, materials_), *polynomials_),
-                                               d_.around.row, d_.around.cell, LinearShapes<dim, nodes>(mesh.element),
+                                               d_.node_to_cells.row, d_.node_to_cells.cell,
+                                               LinearShapes<dim, nodes>(mesh.element),
                                                result->getLocalViewDevice(Tpetra::Access::ReadWrite)};
     Kokkos::parallel_for("rpc::fem::evaluate_patches", device_range(mesh.num_owned_nodes()), evaluate);
     Kokkos::fence();

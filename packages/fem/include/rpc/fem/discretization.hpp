@@ -16,8 +16,8 @@ struct NodeGraph {
   DeviceView<LO *> col;          ///< (entries) overlap node lids, ascending in each row
 };
 
-/// Cells around each owned node, as offsets and list, ascending within a node.
-struct NodeCells {
+/// The cells at each owned node, as offsets and list, ascending within a node. (Of a side: its facets.)
+struct NodeToCells {
   DeviceView<std::size_t *> row; ///< (owned nodes + 1)
   DeviceView<LO *> cell;         ///< (entries) local cells
 };
@@ -39,7 +39,7 @@ struct Discretization {
   RCP<const Map> overlap_dofs;  ///< columns
   RCP<const Import> dof_import; ///< owned -> overlap; null in one process, where these are the same
   CellShapes shapes;
-  NodeCells around;
+  NodeToCells node_to_cells;
   NodeGraph nodes;
   RCP<const CrsGraph> graph; ///< fill-complete, columns ascending
 
