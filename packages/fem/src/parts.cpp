@@ -1,6 +1,6 @@
 #include "rpc/fem/parts.hpp"
 
-#include "numbers.hpp"
+#include "point_text.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
 

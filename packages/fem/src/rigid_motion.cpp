@@ -1,6 +1,6 @@
 #include "rpc/fem/rigid_motion.hpp"
 
-#include "numbers.hpp"
+#include "point_text.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <algorithm>
