@@ -1,7 +1,7 @@
 #include "rpc/fem/discretization.hpp"
 
 #include "around_nodes.hpp"
-#include "cell_shapes.hpp"
+#include "congruent_cells.hpp"
 #include "fill_entries.hpp"
 
 #include <array>
@@ -137,7 +137,7 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
   d.overlap_dofs =
       d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
   if (d.overlap_dofs != d.owned_dofs) d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
-  d.shapes = cell_shapes(*d.mesh);
+  d.congruent = congruent_cells(*d.mesh);
   d.node_to_cells = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
   d.nodes = node_graph(*d.mesh, d.node_to_cells);
   d.graph = dof_graph(d);

@@ -59,10 +59,10 @@ struct ElasticCells {
   DeviceView<double *> weight;     // (points)                    in
   DeviceView<double **> lame;      // (blocks; lambda, mu)  [Pa]  in
   DeviceView<int *> projected;     // (blocks) 0 or 1             in
-  // Of cells that are alike, (shapes, points): gradients [1/m], and what a point stands for [m^Dim]. Empty: cells differ.
-  DeviceView<signed char *> shape; // (cells)                            in
-  DeviceView<double **[Nodes][Dim]> shape_gradient;
-  DeviceView<double **> shape_volume;
+  // Of congruent cells, (kinds, points): gradients [1/m], and what a point stands for [m^Dim]. Empty: cells differ.
+  DeviceView<signed char *> kind; // (cells)                            in
+  DeviceView<double **[Nodes][Dim]> kind_gradient;
+  DeviceView<double **> kind_volume;
 
   KOKKOS_FUNCTION double lambda(const LO cell) const { return lame(block(cell), 0); }
   KOKKOS_FUNCTION double mu(const LO cell) const { return lame(block(cell), 1); }
@@ -134,13 +134,13 @@ struct ElasticCells {
   {
     const int points = static_cast<int>(weight.extent(0));
     Gradients dN;
-    if (shape_volume.extent(0) > 0) {
-      const int s = shape(cell);
+    if (kind_volume.extent(0) > 0) {
+      const int s = kind(cell);
       for (int q = 0; q < points; ++q) {
-        if (!(shape_volume(s, q) > 0)) return false;
+        if (!(kind_volume(s, q) > 0)) return false;
         for (int a = 0; a < Nodes; ++a)
-          for (int i = 0; i < Dim; ++i) dN[a][i] = shape_gradient(s, q, a, i);
-        work(q, shape_volume(s, q), dN);
+          for (int i = 0; i < Dim; ++i) dN[a][i] = kind_gradient(s, q, a, i);
+        work(q, kind_volume(s, q), dN);
       }
       return true;
     }
@@ -154,20 +154,20 @@ struct ElasticCells {
   }
 };
 
-/// Gradients and volumes at the points of each shape; 0 from the first point on whose Jacobian is <= 0.
+/// Gradients and volumes at the points of each kind of congruent cells; 0 from the first point on whose Jacobian is <= 0.
 template <int Dim, int Nodes>
-struct TabulateShape {
-  ElasticCells<Dim, Nodes> body;                    //                                     in, without a table
-  DeviceView<LO *> example;                         // (shapes)                            in
-  DeviceView<double **[Nodes][Dim]> shape_gradient; // (shapes, points, Nodes, Dim) [1/m]  out
-  DeviceView<double **> shape_volume;               // (shapes, points)           [m^Dim]  out
+struct TabulateKind {
+  ElasticCells<Dim, Nodes> body;                   //                                     in, without a table
+  DeviceView<LO *> example;                        // (kinds)                            in
+  DeviceView<double **[Nodes][Dim]> kind_gradient; // (kinds, points, Nodes, Dim) [1/m]  out
+  DeviceView<double **> kind_volume;               // (kinds, points)           [m^Dim]  out
 
   KOKKOS_FUNCTION void operator()(const LO s) const
   {
     body.at_plain_points(example(s), [&](const int q, const double volume, const double(&dN)[Nodes][Dim]) {
-      shape_volume(s, q) = volume;
+      kind_volume(s, q) = volume;
       for (int a = 0; a < Nodes; ++a)
-        for (int i = 0; i < Dim; ++i) shape_gradient(s, q, a, i) = dN[a][i];
+        for (int i = 0; i < Dim; ++i) kind_gradient(s, q, a, i) = dN[a][i];
     });
   }
 };
@@ -187,14 +187,14 @@ ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials 
   body.weight = table.weight;
   body.lame = lame_table(mesh, materials);
   body.projected = projected_dilatation_table(mesh, materials);
-  if (d.shapes.size() == 0) return body;
-  const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::shape_gradient", d.shapes.size(), table.num_points());
-  const DeviceView<double **> volume("rpc::fem::shape_volume", d.shapes.size(), table.num_points());
-  const TabulateShape<Dim, Nodes> tabulate{body, d.shapes.example, gradient, volume};
-  Kokkos::parallel_for("rpc::fem::tabulate_shapes", device_range(d.shapes.size()), tabulate);
-  body.shape = d.shapes.of_cell;
-  body.shape_gradient = gradient;
-  body.shape_volume = volume;
+  if (d.congruent.size() == 0) return body;
+  const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::kind_gradient", d.congruent.size(), table.num_points());
+  const DeviceView<double **> volume("rpc::fem::kind_volume", d.congruent.size(), table.num_points());
+  const TabulateKind<Dim, Nodes> tabulate{body, d.congruent.example, gradient, volume};
+  Kokkos::parallel_for("rpc::fem::tabulate_kinds", device_range(d.congruent.size()), tabulate);
+  body.kind = d.congruent.of_cell;
+  body.kind_gradient = gradient;
+  body.kind_volume = volume;
   return body;
 }
 template <int Dim, int Nodes>
@@ -356,7 +356,7 @@ struct AddTabulated {
 };
 
 /// Rounds the entries of a cell's stiffness so that they, and sums over the cells around a node, are exact, and lets a
-/// translation have no force at all. The rounding of a cell by itself is noise, but that of a shape is the same force on all
+/// translation have no force at all. The rounding of a cell by itself is noise, but that of a kind is the same force on all
 /// its cells: 1e-16 of each would be as much as a spring of 1e-16 times the number of cells on the whole body.
 template <int Nodes, int Dofs>
 KOKKOS_INLINE_FUNCTION void balance(double (&k)[Dofs][Dofs])
@@ -383,17 +383,17 @@ KOKKOS_INLINE_FUNCTION void balance(double (&k)[Dofs][Dofs])
     }
 }
 
-/// The stiffness of a cell of each shape in each block: matrix(shape * blocks + block).
+/// The stiffness of a cell of each kind in each block: matrix(kind * blocks + block).
 template <int Dim, int Nodes>
 struct TabulateStiffness {
   static constexpr int dofs = Dim * Nodes;
 
   CellStiffness<Dim, Nodes> stiffness;     //                                 in
-  DeviceView<LO *> example;                // (shapes)                        in
+  DeviceView<LO *> example;                // (kinds)                        in
   int num_blocks;                          //                                 in
-  DeviceView<double *[dofs][dofs]> matrix; // (shapes * blocks, dofs, dofs)  [N/m]  out
+  DeviceView<double *[dofs][dofs]> matrix; // (kinds * blocks, dofs, dofs)  [N/m]  out
 
-  /// @param bad  counts shapes whose Jacobian is <= 0 somewhere
+  /// @param bad  counts kinds whose Jacobian is <= 0 somewhere
   KOKKOS_FUNCTION void operator()(const LO m, LO &bad) const
   {
     double k[dofs][dofs];
@@ -412,8 +412,8 @@ struct NodeStiffness {
 
   DeviceView<LO **> cells;                 // (cells, Nodes)                         in, overlap lids
   DeviceView<int *> block;                 // (cells)                                in
-  DeviceView<signed char *> shape;         // (cells)                                in
-  DeviceView<double *[dofs][dofs]> matrix; // (shapes * blocks, dofs, dofs)   [N/m]  in
+  DeviceView<signed char *> kind;          // (cells)                                in
+  DeviceView<double *[dofs][dofs]> matrix; // (kinds * blocks, dofs, dofs)   [N/m]  in
   int num_blocks;                          //                                        in
   LO num_owned;                            // nodes
   NodeToCells node_to_cells;               //                                        in
@@ -428,7 +428,7 @@ struct NodeStiffness {
     for (LO k = 0; k < Dim * Dim * length; ++k) rows[k] = 0;
     for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k) {
       const LO cell = node_to_cells.cell(k);
-      const int m = shape(cell) * num_blocks + block(cell);
+      const int m = kind(cell) * num_blocks + block(cell);
       int a = 0;
       while (cells(cell, a) != node) ++a;
       for (int b = 0; b < Nodes; ++b) {
@@ -448,7 +448,7 @@ struct NodeStiffness {
     int differs = 0;
     for (std::size_t k = 0; k < count && differs == 0; ++k) {
       const LO c = node_to_cells.cell(first + k), d = node_to_cells.cell(of_other + k);
-      differs = (shape(c) != shape(d)) | (block(c) != block(d));
+      differs = (kind(c) != kind(d)) | (block(c) != block(d));
       for (int b = 0; b < Nodes; ++b) differs |= cells(c, b) - cells(d, b) != node - other;
     }
     return differs == 0;

@@ -186,21 +186,21 @@ void add_load(const DeviceView<LO **> &entities, const NodeToCells &node_to_enti
 }
 
 /// The matrix's values where cells are alike: few cells are integrated, and each entry is written once.
-/// @param[out] bad  number of shapes with a Jacobian <= 0
+/// @param[out] bad  number of kinds with a Jacobian <= 0
 template <int Dim, int Nodes>
 MatrixValues gather_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes> &stiffness,
                               const std::size_t num_entries, LO &bad)
 {
   constexpr int dofs = Dim * Nodes;
   const mesh::Mesh &mesh = *d.mesh;
-  const int num_blocks = static_cast<int>(mesh.blocks.size()), num_matrices = d.shapes.size() * num_blocks;
+  const int num_blocks = static_cast<int>(mesh.blocks.size()), num_matrices = d.congruent.size() * num_blocks;
   const DeviceView<double *[dofs][dofs]> matrix("rpc::fem::shape_stiffness", num_matrices);
-  const TabulateStiffness<Dim, Nodes> tabulate{stiffness, d.shapes.example, num_blocks, matrix};
+  const TabulateStiffness<Dim, Nodes> tabulate{stiffness, d.congruent.example, num_blocks, matrix};
   Kokkos::parallel_reduce("rpc::fem::tabulate_stiffness", device_range(num_matrices), tabulate, bad);
   const MatrixValues values(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::stiffness"), num_entries);
   const LO num_owned = mesh.num_owned_nodes(), example = mesh.num_cells() / 2;
-  const NodeStiffness<Dim, Nodes> rows{mesh.cells, mesh.block,      d.shapes.of_cell, matrix, num_blocks,
-                                       num_owned,  d.node_to_cells, d.nodes,          values};
+  const NodeStiffness<Dim, Nodes> rows{
+      mesh.cells, mesh.block, d.congruent.of_cell, matrix, num_blocks, num_owned, d.node_to_cells, d.nodes, values};
   Kokkos::parallel_for("rpc::fem::gather_examples", device_range(Nodes), GatherExamples<Dim, Nodes>{rows, example});
   if constexpr (on_gpu) {
     const DeviceView<LO *> source(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::source_of_rows"), num_owned);
@@ -425,8 +425,8 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
   LO bad = 0;
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
     const CellStiffness<dim, nodes> stiffness{elastic_cells<dim, nodes>(d, materials)};
-    values = d.shapes.size() > 0 ? gather_stiffness(d, stiffness, num_entries, bad)
-                                 : add_stiffness(d, stiffness, num_entries, bad);
+    values = d.congruent.size() > 0 ? gather_stiffness(d, stiffness, num_entries, bad)
+                                    : add_stiffness(d, stiffness, num_entries, bad);
   });
   Kokkos::fence();
   if (sum_all(mesh.comm(), GO(bad)) > 0) throw_if_any(mesh.comm(), ExitCode::bad_mesh, describe_bad_cell(d));

@@ -22,11 +22,11 @@ struct NodeToCells {
   DeviceView<LO *> cell;         ///< (entries) local cells
 };
 
-/// Which local cells are alike: each other's translates, up to the rounding of coordinates. What depends on a cell's shape
-/// alone is worked out once for each. No shapes where cells differ: then each is worked out by itself.
-struct CellShapes {
-  DeviceView<signed char *> of_cell; ///< (local cells)
-  DeviceView<LO *> example;          ///< (shapes) a cell of each
+/// Kinds of congruent local cells: those of a kind are each other's translates, up to the rounding of coordinates. What
+/// does not depend on a cell's place is computed once for each kind. No kinds where cells differ: then each is computed by itself.
+struct CongruentCells {
+  DeviceView<signed char *> of_cell; ///< (local cells) kind
+  DeviceView<LO *> example;          ///< (kinds) a cell of each
 
   int size() const { return static_cast<int>(example.extent(0)); }
 };
@@ -38,7 +38,7 @@ struct Discretization {
   RCP<const Map> owned_dofs;    ///< rows
   RCP<const Map> overlap_dofs;  ///< columns
   RCP<const Import> dof_import; ///< owned -> overlap; null in one process, where these are the same
-  CellShapes shapes;
+  CongruentCells congruent;
   NodeToCells node_to_cells;
   NodeGraph nodes;
   RCP<const CrsGraph> graph; ///< fill-complete, columns ascending
