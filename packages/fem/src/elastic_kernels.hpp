@@ -114,7 +114,7 @@ struct ElasticCells {
       for (int k = 0; k < modes; ++k) {
         for (int l = 0; l < modes; ++l) products[k][l] += volume * term[k][0] * term[l][0];
         for (int a = 0; a < Nodes; ++a)
-          for (int i = 0; i < Dim; ++i) moments[k][Dim * a + i] += volume * term[k][0] * dN[a][i];
+          for (int i = 0; i < Dim; ++i) moments[k][dof(Dim, a, i)] += volume * term[k][0] * dN[a][i];
       }
     });
     if (!good || cholesky(products, 0) < modes) return false;
@@ -122,7 +122,7 @@ struct ElasticCells {
     for (int k = 0; k < modes; ++k) {
       for (int l = 0; l < modes; ++l) projection.root[k][l] = products[k][l];
       for (int a = 0; a < Nodes; ++a)
-        for (int i = 0; i < Dim; ++i) projection.Z[k][a][i] = moments[k][Dim * a + i];
+        for (int i = 0; i < Dim; ++i) projection.Z[k][a][i] = moments[k][dof(Dim, a, i)];
     }
     return true;
   }
@@ -223,7 +223,7 @@ struct CellStiffness {
       for (int b = 0; b < Nodes; ++b) {
         double product[Dim][Dim], trace = 0;
         for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j) product[i][j] = k[Dim * a + i][Dim * b + j];
+          for (int j = 0; j < Dim; ++j) product[i][j] = k[dof(Dim, a, i)][dof(Dim, b, j)];
         for (int i = 0; i < Dim; ++i) trace += product[i][i];
         for (int i = 0; i < Dim; ++i)
           for (int j = 0; j < Dim; ++j) {
@@ -232,7 +232,7 @@ struct CellStiffness {
               dilatation = 0;
               for (const auto &Z : projection.Z) dilatation += Z[a][i] * Z[b][j];
             }
-            double &entry = k[Dim * a + i][Dim * b + j];
+            double &entry = k[dof(Dim, a, i)][dof(Dim, b, j)];
             entry = lambda * dilatation + mu * product[j][i];
             if (i == j) entry += mu * trace;
           }
@@ -249,7 +249,7 @@ struct CellStiffness {
       for (int a = 0; a < Nodes; ++a)
         for (int i = 0; i < Dim; ++i)
           for (int b = 0; b < Nodes; ++b)
-            for (int j = 0; j < Dim; ++j) product[Dim * a + i][Dim * b + j] += volume * dN[a][i] * dN[b][j];
+            for (int j = 0; j < Dim; ++j) product[dof(Dim, a, i)][dof(Dim, b, j)] += volume * dN[a][i] * dN[b][j];
     });
   }
 };
@@ -295,7 +295,7 @@ struct AddStiffness {
         const LO at = place_in_row(nodes.col, begin, length, cells(cell, b));
         for (int i = 0; i < Dim; ++i) {
           double *const entry = &values(Dim * (Dim * begin + i * length + at));
-          for (int j = 0; j < Dim; ++j) entry[j] += k[Dim * a + i][Dim * b + j]; // cells share rows
+          for (int j = 0; j < Dim; ++j) entry[j] += k[dof(Dim, a, i)][dof(Dim, b, j)]; // cells share rows
         }
       }
     }
@@ -349,7 +349,7 @@ struct AddTabulated {
         const LO at = place_in_row(nodes.col, begin, length, cells(cell, b));
         for (int i = 0; i < Dim; ++i)
           for (int j = 0; j < Dim; ++j)
-            rows[Dim * (i * length + at) + j] += matrix(cell - first, Dim * a + i, Dim * b + j);
+            rows[Dim * (i * length + at) + j] += matrix(cell - first, dof(Dim, a, i), dof(Dim, b, j));
       }
     }
   }
@@ -378,8 +378,8 @@ KOKKOS_INLINE_FUNCTION void balance(double (&k)[Dofs][Dofs])
     for (int j = 0; j < dim; ++j) {
       double others = 0;
       for (int b = 0; b < Nodes; ++b)
-        if (b != r / dim) others += k[r][dim * b + j];
-      k[r][dim * (r / dim) + j] = -others;
+        if (b != node_of(dim, r)) others += k[r][dof(dim, b, j)];
+      k[r][dof(dim, node_of(dim, r), j)] = -others;
     }
 }
 
@@ -434,7 +434,7 @@ struct NodeStiffness {
       for (int b = 0; b < Nodes; ++b) {
         const LO at = place_in_row(nodes.col, begin, length, cells(cell, b));
         for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j) rows[Dim * (i * length + at) + j] += matrix(m, Dim * a + i, Dim * b + j);
+          for (int j = 0; j < Dim; ++j) rows[Dim * (i * length + at) + j] += matrix(m, dof(Dim, a, i), dof(Dim, b, j));
       }
     }
   }
@@ -551,7 +551,8 @@ struct InternalWorkOfCell {
     double own[Nodes][Dim] = {}, moved[Nodes][Dim], of_cell = 0;
     // Gradients sum to 0 over the nodes; differences let a translation vanish to the last digit.
     for (int a = 0; a < Nodes; ++a)
-      for (int i = 0; i < Dim; ++i) moved[a][i] = u(Dim * body.cells(cell, a) + i) - u(Dim * body.cells(cell, 0) + i);
+      for (int i = 0; i < Dim; ++i)
+        moved[a][i] = u(dof(Dim, body.cells(cell, a), i)) - u(dof(Dim, body.cells(cell, 0), i));
     body.at_points(cell, [&](int, const double volume, const Gradients &dN, const Gradients &dilatation) {
       double stress[Dim][Dim], trace = 0, product = 0; // without the part of the dilatation
       for (int i = 0; i < Dim; ++i)
@@ -578,7 +579,7 @@ struct InternalWorkOfCell {
         if constexpr (!one_thread)
           share(cell, a, i) = own[a][i];
         else if (node < num_owned)
-          force(Dim * node + i) += own[a][i];
+          force(dof(Dim, node, i)) += own[a][i];
     }
     if (cell >= num_owned_cells) return;
     energy += of_cell;
@@ -602,7 +603,7 @@ struct SumShares {
       const int a = place_in(cells, node_to_cells.cell(k), node);
       for (int i = 0; i < Dim; ++i) sum[i] += share(node_to_cells.cell(k), a, i);
     }
-    for (int i = 0; i < Dim; ++i) force(Dim * node + i) = sum[i];
+    for (int i = 0; i < Dim; ++i) force(dof(Dim, node, i)) = sum[i];
   }
 };
 

@@ -178,7 +178,7 @@ void add_load(const DeviceView<LO **> &entities, const NodeToCells &node_to_enti
             double sum = 0;
             for (int q = 0; q < points; ++q)
               sum += measure(entity * points + q) * value(q, a) * f(entity * points + q, i);
-            b(dim * node + i) += sum;
+            b(dof(dim, node, i)) += sum;
           }
         }
       });

@@ -91,8 +91,8 @@ KOKKOS_INLINE_FUNCTION void displacement_gradient(const U &u, const DeviceView<L
     for (int j = 0; j < Dim; ++j) {
       grad[i][j] = 0;
       // Gradients sum to 0 over the nodes; differences let a translation vanish to the last digit.
-      const double first = u(Dim * cells(cell, 0) + i);
-      for (int a = 1; a < Nodes; ++a) grad[i][j] += (u(Dim * cells(cell, a) + i) - first) * dN[a][j];
+      const double first = u(dof(Dim, cells(cell, 0), i));
+      for (int a = 1; a < Nodes; ++a) grad[i][j] += (u(dof(Dim, cells(cell, a), i)) - first) * dN[a][j];
     }
 }
 
@@ -105,8 +105,8 @@ KOKKOS_INLINE_FUNCTION double divergence(const U &u, const DeviceView<LO **> &ce
   double sum = 0;
   for (int i = 0; i < Dim; ++i) {
     double slope = 0;
-    const double first = u(Dim * cells(cell, 0) + i);
-    for (int a = 1; a < Nodes; ++a) slope += (u(Dim * cells(cell, a) + i) - first) * D[a][i];
+    const double first = u(dof(Dim, cells(cell, 0), i));
+    for (int a = 1; a < Nodes; ++a) slope += (u(dof(Dim, cells(cell, a), i)) - first) * D[a][i];
     sum += slope;
   }
   return sum;

@@ -86,7 +86,7 @@ struct FitPatch {
       Terms::evaluate(xi, term);
       for (int s = 0; s < Terms::size; ++s) {
         for (int t = 0; t <= s; ++t) normal[s][t] += term[s] * term[t];
-        for (int i = 0; i < Dim; ++i) c[s][i] += term[s] * (u(Dim * graph.col(k) + i) - u(Dim * node + i));
+        for (int i = 0; i < Dim; ++i) c[s][i] += term[s] * (u(dof(Dim, graph.col(k), i)) - u(dof(Dim, node, i)));
       }
     }
     bool one_block = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/core/tpetra.hpp"
+#include "rpc/fem/dofs.hpp"
 #include "rpc/fem/reference_element.hpp"
 #include "rpc/mesh/mesh.hpp"
 
@@ -31,7 +32,7 @@ struct CongruentCells {
   int size() const { return static_cast<int>(example.extent(0)); }
 };
 
-/// A mesh with its displacement unknowns: `dim` per node, unknown c of node n is dim n + c in every numbering.
+/// A mesh with its displacement unknowns, numbered as dofs.hpp says.
 struct Discretization {
   std::shared_ptr<const mesh::Mesh> mesh;
   ReferenceElement reference;
