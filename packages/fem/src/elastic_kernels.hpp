@@ -17,7 +17,8 @@ using WriteVector = decltype(device_write(std::declval<Vector &>()));
 /// With e_k these polynomials made orthonormal, Z_k(ai) = int e_k dN_a/dx_i and Pi div u = sum_k e_k sum_ai Z_k(ai) u_ai.
 template <int Dim, int Nodes>
 struct Projection {
-  static constexpr int modes = Nodes == 9 ? 1 + Dim : 1;
+  static constexpr bool linear = StaticElement<Dim, Nodes>::order == 2 && !StaticElement<Dim, Nodes>::simplex;
+  static constexpr int modes = linear ? 1 + Dim : 1;
   using Gradients = double[Nodes][Dim];
 
   double centre[Dim];        // of the cell's nodes                         [m]
@@ -47,7 +48,7 @@ struct Projection {
 template <int Dim, int Nodes>
 struct ElasticCells {
   /// All elements but P1, whose dilatation is constant; its kernels carry no code for that.
-  static constexpr bool may_project = Nodes > Dim + 1;
+  static constexpr bool may_project = !StaticElement<Dim, Nodes>::simplex || StaticElement<Dim, Nodes>::order > 1;
   using Gradients = double[Nodes][Dim];
   using Coords = CellCoords<Dim, Nodes>;
 

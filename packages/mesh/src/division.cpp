@@ -37,7 +37,7 @@ std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts)
 
   const int vertices = whole.element.num_vertices();
   idx_t cells = num_cells, nodes = whole.num_nodes(), parts = num_parts, cut = 0;
-  idx_t common = Element{whole.element.dim, 1, whole.element.shape}.num_facet_nodes(); // vertices of neighbours
+  idx_t common = whole.element.facet().num_vertices(); // of neighbours
   std::vector<idx_t> begin, vertex, cell_part(num_cells), node_part(nodes);
   for (int c = 0; c <= num_cells; ++c) begin.push_back(idx_t(vertices) * c);
   for (int c = 0; c < num_cells; ++c)

@@ -54,20 +54,11 @@ void check_groups(const std::string &where, const GmshContents &contents)
                            << "\" has no elements");
 }
 
-std::optional<Element> element_of_type(const int type)
+/// The element of cells that can be read: plane ones.
+std::optional<Element> plane_element(const int type)
 {
-  switch (type) {
-  case 2:
-    return Element{2, 1, Shape::simplex};
-  case 3:
-    return Element{2, 1, Shape::tensor};
-  case 9:
-    return Element{2, 2, Shape::simplex};
-  case 10:
-    return Element{2, 2, Shape::tensor};
-  default:
-    return std::nullopt;
-  }
+  const std::optional<Element> element = element_of_gmsh_type(type);
+  return element && element->dim == 2 ? element : std::nullopt;
 }
 
 std::string name_of_type(const int number)
@@ -84,7 +75,7 @@ Element element_of(const std::string &where, const GmshContents &contents)
     const auto &group = contents.groups[elements.group];
     if (group.dim != 2) continue;
     const bool serendipity = elements.type == 16;
-    RPC_REQUIRE_CODE(element_of_type(elements.type), ExitCode::bad_mesh,
+    RPC_REQUIRE_CODE(plane_element(elements.type), ExitCode::bad_mesh,
                      where << "cells of type \"" << name_of_type(elements.type) << "\" in physical surface \""
                            << group.name << "\"; triangles of 3 or 6 nodes and quadrilaterals of 4 or 9 can be read"
                            << (serendipity ? "; mesh with Mesh.SecondOrderIncomplete = 0" : ""));
@@ -107,7 +98,7 @@ Element element_of(const std::string &where, const GmshContents &contents)
                      where << "cells must be of one kind, got " << summary(first->type) << " and "
                            << summary(elements.type)
                            << "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = 1");
-  return *element_of_type(first->type);
+  return *plane_element(first->type);
 }
 
 /// The tags of cells' nodes, once each.
@@ -168,6 +159,7 @@ int find_node(const TaggedMesh &draft, const std::size_t tag)
 
 void take_cells(const GmshContents &contents, TaggedMesh &draft)
 {
+  const std::vector<int> &place = draft.mesh.element.gmsh_place();
   int block = -1, group = -1;
   for (const auto &elements : contents.elements) {
     if (contents.groups[elements.group].dim != 2) continue;
@@ -176,7 +168,8 @@ void take_cells(const GmshContents &contents, TaggedMesh &draft)
       block = static_cast<int>(draft.mesh.blocks.size());
       draft.mesh.blocks.push_back(contents.groups[group].name);
     }
-    for (const std::size_t tag : elements.nodes) draft.mesh.cells.push_back(find_node(draft, tag));
+    for (std::size_t first = 0; first < elements.nodes.size(); first += place.size())
+      for (const int a : place) draft.mesh.cells.push_back(find_node(draft, elements.nodes[first + a]));
     draft.mesh.block.insert(draft.mesh.block.end(), elements.tags.size(), block);
     draft.cell_tag.insert(draft.cell_tag.end(), elements.tags.begin(), elements.tags.end());
   }
@@ -221,7 +214,7 @@ const Edge &edge_of_line(const TaggedMesh &draft, const std::vector<Edge> &edges
 void take_sides(const GmshContents &contents, const std::vector<Edge> &edges, TaggedMesh &draft)
 {
   const int order = draft.mesh.element.order;
-  const int line_type = order == 1 ? 1 : 8;
+  const int line_type = draft.mesh.element.facet().gmsh_type();
   int group = -1;
   std::set<std::pair<int, int>> taken;
   for (const auto &elements : contents.elements) {
