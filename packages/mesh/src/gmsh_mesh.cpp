@@ -190,33 +190,35 @@ void check_blocks(const TaggedMesh &draft)
   }
 }
 
-/// The facet that a line element lies on.
-const Edge &edge_of_line(const TaggedMesh &draft, const std::vector<Edge> &edges, const std::string &side,
-                         const std::size_t line, const std::size_t *const tags)
+/// The facet that a line element lies on, as its number in `facets`.
+int facet_of_line(const TaggedMesh &draft, const Entities &facets, const std::string &side, const std::size_t line,
+                  const std::size_t *const tags)
 {
   const auto label = [&] {
     return draft.where + "line " + std::to_string(line) + " of physical curve \"" + side + "\", between nodes " +
            std::to_string(tags[0]) + " and " + std::to_string(tags[1]) + ", ";
   };
-  const int a = find_node(draft, tags[0]), b = find_node(draft, tags[1]);
-  const auto [first, last] = std::equal_range(edges.begin(), edges.end(), Edge{std::min(a, b), std::max(a, b)},
-                                              [](const Edge &l, const Edge &r) { return l.nodes() < r.nodes(); });
-  RPC_REQUIRE_CODE(first != last, ExitCode::bad_mesh, label() << "is an edge of no cell");
-  RPC_REQUIRE_CODE(last - first == 1, ExitCode::bad_mesh,
-                   label() << "lies inside the body, between the cells " << draft.cell_tag[first->cell] << " and "
-                           << draft.cell_tag[(last - 1)->cell] << "; a side must be part of the boundary");
-  RPC_REQUIRE_CODE(draft.mesh.element.order == 1 || find_node(draft, tags[2]) == first->middle, ExitCode::bad_mesh,
+  const std::optional<int> facet = facets.find({find_node(draft, tags[0]), find_node(draft, tags[1])});
+  RPC_REQUIRE_CODE(facet, ExitCode::bad_mesh, label() << "is an edge of no cell");
+  const int num_cells = facets.num_cells_at(*facet);
+  RPC_REQUIRE_CODE(num_cells == 1, ExitCode::bad_mesh,
+                   label() << "lies inside the body, between the cells " << draft.cell_tag[facets.cell(*facet, 0)]
+                           << " and " << draft.cell_tag[facets.cell(*facet, num_cells - 1)]
+                           << "; a side must be part of the boundary");
+  if (draft.mesh.element.order == 1) return *facet;
+  const int middle = middle_node(draft.mesh, facets.cell(*facet, 0), facets.ordinal(*facet, 0));
+  RPC_REQUIRE_CODE(find_node(draft, tags[2]) == middle, ExitCode::bad_mesh,
                    label() << "has the middle node " << tags[2] << ", but the cell there has "
-                           << draft.node_tag[first->middle]);
-  return *first;
+                           << draft.node_tag[middle]);
+  return *facet;
 }
 
-void take_sides(const GmshContents &contents, const std::vector<Edge> &edges, TaggedMesh &draft)
+void take_sides(const GmshContents &contents, const Entities &facets, TaggedMesh &draft)
 {
   const int order = draft.mesh.element.order;
   const int line_type = draft.mesh.element.facet().gmsh_type();
   int group = -1;
-  std::set<std::pair<int, int>> taken;
+  std::set<int> taken; // facets
   for (const auto &elements : contents.elements) {
     if (contents.groups[elements.group].dim != 1) continue;
     const std::string &name = contents.groups[elements.group].name;
@@ -230,10 +232,10 @@ void take_sides(const GmshContents &contents, const std::vector<Edge> &edges, Ta
     }
     SideData &side = draft.mesh.sides.back();
     for (std::size_t l = 0; l < elements.tags.size(); ++l) {
-      const Edge &edge = edge_of_line(draft, edges, name, elements.tags[l], &elements.nodes[(order + 1) * l]);
-      if (!taken.insert({edge.cell, edge.ordinal}).second) continue;
-      side.cell.push_back(edge.cell);
-      side.ordinal.push_back(edge.ordinal);
+      const int facet = facet_of_line(draft, facets, name, elements.tags[l], &elements.nodes[(order + 1) * l]);
+      if (!taken.insert(facet).second) continue;
+      side.cell.push_back(facets.cell(facet, 0));
+      side.ordinal.push_back(facets.ordinal(facet, 0));
     }
   }
 }
@@ -263,7 +265,9 @@ MeshData mesh_of_gmsh(const std::string &where, const GmshContents &contents, co
   check_blocks(draft);
   check_nodes(draft);
   check_cells(draft);
-  take_sides(contents, checked_edges(draft), draft);
+  const Entities facets = facets_of(draft.mesh.element, draft.mesh.cells);
+  check_facets(draft, facets);
+  take_sides(contents, facets, draft);
   if (!any_nodes) check_unused_nodes(contents, draft);
   return std::move(draft.mesh);
 }

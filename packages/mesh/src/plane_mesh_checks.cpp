@@ -195,39 +195,33 @@ void check_cells(const TaggedMesh &draft)
   }
 }
 
-std::vector<Edge> checked_edges(const TaggedMesh &draft)
+int middle_node(const MeshData &mesh, const int cell, const int ordinal)
+{
+  const auto &facet = mesh.element.facets()[ordinal];
+  return facet.size() > 2 ? mesh.cells[static_cast<std::size_t>(cell) * mesh.element.num_nodes() + facet[2]] : -1;
+}
+
+void check_facets(const TaggedMesh &draft, const Entities &facets)
 {
   const Element &element = draft.mesh.element;
-  const auto ends = [&](const Edge &edge) {
-    const auto &facet = element.facets()[edge.ordinal];
-    const int *const nodes = &draft.mesh.cells[static_cast<std::size_t>(edge.cell) * element.num_nodes()];
-    return std::array<int, 3>{nodes[facet[0]], nodes[facet[1]], facet.size() > 2 ? nodes[facet[2]] : -1};
+  const auto first_node = [&](const int cell, const int ordinal) {
+    return draft.mesh.cells[static_cast<std::size_t>(cell) * element.num_nodes() + element.facets()[ordinal][0]];
   };
-  std::vector<Edge> edges;
-  for (int c = 0; c < draft.mesh.num_cells(); ++c)
-    for (int f = 0; f < element.num_facets(); ++f) {
-      Edge edge{0, 0, -1, c, f};
-      const auto [a, b, middle] = ends(edge);
-      edge.low = std::min(a, b);
-      edge.high = std::max(a, b);
-      edge.middle = middle;
-      edges.push_back(edge);
+  for (int f = 0; f < facets.size(); ++f)
+    for (int k = 1; k < facets.num_cells_at(f); ++k) {
+      const int cell = facets.cell(f, k), before = facets.cell(f, k - 1);
+      const int ordinal = facets.ordinal(f, k), ordinal_before = facets.ordinal(f, k - 1);
+      const auto label = [&](const char *const both) {
+        return draft.where + label_of_cell(draft, before) + " and " + label_of_cell(draft, cell) + both +
+               label_of_node(draft, facets.vertices[2 * f]) + " and " +
+               label_of_node(draft, facets.vertices[2 * f + 1]);
+      };
+      // Of two neighbours, both counterclockwise, one runs along their edge and the other against it.
+      RPC_REQUIRE_CODE(first_node(cell, ordinal) != first_node(before, ordinal_before), ExitCode::bad_mesh,
+                       label(" overlap: they lie on the same side of the edge between "));
+      RPC_REQUIRE_CODE(middle_node(draft.mesh, cell, ordinal) == middle_node(draft.mesh, before, ordinal_before),
+                       ExitCode::bad_mesh, label(" have different middle nodes on the edge between "));
     }
-  std::stable_sort(edges.begin(), edges.end(), [](const Edge &l, const Edge &r) { return l.nodes() < r.nodes(); });
-  for (std::size_t e = 1; e < edges.size(); ++e) {
-    const Edge &edge = edges[e], &before = edges[e - 1];
-    if (edge.nodes() != before.nodes()) continue;
-    const auto label = [&](const char *const both) {
-      return draft.where + label_of_cell(draft, before.cell) + " and " + label_of_cell(draft, edge.cell) + both +
-             label_of_node(draft, edge.low) + " and " + label_of_node(draft, edge.high);
-    };
-    // Of two neighbours, both counterclockwise, one runs along their edge and the other against it.
-    RPC_REQUIRE_CODE(ends(edge)[0] != ends(before)[0], ExitCode::bad_mesh,
-                     label(" overlap: they lie on the same side of the edge between "));
-    RPC_REQUIRE_CODE(edge.middle == before.middle, ExitCode::bad_mesh,
-                     label(" have different middle nodes on the edge between "));
-  }
-  return edges;
 }
 
 } // namespace rpc::mesh
