@@ -3,6 +3,8 @@
 #include "rpc/fem/discretization.hpp"
 #include "rpc/mesh/shape_functions.hpp"
 
+#include <utility>
+
 /// What kernels over cells and facets share: geometry at a quadrature point, and the choice of static extents.
 namespace rpc::fem
 {
@@ -10,6 +12,9 @@ namespace rpc::fem
 using mesh::ShapeFunctions;
 using mesh::StaticElement;
 using mesh::with_static_extents;
+
+using ReadVector = decltype(device_read(std::declval<const Vector &>()));
+using WriteVector = decltype(device_write(std::declval<Vector &>()));
 
 /// Determinant and inverse of a small matrix; inverse is undefined if the determinant is 0.
 template <int Dim>

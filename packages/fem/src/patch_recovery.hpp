@@ -1,6 +1,7 @@
 #pragma once
 
-#include "elastic_kernels.hpp"
+#include "around_nodes.hpp"
+#include "elastic_cells.hpp"
 #include "patch_polynomial.hpp"
 
 /// The kernels of the recovery of stresses, (2.8): fit, adopt, evaluate.

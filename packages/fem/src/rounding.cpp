@@ -1,6 +1,6 @@
 #include "rpc/fem/rounding.hpp"
 
-#include "elastic_kernels.hpp"
+#include "elastic_cells.hpp"
 
 #include <limits>
 
