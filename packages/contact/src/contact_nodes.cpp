@@ -45,7 +45,7 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
       "rpc::contact::directions", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         double length = 0, free_gap = nodes.gap(i);
         for (int k = 0; k < nodes.dim; ++k) {
-          const LO dof = nodes.dim * nodes.node(i) + k;
+          const LO dof = nodes.dof(i, k);
           if (fixed(dof)) free_gap -= nodes.normal(i, k) * value(dof);
           nodes.direction(i, k) = fixed(dof) ? 0 : nodes.normal(i, k);
           length += nodes.direction(i, k) * nodes.direction(i, k);

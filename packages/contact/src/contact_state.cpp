@@ -13,7 +13,7 @@ void to_columns(const Vector &u, const int dim, MultiVector &columns)
   Kokkos::parallel_for(
       "rpc::contact::to_columns", device_range(static_cast<LO>(columns.getLocalLength())),
       KOKKOS_LAMBDA(const LO node) {
-        for (int k = 0; k < dim; ++k) to(node, k) = from(dim * node + k);
+        for (int k = 0; k < dim; ++k) to(node, k) = from(dof(dim, node, k));
       });
   Kokkos::fence();
 }
@@ -26,7 +26,7 @@ void from_columns(const MultiVector &columns, const int dim, Vector &u)
   Kokkos::parallel_for(
       "rpc::contact::from_columns", device_range(static_cast<LO>(columns.getLocalLength())),
       KOKKOS_LAMBDA(const LO node) {
-        for (int k = 0; k < dim; ++k) to(dim * node + k) = from(node, k);
+        for (int k = 0; k < dim; ++k) to(dof(dim, node, k)) = from(node, k);
       });
   Kokkos::fence();
 }

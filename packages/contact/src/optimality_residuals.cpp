@@ -20,7 +20,7 @@ Vector without_translation(const fem::DirichletDofs &dirichlet, const int dim, c
     Kokkos::parallel_reduce(
         "rpc::contact::mean_prescribed", device_range(n / dim),
         KOKKOS_LAMBDA(const LO node, double &sum, double &count) {
-          const LO dof = dim * node + component;
+          const LO dof = rpc::dof(dim, node, component);
           if (!fixed(dof)) return;
           sum += x(dof);
           count += 1;

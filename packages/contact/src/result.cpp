@@ -47,7 +47,7 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
   Kokkos::parallel_for(
       "rpc::contact::result_fields", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         u_nu(i) = 0;
-        for (int k = 0; k < c.dim; ++k) u_nu(i) += c.normal(i, k) * x(c.dim * c.node(i) + k);
+        for (int k = 0; k < c.dim; ++k) u_nu(i) += c.normal(i, k) * x(c.dof(i, k));
         v(i) = u_nu(i) - c.gap(i);
         s(i) = static_cast<int>(p(i) >= c.yield(i) ? State::yielding : (p(i) > 0 ? State::closed : State::open));
       });
@@ -156,7 +156,7 @@ Vector contact_forces(const fem::Discretization &d, const ContactNodes &contact,
   const auto to = device_write(force);
   for_each_point_by_group(
       "rpc::contact::forces", c, KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) -= c.weight(i) * p(i) * c.normal(i, k);
+        for (int k = 0; k < c.dim; ++k) to(c.dof(i, k)) -= c.weight(i) * p(i) * c.normal(i, k);
       });
   Kokkos::fence();
   return force;

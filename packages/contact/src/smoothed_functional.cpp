@@ -122,7 +122,7 @@ void add_contact_force(const ContactNodes &c, const DeviceView<double *> &p, Vec
   const auto to = device_write(F);
   for_each_point_by_group(
       "rpc::contact::force", c, KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) to(c.dim * c.node(i) + k) += c.weight(i) * p(i) * c.direction(i, k);
+        for (int k = 0; k < c.dim; ++k) to(c.dof(i, k)) += c.weight(i) * p(i) * c.direction(i, k);
       });
   Kokkos::fence();
 }
@@ -230,7 +230,7 @@ void move_points(const ContactNodes &c, const DeviceView<double *> &lambda, cons
   const auto x = device_write(u);
   for_each_point_by_group(
       "rpc::contact::move_points", c, KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) x(c.dim * c.node(i) + k) += move(i) * c.direction(i, k);
+        for (int k = 0; k < c.dim; ++k) x(c.dof(i, k)) += move(i) * c.direction(i, k);
       });
   Kokkos::fence();
 }
@@ -527,7 +527,7 @@ void SmoothedFunctional::take_active_set(const ActiveSetChoice &choice, Vector &
         if (c.fixed(i)) return;
         if (next(i) == State::closed && active(i) != State::closed) {
           const double move = penetration(c, i, x) / squared_length(c, i);
-          for (int k = 0; k < c.dim; ++k) x(c.dim * c.node(i) + k) -= move * c.direction(i, k);
+          for (int k = 0; k < c.dim; ++k) x(c.dof(i, k)) -= move * c.direction(i, k);
         }
         active(i) = next(i);
         if (next(i) == State::closed)

@@ -17,9 +17,9 @@ void find_own_blocks(const NodePoints &p, const CrsMatrix &K, const DeviceView<s
   Kokkos::parallel_for(
       "rpc::operator::find_blocks", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
         for (int k = 0; k < p.dim; ++k) {
-          const LO row = p.dim * p.node(i) + k;
+          const LO row = p.dof(i, k);
           std::size_t at = A.graph.row_map(row);
-          while (A.graph.entries(at) != p.dim * p.node(i)) ++at; // an owned node's first column has its first row's lid
+          while (A.graph.entries(at) != p.dof(i, 0)) ++at; // an owned node's first column has its first row's lid
           entry(i, k) = at;
           for (int l = 0; l < p.dim; ++l) block(i, k, l) = A.values(at + l);
         }
@@ -63,7 +63,7 @@ void add_directions(const NodePoints &p, Vector &directions)
       "rpc::operator::directions", p, KOKKOS_LAMBDA(const LO i) {
         const double length = squared_length(p, i);
         if (length > 0)
-          for (int k = 0; k < p.dim; ++k) to(p.dim * p.node(i) + k) += std::fabs(p.direction(i, k)) / std::sqrt(length);
+          for (int k = 0; k < p.dim; ++k) to(p.dof(i, k)) += std::fabs(p.direction(i, k)) / std::sqrt(length);
       });
   Kokkos::fence();
 }
@@ -82,7 +82,7 @@ DeviceView<double *> coupled_stiffness_of(const NodePoints &p, const CrsMatrix &
         double sum = 0;
         for (int k = 0; k < p.dim; ++k) {
           const double m = p.direction(i, k);
-          const LO row = p.dim * p.node(i) + k;
+          const LO row = p.dof(i, k);
           if (m == 0) continue;
           for (auto e = A.graph.row_map(row); e < A.graph.row_map(row + 1); ++e)
             sum += std::fabs(m * A.values(e)) * at(A.graph.entries(e));
@@ -135,7 +135,7 @@ void multiply_rows(const NodePoints &p, const DeviceView<LO *> &lead, const Devi
       "rpc::operator::multiply_rows", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
         if (lead(i) != i) return;
         for (int k = 0; k < p.dim; ++k) {
-          const LO row = p.dim * p.node(i) + k;
+          const LO row = p.dof(i, k);
           const std::size_t own = entry(i, k);
           double sum = 0;
           for (std::size_t e = matrix.graph.row_map(row); e < own; ++e)

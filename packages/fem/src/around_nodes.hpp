@@ -41,7 +41,7 @@ KOKKOS_INLINE_FUNCTION int place_in(const DeviceView<LO **> &cells, const LO cel
 }
 
 /// @param cells  (cells or facets, nodes) overlap lids
-inline NodeCells around_nodes(const DeviceView<LO **> &cells, const LO num_owned)
+inline NodeToCells around_nodes(const DeviceView<LO **> &cells, const LO num_owned)
 {
   const LO num_cells = static_cast<LO>(cells.extent(0));
   const int nodes = static_cast<int>(cells.extent(1));
@@ -51,12 +51,12 @@ inline NodeCells around_nodes(const DeviceView<LO **> &cells, const LO num_owned
         for (int a = 0; a < nodes; ++a)
           if (cells(cell, a) < num_owned) Kokkos::atomic_increment(&count(cells(cell, a)));
       });
-  NodeCells around;
-  around.row = offsets_of(count, "rpc::fem::node_cells_row");
-  around.cell = DeviceView<LO *>("rpc::fem::node_cells", last_of(around.row));
+  NodeToCells node_to_cells;
+  node_to_cells.row = offsets_of(count, "rpc::fem::node_cells_row");
+  node_to_cells.cell = DeviceView<LO *>("rpc::fem::node_cells", last_of(node_to_cells.row));
   Kokkos::deep_copy(count, 0);
-  const auto row = around.row;
-  const auto list = around.cell;
+  const auto row = node_to_cells.row;
+  const auto list = node_to_cells.cell;
   Kokkos::parallel_for(
       "rpc::fem::list_cells", device_range(num_cells), KOKKOS_LAMBDA(const LO cell) {
         for (int a = 0; a < nodes; ++a) {
@@ -65,7 +65,7 @@ inline NodeCells around_nodes(const DeviceView<LO **> &cells, const LO num_owned
         }
       });
   sort_lists(row, list);
-  return around;
+  return node_to_cells;
 }
 
 } // namespace rpc::fem

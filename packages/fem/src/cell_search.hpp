@@ -1,7 +1,6 @@
 #pragma once
 
 #include "kernels.hpp"
-#include "shape_functions.hpp"
 
 /// Search for the cell in which a point lies, or that is next to it; private to interpolation().
 namespace rpc::fem
@@ -51,7 +50,7 @@ struct Bins {
   /// The bin of a coordinate in one direction, the last one for what lies beyond it.
   KOKKOS_INLINE_FUNCTION int along(const int d, const double x) const
   {
-    return static_cast<int>(within(0, (x - lower[d]) / width[d], count[d] - 0.5));
+    return static_cast<int>(mesh::within(0, (x - lower[d]) / width[d], count[d] - 0.5));
   }
   /// The bins that a box (lower and upper ends) meets.
   template <class Box>
@@ -211,7 +210,7 @@ struct FindPlaces {
       for (int i = 0; i < Dim; ++i) {
         double to = place.X[i];
         for (int j = 0; j < Dim; ++j) to -= inverse[i][j] * r[j];
-        to = within(-1.5, to, 1.5); // farther out the map may fold over
+        to = mesh::within(-1.5, to, 1.5); // farther out the map may fold over
         const double moved = to > place.X[i] ? to - place.X[i] : place.X[i] - to;
         if (moved > change) change = moved;
         place.X[i] = to;

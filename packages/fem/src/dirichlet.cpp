@@ -2,6 +2,7 @@
 
 #include "component_name.hpp"
 #include "rpc/core/device_values.hpp"
+#include "rpc/core/dofs.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
@@ -56,7 +57,7 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const mesh::Mesh &mesh,
       for (std::size_t n = 0; n < nodes.size(); ++n) largest = std::max(largest, std::abs(values(n)));
       scale[k][c] = max_all(mesh.comm(), largest);
       for (std::size_t n = 0; n < nodes.size(); ++n) {
-        Prescribed &dof = prescribed[dim * nodes[n] + c];
+        Prescribed &dof = prescribed[rpc::dof(dim, nodes[n], c)];
         const int other = dof.condition;
         const bool differs =
             other >= 0 && std::abs(dof.value - values(n)) > 1e-12 * std::max(scale[other][c], scale[k][c]);
@@ -87,9 +88,9 @@ DeviceView<LO *> prescribed_columns(const Discretization &d, const CrsMatrix &K,
       "rpc::fem::count_prescribed_columns", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO node) {
         int touched = 0; // few nodes are: the others' entries need not be read
         for (auto k = nodes.row(node); k < nodes.row(node + 1); ++k)
-          for (int c = 0; c < dim; ++c) touched |= fixed(dim * nodes.col(k) + c);
+          for (int c = 0; c < dim; ++c) touched |= fixed(dof(dim, nodes.col(k), c));
         if (touched == 0) return;
-        for (LO row = dim * node; row < dim * (node + 1); ++row)
+        for (LO row = dof(dim, node, 0); row < dof(dim, node + 1, 0); ++row)
           for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k)
             count(row) += fixed(A.graph.entries(k)) != 0;
       });
@@ -311,7 +312,7 @@ std::vector<std::array<double, 3>> reaction_forces(const Discretization &d, cons
   const auto force = device_read(out_of_balance);
   Kokkos::parallel_for(
       "rpc::fem::reactions", device_range(static_cast<LO>(condition.extent(0))), KOKKOS_LAMBDA(const LO dof) {
-        if (condition(dof) >= 0) add_shared(sums(condition(dof), dof % dim), force(dof));
+        if (condition(dof) >= 0) add_shared(sums(condition(dof), component_of(dim, dof)), force(dof));
       });
   const auto mine = to_host(sums);
   std::vector<std::array<double, 3>> reactions(num_conditions);

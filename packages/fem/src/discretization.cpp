@@ -1,7 +1,7 @@
 #include "rpc/fem/discretization.hpp"
 
 #include "around_nodes.hpp"
-#include "cell_shapes.hpp"
+#include "congruent_cells.hpp"
 #include "fill_entries.hpp"
 
 #include <array>
@@ -11,11 +11,11 @@ namespace rpc::fem
 namespace
 {
 
-NodeGraph node_graph(const mesh::Mesh &mesh, const NodeCells &around)
+NodeGraph node_graph(const mesh::Mesh &mesh, const NodeToCells &node_to_cells)
 {
   const auto cells = mesh.cells;
-  const auto row = around.row;
-  const auto list = around.cell;
+  const auto row = node_to_cells.row;
+  const auto list = node_to_cells.cell;
   const LO num_owned = mesh.num_owned_nodes();
   const int nodes = mesh.element.num_nodes();
   DeviceView<LO *> candidates(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_candidates"),
@@ -54,11 +54,12 @@ NodeGraph node_graph(const mesh::Mesh &mesh, const NodeCells &around)
 RCP<const Map> dof_map(const Map &nodes, const int dim)
 {
   const GO total = static_cast<GO>(nodes.getGlobalNumElements());
-  if (nodes.isContiguous()) return rcp(new Map(dim * total, dim * num_local(nodes), 0, nodes.getComm()));
+  if (nodes.isContiguous())
+    return rcp(new Map(num_dofs(dim, total), num_dofs(dim, num_local(nodes)), 0, nodes.getComm()));
   const auto gids = nodes.getMyGlobalIndices();
-  Teuchos::Array<GO> dofs(gids.size() * dim);
+  Teuchos::Array<GO> dofs(num_dofs(dim, gids.size()));
   for (std::size_t n = 0; n < gids.size(); ++n)
-    for (int c = 0; c < dim; ++c) dofs[dim * n + c] = dim * gids(n) + c;
+    for (int c = 0; c < dim; ++c) dofs[dof(dim, n, c)] = dof(dim, gids(n), c);
   return rcp(new Map(Teuchos::OrdinalTraits<GO>::invalid(), dofs(), 0, nodes.getComm()));
 }
 
@@ -76,10 +77,10 @@ struct FillDofGraph {
     const std::size_t begin = nodes.row(node), length = nodes.row(node + 1) - begin;
     for (int i = 0; i < Dim; ++i) {
       const std::size_t start = Dim * (Dim * begin + i * length);
-      row(Dim * node + i + 1) = start + Dim * length;
+      row(dof(Dim, node, i) + 1) = start + Dim * length;
       if constexpr (!on_gpu)
         for (std::size_t k = 0; k < length; ++k)
-          for (int j = 0; j < Dim; ++j) entries(start + Dim * k + j) = Dim * nodes.col(begin + k) + j;
+          for (int j = 0; j < Dim; ++j) entries(start + dof(Dim, k, j)) = dof(Dim, nodes.col(begin + k), j);
     }
   }
 };
@@ -95,7 +96,7 @@ struct DofColumns {
     const std::size_t begin = nodes.row(node);
     const unsigned length = Dim * static_cast<unsigned>(nodes.row(node + 1) - begin),
                    k = static_cast<unsigned>(entry) % length;
-    return Dim * nodes.col(begin + k / Dim) + k % Dim;
+    return dof(Dim, nodes.col(begin + node_of(Dim, k)), component_of(Dim, k));
   }
 };
 
@@ -114,7 +115,7 @@ RCP<const CrsGraph> dof_graph(const Discretization &d)
   using LocalGraph = CrsGraph::local_graph_device_type;
   const LO num_nodes = d.mesh->num_owned_nodes();
   const int dim = d.dim();
-  LocalGraph::row_map_type::non_const_type row("rpc::fem::graph_row", dim * num_nodes + 1);
+  LocalGraph::row_map_type::non_const_type row("rpc::fem::graph_row", num_dofs(dim, num_nodes) + 1);
   LocalGraph::entries_type::non_const_type col(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_col"),
                                                std::size_t(dim) * dim * d.nodes.col.extent(0));
   if (dim == 2)
@@ -137,9 +138,9 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
   d.overlap_dofs =
       d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
   if (d.overlap_dofs != d.owned_dofs) d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
-  d.shapes = cell_shapes(*d.mesh);
-  d.around = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
-  d.nodes = node_graph(*d.mesh, d.around);
+  d.congruent = congruent_cells(*d.mesh);
+  d.node_to_cells = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
+  d.nodes = node_graph(*d.mesh, d.node_to_cells);
   d.graph = dof_graph(d);
   return d;
 }
@@ -177,12 +178,12 @@ RCP<MultiVector> rigid_body_modes(const Discretization &d)
   const auto x = coords->getLocalViewDevice(Tpetra::Access::ReadOnly);
   Kokkos::parallel_for(
       "rpc::fem::rigid_body_modes", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO node) {
-        for (int c = 0; c < dim; ++c) modes(dim * node + c, c) = 1;
+        for (int c = 0; c < dim; ++c) modes(dof(dim, node, c), c) = 1;
         int mode = dim;
         for (int i = 0; i < dim; ++i) {
           for (int j = i + 1; j < dim; ++j, ++mode) { // rotation in the plane of x_i and x_j
-            modes(dim * node + i, mode) = -(x(node, j) - centre[j]);
-            modes(dim * node + j, mode) = x(node, i) - centre[i];
+            modes(dof(dim, node, i), mode) = -(x(node, j) - centre[j]);
+            modes(dof(dim, node, j), mode) = x(node, i) - centre[i];
           }
         }
       });

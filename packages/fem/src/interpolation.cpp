@@ -226,7 +226,7 @@ template <int Dim, int Nodes>
 RCP<CrsMatrix> interpolate(const mesh::Mesh &from, const mesh::Mesh &to)
 {
   const LO num_rows = to.num_owned_nodes();
-  const ShapeFunctions<Dim, Nodes> shape(from.element);
+  const ShapeFunctions<Dim, Nodes> shape;
   const GatheredMesh whole = gather(from);
   const auto box = boxes(shape, whole);
   const Bins<Dim> bins = bins_of<Dim>(box);

@@ -1,14 +1,20 @@
 #pragma once
 
-#include "rpc/core/error.hpp"
 #include "rpc/fem/discretization.hpp"
+#include "rpc/mesh/shape_functions.hpp"
 
-#include <string>
 #include <utility>
 
 /// What kernels over cells and facets share: geometry at a quadrature point, and the choice of static extents.
 namespace rpc::fem
 {
+
+using mesh::ShapeFunctions;
+using mesh::StaticElement;
+using mesh::with_static_extents;
+
+using ReadVector = decltype(device_read(std::declval<const Vector &>()));
+using WriteVector = decltype(device_write(std::declval<Vector &>()));
 
 /// Determinant and inverse of a small matrix; inverse is undefined if the determinant is 0.
 template <int Dim>
@@ -91,8 +97,8 @@ KOKKOS_INLINE_FUNCTION void displacement_gradient(const U &u, const DeviceView<L
     for (int j = 0; j < Dim; ++j) {
       grad[i][j] = 0;
       // Gradients sum to 0 over the nodes; differences let a translation vanish to the last digit.
-      const double first = u(Dim * cells(cell, 0) + i);
-      for (int a = 1; a < Nodes; ++a) grad[i][j] += (u(Dim * cells(cell, a) + i) - first) * dN[a][j];
+      const double first = u(dof(Dim, cells(cell, 0), i));
+      for (int a = 1; a < Nodes; ++a) grad[i][j] += (u(dof(Dim, cells(cell, a), i)) - first) * dN[a][j];
     }
 }
 
@@ -105,8 +111,8 @@ KOKKOS_INLINE_FUNCTION double divergence(const U &u, const DeviceView<LO **> &ce
   double sum = 0;
   for (int i = 0; i < Dim; ++i) {
     double slope = 0;
-    const double first = u(Dim * cells(cell, 0) + i);
-    for (int a = 1; a < Nodes; ++a) slope += (u(Dim * cells(cell, a) + i) - first) * D[a][i];
+    const double first = u(dof(Dim, cells(cell, 0), i));
+    for (int a = 1; a < Nodes; ++a) slope += (u(dof(Dim, cells(cell, a), i)) - first) * D[a][i];
     sum += slope;
   }
   return sum;
@@ -130,21 +136,6 @@ KOKKOS_INLINE_FUNCTION Kokkos::Array<double, 3> area_normal(const Coords &coords
 KOKKOS_INLINE_FUNCTION double norm(const Kokkos::Array<double, 3> &v)
 {
   return Kokkos::Experimental::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/// Calls work(Dim, Nodes) with both as compile-time constants. A new element is a new line here.
-template <class Work>
-void with_static_extents(const mesh::Element &element, Work &&work)
-{
-  using std::integral_constant;
-  const auto is = [&](const int dim, const int nodes) { return element.dim == dim && element.num_nodes() == nodes; };
-  if (is(2, 3)) return work(integral_constant<int, 2>(), integral_constant<int, 3>());
-  if (is(2, 6)) return work(integral_constant<int, 2>(), integral_constant<int, 6>());
-  if (is(2, 4)) return work(integral_constant<int, 2>(), integral_constant<int, 4>());
-  if (is(2, 9)) return work(integral_constant<int, 2>(), integral_constant<int, 9>());
-  if (is(3, 8)) return work(integral_constant<int, 3>(), integral_constant<int, 8>());
-  throw Error(ExitCode::bad_input,
-              "fem: no kernels for " + element.name() + " in " + std::to_string(element.dim) + "D");
 }
 
 } // namespace rpc::fem

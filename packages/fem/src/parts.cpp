@@ -1,6 +1,6 @@
 #include "rpc/fem/parts.hpp"
 
-#include "numbers.hpp"
+#include "point_text.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
 
@@ -104,12 +104,12 @@ std::vector<GO> smallest_ids(const Discretization &d, const LocalSets &sets)
     {
       const auto to = owned.getLocalViewHost(Tpetra::Access::OverwriteAll);
       for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
-        for (int c = 0; c < dim; ++c) to(dim * n + c, 0) = static_cast<double>(smallest[set(n)]);
+        for (int c = 0; c < dim; ++c) to(dof(dim, n, c), 0) = static_cast<double>(smallest[set(n)]);
     }
     const auto overlap = on_overlap(d, owned);
     const auto from = overlap->getLocalViewHost(Tpetra::Access::ReadOnly);
     for (LO n = mesh.num_owned_nodes(); n < mesh.num_local_nodes(); ++n) {
-      const GO heard = static_cast<GO>(from(dim * n, 0));
+      const GO heard = static_cast<GO>(from(dof(dim, n, 0), 0));
       if (heard >= smallest[set(n)]) continue;
       smallest[set(n)] = heard;
       changed = 1;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "elastic_kernels.hpp"
+#include "around_nodes.hpp"
+#include "elastic_cells.hpp"
 #include "patch_polynomial.hpp"
-#include "shape_functions.hpp"
 
 /// The kernels of the recovery of stresses, (2.8): fit, adopt, evaluate.
 namespace rpc::fem
@@ -34,7 +34,7 @@ struct Components {
 /// degree more, goes with it.
 template <int Dim, int Nodes>
 struct PatchTable {
-  static constexpr int degree = Nodes <= (1 << Dim) ? 2 : 3;
+  static constexpr int degree = StaticElement<Dim, Nodes>::order + 1;
   using Terms = Monomials<Dim, degree>;
   static constexpr int trust = 0, centre = 1, frame = centre + Dim, coefficients = frame + Dim * (Dim + 1) / 2;
   using Dilatation = Monomials<Dim, (Projection<Dim, Nodes>::modes > 1 ? 2 : 1)>;
@@ -60,7 +60,7 @@ struct FitPatch {
   DeviceView<std::size_t *> node_row; // (owned nodes + 1)                     in
   DeviceView<LO *> node_cell;         // cells around nodes                    in
   NodeGraph graph;                    //                                       in
-  DeviceView<int **> mate;            // (vertices, Dim), see facet_mates      in
+  DeviceView<int ***> mate;           // see facet_mates                       in
   WriteColumns table;                 // (owned nodes, PatchTable)             out, at vertices
 
   KOKKOS_FUNCTION void operator()(const LO node) const
@@ -86,7 +86,7 @@ struct FitPatch {
       Terms::evaluate(xi, term);
       for (int s = 0; s < Terms::size; ++s) {
         for (int t = 0; t <= s; ++t) normal[s][t] += term[s] * term[t];
-        for (int i = 0; i < Dim; ++i) c[s][i] += term[s] * (u(Dim * graph.col(k) + i) - u(Dim * node + i));
+        for (int i = 0; i < Dim; ++i) c[s][i] += term[s] * (u(dof(Dim, graph.col(k), i)) - u(dof(Dim, node, i)));
       }
     }
     bool one_block = true;
@@ -156,15 +156,25 @@ struct FitPatch {
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
       const int a = place_in(body.cells, node_cell(k), node);
       for (int f = 0; f < Dim; ++f)
-        if (!shares(node, k, body.cells(node_cell(k), mate(a, f)))) return false;
+        if (!shares_facet(node, k, a, f)) return false;
     }
     return true;
   }
-  KOKKOS_FUNCTION bool shares(const LO node, const std::size_t except, const LO other) const
+  /// Whether another cell at a node has the facet f at the vertex a of the node's k-th cell.
+  KOKKOS_FUNCTION bool shares_facet(const LO node, const std::size_t k, const int a, const int f) const
   {
-    for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
-      for (std::size_t a = 0; a < mate.extent(0) && k != except; ++a)
-        if (body.cells(node_cell(k), a) == other) return true;
+    for (std::size_t other = node_row(node); other < node_row(node + 1); ++other) {
+      bool all = other != k;
+      for (std::size_t m = 0; m < mate.extent(2) && all; ++m)
+        all = has_vertex(node_cell(other), body.cells(node_cell(k), mate(a, f, m)));
+      if (all) return true;
+    }
+    return false;
+  }
+  KOKKOS_FUNCTION bool has_vertex(const LO cell, const LO node) const
+  {
+    for (std::size_t a = 0; a < mate.extent(0); ++a)
+      if (body.cells(cell, a) == node) return true;
     return false;
   }
 };
@@ -218,7 +228,7 @@ template <int Dim, int Nodes>
 struct Polynomials {
   using Table = PatchTable<Dim, Nodes>;
   using Terms = typename Table::Terms;
-  static constexpr int vertices = ShapeFunctions<Dim, Nodes>::simplex ? Dim + 1 : 1 << Dim;
+  static constexpr int vertices = StaticElement<Dim, Nodes>::vertices;
 
   ElasticCells<Dim, Nodes> body; //                                in
   ReadColumns table;             // (overlap nodes, PatchTable)    in
@@ -296,10 +306,10 @@ struct Polynomials {
   }
 };
 
-/// What the linear shape functions of a cell's vertices are at its nodes: their values anywhere are sums with the shape
+/// The shape functions of order 1, those of the vertices, at the nodes of a cell: their values anywhere are sums with the shape
 /// functions of the nodes.
 template <int Dim, int Nodes>
-struct LinearShapes {
+struct VertexFunctions {
   static constexpr int vertices = Polynomials<Dim, Nodes>::vertices;
 
   double at_node[Nodes][vertices];
@@ -307,20 +317,15 @@ struct LinearShapes {
   /// Whether a node lies inside the edge, face or cell that ends in a vertex, or is that vertex.
   KOKKOS_INLINE_FUNCTION bool carries(const int node, const int vertex) const { return at_node[node][vertex] > 0; }
 
-  explicit LinearShapes(const mesh::Element &element)
+  VertexFunctions()
   {
-    const auto &lattice = element.lattice();
-    for (int a = 0; a < Nodes; ++a)
-      for (int v = 0; v < vertices; ++v) {
-        double shape = 1, rest = element.order;
-        for (int i = 0; i < Dim; ++i) {
-          rest -= lattice[a][i];
-          shape *=
-              lattice[v][i] == 0 ? 1 - double(lattice[a][i]) / element.order : double(lattice[a][i]) / element.order;
-        }
-        if (ShapeFunctions<Dim, Nodes>::simplex) shape = (v == 0 ? rest : lattice[a][v - 1]) / element.order;
-        at_node[a][v] = shape;
-      }
+    const ShapeFunctions<Dim, Nodes> of_nodes;
+    const ShapeFunctions<Dim, vertices> of_vertices;
+    for (int a = 0; a < Nodes; ++a) {
+      double X[Dim], slope[vertices][Dim];
+      of_nodes.node(a, X);
+      of_vertices.evaluate(X, at_node[a], slope);
+    }
   }
 };
 
@@ -333,7 +338,7 @@ struct EvaluatePatches {
   Polynomials<Dim, Nodes> polynomials; //                                 in
   DeviceView<std::size_t *> node_row;  // (owned nodes + 1)                in
   DeviceView<LO *> node_cell;          // cells around nodes               in
-  LinearShapes<Dim, Nodes> linear;     //                                  in
+  VertexFunctions<Dim, Nodes> linear;  //                                  in
   WriteColumns result;                 // (owned nodes, stress_names) [Pa] out
 
   KOKKOS_FUNCTION void operator()(const LO node) const
@@ -400,7 +405,7 @@ struct EvaluatePatches {
 template <int Dim, int Nodes>
 struct RecoveryDifference {
   Polynomials<Dim, Nodes> polynomials; //                         in, the body with a rule for the difference's square
-  LinearShapes<Dim, Nodes> linear;     //                         in
+  VertexFunctions<Dim, Nodes> linear;  //                         in
   ReadVector u;                        // (overlap dofs)    [m]   in
   DeviceView<double *> energy;         // (owned cells)     [J]   out
 
@@ -436,7 +441,7 @@ struct RecoveryDifference {
 template <int Dim, int Nodes>
 struct RecoveredTraction {
   Polynomials<Dim, Nodes> polynomials; //                                             in
-  LinearShapes<Dim, Nodes> linear;     //                                             in
+  VertexFunctions<Dim, Nodes> linear;  //                                             in
   DeviceView<LO **> facets;            // (facets, facet nodes)                       in
   DeviceView<LO *> cell;               // (facets)                                    in
   DeviceView<double **> value;         // (points, facet nodes)                       in

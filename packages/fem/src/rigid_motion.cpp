@@ -1,6 +1,6 @@
 #include "rpc/fem/rigid_motion.hpp"
 
-#include "numbers.hpp"
+#include "point_text.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <algorithm>
@@ -93,7 +93,7 @@ LO list_held_nodes(const DeviceView<char *> &fixed, const int dim, const LO num_
       "rpc::fem::held_nodes", device_range(num_owned),
       KOKKOS_LAMBDA(const LO n, LO &at, const bool last) {
         bool held = false;
-        for (int c = 0; c < dim; ++c) held = held || fixed(dim * n + c);
+        for (int c = 0; c < dim; ++c) held = held || fixed(dof(dim, n, c));
         if (!held) return;
         if (last && list.extent(0) > 0) list(at) = n;
         ++at;
@@ -118,7 +118,7 @@ DeviceView<int **> what_is_held(const DirichletDofs &dirichlet, const Parts &par
   const auto of_node = parts.of_node;
   Kokkos::parallel_for(
       "rpc::fem::what_is_held", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO i) {
-        for (int c = 0; c < dim; ++c) held(i, c) = fixed(dim * nodes(i) + c) ? 1 : 0;
+        for (int c = 0; c < dim; ++c) held(i, c) = fixed(dof(dim, nodes(i), c)) ? 1 : 0;
         held(i, dim) = of_node(nodes(i));
       });
   return held;
@@ -232,7 +232,7 @@ std::vector<Resultant> resultants(const Discretization &d, const Parts &parts, c
         const int p = of_node(n);
         for (int c = 0; c < dim; ++c) {
           arm[c] = (coords(n, c) - centre(p, c)) / radius(p);
-          at[c] = f(dim * n + c);
+          at[c] = f(dof(dim, n, c));
           size += at[c] < 0 ? -at[c] : at[c];
         }
         if (size == 0) return;

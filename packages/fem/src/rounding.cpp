@@ -1,6 +1,6 @@
 #include "rpc/fem/rounding.hpp"
 
-#include "elastic_kernels.hpp"
+#include "elastic_cells.hpp"
 
 #include <limits>
 
@@ -27,7 +27,7 @@ struct RoundingEnergy {
       const LO node = body.cells(cell, a);
       double square[2] = {};
       for (int i = 0; i < Dim; ++i) {
-        square[0] += u(Dim * node + i) * u(Dim * node + i);
+        square[0] += u(dof(Dim, node, i)) * u(dof(Dim, node, i));
         square[1] += body.coords(node, i) * body.coords(node, i);
       }
       for (int k = 0; k < 2; ++k) largest[k] = Kokkos::Experimental::fmax(largest[k], square[k]);
@@ -39,7 +39,7 @@ struct RoundingEnergy {
         for (int j = 0; j < Dim; ++j) {
           stiffness += dN[a][j] * dN[a][j];
           for (int i = 0; i < Dim; ++i)
-            gradient[i][j] += (u(Dim * body.cells(cell, a) + i) - u(Dim * body.cells(cell, 0) + i)) * dN[a][j];
+            gradient[i][j] += (u(dof(Dim, body.cells(cell, a), i)) - u(dof(Dim, body.cells(cell, 0), i))) * dN[a][j];
         }
       for (int i = 0; i < Dim; ++i)
         for (int j = 0; j < Dim; ++j) turn += gradient[i][j] * gradient[i][j];

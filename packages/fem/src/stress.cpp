@@ -7,25 +7,25 @@ namespace rpc::fem
 namespace
 {
 
-DeviceView<int **> device_table(const std::vector<std::vector<int>> &rows, const std::string &label)
+/// (vertices, facets at a vertex, mates): for each facet at a vertex those of its vertices that, with this one, tell it from
+/// all other facets around the vertex: an edge's other end, the other two of a triangle, a quadrilateral's far corner.
+DeviceView<int ***> facet_mates(const mesh::Element &element)
 {
-  DeviceView<int **> table(label, rows.size(), rows[0].size());
-  const auto host = Kokkos::create_mirror_view(table);
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    for (std::size_t c = 0; c < rows[r].size(); ++c) host(r, c) = rows[r][c];
-  Kokkos::deep_copy(table, host);
-  return table;
-}
-
-/// (vertices, dim): for each facet at a vertex the vertex that lies opposite in it, an edge's other end or a
-/// quadrilateral's far corner. With the vertex, it tells the facet from all others around the vertex.
-DeviceView<int **> facet_mates(const mesh::Element &element)
-{
-  std::vector<std::vector<int>> mates(element.num_vertices());
-  const int corners = 1 << (element.dim - 1); // facets are edges or quadrilaterals, corners first and in turn
+  const int vertices = element.num_vertices(), corners = element.facet().num_vertices();
+  const bool triangles = element.facet().shape == mesh::Shape::simplex;
+  const DeviceView<int ***> mates("rpc::fem::facet_mates", vertices, element.dim, triangles ? 2 : 1);
+  const auto host = Kokkos::create_mirror_view(mates);
+  std::vector<int> seen(vertices, 0);
   for (const auto &facet : element.facets())
-    for (int i = 0; i < corners; ++i) mates[facet[i]].push_back(facet[(i + corners / 2) % corners]);
-  return device_table(mates, "rpc::fem::facet_mates");
+    for (int i = 0; i < corners; ++i) {
+      const int vertex = facet[i], f = seen[vertex]++;
+      if (triangles)
+        for (int m = 0; m < 2; ++m) host(vertex, f, m) = facet[(i + 1 + m) % corners];
+      else
+        host(vertex, f, 0) = facet[(i + corners / 2) % corners];
+    }
+  Kokkos::deep_copy(mates, host);
+  return mates;
 }
 
 /// The table of the owned nodes with those of the overlap; the table itself on one rank.
@@ -44,15 +44,15 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
   using Table = PatchTable<Dim, Nodes>;
   const mesh::Mesh &mesh = *d.mesh;
   const auto nodes = device_range(mesh.num_owned_nodes());
-  const NodeCells &around = d.around;
+  const NodeToCells &node_to_cells = d.node_to_cells;
   const Import import(mesh.owned_nodes, mesh.overlap_nodes);
   const auto table = rcp(new MultiVector(mesh.owned_nodes, Table::columns)); // zero
   {
     const FitPatch<Dim, Nodes> fit{body,
                                    d.reference.recovery.value,
                                    device_read(u_overlap),
-                                   around.row,
-                                   around.cell,
+                                   node_to_cells.row,
+                                   node_to_cells.cell,
                                    d.nodes,
                                    facet_mates(mesh.element),
                                    table->getLocalViewDevice(Tpetra::Access::ReadWrite)};
@@ -62,8 +62,8 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
   {
     const auto from = with_overlap(mesh, table, import);
     const AdoptPolynomial<Dim, Nodes> adopt{mesh.cells,
-                                            around.row,
-                                            around.cell,
+                                            node_to_cells.row,
+                                            node_to_cells.cell,
                                             from->getLocalViewDevice(Tpetra::Access::ReadOnly),
                                             table->getLocalViewDevice(Tpetra::Access::ReadWrite),
                                             mesh.element.num_vertices()};
@@ -100,9 +100,9 @@ RCP<MultiVector> RecoveredStress::at_nodes() const
   const mesh::Mesh &mesh = *d_.mesh;
   const auto result = rcp(new MultiVector(mesh.owned_nodes, stress_names(d_.dim()).size()));
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const EvaluatePatches<dim, nodes> evaluate{polynomials(elastic_cells<dim, nodes>(d_, materials_), *polynomials_),
-                                               d_.around.row, d_.around.cell, LinearShapes<dim, nodes>(mesh.element),
-                                               result->getLocalViewDevice(Tpetra::Access::ReadWrite)};
+    const EvaluatePatches<dim, nodes> evaluate{
+        polynomials(elastic_cells<dim, nodes>(d_, materials_), *polynomials_), d_.node_to_cells.row,
+        d_.node_to_cells.cell, VertexFunctions<dim, nodes>(), result->getLocalViewDevice(Tpetra::Access::ReadWrite)};
     Kokkos::parallel_for("rpc::fem::evaluate_patches", device_range(mesh.num_owned_nodes()), evaluate);
     Kokkos::fence();
   });
@@ -116,7 +116,7 @@ DeviceView<double *> RecoveredStress::squared_difference() const
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
     const RecoveryDifference<dim, nodes> difference{
         polynomials(elastic_cells<dim, nodes>(d_, materials_, d_.reference.cell_load), *polynomials_),
-        LinearShapes<dim, nodes>(mesh.element), device_read(*u_), energy};
+        VertexFunctions<dim, nodes>(), device_read(*u_), energy};
     Kokkos::parallel_for("rpc::fem::recovery_difference", device_range(mesh.num_owned_cells), difference);
     Kokkos::fence();
   });
@@ -130,7 +130,7 @@ DeviceView<double ***> RecoveredStress::tractions(const mesh::Side &side) const
   const DeviceView<double ***> traction("rpc::fem::recovered_traction", facets, table.num_points(), d_.dim());
   with_static_extents(d_.mesh->element, [&](const auto dim, const auto nodes) {
     const RecoveredTraction<dim, nodes> recovered{polynomials(elastic_cells<dim, nodes>(d_, materials_), *polynomials_),
-                                                  LinearShapes<dim, nodes>(d_.mesh->element),
+                                                  VertexFunctions<dim, nodes>(),
                                                   side.facets,
                                                   side.cell,
                                                   table.value,

@@ -39,13 +39,13 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
   const LO num_owned = mesh.num_owned_nodes();
   const int dim = d.dim();
   const auto facets = side.facets;
-  const NodeCells around = around_nodes(facets, num_owned);
+  const NodeToCells node_to_facets = around_nodes(facets, num_owned);
   LO count = 0;
   DeviceView<LO *> node(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::surface_node"), num_owned);
   Kokkos::parallel_scan(
       "rpc::fem::number_surface", device_range(num_owned),
       KOKKOS_LAMBDA(const LO n, LO &sum, const bool last) {
-        const bool present = around.row(n) < around.row(n + 1);
+        const bool present = node_to_facets.row(n) < node_to_facets.row(n + 1);
         if (last && present) node(sum) = n;
         sum += present;
       },
@@ -64,8 +64,8 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
   const auto rule = d.reference.facet_nodal.weight;
   Kokkos::parallel_for(
       "rpc::fem::surface_weights", device_range(count), KOKKOS_LAMBDA(const LO i) {
-        for (std::size_t k = around.row(lid(i)); k < around.row(lid(i) + 1); ++k) {
-          const LO f = around.cell(k);
+        for (std::size_t k = node_to_facets.row(lid(i)); k < node_to_facets.row(lid(i) + 1); ++k) {
+          const LO f = node_to_facets.cell(k);
           const int a = place_in(facets, f, lid(i)); // the rule's points are the nodes
           const auto area = area_normal(coords, facets, f, gradient, a);
           weight(i) += rule(a) * norm(area);
@@ -102,16 +102,16 @@ void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &
   const auto k = device_read(known_overlap);
   const auto facets = side.facets;
   const int nodes = static_cast<int>(facets.extent(1));
-  const NodeCells around = around_nodes(facets, num_owned);
+  const NodeToCells node_to_facets = around_nodes(facets, num_owned);
   const auto out = device_write(value);
   Kokkos::parallel_for(
       "rpc::fem::extend", device_range(num_owned), KOKKOS_LAMBDA(const LO n) {
         if (k(n) != 0) return;
         double sum = 0;
         int count = 0;
-        for (std::size_t m = around.row(n); m < around.row(n + 1); ++m)
+        for (std::size_t m = node_to_facets.row(n); m < node_to_facets.row(n + 1); ++m)
           for (int b = 0; b < nodes; ++b) {
-            const LO other = facets(around.cell(m), b);
+            const LO other = facets(node_to_facets.cell(m), b);
             if (k(other) == 0) continue;
             sum += v(other);
             ++count;

@@ -288,10 +288,4 @@ TEST(InternalForces, SumToZeroAndHaveNoMoment)
   }
 }
 
-TEST(Stiffness, ElementWithoutKernelsIsRefused)
-{
-  const auto d = body({{0, 0, 0}, {1, 1, 1}, {1, 1, 3}, {3, 2}}, world());
-  expect_error(ExitCode::bad_input, {"Q2 in 3D"}, [&] { fem::assemble_stiffness(d, steel); });
-}
-
 } // namespace

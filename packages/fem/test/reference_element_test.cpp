@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include <Intrepid2_HGRAD_HEX_C2_FEM.hpp>
 #include <Intrepid2_HGRAD_QUAD_C1_FEM.hpp>
 #include <Intrepid2_HGRAD_QUAD_C2_FEM.hpp>
+#include <Intrepid2_HGRAD_TET_C1_FEM.hpp>
+#include <Intrepid2_HGRAD_TET_C2_FEM.hpp>
 #include <Intrepid2_HGRAD_TRI_C1_FEM.hpp>
 #include <Intrepid2_HGRAD_TRI_C2_FEM.hpp>
 #endif
@@ -20,25 +23,23 @@ namespace
 using rpc::to_host;
 using rpc::fem::BasisTable;
 using rpc::fem::tabulate;
+using rpc::mesh::all_elements;
 using rpc::mesh::Element;
 using rpc::mesh::Shape;
-using Places = std::vector<std::vector<int>>;
 
-/// One table on the host, with the nodes of its shape functions and the degree that its rule promises.
+/// One table on the host, with the element of its shape functions and the degree that its rule promises.
 struct Table {
   std::string name;
-  bool triangle;     // reference cell: 0 <= x, 0 <= y, x + y <= 1; else [-1, 1]^d
-  int order, degree; // degree: exact to, in each direction; in triangles, in both together
-  Places lattice;    // of the nodes, {0 .. order}^d
+  Element element; // of a cell or facet
+  int degree;      // exact to, in each direction; in simplices, in all together
   rpc::HostView<double **> value;
   rpc::HostView<double ***> gradient;
   rpc::HostView<double *> weight;
   std::vector<std::vector<double>> point; // sum_a N_a x_a
 
-  Table(const std::string &title, const Element &element, const BasisTable &table, const Places &nodes, const int exact)
-      : name(title + " of " + element.name() + " in " + std::to_string(element.dim) + "D"),
-        triangle(element.shape == Shape::simplex && nodes[0].size() == 2), order(element.order), degree(exact),
-        lattice(nodes), value("value", table.value.extent(0), table.value.extent(1)),
+  Table(const std::string &title, const Element &of, const BasisTable &table, const int exact)
+      : name(title + " of " + of.name() + " in " + std::to_string(of.dim) + "D"), element(of), degree(exact),
+        value("value", table.value.extent(0), table.value.extent(1)),
         gradient("gradient", table.gradient.extent(0), table.gradient.extent(1), table.gradient.extent(2)),
         weight("weight", table.weight.extent(0))
   {
@@ -51,43 +52,31 @@ struct Table {
         for (int k = 0; k < dim(); ++k) point[q][k] += value(q, a) * node(a, k);
     }
   }
-  int dim() const { return static_cast<int>(lattice[0].size()); }
+  bool simplex() const { return element.shape == Shape::simplex; }
+  int dim() const { return element.dim; }
   int num_points() const { return static_cast<int>(weight.extent(0)); }
-  int num_nodes() const { return static_cast<int>(lattice.size()); }
+  int num_nodes() const { return element.num_nodes(); }
   double node(const int a, const int k) const
   {
-    const double t = double(lattice[a][k]) / order;
-    return triangle ? t : -1 + 2 * t;
+    const double t = double(element.lattice()[a][k]) / element.order;
+    return simplex() ? t : -1 + 2 * t;
   }
-  double volume() const { return triangle ? 0.5 : 1 << dim(); }
+  double volume() const { return simplex() ? 1 / std::tgamma(dim() + 1) : 1 << dim(); }
 };
-
-/// A facet's own nodes: ends then middle, or those of a quadrilateral.
-Places facet_lattice(const Element &element)
-{
-  if (element.dim == 3) return Element{2, element.order}.lattice();
-  return element.order == 1 ? Places{{0}, {1}} : Places{{0}, {2}, {1}};
-}
-
-std::vector<Element> all_elements()
-{
-  return {{2, 1}, {2, 2}, {3, 1}, {3, 2}, {2, 1, Shape::simplex}, {2, 2, Shape::simplex}};
-}
 
 std::vector<Table> all_tables()
 {
   std::vector<Table> tables;
   for (const Element &element : all_elements()) {
+    const int p = element.order;
     const auto reference = tabulate(element);
-    const int p = element.order; // n Gauss points are exact to 2n - 1, n Lobatto points to 2n - 3
-    const bool triangle = element.shape == Shape::simplex;
-    const int cell = triangle ? p : 2 * (p + 1) - 1, load = triangle ? 2 * p : cell,
-              recovery = triangle ? p : 2 * p - 1;
-    tables.emplace_back("cell", element, reference.cell, element.lattice(), cell);
-    tables.emplace_back("cell_load", element, reference.cell_load, element.lattice(), load);
-    tables.emplace_back("recovery", element, reference.recovery, element.lattice(), recovery);
-    tables.emplace_back("facet", element, reference.facet, facet_lattice(element), 2 * (p + 2) - 1);
-    tables.emplace_back("facet_nodal", element, reference.facet_nodal, facet_lattice(element), 2 * (p + 1) - 3);
+    const Element facet = element.facet();
+    const bool simplex = element.shape == Shape::simplex, triangle = facet.shape == Shape::simplex;
+    tables.emplace_back("cell", element, reference.cell, simplex ? 2 * p - 2 : 2 * p + 1);
+    tables.emplace_back("cell_load", element, reference.cell_load, simplex ? 2 * p : 2 * p + 1);
+    tables.emplace_back("recovery", element, reference.recovery, simplex ? 2 * p - 2 : 2 * p - 1);
+    tables.emplace_back("facet", facet, reference.facet, triangle ? 2 * p + 2 : 2 * p + 3);
+    tables.emplace_back("facet_nodal", facet, reference.facet_nodal, triangle ? p : 2 * p - 1);
   }
   return tables;
 }
@@ -107,17 +96,17 @@ double lagrange_slope(const int i, const int order, const double x)
 TEST(ReferenceElement, ShapeFunctionsAreProductsOfLagrangePolynomials)
 {
   for (const Table &table : all_tables()) {
-    if (table.triangle) continue; // see below
+    if (table.simplex()) continue; // see below
     SCOPED_TRACE(table.name);
     for (int q = 0; q < table.num_points(); ++q) {
       for (int a = 0; a < table.num_nodes(); ++a) {
         double value = 1;
         std::vector<double> gradient(table.dim(), 1.);
         for (int k = 0; k < table.dim(); ++k) {
-          const double x = table.point[q][k], factor = lagrange(table.lattice[a][k], table.order, x);
+          const double x = table.point[q][k], factor = lagrange(table.element.lattice()[a][k], table.element.order, x);
           value *= factor;
           for (int g = 0; g < table.dim(); ++g)
-            gradient[g] *= g == k ? lagrange_slope(table.lattice[a][k], table.order, x) : factor;
+            gradient[g] *= g == k ? lagrange_slope(table.element.lattice()[a][k], table.element.order, x) : factor;
         }
         EXPECT_NEAR(table.value(q, a), value, 1e-14);
         for (int g = 0; g < table.dim(); ++g) EXPECT_NEAR(table.gradient(q, a, g), gradient[g], 1e-14);
@@ -126,52 +115,64 @@ TEST(ReferenceElement, ShapeFunctionsAreProductsOfLagrangePolynomials)
   }
 }
 
-/// The shape function of a triangle's node: for each barycentric coordinate L that is m/order at the node, the polynomial
-/// in L of degree m which is 1 there, and 0 where L is 0/order .. (m - 1)/order.
-double triangle_shape(const Table &table, const int a, const double x, const double y)
+/// The shape function of a simplex' node: for each barycentric coordinate L that is m/order at the node, the polynomial in L
+/// of degree m which is 1 there, and 0 where L is 0/order .. (m - 1)/order.
+double simplex_function(const Table &table, const int a, const std::vector<double> &x)
 {
-  const int i = table.lattice[a][0], j = table.lattice[a][1];
-  const double L[3] = {1 - x - y, x, y};
-  const int m[3] = {table.order - i - j, i, j};
+  const int order = table.element.order;
+  const auto &lattice = table.element.lattice()[a];
+  std::vector<double> L = {1 - std::accumulate(x.begin(), x.end(), 0.)};
+  std::vector<int> m = {order - std::accumulate(lattice.begin(), lattice.end(), 0)};
+  L.insert(L.end(), x.begin(), x.end());
+  m.insert(m.end(), lattice.begin(), lattice.end());
   double value = 1;
-  for (int k = 0; k < 3; ++k)
-    for (int s = 0; s < m[k]; ++s) value *= (table.order * L[k] - s) / (m[k] - s);
+  for (std::size_t k = 0; k < L.size(); ++k)
+    for (int s = 0; s < m[k]; ++s) value *= (order * L[k] - s) / (m[k] - s);
   return value;
 }
 
-TEST(ReferenceElement, ShapeFunctionsOfTrianglesAreProductsOverTheBarycentricCoordinates)
+TEST(ReferenceElement, ShapeFunctionsOfSimplicesAreProductsOverTheBarycentricCoordinates)
 {
   const double h = 0.5; // differences of quadratic functions are exact
   int compared = 0;
   for (const Table &table : all_tables()) {
-    if (!table.triangle) continue;
+    if (!table.simplex()) continue;
     SCOPED_TRACE(table.name);
     ++compared;
     for (int q = 0; q < table.num_points(); ++q) {
-      const double x = table.point[q][0], y = table.point[q][1];
+      const std::vector<double> &x = table.point[q];
       for (int a = 0; a < table.num_nodes(); ++a) {
-        EXPECT_NEAR(table.value(q, a), triangle_shape(table, a, x, y), 1e-15);
-        EXPECT_NEAR(table.gradient(q, a, 0),
-                    (triangle_shape(table, a, x + h, y) - triangle_shape(table, a, x - h, y)) / (2 * h), 1e-14);
-        EXPECT_NEAR(table.gradient(q, a, 1),
-                    (triangle_shape(table, a, x, y + h) - triangle_shape(table, a, x, y - h)) / (2 * h), 1e-14);
+        EXPECT_NEAR(table.value(q, a), simplex_function(table, a, x), 1e-15);
+        for (int d = 0; d < table.dim(); ++d) {
+          std::vector<double> before = x, after = x;
+          before[d] -= h;
+          after[d] += h;
+          EXPECT_NEAR(table.gradient(q, a, d),
+                      (simplex_function(table, a, after) - simplex_function(table, a, before)) / (2 * h), 1e-14);
+        }
       }
     }
   }
-  EXPECT_EQ(compared, 6);
+  EXPECT_EQ(compared, 6 + 10); // triangles' cells; tetrahedra and their facets
 }
 
 TEST(ReferenceElement, NumbersOfPointsAreThosePromised)
 {
-  for (const Element &element : all_elements()) {
+  struct Numbers {
+    int cell, cell_load, recovery, facet;
+  };
+  const std::vector<Numbers> expected = {{1, 3, 1, 3}, {3, 6, 3, 4},   {4, 4, 1, 3}, {9, 9, 4, 4},
+                                         {1, 4, 1, 6}, {4, 14, 4, 12}, {8, 8, 1, 9}, {27, 27, 8, 16}};
+  ASSERT_EQ(all_elements().size(), expected.size());
+  for (std::size_t e = 0; e < expected.size(); ++e) {
+    const Element &element = all_elements()[e];
     SCOPED_TRACE(element.name() + " in " + std::to_string(element.dim) + "D");
     const auto reference = tabulate(element);
-    const int p = element.order;
-    const auto power = [&](const int n) { return static_cast<int>(std::lround(std::pow(n, element.dim))); };
-    const bool triangle = element.shape == Shape::simplex;
-    EXPECT_EQ(reference.cell.num_points(), triangle ? (p == 1 ? 1 : 3) : power(p + 1));
-    EXPECT_EQ(reference.cell_load.num_points(), triangle ? (p == 1 ? 3 : 6) : power(p + 1));
-    EXPECT_EQ(reference.recovery.num_points(), triangle ? (p == 1 ? 1 : 3) : power(p));
+    EXPECT_EQ(reference.cell.num_points(), expected[e].cell);
+    EXPECT_EQ(reference.cell_load.num_points(), expected[e].cell_load);
+    EXPECT_EQ(reference.recovery.num_points(), expected[e].recovery);
+    EXPECT_EQ(reference.facet.num_points(), expected[e].facet);
+    EXPECT_EQ(reference.facet_nodal.num_points(), element.num_facet_nodes());
     EXPECT_TRUE(reference.element == element);
   }
 }
@@ -197,7 +198,7 @@ TEST(ReferenceElement, NodalRuleHasItsPointsAtTheNodesInTheirOrder)
 {
   for (const Element &element : all_elements()) {
     const auto reference = tabulate(element);
-    const Table table("facet_nodal", element, reference.facet_nodal, facet_lattice(element), 0);
+    const Table table("facet_nodal", element.facet(), reference.facet_nodal, 0);
     SCOPED_TRACE(table.name);
     ASSERT_EQ(table.num_points(), table.num_nodes());
     for (int q = 0; q < table.num_points(); ++q)
@@ -217,12 +218,14 @@ double sum_of(const Table &table, const std::vector<int> &exponent)
   return sum;
 }
 
-/// Its integral over the reference cell; in triangles i! j! / (i + j + 2)!.
+/// Its integral over the reference cell; in simplices i! j! k! / (i + j + k + dim)!.
 double integral_of(const Table &table, const std::vector<int> &exponent)
 {
-  if (table.triangle)
-    return std::tgamma(exponent[0] + 1) * std::tgamma(exponent[1] + 1) / std::tgamma(exponent[0] + exponent[1] + 3);
   double exact = 1;
+  if (table.simplex()) {
+    for (const int e : exponent) exact *= std::tgamma(e + 1);
+    return exact / std::tgamma(std::accumulate(exponent.begin(), exponent.end(), 0) + table.dim() + 1);
+  }
   for (const int e : exponent) exact *= e % 2 == 1 ? 0 : 2. / (e + 1);
   return exact;
 }
@@ -235,55 +238,19 @@ std::vector<std::vector<int>> monomials(const Table &table)
   for (int m = 0; m < products; ++m) {
     std::vector<int> exponent;
     for (int k = 0, rest = m; k < table.dim(); ++k, rest /= n) exponent.push_back(rest % n);
-    if (!table.triangle || exponent[0] + exponent[1] <= table.degree) all.push_back(exponent);
+    if (!table.simplex() || std::accumulate(exponent.begin(), exponent.end(), 0) <= table.degree)
+      all.push_back(exponent);
   }
   return all;
 }
 
-TEST(Quadrature, IsExactToThePromisedDegree)
+TEST(ReferenceElement, RulesAreExactToThePromisedDegree)
 {
   for (const Table &table : all_tables()) {
     SCOPED_TRACE(table.name);
     for (const auto &exponent : monomials(table))
       EXPECT_NEAR(sum_of(table, exponent), integral_of(table, exponent), 1e-14 * table.volume())
           << testing::PrintToString(exponent);
-  }
-}
-
-TEST(Quadrature, IsNotExactOneDegreeAbove)
-{
-  for (const Table &table : all_tables()) {
-    SCOPED_TRACE(table.name);
-    for (int k = 0; k < table.dim(); ++k) {
-      std::vector<int> exponent(table.dim(), 0);
-      exponent[k] = table.degree + 1;
-      const double exact = integral_of(table, exponent), error = std::abs(sum_of(table, exponent) - exact);
-      EXPECT_GT(error, 1e-3 * (table.triangle ? exact : table.volume()));
-    }
-  }
-}
-
-TEST(Quadrature, PointsLieInsideOfTheTriangle)
-{
-  for (const Table &table : all_tables()) {
-    for (int q = 0; q < table.num_points() && table.triangle; ++q) {
-      EXPECT_GT(table.point[q][0], 0) << table.name;
-      EXPECT_GT(table.point[q][1], 0) << table.name;
-      EXPECT_LT(table.point[q][0] + table.point[q][1], 1) << table.name;
-    }
-  }
-}
-
-TEST(Quadrature, WeightsArePositiveAndSumToTheVolume)
-{
-  for (const Table &table : all_tables()) {
-    SCOPED_TRACE(table.name);
-    double sum = 0;
-    for (int q = 0; q < table.num_points(); ++q) {
-      EXPECT_GT(table.weight(q), 0);
-      sum += table.weight(q);
-    }
-    EXPECT_NEAR(sum, table.volume(), 1e-14 * table.volume());
   }
 }
 
@@ -329,20 +296,24 @@ TEST(ReferenceElement, AgreesWithIntrepid2)
   for (const Table &table : all_tables()) {
     if (table.dim() == 1) continue; // too simple to need a witness
     ++compared;
-    if (table.triangle && table.order == 1)
+    if (table.simplex() && table.dim() == 2 && table.element.order == 1)
       expect_agreement<Intrepid2::Basis_HGRAD_TRI_C1_FEM<HostDevice, double, double>>(table);
-    else if (table.triangle)
+    else if (table.simplex() && table.dim() == 2)
       expect_agreement<Intrepid2::Basis_HGRAD_TRI_C2_FEM<HostDevice, double, double>>(table);
-    else if (table.dim() == 2 && table.order == 1)
+    else if (table.simplex() && table.element.order == 1)
+      expect_agreement<Intrepid2::Basis_HGRAD_TET_C1_FEM<HostDevice, double, double>>(table);
+    else if (table.simplex())
+      expect_agreement<Intrepid2::Basis_HGRAD_TET_C2_FEM<HostDevice, double, double>>(table);
+    else if (table.dim() == 2 && table.element.order == 1)
       expect_agreement<Intrepid2::Basis_HGRAD_QUAD_C1_FEM<HostDevice, double, double>>(table);
     else if (table.dim() == 2)
       expect_agreement<Intrepid2::Basis_HGRAD_QUAD_C2_FEM<HostDevice, double, double>>(table);
-    else if (table.order == 1)
+    else if (table.element.order == 1)
       expect_agreement<Intrepid2::Basis_HGRAD_HEX_C1_FEM<HostDevice, double, double>>(table);
     else
       expect_agreement<Intrepid2::Basis_HGRAD_HEX_C2_FEM<HostDevice, double, double>>(table);
   }
-  EXPECT_EQ(compared, 22);
+  EXPECT_EQ(compared, 4 * 3 + 4 * 5);
 #else
   GTEST_SKIP() << "this Trilinos has no Intrepid2";
 #endif

@@ -125,8 +125,8 @@ void fill_cells(const Numbering &n, const Element &element, const DeviceView<LO 
       });
 }
 
-Side make_side(const BoxSide &box_side, const Grid &grid, const Numbering &numbering, const std::vector<Index> &halo,
-               const Block &local_cells, const Mesh &mesh)
+Side side_of_box(const BoxSide &box_side, const Grid &grid, const Numbering &numbering, const std::vector<Index> &halo,
+                 const Block &local_cells, const Mesh &mesh)
 {
   // Only this rank's cells along the side are visited.
   Block layer = local_cells;
@@ -141,11 +141,8 @@ Side make_side(const BoxSide &box_side, const Grid &grid, const Numbering &numbe
   for (std::size_t h = 0; h < halo.size(); ++h)
     halo_cell[local_cells.index_of(halo[h])] = numbering.num_owned_cells + static_cast<LO>(h);
 
-  Side side;
-  side.name = box_side.name;
   const LO num_facets = static_cast<LO>(layer.size());
   const int parts = parts_of(mesh.element);
-  const auto &facet_nodes = mesh.element.facets()[box_side.facet];
   HostView<LO *> cell("rpc::mesh::side_cell", num_facets);
   HostView<int *> ordinal("rpc::mesh::side_ordinal", num_facets);
   for (LO f = 0; f < num_facets; ++f) {
@@ -155,21 +152,7 @@ Side make_side(const BoxSide &box_side, const Grid &grid, const Numbering &numbe
     cell(f) = parts * lattice_cell + box_side.part;
     ordinal(f) = box_side.facet;
   }
-  side.cell = to_device(cell);
-  side.ordinal = to_device(ordinal);
-
-  side.facets = DeviceView<LO **>("rpc::mesh::side_facets", num_facets, facet_nodes.size());
-  HostView<int *> local_host("rpc::mesh::facet_nodes", facet_nodes.size());
-  std::copy(facet_nodes.begin(), facet_nodes.end(), local_host.data());
-  const auto local = to_device(local_host);
-  const auto cells = mesh.cells;
-  const auto facets = side.facets;
-  const auto facet_cell = side.cell;
-  Kokkos::parallel_for(
-      "rpc::mesh::side_facets", device_range(num_facets), KOKKOS_LAMBDA(const LO f) {
-        for (std::size_t a = 0; a < facets.extent(1); ++a) facets(f, a) = cells(facet_cell(f), local(a));
-      });
-  return side;
+  return make_side(box_side.name, mesh, cell, ordinal);
 }
 
 /// What a run takes for each of a rank's nodes at least [B]: mesh, matrix, multigrid. Measured: 2D 2100 to 3100, 3D
@@ -322,7 +305,7 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
 
   const auto add_sides = [&](const auto &box_sides) {
     for (const BoxSide &box_side : box_sides)
-      mesh.sides.push_back(make_side(box_side, grid, numbering, halo, local_cells, mesh));
+      mesh.sides.push_back(side_of_box(box_side, grid, numbering, halo, local_cells, mesh));
   };
   if (parts == 2)
     add_sides(sides_2d_triangles);

@@ -215,15 +215,9 @@ Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm)
   mesh.cell_id = host_array<GO>("rpc::mesh::cell_id", part.cell_id);
   mesh.num_owned_cells = static_cast<LO>(part.cell_id.size());
   mesh.blocks = part.mesh.blocks;
-  for (const SideData &side : part.mesh.sides) {
-    std::vector<LO> facets;
-    for (std::size_t f = 0; f < side.cell.size(); ++f)
-      for (const int a : mesh.element.facets()[side.ordinal[f]])
-        facets.push_back(part.mesh.cells[std::size_t(mesh.element.num_nodes()) * side.cell[f] + a]);
-    mesh.sides.push_back({side.name, device_table("rpc::mesh::side_facets", facets, mesh.element.num_facet_nodes()),
-                          to_device(host_array<LO>("rpc::mesh::side_cell", side.cell)),
-                          to_device(host_array<int>("rpc::mesh::side_ordinal", side.ordinal))});
-  }
+  for (const SideData &side : part.mesh.sides)
+    mesh.sides.push_back(make_side(side.name, mesh, host_array<LO>("rpc::mesh::side_cell", side.cell),
+                                   host_array<int>("rpc::mesh::side_ordinal", side.ordinal)));
   Kokkos::fence();
   return mesh;
 }

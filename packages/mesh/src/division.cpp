@@ -1,29 +1,17 @@
 #include "division.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/mesh/topology.hpp"
+#include "sorted_lists.hpp"
 
 #include <algorithm>
 #include <metis.h>
-#include <numeric>
 #include <utility>
 
 namespace rpc::mesh
 {
 namespace
 {
-
-/// Numbers 0, 1, ... in the lists that `list_of` names for them, ascending in each.
-Lists sorted_into_lists(const std::vector<int> &list_of, const int num_lists)
-{
-  Lists lists;
-  lists.begin.assign(num_lists + 1, 0);
-  for (const int list : list_of) ++lists.begin[list + 1];
-  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
-  lists.value.resize(list_of.size());
-  std::vector<std::size_t> next(lists.begin.begin(), lists.begin.end() - 1);
-  for (std::size_t n = 0; n < list_of.size(); ++n) lists.value[next[list_of[n]]++] = static_cast<int>(n);
-  return lists;
-}
 
 /// A part of the mesh for each cell, none of them empty.
 std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts)
@@ -37,7 +25,7 @@ std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts)
 
   const int vertices = whole.element.num_vertices();
   idx_t cells = num_cells, nodes = whole.num_nodes(), parts = num_parts, cut = 0;
-  idx_t common = Element{whole.element.dim, 1, whole.element.shape}.num_facet_nodes(); // vertices of neighbours
+  idx_t common = whole.element.facet().num_vertices(); // of neighbours
   std::vector<idx_t> begin, vertex, cell_part(num_cells), node_part(nodes);
   for (int c = 0; c <= num_cells; ++c) begin.push_back(idx_t(vertices) * c);
   for (int c = 0; c < num_cells; ++c)
@@ -65,22 +53,15 @@ std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts)
   return part;
 }
 
-Lists cells_around_nodes(const MeshData &whole)
-{
-  Lists around = sorted_into_lists(whole.cells, whole.num_nodes());
-  for (int &entry : around.value) entry /= whole.element.num_nodes(); // of an entry of `cells`, its cell
-  return around;
-}
-
 /// For each node those of the same owner that share a cell with it, without itself.
-Lists neighbours(const MeshData &whole, const Lists &cells_around, const std::vector<int> &owner)
+Lists neighbours(const MeshData &whole, const Lists &cells_at, const std::vector<int> &owner)
 {
   const int width = whole.element.num_nodes();
   Lists graph;
   std::vector<int> seen_by(owner.size(), -1);
   for (int node = 0; node < whole.num_nodes(); ++node) {
     seen_by[node] = node;
-    for (const int *cell = cells_around.first(node); cell != cells_around.last(node); ++cell)
+    for (const int *cell = cells_at.first(node); cell != cells_at.last(node); ++cell)
       for (int a = 0; a < width; ++a) {
         const int other = whole.cells[std::size_t(width) * *cell + a];
         if (seen_by[other] == node || owner[other] != owner[node]) continue;
@@ -99,17 +80,16 @@ Division divide(const MeshData &whole, const int num_ranks)
   Division division;
   const std::vector<int> part = parts_of_cells(whole, num_ranks);
   division.cells = sorted_into_lists(part, num_ranks);
-  const Lists cells_around = cells_around_nodes(whole);
+  const Lists cells_at = node_to_cells(whole.element, whole.cells, whole.num_nodes());
   auto &owner = division.node_owner;
   for (int n = 0; n < whole.num_nodes(); ++n) {
     int lowest = num_ranks;
-    for (const int *cell = cells_around.first(n); cell != cells_around.last(n); ++cell)
-      lowest = std::min(lowest, part[*cell]);
+    for (const int *cell = cells_at.first(n); cell != cells_at.last(n); ++cell) lowest = std::min(lowest, part[*cell]);
     owner.push_back(lowest);
   }
 
   // No edge of the graph leads from rank to rank: one call orders the nodes of each.
-  const std::vector<int> order = reverse_cuthill_mckee(neighbours(whole, cells_around, owner));
+  const std::vector<int> order = reverse_cuthill_mckee(neighbours(whole, cells_at, owner));
   std::vector<int> owner_in_order;
   for (const int node : order) owner_in_order.push_back(owner[node]);
   division.nodes = sorted_into_lists(owner_in_order, num_ranks);

@@ -2,114 +2,135 @@
 
 #include "rpc/core/error.hpp"
 
-#include <array>
+#include <algorithm>
+#include <numeric>
 
 namespace rpc::mesh
 {
 namespace
 {
 
-using Table = std::vector<std::vector<int>>;
+using Table = Element::Table;
 
-int power(const int base, const int exponent)
+/// A reference cell, with vertices, edges and faces in the order of Exodus.
+struct ReferenceCell {
+  Table vertices;              // (vertices, dim) on the lattice of order 1
+  Table edges;                 // (edges, 2) vertices
+  Table faces;                 // (faces, vertices of a face), seen from outside counterclockwise; 3D
+  std::vector<int> face_nodes; // faces in the order in which their middle nodes come, after that of the cell; Q2 in 3D
+};
+
+const ReferenceCell &reference_cell(const int dim, const Shape shape)
 {
-  return exponent == 0 ? 1 : base * power(base, exponent - 1);
+  static const ReferenceCell interval{{{0}, {1}}, {{0, 1}}, {}, {}};
+  static const ReferenceCell triangle{{{0, 0}, {1, 0}, {0, 1}}, {{0, 1}, {1, 2}, {2, 0}}, {}, {}};
+  static const ReferenceCell quadrilateral{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}, {}, {}};
+  static const ReferenceCell tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                         {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
+                                         {{0, 1, 3}, {1, 2, 3}, {0, 3, 2}, {0, 2, 1}},
+                                         {}};
+  static const ReferenceCell hexahedron{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+      {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {4, 5}, {5, 6}, {6, 7}, {7, 4}},
+      {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}, {0, 3, 2, 1}, {4, 5, 6, 7}},
+      {4, 5, 3, 1, 0, 2}};
+  if (dim == 1) return interval;
+  if (dim == 2) return shape == Shape::simplex ? triangle : quadrilateral;
+  return shape == Shape::simplex ? tetrahedron : hexahedron;
 }
 
-// Vertices counterclockwise, then edges, then faces, then the centre: the order of QUAD4/QUAD9 and HEX8/HEX27 in
-// Exodus.
-Table quad_lattice(const int p)
+/// What the registry holds of an element.
+struct Entry {
+  Element element;
+  const char *exodus_name;
+  int gmsh_type;
+  std::vector<int> gmsh_place;
+  Table lattice, edges, facets;
+};
+
+/// The position in the middle of vertices: at the order 2 the lattice has it.
+std::vector<int> middle(const ReferenceCell &cell, const std::vector<int> &vertices)
 {
-  Table nodes = {{0, 0}, {p, 0}, {p, p}, {0, p}};
-  if (p == 2) nodes.insert(nodes.end(), {{1, 0}, {2, 1}, {1, 2}, {0, 1}, {1, 1}});
-  return nodes;
+  std::vector<int> sum(cell.vertices[0].size(), 0);
+  for (const int v : vertices)
+    for (std::size_t d = 0; d < sum.size(); ++d) sum[d] += cell.vertices[v][d];
+  for (int &coordinate : sum) coordinate = 2 * coordinate / static_cast<int>(vertices.size());
+  return sum;
 }
 
-Table hex_lattice(const int p)
+Table lattice_of(const Element &element, const ReferenceCell &cell)
 {
-  Table nodes;
-  for (const int z : {0, p})
-    for (const auto &corner : quad_lattice(1)) nodes.push_back({p * corner[0], p * corner[1], z});
-  if (p == 2) {
-    nodes.insert(nodes.end(), {{1, 0, 0},
-                               {2, 1, 0},
-                               {1, 2, 0},
-                               {0, 1, 0},
-                               {0, 0, 1},
-                               {2, 0, 1},
-                               {2, 2, 1},
-                               {0, 2, 1},
-                               {1, 0, 2},
-                               {2, 1, 2},
-                               {1, 2, 2},
-                               {0, 1, 2},
-                               {1, 1, 1},
-                               {1, 1, 0},
-                               {1, 1, 2},
-                               {0, 1, 1},
-                               {2, 1, 1},
-                               {1, 0, 1},
-                               {1, 2, 1}});
-  }
-  return nodes;
+  Table lattice = cell.vertices;
+  for (auto &vertex : lattice)
+    for (int &coordinate : vertex) coordinate *= element.order;
+  if (element.order == 1) return lattice;
+  for (const auto &edge : cell.edges) lattice.push_back(middle(cell, edge));
+  if (element.dim == 1 || element.shape == Shape::simplex) return lattice;
+  lattice.push_back(std::vector<int>(element.dim, 1));
+  for (const int face : cell.face_nodes) lattice.push_back(middle(cell, cell.faces[face]));
+  return lattice;
 }
 
-Table triangle_lattice(const int p)
+/// The nodes of an edge or face, in the order of its own element `part`, by the cell's vertices that it has.
+std::vector<int> nodes_of(const Entry &entry, const ReferenceCell &cell, const Element &part,
+                          const std::vector<int> &vertices)
 {
-  Table nodes = {{0, 0}, {p, 0}, {0, p}};
-  if (p == 2) nodes.insert(nodes.end(), {{1, 0}, {1, 1}, {0, 1}});
-  return nodes;
-}
-
-Table triangle_facets(const int p)
-{
-  if (p == 1) return {{0, 1}, {1, 2}, {2, 0}};
-  return {{0, 1, 3}, {1, 2, 4}, {2, 0, 5}};
-}
-
-Table lattice_of(const int dim, const int order)
-{
-  return dim == 2 ? quad_lattice(order) : hex_lattice(order);
-}
-
-// A facet's nodes in the order of the facet's own lattice (an edge's two ends then its middle, or a quadrilateral),
-// found by walking that lattice from its origin along its tangents.
-Table facets_of(const int dim, const int order)
-{
-  struct Frame {
-    std::array<int, 3> origin;
-    std::array<std::array<int, 3>, 2> tangent;
+  const auto node_at = [&](const std::vector<int> &position) {
+    return static_cast<int>(std::find(entry.lattice.begin(), entry.lattice.end(), position) - entry.lattice.begin());
   };
-  // Exodus' order of element sides. The normal (tangent turned clockwise, or first x second tangent) points outward.
-  const std::vector<Frame> frames =
-      dim == 2 ? std::vector<Frame>{{{0, 0, 0}, {{{1, 0, 0}, {}}}},
-                                    {{1, 0, 0}, {{{0, 1, 0}, {}}}},
-                                    {{1, 1, 0}, {{{-1, 0, 0}, {}}}},
-                                    {{0, 1, 0}, {{{0, -1, 0}, {}}}}}
-               : std::vector<Frame>{{{0, 0, 0}, {{{1, 0, 0}, {0, 0, 1}}}},  {{1, 0, 0}, {{{0, 1, 0}, {0, 0, 1}}}},
-                                    {{1, 1, 0}, {{{-1, 0, 0}, {0, 0, 1}}}}, {{0, 0, 0}, {{{0, 0, 1}, {0, 1, 0}}}},
-                                    {{0, 0, 0}, {{{0, 1, 0}, {1, 0, 0}}}},  {{0, 0, 1}, {{{1, 0, 0}, {0, 1, 0}}}}};
-  const Table nodes = lattice_of(dim, order);
-  Table own; // the facet's lattice
-  if (dim == 2) {
-    own = {{0, 0}, {order, 0}};
-    if (order == 2) own.push_back({1, 0});
-  } else {
-    own = quad_lattice(order);
+  std::vector<int> nodes = vertices;
+  if (part.order == 1) return nodes;
+  for (const auto &edge : reference_cell(part.dim, part.shape).edges)
+    nodes.push_back(node_at(middle(cell, {vertices[edge[0]], vertices[edge[1]]})));
+  if (part.dim == 2 && part.shape == Shape::tensor) nodes.push_back(node_at(middle(cell, vertices)));
+  return nodes;
+}
+
+/// @param gmsh_place  empty if nodes are in the same order
+Entry make_entry(const Element &element, const char *const exodus_name, const int gmsh_type,
+                 const std::vector<int> &gmsh_place = {})
+{
+  const ReferenceCell &cell = reference_cell(element.dim, element.shape);
+  Entry entry{element, exodus_name, gmsh_type, gmsh_place, lattice_of(element, cell), {}, {}};
+  if (gmsh_place.empty()) {
+    entry.gmsh_place.resize(entry.lattice.size());
+    std::iota(entry.gmsh_place.begin(), entry.gmsh_place.end(), 0);
   }
-  Table facets;
-  for (const auto &frame : frames) {
-    std::vector<int> facet;
-    for (const auto &step : own) {
-      std::vector<int> position(dim);
-      for (int d = 0; d < dim; ++d)
-        position[d] = order * frame.origin[d] + step[0] * frame.tangent[0][d] + step[1] * frame.tangent[1][d];
-      for (std::size_t a = 0; a < nodes.size(); ++a)
-        if (nodes[a] == position) facet.push_back(static_cast<int>(a));
-    }
-    facets.push_back(facet);
-  }
-  return facets;
+  for (const auto &edge : cell.edges) entry.edges.push_back(nodes_of(entry, cell, element.edge(), edge));
+  if (element.dim == 2) entry.facets = entry.edges;
+  for (const auto &face : cell.faces) entry.facets.push_back(nodes_of(entry, cell, element.facet(), face));
+  return entry;
+}
+
+/// All elements; cells from `first_cell` on.
+constexpr std::size_t first_cell = 2;
+const std::vector<Entry> &registry()
+{
+  constexpr Shape tensor = Shape::tensor, simplex = Shape::simplex;
+  static const std::vector<Entry> entries = {
+      make_entry({1, 1, tensor}, "BAR2", 1),
+      make_entry({1, 2, tensor}, "BAR3", 8),
+      make_entry({2, 1, simplex}, "TRI3", 2),
+      make_entry({2, 2, simplex}, "TRI6", 9),
+      make_entry({2, 1, tensor}, "QUAD4", 3),
+      make_entry({2, 2, tensor}, "QUAD9", 10),
+      make_entry({3, 1, simplex}, "TETRA4", 4),
+      make_entry({3, 2, simplex}, "TETRA10", 11, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}),
+      make_entry({3, 1, tensor}, "HEX8", 5),
+      make_entry({3, 2, tensor}, "HEX27", 12,
+                 {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 10, 12, 14, 15, 16, 18, 19, 17, 26, 20, 25, 22, 23, 21, 24})};
+  return entries;
+}
+
+const Entry &entry_of(const Element &element)
+{
+  const auto [dim, order, shape] = element;
+  const bool simplex = shape == Shape::simplex;
+  const bool known = dim >= 1 && dim <= 3 && (order == 1 || order == 2) && !(dim == 1 && simplex);
+  RPC_REQUIRE_CODE(known, ExitCode::internal_error,
+                   "mesh: there is no element of order " << order << " in " << dim << "D");
+  if (dim == 1) return registry()[order - 1];
+  return registry()[first_cell + 4 * (dim - 2) + 2 * (simplex ? 0 : 1) + order - 1];
 }
 
 } // namespace
@@ -120,40 +141,68 @@ std::string Element::name() const
 }
 std::string Element::exodus_name() const
 {
-  const char *const cell = shape == Shape::simplex ? "TRI" : (dim == 2 ? "QUAD" : "HEX");
-  return cell + std::to_string(num_nodes());
+  return entry_of(*this).exodus_name;
+}
+int Element::gmsh_type() const
+{
+  return entry_of(*this).gmsh_type;
 }
 int Element::num_nodes() const
 {
-  return shape == Shape::simplex ? (order + 1) * (order + 2) / 2 : power(order + 1, dim);
+  return static_cast<int>(lattice().size());
 }
 int Element::num_vertices() const
 {
-  return shape == Shape::simplex ? dim + 1 : power(2, dim);
-}
-int Element::num_facet_nodes() const
-{
-  return power(order + 1, dim - 1);
+  return shape == Shape::simplex ? dim + 1 : 1 << dim;
 }
 int Element::num_facets() const
 {
-  return shape == Shape::simplex ? dim + 1 : 2 * dim;
+  return static_cast<int>(facets().size());
+}
+int Element::num_facet_nodes() const
+{
+  return facet().num_nodes();
+}
+Element Element::facet() const
+{
+  return {dim - 1, order, dim == 2 ? Shape::tensor : shape};
+}
+Element Element::edge() const
+{
+  return {1, order, Shape::tensor};
+}
+const Table &Element::lattice() const
+{
+  return entry_of(*this).lattice;
+}
+const Table &Element::facets() const
+{
+  return entry_of(*this).facets;
+}
+const Table &Element::edges() const
+{
+  return entry_of(*this).edges;
+}
+const std::vector<int> &Element::gmsh_place() const
+{
+  return entry_of(*this).gmsh_place;
 }
 
-const std::vector<std::vector<int>> &Element::lattice() const
+const std::vector<Element> &all_elements()
 {
-  static const std::array<std::array<Table, 2>, 2> tables = {
-      {{lattice_of(2, 1), lattice_of(2, 2)}, {lattice_of(3, 1), lattice_of(3, 2)}}};
-  static const std::array<Table, 2> triangles = {triangle_lattice(1), triangle_lattice(2)};
-  return shape == Shape::simplex ? triangles[order - 1] : tables[dim - 2][order - 1];
+  static const std::vector<Element> elements = [] {
+    std::vector<Element> cells;
+    for (std::size_t e = first_cell; e < registry().size(); ++e) cells.push_back(registry()[e].element);
+    return cells;
+  }();
+  return elements;
 }
 
-const std::vector<std::vector<int>> &Element::facets() const
+std::optional<Element> element_of_gmsh_type(const int type)
 {
-  static const std::array<std::array<Table, 2>, 2> tables = {
-      {{facets_of(2, 1), facets_of(2, 2)}, {facets_of(3, 1), facets_of(3, 2)}}};
-  static const std::array<Table, 2> triangles = {triangle_facets(1), triangle_facets(2)};
-  return shape == Shape::simplex ? triangles[order - 1] : tables[dim - 2][order - 1];
+  for (const Element &element : all_elements())
+    if (element.gmsh_type() == type) return element;
+  return std::nullopt;
 }
 
 Element parse_element(const std::string &name, const int dim)

@@ -54,20 +54,11 @@ void check_groups(const std::string &where, const GmshContents &contents)
                            << "\" has no elements");
 }
 
-std::optional<Element> element_of_type(const int type)
+/// The element of cells that can be read: plane ones.
+std::optional<Element> plane_element(const int type)
 {
-  switch (type) {
-  case 2:
-    return Element{2, 1, Shape::simplex};
-  case 3:
-    return Element{2, 1, Shape::tensor};
-  case 9:
-    return Element{2, 2, Shape::simplex};
-  case 10:
-    return Element{2, 2, Shape::tensor};
-  default:
-    return std::nullopt;
-  }
+  const std::optional<Element> element = element_of_gmsh_type(type);
+  return element && element->dim == 2 ? element : std::nullopt;
 }
 
 std::string name_of_type(const int number)
@@ -84,7 +75,7 @@ Element element_of(const std::string &where, const GmshContents &contents)
     const auto &group = contents.groups[elements.group];
     if (group.dim != 2) continue;
     const bool serendipity = elements.type == 16;
-    RPC_REQUIRE_CODE(element_of_type(elements.type), ExitCode::bad_mesh,
+    RPC_REQUIRE_CODE(plane_element(elements.type), ExitCode::bad_mesh,
                      where << "cells of type \"" << name_of_type(elements.type) << "\" in physical surface \""
                            << group.name << "\"; triangles of 3 or 6 nodes and quadrilaterals of 4 or 9 can be read"
                            << (serendipity ? "; mesh with Mesh.SecondOrderIncomplete = 0" : ""));
@@ -107,7 +98,7 @@ Element element_of(const std::string &where, const GmshContents &contents)
                      where << "cells must be of one kind, got " << summary(first->type) << " and "
                            << summary(elements.type)
                            << "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = 1");
-  return *element_of_type(first->type);
+  return *plane_element(first->type);
 }
 
 /// The tags of cells' nodes, once each.
@@ -168,6 +159,7 @@ int find_node(const TaggedMesh &draft, const std::size_t tag)
 
 void take_cells(const GmshContents &contents, TaggedMesh &draft)
 {
+  const std::vector<int> &place = draft.mesh.element.gmsh_place();
   int block = -1, group = -1;
   for (const auto &elements : contents.elements) {
     if (contents.groups[elements.group].dim != 2) continue;
@@ -176,7 +168,8 @@ void take_cells(const GmshContents &contents, TaggedMesh &draft)
       block = static_cast<int>(draft.mesh.blocks.size());
       draft.mesh.blocks.push_back(contents.groups[group].name);
     }
-    for (const std::size_t tag : elements.nodes) draft.mesh.cells.push_back(find_node(draft, tag));
+    for (std::size_t first = 0; first < elements.nodes.size(); first += place.size())
+      for (const int a : place) draft.mesh.cells.push_back(find_node(draft, elements.nodes[first + a]));
     draft.mesh.block.insert(draft.mesh.block.end(), elements.tags.size(), block);
     draft.cell_tag.insert(draft.cell_tag.end(), elements.tags.begin(), elements.tags.end());
   }
@@ -197,33 +190,35 @@ void check_blocks(const TaggedMesh &draft)
   }
 }
 
-/// The facet that a line element lies on.
-const Edge &edge_of_line(const TaggedMesh &draft, const std::vector<Edge> &edges, const std::string &side,
-                         const std::size_t line, const std::size_t *const tags)
+/// The facet that a line element lies on, as its number in `facets`.
+int facet_of_line(const TaggedMesh &draft, const Entities &facets, const std::string &side, const std::size_t line,
+                  const std::size_t *const tags)
 {
   const auto label = [&] {
     return draft.where + "line " + std::to_string(line) + " of physical curve \"" + side + "\", between nodes " +
            std::to_string(tags[0]) + " and " + std::to_string(tags[1]) + ", ";
   };
-  const int a = find_node(draft, tags[0]), b = find_node(draft, tags[1]);
-  const auto [first, last] = std::equal_range(edges.begin(), edges.end(), Edge{std::min(a, b), std::max(a, b)},
-                                              [](const Edge &l, const Edge &r) { return l.nodes() < r.nodes(); });
-  RPC_REQUIRE_CODE(first != last, ExitCode::bad_mesh, label() << "is an edge of no cell");
-  RPC_REQUIRE_CODE(last - first == 1, ExitCode::bad_mesh,
-                   label() << "lies inside the body, between the cells " << draft.cell_tag[first->cell] << " and "
-                           << draft.cell_tag[(last - 1)->cell] << "; a side must be part of the boundary");
-  RPC_REQUIRE_CODE(draft.mesh.element.order == 1 || find_node(draft, tags[2]) == first->middle, ExitCode::bad_mesh,
+  const std::optional<int> facet = facets.find({find_node(draft, tags[0]), find_node(draft, tags[1])});
+  RPC_REQUIRE_CODE(facet, ExitCode::bad_mesh, label() << "is an edge of no cell");
+  const int num_cells = facets.num_cells_at(*facet);
+  RPC_REQUIRE_CODE(num_cells == 1, ExitCode::bad_mesh,
+                   label() << "lies inside the body, between the cells " << draft.cell_tag[facets.cell(*facet, 0)]
+                           << " and " << draft.cell_tag[facets.cell(*facet, num_cells - 1)]
+                           << "; a side must be part of the boundary");
+  if (draft.mesh.element.order == 1) return *facet;
+  const int middle = middle_node(draft.mesh, facets.cell(*facet, 0), facets.ordinal(*facet, 0));
+  RPC_REQUIRE_CODE(find_node(draft, tags[2]) == middle, ExitCode::bad_mesh,
                    label() << "has the middle node " << tags[2] << ", but the cell there has "
-                           << draft.node_tag[first->middle]);
-  return *first;
+                           << draft.node_tag[middle]);
+  return *facet;
 }
 
-void take_sides(const GmshContents &contents, const std::vector<Edge> &edges, TaggedMesh &draft)
+void take_sides(const GmshContents &contents, const Entities &facets, TaggedMesh &draft)
 {
   const int order = draft.mesh.element.order;
-  const int line_type = order == 1 ? 1 : 8;
+  const int line_type = draft.mesh.element.facet().gmsh_type();
   int group = -1;
-  std::set<std::pair<int, int>> taken;
+  std::set<int> taken; // facets
   for (const auto &elements : contents.elements) {
     if (contents.groups[elements.group].dim != 1) continue;
     const std::string &name = contents.groups[elements.group].name;
@@ -237,10 +232,10 @@ void take_sides(const GmshContents &contents, const std::vector<Edge> &edges, Ta
     }
     SideData &side = draft.mesh.sides.back();
     for (std::size_t l = 0; l < elements.tags.size(); ++l) {
-      const Edge &edge = edge_of_line(draft, edges, name, elements.tags[l], &elements.nodes[(order + 1) * l]);
-      if (!taken.insert({edge.cell, edge.ordinal}).second) continue;
-      side.cell.push_back(edge.cell);
-      side.ordinal.push_back(edge.ordinal);
+      const int facet = facet_of_line(draft, facets, name, elements.tags[l], &elements.nodes[(order + 1) * l]);
+      if (!taken.insert(facet).second) continue;
+      side.cell.push_back(facets.cell(facet, 0));
+      side.ordinal.push_back(facets.ordinal(facet, 0));
     }
   }
 }
@@ -270,7 +265,9 @@ MeshData mesh_of_gmsh(const std::string &where, const GmshContents &contents, co
   check_blocks(draft);
   check_nodes(draft);
   check_cells(draft);
-  take_sides(contents, checked_edges(draft), draft);
+  const Entities facets = facets_of(draft.mesh.element, draft.mesh.cells);
+  check_facets(draft, facets);
+  take_sides(contents, facets, draft);
   if (!any_nodes) check_unused_nodes(contents, draft);
   return std::move(draft.mesh);
 }

@@ -1,7 +1,8 @@
 #include "middle_nodes.hpp"
 
+#include "rpc/mesh/topology.hpp"
+
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -12,32 +13,22 @@ MeshData with_middle_nodes(MeshData mesh)
 {
   const Element linear = mesh.element, element{2, 2, linear.shape};
   const int num_cells = mesh.num_cells(), width = linear.num_nodes(), new_width = element.num_nodes();
+  const Entities edges = edges_of(linear, mesh.cells);
+  const int first_middle = mesh.num_nodes();
+  for (int e = 0; e < edges.size(); ++e) {
+    const int *const ends = &edges.vertices[2 * std::size_t(e)];
+    for (int d = 0; d < 2; ++d)
+      mesh.coords.push_back(mesh.coords[2 * std::size_t(ends[0]) + d] / 2 +
+                            mesh.coords[2 * std::size_t(ends[1]) + d] / 2);
+  }
   std::vector<int> cells(std::size_t(new_width) * num_cells);
-  using Edge = std::array<int, 3>; // lower and higher end, place of the middle node in `cells`
-  std::vector<Edge> edges;
-  edges.reserve(std::size_t(linear.num_facets()) * num_cells);
   for (int c = 0; c < num_cells; ++c) {
-    const int *const nodes = &mesh.cells[std::size_t(width) * c];
-    std::copy_n(nodes, width, &cells[std::size_t(new_width) * c]);
-    for (const auto &facet : element.facets()) {
-      const auto [low, high] = std::minmax(nodes[facet[0]], nodes[facet[1]]);
-      edges.push_back({low, high, new_width * c + facet[2]});
-    }
+    int *const nodes = &cells[std::size_t(new_width) * c];
+    std::copy_n(&mesh.cells[std::size_t(width) * c], width, nodes);
+    for (int e = 0; e < edges.per_cell; ++e)
+      nodes[element.edges()[e][2]] = first_middle + edges.of_cell[std::size_t(edges.per_cell) * c + e];
   }
-  std::sort(edges.begin(), edges.end());
-
-  int next = mesh.num_nodes() - 1;
-  const Edge *before = nullptr;
-  for (const Edge &edge : edges) {
-    if (!before || edge[0] != (*before)[0] || edge[1] != (*before)[1]) {
-      ++next;
-      for (int d = 0; d < 2; ++d)
-        mesh.coords.push_back(mesh.coords[2 * std::size_t(edge[0]) + d] / 2 +
-                              mesh.coords[2 * std::size_t(edge[1]) + d] / 2);
-    }
-    cells[edge[2]] = next;
-    before = &edge;
-  }
+  int next = first_middle + edges.size() - 1;
   if (element.shape == Shape::tensor)
     for (int c = 0; c < num_cells; ++c) {
       const int *const nodes = &mesh.cells[std::size_t(width) * c];

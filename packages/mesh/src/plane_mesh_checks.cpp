@@ -1,6 +1,8 @@
 #include "plane_mesh_checks.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/mesh/quadrature.hpp"
+#include "rpc/mesh/shape_functions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 
 namespace rpc::mesh
 {
@@ -83,55 +86,35 @@ void check_distinct(const TaggedMesh &draft, const std::array<Point, 2> &box)
     }
 }
 
-/// Factor R_m of a shape function of order p on a simplex, in one barycentric coordinate s, and its derivative.
-Point simplex_factor(const int p, const int m, const double s)
-{
-  if (m == 0) return {1, 0};
-  if (m == 1) return {p * s, static_cast<double>(p)};
-  return {s * (2 * s - 1), 4 * s - 1};
-}
-
-/// Lagrange polynomial of order p on [0, 1] that is 1 at m / p, and its derivative.
-Point interval_factor(const int p, const int m, const double s)
-{
-  if (p == 1) return m == 0 ? Point{1 - s, -1} : Point{s, 1};
-  if (m == 0) return {(1 - s) * (1 - 2 * s), 4 * s - 3};
-  if (m == 1) return {4 * s * (1 - s), 4 - 8 * s};
-  return {s * (2 * s - 1), 4 * s - 1};
-}
-
-Gradients gradients(const Element &element, const Point &at)
-{
-  const int p = element.order;
-  Gradients result;
-  for (const auto &node : element.lattice()) {
-    if (element.shape == Shape::simplex) {
-      const Point x = simplex_factor(p, node[0], at[0]), y = simplex_factor(p, node[1], at[1]);
-      const Point rest = simplex_factor(p, p - node[0] - node[1], 1 - at[0] - at[1]);
-      result.push_back({(x[1] * rest[0] - x[0] * rest[1]) * y[0], (y[1] * rest[0] - y[0] * rest[1]) * x[0]});
-    } else {
-      const Point x = interval_factor(p, node[0], at[0]), y = interval_factor(p, node[1], at[1]);
-      result.push_back({x[1] * y[0], x[0] * y[1]});
-    }
-  }
-  return result;
-}
-
-/// The nodes, and with order 2 the quadrature points of the stiffness.
+/// The gradients at the nodes, and with order 2 at the quadrature points of the stiffness. Those of quadrilaterals are
+/// by coordinates of [0, 1]^2, in which the Jacobian determinant of a parallelogram is its area.
 std::vector<Gradients> gradients_where_checked(const Element &element)
 {
-  std::vector<Point> points;
-  for (const auto &node : element.lattice())
-    points.push_back({static_cast<double>(node[0]) / element.order, static_cast<double>(node[1]) / element.order});
-  if (element.order == 2 && element.shape == Shape::simplex)
-    points.insert(points.end(), {{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}});
-  if (element.order == 2 && element.shape == Shape::tensor) {
-    const double step = std::sqrt(.15);
-    for (const double x : {.5 - step, .5, .5 + step})
-      for (const double y : {.5 - step, .5, .5 + step}) points.push_back({x, y});
-  }
   std::vector<Gradients> result;
-  for (const auto &point : points) result.push_back(gradients(element, point));
+  with_shape_functions(element, [&](const auto &functions) {
+    using Functions = std::decay_t<decltype(functions)>;
+    if constexpr (Functions::dim == 2) {
+      constexpr int nodes = Functions::nodes;
+      const double scale = Functions::simplex ? 1 : 2;
+      const auto add = [&](const double(&X)[2]) {
+        double N[nodes], dN[nodes][2];
+        functions.evaluate(X, N, dN);
+        Gradients gradients;
+        for (const auto &slope : dN) gradients.push_back({scale * slope[0], scale * slope[1]});
+        result.push_back(gradients);
+      };
+      for (int a = 0; a < nodes; ++a) {
+        double X[2];
+        functions.node(a, X);
+        add(X);
+      }
+      if (element.order == 1) return;
+      for (const auto &point : quadrature(2, element.shape, stiffness_degree(element)).point) {
+        const double X[2] = {point[0], point[1]};
+        add(X);
+      }
+    }
+  });
   return result;
 }
 
@@ -212,39 +195,33 @@ void check_cells(const TaggedMesh &draft)
   }
 }
 
-std::vector<Edge> checked_edges(const TaggedMesh &draft)
+int middle_node(const MeshData &mesh, const int cell, const int ordinal)
+{
+  const auto &facet = mesh.element.facets()[ordinal];
+  return facet.size() > 2 ? mesh.cells[static_cast<std::size_t>(cell) * mesh.element.num_nodes() + facet[2]] : -1;
+}
+
+void check_facets(const TaggedMesh &draft, const Entities &facets)
 {
   const Element &element = draft.mesh.element;
-  const auto ends = [&](const Edge &edge) {
-    const auto &facet = element.facets()[edge.ordinal];
-    const int *const nodes = &draft.mesh.cells[static_cast<std::size_t>(edge.cell) * element.num_nodes()];
-    return std::array<int, 3>{nodes[facet[0]], nodes[facet[1]], facet.size() > 2 ? nodes[facet[2]] : -1};
+  const auto first_node = [&](const int cell, const int ordinal) {
+    return draft.mesh.cells[static_cast<std::size_t>(cell) * element.num_nodes() + element.facets()[ordinal][0]];
   };
-  std::vector<Edge> edges;
-  for (int c = 0; c < draft.mesh.num_cells(); ++c)
-    for (int f = 0; f < element.num_facets(); ++f) {
-      Edge edge{0, 0, -1, c, f};
-      const auto [a, b, middle] = ends(edge);
-      edge.low = std::min(a, b);
-      edge.high = std::max(a, b);
-      edge.middle = middle;
-      edges.push_back(edge);
+  for (int f = 0; f < facets.size(); ++f)
+    for (int k = 1; k < facets.num_cells_at(f); ++k) {
+      const int cell = facets.cell(f, k), before = facets.cell(f, k - 1);
+      const int ordinal = facets.ordinal(f, k), ordinal_before = facets.ordinal(f, k - 1);
+      const auto label = [&](const char *const both) {
+        return draft.where + label_of_cell(draft, before) + " and " + label_of_cell(draft, cell) + both +
+               label_of_node(draft, facets.vertices[2 * f]) + " and " +
+               label_of_node(draft, facets.vertices[2 * f + 1]);
+      };
+      // Of two neighbours, both counterclockwise, one runs along their edge and the other against it.
+      RPC_REQUIRE_CODE(first_node(cell, ordinal) != first_node(before, ordinal_before), ExitCode::bad_mesh,
+                       label(" overlap: they lie on the same side of the edge between "));
+      RPC_REQUIRE_CODE(middle_node(draft.mesh, cell, ordinal) == middle_node(draft.mesh, before, ordinal_before),
+                       ExitCode::bad_mesh, label(" have different middle nodes on the edge between "));
     }
-  std::stable_sort(edges.begin(), edges.end(), [](const Edge &l, const Edge &r) { return l.nodes() < r.nodes(); });
-  for (std::size_t e = 1; e < edges.size(); ++e) {
-    const Edge &edge = edges[e], &before = edges[e - 1];
-    if (edge.nodes() != before.nodes()) continue;
-    const auto label = [&](const char *const both) {
-      return draft.where + label_of_cell(draft, before.cell) + " and " + label_of_cell(draft, edge.cell) + both +
-             label_of_node(draft, edge.low) + " and " + label_of_node(draft, edge.high);
-    };
-    // Of two neighbours, both counterclockwise, one runs along their edge and the other against it.
-    RPC_REQUIRE_CODE(ends(edge)[0] != ends(before)[0], ExitCode::bad_mesh,
-                     label(" overlap: they lie on the same side of the edge between "));
-    RPC_REQUIRE_CODE(edge.middle == before.middle, ExitCode::bad_mesh,
-                     label(" have different middle nodes on the edge between "));
-  }
-  return edges;
 }
 
 } // namespace rpc::mesh

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "rpc/mesh/mesh_data.hpp"
+#include "rpc/mesh/topology.hpp"
 
 #include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace rpc::mesh
@@ -20,23 +20,18 @@ struct TaggedMesh {
   std::vector<std::size_t> cell_tag; ///< (cells)
 };
 
-/// A facet of a cell, by its end nodes in ascending order.
-struct Edge {
-  int low = 0, high = 0;
-  int middle = -1; ///< node, with order 2
-  int cell = 0, ordinal = 0;
-
-  std::pair<int, int> nodes() const { return {low, high}; }
-};
-
 /// @throws rpc::Error (bad_mesh) if a coordinate is not finite, a node is off the plane z = 0, or two are at one place
 void check_nodes(const TaggedMesh &draft);
 
 /// @throws rpc::Error (bad_mesh) if a cell names a node twice, is degenerate, or inverted anywhere
 void check_cells(const TaggedMesh &draft);
 
-/// The facets of all cells, by their nodes. For cells that passed check_cells().
+/// For cells that passed check_cells().
+/// @param facets  of the draft's cells
 /// @throws rpc::Error (bad_mesh) if cells overlap at an edge, or share its ends but not its middle node
-std::vector<Edge> checked_edges(const TaggedMesh &draft);
+void check_facets(const TaggedMesh &draft, const Entities &facets);
+
+/// The node in the middle of the facet `ordinal` of a cell; -1 with order 1.
+int middle_node(const MeshData &mesh, int cell, int ordinal);
 
 } // namespace rpc::mesh

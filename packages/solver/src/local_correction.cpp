@@ -28,7 +28,7 @@ void mark_changed(const UpdatedOperator::Changes &changes, const int dim, Vector
   const auto node = changes.node;
   Kokkos::parallel_for(
       "rpc::solver::mark_changed", device_range(changes.size()), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < dim; ++k) to(dim * node(i) + k) = 1;
+        for (int k = 0; k < dim; ++k) to(dof(dim, node(i), k)) = 1;
       });
   Kokkos::fence();
 }
@@ -147,7 +147,7 @@ void add_changes(const UpdatedOperator::Changes &changes, const int dim, const V
   const LO num_rows = static_cast<LO>(list.row.extent(0));
   Kokkos::parallel_for(
       "rpc::solver::add_changes", device_range(changes.size()), KOKKOS_LAMBDA(const LO i) {
-        const LO first = dim * changes.node(i);
+        const LO first = dof(dim, changes.node(i), 0);
         LO low = 0, high = num_rows; // rows ascend
         while (low < high) {
           const LO middle = (low + high) / 2;

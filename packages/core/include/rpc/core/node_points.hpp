@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/core/dofs.hpp"
 #include "rpc/core/kokkos.hpp"
 
 namespace rpc
@@ -16,6 +17,8 @@ struct NodePoints {
 
   int num_groups() const { return static_cast<int>(first.extent(0)) - 1; }
   LO size() const { return static_cast<LO>(node.extent(0)); }
+  /// The unknown of one component at the node of point i, for kernels.
+  KOKKOS_INLINE_FUNCTION LO dof(const LO i, const int component) const { return rpc::dof(dim, node(i), component); }
 };
 
 /// Runs work(i) for all points, group after group: what it does to the node of point i meets no other thread.
@@ -33,7 +36,7 @@ template <class X>
 KOKKOS_INLINE_FUNCTION double along_direction(const NodePoints &points, const LO i, const X &x)
 {
   double sum = 0;
-  for (int k = 0; k < points.dim; ++k) sum += points.direction(i, k) * x(points.dim * points.node(i) + k);
+  for (int k = 0; k < points.dim; ++k) sum += points.direction(i, k) * x(points.dof(i, k));
   return sum;
 }
 

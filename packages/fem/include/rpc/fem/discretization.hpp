@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/core/dofs.hpp"
 #include "rpc/core/tpetra.hpp"
 #include "rpc/fem/reference_element.hpp"
 #include "rpc/mesh/mesh.hpp"
@@ -16,30 +17,30 @@ struct NodeGraph {
   DeviceView<LO *> col;          ///< (entries) overlap node lids, ascending in each row
 };
 
-/// Cells around each owned node, as offsets and list, ascending within a node.
-struct NodeCells {
+/// The cells at each owned node, as offsets and list, ascending within a node. (Of a side: its facets.)
+struct NodeToCells {
   DeviceView<std::size_t *> row; ///< (owned nodes + 1)
   DeviceView<LO *> cell;         ///< (entries) local cells
 };
 
-/// Which local cells are alike: each other's translates, up to the rounding of coordinates. What depends on a cell's shape
-/// alone is worked out once for each. No shapes where cells differ: then each is worked out by itself.
-struct CellShapes {
-  DeviceView<signed char *> of_cell; ///< (local cells)
-  DeviceView<LO *> example;          ///< (shapes) a cell of each
+/// Kinds of congruent local cells: those of a kind are each other's translates, up to the rounding of coordinates. What
+/// does not depend on a cell's place is computed once for each kind. No kinds where cells differ: then each is computed by itself.
+struct CongruentCells {
+  DeviceView<signed char *> of_cell; ///< (local cells) kind
+  DeviceView<LO *> example;          ///< (kinds) a cell of each
 
   int size() const { return static_cast<int>(example.extent(0)); }
 };
 
-/// A mesh with its displacement unknowns: `dim` per node, unknown c of node n is dim n + c in every numbering.
+/// A mesh with its displacement unknowns, numbered as dofs.hpp says.
 struct Discretization {
   std::shared_ptr<const mesh::Mesh> mesh;
   ReferenceElement reference;
   RCP<const Map> owned_dofs;    ///< rows
   RCP<const Map> overlap_dofs;  ///< columns
   RCP<const Import> dof_import; ///< owned -> overlap; null in one process, where these are the same
-  CellShapes shapes;
-  NodeCells around;
+  CongruentCells congruent;
+  NodeToCells node_to_cells;
   NodeGraph nodes;
   RCP<const CrsGraph> graph; ///< fill-complete, columns ascending
 

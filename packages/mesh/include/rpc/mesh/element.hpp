@@ -1,38 +1,55 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace rpc::mesh
 {
 
-/// What the reference cell is: a product of intervals (quadrilateral, hexahedron) or a simplex (triangle).
+/// The reference cell: [-1, 1]^dim (interval, quadrilateral, hexahedron), or a simplex, the points of x_i >= 0 with
+/// x_1 + ... + x_dim <= 1 (triangle, tetrahedron).
 enum class Shape { tensor, simplex };
 
-/// Lagrange element: Q1 or Q2 in 2D, Q1 in 3D (Q2's tables are there), P1 or P2 in 2D. Cells are isoparametric: with
-/// order 2 their edges follow curved boundaries.
+/// Lagrange element of order 1 or 2: P1 and P2 (simplices), Q1 and Q2 (tensor products) in 2D and 3D, and the tensor products
+/// in 1D as edges. Cells are isoparametric: with order 2 their edges and faces are curved.
 ///
-/// The kind of element is data. Whoever needs its nodes asks here, whoever needs its shape functions asks
-/// fem::tabulate(); a further one is a further case in those two places.
+/// Dimension, order and shape tell an element, never its number of nodes: a face of a P1 tetrahedron has as many nodes as an
+/// edge of a P2 triangle. What depends on the element is asked for here (src/element.cpp holds it as data), in
+/// shape_functions.hpp and in quadrature.hpp.
+///
+/// Nodes, edges and facets are numbered as in Exodus, from 0.
 struct Element {
+  using Table = std::vector<std::vector<int>>;
+
   int dim = 2;
   int order = 1;
   Shape shape = Shape::tensor;
 
   std::string name() const;        ///< "Q1", "P2"
-  std::string exodus_name() const; ///< "QUAD4", "QUAD9", "HEX8", "HEX27", "TRI3", "TRI6"
+  std::string exodus_name() const; ///< "QUAD4", "HEX27", "TRI6", "TETRA10"
+  int gmsh_type() const;           ///< gmsh's number of the element type
   int num_nodes() const;           ///< per cell
   int num_vertices() const;        ///< per cell; they are its first nodes
+  int num_facets() const;          ///< per cell: edges in 2D, faces in 3D
   int num_facet_nodes() const;     ///< per facet
-  int num_facets() const;          ///< per cell
+
+  Element facet() const; ///< what its facets are; in 2D and 3D
+  Element edge() const;  ///< what its edges are
 
   /// Position of each node on the reference lattice {0..order}^dim, for simplices the part of it where the coordinates'
-  /// sum is <= order: (nodes, dim), vertices first, as Exodus numbers them.
-  const std::vector<std::vector<int>> &lattice() const;
+  /// sum is <= order: (nodes, dim), vertices first.
+  const Table &lattice() const;
 
-  /// Local nodes of each facet, (facets, facet nodes), vertices first, ordered so that the outward normal is the
-  /// tangent turned clockwise (2D) or the cross product of the two tangents (3D).
-  const std::vector<std::vector<int>> &facets() const;
+  /// Local nodes of each facet, (facets, facet nodes), in the order of the facet's own element. The outward normal is the
+  /// tangent turned clockwise (2D), or the cross product of the tangents by the facet's two reference coordinates (3D).
+  const Table &facets() const;
+
+  /// Local nodes of each edge, (edges, edge nodes): both ends, then with order 2 the middle. In 2D edges are the facets.
+  const Table &edges() const;
+
+  /// (nodes) Place of each node in gmsh's list of a cell's nodes.
+  const std::vector<int> &gmsh_place() const;
 };
 
 inline bool operator==(const Element &a, const Element &b)
@@ -40,7 +57,13 @@ inline bool operator==(const Element &a, const Element &b)
   return a.dim == b.dim && a.order == b.order && a.shape == b.shape;
 }
 
-/// @throws rpc::Error (bad_input) if there is no element of that name, listing those that exist
+/// Those that cells can be of: P1, P2, Q1, Q2 in 2D, then in 3D.
+const std::vector<Element> &all_elements();
+
+/// The element that a cell of gmsh's type is of, if there is one.
+std::optional<Element> element_of_gmsh_type(int type);
+
+/// @throws rpc::Error (bad_input) if a box can have no element of that name, listing those that it can have
 Element parse_element(const std::string &name, int dim);
 
 } // namespace rpc::mesh

@@ -48,6 +48,11 @@ struct Mesh {
   const Side &side(const std::string &name, const std::string &user) const;
 };
 
+/// The side of some facets of a mesh's local cells.
+/// @param cell     (facets) local cell
+/// @param ordinal  (facets) which facet of that cell
+Side make_side(const std::string &name, const Mesh &mesh, const HostView<LO *> &cell, const HostView<int *> &ordinal);
+
 /// Diagonal of the bounding box [m]; collective.
 double diameter(const Mesh &mesh);
 

@@ -24,7 +24,7 @@ Deformation graded(const mesh::BoxOptions &box)
 /// The same cells, each by itself.
 fem::Discretization without_shapes(fem::Discretization d)
 {
-  d.shapes = {};
+  d.congruent = {};
   return d;
 }
 
@@ -60,38 +60,38 @@ fem::Discretization in_two_blocks(const fem::Discretization &whole)
   return fem::discretize(mesh);
 }
 
-TEST(CellShapes, OfABoxAreOneToAPartOfItsLattice)
+TEST(CongruentCells, OfABoxAreOneToAPartOfItsLattice)
 {
   for (const auto &element : elements()) {
     SCOPED_TRACE(text_of(element));
     const auto box = small_box(element);
     const auto d = body(box, alone());
-    ASSERT_EQ(d.shapes.size(), kinds(element));
-    const auto of_cell = to_host(d.shapes.of_cell);
+    ASSERT_EQ(d.congruent.size(), kinds(element));
+    const auto of_cell = to_host(d.congruent.of_cell);
     for (LO cell = 0; cell < d.mesh->num_cells(); ++cell) EXPECT_EQ(of_cell(cell), cell % kinds(element));
-    EXPECT_EQ(body(box, alone(), graded(box)).shapes.size(), 2 * kinds(element));
+    EXPECT_EQ(body(box, alone(), graded(box)).congruent.size(), 2 * kinds(element));
   }
 }
 
-TEST(CellShapes, OfManyCellsOfABoxAreFoundDespiteTheRoundingOfCoordinates)
+TEST(CongruentCells, OfManyCellsOfABoxAreFoundDespiteTheRoundingOfCoordinates)
 {
-  EXPECT_EQ(body({{0, 0}, {5, 1}, {321, 67}, {2, 1}}, world()).shapes.size(), 1);
-  EXPECT_EQ(body({{-1. / 3, 7. / 9}, {5. / 7, 1}, {333, 33}, {2, 2}}, world()).shapes.size(), 1);
+  EXPECT_EQ(body({{0, 0}, {5, 1}, {321, 67}, {2, 1}}, world()).congruent.size(), 1);
+  EXPECT_EQ(body({{-1. / 3, 7. / 9}, {5. / 7, 1}, {333, 33}, {2, 2}}, world()).congruent.size(), 1);
 }
 
-TEST(CellShapes, AreNoneWhereCellsDifferOrCoordinatesHideIt)
+TEST(CongruentCells, AreNoneWhereCellsDifferOrCoordinatesHideIt)
 {
   for (const auto &element : elements()) {
     SCOPED_TRACE(text_of(element));
     auto box = small_box(element);
-    EXPECT_EQ(bulged_body(element, alone()).shapes.size(), 0);
+    EXPECT_EQ(bulged_body(element, alone()).congruent.size(), 0);
     for (double &x : box.lower) x += 1e7;
     for (double &x : box.upper) x += 1e7;
-    EXPECT_EQ(body(box, alone()).shapes.size(), 0);
+    EXPECT_EQ(body(box, alone()).congruent.size(), 0);
   }
 }
 
-TEST(CellShapes, SeeADisplacedNodeAboveRounding)
+TEST(CongruentCells, SeeADisplacedNodeAboveRounding)
 {
   const mesh::BoxOptions box{{0, 0}, {4, 2}, {16, 8}, {2, 1}};
   const auto moved = [&](const double by) {
@@ -99,19 +99,19 @@ TEST(CellShapes, SeeADisplacedNodeAboveRounding)
                 [by](const Point &x) {
                   return x[0] == 2 && x[1] == 1 ? Point{x[0] + by, x[1], x[2]} : x;
                 })
-        .shapes.size();
+        .congruent.size();
   };
   EXPECT_EQ(moved(1e-15), 1);
   EXPECT_EQ(moved(1e-12), 0);
 }
 
-TEST(CellShapes, GiveTheStiffnessOfEachCellByItself)
+TEST(CongruentCells, GiveTheStiffnessOfEachCellByItself)
 {
   for (const auto &element : elements()) {
     SCOPED_TRACE(text_of(element));
     for (const auto &whole : repetitive_bodies(element, world())) {
       for (const auto &d : {whole, in_two_blocks(whole)}) {
-        ASSERT_GT(d.shapes.size(), 0);
+        ASSERT_GT(d.congruent.size(), 0);
         const auto product = [&](const fem::Discretization &of) {
           Vector result(of.owned_dofs);
           fem::assemble_stiffness(of, in_blocks(of))->apply(*interpolate(of, wild), result);
@@ -125,7 +125,7 @@ TEST(CellShapes, GiveTheStiffnessOfEachCellByItself)
   }
 }
 
-TEST(CellShapes, DoNotAddUpTheirRounding)
+TEST(CongruentCells, DoNotAddUpTheirRounding)
 {
   for (const auto &element : elements()) {
     SCOPED_TRACE(text_of(element));
@@ -141,7 +141,7 @@ TEST(CellShapes, DoNotAddUpTheirRounding)
   }
 }
 
-TEST(CellShapes, GiveTheInternalWorkOfEachCellByItself)
+TEST(CongruentCells, GiveTheInternalWorkOfEachCellByItself)
 {
   for (const auto &element : elements()) {
     SCOPED_TRACE(text_of(element));

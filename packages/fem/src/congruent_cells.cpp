@@ -1,4 +1,4 @@
-#include "cell_shapes.hpp"
+#include "congruent_cells.hpp"
 
 #include "rpc/core/device_values.hpp"
 
@@ -10,7 +10,7 @@ namespace rpc::fem
 namespace
 {
 
-constexpr int most_shapes = 4; ///< two triangles to a rectangle in two kinds of rectangles
+constexpr int most_kinds = 4; ///< two triangles to a rectangle in two kinds of rectangles
 constexpr signed char unknown = -1;
 
 /// The first unless the second is larger: a NaN once there stays.
@@ -23,14 +23,14 @@ KOKKOS_INLINE_FUNCTION double magnitude(const double x)
   return x < 0 ? -x : x;
 }
 
-/// Gives `shape` to the cells without one that differ from the example by a translation and the rounding of coordinates.
+/// Gives `kind` to the cells without one that differ from the example by a translation and the rounding of coordinates.
 /// Never where that rounding is felt, and never with coordinates that are not finite.
 template <int Dim>
-struct TakeShape {
+struct TakeKind {
   DeviceView<double **> coords;      // (overlap nodes, Dim)  [m]  in
   DeviceView<LO **> cells;           // (cells, nodes)             in
   LO example;                        // cell                       in
-  signed char shape;                 //                            in
+  signed char kind;                  //                            in
   DeviceView<signed char *> of_cell; // (cells)                    inout
 
   /// @param took   += 1 if the cell took it
@@ -50,7 +50,7 @@ struct TakeShape {
       }
     const double rounding = 2e-15 * farthest;
     if (difference <= rounding && rounding <= 1e-10 * size) {
-      of_cell(cell) = shape;
+      of_cell(cell) = kind;
       ++took;
     } else if (cell < first) {
       first = cell;
@@ -58,38 +58,37 @@ struct TakeShape {
   }
 };
 
-/// @param[in,out] next  the example, then the first cell that is left without a shape
+/// @param[in,out] next  the example, then the first cell that is left without a kind
 /// @return number of cells that took this one
 template <int Dim>
-LO take_shape(const mesh::Mesh &mesh, const signed char shape, const DeviceView<signed char *> &of_cell, LO &next)
+LO take_kind(const mesh::Mesh &mesh, const signed char kind, const DeviceView<signed char *> &of_cell, LO &next)
 {
-  const TakeShape<Dim> kernel{mesh.coords, mesh.cells, next, shape, of_cell};
+  const TakeKind<Dim> kernel{mesh.coords, mesh.cells, next, kind, of_cell};
   LO took = 0;
-  Kokkos::parallel_reduce("rpc::fem::cell_shapes", device_range(mesh.num_cells()), kernel, Kokkos::Sum<LO>(took),
+  Kokkos::parallel_reduce("rpc::fem::congruent_cells", device_range(mesh.num_cells()), kernel, Kokkos::Sum<LO>(took),
                           Kokkos::Min<LO>(next));
   return took;
 }
 
 } // namespace
 
-CellShapes cell_shapes(const mesh::Mesh &mesh)
+CongruentCells congruent_cells(const mesh::Mesh &mesh)
 {
   const LO num_cells = mesh.num_cells();
-  DeviceView<signed char *> of_cell(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::shape_of_cell"), num_cells);
+  DeviceView<signed char *> of_cell(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::kind_of_cell"), num_cells);
   Kokkos::deep_copy(of_cell, unknown);
   std::vector<LO> examples;
   LO next = 0;
   for (LO count = 0; count < num_cells;) {
-    // Few cells of one shape promise a mesh without order, and each shape costs a pass over the cells.
-    if (static_cast<int>(examples.size()) == most_shapes) return {};
+    // Few cells of one kind promise a mesh without order, and each kind costs a pass over the cells.
+    if (static_cast<int>(examples.size()) == most_kinds) return {};
     examples.push_back(next);
-    const auto shape = static_cast<signed char>(examples.size() - 1);
-    const LO took =
-        mesh.dim() == 2 ? take_shape<2>(mesh, shape, of_cell, next) : take_shape<3>(mesh, shape, of_cell, next);
+    const auto kind = static_cast<signed char>(examples.size() - 1);
+    const LO took = mesh.dim() == 2 ? take_kind<2>(mesh, kind, of_cell, next) : take_kind<3>(mesh, kind, of_cell, next);
     if (took < num_cells / 8) return {};
     count += took;
   }
-  return {of_cell, device_values(examples, "rpc::fem::shape_example")};
+  return {of_cell, device_values(examples, "rpc::fem::kind_example")};
 }
 
 } // namespace rpc::fem

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "rpc/core/kokkos.hpp"
+#include "rpc/mesh/element.hpp"
+#include "rpc/mesh/quadrature.hpp"
+
+namespace rpc::fem
+{
+
+/// Shape functions of an element at the points of a quadrature rule on its reference cell: what kernels read.
+struct BasisTable {
+  DeviceView<double **> value;     ///< (points, nodes)
+  DeviceView<double ***> gradient; ///< (points, nodes, dim of the element) by reference coordinates
+  DeviceView<double *> weight;     ///< (points)
+
+  int num_points() const { return static_cast<int>(weight.extent(0)); }
+};
+
+/// @param element  of cells, facets or edges
+BasisTable tabulate(const mesh::Element &element, const mesh::QuadratureRule &rule);
+
+} // namespace rpc::fem

@@ -1,0 +1,203 @@
+#pragma once
+
+#include "kernels.hpp"
+#include "patch_polynomial.hpp"
+#include "rpc/fem/elasticity.hpp"
+
+/// The cells of an elastic body as all its kernels see them: geometry, material, and one reading of the strain.
+namespace rpc::fem
+{
+
+/// The L2 projection of the dilatation on polynomials over one cell, (2.11): 1, and in Q2 also the coordinates.
+///
+/// With e_k these polynomials made orthonormal, Z_k(ai) = int e_k dN_a/dx_i and Pi div u = sum_k e_k sum_ai Z_k(ai) u_ai.
+template <int Dim, int Nodes>
+struct Projection {
+  static constexpr bool linear = StaticElement<Dim, Nodes>::order == 2 && !StaticElement<Dim, Nodes>::simplex;
+  static constexpr int modes = linear ? 1 + Dim : 1;
+  using Gradients = double[Nodes][Dim];
+
+  double centre[Dim];        // of the cell's nodes                         [m]
+  double root[modes][modes]; // L with L L^T the products of the polynomials
+  Gradients Z[modes];        //                                             [m^(Dim/2 - 1)]
+
+  /// dilatation(a, i) with Pi div u = sum of dilatation(a, i) u_ai at a point [1/m].
+  KOKKOS_FUNCTION void gradients(const double (&x)[Dim], Gradients &dilatation) const
+  {
+    double e[modes][1]; // [m^(-Dim/2)]
+    monomials(x, e);
+    solve_lower(root, modes, e);
+    for (int a = 0; a < Nodes; ++a)
+      for (int i = 0; i < Dim; ++i) {
+        dilatation[a][i] = 0;
+        for (int k = 0; k < modes; ++k) dilatation[a][i] += e[k][0] * Z[k][a][i];
+      }
+  }
+  KOKKOS_FUNCTION void monomials(const double (&x)[Dim], double (&term)[modes][1]) const
+  {
+    term[0][0] = 1;
+    for (int k = 1; k < modes; ++k) term[k][0] = x[k - 1] - centre[k - 1];
+  }
+};
+
+/// The cells of an elastic body: geometry, quadrature and material, with the dilatation in full or projected.
+template <int Dim, int Nodes>
+struct ElasticCells {
+  /// All elements but P1, whose dilatation is constant; its kernels carry no code for that.
+  static constexpr bool may_project = !StaticElement<Dim, Nodes>::simplex || StaticElement<Dim, Nodes>::order > 1;
+  using Gradients = double[Nodes][Dim];
+  using Coords = CellCoords<Dim, Nodes>;
+
+  DeviceView<double **> coords;    // (overlap nodes, Dim)  [m]   in
+  DeviceView<LO **> cells;         // (cells, Nodes)              in, overlap lids
+  DeviceView<int *> block;         // (cells)                     in
+  DeviceView<double **> value;     // (points, Nodes)             in
+  DeviceView<double ***> gradient; // (points, Nodes, Dim)        in
+  DeviceView<double *> weight;     // (points)                    in
+  DeviceView<double **> lame;      // (blocks; lambda, mu)  [Pa]  in
+  DeviceView<int *> projected;     // (blocks) 0 or 1             in
+  // Of congruent cells, (kinds, points): gradients [1/m], and what a point stands for [m^Dim]. Empty: cells differ.
+  DeviceView<signed char *> kind; // (cells)                            in
+  DeviceView<double **[Nodes][Dim]> kind_gradient;
+  DeviceView<double **> kind_volume;
+
+  KOKKOS_FUNCTION double lambda(const LO cell) const { return lame(block(cell), 0); }
+  KOKKOS_FUNCTION double mu(const LO cell) const { return lame(block(cell), 1); }
+  KOKKOS_FUNCTION bool projects(const LO cell) const { return projects_in(block(cell)); }
+  KOKKOS_FUNCTION bool projects_in(const int of_block) const
+  {
+    if constexpr (!may_project) return false;
+    return projected(of_block) != 0;
+  }
+
+  /// Calls work(q, volume, dN, dilatation) at each quadrature point: what the point stands for [m^Dim], the gradients dN(a, i)
+  /// [1/m], and those whose sum with u_ai is the dilatation: dN again, or the projected ones.
+  /// @return false if the Jacobian is <= 0 somewhere; points from there on have been left out
+  template <class Work>
+  KOKKOS_FUNCTION bool at_points(const LO cell, const Work &work) const
+  {
+    if constexpr (may_project) {
+      if (projects(cell)) {
+        const Coords x(coords, cells, cell);
+        Projection<Dim, Nodes> projection;
+        if (!project(cell, projection)) return false;
+        return at_plain_points(cell, [&](const int q, const double volume, const Gradients &dN) {
+          double at[Dim];
+          Gradients dilatation;
+          position(x, value, q, at);
+          projection.gradients(at, dilatation);
+          work(q, volume, dN, dilatation);
+        });
+      }
+    }
+    return at_plain_points(cell,
+                           [&](const int q, const double volume, const Gradients &dN) { work(q, volume, dN, dN); });
+  }
+
+  /// @return false if the Jacobian is <= 0 somewhere
+  KOKKOS_FUNCTION bool project(const LO cell, Projection<Dim, Nodes> &projection) const
+  {
+    constexpr int modes = Projection<Dim, Nodes>::modes;
+    const Coords x(coords, cells, cell);
+    for (int i = 0; i < Dim; ++i) {
+      projection.centre[i] = 0;
+      for (int a = 0; a < Nodes; ++a) projection.centre[i] += x.x[a][i] / Nodes;
+    }
+    double products[modes][modes] = {}, moments[modes][Nodes * Dim] = {};
+    const bool good = at_plain_points(cell, [&](const int q, const double volume, const Gradients &dN) {
+      double at[Dim], term[modes][1];
+      position(x, value, q, at);
+      projection.monomials(at, term);
+      for (int k = 0; k < modes; ++k) {
+        for (int l = 0; l < modes; ++l) products[k][l] += volume * term[k][0] * term[l][0];
+        for (int a = 0; a < Nodes; ++a)
+          for (int i = 0; i < Dim; ++i) moments[k][dof(Dim, a, i)] += volume * term[k][0] * dN[a][i];
+      }
+    });
+    if (!good || cholesky(products, 0) < modes) return false;
+    solve_lower(products, modes, moments);
+    for (int k = 0; k < modes; ++k) {
+      for (int l = 0; l < modes; ++l) projection.root[k][l] = products[k][l];
+      for (int a = 0; a < Nodes; ++a)
+        for (int i = 0; i < Dim; ++i) projection.Z[k][a][i] = moments[k][dof(Dim, a, i)];
+    }
+    return true;
+  }
+
+  /// Calls work(q, volume, dN) at each quadrature point.
+  /// @return false if the Jacobian is <= 0 somewhere; points from there on have been left out
+  template <class Work>
+  KOKKOS_FUNCTION bool at_plain_points(const LO cell, const Work &work) const
+  {
+    const int points = static_cast<int>(weight.extent(0));
+    Gradients dN;
+    if (kind_volume.extent(0) > 0) {
+      const int s = kind(cell);
+      for (int q = 0; q < points; ++q) {
+        if (!(kind_volume(s, q) > 0)) return false;
+        for (int a = 0; a < Nodes; ++a)
+          for (int i = 0; i < Dim; ++i) dN[a][i] = kind_gradient(s, q, a, i);
+        work(q, kind_volume(s, q), dN);
+      }
+      return true;
+    }
+    const Coords x(coords, cells, cell);
+    for (int q = 0; q < points; ++q) {
+      const double det = physical_gradients(x, gradient, q, dN);
+      if (!(det > 0)) return false;
+      work(q, weight(q) * det, dN);
+    }
+    return true;
+  }
+};
+
+/// Gradients and volumes at the points of each kind of congruent cells; 0 from the first point on whose Jacobian is <= 0.
+template <int Dim, int Nodes>
+struct TabulateKind {
+  ElasticCells<Dim, Nodes> body;                   //                                     in, without a table
+  DeviceView<LO *> example;                        // (kinds)                            in
+  DeviceView<double **[Nodes][Dim]> kind_gradient; // (kinds, points, Nodes, Dim) [1/m]  out
+  DeviceView<double **> kind_volume;               // (kinds, points)           [m^Dim]  out
+
+  KOKKOS_FUNCTION void operator()(const LO s) const
+  {
+    body.at_plain_points(example(s), [&](const int q, const double volume, const double(&dN)[Nodes][Dim]) {
+      kind_volume(s, q) = volume;
+      for (int a = 0; a < Nodes; ++a)
+        for (int i = 0; i < Dim; ++i) kind_gradient(s, q, a, i) = dN[a][i];
+    });
+  }
+};
+
+/// @param table  points in a cell
+/// @throws rpc::Error (bad_input) if the materials do not fit the mesh
+template <int Dim, int Nodes>
+ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials &materials, const BasisTable &table)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  ElasticCells<Dim, Nodes> body;
+  body.coords = mesh.coords;
+  body.cells = mesh.cells;
+  body.block = mesh.block;
+  body.value = table.value;
+  body.gradient = table.gradient;
+  body.weight = table.weight;
+  body.lame = lame_table(mesh, materials);
+  body.projected = projected_dilatation_table(mesh, materials);
+  if (d.congruent.size() == 0) return body;
+  const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::kind_gradient", d.congruent.size(), table.num_points());
+  const DeviceView<double **> volume("rpc::fem::kind_volume", d.congruent.size(), table.num_points());
+  const TabulateKind<Dim, Nodes> tabulate{body, d.congruent.example, gradient, volume};
+  Kokkos::parallel_for("rpc::fem::tabulate_kinds", device_range(d.congruent.size()), tabulate);
+  body.kind = d.congruent.of_cell;
+  body.kind_gradient = gradient;
+  body.kind_volume = volume;
+  return body;
+}
+template <int Dim, int Nodes>
+ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials &materials)
+{
+  return elastic_cells<Dim, Nodes>(d, materials, d.reference.cell);
+}
+
+} // namespace rpc::fem

@@ -1,0 +1,201 @@
+#include "around_nodes.hpp"
+#include "component_name.hpp"
+#include "kernels.hpp"
+#include "rpc/core/error.hpp"
+#include "rpc/core/evaluate.hpp"
+#include "rpc/core/parameters.hpp"
+#include "rpc/fem/elasticity.hpp"
+#include "rpc/fem/surface.hpp"
+
+namespace rpc::fem
+{
+namespace
+{
+
+VectorField vector_field(const Teuchos::ParameterList &list, const int dim, const std::string &path,
+                         const FieldParser &parse)
+{
+  VectorField field;
+  for (int c = 0; c < 3; ++c) {
+    const std::string parameter = path + "->" + component_name[c];
+    field[c] = parse(field_text(list, component_name[c]), parameter);
+    RPC_REQUIRE(c < dim || field[c].is_zero(),
+                "deck: \"" << parameter << "\" must be 0 in " << dim << "D, got " << field[c].text);
+  }
+  return field;
+}
+
+/// Values of a vector field at points (n, dim), as (n, dim) on the device.
+DeviceView<double **> evaluate_vector(const VectorField &field, const DeviceView<double **> &points,
+                                      const std::string &parameter, const Comm &comm)
+{
+  const int dim = static_cast<int>(points.extent(1));
+  const auto host_points = to_host(points);
+  DeviceView<double **> result("rpc::fem::load_at_points", points.extent(0), dim);
+  const auto host = Kokkos::create_mirror_view(result);
+  for (int c = 0; c < dim; ++c) {
+    const auto values = evaluate(field[c], host_points, parameter + "->" + component_name[c], comm);
+    for (std::size_t p = 0; p < values.extent(0); ++p) host(p, c) = values(p);
+  }
+  Kokkos::deep_copy(result, host);
+  return result;
+}
+
+bool is_zero(const VectorField &field, const int dim)
+{
+  for (int c = 0; c < dim; ++c)
+    if (!field[c].is_zero()) return false;
+  return true;
+}
+
+/// x = sum_a N_a x_a at the quadrature points of cells or facets: (entities * points, dim).
+DeviceView<double **> quadrature_points(const DeviceView<double **> &coords, const DeviceView<LO **> &nodes,
+                                        const DeviceView<double **> &value)
+{
+  const int dim = static_cast<int>(coords.extent(1)), points = static_cast<int>(value.extent(0));
+  DeviceView<double **> x("rpc::fem::quadrature_points", nodes.extent(0) * points, dim);
+  Kokkos::parallel_for(
+      "rpc::fem::quadrature_points", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO entity) {
+        for (int q = 0; q < points; ++q)
+          for (int d = 0; d < dim; ++d)
+            for (std::size_t a = 0; a < nodes.extent(1); ++a)
+              x(entity * points + q, d) += value(q, a) * coords(nodes(entity, a), d);
+      });
+  return x;
+}
+
+/// measure(cell * points + q) = weight * Jacobian determinant: what a quadrature point stands for [m^Dim].
+template <int Dim, int Nodes>
+struct CellMeasure {
+  DeviceView<double **> coords;    // (overlap nodes, Dim)   [m]      in
+  DeviceView<LO **> cells;         // (cells, Nodes)                  in
+  DeviceView<double ***> gradient; // (points, Nodes, Dim)            in
+  DeviceView<double *> weight;     // (points)                        in
+  DeviceView<double *> measure;    // (cells * points)       [m^Dim]  out
+
+  KOKKOS_FUNCTION void operator()(const LO cell) const
+  {
+    const CellCoords<Dim, Nodes> x(coords, cells, cell);
+    const int points = static_cast<int>(weight.extent(0));
+    double dN[Nodes][Dim];
+    for (int q = 0; q < points; ++q) measure(cell * points + q) = weight(q) * physical_gradients(x, gradient, q, dN);
+  }
+};
+
+DeviceView<double *> cell_measure(const mesh::Mesh &mesh, const BasisTable &table)
+{
+  DeviceView<double *> measure("rpc::fem::cell_measure", std::size_t(mesh.num_cells()) * table.num_points());
+  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
+    const CellMeasure<dim, nodes> kernel{mesh.coords, mesh.cells, table.gradient, table.weight, measure};
+    Kokkos::parallel_for("rpc::fem::cell_measure", device_range(mesh.num_cells()), kernel);
+  });
+  return measure;
+}
+
+/// load(ai) += sum over entities (cells or facets) and their points q, measure_q N_a(q) f_i(q).
+/// @param node_to_entities  those around the owned nodes
+/// @param f  (entities * points, dim)
+void add_load(const DeviceView<LO **> &entities, const NodeToCells &node_to_entities,
+              const DeviceView<double **> &value, const DeviceView<double *> &measure, const DeviceView<double **> &f,
+              Vector &load)
+{
+  const auto b = device_write(load);
+  const int dim = static_cast<int>(f.extent(1)), points = static_cast<int>(value.extent(0));
+  const LO num_nodes = static_cast<LO>(node_to_entities.row.extent(0)) - 1;
+  Kokkos::parallel_for(
+      "rpc::fem::add_load", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
+        for (std::size_t k = node_to_entities.row(node); k < node_to_entities.row(node + 1); ++k) {
+          const LO entity = node_to_entities.cell(k);
+          const int a = place_in(entities, entity, node);
+          for (int i = 0; i < dim; ++i) {
+            double sum = 0;
+            for (int q = 0; q < points; ++q)
+              sum += measure(entity * points + q) * value(q, a) * f(entity * points + q, i);
+            b(dof(dim, node, i)) += sum;
+          }
+        }
+      });
+  Kokkos::fence();
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_traction_parameters()
+{
+  Teuchos::ParameterList entry, parent;
+  entry.set("Side", "", "Side of the mesh; by default the side that the entry is named after.");
+  for (const char *name : component_name)
+    set_field(entry, name, "0", std::string("Force per area in ") + name + " [Pa], a number or an expression.");
+  set_named_entries(parent, "Traction", entry, "Surface loads, any number of entries with names of your choice.");
+  return parent.sublist("Traction");
+}
+
+Teuchos::ParameterList valid_body_force_parameters()
+{
+  Teuchos::ParameterList valid("Body Force");
+  for (const char *name : component_name)
+    set_field(valid, name, "0", std::string("Force per volume in ") + name + " [N/m^3], a number or an expression.");
+  return valid;
+}
+
+std::vector<TractionLoad> traction_options(const Teuchos::ParameterList &list, const int dim, const FieldParser &parse)
+{
+  std::vector<TractionLoad> loads;
+  for (auto it = list.begin(); it != list.end(); ++it) {
+    const std::string name = list.name(it);
+    const Teuchos::ParameterList &entry = list.sublist(name);
+    const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
+    loads.push_back({name, side, vector_field(entry, dim, "Traction->" + name, parse)});
+  }
+  return loads;
+}
+
+VectorField body_force_options(const Teuchos::ParameterList &list, const int dim, const FieldParser &parse)
+{
+  return vector_field(list, dim, "Body Force", parse);
+}
+
+void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load)
+{
+  if (is_zero(force, d.dim())) return;
+  const mesh::Mesh &mesh = *d.mesh;
+  const BasisTable &table = d.reference.cell_load;
+  const auto points = quadrature_points(mesh.coords, mesh.cells, table.value);
+  const auto f = evaluate_vector(force, points, parameter, mesh.comm());
+  add_load(mesh.cells, d.node_to_cells, table.value, cell_measure(mesh, table), f, load);
+}
+
+DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &side,
+                                    const std::vector<TractionLoad> &loads)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  const BasisTable &table = d.reference.facet;
+  const int points = table.num_points(), dim = d.dim();
+  const DeviceView<double ***> sum("rpc::fem::tractions_on", side.facets.extent(0), points, dim);
+  for (const auto &load : loads) {
+    if (load.side != side.name || is_zero(load.traction, dim)) continue;
+    const auto t = evaluate_vector(load.traction, quadrature_points(mesh.coords, side.facets, table.value),
+                                   "Traction->" + load.name, mesh.comm());
+    Kokkos::parallel_for(
+        "rpc::fem::add_tractions", device_range(static_cast<LO>(side.facets.extent(0))), KOKKOS_LAMBDA(const LO f) {
+          for (int q = 0; q < points; ++q)
+            for (int i = 0; i < dim; ++i) sum(f, q, i) += t(f * points + q, i);
+        });
+    Kokkos::fence();
+  }
+  return sum;
+}
+
+void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,
+                  const std::string &parameter, Vector &load)
+{
+  if (is_zero(traction, d.dim())) return;
+  const mesh::Mesh &mesh = *d.mesh;
+  const BasisTable &table = d.reference.facet;
+  const auto points = quadrature_points(mesh.coords, side.facets, table.value);
+  const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
+  const NodeToCells node_to_facets = around_nodes(side.facets, mesh.num_owned_nodes());
+  add_load(side.facets, node_to_facets, table.value, facet_measure(d, side), t, load);
+}
+
+} // namespace rpc::fem

@@ -1,0 +1,159 @@
+#include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
+#include "rpc/fem/elasticity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace rpc::fem
+{
+namespace
+{
+
+Dilatation parse_dilatation(const std::string &text, const std::string &path)
+{
+  if (text == "auto") return Dilatation::automatic;
+  if (text == "full") return Dilatation::full;
+  if (text == "projected") return Dilatation::projected;
+  throw Error(ExitCode::bad_input,
+              "deck: \"" + path + "->Dilatation\" must be auto, full or projected, got \"" + text + "\"");
+}
+
+Material one_material(const Teuchos::ParameterList &list, const std::string &path)
+{
+  Material material;
+  material.youngs_modulus = list.get<double>("Young's Modulus");
+  material.poissons_ratio = list.get<double>("Poisson's Ratio");
+  RPC_REQUIRE(material.youngs_modulus > 0 && std::isfinite(material.youngs_modulus),
+              "deck: \"" << path << "->Young's Modulus\" must be > 0 and finite [Pa], got " << material.youngs_modulus);
+  RPC_REQUIRE(material.poissons_ratio > -1 && material.poissons_ratio < 0.5,
+              "deck: \"" << path << "->Poisson's Ratio\" must be in (-1, 0.5), got " << material.poissons_ratio);
+  material.dilatation = parse_dilatation(list.get<std::string>("Dilatation"), path);
+  return material;
+}
+
+bool is_p2(const mesh::Element &element)
+{
+  return element.shape == mesh::Shape::simplex && element.order == 2;
+}
+
+/// Whether the projection stands for the dilatation.
+bool projects(const mesh::Element &element, const Material &material)
+{
+  // P2 with one constant per cell loses its order: up to 0.48 it does better without.
+  const double bound = is_p2(element) ? 0.48 : 0.4;
+  const bool automatic = material.dilatation == Dilatation::automatic && material.poissons_ratio > bound;
+  return automatic || material.dilatation == Dilatation::projected;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_material_parameters()
+{
+  Teuchos::ParameterList valid("Material");
+  valid.set("Young's Modulus", 1., "E > 0 [Pa].");
+  valid.set("Poisson's Ratio", 0.3, "nu, in (-1, 0.5).");
+  valid.set(
+      "Dilatation", "auto",
+      "What counts as div u in a cell: `full`, itself; `projected`, its L2 projection on constants (Q1, P2) or linear "
+      "functions (Q2), which does not lock as nu nears 0.5; `auto`: projected where nu > 0.4 (P2: 0.48). All the same "
+      "for P1.");
+  Teuchos::ParameterList entry = valid;
+  set_named_entries(valid, "Blocks", entry,
+                    "Materials of single blocks of the mesh, each entry named after its block; other blocks have the "
+                    "material above.");
+  return valid;
+}
+
+Materials material_options(const Teuchos::ParameterList &list)
+{
+  Materials materials(one_material(list, "Material"));
+  const Teuchos::ParameterList &blocks = list.sublist("Blocks");
+  for (auto it = blocks.begin(); it != blocks.end(); ++it)
+    materials.block[blocks.name(it)] =
+        one_material(blocks.sublist(blocks.name(it)), "Material->Blocks->" + blocks.name(it));
+  return materials;
+}
+
+const Material &Materials::of(const std::string &name) const
+{
+  const auto own = block.find(name);
+  return own == block.end() ? common : own->second;
+}
+
+DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materials)
+{
+  for (const auto &[name, material] : materials.block)
+    RPC_REQUIRE(std::find(mesh.blocks.begin(), mesh.blocks.end(), name) != mesh.blocks.end(),
+                "deck: \"Material->Blocks->" << name << "\" names a block that the mesh does not have. Its blocks: "
+                                             << join(mesh.blocks) << ".");
+  DeviceView<double **> table("rpc::fem::lame", mesh.blocks.size(), 2);
+  const auto host = Kokkos::create_mirror_view(table);
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const Material &material = materials.of(mesh.blocks[b]);
+    host(b, 0) = material.lambda();
+    host(b, 1) = material.mu();
+  }
+  Kokkos::deep_copy(table, host);
+  return table;
+}
+
+DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials,
+                                             const DeviceView<LO *> &nodes)
+{
+  const auto lame = lame_table(*d.mesh, materials);
+  const auto node_to_cells = d.node_to_cells;
+  const auto block = d.mesh->block;
+  DeviceView<double *> modulus("rpc::fem::youngs_modulus", nodes.extent(0));
+  Kokkos::parallel_for(
+      "rpc::fem::youngs_modulus", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        for (std::size_t k = node_to_cells.row(nodes(i)); k < node_to_cells.row(nodes(i) + 1); ++k) {
+          const double lambda = lame(block(node_to_cells.cell(k)), 0), mu = lame(block(node_to_cells.cell(k)), 1);
+          const double own = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+          if (own > modulus(i)) modulus(i) = own;
+        }
+      });
+  Kokkos::fence();
+  return modulus;
+}
+
+DeviceView<int *> projected_dilatation_table(const mesh::Mesh &mesh, const Materials &materials)
+{
+  DeviceView<int *> table("rpc::fem::projected_dilatation", mesh.blocks.size());
+  const auto host = Kokkos::create_mirror_view(table);
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b)
+    host(b) = projects(mesh.element, materials.of(mesh.blocks[b])) ? 1 : 0;
+  Kokkos::deep_copy(table, host);
+  return table;
+}
+
+std::string locking_note(const mesh::Mesh &mesh, const Materials &materials)
+{
+  if (mesh.element.shape != mesh::Shape::simplex || mesh.element.order != 1) return "";
+  for (const std::string &block : mesh.blocks) {
+    if (!(materials.of(block).poissons_ratio > 0.4)) continue;
+    std::ostringstream note;
+    note << "P1 triangles lock in block \"" << block << "\" with nu = " << materials.of(block).poissons_ratio
+         << ": displacements and stresses are wrong there; take Q2, P2 or Q1";
+    return note.str();
+  }
+  return "";
+}
+
+std::string order_note(const mesh::Mesh &mesh, const Materials &materials)
+{
+  if (!is_p2(mesh.element)) return "";
+  for (const std::string &block : mesh.blocks) {
+    const Material &material = materials.of(block);
+    if (!projects(mesh.element, material)) continue;
+    std::ostringstream note;
+    note << "P2 loses an order in block \"" << block << "\" with nu = " << material.poissons_ratio
+         << ", where its dilatation is projected, and needs many more cells for the same error; take Q2 (of a .geo: "
+            "\"Recombine Surface\")";
+    return note.str();
+  }
+  return "";
+}
+
+} // namespace rpc::fem
