@@ -25,6 +25,7 @@ set(rpc_test_environment
     OMPI_ALLOW_RUN_AS_ROOT=1
     OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     OMPI_MCA_rmaps_base_oversubscribe=1
+    OMPI_MCA_mpi_yield_when_idle=1
     OMPI_MCA_btl_vader_single_copy_mechanism=none) # containers forbid it, with an error message per message sent
 set(rpc_mpiexec_flags)
 if(RPC_TRILINOS_HAS_MPI)
@@ -33,6 +34,11 @@ if(RPC_TRILINOS_HAS_MPI)
     set(rpc_mpiexec_flags --oversubscribe --bind-to none) # bound ranks of tests that run side by side share one core
   endif()
 endif()
+
+# What each test on several ranks loads, see yield.c.
+add_library(rpc_yield MODULE ${PROJECT_SOURCE_DIR}/test/support/yield.c)
+set_target_properties(rpc_yield PROPERTIES LIBRARY_OUTPUT_DIRECTORY $<1:${PROJECT_BINARY_DIR}>)
+set(rpc_ranks_environment LD_PRELOAD=$<TARGET_FILE:rpc_yield>)
 
 # rpc_add_run_test(<name> <np> LABEL label TIMEOUT seconds COMMAND target args...): the CTest entry <name>.np<np> that runs an
 # executable target, through mpiexec for np > 1; none then where Trilinos has no MPI.
@@ -45,15 +51,17 @@ function(rpc_add_run_test name np)
     message(FATAL_ERROR "test ${name}: LABEL must be one of unit, verification, regression, performance, stress, got ${arg_LABEL}")
   endif()
   set(launch)
+  set(environment ${rpc_test_environment})
   if(np GREATER 1)
     set(launch ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${np} ${rpc_mpiexec_flags})
+    list(APPEND environment ${rpc_ranks_environment})
   endif()
   list(POP_FRONT arg_COMMAND target)
   add_test(NAME ${name}.np${np} COMMAND ${launch} $<TARGET_FILE:${target}> ${arg_COMMAND})
   math(EXPR processors "${np} * ${RPC_TEST_THREADS}")
   math(EXPR timeout "${arg_TIMEOUT} * ${RPC_TEST_TIMEOUT_FACTOR}")
   set_tests_properties(${name}.np${np} PROPERTIES LABELS ${arg_LABEL} PROCESSORS ${processors} TIMEOUT ${timeout}
-                       ENVIRONMENT "${rpc_test_environment}")
+                       ENVIRONMENT "${environment}")
 endfunction()
 
 function(rpc_add_test package name)
@@ -61,7 +69,7 @@ function(rpc_add_test package name)
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "rpc_add_test(${package} ${name}): unknown argument ${arg_UNPARSED_ARGUMENTS}")
   endif()
-  foreach(default IN ITEMS LABEL=unit TIMEOUT=120 NP=1)
+  foreach(default IN ITEMS LABEL=unit TIMEOUT=600 NP=1)
     string(REGEX MATCH "^(.*)=(.*)$" default ${default})
     if(NOT arg_${CMAKE_MATCH_1})
       set(arg_${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
