@@ -6,6 +6,14 @@ rpc_require("GoogleTest" libgtest-dev GTest_FOUND)
 
 set(RPC_TEST_THREADS 1 CACHE STRING "OpenMP threads per rank in tests")
 set(RPC_TEST_TIMEOUT_FACTOR 1 CACHE STRING "Factor on the tests' time limits, an integer")
+set(RPC_TEST_PACKAGES "" CACHE STRING "Packages and folders of test/ whose tests are wanted; empty: all")
+
+# rpc_add_tests_of(<package or folder of test/> <folder>)
+function(rpc_add_tests_of name folder)
+  if(NOT RPC_TEST_PACKAGES OR name IN_LIST RPC_TEST_PACKAGES)
+    add_subdirectory(${folder})
+  endif()
+endfunction()
 
 # One program has all GoogleTests, and runs those of one file at a time: of static libraries with GPU code, each of sixty
 # programs would hold a copy of 100 MB. rpc_test_main is what the tests themselves need.
@@ -38,6 +46,7 @@ endif()
 # What each test on several ranks loads, see yield.c.
 add_library(rpc_yield MODULE ${PROJECT_SOURCE_DIR}/test/support/yield.c)
 set_target_properties(rpc_yield PROPERTIES LIBRARY_OUTPUT_DIRECTORY $<1:${PROJECT_BINARY_DIR}>)
+add_dependencies(rpc_tests rpc_yield)
 set(rpc_ranks_environment LD_PRELOAD=$<TARGET_FILE:rpc_yield>)
 
 # rpc_add_run_test(<name> <np> LABEL label TIMEOUT seconds COMMAND target args...): the CTest entry <name>.np<np> that runs an

@@ -200,7 +200,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=2, help="runs side by side")
     parser.add_argument("--keep", help="folder for the input and output of failures")
     parser.add_argument("--memory", type=float, default=4, help="GiB of address space for a run, 0: no bound")
-    parser.add_argument("--timeout", type=float, default=120, help="seconds for a run")
+    parser.add_argument("--timeout", type=float, default=20, help="seconds for a run")
     options = parser.parse_args()
     options.rpc = os.path.abspath(options.rpc)
 
