@@ -1,5 +1,6 @@
 // The solution belongs to the scene, not to the units, the axes or the numbers that it is written down in.
 
+#include "larger.hpp"
 #include "run_scene.hpp"
 #include "scratch_file.hpp"
 
@@ -94,7 +95,8 @@ Outcome outcome_of(const Scene &scene, const Lattice &lattice)
 
 double largest(const std::vector<double> &values)
 {
-  return std::accumulate(values.begin(), values.end(), 0., [](double a, double b) { return std::max(a, std::abs(b)); });
+  return std::accumulate(values.begin(), values.end(), 0.,
+                         [](double a, double b) { return test::larger(a, std::abs(b)); });
 }
 
 /// Largest |values * factor - reference|, over the largest reference.
