@@ -6,6 +6,14 @@ rpc_require("GoogleTest" libgtest-dev GTest_FOUND)
 
 set(RPC_TEST_THREADS 1 CACHE STRING "OpenMP threads per rank in tests")
 set(RPC_TEST_TIMEOUT_FACTOR 1 CACHE STRING "Factor on the tests' time limits, an integer")
+set(RPC_TEST_PACKAGES "" CACHE STRING "Packages and folders of test/ whose tests are wanted; empty: all")
+
+# rpc_add_tests_of(<package or folder of test/> <folder>)
+function(rpc_add_tests_of name folder)
+  if(NOT RPC_TEST_PACKAGES OR name IN_LIST RPC_TEST_PACKAGES)
+    add_subdirectory(${folder})
+  endif()
+endfunction()
 
 # One program has all GoogleTests, and runs those of one file at a time: of static libraries with GPU code, each of sixty
 # programs would hold a copy of 100 MB. rpc_test_main is what the tests themselves need.
@@ -25,6 +33,7 @@ set(rpc_test_environment
     OMPI_ALLOW_RUN_AS_ROOT=1
     OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     OMPI_MCA_rmaps_base_oversubscribe=1
+    OMPI_MCA_mpi_yield_when_idle=1
     OMPI_MCA_btl_vader_single_copy_mechanism=none) # containers forbid it, with an error message per message sent
 set(rpc_mpiexec_flags)
 if(RPC_TRILINOS_HAS_MPI)
@@ -33,6 +42,12 @@ if(RPC_TRILINOS_HAS_MPI)
     set(rpc_mpiexec_flags --oversubscribe --bind-to none) # bound ranks of tests that run side by side share one core
   endif()
 endif()
+
+# What each test on several ranks loads, see yield.c.
+add_library(rpc_yield MODULE ${PROJECT_SOURCE_DIR}/test/support/yield.c)
+set_target_properties(rpc_yield PROPERTIES LIBRARY_OUTPUT_DIRECTORY $<1:${PROJECT_BINARY_DIR}>)
+add_dependencies(rpc_tests rpc_yield)
+set(rpc_ranks_environment LD_PRELOAD=$<TARGET_FILE:rpc_yield>)
 
 # rpc_add_run_test(<name> <np> LABEL label TIMEOUT seconds COMMAND target args...): the CTest entry <name>.np<np> that runs an
 # executable target, through mpiexec for np > 1; none then where Trilinos has no MPI.
@@ -45,15 +60,17 @@ function(rpc_add_run_test name np)
     message(FATAL_ERROR "test ${name}: LABEL must be one of unit, verification, regression, performance, stress, got ${arg_LABEL}")
   endif()
   set(launch)
+  set(environment ${rpc_test_environment})
   if(np GREATER 1)
     set(launch ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${np} ${rpc_mpiexec_flags})
+    list(APPEND environment ${rpc_ranks_environment})
   endif()
   list(POP_FRONT arg_COMMAND target)
   add_test(NAME ${name}.np${np} COMMAND ${launch} $<TARGET_FILE:${target}> ${arg_COMMAND})
   math(EXPR processors "${np} * ${RPC_TEST_THREADS}")
   math(EXPR timeout "${arg_TIMEOUT} * ${RPC_TEST_TIMEOUT_FACTOR}")
   set_tests_properties(${name}.np${np} PROPERTIES LABELS ${arg_LABEL} PROCESSORS ${processors} TIMEOUT ${timeout}
-                       ENVIRONMENT "${rpc_test_environment}")
+                       ENVIRONMENT "${environment}")
 endfunction()
 
 function(rpc_add_test package name)
@@ -61,7 +78,7 @@ function(rpc_add_test package name)
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "rpc_add_test(${package} ${name}): unknown argument ${arg_UNPARSED_ARGUMENTS}")
   endif()
-  foreach(default IN ITEMS LABEL=unit TIMEOUT=120 NP=1)
+  foreach(default IN ITEMS LABEL=unit TIMEOUT=600 NP=1)
     string(REGEX MATCH "^(.*)=(.*)$" default ${default})
     if(NOT arg_${CMAKE_MATCH_1})
       set(arg_${CMAKE_MATCH_1} ${CMAKE_MATCH_2})

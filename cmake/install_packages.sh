@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Installs those of cmake/packages.txt that are missing, as root or through sudo. Silent, and without network, if none is.
+# Installs those of cmake/packages.txt that are missing, as root or through sudo: bash cmake/install_packages.sh [more lists]
+# Silent, and without network, if none is.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
-wanted=$(sed 's/#.*//' "$here/packages.txt")
+wanted=$(sed 's/#.*//' "$here/packages.txt" "$@")
 if ! command -v dpkg-query >/dev/null; then
   echo "rpc: not a Debian system, so nothing is installed; cmake/packages.txt lists what is needed" >&2
   exit 0

@@ -42,7 +42,7 @@ libraries_of() {
 
 # Beside what git has: the programs without symbols, CTest's lists, and the libraries.
 pack_tests() {
-  local folder programs=("$build/rpc" "$build/rpc_tests")
+  local folder programs=("$build/rpc" "$build/rpc_tests" "$build/librpc_yield.so")
   if [ -e "$build/packages/mesh/rpc_gmsh" ]; then programs+=("$build/packages/mesh/rpc_gmsh"); fi
   folder=$(mktemp -d)
   mkdir -p "$folder/build-cuda/libraries"

@@ -14,7 +14,7 @@ TEST = pathlib.Path(__file__).resolve().parent.parent
 sys.path += [str(TEST / "stress"), str(TEST / "benchmark")]
 
 import fields as f  # noqa: E402, after the folders of what scenes and tables are made of
-from generate import CLAMPED, ELEMENTS, ZERO, log_uniform  # noqa: E402
+from generate import CLAMPED, ELEMENTS, LAYERS, ZERO, log_uniform  # noqa: E402
 from plane import Body, Grid  # noqa: E402
 from scene import ContactSide, Scene  # noqa: E402
 
@@ -105,14 +105,6 @@ Circle(5) = {6, 5, 7}; Circle(6) = {7, 5, 8}; Circle(7) = {8, 5, 9}; Circle(8) =
 Curve Loop(1) = {1, 2, 3, 4}; Curve Loop(2) = {5, 6, 7, 8}; Plane Surface(1) = {1, 2};
 Physical Curve("bottom") = {1}; Physical Curve("right") = {2}; Physical Curve("top") = {3}; Physical Curve("left") = {4};
 Physical Surface("body") = {1};
-"""
-LAYERS = """w = %(width)r*L; h = L; m = %(middle)r*L;
-Point(1) = {0, 0, 0, S}; Point(2) = {w, 0, 0, S}; Point(3) = {w, m, 0, S}; Point(4) = {0, m, 0, S};
-Point(5) = {w, h, 0, S}; Point(6) = {0, h, 0, S};
-Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Line(5) = {3, 5}; Line(6) = {5, 6}; Line(7) = {6, 4};
-Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1}; Curve Loop(2) = {-3, 5, 6, 7}; Plane Surface(2) = {2};
-Physical Curve("bottom") = {1}; Physical Curve("right") = {2, 5}; Physical Curve("top") = {6}; Physical Curve("left") = {7, 4};
-Physical Surface("lower") = {1}; Physical Surface("upper") = {2};
 """
 BODIES = """w = %(first)r*L; v = %(second)r*L; a = (%(first)r + 0.2)*L; h = L;
 Point(1) = {0, 0, 0, S}; Point(2) = {w, 0, 0, S}; Point(3) = {w, h, 0, S}; Point(4) = {0, h, 0, S};

@@ -54,7 +54,7 @@ class Interrupt(RpcTestCase):
         return max(ranks_below(process.pid))
 
     def end(self, process, code):
-        out, err = process.communicate(timeout=100)
+        out, err = process.communicate(timeout=600)
         self.assertEqual(process.returncode, code, f"{out}\n{err}")
         return subprocess.CompletedProcess(process.args, code, out, err)
 
@@ -115,7 +115,7 @@ class Interrupt(RpcTestCase):
         rank = self.last_rank(process)
         for number in SIGNALS:
             os.kill(rank, number)
-        process.communicate(timeout=100)
+        process.communicate(timeout=600)
         self.assertIn(-process.returncode, SIGNALS)
 
 

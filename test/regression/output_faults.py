@@ -24,7 +24,7 @@ class OutputFaults(RpcTestCase):
             if line.startswith("uzawa newton"):
                 break
         fault(ranks_below(process.pid))
-        out, err = process.communicate(timeout=100)
+        out, err = process.communicate(timeout=600)
         return subprocess.CompletedProcess(process.args, process.returncode, out, err)
 
     def limited(self, size):
@@ -164,7 +164,7 @@ class OutputFaults(RpcTestCase):
             folder.chmod(folder_mode)
             try:
                 result = subprocess.run([PROGRAM, "--input=beam.xml", SMALL, "--output=out"], cwd=self.folder, text=True,
-                                        capture_output=True, timeout=100, check=False, **user)
+                                        capture_output=True, timeout=600, check=False, **user)
             except PermissionError:
                 self.skipTest("another user cannot start the program")
             self.expect_refusal(result, BAD_INPUT, [*parts, "--output=DIR"])
@@ -176,7 +176,7 @@ class OutputFaults(RpcTestCase):
         for arguments in (["--print-parameters"], ["--input=beam.xml", SMALL, "--output=out"]):
             with open("/dev/full", "w") as full, self.subTest(arguments):
                 result = subprocess.run([PROGRAM, *arguments], cwd=self.folder, text=True, stdout=full,
-                                        stderr=subprocess.PIPE, timeout=100, check=False)
+                                        stderr=subprocess.PIPE, timeout=600, check=False)
                 self.expect_error(result, FULL, ["cannot write to standard output"])
         self.assertEqual(sorted(os.listdir(self.folder / "out")), NAMES)
 

@@ -22,7 +22,7 @@ NOISE = ["Teuchos::", ".cpp", ".hpp", "Throw number", "Throw test", "Traceback",
 
 def run(arguments, cwd, environment=None):
     return subprocess.run(LAUNCH + [PROGRAM] + [str(a) for a in arguments], cwd=cwd, capture_output=True, text=True,
-                          errors="replace", timeout=120, stdin=subprocess.DEVNULL,
+                          errors="replace", timeout=600, stdin=subprocess.DEVNULL,
                           env={**os.environ, **(environment or {})})
 
 

@@ -84,6 +84,14 @@ def mapped(rng, element=None, nodes=MOST_NODES):
     return Body(grid)
 
 
+LAYERS = """w = %(width)r*L; h = L; m = %(middle)r*L;
+Point(1) = {0, 0, 0, S}; Point(2) = {w, 0, 0, S}; Point(3) = {w, m, 0, S}; Point(4) = {0, m, 0, S};
+Point(5) = {w, h, 0, S}; Point(6) = {0, h, 0, S};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Line(5) = {3, 5}; Line(6) = {5, 6}; Line(7) = {6, 4};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1}; Curve Loop(2) = {-3, 5, 6, 7}; Plane Surface(2) = {2};
+Physical Curve("bottom") = {1}; Physical Curve("right") = {2, 5}; Physical Curve("top") = {6}; Physical Curve("left") = {7, 4};
+Physical Surface("lower") = {1}; Physical Surface("upper") = {2};
+"""
 GEO = {
     "rounded": """w = 2*L; h = L; sag = 0.15*L;
 Point(1) = {0, sag, 0, S}; Point(2) = {w/2, 0, 0, S}; Point(3) = {w, sag, 0, S}; Point(4) = {w, h, 0, S}; Point(5) = {0, h, 0, S};
@@ -98,14 +106,7 @@ Circle(1) = {1, 4, 2}; Circle(2) = {2, 4, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}
 Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
 Physical Curve("bottom") = {1, 2}; Physical Curve("top") = {3, 4}; Physical Surface("body") = {1};
 """,
-    "layers": """w = 2*L; h = L; m = 0.4*L;
-Point(1) = {0, 0, 0, S}; Point(2) = {w, 0, 0, S}; Point(3) = {w, m, 0, S}; Point(4) = {0, m, 0, S};
-Point(5) = {w, h, 0, S}; Point(6) = {0, h, 0, S};
-Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Line(5) = {3, 5}; Line(6) = {5, 6}; Line(7) = {6, 4};
-Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1}; Curve Loop(2) = {-3, 5, 6, 7}; Plane Surface(2) = {2};
-Physical Curve("bottom") = {1}; Physical Curve("right") = {2, 5}; Physical Curve("top") = {6}; Physical Curve("left") = {7, 4};
-Physical Surface("lower") = {1}; Physical Surface("upper") = {2};
-""",
+    "layers": LAYERS % {"width": 2, "middle": 0.4},
 }
 
 

@@ -66,4 +66,9 @@ TEST(AdaptiveRanks, GiveGluedBlocksTheSameMeshes)
   expect_same_meshes("glued.xml", {{}, {"Contact->Yield Stress=inf", "Material->Blocks->hard->Young's Modulus=2e4"}});
 }
 
+TEST(AdaptiveRanks, GiveABeamOfQuadrilateralsTheSameMeshes)
+{
+  expect_same_meshes("../../../input/beam_adaptive.xml", {{"Mesh->Element=Q2", "Adapt->Target Relative Error=0.001"}});
+}
+
 } // namespace

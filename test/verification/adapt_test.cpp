@@ -37,17 +37,17 @@ struct Adapted {
   std::vector<double> dofs, estimate, exact; // exact: relative error in the energy norm
   Solution last;
 
-  Adapted(const std::string &deck, std::vector<std::string> assignments, const Exact &reference, const double target,
-          const RCP<const Comm> &comm = Tpetra::getDefaultComm())
+  Adapted(const std::string &deck, std::vector<std::string> assignments, const Exact &reference, const double target)
   {
     assignments.push_back("Adapt->Target Relative Error=" + text_of(target));
     if (!std::isnan(reference.energy)) assignments.push_back("Adapt->Exact Energy=" + text_of(reference.energy));
     std::ostream nowhere(nullptr);
-    last = solve(read_scene(input + deck, assignments), comm, nowhere, [&](const Scene &, Solution &s) {
-      dofs.push_back(static_cast<double>(s.discretization.owned_dofs->getGlobalNumElements()));
-      estimate.push_back(relative_estimate(s));
-      exact.push_back(std::sqrt(2 * std::abs(s.energy - reference.energy) / reference.energy_norm_squared));
-    });
+    last = solve(
+        read_scene(input + deck, assignments), Tpetra::getDefaultComm(), nowhere, [&](const Scene &, Solution &s) {
+          dofs.push_back(static_cast<double>(s.discretization.owned_dofs->getGlobalNumElements()));
+          estimate.push_back(relative_estimate(s));
+          exact.push_back(std::sqrt(2 * std::abs(s.energy - reference.energy) / reference.energy_norm_squared));
+        });
   }
   double effectivity(const std::size_t k) const { return estimate[k] / exact[k]; }
 };
@@ -58,14 +58,17 @@ Adapted beam(const std::string &xi, const double target, std::vector<std::string
   return Adapted("beam_adaptive.xml", more, beam_reference.at(xi), target);
 }
 
-/// From the third mesh on, errors that the reference resolves.
+/// From the third mesh on, errors that the reference resolves: of one mesh at least.
 void expect_effective(const Adapted &run, const double resolved)
 {
+  int judged = 0;
   for (std::size_t k = 2; k < run.dofs.size(); ++k) {
     if (run.exact[k] < resolved) continue;
+    ++judged;
     EXPECT_GT(run.effectivity(k), 0.7) << "mesh " << k + 1;
     EXPECT_LT(run.effectivity(k), 2) << "mesh " << k + 1;
   }
+  EXPECT_GT(judged, 0) << run.dofs.size() << " meshes";
 }
 
 TEST(AdaptiveBeam, ReachesTheErrorThatIsAskedForWithTheDofsOfAnExpert)
@@ -162,6 +165,7 @@ void expect_effective_hertz(const std::string &xi, const double target)
     EXPECT_GT(effectivity, 0.7) << "mesh " << mesh;
     EXPECT_LT(effectivity, 2) << "mesh " << mesh;
   });
+  EXPECT_GE(mesh, 3);
   EXPECT_TRUE(last.adaptation->reached) << last.adaptation->reason;
 }
 
@@ -197,7 +201,9 @@ TEST(AdaptiveHertz, ErrorBarsHoldWhatAFineMeshShows)
     EXPECT_LT(std::abs(contact.max_pressure - 98.338), errors.max_pressure);
     EXPECT_LT(std::abs(contact.contact_length - 2 * 0.7122),
               errors.contact_length + 0.002); // that of the fine mesh's spacing
-    // And they are no idle talk.
+    // And they are small.
+    EXPECT_LT(errors.energy / rigid_hertz.energy, 10 * target);
+    EXPECT_LT(errors.contact_length, 0.2);
     EXPECT_LT(errors.contact_force / 110, 0.05 * std::sqrt(target));
     EXPECT_LT(errors.max_pressure / 98, target);
     EXPECT_LT(errors.contact_pressure, 3 * target);
@@ -224,10 +230,12 @@ BarCounts expect_true_or_unknown(const std::string &deck, const std::vector<std:
     EXPECT_EQ(std::isnan(errors.contact_length), errors.unknown.count("contact_length") == 1);
     if (!std::isnan(errors.max_pressure)) {
       EXPECT_LE(std::abs(contact.max_pressure - there.max_pressure), errors.max_pressure);
+      EXPECT_LT(errors.max_pressure, there.max_pressure);
       ++bars.max_pressure;
     }
     if (!std::isnan(errors.contact_length)) {
       EXPECT_LE(std::abs(contact.contact_length - there.contact_length), errors.contact_length);
+      EXPECT_LT(errors.contact_length, there.contact_length);
       ++bars.contact_length;
     }
   }
@@ -271,23 +279,19 @@ TEST(ErrorBars, AreTrueWhereThereAreSome)
   }
 }
 
-TEST(Adaptive, RunsAreRepeatableAndTheSameOnAnyNumberOfRanks)
+TEST(Adaptive, RunsAreRepeatable)
 {
-  const auto alone = Tpetra::getDefaultComm()->split(Tpetra::getDefaultComm()->getRank(), 0);
   const Exact &exact = beam_reference.at("16");
   for (const std::string element : {"P2", "Q2"}) {
     const std::vector<std::string> scene = {"Mesh->Element=" + element};
     const Adapted here("beam_adaptive.xml", scene, exact, 0.003), again("beam_adaptive.xml", scene, exact, 0.003);
-    const Adapted serial("beam_adaptive.xml", scene, exact, 0.003, alone);
     ASSERT_EQ(here.dofs, again.dofs);
-    ASSERT_EQ(here.dofs, serial.dofs);
     for (std::size_t k = 0; k < here.dofs.size(); ++k) {
-      // MueLu's threads aggregate and transpose in any order: then only to the tolerance of solves, as between ranks.
+      // MueLu's threads aggregate and transpose in any order: then only to the tolerance of solves.
       if (ExecutionSpace().concurrency() == 1) {
         EXPECT_EQ(here.estimate[k], again.estimate[k]) << "mesh " << k + 1;
       }
       EXPECT_NEAR(here.estimate[k] / again.estimate[k], 1, 1e-6) << "mesh " << k + 1;
-      EXPECT_NEAR(here.estimate[k] / serial.estimate[k], 1, 1e-6) << "mesh " << k + 1;
     }
   }
 }

@@ -1,3 +1,4 @@
+#include "larger.hpp"
 #include "run_scene.hpp"
 
 #include <algorithm>
@@ -14,12 +15,11 @@ namespace
 
 using namespace rpc;
 
-Solution beam(const int n, const std::string &xi, std::vector<std::string> more = {},
-              const RCP<const Comm> &comm = Tpetra::getDefaultComm())
+Solution beam(const int n, const std::string &xi, std::vector<std::string> more = {})
 {
   more.push_back("Mesh->Cells={" + std::to_string(5 * n) + "," + std::to_string(n) + "}");
   more.push_back("Contact->Yield Stress=" + xi);
-  return run_scene(std::string(RPC_TEST_DECKS) + "/../../../input/beam.xml", more, comm);
+  return run_scene(std::string(RPC_TEST_DECKS) + "/../../../input/beam.xml", more);
 }
 
 int sum(const std::vector<int> &v)
@@ -116,7 +116,7 @@ double largest_difference(const Solution &s, const Solution &other)
 {
   const auto p = to_host(s.contact.pressure), q = to_host(other.contact.pressure);
   double largest = 0;
-  for (std::size_t i = 0; i < p.extent(0); ++i) largest = std::max(largest, std::abs(p(i) - q(i)));
+  for (std::size_t i = 0; i < p.extent(0); ++i) largest = test::larger(largest, std::abs(p(i) - q(i)));
   return max_all(s.discretization.mesh->comm(), largest) / s.contact.total.max_pressure;
 }
 
@@ -151,6 +151,7 @@ TEST(Beam, EnergyNormErrorHalvesWithTheMeshAtYieldLimit16)
   double previous = 0;
   for (const int n : {16, 32, 64}) {
     const double error = std::sqrt(2 * (beam(n, "16").energy - exact) / strain_energy);
+    ASSERT_GT(error, 0) << n;
     if (previous > 0) {
       EXPECT_NEAR(previous / error, 2, 0.15) << n;
     }
@@ -182,29 +183,6 @@ TEST(Beam, ForcesBalance)
   const double load_work = s.functional->problem().applied_load->dot(*s.u);
   EXPECT_NEAR(s.energy_norm_squared, load_work - contact_work, 1e-9 * load_work);
   EXPECT_NEAR(s.energy, 0.5 * s.energy_norm_squared - load_work + contact_work, 1e-9 * load_work); // xi v+ = p v
-}
-
-TEST(Beam, RanksAgreeOnEnergyAndPressures)
-{
-  const auto world = Tpetra::getDefaultComm();
-  if (world->getSize() == 1) GTEST_SKIP() << "one rank has nobody to agree with";
-  const RCP<const Comm> alone = world->split(world->getRank(), 0);
-  for (const char *xi : {"2", "16", "inf"}) {
-    const Solution shared = beam(32, xi), own = beam(32, xi, {}, alone);
-    EXPECT_NEAR(shared.energy, own.energy, 1e-10 * std::abs(own.energy));
-    std::map<GO, double> pressure;
-    const auto read = [](const Solution &s, auto &&visit) {
-      const auto node = to_host(s.functional->contact().node);
-      const auto p = to_host(s.contact.pressure);
-      for (LO i = 0; i < s.functional->contact().size(); ++i) visit(s.discretization.mesh->node_id(node(i)), p(i));
-    };
-    read(own, [&](const GO id, const double p) { pressure[id] = p; });
-    ASSERT_EQ(pressure.size(), 161u);
-    read(shared, [&](const GO id, const double p) {
-      EXPECT_NEAR(p, pressure.at(id), 1e-8 * own.contact.total.max_pressure) << xi << " " << id;
-    });
-    EXPECT_NEAR(shared.uzawa.newton_iterations[0], own.uzawa.newton_iterations[0], 1);
-  }
 }
 
 } // namespace

@@ -59,11 +59,6 @@ struct Reference {
 
 class Hertz : public testing::TestWithParam<const char *>
 {
-protected:
-  void SetUp() override
-  {
-    if (Tpetra::getDefaultComm()->getSize() > 1) GTEST_SKIP() << "on one rank; HertzRanks compares the others with it";
-  }
 };
 INSTANTIATE_TEST_SUITE_P(Normals, Hertz, testing::Values("fixed", "surface"));
 
@@ -137,19 +132,6 @@ TEST(HertzCurvedEdges, AreWhatMakesQuadraticElementsQuadratic)
   RecordProperty("curved", std::to_string(curved[0]) + " " + std::to_string(curved[1]));
   RecordProperty("straight", std::to_string(straight[0]) + " " + std::to_string(straight[1]));
   EXPECT_GT(straight[1], 3 * curved[1]); // chords press at their ends
-}
-
-TEST(HertzRanks, Agree)
-{
-  const auto comm = Tpetra::getDefaultComm();
-  const RCP<const Comm> own = comm->split(comm->getRank(), 0);
-  const std::string deck = std::string(RPC_TEST_DECKS) + "/../../../input/hertz.xml";
-  const std::vector<std::string> scene = {"Mesh->Size Factor=2", "Contact->Yield Stress=50", "Uzawa->Tolerance=1e-12"};
-  const Solution together = run_scene(deck, scene), alone = run_scene(deck, scene, own);
-  ASSERT_TRUE(together.uzawa.converged) << together.uzawa.reason;
-  EXPECT_NEAR(together.energy, alone.energy, 1e-10 * alone.energy);
-  EXPECT_NEAR(together.contact.total.force[1], alone.contact.total.force[1], 1e-10 * alone.contact.total.force[1]);
-  EXPECT_EQ(together.contact.total.num_nodes, alone.contact.total.num_nodes);
 }
 
 } // namespace

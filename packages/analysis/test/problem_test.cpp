@@ -58,7 +58,7 @@ void expect_equal(const StepSolution &a, const StepSolution &b)
   EXPECT_NEAR(a.reactions[0][1], b.reactions[0][1], 1e-8 * std::abs(b.reactions[0][1]));
   Vector difference(*a.u, Teuchos::Copy);
   difference.update(-1., *b.u, 1.);
-  EXPECT_LT(difference.normInf(), 1e-8 * b.u->normInf());
+  EXPECT_LT(difference.norm2(), 1e-8 * b.u->norm2());
 }
 
 TEST(Problem, OfOneTimeGivesTheStepsOfAllOthers)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "expect_error.hpp"
+#include "larger.hpp"
 #include "rpc/core/field.hpp"
 #include "rpc/fem/discretization.hpp"
 #include "rpc/mesh/box.hpp"
@@ -155,7 +156,7 @@ inline double difference(const std::vector<double> &a, const std::vector<double>
   EXPECT_EQ(a.size(), b.size());
   double largest = 0, scale = 0;
   for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
-    largest = std::max(largest, std::abs(a[k] - b[k]));
+    largest = larger(largest, std::abs(a[k] - b[k]));
     scale = std::max(scale, std::abs(b[k]));
   }
   return scale > 0 ? largest / scale : largest;
@@ -187,7 +188,7 @@ inline double asymmetry(const std::vector<std::vector<double>> &a)
   double largest = 0, scale = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (std::size_t j = 0; j < a.size(); ++j) {
-      largest = std::max(largest, std::abs(a[i][j] - a[j][i]));
+      largest = larger(largest, std::abs(a[i][j] - a[j][i]));
       scale = std::max(scale, std::abs(a[i][j]));
     }
   }

@@ -160,10 +160,10 @@ TEST(Stiffness, OfTwoBlocksIsTheSumOfTheirs)
         const std::size_t dof = d.dim() * node + c;
         if (places[node] > boundary(element) + 1e-9) {
           EXPECT_EQ(soft[dof], 0);
-          of_hard = std::max(of_hard, std::abs(hard[dof]));
+          of_hard = larger(of_hard, std::abs(hard[dof]));
         } else if (places[node] < boundary(element) - 1e-9) {
           EXPECT_EQ(hard[dof], 0);
-          of_soft = std::max(of_soft, std::abs(soft[dof]));
+          of_soft = larger(of_soft, std::abs(soft[dof]));
         }
       }
     }

@@ -145,7 +145,7 @@ TEST(NodalStresses, ConvergeByOneOrderMoreThanThoseOfTheElementAtEveryNode)
       const std::size_t columns = at_nodes.exact.size() / at_nodes.boundary.size();
       for (std::size_t k = 0; k < at_nodes.exact.size(); ++k) {
         double &largest = error[fine][at_nodes.boundary[k / columns] > 0];
-        largest = std::max(largest, std::abs(at_nodes.recovered[k] - at_nodes.exact[k]));
+        largest = larger(largest, std::abs(at_nodes.recovered[k] - at_nodes.exact[k]));
       }
     }
     const double inside = std::log2(error[0][0] / error[1][0]), boundary = std::log2(error[0][1] / error[1][1]);

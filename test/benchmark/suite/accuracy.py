@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ElementTree
 
 from . import peers
 from .paper import energy_norm_error
-from .program import Failure, execute, find_python
+from .program import Failure, picture
 from .table import Table
 
 ADAPTIVE = ("P2", "Q2")  # of the elements
@@ -180,25 +180,21 @@ def write(runs, folder):
         writer.writerow(["scene", "mesh", "element", "dofs", "whole process [s]", "error", "error allowed by the reference",
                          "error of contact force", "error of max. pressure"])
         writer.writerows([["%.6g" % cell if isinstance(cell, float) else cell for cell in run] for run in runs])
-    python = find_python("matplotlib")
-    if not python:
-        return "No picture: it takes matplotlib (python3-matplotlib)."
-    execute([python, os.path.join(HERE, "plot.py"), path])
-    return "\n\n![Error over time](accuracy.png)"
+    return picture(os.path.join(HERE, "plot.py"), path, "Error over time")
 
 
 def accuracy(bench):
     runs, reasons = all_runs(bench)
-    picture = write(runs, bench.output)
+    plotted = write(runs, bench.output)
     table = Table("Run time against error",
                   "Seconds of the fastest run whose error in the energy norm, sqrt(2 |J_h - J| / a(u,u)), is at most that of the "
                   "column, as are those of all finer runs of the line (J_h need not fall); and the run with the least error. Whole "
                   "processes on one rank, with all meshes and solves of an adaptive run. All runs, for Hertz with errors of "
                   "force and pressure: [accuracy.csv](accuracy.csv). J and its tolerance, which makes the grey part of the "
                   "picture: reference.json. Meshes: uniform boxes; graded to the corners, by gmsh; gmsh's of input/hertz.geo; "
-                  "adaptive, for targets of %g to %g. Peers: on uniform boxes, one thread.%s%s"
+                  "adaptive, for targets of %g to %g. Peers: on uniform boxes, one thread.%s\n\n%s"
                   % (max(bench.sizes["accuracy"]["targets"]), min(bench.sizes["accuracy"]["targets"]),
-                     " Skipped: %s." % "; ".join(reasons) if reasons else "", picture),
+                     " Skipped: %s." % "; ".join(reasons) if reasons else "", plotted),
                   ["scene", "mesh", "element"] + ["%g %%" % (100 * level) for level in LEVELS] + ["least", "dofs", "time [s]"])
     for scene, mesh, element in dict.fromkeys(run[:3] for run in runs):
         line = [run for run in runs if run[:3] == (scene, mesh, element)]

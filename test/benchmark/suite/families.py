@@ -4,7 +4,7 @@ import os
 import shlex
 import sys
 
-from .program import execute, find_python
+from .program import picture
 from .table import Table
 
 FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../families")
@@ -23,14 +23,6 @@ def options_of(bench, **more):
     return options
 
 
-def picture(path):
-    python = find_python("matplotlib")
-    if not python:
-        return "No picture: it takes matplotlib (python3-matplotlib)."
-    execute([python, os.path.join(FOLDER, "plot.py"), path])
-    return "![Contact over elastic solve, and steps, over the number of contact points](families.png)"
-
-
 def families(bench):
     """The table by family, the bars and the failed scenes in one."""
     scenes, size = bench.sizes["families"]
@@ -38,7 +30,8 @@ def families(bench):
     rows = measure.measured(options)
     path = os.path.join(bench.output, "families.csv")
     report.write_csv(rows, path)
-    return Joined(measure.tables(options, rows), ["A row a scene: [families.csv](families.csv).", picture(path)],
+    plotted = picture(os.path.join(FOLDER, "plot.py"), path, "Contact over elastic solve, and steps, over the number of contact points")
+    return Joined(measure.tables(options, rows), ["A row a scene: [families.csv](families.csv).", plotted],
                   measure.failures(options, rows))
 
 

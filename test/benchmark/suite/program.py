@@ -66,6 +66,15 @@ def can_import(python, module, environment=None):
                           env={**os.environ, **(environment or {})}, check=False).returncode == 0
 
 
+def picture(script, path, alternative):
+    """Runs a script of matplotlib on a table X.csv, which writes X.png beside it; what a page says of the picture."""
+    python = find_python("matplotlib")
+    if not python:
+        return "No picture: it takes matplotlib (python3-matplotlib)."
+    execute([python, script, path])
+    return "![%s](%s.png)" % (alternative, os.path.splitext(os.path.basename(path))[0])
+
+
 class Program:
     """Runs rpc; equal runs once. A result is rpc's JSON summary with `process`, `cpu` [s] and `gib` of all its ranks."""
 

@@ -1,0 +1,103 @@
+#include "../src/multigrid.hpp"
+
+#include "grid.hpp"
+
+#include <MueLu_CreateTpetraPreconditioner.hpp>
+#include <gtest/gtest.h>
+#include <string>
+
+// What stands in for factories of MueLu gives MueLu's own hierarchy.
+
+namespace
+{
+
+using namespace rpc;
+using rpc::test::Grid;
+
+/// Smoothed aggregation with a coarse level that smooths only: MueLu's direct solvers are wrong on several ranks.
+Teuchos::ParameterList list_for(const Grid &grid, const std::string &reuse = "none")
+{
+  Teuchos::ParameterList list;
+  list.set("verbosity", "none");
+  list.set("number of equations", 2);
+  list.set("aggregation: deterministic", true);
+  list.set("smoother: type", "CHEBYSHEV");
+  list.set("coarse: type", "RELAXATION");
+  list.set("coarse: max size", 50);
+  list.set("reuse: type", reuse);
+  list.sublist("user data").set("Coordinates", grid.coordinates);
+  list.sublist("user data").set("Nullspace", grid.null_space);
+  return list;
+}
+
+Vector applied(const Operator &preconditioner, const Vector &b)
+{
+  Vector x(b.getMap());
+  preconditioner.apply(b, x);
+  return x;
+}
+
+/// |x - y| / |y|
+double difference(const Vector &x, const Vector &y)
+{
+  Vector d(x, Teuchos::Copy);
+  d.update(-1., y, 1.);
+  return d.norm2() / y.norm2();
+}
+
+void expect_muelus_own(const Grid &grid)
+{
+  const Vector b = grid.right_side();
+  auto list = list_for(grid);
+  const auto muelus = MueLu::CreateTpetraPreconditioner(RCP<Operator>(grid.A), list);
+  const auto ours = solver::make_multigrid(grid.A, list_for(grid));
+  EXPECT_GT(ours->GetHierarchy()->GetNumLevels(), 1);
+  EXPECT_EQ(ours->GetHierarchy()->GetNumLevels(), muelus->GetHierarchy()->GetNumLevels());
+  EXPECT_LT(difference(applied(*ours, b), applied(*muelus, b)), 1e-12);
+}
+
+TEST(Multigrid, OfUnknownsThatLieNodeByNodeIsMueLus)
+{
+  expect_muelus_own(Grid(24));
+}
+
+TEST(Multigrid, OfNodesWithGapsBetweenTheirNumbersIsMueLus)
+{
+  expect_muelus_own(Grid(24, [](const GO unknown) { return 6 * (unknown / 2) + unknown % 2; }));
+}
+
+TEST(Multigrid, LowersTheResidualOfEachCycle)
+{
+  const Grid grid(24);
+  const auto multigrid = solver::make_multigrid(grid.A, list_for(grid));
+  const Vector b = grid.right_side();
+  Vector x(grid.map);
+  double before = 1;
+  for (int cycle = 0; cycle < 4; ++cycle) {
+    Vector r(b, Teuchos::Copy);
+    grid.A->apply(x, r, Teuchos::NO_TRANS, -1., 1.);
+    x.update(1., applied(*multigrid, r), 1.);
+    const double now = grid.relative_residual(x, b);
+    EXPECT_LT(now, 0.7 * before) << cycle;
+    before = now;
+  }
+}
+
+TEST(Multigrid, RenewedForAScaledMatrixIsTheScaledInverse)
+{
+  for (const char *reuse : {"tP", "RP"}) {
+    const Grid grid(24);
+    const Vector b = grid.right_side();
+    const auto multigrid = solver::make_multigrid(grid.A, list_for(grid, reuse));
+    const Vector before = applied(*multigrid, b);
+    grid.A->resumeFill();
+    grid.A->scale(4.);
+    grid.A->fillComplete();
+    solver::renew_multigrid(grid.A, *multigrid);
+    Vector after = applied(*multigrid, b);
+    after.scale(4.);
+    EXPECT_LT(difference(after, before), 1e-3) << reuse; // eigenvalues for the smoothers are estimated anew
+  }
+}
+
+} // namespace

@@ -1,0 +1,111 @@
+"""The arrows between packages: what the code includes and what CMake links, against the table below.
+
+    python3 structure.py [<root of the sources>]
+
+Prints each arrow that is not allowed, and each Kokkos kernel that the program itself launches; the exit code is 1 if there is one.
+"""
+
+import pathlib
+import re
+import sys
+
+# What each package may include; src is the program.
+ALLOWED = {
+    "core": "",
+    "mesh": "core",
+    "fem": "core mesh",
+    "contact": "core mesh fem",
+    "solver": "core",
+    "io": "core mesh",
+    "analysis": "core mesh fem contact solver",
+    "adapt": "core mesh fem contact solver io analysis",
+    "src": "core mesh fem contact solver io analysis adapt",
+}
+# Who may include headers of Trilinos that begin so.
+LIBRARIES = {
+    "NOX": "solver analysis",
+    "Belos": "solver",
+    "MueLu": "core solver",
+    "Ifpack2": "solver",
+    "Amesos2": "solver",
+}
+PROGRAM_KERNELS = set()
+FOR_TESTS = {"mesh", "fem"}  # a package's tests may make their bodies with these
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+PACKAGE = re.compile(r"rpc_add_package\(\s*(\w+)(.*?)\)", re.DOTALL)
+
+
+def allowed(package):
+    return set(ALLOWED[package].split())
+
+
+def code(folder):
+    """The C++ files below a folder, in order."""
+    return sorted(path for path in folder.rglob("*") if path.suffix in (".cpp", ".hpp"))
+
+
+def includes(file):
+    """(line number, header) of each #include."""
+    for number, line in enumerate(file.read_text().splitlines(), 1):
+        found = INCLUDE.match(line)
+        if found:
+            yield number, found.group(1)
+
+
+def check_includes(root, package, folder):
+    for file in code(folder):
+        in_test = "test" in file.relative_to(folder).parts
+        may = allowed(package) | {package} | (FOR_TESTS if in_test else set())
+        for number, header in includes(file):
+            where = f"{file.relative_to(root)}:{number}: {package} includes {header}"
+            parts = header.split("/")
+            if parts[0] == "rpc" and len(parts) > 2 and parts[1] not in may:
+                yield where
+            for library, users in LIBRARIES.items():
+                if header.startswith(library + "_") or header.startswith(library.lower() + "_"):
+                    if package not in users.split() and not in_test:
+                        yield where
+
+
+def linked(text):
+    """Packages behind rpc:: in a piece of CMake."""
+    return {name for name in re.findall(r"\brpc::(\w+)", text) if name in ALLOWED}
+
+
+def check_links(root):
+    for file in sorted(root.glob("packages/*/CMakeLists.txt")):
+        for name, text in PACKAGE.findall(re.sub(r"#.*", "", file.read_text())):
+            for other in sorted(linked(text) - allowed(name) if name in ALLOWED else []):
+                yield f"{file.relative_to(root)}: {name} links rpc::{other}"
+
+
+def check_kernels(root):
+    for file in code(root / "src"):
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            if "Kokkos::parallel_" in line and str(file.relative_to(root)) not in PROGRAM_KERNELS:
+                yield f"{file.relative_to(root)}:{number}: a kernel in the program"
+
+
+def violations(root):
+    folders = sorted(path.parent for path in root.glob("packages/*/CMakeLists.txt"))
+    for folder in folders:
+        if folder.name in ALLOWED:
+            yield from check_includes(root, folder.name, folder)
+        else:
+            yield f"packages/{folder.name}: not in the table of test/structure/structure.py"
+    yield from check_includes(root, "src", root / "src")
+    yield from check_links(root)
+    yield from check_kernels(root)
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parents[2]).resolve()
+    found = list(violations(root))
+    for line in found:
+        print(line)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

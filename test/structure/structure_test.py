@@ -1,0 +1,64 @@
+"""structure.py finds what it is there to find, in small trees, and nothing in this project."""
+
+import pathlib
+import tempfile
+import unittest
+
+import structure
+
+SOURCE = pathlib.Path(__file__).parents[2]
+
+
+class Structure(unittest.TestCase):
+    def violations(self, **files):
+        """Of a tree of mesh, contact and the program, and these files: names with / written as __."""
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            tree = {"packages/mesh/CMakeLists.txt": "rpc_add_package(mesh DEPENDS rpc::core)",
+                    "packages/contact/CMakeLists.txt": "rpc_add_package(contact\n  DEPENDS rpc::fem PRIVATE_DEPENDS rpc::metis)",
+                    "src/main.cpp": '#include "rpc/adapt/new_mesh.hpp"\n'}
+            for name, text in {**tree, **{name.replace("__", "/"): text for name, text in files.items()}}.items():
+                path = root / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+            return list(structure.violations(root))
+
+    def test_of_this_project_is_sound(self):
+        self.assertGreater(len(structure.code(SOURCE / "packages")), 100)
+        self.assertEqual(list(structure.violations(SOURCE)), [])
+
+    def test_arrows_of_the_table_run_one_way(self):
+        def below(package):
+            return structure.allowed(package).union(*map(below, structure.allowed(package)))
+        for package in structure.ALLOWED:
+            self.assertNotIn(package, below(package))
+
+    def test_allowed_arrows_pass(self):
+        self.assertEqual(self.violations(**{"packages__contact__src__a.cpp": '#include "rpc/fem/b.hpp"\n#include "a.hpp"\n'}), [])
+
+    def test_finds_an_include_that_runs_back(self):
+        found = self.violations(**{"packages__mesh__include__rpc__mesh__a.hpp": '#pragma once\n#include "rpc/contact/b.hpp"\n'})
+        self.assertEqual(found, ["packages/mesh/include/rpc/mesh/a.hpp:2: mesh includes rpc/contact/b.hpp"])
+
+    def test_tests_may_make_bodies_but_not_run_back(self):
+        self.assertEqual(self.violations(**{"packages__mesh__test__a_test.cpp": '#include "rpc/fem/b.hpp"\n'}), [])
+        self.assertEqual(len(self.violations(**{"packages__mesh__test__a_test.cpp": '#include "rpc/solver/b.hpp"\n'})), 1)
+
+    def test_finds_a_link_that_runs_back(self):
+        found = self.violations(**{"packages__mesh__CMakeLists.txt": "rpc_add_package(mesh DEPENDS rpc::core rpc::io)"})
+        self.assertEqual(found, ["packages/mesh/CMakeLists.txt: mesh links rpc::io"])
+
+    def test_finds_a_library_in_the_wrong_place(self):
+        found = self.violations(**{"packages__contact__src__a.cpp": "#include <NOX_Abstract_Group.H>\n"})
+        self.assertEqual(found, ["packages/contact/src/a.cpp:1: contact includes NOX_Abstract_Group.H"])
+
+    def test_finds_a_package_that_the_table_lacks(self):
+        self.assertEqual(len(self.violations(**{"packages__friction__CMakeLists.txt": "rpc_add_package(friction)"})), 1)
+
+    def test_finds_a_kernel_in_the_program(self):
+        found = self.violations(**{"src__output.cpp": "void f()\n{\n  Kokkos::parallel_for(3, g);\n}\n"})
+        self.assertEqual(found, ["src/output.cpp:3: a kernel in the program"])
+
+
+if __name__ == "__main__":
+    unittest.main()
