@@ -1,5 +1,6 @@
 #include "rpc/adapt/error_estimate.hpp"
 
+#include "rpc/core/math.hpp"
 #include "rpc/fem/rounding.hpp"
 #include "rpc/fem/stress.hpp"
 
@@ -72,8 +73,8 @@ struct ContactTerms {
     for (std::size_t a = 0; a < facets.extent(1); ++a) {
       const double p = field(facets(f, a), int(pressure)), xi = field(facets(f, a), int(yield));
       state |= int(p >= xi ? FacetState::yielded : (p > 0 ? FacetState::stuck : FacetState::open));
-      least = Kokkos::Experimental::fmin(least, xi);
-      most = Kokkos::Experimental::fmax(most, xi);
+      least = math::fmin(least, xi);
+      most = math::fmax(most, xi);
     }
     if (state != int(FacetState::open) && most > (1 + jump) * least) return FacetState::mixed;
     return state == 1 || state == 2 || state == 4 ? FacetState(state) : FacetState::mixed;
@@ -117,13 +118,12 @@ struct ContactTerms {
     for (int q = 0; q < points; ++q) size += measure(f * points + q);
     const int of = block(cell(f));
     // Stresses that balance r and fall to 0 over the depth h have the energy h/3 r^2 / (lambda + 2 mu).
-    const double compliance =
-        (dim == 2 ? size : Kokkos::Experimental::sqrt(size)) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
+    const double compliance = (dim == 2 ? size : math::sqrt(size)) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
     const FacetState state = state_of(f);
     double out_of_balance = 0, product = 0;
     for (int q = 0; q < points; ++q) {
       const Point x = point(f, q, state == FacetState::mixed);
-      const double xi = Kokkos::Experimental::fmax(0., x.at[yield]); // an interpolant may fall below its nodal values
+      const double xi = math::fmax(0., x.at[yield]); // an interpolant may fall below its nodal values
       const double v = x.at[penetration], share = measure(f * points + q);
       // Of all pressures that the law admits, that of the least sum of both terms will do where the multiplier tells none.
       const double p =
@@ -169,10 +169,10 @@ struct PeakDifference {
       double high = 0, low = highest;
       for (std::size_t a = 0; a < terms.facets.extent(1); ++a) {
         const double p = terms.field(terms.facets(f, a), int(pressure));
-        high = Kokkos::Experimental::fmax(high, p);
-        low = Kokkos::Experimental::fmin(low, p);
+        high = math::fmax(high, p);
+        low = math::fmin(low, p);
       }
-      if (high >= highest) most = Kokkos::Experimental::fmax(most, high - low);
+      if (high >= highest) most = math::fmax(most, high - low);
       return;
     }
     for (int q = 0; q < static_cast<int>(terms.value.extent(0)); ++q) {
@@ -180,7 +180,7 @@ struct PeakDifference {
       const double p = x.at[pressure];
       if (!(p > 0 && p >= share * highest)) continue;
       const double difference = p - contact::clamp(x.recovered, 0, x.at[yield]);
-      most = Kokkos::Experimental::fmax(most, difference < 0 ? -difference : difference);
+      most = math::fmax(most, difference < 0 ? -difference : difference);
     }
   }
 };
@@ -205,21 +205,21 @@ struct NodalPressures {
     const int nodes = static_cast<int>(terms.facets.extent(1)), points = static_cast<int>(terms.value.extent(0));
     double size = 0;
     for (int q = 0; q < points; ++q) size += terms.measure(f * points + q);
-    const double length = terms.traction.extent(2) == 2 ? size : Kokkos::Experimental::sqrt(size);
+    const double length = terms.traction.extent(2) == 2 ? size : math::sqrt(size);
     const int block = terms.block(terms.cell(f));
     const double modulus = terms.lame(block, 0) + 2 * terms.lame(block, 1);
     double most = at(f, 0, pressure), least = most;
     for (int a = 0; a < nodes; ++a) {
       const double p = at(f, a, pressure), xi = at(f, a, yield);
-      most = Kokkos::Experimental::fmax(most, p);
-      least = Kokkos::Experimental::fmin(least, p);
+      most = math::fmax(most, p);
+      least = math::fmin(least, p);
       for (int b = 0; b < nodes; ++b) {
         const double other = at(f, b, pressure), other_xi = at(f, b, yield);
         if (p >= xi && other < other_xi && other_xi > highest && other_xi > (1 + jump) * xi) yield_jumps += 1;
         if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) * modulus > highest * length) gap_jumps += 1;
       }
     }
-    if (most >= near_peak * highest) drop = Kokkos::Experimental::fmax(drop, (most - least) / highest);
+    if (most >= near_peak * highest) drop = math::fmax(drop, (most - least) / highest);
     if (most > 0 && !(least > 0)) ends += size / 2;
   }
 };
@@ -231,8 +231,7 @@ double highest_yield_stress(const Comm &comm, const contact::ContactNodes &c)
   double highest = 0;
   Kokkos::parallel_reduce(
       "rpc::adapt::highest_yield_stress", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &most) { most = Kokkos::Experimental::fmax(most, yield(i)); },
-      Kokkos::Max<double>(highest));
+      KOKKOS_LAMBDA(const LO i, double &most) { most = math::fmax(most, yield(i)); }, Kokkos::Max<double>(highest));
   return max_all(comm, std::max(0., highest));
 }
 

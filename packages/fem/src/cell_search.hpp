@@ -116,9 +116,9 @@ struct FindPlaces {
 
   struct Place {
     LO cell = -1;
-    GO id = Kokkos::Experimental::finite_max<GO>::value;
+    GO id = math::largest<GO>;
     double X[Dim] = {};
-    double away = Kokkos::Experimental::infinity<double>::value; // squared distance [m^2]
+    double away = math::infinity<double>; // squared distance [m^2]
 
     KOKKOS_INLINE_FUNCTION bool nearer_than(const Place &other) const
     {

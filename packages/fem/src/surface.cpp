@@ -78,7 +78,7 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
       KOKKOS_LAMBDA(const LO i, LO &wrong) {
         double length = 0;
         for (int c = 0; c < dim; ++c) length += normal(i, c) * normal(i, c);
-        length = Kokkos::Experimental::sqrt(length);
+        length = math::sqrt(length);
         if (!(weight(i) > 0) || !(length > 0)) ++wrong;
         for (int c = 0; c < dim; ++c) normal(i, c) /= length;
       },
