@@ -18,7 +18,7 @@ using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDev
 enum Column { pressure, penetration, yield, normal };
 
 /// What the contact nodes of one side know, at the nodes of its facets (overlap nodes; columns).
-RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::ContactNodes &c,
+RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const contact::ContactNodes &c,
                                         const contact::ContactResult &result, const int side)
 {
   // A yield stress out of reach, maybe infinite, gives way to one that no pressure reaches either.
@@ -26,12 +26,12 @@ RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::C
   // Nodes that neither are open nor yield have v = 0. What a solve leaves there, up to 1e-8 of the largest pressure, would
   // count with p |v|, which is of first order, and differ between numbers of ranks.
   const double accuracy = 1e-7 * result.total.max_pressure;
-  MultiVector owned(mesh.owned_nodes, normal + c.dim);
-  owned.getVectorNonConst(yield)->putScalar(highest_yield); // a node that is no point is open: no pressure, no normal
+  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, normal + c.dim));
+  owned->getVectorNonConst(yield)->putScalar(highest_yield); // a node that is no point is open: no pressure, no normal
   const LO begin = c.first(side);
   const auto p = result.pressure, v = result.penetration;
   {
-    const auto to = owned.getLocalViewDevice(Tpetra::Access::ReadWrite);
+    const auto to = owned->getLocalViewDevice(Tpetra::Access::ReadWrite);
     Kokkos::parallel_for(
         "rpc::adapt::contact_fields", device_range(c.first(side + 1) - begin), KOKKOS_LAMBDA(const LO k) {
           const LO i = begin + k, node = c.node(i);
@@ -44,9 +44,7 @@ RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::C
         });
     Kokkos::fence();
   }
-  const auto overlap = rcp(new MultiVector(mesh.overlap_nodes, owned.getNumVectors()));
-  overlap->doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
-  return overlap;
+  return fem::nodes_on_overlap(d, owned);
 }
 
 /// The contact terms of one side.
@@ -266,7 +264,7 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
       KOKKOS_LAMBDA(const LO cell, double &sum) { sum += squared(cell); }, sums[0]);
   for (std::size_t k = 0; k < sides.size(); ++k) {
     const mesh::Side &side = *sides[k];
-    const auto fields = at_overlap_nodes(mesh, contact, result, static_cast<int>(k));
+    const auto fields = at_overlap_nodes(d, contact, result, static_cast<int>(k));
     const ContactTerms terms{side.facets,
                              side.cell,
                              d.reference.facet.value,
