@@ -23,7 +23,7 @@ target_compile_features(rpc_test_main INTERFACE cxx_std_17)
 target_link_libraries(rpc_test_main INTERFACE rpc::trilinos GTest::gtest)
 add_executable(rpc_tests ${PROJECT_SOURCE_DIR}/test/support/gtest_main.cpp)
 target_compile_options(rpc_tests PRIVATE -Wall -Wextra)
-target_link_libraries(rpc_tests PRIVATE rpc_test_main)
+target_link_libraries(rpc_tests PRIVATE rpc_test_main rpc::device_pool)
 
 # More ranks than cores, and root in a container: Open MPI refuses both unless told.
 set(rpc_test_environment

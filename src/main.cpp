@@ -65,8 +65,8 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     return ExitCode::converged;
   }
   RPC_REQUIRE(!line.input.empty(), "command line: --input=DECK is missing. See rpc --help.");
-  const std::string deck = rpc::io::find_deck(line.input);
-  const rpc::Scene scene = rpc::read_scene(deck, line.assignments);
+  const std::string deck = rpc::io::find_deck(line.input, *comm);
+  const rpc::Scene scene = rpc::read_scene(deck, line.assignments, *comm);
   if (line.check) {
     out << deck << ": nothing wrong with it\n";
     return ExitCode::converged;

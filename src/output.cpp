@@ -20,16 +20,23 @@ namespace
 /// An adaptive run comes to far fewer meshes.
 constexpr int most_cycles = 1000;
 
+/// All files that results of one name can have.
+std::vector<std::string> all_files(const std::string &name, const std::string &folder)
+{
+  const std::string stem = (std::filesystem::path(folder) / name).string();
+  return {stem + ".e", stem + ".contact.csv", stem + ".json"};
+}
+
 /// Where the results of a scene go under a name; empty what is not asked for.
 struct ResultPaths {
   std::string exodus, csv, json;
 
   ResultPaths(const Scene &scene, const std::string &name, const std::string &folder)
   {
-    const std::string stem = (std::filesystem::path(folder) / name).string();
-    if (scene.output.exodus) exodus = stem + ".e";
-    if (scene.output.csv && !scene.model.contact.empty()) csv = stem + ".contact.csv";
-    if (scene.output.json) json = stem + ".json";
+    const auto files = all_files(name, folder);
+    if (scene.output.exodus) exodus = files[0];
+    if (scene.output.csv && !scene.model.contact.empty()) csv = files[1];
+    if (scene.output.json) json = files[2];
   }
   void require_replaceable() const
   {
@@ -247,10 +254,36 @@ void require_writable_results(const Scene &scene, const std::string &folder, con
   on_root(comm, ExitCode::bad_input, [&] {
     io::require_writable_folder(folder);
     ResultPaths(scene, scene.name, folder).require_replaceable();
+    std::error_code none;
+    for (const std::string &file : all_files(scene.name, folder)) // those that are not written are removed
+      if (std::filesystem::is_regular_file(file, none)) io::require_replaceable(file);
     if (!scene.adapt.adapts() || !scene.adapt.write_all) return;
     for (int cycle = 1; cycle <= std::min(scene.adapt.max_cycles, most_cycles); ++cycle)
       ResultPaths(scene, cycle_name(scene, cycle), folder).require_replaceable();
   });
+}
+
+/// Files of the same name that an earlier run has left and this run does not write, those of its meshes included.
+std::vector<std::string> older_files(const Scene &scene, const Solution &s, const ResultPaths &paths,
+                                     const std::string &folder)
+{
+  std::vector<std::string> older;
+  const auto add_existing = [&](const std::string &name) {
+    bool found = false;
+    for (const std::string &file : all_files(name, folder)) {
+      std::error_code none;
+      if (file == paths.exodus || file == paths.csv || file == paths.json) continue;
+      if (!std::filesystem::exists(file, none)) continue;
+      older.push_back(file);
+      found = true;
+    }
+    return found;
+  };
+  add_existing(scene.name);
+  int cycle = scene.adapt.write_all && s.adaptation ? static_cast<int>(s.adaptation->cycles.size()) : 0;
+  while (add_existing(cycle_name(scene, ++cycle))) {
+  }
+  return older;
 }
 
 std::vector<std::string> write_results(const Scene &scene, Solution &s, const std::string &folder, const double start)
@@ -260,10 +293,13 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
   const mesh::Mesh &mesh = *s.discretization.mesh;
   if (!paths.exodus.empty()) io::write_exodus(paths.exodus, scene.name, mesh, scene.time, nodal_fields(scene, s));
   if (!paths.csv.empty()) write_csv(paths.csv, scene, s);
+  on_root(mesh.comm(), ExitCode::internal_error, [&] {
+    for (const std::string &file : older_files(scene, s, paths, folder)) io::remove_older(file);
+  });
   const double now = Teuchos::Time::wallTime();
   s.seconds.output = now - begin;
   s.seconds.total = now - start;
-  if (!paths.json.empty()) { // last: its presence says that the others are complete
+  if (!paths.json.empty()) { // last: its presence says that the others are complete and of this run
     // Collective, hence outside. A deck's name may be no valid UTF-8.
     const auto json = summary(scene, s);
     const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

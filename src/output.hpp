@@ -21,11 +21,11 @@ std::string cycle_name(const Scene &scene, int cycle);
 /// @throws rpc::Error (bad_input) on every rank
 void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm);
 
-/// Writes what the scene asks for into a folder, each file whole or not at all; collective. Updates seconds.output and
-/// seconds.total.
+/// Writes what the scene asks for into a folder, each file whole or not at all; collective. Results of one name belong to
+/// one run: files of an earlier run that this one does not write are removed. Updates seconds.output and seconds.total.
 /// @param start  wall-clock time at which the run began [s]
 /// @return the files' paths
-/// @throws rpc::Error on every rank if a file cannot be written
+/// @throws rpc::Error on every rank if a file cannot be written, or an earlier one not removed
 std::vector<std::string> write_results(const Scene &scene, Solution &solution, const std::string &folder, double start);
 
 } // namespace rpc

@@ -44,16 +44,16 @@ Teuchos::ParameterList valid_deck()
   return valid;
 }
 
-Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments)
+Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments, const Comm &comm)
 {
   const Teuchos::ParameterList valid = valid_deck();
-  Teuchos::ParameterList deck = io::read_deck(deck_path);
+  Teuchos::ParameterList deck = io::read_deck(deck_path, comm);
   for (const auto &assignment : assignments) assign(deck, valid, assignment);
   validate(deck, valid);
 
   Scene scene;
   scene.name = std::filesystem::path(deck_path).stem().string();
-  scene.mesh = mesh::mesh_options(deck.sublist("Mesh"), std::filesystem::path(deck_path).parent_path().string());
+  scene.mesh = mesh::mesh_options(deck.sublist("Mesh"), std::filesystem::path(deck_path).parent_path().string(), comm);
   const int dim = mesh::dimension(scene.mesh);
   scene.time = deck.get<double>("Time");
   RPC_REQUIRE(std::isfinite(scene.time), "deck: \"Time\" must be finite, got " << scene.time);

@@ -2,6 +2,7 @@
 
 #include "rpc/adapt/solution.hpp"
 
+#include <Teuchos_DefaultSerialComm.hpp>
 #include <Teuchos_ParameterList.hpp>
 #include <string>
 #include <vector>
@@ -23,8 +24,10 @@ struct Scene : adapt::Task {
 /// Every parameter of a deck: the packages' lists put together.
 Teuchos::ParameterList valid_deck();
 
+/// Rank 0 reads the files, of which other ranks may have none; collective on comm, by default each rank for itself.
 /// @param assignments  "Sublist->Parameter=value", applied on top of the deck
-/// @throws rpc::Error (bad_input) on the first thing that is wrong
-Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments);
+/// @throws rpc::Error (bad_input) on every rank on the first thing that is wrong
+Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments,
+                 const Comm &comm = Teuchos::SerialComm<int>());
 
 } // namespace rpc

@@ -90,6 +90,12 @@ ASSIGNMENTS = [
      ['"Linear Solver->Belos"', '"Block Size" must be strictly positive']),
     (["Linear Solver->MueLu->smoother: tipe=RELAXATION"],
      ['"Linear Solver->MueLu->smoother: tipe"', 'Did you mean "smoother: type"?']),
+    (["Linear Solver->MueLu->smoother: params->chebyshev: degre=3"],
+     ['"Linear Solver->MueLu->smoother: params->chebyshev: degre"', 'Did you mean "chebyshev: degree"?']),
+    (["Linear Solver->MueLu->smoother: params->chebyshev: degree=two"],
+     ['"Linear Solver->MueLu->smoother: params"', '"chebyshev: degree"', '"int"']),
+    (["Linear Solver->MueLu->coarse: params->fix nulspace=true"],
+     ['"Linear Solver->MueLu->coarse: params->fix nulspace"', 'Did you mean "fix nullspace"?']),
     (["Linear Solver->MueLu->max levels=many"], ['"Linear Solver->MueLu"', '"max levels"', 'correct type is "int"']),
     (["Linear Solver->MueLu->max levels=0"], ['"Linear Solver->MueLu->max levels" must be > 0', "got 0"]),
     (["NOX->Line Serach->Method=Exact"], ['"NOX->Line Serach"', 'Did you mean "Line Search"?']),
@@ -130,8 +136,6 @@ COLLECTIVE_ASSIGNMENTS = [
     (["NOX->Status Tests->Test Type=Guess"], ['"NOX"', '"Guess"']),
     ([LEVELS, "Linear Solver->MueLu->smoother: type=SANDPAPER"], ['"Linear Solver->MueLu"', "'SANDPAPER'"]),
     ([LEVELS, "Linear Solver->MueLu->multigrid algorithm=guess"], ['"Linear Solver->MueLu"', '"guess"']),
-    ([LEVELS, "Linear Solver->MueLu->smoother: params->chebyshev: degree=two"],
-     ['"Linear Solver->MueLu"', '"chebyshev: degree"', '"int"']),
 ]
 
 

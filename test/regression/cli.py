@@ -209,6 +209,18 @@ class Results(RpcTestCase):
         (self.folder / "out" / "beam.json").write_text("old")
         self.assertTrue(self.solve()["converged"])
 
+    def test_files_of_an_earlier_run_do_not_stay_beside_results_without_them(self):
+        self.solve()
+        (self.folder / "out" / "beam.cycle1.e").write_text("of an adaptive run")
+        (self.folder / "out" / "beam.cycle2.json").write_text("of an adaptive run")
+        others = ["beam.csv", "beam.cycle1.txt", "beam2.e", "beam2.cycle1.e"]
+        for name in others:
+            (self.folder / "out" / name).write_text("the user's own")
+        self.solve("--set=Output->CSV=false", "--set=Output->Exodus=false")
+        self.assertEqual(files(self.folder / "out"), sorted(["beam.json", *others]))
+        self.rpc("--input=beam.xml", SMALL, "--output=out", "--set=Output->JSON=false")
+        self.assertEqual(files(self.folder / "out"), sorted(["beam.contact.csv", "beam.e", *others]))
+
     def test_note_says_that_dirichlet_wins_over_contact(self):
         self.assertIn("note: the normal displacement of 2 contact nodes is prescribed",
                       self.rpc("--input=beam.xml", SMALL, "--output=out").stdout)
@@ -317,6 +329,15 @@ class AdaptiveRuns(RpcTestCase):
         for cycle in range(1, 1 + len(summary["adaptation"]["cycles"])):
             for ending in (".e", ".json", ".contact.csv"):
                 self.assertTrue((self.folder / "out" / f"beam_adaptive.cycle{cycle}{ending}").exists())
+        names = files(self.folder / "out")
+        _, summary = self.adapt("--set=Adapt->Target Relative Error=0.02", "--set=Adapt->Write All=true",
+                                "--set=Output->CSV=false")
+        kept = [f"beam_adaptive.{cycle}{ending}" for ending in ("e", "json")
+                for cycle in ["", *(f"cycle{c + 1}." for c in range(len(summary["adaptation"]["cycles"])))]]
+        self.assertLess(len(kept), len(names))
+        self.assertEqual(files(self.folder / "out"), sorted(kept))
+        self.adapt("--set=Adapt->Target Relative Error=0.02")
+        self.assertEqual(len(files(self.folder / "out")), 3)
 
     def test_a_single_mesh_has_an_estimate_on_request(self):
         summary = self.solve("--set=Adapt->Estimate Error=true", "--set=Adapt->Exact Energy=-0.21344083")

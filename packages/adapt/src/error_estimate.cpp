@@ -1,5 +1,6 @@
 #include "rpc/adapt/error_estimate.hpp"
 
+#include "rpc/core/math.hpp"
 #include "rpc/fem/rounding.hpp"
 #include "rpc/fem/stress.hpp"
 
@@ -17,7 +18,7 @@ using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDev
 enum Column { pressure, penetration, yield, normal };
 
 /// What the contact nodes of one side know, at the nodes of its facets (overlap nodes; columns).
-RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::ContactNodes &c,
+RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const contact::ContactNodes &c,
                                         const contact::ContactResult &result, const int side)
 {
   // A yield stress out of reach, maybe infinite, gives way to one that no pressure reaches either.
@@ -25,12 +26,12 @@ RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::C
   // Nodes that neither are open nor yield have v = 0. What a solve leaves there, up to 1e-8 of the largest pressure, would
   // count with p |v|, which is of first order, and differ between numbers of ranks.
   const double accuracy = 1e-7 * result.total.max_pressure;
-  MultiVector owned(mesh.owned_nodes, normal + c.dim);
-  owned.getVectorNonConst(yield)->putScalar(highest_yield); // a node that is no point is open: no pressure, no normal
+  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, normal + c.dim));
+  owned->getVectorNonConst(yield)->putScalar(highest_yield); // a node that is no point is open: no pressure, no normal
   const LO begin = c.first(side);
   const auto p = result.pressure, v = result.penetration;
   {
-    const auto to = owned.getLocalViewDevice(Tpetra::Access::ReadWrite);
+    const auto to = owned->getLocalViewDevice(Tpetra::Access::ReadWrite);
     Kokkos::parallel_for(
         "rpc::adapt::contact_fields", device_range(c.first(side + 1) - begin), KOKKOS_LAMBDA(const LO k) {
           const LO i = begin + k, node = c.node(i);
@@ -43,9 +44,7 @@ RCP<const MultiVector> at_overlap_nodes(const mesh::Mesh &mesh, const contact::C
         });
     Kokkos::fence();
   }
-  const auto overlap = rcp(new MultiVector(mesh.overlap_nodes, owned.getNumVectors()));
-  overlap->doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
-  return overlap;
+  return fem::nodes_on_overlap(d, owned);
 }
 
 /// The contact terms of one side.
@@ -72,8 +71,8 @@ struct ContactTerms {
     for (std::size_t a = 0; a < facets.extent(1); ++a) {
       const double p = field(facets(f, a), int(pressure)), xi = field(facets(f, a), int(yield));
       state |= int(p >= xi ? FacetState::yielding : (p > 0 ? FacetState::closed : FacetState::open));
-      least = Kokkos::Experimental::fmin(least, xi);
-      most = Kokkos::Experimental::fmax(most, xi);
+      least = math::fmin(least, xi);
+      most = math::fmax(most, xi);
     }
     if (state != int(FacetState::open) && most > (1 + jump) * least) return FacetState::mixed;
     return state == 1 || state == 2 || state == 4 ? FacetState(state) : FacetState::mixed;
@@ -117,13 +116,12 @@ struct ContactTerms {
     for (int q = 0; q < points; ++q) size += measure(f * points + q);
     const int of = block(cell(f));
     // Stresses that balance r and fall to 0 over the depth h have the energy h/3 r^2 / (lambda + 2 mu).
-    const double compliance =
-        (dim == 2 ? size : Kokkos::Experimental::sqrt(size)) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
+    const double compliance = (dim == 2 ? size : math::sqrt(size)) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
     const FacetState state = state_of(f);
     double out_of_balance = 0, product = 0;
     for (int q = 0; q < points; ++q) {
       const Point x = point(f, q, state == FacetState::mixed);
-      const double xi = Kokkos::Experimental::fmax(0., x.at[yield]); // an interpolant may fall below its nodal values
+      const double xi = math::fmax(0., x.at[yield]); // an interpolant may fall below its nodal values
       const double v = x.at[penetration], share = measure(f * points + q);
       // Of all pressures that the law admits, that of the least sum of both terms will do where the multiplier tells none.
       const double p =
@@ -169,10 +167,10 @@ struct PeakDifference {
       double high = 0, low = highest;
       for (std::size_t a = 0; a < terms.facets.extent(1); ++a) {
         const double p = terms.field(terms.facets(f, a), int(pressure));
-        high = Kokkos::Experimental::fmax(high, p);
-        low = Kokkos::Experimental::fmin(low, p);
+        high = math::fmax(high, p);
+        low = math::fmin(low, p);
       }
-      if (high >= highest) most = Kokkos::Experimental::fmax(most, high - low);
+      if (high >= highest) most = math::fmax(most, high - low);
       return;
     }
     for (int q = 0; q < static_cast<int>(terms.value.extent(0)); ++q) {
@@ -180,7 +178,7 @@ struct PeakDifference {
       const double p = x.at[pressure];
       if (!(p > 0 && p >= share * highest)) continue;
       const double difference = p - contact::clamp(x.recovered, 0, x.at[yield]);
-      most = Kokkos::Experimental::fmax(most, difference < 0 ? -difference : difference);
+      most = math::fmax(most, difference < 0 ? -difference : difference);
     }
   }
 };
@@ -205,21 +203,21 @@ struct NodalPressures {
     const int nodes = static_cast<int>(terms.facets.extent(1)), points = static_cast<int>(terms.value.extent(0));
     double size = 0;
     for (int q = 0; q < points; ++q) size += terms.measure(f * points + q);
-    const double length = terms.traction.extent(2) == 2 ? size : Kokkos::Experimental::sqrt(size);
+    const double length = terms.traction.extent(2) == 2 ? size : math::sqrt(size);
     const int block = terms.block(terms.cell(f));
     const double modulus = terms.lame(block, 0) + 2 * terms.lame(block, 1);
     double most = at(f, 0, pressure), least = most;
     for (int a = 0; a < nodes; ++a) {
       const double p = at(f, a, pressure), xi = at(f, a, yield);
-      most = Kokkos::Experimental::fmax(most, p);
-      least = Kokkos::Experimental::fmin(least, p);
+      most = math::fmax(most, p);
+      least = math::fmin(least, p);
       for (int b = 0; b < nodes; ++b) {
         const double other = at(f, b, pressure), other_xi = at(f, b, yield);
         if (p >= xi && other < other_xi && other_xi > highest && other_xi > (1 + jump) * xi) yield_jumps += 1;
         if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) * modulus > highest * length) gap_jumps += 1;
       }
     }
-    if (most >= near_peak * highest) drop = Kokkos::Experimental::fmax(drop, (most - least) / highest);
+    if (most >= near_peak * highest) drop = math::fmax(drop, (most - least) / highest);
     if (most > 0 && !(least > 0)) ends += size / 2;
   }
 };
@@ -231,8 +229,7 @@ double highest_yield_stress(const Comm &comm, const contact::ContactNodes &c)
   double highest = 0;
   Kokkos::parallel_reduce(
       "rpc::adapt::highest_yield_stress", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &most) { most = Kokkos::Experimental::fmax(most, yield(i)); },
-      Kokkos::Max<double>(highest));
+      KOKKOS_LAMBDA(const LO i, double &most) { most = math::fmax(most, yield(i)); }, Kokkos::Max<double>(highest));
   return max_all(comm, std::max(0., highest));
 }
 
@@ -267,7 +264,7 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
       KOKKOS_LAMBDA(const LO cell, double &sum) { sum += squared(cell); }, sums[0]);
   for (std::size_t k = 0; k < sides.size(); ++k) {
     const mesh::Side &side = *sides[k];
-    const auto fields = at_overlap_nodes(mesh, contact, result, static_cast<int>(k));
+    const auto fields = at_overlap_nodes(d, contact, result, static_cast<int>(k));
     const ContactTerms terms{side.facets,
                              side.cell,
                              d.reference.facet.value,

@@ -2,6 +2,7 @@
 
 #include "held_part.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/fem/hinges.hpp"
 
 #include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
@@ -193,6 +194,7 @@ Support check_support(const fem::Discretization &d, const fem::DirichletDofs &di
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::support"));
   const Comm &comm = d.mesh->comm();
+  fem::require_stiff_joints(d, dirichlet);
   const fem::Parts parts = fem::connected_parts(d);
   const std::vector<Motions> motions = fem::free_motions(d, parts, dirichlet);
   Support support;

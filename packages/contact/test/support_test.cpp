@@ -76,6 +76,15 @@ std::shared_ptr<const mesh::Mesh> brick()
   return std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
 }
 
+TEST(Support, OfBodiesJoinedInACornerIsAskedOfBoth)
+{
+  const auto squares = rpc::test::distributed(rpc::test::drawn({"aa..", "..bb"}));
+  Scene scene{squares, {hold("a left", {0, 1})}, {on("b bottom", inf)}, {}};
+  scene.refuses({"joins a piece of 2 cells around (1, 1.5)", "2 cells around (3, 0.5)", "at (2, 1)", "rotate"});
+  scene.held.push_back(hold("b right", {0}));
+  EXPECT_FALSE(scene.check().by_contact_only);
+}
+
 TEST(Support, OfAClampedBodyNeedsNoContact)
 {
   for (const auto &mesh : {plate(), brick()}) {

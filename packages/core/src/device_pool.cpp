@@ -2,7 +2,7 @@
 // Tpetra's views come and go by the thousand; with managed memory each fresh one costs a page fault for every piece that a kernel
 // touches first: two thirds of the GPU's time in a set-up of multigrid. Here freed blocks wait for the next view of their size.
 //
-// The linker leads CUDA's functions here (--wrap, see CMakeLists.txt). RPC_DEVICE_POOL=off in the environment leaves all to CUDA, as compute-sanitizer wants it.
+// The linker leads CUDA's functions here (--wrap) in programs that link rpc::device_pool, see CMakeLists.txt. RPC_DEVICE_POOL=off in the environment leaves all to CUDA, as compute-sanitizer wants it.
 #include <Kokkos_Macros.hpp>
 
 #ifdef KOKKOS_ENABLE_CUDA

@@ -1,5 +1,7 @@
 #include "rpc/core/error.hpp"
 
+#include "rpc/core/on_root.hpp"
+
 #include <Teuchos_CommHelpers.hpp>
 #include <cctype>
 #include <regex>
@@ -14,12 +16,7 @@ void throw_if_any(const Teuchos::Comm<int> &comm, const ExitCode code, const std
   int first = 0;
   Teuchos::reduceAll(comm, Teuchos::REDUCE_MIN, mine, Teuchos::outArg(first));
   if (first == comm.getSize()) return;
-  std::string text = message.value_or("");
-  int length = static_cast<int>(text.size());
-  Teuchos::broadcast(comm, first, Teuchos::outArg(length));
-  text.resize(length);
-  if (length > 0) Teuchos::broadcast(comm, first, length, text.data());
-  throw Error(code, text);
+  throw Error(code, text_of_rank(comm, first, message.value_or("")));
 }
 
 std::string one_line(const std::string &what)

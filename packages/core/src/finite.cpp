@@ -1,5 +1,7 @@
 #include "rpc/core/finite.hpp"
 
+#include "rpc/core/on_root.hpp"
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -94,12 +96,7 @@ std::string find_not_finite(const Vector &v, const MultiVector &coordinates)
   const double largest = max_all(comm, mine.val);
   const bool here = mine.val >= 0 && mine.val == largest;
   const int rank = min_all(comm, here ? comm.getRank() : comm.getSize() - 1);
-  std::string text = here ? describe(v, coordinates, mine.loc) : "";
-  int length = static_cast<int>(text.size());
-  Teuchos::broadcast(comm, rank, Teuchos::outArg(length));
-  text.resize(length);
-  if (length > 0) Teuchos::broadcast(comm, rank, length, text.data());
-  return text;
+  return text_of_rank(comm, rank, here ? describe(v, coordinates, mine.loc) : "");
 }
 
 std::string describe_not_finite(const std::string &what, const Vector &v, const MultiVector &coordinates)

@@ -30,4 +30,21 @@ void on_root(const Teuchos::Comm<int> &comm, const ExitCode default_code, const 
   if (shared_code >= 0) throw_if_any(comm, static_cast<ExitCode>(shared_code), message);
 }
 
+std::string text_of_root(const Teuchos::Comm<int> &comm, const ExitCode default_code,
+                         const std::function<std::string()> &work)
+{
+  std::string text;
+  on_root(comm, default_code, [&] { text = work(); });
+  return text_of_rank(comm, 0, text);
+}
+
+std::string text_of_rank(const Teuchos::Comm<int> &comm, const int rank, std::string text)
+{
+  int length = static_cast<int>(text.size());
+  Teuchos::broadcast(comm, rank, Teuchos::outArg(length));
+  text.resize(length);
+  if (length > 0) Teuchos::broadcast(comm, rank, length, text.data());
+  return text;
+}
+
 } // namespace rpc

@@ -55,13 +55,6 @@ std::string type_name(const ParameterEntry &entry)
   return entry.getAny(false).typeName();
 }
 
-std::vector<std::string> names_of(const ParameterList &list)
-{
-  std::vector<std::string> names;
-  for (auto it = list.begin(); it != list.end(); ++it) names.push_back(list.name(it));
-  return names;
-}
-
 /// `value` as an entry of the same type as `model`, where C++ and XML habits make that harmless: 1 for 1.0.
 std::optional<ParameterEntry> converted(const ParameterEntry &value, const ParameterEntry &model)
 {
@@ -157,13 +150,8 @@ std::string text_of(const ParameterEntry &entry)
 
 std::string unknown_name_message(const std::string &path, const std::string &name, const ParameterList &valid)
 {
-  auto names = names_of(valid);
-  const std::string nearest = nearest_name(name, names);
-  std::ostringstream message;
-  message << "deck: unknown parameter " << quoted(path, name) << ".";
-  if (!nearest.empty()) message << " Did you mean \"" << nearest << "\"?";
-  message << " Valid here: " << join(names) << ".";
-  return message.str();
+  const auto names = names_of(valid);
+  return unknown_parameter(path, name, names).what() + std::string(" Valid here: ") + join(names) + ".";
 }
 
 /// The entry, marked as not given by the user.
@@ -269,6 +257,26 @@ void assign(ParameterList &list, const ParameterList &valid, const std::string &
   RPC_REQUIRE(value, "--set: " << quoted(path, rest) << " must be " << rule_of(model->getEntry(rest)) << ", got \""
                                << text << "\"");
   target->setEntry(rest, *value);
+}
+
+std::vector<std::string> names_of(const ParameterList &list)
+{
+  std::vector<std::string> names;
+  for (auto it = list.begin(); it != list.end(); ++it) names.push_back(list.name(it));
+  return names;
+}
+
+Error unknown_parameter(const std::string &path, const std::string &name, const std::vector<std::string> &candidates)
+{
+  const std::string nearest = nearest_name(name, candidates);
+  return {ExitCode::bad_input, "deck: unknown parameter " + quoted(path, name) + "." +
+                                   (nearest.empty() ? "" : " Did you mean \"" + nearest + "\"?")};
+}
+
+void require_known(const ParameterList &given, const std::vector<std::string> &known, const std::string &path)
+{
+  for (const std::string &name : names_of(given))
+    if (std::find(known.begin(), known.end(), name) == known.end()) throw unknown_parameter(path, name, known);
 }
 
 std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates)

@@ -23,6 +23,18 @@ TEST(OnRoot, WorkRunsOnceOnRankZero)
   EXPECT_EQ(runs, comm->getRank() == 0 ? 1 : 0);
 }
 
+TEST(OnRoot, TextGoesToEveryRank)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const std::string text("a\0b", 3);
+  EXPECT_EQ(rpc::text_of_root(*comm, ExitCode::internal_error, [&] { return text; }), text);
+  EXPECT_EQ(rpc::text_of_rank(*comm, comm->getSize() - 1, std::to_string(comm->getRank())),
+            std::to_string(comm->getSize() - 1));
+  expect_error(ExitCode::bad_input, "no such file", [&] {
+    rpc::text_of_root(*comm, ExitCode::bad_input, []() -> std::string { throw std::runtime_error("no such file"); });
+  });
+}
+
 TEST(OnRoot, ErrorKeepsItsCodeAndMessageOnEveryRank)
 {
   const auto comm = Tpetra::getDefaultComm();

@@ -1,16 +1,18 @@
 #pragma once
 
+#include "filled_lists.hpp"
 #include "kernels.hpp"
 
 /// Search for the cell in which a point lies, or that is next to it; private to interpolation().
 namespace rpc::fem
 {
 
-/// A whole mesh on one rank, its nodes numbered by gid and its cells by id; flat, so that host and device agree on the layout.
-struct GatheredMesh {
-  DeviceView<double *> coords; ///< (dim * nodes) [m]
-  DeviceView<LO *> cells;      ///< (nodes per cell * cells) gids
-  LO num_nodes = 0, num_cells = 0;
+/// Cells among which places are looked for: those that one rank owns.
+struct SearchedCells {
+  DeviceView<double **> coords; ///< (overlap nodes, dim) [m]
+  DeviceView<LO **> cells;      ///< (local cells, nodes per cell)
+  DeviceView<GO *> id;          ///< (searched cells) the same on any number of ranks
+  LO count = 0;
 };
 
 /// A block of bins, first and last one in each direction.
@@ -44,8 +46,7 @@ template <int Dim>
 struct Bins {
   Kokkos::Array<double, Dim> lower{}, width{}; // [m]
   Kokkos::Array<int, Dim> count{};
-  DeviceView<std::size_t *> row; // (bins + 1)
-  DeviceView<LO *> cell;         // (entries) in no fixed order
+  FilledLists cells;
 
   /// The bin of a coordinate in one direction, the last one for what lies beyond it.
   KOKKOS_INLINE_FUNCTION int along(const int d, const double x) const
@@ -71,31 +72,56 @@ struct Bins {
   }
 };
 
-/// Finds a place in the mesh for each point: a cell and reference coordinates in it.
+/// The bins that each cell's box meets.
+template <int Dim>
+struct BinsOfCells {
+  Bins<Dim> bins;            // without cells  in
+  DeviceView<double **> box; //                in
+
+  template <class Add>
+  KOKKOS_INLINE_FUNCTION void operator()(const LO cell, const Add &add) const
+  {
+    bins.over(box, cell).for_each(bins.count, nullptr, add);
+  }
+};
+
+/// Which of the cells are asked: those whose box holds the point; all, for the nearest; the nearest of all where none holds
+/// it.
+enum class Asked { around_it, nearest, any };
+
+/// Where points lie.
+template <int Dim>
+struct Places {
+  DeviceView<LO *> cell;     ///< (points) -1: none
+  DeviceView<double *> away; ///< (points) square of the distance from the cell [m^2], -1 if it holds the point
+  DeviceView<double *[Dim]> reference; ///< (points) coordinates in the reference cell
+};
+
+/// Finds a place among the cells for each point. Of several that hold it, or are equally far from it, that of the least id.
 template <int Dim, int Nodes>
 struct FindPlaces {
-  static constexpr int most_steps = 20;       // Newton's method needs 2 to 5 for a point inside
-  static constexpr double converged = 1e-8;   // step after which another one changes nothing
-  static constexpr double negligible = 1e-12; // entry of the matrix
+  static constexpr int most_steps = 20;     // Newton's method needs 2 to 5 for a point inside
+  static constexpr double converged = 1e-8; // step after which another one changes nothing
 
-  ShapeFunctions<Dim, Nodes> shape;    //                                       in
-  GatheredMesh mesh;                   //                                       in
-  DeviceView<double **> box;           // (cells, 2 Dim) lower, upper ends [m]  in
-  Bins<Dim> bins;                      //                                       in
-  double rounding;                     // of coordinates                   [m]  in
-  DeviceView<double **> points;        // (points or more, Dim)            [m]  in
-  DeviceView<LO *> cell;               // (points)                              out
-  DeviceView<double *[Dim]> reference; // (points)                              out
-  DeviceView<int *> length;            // (points) entries that count           out
+  ShapeFunctions<Dim, Nodes> shape; //                                                          in
+  SearchedCells mesh;               //                                                          in
+  DeviceView<double **> box;        // (cells, 2 Dim) lower, upper ends [m]                     in
+  Bins<Dim> bins;                   //                                                          in
+  double rounding;                  // of coordinates                   [m]                     in
+  Asked asked;                      //                                                          in
+  DeviceView<double **> points;     // (points or more, Dim)            [m]                     in
+  DeviceView<double *> bound;       // (points) places farther off do not count, or none [m^2]  in
+  Places<Dim> found;                //                                                          out
 
   struct Place {
     LO cell = -1;
+    GO id = math::largest<GO>;
     double X[Dim] = {};
-    double away = Kokkos::Experimental::infinity<double>::value; // squared distance [m^2]
+    double away = math::infinity<double>; // squared distance [m^2]
 
     KOKKOS_INLINE_FUNCTION bool nearer_than(const Place &other) const
     {
-      return away < other.away || (away == other.away && cell < other.cell);
+      return away < other.away || (away == other.away && id < other.id);
     }
   };
 
@@ -104,26 +130,23 @@ struct FindPlaces {
     double x[Dim];
     for (int d = 0; d < Dim; ++d) x[d] = points(point, d);
     Place place;
-    if (!look_inside(x, place)) look_around(x, place);
-    cell(point) = place.cell;
-    for (int d = 0; d < Dim; ++d) reference(point, d) = place.X[d];
-    double N[Nodes], dN[Nodes][Dim];
-    shape.evaluate(place.X, N, dN);
-    length(point) = 0;
-    for (int a = 0; a < Nodes; ++a) length(point) += counts(N[a]) ? 1 : 0;
+    if (bound.extent(0) > 0) place.away = bound(point);
+    const bool inside = asked != Asked::nearest && look_inside(x, place);
+    if (!inside && asked != Asked::around_it) look_around(x, place);
+    found.cell(point) = place.cell;
+    found.away(point) = inside ? -1 : place.away;
+    for (int d = 0; d < Dim; ++d) found.reference(point, d) = place.X[d];
   }
 
-  KOKKOS_INLINE_FUNCTION static bool counts(const double N) { return N > negligible || N < -negligible; }
-
-  /// The first of the cells that hold x, so that the order of the lists does not matter.
+  /// The first of the cells that hold x.
   /// @return whether there is one; if not, the nearest of those whose box holds x, if any
   KOKKOS_FUNCTION bool look_inside(const double (&x)[Dim], Place &place) const
   {
     bool inside = false;
     const int bin = bin_of(x);
-    for (std::size_t k = bins.row(bin); k < bins.row(bin + 1); ++k) {
-      const LO c = bins.cell(k);
-      if ((inside && c > place.cell) || distance_to_box(c, x) > 0) continue;
+    for (std::size_t k = bins.cells.row(bin); k < bins.cells.row(bin + 1); ++k) {
+      const LO c = bins.cells.item(k);
+      if ((inside && mesh.id(c) > place.id) || distance_to_box(c, x) > 0) continue;
       Place here;
       approach(c, x, here);
       double diagonal = 0;
@@ -143,8 +166,8 @@ struct FindPlaces {
     const BinBlock<Dim> *inner = nullptr;
     for (bool more = true; more;) {
       block.for_each(bins.count, inner, [&](const int bin) {
-        for (std::size_t k = bins.row(bin); k < bins.row(bin + 1); ++k) {
-          const LO c = bins.cell(k);
+        for (std::size_t k = bins.cells.row(bin); k < bins.cells.row(bin + 1); ++k) {
+          const LO c = bins.cells.item(k);
           if (c == place.cell || distance_to_box(c, x) > place.away) continue;
           Place here;
           approach(c, x, here);
@@ -193,9 +216,10 @@ struct FindPlaces {
   {
     double seen[Nodes][Dim]; // nodes from x: differences lose nothing far from the origin
     for (int a = 0; a < Nodes; ++a)
-      for (int d = 0; d < Dim; ++d) seen[a][d] = mesh.coords(Dim * mesh.cells(Nodes * c + a) + d) - x[d];
+      for (int d = 0; d < Dim; ++d) seen[a][d] = mesh.coords(mesh.cells(c, a), d) - x[d];
     double N[Nodes], dN[Nodes][Dim];
     place.cell = c;
+    place.id = mesh.id(c);
     shape.centre(place.X);
     for (int step = 0; step < most_steps; ++step) {
       shape.evaluate(place.X, N, dN);

@@ -137,7 +137,10 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
   d.owned_dofs = dof_map(*d.mesh->owned_nodes, d.dim());
   d.overlap_dofs =
       d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
-  if (d.overlap_dofs != d.owned_dofs) d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
+  if (d.overlap_dofs != d.owned_dofs) {
+    d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
+    d.node_import = rcp(new Import(d.mesh->owned_nodes, d.mesh->overlap_nodes));
+  }
   d.congruent = congruent_cells(*d.mesh);
   d.node_to_cells = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
   d.nodes = node_graph(*d.mesh, d.node_to_cells);
@@ -150,6 +153,14 @@ RCP<const Vector> on_overlap(const Discretization &d, const Vector &owned)
   if (d.dof_import.is_null()) return Teuchos::rcpFromRef(owned);
   const auto overlap = rcp(new Vector(d.overlap_dofs));
   overlap->doImport(owned, *d.dof_import, Tpetra::INSERT);
+  return overlap;
+}
+
+RCP<const MultiVector> nodes_on_overlap(const Discretization &d, const RCP<const MultiVector> &owned)
+{
+  if (d.node_import.is_null()) return owned;
+  const auto overlap = rcp(new MultiVector(d.mesh->overlap_nodes, owned->getNumVectors()));
+  overlap->doImport(*owned, *d.node_import, Tpetra::INSERT);
   return overlap;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "rpc/core/error.hpp"
+#include "rpc/core/math.hpp"
 #include "rpc/fem/discretization.hpp"
 #include "rpc/mesh/shape_functions.hpp"
 
@@ -135,7 +137,7 @@ KOKKOS_INLINE_FUNCTION Kokkos::Array<double, 3> area_normal(const Coords &coords
 
 KOKKOS_INLINE_FUNCTION double norm(const Kokkos::Array<double, 3> &v)
 {
-  return Kokkos::Experimental::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  return math::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 } // namespace rpc::fem

@@ -131,13 +131,6 @@ std::vector<GO> all_different(const Comm &comm, std::vector<GO> values)
   return values;
 }
 
-template <class T>
-void reduce(const Comm &comm, const Teuchos::EReductionType type, std::vector<T> &values)
-{
-  const std::vector<T> mine = values;
-  Teuchos::reduceAll(comm, type, static_cast<int>(mine.size()), mine.data(), values.data());
-}
-
 /// Centre, radius, cells and blocks of the only part; collective.
 Part whole_body(const mesh::Mesh &mesh)
 {
@@ -188,7 +181,7 @@ void describe_parts(const mesh::Mesh &mesh, const std::vector<int> &part_of_node
     for (int c = 0; c < dim; ++c) sum[c] += coords(n, c);
     sum[3] += 1;
   }
-  reduce(mesh.comm(), Teuchos::REDUCE_SUM, sums);
+  sums = summed(mesh.comm(), sums);
   for (std::size_t p = 0; p < num_parts; ++p)
     for (int c = 0; c < dim; ++c) parts[p].centre[c] = sums[4 * p + c] / sums[4 * p + 3];
   for (LO n = 0; n < mesh.num_owned_nodes(); ++n) {
@@ -197,13 +190,13 @@ void describe_parts(const mesh::Mesh &mesh, const std::vector<int> &part_of_node
     for (int c = 0; c < dim; ++c) squares += (coords(n, c) - centre[c]) * (coords(n, c) - centre[c]);
     radius[part_of_node[n]] = std::max(radius[part_of_node[n]], squares);
   }
-  reduce(mesh.comm(), Teuchos::REDUCE_MAX, radius);
+  radius = largest(mesh.comm(), radius);
   const auto cells = to_host(mesh.cells);
   const auto block = to_host(mesh.block);
   std::vector<GO> num_cells(num_parts * num_blocks, 0);
   for (LO cell = 0; cell < mesh.num_owned_cells; ++cell)
     ++num_cells[part_of_node[cells(cell, 0)] * num_blocks + block(cell)];
-  reduce(mesh.comm(), Teuchos::REDUCE_SUM, num_cells);
+  num_cells = summed(mesh.comm(), num_cells);
   for (std::size_t p = 0; p < num_parts; ++p) {
     parts[p].radius = std::sqrt(radius[p]);
     for (std::size_t b = 0; b < num_blocks; ++b) {

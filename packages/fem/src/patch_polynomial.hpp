@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/core/kokkos.hpp"
+#include "rpc/core/math.hpp"
 
 /// Least squares fits of polynomials to scattered values, in a kernel.
 namespace rpc::fem
@@ -62,7 +63,7 @@ KOKKOS_INLINE_FUNCTION int cholesky(double (&A)[Size][Size], const double thresh
       pivot -= A[i][j] * A[i][j];
     }
     if (!(pivot > threshold * A[i][i])) return i;
-    A[i][i] = Kokkos::Experimental::sqrt(pivot);
+    A[i][i] = math::sqrt(pivot);
   }
   return Size;
 }

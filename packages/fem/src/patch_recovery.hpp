@@ -237,7 +237,7 @@ struct Polynomials {
   KOKKOS_FUNCTION double best_of(const LO cell) const
   {
     double best = 0;
-    for (int a = 0; a < vertices; ++a) best = Kokkos::Experimental::fmax(best, trust(body.cells(cell, a)));
+    for (int a = 0; a < vertices; ++a) best = math::fmax(best, trust(body.cells(cell, a)));
     return best;
   }
 
@@ -281,7 +281,7 @@ struct Polynomials {
   KOKKOS_FUNCTION void blend(const LO cell, const double (&x)[Dim], const double (&linear)[vertices],
                              double (&grad)[Dim][Dim], double &dilatation) const
   {
-    const double least = Kokkos::Experimental::fmin(best_of(cell), double(Table::adopted));
+    const double least = math::fmin(best_of(cell), double(Table::adopted));
     double sum = 0;
     for (int a = 0; a < vertices; ++a)
       if (trust(body.cells(cell, a)) >= least) sum += linear[a];
@@ -348,9 +348,9 @@ struct EvaluatePatches {
     const auto &cells = polynomials.body.cells;
     double best = 0, own = 0; // trust in the polynomials around, and in those of the vertices that carry the node
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
-      best = Kokkos::Experimental::fmax(best, polynomials.best_of(node_cell(k)));
+      best = math::fmax(best, polynomials.best_of(node_cell(k)));
     for (int a = 0; a < vertices; ++a)
-      if (linear.carries(place, a)) own = Kokkos::Experimental::fmax(own, polynomials.trust(cells(first, a)));
+      if (linear.carries(place, a)) own = math::fmax(own, polynomials.trust(cells(first, a)));
 
     double s[components] = {};
     int count = 0;
@@ -397,7 +397,7 @@ struct EvaluatePatches {
     double shear = s[Dim == 2 ? 2 : 3] * s[Dim == 2 ? 2 : 3];
     if constexpr (Dim == 3) shear += s[4] * s[4] + s[5] * s[5];
     const double spread = (xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx);
-    return Kokkos::Experimental::sqrt(0.5 * spread + 3 * shear);
+    return math::sqrt(0.5 * spread + 3 * shear);
   }
 };
 

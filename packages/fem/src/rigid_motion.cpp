@@ -1,6 +1,7 @@
 #include "rpc/fem/rigid_motion.hpp"
 
 #include "point_text.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <algorithm>
@@ -241,9 +242,9 @@ std::vector<Resultant> resultants(const Discretization &d, const Parts &parts, c
         add_shared(sums(p, 6), size);
       });
   const auto host = to_host(sums);
-  std::vector<double> mine(7 * parts.size()), all(mine.size());
+  std::vector<double> mine(7 * parts.size());
   for (std::size_t k = 0; k < mine.size(); ++k) mine[k] = host(k / 7, k % 7);
-  Teuchos::reduceAll(d.mesh->comm(), Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), all.data());
+  const std::vector<double> all = summed(d.mesh->comm(), mine);
   std::vector<Resultant> result(parts.size());
   for (int p = 0; p < parts.size(); ++p) {
     std::copy_n(&all[7 * p], 6, result[p].force.begin());

@@ -30,7 +30,7 @@ struct RoundingEnergy {
         square[0] += u(dof(Dim, node, i)) * u(dof(Dim, node, i));
         square[1] += body.coords(node, i) * body.coords(node, i);
       }
-      for (int k = 0; k < 2; ++k) largest[k] = Kokkos::Experimental::fmax(largest[k], square[k]);
+      for (int k = 0; k < 2; ++k) largest[k] = math::fmax(largest[k], square[k]);
     }
     const double modulus = body.lambda(cell) + 2 * body.mu(cell);
     body.at_plain_points(cell, [&](int, const double volume, const double(&dN)[Nodes][Dim]) {
@@ -43,8 +43,7 @@ struct RoundingEnergy {
         }
       for (int i = 0; i < Dim; ++i)
         for (int j = 0; j < Dim; ++j) turn += gradient[i][j] * gradient[i][j];
-      const double error = of_displacements * Kokkos::Experimental::sqrt(largest[0]) +
-                           of_coordinates * Kokkos::Experimental::sqrt(turn * largest[1]);
+      const double error = of_displacements * math::sqrt(largest[0]) + of_coordinates * math::sqrt(turn * largest[1]);
       energy += volume * modulus * stiffness * error * error;
     });
   }

@@ -28,15 +28,6 @@ DeviceView<int ***> facet_mates(const mesh::Element &element)
   return mates;
 }
 
-/// The table of the owned nodes with those of the overlap; the table itself on one rank.
-RCP<const MultiVector> with_overlap(const mesh::Mesh &mesh, const RCP<const MultiVector> &owned, const Import &import)
-{
-  if (mesh.owned_nodes == mesh.overlap_nodes) return owned;
-  const auto overlap = rcp(new MultiVector(mesh.overlap_nodes, owned->getNumVectors()));
-  overlap->doImport(*owned, import, Tpetra::INSERT);
-  return overlap;
-}
-
 /// The polynomials of all vertices (overlap nodes).
 template <int Dim, int Nodes>
 RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Nodes> &body, const Vector &u_overlap)
@@ -45,7 +36,6 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
   const mesh::Mesh &mesh = *d.mesh;
   const auto nodes = device_range(mesh.num_owned_nodes());
   const NodeToCells &node_to_cells = d.node_to_cells;
-  const Import import(mesh.owned_nodes, mesh.overlap_nodes);
   const auto table = rcp(new MultiVector(mesh.owned_nodes, Table::columns)); // zero
   {
     const FitPatch<Dim, Nodes> fit{body,
@@ -60,7 +50,7 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
     Kokkos::fence();
   }
   {
-    const auto from = with_overlap(mesh, table, import);
+    const auto from = nodes_on_overlap(d, table);
     const AdoptPolynomial<Dim, Nodes> adopt{mesh.cells,
                                             node_to_cells.row,
                                             node_to_cells.cell,
@@ -70,7 +60,7 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
     Kokkos::parallel_for("rpc::fem::adopt_polynomial", nodes, adopt);
     Kokkos::fence();
   }
-  return with_overlap(mesh, table, import);
+  return nodes_on_overlap(d, table);
 }
 
 template <int Dim, int Nodes>

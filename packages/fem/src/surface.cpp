@@ -78,7 +78,7 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
       KOKKOS_LAMBDA(const LO i, LO &wrong) {
         double length = 0;
         for (int c = 0; c < dim; ++c) length += normal(i, c) * normal(i, c);
-        length = Kokkos::Experimental::sqrt(length);
+        length = math::sqrt(length);
         if (!(weight(i) > 0) || !(length > 0)) ++wrong;
         for (int c = 0; c < dim; ++c) normal(i, c) /= length;
       },
@@ -94,26 +94,24 @@ void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &
 {
   const mesh::Mesh &mesh = *d.mesh;
   const LO num_owned = mesh.num_owned_nodes();
-  const Import import(mesh.owned_nodes, mesh.overlap_nodes);
-  Vector value_overlap(mesh.overlap_nodes), known_overlap(mesh.overlap_nodes);
-  value_overlap.doImport(value, import, Tpetra::INSERT);
-  known_overlap.doImport(known, import, Tpetra::INSERT);
-  const auto v = device_read(value_overlap);
-  const auto k = device_read(known_overlap);
+  const auto value_overlap = nodes_on_overlap(d, Teuchos::rcpFromRef<const MultiVector>(value));
+  const auto known_overlap = nodes_on_overlap(d, Teuchos::rcpFromRef<const MultiVector>(known));
+  const auto v = value_overlap->getLocalViewDevice(Tpetra::Access::ReadOnly); // in one process that of `value`: nodes
+  const auto k = known_overlap->getLocalViewDevice(Tpetra::Access::ReadOnly); // are either read or written
   const auto facets = side.facets;
   const int nodes = static_cast<int>(facets.extent(1));
   const NodeToCells node_to_facets = around_nodes(facets, num_owned);
   const auto out = device_write(value);
   Kokkos::parallel_for(
       "rpc::fem::extend", device_range(num_owned), KOKKOS_LAMBDA(const LO n) {
-        if (k(n) != 0) return;
+        if (k(n, 0) != 0) return;
         double sum = 0;
         int count = 0;
         for (std::size_t m = node_to_facets.row(n); m < node_to_facets.row(n + 1); ++m)
           for (int b = 0; b < nodes; ++b) {
             const LO other = facets(node_to_facets.cell(m), b);
-            if (k(other) == 0) continue;
-            sum += v(other);
+            if (k(other, 0) == 0) continue;
+            sum += v(other, 0);
             ++count;
           }
         out(n) = count > 0 ? sum / count : 0;

@@ -206,6 +206,52 @@ TEST(Interpolation, IsTheSameOnAnyNumberOfRanks)
   });
 }
 
+/// A whole mesh on one rank; the others have nothing.
+fem::Discretization all_on(const int rank, const mesh::Mesh &whole)
+{
+  const bool here = world()->getRank() == rank;
+  const auto all = std::make_shared<mesh::Mesh>();
+  const LO nodes = here ? whole.num_owned_nodes() : 0, cells = here ? whole.num_owned_cells : 0;
+  all->element = whole.element;
+  all->owned_nodes = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), nodes, 0, world()));
+  all->overlap_nodes = all->owned_nodes;
+  all->coords = here ? whole.coords : DeviceView<double **>("coords", 0, whole.dim());
+  all->cells = here ? whole.cells : DeviceView<LO **>("cells", 0, whole.element.num_nodes());
+  all->node_id = here ? whole.node_id : HostView<GO *>("node_id", 0);
+  all->cell_id = here ? whole.cell_id : HostView<GO *>("cell_id", 0);
+  all->num_owned_cells = cells;
+  fem::Discretization d;
+  d.mesh = all;
+  return d;
+}
+
+TEST(Interpolation, RanksMayHaveNothing)
+{
+  for_each_pair([](const mesh::Element &coarse, const mesh::Element &fine) {
+    auto larger = finer_box(fine);
+    larger.lower[1] -= 0.3;
+    const auto from = bulged_body(coarse, alone()), to = body(larger, alone(), bulge(larger));
+    const auto serial = interpolated(from, to, wild);
+    const int last = world()->getSize() - 1;
+    EXPECT_LT(difference(interpolated(all_on(last, *from.mesh), all_on(0, *to.mesh), wild), serial), 1e-15);
+    EXPECT_LT(difference(interpolated(bulged_body(coarse, world()), all_on(0, *to.mesh), wild), serial), 1e-15);
+    EXPECT_LT(difference(interpolated(all_on(last, *from.mesh), body(larger, world(), bulge(larger)), wild), serial),
+              1e-15);
+  });
+}
+
+TEST(Interpolation, FarFromAllCellsTakesTheNearestOfAllRanks)
+{
+  for (const mesh::Element &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    auto away = finer_box(element);
+    for (int d = 0; d < element.dim; ++d) away.upper[d] += 50, away.lower[d] += 50;
+    const auto serial = interpolated(bulged_body(element, alone()), body(away, alone()), wild);
+    const auto parallel = interpolated(bulged_body(element, world()), body(away, world()), wild);
+    EXPECT_LT(difference(parallel, serial), 1e-15);
+  }
+}
+
 TEST(Interpolation, ItsTransposeKeepsSums)
 {
   const auto from = bulged_body({2, 1}, world()), to = body(finer_box({2, 2}), world());

@@ -149,6 +149,14 @@ void require_replaceable(const std::string &path)
   if (reason == EACCES || reason == EPERM || reason == EROFS) fail(reason, "replace", path);
 }
 
+void remove_older(const std::string &path)
+{
+  struct stat found = {};
+  if (::lstat(path.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return;
+  if (::access(path.c_str(), W_OK) != 0) fail(errno, "remove", path); // a permission that unlink would not respect
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) fail(errno, "remove", path);
+}
+
 void require_writable_folder(const std::string &folder)
 {
   const std::filesystem::path path = folder.empty() ? "." : folder;

@@ -2,8 +2,8 @@
 
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/io/atomic_file.hpp"
-#include "rpc/io/gather.hpp"
 
 #include <algorithm>
 #include <array>
@@ -35,12 +35,12 @@ using Chain = std::vector<int>;  // rows in the order of the walk
 std::vector<Row> gather_rows(const Comm &comm, const ContactTable &table, const int dim)
 {
   const std::size_t n = table.id.extent(0);
-  const auto id = gather(comm, table.id.data(), n);
-  const auto u_nu = gather(comm, table.u_nu.data(), n);
-  const auto gap = gather(comm, table.gap.data(), n);
-  const auto pressure = gather(comm, table.pressure.data(), n);
-  const auto state = gather(comm, table.state.data(), n);
-  const auto x = gather(comm, table.position.data(), n * dim);
+  const auto id = gathered_by_root(comm, table.id.data(), n);
+  const auto u_nu = gathered_by_root(comm, table.u_nu.data(), n);
+  const auto gap = gathered_by_root(comm, table.gap.data(), n);
+  const auto pressure = gathered_by_root(comm, table.pressure.data(), n);
+  const auto state = gathered_by_root(comm, table.state.data(), n);
+  const auto x = gathered_by_root(comm, table.position.data(), n * dim);
   std::vector<Row> rows;
   for (std::size_t k = 0; k < id.size(); ++k) {
     Row row{id[k], {}, u_nu[k], gap[k], pressure[k], state[k]};
@@ -179,7 +179,7 @@ void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, con
     const int dim = max_all(*comm, static_cast<int>(table.position.extent(1)));
     const int width = max_all(*comm, static_cast<int>(table.facets.extent(1)));
     std::vector<Row> rows = gather_rows(*comm, table, dim);
-    const std::vector<GO> facets = gather(*comm, table.facets.data(), table.facets.size());
+    const std::vector<GO> facets = gathered_by_root(*comm, table.facets.data(), table.facets.size());
     on_root(*comm, ExitCode::internal_error, [&] {
       require_unique(rows);
       if (dim == 2) rows = along_the_surface(rows, edges_of(rows, facets, width));

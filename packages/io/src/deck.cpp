@@ -1,6 +1,7 @@
 #include "rpc/io/deck.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/on_root.hpp"
 
 #include <Teuchos_StringInputSource.hpp>
 #include <Teuchos_XMLObject.hpp>
@@ -192,9 +193,8 @@ void check_list(const XMLObject &xml, const std::string &file, const std::string
   }
 }
 
-ParameterList read_xml(const std::string &path)
+ParameterList read_xml(const std::string &path, const std::string &text)
 {
-  const std::string text = read_text(path);
   check_depth(path, text, false);
   try {
     Teuchos::StringInputSource source(text);
@@ -260,9 +260,9 @@ std::string with_infinities(const std::string &text)
   return result;
 }
 
-ParameterList read_yaml(const std::string &path)
+ParameterList read_yaml(const std::string &path, const std::string &given)
 {
-  const std::string whole = with_infinities(read_text(path));
+  const std::string whole = with_infinities(given);
   check_depth(path, whole, true);
   const std::vector<std::string> lines = lines_of(whole);
   // Teuchos wants one name at the outermost level, and loses parameters without a word if there are more.
@@ -291,9 +291,7 @@ std::filesystem::path program_folder()
   return error ? std::filesystem::path(RPC_INSTALL_BIN_DIR) : program.parent_path();
 }
 
-} // namespace
-
-std::string find_deck(const std::string &name)
+std::string find_file(const std::string &name)
 {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -312,9 +310,17 @@ std::string find_deck(const std::string &name)
   throw Error(ExitCode::bad_input, "deck: there is no file \"" + name + "\"; searched: " + searched);
 }
 
-ParameterList read_deck(const std::string &path)
+} // namespace
+
+std::string find_deck(const std::string &name, const Teuchos::Comm<int> &comm)
 {
-  return is_yaml(path) ? read_yaml(path) : read_xml(path);
+  return text_of_root(comm, ExitCode::bad_input, [&] { return find_file(name); });
+}
+
+ParameterList read_deck(const std::string &path, const Teuchos::Comm<int> &comm)
+{
+  const std::string text = text_of_root(comm, ExitCode::bad_input, [&] { return read_text(path); });
+  return is_yaml(path) ? read_yaml(path, text) : read_xml(path, text);
 }
 
 } // namespace rpc::io

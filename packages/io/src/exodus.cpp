@@ -2,6 +2,7 @@
 
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/io/atomic_file.hpp"
 #include "rpc/io/gather.hpp"
 #include "rpc/mesh/mesh_data.hpp"
@@ -233,8 +234,8 @@ SideSet gather_side(const mesh::Mesh &mesh, const mesh::Side &side)
     owned_cell.push_back(mesh.cell_id(cell(f)));
     owned_ordinal.push_back(ordinal(f));
   }
-  const auto all_cells = gather(mesh.comm(), owned_cell.data(), owned_cell.size());
-  const auto all_ordinals = gather(mesh.comm(), owned_ordinal.data(), owned_ordinal.size());
+  const auto all_cells = gathered_by_root(mesh.comm(), owned_cell);
+  const auto all_ordinals = gathered_by_root(mesh.comm(), owned_ordinal);
   std::vector<std::pair<GO, int>> facets;
   for (std::size_t f = 0; f < all_cells.size(); ++f) facets.emplace_back(all_cells[f], all_ordinals[f]);
   std::sort(facets.begin(), facets.end());

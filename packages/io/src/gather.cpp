@@ -1,57 +1,16 @@
 #include "rpc/io/gather.hpp"
+
 #include "rpc/core/on_root.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <algorithm>
 
 namespace rpc::io
 {
-namespace
-{
-
-constexpr std::size_t most_per_message = std::size_t(1)
-                                         << 26; // items; far below the 2^31 bytes that MPI's int counts allow
-
-/// Calls message(first, count) for each piece of [0, total).
-template <class Message>
-void in_pieces(const std::size_t total, const Message &message)
-{
-  for (std::size_t first = 0; first < total; first += most_per_message)
-    message(first, static_cast<int>(std::min(most_per_message, total - first)));
-}
-
-} // namespace
-
-template <class T>
-std::vector<T> gather(const Comm &comm, const T *values, const std::size_t count)
-{
-  const GO mine = static_cast<GO>(count);
-  std::vector<GO> counts(comm.getSize());
-  Teuchos::gatherAll(comm, 1, &mine, comm.getSize(), counts.data());
-  if (comm.getRank() != 0) {
-    in_pieces(count, [&](const std::size_t first, const int n) { Teuchos::send(comm, n, values + first, 0); });
-    return {};
-  }
-  GO total = 0;
-  for (const GO n : counts) total += n;
-  std::vector<T> all(total);
-  std::copy(values, values + count, all.begin());
-  std::size_t offset = count;
-  for (int rank = 1; rank < comm.getSize(); ++rank) {
-    in_pieces(counts[rank], [&](const std::size_t first, const int n) {
-      Teuchos::receive(comm, rank, n, all.data() + offset + first);
-    });
-    offset += counts[rank];
-  }
-  return all;
-}
-
-template std::vector<double> gather(const Comm &, const double *, std::size_t);
-template std::vector<int> gather(const Comm &, const int *, std::size_t);
-template std::vector<GO> gather(const Comm &, const GO *, std::size_t);
 
 CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const HostView<const GO *> &ids, const std::string &what)
     : comm_(comm), owned_(ids.extent(0)), size_(sum_all(*comm, static_cast<GO>(ids.extent(0)))),
-      ids_(io::gather(*comm, ids.data(), ids.extent(0)))
+      ids_(gathered_by_root(*comm, ids.data(), ids.extent(0)))
 {
   on_root(*comm, ExitCode::internal_error, [&] {
     std::vector<bool> seen(size_, false);
@@ -67,7 +26,7 @@ CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const HostView<const
 template <class T>
 std::vector<T> CanonicalOrder::gather(const T *values, const int width) const
 {
-  const std::vector<T> by_rank = io::gather(*comm_, values, owned_ * width);
+  const std::vector<T> by_rank = gathered_by_root(*comm_, values, owned_ * width);
   std::vector<T> by_id(by_rank.size());
   for (std::size_t n = 0; n < ids_.size(); ++n)
     std::copy_n(by_rank.begin() + n * width, width, by_id.begin() + ids_[n] * width);

@@ -15,6 +15,7 @@ namespace
 
 using rpc::ExitCode;
 using rpc::io::AtomicFile;
+using rpc::io::remove_older;
 using rpc::io::require_replaceable;
 using rpc::io::require_writable_folder;
 using rpc::io::write_text;
@@ -69,6 +70,17 @@ TEST_F(AtomicFileTest, NothingAppearsWithoutCommit)
     EXPECT_FALSE(std::filesystem::exists(scratch_.path("a.txt")));
   }
   EXPECT_EQ(scratch_.num_files(), 0);
+}
+
+TEST_F(AtomicFileTest, OnlyOrdinaryFilesOfAnEarlierRunAreRemoved)
+{
+  remove_older(scratch_.path("missing.txt"));
+  write_text(scratch_.path("a.txt"), "old");
+  remove_older(scratch_.path("a.txt"));
+  EXPECT_EQ(scratch_.num_files(), 0);
+  std::filesystem::create_directory(scratch_.path("folder"));
+  remove_older(scratch_.path("folder"));
+  EXPECT_TRUE(std::filesystem::is_directory(scratch_.path("folder")));
 }
 
 TEST_F(AtomicFileTest, FailedWriteKeepsTheOldFile)

@@ -13,11 +13,10 @@ namespace
 {
 
 using rpc::ExitCode;
-using rpc::io::find_deck;
-using rpc::io::read_deck;
 using rpc::test::error_of;
 using rpc::test::expect_error;
 using Teuchos::Array;
+using Teuchos::ParameterList;
 
 const char *const good_xml = R"xml(<ParameterList name="rpc">
   <!-- a comment -->
@@ -46,10 +45,26 @@ rpc:
     On: true
 )yaml";
 
+ParameterList read_deck(const std::string &path)
+{
+  return rpc::io::read_deck(path, *Tpetra::getDefaultComm());
+}
+
+std::string find_deck(const std::string &name)
+{
+  return rpc::io::find_deck(name, *Tpetra::getDefaultComm());
+}
+
 class Deck : public testing::Test
 {
 protected:
-  std::string file(const std::string &name, const std::string &text) const { return scratch_.write(name, text); }
+  /// Written by rank 0; collective.
+  std::string file(const std::string &name, const std::string &text) const
+  {
+    comm_->barrier(); // nobody reads an older one any more
+    if (comm_->getRank() == 0) scratch_.write(name, text);
+    return scratch_.path(name);
+  }
   /// Expects a refusal in one line that starts with the path, and holds `part`.
   void expect_refusal(const std::string &name, const std::string &text, const std::string &part) const
   {
@@ -223,8 +238,18 @@ TEST_F(Deck, UnreadableFileIsRefused)
 {
   for (const char *extension : {".xml", ".yaml"})
     expect_error(ExitCode::bad_input, "No such file", [&] { read_deck(scratch_.path("none") + extension); });
-  std::filesystem::create_directory(scratch_.path("folder.xml"));
+  if (comm_->getRank() == 0) std::filesystem::create_directory(scratch_.path("folder.xml"));
   expect_error(ExitCode::bad_input, "Is a directory", [&] { read_deck(scratch_.path("folder.xml")); });
+}
+
+TEST_F(Deck, IsReadFromTheDiskOfRankZero)
+{
+  const bool root = comm_->getRank() == 0;
+  const std::string here = file("own.xml", good_xml), nowhere = scratch_.path("none.xml");
+  expect_good(read_deck(root ? here : nowhere));
+  EXPECT_EQ(find_deck(root ? here : nowhere), here);
+  expect_error(ExitCode::bad_input, {nowhere, "No such file"}, [&] { read_deck(root ? nowhere : here); });
+  expect_error(ExitCode::bad_input, {nowhere, "there is no file"}, [&] { find_deck(root ? nowhere : here); });
 }
 
 TEST_F(Deck, IsLookedUpAsGivenThenInTheInputFolders)

@@ -1,5 +1,6 @@
 #include "rpc/io/gather.hpp"
 
+#include "rpc/core/parallel.hpp"
 #include "rpc/mesh/box.hpp"
 #include "scratch.hpp"
 
@@ -58,24 +59,6 @@ void expect_ordered(const RCP<const Comm> &comm)
   }
 }
 
-TEST(Gather, RankZeroGetsValuesInTheOrderOfTheRanks)
-{
-  const auto comm = Tpetra::getDefaultComm();
-  const std::vector<int> mine(comm->getRank() + 1, comm->getRank());
-  const auto all = rpc::io::gather(*comm, mine.data(), mine.size());
-  std::vector<int> expected;
-  for (int rank = 0; comm->getRank() == 0 && rank < comm->getSize(); ++rank)
-    expected.insert(expected.end(), rank + 1, rank);
-  EXPECT_EQ(all, expected);
-}
-
-TEST(Gather, RanksMayHaveNothing)
-{
-  const auto comm = Tpetra::getDefaultComm();
-  const std::vector<GO> mine(comm->getRank() == comm->getSize() - 1 ? 2 : 0, 7);
-  EXPECT_EQ(rpc::io::gather(*comm, mine.data(), mine.size()), std::vector<GO>(comm->getRank() == 0 ? 2 : 0, 7));
-}
-
 TEST(CanonicalOrder, ValuesComeOrderedById)
 {
   expect_ordered(Tpetra::getDefaultComm());
@@ -120,7 +103,7 @@ TEST(OwnedFacets, EachFacetOfASideAppearsOnceOverAllRanks)
   const auto comm = Tpetra::getDefaultComm();
   const auto mesh = box(comm);
   const auto facets = rpc::io::owned_facets(mesh, mesh.side("bottom", "test"), rpc::io::overlap_node_ids(mesh));
-  const auto all = rpc::io::gather(*comm, facets.data(), facets.size());
+  const auto all = rpc::gathered_by_root(*comm, facets.data(), facets.extent(0) * facets.extent(1));
   if (comm->getRank() != 0) return;
   ASSERT_EQ(all.size(), 10u);
   std::set<std::pair<GO, GO>> edges;

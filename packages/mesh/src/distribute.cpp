@@ -2,6 +2,7 @@
 
 #include "division.hpp"
 #include "rpc/core/on_root.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -109,12 +110,8 @@ void broadcast(const Comm &comm, std::vector<std::string> &names)
 {
   std::string text;
   for (const std::string &name : names) text += name + '\0';
-  int size = static_cast<int>(text.size());
-  Teuchos::broadcast(comm, 0, Teuchos::outArg(size));
-  text.resize(size);
-  Teuchos::broadcast(comm, 0, size, text.data());
   names.clear();
-  std::istringstream in(text);
+  std::istringstream in(text_of_rank(comm, 0, text));
   for (std::string name; std::getline(in, name, '\0');) names.push_back(name);
 }
 
@@ -123,15 +120,6 @@ void broadcast(const Comm &comm, Element &element)
   int values[] = {element.dim, element.order, static_cast<int>(element.shape)};
   Teuchos::broadcast(comm, 0, 3, values);
   element = {values[0], values[1], static_cast<Shape>(values[2])};
-}
-
-/// Calls message(first, count) for each piece of [0, total): MPI counts bytes in an int.
-template <class Message>
-void in_pieces(const std::size_t total, const Message &message)
-{
-  constexpr std::size_t most = std::size_t(1) << 26;
-  for (std::size_t first = 0; first < total; first += most)
-    message(first, static_cast<int>(std::min(most, total - first)));
 }
 
 void send(const Comm &comm, const Part &part, const int rank)

@@ -28,7 +28,19 @@ void add_gmsh_parameters(Teuchos::ParameterList &valid)
       "has.");
 }
 
-GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &folder)
+/// The file beside the deck, or in the current folder.
+std::string found_file(const std::string &name, const std::string &folder)
+{
+  const auto beside_deck = std::filesystem::path(folder) / name;
+  std::error_code ignored;
+  if (std::filesystem::exists(beside_deck, ignored)) return beside_deck.string();
+  RPC_REQUIRE(std::filesystem::exists(name, ignored), "deck: \"Mesh->File\": there is no file \""
+                                                          << name << "\" in \"" << folder
+                                                          << "\" or in the current folder");
+  return name;
+}
+
+GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &folder, const Comm &comm)
 {
   GmshOptions options;
   options.file = list.get<std::string>("File");
@@ -42,12 +54,7 @@ GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &
               "deck: \"Mesh->Size Factor\" must be > 0 and finite, got " << options.size_factor);
   RPC_REQUIRE(options.order >= 0 && options.order <= 2,
               "deck: \"Mesh->Order\" must be 1 or 2, or 0 for the default, got " << options.order);
-  const auto beside_deck = std::filesystem::path(folder) / options.file;
-  std::error_code ignored;
-  if (std::filesystem::exists(beside_deck, ignored)) options.file = beside_deck.string();
-  RPC_REQUIRE(std::filesystem::exists(options.file, ignored), "deck: \"Mesh->File\": there is no file \""
-                                                                  << options.file << "\" in \"" << folder
-                                                                  << "\" or in the current folder");
+  options.file = text_of_root(comm, ExitCode::bad_input, [&] { return found_file(options.file, folder); });
   return options;
 }
 
@@ -68,7 +75,7 @@ Teuchos::ParameterList valid_parameters()
   return valid;
 }
 
-MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &folder)
+MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &folder, const Comm &comm)
 {
   const auto &type = list.get<std::string>("Type");
   RPC_REQUIRE(type == "box" || type == "gmsh", "deck: \"Mesh->Type\" must be one of box, gmsh, got \"" << type << "\"");
@@ -85,7 +92,7 @@ MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &
     RPC_REQUIRE(list.getEntry(others.name(it)).isDefault(),
                 "deck: \"Mesh->" << others.name(it) << "\" does not go with \"Mesh->Type\" = " << type);
   if (box) return box_options(list);
-  return gmsh_options(list, folder);
+  return gmsh_options(list, folder, comm);
 }
 
 int dimension(const MeshOptions &options)

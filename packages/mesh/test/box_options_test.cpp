@@ -1,12 +1,16 @@
 #include "expect_error.hpp"
+#include "rpc/core/on_root.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/mesh/make_mesh.hpp"
 
 #include <Teuchos_Array.hpp>
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <Tpetra_Core.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <unistd.h>
 
 namespace
 {
@@ -24,7 +28,7 @@ using Teuchos::tuple;
 MeshOptions read(ParameterList list, const std::string &folder = ".")
 {
   rpc::validate(list, rpc::mesh::valid_parameters());
-  return rpc::mesh::mesh_options(list, folder);
+  return rpc::mesh::mesh_options(list, folder, Teuchos::SerialComm<int>());
 }
 BoxOptions read_box(const ParameterList &list)
 {
@@ -108,7 +112,8 @@ struct Folder {
   std::filesystem::path path = std::filesystem::temp_directory_path() / "rpc_box_options_test";
   explicit Folder(const std::string &file)
   {
-    path += std::to_string(reinterpret_cast<std::uintptr_t>(this)); // others may run this test at the same time
+    path += std::to_string(::getpid()) + "_" +
+            std::to_string(reinterpret_cast<std::uintptr_t>(this)); // others may run this test at the same time
     std::filesystem::create_directories(path);
     std::ofstream(path / file) << "// empty\n";
   }
@@ -122,6 +127,17 @@ ParameterList gmsh_deck(const std::string &file)
   ParameterList list;
   list.set("Type", "gmsh").set("File", file);
   return list;
+}
+
+TEST(GmshOptions, FileIsLookedForOnTheDiskOfRankZero)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const Folder folder("body.geo");
+  ParameterList list = gmsh_deck("body.geo");
+  rpc::validate(list, rpc::mesh::valid_parameters());
+  const std::string where = comm->getRank() == 0 ? folder.path.string() : "no such folder";
+  const auto options = std::get<GmshOptions>(rpc::mesh::mesh_options(list, where, *comm));
+  EXPECT_EQ(options.file, rpc::text_of_rank(*comm, 0, (folder.path / "body.geo").string()));
 }
 
 TEST(GmshOptions, FileIsLookedForBesideTheDeckThenInTheCurrentFolder)

@@ -2,6 +2,7 @@
 
 #include "gathered_solver.hpp"
 #include "local_correction.hpp"
+#include "muelu_parameters.hpp"
 #include "multigrid.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
@@ -10,7 +11,6 @@
 
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
-#include <MueLu_MasterList.hpp>
 #include <Teuchos_StackedTimer.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
@@ -125,18 +125,6 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
   return list;
 }
 
-void require_known(const Teuchos::ParameterList &given, const Teuchos::ParameterList &known, const std::string &path)
-{
-  std::vector<std::string> names;
-  for (auto it = known.begin(); it != known.end(); ++it) names.push_back(known.name(it));
-  for (auto it = given.begin(); it != given.end(); ++it) {
-    const std::string nearest = nearest_name(given.name(it), names);
-    RPC_REQUIRE(known.isParameter(given.name(it)),
-                "deck: unknown parameter \"" << path << "->" << given.name(it) << "\"."
-                                             << (nearest.empty() ? "" : " Did you mean \"" + nearest + "\"?"));
-  }
-}
-
 /// Belos refuses values by itself, but passes over names that it does not know.
 void check_belos(const std::string &method, const Teuchos::ParameterList &user)
 {
@@ -148,7 +136,7 @@ void check_belos(const std::string &method, const Teuchos::ParameterList &user)
   try {
     const auto list = Teuchos::parameterList("Linear Solver->Belos");
     list->setParameters(user);
-    require_known(user, *factory.create(method, list)->getValidParameters(), "Linear Solver->Belos");
+    require_known(user, names_of(*factory.create(method, list)->getValidParameters()), "Linear Solver->Belos");
     RPC_REQUIRE(!user.isParameter("Convergence Tolerance"),
                 "deck: \"Linear Solver->Belos->Convergence Tolerance\" is set by rpc for each solve; give the bound as "
                 "\"Linear Solver->Tolerance\"");
@@ -157,25 +145,6 @@ void check_belos(const std::string &method, const Teuchos::ParameterList &user)
   } catch (const std::exception &failure) {
     throw Error(ExitCode::bad_input, "deck: \"Linear Solver->Belos\": " + one_line(failure.what()));
   }
-}
-
-/// What MueLu would refuse when it is set up, and say on every rank; and a number of levels that crashes it.
-void check_muelu(const Teuchos::ParameterList &user)
-{
-  if (user.isSublist("Hierarchy") || user.isParameter("parameterlist: syntax")) return; // its other ways of being told
-  Teuchos::ParameterList list("Linear Solver->MueLu");
-  list.setParameters(user);
-  for (auto it = user.begin(); it != user.end(); ++it)
-    if (user.name(it).rfind("level ", 0) == 0) list.remove(user.name(it)); // the same once more for certain levels
-  const Teuchos::ParameterList &known = *MueLu::MasterList::List();
-  require_known(list, known, "Linear Solver->MueLu");
-  try {
-    list.validateParameters(known, 0);
-  } catch (const std::exception &failure) {
-    throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
-  }
-  RPC_REQUIRE(!list.isParameter("max levels") || list.get<int>("max levels") > 0,
-              "deck: \"Linear Solver->MueLu->max levels\" must be > 0, got " << list.get<int>("max levels"));
 }
 
 } // namespace
@@ -232,7 +201,7 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
   RPC_REQUIRE(options.reuse == "none" || options.reuse == "tP" || options.reuse == "RP",
               "deck: \"Linear Solver->Reuse\" must be one of none, tP, RP, got \"" << options.reuse << "\"");
   check_belos(options.method, options.belos);
-  check_muelu(options.muelu);
+  check_muelu_parameters(options.muelu, "Linear Solver->MueLu");
   return options;
 }
 

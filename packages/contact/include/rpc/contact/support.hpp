@@ -20,7 +20,8 @@ struct Support {
 ///                                                                                         doc/theory.md (9.2) - (9.6)
 /// Costs O(nodes) small if prescribed displacements hold every part, else some hundred sums over the contact nodes.
 /// @param applied_load  (owned dofs) [N], before elimination; collective
-/// @throws rpc::Error (no_solution) on every rank, naming part, motion and forces: a motion that nothing stops; a load
+/// @throws rpc::Error (no_solution) on every rank, naming part, motion and forces: a motion that nothing stops, of a
+///         part or in a joint of its pieces; a load
 ///         beyond what the foundation carries, or away from it; a load that leaves the position open
 Support check_support(const fem::Discretization &d, const fem::DirichletDofs &dirichlet, const Vector &applied_load,
                       const ContactNodes &contact, const std::vector<ContactOptions> &options);

@@ -2,10 +2,40 @@
 
 #include "rpc/core/tpetra.hpp"
 
+#include <algorithm>
 #include <vector>
 
+/// Arrays over all ranks: sums, and what all ranks hold on one or on each of them. T is a number that Teuchos can send.
 namespace rpc
 {
+
+/// Calls message(first, count) for each piece of [0, total), for MPI counts the bytes of a message in an int.
+template <class Message>
+void in_pieces(const std::size_t total, const Message &message)
+{
+  constexpr std::size_t most = std::size_t(1) << 26; // items; far below 2^31 bytes
+  for (std::size_t first = 0; first < total; first += most)
+    message(first, static_cast<int>(std::min(most, total - first)));
+}
+
+/// Entry by entry the sum over all ranks, on every rank; collective.
+/// @param mine  as many entries on every rank
+template <class T>
+std::vector<T> summed(const Comm &comm, const std::vector<T> &mine)
+{
+  std::vector<T> all(mine.size());
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), all.data());
+  return all;
+}
+
+/// The same with maxima.
+template <class T>
+std::vector<T> largest(const Comm &comm, const std::vector<T> &mine)
+{
+  std::vector<T> all(mine.size());
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, static_cast<int>(mine.size()), mine.data(), all.data());
+  return all;
+}
 
 /// What all ranks hold, rank after rank, on every rank; collective.
 template <class T>
@@ -25,6 +55,37 @@ std::vector<T> gathered_by_all(const Comm &comm, std::vector<T> mine)
     all.insert(all.end(), from, from + sizes[rank]);
   }
   return all;
+}
+
+/// What all ranks hold, rank after rank, on rank 0; empty elsewhere. No rank's share is bounded by MPI's int counts;
+/// collective.
+template <class T>
+std::vector<T> gathered_by_root(const Comm &comm, const T *const values, const std::size_t count)
+{
+  const GO mine = static_cast<GO>(count);
+  std::vector<GO> counts(comm.getSize());
+  Teuchos::gatherAll(comm, 1, &mine, comm.getSize(), counts.data());
+  if (comm.getRank() != 0) {
+    in_pieces(count, [&](const std::size_t first, const int n) { Teuchos::send(comm, n, values + first, 0); });
+    return {};
+  }
+  GO total = 0;
+  for (const GO n : counts) total += n;
+  std::vector<T> all(total);
+  std::copy(values, values + count, all.begin());
+  std::size_t offset = count;
+  for (int rank = 1; rank < comm.getSize(); ++rank) {
+    in_pieces(counts[rank], [&](const std::size_t first, const int n) {
+      Teuchos::receive(comm, rank, n, all.data() + offset + first);
+    });
+    offset += counts[rank];
+  }
+  return all;
+}
+template <class T>
+std::vector<T> gathered_by_root(const Comm &comm, const std::vector<T> &mine)
+{
+  return gathered_by_root(comm, mine.data(), mine.size());
 }
 
 } // namespace rpc

@@ -41,6 +41,19 @@ void validate(Teuchos::ParameterList &list, const Teuchos::ParameterList &valid,
 /// @throws rpc::Error (bad_input) on an unknown path or a text that does not read as that type
 void assign(Teuchos::ParameterList &list, const Teuchos::ParameterList &valid, const std::string &assignment);
 
+/// "deck: unknown parameter "Linear Solver->Belos->Verbose". Did you mean "Verbosity"?", to be thrown (bad_input).
+/// @param path        of the list that has it
+/// @param candidates  names that are valid there
+Error unknown_parameter(const std::string &path, const std::string &name, const std::vector<std::string> &candidates);
+
+/// Refuses what a library would pass over without a word.
+/// @param known  names that are valid in the list
+/// @throws rpc::Error on the first other name, as unknown_parameter() says it
+void require_known(const Teuchos::ParameterList &given, const std::vector<std::string> &known, const std::string &path);
+
+/// Names of a list's parameters and sublists, in its order.
+std::vector<std::string> names_of(const Teuchos::ParameterList &list);
+
 /// The name among `candidates` with the least edit distance to `name`, or of which it is an abbreviation; empty if none
 /// bears any likeness.
 std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates);

@@ -12,8 +12,9 @@
 #include <Tpetra_MultiVector.hpp>
 #include <Tpetra_Operator.hpp>
 #include <Tpetra_Vector.hpp>
+#include <Trilinos_version.h>
 
-/// Tpetra types of this project, and the only place that knows names which differ between Trilinos versions.
+/// Tpetra types of this project, and its names that differ between Trilinos versions, see doc/trilinos_versions.md.
 namespace rpc
 {
 
@@ -28,10 +29,14 @@ using CrsGraph = Tpetra::CrsGraph<LO, GO, Node>;
 using CrsMatrix = Tpetra::CrsMatrix<double, LO, GO, Node>;
 using Operator = Tpetra::Operator<double, LO, GO, Node>;
 
-/// Number of indices that this rank holds (getLocalNumElements since Trilinos 13.4).
+/// Number of indices that this rank holds.
 inline LO num_local(const Map &map)
 {
+#if TRILINOS_MAJOR_MINOR_VERSION >= 130400
+  return static_cast<LO>(map.getLocalNumElements());
+#else
   return static_cast<LO>(map.getNodeNumElements());
+#endif
 }
 
 /// A vector's first column as a rank-1 device view, to read or to write.

@@ -39,6 +39,7 @@ struct Discretization {
   RCP<const Map> owned_dofs;    ///< rows
   RCP<const Map> overlap_dofs;  ///< columns
   RCP<const Import> dof_import; ///< owned -> overlap; null in one process, where these are the same
+  RCP<const Import> node_import; ///< the same of the mesh's nodes
   CongruentCells congruent;
   NodeToCells node_to_cells;
   NodeGraph nodes;
@@ -54,6 +55,10 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh);
 /// there are no neighbours: for reading while the one given lives and stays as it is.
 RCP<const Vector> on_overlap(const Discretization &d, const Vector &owned);
 RCP<const Vector> on_overlap(const Discretization &d, const Vector &&owned) = delete;
+
+/// The same of values at nodes: (overlap nodes; columns) from (owned nodes; columns). The same table where there are no
+/// neighbours; collective.
+RCP<const MultiVector> nodes_on_overlap(const Discretization &d, const RCP<const MultiVector> &owned);
 
 /// Coordinates of the owned nodes, (owned nodes; dim) [m]: what multigrid partitions by.
 RCP<MultiVector> node_coordinates(const Discretization &d);

@@ -9,7 +9,8 @@
 namespace rpc::fem
 {
 
-/// A part of the body that shares no node with the rest of it.
+/// A part of the body that shares no node with the rest of it. Its cells may be joined in single points only, see
+/// require_stiff_joints().
 struct Part {
   GO num_cells = 0;
   Point centre{};          ///< mean of its nodes [m]

@@ -44,6 +44,10 @@ void write_text(const std::string &path, const std::string &text);
 /// @throws rpc::Error (bad_input) with the system's reason and the remedy
 void require_replaceable(const std::string &path);
 
+/// Removes a file that an earlier run has left. What is no ordinary file stays; a missing file is no error. One rank only.
+/// @throws rpc::Error (bad_input) with the system's reason and the remedy, if permission to write to the file is missing too
+void remove_older(const std::string &path);
+
 /// Makes the folder, and those above it, if it is missing, and proves that files can be made in it; one rank only.
 /// @throws rpc::Error (bad_input) with the system's reason and the remedy
 void require_writable_folder(const std::string &folder);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Teuchos_Comm.hpp>
 #include <Teuchos_ParameterList.hpp>
 #include <string>
 
@@ -8,16 +9,16 @@ namespace rpc::io
 
 /// Path of a deck: `name` as given, else in the folder that the environment variable RPC_INPUT_DIR names, in the
 /// share/rpc/input next to the running program's bin/ (so that an install tree can be moved), or in the source tree's
-/// input/.
-/// @throws rpc::Error (bad_input) listing the places searched
-std::string find_deck(const std::string &name);
+/// input/. Rank 0 looks for it on its disk; collective.
+/// @throws rpc::Error (bad_input) on every rank, listing the places searched
+std::string find_deck(const std::string &name, const Teuchos::Comm<int> &comm);
 
 /// Reads a deck: YAML if the name ends in .yaml or .yml, Teuchos XML otherwise. The root list may have a name or not.
 ///
 /// A value must read as the type that the deck gives it (Teuchos alone takes "abc" for the double 0), and a name may be
-/// given once. A double inf or nan arrives as a string, as YAML has it: only fields know what to do with one. Not
-/// collective; each rank that wants the deck reads the file.
-/// @throws rpc::Error (bad_input) with path, line where known, and reason
-Teuchos::ParameterList read_deck(const std::string &path);
+/// given once. A double inf or nan arrives as a string, as YAML has it: only fields know what to do with one. Rank 0
+/// reads the file and hands its text to all; collective.
+/// @throws rpc::Error (bad_input) on every rank with path, line where known, and reason
+Teuchos::ParameterList read_deck(const std::string &path, const Teuchos::Comm<int> &comm);
 
 } // namespace rpc::io

@@ -9,11 +9,6 @@
 namespace rpc::io
 {
 
-/// All ranks' values on rank 0, in the order of the ranks; empty elsewhere. Collective on comm.
-/// T is double, int or GO. Messages are cut to pieces, so that no rank's share is bounded by MPI's int counts.
-template <class T>
-std::vector<T> gather(const Comm &comm, const T *values, std::size_t count);
-
 /// Collects data of entities that each have one owner on rank 0, ordered by their rank-independent id.
 ///
 /// The ids travel once; then one field at a time.

@@ -16,9 +16,10 @@ using MeshOptions = std::variant<BoxOptions, GmshOptions>;
 /// Parameters of the deck's `Mesh` sublist.
 Teuchos::ParameterList valid_parameters();
 
+/// Collective on comm: "File" is looked for on rank 0's disk.
 /// @param folder  of the deck: where "File" is looked for first
-/// @throws rpc::Error (bad_input) on anything out of range, or given for another type of mesh
-MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &folder);
+/// @throws rpc::Error (bad_input) on every rank on anything out of range, or given for another type of mesh
+MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &folder, const Comm &comm);
 
 /// Space dimension, known before there is a mesh.
 int dimension(const MeshOptions &options);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+/// Mathematical functions and limits for kernels, under one name for all versions of Kokkos.
+namespace rpc::math
+{
+
+#if KOKKOS_VERSION >= 30700 // where they left the namespace Experimental
+using Kokkos::fmax;
+using Kokkos::fmin;
+using Kokkos::sqrt;
+#else
+using Kokkos::Experimental::fmax;
+using Kokkos::Experimental::fmin;
+using Kokkos::Experimental::sqrt;
+#endif
+
+template <class T>
+inline constexpr T infinity = Kokkos::Experimental::infinity<T>::value;
+template <class T>
+inline constexpr T largest = Kokkos::Experimental::finite_max<T>::value;
+
+} // namespace rpc::math
