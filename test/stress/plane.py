@@ -1,4 +1,4 @@
-"""Plane bodies from mapped grids: their sides, contact nodes and loads as doc/theory.md (2.1), (2.6) has them, and their .msh
+"""Plane bodies from mapped grids: their sides, contact nodes and loads as doc/theory.md (2.1), (2.7) has them, and their .msh
 file. An implementation apart from rpc's, for what a scene must do."""
 import math
 
@@ -79,7 +79,7 @@ class Grid:
         return sorted({self.node(p * i + a, p * j + b) for i, j in self.cells() for a in range(p + 1) for b in range(p + 1)})
 
     def contact_nodes(self, side):
-        """{node: (weight, unit normal)} of nodal quadrature (2.6)."""
+        """{node: (weight, unit normal)} of nodal quadrature (2.7)."""
         sums = {}
         points = {1: [(-1, 1.0), (1, 1.0)], 2: [(-1, 1 / 3), (0, 4 / 3), (1, 1 / 3)]}[self.order]
         for edge in self.sides.get(side, []):

@@ -143,7 +143,8 @@ double energy_error(const Solution &coarse, const Solution &fine, const fem::Mat
       for (int i = 0; i < 2; ++i) e(2 * n + i, 0) = columns(n, i);
   }
   error.update(-1, *fine.u, 1);
-  return std::sqrt(fem::internal_work(fine.discretization, materials, error).strain_energy / fine.energy_norm_squared);
+  return std::sqrt(fem::internal_work(fine.discretization, materials, error).energy_norm_squared /
+                   fine.energy_norm_squared);
 }
 
 /// The half cylinder, and each mesh's estimate over its distance from a solution with a sixth of the error. J would not do:

@@ -183,7 +183,7 @@ struct PeakDifference {
   }
 };
 
-/// What the nodes of the facets tell of the largest pressure and of the ends of contact.                          (10.9)
+/// What the nodes of the facets tell of the largest pressure and of the ends of contact.                          (10.8)
 struct NodalPressures {
   ContactTerms terms; // in
   double highest = 0; // pressure  [Pa]  in

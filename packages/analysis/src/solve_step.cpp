@@ -78,7 +78,7 @@ std::string predict(Iterate &iterate, double t, const StepOptions &options, cons
 Minimization minimize(const Iterate &iterate, const StepOptions &options, int iteration,
                       const solver::NewtonReport &report);
 
-/// Forces with which the Dirichlet conditions hold the body. (2.10)
+/// Forces with which the Dirichlet conditions hold the body. (2.11)
 std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepSolution &s)
 {
   const fem::ElasticProblem &elastic = s.functional->problem();
@@ -145,7 +145,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, const StepOpti
     s.uzawa = uzawa(*s.functional, *s.u, minimization, residuals, options.uzawa, report);
     s.contact = contact::contact_result(d, problem.contact_sides(), *s.functional, *s.u);
     s.energy = s.functional->energy(*s.u);
-    s.energy_norm_squared = s.uzawa.residuals.internal.strain_energy;
+    s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
     s.reactions = reactions(problem, s);
   }
   s.linear = counts_since(before, iterate.linear().counts());
@@ -228,7 +228,7 @@ UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function
   UzawaResult result;
   bool stop = false;
   while (!stop && result.iterations < options.max_iterations) {
-    // The remaining correction is small against u: solving for it from where u is keeps its relative accuracy. (5.9)
+    // The remaining correction is small against u: solving for it from where u is keeps its relative accuracy. (5.13)
     if (result.iterations > 0) functional.move_origin(u);
     const Minimization inner = minimize(result.iterations + 1); // u <- argmin M(u; lambda)                        (4.1)
     result.newton_iterations.push_back(inner.steps);
@@ -237,7 +237,7 @@ UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function
                                    ? functional.take_active_set_pressures(u)
                                    : functional.update_multipliers(u); // lambda <- Psi'(v)  (5.1)
     const OptimalityResiduals previous = result.residuals;
-    result.residuals = residuals(functional.displacement(u)); // (5.2), (5.3), (5.11), (5.12)
+    result.residuals = residuals(functional.displacement(u)); // (5.2), (5.3), (5.4), (5.5)
     const bool holds = result.residuals.holds(options.tolerance);
     const bool changes = result.multiplier_change >= options.tolerance;
     stop = holds && (options.test == UzawaTest::optimality || !changes);
@@ -248,7 +248,7 @@ UzawaResult uzawa(SmoothedFunctional &functional, Vector &u, const std::function
       break;
     }
     const bool slow = result.iterations > 1 && !(result.residuals.worst() <= fast * previous.worst());
-    const bool raised = slow && functional.raise_penalty(); // (5.8)
+    const bool raised = slow && functional.raise_penalty(); // (5.12)
     // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from, while that helps.
     if ((slow && !raised) || std::isnan(result.residuals.worst())) {
       result.reason = inner.converged
@@ -300,13 +300,13 @@ ActiveSetStage::ActiveSetStage(SmoothedFunctional &functional, const ActiveSetTo
 /// What becomes of the iteration at a point, after the step that led there.
 ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
 {
-  choice_ = functional_.choose_active_set(u, negligible * pressure_tolerance_); // (5.7)
+  choice_ = functional_.choose_active_set(u, negligible * pressure_tolerance_); // (5.8)
   // Nothing touches, as far as is known: one solve, for CG in one go keeps the energy balance to rounding.
   if (choice_->changes == 0 && steps_ == 0) rough_ = false;
   if (choice_->confirmed) {
     const bool solved_well = norm_ <= target_;
     confirmed_ =
-        solved_well && (functional_.pressure_error(u) <= pressure_tolerance_ || ++updates_ > most_updates); // (5.15)
+        solved_well && (functional_.pressure_error(u) <= pressure_tolerance_ || ++updates_ > most_updates); // (5.10)
     const bool stalled = !rough_ && !solved_well && !(norm_ < 0.5 * before_);
     if (confirmed_) return Verdict::converged;
     if (stalled) return Verdict::over;
@@ -327,7 +327,7 @@ ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
     start_.assign(u);
   } else {
     Vector F(u.getMap());
-    functional_.active_set_gradient(u, solver::tpetra(at.getF()), F); // (5.4)
+    functional_.active_set_gradient(u, solver::tpetra(at.getF()), F); // (5.6)
     norm_ = F.norm2();
   }
   return choose(u);
@@ -343,7 +343,7 @@ ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &directi
   };
   Vector F(u->getMap());
   while (true) {
-    functional_.take_active_set(*choice_, *u); // (5.6)
+    functional_.take_active_set(*choice_, *u); // (5.7)
     choice_.reset();
     move_to();
     functional_.active_set_gradient(*u, solver::tpetra(group.getF()), F);
@@ -355,14 +355,14 @@ ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &directi
     direction.putScalar(0);
     return verdict == Verdict::converged ? Step::full : Step::none;
   }
-  if (!rough_) { // the remaining correction is small against u: solving for it keeps its relative accuracy       (5.9)
+  if (!rough_) { // the remaining correction is small against u: solving for it keeps its relative accuracy       (5.13)
     functional_.move_origin(*u);
     start_.putScalar(0);
     move_to();
   }
   u = Teuchos::null; // a solve needs the memory
   const double needed = std::max(enough * target_, rough_ ? forcing * std::min(scale_, norm_) : 0.);
-  const auto solved = solver::solve_for_direction(group.context(), F, direction, needed / norm_); // (5.13)
+  const auto solved = solver::solve_for_direction(group.context(), F, direction, needed / norm_); // (5.9)
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {
       u = rcp(new Vector(start_, Teuchos::Copy));
@@ -389,7 +389,7 @@ SameActiveSet::Step SameActiveSet::propose(NewtonGroup &group, Vector &direction
   if (std::exchange(proposed_, true)) return Step::none;
   const Vector &F = solver::tpetra(group.getF());
   Vector G(F.getMap());
-  functional_.active_set_gradient(solver::tpetra(group.getX()), F, G); // (5.4)
+  functional_.active_set_gradient(solver::tpetra(group.getX()), F, G); // (5.6)
   const auto solved =
       solver::solve_for_direction(group.context(), G, direction, 0.1 * group.context().target_residual / G.norm2());
   if (!solved.converged || !(direction.dot(F) > 0)) return Step::none;

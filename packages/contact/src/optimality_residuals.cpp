@@ -79,7 +79,7 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   OptimalityResiduals residuals;
   residuals.internal = fem::internal_work(d, materials, u);
   const Vector &internal = *residuals.internal.forces;
-  const double strain = residuals.internal.strain_energy;
+  const double strain = residuals.internal.energy_norm_squared;
   const Vector contact = functional.multiplier_forces();
   Vector external(*problem.applied_load, Teuchos::Copy), residual(internal, Teuchos::Copy);
   external.update(-1., contact, 1.);

@@ -69,7 +69,7 @@ KOKKOS_INLINE_FUNCTION bool along_an_axis(const ContactNodes &c, const LO i)
   return length - largest <= 1e-12 * length;
 }
 
-/// A copy whose penalties are chosen where they are left open, and bounded. (5.8)
+/// A copy whose penalties are chosen where they are left open, and bounded. (5.12)
 ContactNodes with_penalties(ContactNodes c, const DeviceView<double *> &own)
 {
   const auto given = c.penalty;

@@ -8,7 +8,7 @@
 namespace rpc::fem
 {
 
-/// The L2 projection of the dilatation on polynomials over one cell, (2.11): 1, and in Q2 also the coordinates.
+/// The L2 projection of the dilatation on polynomials over one cell, (2.6): 1, and in Q2 also the coordinates.
 ///
 /// With e_k these polynomials made orthonormal, Z_k(ai) = int e_k dN_a/dx_i and Pi div u = sum_k e_k sum_ai Z_k(ai) u_ai.
 template <int Dim, int Nodes>

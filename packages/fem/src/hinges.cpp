@@ -82,7 +82,8 @@ struct CountPinchedNodes {
   {
     std::uint64_t bits = 0;
     for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k)
-      for (std::size_t f = 0; f < facets.extent(0); ++f) bits ^= facet_at(node_to_cells.cell(k), static_cast<int>(f), node);
+      for (std::size_t f = 0; f < facets.extent(0); ++f)
+        bits ^= facet_at(node_to_cells.cell(k), static_cast<int>(f), node);
     return bits == 0;
   }
   KOKKOS_FUNCTION void operator()(const LO node, LO &count) const
@@ -122,7 +123,8 @@ bool has_pinched_nodes(const Discretization &d)
   Kokkos::deep_copy(facet_vertices, mirror);
   LO count = 0;
   Kokkos::parallel_reduce("rpc::fem::pinched_nodes", device_range(d.mesh->num_owned_nodes()),
-                          CountPinchedNodes{d.mesh->cells, d.node_to_cells, facet_vertices, element.num_vertices()}, count);
+                          CountPinchedNodes{d.mesh->cells, d.node_to_cells, facet_vertices, element.num_vertices()},
+                          count);
   return max_all(d.mesh->comm(), count) > 0;
 }
 

@@ -110,8 +110,7 @@ struct Search {
 template <int Dim, int Nodes>
 Search<Dim, Nodes> search_in(const mesh::Mesh &mesh)
 {
-  Search<Dim, Nodes> search{{},
-                            {mesh.coords, mesh.cells, to_device(mesh.cell_id), mesh.num_owned_cells}};
+  Search<Dim, Nodes> search{{}, {mesh.coords, mesh.cells, to_device(mesh.cell_id), mesh.num_owned_cells}};
   search.box = boxes(search.shape, search.cells);
   std::vector<double> mine(2 * Dim, -std::numeric_limits<double>::infinity());
   std::fill_n(mine.begin(), Dim, std::numeric_limits<double>::infinity());

@@ -4,7 +4,7 @@
 #include "elastic_cells.hpp"
 #include "patch_polynomial.hpp"
 
-/// The kernels of the recovery of stresses, (2.8): fit, adopt, evaluate.
+/// The kernels of the recovery of stresses, (2.13): fit, adopt, evaluate.
 namespace rpc::fem
 {
 
@@ -30,7 +30,7 @@ struct Components {
 /// The table of polynomials: a row per vertex, and its columns.
 ///
 /// A polynomial is one of the displacement, of a degree more than the element's, in xi = L^-1 (x - centre): coordinates
-/// in which a patch has size 1 in every direction, however thin its cells are. Where the dilatation is projected, (2.11), a polynomial of that, of a
+/// in which a patch has size 1 in every direction, however thin its cells are. Where the dilatation is projected, (2.6), a polynomial of that, of a
 /// degree more, goes with it.
 template <int Dim, int Nodes>
 struct PatchTable {

@@ -14,7 +14,7 @@ constexpr double of_displacements = 3e-11;
 // That of the cells' edges over the coordinates: edges are differences, and several of them make a gradient.
 constexpr double of_coordinates = 32 * std::numeric_limits<double>::epsilon();
 
-/// A cell's part of the energy (10.8).
+/// A cell's part of the energy (10.9).
 template <int Dim, int Nodes>
 struct RoundingEnergy {
   ElasticCells<Dim, Nodes> body; //                        in

@@ -152,7 +152,7 @@ TEST(CongruentCells, GiveTheInternalWorkOfEachCellByItself)
                    expected = fem::internal_work(without_shapes(d), in_blocks(d), *u);
         EXPECT_LT(difference(by_node_id(d, *work.forces), by_node_id(d, *expected.forces)), 1e-14);
         EXPECT_NEAR(work.force_norm, expected.force_norm, 1e-14 * expected.force_norm);
-        EXPECT_NEAR(work.strain_energy, expected.strain_energy, 1e-14 * expected.strain_energy);
+        EXPECT_NEAR(work.energy_norm_squared, expected.energy_norm_squared, 1e-14 * expected.energy_norm_squared);
       }
     }
   }

@@ -1,5 +1,7 @@
 #include "gathered_solver.hpp"
 
+#include "rpc/core/parallel.hpp"
+
 #include "rpc/core/error.hpp"
 
 #include <MueLu_Level.hpp>
@@ -15,14 +17,6 @@ namespace
 constexpr std::size_t most_dense_rows = 5000; // 200 MB on each rank
 
 using Conversions = MueLu::Utilities<double, LO, GO, Node>;
-
-/// Sums over all ranks.
-std::vector<double> summed(const Comm &comm, const std::vector<double> &mine)
-{
-  std::vector<double> all(mine.size());
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), all.data());
-  return all;
-}
 
 } // namespace
 

@@ -7,6 +7,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/muelu.hpp"
 #include "rpc/core/parameters.hpp"
 
 #include <BelosSolverFactory.hpp>
@@ -104,14 +105,9 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
   // On several ranks there is always a level below the finest one, so that what is solved directly has gone to one rank.
   const GO rows = static_cast<GO>(A.getGlobalNumRows());
   const bool alone = A.getComm()->getSize() == 1;
-#ifdef HAVE_MUELU_ZOLTAN2
-  constexpr GO most = 1000;
-#else
-  constexpr GO most = most_gathered_rows;
-#endif
+  constexpr GO most = muelu::has_repartitioning ? 1000 : most_gathered_rows;
   list.set("coarse: max size", alone ? 1000 : static_cast<int>(std::clamp<GO>(rows / 4, 1, most)));
-#ifdef HAVE_MUELU_ZOLTAN2
-  if (!alone) { // the direct coarse solvers of 13.2 are wrong on a distributed matrix
+  if (muelu::has_repartitioning && !alone) { // the direct coarse solvers of 13.2 are wrong on a distributed matrix
     list.set("repartition: enable", true);
     list.set("repartition: partitioner", "zoltan2");
     list.set("repartition: start level", 1);
@@ -121,7 +117,6 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
     Teuchos::ParameterList &partitioner = list.sublist("repartition: params");
     partitioner.set("algorithm", "multijagged");
   }
-#endif
   return list;
 }
 

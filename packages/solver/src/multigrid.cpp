@@ -1,23 +1,15 @@
 #include "multigrid.hpp"
 
 #include "gathered_solver.hpp"
+#include "rpc/core/muelu.hpp"
 
-#include <MueLu_AmalgamationFactory.hpp>
-#include <MueLu_AmalgamationInfo.hpp>
 #include <MueLu_CreateTpetraPreconditioner.hpp>
 #include <MueLu_FactoryManager.hpp>
 #include <MueLu_SingleLevelFactoryBase.hpp>
 #include <MueLu_SmootherFactory.hpp>
-#ifdef HAVE_MUELU_KOKKOS_REFACTOR
-#include <MueLu_Aggregates.hpp>
-#include <MueLu_Aggregates_kokkos.hpp>
-#include <MueLu_AmalgamationFactory_kokkos.hpp>
-#include <MueLu_AmalgamationInfo_kokkos.hpp>
+#ifdef RPC_MUELU_IS_DOUBLED
 #include <MueLu_LWGraph.hpp>
 #include <MueLu_LWGraph_kokkos.hpp>
-#include <MueLu_UncoupledAggregationFactory.hpp>
-#include <MueLu_UncoupledAggregationFactory_kokkos.hpp>
-#include <MueLu_Utilities_kokkos.hpp>
 #endif
 #include <algorithm>
 
@@ -109,14 +101,14 @@ private:
   Original original_;
 };
 
-#ifdef HAVE_MUELU_KOKKOS_REFACTOR
+#ifdef RPC_MUELU_IS_DOUBLED
 
 using DeviceGraph = MueLu::LWGraph_kokkos<LO, GO, Node>;
 using HostGraph = MueLu::LWGraph<LO, GO, Node>;
-using HostAggregates = MueLu::Aggregates<LO, GO, Node>;
-using DeviceAggregates = MueLu::Aggregates_kokkos<LO, GO, Node>;
-using HostAggregation = MueLu::UncoupledAggregationFactory<LO, GO, Node>;
-using DeviceAggregation = MueLu::UncoupledAggregationFactory_kokkos<LO, GO, Node>;
+using muelu::DeviceAggregates;
+using muelu::DeviceAggregation;
+using muelu::HostAggregates;
+using muelu::HostAggregation;
 
 /// A host copy as MueLu takes it.
 template <class View>
@@ -161,7 +153,7 @@ private:
   /// Nodes whose rows have nothing beside the diagonal: no aggregate takes them.
   static Teuchos::ArrayRCP<const bool> prescribed_nodes(const XpetraMatrix &A, const LO size)
   {
-    const auto rows = to_host(MueLu::Utilities_kokkos<double, LO, GO, Node>::DetectDirichletRows(A));
+    const auto rows = to_host(muelu::DeviceUtilities::DetectDirichletRows(A));
     Teuchos::ArrayRCP<bool> nodes(rows.extent(0) / size, true);
     for (std::size_t row = 0; row < rows.extent(0); ++row)
       if (!rows(row)) nodes[row / size] = false;
@@ -236,30 +228,21 @@ void use_one_thread_aggregates(MueLu::FactoryManager<double, LO, GO, Node> &mana
 /// Stand-ins for factories of one level.
 void replace_factories(MueLu::FactoryManager<double, LO, GO, Node> &manager)
 {
-#ifdef HAVE_MUELU_KOKKOS_REFACTOR
+#ifdef RPC_MUELU_IS_DOUBLED
   if (manager.GetKokkosRefactor()) {
     manager.SetFactory("UnAmalgamationInfo",
-                       rcp(new NodeByNode<MueLu::AmalgamationInfo_kokkos<LO, GO, Node>,
-                                          MueLu::AmalgamationFactory_kokkos<double, LO, GO, Node>>));
+                       rcp(new NodeByNode<muelu::DeviceAmalgamationInfo, muelu::DeviceAmalgamation>));
     use_one_thread_aggregates(manager);
     return;
   }
 #endif
-  manager.SetFactory(
-      "UnAmalgamationInfo",
-      rcp(new NodeByNode<MueLu::AmalgamationInfo<LO, GO, Node>, MueLu::AmalgamationFactory<double, LO, GO, Node>>));
+  manager.SetFactory("UnAmalgamationInfo", rcp(new NodeByNode<muelu::HostAmalgamationInfo, muelu::HostAmalgamation>));
 }
 
 /// Whether the coarsest level lies on several ranks, and the user has not said how to solve there.
 bool needs_gathered_solver(const CrsMatrix &A, const Teuchos::ParameterList &list)
 {
-#ifdef HAVE_MUELU_ZOLTAN2
-  (void)A;
-  (void)list;
-  return false;
-#else
-  return A.getComm()->getSize() > 1 && !list.isParameter("coarse: type");
-#endif
+  return !muelu::has_repartitioning && A.getComm()->getSize() > 1 && !list.isParameter("coarse: type");
 }
 
 /// A Tpetra multivector of the "user data" as MueLu takes it.

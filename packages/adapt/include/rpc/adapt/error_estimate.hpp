@@ -8,7 +8,7 @@
 namespace rpc::adapt
 {
 
-/// Whether the largest contact pressure can have an error bar: what the mesh shows of it.              doc/theory.md (10.9)
+/// Whether the largest contact pressure can have an error bar: what the mesh shows of it.              doc/theory.md (10.8)
 struct PressurePeak {
   bool at_bound = false; ///< it is the highest yield stress there is, and so exact
   double drop =

@@ -13,7 +13,7 @@ namespace rpc::adapt
 double observed_error(const std::vector<double> &change, const std::vector<double> &eta);
 
 /// Whether the last change is larger than the one before it, or half of it where the estimate has fallen by more than half:
-/// then the sequence does not settle, and nothing bounds its error. A change up to `resolved` is no matter.        (10.9)
+/// then the sequence does not settle, and nothing bounds its error. A change up to `resolved` is no matter.        (10.8)
 bool unsettled(const std::vector<double> &change, const std::vector<double> &eta, double resolved);
 
 } // namespace rpc::adapt

@@ -52,7 +52,7 @@ struct Cycle {
 };
 
 /// Errors of results as the sequence of meshes shows them, and for pressures the recovered stress if that shows more; each
-/// like the number that it belongs to. NaN where the meshes do not tell, as from one alone. doc/theory.md (10.7), (10.9)
+/// like the number that it belongs to. NaN where the meshes do not tell, as from one alone. doc/theory.md (10.7), (10.8)
 struct ObservedErrors {
   double energy = 0;                          ///< J [J]
   double contact_force = 0;                   ///< 2-norm [N]

@@ -18,7 +18,7 @@ struct ActiveSetTolerances {
 };
 
 /// The primal-dual active-set iteration as first steps of a NOX solver: the active set is chosen by the last pressures, and the
-/// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.6), (5.7), (5.13)
+/// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.7), (5.8), (5.9)
 ///
 /// Converges where a choice confirms the last active set, which is then the solution's up to what the penalty leaves to a
 /// multiplier update. It is over, unconfirmed, after some changes or when an active set comes back: nothing is lost then, for
@@ -51,7 +51,7 @@ private:
 };
 
 /// After a multiplier update: one step to the minimum for the active set that the last minimization ended on, as far as the
-/// functional falls on the way there. That is a better guess than the states of lambda + r v at the old v. doc/theory.md (5.4)
+/// functional falls on the way there. That is a better guess than the states of lambda + r v at the old v. doc/theory.md (5.6)
 class SameActiveSet : public solver::FirstStage
 {
 public:

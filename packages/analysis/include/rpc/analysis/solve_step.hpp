@@ -33,7 +33,7 @@ struct StepOptions {
   PredictionOptions prediction;
 };
 
-/// When the active-set iteration is content, by the options for Newton and Uzawa. (5.15)
+/// When the active-set iteration is content, by the options for Newton and Uzawa. (5.10)
 ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 
 /// The same scene on a coarser mesh; null where there is none.

@@ -40,7 +40,7 @@ Teuchos::ParameterList valid_contact_parameters();
 std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse);
 
 /// The nodes of the contact sides that this rank owns, each a point with a weight; side by side, so that a node of two
-/// sides is two points. doc/theory.md (2.6), (3.4)
+/// sides is two points. doc/theory.md (2.7), (3.4)
 ///
 /// A node from which the side's normal misses the obstacle never touches: it is no point.
 ///

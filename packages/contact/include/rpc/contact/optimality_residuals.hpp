@@ -8,12 +8,12 @@
 namespace rpc::contact
 {
 
-/// How well (u, lambda) solves the discrete problem: four numbers without dimension, 0 at the solution.   doc/theory.md (5.2) to (5.12)
+/// How well (u, lambda) solves the discrete problem: four numbers without dimension, 0 at the solution.   doc/theory.md (5.2) to (5.5)
 struct OptimalityResiduals {
   double equilibrium_residual = 0; ///< forces out of balance, over the forces at work                        (5.2)
   double kkt_residual = 0;         ///< largest violation of the contact law, over the largest pressure        (5.3)
-  double energy_balance = 0;       ///< twice the strain energy less the work of all forces, over their sum   (5.11)
-  double duality_gap = 0;          ///< primal less dual energy, over the energy at work                       (5.12)
+  double energy_balance = 0;       ///< twice the strain energy less the work of all forces, over their sum   (5.4)
+  double duality_gap = 0;          ///< primal less dual energy, over the energy at work                       (5.5)
   fem::InternalWork internal;      ///< of the displacement that was judged, for results to be read from
 
   /// The largest of the four; NaN if one is.

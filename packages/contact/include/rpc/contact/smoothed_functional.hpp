@@ -18,7 +18,7 @@ struct ContactEnergy {
   double dissipated = 0; ///< sum_i w_i lambda_i v_i+ [J]
   double duality_gap =
       0; ///< sum_i w_i (xi_i v_i+ - lambda_i v_i) [J], each term >= 0: what the contact law misses, with
-         ///< twice the largest multiplier in place of any higher xi                             (5.12)
+         ///< twice the largest multiplier in place of any higher xi                             (5.5)
 };
 
 /// The next active set of the primal-dual active-set iteration, and the pressures that it was chosen by.
@@ -60,10 +60,10 @@ private:
 /// collective.
 ///
 /// Penalties that the contact nodes leave open are chosen here, as a multiple of the node's own stiffness over its
-/// weight; none exceeds what double precision bears. doc/theory.md (5.8)
+/// weight; none exceeds what double precision bears. doc/theory.md (5.12)
 ///
 /// Where the iteration goes on, `u` is the displacement from an origin, at first 0, and penetrations are kept to digits of
-/// their own: r v would make r eps |u| of the rounding of u. (5.9)
+/// their own: r v would make r eps |u| of the rounding of u. (5.13)
 class SmoothedFunctional : public ConvexFunctional
 {
 public:
@@ -74,23 +74,23 @@ public:
   double value(const Vector &u) const override;
   /// Energy of the problem itself, J(u) = Pi(u) + sum_i w_i xi_i v_i+ [J], computed as Pi(u) + sum_i w_i lambda_i v_i:
   /// the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a closed node. (1.4),
-  /// (5.5)
+  /// (5.14)
   /// @param u  displacement from 0
   double energy(const Vector &u) const;
   void gradient(const Vector &u, Vector &F) const override;
   /// G <- Ku - b, all of a gradient that takes a product with K.
   void elastic_gradient(const Vector &u, Vector &G) const;
   /// The gradient at u of the quadratic functional that the active set stands for: closed nodes carry lambda + r v, whatever
-  /// that is, open ones 0, yielding ones xi. (5.4)
+  /// that is, open ones 0, yielding ones xi. (5.6)
   /// @param gradient  of the functional itself at u
   void active_set_gradient(const Vector &u, const Vector &gradient, Vector &F) const;
   /// One nonlinear sweep: each contact node moves along its direction to the minimum of a bound of M, in which nodes do not
-  /// feel each other; M does not grow. All points at once: the result does not depend on an order. (4.7)
+  /// feel each other; M does not grow. All points at once: the result does not depend on an order. (4.6)
   void sweep(Vector &u) const override;
   /// Takes the states at u for the active set, and brings hessian() to it: that is H(u).
   GO update_hessian(const Vector &u) override;
   /// One choice of the active-set iteration at the minimum u for the present active set: a point goes from open to yielding, or
-  /// back, only by way of closed. The first choice, before there is an active set, is made from the multipliers. (5.7)
+  /// back, only by way of closed. The first choice, before there is an active set, is made from the multipliers. (5.8)
   /// @param negligible  violations up to this part of the largest pressure change no state; dimensionless, >= 0
   ActiveSetChoice choose_active_set(const Vector &u, double negligible) const;
   /// Takes the choice's states for the active set, its pressures for multipliers as far as the states allow, and brings
@@ -104,9 +104,9 @@ public:
   /// Weakens these springs, if there are any, from the next update of hessian() on, where a step beyond 1 tells that the body
   /// bends so easily that it feels them.
   void step_taken(double length) override;
-  /// Raises the penalties, as far as double precision bears it. @return whether any rose, on any rank   (5.8)
+  /// Raises the penalties, as far as double precision bears it. @return whether any rose, on any rank   (5.12)
   bool raise_penalty();
-  /// Moves the origin to where u is, and sets u to 0.                                                     (5.9)
+  /// Moves the origin to where u is, and sets u to 0.                                                     (5.13)
   void move_origin(Vector &u);
   /// Where u is, seen from 0: what results are read from.
   Vector displacement(const Vector &u) const;
@@ -130,7 +130,7 @@ public:
   double take_active_set_pressures(const Vector &u);
 
   /// About the largest error of the pressures lambda + r v at closed nodes, over the largest pressure: the share k/r that the
-  /// penalty leaves of the last change, with k the node's own stiffness.                                       (5.15)
+  /// penalty leaves of the last change, with k the node's own stiffness.                                       (5.10)
   double pressure_error(const Vector &u) const;
 
   /// Largest violation of the contact law by (u, lambda), dimensionless.                                         (5.3)

@@ -57,7 +57,7 @@ public:
   const DeviceView<double *> &own_stiffness() const { return own_stiffness_; }
 
   /// (points) kappa_i = sum_j |m_i . K_ij m_j| / |m_i|^2 over all points j, with |.| entry by entry: the energy of moves
-  /// s_i m_i/|m_i|^2 of all points at once is at most sum_i kappa_i s_i^2/2.                                        (4.7)
+  /// s_i m_i/|m_i|^2 of all points at once is at most sum_i kappa_i s_i^2/2.                                        (4.6)
   const DeviceView<double *> &coupled_stiffness() const { return coupled_stiffness_; }
 
 private:

@@ -54,7 +54,7 @@ struct EliminatedStiffness {
   DeviceView<double *> value;      ///< (entries)
 };
 
-/// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays.               doc/theory.md (2.7)
+/// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays.               doc/theory.md (2.9)
 /// @param K  becomes the matrix; collective
 EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DirichletDofs &dirichlet);
 
@@ -69,14 +69,14 @@ struct ElasticProblem {
       0; ///< Pi(u) = u.(stiffness u)/2 - load.u + energy_offset, Pi being that of the problem before elimination [J]
 };
 
-/// The problem of one load and one set of prescribed values; costs no more than a few vectors. Collective. (2.7)
+/// The problem of one load and one set of prescribed values; costs no more than a few vectors. Collective. (2.9)
 /// @param applied_load  (owned dofs) [N]
 /// @param dirichlet     of the unknowns that were eliminated
 ElasticProblem elastic_problem(const Discretization &d, const EliminatedStiffness &stiffness, RCP<Vector> applied_load,
                                DirichletDofs dirichlet);
 
 /// Force with which each condition holds the body: the sum of internal - external forces over the unknowns that it
-/// prescribes [N], in 2D per m. Collective. (2.10)
+/// prescribes [N], in 2D per m. Collective. (2.11)
 /// @param out_of_balance  (owned dofs) internal minus all external forces, contact included [N]
 std::vector<std::array<double, 3>> reaction_forces(const Discretization &d, const DirichletDofs &dirichlet,
                                                    int num_conditions, const Vector &out_of_balance);

@@ -36,9 +36,9 @@ struct CongruentCells {
 struct Discretization {
   std::shared_ptr<const mesh::Mesh> mesh;
   ReferenceElement reference;
-  RCP<const Map> owned_dofs;    ///< rows
-  RCP<const Map> overlap_dofs;  ///< columns
-  RCP<const Import> dof_import; ///< owned -> overlap; null in one process, where these are the same
+  RCP<const Map> owned_dofs;     ///< rows
+  RCP<const Map> overlap_dofs;   ///< columns
+  RCP<const Import> dof_import;  ///< owned -> overlap; null in one process, where these are the same
   RCP<const Import> node_import; ///< the same of the mesh's nodes
   CongruentCells congruent;
   NodeToCells node_to_cells;

@@ -12,7 +12,7 @@ namespace rpc::fem
 {
 
 /// What counts as div u in a cell: itself, or its L2 projection on constants (Q1, P2) or linear functions (Q2), which does
-/// not lock as nu nears 0.5, (2.11). Automatic is projected where nu > 0.4, for P2 0.48. P1 has constants anyway.
+/// not lock as nu nears 0.5, (2.6). Automatic is projected where nu > 0.4, for P2 0.48. P1 has constants anyway.
 enum class Dilatation { automatic, full, projected };
 
 /// Linear isotropic elasticity; plane strain in 2D.
@@ -78,7 +78,7 @@ VectorField body_force_options(const Teuchos::ParameterList &list, int dim, cons
 ///
 ///     K(ai,bj) = sum over cells, int lambda dN_ai dN_bj + mu (dN_aj dN_bi + delta_ij dN_a . dN_b) doc/theory.md (2.4)
 ///
-/// with the projection of div u in the blocks of projected_dilatation_table, (2.11), here and in the functions below.
+/// with the projection of div u in the blocks of projected_dilatation_table, (2.6), here and in the functions below.
 /// Each rank fills its own rows from its local cells; no communication but the check. [N/m], in 2D per m of thickness
 /// [Pa].
 /// @throws rpc::Error (bad_mesh) on every rank if a cell has a Jacobian <= 0 at a quadrature point, naming the first
@@ -88,11 +88,11 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
 struct InternalWork {
   RCP<const Vector>
       forces; ///< f(ai) = int sigma(u) : grad(N_a e_i), the forces that hold the body in the state u (owned
-              ///< dofs, [N]); no row is eliminated.                                             (2.9)
+              ///< dofs, [N]); no row is eliminated.                                             (2.10)
   double force_norm =
       0; ///< 2-norm over all forces between cells and their nodes, each cell's by itself [N]: what is at
-         ///< work inside the body, where `forces` are what is left at the nodes. (2.13)
-  double strain_energy =
+         ///< work inside the body, where `forces` are what is left at the nodes. (2.12)
+  double energy_norm_squared =
       0; ///< a(u, u), twice the elastic energy [J], in 2D per m: rigid motion cancels cell by cell. (1.2)
 };
 

@@ -5,12 +5,12 @@
 namespace rpc::fem
 {
 
-/// Stresses by polynomial preserving recovery (Zhang and Naga, SIAM J. Sci. Comput. 26, 2005).    doc/theory.md (2.8)
+/// Stresses by polynomial preserving recovery (Zhang and Naga, SIAM J. Sci. Comput. 26, 2005).    doc/theory.md (2.13)
 ///
 /// Around each vertex a polynomial of degree p + 1 is fitted to the nodal displacements, and Hooke's law applied to its
 /// gradient. Exact for displacements of degree p + 1, hence of order p + 1 for smooth ones, at the boundary too; the
-/// element's own stresses have order p. No polynomial mixes blocks. Where the dilatation is projected, (2.11), its part of
-/// the stress comes from a polynomial fitted to the projection, (2.12): lambda tr eps of fitted displacements would amplify
+/// element's own stresses have order p. No polynomial mixes blocks. Where the dilatation is projected, (2.6), its part of
+/// the stress comes from a polynomial fitted to the projection, (2.14): lambda tr eps of fitted displacements would amplify
 /// their errors by 1 / (1 - 2 nu).
 class RecoveredStress
 {

@@ -12,7 +12,7 @@ HostPoints node_positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node);
 /// What the points of ReferenceElement::facet stand for on a side: (facets * points), facet by facet [m^(dim-1)].
 DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &side);
 
-/// Owned nodes of a side with what nodal quadrature needs: int f ds ~ sum_i weight_i f(x_i). doc/theory.md (2.6)
+/// Owned nodes of a side with what nodal quadrature needs: int f ds ~ sum_i weight_i f(x_i). doc/theory.md (2.7)
 struct SurfaceNodes {
   DeviceView<LO *> node;       ///< (n) owned node lids, ascending
   DeviceView<double *> weight; ///< (n) w_i [m^(dim-1)]

@@ -8,7 +8,7 @@ namespace rpc::solver
 
 /// The Newton direction from where a nonlinear sweep of the functional leads, as a NOX direction for NewtonGroup: truncated
 /// nonsmooth Newton, after Graeser, Sander and Kornhuber. The sweep puts unknowns on the kinks of the functional, where a line
-/// search would end at the first of them. doc/theory.md (4.7)
+/// search would end at the first of them. doc/theory.md (4.6)
 class SweepDirection : public NOX::Direction::Generic
 {
 public:

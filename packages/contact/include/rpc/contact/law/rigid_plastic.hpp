@@ -51,7 +51,7 @@ KOKKOS_INLINE_FUNCTION State state(const double v, const double lambda, const do
 }
 
 /// The s that minimizes slope s + stiffness s^2/2 + w (Psi(v + s) - Psi(v)): how far one point moves if all others stay where
-/// they are. (4.6)
+/// they are. (4.5)
 /// @param stiffness  > 0
 KOKKOS_INLINE_FUNCTION double best_move(const double slope, const double stiffness, const double w, const double v,
                                         const double lambda, const double r, const double xi)
