@@ -49,8 +49,11 @@ void expect_muelus_own(const Grid &grid)
 {
   const Vector b = grid.right_side();
   auto list = list_for(grid);
+  list.set("use kokkos refactor",
+           false); // its factories for many threads form other aggregates, which rpc replaces on purpose
+  const auto plain = list;
   const auto muelus = MueLu::CreateTpetraPreconditioner(RCP<Operator>(grid.A), list);
-  const auto ours = solver::make_multigrid(grid.A, list_for(grid));
+  const auto ours = solver::make_multigrid(grid.A, plain);
   EXPECT_GT(ours->GetHierarchy()->GetNumLevels(), 1);
   EXPECT_EQ(ours->GetHierarchy()->GetNumLevels(), muelus->GetHierarchy()->GetNumLevels());
   EXPECT_LT(difference(applied(*ours, b), applied(*muelus, b)), 1e-12);
