@@ -1,43 +1,25 @@
 #include "rpc/adapt/solution.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/timed.hpp"
 #include "rpc/fem/interpolation.hpp"
 
-#include <Teuchos_Time.hpp>
-#include <Teuchos_TimeMonitor.hpp>
-#include <algorithm>
+#include <optional>
 
 namespace rpc::adapt
 {
 namespace
 {
 
-/// Adds the time of its scope to a phase, and to the timer tree.
-class Phase
-{
-public:
-  Phase(const std::string &name, double &seconds)
-      : monitor_(*Teuchos::TimeMonitor::getNewTimer("rpc::" + name)), seconds_(seconds),
-        start_(Teuchos::Time::wallTime())
-  {
-  }
-  ~Phase() { seconds_ += Teuchos::Time::wallTime() - start_; }
-
-private:
-  Teuchos::TimeMonitor monitor_;
-  double &seconds_;
-  double start_;
-};
-
 std::shared_ptr<const analysis::Problem> make_problem(const Task &task, const mesh::MeshOptions &options,
                                                       const RCP<const Comm> &comm, PhaseSeconds &seconds)
 {
   std::shared_ptr<const mesh::Mesh> mesh;
   {
-    const Phase phase("mesh", seconds.mesh);
+    const Timed phase("mesh", seconds.mesh);
     throw_if_interrupted(*comm, "before the mesh was made; no results are written");
     mesh = std::make_shared<mesh::Mesh>(mesh::make_mesh(options, comm));
   }
-  const Phase phase("assembly", seconds.assembly);
+  const Timed phase("assembly", seconds.assembly);
   throw_if_interrupted(*comm, "before the assembly; no results are written");
   return std::make_shared<analysis::Problem>(mesh, task.model, task.linear_solver, task.time);
 }
@@ -84,14 +66,14 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   const fem::Discretization &d = s.discretization = problem->discretization();
   analysis::Step step;
   {
-    const Phase phase("assembly", s.seconds.assembly);
+    const Timed phase("assembly", s.seconds.assembly);
     step = problem->step(task.time);
   }
   throw_if_interrupted(*comm, "before the first solve; no results are written");
   if (listener.mesh) listener.mesh(d, step.contact);
   std::optional<contact::ContactState> start;
   if (previous) {
-    const Phase phase("prediction", s.seconds.prediction);
+    const Timed phase("prediction", s.seconds.prediction);
     start = contact::interpolated(*fem::interpolation(previous->discretization, d), previous->functional->contact(),
                                   previous->state(), step.contact, d.owned_dofs);
   }
@@ -101,7 +83,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   if (task.adapt.adapts()) s.pressure_norm = contact::pressure_distance(*comm, step.contact, s.contact.pressure, {});
   if (start) s.pressure_change = contact::pressure_distance(*comm, step.contact, s.contact.pressure, start->multiplier);
   if (task.adapt.estimate) {
-    const Phase phase("estimate", s.seconds.estimate);
+    const Timed phase("estimate", s.seconds.estimate);
     s.estimate = estimate_error(d, task.model.materials, problem->contact_sides(), task.model.tractions,
                                 s.functional->contact(), s.contact, *s.u);
   }

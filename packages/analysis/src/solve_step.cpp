@@ -5,13 +5,13 @@
 
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/timed.hpp"
 #include "rpc/fem/interpolation.hpp"
 
-#include <Teuchos_Time.hpp>
-#include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace rpc::analysis
 {
@@ -39,23 +39,6 @@ constexpr double enough = 0.3;      // of the tolerance: recomputed residuals ar
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 
 constexpr double fast = 0.1; // an update that leaves more of the largest residual calls for a higher penalty
-
-/// Adds the time of its scope to a sum, and to the timer tree.
-class Timed
-{
-public:
-  Timed(const std::string &name, double &seconds)
-      : monitor_(*Teuchos::TimeMonitor::getNewTimer("rpc::" + name)), seconds_(seconds),
-        start_(Teuchos::Time::wallTime())
-  {
-  }
-  ~Timed() { seconds_ += Teuchos::Time::wallTime() - start_; }
-
-private:
-  Teuchos::TimeMonitor monitor_;
-  double &seconds_;
-  double start_;
-};
 
 /// A step of a problem with all that changes while it is solved.
 struct Iterate {

@@ -6,6 +6,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/core/sparse_rows.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <algorithm>
@@ -101,31 +102,13 @@ DeviceView<LO *> prescribed_columns(const Discretization &d, const CrsMatrix &K,
 EliminatedStiffness listed_couplings(const CrsMatrix &K, const DeviceView<char *> &fixed, const DeviceView<LO *> &count)
 {
   const auto A = K.getLocalMatrixDevice();
-  const LO n = static_cast<LO>(count.extent(0));
-  LO num_rows = 0;
-  Kokkos::parallel_reduce(
-      "rpc::fem::count_coupled_rows", device_range(n), KOKKOS_LAMBDA(const LO i, LO &rows) { rows += count(i) > 0; },
-      num_rows);
-  const DeviceView<LO *> row("rpc::fem::coupled_rows", num_rows);
-  Kokkos::parallel_scan(
-      "rpc::fem::list_coupled_rows", device_range(n), KOKKOS_LAMBDA(const LO i, LO &next, const bool last) {
-        if (count(i) == 0) return;
-        if (last) row(next) = i;
-        ++next;
-      });
-  const DeviceView<std::size_t *> begin("rpc::fem::coupling_begin", num_rows + 1);
-  std::size_t num_entries = 0;
-  Kokkos::parallel_scan(
-      "rpc::fem::coupling_begins", device_range(num_rows),
-      KOKKOS_LAMBDA(const LO i, std::size_t &sum, const bool last) {
-        sum += count(row(i));
-        if (last) begin(i + 1) = sum;
-      },
-      num_entries);
-  const DeviceView<LO *> column("rpc::fem::coupling_column", num_entries);
-  const DeviceView<double *> value("rpc::fem::coupling", num_entries);
+  const SparseRows rows = sparse_rows(count, "rpc::fem::coupled");
+  const auto row = rows.row;
+  const auto begin = rows.begin;
+  const DeviceView<LO *> column("rpc::fem::coupling_column", rows.num_entries);
+  const DeviceView<double *> value("rpc::fem::coupling", rows.num_entries);
   Kokkos::parallel_for(
-      "rpc::fem::list_couplings", device_range(num_rows), KOKKOS_LAMBDA(const LO i) {
+      "rpc::fem::list_couplings", device_range(static_cast<LO>(row.extent(0))), KOKKOS_LAMBDA(const LO i) {
         std::size_t next = begin(i);
         for (auto k = A.graph.row_map(row(i)); k < A.graph.row_map(row(i) + 1); ++k)
           if (fixed(A.graph.entries(k))) {

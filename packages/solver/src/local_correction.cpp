@@ -1,6 +1,7 @@
 #include "local_correction.hpp"
 
 #include "rpc/core/parallel.hpp"
+#include "rpc/core/sparse_rows.hpp"
 
 #include <KokkosBlas1_axpby.hpp>
 #include <KokkosBlas1_scal.hpp>
@@ -91,41 +92,20 @@ PatchColumns patch_columns(const CrsMatrix &A, const Vector &place)
   const auto matrix = A.getLocalMatrixDevice();
   const LO n = matrix.numRows();
   const DeviceView<LO *> entries("rpc::solver::entries_in_patch", n);
-  LO num_rows = 0;
-  Kokkos::parallel_reduce(
-      "rpc::solver::count_patch_columns", device_range(n),
-      KOKKOS_LAMBDA(const LO row, LO &rows) {
+  Kokkos::parallel_for(
+      "rpc::solver::count_patch_columns", device_range(n), KOKKOS_LAMBDA(const LO row) {
         LO count = 0;
         for (auto e = matrix.graph.row_map(row); e < matrix.graph.row_map(row + 1); ++e)
           count += at(matrix.graph.entries(e)) != 0;
         entries(row) = count;
-        rows += count > 0;
-      },
-      num_rows);
-  PatchColumns list{DeviceView<LO *>("rpc::solver::patch_row", num_rows),
-                    DeviceView<std::size_t *>("rpc::solver::patch_begin", num_rows + 1),
-                    {},
-                    {}};
-  const auto rows = list.row;
-  Kokkos::parallel_scan(
-      "rpc::solver::patch_rows", device_range(n), KOKKOS_LAMBDA(const LO row, LO &next, const bool last) {
-        if (entries(row) == 0) return;
-        if (last) rows(next) = row;
-        ++next;
       });
-  const auto begin = list.begin;
-  std::size_t num_entries = 0;
-  Kokkos::parallel_scan(
-      "rpc::solver::patch_begins", device_range(num_rows),
-      KOKKOS_LAMBDA(const LO i, std::size_t &sum, const bool last) {
-        sum += entries(rows(i));
-        if (last) begin(i + 1) = sum;
-      },
-      num_entries);
-  const DeviceView<int *> column("rpc::solver::patch_column", num_entries);
-  const DeviceView<double *> value("rpc::solver::patch_value", num_entries);
+  const SparseRows found = sparse_rows(entries, "rpc::solver::patch");
+  const auto rows = found.row;
+  const auto begin = found.begin;
+  const DeviceView<int *> column("rpc::solver::patch_column", found.num_entries);
+  const DeviceView<double *> value("rpc::solver::patch_value", found.num_entries);
   Kokkos::parallel_for(
-      "rpc::solver::patch_entries", device_range(num_rows), KOKKOS_LAMBDA(const LO i) {
+      "rpc::solver::patch_entries", device_range(static_cast<LO>(rows.extent(0))), KOKKOS_LAMBDA(const LO i) {
         std::size_t next = begin(i);
         for (auto e = matrix.graph.row_map(rows(i)); e < matrix.graph.row_map(rows(i) + 1); ++e) {
           const double place_of_column = at(matrix.graph.entries(e));
@@ -135,9 +115,7 @@ PatchColumns patch_columns(const CrsMatrix &A, const Vector &place)
         }
       });
   Kokkos::fence();
-  list.column = column;
-  list.value = value;
-  return list;
+  return {rows, begin, column, value};
 }
 
 /// Adds the changes, which lie in the diagonal blocks of patch nodes, to the entries of their rows.

@@ -46,8 +46,10 @@ private:
   bool rough_;                                     // solves are, while the active set changes
   bool confirmed_ = false, decided_ = false;
   double norm_ = std::numeric_limits<double>::infinity(),
-         before_ = norm_;                     // |F|_2 for the active set, after and before the step
-  int steps_ = 0, changes_ = 0, updates_ = 0; // updates of the multipliers alone
+         before_ = norm_; // |F|_2 for the active set, after and before the step
+  int steps_ = 0;
+  int changes_ = 0; // of the active set
+  int updates_ = 0; // of the multipliers alone, the active set being confirmed
 };
 
 /// After a multiplier update: one step to the minimum for the active set that the last minimization ended on, as far as the
