@@ -151,8 +151,9 @@ struct BalanceStiffness {
     if (!(largest > 1e-290 && largest < 1e290)) return;
     while (power < largest) power *= 2;
     while (power > largest) power /= 2;
-    const double coarse =
-        24 * power; // whose last digit all entries are multiples of; 16 entries add up without rounding
+    // Its last digit is what all entries are multiples of: 16 of them, or 32, add up without rounding. Up to 24 tetrahedra of a
+    // box meet in a node.
+    const double coarse = (Dim == 3 && StaticElement<Dim, Nodes>::simplex ? 48 : 24) * power;
     for (int r = 0; r < dofs; ++r)
       for (int c = r + 1; c < dofs; ++c) matrix(m, r, c) = matrix(m, c, r) = (matrix(m, r, c) + coarse) - coarse;
     for (int r = 0; r < dofs; ++r)

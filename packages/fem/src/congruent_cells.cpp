@@ -10,7 +10,11 @@ namespace rpc::fem
 namespace
 {
 
-constexpr int most_kinds = 4; ///< two triangles to a rectangle in two kinds of rectangles
+/// Two triangles, or six tetrahedra, to a cell of a box, in two kinds of such cells.
+constexpr int most_kinds(const int dim)
+{
+  return dim == 2 ? 4 : 12;
+}
 constexpr signed char unknown = -1;
 
 /// The first unless the second is larger: a NaN once there stays.
@@ -81,11 +85,11 @@ CongruentCells congruent_cells(const mesh::Mesh &mesh)
   LO next = 0;
   for (LO count = 0; count < num_cells;) {
     // Few cells of one kind promise a mesh without order, and each kind costs a pass over the cells.
-    if (static_cast<int>(examples.size()) == most_kinds) return {};
+    if (static_cast<int>(examples.size()) == most_kinds(mesh.dim())) return {};
     examples.push_back(next);
     const auto kind = static_cast<signed char>(examples.size() - 1);
     const LO took = mesh.dim() == 2 ? take_kind<2>(mesh, kind, of_cell, next) : take_kind<3>(mesh, kind, of_cell, next);
-    if (took < num_cells / 8) return {};
+    if (took < num_cells / (2 * most_kinds(mesh.dim()))) return {};
     count += took;
   }
   return {of_cell, device_values(examples, "rpc::fem::kind_example")};

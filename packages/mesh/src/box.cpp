@@ -23,31 +23,78 @@ namespace
 
 using Teuchos::Array;
 
-/// The six (four) sides of a box: name, direction, upper or lower end, and which facet of which of a lattice cell's
-/// parts lies there.
+/// A side of a box: its direction, upper or lower end.
 struct BoxSide {
   const char *name;
   int direction;
   bool upper;
-  int facet;
-  int part = 0;
 };
-constexpr std::array<BoxSide, 4> sides_2d{
-    {{"left", 0, false, 3}, {"right", 0, true, 1}, {"bottom", 1, false, 0}, {"top", 1, true, 2}}};
-constexpr std::array<BoxSide, 4> sides_2d_triangles{
-    {{"left", 0, false, 2, 0}, {"right", 0, true, 2, 1}, {"bottom", 1, false, 0, 0}, {"top", 1, true, 0, 1}}};
-constexpr std::array<BoxSide, 6> sides_3d{{{"left", 0, false, 3},
-                                           {"right", 0, true, 1},
-                                           {"bottom", 1, false, 0},
-                                           {"top", 1, true, 2},
-                                           {"back", 2, false, 4},
-                                           {"front", 2, true, 5}}};
+constexpr std::array<BoxSide, 6> box_sides{{{"left", 0, false},
+                                            {"right", 0, true},
+                                            {"bottom", 1, false},
+                                            {"top", 1, true},
+                                            {"back", 2, false},
+                                            {"front", 2, true}}};
 
-/// Cells of the mesh in one cell of the lattice: a rectangle is itself, or two triangles, the first at its lower left
-/// corner and the second the same turned by 180 degrees.
-int parts_of(const Element &element)
+/// Cells of the mesh in one cell of the lattice: (parts, nodes per cell, dim) places of their nodes on the lattice {0..order}^dim.
+using Parts = std::vector<Element::Table>;
+
+/// A cell of the lattice is one tensor product, or simplices: two triangles, or six tetrahedra around its diagonal (Kuhn). One
+/// follows the edges of the cell from corner to corner, by the directions in one order; neighbours fit, for all cells are divided
+/// alike.
+Parts parts_of(const Element &element)
 {
-  return element.shape == Shape::simplex ? 2 : 1;
+  const Element::Table &lattice = element.lattice();
+  if (element.shape == Shape::tensor) return {lattice};
+  std::vector<Element::Table> corners; // (parts, vertices, dim), 0 or 1
+  if (element.dim == 2) {
+    corners = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 1}, {0, 1}, {1, 0}}};
+  } else {
+    std::array<int, 3> direction{0, 1, 2};
+    do {
+      Element::Table path(4, std::vector<int>(3, 0));
+      for (int v = 1; v < 4; ++v) {
+        path[v] = path[v - 1];
+        path[v][direction[v - 1]] = 1;
+      }
+      const bool even = (direction[1] - direction[0] + 3) % 3 == 1; // an odd order mirrors the tetrahedron
+      if (!even) std::swap(path[1], path[2]);
+      corners.push_back(path);
+    } while (std::next_permutation(direction.begin(), direction.end()));
+  }
+  Parts parts;
+  for (const Element::Table &corner : corners) {
+    Element::Table places;
+    for (const auto &node : lattice) {
+      std::vector<int> place(element.dim);
+      for (int i = 0; i < element.dim; ++i) {
+        place[i] = element.order * corner[0][i];
+        for (int d = 0; d < element.dim; ++d) place[i] += node[d] * (corner[d + 1][i] - corner[0][i]);
+      }
+      places.push_back(place);
+    }
+    parts.push_back(places);
+  }
+  return parts;
+}
+
+/// A facet of a part of a lattice cell.
+struct PartFacet {
+  int part, ordinal;
+};
+
+/// Those on one side of the lattice cell.
+std::vector<PartFacet> facets_on(const Element &element, const Parts &parts, const BoxSide &side)
+{
+  const int end = side.upper ? element.order : 0;
+  std::vector<PartFacet> found;
+  for (int part = 0; part < static_cast<int>(parts.size()); ++part)
+    for (int ordinal = 0; ordinal < element.num_facets(); ++ordinal) {
+      const auto &facet = element.facets()[ordinal];
+      if (std::all_of(facet.begin(), facet.end(), [&](const int a) { return parts[part][a][side.direction] == end; }))
+        found.push_back({part, ordinal});
+    }
+  return found;
 }
 
 /// Numbers and places of one rank's nodes and cells, for kernels.
@@ -105,28 +152,28 @@ void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView
       });
 }
 
-void fill_cells(const Numbering &n, const Element &element, const DeviceView<LO **> &cells)
+void fill_cells(const Numbering &n, const Element &element, const Parts &parts, const DeviceView<LO **> &cells)
 {
   const int nodes = element.num_nodes(), dim = element.dim, order = element.order;
-  HostView<int **> lattice_host("rpc::mesh::lattice", nodes, dim);
-  for (int a = 0; a < nodes; ++a)
-    for (int d = 0; d < dim; ++d) lattice_host(a, d) = element.lattice()[a][d];
-  const auto lattice = to_device(lattice_host);
-  const int parts = parts_of(element);
+  const int num_parts = static_cast<int>(parts.size());
+  HostView<int ***> place_host("rpc::mesh::place_in_lattice_cell", num_parts, nodes, dim);
+  for (int part = 0; part < num_parts; ++part)
+    for (int a = 0; a < nodes; ++a)
+      for (int d = 0; d < dim; ++d) place_host(part, a, d) = parts[part][a][d];
+  const auto place = to_device(place_host);
   Kokkos::parallel_for(
       "rpc::mesh::box_cells", device_range(static_cast<LO>(cells.extent(0))), KOKKOS_LAMBDA(const LO cell) {
-        const Index corner = n.cell_at(cell / parts);
-        const bool turned = cell % parts == 1;
+        const Index corner = n.cell_at(cell / num_parts);
         for (int a = 0; a < nodes; ++a) {
           Index node{};
-          for (int d = 0; d < dim; ++d) node[d] = order * corner[d] + (turned ? order - lattice(a, d) : lattice(a, d));
+          for (int d = 0; d < dim; ++d) node[d] = order * corner[d] + place(cell % num_parts, a, d);
           cells(cell, a) = n.lid_of(node);
         }
       });
 }
 
-Side side_of_box(const BoxSide &box_side, const Grid &grid, const Numbering &numbering, const std::vector<Index> &halo,
-                 const Block &local_cells, const Mesh &mesh)
+Side side_of_box(const BoxSide &box_side, const Parts &parts, const Grid &grid, const Numbering &numbering,
+                 const std::vector<Index> &halo, const Block &local_cells, const Mesh &mesh)
 {
   // Only this rank's cells along the side are visited.
   Block layer = local_cells;
@@ -141,17 +188,31 @@ Side side_of_box(const BoxSide &box_side, const Grid &grid, const Numbering &num
   for (std::size_t h = 0; h < halo.size(); ++h)
     halo_cell[local_cells.index_of(halo[h])] = numbering.num_owned_cells + static_cast<LO>(h);
 
-  const LO num_facets = static_cast<LO>(layer.size());
-  const int parts = parts_of(mesh.element);
-  HostView<LO *> cell("rpc::mesh::side_cell", num_facets);
-  HostView<int *> ordinal("rpc::mesh::side_ordinal", num_facets);
-  for (LO f = 0; f < num_facets; ++f) {
-    const Index at = layer.at(f);
-    const LO lattice_cell = numbering.owned_cells.contains(at) ? static_cast<LO>(numbering.owned_cells.index_of(at))
-                                                               : halo_cell.at(local_cells.index_of(at));
-    cell(f) = parts * lattice_cell + box_side.part;
-    ordinal(f) = box_side.facet;
+  const Element &element = mesh.element;
+  const std::vector<PartFacet> in_cell = facets_on(element, parts, box_side);
+  std::vector<LO> cells;
+  std::vector<int> ordinals;
+  for (GO at_layer = 0; at_layer < layer.size(); ++at_layer) {
+    const Index at = layer.at(at_layer);
+    const bool owned = numbering.owned_cells.contains(at);
+    const LO lattice_cell =
+        owned ? static_cast<LO>(numbering.owned_cells.index_of(at)) : halo_cell.at(local_cells.index_of(at));
+    for (const auto &[part, facet] : in_cell) {
+      const auto owns_node = [&, &place = parts[part]](const int a) {
+        Index node{};
+        for (int k = 0; k < element.dim; ++k) node[k] = element.order * at[k] + place[a][k];
+        return numbering.owned_nodes.contains(node);
+      };
+      const auto &nodes = element.facets()[facet];
+      if (!owned && std::none_of(nodes.begin(), nodes.end(), owns_node)) continue;
+      cells.push_back(static_cast<LO>(parts.size()) * lattice_cell + part);
+      ordinals.push_back(facet);
+    }
   }
+  HostView<LO *> cell("rpc::mesh::side_cell", cells.size());
+  HostView<int *> ordinal("rpc::mesh::side_ordinal", cells.size());
+  std::copy(cells.begin(), cells.end(), cell.data());
+  std::copy(ordinals.begin(), ordinals.end(), ordinal.data());
   return make_side(box_side.name, mesh, cell, ordinal);
 }
 
@@ -186,8 +247,10 @@ void add_box_parameters(Teuchos::ParameterList &valid)
   valid.set("Upper", Array<double>(Teuchos::tuple(1., 1.)),
             "Upper corner of the box, above the lower one in each direction [m].");
   valid.set("Cells", Array<int>(Teuchos::tuple(8, 8)), "Number of cells in each direction, > 0.");
-  valid.set("Element", "Q1",
-            "Element of the box: `Q1`, or in 2D also `Q2` (quadrilaterals), `P1`, `P2` (two triangles to a cell).");
+  valid.set(
+      "Element", "Q1",
+      "Element of the box: `Q1`, `Q2` (quadrilaterals, in 3D hexahedra), `P1`, `P2` (two triangles to a cell, in 3D "
+      "six tetrahedra).");
 }
 
 BoxOptions box_options(const Teuchos::ParameterList &list)
@@ -278,15 +341,16 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   mesh.owned_nodes = rcp(new Map(total, num_owned, 0, comm));
   mesh.overlap_nodes = mesh.owned_nodes;
   if (comm->getSize() > 1) mesh.overlap_nodes = rcp(new Map(invalid, gids(), 0, comm));
-  const int parts = parts_of(options.element);
-  mesh.num_owned_cells = parts * numbering.num_owned_cells;
+  const Parts parts = parts_of(options.element);
+  const LO num_parts = static_cast<LO>(parts.size());
+  mesh.num_owned_cells = num_parts * numbering.num_owned_cells;
   mesh.coords = DeviceView<double **>("rpc::mesh::coords", num_nodes, mesh.dim());
-  const std::size_t num_cells = parts * (numbering.num_owned_cells + halo.size());
+  const std::size_t num_cells = num_parts * (numbering.num_owned_cells + halo.size());
   mesh.cells = DeviceView<LO **>("rpc::mesh::cells", num_cells, mesh.element.num_nodes());
   mesh.blocks = {"body"};
   mesh.block = DeviceView<int *>("rpc::mesh::block", num_cells);
   fill_coords(numbering, options, mesh.coords);
-  fill_cells(numbering, mesh.element, mesh.cells);
+  fill_cells(numbering, mesh.element, parts, mesh.cells);
 
   // Rank-independent numbers: the lattice of the whole box, x fastest.
   Index nodes{1, 1, 1}, cells{1, 1, 1};
@@ -301,18 +365,11 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   mesh.cell_id = HostView<GO *>("rpc::mesh::cell_id", mesh.num_owned_cells);
   for (LO n = 0; n < num_owned; ++n) mesh.node_id(n) = lattice_id(numbering.owned_nodes.at(n), nodes);
   for (LO c = 0; c < mesh.num_owned_cells; ++c)
-    mesh.cell_id(c) = parts * lattice_id(numbering.owned_cells.at(c / parts), cells) + c % parts;
+    mesh.cell_id(c) = num_parts * lattice_id(numbering.owned_cells.at(c / num_parts), cells) + c % num_parts;
 
-  const auto add_sides = [&](const auto &box_sides) {
-    for (const BoxSide &box_side : box_sides)
-      mesh.sides.push_back(side_of_box(box_side, grid, numbering, halo, local_cells, mesh));
-  };
-  if (parts == 2)
-    add_sides(sides_2d_triangles);
-  else if (mesh.dim() == 2)
-    add_sides(sides_2d);
-  else
-    add_sides(sides_3d);
+  for (const BoxSide &box_side : box_sides)
+    if (box_side.direction < mesh.dim())
+      mesh.sides.push_back(side_of_box(box_side, parts, grid, numbering, halo, local_cells, mesh));
   Kokkos::fence();
   return mesh;
 }

@@ -209,7 +209,6 @@ Element parse_element(const std::string &name, const int dim)
 {
   const bool known = name == "P1" || name == "P2" || name == "Q1" || name == "Q2";
   RPC_REQUIRE(known, "deck: \"Mesh->Element\" must be one of P1, P2, Q1, Q2, got \"" << name << "\"");
-  RPC_REQUIRE(name == "Q1" || dim == 2, "deck: \"Mesh->Element\" must be Q1 in 3D, got \"" << name << "\"");
   return Element{dim, name[1] == '1' ? 1 : 2, name[0] == 'P' ? Shape::simplex : Shape::tensor};
 }
 

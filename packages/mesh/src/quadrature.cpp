@@ -110,6 +110,12 @@ QuadratureRule tetrahedron(const int degree)
     add_orbit(rule, {0, 0, 0, 0}, {0.25}, 1. / 6);
   } else if (degree <= 2) {
     orbit((5 - std::sqrt(5.)) / 20, 1. / 24);
+  } else if (degree <=
+             3) { // both orbits with the same weight; s1 + s2 solves s^3 - 3/40 s + 1/240 = 0, 1/4 - s are the points
+    const double angle = (std::acos(-std::sqrt(10.) / 6) - 2 * std::acos(-1.)) / 3;
+    const double sum = std::sqrt(0.1) * std::cos(angle), root = std::sqrt(0.05 - sum * sum);
+    orbit(0.25 - (sum + root) / 2, 1. / 48);
+    orbit(0.25 - (sum - root) / 2, 1. / 48);
   } else if (degree <= 5) { // the solution of the moment equations for these orbits
     orbit(0.31088591926330061, 0.0187813209530026418);
     orbit(0.0927352503108912264, 0.0122488405193936583);
@@ -131,7 +137,7 @@ QuadratureRule quadrature(const int dim, const Shape shape, const int degree)
 
 int stiffness_degree(const Element &element)
 {
-  return element.shape == Shape::simplex ? 2 * (element.order - 1) : 2 * element.order;
+  return element.shape == Shape::simplex ? element.dim * (element.order - 1) : 2 * element.order;
 }
 
 QuadratureRule nodal_rule(const Element &element)

@@ -25,7 +25,7 @@ using rpc::mesh::Side;
 using rpc::test::expect_error;
 using Position = std::array<GO, 3>;
 
-/// A cell of the lattice, or of a mesh of triangles one of its two: the second is the first turned by 180 degrees.
+/// A cell of the lattice, or of a mesh of simplices one of those that it is divided into.
 struct Cell {
   Position corner{};
   int part = 0;
@@ -43,7 +43,10 @@ std::vector<BoxOptions> boxes()
           {{-1, 2}, {1.5, 3}, {5, 3}, Element{2, 1, Shape::simplex}},
           {{-1, 2}, {1.5, 3}, {3, 4}, Element{2, 2, Shape::simplex}},
           {{0, 0}, {1, 7}, {1, 7}, Element{2, 1, Shape::simplex}},
-          {{0, 0}, {7, 1}, {7, 1}, Element{2, 2, Shape::simplex}}};
+          {{0, 0}, {7, 1}, {7, 1}, Element{2, 2, Shape::simplex}},
+          {{-1, 2, 0.5}, {0, 3, 4}, {3, 2, 4}, Element{3, 1, Shape::simplex}},
+          {{-1, 2, 0.5}, {0, 3, 4}, {2, 2, 3}, Element{3, 2, Shape::simplex}},
+          {{0, 0, 0}, {1, 1, 5}, {1, 1, 5}, Element{3, 1, Shape::simplex}}};
 }
 
 std::string text_of(const BoxOptions &box)
@@ -58,7 +61,8 @@ std::string text_of(const BoxOptions &box)
 struct Lattice {
   const BoxOptions &box;
   int dim = box.element.dim, order = box.element.order;
-  int parts = box.element.shape == Shape::simplex ? 2 : 1; // cells of the mesh in one of the lattice
+  bool simplex = box.element.shape == Shape::simplex;
+  int parts = !simplex ? 1 : (dim == 2 ? 2 : 6); // cells of the mesh in one of the lattice
 
   GO extent(const int d, const int per_cell) const { return GO(per_cell) * box.cells[d]; }
   GO num_nodes() const { return count(order, 1); }
@@ -103,12 +107,30 @@ struct Lattice {
   GO node_id(const Position &at) const { return id(at, order, 1); }
   GO cell_id(const Cell &cell) const { return parts * id(cell.corner, 1, 0) + cell.part; }
   Cell cell(const GO cell_id) const { return {position(cell_id / parts, 1, 0), static_cast<int>(cell_id % parts)}; }
+  /// Vertices of a tetrahedron in the unit cell: from (0, 0, 0) along its edges to (1, 1, 1), directions in the part's order;
+  /// two of them are swapped where the volume would be negative.
+  static std::vector<Position> tetrahedron(const int part)
+  {
+    static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    std::vector<Position> vertex(4);
+    for (int v = 1; v < 4; ++v) {
+      vertex[v] = vertex[v - 1];
+      vertex[v][order[part][v - 1]] = 1;
+    }
+    const bool mirrored = part == 1 || part == 2 || part == 5;
+    if (mirrored) std::swap(vertex[1], vertex[2]);
+    return vertex;
+  }
   Position node_of(const Cell &cell, const int a) const
   {
     Position at{};
+    const auto &step = box.element.lattice()[a];
     for (int d = 0; d < dim; ++d) {
-      const int step = box.element.lattice()[a][d];
-      at[d] = order * cell.corner[d] + (cell.part == 0 ? step : order - step);
+      at[d] = order * cell.corner[d];
+      if (simplex && dim == 3) // vertex 0 is at the corner
+        for (int k = 0; k < dim; ++k) at[d] += step[k] * tetrahedron(cell.part)[k + 1][d];
+      else // the second triangle is the first turned by 180 degrees
+        at[d] += cell.part == 0 ? step[d] : order - step[d];
     }
     return at;
   }
@@ -135,12 +157,22 @@ struct Made {
     Kokkos::deep_copy(coords, rpc::to_host(mesh.coords));
     Kokkos::deep_copy(cells, rpc::to_host(mesh.cells));
     for (LO n = 0; n < mesh.num_local_nodes(); ++n) node.push_back(lattice.node_position(coords, n));
-    for (LO c = 0; c < mesh.num_cells(); ++c) {
-      Cell place{node[cells(c, 0)], node[cells(c, 1)][0] < node[cells(c, 0)][0] ? 1 : 0};
-      for (int d = 0; d < mesh.dim(); ++d) // node 0 is the lattice's lowest, in a turned triangle its highest
-        place.corner[d] = place.corner[d] / mesh.element.order - place.part;
-      cell.push_back(place);
-    }
+    for (LO c = 0; c < mesh.num_cells(); ++c) cell.push_back(place_of(c));
+  }
+  Cell place_of(const LO c) const
+  {
+    Cell place{node[cells(c, 0)], 0};
+    for (std::size_t a = 1; a < cells.extent(1); ++a)
+      for (int d = 0; d < 3; ++d) place.corner[d] = std::min(place.corner[d], node[cells(c, a)][d]);
+    for (GO &corner : place.corner) corner /= mesh.element.order;
+    const auto fits = [&](const int part) {
+      for (int a = 0; a < mesh.element.num_vertices(); ++a)
+        if (lattice.node_of({place.corner, part}, a) != node[cells(c, a)]) return false;
+      return true;
+    };
+    while (place.part < lattice.parts && !fits(place.part)) ++place.part;
+    EXPECT_LT(place.part, lattice.parts) << "cell " << c << " is none of the parts of a cell of the lattice";
+    return place;
   }
   GO node_id(const LO lid) const { return lattice.node_id(node[lid]); }
 };
@@ -244,7 +276,7 @@ TEST(Box, LocalCellsAreThoseThatTouchAnOwnedNodeAndNoOthers)
       for (const GO node : made.lattice.nodes_of(made.lattice.cell(c)))
         if (owned.count(node) > 0) touching.insert(c);
     const int parts = made.lattice.parts;
-    std::set<GO> expected; // two triangles of one rectangle go together
+    std::set<GO> expected; // the parts of one cell of the lattice go together
     for (const GO c : touching)
       for (int part = 0; part < parts; ++part) expected.insert(c - c % parts + part);
     for (const Cell &cell : made.cell) local.insert(made.lattice.cell_id(cell));
@@ -253,28 +285,50 @@ TEST(Box, LocalCellsAreThoseThatTouchAnOwnedNodeAndNoOthers)
   });
 }
 
-TEST(Box, AreasOfPlaneCellsArePositiveAndSumToTheBox)
+/// Area or volume, from the vertices: those of a parallelogram, a parallelepiped, or half and a sixth of these.
+double measure_of(const Made &made, const LO cell)
+{
+  const int dim = made.mesh.dim();
+  const bool simplex = made.lattice.simplex;
+  const auto edge = [&](const int vertex, const int d) {
+    return made.coords(made.cells(cell, vertex), d) - made.coords(made.cells(cell, 0), d);
+  };
+  const std::array<int, 3> ends = simplex ? std::array<int, 3>{1, 2, 3} : std::array<int, 3>{1, 3, 4};
+  if (dim == 2) {
+    const double area = edge(ends[0], 0) * edge(ends[1], 1) - edge(ends[0], 1) * edge(ends[1], 0);
+    return simplex ? area / 2 : area;
+  }
+  double volume = 0;
+  for (int d = 0; d < 3; ++d) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    volume += edge(ends[0], d) * (edge(ends[1], e) * edge(ends[2], f) - edge(ends[1], f) * edge(ends[2], e));
+  }
+  return simplex ? volume / 6 : volume;
+}
+
+TEST(Box, CellsHaveEqualPositiveMeasuresThatSumToTheBox)
 {
   for_each_box([](const Made &made) {
-    if (made.mesh.dim() == 3) return; // has no areas
-    const int vertices = made.mesh.element.num_vertices();
-    double mine = 0, largest = 0, least = std::numeric_limits<double>::max();
+    double mine = 0, whole = 1;
+    for (int d = 0; d < made.mesh.dim(); ++d) whole *= made.box.upper[d] - made.box.lower[d];
     for (LO c = 0; c < made.mesh.num_cells(); ++c) {
-      double area = 0;
-      for (int a = 0; a < vertices; ++a) {
-        const LO from = made.cells(c, a), to = made.cells(c, (a + 1) % vertices);
-        area += 0.5 * (made.coords(from, 0) * made.coords(to, 1) - made.coords(from, 1) * made.coords(to, 0));
-      }
-      largest = std::max(largest, area);
-      least = std::min(least, area);
-      if (c < made.mesh.num_owned_cells) mine += area;
+      const double measure = measure_of(made, c);
+      EXPECT_NEAR(measure, whole / static_cast<double>(made.lattice.num_cells()), 1e-13 * whole) << "cell " << c;
+      if (c < made.mesh.num_owned_cells) mine += measure;
     }
-    double whole = 1, equal = 1. / made.lattice.num_cells();
-    for (int d = 0; d < 2; ++d) whole *= made.box.upper[d] - made.box.lower[d];
-    EXPECT_NEAR(largest, equal * whole, 1e-13 * whole);
-    EXPECT_NEAR(least, equal * whole, 1e-13 * whole);
     EXPECT_NEAR(rpc::sum_all(made.mesh.comm(), mine), whole, 1e-13 * whole);
   });
+}
+
+TEST(Box, TetrahedraOfACellShareItsDiagonalAndNothingElse)
+{
+  // Each point of the cell lies in the tetrahedron of the order of its coordinates.
+  for (int part = 0; part < 6; ++part) {
+    std::vector<int> order{0, 1, 2};
+    for (int k = 0; k < part; ++k) std::next_permutation(order.begin(), order.end());
+    for (const Position &vertex : Lattice::tetrahedron(part))
+      EXPECT_TRUE(vertex[order[0]] >= vertex[order[1]] && vertex[order[1]] >= vertex[order[2]]) << part;
+  }
 }
 
 TEST(Box, IsOneBlock)
@@ -374,6 +428,7 @@ TEST(Box, EachFacetOfASideHasItsCellOwnedByOneRank)
       GO mine = 0, all = 1;
       for (std::size_t f = 0; f < cell.extent(0); ++f) mine += cell(f) < made.mesh.num_owned_cells ? 1 : 0;
       for (int d = 0; d < made.mesh.dim(); ++d) all *= d == directions()[k].d ? 1 : made.box.cells[d];
+      if (made.lattice.simplex && made.mesh.dim() == 3) all *= 2; // triangles of a rectangle
       EXPECT_EQ(rpc::sum_all(made.mesh.comm(), mine), all) << side.name;
     }
   });
@@ -396,9 +451,10 @@ TEST(Box, FacetsBelongToTheirCellsAndPointOutward)
           return d < made.mesh.dim() ? made.coords(facets(f, node), d) - made.coords(facets(f, 0), d) : 0.;
         };
         std::array<double, 3> normal{edge(1, 1), -edge(1, 0), 0};
+        const int last = made.lattice.simplex ? 2 : 3;
         if (made.mesh.dim() == 3)
           for (int d = 0; d < 3; ++d)
-            normal[d] = edge(1, (d + 1) % 3) * edge(3, (d + 2) % 3) - edge(1, (d + 2) % 3) * edge(3, (d + 1) % 3);
+            normal[d] = edge(1, (d + 1) % 3) * edge(last, (d + 2) % 3) - edge(1, (d + 2) % 3) * edge(last, (d + 1) % 3);
         const double length = std::hypot(normal[0], normal[1], normal[2]);
         ASSERT_GT(length, 0);
         EXPECT_NEAR(normal[direction.d] / length, direction.upper ? 1 : -1, 1e-14);

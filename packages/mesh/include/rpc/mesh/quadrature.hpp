@@ -22,7 +22,8 @@ struct QuadratureRule {
 /// @throws rpc::Error (internal_error) if there is no rule of that degree
 QuadratureRule quadrature(int dim, Shape shape, int degree);
 
-/// Degree for which quadrature() is exact for the stiffness of an affine cell.
+/// Degree for which quadrature() is exact for the stiffness of an affine cell, and in a curved one for the nodal forces of a
+/// constant stress: their integrands are polynomials of degree dim (order - 1) in simplices.
 int stiffness_degree(const Element &element);
 
 /// The rule with points at an element's nodes, in their order, for intervals, quadrilaterals and triangles.
