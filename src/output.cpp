@@ -124,6 +124,7 @@ void write_csv(const std::string &path, const Scene &scene, const Solution &s)
       table.id(i) = mesh.node_id(node(i));
       for (int c = 0; c < mesh.dim(); ++c) table.position(i, c) = coords(node(i), c);
     }
+    table.weight = part_of(contact.weight, begin, end);
     table.u_nu = part_of(s.contact.normal_displacement, begin, end);
     table.gap = part_of(contact.gap, begin, end);
     table.pressure = part_of(s.contact.pressure, begin, end);

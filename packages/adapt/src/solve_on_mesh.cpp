@@ -74,8 +74,12 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   std::optional<contact::ContactState> start;
   if (previous) {
     const Timed phase("prediction", s.seconds.prediction);
-    start = contact::interpolated(*fem::interpolation(previous->discretization, d), previous->functional->contact(),
-                                  previous->state(), step.contact, d.owned_dofs);
+    const contact::ContactNodes &points = previous->functional->contact();
+    const auto state =
+        contact::with_weightless(previous->state(), points, previous->discretization,
+                                 contact::contact_sides(*previous->discretization.mesh, task.model.contact));
+    start = contact::interpolated(*fem::interpolation(previous->discretization, d), points, state, step.contact,
+                                  d.owned_dofs);
   }
   static_cast<analysis::StepSolution &>(s) = analysis::solve_step(*problem, step, task.step, start ? &*start : nullptr,
                                                                   coarser_meshes(task, options, comm), listener.step);

@@ -93,10 +93,7 @@ Step Problem::step(const double t) const
 
 std::vector<const mesh::Side *> Problem::contact_sides() const
 {
-  std::vector<const mesh::Side *> sides;
-  for (const auto &contact : model_.contact)
-    sides.push_back(&discretization_.mesh->side(contact.side, contact.path + "->Side"));
-  return sides;
+  return contact::contact_sides(*discretization_.mesh, model_.contact);
 }
 
 } // namespace rpc::analysis

@@ -171,9 +171,11 @@ std::string predict(Iterate &iterate, const double t, const StepOptions &options
     const Minimization found = minimize(coarse, rough, 1, [](const solver::NewtonStep &, const Vector &) {});
     if (!found.active_set_confirmed) coarse.functional->update_multipliers(*coarse.u);
     const auto interpolation = fem::interpolation(coarse.discretization(), iterate.discretization());
-    const auto predicted = contact::interpolated(*interpolation, coarse.functional->contact(),
-                                                 coarse.functional->current(coarse.functional->displacement(*coarse.u)),
-                                                 iterate.functional->contact(), iterate.discretization().owned_dofs);
+    const contact::ContactNodes &points = coarse.functional->contact();
+    const auto state = contact::with_weightless(coarse.functional->current(coarse.functional->displacement(*coarse.u)),
+                                                points, coarse.discretization(), problem->contact_sides());
+    const auto predicted = contact::interpolated(*interpolation, points, state, iterate.functional->contact(),
+                                                 iterate.discretization().owned_dofs);
     iterate.functional->start_from(predicted, *iterate.u);
     const auto &counts = coarse.linear().counts();
     work.push_back({coarse.discretization().owned_dofs->getGlobalNumElements(), found.steps, counts.iterations,

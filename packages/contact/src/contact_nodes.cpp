@@ -51,9 +51,11 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
           length += nodes.direction(i, k) * nodes.direction(i, k);
         }
         // A remainder of rounding size is no direction to push in.
-        nodes.fixed(i) = length < 1e-16;
+        const bool weightless = nodes.weight(i) == 0;
+        nodes.fixed(i) = weightless || length < 1e-16;
         for (int k = 0; k < nodes.dim && nodes.fixed(i); ++k) nodes.direction(i, k) = 0;
-        nodes.free_gap(i) = nodes.fixed(i) && free_gap < rounding && free_gap > -rounding ? 0 : free_gap;
+        const bool open_to_choice = weightless || (free_gap < rounding && free_gap > -rounding);
+        nodes.free_gap(i) = nodes.fixed(i) && open_to_choice ? 0 : free_gap;
       });
   Kokkos::fence();
 }
@@ -170,9 +172,11 @@ void face_obstacle(SideValues &values, const ContactOptions &options, const Host
     if (options.normal == Normal::foundation) {
       const auto into = direction_into(options.obstacle, x);
       if (!into) {
-        bad = "deck: \"" + options.path + "->Obstacle->Centre\" must be away from the nodes of side \"" + options.side +
-              "\", for it has no normal: there is one at " + place(points, i) +
-              ". Move the centre, or give \"Normal\" as numbers.";
+        const bool sphere = options.obstacle.kind == Obstacle::Kind::sphere;
+        bad = "deck: \"" + options.path + "->Obstacle->" + (sphere ? "Centre" : "Axis") +
+              "\" must be away from the nodes of side \"" + options.side +
+              "\", for it has no normal: there is one at " + place(points, i) + ". Move the " +
+              (sphere ? "centre" : "axis") + ", or give \"Normal\" as numbers.";
         continue;
       }
       direction = *into;
@@ -273,14 +277,22 @@ DeviceView<double *> scaling_of(const fem::Discretization &d, const fem::Materia
   return scaling;
 }
 
-/// On this rank.
-GO count_fixed(const ContactNodes &c)
+/// Counts the points; collective.
+void count_points(ContactNodes &c, const Comm &comm)
 {
-  GO count = 0;
+  const ContactNodes points = c;
+  GO fixed = 0, weightless = 0;
   Kokkos::parallel_reduce(
-      "rpc::contact::count_fixed", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, GO &sum) { sum += c.fixed(i) ? 1 : 0; }, count);
-  return count;
+      "rpc::contact::count_points", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, GO &without, GO &prescribed) {
+        const bool carries = points.weight(i) > 0;
+        without += carries ? 0 : 1;
+        prescribed += carries && points.fixed(i) ? 1 : 0;
+      },
+      weightless, fixed);
+  c.num_weightless = sum_all(comm, weightless);
+  c.num_fixed = sum_all(comm, fixed);
+  c.num_total = sum_all(comm, GO(c.size())) - c.num_weightless;
 }
 
 /// Refuses nodes that a prescribed displacement presses into a foundation that cannot give way; collective.
@@ -337,6 +349,13 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
   return options;
 }
 
+std::vector<const mesh::Side *> contact_sides(const mesh::Mesh &mesh, const std::vector<ContactOptions> &options)
+{
+  std::vector<const mesh::Side *> sides;
+  for (const ContactOptions &contact : options) sides.push_back(&mesh.side(contact.side, contact.path + "->Side"));
+  return sides;
+}
+
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
                            const fem::DirichletDofs &dirichlet, const fem::Materials &materials)
 {
@@ -347,8 +366,9 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   c.first = HostView<LO *>("rpc::contact::first", options.size() + 1);
   std::vector<LO> node;
   std::vector<double> weight, normal, gap, yield, penalty;
+  const std::vector<const mesh::Side *> sides = contact_sides(mesh, options);
   for (std::size_t k = 0; k < options.size(); ++k) {
-    const auto surface = fem::surface_nodes(d, mesh.side(options[k].side, options[k].path + "->Side"));
+    const auto surface = fem::surface_nodes(d, *sides[k]);
     const SideValues values = side_values(options[k], fem::node_positions(mesh, surface.node), surface.normal, comm);
     require_outward(options[k], surface, values, comm);
     const auto side_node = to_host(surface.node);
@@ -377,10 +397,9 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   c.direction = DeviceView<double **>("rpc::contact::direction", node.size(), c.dim);
   c.free_gap = DeviceView<double *>("rpc::contact::free_gap", node.size());
   c.fixed = DeviceView<char *>("rpc::contact::fixed", node.size());
-  c.num_total = sum_all(comm, GO(node.size()));
   c.num_missing = sum_all(comm, c.num_missing);
   take_over_dirichlet(c, dirichlet, comm);
-  c.num_fixed = sum_all(comm, count_fixed(c));
+  count_points(c, comm);
   require_room(c, options, mesh);
   return c;
 }

@@ -1,5 +1,7 @@
 #include "rpc/contact/contact_state.hpp"
 
+#include "rpc/contact/result.hpp"
+
 namespace rpc::contact
 {
 namespace
@@ -59,6 +61,21 @@ DeviceView<double *> gathered(const ContactNodes &c, const MultiVector &columns)
 }
 
 } // namespace
+
+ContactState with_weightless(ContactState state, const ContactNodes &c, const fem::Discretization &d,
+                             const std::vector<const mesh::Side *> &sides)
+{
+  if (c.num_weightless == 0) return state;
+  const auto completed = completed_pressure(d, sides, c, state.multiplier);
+  const DeviceView<double *> lambda("rpc::contact::completed_multiplier", c.size());
+  const auto own = state.multiplier;
+  Kokkos::parallel_for(
+      "rpc::contact::complete_multipliers", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { lambda(i) = c.weight(i) > 0 ? own(i) : completed(i); });
+  Kokkos::fence();
+  state.multiplier = lambda;
+  return state;
+}
 
 ContactState interpolated(const CrsMatrix &interpolation, const ContactNodes &coarse, const ContactState &state,
                           const ContactNodes &fine, const RCP<const Map> &fine_dofs)

@@ -42,46 +42,72 @@ Point point_of(const Teuchos::ParameterList &list, const std::string &name, cons
   return point;
 }
 
+/// Unit vector from one of any length.
+Point unit_of(const Teuchos::ParameterList &list, const std::string &name, const int dim, const std::string &path)
+{
+  const Point given = point_of(list, name, dim, path);
+  const double length = std::hypot(given[0], given[1], given[2]);
+  RPC_REQUIRE(length > 0 && std::isfinite(length),
+              "deck: \"" << path << "->" << name << "\" must have a length > 0, got " << length);
+  return scaled(1 / length, given);
+}
+
+/// A vector without its part along the axis of a cylinder; all of it for a sphere.
+Point across(const Obstacle &obstacle, const Point &v)
+{
+  return difference(v, scaled(dot(v, obstacle.axis), obstacle.axis));
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_obstacle_parameters()
 {
   Teuchos::ParameterList valid("Obstacle");
   valid.set("Type", "none",
-            "Shape of the foundation's surface: `plane`, `circle` (in 3D a sphere), or `none`: see Gap.");
-  valid.set("Point", Array<double>(), "plane: a point on it [m].");
+            "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`, or "
+            "`none`: see Gap.");
+  valid.set("Point", Array<double>(), "plane: a point on it; cylinder: a point on its axis [m].");
   valid.set("Normal", Array<double>(), "plane: its normal, out of the foundation towards the body, of any length.");
-  valid.set("Centre", Array<double>(), "circle: its centre [m].");
-  valid.set("Radius", 0., "circle: its radius, > 0 [m].");
-  valid.set("Encloses Body", false, "circle: whether the body lies inside of it and the foundation outside.");
+  valid.set("Axis", Array<double>(), "cylinder: the direction of its axis, of any length.");
+  valid.set("Centre", Array<double>(), "sphere: its centre [m].");
+  valid.set("Radius", 0., "sphere, cylinder: its radius, > 0 [m].");
+  valid.set("Encloses Body", false, "sphere, cylinder: whether the body lies inside of it and the foundation outside.");
   return valid;
 }
 
 Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, const std::string &path)
 {
   const auto &type = list.get<std::string>("Type");
-  RPC_REQUIRE(type == "none" || type == "plane" || type == "circle",
-              "deck: \"" << path << "->Type\" must be one of none, plane, circle, got \"" << type << "\"");
+  const bool sphere = type == "sphere" || type == "circle", cylinder = type == "cylinder", plane = type == "plane";
+  RPC_REQUIRE(type == "none" || plane || sphere || cylinder,
+              "deck: \"" << path << "->Type\" must be one of none, plane, sphere, circle, cylinder, got \"" << type
+                         << "\"");
+  RPC_REQUIRE(!cylinder || dim == 3,
+              "deck: \"" << path << "->Type\" = cylinder goes with a body in space; use circle in the plane");
   const auto refuse = [&](const std::vector<std::string> &names) {
     for (const auto &name : names)
       RPC_REQUIRE(list.getEntry(name).isDefault(),
                   "deck: \"" << path << "->" << name << "\" does not go with \"" << path << "->Type\" = " << type);
   };
-  Obstacle obstacle;
-  if (type == "circle") refuse({"Point", "Normal"}); // `none` switches an obstacle off, whatever it was
-  if (type == "plane") refuse({"Centre", "Radius", "Encloses Body"});
-  if (type == "plane") {
+  Obstacle obstacle; // `none` switches an obstacle off, whatever it was
+  if (sphere) refuse({"Point", "Normal", "Axis"});
+  if (cylinder) refuse({"Centre", "Normal"});
+  if (plane) refuse({"Centre", "Axis", "Radius", "Encloses Body"});
+  if (plane) {
     obstacle.kind = Obstacle::Kind::plane;
     obstacle.point = point_of(list, "Point", dim, path);
-    obstacle.normal = point_of(list, "Normal", dim, path);
-    const double length = std::hypot(obstacle.normal[0], obstacle.normal[1], obstacle.normal[2]);
-    RPC_REQUIRE(length > 0 && std::isfinite(length),
-                "deck: \"" << path << "->Normal\" must have a length > 0, got " << length);
-    obstacle.normal = scaled(1 / length, obstacle.normal);
+    obstacle.normal = unit_of(list, "Normal", dim, path);
   }
-  if (type == "circle") {
-    obstacle.kind = Obstacle::Kind::circle;
+  if (sphere) {
+    obstacle.kind = Obstacle::Kind::sphere;
     obstacle.point = point_of(list, "Centre", dim, path);
+  }
+  if (cylinder) {
+    obstacle.kind = Obstacle::Kind::cylinder;
+    obstacle.point = point_of(list, "Point", dim, path);
+    obstacle.axis = unit_of(list, "Axis", dim, path);
+  }
+  if (sphere || cylinder) {
     obstacle.radius = list.get<double>("Radius");
     obstacle.encloses = list.get<bool>("Encloses Body");
     RPC_REQUIRE(obstacle.radius > 0 && std::isfinite(obstacle.radius),
@@ -93,7 +119,7 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
 std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x)
 {
   if (obstacle.kind == Obstacle::Kind::plane) return scaled(-1, obstacle.normal);
-  const Point from_centre = difference(x, obstacle.point);
+  const Point from_centre = across(obstacle, difference(x, obstacle.point));
   const double distance = std::sqrt(dot(from_centre, from_centre));
   if (!(distance > 0)) return std::nullopt;
   return scaled((obstacle.encloses ? 1 : -1) / distance, from_centre);
@@ -101,7 +127,7 @@ std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x)
 
 bool lies_in(const Obstacle &obstacle, const Point &x)
 {
-  const Point from = difference(x, obstacle.point);
+  const Point from = across(obstacle, difference(x, obstacle.point));
   const double distance = std::sqrt(dot(from, from));
   if (obstacle.kind == Obstacle::Kind::plane) return dot(from, obstacle.normal) < -rounding * distance;
   const double beyond = distance - obstacle.radius;
@@ -110,21 +136,25 @@ bool lies_in(const Obstacle &obstacle, const Point &x)
 
 std::optional<double> distance_along(const Obstacle &obstacle, const Point &x, const Point &direction)
 {
-  const Point from = difference(x, obstacle.point);
+  const Point from = across(obstacle, difference(x, obstacle.point));
   if (obstacle.kind == Obstacle::Kind::plane) {
     const double descent = -dot(direction, obstacle.normal);
     if (!(descent > rounding)) return std::nullopt;
     return dot(from, obstacle.normal) / descent;
   }
-  // |x + g direction - centre| = radius: the root that crosses the circle from the body's part of the plane.
-  const double along = dot(from, direction);
-  double discriminant = along * along - dot(from, from) + obstacle.radius * obstacle.radius;
-  // A tangent meets the circle that encloses its point, whatever the rounding.
+  // |from + g way| = radius: the root that crosses the surface from the body's part of space. Of a cylinder only what is across
+  // its axis counts.
+  const Point way = across(obstacle, direction);
+  const double square = dot(way, way);
+  if (!(square > rounding * rounding)) return std::nullopt; // along the axis
+  const double along = dot(from, way);
+  double discriminant = along * along - square * (dot(from, from) - obstacle.radius * obstacle.radius);
+  // A tangent meets the surface that encloses its point, whatever the rounding.
   if (obstacle.encloses && discriminant < 0 && !lies_in(obstacle, x)) discriminant = 0;
   const bool leads_in = obstacle.encloses || along < 0 || lies_in(obstacle, x);
   if (!(discriminant >= 0) || !leads_in) return std::nullopt;
   const double root = std::sqrt(discriminant);
-  return obstacle.encloses ? root - along : -root - along;
+  return ((obstacle.encloses ? root : -root) - along) / square;
 }
 
 } // namespace rpc::contact

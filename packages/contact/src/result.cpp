@@ -61,6 +61,7 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
   const auto p = result.pressure;
   const Kokkos::RangePolicy<ExecutionSpace, LO> points(begin, end);
   double force[3] = {}, contact = 0, yielded = 0, peak = 0, deepest = 0, initial = 0;
+  GO nodes = 0;
   Kokkos::parallel_reduce(
       "rpc::contact::result_sums", points,
       KOKKOS_LAMBDA(const LO i, double &fx, double &fy, double &fz, double &touched, double &given_way) {
@@ -73,15 +74,19 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
       },
       force[0], force[1], force[2], contact, yielded);
   Kokkos::parallel_reduce(
+      "rpc::contact::result_nodes", points, KOKKOS_LAMBDA(const LO i, GO &count) { count += c.weight(i) > 0 ? 1 : 0; },
+      nodes);
+  Kokkos::parallel_reduce(
       "rpc::contact::result_maxima", points,
       KOKKOS_LAMBDA(const LO i, double &most, double &deep, double &overlap) {
+        if (!(c.weight(i) > 0)) return; // the contact law does not hold there
         if (p(i) > most) most = p(i);
         if (v(i) > deep) deep = v(i);
         if (-c.gap(i) > overlap) overlap = -c.gap(i);
       },
       Kokkos::Max<double>(peak), Kokkos::Max<double>(deepest), Kokkos::Max<double>(initial));
 
-  const double sums[6] = {force[0], force[1], force[2], contact, yielded, double(end - begin)};
+  const double sums[6] = {force[0], force[1], force[2], contact, yielded, double(nodes)};
   double all[6];
   Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 6, sums, all);
   const double maxima[3] = {peak, deepest, initial}; // Kokkos' maximum over no nodes is -DBL_MAX
@@ -112,6 +117,16 @@ ContactSums &ContactSums::operator+=(const ContactSums &other)
   return *this;
 }
 
+DeviceView<double *> completed_pressure(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
+                                        const ContactNodes &c, const DeviceView<double *> &multiplier)
+{
+  const DeviceView<double *> pressure("rpc::contact::pressure", c.size());
+  Kokkos::deep_copy(pressure, multiplier);
+  for (int k = 0; k < c.num_sides() && c.num_fixed + c.num_weightless > 0; ++k)
+    complete_pressure(d, *sides[k], c, c.first(k), c.first(k + 1), pressure);
+  return pressure;
+}
+
 ContactResult contact_result(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
                              const SmoothedFunctional &functional, const Vector &u)
 {
@@ -120,11 +135,8 @@ ContactResult contact_result(const fem::Discretization &d, const std::vector<con
   ContactResult result;
   result.normal_displacement = DeviceView<double *>("rpc::contact::u_nu", n);
   result.penetration = DeviceView<double *>("rpc::contact::penetration", n);
-  result.pressure = DeviceView<double *>("rpc::contact::pressure", n);
   result.state = DeviceView<int *>("rpc::contact::state", n);
-  Kokkos::deep_copy(result.pressure, functional.multipliers());
-  for (int k = 0; k < c.num_sides() && c.num_fixed > 0; ++k)
-    complete_pressure(d, *sides[k], c, c.first(k), c.first(k + 1), result.pressure);
+  result.pressure = completed_pressure(d, sides, c, functional.multipliers());
   fill_fields(c, u, result);
   for (int k = 0; k < c.num_sides(); ++k) {
     result.sides.push_back(sums_of(d.mesh->comm(), c, result, c.first(k), c.first(k + 1)));

@@ -52,7 +52,7 @@ Obstacle plane(const Point &point, const Point &normal)
 }
 Obstacle circle(const Point &centre, const double radius, const bool encloses = false)
 {
-  return {Obstacle::Kind::circle, centre, {}, radius, encloses};
+  return {Obstacle::Kind::sphere, centre, {}, radius, encloses};
 }
 
 /// What every point of a side must have.

@@ -116,6 +116,70 @@ TEST(Circle, InsideOfItTheNormalLeadsOut)
   EXPECT_FALSE(distance_along(hole, {1, 13}, {1, 0}));                  // outside of the hole, and passes it by
 }
 
+/// Radius 2 about the axis through (1, 2, -7) along (0, 0, 5), or another one.
+Teuchos::ParameterList cylinder_list(const bool encloses, const Numbers &axis = Teuchos::tuple(0., 0., 5.))
+{
+  Teuchos::ParameterList list;
+  list.set("Type", "cylinder");
+  list.set("Point", Numbers(Teuchos::tuple(1., 2., -7.)));
+  list.set("Axis", axis);
+  list.set("Radius", 2.);
+  list.set("Encloses Body", encloses);
+  return list;
+}
+
+TEST(Cylinder, IsACircleAcrossItsAxis)
+{
+  for (const bool encloses : {false, true}) {
+    const Obstacle rod = read(cylinder_list(encloses), 3), disc = circle(2, encloses);
+    for (const double z : {-20., 0., 3.}) {
+      for (const Point &at : {Point{4, 6}, Point{1, 3.5}, Point{1, 5}, Point{-3, 2.5}}) {
+        const Point x{at[0], at[1], z};
+        EXPECT_EQ(lies_in(rod, x), lies_in(disc, at));
+        expect_point(direction_into(rod, x), *direction_into(disc, at));
+        for (const Point &direction : {Point{-0.6, -0.8}, Point{0, -1}, Point{1, 0}}) {
+          const auto gap = distance_along(rod, x, direction), flat = distance_along(disc, at, direction);
+          ASSERT_EQ(gap.has_value(), flat.has_value());
+          if (gap) {
+            EXPECT_NEAR(*gap, *flat, 1e-14);
+          }
+        }
+      }
+    }
+    EXPECT_FALSE(direction_into(rod, {1, 2, 5})); // on the axis
+  }
+}
+
+TEST(Cylinder, IsMetAlongASlantingDirection)
+{
+  const Obstacle rod = read(cylinder_list(false), 3);
+  EXPECT_DOUBLE_EQ(*distance_along(rod, {1, 8, 0}, {0, -0.8, 0.6}), 5); // 4 across the axis
+  EXPECT_FALSE(distance_along(rod, {1, 8, 0}, {0, 0, 1}));              // along it
+  EXPECT_FALSE(distance_along(read(cylinder_list(true), 3), {1, 2.5, 0}, {0, 0, 1}));
+}
+
+TEST(Cylinder, MayLieInAnyDirection)
+{
+  const Obstacle rod = read(cylinder_list(false, Teuchos::tuple(1., 1., 0.)), 3); // through (1, 2, -7)
+  expect_point(direction_into(rod, {4, 5, 0}), {0, 0, -1});
+  EXPECT_NEAR(*distance_along(rod, {4, 5, 0}, {0, 0, -1}), 5, 1e-14);
+  EXPECT_TRUE(lies_in(rod, {4, 5, -6}));
+}
+
+TEST(Sphere, IsRoundInSpace)
+{
+  Teuchos::ParameterList list;
+  list.set("Type", "sphere");
+  list.set("Centre", Numbers(Teuchos::tuple(1., 2., 3.)));
+  list.set("Radius", 2.);
+  const Obstacle ball = read(list, 3);
+  expect_point(direction_into(ball, {1, 5, 7}), {0, -0.6, -0.8});
+  EXPECT_DOUBLE_EQ(*distance_along(ball, {1, 5, 7}, {0, -0.6, -0.8}), 3);
+  EXPECT_DOUBLE_EQ(*distance_along(ball, {1, 2, 9}, {0, 0, -1}), 4);
+  list.set("Type", "circle"); // its older name
+  EXPECT_EQ(read(list, 3).kind, Obstacle::Kind::sphere);
+}
+
 TEST(ObstacleOptions, RefuseWhatDoesNotFit)
 {
   const auto refuse = [](const std::string &words, const std::function<void(Teuchos::ParameterList &)> &change) {
@@ -126,12 +190,13 @@ TEST(ObstacleOptions, RefuseWhatDoesNotFit)
     change(list);
     expect_error(ExitCode::bad_input, words, [&] { read(list); });
   };
-  refuse("one of none, plane, circle", [](auto &list) { list.set("Type", "cone"); });
+  refuse("one of none, plane, sphere, circle, cylinder", [](auto &list) { list.set("Type", "cone"); });
   refuse("must hold 2 numbers, got 3", [](auto &list) { list.set("Point", Numbers(Teuchos::tuple(0., 0., 0.))); });
   refuse("must hold 2 numbers, got 0", [](auto &list) { list.remove("Normal"); });
   refuse("length > 0", [](auto &list) { list.set("Normal", Numbers(Teuchos::tuple(0., 0.))); });
   refuse("does not go with", [](auto &list) { list.set("Radius", 1.); });
   refuse("does not go with", [](auto &list) { list.set("Type", "circle"); });
+  refuse("body in space", [](auto &list) { list = cylinder_list(false); });
   refuse("must be > 0", [](auto &list) {
     list = Teuchos::ParameterList();
     list.set("Type", "circle");

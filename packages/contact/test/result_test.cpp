@@ -126,7 +126,7 @@ TEST(ContactResult, NodesThatMissTheObstacleLendNoPressureToHeldOnes)
   contact::ContactOptions options;
   options.side = "bottom";
   options.yield_stress = ScalarField(3.);
-  options.obstacle = {contact::Obstacle::Kind::circle, {2. / 3, -0.7, 0}, {}, 0.6, false};
+  options.obstacle = {contact::Obstacle::Kind::sphere, {2. / 3, -0.7, 0}, {}, 0.6, false};
   fem::DirichletCondition condition = held("bottom");
   condition.displacement[1] = field([](const Point &x) {
     const double across = std::abs(x[0] - 2. / 3);

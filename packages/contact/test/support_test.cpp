@@ -120,7 +120,7 @@ TEST(Support, ComesFromNodesThatFaceTheObstacleAlone)
   // Of the bottom's nodes, 0.5 m apart, three face the circle.
   const auto with = [](const double y) {
     Scene scene{plate(), {hold("left", {0})}, {on("bottom", 2)}, {pull("top", 0, y)}};
-    scene.foundations[0].obstacle = {Obstacle::Kind::circle, {2, -3, 0}, {}, 0.7, false};
+    scene.foundations[0].obstacle = {Obstacle::Kind::sphere, {2, -3, 0}, {}, 0.7, false};
     return scene;
   };
   EXPECT_TRUE(with(-0.74).check().by_contact_only);
@@ -270,7 +270,7 @@ TEST(Support, OfAWedgeInAVShapedFoundationNeedsNoDirichletCondition)
 TEST(Support, OfABallInABowlIsNotDetermined)
 {
   auto floor = on("bottom", inf);
-  floor.obstacle = {Obstacle::Kind::circle, {2, 5, 0}, {}, 6, true};
+  floor.obstacle = {Obstacle::Kind::sphere, {2, 5, 0}, {}, 6, true};
   floor.normal = Normal::foundation;
   Scene{plate(), {}, {floor}, {pull("top", 0, -1)}}.refuses({"nothing holds the body against rotation about (2, 5)"});
 }

@@ -69,7 +69,7 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
           const int a = place_in(facets, f, lid(i)); // the rule's points are the nodes
           const auto area = area_normal(coords, facets, f, gradient, a);
           weight(i) += rule(a) * norm(area);
-          for (int c = 0; c < dim; ++c) normal(i, c) += rule(a) * area[c];
+          for (int c = 0; c < dim; ++c) normal(i, c) += (rule(a) > 0 ? rule(a) : 1) * area[c];
         }
       });
   LO bad = 0;
@@ -79,14 +79,15 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
         double length = 0;
         for (int c = 0; c < dim; ++c) length += normal(i, c) * normal(i, c);
         length = math::sqrt(length);
-        if (!(weight(i) > 0) || !(length > 0)) ++wrong;
+        const int a = place_in(facets, node_to_facets.cell(node_to_facets.row(lid(i))), lid(i));
+        if (!(weight(i) > 0 || rule(a) == 0) || !(length > 0)) ++wrong;
         for (int c = 0; c < dim; ++c) normal(i, c) /= length;
       },
       bad);
   const GO all_bad = sum_all(mesh.comm(), GO(bad));
   RPC_REQUIRE_CODE(all_bad == 0, ExitCode::bad_mesh,
                    "mesh: " << all_bad << " nodes of the side \"" << side.name
-                            << "\" have no positive quadrature weight (degenerate facets)");
+                            << "\" have no normal or no positive quadrature weight (degenerate facets)");
   return surface;
 }
 
@@ -100,21 +101,33 @@ void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &
   const auto k = known_overlap->getLocalViewDevice(Tpetra::Access::ReadOnly); // are either read or written
   const auto facets = side.facets;
   const int nodes = static_cast<int>(facets.extent(1));
+  const mesh::Element facet = mesh.element.facet();
+  const bool quadratic_triangles = facet.dim == 2 && facet.shape == mesh::Shape::simplex && facet.order == 2;
   const NodeToCells node_to_facets = around_nodes(facets, num_owned);
   const auto out = device_write(value);
   Kokkos::parallel_for(
       "rpc::fem::extend", device_range(num_owned), KOKKOS_LAMBDA(const LO n) {
         if (k(n, 0) != 0) return;
-        double sum = 0;
-        int count = 0;
-        for (std::size_t m = node_to_facets.row(n); m < node_to_facets.row(n + 1); ++m)
+        double sum = 0, linear = 0;
+        int count = 0, triangles = 0;
+        for (std::size_t m = node_to_facets.row(n); m < node_to_facets.row(n + 1); ++m) {
+          const LO f = node_to_facets.cell(m);
           for (int b = 0; b < nodes; ++b) {
-            const LO other = facets(node_to_facets.cell(m), b);
+            const LO other = facets(f, b);
             if (k(other, 0) == 0) continue;
             sum += v(other, 0);
             ++count;
           }
-        out(n) = count > 0 ? sum / count : 0;
+          const int a = quadratic_triangles ? place_in(facets, f, n) : nodes;
+          if (a >= 3) continue;
+          // Middle node 3 + a lies between vertices a and a + 1.
+          const LO beside = facets(f, 3 + a), before = facets(f, 3 + (a + 2) % 3),
+                   opposite = facets(f, 3 + (a + 1) % 3);
+          if (k(beside, 0) == 0 || k(before, 0) == 0 || k(opposite, 0) == 0) continue;
+          linear += v(beside, 0) + v(before, 0) - v(opposite, 0);
+          ++triangles;
+        }
+        out(n) = triangles > 0 ? linear / triangles : count > 0 ? sum / count : 0;
       });
   Kokkos::fence();
 }

@@ -25,6 +25,7 @@ struct Row {
   std::array<double, 3> x;
   double u_nu, gap, pressure;
   int state;
+  double area;  ///< weight in 3D [m^2]
   double s = 0; ///< arc length [m]
 };
 
@@ -40,10 +41,11 @@ std::vector<Row> gather_rows(const Comm &comm, const ContactTable &table, const 
   const auto gap = gathered_by_root(comm, table.gap.data(), n);
   const auto pressure = gathered_by_root(comm, table.pressure.data(), n);
   const auto state = gathered_by_root(comm, table.state.data(), n);
+  const auto weight = gathered_by_root(comm, table.weight.data(), n);
   const auto x = gathered_by_root(comm, table.position.data(), n * dim);
   std::vector<Row> rows;
   for (std::size_t k = 0; k < id.size(); ++k) {
-    Row row{id[k], {}, u_nu[k], gap[k], pressure[k], state[k]};
+    Row row{id[k], {}, u_nu[k], gap[k], pressure[k], state[k], weight[k]};
     std::copy_n(x.begin() + k * dim, dim, row.x.begin());
     rows.push_back(row);
   }
@@ -142,8 +144,9 @@ std::string csv(const std::vector<Row> &rows, const int dim, const std::string &
   for (const Row &row : rows) {
     RPC_REQUIRE_CODE(row.state >= 0 && row.state < 3, ExitCode::internal_error,
                      "output: the contact state of node " << row.id << " must be 0, 1 or 2, got " << row.state);
-    for (const double value : {row.x[0], row.x[1], dim == 2 ? row.s : row.x[2], row.u_nu, row.gap, row.pressure})
-      append(text, value);
+    for (const double value : {row.x[0], row.x[1], dim == 2 ? row.s : row.x[2]}) append(text, value);
+    if (dim == 3) append(text, row.area);
+    for (const double value : {row.u_nu, row.gap, row.pressure}) append(text, value);
     text += states[row.state];
     text += ',' + side + '\n';
   }
@@ -155,7 +158,7 @@ void require_equal_lengths(const Comm &comm, const ContactTable &table)
   const std::size_t n = table.id.extent(0);
   std::optional<std::string> message;
   for (const std::size_t length : {table.position.extent(0), table.u_nu.extent(0), table.gap.extent(0),
-                                   table.pressure.extent(0), table.state.extent(0)})
+                                   table.weight.extent(0), table.pressure.extent(0), table.state.extent(0)})
     if (length != n)
       message = "output: the contact table's columns must have a value for each of " + std::to_string(n) +
                 " nodes, got " + std::to_string(length);
@@ -183,7 +186,7 @@ void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, con
     on_root(*comm, ExitCode::internal_error, [&] {
       require_unique(rows);
       if (dim == 2) rows = along_the_surface(rows, edges_of(rows, facets, width));
-      if (text.empty()) text = std::string(dim == 2 ? "x,y,s" : "x,y,z") + ",u_nu,gap,pressure,state,side\n";
+      if (text.empty()) text = std::string(dim == 2 ? "x,y,s" : "x,y,z,area") + ",u_nu,gap,pressure,state,side\n";
       text += csv(rows, dim, quoted(table.side));
     });
   }

@@ -34,6 +34,7 @@ ContactTable empty_table(const std::size_t n, const int dim)
   return {"side",
           HostView<GO *>("id", n),
           HostView<double **>("position", n, dim),
+          HostView<double *>("weight", n),
           HostView<double *>("u_nu", n),
           HostView<double *>("gap", n),
           HostView<double *>("pressure", n),
@@ -222,10 +223,12 @@ TEST_F(ContactCsv, In3dRowsComeById)
   for (std::size_t k = 0; k < count; ++k) {
     table.id(k) = 9 - static_cast<GO>(k);
     table.position(k, 2) = static_cast<double>(9 - k);
+    table.weight(k) = 0.25 * static_cast<double>(k);
   }
   write_contact_csv(path_, comm_, {table});
   comm_->barrier();
-  EXPECT_EQ(text_of(path_), "x,y,z,u_nu,gap,pressure,state,side\n0,0,8,0,0,0,open,side\n0,0,9,0,0,0,open,side\n");
+  EXPECT_EQ(text_of(path_),
+            "x,y,z,area,u_nu,gap,pressure,state,side\n0,0,8,0.25,0,0,0,open,side\n0,0,9,0,0,0,0,open,side\n");
 }
 
 TEST_F(ContactCsv, BadTableIsRefusedOnEveryRank)

@@ -42,7 +42,8 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
 /// The nodes of the contact sides that this rank owns, each a point with a weight; side by side, so that a node of two
 /// sides is two points. doc/theory.md (2.7), (3.4)
 ///
-/// A node from which the side's normal misses the obstacle never touches: it is no point.
+/// A node from which the side's normal misses the obstacle never touches: it is no point. A node without weight, a vertex of
+/// quadratic triangles, takes no part in the solution: its direction is 0, and its pressure follows from its neighbours'.
 ///
 /// v_i = direction_i . u_i - free_gap_i is the penetration of node i, where `direction` is the normal without its
 /// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether
@@ -56,8 +57,9 @@ struct ContactNodes : NodePoints { // a group is a side; `direction` is the norm
   DeviceView<double *> scaling;    ///< (n) rho = E / diameter, with the largest E around the node [Pa/m]
   DeviceView<double *> penalty;    ///< (n) r [Pa/m], 0 where it is to be chosen
   DeviceView<char *> fixed;        ///< (n) 1 where direction = 0
-  GO num_total = 0;                ///< over all ranks
-  GO num_fixed = 0;                ///< over all ranks
+  GO num_total = 0;                ///< that have a weight, over all ranks
+  GO num_fixed = 0;                ///< of these, those whose normal displacement is prescribed, over all ranks
+  GO num_weightless = 0;           ///< over all ranks
   GO num_missing = 0;              ///< nodes of the sides, over all ranks, from which the normal misses the obstacle
 
   int num_sides() const { return num_groups(); }
@@ -71,6 +73,10 @@ struct ContactNodes : NodePoints { // a group is a side; `direction` is the norm
 /// foundation
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
                            const fem::DirichletDofs &dirichlet, const fem::Materials &materials = {});
+
+/// The sides of a mesh that the options name.
+/// @throws rpc::Error (bad_input) if one does not exist
+std::vector<const mesh::Side *> contact_sides(const mesh::Mesh &mesh, const std::vector<ContactOptions> &options);
 
 /// v_i = direction_i . u_i - free_gap_i at one node, for kernels [m].
 template <class U>

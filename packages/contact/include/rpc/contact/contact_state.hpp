@@ -13,6 +13,11 @@ struct ContactState {
   DeviceView<State *> active_set;  ///< (contact nodes); empty where it is not known
 };
 
+/// A copy in which points without weight have the pressures of their neighbours as multipliers: for interpolation. Collective.
+/// @param sides  that the contact nodes were made from
+ContactState with_weightless(ContactState state, const ContactNodes &c, const fem::Discretization &d,
+                             const std::vector<const mesh::Side *> &sides);
+
 /// The state on another mesh of the same scene: displacement and multipliers by interpolation, side by side, without an active
 /// set. Collective.
 /// @param interpolation  (fine owned nodes x coarse owned nodes), see fem::interpolation()

@@ -9,15 +9,21 @@
 namespace rpc::contact
 {
 
-/// The foundation's surface where it has a simple shape; in 3D a circle is a sphere.
+/// The foundation's surface where it has a simple shape.
 struct Obstacle {
-  enum class Kind { none, plane, circle };
+  enum class Kind {
+    none,
+    plane,
+    sphere,  ///< in 2D a circle
+    cylinder ///< an endless one, in 3D
+  };
 
   Kind kind = Kind::none;
-  Point point{};         ///< of a plane, or the centre of a circle [m]
+  Point point{};         ///< of a plane, the centre of a sphere, or one on the axis of a cylinder [m]
   Point normal{};        ///< of a plane, unit, out of the foundation towards the body
-  double radius = 0;     ///< of a circle [m]
-  bool encloses = false; ///< the body lies inside of the circle, the foundation outside
+  double radius = 0;     ///< of a sphere or cylinder [m]
+  bool encloses = false; ///< the body lies inside of the sphere or cylinder, the foundation outside
+  Point axis{};          ///< of a cylinder, unit
 };
 
 /// Parameters of an `Obstacle` sublist.
@@ -27,7 +33,7 @@ Teuchos::ParameterList valid_obstacle_parameters();
 Obstacle obstacle_options(const Teuchos::ParameterList &list, int dim, const std::string &path);
 
 /// Unit normal of the foundation at the point of its surface nearest to x, pointing into the foundation; nothing at the
-/// centre of a circle. doc/theory.md (3.6)
+/// centre of a sphere or on the axis of a cylinder. doc/theory.md (3.6)
 std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x);
 
 /// Whether x lies in the foundation, deeper than rounding.

@@ -10,7 +10,7 @@ namespace rpc::contact
 
 /// Sums and maxima over a contact side, or all of them, on all ranks.
 struct ContactSums {
-  GO num_nodes = 0;
+  GO num_nodes = 0;                   ///< that have a weight
   std::array<double, 3> force{};      ///< of the foundation on the body, sum of -w p normal [N], in 2D per m
   double max_pressure = 0;            ///< [Pa]
   double max_penetration = 0;         ///< largest u_nu - g where > 0 [m]
@@ -32,12 +32,17 @@ struct ContactResult {
   ContactSums total;
 };
 
-/// Reads displacement u and the functional's multipliers. Nodes whose normal displacement is prescribed get their
-/// pressure as told at ContactNodes, and where the law leaves it open from their neighbours. doc/theory.md (3.5);
-/// collective
+/// Reads displacement u and the functional's multipliers, see completed_pressure(); collective.
 /// @param sides  that the contact nodes were made from
 ContactResult contact_result(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
                              const SmoothedFunctional &functional, const Vector &u);
+
+/// Pressures at all points from those of the points that take part in the solution: the others get theirs as told at
+/// ContactNodes, and where the law leaves it open from their neighbours. doc/theory.md (3.5); collective
+/// @param sides       that the contact nodes were made from
+/// @param multiplier  (n) [Pa]
+DeviceView<double *> completed_pressure(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
+                                        const ContactNodes &c, const DeviceView<double *> &multiplier);
 
 /// |p - q|_2 over the contact sides, by the weights of their nodes, but for those whose normal displacement is prescribed
 /// [Pa m^(1/2)], in 3D [Pa m]; collective.

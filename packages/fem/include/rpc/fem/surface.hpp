@@ -13,6 +13,8 @@ HostPoints node_positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node);
 DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &side);
 
 /// Owned nodes of a side with what nodal quadrature needs: int f ds ~ sum_i weight_i f(x_i). doc/theory.md (2.7)
+///
+/// The vertices of quadratic triangles have weight 0, see mesh::nodal_rule(); all other weights are positive.
 struct SurfaceNodes {
   DeviceView<LO *> node;       ///< (n) owned node lids, ascending
   DeviceView<double *> weight; ///< (n) w_i [m^(dim-1)]
@@ -20,14 +22,15 @@ struct SurfaceNodes {
       normal; ///< (n, dim) outward unit normal of the body, averaged by area over the facets at the node
 };
 
-/// @throws rpc::Error (bad_mesh) on every rank if a weight is not positive; collective
+/// @throws rpc::Error (bad_mesh) on every rank if facets are degenerate at a node; collective
 SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side);
 
 /// For each node of a side that `known` leaves out, the mean over the known nodes with which it shares a facet; 0 if
-/// there are none.
+/// there are none. A vertex of quadratic triangles whose middle nodes are known takes the value of the linear function through
+/// these, the mean over such triangles: it is exact for linear functions.
 ///
-/// Serves contact nodes whose normal displacement is prescribed: the contact law leaves their pressure open.
-/// doc/theory.md (3.5)
+/// Serves contact nodes to which the contact law gives no pressure: those whose normal displacement is prescribed, and those
+/// without weight. doc/theory.md (3.5)
 /// @param[in,out] value  (owned nodes of the mesh) values where known   @param[in] known (owned nodes) 1 or 0;
 /// collective
 void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &value, const Vector &known);

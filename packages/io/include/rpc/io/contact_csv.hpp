@@ -13,6 +13,7 @@ struct ContactTable {
   std::string side;
   HostView<GO *> id;            ///< (nodes) rank-independent node id
   HostView<double **> position; ///< (nodes, dim)                     [m]
+  HostView<double *> weight;    ///< (nodes) of the quadrature         [m^(dim-1)]
   HostView<double *> u_nu;      ///< (nodes) normal displacement       [m]
   HostView<double *> gap;       ///< (nodes)                           [m]
   HostView<double *> pressure;  ///< (nodes) compression is > 0        [Pa]
@@ -27,7 +28,7 @@ struct ContactTable {
 /// Sides come one after another. 2D: columns x, y, s, u_nu, gap, pressure, state, side; rows follow the chain of facets from its end with the smaller x,
 /// then y, and s is the length of the way from there, straight from node to node [m]. Several chains follow each other
 /// by their first point, each with its own s; a closed one starts at its point with the smallest x, then y. 3D: columns
-/// x, y, z, u_nu, gap, pressure, state, side; rows by id. Numbers read back as the same doubles; the file does not depend on
+/// x, y, z, area, u_nu, gap, pressure, state, side, with the weight of the node as area [m^2]; rows by id. Numbers read back as the same doubles; the file does not depend on
 /// the number of ranks.
 /// @throws rpc::Error on every rank: bad_input for a folder that cannot be written to, internal_error for a failed
 /// write, columns
