@@ -20,7 +20,7 @@ bool StagedDirection::compute(NOX::Abstract::Vector &direction, NOX::Abstract::G
     if (step != FirstStage::Step::none) return true;
     context.stage = nullptr;
   }
-  return SweepDirection().compute(direction, group, solver);
+  return sweep_.compute(direction, group, solver);
 }
 
 Teuchos::RCP<NOX::Direction::Generic> StagedDirectionFactory::buildDirection(const Teuchos::RCP<NOX::GlobalData> &,

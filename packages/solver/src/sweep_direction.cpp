@@ -4,15 +4,25 @@
 
 namespace rpc::solver
 {
+namespace
+{
+
+/// A step length below this has ended at a kink.
+constexpr double cut_short = 0.02;
+
+} // namespace
 
 bool SweepDirection::compute(NOX::Abstract::Vector &direction, NOX::Abstract::Group &group,
                              const NOX::Solver::Generic &)
 {
   using Group = NOX::Abstract::Group;
   const NewtonContext &context = dynamic_cast<const NewtonGroup &>(group).context();
-  NoxVector moved(dynamic_cast<const NoxVector &>(group.getX()), NOX::DeepCopy);
-  context.functional.sweep(moved.data());
-  group.setX(moved);
+  swept_ = !swept_ || context.step_length >= cut_short;
+  if (swept_) {
+    NoxVector moved(dynamic_cast<const NoxVector &>(group.getX()), NOX::DeepCopy);
+    context.functional.sweep(moved.data());
+    group.setX(moved);
+  }
   if (group.computeF() != Group::Ok || group.computeJacobian() != Group::Ok) return false;
   Teuchos::ParameterList none;
   const auto status = group.computeNewton(none);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/solver/newton_group.hpp"
+#include "rpc/solver/sweep_direction.hpp"
 
 #include <NOX_Direction_Generic.H>
 #include <NOX_Direction_UserDefinedFactory.H>
@@ -39,6 +40,9 @@ public:
   bool reset(const Teuchos::RCP<NOX::GlobalData> &, Teuchos::ParameterList &) override { return true; }
   bool compute(NOX::Abstract::Vector &direction, NOX::Abstract::Group &group,
                const NOX::Solver::Generic &solver) override;
+
+private:
+  SweepDirection sweep_;
 };
 
 /// Hands StagedDirection to NOX ("Direction" -> "Method" = "User Defined").
