@@ -11,9 +11,9 @@ namespace
 {
 
 /// Two triangles, or six tetrahedra, to a cell of a box, in two kinds of such cells.
-constexpr int most_kinds(const int dim)
+int most_kinds(const mesh::Element &element)
 {
-  return dim == 2 ? 4 : 12;
+  return element.dim == 3 && element.shape == mesh::Shape::simplex ? 12 : 4;
 }
 constexpr signed char unknown = -1;
 
@@ -85,11 +85,11 @@ CongruentCells congruent_cells(const mesh::Mesh &mesh)
   LO next = 0;
   for (LO count = 0; count < num_cells;) {
     // Few cells of one kind promise a mesh without order, and each kind costs a pass over the cells.
-    if (static_cast<int>(examples.size()) == most_kinds(mesh.dim())) return {};
+    if (static_cast<int>(examples.size()) == most_kinds(mesh.element)) return {};
     examples.push_back(next);
     const auto kind = static_cast<signed char>(examples.size() - 1);
     const LO took = mesh.dim() == 2 ? take_kind<2>(mesh, kind, of_cell, next) : take_kind<3>(mesh, kind, of_cell, next);
-    if (took < num_cells / (2 * most_kinds(mesh.dim()))) return {};
+    if (took < num_cells / (2 * most_kinds(mesh.element))) return {};
     count += took;
   }
   return {of_cell, device_values(examples, "rpc::fem::kind_example")};

@@ -118,8 +118,9 @@ void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &
             sum += v(other, 0);
             ++count;
           }
-          const int a = quadratic_triangles ? place_in(facets, f, n) : nodes;
-          if (a >= 3) continue;
+          if (!quadratic_triangles) continue;
+          const int a = place_in(facets, f, n);
+          if (a >= 3) continue; // a middle node
           // Middle node 3 + a lies between vertices a and a + 1.
           const LO beside = facets(f, 3 + a), before = facets(f, 3 + (a + 2) % 3),
                    opposite = facets(f, 3 + (a + 1) % 3);

@@ -34,6 +34,17 @@ inline const std::vector<mesh::Element> &elements()
 {
   return mesh::all_elements();
 }
+/// What the rounding of sums over the unknowns of a cell may come to, relative to the terms.
+inline double rounding_of(const mesh::Element &element)
+{
+  return 5e-16 * std::max(20, element.dim * element.num_nodes());
+}
+/// Cells of a mesh in one of a box' lattice.
+inline int parts_of_cell(const mesh::Element &element)
+{
+  if (element.shape == mesh::Shape::tensor) return 1;
+  return element.dim == 2 ? 2 : 6;
+}
 inline std::string text_of(const mesh::Element &element)
 {
   return element.name() + " in " + std::to_string(element.dim) + "D";

@@ -11,6 +11,28 @@ namespace
 using namespace rpc;
 using namespace rpc::test;
 
+/// Places of a part's nodes in a cell of the lattice, in any order. The second triangle is the first turned by 180 degrees; each
+/// tetrahedron has the places whose coordinates are ordered in one way.
+std::vector<std::vector<int>> places_in_cell(const mesh::Element &element, const int part)
+{
+  auto places = element.lattice();
+  if (element.shape == mesh::Shape::tensor || (element.dim == 2 && part == 0)) return places;
+  if (element.dim == 2) {
+    for (auto &place : places)
+      for (int &step : place) step = element.order - step;
+    return places;
+  }
+  std::vector<int> order{0, 1, 2};
+  for (int k = 0; k < part; ++k) std::next_permutation(order.begin(), order.end());
+  places.clear();
+  const int n = element.order + 1;
+  for (int k = 0; k < n * n * n; ++k) {
+    const std::vector<int> place{k % n, k / n % n, k / n / n};
+    if (place[order[0]] >= place[order[1]] && place[order[1]] >= place[order[2]]) places.push_back(place);
+  }
+  return places;
+}
+
 /// Ids of the nodes that share a cell with each node of a box, by its lattice alone.
 std::vector<std::set<GO>> adjacency(const mesh::BoxOptions &box)
 {
@@ -21,15 +43,14 @@ std::vector<std::set<GO>> adjacency(const mesh::BoxOptions &box)
     nodes[d] = order * cells[d] + 1;
   }
   std::vector<std::set<GO>> adjacent(nodes[0] * nodes[1] * nodes[2]);
-  const int parts = box.element.shape == mesh::Shape::simplex ? 2 : 1; // a rectangle is two triangles, one turned
+  const int parts = parts_of_cell(box.element);
   for (GO part = 0; part < parts * cells[0] * cells[1] * cells[2]; ++part) {
     const GO cell = part / parts;
-    const bool turned = part % parts == 1;
     const std::array<GO, 3> corner{cell % cells[0], cell / cells[0] % cells[1], cell / cells[0] / cells[1]};
     std::set<GO> of_cell;
-    for (const auto &step : box.element.lattice()) {
+    for (const auto &step : places_in_cell(box.element, static_cast<int>(part % parts))) {
       std::array<GO, 3> at{};
-      for (int d = 0; d < dim; ++d) at[d] = order * corner[d] + (turned ? order - step[d] : step[d]);
+      for (int d = 0; d < dim; ++d) at[d] = order * corner[d] + step[d];
       of_cell.insert(at[0] + nodes[0] * (at[1] + nodes[1] * at[2]));
     }
     for (const GO node : of_cell) adjacent[node].insert(of_cell.begin(), of_cell.end());

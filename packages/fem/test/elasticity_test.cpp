@@ -106,7 +106,7 @@ TEST(Stiffness, IsSymmetric)
 {
   for (const auto &element : elements()) {
     const auto d = bulged_body(element, alone());
-    EXPECT_LT(asymmetry(dense(*fem::assemble_stiffness(d, steel))), 1e-14) << text_of(element);
+    EXPECT_LT(asymmetry(dense(*fem::assemble_stiffness(d, steel))), rounding_of(element)) << text_of(element);
   }
 }
 
@@ -134,7 +134,7 @@ TEST(Stiffness, RigidBodyModesGiveNoForce)
     for (std::size_t mode = 0; mode < modes->getNumVectors(); ++mode) {
       Vector force(d.owned_dofs);
       K->apply(*modes->getVector(mode), force);
-      EXPECT_LT(force.norm2(), 1e-13 * steel.youngs_modulus) << "mode " << mode;
+      EXPECT_LT(force.norm2(), 10 * rounding_of(element) * steel.youngs_modulus) << "mode " << mode;
     }
   }
 }
@@ -182,7 +182,7 @@ TEST(Stiffness, EnergyOfALinearDisplacementIsThatOfItsConstantStrain)
       for (int j = 0; j < element.dim; ++j) square += std::pow(0.5 * (slope[i][j] + slope[j][i]), 2);
     }
     const double energy = volume * (steel.lambda() * trace * trace + 2 * steel.mu() * square);
-    EXPECT_NEAR(u->dot(force), energy, 1e-13 * energy) << text_of(element);
+    EXPECT_NEAR(u->dot(force), energy, 50 * rounding_of(element) * energy) << text_of(element);
   }
 }
 
