@@ -12,7 +12,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <utility>
 
 namespace rpc::mesh
@@ -22,13 +21,33 @@ namespace
 
 namespace fs = std::filesystem;
 
+/// What messages begin with.
+std::string where_of(const GmshOptions &options)
+{
+  return "mesh: \"" + options.file + "\": ";
+}
+
+/// Or else a .msh.
+bool is_geo(const std::string &where, const GmshOptions &options)
+{
+  const std::string extension = fs::path(options.file).extension().string();
+  RPC_REQUIRE(extension == ".geo" || extension == ".msh", where << "must end in .geo or .msh");
+  return extension == ".geo";
+}
+
 std::string read_text(const std::string &where, const std::string &path)
 {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const bool open = file.is_open();
+  std::string text;
+  std::vector<char> piece(1 << 20);
+  while (file) {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    text.append(piece.data(), static_cast<std::size_t>(file.gcount()));
+  }
   std::error_code ignored;
-  RPC_REQUIRE(file.good() && !fs::is_directory(path, ignored),
+  RPC_REQUIRE(open && !file.bad() && !fs::is_directory(path, ignored),
               where << "cannot be opened: "
                     << (fs::is_directory(path, ignored) ? "it is a folder" : std::strerror(errno)));
   return text;
@@ -66,23 +85,39 @@ void check_sizes(const std::string &where, const SizeField &field, const double 
                          << " are made");
 }
 
-/// One attempt at a mesh, checked. @param[out] again  whether another one may do better where it fails
-MeshData attempt(const std::string &where, const GmshOptions &options, const GmshRequest &request, bool &again)
+/// @param[out] again  whether another attempt may do better where this one fails
+GmshContents answer_of_gmsh(const std::string &where, const GmshOptions &options, const GmshRequest &request,
+                            bool &again)
 {
   GmshContents contents = run_gmsh(where, request);
   again = contents.again || contents.complaint.empty();
   const std::string file = "'" + options.file + "', "; // which the message has named
   if (contents.complaint.compare(0, file.size(), file) == 0) contents.complaint.erase(0, file.size());
   RPC_REQUIRE_CODE(contents.complaint.empty(), ExitCode::bad_mesh, where << "gmsh: " << contents.complaint);
-  return mesh_of_gmsh(where, contents, true);
+  return contents;
 }
 
-MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
+/// One attempt at a mesh, checked. @param[out] again  whether another one may do better where it fails
+MeshData attempt(const std::string &where, const GmshOptions &options, const GmshRequest &request, bool &again)
+{
+  GmshContents contents = answer_of_gmsh(where, options, request, again);
+  RPC_REQUIRE_CODE(!options.sizes || contents.dim == 2, ExitCode::bad_mesh,
+                   where << "has volumes; only plane bodies can be meshed by a field of cell sizes");
+  return mesh_of_gmsh(where, std::move(contents), true);
+}
+
+GmshRequest request_for(const GmshOptions &options)
 {
   GmshRequest request;
   std::error_code ignored;
   request.folder = fs::current_path(ignored).string();
   request.file = options.file;
+  return request;
+}
+
+MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
+{
+  GmshRequest request = request_for(options);
   request.size_factor = options.size_factor;
   request.order = options.order == 0 ? 2 : options.order;
   if (options.box) {
@@ -106,6 +141,18 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
   }
 }
 
+MeshData meshed_geo(const std::string &where, const GmshOptions &options)
+{
+  check_last_line(where, read_text(where, options.file));
+  return made_by_gmsh(where, options);
+}
+
+/// The file's text takes much memory, and is gone on return.
+GmshContents contents_of_msh(const std::string &where, const GmshOptions &options)
+{
+  return read_msh(where, read_text(where, options.file));
+}
+
 MeshData read_box(const GmshOptions &options)
 {
   const std::string where = "mesh: box: ";
@@ -117,19 +164,27 @@ MeshData read_box(const GmshOptions &options)
 
 } // namespace
 
+int gmsh_dimension(const GmshOptions &options)
+{
+  if (options.box) return options.box->element.dim;
+  const std::string where = where_of(options), text = read_text(where, options.file);
+  if (!is_geo(where, options)) return dimension_of_msh(where, text);
+  check_last_line(where, text);
+  GmshRequest request = request_for(options);
+  request.dimension_only = true;
+  bool unused = false;
+  return answer_of_gmsh(where, options, request, unused).dim;
+}
+
 MeshData read_gmsh(const GmshOptions &options)
 {
   if (options.box) return read_box(options);
-  const std::string where = "mesh: \"" + options.file + "\": ";
-  const std::string extension = fs::path(options.file).extension().string();
-  RPC_REQUIRE(extension == ".geo" || extension == ".msh", where << "must end in .geo or .msh");
-  const bool make = extension == ".geo";
+  const std::string where = where_of(options);
+  const bool make = is_geo(where, options);
   RPC_REQUIRE(make || options.size_factor == 1,
               where << "a size factor only goes with a .geo, got " << options.size_factor);
   RPC_REQUIRE(make || !options.sizes, where << "cell sizes only go with a .geo");
-  const std::string text = read_text(where, options.file);
-  if (make) check_last_line(where, text);
-  MeshData mesh = make ? made_by_gmsh(where, options) : mesh_of_gmsh(where, read_msh(where, text), false);
+  MeshData mesh = make ? meshed_geo(where, options) : mesh_of_gmsh(where, contents_of_msh(where, options), false);
   RPC_REQUIRE(options.order == 0 || options.order == mesh.element.order,
               where << "its cells are of order " << mesh.element.order << ", which \"Order\" = " << options.order
                     << " does not change; that only goes with a .geo");

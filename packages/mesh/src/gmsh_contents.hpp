@@ -20,17 +20,18 @@ struct GmshRequest {
   bool quadrilaterals = false;            ///< in the box; a .geo has its own kind
   double size_factor = 1;                 ///< of all cell sizes
   int order = 2;
-  int attempt = 0; ///< by a field of sizes: each breaks ties in another way
-  SizeField sizes; ///< without triangles: those that the .geo asks for
+  int attempt = 0;             ///< by a field of sizes: each breaks ties in another way
+  SizeField sizes;             ///< of a plane body; without triangles: those that the .geo asks for
+  bool dimension_only = false; ///< no mesh is wanted
 };
 
-/// Physical group of curves or surfaces.
+/// Physical group of the body's parts, or of its sides: of surfaces or curves, in space of volumes or surfaces.
 struct GmshGroup {
   int dim = 0, tag = 0;
   std::string name;
 };
 
-/// The elements of one type on one curve or surface.
+/// The elements of one type on one curve, surface or volume.
 struct GmshElements {
   int group = 0;                  ///< index into GmshContents::groups
   int type = 0;                   ///< gmsh's number, see gmsh_type()
@@ -42,12 +43,12 @@ struct GmshElements {
 struct GmshContents {
   std::string complaint;              ///< gmsh's; nothing else counts if there is one
   bool again = false;                 ///< whether another attempt may do better
-  bool solid = false;                 ///< whether there are elements of dimension 3
-  std::vector<GmshGroup> groups;      ///< by dimension, then tag
+  int dim = 2;                        ///< of the body: 3 if there are volumes
+  std::vector<GmshGroup> groups;      ///< of dimensions dim - 1 and dim, by dimension, then tag
   std::vector<GmshElements> elements; ///< by group, then entity tag
   std::vector<std::size_t> node_tags;
   std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags
-  std::vector<std::size_t> ungrouped_nodes; ///< tags of the nodes of cells outside every physical surface
+  std::vector<std::size_t> ungrouped_nodes; ///< of a .msh: tags of the nodes of cells outside every physical group
 };
 
 } // namespace rpc::mesh

@@ -1,7 +1,7 @@
 #include "gmsh_mesh.hpp"
 
 #include "gmsh_types.hpp"
-#include "plane_mesh_checks.hpp"
+#include "mesh_checks.hpp"
 #include "rpc/core/error.hpp"
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace rpc::mesh
 namespace
 {
 
-constexpr const char *kind_of_group[] = {"point", "curve", "surface"};
+constexpr const char *kind_of_group[] = {"point", "curve", "surface", "volume"};
+constexpr const char *statement_for_group[] = {"Point", "Curve", "Surface", "Volume"}; // of a .geo
 
 bool is_control(const unsigned char c)
 {
@@ -25,15 +26,14 @@ bool is_control(const unsigned char c)
 
 void check_groups(const std::string &where, const GmshContents &contents)
 {
-  RPC_REQUIRE_CODE(!contents.solid, ExitCode::bad_mesh,
-                   where << "has cells of dimension 3; only plane meshes of triangles or quadrilaterals can be read");
   std::map<std::pair<int, std::string>, int> tags;
   bool body = false;
   for (const auto &[dim, tag, name] : contents.groups) {
     const char *const kind = kind_of_group[dim];
     RPC_REQUIRE_CODE(!name.empty(), ExitCode::bad_mesh,
                      where << "physical " << kind << " " << tag << " has no name; give it one: Physical "
-                           << (dim == 1 ? "Curve(\"contact\"" : "Surface(\"body\"") << ", " << tag << ") = {...};");
+                           << statement_for_group[dim] << "(\"" << (dim == contents.dim ? "body" : "contact") << "\", "
+                           << tag << ") = {...};");
     RPC_REQUIRE_CODE(name.size() <= longest_name && std::none_of(name.begin(), name.end(), is_control),
                      ExitCode::bad_mesh,
                      where << "physical " << kind << " " << tag << " must have a name of at most " << longest_name
@@ -42,10 +42,12 @@ void check_groups(const std::string &where, const GmshContents &contents)
     RPC_REQUIRE_CODE(fresh, ExitCode::bad_mesh,
                      where << "physical " << kind << "s " << same->second << " and " << tag << " share the name \""
                            << name << "\"");
-    body = body || dim == 2;
+    body = body || dim == contents.dim;
   }
   RPC_REQUIRE_CODE(body, ExitCode::bad_mesh,
-                   where << "has no physical surface; name what is the body: Physical Surface(\"body\") = {...};");
+                   where << (contents.dim == 3 ? "has volumes, but " : "has ") << "no physical "
+                         << kind_of_group[contents.dim] << "; name what is the body: Physical "
+                         << statement_for_group[contents.dim] << "(\"body\") = {...};");
   std::set<int> filled;
   for (const auto &elements : contents.elements) filled.insert(elements.group);
   for (int g = 0; g < static_cast<int>(contents.groups.size()); ++g)
@@ -54,31 +56,45 @@ void check_groups(const std::string &where, const GmshContents &contents)
                            << "\" has no elements");
 }
 
-/// The element of cells that can be read: plane ones.
-std::optional<Element> plane_element(const int type)
-{
-  const std::optional<Element> element = element_of_gmsh_type(type);
-  return element && element->dim == 2 ? element : std::nullopt;
-}
-
 std::string name_of_type(const int number)
 {
   const GmshType *const type = gmsh_type(number);
   return type ? type->name() : std::to_string(number);
 }
 
-/// The one kind of cell that all surfaces have.
+/// The name of a type within a sentence, "triangle".
+std::string noun_of_type(const int number)
+{
+  std::string noun = gmsh_type(number) ? gmsh_type(number)->shape : "element";
+  noun[0] = static_cast<char>(std::tolower(noun[0]));
+  return noun;
+}
+
+/// What to do about cells of a type that cannot be read, if there is something.
+std::string remedy_for_type(const int number)
+{
+  const GmshType *const type = gmsh_type(number);
+  const std::string shape = type ? type->shape : "";
+  if (shape == "Prism" || shape == "Pyramid")
+    return "; recombine all surfaces of the volume (hexahedra), or none (tetrahedra)";
+  constexpr int quadrilateral_8 = 16, hexahedron_20 = 17;
+  if (number == quadrilateral_8 || number == hexahedron_20) return "; mesh with Mesh.SecondOrderIncomplete = 0";
+  return "";
+}
+
+/// The one kind of cell that the whole body has.
 Element element_of(const std::string &where, const GmshContents &contents)
 {
   const GmshElements *first = nullptr;
   for (const auto &elements : contents.elements) {
     const auto &group = contents.groups[elements.group];
-    if (group.dim != 2) continue;
-    const bool serendipity = elements.type == 16;
-    RPC_REQUIRE_CODE(plane_element(elements.type), ExitCode::bad_mesh,
-                     where << "cells of type \"" << name_of_type(elements.type) << "\" in physical surface \""
-                           << group.name << "\"; triangles of 3 or 6 nodes and quadrilaterals of 4 or 9 can be read"
-                           << (serendipity ? "; mesh with Mesh.SecondOrderIncomplete = 0" : ""));
+    if (group.dim != contents.dim) continue;
+    RPC_REQUIRE_CODE(element_of_gmsh_type(elements.type), ExitCode::bad_mesh,
+                     where << "cells of type \"" << name_of_type(elements.type) << "\" in physical "
+                           << kind_of_group[group.dim] << " \"" << group.name << "\"; "
+                           << (contents.dim == 2 ? "triangles of 3 or 6 nodes and quadrilaterals of 4 or 9"
+                                                 : "tetrahedra of 4 or 10 nodes and hexahedra of 8 or 27")
+                           << " can be read" << remedy_for_type(elements.type));
     if (!first) first = &elements;
   }
   const auto summary = [&](const int type) {
@@ -94,11 +110,11 @@ Element element_of(const std::string &where, const GmshContents &contents)
     return text;
   };
   for (const auto &elements : contents.elements)
-    RPC_REQUIRE_CODE(contents.groups[elements.group].dim != 2 || elements.type == first->type, ExitCode::bad_mesh,
-                     where << "cells must be of one kind, got " << summary(first->type) << " and "
-                           << summary(elements.type)
-                           << "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = 1");
-  return *plane_element(first->type);
+    RPC_REQUIRE_CODE(
+        contents.groups[elements.group].dim != contents.dim || elements.type == first->type, ExitCode::bad_mesh,
+        where << "cells must be of one kind, got " << summary(first->type) << " and " << summary(elements.type)
+              << "; a .geo that recombines may need Mesh.SubdivisionAlgorithm = " << contents.dim - 1);
+  return *element_of_gmsh_type(first->type);
 }
 
 /// The tags of cells' nodes, once each.
@@ -107,7 +123,8 @@ void number_nodes(const GmshContents &contents, TaggedMesh &draft)
   std::size_t count = 0, greatest = 0;
   const auto each_tag = [&](const auto &call) {
     for (const auto &elements : contents.elements)
-      if (contents.groups[elements.group].dim == 2) std::for_each(elements.nodes.begin(), elements.nodes.end(), call);
+      if (contents.groups[elements.group].dim == contents.dim)
+        std::for_each(elements.nodes.begin(), elements.nodes.end(), call);
   };
   each_tag([&](const std::size_t tag) {
     ++count;
@@ -133,6 +150,7 @@ void take_nodes(const GmshContents &contents, TaggedMesh &draft)
   number_nodes(contents, draft);
 
   std::vector<std::pair<std::size_t, std::size_t>> places; // tag, where in contents.coords
+  places.reserve(contents.node_tags.size());
   for (std::size_t n = 0; n < contents.node_tags.size(); ++n) places.push_back({contents.node_tags[n], n});
   if (!std::is_sorted(places.begin(), places.end())) std::sort(places.begin(), places.end());
   for (std::size_t n = 1; n < places.size(); ++n)
@@ -144,8 +162,8 @@ void take_nodes(const GmshContents &contents, TaggedMesh &draft)
     RPC_REQUIRE_CODE(place != places.end() && place->first == tag, ExitCode::bad_mesh,
                      draft.where << "cells use node " << tag << ", which the file lacks");
     const double *const x = &contents.coords[3 * place->second];
-    draft.mesh.coords.insert(draft.mesh.coords.end(), x, x + 2);
-    draft.z.push_back(x[2]);
+    draft.mesh.coords.insert(draft.mesh.coords.end(), x, x + contents.dim);
+    if (contents.dim == 2) draft.z.push_back(x[2]);
   }
 }
 
@@ -157,12 +175,13 @@ int find_node(const TaggedMesh &draft, const std::size_t tag)
   return it == draft.node_tag.end() || *it != tag ? -1 : static_cast<int>(it - draft.node_tag.begin());
 }
 
-void take_cells(const GmshContents &contents, TaggedMesh &draft)
+/// Leaves no nodes of cells in the contents: of a large body they take much memory.
+void take_cells(GmshContents &contents, TaggedMesh &draft)
 {
   const std::vector<int> &place = draft.mesh.element.gmsh_place();
   int block = -1, group = -1;
-  for (const auto &elements : contents.elements) {
-    if (contents.groups[elements.group].dim != 2) continue;
+  for (auto &elements : contents.elements) {
+    if (contents.groups[elements.group].dim != contents.dim) continue;
     if (elements.group != group) {
       group = elements.group;
       block = static_cast<int>(draft.mesh.blocks.size());
@@ -172,67 +191,101 @@ void take_cells(const GmshContents &contents, TaggedMesh &draft)
       for (const int a : place) draft.mesh.cells.push_back(find_node(draft, elements.nodes[first + a]));
     draft.mesh.block.insert(draft.mesh.block.end(), elements.tags.size(), block);
     draft.cell_tag.insert(draft.cell_tag.end(), elements.tags.begin(), elements.tags.end());
+    elements.nodes = {};
   }
 }
 
 void check_blocks(const TaggedMesh &draft)
 {
   std::vector<std::pair<std::size_t, int>> cells; // tag, cell
+  cells.reserve(draft.cell_tag.size());
   for (std::size_t c = 0; c < draft.cell_tag.size(); ++c) cells.push_back({draft.cell_tag[c], static_cast<int>(c)});
   if (!std::is_sorted(cells.begin(), cells.end())) std::sort(cells.begin(), cells.end());
   for (std::size_t c = 1; c < cells.size(); ++c) {
     const auto block = [&](const std::size_t at) { return draft.mesh.blocks[draft.mesh.block[cells[at].second]]; };
     RPC_REQUIRE_CODE(cells[c].first != cells[c - 1].first || block(c - 1) == block(c), ExitCode::bad_mesh,
-                     draft.where << "cell " << cells[c].first << " belongs to the physical surfaces \"" << block(c - 1)
-                                 << "\" and \"" << block(c) << "\"; each cell must belong to one");
+                     draft.where << "cell " << cells[c].first << " belongs to the physical "
+                                 << kind_of_group[draft.mesh.element.dim] << "s \"" << block(c - 1) << "\" and \""
+                                 << block(c) << "\"; each cell must belong to one");
     RPC_REQUIRE_CODE(cells[c].first != cells[c - 1].first, ExitCode::bad_mesh,
                      draft.where << "there are two cells " << cells[c].first << " in \"" << block(c) << "\"");
   }
 }
 
-/// The facet that a line element lies on, as its number in `facets`.
-int facet_of_line(const TaggedMesh &draft, const Entities &facets, const std::string &side, const std::size_t line,
-                  const std::size_t *const tags)
+/// "1 and 2", "1, 2 and 3".
+std::string listed(const std::vector<std::size_t> &numbers)
 {
+  std::string text;
+  for (std::size_t n = 0; n < numbers.size(); ++n)
+    text += (n == 0 ? "" : n + 1 < numbers.size() ? ", " : " and ") + std::to_string(numbers[n]);
+  return text;
+}
+
+/// An element of a side, as the file has it.
+struct SideElement {
+  const std::string &side;
+  int type;
+  std::size_t tag;
+  std::vector<std::size_t> vertices, middle; // tags of its nodes
+};
+
+/// The number in `facets` of the facet that it lies on.
+int facet_of(const TaggedMesh &draft, const Entities &facets, const SideElement &element)
+{
+  const bool plane = draft.mesh.element.dim == 2;
   const auto label = [&] {
-    return draft.where + "line " + std::to_string(line) + " of physical curve \"" + side + "\", between nodes " +
-           std::to_string(tags[0]) + " and " + std::to_string(tags[1]) + ", ";
+    return draft.where + noun_of_type(element.type) + " " + std::to_string(element.tag) + " of physical " +
+           kind_of_group[draft.mesh.element.dim - 1] + " \"" + element.side + "\", " +
+           (plane ? "between" : "with the") + " nodes " + listed(element.vertices) + ", ";
   };
-  const std::optional<int> facet = facets.find({find_node(draft, tags[0]), find_node(draft, tags[1])});
-  RPC_REQUIRE_CODE(facet, ExitCode::bad_mesh, label() << "is an edge of no cell");
+  std::vector<int> vertices;
+  for (const std::size_t tag : element.vertices) vertices.push_back(find_node(draft, tag));
+  const std::optional<int> facet = facets.find(vertices);
+  RPC_REQUIRE_CODE(facet, ExitCode::bad_mesh, label() << "is " << (plane ? "an edge" : "a face") << " of no cell");
   const int num_cells = facets.num_cells_at(*facet);
   RPC_REQUIRE_CODE(num_cells == 1, ExitCode::bad_mesh,
                    label() << "lies inside the body, between the cells " << draft.cell_tag[facets.cell(*facet, 0)]
                            << " and " << draft.cell_tag[facets.cell(*facet, num_cells - 1)]
                            << "; a side must be part of the boundary");
-  if (draft.mesh.element.order == 1) return *facet;
-  const int middle = middle_node(draft.mesh, facets.cell(*facet, 0), facets.ordinal(*facet, 0));
-  RPC_REQUIRE_CODE(find_node(draft, tags[2]) == middle, ExitCode::bad_mesh,
-                   label() << "has the middle node " << tags[2] << ", but the cell there has "
-                           << draft.node_tag[middle]);
+  if (element.middle.empty()) return *facet;
+  std::vector<std::size_t> own = element.middle, of_cell;
+  const std::vector<int> nodes = nodes_of_facet(draft.mesh, facets.cell(*facet, 0), facets.ordinal(*facet, 0));
+  for (std::size_t a = vertices.size(); a < nodes.size(); ++a) of_cell.push_back(draft.node_tag[nodes[a]]);
+  std::sort(own.begin(), own.end());
+  std::sort(of_cell.begin(), of_cell.end());
+  RPC_REQUIRE_CODE(own == of_cell, ExitCode::bad_mesh,
+                   label() << "has the middle node" << (plane ? " " : "s ") << listed(own)
+                           << ", but the cell there has " << listed(of_cell));
   return *facet;
 }
 
 void take_sides(const GmshContents &contents, const Entities &facets, TaggedMesh &draft)
 {
-  const int order = draft.mesh.element.order;
-  const int line_type = draft.mesh.element.facet().gmsh_type();
+  const Element element = draft.mesh.element.facet();
+  const std::ptrdiff_t width = element.num_nodes(), num_vertices = element.num_vertices();
   int group = -1;
   std::set<int> taken; // facets
   for (const auto &elements : contents.elements) {
-    if (contents.groups[elements.group].dim != 1) continue;
+    if (contents.groups[elements.group].dim != element.dim) continue;
     const std::string &name = contents.groups[elements.group].name;
-    RPC_REQUIRE_CODE(elements.type == line_type, ExitCode::bad_mesh,
-                     draft.where << "lines of type \"" << name_of_type(elements.type) << "\" in physical curve \""
-                                 << name << "\", which do not fit cells of order " << order);
+    RPC_REQUIRE_CODE(
+        elements.type == element.gmsh_type(), ExitCode::bad_mesh,
+        draft.where << noun_of_type(elements.type) << "s of type \"" << name_of_type(elements.type) << "\" in physical "
+                    << kind_of_group[element.dim] << " \"" << name << "\", which do not fit cells of "
+                    << (element.dim == 1 ? "order " + std::to_string(element.order)
+                                         : "type \"" + name_of_type(draft.mesh.element.gmsh_type()) + "\""));
     if (elements.group != group) {
       group = elements.group;
       draft.mesh.sides.push_back({name, {}, {}});
       taken.clear();
     }
     SideData &side = draft.mesh.sides.back();
-    for (std::size_t l = 0; l < elements.tags.size(); ++l) {
-      const int facet = facet_of_line(draft, facets, name, elements.tags[l], &elements.nodes[(order + 1) * l]);
+    auto nodes = elements.nodes.begin();
+    for (const std::size_t tag : elements.tags) {
+      const int facet =
+          facet_of(draft, facets,
+                   {name, elements.type, tag, {nodes, nodes + num_vertices}, {nodes + num_vertices, nodes + width}});
+      nodes += width;
       if (!taken.insert(facet).second) continue;
       side.cell.push_back(facets.cell(facet, 0));
       side.ordinal.push_back(facets.ordinal(facet, 0));
@@ -254,7 +307,7 @@ void check_unused_nodes(const GmshContents &contents, const TaggedMesh &draft)
 
 } // namespace
 
-MeshData mesh_of_gmsh(const std::string &where, const GmshContents &contents, const bool any_nodes)
+MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const bool any_nodes)
 {
   TaggedMesh draft;
   draft.where = where;

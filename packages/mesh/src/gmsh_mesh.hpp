@@ -10,6 +10,6 @@ namespace rpc::mesh
 /// @param where      what messages begin with
 /// @param any_nodes  whether nodes that no cell uses are no fault: a .geo has points that only serve to construct
 /// @throws rpc::Error (bad_mesh)
-MeshData mesh_of_gmsh(const std::string &where, const GmshContents &contents, bool any_nodes);
+MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, bool any_nodes);
 
 } // namespace rpc::mesh

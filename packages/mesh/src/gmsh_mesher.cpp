@@ -77,12 +77,31 @@ bool mesh_curves(const double body, const double factor)
   return done;
 }
 
-/// By cell sizes of the .geo's own. @return whether they have an end
-bool mesh_by_own_sizes(const double body, const double factor)
+/// Meshes surfaces and volumes; a bound on the nodes inside them gives sizes that are absurd an end.
+void mesh_surfaces_and_volumes()
+{
+  constexpr std::size_t most_nodes = 5'000'000;
+  constexpr double no_size_of_its_own = 1e22;
+  std::size_t nodes = 0; // gmsh asks for the size at each, once
+  gmsh::model::mesh::setSizeCallback([&](int, int, double, double, double) {
+    if (++nodes > most_nodes)
+      throw "cell sizes are too small: surfaces and volumes would have more than " + std::to_string(most_nodes) +
+          " nodes";
+    return no_size_of_its_own;
+  });
+  gmsh::model::mesh::generate(3);
+  gmsh::model::mesh::removeSizeCallback();
+}
+
+/// By cell sizes of the .geo's own. @return whether those on curves have an end
+bool mesh_by_own_sizes(const double body, const double factor, const int dim)
 {
   gmsh::option::setNumber("Mesh.MeshSizeFactor", factor);
   if (!mesh_curves(body, factor)) return false;
-  gmsh::model::mesh::generate(2);
+  if (dim == 3)
+    mesh_surfaces_and_volumes();
+  else
+    gmsh::model::mesh::generate(2);
   return true;
 }
 
@@ -183,7 +202,7 @@ std::string mesh_by_field(const GmshRequest &request)
 }
 
 /// Makes the mesh. @return what is absurd about its sizes; "" if nothing is
-std::string make_mesh(const GmshRequest &request)
+std::string make_mesh(const GmshRequest &request, const int dim)
 {
   constexpr double greatest_factor = 1e9, greatest_body = 1e50;
   const bool field = !request.sizes.triangles.empty();
@@ -200,7 +219,7 @@ std::string make_mesh(const GmshRequest &request)
   gmsh::option::setNumber("Mesh.SecondOrderIncomplete", 0);
   if (field)
     complaint << mesh_by_field(request);
-  else if (!mesh_by_own_sizes(body, factor))
+  else if (!mesh_by_own_sizes(body, factor, dim))
     complaint << "cell sizes are too small for a body of size " << body
               << " [m]: its curves would have more than 100000 nodes";
   return complaint.str();
@@ -240,42 +259,27 @@ EntityElements elements_of(const int dim, const int entity)
   return elements;
 }
 
-void take_groups(GmshContents &contents, std::set<int> &surfaces)
+void take_mesh(GmshContents &contents)
 {
   gmsh::vectorpair groups;
   gmsh::model::getPhysicalGroups(groups);
   std::sort(groups.begin(), groups.end());
   for (const auto &[dim, tag] : groups) {
-    if (dim != 1 && dim != 2) continue;
+    if (dim != contents.dim - 1 && dim != contents.dim) continue;
     GmshGroup group{dim, tag, ""};
     gmsh::model::getPhysicalName(dim, tag, group.name);
     contents.groups.push_back(group);
     std::vector<int> entities;
     gmsh::model::getEntitiesForPhysicalGroup(dim, tag, entities);
-    for (int &entity : entities) entity = std::abs(entity); // a curve's sign is its direction
+    for (int &entity : entities) entity = std::abs(entity); // its sign is its direction
     std::sort(entities.begin(), entities.end());
     entities.erase(std::unique(entities.begin(), entities.end()), entities.end());
     for (const int entity : entities) {
-      if (dim == 2) surfaces.insert(entity);
       EntityElements elements = elements_of(dim, entity);
       for (std::size_t t = 0; t < elements.types.size(); ++t)
         contents.elements.push_back({static_cast<int>(contents.groups.size()) - 1, elements.types[t],
                                      std::move(elements.tags[t]), std::move(elements.nodes[t])});
     }
-  }
-}
-
-void take_mesh(GmshContents &contents)
-{
-  contents.solid = !elements_of(3, -1).types.empty();
-  std::set<int> surfaces;
-  take_groups(contents, surfaces);
-  gmsh::vectorpair all_surfaces;
-  gmsh::model::getEntities(all_surfaces, 2);
-  for (const auto &[dim, surface] : all_surfaces) {
-    if (surfaces.count(surface)) continue;
-    for (const auto &nodes : elements_of(dim, surface).nodes)
-      contents.ungrouped_nodes.insert(contents.ungrouped_nodes.end(), nodes.begin(), nodes.end());
   }
   std::vector<double> parametric;
   gmsh::model::mesh::getNodes(contents.node_tags, contents.coords, parametric, -1, -1, false, false);
@@ -290,7 +294,10 @@ void load(const GmshRequest &request, GmshContents &contents)
     gmsh::open(request.file);
   contents.complaint = first_error();
   if (!contents.complaint.empty()) return;
-  const std::string absurdity = make_mesh(request);
+  contents.dim = std::max(2, gmsh::model::getDimension());
+  const bool flat_sizes_in_space = contents.dim == 3 && !request.sizes.triangles.empty();
+  if (request.dimension_only || flat_sizes_in_space) return;
+  const std::string absurdity = make_mesh(request, contents.dim);
   contents.complaint = first_error();
   contents.again = !contents.complaint.empty();
   if (contents.complaint.empty()) contents.complaint = absurdity;

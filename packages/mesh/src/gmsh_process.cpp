@@ -166,7 +166,7 @@ GmshContents run_gmsh(const std::string &where, const GmshRequest &)
 {
   throw Error(ExitCode::bad_input, where +
                                        "this rpc was built without gmsh, which meshes a .geo; build it with gmsh (on "
-                                       "Debian libgmsh-dev), or run gmsh -2 and give the .msh");
+                                       "Debian libgmsh-dev), or run gmsh -2, in space gmsh -3, and give the .msh");
 }
 #endif
 

@@ -136,6 +136,7 @@ void each_part(Request &request, Each &each)
   each(request.order);
   each(request.attempt);
   each_part(request.sizes, each);
+  each(request.dimension_only);
 }
 
 template <class Group, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Group>, GmshGroup>, int> = 0>
@@ -160,12 +161,11 @@ void each_part(Contents &contents, Each &each)
 {
   each(contents.complaint);
   each(contents.again);
-  each(contents.solid);
+  each(contents.dim);
   each(contents.groups);
   each(contents.elements);
   each(contents.node_tags);
   each(contents.coords);
-  each(contents.ungrouped_nodes);
 }
 
 template <class T>

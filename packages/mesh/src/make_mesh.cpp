@@ -20,7 +20,9 @@ void add_gmsh_parameters(Teuchos::ParameterList &valid)
   valid.set(
       "File", "",
       "gmsh: a .geo to be meshed or a .msh (2.2 or 4.1), looked for in the deck's folder, then in the current one. "
-      "Its physical surfaces become blocks, its physical curves sides, by their names.");
+      "Its physical surfaces become blocks, its physical curves sides, by their names; with volumes in it, which makes "
+      "a "
+      "mesh in space, physical volumes and surfaces.");
   valid.set("Size Factor", 1., "gmsh: factor on all cell sizes that a .geo asks for, > 0.");
   valid.set(
       "Order", 0,
@@ -95,10 +97,11 @@ MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &
   return gmsh_options(list, folder, comm);
 }
 
-int dimension(const MeshOptions &options)
+int dimension(const MeshOptions &options, const Comm &comm)
 {
-  const auto *box = std::get_if<BoxOptions>(&options);
-  return box ? box->element.dim : 2;
+  if (const auto *box = std::get_if<BoxOptions>(&options)) return box->element.dim;
+  return std::stoi(text_of_root(comm, ExitCode::bad_mesh,
+                                [&] { return std::to_string(gmsh_dimension(std::get<GmshOptions>(options))); }));
 }
 
 std::optional<MeshOptions> coarser(const MeshOptions &options, const double factor)

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <regex>
 #include <set>
 #include <string_view>
@@ -31,6 +32,11 @@ std::string in_quotes(const std::string_view piece)
   for (char &c : text)
     if (c < ' ' || c > '~') c = '?';
   return text;
+}
+
+bool is_blank(const char c)
+{
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
 bool is_letter(const unsigned char c)
@@ -111,7 +117,10 @@ public:
   }
 
 private:
-  void skip_blanks() { at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size()); }
+  void skip_blanks()
+  {
+    while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+  }
 
   template <class T>
   T bytes()
@@ -128,13 +137,13 @@ private:
   {
     skip_blanks();
     if (at_ == text_.size()) refuse("the file ends early: it is truncated");
-    const std::string_view word = text_.substr(at_, std::min(text_.find_first_of(blanks, at_), text_.size()) - at_);
     T value{};
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
+    const char *const last = text_.data() + text_.size();
+    const auto [end, error] = std::from_chars(text_.data() + at_, last, value);
+    if (error != std::errc() || (end != last && !is_blank(*end)))
       refuse(std::string(std::is_integral_v<T> ? "a whole number" : "a number") + " was expected, got " +
-             in_quotes(word));
-    at_ += word.size();
+             in_quotes(text_.substr(at_, std::min(text_.find_first_of(blanks, at_), text_.size()) - at_)));
+    at_ = static_cast<std::size_t>(end - text_.data());
     return value;
   }
 
@@ -151,6 +160,7 @@ struct Draft {
   std::map<std::pair<int, int>, std::string> groups;                // dimension and tag -> name
   std::map<std::pair<int, int>, std::vector<int>> groups_of_entity; // dimension and entity -> tags; 4.1
   std::map<Key, GmshElements> elements;
+  std::vector<std::size_t> ungrouped_nodes[4]; // by dimension
 };
 
 /// Whether it is version 4.1.
@@ -242,26 +252,42 @@ const GmshType &known_type(const Reader &reader, const int number)
   return *type;
 }
 
-/// One element, into each of its groups.
-void add_element(Draft &draft, const int type, const int entity, const std::vector<int> &groups, const std::size_t tag,
-                 const std::vector<std::size_t> &nodes)
+/// Where elements of one type, entity and set of groups go.
+class Destination
 {
-  const int dim = gmsh_type(type)->dim;
-  draft.contents.solid = draft.contents.solid || dim == 3;
-  if (dim == 2 && groups.empty())
-    draft.contents.ungrouped_nodes.insert(draft.contents.ungrouped_nodes.end(), nodes.begin(), nodes.end());
-  if (dim != 1 && dim != 2) return;
-  for (const int group : groups) {
-    GmshElements &elements = draft.elements[{dim, group, entity, type}];
-    elements.type = type;
-    elements.tags.push_back(tag);
-    elements.nodes.insert(elements.nodes.end(), nodes.begin(), nodes.end());
+public:
+  Destination(Draft &draft, const int type, const int entity, const std::vector<int> &groups)
+  {
+    const int dim = gmsh_type(type)->dim;
+    draft.contents.dim = std::max(draft.contents.dim, dim);
+    for (const int group : groups) {
+      GmshElements &elements = draft.elements[{dim, group, entity, type}];
+      elements.type = type;
+      lists_.push_back(&elements);
+    }
+    if (groups.empty()) ungrouped_nodes_ = &draft.ungrouped_nodes[dim];
   }
-}
+
+  void add(const std::size_t tag, const std::vector<std::size_t> &nodes)
+  {
+    for (GmshElements *const list : lists_) {
+      list->tags.push_back(tag);
+      list->nodes.insert(list->nodes.end(), nodes.begin(), nodes.end());
+    }
+    if (ungrouped_nodes_) ungrouped_nodes_->insert(ungrouped_nodes_->end(), nodes.begin(), nodes.end());
+  }
+
+private:
+  std::vector<GmshElements *> lists_;
+  std::vector<std::size_t> *ungrouped_nodes_ = nullptr;
+};
 
 void read_elements_22(Reader &reader, Draft &draft)
 {
   auto count = reader.text_integer();
+  std::vector<std::size_t> nodes;
+  std::optional<Destination> destination;
+  std::tuple<int, int, int> before; // type, group and entity
   while (count > 0) {
     // ASCII: number, type, number of tags, then the tags and nodes; binary: type, length of a run, number of tags,
     // then for each element of the run its number, tags and nodes.
@@ -278,12 +304,14 @@ void read_elements_22(Reader &reader, Draft &draft)
         if (t == 0) group = group_tag(value);
         if (t == 1) entity = value;
       }
-      std::vector<std::size_t> nodes;
+      nodes.clear();
       for (int a = 0; a < type.num_nodes; ++a) nodes.push_back(reader.node(reader.small_integer()));
-      std::vector<int> groups;
-      if (group != 0) groups.push_back(group);
-      if (group != 0) draft.groups[{type.dim, group}];
-      add_element(draft, number, entity, groups, static_cast<std::size_t>(tag), nodes);
+      if (const std::tuple now(number, group, entity); !destination || now != before) {
+        before = now;
+        if (group != 0) draft.groups[{type.dim, group}];
+        destination.emplace(draft, number, entity, group == 0 ? std::vector<int>() : std::vector<int>{group});
+      }
+      destination->add(static_cast<std::size_t>(tag), nodes);
     }
   }
 }
@@ -291,6 +319,7 @@ void read_elements_22(Reader &reader, Draft &draft)
 void read_elements_41(Reader &reader, Draft &draft)
 {
   auto blocks = reader.large_integer();
+  std::vector<std::size_t> nodes;
   for (int unused = 0; unused < 3; ++unused) reader.large_integer(); // number of elements, least and greatest tag
   for (; blocks > 0; --blocks) {
     const auto dim = reader.small_integer();
@@ -299,21 +328,30 @@ void read_elements_41(Reader &reader, Draft &draft)
     const GmshType &type = known_type(reader, number);
     if (dim != type.dim)
       reader.refuse("elements of type \"" + type.name() + "\" cannot be of dimension " + std::to_string(dim));
-    const std::vector<int> &groups = draft.groups_of_entity[{type.dim, entity}];
-    for (auto count = reader.large_integer(); count > 0; --count) {
+    auto count = reader.large_integer();
+    if (count <= 0) continue;
+    Destination destination(draft, number, entity, draft.groups_of_entity[{type.dim, entity}]);
+    for (; count > 0; --count) {
       const auto tag = reader.large_integer();
-      std::vector<std::size_t> nodes;
+      nodes.clear();
       for (int a = 0; a < type.num_nodes; ++a) nodes.push_back(reader.node(reader.large_integer()));
-      add_element(draft, number, entity, groups, static_cast<std::size_t>(tag), nodes);
+      destination.add(static_cast<std::size_t>(tag), nodes);
     }
   }
 }
 
 GmshContents finished(Draft draft)
 {
+  const auto matters = [](const int of_group, const int of_body) {
+    return of_group == of_body || of_group == of_body - 1;
+  };
+  for (const auto &[key, name] : draft.groups) draft.contents.dim = std::max(draft.contents.dim, key.first);
+  const int dim = draft.contents.dim;
   for (const auto &[key, name] : draft.groups)
-    if (key.first == 1 || key.first == 2) draft.contents.groups.push_back({key.first, key.second, name});
+    if (matters(key.first, dim)) draft.contents.groups.push_back({key.first, key.second, name});
+  draft.contents.ungrouped_nodes = std::move(draft.ungrouped_nodes[dim]);
   for (auto &[key, elements] : draft.elements) {
+    if (!matters(std::get<0>(key), dim)) continue;
     const auto &groups = draft.contents.groups;
     const auto group = std::find_if(groups.begin(), groups.end(), [&key = key](const GmshGroup &g) {
       return g.dim == std::get<0>(key) && g.tag == std::get<1>(key);
@@ -325,6 +363,21 @@ GmshContents finished(Draft draft)
 }
 
 } // namespace
+
+int dimension_of_msh(const std::string &where, const std::string &text)
+{
+  Reader reader(where, text);
+  read_format(reader);
+  Draft draft;
+  for (std::string name = reader.next_section(); !name.empty(); name = reader.next_section())
+    if (name == "PhysicalNames") {
+      read_names(reader, draft);
+      break;
+    } else
+      reader.skip_section();
+  const bool solid = !draft.groups.empty() && draft.groups.rbegin()->first.first == 3;
+  return solid ? 3 : 2;
+}
 
 GmshContents read_msh(const std::string &where, const std::string &text)
 {

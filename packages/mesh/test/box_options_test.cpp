@@ -205,9 +205,9 @@ TEST(MeshOptions, TellTheDimensionBeforeThereIsAMesh)
 {
   auto solid = deck("Lower", Array<double>(tuple(0., 0., 0.)));
   solid.set("Upper", Array<double>(tuple(1., 1., 1.))).set("Cells", Array<int>(tuple(1, 1, 1)));
-  EXPECT_EQ(rpc::mesh::dimension(read(ParameterList())), 2);
-  EXPECT_EQ(rpc::mesh::dimension(read(solid)), 3);
-  EXPECT_EQ(rpc::mesh::dimension(GmshOptions()), 2);
+  const auto comm = Tpetra::getDefaultComm();
+  EXPECT_EQ(rpc::mesh::dimension(read(ParameterList()), *comm), 2);
+  EXPECT_EQ(rpc::mesh::dimension(read(solid), *comm), 3);
 }
 
 TEST(Coarser, BoxHasFewerCellsInEachDirectionButOneAtLeast)

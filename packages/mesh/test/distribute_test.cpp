@@ -32,7 +32,13 @@ rpc::RCP<const rpc::Comm> world()
 /// A box as a whole mesh: its numbers are those that make_box() gives as ids, its left half is a block of its own.
 MeshData whole_box(const Element &element, const double left, const int columns, const int rows)
 {
-  const BoxOptions options{{left, -1}, {left + columns, 1}, {columns, rows}, element};
+  BoxOptions options{{left, -1}, {left + columns, 1}, {columns, rows}, element};
+  const int dim = element.dim;
+  if (dim == 3) {
+    options.lower.push_back(0);
+    options.upper.push_back(3);
+    options.cells.push_back(2);
+  }
   const Mesh box = make_box(options, world()->split(world()->getRank(), 0));
   const auto coords = rpc::to_host(box.coords);
   const auto cells = rpc::to_host(box.cells);
@@ -43,7 +49,7 @@ MeshData whole_box(const Element &element, const double left, const int columns,
   whole.blocks = {"left", "right"};
   whole.block.resize(box.num_cells());
   for (LO n = 0; n < box.num_local_nodes(); ++n)
-    for (int d = 0; d < 2; ++d) whole.coords[2 * box.node_id(n) + d] = coords(n, d);
+    for (int d = 0; d < dim; ++d) whole.coords[dim * box.node_id(n) + d] = coords(n, d);
   for (LO c = 0; c < box.num_cells(); ++c) {
     for (int a = 0; a < element.num_nodes(); ++a)
       whole.cells[element.num_nodes() * box.cell_id(c) + a] = static_cast<int>(box.node_id(cells(c, a)));
@@ -120,7 +126,7 @@ template <class Check>
 void for_each_mesh(const Check &check)
 {
   for (const Element &element :
-       {Element{2, 1}, Element{2, 2}, Element{2, 1, Shape::simplex}, Element{2, 2, Shape::simplex}}) {
+       {Element{2, 1}, Element{2, 2}, Element{2, 1, Shape::simplex}, Element{2, 2, Shape::simplex}, Element{3, 1}}) {
     const int ranks = world()->getSize();
     const int cells = element.shape == Shape::simplex ? (ranks + 1) / 2 : ranks; // one for each rank, if even
     const std::vector<std::pair<std::string, MeshData>> meshes = {
@@ -128,7 +134,7 @@ void for_each_mesh(const Check &check)
         {"plate", whole_box(element, 0, 5, 3)}, // on 3 ranks, facets whose nodes belong to other ranks than their cell
         {"two parts", beside(whole_box(element, 0, 4, 3), whole_box(element, 10, 3, 5))}};
     for (const auto &[name, whole] : meshes) {
-      SCOPED_TRACE(element.name() + " " + name);
+      SCOPED_TRACE(std::to_string(element.dim) + "D " + element.name() + " " + name);
       check(Dealt(whole));
     }
   }
@@ -210,7 +216,8 @@ TEST(Distribute, LocalNodesLieWhereTheWholeMeshHasThem)
     const auto coords = rpc::to_host(dealt.mesh.coords);
     ASSERT_EQ(static_cast<LO>(coords.extent(0)), dealt.mesh.num_local_nodes());
     for (LO n = 0; n < dealt.mesh.num_local_nodes(); ++n)
-      for (int d = 0; d < 2; ++d) EXPECT_EQ(coords(n, d), dealt.whole.coords[2 * dealt.node_id[n] + d]);
+      for (int d = 0; d < dealt.mesh.dim(); ++d)
+        EXPECT_EQ(coords(n, d), dealt.whole.coords[dealt.mesh.dim() * dealt.node_id[n] + d]);
   });
 }
 

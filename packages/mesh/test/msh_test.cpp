@@ -215,9 +215,10 @@ TEST(Msh, GroupsMustBeNamedOnceAndFilled)
                  {"no physical surface", "Physical Surface(\"body\")"});
 }
 
-TEST(Msh, CellsMustBePlaneAndOfOneKind)
+TEST(Msh, CellsMustBeOfOneKindThatCanBeRead)
 {
-  expect_refused(squares_with([](Msh &msh) { msh.elements.push_back("5 4 2 0 0 1 2 4 5"); }), {"dimension 3", "plane"});
+  expect_refused(squares_with([](Msh &msh) { msh.elements.push_back("5 4 2 0 0 1 2 4 5"); }),
+                 {"has volumes, but no physical volume"});
   expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 2 2 4 0 2 3 6"; }),
                  {"one kind", "1 of type \"Quadrilateral 4\" in \"steel\"", "1 of type \"Triangle 3\" in \"rubber\""});
   expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 16 2 4 0 2 3 6 5 1 1 1 1"; }),

@@ -25,18 +25,24 @@ struct GmshOptions {
 /// Says nothing where that fails: the first mesh does. To be called in a thread that lives as long as meshes are made.
 void start_gmsh_early();
 
-/// Reads a plane mesh of triangles or quadrilaterals, of order 1 or 2, curved where the file's geometry is. One rank only.
+/// Dimension of the body: 3 if a .geo has volumes, or a .msh names physical ones, else 2. Makes no mesh. One rank only.
+/// @throws rpc::Error as read_gmsh() does, for what shows that early
+int gmsh_dimension(const GmshOptions &options);
+
+/// Reads a mesh of triangles, quadrilaterals, tetrahedra or hexahedra, of order 1 or 2 (full: 9 and 27 nodes), curved where the
+/// file's geometry is. One rank only.
 ///
-/// Physical surfaces become blocks and physical curves sides, by their names, in the order of their tags; cells outside
-/// every physical surface are not part of the body. Nodes keep gmsh's order. A box has the block and sides of make_box().
+/// A mesh is in space if there are volumes. Physical surfaces, in space volumes, become blocks and physical curves, in space
+/// surfaces, sides, by their names, in the order of their tags; groups of lower dimension do not count, and cells outside
+/// every block are not part of the body. Nodes keep gmsh's order. A box has the block and sides of make_box().
 ///
 /// With `sizes`, a .geo's own cell sizes are out of play, but for an explicit Mesh.MeshSizeFromCurvature. Quadrilaterals
 /// come from triangles, by recombination and division. Equal options give equal meshes, bit by bit.
-/// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no physical surface, or a
-///         group without a name; cells off the plane z = 0, of different or unsupported kinds, in two blocks, degenerate or
-///         inverted; a side with facets that belong to no cell or to two; nodes that no cell uses, or two at one place;
-///         sizes that are not > 0 and finite, or ask for more than 5 million cells, or come with a .geo that
-///         divides curves by Transfinite or Layers.
+/// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no block, or a group
+///         without a name; cells of a plane mesh off the plane z = 0; cells of different or unsupported kinds, in two blocks,
+///         degenerate, inverted or overlapping; a side with facets that belong to no cell or to two; nodes that no cell uses,
+///         or two at one place; sizes that are not > 0 and finite, or ask for more than 5 million cells, in space nodes, or
+///         come with volumes or with a .geo that divides curves by Transfinite or Layers.
 ///         (bad_input) if the file cannot be opened, a .msh comes with a size factor or another order, or a .geo with an
 ///         rpc that was built without gmsh: that only meshes, .msh files are read without it
 MeshData read_gmsh(const GmshOptions &options);

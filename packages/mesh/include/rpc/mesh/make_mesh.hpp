@@ -21,8 +21,9 @@ Teuchos::ParameterList valid_parameters();
 /// @throws rpc::Error (bad_input) on every rank on anything out of range, or given for another type of mesh
 MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &folder, const Comm &comm);
 
-/// Space dimension, known before there is a mesh.
-int dimension(const MeshOptions &options);
+/// Space dimension, known before there is a mesh: rank 0 looks into a file, and gmsh reads a .geo. Collective on comm.
+/// @throws rpc::Error on every rank, as gmsh_dimension() does
+int dimension(const MeshOptions &options, const Comm &comm);
 
 /// A mesh of the same body and elements with cells about `factor` times as long: a box has that many cells fewer in each
 /// direction, at least one; a .geo, or a field of sizes, has that many times the size factor. A .msh cannot be coarsened: none.
@@ -33,7 +34,7 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, double factor);
 
 /// The options with which gmsh meshes the same body, with the same elements, sides and blocks, by cell sizes of a field: an
 /// edge is about as long as the field says there. A size factor is 1 then, and sizes that the options had are replaced.
-/// None for what gmsh cannot mesh anew: a .msh, a box in 3D.
+/// None for what gmsh cannot mesh anew: a .msh, a box in 3D. A .geo with volumes is told by make_mesh() only.
 /// @param sizes  read on rank 0 only, may be null on others
 std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes);
 

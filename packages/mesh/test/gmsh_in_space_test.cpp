@@ -1,0 +1,164 @@
+// Meshing .geo files with volumes.
+
+#include "expect_error.hpp"
+#include "measures.hpp"
+#include "rpc/core/tpetra.hpp"
+#include "rpc/mesh/gmsh.hpp"
+#include "rpc/mesh/make_mesh.hpp"
+#include "same_mesh.hpp"
+#include "scratch_file.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <cmath>
+#include <memory>
+
+namespace
+{
+
+using rpc::ExitCode;
+using rpc::mesh::GmshOptions;
+using rpc::mesh::MeshData;
+using rpc::mesh::read_gmsh;
+using rpc::test::expect_error;
+using rpc::test::expect_same_mesh;
+using rpc::test::integrals;
+using rpc::test::ScratchFile;
+using rpc::test::volume;
+using rpc::test::volume_within_sides;
+
+const std::string octant = std::string(RPC_TEST_DATA_DIR) + "/octant.geo";
+
+/// A box of 1 x 2 x 3, its lower face extruded upwards, before its groups are named.
+std::string box(const std::string &extrusion = "")
+{
+  return "Point(1) = {0, 0, 0, 1}; Point(2) = {1, 0, 0, 1}; Point(3) = {1, 2, 0, 1}; Point(4) = {0, 2, 0, 1};\n"
+         "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};\n"
+         "Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};\n" +
+         extrusion;
+}
+const std::string lift = "out[] = Extrude {0, 0, 3} { Surface{1}; ";
+const std::string names = "Physical Volume(\"body\") = {out[1]}; Physical Surface(\"top\") = {out[0]};\n"
+                          "Physical Surface(\"rest\") = {1, out[2], out[3], out[4], out[5]};\n";
+const std::string tetrahedra = box(lift + "};\n") + names;
+const std::string hexahedra =
+    box("Transfinite Surface {1}; Recombine Surface {1};\n" + lift + "Layers{2}; Recombine; };\n") + names;
+
+MeshData read_geo(const std::string &text, const double size_factor = 1, const int order = 0)
+{
+  const ScratchFile file("mesh.geo", text);
+  return read_gmsh({file.path(), size_factor, order});
+}
+
+int dimension_of(const std::string &text)
+{
+  const ScratchFile file("mesh.geo", text);
+  return rpc::mesh::dimension(GmshOptions{file.path(), 1, 0}, *Tpetra::getDefaultComm());
+}
+
+TEST(GmshInSpace, GeoAndItsMshGiveTheSameMesh)
+{
+  expect_same_mesh(read_gmsh({octant, 1, 0}), read_gmsh({std::string(RPC_TEST_DATA_DIR) + "/octant_41.msh", 1, 0}),
+                   "octant");
+}
+
+TEST(GmshInSpace, MakesAllFourElements)
+{
+  for (const char shape : {'P', 'Q'})
+    for (const int order : {1, 2}) {
+      const MeshData mesh = read_geo(shape == 'P' ? tetrahedra : hexahedra, 1, order);
+      SCOPED_TRACE(mesh.element.name());
+      EXPECT_EQ(mesh.element.dim, 3);
+      EXPECT_EQ(mesh.element.name(), shape + std::to_string(order));
+      EXPECT_EQ(mesh.blocks, std::vector<std::string>{"body"});
+      EXPECT_NEAR(volume(mesh), 6, 1e-13);
+      EXPECT_NEAR(volume_within_sides(mesh), 6, 1e-13);
+      ASSERT_EQ(mesh.sides.size(), 2u);
+      EXPECT_EQ(mesh.sides[0].name, "top");
+      EXPECT_NEAR(integrals(mesh, mesh.sides[0]).normal[2], 2, 1e-13);
+      EXPECT_NEAR(integrals(mesh, mesh.sides[1]).normal[2], -2, 1e-13);
+    }
+}
+
+TEST(GmshInSpace, OrderIsTwoUnlessAskedForWhateverTheGeoSays)
+{
+  EXPECT_EQ(read_geo(hexahedra + "Mesh.ElementOrder = 1; Mesh.SecondOrderIncomplete = 1;\n").element.name(), "Q2");
+  EXPECT_EQ(read_geo(tetrahedra + "Mesh.ElementOrder = 3;\n", 1, 1).element.name(), "P1");
+}
+
+TEST(GmshInSpace, CurvedTetrahedraFillABallToTheFourthOrder)
+{
+  const double exact = std::acos(-1.) / 6;
+  const double coarse = exact - volume(read_gmsh({octant, .5, 2})), fine = exact - volume(read_gmsh({octant, .25, 2}));
+  EXPECT_LT(std::abs(coarse), 1e-3 * exact);
+  EXPECT_LT(std::abs(fine), std::abs(coarse) / 8);
+  EXPECT_GT(std::abs(exact - volume(read_gmsh({octant, .25, 1}))), 10 * std::abs(coarse));
+}
+
+TEST(GmshInSpace, OpenCascadeTakesPartsAway)
+{
+  const std::string plate = "SetFactory(\"OpenCASCADE\");\n"
+                            "Box(1) = {0, 0, 0, 2, 1, 1}; Cylinder(2) = {2, 0, 0, 0, 1, 0, .5};\n"
+                            "BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\n"
+                            "Mesh.MeshSizeMax = .25;\n"
+                            "Physical Volume(\"plate\") = {3};\n"
+                            "Physical Surface(\"left\") = Surface In BoundingBox {-.1, -.1, -.1, .1, 1.1, 1.1};\n";
+  const MeshData mesh = read_geo(plate);
+  EXPECT_EQ(mesh.element.name(), "P2");
+  EXPECT_EQ(mesh.blocks, std::vector<std::string>{"plate"});
+  EXPECT_NEAR(volume(mesh), 2 - std::acos(-1.) / 16, 1e-4);
+  ASSERT_EQ(mesh.sides.size(), 1u);
+  EXPECT_NEAR(integrals(mesh, mesh.sides[0]).normal[0], -1, 1e-14);
+}
+
+TEST(GmshInSpace, DimensionIsKnownBeforeTheMesh)
+{
+  EXPECT_EQ(dimension_of(tetrahedra), 3);
+  EXPECT_EQ(dimension_of(box() + "Physical Surface(\"body\") = {1};\n"), 2);
+  expect_error(ExitCode::bad_mesh, "syntax error", [] { dimension_of("Point("); });
+}
+
+TEST(GmshInSpace, CoarserMeshesHaveFewerCells)
+{
+  const auto coarse = rpc::mesh::coarser(GmshOptions{octant, .3, 2}, 2);
+  ASSERT_TRUE(coarse);
+  const auto comm = Tpetra::getDefaultComm();
+  const auto fine = rpc::mesh::make_mesh(GmshOptions{octant, .3, 2}, comm);
+  const auto mesh = rpc::mesh::make_mesh(*coarse, comm);
+  EXPECT_EQ(mesh.dim(), 3);
+  EXPECT_LT(3 * rpc::sum_all(*comm, mesh.num_owned_cells), rpc::sum_all(*comm, fine.num_owned_cells));
+}
+
+TEST(GmshInSpace, RefusalsNameFileRuleAndRemedy)
+{
+  const auto refused = [](const std::string &text, const std::initializer_list<std::string> &parts) {
+    expect_error(ExitCode::bad_mesh, "mesh.geo\": ", [&] { read_geo(text); });
+    expect_error(ExitCode::bad_mesh, parts, [&] { read_geo(text); });
+  };
+  const std::string solid = box(lift + "};\n"), volume_named = "Physical Volume(\"body\") = {out[1]};\n";
+  refused(solid + "Physical Surface(\"body\") = {1};\n",
+          {"has volumes, but no physical volume", "Physical Volume(\"body\")"});
+  refused(solid + "Physical Volume(3) = {out[1]};\n", {"physical volume 3", "no name", "Physical Volume(\"body\", 3)"});
+  refused(solid + volume_named + "Physical Surface(7) = {1};\n",
+          {"physical surface 7", "Physical Surface(\"contact\", 7)"});
+  refused(box("out[] = Extrude {0, 0, 3} { Surface{1}; Layers{2}; Recombine; };\n") + volume_named,
+          {"\"Prism 18\"", "recombine all surfaces of the volume (hexahedra), or none (tetrahedra)"});
+  refused(solid + volume_named +
+              "more[] = Extrude {0, 0, 1} { Surface{out[0]}; };\n"
+              "Physical Volume(\"cap\") = {more[1]}; Physical Surface(\"between\") = {out[0]};\n",
+          {"physical surface \"between\"", "inside the body"});
+  refused(solid + volume_named +
+              "Point(90) = {9, 0, 0, 1}; Line(90) = {2, 90}; s[] = Extrude {0, 0, 1} { Curve{90}; };\n"
+              "Physical Surface(\"away\") = {s[1]};\n",
+          {"physical surface \"away\"", "is a face of no cell"});
+}
+
+TEST(GmshInSpace, FieldsOfCellSizesAreForPlaneBodies)
+{
+  const ScratchFile file("mesh.geo", tetrahedra);
+  GmshOptions options{file.path(), 1, 0};
+  options.sizes =
+      std::make_shared<rpc::mesh::SizeField>(rpc::mesh::SizeField{{0, 0, 9, 0, 0, 9}, {0, 1, 2}, {1, 1, 1}});
+  expect_error(ExitCode::bad_mesh, {"mesh.geo\": has volumes", "only plane bodies"}, [&] { read_gmsh(options); });
+}
+
+} // namespace
