@@ -38,24 +38,36 @@ Entities entities_of(const Element &element, const Element::Table &table, const 
   entities.per_cell = static_cast<int>(table.size());
   entities.num_vertices = num_vertices;
   const std::size_t width = element.num_nodes(), num_cells = cells.size() / width;
-  std::vector<std::pair<Key, int>> all; // vertices, occurrence
-  all.reserve(num_cells * table.size());
-  for (std::size_t c = 0; c < num_cells; ++c)
-    for (const auto &local : table)
-      all.emplace_back(key_of(&cells[width * c], local, num_vertices), static_cast<int>(all.size()));
-  std::sort(all.begin(), all.end());
-  entities.of_cell.resize(all.size());
-  entities.occurrences.value.reserve(all.size());
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const auto &[key, occurrence] = all[k];
-    if (k == 0 || key != all[k - 1].first) {
-      if (k > 0) entities.occurrences.begin.push_back(k);
-      entities.vertices.insert(entities.vertices.end(), key.begin(), key.begin() + num_vertices);
-    }
-    entities.of_cell[occurrence] = entities.size();
-    entities.occurrences.value.push_back(occurrence);
+  const auto key_at = [&](const std::size_t occurrence) {
+    return key_of(&cells[width * (occurrence / table.size())], table[occurrence % table.size()], num_vertices);
+  };
+  std::vector<int> &of_cell = entities.of_cell;
+  of_cell.resize(num_cells * table.size());
+  int last_node = -1;
+  for (std::size_t k = 0; k < of_cell.size(); ++k) {
+    of_cell[k] = key_at(k)[0];
+    last_node = std::max(last_node, of_cell[k]);
   }
-  if (!all.empty()) entities.occurrences.begin.push_back(all.size());
+  Lists by_lowest = sorted_into_lists(of_cell, last_node + 1); // of vertices: then only a few are left to sort
+  entities.occurrences.value = std::move(by_lowest.value);
+  auto occurrence = entities.occurrences.value.begin();
+  std::vector<std::pair<Key, int>> few; // vertices, occurrence
+  int entity = -1;
+  for (int node = 0; node <= last_node; ++node) {
+    few.clear();
+    for (int k = 0; k < by_lowest.size_of(node); ++k) few.emplace_back(key_at(occurrence[k]), occurrence[k]);
+    std::sort(few.begin(), few.end());
+    for (std::size_t k = 0; k < few.size(); ++k, ++occurrence) {
+      const Key &key = few[k].first;
+      if (k == 0 || key != few[k - 1].first) {
+        if (++entity > 0) entities.occurrences.begin.push_back(occurrence - entities.occurrences.value.begin());
+        entities.vertices.insert(entities.vertices.end(), key.begin(), key.begin() + num_vertices);
+      }
+      *occurrence = few[k].second;
+      of_cell[*occurrence] = entity;
+    }
+  }
+  if (entity >= 0) entities.occurrences.begin.push_back(of_cell.size());
   return entities;
 }
 
