@@ -80,7 +80,7 @@ bool mesh_curves(const double body, const double factor)
 /// Meshes surfaces and volumes; a bound on the nodes inside them gives sizes that are absurd an end.
 void mesh_surfaces_and_volumes()
 {
-  constexpr std::size_t most_nodes = 5'000'000;
+  constexpr std::size_t most_nodes = 2'000'000; // of order 1: larger meshes are for gmsh alone
   constexpr double no_size_of_its_own = 1e22;
   std::size_t nodes = 0; // gmsh asks for the size at each, once
   gmsh::model::mesh::setSizeCallback([&](int, int, double, double, double) {

@@ -41,8 +41,9 @@ int gmsh_dimension(const GmshOptions &options);
 /// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no block, or a group
 ///         without a name; cells of a plane mesh off the plane z = 0; cells of different or unsupported kinds, in two blocks,
 ///         degenerate, inverted or overlapping; a side with facets that belong to no cell or to two; nodes that no cell uses,
-///         or two at one place; sizes that are not > 0 and finite, or ask for more than 5 million cells, in space nodes, or
-///         come with volumes or with a .geo that divides curves by Transfinite or Layers.
+///         or two at one place; sizes that ask for too many cells (in space 2 million vertices); a field of sizes that are
+///         not > 0 and finite, or that asks for more than 5 million cells, or comes with volumes or with a .geo that
+///         divides curves by Transfinite or Layers.
 ///         (bad_input) if the file cannot be opened, a .msh comes with a size factor or another order, or a .geo with an
 ///         rpc that was built without gmsh: that only meshes, .msh files are read without it
 MeshData read_gmsh(const GmshOptions &options);
