@@ -90,6 +90,28 @@ SECTOR = """<ParameterList name="sector">
 """
 
 
+# A body in space, pushed along z.
+SOLID = """<ParameterList name="solid">
+  <ParameterList name="Mesh">
+    <Parameter name="Type" type="string" value="gmsh"/>
+    <Parameter name="File" type="string" value="MESH"/>
+  </ParameterList>
+  <ParameterList name="Dirichlet">
+    <ParameterList name="HELD">
+      <Parameter name="X" type="double" value="0"/>
+      <Parameter name="Y" type="double" value="0"/>
+      <Parameter name="Z" type="double" value="0"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Body Force"><Parameter name="Z" type="double" value="0.01"/></ParameterList>
+  <ParameterList name="Contact">
+    <Parameter name="Side" type="string" value="CONTACT"/>
+    <Parameter name="Yield Stress" type="double" value="0.006"/>
+  </ParameterList>
+</ParameterList>
+"""
+
+
 @dataclasses.dataclass(frozen=True)
 class Scene:
     deck: str
@@ -117,6 +139,8 @@ def scenes(source):
 
     beam = replaced(beam, (r"\{160, 32\}", "{10, 2}"))
     cube = replaced(beam, (r"\{0, 0\}", "{0, 0, 0}"), (r"\{5, 1\}", "{5, 1, 1}"), (r"\{10, 2\}", "{5, 2, 2}"))
+    mesh_decks = {"sector": SECTOR, "octant": replaced(SOLID, ("HELD", "flat"), ("CONTACT", "sphere")),
+                  "bricks": replaced(SOLID, ("HELD", "held"), ("CONTACT", "contact"))}
     texts = {
         "beam.xml": [beam],
         "triangles.xml": [replaced(beam, ("Q1", "P2"))],
@@ -128,9 +152,9 @@ def scenes(source):
         "layers.xml": [layers, decks / "layers.geo"],
         "quads.xml": [replaced(layers, (r"layers\.geo", "layers_quads.geo")), decks / "layers_quads.geo"],
         "full.xml": [FULL, decks / "layers.geo"],
-        "sector_geo.xml": [SECTOR.replace("MESH", "sector.geo"), data / "sector.geo"],
     }
-    for mesh in sorted(data.glob("*.msh")):
-        texts[f"{mesh.stem}.xml"] = [SECTOR.replace("MESH", mesh.name), mesh]
+    for mesh in sorted([*data.glob("*.msh"), *data.glob("*.geo")]):
+        name = f"{mesh.stem}_geo.xml" if mesh.suffix == ".geo" else f"{mesh.stem}.xml"
+        texts[name] = [mesh_decks[mesh.name.partition("_")[0].partition(".")[0]].replace("MESH", mesh.name), mesh]
     return {name: Scene(name, {name: text.encode(), **{path.name: path.read_bytes() for path in paths}})
             for name, (text, *paths) in texts.items()}
