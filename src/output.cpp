@@ -67,12 +67,11 @@ std::vector<LO> shown_points(const contact::ContactNodes &contact, const contact
   return shown;
 }
 
-template <class DeviceColumn>
-HostView<double *> scatter(const std::vector<LO> &shown, const DeviceColumn &values, const double elsewhere)
+template <class HostColumn>
+HostView<double *> scatter(const std::vector<LO> &shown, const HostColumn &values, const double elsewhere)
 {
   HostView<double *> result("rpc::output::contact_field", shown.size());
-  const auto from = to_host(values);
-  for (std::size_t n = 0; n < shown.size(); ++n) result(n) = shown[n] < 0 ? elsewhere : from(shown[n]);
+  for (std::size_t n = 0; n < shown.size(); ++n) result(n) = shown[n] < 0 ? elsewhere : values(shown[n]);
   return result;
 }
 
@@ -89,11 +88,16 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const Solution &s)
   for (std::size_t k = 0; k < names.size(); ++k)
     fields.push_back({names[k], column(*stress, 1, 0, n, static_cast<int>(k))});
   if (scene.model.contact.empty()) return fields;
-  const auto shown = shown_points(s.functional->contact(), s.contact, n);
-  fields.push_back({"contact_pressure", scatter(shown, s.contact.pressure, 0)});
-  fields.push_back({"gap", scatter(shown, s.functional->contact().gap, 0)});
-  fields.push_back({"penetration", scatter(shown, s.contact.penetration, 0)});
-  fields.push_back({"contact_status", scatter(shown, s.contact.state, -1)});
+  const contact::ContactNodes &contact = s.functional->contact();
+  const auto shown = shown_points(contact, s.contact, n);
+  fields.push_back({"contact_pressure", scatter(shown, to_host(s.contact.pressure), 0)});
+  fields.push_back({"gap", scatter(shown, to_host(contact.gap), 0)});
+  fields.push_back({"penetration", scatter(shown, to_host(s.contact.penetration), 0)});
+  fields.push_back({"contact_status", scatter(shown, to_host(s.contact.state), -1)});
+  const auto normal = to_host(contact.normal);
+  const char *const component[] = {"contact_normal_x", "contact_normal_y", "contact_normal_z"};
+  for (int c = 0; c < dim; ++c)
+    fields.push_back({component[c], scatter(shown, Kokkos::subview(normal, Kokkos::ALL, c), 0)});
   return fields;
 }
 
