@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# Installs those of cmake/packages.txt that are missing, as root or through sudo: bash cmake/install_packages.sh [more lists]
+# Installs those Debian packages of some lists that are missing, as root or through sudo:
+#   bash cmake/install_packages.sh [list ...]     default: cmake/packages.txt
 # Silent, and without network, if none is.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
-wanted=$(sed 's/#.*//' "$here/packages.txt" "$@")
+if [ $# -eq 0 ]; then set -- "$here/packages.txt"; fi
+wanted=$(sed 's/#.*//' "$@")
 if ! command -v dpkg-query >/dev/null; then
-  echo "rpc: not a Debian system, so nothing is installed; cmake/packages.txt lists what is needed" >&2
+  echo "rpc: not a Debian system, so nothing is installed; what is needed: $*" >&2
   exit 0
 fi
 present=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p')
