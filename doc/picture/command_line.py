@@ -1,0 +1,112 @@
+"""Command line of doc/picture.sh."""
+import argparse
+import math
+import os
+import re
+import sys
+
+import figure
+import surface
+from result import PictureError, Result
+from scene import Scene
+
+EPILOG = """contact_pressure, gap, penetration and contact_status are drawn on the contact side, in the plane as a diagram inside the
+foundation; the rest of the body has its von Mises stress. Default: contact_pressure if there is contact, else von_mises."""
+
+
+class Parser(argparse.ArgumentParser):
+    """Refuses like the rest of the program."""
+
+    def error(self, message):
+        raise PictureError(f"{message}; see --help")
+
+
+def number(text):
+    """A finite number."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
+
+
+def factor(text):
+    """A number >= 0."""
+    value = number(text)
+    if value < 0:
+        raise ValueError
+    return value
+
+
+def plane(text):
+    """(axis, value) of "x=0"."""
+    axis, value = re.fullmatch(r"([xyz])=(.+)", text).groups()
+    return "xyz".index(axis), number(value)
+
+
+def vector(text):
+    """Three numbers, not all 0."""
+    x, y, z = (number(part) for part in text.split(","))
+    if x == y == z == 0:
+        raise ValueError
+    return x, y, z
+
+
+def parsed(convert, name, text, rule):
+    """An option's value, None if it is absent."""
+    try:
+        return None if text is None else convert(text)
+    except (ValueError, AttributeError):
+        raise PictureError(f'--{name} must be {rule}, got "{text}"') from None
+
+
+def options(arguments):
+    """The command line, checked as far as that goes without the result."""
+    parser = Parser(prog="bash doc/picture.sh", description="Makes a PNG of a result of rpc, in the plane or in space.",
+                    epilog=EPILOG, allow_abbrev=False)
+    parser.add_argument("result", metavar="RESULT.e", help="Exodus file of rpc")
+    parser.add_argument("--output", metavar="FILE.png", help="default: RESULT.png beside RESULT.e")
+    parser.add_argument("--field", metavar="NAME", help="a field of the file")
+    parser.add_argument("--scale", metavar="FACTOR",
+                        help="of the displacements, and of the gaps if it is above 1; default: one that makes both visible")
+    parser.add_argument("--time", metavar="T", help="time of the step to draw; default: the last one")
+    parser.add_argument("--cut", metavar="x=0", help="in space: takes away what lies on this side of a plane across an axis")
+    parser.add_argument("--view", metavar="X,Y,Z", help="in space: direction from the body to the viewer; default: chosen")
+    found = parser.parse_args(arguments)
+    found.scale = parsed(factor, "scale", found.scale, "a number >= 0")
+    found.time = parsed(number, "time", found.time, "a number")
+    found.cut = parsed(plane, "cut", found.cut, "an axis and a number [m], such as x=0")
+    found.view = parsed(vector, "view", found.view, "three numbers that are not all 0, such as 1,-1,0.5")
+    found.output = found.output or os.path.splitext(found.result)[0] + ".png"
+    if not found.output.endswith(".png"):
+        raise PictureError(f'--output must end in .png, got "{found.output}"')
+    return found
+
+
+def cut_of(result, found):
+    """The plane to cut along; it must cross the body. What the viewer has in front is taken away."""
+    if found.cut is None:
+        return None
+    axis, value = found.cut
+    low, high = result.positions[:, axis].min(), result.positions[:, axis].max()
+    if not low < value < high:
+        raise PictureError(f'--cut must lie inside the body, {low:g} < {"xyz"[axis]} < {high:g} m, got {value:g}')
+    return surface.Cut(axis, value, -1 if found.view and found.view[axis] < 0 else 1)
+
+
+def main(arguments):
+    """Exit code; 2: something of the command line or the result does not fit."""
+    try:
+        found = options(arguments)
+        result = Result(found.result, found.time)
+        if result.dim == 2 and (found.cut or found.view):
+            raise PictureError("--cut and --view are for bodies in space")
+        figure.write(found.output, figure.draw(Scene(result, found.field, found.scale, cut_of(result, found)), found.view))
+    except PictureError as error:
+        print(f"picture: error: {error}", file=sys.stderr)
+        return 2
+    print(f"wrote {found.output}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

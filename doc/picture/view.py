@@ -1,0 +1,109 @@
+"""From where a body is seen, and the picture that it makes in pixels."""
+import dataclasses
+
+import numpy as np
+
+import raster
+from surface import NORMAL, PLACE, VALUE, unit
+
+SUPERSAMPLING = 3
+INK = np.array([0.1, 0.1, 0.12])
+GROUND = np.array([0.80, 0.78, 0.75])  # the foundation
+
+
+@dataclasses.dataclass
+class View:
+    """Orthographic: rows of `axes` point to the right, upwards and to the viewer."""
+
+    axes: np.ndarray
+
+    def project(self, points):
+        """(..., 3): to the right, upwards, away from the viewer [m]."""
+        return points @ (self.axes * np.array([[1], [1], [-1]])).T
+
+
+FRONT = View(np.eye(3))
+
+
+def view_from(direction, up):
+    """The view of someone who looks from a direction."""
+    towards = unit(np.asarray(direction, dtype=float))
+    right = unit(np.cross(up, towards))
+    return View(np.stack([right, np.cross(towards, right), towards]))
+
+
+def bounds(scene, views):
+    """Per view (left, right, bottom, top) of all layers [m]."""
+    points = np.concatenate([rows[..., PLACE].reshape(-1, 3) for rows in scene.layers.values()])
+    result = []
+    for view in views:
+        across = view.project(points)[:, :2]
+        (left, bottom), (right, top) = across.min(axis=0), across.max(axis=0)
+        result.append((left, right, bottom, top))
+    return result
+
+
+def paint(scene, view, window, pixels, colors, without=()):
+    """RGBA (rows from the bottom, columns, 4) of a window (left, right, bottom, top), `pixels` to the metre.
+
+    @param colors   {"body": and "contact": (norm, colour map)}
+    @param without  layers that are left out
+    """
+    left, right, bottom, top = window
+    fine = pixels * SUPERSAMPLING
+    width, height = (int(round((high - low) * pixels)) * SUPERSAMPLING for low, high in ((left, right), (bottom, top)))
+    corner = np.array([left, bottom, 0])
+    canvas = raster.Raster(width, height)
+    layers = {name: rows for name, rows in scene.layers.items() if name not in without}
+    rows = np.concatenate(list(layers.values()))
+    canvas.draw((view.project(rows[..., PLACE]) - corner) * fine)
+    image = np.zeros((height * width, 4))
+    layer_of = np.repeat(np.arange(len(layers)), [len(part) for part in layers.values()])
+    data = rows[..., [VALUE, *range(6)[NORMAL]]].astype(np.float32)
+    shown = np.flatnonzero(canvas.triangle >= 0)
+    for pixels in np.array_split(shown, len(shown) // raster.CHUNK + 1):
+        found, layer = canvas.values(data, pixels), layer_of[canvas.triangle[pixels]]
+        color = np.empty((len(pixels), 3))
+        for k, name in enumerate(layers):
+            norm, color_map = colors.get(name, (None, None))
+            color[layer == k] = color_map(norm(found[layer == k, 0]))[:, :3] if norm else GROUND
+        if scene.result.dim == 3:
+            color *= brightness(found[:, 1:], view)[:, None]
+        image[pixels, :3], image[pixels, 3] = color, 1
+    image = image.reshape(height, width, 4)
+    ink = np.zeros(canvas.shape)
+    for lines in scene.lines:
+        if lines.layer not in without:
+            points, opacity = dots(lines, (view.project(lines.points) - corner) * fine)
+            ink = np.maximum(ink, canvas.ink(points, opacity, 2 if lines.fades else 4, tolerance=5))
+    image[..., :3] = image[..., :3] * (1 - ink[..., None]) + INK * ink[..., None]
+    image[..., 3] = np.maximum(image[..., 3], ink)
+    image[..., :3] *= image[..., 3:]  # so that the mean of pixels is that of their colours
+    image = raster.reduced(image, SUPERSAMPLING)
+    image[..., :3] /= np.maximum(image[..., 3:], 1e-9)
+    return np.clip(image, 0, 1)
+
+
+def brightness(normals, view):
+    """(n,) of surfaces, seen from either side, under a lamp to the left of the viewer."""
+    normals = unit(normals @ view.axes.T)
+    normals *= np.where(normals[:, 2:] < 0, -1, 1)
+    return 0.75 + 0.25 * np.clip(normals @ unit(np.array([-0.45, 0.25, 0.85])), 0, 1)
+
+
+def dots(lines, points):
+    """Points (n, 3), less than a pixel apart, of lines at projected points, and how dark they are (n,)."""
+    across = np.linalg.norm(np.diff(points[..., :2], axis=1), axis=2)  # (lines, pieces)
+    opacity = np.full(len(points), lines.opacity)
+    if lines.fades:
+        opacity *= np.clip((across.sum(axis=1) / SUPERSAMPLING - 4) / 12, 0, 1)
+    kept = opacity > 0
+    points, levels, across, opacity = points[kept], lines.levels[kept], across[kept], opacity[kept]
+    counts = np.ceil(across).astype(np.int64).ravel() + 1
+    piece, step = raster.expanded(counts, np.zeros(len(counts), dtype=np.int64))
+    t = step / counts[piece]
+    ends = np.concatenate([points, levels[..., None]], axis=2)
+    start, end = (part.reshape(-1, 4)[piece] for part in (ends[:, :-1], ends[:, 1:]))
+    found = start + t[:, None] * (end - start)
+    seen = found[:, 3] <= 0
+    return found[seen, :3], np.repeat(opacity, across.shape[1])[piece][seen]

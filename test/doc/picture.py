@@ -1,0 +1,331 @@
+"""doc/picture.sh: pictures of results of the program, and of each element; what it refuses."""
+
+import contextlib
+import io
+import pathlib
+import subprocess
+import sys
+import unittest
+
+try:
+    import matplotlib.image
+    import netCDF4  # noqa: F401, what exodus_file and result take
+    import numpy as np
+except ImportError as missing:
+    print(f"skipped: {missing}; what pictures take: bash cmake/install_packages.sh doc/packages.txt")
+    sys.exit(77)
+
+HERE = pathlib.Path(__file__).parent
+sys.path += [str(HERE.parent / "regression"), str(HERE.parents[1] / "doc" / "picture")]
+
+import command_line
+import elements
+import exodus_file
+import figure
+import raster
+import surface
+from result import Result
+from rpc_run import SOURCE, RpcTestCase, files
+from scene import Scene, automatic_scale
+from surface import NORMAL, PLACE, VALUE
+
+BLOCK = """<ParameterList name="block">
+  <ParameterList name="Mesh">
+    <Parameter name="Lower" type="Array(double)" value="{-1, -1, 0}"/>
+    <Parameter name="Upper" type="Array(double)" value="{1, 1, 1}"/>
+    <Parameter name="Cells" type="Array(int)" value="{4, 4, 2}"/>
+  </ParameterList>
+  <ParameterList name="Material"><Parameter name="Young's Modulus" type="double" value="2000"/></ParameterList>
+  <ParameterList name="Dirichlet">
+    <ParameterList name="front">
+      <Parameter name="X" type="double" value="0"/>
+      <Parameter name="Y" type="double" value="0"/>
+      <Parameter name="Z" type="double" value="-0.04"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Contact">
+    <Parameter name="Side" type="string" value="back"/>
+    <Parameter name="Yield Stress" type="double" value="60"/>
+    <Parameter name="Gap" type="string" value="0.03*(x^2+y^2)"/>
+  </ParameterList>
+</ParameterList>
+"""
+
+
+def bent(positions):
+    """A smooth map that leaves the planes x, y, z = 0 and 1 where they are."""
+    x = positions
+    bubble = np.prod(4 * x * (1 - x), axis=1)
+    return x + 0.05 * bubble[:, None] + 0.1 * x * (1 - x)
+
+
+def box_file(path, element, n=2, shape=bent, **options):
+    """A box with displacements 0.01 (x, y, z) and contact on its lowest side; returns positions and cells."""
+    positions, cells = exodus_file.box(element, n)
+    positions = shape(positions)
+    dim = positions.shape[1]
+    lowest = positions[:, -1] == 0
+    if element == "TETRA10":  # the contact points of quadratic triangles are the middles of their edges
+        lowest[cells[:, :4]] = False
+    fields = {f"disp_{axis}": 0.01 * positions[:, d] for d, axis in enumerate("xyz"[:dim])}
+    fields |= {"von_mises": positions[:, 0], "contact_pressure": np.where(lowest, 2 + positions[:, 0], 0),
+               "gap": np.zeros(len(positions)), "penetration": np.zeros(len(positions)),
+               "contact_status": np.where(lowest, 1.0, -1.0)}
+    fields |= {f"contact_normal_{axis}": np.where(lowest & (d == dim - 1), -1.0, 0.0) for d, axis in enumerate("xyz"[:dim])}
+    exodus_file.write(path, element, positions, cells, fields, **options)
+    return positions, cells
+
+
+def areas(triangles):
+    """(n, 3) area times normal of triangles (n, 3, 8)."""
+    corner = triangles[..., PLACE]
+    return 0.5 * np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+
+
+class Elements(RpcTestCase):
+    """Each element, in boxes with curved cells."""
+
+    def scenes(self, dim, **options):
+        for element in exodus_file.NODES:
+            if exodus_file.dim(element) == dim:
+                box_file(self.folder / "box.e", element)
+                yield element, Scene(Result(str(self.folder / "box.e")), scale=0, **options)
+
+    def test_cells_of_the_plane_cover_it_once(self):
+        for element, scene in self.scenes(2, field="von_mises"):
+            with self.subTest(element):
+                area = areas(scene.layers["body"])[:, 2]
+                self.assertTrue((area > 0).all())
+                self.assertAlmostEqual(area.sum(), 1, delta=1e-12)
+
+    def test_skin_in_space_is_closed_and_uncrossed(self):
+        for element, scene in self.scenes(3, field="von_mises"):
+            with self.subTest(element):
+                skin = scene.layers["body"]
+                area = areas(skin)
+                self.assertAlmostEqual(np.linalg.norm(area, axis=1).sum(), 6, delta=1e-12)
+                self.assertAlmostEqual((area * skin[..., PLACE].mean(axis=1)).sum() / 3, 1, delta=1e-12)
+                outwards = surface.unit(area)[:, None] * skin[..., NORMAL]
+                self.assertLess(abs(outwards.sum(axis=2) - 1).max(), 1e-9)
+                self.assertLess(abs(skin[..., VALUE] - skin[..., 0]).max(), 0.03)
+
+    def test_each_face_of_a_tetrahedron_looks_outwards(self):
+        for element in ("TETRA4", "TETRA10"):
+            positions, cells = exodus_file.box(element, 1)
+            fields = {f"disp_{axis}": 0 * positions[:, 0] for axis in "xyz"} | {"von_mises": positions[:, 0]}
+            exodus_file.write(self.folder / "one.e", element, positions + [1, 2, 4], cells[:1], fields)
+            skin = Scene(Result(str(self.folder / "one.e"))).layers["body"]
+            self.assertAlmostEqual((areas(skin) * skin[..., PLACE].mean(axis=1)).sum() / 3, 1 / 6, delta=1e-12)
+
+    def test_contact_side_shows_the_contact_field_and_the_rest_the_stress(self):
+        for element, scene in self.scenes(3):
+            with self.subTest(element):
+                side, rest = scene.layers["contact"], scene.layers["body"]
+                self.assertAlmostEqual(np.linalg.norm(areas(side), axis=1).sum(), 1, delta=1e-12)
+                self.assertAlmostEqual(np.linalg.norm(areas(rest), axis=1).sum(), 5, delta=1e-12)
+                self.assertEqual(abs(side[..., 2]).max(), 0)
+                self.assertGreaterEqual(side[..., VALUE].min(), 2)
+
+    def test_cut_takes_away_what_lies_beyond_and_shows_the_section(self):
+        for axis, value in ((0, 0.37), (1, 0.1), (2, 0.713)):
+            for element, scene in self.scenes(3, field="von_mises", cut=surface.Cut(axis, value, 1)):
+                with self.subTest(element):
+                    drawn = scene.layers["body"]
+                    area, place = areas(drawn), drawn[..., axis]
+                    self.assertLessEqual(place.max(), value + 1e-12)
+                    section = (abs(place - value) < 1e-12).all(axis=1)
+                    self.assertAlmostEqual(np.linalg.norm(area[section], axis=1).sum(), 1, delta=1e-3)
+                    self.assertAlmostEqual(np.linalg.norm(area[~section], axis=1).sum(), 1 + 4 * value, delta=1e-3)
+
+    def test_tetrahedra_fill_a_cell_in_space(self):
+        for element in exodus_file.NODES:
+            if exodus_file.dim(element) == 3:
+                positions, cells = exodus_file.box(element, 1)
+                corner = positions[cells[:, elements.tetrahedra(element)]].reshape(-1, 4, 3)
+                volumes = abs(np.linalg.det(corner[:, 1:] - corner[:, :1])) / 6
+                self.assertAlmostEqual(volumes.sum(), 1, delta=1e-12, msg=element)
+                self.assertGreater(volumes.min(), 0, element)
+
+    def test_functions_of_a_face_are_one_at_their_node(self):
+        for kind in ("TRI3", "TRI6", "QUAD4", "QUAD9"):
+            nodes = exodus_file.TRIANGLE if kind.startswith("TRI") else exodus_file.SQUARE
+            nodes = np.array(nodes[: exodus_file.NODES[kind]]) / 2
+            points, _ = elements.division(kind, 8)
+            for functions in (elements.shape, elements.hats):
+                with self.subTest(f"{functions.__name__} of {kind}"):
+                    self.assertLess(abs(functions(kind, nodes) - np.eye(len(nodes))).max(), 1e-15)
+                    self.assertLess(abs(functions(kind, points) @ nodes - points).max(), 1e-15)
+            self.assertGreaterEqual(elements.hats(kind, points).min(), 0)
+
+    def test_fields_of_cells(self):
+        positions, cells = exodus_file.box("TRI6", 2)
+        still = dict.fromkeys(("disp_x", "disp_y"), 0 * positions[:, 0])
+        exodus_file.write(self.folder / "cells.e", "TRI6", positions, cells, still, {"error": np.arange(len(cells), dtype=float)})
+        drawn = Scene(Result(str(self.folder / "cells.e")), "error").layers["body"]
+        value = drawn[..., VALUE].mean(axis=1)
+        for k in range(len(cells)):
+            self.assertAlmostEqual(areas(drawn[value == k])[:, 2].sum(), 1 / len(cells), delta=1e-12)
+
+
+class Pixels(unittest.TestCase):
+    """The raster."""
+
+    @staticmethod
+    def square(low, high, depth):
+        a, b, c, d = ([x, y, depth] for x, y in ((low, low), (high, low), (high, high), (low, high)))
+        return [[a, b, c], [a, c, d]]
+
+    def test_the_nearer_surface_hides_the_other(self):
+        for order in (1, -1):
+            squares = np.array((self.square(1, 9, 5) + self.square(3, 7, 2))[::order], dtype=float)
+            canvas = raster.Raster(10, 10)
+            canvas.draw(squares)
+            depth = canvas.depth.reshape(10, 10)
+            self.assertTrue((depth[3:7, 3:7] == 2).all())
+            self.assertEqual((depth == 5).sum(), 64 - 16)
+            self.assertEqual((canvas.triangle == -1).sum(), 36)
+
+    def test_neighbours_leave_no_gap_and_values_are_linear(self):
+        x, y = np.meshgrid(np.linspace(-3, 43, 14), np.linspace(-3, 33, 14))
+        moved = np.stack([x + 1.1 * np.sin(3 * y), y + 0.8 * np.sin(2 * x), 0 * x], axis=-1)
+        a, b, c, d = moved[:-1, :-1], moved[:-1, 1:], moved[1:, 1:], moved[1:, :-1]
+        triangles = np.concatenate([np.stack(t, axis=2).reshape(-1, 3, 3) for t in ((a, b, c), (a, d, c))])
+        canvas = raster.Raster(40, 30)
+        canvas.draw(triangles)
+        self.assertTrue((canvas.triangle >= 0).all())
+        found = canvas.values(triangles, np.arange(40 * 30)).reshape(30, 40, 3)
+        self.assertLess(abs(found[..., 0] - np.arange(40) - 0.5).max(), 2e-3)
+        self.assertLess(abs(found[..., 1] - np.arange(30)[:, None] - 0.5).max(), 2e-3)
+
+    def test_ink_behind_a_surface_is_not_seen(self):
+        canvas = raster.Raster(10, 10)
+        canvas.draw(np.array(self.square(2, 8, 5), dtype=float))
+        line = np.stack([np.linspace(0, 9.9, 40), np.full(40, 5.5), np.full(40, 7.0)], axis=1)
+        ink = canvas.ink(line, np.full(40, 0.5), 1, tolerance=1)
+        self.assertEqual(sorted(np.flatnonzero(ink[5])), [0, 1, 8, 9])
+        line[:, 2] = 5.9
+        self.assertTrue((canvas.ink(line, np.full(40, 0.5), 1, tolerance=1)[5] == 0.5).all())
+
+
+class Pictures(RpcTestCase):
+    """The command as a user gives it."""
+
+    def picture(self, *arguments):
+        """Exit code, standard output and error of the command."""
+        with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+            with contextlib.chdir(self.folder):
+                code = command_line.main(arguments)
+        return code, out.getvalue(), err.getvalue()
+
+    def expect_picture(self, name, *arguments):
+        self.assertEqual(self.picture(*arguments), (0, f"wrote {name}\n", ""))
+        image = matplotlib.image.imread(self.folder / name)
+        colored = np.ptp(image[..., :3], axis=2) > 0.2
+        self.assertGreater(colored.mean(), 0.05)
+        return image
+
+    def expect_refusal_of(self, arguments, *parts):
+        before = files(self.folder)
+        code, out, err = self.picture(*arguments)
+        self.assertEqual((code, out, len(err.splitlines())), (2, "", 1), err)
+        for part in ("picture: error: ", *parts):
+            self.assertIn(part, err)
+        self.assertEqual(files(self.folder), before)
+
+    def test_beam_of_the_program(self):
+        self.solve("--set=Contact->Yield Stress=16")
+        result = Result(str(self.folder / "out" / "beam.e"))
+        self.expect_contact(result)
+        self.expect_picture("out/beam.png", "out/beam.e")
+        stress = self.expect_picture("stress.png", "out/beam.e", "--field=von_mises", "--scale=5", "--output=stress.png")
+        larger = self.expect_picture("larger.png", "out/beam.e", "--field=von_mises", "--scale=20", "--output=larger.png")
+        self.assertNotEqual(stress.shape, larger.shape)
+
+    def test_block_of_the_program(self):
+        (self.folder / "block.xml").write_text(BLOCK)
+        self.rpc("--input=block.xml", "--output=out")
+        result = Result(str(self.folder / "out" / "block.e"))
+        self.expect_contact(result)
+        self.assertEqual(automatic_scale(result), 1)
+        self.expect_picture("cut.png", "out/block.e", "--cut=x=0", "--output=cut.png")
+
+    def expect_contact(self, result):
+        """Where body and foundation touch they are drawn in one place; elsewhere the foundation lies beyond."""
+        scene = Scene(result, scale=1)
+        top, normals = scene._foundation()
+        touching = result.nodal["contact_status"] > 0
+        self.assertGreater(touching.sum(), 3)
+        between = ((top - scene.places) * normals).sum(axis=1)
+        size = result.size()
+        self.assertLess(abs(between[touching]).max(), 1e-9 * size)
+        self.assertGreater(between[scene.contact & ~touching].min(initial=0), -1e-9 * size)
+        length = np.linalg.norm(normals, axis=1)
+        self.assertLess(abs(length[scene.contact] - 1).max(), 1e-12)
+        self.assertEqual(length[~scene.contact].max(), 0)
+        self.assertGreater(result.nodal["penetration"][touching].max(), 1e-4)
+
+    def test_curved_tetrahedra_seen_from_a_side_and_steps(self):
+        box_file(self.folder / "box.e", "TETRA10", times=(0.5, 1.0))
+        self.expect_picture("box.png", "box.e", "--time=0.5", "--field=contact_status", "--view=1,2,0.5", "--cut=y=0.5")
+
+    def test_exit_code_of_the_process(self):
+        command = [sys.executable, "-B", SOURCE / "doc" / "picture" / "command_line.py", "none.e"]
+        self.assertEqual(subprocess.run(command, cwd=self.folder, capture_output=True, check=False).returncode, 2)
+
+    def test_refusals(self):
+        box_file(self.folder / "box.e", "HEX8", n=1, times=(0.5, 1.0))
+        box_file(self.folder / "plane.e", "TRI3", n=1)
+        box_file(self.folder / "other.e", "TRI3", n=1, program="paraview")
+        positions, cells = exodus_file.box("TRI3", 1)
+        exodus_file.write(self.folder / "old.e", "TRI3", positions, cells,
+                          {name: 0 * positions[:, 0] for name in ("disp_x", "disp_y", "gap", "penetration", "contact_status")})
+        (self.folder / "text.e").write_text("no mesh")
+        (self.folder / "short.e").write_bytes((self.folder / "box.e").read_bytes()[:700])
+        self.expect_refusal_of([], "RESULT.e", "--help")
+        self.expect_refusal_of(["box.e", "--colour=red"], "--colour=red", "--help")
+        self.expect_refusal_of(["none.e"], '"none.e"', "no such file")
+        self.expect_refusal_of(["text.e"], '"text.e" is not an Exodus file')
+        self.expect_refusal_of(["short.e"], '"short.e" is not an Exodus file')
+        self.expect_refusal_of(["other.e"], '"other.e" is not a file of rpc')
+        self.expect_refusal_of(["old.e"], '"old.e" has no field contact_normal_x', "run this version of rpc again")
+        self.expect_refusal_of(["box.e", "--field=heat"], "disp_x", "von_mises", 'got "heat"')
+        for scale in ("-1", "nan", "inf", "big", ""):
+            self.expect_refusal_of(["box.e", f"--scale={scale}"], "--scale must be a number >= 0", f'got "{scale}"')
+        self.expect_refusal_of(["box.e", "--time=0.7"], "0.5, 1", "got 0.7")
+        self.expect_refusal_of(["box.e", "--cut=x"], "--cut", 'got "x"')
+        self.expect_refusal_of(["box.e", "--cut=x=1"], "--cut", "0 < x < 1 m", "got 1")
+        self.expect_refusal_of(["box.e", "--view=0,0,0"], "--view", "not all 0")
+        self.expect_refusal_of(["plane.e", "--cut=x=0.5"], "in space")
+        self.expect_refusal_of(["box.e", "--output=box.pdf"], ".png", 'got "box.pdf"')
+        self.expect_refusal_of(["box.e", "--output=none/box.png"], 'cannot write "none/box.png"', "No such file")
+
+
+class Choices(RpcTestCase):
+    """What is chosen where the user says nothing."""
+
+    def result(self, displacement, gap):
+        positions, cells = exodus_file.box("QUAD4", 2)
+        zero = 0 * positions[:, 0]
+        fields = {"disp_x": zero, "disp_y": zero + displacement, "gap": zero + gap, "penetration": zero, "contact_status": zero,
+                  "contact_normal_x": zero, "contact_normal_y": zero - 1}
+        exodus_file.write(self.folder / "box.e", "QUAD4", positions, cells, fields)
+        return Result(str(self.folder / "box.e"))
+
+    def test_scale(self):
+        for displacement, gap, scale in ((1e-3, 0, 50), (2.6e-3, 0, 10), (0.2, 0, 1), (0, 0, 1), (1e-3, 4e-3, 10), (1e-3, 9e-3, 5),
+                                         (1e-3, 0.02, 1)):
+            with self.subTest((displacement, gap)):
+                self.assertAlmostEqual(automatic_scale(self.result(displacement, gap)) / scale, 1, delta=1e-9)
+
+    def test_view_turns_the_foundation_downwards_and_looks_into_the_cut(self):
+        box_file(self.folder / "box.e", "HEX8")
+        result = Result(str(self.folder / "box.e"))
+        for towards in (1, -1):
+            scene = Scene(result, cut=surface.Cut(0, 0.5, towards))
+            up = figure.upwards(scene)
+            self.assertEqual(list(up), [0, 0, 1])
+            self.assertGreater(towards * figure.towards(scene, up)[0], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
