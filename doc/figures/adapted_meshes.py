@@ -2,22 +2,25 @@
 
     python3 adapted_meshes.py adapted_meshes.png beam_adaptive.e beam_adaptive.contact.csv hertz_adaptive.e hertz_adaptive.contact.csv
 
-Debian packages python3-matplotlib and python3-scipy.
+Debian packages: doc/packages.txt.
 """
 import csv
+import os
 import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
-from scipy.io import netcdf_file  # noqa: E402
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../picture"))
+from result import Result  # noqa: E402
 
 
 def mesh(path):
     """Coordinates and corners of the triangles of an Exodus file."""
-    with netcdf_file(path, mmap=False) as file:
-        return file.variables["coordx"][:], file.variables["coordy"][:], file.variables["connect1"][:, :3] - 1
+    result = Result(path)
+    return *result.positions[:, :2].T, result.blocks[0][1][:, :3]
 
 
 def contact(path):

@@ -2,7 +2,7 @@
 
     python3 beam_contact.py beam_contact.png 12=xi12.contact.csv 16=xi16.contact.csv ...
 
-Debian package python3-matplotlib.
+Debian packages: doc/packages.txt.
 """
 import csv
 import sys

@@ -16,9 +16,12 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-import fields  # noqa: E402
-
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.append(os.path.join(HERE, "../picture"))
+from figure import draw_plane  # noqa: E402
+from result import Result  # noqa: E402
+from scene import Scene  # noqa: E402
+
 INPUT = os.path.join(HERE, "../../input")
 PAPERS_TEST = {"Uzawa->Stopping Test": "multiplier change", "Contact->Penalty": "1e8"}
 # The paper's gap is vertical; an obstacle's would be measured along the normal.
@@ -66,8 +69,8 @@ def contact(run):
 
 
 def exodus(run):
-    """Path of <deck>.e."""
-    return os.path.join(run["folder"], run["deck"] + ".e")
+    """Contents of <deck>.e."""
+    return Result(os.path.join(run["folder"], run["deck"] + ".e"))
 
 
 def table(columns, rows):
@@ -196,14 +199,14 @@ def figure_3(program, xis):
 def figure_4(program, xi, factor):
     """The deformed beam; returns the largest nodal von Mises stress and its place."""
     run = program.beam(FINE, xi)
-    figure, axes = plt.subplots(figsize=(9, 2.6), layout="constrained")
-    picture = fields.draw(axes, exodus(run), factor)
-    figure.colorbar(picture, label="von Mises stress [Pa]", shrink=0.75, aspect=12)
+    figure, axes = plt.subplots(figsize=(9, 3.1), layout="constrained")
+    result = exodus(run)
+    picture = draw_plane(axes, Scene(result, "von_mises", factor), 1400)
+    figure.colorbar(picture, ax=axes, label="von Mises stress [Pa]", shrink=0.8, aspect=12)
     axes.set_title(r"$\xi$ = %s Pa, displacements %g-fold" % (xi, factor), fontsize=11)
     save(figure, "figure_4.png")
-    positions, _, variables = fields.read(exodus(run))
-    node = variables["von_mises"].argmax()
-    return variables["von_mises"][node], *positions[node]
+    stress = result.nodal["von_mises"]
+    return stress.max(), *result.positions[stress.argmax(), :2]
 
 
 def figure_6(program, xi):
@@ -211,7 +214,7 @@ def figure_6(program, xi):
     run = program.hertz(xi)
     data = contact(run)
     figure, (left, right) = panels()
-    picture = fields.draw(left, exodus(run), 1)
+    picture = draw_plane(left, Scene(exodus(run), "von_mises", 1))
     figure.colorbar(picture, ax=left, label="von Mises stress [Pa]", shrink=0.75)
     left.set_title(r"$\xi$ = %s Pa, displacements as they are" % xi, fontsize=11)
     position = [AMPLIFICATION * (gap - u_nu) for gap, u_nu in zip(data["gap"], data["u_nu"])]

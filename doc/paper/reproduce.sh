@@ -24,16 +24,8 @@ if [ ! -x "$rpc" ]; then
   exit 2
 fi
 
-python=/usr/bin/python3 # Debian's, which sees Debian's modules
-missing=()
-for module in matplotlib netCDF4; do
-  "$python" -c "import $module" 2>/dev/null || missing+=("python3-${module,,}")
-done
-if [ ${#missing[@]} -gt 0 ]; then
-  echo "missing: apt-get install --no-install-recommends ${missing[*]}" >&2
-  exit 2
-fi
+bash "$root/cmake/install_packages.sh" "$root/doc/packages.txt"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$python" "$here/reproduce.py" --rpc="$rpc" --work="$work" "${long[@]}"
+/usr/bin/python3 "$here/reproduce.py" --rpc="$rpc" --work="$work" "${long[@]}"
