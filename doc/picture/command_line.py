@@ -90,7 +90,11 @@ def cut_of(result, found):
     low, high = result.positions[:, axis].min(), result.positions[:, axis].max()
     if not low < value < high:
         raise PictureError(f'--cut must lie inside the body, {low:g} < {"xyz"[axis]} < {high:g} m, got {value:g}')
-    return surface.Cut(axis, value, -1 if found.view and found.view[axis] < 0 else 1)
+    if found.view:
+        return surface.Cut(axis, value, -1 if found.view[axis] < 0 else 1)
+    contact = result.contact_nodes()
+    below = contact is None or not contact.any() or result.vector("contact_normal_")[contact, axis].mean() < 0.5
+    return surface.Cut(axis, value, 1 if below else -1)  # the side away from the foundation, if it is one of the two
 
 
 def main(arguments):

@@ -9,7 +9,7 @@ import unittest
 
 try:
     import matplotlib.image
-    import netCDF4  # noqa: F401, what exodus_file and result take
+    import netCDF4
     import numpy as np
 except ImportError as missing:
     print(f"skipped: {missing}; what pictures take: bash cmake/install_packages.sh doc/packages.txt")
@@ -325,6 +325,19 @@ class Choices(RpcTestCase):
             up = figure.upwards(scene)
             self.assertEqual(list(up), [0, 0, 1])
             self.assertGreater(towards * figure.towards(scene, up)[0], 0)
+
+    def test_cut_takes_away_the_viewers_side(self):
+        for view, axis, expected in (("1,-1,1", "x", 1), ("1,-1,1", "y", -1), (None, "x", 1), (None, "z", 1)):
+            box_file(self.folder / "box.e", "HEX8", n=1)
+            found = command_line.options(["box.e", f"--cut={axis}=0.5", *([f"--view={view}"] if view else [])])
+            self.assertEqual(command_line.cut_of(Result(str(self.folder / "box.e")), found).towards, expected, (view, axis))
+        box_file(self.folder / "box.e", "HEX8", n=1, shape=lambda x: -x)  # the foundation is above, its normal is turned below
+        with netCDF4.Dataset(self.folder / "box.e", "a") as file:
+            names = [str(name) for name in netCDF4.chartostring(file["name_nod_var"][:])]
+            variable = file[f"vals_nod_var{1 + names.index('contact_normal_z')}"]
+            variable[:] = -variable[:]
+        found = command_line.options(["box.e", "--cut=z=-0.5"])
+        self.assertEqual(command_line.cut_of(Result(str(self.folder / "box.e")), found).towards, -1)
 
 
 if __name__ == "__main__":
