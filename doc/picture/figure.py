@@ -47,7 +47,7 @@ def coloring(name, values, contact):
     if name in ("contact_pressure", "von_mises", "penetration"):
         low, high = 0.0, max(high, 0.0)
     if high - low <= 1e-12 * max(abs(low), abs(high)):
-        high = low + max(abs(low), 1e-30)
+        high = low + (abs(low) or 1.0)
     if low < 0 < high and min(-low, high) > 0.1 * max(-low, high):
         limit = max(-low, high)
         return colors.Normalize(-limit, limit), color_map("coolwarm")
@@ -254,7 +254,7 @@ def add_axes_of_space(axes, scene, eye, without, inch):
         line(place(low[d], 0.1), place(high[d], 0.1))
         length = np.linalg.norm(place(high[d], 0) - place(low[d], 0)) / inch
         for tick in ticker.MaxNLocator(max(1, int(length / 0.5)), steps=[1, 2, 5, 10]).tick_values(low[d], high[d]):
-            if low[d] <= tick <= high[d]:
+            if low[d] <= tick <= high[d] and length > 0.3:  # numbers of a shorter one would overlap
                 line(place(tick, 0.1), place(tick, 0.16))
                 axes.text(*place(tick, 0.2 if upright else 0.27), f"{round(tick, 12):g}", fontsize=8, color="0.25",
                           ha="right" if upright else "center", va="center")
