@@ -21,7 +21,17 @@ for deck in beam_adaptive hertz_adaptive; do
     { cat "$work/log" >&2; exit 1; }
 done
 
+for xi in inf 100; do
+  mkdir "$work/ball_$xi"
+  "$rpc" --input="$root/input/ball.xml" --output="$work/ball_$xi" --set="Contact->Yield Stress=$xi" >"$work/log" ||
+    { cat "$work/log" >&2; exit 1; }
+done
+"$rpc" --input="$root/input/block.xml" --output="$work" >"$work/log" || { cat "$work/log" >&2; exit 1; }
+
 bash "$root/doc/picture.sh" "$work/16/beam.e" --output="$here/beam.png"
+bash "$root/doc/picture.sh" "$work/ball_inf/ball.e" --output="$here/ball.png"
+bash "$root/doc/picture.sh" "$work/block.e" --output="$here/block.png"
+/usr/bin/python3 "$here/ball_pressure.py" "$here/ball_pressure.png" "$work/ball_inf" "$work/ball_100"
 /usr/bin/python3 "$here/beam_contact.py" "$here/beam_contact.png" "${curves[@]}"
 /usr/bin/python3 "$here/adapted_meshes.py" "$here/adapted_meshes.png" "$work"/{beam,hertz}_adaptive{.e,.contact.csv}
 ls -l "$here"/*.png

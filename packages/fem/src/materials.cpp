@@ -134,7 +134,8 @@ std::string locking_note(const mesh::Mesh &mesh, const Materials &materials)
   for (const std::string &block : mesh.blocks) {
     if (!(materials.of(block).poissons_ratio > 0.4)) continue;
     std::ostringstream note;
-    note << "P1 triangles lock in block \"" << block << "\" with nu = " << materials.of(block).poissons_ratio
+    note << "P1 " << (mesh.dim() == 2 ? "triangles" : "tetrahedra") << " lock in block \"" << block
+         << "\" with nu = " << materials.of(block).poissons_ratio
          << ": displacements and stresses are wrong there; take Q2, P2 or Q1";
     return note.str();
   }
@@ -149,8 +150,8 @@ std::string order_note(const mesh::Mesh &mesh, const Materials &materials)
     if (!projects(mesh.element, material)) continue;
     std::ostringstream note;
     note << "P2 loses an order in block \"" << block << "\" with nu = " << material.poissons_ratio
-         << ", where its dilatation is projected, and needs many more cells for the same error; take Q2 (of a .geo: "
-            "\"Recombine Surface\")";
+         << ", where its dilatation is projected, and needs many more cells for the same error; take Q2"
+         << (mesh.dim() == 2 ? " (of a .geo: \"Recombine Surface\")" : "");
     return note.str();
   }
   return "";

@@ -97,6 +97,8 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
   list.set("aggregation: deterministic",
            true); // on threads too, where it costs nothing: 13.2 colors on one thread anyway
   list.set("number of equations", dofs_per_node);
+  // An aggregate of few nodes has fewer unknowns than rigid motions: the coarse matrix has rows of zeros.
+  list.set("rap: fix zero diagonals", true);
   list.set("smoother: type", "CHEBYSHEV");
   Teuchos::ParameterList &smoother = list.sublist("smoother: params");
   smoother.set("chebyshev: degree", 2);

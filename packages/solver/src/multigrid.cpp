@@ -1,9 +1,11 @@
 #include "multigrid.hpp"
 
 #include "gathered_solver.hpp"
+#include "guarded_solver.hpp"
 #include "rpc/core/muelu.hpp"
 
 #include <MueLu_CreateTpetraPreconditioner.hpp>
+#include <MueLu_DirectSolver.hpp>
 #include <MueLu_FactoryManager.hpp>
 #include <MueLu_SingleLevelFactoryBase.hpp>
 #include <MueLu_SmootherFactory.hpp>
@@ -239,10 +241,12 @@ void replace_factories(MueLu::FactoryManager<double, LO, GO, Node> &manager)
   manager.SetFactory("UnAmalgamationInfo", rcp(new NodeByNode<muelu::HostAmalgamationInfo, muelu::HostAmalgamation>));
 }
 
-/// Whether the coarsest level lies on several ranks, and the user has not said how to solve there.
-bool needs_gathered_solver(const CrsMatrix &A, const Teuchos::ParameterList &list)
+/// What solves on the coarsest level of several ranks, where the user has not said it: none on one rank.
+RCP<CoarseSolver> coarse_solver(const CrsMatrix &A, const Teuchos::ParameterList &list)
 {
-  return !muelu::has_repartitioning && A.getComm()->getSize() > 1 && !list.isParameter("coarse: type");
+  if (A.getComm()->getSize() == 1 || list.isParameter("coarse: type")) return Teuchos::null;
+  if (!muelu::has_repartitioning) return rcp(new GatheredSolver);
+  return rcp(new GuardedSolver(MueLu::DirectSolver<double, LO, GO, Node>().Copy()));
 }
 
 /// A Tpetra multivector of the "user data" as MueLu takes it.
@@ -268,9 +272,8 @@ RCP<Multigrid> make_multigrid(const RCP<CrsMatrix> &A, Teuchos::ParameterList li
     auto &manager = *Teuchos::rcp_dynamic_cast<MueLu::FactoryManager<double, LO, GO, Node>>(
         interpreter.GetFactoryManager(static_cast<int>(level)), true);
     replace_factories(manager);
-    if (needs_gathered_solver(*A, plain))
-      manager.SetFactory("CoarseSolver",
-                         rcp(new MueLu::SmootherFactory<double, LO, GO, Node>(rcp(new GatheredSolver))));
+    if (const auto solver = coarse_solver(*A, plain); !solver.is_null())
+      manager.SetFactory("CoarseSolver", rcp(new MueLu::SmootherFactory<double, LO, GO, Node>(solver)));
   }
   const auto hierarchy = interpreter.CreateHierarchy();
   const RCP<XpetraMatrix> matrix = MueLu::TpetraCrs_To_XpetraMatrix<double, LO, GO, Node>(A);

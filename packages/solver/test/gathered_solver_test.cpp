@@ -1,4 +1,5 @@
 #include "../src/gathered_solver.hpp"
+#include "../src/guarded_solver.hpp"
 
 #include "expect_error.hpp"
 #include "grid.hpp"
@@ -93,6 +94,49 @@ TEST(GatheredSolver, RefusesALevelOfTooManyRowsOnAllRanks)
   GatheredSolver solver;
   test::expect_error(ExitCode::bad_input, {"5202 rows", "at most 5000", "coarse: max size"},
                      [&] { set_up(solver, grid.A); });
+}
+
+/// Fails where it is told to, on the first rank alone.
+class Failing : public solver::CoarseSolver
+{
+public:
+  Failing(const bool in_setup, const bool in_apply) : in_setup_(in_setup), in_apply_(in_apply) {}
+  void DeclareInput(MueLu::Level &) const override {}
+  void Setup(MueLu::Level &) override { fail_if(in_setup_); }
+  void Apply(solver::XpetraVectors &x, const solver::XpetraVectors &b, bool) const override
+  {
+    fail_if(in_apply_);
+    x.update(2., b, 0.);
+  }
+  RCP<solver::CoarseSolver> Copy() const override { return rcp(new Failing(*this)); }
+  std::size_t getNodeSmootherComplexity() const override { return 0; }
+
+private:
+  static void fail_if(const bool here)
+  {
+    if (here && Tpetra::getDefaultComm()->getRank() == 0) throw std::runtime_error("singular");
+  }
+  bool in_setup_, in_apply_;
+};
+
+TEST(GuardedSolver, TellsAllRanksOfAFailureOnOneByTheNorm)
+{
+  const Grid grid(4);
+  const auto b = rcp(new MultiVector(grid.map, 1)), x = rcp(new MultiVector(grid.map, 1));
+  b->putScalar(1.);
+  const RCP<solver::XpetraVectors> from = MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(b),
+                                   to = MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(x);
+  for (const auto &[in_setup, in_apply] : {std::pair{false, false}, {true, false}, {false, true}}) {
+    const auto guarded = solver::GuardedSolver(rcp(new Failing(in_setup, in_apply))).Copy();
+    MueLu::Level level;
+    guarded->Setup(level);
+    guarded->Apply(*to, *from, true);
+    const double norm = Vector(*x, 0).normInf();
+    if (in_setup || in_apply)
+      EXPECT_TRUE(std::isnan(norm) || std::isnan(Vector(*x, 0).norm2()));
+    else
+      EXPECT_EQ(norm, 2);
+  }
 }
 
 } // namespace
