@@ -101,7 +101,7 @@ Arguments split_arguments(const int argc, char *argv[])
   return arguments;
 }
 
-CommandLine parse_command_line(std::vector<char *> argument_pointers)
+CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
 {
   using Teuchos::CommandLineProcessor;
   std::vector<std::string> arguments = joined(argument_pointers);

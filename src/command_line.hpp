@@ -27,7 +27,7 @@ struct Arguments {
 Arguments split_arguments(int argc, char *argv[]);
 
 /// @throws rpc::Error (bad_input) on an unknown or incomplete option
-CommandLine parse_command_line(std::vector<char *> arguments);
+CommandLine parse_command_line(const std::vector<char *> &arguments);
 
 /// Starts Kokkos with the options that are for it; on all ranks alike.
 /// @param root  whether this is rank 0, which alone prints Kokkos' help

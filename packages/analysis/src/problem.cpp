@@ -62,7 +62,7 @@ Model Model::seen_at(const double t) const
   return model;
 }
 
-Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, Model model, const solver::LinearSolverOptions &linear,
+Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
                  const double t)
     : model_(model.seen_at(t)), discretization_(fem::discretize(std::move(mesh)))
 {

@@ -142,7 +142,7 @@ std::vector<TractionLoad> traction_options(const Teuchos::ParameterList &list, c
 {
   std::vector<TractionLoad> loads;
   for (auto it = list.begin(); it != list.end(); ++it) {
-    const std::string name = list.name(it);
+    const std::string &name = list.name(it);
     const Teuchos::ParameterList &entry = list.sublist(name);
     const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
     loads.push_back({name, side, vector_field(entry, dim, "Traction->" + name, parse)});

@@ -202,8 +202,8 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-LinearSolver::LinearSolver(LinearSolverOptions options, RCP<UpdatedOperator> H, RCP<MultiVector> coordinates,
-                           RCP<MultiVector> null_space)
+LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H,
+                           const RCP<MultiVector> &coordinates, const RCP<MultiVector> &null_space)
     : options_(std::move(options)), impl_(std::make_unique<Impl>())
 {
   impl_->H = H;

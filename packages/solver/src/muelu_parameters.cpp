@@ -90,8 +90,8 @@ void check_smoother(const std::string &type, const ParameterList &given, const s
     for (const std::string &name : names_of(given))
       if (std::find(read.begin(), read.end(), name) == read.end())
         throw unknown_parameter(path, name, candidates(read, type));
-    ParameterList copy = given;    // Ifpack2 writes its defaults into a const list
-    smoother->setParameters(copy); // has its own words on values
+    // It has its own words on values, and writes its defaults into a const list: hence a copy.
+    smoother->setParameters(ParameterList(given));
   } catch (const Error &) {
     throw;
   } catch (const std::exception &failure) {

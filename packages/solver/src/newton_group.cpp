@@ -11,7 +11,7 @@ namespace rpc::solver
 // |r|/|F| of a direction while the Hessian changes.
 constexpr double forcing = 5e-3;
 
-NewtonGroup::NewtonGroup(RCP<NewtonContext> context, RCP<rpc::Vector> u)
+NewtonGroup::NewtonGroup(RCP<NewtonContext> context, const RCP<rpc::Vector> &u)
     : context_(std::move(context)), u_(u), F_(u_, NOX::ShapeCopy)
 {
 }

@@ -41,7 +41,8 @@ public:
   /// @param t  time of the first step; which displacements are prescribed does not depend on it
   /// @throws rpc::Error bad_input where the model does not fit the mesh or numbers overflow, naming what they belong to;
   ///         bad_mesh for a cell with a Jacobian <= 0; no_solution as contact::contact_nodes()
-  Problem(std::shared_ptr<const mesh::Mesh> mesh, Model model, const solver::LinearSolverOptions &linear, double t = 1);
+  Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
+          double t = 1);
 
   /// Loads, prescribed displacements and contact nodes at one time. Collective.
   /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()

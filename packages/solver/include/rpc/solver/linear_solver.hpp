@@ -46,8 +46,8 @@ public:
   /// @param H            may change between solves; its matrix is written when the hierarchy is set up
   /// @param coordinates  (nodes; dim)          @param null_space  (rows of A; rigid body modes)
   /// Collective.
-  LinearSolver(LinearSolverOptions options, RCP<UpdatedOperator> H, RCP<MultiVector> coordinates,
-               RCP<MultiVector> null_space);
+  LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, const RCP<MultiVector> &coordinates,
+               const RCP<MultiVector> &null_space);
   ~LinearSolver();
 
   struct Result {

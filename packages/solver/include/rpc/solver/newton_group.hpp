@@ -34,7 +34,7 @@ struct NewtonContext {
 class NewtonGroup : public NOX::Abstract::Group
 {
 public:
-  NewtonGroup(RCP<NewtonContext> context, RCP<rpc::Vector> u);
+  NewtonGroup(RCP<NewtonContext> context, const RCP<rpc::Vector> &u);
   NewtonGroup(const NewtonGroup &source, NOX::CopyType type);
 
   NewtonGroup(const NewtonGroup &) = delete;
