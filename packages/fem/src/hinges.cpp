@@ -20,7 +20,7 @@ namespace rpc::fem
 namespace
 {
 
-using Rows = std::vector<std::vector<double>>;
+using DenseRows = std::vector<std::vector<double>>;
 
 /// Pieces joined to each other in points, of which motions are worked out all at once.
 constexpr std::size_t most_pieces = 200;
@@ -310,7 +310,7 @@ Pieces pieces_of(const Discretization &d, const DirichletDofs &dirichlet)
           gathered_by_root(comm, mine.held_row)};
 }
 
-double dot(const std::vector<double> &a, const std::vector<double> &b)
+double dot_of_rows(const std::vector<double> &a, const std::vector<double> &b)
 {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.);
 }
@@ -318,20 +318,20 @@ double dot(const std::vector<double> &a, const std::vector<double> &b)
 /// a -= (a.unit) unit.
 void subtract(std::vector<double> &a, const std::vector<double> &unit)
 {
-  const double part = dot(a, unit);
+  const double part = dot_of_rows(a, unit);
   for (std::size_t k = 0; k < a.size(); ++k) a[k] -= part * unit[k];
 }
 
 /// Orthonormal basis of what rows of size 1 span, the largest remainder first.
-Rows basis_of(const Rows &rows, const double tolerance)
+DenseRows basis_of(const DenseRows &rows, const double tolerance)
 {
-  Rows rest = rows, units;
+  DenseRows rest = rows, units;
   for (;;) {
     std::size_t best = rest.size();
     double largest = tolerance * tolerance;
     for (std::size_t i = 0; i < rest.size(); ++i) {
       if (!units.empty()) subtract(rest[i], units.back());
-      const double square = dot(rest[i], rest[i]);
+      const double square = dot_of_rows(rest[i], rest[i]);
       if (!(square > largest)) continue;
       largest = square;
       best = i;
@@ -339,7 +339,7 @@ Rows basis_of(const Rows &rows, const double tolerance)
     if (best == rest.size()) return units;
     std::vector<double> unit = rest[best];
     for (const auto &other : units) subtract(unit, other); // again, so that the rest is orthogonal to rounding
-    const double size = std::sqrt(dot(unit, unit));
+    const double size = std::sqrt(dot_of_rows(unit, unit));
     for (double &entry : unit) entry /= size;
     units.push_back(unit);
   }
@@ -418,17 +418,17 @@ std::vector<Assembly> assemblies_of(const Pieces &all, const int dim, const int 
 }
 
 /// What stops motions of the pieces, each by all its modes: prescribed displacements, and places that two of them share.
-Rows stopped(const Assembly &assembly, const int dim)
+DenseRows stopped(const Assembly &assembly, const int dim)
 {
   const std::size_t modes = num_rigid_modes(dim), size = modes * assembly.pieces.size();
-  Rows rows;
+  DenseRows rows;
   const auto put = [&](std::vector<double> &row, const RigidMotion &motion, const int piece, const double factor) {
     for (std::size_t k = 0; k < modes; ++k) row[modes * piece + k] = factor * motion[k];
   };
   for (std::size_t p = 0; p < assembly.pieces.size(); ++p)
     for (const RigidMotion &held : independent_rows(assembly.held[p], rigid_tolerance)) {
       rows.emplace_back(size, 0.);
-      put(rows.back(), held, static_cast<int>(p), 1 / std::sqrt(fem::dot(held, held)));
+      put(rows.back(), held, static_cast<int>(p), 1 / std::sqrt(dot(held, held)));
     }
   for (const auto &joint : assembly.joints)
     for (int c = 0; c < dim; ++c) {
@@ -450,7 +450,7 @@ std::size_t num_free_as_one(const Assembly &assembly, const int dim)
 }
 
 /// The joint about which pieces turn most, for a basis of what stops them.
-const Assembly::Joint &loosest(const Assembly &assembly, const Rows &units, const int dim)
+const Assembly::Joint &loosest(const Assembly &assembly, const DenseRows &units, const int dim)
 {
   const std::size_t modes = num_rigid_modes(dim), size = modes * assembly.pieces.size();
   std::size_t best = 0;
@@ -484,7 +484,7 @@ void check(const Assembly &assembly, const int dim)
   RPC_REQUIRE_CODE(assembly.pieces.size() <= most_pieces, ExitCode::no_solution,
                    "support: the mesh joins " << assembly.pieces.size() << " pieces of the body " << only
                                               << ", too many to tell whether something holds each" << remedy);
-  const Rows units = basis_of(stopped(assembly, dim), rigid_tolerance);
+  const DenseRows units = basis_of(stopped(assembly, dim), rigid_tolerance);
   const std::size_t free = num_rigid_modes(dim) * assembly.pieces.size() - units.size();
   if (free <= num_free_as_one(assembly, dim)) return;
   const auto &joint = loosest(assembly, units, dim);

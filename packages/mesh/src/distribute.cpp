@@ -122,7 +122,7 @@ void broadcast(const Comm &comm, Element &element)
   element = {values[0], values[1], static_cast<Shape>(values[2])};
 }
 
-void send(const Comm &comm, const Part &part, const int rank)
+void send_part(const Comm &comm, const Part &part, const int rank)
 {
   for_each_array(part, [&](const auto &array) {
     const GO size = static_cast<GO>(array.size());
@@ -132,7 +132,7 @@ void send(const Comm &comm, const Part &part, const int rank)
   });
 }
 
-void receive(const Comm &comm, Part &part)
+void receive_part(const Comm &comm, Part &part)
 {
   for_each_array(part, [&](auto &array) {
     GO size = 0;
@@ -158,11 +158,11 @@ Part deal(const MeshData &whole, const Comm &comm)
   broadcast(comm, part.mesh.blocks);
   broadcast(comm, sides);
   if (comm.getRank() == 0) {
-    for (int rank = 1; rank < comm.getSize(); ++rank) send(comm, part_of(whole, division, rank), rank);
+    for (int rank = 1; rank < comm.getSize(); ++rank) send_part(comm, part_of(whole, division, rank), rank);
     return part_of(whole, division, 0);
   }
   for (const std::string &name : sides) part.mesh.sides.push_back({name, {}, {}});
-  receive(comm, part);
+  receive_part(comm, part);
   return part;
 }
 

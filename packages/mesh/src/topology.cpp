@@ -15,12 +15,12 @@ namespace
 constexpr int most_vertices = 4; // of a quadrilateral
 
 /// Vertices, ascending and filled up with the largest integer: compared as a whole.
-using Key = std::array<int, most_vertices>;
+using VertexKey = std::array<int, most_vertices>;
 
 /// @param local  which nodes of the cell the entity has, vertices first
-Key key_of(const int *const cell, const std::vector<int> &local, const int num_vertices)
+VertexKey key_of(const int *const cell, const std::vector<int> &local, const int num_vertices)
 {
-  Key key;
+  VertexKey key;
   key.fill(std::numeric_limits<int>::max());
   for (int v = 0; v < num_vertices; ++v) {
     int at = v;
@@ -51,14 +51,14 @@ Entities entities_of(const Element &element, const Element::Table &table, const 
   Lists by_lowest = sorted_into_lists(of_cell, last_node + 1); // of vertices: then only a few are left to sort
   entities.occurrences.value = std::move(by_lowest.value);
   auto occurrence = entities.occurrences.value.begin();
-  std::vector<std::pair<Key, int>> few; // vertices, occurrence
+  std::vector<std::pair<VertexKey, int>> few; // vertices, occurrence
   int entity = -1;
   for (int node = 0; node <= last_node; ++node) {
     few.clear();
     for (int k = 0; k < by_lowest.size_of(node); ++k) few.emplace_back(key_at(occurrence[k]), occurrence[k]);
     std::sort(few.begin(), few.end());
     for (std::size_t k = 0; k < few.size(); ++k, ++occurrence) {
-      const Key &key = few[k].first;
+      const VertexKey &key = few[k].first;
       if (k == 0 || key != few[k - 1].first) {
         if (++entity > 0) entities.occurrences.begin.push_back(occurrence - entities.occurrences.value.begin());
         entities.vertices.insert(entities.vertices.end(), key.begin(), key.begin() + num_vertices);
