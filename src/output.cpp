@@ -205,6 +205,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["deck"] = scene.name;
   json["converged"] = s.uzawa.converged;
   json["reason"] = s.uzawa.reason;
+  if (mesh.dim() == 2) json["kinematics"] = fem::name_of(s.discretization.kinematics);
   json["element"] = mesh.element.name();
   json["cells"] = sum_all(mesh.comm(), GO(mesh.num_owned_cells));
   json["dofs"] = s.discretization.owned_dofs->getGlobalNumElements();

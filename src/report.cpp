@@ -69,10 +69,12 @@ void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const
   const mesh::Mesh &mesh = *d.mesh;
   std::string sides;
   for (const auto &side : scene.model.contact) sides += (sides.empty() ? " on \"" : ", \"") + side.side + "\"";
-  print(out_, "%s: %lld %s cells, %lld dofs, %lld contact nodes%s, %d rank%s, %s\n", scene.name.c_str(),
+  const std::string kinematics = mesh.dim() == 2 ? ", " + fem::name_of(d.kinematics) : "";
+  print(out_, "%s: %lld %s cells%s, %lld dofs, %lld contact nodes%s, %d rank%s, %s\n", scene.name.c_str(),
         static_cast<long long>(sum_all(mesh.comm(), GO(mesh.num_owned_cells))), mesh.element.name().c_str(),
-        static_cast<long long>(d.owned_dofs->getGlobalNumElements()), static_cast<long long>(contact.num_total),
-        sides.c_str(), mesh.comm().getSize(), mesh.comm().getSize() == 1 ? "" : "s", ExecutionSpace::name());
+        kinematics.c_str(), static_cast<long long>(d.owned_dofs->getGlobalNumElements()),
+        static_cast<long long>(contact.num_total), sides.c_str(), mesh.comm().getSize(),
+        mesh.comm().getSize() == 1 ? "" : "s", ExecutionSpace::name());
   if (contact.num_fixed > 0)
     print(out_,
           "note: the normal displacement of %lld contact nodes is prescribed by \"Dirichlet\", which wins over contact "
@@ -81,7 +83,7 @@ void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const
   if (contact.num_missing > 0)
     print(out_, "note: from %lld nodes of the contact sides the normal misses the obstacle: they never touch\n",
           static_cast<long long>(contact.num_missing));
-  const std::string locking = fem::locking_note(mesh, scene.model.materials);
+  const std::string locking = fem::locking_note(d, scene.model.materials);
   if (!locking.empty()) print(out_, "note: %s\n", locking.c_str());
   print(out_, "uzawa newton   |F|/|b|     step    open  closed  yields krylov   time [s]\n");
   out_ << std::flush;

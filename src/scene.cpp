@@ -29,6 +29,10 @@ Teuchos::ParameterList valid_deck()
 {
   Teuchos::ParameterList valid("rpc");
   valid.set("Time", 1., "t at which the scene is solved: fields may be expressions of x, y, z and t.");
+  valid.set(
+      "Kinematics", "plane strain",
+      "What a plane mesh is the section of: `plane strain`, a long body; `plane stress`, a thin sheet. A body in space "
+      "has none of its own.");
   valid.sublist("Mesh") = mesh::valid_parameters();
   valid.sublist("Material") = fem::valid_material_parameters();
   valid.sublist("Dirichlet") = fem::valid_dirichlet_parameters();
@@ -57,6 +61,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   const int dim = mesh::dimension(scene.mesh, comm);
   scene.time = deck.get<double>("Time");
   RPC_REQUIRE(std::isfinite(scene.time), "deck: \"Time\" must be finite, got " << scene.time);
+  scene.model.kinematics = fem::kinematics_option(deck.get<std::string>("Kinematics"), dim);
   scene.model.materials = fem::material_options(deck.sublist("Material"));
   scene.model.dirichlet = fem::dirichlet_options(deck.sublist("Dirichlet"), dim, io::parse_field);
   scene.model.tractions = fem::traction_options(deck.sublist("Traction"), dim, io::parse_field);

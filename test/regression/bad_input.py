@@ -15,7 +15,7 @@ ASSIGNMENTS = [
     # names
     (["Material->Youngs Modulus=3"], ['"Material->Youngs Modulus"', 'Did you mean "Young\'s Modulus"?']),
     (["Materail->Poisson's Ratio=0.2"], ['"Materail"', 'Did you mean "Material"?']),
-    (["Yield Stress=3"], ['"Yield Stress"', "Valid here: Time, Mesh, Material"]),
+    (["Yield Stress=3"], ['"Yield Stress"', "Valid here: Time, Kinematics, Mesh, Material"]),
     (["Dirichlet->left->W=0"], ['"Dirichlet->left->W"', "X, Y, Z"]),
     (["Output=3"], ['"Output" is a sublist']),
     (["Dirichlet->left=3"], ['"Dirichlet->left" is a sublist']),

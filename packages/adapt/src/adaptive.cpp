@@ -189,7 +189,7 @@ Solution solve_adaptively(const Task &task, const RCP<const Comm> &comm, const L
       break;
     }
     last = std::move(next);
-    hint = fem::order_note(*last->discretization.mesh, task.model.materials);
+    hint = fem::order_note(last->discretization, task.model.materials);
     if (cycles.empty() && !hint.empty() && listener.note) listener.note(hint);
     cycles.push_back(cycle_of(*last, Teuchos::Time::wallTime() - start));
     if (!best || best_of(cycles) + 1 == cycles.size()) best = last;

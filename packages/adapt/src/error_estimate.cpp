@@ -272,7 +272,7 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
                              recovered.tractions(side),
                              fem::tractions_on(d, side, loads),
                              mesh.block,
-                             fem::lame_table(mesh, materials),
+                             fem::lame_table(d, materials),
                              fields->getLocalViewDevice(Tpetra::Access::ReadOnly),
                              mesh.num_owned_cells,
                              DeviceView<double *>("rpc::adapt::contact_terms", side.facets.extent(0))};

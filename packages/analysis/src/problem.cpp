@@ -64,7 +64,7 @@ Model Model::seen_at(const double t) const
 
 Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
                  const double t)
-    : model_(model.seen_at(t)), discretization_(fem::discretize(std::move(mesh)))
+    : model_(model.seen_at(t)), discretization_(fem::discretize(std::move(mesh), model_.kinematics))
 {
   const fem::Discretization &d = discretization_;
   const auto dirichlet = prescribed_of(d, model_);

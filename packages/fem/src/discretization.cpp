@@ -129,10 +129,11 @@ RCP<const CrsGraph> dof_graph(const Discretization &d)
 
 } // namespace
 
-Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh)
+Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, const Kinematics kinematics)
 {
   Discretization d;
   d.mesh = std::move(mesh);
+  d.kinematics = kinematics;
   d.reference = tabulate(d.mesh->element);
   d.owned_dofs = dof_map(*d.mesh->owned_nodes, d.dim());
   d.overlap_dofs =

@@ -56,6 +56,7 @@ struct ElasticCells {
   DeviceView<double *> weight;     // (points)                    in
   DeviceView<double **> lame;      // (blocks; lambda, mu)  [Pa]  in
   DeviceView<int *> projected;     // (blocks) 0 or 1             in
+  bool plane_stress;               // no stress across the plane  in
   // Of congruent cells, (kinds, points): gradients [1/m], and what a point stands for [m^Dim]. Empty: cells differ.
   DeviceView<signed char *> kind; // (cells)                            in
   DeviceView<double **[Nodes][Dim]> kind_gradient;
@@ -182,8 +183,9 @@ ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials 
   body.value = table.value;
   body.gradient = table.gradient;
   body.weight = table.weight;
-  body.lame = lame_table(mesh, materials);
-  body.projected = projected_dilatation_table(mesh, materials);
+  body.lame = lame_table(d, materials);
+  body.projected = projected_dilatation_table(d, materials);
+  body.plane_stress = d.kinematics == Kinematics::plane_stress;
   if (d.congruent.size() == 0) return body;
   const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::kind_gradient", d.congruent.size(), table.num_points());
   const DeviceView<double **> volume("rpc::fem::kind_volume", d.congruent.size(), table.num_points());

@@ -1,3 +1,4 @@
+#include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/fem/elasticity.hpp"
@@ -39,12 +40,31 @@ bool is_p2(const mesh::Element &element)
 }
 
 /// Whether the projection stands for the dilatation.
-bool projects(const mesh::Element &element, const Material &material)
+bool projects(const Discretization &d, const Material &material)
 {
+  if (d.kinematics == Kinematics::plane_stress) return false; // lambda stays finite as nu nears 0.5
   // P2 with one constant per cell loses its order: up to 0.48 it does better without.
-  const double bound = is_p2(element) ? 0.48 : 0.4;
+  const double bound = is_p2(d.mesh->element) ? 0.48 : 0.4;
   const bool automatic = material.dilatation == Dilatation::automatic && material.poissons_ratio > bound;
   return automatic || material.dilatation == Dilatation::projected;
+}
+
+/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
+void require_blocks(const mesh::Mesh &mesh, const Materials &materials)
+{
+  for (const auto &[name, material] : materials.block)
+    RPC_REQUIRE(std::find(mesh.blocks.begin(), mesh.blocks.end(), name) != mesh.blocks.end(),
+                "deck: \"Material->Blocks->" << name << "\" names a block that the mesh does not have. Its blocks: "
+                                             << join(mesh.blocks) << ".");
+}
+
+/// (blocks) [Pa]
+DeviceView<double *> youngs_moduli(const mesh::Mesh &mesh, const Materials &materials)
+{
+  require_blocks(mesh, materials);
+  std::vector<double> moduli;
+  for (const std::string &block : mesh.blocks) moduli.push_back(materials.of(block).youngs_modulus);
+  return device_values(moduli, "rpc::fem::youngs_moduli");
 }
 
 } // namespace
@@ -58,7 +78,7 @@ Teuchos::ParameterList valid_material_parameters()
       "Dilatation", "auto",
       "What counts as div u in a cell: `full`, itself; `projected`, its L2 projection on constants (Q1, P2) or linear "
       "functions (Q2), which does not lock as nu nears 0.5; `auto`: projected where nu > 0.4 (P2: 0.48). All the same "
-      "for P1.");
+      "for P1. Plane stress does not lock: `full` there.");
   Teuchos::ParameterList entry = valid;
   set_named_entries(valid, "Blocks", entry,
                     "Materials of single blocks of the mesh, each entry named after its block; other blocks have the "
@@ -82,18 +102,17 @@ const Material &Materials::of(const std::string &name) const
   return own == block.end() ? common : own->second;
 }
 
-DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materials)
+DeviceView<double **> lame_table(const Discretization &d, const Materials &materials)
 {
-  for (const auto &[name, material] : materials.block)
-    RPC_REQUIRE(std::find(mesh.blocks.begin(), mesh.blocks.end(), name) != mesh.blocks.end(),
-                "deck: \"Material->Blocks->" << name << "\" names a block that the mesh does not have. Its blocks: "
-                                             << join(mesh.blocks) << ".");
+  const mesh::Mesh &mesh = *d.mesh;
+  require_blocks(mesh, materials);
   DeviceView<double **> table("rpc::fem::lame", mesh.blocks.size(), 2);
   const auto host = Kokkos::create_mirror_view(table);
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const Material &material = materials.of(mesh.blocks[b]);
-    host(b, 0) = material.lambda();
-    host(b, 1) = material.mu();
+    const double lambda = material.lambda(), mu = material.mu();
+    host(b, 0) = d.kinematics == Kinematics::plane_stress ? 2 * lambda * mu / (lambda + 2 * mu) : lambda;
+    host(b, 1) = mu;
   }
   Kokkos::deep_copy(table, host);
   return table;
@@ -102,15 +121,14 @@ DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materi
 DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials,
                                              const DeviceView<LO *> &nodes)
 {
-  const auto lame = lame_table(*d.mesh, materials);
+  const auto of_block = youngs_moduli(*d.mesh, materials);
   const auto node_to_cells = d.node_to_cells;
   const auto block = d.mesh->block;
   DeviceView<double *> modulus("rpc::fem::youngs_modulus", nodes.extent(0));
   Kokkos::parallel_for(
       "rpc::fem::youngs_modulus", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO i) {
         for (std::size_t k = node_to_cells.row(nodes(i)); k < node_to_cells.row(nodes(i) + 1); ++k) {
-          const double lambda = lame(block(node_to_cells.cell(k)), 0), mu = lame(block(node_to_cells.cell(k)), 1);
-          const double own = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+          const double own = of_block(block(node_to_cells.cell(k)));
           if (own > modulus(i)) modulus(i) = own;
         }
       });
@@ -118,18 +136,27 @@ DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Mate
   return modulus;
 }
 
-DeviceView<int *> projected_dilatation_table(const mesh::Mesh &mesh, const Materials &materials)
+DeviceView<int *> projected_dilatation_table(const Discretization &d, const Materials &materials)
 {
+  const mesh::Mesh &mesh = *d.mesh;
   DeviceView<int *> table("rpc::fem::projected_dilatation", mesh.blocks.size());
   const auto host = Kokkos::create_mirror_view(table);
-  for (std::size_t b = 0; b < mesh.blocks.size(); ++b)
-    host(b) = projects(mesh.element, materials.of(mesh.blocks[b])) ? 1 : 0;
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const Material &material = materials.of(mesh.blocks[b]);
+    RPC_REQUIRE(
+        d.kinematics != Kinematics::plane_stress || material.dilatation != Dilatation::projected,
+        "deck: \"Material->Dilatation\" = projected does not go with \"Kinematics\" = plane stress, in which nothing "
+        "locks: the sheet grows thinner instead. Take auto or full.");
+    host(b) = projects(d, material) ? 1 : 0;
+  }
   Kokkos::deep_copy(table, host);
   return table;
 }
 
-std::string locking_note(const mesh::Mesh &mesh, const Materials &materials)
+std::string locking_note(const Discretization &d, const Materials &materials)
 {
+  const mesh::Mesh &mesh = *d.mesh;
+  if (d.kinematics == Kinematics::plane_stress) return "";
   if (mesh.element.shape != mesh::Shape::simplex || mesh.element.order != 1) return "";
   for (const std::string &block : mesh.blocks) {
     if (!(materials.of(block).poissons_ratio > 0.4)) continue;
@@ -142,12 +169,13 @@ std::string locking_note(const mesh::Mesh &mesh, const Materials &materials)
   return "";
 }
 
-std::string order_note(const mesh::Mesh &mesh, const Materials &materials)
+std::string order_note(const Discretization &d, const Materials &materials)
 {
+  const mesh::Mesh &mesh = *d.mesh;
   if (!is_p2(mesh.element)) return "";
   for (const std::string &block : mesh.blocks) {
     const Material &material = materials.of(block);
-    if (!projects(mesh.element, material)) continue;
+    if (!projects(d, material)) continue;
     std::ostringstream note;
     note << "P2 loses an order in block \"" << block << "\" with nu = " << material.poissons_ratio
          << ", where its dilatation is projected, and needs many more cells for the same error; take Q2"

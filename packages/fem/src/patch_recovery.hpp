@@ -386,6 +386,8 @@ struct EvaluatePatches {
     const double lambda = body.lambda(cell), mu = body.mu(cell);
     for (int m = 0; m < components; ++m) {
       const int i = Components<Dim>::row(m), j = Components<Dim>::col(m);
+      const bool across = i >= Dim; // where twice the strain is 0
+      if (across && body.plane_stress) continue;
       s[m] += mu * strain2[i][j] + (i == j ? lambda * trace : 0);
     }
     ++count;

@@ -59,7 +59,8 @@ inline mesh::BoxOptions small_box(const mesh::Element &element)
 
 using Deformation = std::function<Point(const Point &)>;
 
-inline fem::Discretization body(const mesh::BoxOptions &box, const RCP<const Comm> &comm, const Deformation &move = {})
+inline fem::Discretization body(const mesh::BoxOptions &box, const RCP<const Comm> &comm, const Deformation &move = {},
+                                const fem::Kinematics kinematics = fem::Kinematics::plane_strain)
 {
   auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, comm));
   const auto coords = Kokkos::create_mirror_view(mesh->coords);
@@ -71,7 +72,7 @@ inline fem::Discretization body(const mesh::BoxOptions &box, const RCP<const Com
     for (int d = 0; d < mesh->dim(); ++d) coords(n, d) = x[d];
   }
   Kokkos::deep_copy(mesh->coords, coords);
-  return fem::discretize(mesh);
+  return fem::discretize(mesh, kinematics);
 }
 
 /// Moves the nodes inside, so that no cell is a parallelogram; the boundary stays.

@@ -215,7 +215,7 @@ TEST(ProjectedDilatation, NodalStressesOfALinearDisplacementAreExact)
 /// Whether the dilatation is projected in a body of one block.
 bool projects(const mesh::Element &element, const fem::Material &material)
 {
-  return to_host(fem::projected_dilatation_table(*body(small_box(element), world()).mesh, material))(0) != 0;
+  return to_host(fem::projected_dilatation_table(body(small_box(element), world()), material))(0) != 0;
 }
 
 TEST(AutomaticDilatation, IsProjectedInNearlyIncompressibleMaterials)
@@ -231,14 +231,25 @@ TEST(AutomaticDilatation, IsProjectedInNearlyIncompressibleMaterials)
   EXPECT_TRUE(projects(q1, {1, 0.2, Dilatation::projected}));
 }
 
+TEST(AutomaticDilatation, IsFullInPlaneStressWhereProjectedIsRefused)
+{
+  const auto d = body(small_box({2, 1}), world(), {}, fem::Kinematics::plane_stress);
+  EXPECT_EQ(to_host(fem::projected_dilatation_table(d, fem::Material{1, 0.4999}))(0), 0);
+  expect_error(ExitCode::bad_input, {"\"Material->Dilatation\" = projected", "plane stress", "Take auto or full"}, [&] {
+    fem::projected_dilatation_table(d, fem::Material{1, 0.4999, Dilatation::projected});
+  });
+}
+
 TEST(AutomaticDilatation, IsChosenBlockByBlock)
 {
-  auto mesh = std::make_shared<mesh::Mesh>(*body(small_box({2, 1}), world()).mesh);
+  auto d = body(small_box({2, 1}), world());
+  auto mesh = std::make_shared<mesh::Mesh>(*d.mesh);
   mesh->blocks = {"steel", "rubber", "other rubber"};
+  d.mesh = mesh;
   fem::Materials materials(fem::Material{1, 0.3});
   materials.block["rubber"] = {1, 0.49};
   materials.block["other rubber"] = {1, 0.49, Dilatation::full};
-  const auto table = to_host(fem::projected_dilatation_table(*mesh, materials));
+  const auto table = to_host(fem::projected_dilatation_table(d, materials));
   EXPECT_EQ(table(0), 0);
   EXPECT_EQ(table(1), 1);
   EXPECT_EQ(table(2), 0);
@@ -263,7 +274,7 @@ TEST(DilatationOption, IsReadForEachMaterialAndMisspellingsAreRefused)
 TEST(LockingNote, WarnsOfP1InNearlyIncompressibleMaterialsOnly)
 {
   const auto note = [](const mesh::Element &element, const double nu) {
-    return fem::locking_note(*body(small_box(element), world()).mesh, fem::Material{1, nu});
+    return fem::locking_note(body(small_box(element), world()), fem::Material{1, nu});
   };
   const mesh::Element p1{2, 1, mesh::Shape::simplex}, p2{2, 2, mesh::Shape::simplex}, q1{2, 1};
   EXPECT_EQ(note(p1, 0.4), "");
@@ -279,7 +290,7 @@ TEST(OrderNote, TellsOfP2WhereItsDilatationIsProjected)
                        const fem::Dilatation dilatation = fem::Dilatation::automatic) {
     fem::Material material{1, nu};
     material.dilatation = dilatation;
-    return fem::order_note(*body(small_box(element), world()).mesh, material);
+    return fem::order_note(body(small_box(element), world()), material);
   };
   const mesh::Element p1{2, 1, mesh::Shape::simplex}, p2{2, 2, mesh::Shape::simplex}, q2{2, 2};
   EXPECT_EQ(note(p2, 0.48), "");

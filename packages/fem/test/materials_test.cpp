@@ -119,7 +119,7 @@ TEST(MaterialOptions, ValuesOutOfRangeAreRefused)
 TEST(LameTable, HasARowForEachBlockOfTheMesh)
 {
   const auto d = in_two_blocks(body(small_box({2, 1}), world()));
-  const auto table = to_host(fem::lame_table(*d.mesh, soft_and_hard(rubber, steel)));
+  const auto table = to_host(fem::lame_table(d, soft_and_hard(rubber, steel)));
   ASSERT_EQ(table.extent(0), 2u);
   ASSERT_EQ(table.extent(1), 2u);
   EXPECT_EQ(table(0, 0), rubber.lambda());
@@ -134,7 +134,7 @@ TEST(LameTable, MaterialOfABlockThatTheMeshLacksIsRefusedWithTheListOfBlocks)
   fem::Materials materials(steel);
   materials.block["hrad"] = rubber;
   const std::initializer_list<std::string> parts = {"\"Material->Blocks->hrad\"", "soft, hard"};
-  expect_error(ExitCode::bad_input, parts, [&] { fem::lame_table(*d.mesh, materials); });
+  expect_error(ExitCode::bad_input, parts, [&] { fem::lame_table(d, materials); });
   expect_error(ExitCode::bad_input, parts, [&] { fem::assemble_stiffness(d, materials); });
 }
 

@@ -15,6 +15,7 @@ namespace rpc::analysis
 
 /// What a scene is made of, but for its mesh. Fields are functions of place and time.
 struct Model {
+  fem::Kinematics kinematics = fem::Kinematics::plane_strain;
   fem::Materials materials;
   std::vector<fem::DirichletCondition> dirichlet;
   std::vector<fem::TractionLoad> tractions;

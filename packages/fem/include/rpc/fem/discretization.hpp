@@ -2,6 +2,7 @@
 
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/tpetra.hpp"
+#include "rpc/fem/kinematics.hpp"
 #include "rpc/fem/reference_element.hpp"
 #include "rpc/mesh/mesh.hpp"
 
@@ -35,6 +36,7 @@ struct CongruentCells {
 /// A mesh with its displacement unknowns, numbered as dofs.hpp says.
 struct Discretization {
   std::shared_ptr<const mesh::Mesh> mesh;
+  Kinematics kinematics = Kinematics::plane_strain;
   ReferenceElement reference;
   RCP<const Map> owned_dofs;     ///< rows
   RCP<const Map> overlap_dofs;   ///< columns
@@ -49,7 +51,8 @@ struct Discretization {
 };
 
 /// Collective.
-Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh);
+/// @param kinematics  the default for a mesh in space
+Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, Kinematics kinematics = Kinematics::plane_strain);
 
 /// Values with those of the neighbours' nodes, (overlap dofs), from those of the owned ones; collective. The same vector where
 /// there are no neighbours: for reading while the one given lives and stays as it is.

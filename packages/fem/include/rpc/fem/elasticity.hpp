@@ -12,10 +12,11 @@ namespace rpc::fem
 {
 
 /// What counts as div u in a cell: itself, or its L2 projection on constants (Q1, P2) or linear functions (Q2), which does
-/// not lock as nu nears 0.5, (2.6). Automatic is projected where nu > 0.4, for P2 0.48. P1 has constants anyway.
+/// not lock as nu nears 0.5, (2.6). Automatic is projected where nu > 0.4, for P2 0.48. P1 has constants anyway. Nothing locks in
+/// plane stress: there automatic is full.
 enum class Dilatation { automatic, full, projected };
 
-/// Linear isotropic elasticity; plane strain in 2D.
+/// Linear isotropic elasticity.
 struct Material {
   double youngs_modulus = 1; ///< E [Pa] > 0
   double poissons_ratio = 0; ///< nu     in (-1, 0.5)
@@ -40,9 +41,10 @@ Teuchos::ParameterList valid_material_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
 Materials material_options(const Teuchos::ParameterList &list);
 
-/// Lame's constants of each block of a mesh: (blocks; lambda, mu) [Pa].
+/// Lame's constants of each block of a mesh, (2.3): (blocks; lambda, mu) [Pa]. In plane stress lambda is that of the strains in the
+/// plane, (2.4).
 /// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
-DeviceView<double **> lame_table(const mesh::Mesh &mesh, const Materials &materials);
+DeviceView<double **> lame_table(const Discretization &d, const Materials &materials);
 
 /// The largest Young's modulus among the cells around each of some owned nodes (nodes, [Pa]).
 /// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
@@ -50,14 +52,15 @@ DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Mate
                                              const DeviceView<LO *> &nodes);
 
 /// Blocks in which the projection stands for the dilatation: (blocks) 0 or 1.
-DeviceView<int *> projected_dilatation_table(const mesh::Mesh &mesh, const Materials &materials);
+/// @throws rpc::Error (bad_input) if it is asked for in plane stress
+DeviceView<int *> projected_dilatation_table(const Discretization &d, const Materials &materials);
 
 /// What a user should know: that elements which lock meet a nearly incompressible material; empty if there is nothing.
-std::string locking_note(const mesh::Mesh &mesh, const Materials &materials);
+std::string locking_note(const Discretization &d, const Materials &materials);
 
 /// What a user should know who asks for small errors: that P2 loses an order where its dilatation is projected; empty if
 /// there is nothing.
-std::string order_note(const mesh::Mesh &mesh, const Materials &materials);
+std::string order_note(const Discretization &d, const Materials &materials);
 
 using VectorField = std::array<ScalarField, 3>;
 

@@ -20,7 +20,7 @@ public:
   RecoveredStress(Discretization d, Materials materials, const Vector &u);
 
   /// Columns: xx, yy, xy (2D); xx, yy, zz, xy, yz, xz (3D); and last the von Mises stress, which in plane strain counts
-  /// sigma_zz = lambda (eps_xx + eps_yy). Where blocks meet, a node has a mean of both sides.
+  /// sigma_zz = lambda (eps_xx + eps_yy); in plane stress sigma_zz = 0. Where blocks meet, a node has a mean of both sides.
   /// @return (owned nodes; 4 or 7) [Pa]; collective
   RCP<MultiVector> at_nodes() const;
 
