@@ -84,7 +84,7 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const Solution &s)
   const char *const displacement[] = {"disp_x", "disp_y", "disp_z"};
   for (int c = 0; c < dim; ++c) fields.push_back({displacement[c], column(*s.u, dim, c, n, 0)});
   const auto stress = fem::RecoveredStress(d, scene.model.materials, *s.u).at_nodes();
-  const auto names = fem::stress_names(dim);
+  const auto names = fem::stress_names(d);
   for (std::size_t k = 0; k < names.size(); ++k)
     fields.push_back({names[k], column(*stress, 1, 0, n, static_cast<int>(k))});
   if (scene.model.contact.empty()) return fields;

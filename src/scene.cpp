@@ -29,10 +29,10 @@ Teuchos::ParameterList valid_deck()
 {
   Teuchos::ParameterList valid("rpc");
   valid.set("Time", 1., "t at which the scene is solved: fields may be expressions of x, y, z and t.");
-  valid.set(
-      "Kinematics", "plane strain",
-      "What a plane mesh is the section of: `plane strain`, a long body; `plane stress`, a thin sheet. A body in space "
-      "has none of its own.");
+  valid.set("Kinematics", "plane strain",
+            "What body a plane mesh is a section of: `plane strain`, a long one; `plane stress`, a thin sheet; "
+            "`axisymmetric`, "
+            "a body of revolution, where x is the radius and y runs along the axis. Bodies in space have no choice.");
   valid.sublist("Mesh") = mesh::valid_parameters();
   valid.sublist("Material") = fem::valid_material_parameters();
   valid.sublist("Dirichlet") = fem::valid_dirichlet_parameters();

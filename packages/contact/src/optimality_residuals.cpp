@@ -8,15 +8,17 @@ namespace rpc::contact
 namespace
 {
 
-/// u less the mean of its prescribed values, component by component: energies do not see translations, but rounding does.
-Vector without_translation(const fem::DirichletDofs &dirichlet, const int dim, const Vector &u)
+/// u less the mean of its prescribed values, component by component: energies do not see translations, but rounding does. The
+/// radial component of an axisymmetric body is strain, and stays.
+Vector without_translation(const fem::Discretization &d, const fem::DirichletDofs &dirichlet, const Vector &u)
 {
+  const int dim = d.dim(), first = d.axisymmetric() ? 1 : 0;
   const auto fixed = dirichlet.fixed;
   Vector rest(u, Teuchos::Copy);
   const auto x = device_write(rest);
   const LO n = static_cast<LO>(u.getLocalLength());
   double sums[3] = {0, 0, 0}, counts[3] = {0, 0, 0};
-  for (int component = 0; component < dim; ++component)
+  for (int component = first; component < dim; ++component)
     Kokkos::parallel_reduce(
         "rpc::contact::mean_prescribed", device_range(n / dim),
         KOKKOS_LAMBDA(const LO node, double &sum, double &count) {
@@ -90,7 +92,7 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   residuals.equilibrium_residual =
       residual.norm2() / std::max({functional.force_scale(), contact.norm2(), residuals.internal.force_norm});
 
-  const Vector moved = without_translation(dirichlet, d.dim(), u);
+  const Vector moved = without_translation(d, dirichlet, u);
   const double of_load = work(dirichlet, false, moved, *problem.applied_load),
                of_contact = work(dirichlet, false, moved, contact),
                of_supports = work(dirichlet, true, moved, internal);

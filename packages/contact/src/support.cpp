@@ -35,7 +35,7 @@ struct Context {
   std::string amount(const double value, const fem::MotionInWords &words) const
   {
     std::ostringstream text;
-    text << value << (words.rotates ? " [N m" : " [N") << (d.dim() == 2 ? "/m]" : "]");
+    text << value << (words.rotates ? " [N m" : " [N") << (d.per_metre() ? "/m]" : "]");
     return text.str();
   }
 };

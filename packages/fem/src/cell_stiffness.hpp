@@ -16,16 +16,19 @@ constexpr int nodes_at_once(const int dim, const int nodes)
   return count;
 }
 
-/// Rows of the stiffness of one cell, if it was of a block's material.                             doc/theory.md (2.4)
-template <int Dim, int Nodes>
+/// Rows of the stiffness of one cell, if it was of a block's material.                        doc/theory.md (2.4), (2.4a)
+template <int Dim, int Nodes, bool Axisymmetric = false>
 struct CellStiffness {
-  static constexpr int dofs = Dim * Nodes;
-  static constexpr int at_once = nodes_at_once(Dim, Nodes); ///< nodes in a pass
-  static constexpr int passes = Nodes / at_once;            ///< that give all rows
+  using Body = ElasticCells<Dim, Nodes, Axisymmetric>;
+  using Gradients = typename Body::Gradients;
+  static constexpr int dofs = Dim * Nodes, columns = Body::columns;
+  static constexpr int at_once = nodes_at_once(columns, Nodes); ///< nodes in a pass
+  static constexpr int passes = Nodes / at_once;                ///< that give all rows
   using Rows = double[Dim * at_once][dofs];
-  using Gradients = double[Nodes][Dim];
+  using Products =
+      double[columns * at_once][columns * Nodes]; // of gradients; but for axisymmetry as many as rows have entries
 
-  ElasticCells<Dim, Nodes> body; // in
+  Body body; // in
 
   /// The first node of a pass.
   static KOKKOS_INLINE_FUNCTION constexpr int first_node(const int pass) { return passes == 1 ? 0 : at_once * pass; }
@@ -35,19 +38,39 @@ struct CellStiffness {
   KOKKOS_FUNCTION bool operator()(const LO cell, const int block, const int pass, Rows &k) const
   {
     const int first = first_node(pass);
-    if (!integrate(cell, first, k)) return false;
+    if constexpr (Axisymmetric) {
+      Products products;
+      if (!integrate(cell, first, products)) return false;
+      by_hookes_law(cell, block, first, products, k);
+    } else {
+      if (!integrate(cell, first, k)) return false;
+      by_hookes_law(cell, block, first, k, k);
+    }
+    return true;
+  }
+
+  /// @param products  may be k
+  KOKKOS_FUNCTION void by_hookes_law(const LO cell, const int block, const int first, const Products &products,
+                                     Rows &k) const
+  {
     Projection<Dim, Nodes> projection;
     const bool projects = body.projects_in(block) && body.project(cell, projection);
     const double lambda = body.lame(block, 0), mu = body.lame(block, 1);
     for (int a = 0; a < at_once; ++a)
       for (int b = 0; b < Nodes; ++b) {
-        double product[Dim][Dim], trace = 0;
-        for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j) product[i][j] = k[dof(Dim, a, i)][dof(Dim, b, j)];
+        typename Body::Tensor product;
+        double trace = 0;
+        for (int i = 0; i < columns; ++i)
+          for (int j = 0; j < columns; ++j) product[i][j] = products[dof(columns, a, i)][dof(columns, b, j)];
         for (int i = 0; i < Dim; ++i) trace += product[i][i];
         for (int i = 0; i < Dim; ++i)
           for (int j = 0; j < Dim; ++j) {
             double dilatation = product[i][j];
+            if constexpr (Axisymmetric) {
+              if (i == 0) dilatation += product[Dim][j];
+              if (j == 0) dilatation += product[i][Dim];
+              if (i == 0 && j == 0) dilatation += product[Dim][Dim];
+            }
             if (projects) {
               dilatation = 0;
               for (const auto &Z : projection.Z) dilatation += Z[first + a][i] * Z[b][j];
@@ -56,22 +79,22 @@ struct CellStiffness {
             entry = lambda * dilatation + mu * product[j][i];
             if (i == j) entry += mu * trace;
           }
+        if constexpr (Axisymmetric) k[dof(Dim, a, 0)][dof(Dim, b, 0)] += 2 * mu * product[Dim][Dim];
       }
-    return true;
   }
 
-  /// product(ai, bj) = int dN_a/dx_i dN_b/dx_j for the nodes a from a first one on.
+  /// product(ai, bj) = int dN_a/dx_i dN_b/dx_j for the nodes a from a first one on, with N_a/r as the last column.
   /// @return false if the Jacobian is <= 0 somewhere
-  KOKKOS_FUNCTION bool integrate(const LO cell, const int first, Rows &product) const
+  KOKKOS_FUNCTION bool integrate(const LO cell, const int first, Products &product) const
   {
     for (auto &row : product)
       for (double &entry : row) entry = 0;
     return body.at_plain_points(cell, [&](int, const double volume, const Gradients &dN) {
       for (int a = 0; a < at_once; ++a)
-        for (int i = 0; i < Dim; ++i)
+        for (int i = 0; i < columns; ++i)
           for (int b = 0; b < Nodes; ++b)
-            for (int j = 0; j < Dim; ++j)
-              product[dof(Dim, a, i)][dof(Dim, b, j)] += volume * dN[first + a][i] * dN[b][j];
+            for (int j = 0; j < columns; ++j)
+              product[dof(columns, a, i)][dof(columns, b, j)] += volume * dN[first + a][i] * dN[b][j];
     });
   }
 };
@@ -95,9 +118,9 @@ struct Examples {
 };
 
 /// The stiffness of some cells, by a thread for each cell and pass.
-template <int Dim, int Nodes, class Which>
+template <int Dim, int Nodes, bool Axisymmetric, class Which>
 struct TabulateStiffness {
-  using Stiffness = CellStiffness<Dim, Nodes>;
+  using Stiffness = CellStiffness<Dim, Nodes, Axisymmetric>;
   static constexpr int dofs = Dim * Nodes;
 
   Stiffness stiffness;                     //                                       in
@@ -121,13 +144,14 @@ struct TabulateStiffness {
 };
 
 /// @return number of cells whose Jacobian is <= 0 somewhere
-template <int Dim, int Nodes, class Which>
-LO tabulate_stiffness(const CellStiffness<Dim, Nodes> &stiffness, const Which &which, const LO num_cells,
+template <int Dim, int Nodes, bool Axisymmetric, class Which>
+LO tabulate_stiffness(const CellStiffness<Dim, Nodes, Axisymmetric> &stiffness, const Which &which, const LO num_cells,
                       const DeviceView<double * [Dim * Nodes][Dim * Nodes]> &matrix)
 {
   LO bad = 0;
-  Kokkos::parallel_reduce("rpc::fem::tabulate_stiffness", device_range(CellStiffness<Dim, Nodes>::passes * num_cells),
-                          TabulateStiffness<Dim, Nodes, Which>{stiffness, which, matrix}, bad);
+  Kokkos::parallel_reduce("rpc::fem::tabulate_stiffness",
+                          device_range(CellStiffness<Dim, Nodes, Axisymmetric>::passes * num_cells),
+                          TabulateStiffness<Dim, Nodes, Axisymmetric, Which>{stiffness, which, matrix}, bad);
   return bad;
 }
 

@@ -38,10 +38,35 @@ struct Prescribed {
   int condition = -1;
 };
 
+/// Holds the nodes on the axis of an axisymmetric body, by no condition of the deck.                             (2.4a)
+/// @param rounding  of the conditions' values of x [m]
+/// @return what is wrong with a condition that moves them
+std::optional<std::string> hold_axis(const Discretization &d, const std::vector<DirichletCondition> &conditions,
+                                     const std::vector<double> &rounding,
+                                     std::unordered_map<LO, Prescribed> &prescribed)
+{
+  const auto coords = to_host(d.mesh->coords);
+  std::optional<std::string> conflict;
+  for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n) {
+    if (coords(n, 0) > d.on_axis) continue;
+    Prescribed &dof = prescribed[rpc::dof(d.dim(), n, 0)];
+    if (dof.condition >= 0 && std::abs(dof.value) > rounding[dof.condition] && !conflict) {
+      std::ostringstream message;
+      message << "deck: \"Dirichlet->" << conditions[dof.condition].name << "->X\" must be 0 on the axis x = 0 of an "
+              << "axisymmetric body, got " << dof.value << " [m] at (" << coords(n, 0) << ", " << coords(n, 1)
+              << "). Multiply it with x, or leave it out.";
+      conflict = message.str();
+    }
+    dof.value = 0;
+  }
+  return conflict;
+}
+
 /// The prescribed unknowns that this rank owns; a node's last condition wins. Collective.
-std::unordered_map<LO, Prescribed> prescribed_dofs(const mesh::Mesh &mesh,
+std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
                                                    const std::vector<DirichletCondition> &conditions)
 {
+  const mesh::Mesh &mesh = *d.mesh;
   const int dim = mesh.dim();
   std::unordered_map<LO, Prescribed> prescribed;
   std::vector<std::array<double, 3>> scale(conditions.size()); // largest value: sin(pi) is 0 up to the round-off of sin
@@ -73,6 +98,12 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const mesh::Mesh &mesh,
         dof = {values(n), static_cast<int>(k)};
       }
     }
+  }
+  if (d.axisymmetric()) {
+    std::vector<double> rounding;
+    for (const auto &largest : scale) rounding.push_back(1e-12 * largest[0]);
+    const auto moves = hold_axis(d, conditions, rounding, prescribed);
+    if (!conflict) conflict = moves;
   }
   throw_if_any(mesh.comm(), ExitCode::bad_input, conflict);
   return prescribed;
@@ -204,7 +235,7 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
 
 DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<DirichletCondition> &conditions)
 {
-  const auto prescribed = prescribed_dofs(*d.mesh, conditions);
+  const auto prescribed = prescribed_dofs(d, conditions);
   std::vector<LO> dofs;
   std::vector<double> values;
   std::vector<int> owners;
@@ -302,6 +333,7 @@ std::vector<std::array<double, 3>> reaction_forces(const Discretization &d, cons
   for (int k = 0; k < num_conditions; ++k) {
     const double local[3] = {mine(k, 0), mine(k, 1), mine(k, 2)};
     Teuchos::reduceAll(d.mesh->comm(), Teuchos::REDUCE_SUM, 3, local, reactions[k].data());
+    if (d.axisymmetric()) reactions[k][0] = 0; // around the axis radial forces cancel
   }
   return reactions;
 }

@@ -3,8 +3,11 @@
 #include "around_nodes.hpp"
 #include "congruent_cells.hpp"
 #include "fill_entries.hpp"
+#include "rpc/core/error.hpp"
 
 #include <array>
+#include <optional>
+#include <sstream>
 
 namespace rpc::fem
 {
@@ -127,14 +130,49 @@ RCP<const CrsGraph> dof_graph(const Discretization &d)
   return graph;
 }
 
+/// What is rounding of a mesh's coordinates, relative to its size.
+constexpr double axis_rounding = 1e-10;
+
+/// Refuses nodes on the other side of the axis; collective.
+void require_radii(const mesh::Mesh &mesh, const double rounding)
+{
+  using Location = Kokkos::MinLoc<double, LO>;
+  const auto coords = mesh.coords;
+  Location::value_type farthest;
+  Kokkos::parallel_reduce(
+      "rpc::fem::least_radius", device_range(mesh.num_local_nodes()),
+      KOKKOS_LAMBDA(const LO n, Location::value_type &least) {
+        if (!(coords(n, 0) < least.val)) return;
+        least.val = coords(n, 0);
+        least.loc = n;
+      },
+      Location(farthest));
+  const double r = min_all(mesh.comm(), farthest.val);
+  std::optional<std::string> bad;
+  if (r < -rounding && farthest.val == r) {
+    const auto x = to_host(coords);
+    std::ostringstream message;
+    message << "mesh: the node at (" << r << ", " << x(farthest.loc, 1)
+            << ") lies beyond the axis: with \"Kinematics\" = axisymmetric x is the radius, >= 0 [m]. Mesh one half of "
+               "the section, at x >= 0.";
+    bad = message.str();
+  }
+  throw_if_any(mesh.comm(), ExitCode::bad_mesh, bad);
+}
+
 } // namespace
 
 Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, const Kinematics kinematics)
 {
+  require_dimension(kinematics, mesh->dim());
   Discretization d;
   d.mesh = std::move(mesh);
   d.kinematics = kinematics;
-  d.reference = tabulate(d.mesh->element);
+  if (d.axisymmetric()) {
+    d.on_axis = axis_rounding * mesh::diameter(*d.mesh);
+    require_radii(*d.mesh, d.on_axis);
+  }
+  d.reference = tabulate(d.mesh->element, kinematics);
   d.owned_dofs = dof_map(*d.mesh->owned_nodes, d.dim());
   d.overlap_dofs =
       d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
@@ -142,7 +180,7 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, const Kinemati
     d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
     d.node_import = rcp(new Import(d.mesh->owned_nodes, d.mesh->overlap_nodes));
   }
-  d.congruent = congruent_cells(*d.mesh);
+  if (!d.axisymmetric()) d.congruent = congruent_cells(*d.mesh); // where cells are alike, radii are not
   d.node_to_cells = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
   d.nodes = node_graph(*d.mesh, d.node_to_cells);
   d.graph = dof_graph(d);

@@ -10,7 +10,8 @@ namespace rpc::fem
 
 /// The L2 projection of the dilatation on polynomials over one cell, (2.6): 1, and in Q2 also the coordinates.
 ///
-/// With e_k these polynomials made orthonormal, Z_k(ai) = int e_k dN_a/dx_i and Pi div u = sum_k e_k sum_ai Z_k(ai) u_ai.
+/// With e_k these polynomials made orthonormal, Z_k(ai) = int e_k D(ai) and Pi div u = sum_k e_k sum_ai Z_k(ai) u_ai, where
+/// div u = sum D(ai) u_ai.
 template <int Dim, int Nodes>
 struct Projection {
   static constexpr bool linear = StaticElement<Dim, Nodes>::order == 2 && !StaticElement<Dim, Nodes>::simplex;
@@ -41,11 +42,18 @@ struct Projection {
 };
 
 /// The cells of an elastic body: geometry, quadrature and material, with the dilatation in full or projected.
-template <int Dim, int Nodes>
+///
+/// The gradient of a displacement is (Dim, Dim), of an axisymmetric body (3, 3) with u_r/r as its last entry; so are the
+/// gradients of shape functions, whose last column is N_a/r then.                                    doc/theory.md (2.4a)
+template <int Dim, int Nodes, bool Axisymmetric = false>
 struct ElasticCells {
-  /// All elements but P1, whose dilatation is constant; its kernels carry no code for that.
+  /// All elements but P1, whose dilatation is constant; its kernels carry no code for that. (In axisymmetry it is not quite: P1
+  /// locks all the same.)
   static constexpr bool may_project = !StaticElement<Dim, Nodes>::simplex || StaticElement<Dim, Nodes>::order > 1;
-  using Gradients = double[Nodes][Dim];
+  static constexpr int columns = Dim + (Axisymmetric ? 1 : 0);
+  using Gradients = double[Nodes][columns]; // dN_a/dx_i, and N_a/r       [1/m]
+  using Dilatation = double[Nodes][Dim];    // D(ai): sum D u is div u    [1/m]
+  using Tensor = double[columns][columns];
   using Coords = CellCoords<Dim, Nodes>;
 
   DeviceView<double **> coords;    // (overlap nodes, Dim)  [m]   in
@@ -59,7 +67,7 @@ struct ElasticCells {
   bool plane_stress;               // no stress across the plane  in
   // Of congruent cells, (kinds, points): gradients [1/m], and what a point stands for [m^Dim]. Empty: cells differ.
   DeviceView<signed char *> kind; // (cells)                            in
-  DeviceView<double **[Nodes][Dim]> kind_gradient;
+  DeviceView<double **[Nodes][columns]> kind_gradient;
   DeviceView<double **> kind_volume;
 
   KOKKOS_FUNCTION double lambda(const LO cell) const { return lame(block(cell), 0); }
@@ -71,8 +79,60 @@ struct ElasticCells {
     return projected(of_block) != 0;
   }
 
-  /// Calls work(q, volume, dN, dilatation) at each quadrature point: what the point stands for [m^Dim], the gradients dN(a, i)
-  /// [1/m], and those whose sum with u_ai is the dilatation: dN again, or the projected ones.
+  /// Whether component i of a translation is no strain.
+  static KOKKOS_INLINE_FUNCTION constexpr bool translates(const int i) { return !(Axisymmetric && i == 0); }
+
+  /// D(ai) from the gradients at a point.
+  static KOKKOS_INLINE_FUNCTION double dilatation_of(const Gradients &dN, const int a, const int i)
+  {
+    if constexpr (Axisymmetric)
+      if (i == 0) return dN[a][0] + dN[a][Dim];
+    return dN[a][i];
+  }
+
+  /// u_ai less what the first node's translates. Gradients sum to 0 over the nodes; differences let a translation vanish to the
+  /// last digit.
+  /// @param u  (overlap dofs) [m]
+  template <class U>
+  KOKKOS_INLINE_FUNCTION double moved(const U &u, const LO cell, const int a, const int i) const
+  {
+    const double own = u(dof(Dim, cells(cell, a), i));
+    return translates(i) ? own - u(dof(Dim, cells(cell, 0), i)) : own;
+  }
+
+  /// grad(i, j) = du_i / dx_j at a point of a cell, and u_r/r, from the gradients dN there.
+  /// @param u  (overlap dofs) [m]
+  template <class U>
+  KOKKOS_FUNCTION void displacement_gradient(const U &u, const LO cell, const Gradients &dN, Tensor &grad) const
+  {
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) {
+        grad[i][j] = 0;
+        for (int a = translates(i) ? 1 : 0; a < Nodes; ++a) grad[i][j] += moved(u, cell, a, i) * dN[a][j];
+      }
+    if constexpr (Axisymmetric) {
+      for (int i = 0; i < Dim; ++i) grad[i][Dim] = grad[Dim][i] = 0;
+      grad[Dim][Dim] = 0;
+      for (int a = 0; a < Nodes; ++a) grad[Dim][Dim] += moved(u, cell, a, 0) * dN[a][Dim];
+    }
+  }
+
+  /// sum of u_ai D(ai): div u at a point, or its projection.
+  /// @param u  (overlap dofs) [m]
+  template <class U>
+  KOKKOS_FUNCTION double divergence(const U &u, const LO cell, const Dilatation &D) const
+  {
+    double sum = 0;
+    for (int i = 0; i < Dim; ++i) {
+      double slope = 0;
+      for (int a = translates(i) ? 1 : 0; a < Nodes; ++a) slope += moved(u, cell, a, i) * D[a][i];
+      sum += slope;
+    }
+    return sum;
+  }
+
+  /// Calls work(q, volume, dN, dilatation) at each quadrature point: what the point stands for [m^Dim, axisymmetric: m^3], the
+  /// gradients dN, and the dilatation D(ai), that of dN or projected.
   /// @return false if the Jacobian is <= 0 somewhere; points from there on have been left out
   template <class Work>
   KOKKOS_FUNCTION bool at_points(const LO cell, const Work &work) const
@@ -84,15 +144,23 @@ struct ElasticCells {
         if (!project(cell, projection)) return false;
         return at_plain_points(cell, [&](const int q, const double volume, const Gradients &dN) {
           double at[Dim];
-          Gradients dilatation;
+          Dilatation dilatation;
           position(x, value, q, at);
           projection.gradients(at, dilatation);
           work(q, volume, dN, dilatation);
         });
       }
     }
-    return at_plain_points(cell,
-                           [&](const int q, const double volume, const Gradients &dN) { work(q, volume, dN, dN); });
+    return at_plain_points(cell, [&](const int q, const double volume, const Gradients &dN) {
+      if constexpr (Axisymmetric) {
+        Dilatation dilatation;
+        for (int a = 0; a < Nodes; ++a)
+          for (int i = 0; i < Dim; ++i) dilatation[a][i] = dilatation_of(dN, a, i);
+        work(q, volume, dN, dilatation);
+      } else {
+        work(q, volume, dN, dN);
+      }
+    });
   }
 
   /// @return false if the Jacobian is <= 0 somewhere
@@ -112,7 +180,7 @@ struct ElasticCells {
       for (int k = 0; k < modes; ++k) {
         for (int l = 0; l < modes; ++l) products[k][l] += volume * term[k][0] * term[l][0];
         for (int a = 0; a < Nodes; ++a)
-          for (int i = 0; i < Dim; ++i) moments[k][dof(Dim, a, i)] += volume * term[k][0] * dN[a][i];
+          for (int i = 0; i < Dim; ++i) moments[k][dof(Dim, a, i)] += volume * term[k][0] * dilatation_of(dN, a, i);
       }
     });
     if (!good || cholesky(products, 0) < modes) return false;
@@ -137,7 +205,7 @@ struct ElasticCells {
       for (int q = 0; q < points; ++q) {
         if (!(kind_volume(s, q) > 0)) return false;
         for (int a = 0; a < Nodes; ++a)
-          for (int i = 0; i < Dim; ++i) dN[a][i] = kind_gradient(s, q, a, i);
+          for (int i = 0; i < columns; ++i) dN[a][i] = kind_gradient(s, q, a, i);
         work(q, kind_volume(s, q), dN);
       }
       return true;
@@ -146,7 +214,14 @@ struct ElasticCells {
     for (int q = 0; q < points; ++q) {
       const double det = physical_gradients(x, gradient, q, dN);
       if (!(det > 0)) return false;
-      work(q, weight(q) * det, dN);
+      if constexpr (Axisymmetric) {
+        double at[Dim];
+        position(x, value, q, at);
+        for (int a = 0; a < Nodes; ++a) dN[a][Dim] = value(q, a) / at[0];
+        work(q, circle(at[0]) * weight(q) * det, dN);
+      } else {
+        work(q, weight(q) * det, dN);
+      }
     }
     return true;
   }
@@ -172,11 +247,12 @@ struct TabulateKind {
 
 /// @param table  points in a cell
 /// @throws rpc::Error (bad_input) if the materials do not fit the mesh
-template <int Dim, int Nodes>
-ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials &materials, const BasisTable &table)
+template <int Dim, int Nodes, bool Axisymmetric = false>
+ElasticCells<Dim, Nodes, Axisymmetric> elastic_cells(const Discretization &d, const Materials &materials,
+                                                     const BasisTable &table)
 {
   const mesh::Mesh &mesh = *d.mesh;
-  ElasticCells<Dim, Nodes> body;
+  ElasticCells<Dim, Nodes, Axisymmetric> body;
   body.coords = mesh.coords;
   body.cells = mesh.cells;
   body.block = mesh.block;
@@ -187,19 +263,37 @@ ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials 
   body.projected = projected_dilatation_table(d, materials);
   body.plane_stress = d.kinematics == Kinematics::plane_stress;
   if (d.congruent.size() == 0) return body;
-  const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::kind_gradient", d.congruent.size(), table.num_points());
-  const DeviceView<double **> volume("rpc::fem::kind_volume", d.congruent.size(), table.num_points());
-  const TabulateKind<Dim, Nodes> tabulate{body, d.congruent.example, gradient, volume};
-  Kokkos::parallel_for("rpc::fem::tabulate_kinds", device_range(d.congruent.size()), tabulate);
-  body.kind = d.congruent.of_cell;
-  body.kind_gradient = gradient;
-  body.kind_volume = volume;
+  if constexpr (!Axisymmetric) {
+    const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::kind_gradient", d.congruent.size(), table.num_points());
+    const DeviceView<double **> volume("rpc::fem::kind_volume", d.congruent.size(), table.num_points());
+    const TabulateKind<Dim, Nodes> tabulate{body, d.congruent.example, gradient, volume};
+    Kokkos::parallel_for("rpc::fem::tabulate_kinds", device_range(d.congruent.size()), tabulate);
+    body.kind = d.congruent.of_cell;
+    body.kind_gradient = gradient;
+    body.kind_volume = volume;
+  }
   return body;
 }
-template <int Dim, int Nodes>
-ElasticCells<Dim, Nodes> elastic_cells(const Discretization &d, const Materials &materials)
+template <int Dim, int Nodes, bool Axisymmetric = false>
+ElasticCells<Dim, Nodes, Axisymmetric> elastic_cells(const Discretization &d, const Materials &materials)
 {
-  return elastic_cells<Dim, Nodes>(d, materials, d.reference.cell);
+  return elastic_cells<Dim, Nodes, Axisymmetric>(d, materials, d.reference.cell);
+}
+
+/// Calls work(cells) with the cells of a body, by its element and kinematics.
+template <class Work>
+void with_elastic_cells(const Discretization &d, const Materials &materials, const BasisTable &table, const Work &work)
+{
+  with_static_extents(d.mesh->element, [&](const auto dim, const auto nodes) {
+    if constexpr (dim == 2)
+      if (d.axisymmetric()) return work(elastic_cells<dim, nodes, true>(d, materials, table));
+    return work(elastic_cells<dim, nodes>(d, materials, table));
+  });
+}
+template <class Work>
+void with_elastic_cells(const Discretization &d, const Materials &materials, const Work &work)
+{
+  with_elastic_cells(d, materials, d.reference.cell, work);
 }
 
 } // namespace rpc::fem

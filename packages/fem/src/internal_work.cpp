@@ -8,13 +8,13 @@ namespace
 {
 
 /// @param[in,out] force  0
-template <int Dim, int Nodes>
-void add_internal_work(const Discretization &d, const ElasticCells<Dim, Nodes> &body, const Vector &u_overlap,
-                       Vector &force, double &squares, double &energy)
+template <int Dim, int Nodes, bool Axisymmetric>
+void add_internal_work(const Discretization &d, const ElasticCells<Dim, Nodes, Axisymmetric> &body,
+                       const Vector &u_overlap, Vector &force, double &squares, double &energy)
 {
   const mesh::Mesh &mesh = *d.mesh;
   const DeviceView<double *[Nodes][Dim]> share("rpc::fem::force_share", one_thread ? 0 : mesh.num_cells());
-  const InternalWorkOfCell<Dim, Nodes> kernel{
+  const InternalWorkOfCell<Dim, Nodes, Axisymmetric> kernel{
       body, device_read(u_overlap), mesh.num_owned_nodes(), mesh.num_owned_cells, device_write(force), share};
   Kokkos::parallel_reduce("rpc::fem::internal_work", device_range(mesh.num_cells()), kernel, squares, energy);
   if constexpr (!one_thread)
@@ -29,9 +29,8 @@ InternalWork internal_work(const Discretization &d, const Materials &materials, 
   const mesh::Mesh &mesh = *d.mesh;
   const auto forces = rcp(new Vector(d.owned_dofs));
   double squares = 0, energy = 0;
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    add_internal_work(d, elastic_cells<dim, nodes>(d, materials), *on_overlap(d, u), *forces, squares, energy);
-  });
+  with_elastic_cells(
+      d, materials, [&](const auto &body) { add_internal_work(d, body, *on_overlap(d, u), *forces, squares, energy); });
   Kokkos::fence();
   return {forces, std::sqrt(sum_all(mesh.comm(), squares)), sum_all(mesh.comm(), energy)};
 }

@@ -9,13 +9,15 @@ namespace rpc::fem
 
 /// What a displacement does in one cell: f(ai) += int sigma(u) : grad(N_a e_i) to the cell's nodes, and sums over the cells
 /// that this rank owns.
-template <int Dim, int Nodes>
+template <int Dim, int Nodes, bool Axisymmetric>
 struct InternalWorkOfCell {
-  using Gradients = double[Nodes][Dim];
+  using Body = ElasticCells<Dim, Nodes, Axisymmetric>;
+  using Gradients = typename Body::Gradients;
+  using Dilatation = typename Body::Dilatation;
 
-  ElasticCells<Dim, Nodes> body; //                       in
-  ReadVector u;                  // (overlap dofs)  [m]   in
-  LO num_owned;                  // nodes
+  Body body;    //                       in
+  ReadVector u; // (overlap dofs)  [m]   in
+  LO num_owned; // nodes
   LO num_owned_cells;
   WriteVector force;                      // (owned dofs)           [N]  inout, by one thread
   DeviceView<double *[Nodes][Dim]> share; // (cells, Nodes, Dim)    [N]  out, by many: what the cell adds to force
@@ -27,30 +29,38 @@ struct InternalWorkOfCell {
     const int block = body.block(cell);
     const double lambda = body.lame(block, 0), mu = body.lame(block, 1);
     double own[Nodes][Dim] = {}, moved[Nodes][Dim], of_cell = 0;
-    // Gradients sum to 0 over the nodes; differences let a translation vanish to the last digit.
     for (int a = 0; a < Nodes; ++a)
-      for (int i = 0; i < Dim; ++i)
-        moved[a][i] = u(dof(Dim, body.cells(cell, a), i)) - u(dof(Dim, body.cells(cell, 0), i));
-    body.at_points(cell, [&](int, const double volume, const Gradients &dN, const Gradients &dilatation) {
+      for (int i = 0; i < Dim; ++i) moved[a][i] = body.moved(u, cell, a, i);
+    constexpr int first = Axisymmetric ? 0 : 1; // node that may have moved
+    body.at_points(cell, [&](int, const double volume, const Gradients &dN, const Dilatation &dilatation) {
       double stress[Dim][Dim], trace = 0, product = 0; // without the part of the dilatation
       for (int i = 0; i < Dim; ++i)
-        for (int a = 1; a < Nodes; ++a) trace += moved[a][i] * dilatation[a][i];
+        for (int a = first; a < Nodes; ++a) trace += moved[a][i] * dilatation[a][i];
       for (int i = 0; i < Dim; ++i)
         for (int j = 0; j <= i; ++j) {
           double strain = 0; // twice
-          for (int a = 1; a < Nodes; ++a) strain += moved[a][i] * dN[a][j] + moved[a][j] * dN[a][i];
+          for (int a = first; a < Nodes; ++a) strain += moved[a][i] * dN[a][j] + moved[a][j] * dN[a][i];
           stress[i][j] = stress[j][i] = volume * mu * strain;
           product += (i == j ? 0.25 : 0.5) * strain * strain;
         }
+      if constexpr (Axisymmetric) {
+        double hoop = 0; // strain
+        for (int a = 0; a < Nodes; ++a) hoop += moved[a][0] * dN[a][Dim];
+        product += hoop * hoop;
+        for (int a = 0; a < Nodes; ++a) own[a][0] += 2 * volume * mu * hoop * dN[a][Dim];
+      }
       of_cell += volume * (lambda * trace * trace + 2 * mu * product);
-      for (int a = 1; a < Nodes; ++a)
+      for (int a = first; a < Nodes; ++a)
         for (int i = 0; i < Dim; ++i) {
           own[a][i] += volume * lambda * trace * dilatation[a][i];
           for (int j = 0; j < Dim; ++j) own[a][i] += stress[i][j] * dN[a][j];
         }
     });
-    for (int a = 1; a < Nodes; ++a) // together they move nothing
-      for (int i = 0; i < Dim; ++i) own[0][i] -= own[a][i];
+    for (int i = 0; i < Dim; ++i) { // together they move nothing
+      if (!Body::translates(i)) continue;
+      own[0][i] = 0;
+      for (int a = 1; a < Nodes; ++a) own[0][i] -= own[a][i];
+    }
     for (int a = 0; a < Nodes; ++a) {
       const LO node = body.cells(cell, a);
       for (int i = 0; i < Dim; ++i)

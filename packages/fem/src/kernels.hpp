@@ -58,10 +58,11 @@ struct CellCoords {
 };
 
 /// Gradients dN(a, i) [1/m] of the shape functions at a point, and the Jacobian's determinant [m^Dim].
-template <int Dim, int Nodes>
+/// @param[out] dN  its first Dim columns
+template <int Dim, int Nodes, int Columns>
 KOKKOS_INLINE_FUNCTION double physical_gradients(const CellCoords<Dim, Nodes> &cell,
                                                  const DeviceView<double ***> &gradient, const int q,
-                                                 double (&dN)[Nodes][Dim])
+                                                 double (&dN)[Nodes][Columns])
 {
   double jacobian[Dim][Dim] = {}; // dx_i / dX_j
   for (int a = 0; a < Nodes; ++a)
@@ -89,35 +90,12 @@ KOKKOS_INLINE_FUNCTION void position(const CellCoords<Dim, Nodes> &cell, const D
   }
 }
 
-/// grad(i, j) = du_i / dx_j at a point of a cell, from the gradients dN there.
-/// @param u  (overlap dofs) [m]
-template <int Dim, int Nodes, class U>
-KOKKOS_INLINE_FUNCTION void displacement_gradient(const U &u, const DeviceView<LO **> &cells, const LO cell,
-                                                  const double (&dN)[Nodes][Dim], double (&grad)[Dim][Dim])
+/// What a point of an axisymmetric mesh stands for across the plane: the circle that it describes [m]. A rounding of the axis
+/// beyond it is 0.
+KOKKOS_INLINE_FUNCTION double circle(const double r)
 {
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) {
-      grad[i][j] = 0;
-      // Gradients sum to 0 over the nodes; differences let a translation vanish to the last digit.
-      const double first = u(dof(Dim, cells(cell, 0), i));
-      for (int a = 1; a < Nodes; ++a) grad[i][j] += (u(dof(Dim, cells(cell, a), i)) - first) * dN[a][j];
-    }
-}
-
-/// sum of u_ai D(a, i): div u at a point for D the gradients there, its projection for projected ones.
-/// @param u  (overlap dofs) [m]
-template <int Dim, int Nodes, class U>
-KOKKOS_INLINE_FUNCTION double divergence(const U &u, const DeviceView<LO **> &cells, const LO cell,
-                                         const double (&D)[Nodes][Dim])
-{
-  double sum = 0;
-  for (int i = 0; i < Dim; ++i) {
-    double slope = 0;
-    const double first = u(dof(Dim, cells(cell, 0), i));
-    for (int a = 1; a < Nodes; ++a) slope += (u(dof(Dim, cells(cell, a), i)) - first) * D[a][i];
-    sum += slope;
-  }
-  return sum;
+  constexpr double two_pi = 6.283185307179586;
+  return r > 0 ? two_pi * r : 0;
 }
 
 /// Outward normal at a facet's point times the ratio of area to reference area [m^(dim-1)].

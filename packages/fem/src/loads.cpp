@@ -64,29 +64,39 @@ DeviceView<double **> quadrature_points(const DeviceView<double **> &coords, con
   return x;
 }
 
-/// measure(cell * points + q) = weight * Jacobian determinant: what a quadrature point stands for [m^Dim].
+/// measure(cell * points + q) = weight * Jacobian determinant (* 2 pi r): what a quadrature point stands for [m^Dim, axisymmetric:
+/// m^3].
 template <int Dim, int Nodes>
 struct CellMeasure {
   DeviceView<double **> coords;    // (overlap nodes, Dim)   [m]      in
   DeviceView<LO **> cells;         // (cells, Nodes)                  in
+  DeviceView<double **> value;     // (points, Nodes)                 in
   DeviceView<double ***> gradient; // (points, Nodes, Dim)            in
   DeviceView<double *> weight;     // (points)                        in
+  bool axisymmetric;               //                                 in
   DeviceView<double *> measure;    // (cells * points)       [m^Dim]  out
 
   KOKKOS_FUNCTION void operator()(const LO cell) const
   {
     const CellCoords<Dim, Nodes> x(coords, cells, cell);
     const int points = static_cast<int>(weight.extent(0));
-    double dN[Nodes][Dim];
-    for (int q = 0; q < points; ++q) measure(cell * points + q) = weight(q) * physical_gradients(x, gradient, q, dN);
+    double dN[Nodes][Dim], at[Dim];
+    for (int q = 0; q < points; ++q) {
+      double &share = measure(cell * points + q) = weight(q) * physical_gradients(x, gradient, q, dN);
+      if (!axisymmetric) continue;
+      position(x, value, q, at);
+      share *= circle(at[0]);
+    }
   }
 };
 
-DeviceView<double *> cell_measure(const mesh::Mesh &mesh, const BasisTable &table)
+DeviceView<double *> cell_measure(const Discretization &d, const BasisTable &table)
 {
+  const mesh::Mesh &mesh = *d.mesh;
   DeviceView<double *> measure("rpc::fem::cell_measure", std::size_t(mesh.num_cells()) * table.num_points());
   with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const CellMeasure<dim, nodes> kernel{mesh.coords, mesh.cells, table.gradient, table.weight, measure};
+    const CellMeasure<dim, nodes> kernel{mesh.coords,  mesh.cells,       table.value, table.gradient,
+                                         table.weight, d.axisymmetric(), measure};
     Kokkos::parallel_for("rpc::fem::cell_measure", device_range(mesh.num_cells()), kernel);
   });
   return measure;
@@ -162,7 +172,7 @@ void add_body_force(const Discretization &d, const VectorField &force, const std
   const BasisTable &table = d.reference.cell_load;
   const auto points = quadrature_points(mesh.coords, mesh.cells, table.value);
   const auto f = evaluate_vector(force, points, parameter, mesh.comm());
-  add_load(mesh.cells, d.node_to_cells, table.value, cell_measure(mesh, table), f, load);
+  add_load(mesh.cells, d.node_to_cells, table.value, cell_measure(d, table), f, load);
 }
 
 DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &side,

@@ -11,7 +11,7 @@ namespace rpc::fem
 using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadOnly));
 using WriteColumns = decltype(std::declval<MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadWrite));
 
-/// Stress components as they are recovered: in the order of stress_names, in 2D followed by zz.
+/// Stress components as they are recovered: in the order of stress_names, in 2D followed by the one across the plane.
 template <int Dim>
 struct Components {
   static constexpr int size = Dim == 2 ? 4 : 6;
@@ -31,15 +31,16 @@ struct Components {
 ///
 /// A polynomial is one of the displacement, of a degree more than the element's, in xi = L^-1 (x - centre): coordinates
 /// in which a patch has size 1 in every direction, however thin its cells are. Where the dilatation is projected, (2.6), a polynomial of that, of a
-/// degree more, goes with it.
-template <int Dim, int Nodes>
+/// degree more, goes with it. In axisymmetry so does the constant of u_r, for u_r/r.
+template <int Dim, int Nodes, bool Axisymmetric>
 struct PatchTable {
   static constexpr int degree = StaticElement<Dim, Nodes>::order + 1;
   using Terms = Monomials<Dim, degree>;
   static constexpr int trust = 0, centre = 1, frame = centre + Dim, coefficients = frame + Dim * (Dim + 1) / 2;
   using Dilatation = Monomials<Dim, (Projection<Dim, Nodes>::modes > 1 ? 2 : 1)>;
   static constexpr int dilatation = coefficients + (Terms::size - 1) * Dim; // those before without the constants
-  static constexpr int columns = dilatation + (ElasticCells<Dim, Nodes>::may_project ? Dilatation::size : 0);
+  static constexpr int radial = dilatation + (ElasticCells<Dim, Nodes>::may_project ? Dilatation::size : 0);
+  static constexpr int columns = radial + (Axisymmetric ? 1 : 0);
 
   /// Trust is the degree that could be fitted; more than that if cells close all around the vertex, in between for a
   /// polynomial taken over from such a vertex; less than any where blocks meet.
@@ -47,21 +48,21 @@ struct PatchTable {
 };
 
 /// The polynomial of a vertex, by least squares from the displacements of all nodes that share a cell with it.
-template <int Dim, int Nodes>
+template <int Dim, int Nodes, bool Axisymmetric>
 struct FitPatch {
-  using Table = PatchTable<Dim, Nodes>;
+  using Table = PatchTable<Dim, Nodes, Axisymmetric>;
   using Terms = typename Table::Terms;
   /// What lower terms must leave of a term's square. Patches inside leave 3e-2 at least on meshes that are fit for use.
   static constexpr double threshold = 1e-3;
 
-  ElasticCells<Dim, Nodes> body;      //                                       in
-  DeviceView<double **> recovery;     // (points, Nodes)                       in, shape functions
-  ReadVector u;                       // (overlap dofs)                  [m]   in
-  DeviceView<std::size_t *> node_row; // (owned nodes + 1)                     in
-  DeviceView<LO *> node_cell;         // cells around nodes                    in
-  NodeGraph graph;                    //                                       in
-  DeviceView<int ***> mate;           // see facet_mates                       in
-  WriteColumns table;                 // (owned nodes, PatchTable)             out, at vertices
+  ElasticCells<Dim, Nodes, Axisymmetric> body; //                                       in
+  DeviceView<double **> recovery;              // (points, Nodes)                       in, shape functions
+  ReadVector u;                                // (overlap dofs)                  [m]   in
+  DeviceView<std::size_t *> node_row;          // (owned nodes + 1)                     in
+  DeviceView<LO *> node_cell;                  // cells around nodes                    in
+  NodeGraph graph;                             //                                       in
+  DeviceView<int ***> mate;                    // see facet_mates                       in
+  WriteColumns table;                          // (owned nodes, PatchTable)             out, at vertices
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
@@ -107,6 +108,7 @@ struct FitPatch {
       for (int j = 0; j <= i; ++j) table(node, column++) = L[i][j];
     for (int s = 1; s < Terms::size; ++s)
       for (int i = 0; i < Dim; ++i) table(node, column++) = s < terms ? c[s][i] : 0;
+    if constexpr (Axisymmetric) table(node, int(Table::radial)) = u(dof(Dim, node, 0)) + c[0][0];
     if constexpr (ElasticCells<Dim, Nodes>::may_project)
       if (body.projects(first)) fit_dilatation(node, L);
   }
@@ -125,7 +127,7 @@ struct FitPatch {
         double at[Dim], dilatation[Nodes][Dim], dx[Dim][1], xi[Dim], term[Terms::size];
         position(x, recovery, q, at);
         projection.gradients(at, dilatation);
-        const double value = divergence(u, body.cells, cell, dilatation);
+        const double value = body.divergence(u, cell, dilatation);
         for (int i = 0; i < Dim; ++i) dx[i][0] = at[i] - body.coords(node, i);
         solve_lower(L, Dim, dx);
         for (int i = 0; i < Dim; ++i) xi[i] = dx[i][0];
@@ -181,9 +183,9 @@ struct FitPatch {
 
 /// Vertices at the boundary take the polynomial of the nearest vertex inside, for the sake of their neighbours that have
 /// no vertex inside around them: corners.
-template <int Dim, int Nodes>
+template <int Dim, int Nodes, bool Axisymmetric>
 struct AdoptPolynomial {
-  using Table = PatchTable<Dim, Nodes>;
+  using Table = PatchTable<Dim, Nodes, Axisymmetric>;
 
   DeviceView<LO **> cells;            // (cells, Nodes)                        in
   DeviceView<std::size_t *> node_row; // (owned nodes + 1)                     in
@@ -224,14 +226,17 @@ struct AdoptPolynomial {
 };
 
 /// The polynomials as they are read: at a vertex, and blended over a cell.
-template <int Dim, int Nodes>
+template <int Dim, int Nodes, bool Axisymmetric>
 struct Polynomials {
-  using Table = PatchTable<Dim, Nodes>;
+  using Body = ElasticCells<Dim, Nodes, Axisymmetric>;
+  using Tensor = typename Body::Tensor;
+  using Table = PatchTable<Dim, Nodes, Axisymmetric>;
   using Terms = typename Table::Terms;
   static constexpr int vertices = StaticElement<Dim, Nodes>::vertices;
 
-  ElasticCells<Dim, Nodes> body; //                                in
-  ReadColumns table;             // (overlap nodes, PatchTable)    in
+  Body body;         //                                               in
+  ReadColumns table; // (overlap nodes, PatchTable)                   in
+  double on_axis;    // where u_r/r is du_r/dr, its limit  [m]        in
 
   KOKKOS_FUNCTION double trust(const LO vertex) const { return table(vertex, int(Table::trust)); }
   KOKKOS_FUNCTION double best_of(const LO cell) const
@@ -241,10 +246,10 @@ struct Polynomials {
     return best;
   }
 
-  /// grad[j][i] += weight du_i / dx_j by the polynomial of a vertex at x, and dilatation += weight that which Hooke's law
-  /// takes in a cell's block.
-  KOKKOS_FUNCTION void add_at(const LO vertex, const LO cell, const double (&x)[Dim], const double weight,
-                              double (&grad)[Dim][Dim], double &dilatation) const
+  /// grad[j][i] += weight du_i / dx_j by the polynomial of a vertex at x, u_r/r its last entry, and dilatation += weight that
+  /// which Hooke's law takes in a cell's block.
+  KOKKOS_FUNCTION void add_at(const LO vertex, const LO cell, const double (&x)[Dim], const double weight, Tensor &grad,
+                              double &dilatation) const
   {
     double L[Dim][Dim], dx[Dim][1], xi[Dim], term[Terms::size], slope[Terms::size][Dim];
     int column = Table::frame;
@@ -262,6 +267,16 @@ struct Polynomials {
     solve_lower_transposed(L, Dim, own);
     double trace = 0;
     for (int i = 0; i < Dim; ++i) trace += own[i][i];
+    if constexpr (Axisymmetric) {
+      double hoop = own[0][0];
+      if (x[0] > on_axis) {
+        double radial = table(vertex, int(Table::radial));
+        for (int t = 1; t < Terms::size; ++t) radial += term[t] * table(vertex, Table::coefficients + Dim * (t - 1));
+        hoop = radial / x[0];
+      }
+      trace += hoop;
+      grad[Dim][Dim] += weight * hoop;
+    }
     if constexpr (ElasticCells<Dim, Nodes>::may_project) {
       if (body.projects(cell)) {
         double of_dilatation[Table::Dilatation::size];
@@ -278,8 +293,8 @@ struct Polynomials {
 
   /// The same of the whole cell: each vertex's polynomial by its linear shape function, among those trusted as polynomials
   /// from inside or, where there are none, trusted most.                                              doc/theory.md (10.2)
-  KOKKOS_FUNCTION void blend(const LO cell, const double (&x)[Dim], const double (&linear)[vertices],
-                             double (&grad)[Dim][Dim], double &dilatation) const
+  KOKKOS_FUNCTION void blend(const LO cell, const double (&x)[Dim], const double (&linear)[vertices], Tensor &grad,
+                             double &dilatation) const
   {
     const double least = math::fmin(best_of(cell), double(Table::adopted));
     double sum = 0;
@@ -290,19 +305,21 @@ struct Polynomials {
     int count = 0;
     for (int a = 0; a < vertices; ++a) count += trust(body.cells(cell, a)) >= least;
     dilatation = 0;
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) grad[j][i] = 0;
+    for (auto &row : grad)
+      for (double &entry : row) entry = 0;
     for (int a = 0; a < vertices; ++a)
       if (trust(body.cells(cell, a)) >= least)
         add_at(body.cells(cell, a), cell, x, even ? 1. / count : linear[a] / sum, grad, dilatation);
   }
 
   /// Twice the strain: strain2[i][j] = grad[i][j] + grad[j][i].
-  static KOKKOS_FUNCTION void twice_strain(const double (&grad)[Dim][Dim], double (&strain2)[3][3])
+  static KOKKOS_FUNCTION void twice_strain(const Tensor &grad, double (&strain2)[3][3])
   {
+    constexpr int columns = Body::columns;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        strain2[i][j] = i < Dim && j < Dim ? grad[i % Dim][j % Dim] + grad[j % Dim][i % Dim] : 0;
+        strain2[i][j] =
+            i < columns && j < columns ? grad[i % columns][j % columns] + grad[j % columns][i % columns] : 0;
   }
 };
 
@@ -310,7 +327,7 @@ struct Polynomials {
 /// functions of the nodes.
 template <int Dim, int Nodes>
 struct VertexFunctions {
-  static constexpr int vertices = Polynomials<Dim, Nodes>::vertices;
+  static constexpr int vertices = StaticElement<Dim, Nodes>::vertices;
 
   double at_node[Nodes][vertices];
 
@@ -330,16 +347,17 @@ struct VertexFunctions {
 };
 
 /// Stresses of a node from the polynomials around it.
-template <int Dim, int Nodes>
+template <int Dim, int Nodes, bool Axisymmetric>
 struct EvaluatePatches {
-  using Table = PatchTable<Dim, Nodes>;
-  static constexpr int components = Components<Dim>::size, vertices = Polynomials<Dim, Nodes>::vertices;
+  using Fitted = Polynomials<Dim, Nodes, Axisymmetric>;
+  using Table = typename Fitted::Table;
+  static constexpr int components = Components<Dim>::size, vertices = Fitted::vertices;
 
-  Polynomials<Dim, Nodes> polynomials; //                                 in
-  DeviceView<std::size_t *> node_row;  // (owned nodes + 1)                in
-  DeviceView<LO *> node_cell;          // cells around nodes               in
-  VertexFunctions<Dim, Nodes> linear;  //                                  in
-  WriteColumns result;                 // (owned nodes, stress_names) [Pa] out
+  Fitted polynomials;                 //                                  in
+  DeviceView<std::size_t *> node_row; // (owned nodes + 1)                in
+  DeviceView<LO *> node_cell;         // cells around nodes               in
+  VertexFunctions<Dim, Nodes> linear; //                                  in
+  WriteColumns result;                // (owned nodes, stress_names) [Pa] out
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
@@ -365,7 +383,7 @@ struct EvaluatePatches {
         for (int a = 0; a < vertices; ++a) add(node, node_cell(k), a, trust, s, count);
       }
     }
-    constexpr int columns = Dim == 2 ? 3 : 6;
+    constexpr int columns = Dim == 2 && !Axisymmetric ? 3 : components;
     for (int m = 0; m < components; ++m) s[m] /= count;
     for (int m = 0; m < columns; ++m) result(node, m) = s[m];
     result(node, columns) = von_mises(s);
@@ -376,17 +394,18 @@ struct EvaluatePatches {
   KOKKOS_FUNCTION void add(const LO node, const LO cell, const int a, const double trust, double (&s)[components],
                            int &count) const
   {
-    const ElasticCells<Dim, Nodes> &body = polynomials.body;
+    const auto &body = polynomials.body;
     const LO vertex = body.cells(cell, a);
     if (polynomials.trust(vertex) < trust) return;
-    double x[Dim], grad[Dim][Dim] = {}, trace = 0, strain2[3][3]; // across the plane the strain is 0
+    double x[Dim], trace = 0, strain2[3][3]; // across the plane the strain is 0
+    typename Fitted::Tensor grad = {};
     for (int i = 0; i < Dim; ++i) x[i] = body.coords(node, i);
     polynomials.add_at(vertex, cell, x, 1, grad, trace);
     polynomials.twice_strain(grad, strain2);
     const double lambda = body.lambda(cell), mu = body.mu(cell);
     for (int m = 0; m < components; ++m) {
       const int i = Components<Dim>::row(m), j = Components<Dim>::col(m);
-      const bool across = i >= Dim; // where twice the strain is 0
+      const bool across = i >= Dim;
       if (across && body.plane_stress) continue;
       s[m] += mu * strain2[i][j] + (i == j ? lambda * trace : 0);
     }
@@ -404,32 +423,36 @@ struct EvaluatePatches {
 };
 
 /// e(cell) = int (s* - s) : C^-1 (s* - s), s* the recovered stress and s that of u.                   doc/theory.md (10.2)
-template <int Dim, int Nodes>
+template <int Dim, int Nodes, bool Axisymmetric>
 struct RecoveryDifference {
-  Polynomials<Dim, Nodes> polynomials; //                         in, the body with a rule for the difference's square
-  VertexFunctions<Dim, Nodes> linear;  //                         in
-  ReadVector u;                        // (overlap dofs)    [m]   in
-  DeviceView<double *> energy;         // (owned cells)     [J]   out
+  using Fitted = Polynomials<Dim, Nodes, Axisymmetric>;
+  using Body = typename Fitted::Body;
+
+  Fitted polynomials;                 //                         in, the body with a rule for the difference's square
+  VertexFunctions<Dim, Nodes> linear; //                         in
+  ReadVector u;                       // (overlap dofs)    [m]   in
+  DeviceView<double *> energy;        // (owned cells)     [J]   out
 
   KOKKOS_FUNCTION void operator()(const LO cell) const
   {
-    constexpr int vertices = Polynomials<Dim, Nodes>::vertices;
-    const ElasticCells<Dim, Nodes> &body = polynomials.body;
+    constexpr int vertices = Fitted::vertices;
+    const Body &body = polynomials.body;
     const CellCoords<Dim, Nodes> coords(body.coords, body.cells, cell);
     const double lambda = body.lambda(cell), mu = body.mu(cell);
     double sum = 0;
-    body.at_points(cell, [&](const int q, const double volume, const double(&dN)[Nodes][Dim],
-                             const double(&of_dilatation)[Nodes][Dim]) {
-      double x[Dim], weight[vertices] = {}, grad[Dim][Dim], own[Dim][Dim], dilatation = 0;
+    body.at_points(cell, [&](const int q, const double volume, const typename Body::Gradients &dN,
+                             const typename Body::Dilatation &of_dilatation) {
+      double x[Dim], weight[vertices] = {}, dilatation = 0;
+      typename Body::Tensor grad, own;
       position(coords, body.value, q, x);
       for (int a = 0; a < Nodes; ++a)
         for (int v = 0; v < vertices; ++v) weight[v] += body.value(q, a) * linear.at_node[a][v];
       polynomials.blend(cell, x, weight, grad, dilatation);
-      displacement_gradient(u, body.cells, cell, dN, own); // (i, j) = du_i / dx_j
-      dilatation -= divergence(u, body.cells, cell, of_dilatation);
+      body.displacement_gradient(u, cell, dN, own); // (i, j) = du_i / dx_j
+      dilatation -= body.divergence(u, cell, of_dilatation);
       double density = lambda * dilatation * dilatation;
-      for (int i = 0; i < Dim; ++i)
-        for (int j = 0; j < Dim; ++j) {
+      for (int i = 0; i < Body::columns; ++i)
+        for (int j = 0; j < Body::columns; ++j) {
           const double strain2 = grad[i][j] + grad[j][i] - own[i][j] - own[j][i];
           density += mu / 2 * strain2 * strain2;
         }
@@ -440,23 +463,26 @@ struct RecoveryDifference {
 };
 
 /// s* n at the points of a side's facets, n the body's outward normal.
-template <int Dim, int Nodes>
+template <int Dim, int Nodes, bool Axisymmetric>
 struct RecoveredTraction {
-  Polynomials<Dim, Nodes> polynomials; //                                             in
-  VertexFunctions<Dim, Nodes> linear;  //                                             in
-  DeviceView<LO **> facets;            // (facets, facet nodes)                       in
-  DeviceView<LO *> cell;               // (facets)                                    in
-  DeviceView<double **> value;         // (points, facet nodes)                       in
-  DeviceView<double ***> gradient;     // (points, facet nodes, Dim - 1)              in
-  DeviceView<double ***> traction;     // (facets, points, Dim)                 [Pa]  out
+  using Fitted = Polynomials<Dim, Nodes, Axisymmetric>;
+
+  Fitted polynomials;                 //                                             in
+  VertexFunctions<Dim, Nodes> linear; //                                             in
+  DeviceView<LO **> facets;           // (facets, facet nodes)                       in
+  DeviceView<LO *> cell;              // (facets)                                    in
+  DeviceView<double **> value;        // (points, facet nodes)                       in
+  DeviceView<double ***> gradient;    // (points, facet nodes, Dim - 1)              in
+  DeviceView<double ***> traction;    // (facets, points, Dim)                 [Pa]  out
 
   KOKKOS_FUNCTION void operator()(const LO f) const
   {
-    constexpr int vertices = Polynomials<Dim, Nodes>::vertices;
-    const ElasticCells<Dim, Nodes> &body = polynomials.body;
+    constexpr int vertices = Fitted::vertices;
+    const auto &body = polynomials.body;
     const double lambda = body.lambda(cell(f)), mu = body.mu(cell(f));
     for (int q = 0; q < static_cast<int>(value.extent(0)); ++q) {
-      double x[Dim] = {}, weight[vertices] = {}, grad[Dim][Dim], trace = 0, strain2[3][3];
+      double x[Dim] = {}, weight[vertices] = {}, trace = 0, strain2[3][3];
+      typename Fitted::Tensor grad;
       for (std::size_t b = 0; b < facets.extent(1); ++b) {
         const int a = place_in(body.cells, cell(f), facets(f, b));
         for (int i = 0; i < Dim; ++i) x[i] += value(q, b) * body.coords(facets(f, b), i);

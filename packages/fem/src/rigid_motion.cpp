@@ -183,8 +183,9 @@ std::vector<RigidMotion> null_space(const std::vector<RigidMotion> &rows, const 
   return basis;
 }
 
-std::vector<RigidMotion> all_motions(const int dim)
+std::vector<RigidMotion> all_motions(const int dim, const Kinematics kinematics)
 {
+  if (kinematics == Kinematics::axisymmetric) return {{0, 1}};
   std::vector<RigidMotion> units(num_rigid_modes(dim), RigidMotion{});
   for (std::size_t k = 0; k < units.size(); ++k) units[k][k] = 1;
   return units;
@@ -214,7 +215,8 @@ std::vector<std::vector<RigidMotion>> free_motions(const Discretization &d, cons
   }
   rows = independent_rows_of_all(mesh.comm(), rows, rigid_tolerance);
   std::vector<std::vector<RigidMotion>> motions;
-  for (const auto &stopped : rows) motions.push_back(null_space(stopped, all_motions(dim), rigid_tolerance));
+  for (const auto &stopped : rows)
+    motions.push_back(null_space(stopped, all_motions(dim, d.kinematics), rigid_tolerance));
   return motions;
 }
 

@@ -15,10 +15,12 @@ constexpr double of_displacements = 3e-11;
 constexpr double of_coordinates = 32 * std::numeric_limits<double>::epsilon();
 
 /// A cell's part of the energy (10.9).
-template <int Dim, int Nodes>
+template <int Dim, int Nodes, bool Axisymmetric>
 struct RoundingEnergy {
-  ElasticCells<Dim, Nodes> body; //                        in
-  ReadVector u;                  // (overlap dofs)   [m]   in
+  using Body = ElasticCells<Dim, Nodes, Axisymmetric>;
+
+  Body body;    //                        in
+  ReadVector u; // (overlap dofs)   [m]   in
 
   KOKKOS_FUNCTION void operator()(const LO cell, double &energy) const
   {
@@ -33,21 +35,29 @@ struct RoundingEnergy {
       for (int k = 0; k < 2; ++k) largest[k] = math::fmax(largest[k], square[k]);
     }
     const double modulus = body.lambda(cell) + 2 * body.mu(cell);
-    body.at_plain_points(cell, [&](int, const double volume, const double(&dN)[Nodes][Dim]) {
-      double gradient[Dim][Dim] = {}, turn = 0, stiffness = 0;
-      for (int a = 0; a < Nodes; ++a)
-        for (int j = 0; j < Dim; ++j) {
-          stiffness += dN[a][j] * dN[a][j];
-          for (int i = 0; i < Dim; ++i)
-            gradient[i][j] += (u(dof(Dim, body.cells(cell, a), i)) - u(dof(Dim, body.cells(cell, 0), i))) * dN[a][j];
-        }
-      for (int i = 0; i < Dim; ++i)
-        for (int j = 0; j < Dim; ++j) turn += gradient[i][j] * gradient[i][j];
+    body.at_plain_points(cell, [&](int, const double volume, const typename Body::Gradients &dN) {
+      typename Body::Tensor gradient;
+      double turn = 0, stiffness = 0;
+      body.displacement_gradient(u, cell, dN, gradient);
+      for (const auto &of_node : dN)
+        for (const double slope : of_node) stiffness += slope * slope;
+      for (const auto &of_component : gradient)
+        for (const double slope : of_component) turn += slope * slope;
       const double error = of_displacements * math::sqrt(largest[0]) + of_coordinates * math::sqrt(turn * largest[1]);
       energy += volume * modulus * stiffness * error * error;
     });
   }
 };
+
+template <int Dim, int Nodes, bool Axisymmetric>
+double rounding_energy(const mesh::Mesh &mesh, const ElasticCells<Dim, Nodes, Axisymmetric> &body,
+                       const Vector &u_overlap)
+{
+  double energy = 0;
+  Kokkos::parallel_reduce("rpc::fem::rounding_energy", device_range(mesh.num_owned_cells),
+                          RoundingEnergy<Dim, Nodes, Axisymmetric>{body, device_read(u_overlap)}, energy);
+  return energy;
+}
 
 } // namespace
 
@@ -56,10 +66,7 @@ double rounding_energy(const Discretization &d, const Materials &materials, cons
   const mesh::Mesh &mesh = *d.mesh;
   const auto u_overlap = on_overlap(d, u);
   double energy = 0;
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const RoundingEnergy<dim, nodes> kernel{elastic_cells<dim, nodes>(d, materials), device_read(*u_overlap)};
-    Kokkos::parallel_reduce("rpc::fem::rounding_energy", device_range(mesh.num_owned_cells), kernel, energy);
-  });
+  with_elastic_cells(d, materials, [&](const auto &body) { energy = rounding_energy(mesh, body, *u_overlap); });
   return sum_all(mesh.comm(), energy);
 }
 

@@ -82,20 +82,30 @@ MatrixValues gather_stiffness(const Discretization &d, const CellStiffness<Dim, 
 
 /// The matrix's values where each cell is integrated by itself.
 /// @param[out] bad  number of cells with a Jacobian <= 0
-template <int Dim, int Nodes>
-MatrixValues add_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes> &stiffness,
+template <int Dim, int Nodes, bool Axisymmetric>
+MatrixValues add_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes, Axisymmetric> &stiffness,
                            const std::size_t num_entries, LO &bad)
 {
   const MatrixValues values("rpc::fem::stiffness", num_entries);
   const LO num_cells = d.mesh->num_cells(), num_owned = d.mesh->num_owned_nodes();
   if constexpr (one_thread) {
-    const AddStiffness<Dim, Nodes> add{stiffness, d.nodes, num_owned, values};
+    const AddStiffness<Dim, Nodes, Axisymmetric> add{stiffness, d.nodes, num_owned, values};
     Kokkos::parallel_reduce("rpc::fem::add_stiffness", device_range(num_cells), add, bad);
   } else {
     constexpr LO at_a_time = (1 << 28) / static_cast<LO>(sizeof(double[Dim * Nodes][Dim * Nodes])); // cells in 256 MB
     bad = add_tabulated_stiffness(d, stiffness, at_a_time, values);
   }
   return values;
+}
+
+template <int Dim, int Nodes, bool Axisymmetric>
+MatrixValues stiffness_values(const Discretization &d, const ElasticCells<Dim, Nodes, Axisymmetric> &body,
+                              const std::size_t num_entries, LO &bad)
+{
+  const CellStiffness<Dim, Nodes, Axisymmetric> stiffness{body};
+  if constexpr (!Axisymmetric)
+    if (d.congruent.size() > 0) return gather_stiffness(d, stiffness, num_entries, bad);
+  return add_stiffness(d, stiffness, num_entries, bad);
 }
 
 } // namespace
@@ -106,11 +116,7 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
   const std::size_t num_entries = d.graph->getLocalGraphDevice().entries.extent(0);
   MatrixValues values;
   LO bad = 0;
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const CellStiffness<dim, nodes> stiffness{elastic_cells<dim, nodes>(d, materials)};
-    values = d.congruent.size() > 0 ? gather_stiffness(d, stiffness, num_entries, bad)
-                                    : add_stiffness(d, stiffness, num_entries, bad);
-  });
+  with_elastic_cells(d, materials, [&](const auto &body) { values = stiffness_values(d, body, num_entries, bad); });
   Kokkos::fence();
   if (sum_all(mesh.comm(), GO(bad)) > 0) throw_if_any(mesh.comm(), ExitCode::bad_mesh, describe_bad_cell(d));
   const auto matrix = rcp(new CrsMatrix(d.graph, values));

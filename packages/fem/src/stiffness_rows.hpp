@@ -21,9 +21,9 @@ KOKKOS_INLINE_FUNCTION LO place_in_row(const DeviceView<LO *> &col, const std::s
 }
 
 /// K += stiffness of one cell, by one thread. Entries are found once per pair of nodes, whose rows share their columns.
-template <int Dim, int Nodes>
+template <int Dim, int Nodes, bool Axisymmetric>
 struct AddStiffness {
-  using Stiffness = CellStiffness<Dim, Nodes>;
+  using Stiffness = CellStiffness<Dim, Nodes, Axisymmetric>;
 
   Stiffness stiffness;         //                             in
   NodeGraph nodes;             //                             in
@@ -102,9 +102,9 @@ struct AddTabulated {
 /// @param at_a_time  cells, > 0
 /// @param values  (matrix entries) [N/m], inout
 /// @return number of cells whose Jacobian is <= 0 somewhere
-template <int Dim, int Nodes>
-LO add_tabulated_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes> &stiffness, const LO at_a_time,
-                           const DeviceView<double *> &values)
+template <int Dim, int Nodes, bool Axisymmetric>
+LO add_tabulated_stiffness(const Discretization &d, const CellStiffness<Dim, Nodes, Axisymmetric> &stiffness,
+                           const LO at_a_time, const DeviceView<double *> &values)
 {
   constexpr int dofs = Dim * Nodes;
   const LO num_cells = d.mesh->num_cells(), most = at_a_time < num_cells ? at_a_time : num_cells;

@@ -29,106 +29,114 @@ DeviceView<int ***> facet_mates(const mesh::Element &element)
 }
 
 /// The polynomials of all vertices (overlap nodes).
-template <int Dim, int Nodes>
-RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Nodes> &body, const Vector &u_overlap)
+template <int Dim, int Nodes, bool Axisymmetric>
+RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Nodes, Axisymmetric> &body,
+                           const Vector &u_overlap)
 {
-  using Table = PatchTable<Dim, Nodes>;
+  using Table = PatchTable<Dim, Nodes, Axisymmetric>;
   const mesh::Mesh &mesh = *d.mesh;
   const auto nodes = device_range(mesh.num_owned_nodes());
   const NodeToCells &node_to_cells = d.node_to_cells;
   const auto table = rcp(new MultiVector(mesh.owned_nodes, Table::columns)); // zero
   {
-    const FitPatch<Dim, Nodes> fit{body,
-                                   d.reference.recovery.value,
-                                   device_read(u_overlap),
-                                   node_to_cells.row,
-                                   node_to_cells.cell,
-                                   d.nodes,
-                                   facet_mates(mesh.element),
-                                   table->getLocalViewDevice(Tpetra::Access::ReadWrite)};
+    const FitPatch<Dim, Nodes, Axisymmetric> fit{body,
+                                                 d.reference.recovery.value,
+                                                 device_read(u_overlap),
+                                                 node_to_cells.row,
+                                                 node_to_cells.cell,
+                                                 d.nodes,
+                                                 facet_mates(mesh.element),
+                                                 table->getLocalViewDevice(Tpetra::Access::ReadWrite)};
     Kokkos::parallel_for("rpc::fem::fit_patch", nodes, fit);
     Kokkos::fence();
   }
   {
     const auto from = nodes_on_overlap(d, table);
-    const AdoptPolynomial<Dim, Nodes> adopt{mesh.cells,
-                                            node_to_cells.row,
-                                            node_to_cells.cell,
-                                            from->getLocalViewDevice(Tpetra::Access::ReadOnly),
-                                            table->getLocalViewDevice(Tpetra::Access::ReadWrite),
-                                            mesh.element.num_vertices()};
+    const AdoptPolynomial<Dim, Nodes, Axisymmetric> adopt{mesh.cells,
+                                                          node_to_cells.row,
+                                                          node_to_cells.cell,
+                                                          from->getLocalViewDevice(Tpetra::Access::ReadOnly),
+                                                          table->getLocalViewDevice(Tpetra::Access::ReadWrite),
+                                                          mesh.element.num_vertices()};
     Kokkos::parallel_for("rpc::fem::adopt_polynomial", nodes, adopt);
     Kokkos::fence();
   }
   return nodes_on_overlap(d, table);
 }
 
-template <int Dim, int Nodes>
-Polynomials<Dim, Nodes> polynomials(const ElasticCells<Dim, Nodes> &body, const MultiVector &table)
-{
-  return {body, table.getLocalViewDevice(Tpetra::Access::ReadOnly)};
-}
+/// The fitted polynomials at work, with their kernels' types named once.
+template <int Dim, int Nodes, bool Axisymmetric>
+struct Recovery {
+  Polynomials<Dim, Nodes, Axisymmetric> polynomials;
+
+  Recovery(const Discretization &d, const ElasticCells<Dim, Nodes, Axisymmetric> &body, const MultiVector &table)
+      : polynomials{body, table.getLocalViewDevice(Tpetra::Access::ReadOnly), d.on_axis}
+  {
+  }
+
+  void evaluate(const Discretization &d, MultiVector &result) const
+  {
+    const EvaluatePatches<Dim, Nodes, Axisymmetric> evaluate{polynomials, d.node_to_cells.row, d.node_to_cells.cell,
+                                                             VertexFunctions<Dim, Nodes>(),
+                                                             result.getLocalViewDevice(Tpetra::Access::ReadWrite)};
+    Kokkos::parallel_for("rpc::fem::evaluate_patches", device_range(d.mesh->num_owned_nodes()), evaluate);
+    Kokkos::fence();
+  }
+  void square_difference(const Discretization &d, const Vector &u_overlap, const DeviceView<double *> &energy) const
+  {
+    const RecoveryDifference<Dim, Nodes, Axisymmetric> difference{polynomials, VertexFunctions<Dim, Nodes>(),
+                                                                  device_read(u_overlap), energy};
+    Kokkos::parallel_for("rpc::fem::recovery_difference", device_range(d.mesh->num_owned_cells), difference);
+    Kokkos::fence();
+  }
+  void tractions(const Discretization &d, const mesh::Side &side, const DeviceView<double ***> &traction) const
+  {
+    const BasisTable &table = d.reference.facet;
+    const RecoveredTraction<Dim, Nodes, Axisymmetric> recovered{
+        polynomials, VertexFunctions<Dim, Nodes>(), side.facets, side.cell, table.value, table.gradient, traction};
+    Kokkos::parallel_for("rpc::fem::recovered_traction", device_range(static_cast<LO>(side.facets.extent(0))),
+                         recovered);
+    Kokkos::fence();
+  }
+};
 
 } // namespace
 
-std::vector<std::string> stress_names(const int dim)
+std::vector<std::string> stress_names(const Discretization &d)
 {
-  if (dim == 2) return {"stress_xx", "stress_yy", "stress_xy", "von_mises"};
+  if (d.axisymmetric()) return {"stress_xx", "stress_yy", "stress_xy", "stress_theta", "von_mises"};
+  if (d.dim() == 2) return {"stress_xx", "stress_yy", "stress_xy", "von_mises"};
   return {"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_yz", "stress_xz", "von_mises"};
 }
 
 RecoveredStress::RecoveredStress(Discretization d, Materials materials, const Vector &u)
     : d_(std::move(d)), materials_(std::move(materials)), u_(rcp(new Vector(*on_overlap(d_, u), Teuchos::Copy)))
 {
-  with_static_extents(d_.mesh->element, [&](const auto dim, const auto nodes) {
-    polynomials_ = fit(d_, elastic_cells<dim, nodes>(d_, materials_), *u_);
-  });
+  with_elastic_cells(d_, materials_, [&](const auto &body) { polynomials_ = fit(d_, body, *u_); });
 }
 
 RCP<MultiVector> RecoveredStress::at_nodes() const
 {
-  const mesh::Mesh &mesh = *d_.mesh;
-  const auto result = rcp(new MultiVector(mesh.owned_nodes, stress_names(d_.dim()).size()));
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const EvaluatePatches<dim, nodes> evaluate{
-        polynomials(elastic_cells<dim, nodes>(d_, materials_), *polynomials_), d_.node_to_cells.row,
-        d_.node_to_cells.cell, VertexFunctions<dim, nodes>(), result->getLocalViewDevice(Tpetra::Access::ReadWrite)};
-    Kokkos::parallel_for("rpc::fem::evaluate_patches", device_range(mesh.num_owned_nodes()), evaluate);
-    Kokkos::fence();
-  });
+  const auto result = rcp(new MultiVector(d_.mesh->owned_nodes, stress_names(d_).size()));
+  with_elastic_cells(d_, materials_,
+                     [&](const auto &body) { Recovery(d_, body, *polynomials_).evaluate(d_, *result); });
   return result;
 }
 
 DeviceView<double *> RecoveredStress::squared_difference() const
 {
-  const mesh::Mesh &mesh = *d_.mesh;
-  const DeviceView<double *> energy("rpc::fem::squared_difference", mesh.num_owned_cells);
-  with_static_extents(mesh.element, [&](const auto dim, const auto nodes) {
-    const RecoveryDifference<dim, nodes> difference{
-        polynomials(elastic_cells<dim, nodes>(d_, materials_, d_.reference.cell_load), *polynomials_),
-        VertexFunctions<dim, nodes>(), device_read(*u_), energy};
-    Kokkos::parallel_for("rpc::fem::recovery_difference", device_range(mesh.num_owned_cells), difference);
-    Kokkos::fence();
-  });
+  const DeviceView<double *> energy("rpc::fem::squared_difference", d_.mesh->num_owned_cells);
+  with_elastic_cells(d_, materials_, d_.reference.cell_load,
+                     [&](const auto &body) { Recovery(d_, body, *polynomials_).square_difference(d_, *u_, energy); });
   return energy;
 }
 
 DeviceView<double ***> RecoveredStress::tractions(const mesh::Side &side) const
 {
-  const BasisTable &table = d_.reference.facet;
-  const LO facets = static_cast<LO>(side.facets.extent(0));
-  const DeviceView<double ***> traction("rpc::fem::recovered_traction", facets, table.num_points(), d_.dim());
-  with_static_extents(d_.mesh->element, [&](const auto dim, const auto nodes) {
-    const RecoveredTraction<dim, nodes> recovered{polynomials(elastic_cells<dim, nodes>(d_, materials_), *polynomials_),
-                                                  VertexFunctions<dim, nodes>(),
-                                                  side.facets,
-                                                  side.cell,
-                                                  table.value,
-                                                  table.gradient,
-                                                  traction};
-    Kokkos::parallel_for("rpc::fem::recovered_traction", device_range(facets), recovered);
-    Kokkos::fence();
-  });
+  const DeviceView<double ***> traction("rpc::fem::recovered_traction", side.facets.extent(0),
+                                        d_.reference.facet.num_points(), d_.dim());
+  with_elastic_cells(d_, materials_,
+                     [&](const auto &body) { Recovery(d_, body, *polynomials_).tractions(d_, side, traction); });
   return traction;
 }
 

@@ -5,6 +5,52 @@
 
 namespace rpc::fem
 {
+namespace
+{
+
+/// What a point of a facet stands for by the rule's weight: its share of the area, times 2 pi r in axisymmetry.
+struct FacetPoints {
+  DeviceView<double **> coords;    // (overlap nodes, dim)          [m]  in
+  DeviceView<LO **> facets;        // (facets, nodes)                    in
+  DeviceView<double **> value;     // (points, nodes)                    in
+  DeviceView<double ***> gradient; // (points, nodes, dim - 1)           in
+  DeviceView<double *> weight;     // (points)                           in
+  bool axisymmetric;
+
+  int num_points() const { return static_cast<int>(weight.extent(0)); }
+  /// Outward normal times the area, in the plane the length.
+  KOKKOS_INLINE_FUNCTION Kokkos::Array<double, 3> in_mesh(const LO facet, const int q) const
+  {
+    auto area = area_normal(coords, facets, facet, gradient, q);
+    for (int c = 0; c < 3; ++c) area[c] *= weight(q);
+    return area;
+  }
+  /// What an area or length of the mesh is to be multiplied with [1, or m].
+  KOKKOS_INLINE_FUNCTION double across(const LO facet, const int q) const
+  {
+    if (!axisymmetric) return 1;
+    double r = 0;
+    for (std::size_t a = 0; a < facets.extent(1); ++a) r += value(q, a) * coords(facets(facet, a), 0);
+    return circle(r);
+  }
+};
+
+FacetPoints facet_points(const Discretization &d, const mesh::Side &side, const BasisTable &table)
+{
+  return {d.mesh->coords, side.facets, table.value, table.gradient, table.weight, d.axisymmetric()};
+}
+
+/// The rule of nodal quadrature: Gauss-Lobatto's, whose points are the nodes. With the factor r its two points would leave
+/// out the axis, and not meet a constant pressure: then int N_a itself, for which facet's rule is exact.        (2.7a)
+const BasisTable &nodal_rule(const Discretization &d)
+{
+  return d.axisymmetric() && d.mesh->element.order == 1 ? d.reference.facet : d.reference.facet_nodal;
+}
+
+/// A weight that is less of the facets' areas is rounding: the node has none.
+constexpr double least_share = 1e-12;
+
+} // namespace
 
 HostPoints node_positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node)
 {
@@ -19,18 +65,28 @@ HostPoints node_positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node)
 
 DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &side)
 {
-  const int points = d.reference.facet.num_points();
-  const auto gradient = d.reference.facet.gradient;
-  const auto weight = d.reference.facet.weight;
-  const auto coords = d.mesh->coords;
-  const auto facets = side.facets;
-  DeviceView<double *> measure("rpc::fem::facet_measure", facets.extent(0) * points);
+  const FacetPoints rule = facet_points(d, side, d.reference.facet);
+  const int points = rule.num_points();
+  DeviceView<double *> measure("rpc::fem::facet_measure", side.facets.extent(0) * points);
   Kokkos::parallel_for(
-      "rpc::fem::facet_measure", device_range(static_cast<LO>(facets.extent(0))), KOKKOS_LAMBDA(const LO facet) {
+      "rpc::fem::facet_measure", device_range(static_cast<LO>(side.facets.extent(0))), KOKKOS_LAMBDA(const LO facet) {
         for (int q = 0; q < points; ++q)
-          measure(facet * points + q) = weight(q) * norm(area_normal(coords, facets, facet, gradient, q));
+          measure(facet * points + q) = norm(rule.in_mesh(facet, q)) * rule.across(facet, q);
       });
   return measure;
+}
+
+DeviceView<double *> facet_size(const Discretization &d, const mesh::Side &side)
+{
+  const FacetPoints rule = facet_points(d, side, d.reference.facet);
+  const int points = rule.num_points(), dim = d.dim();
+  DeviceView<double *> size("rpc::fem::facet_size", side.facets.extent(0));
+  Kokkos::parallel_for(
+      "rpc::fem::facet_size", device_range(static_cast<LO>(side.facets.extent(0))), KOKKOS_LAMBDA(const LO facet) {
+        for (int q = 0; q < points; ++q) size(facet) += norm(rule.in_mesh(facet, q));
+        if (dim == 3) size(facet) = math::sqrt(size(facet));
+      });
+  return size;
 }
 
 SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
@@ -56,38 +112,46 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
   Kokkos::deep_copy(surface.node, Kokkos::subview(node, Kokkos::make_pair(LO(0), count)));
   surface.weight = DeviceView<double *>("rpc::fem::surface_weight", count);
   surface.normal = DeviceView<double **>("rpc::fem::surface_normal", count, dim);
-  const auto lid = surface.node;
-  const auto weight = surface.weight;
-  const auto normal = surface.normal;
-  const auto coords = mesh.coords;
-  const auto gradient = d.reference.facet_nodal.gradient;
-  const auto rule = d.reference.facet_nodal.weight;
-  Kokkos::parallel_for(
-      "rpc::fem::surface_weights", device_range(count), KOKKOS_LAMBDA(const LO i) {
-        for (std::size_t k = node_to_facets.row(lid(i)); k < node_to_facets.row(lid(i) + 1); ++k) {
-          const LO f = node_to_facets.cell(k);
-          const int a = place_in(facets, f, lid(i)); // the rule's points are the nodes
-          const auto area = area_normal(coords, facets, f, gradient, a);
-          weight(i) += rule(a) * norm(area);
-          for (int c = 0; c < dim; ++c) normal(i, c) += (rule(a) > 0 ? rule(a) : 1) * area[c];
-        }
-      });
+  const SurfaceNodes to = surface;
+  const FacetPoints rule = facet_points(d, side, nodal_rule(d));
+  const int points = rule.num_points();
   LO bad = 0;
   Kokkos::parallel_reduce(
-      "rpc::fem::surface_normals", device_range(count),
+      "rpc::fem::surface_weights", device_range(count),
       KOKKOS_LAMBDA(const LO i, LO &wrong) {
+        const LO n = to.node(i);
+        double size = 0, sum = 0, weighted[3] = {}, plain[3] = {};
+        for (std::size_t k = node_to_facets.row(n); k < node_to_facets.row(n + 1); ++k) {
+          const LO f = node_to_facets.cell(k);
+          const int a = place_in(facets, f, n);
+          for (int q = 0; q < points; ++q) {
+            const auto area = rule.in_mesh(f, q);
+            const double across = rule.across(f, q), share = rule.value(q, a) * across;
+            size += norm(area) * across;
+            sum += share * norm(area);
+            for (int c = 0; c < dim; ++c) {
+              weighted[c] += share * area[c];
+              plain[c] += area[c];
+            }
+          }
+        }
+        const bool has_weight = sum > least_share * size;
+        to.weight(i) = has_weight ? sum : 0;
         double length = 0;
-        for (int c = 0; c < dim; ++c) length += normal(i, c) * normal(i, c);
+        for (int c = 0; c < dim; ++c) {
+          to.normal(i, c) = has_weight ? weighted[c] : plain[c];
+          length += to.normal(i, c) * to.normal(i, c);
+        }
         length = math::sqrt(length);
-        const int a = place_in(facets, node_to_facets.cell(node_to_facets.row(lid(i))), lid(i));
-        if (!(weight(i) > 0 || rule(a) == 0) || !(length > 0)) ++wrong;
-        for (int c = 0; c < dim; ++c) normal(i, c) /= length;
+        if (!(size > 0) || !(length > 0)) ++wrong;
+        for (int c = 0; c < dim; ++c) to.normal(i, c) /= length;
       },
       bad);
   const GO all_bad = sum_all(mesh.comm(), GO(bad));
   RPC_REQUIRE_CODE(all_bad == 0, ExitCode::bad_mesh,
                    "mesh: " << all_bad << " nodes of the side \"" << side.name
-                            << "\" have no normal or no positive quadrature weight (degenerate facets)");
+                            << "\" have no normal or no positive quadrature weight (degenerate facets"
+                            << (d.axisymmetric() ? ", or facets on the axis, which is no surface)" : ")"));
   return surface;
 }
 

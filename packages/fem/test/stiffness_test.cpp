@@ -52,9 +52,10 @@ mesh::MeshData with_vertices_moved(mesh::MeshData data, const Deformation &move)
   return data;
 }
 
-fem::Discretization body_of(const mesh::MeshData &data, const RCP<const Comm> &comm)
+fem::Discretization body_of(const mesh::MeshData &data, const RCP<const Comm> &comm,
+                            const fem::Kinematics kinematics = fem::Kinematics::plane_strain)
 {
-  return fem::discretize(std::make_shared<mesh::Mesh>(mesh::distribute(data, comm)));
+  return fem::discretize(std::make_shared<mesh::Mesh>(mesh::distribute(data, comm)), kinematics);
 }
 
 /// The block of 3 x 2 x 2 lattice cells with its inside out of shape; its boundary stays.
@@ -271,25 +272,34 @@ TEST_P(AllElements, HaveInternalForcesThatAreTheMatrixTimesTheDisplacement)
   }
 }
 
+template <int Dim, int Nodes, bool Axisymmetric>
+void expect_same_matrix_tabulated(const fem::Discretization &d, const fem::Material &material)
+{
+  const auto expected = to_host(fem::assemble_stiffness(d, material)->getLocalMatrixDevice().values);
+  const fem::CellStiffness<Dim, Nodes, Axisymmetric> stiffness{
+      fem::elastic_cells<Dim, Nodes, Axisymmetric>(d, material)};
+  for (const LO at_a_time : {1, 5, 1000}) {
+    const DeviceView<double *> values("values", expected.extent(0));
+    EXPECT_EQ(fem::add_tabulated_stiffness(d, stiffness, at_a_time, values), 0);
+    const auto host = to_host(values);
+    double off = 0, scale = 0;
+    for (std::size_t k = 0; k < expected.extent(0); ++k) {
+      off = std::max(off, std::abs(host(k) - expected(k)));
+      scale = std::max(scale, std::abs(expected(k)));
+    }
+    EXPECT_LT(off, 1e-14 * scale) << at_a_time << " at a time";
+  }
+}
+
 TEST_P(AllElements, AddUpToTheSameMatrixHoweverManyCellsAreTabulatedAtATime)
 {
   auto d = body_of(patch(GetParam()), world());
-  const fem::Material material = rubber;
   d.congruent = {}; // each cell is integrated by itself
-  const auto expected = to_host(fem::assemble_stiffness(d, material)->getLocalMatrixDevice().values);
   fem::with_static_extents(d.mesh->element, [&](const auto dimension, const auto nodes) {
-    const fem::CellStiffness<dimension, nodes> stiffness{fem::elastic_cells<dimension, nodes>(d, material)};
-    for (const LO at_a_time : {1, 5, 1000}) {
-      const DeviceView<double *> values("values", expected.extent(0));
-      EXPECT_EQ(fem::add_tabulated_stiffness(d, stiffness, at_a_time, values), 0);
-      const auto host = to_host(values);
-      double off = 0, scale = 0;
-      for (std::size_t k = 0; k < expected.extent(0); ++k) {
-        off = std::max(off, std::abs(host(k) - expected(k)));
-        scale = std::max(scale, std::abs(expected(k)));
-      }
-      EXPECT_LT(off, 1e-14 * scale) << at_a_time << " at a time";
-    }
+    expect_same_matrix_tabulated<dimension, nodes, false>(d, rubber);
+    if constexpr (dimension == 2)
+      expect_same_matrix_tabulated<dimension, nodes, true>(
+          body_of(patch(GetParam()), world(), fem::Kinematics::axisymmetric), rubber);
   });
 }
 

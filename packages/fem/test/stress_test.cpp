@@ -17,7 +17,7 @@ std::vector<double> stresses(const fem::Discretization &d, const Vector &u)
 {
   const auto stress = fem::RecoveredStress(d, steel, u).at_nodes();
   const auto values = stress->getLocalViewHost(Tpetra::Access::ReadOnly);
-  EXPECT_EQ(values.extent(1), fem::stress_names(d.dim()).size());
+  EXPECT_EQ(values.extent(1), fem::stress_names(d).size());
   return by_node_id(*d.mesh, static_cast<int>(values.extent(1)), [&](const LO n, const int k) { return values(n, k); });
 }
 
@@ -250,9 +250,17 @@ TEST(NodalStresses, OfOneBlockDoNotReachIntoAnother)
 
 TEST(StressNames, AreOnePerColumnVonMisesLast)
 {
-  EXPECT_EQ(fem::stress_names(2), (std::vector<std::string>{"stress_xx", "stress_yy", "stress_xy", "von_mises"}));
-  EXPECT_EQ(fem::stress_names(3), (std::vector<std::string>{"stress_xx", "stress_yy", "stress_zz", "stress_xy",
-                                                            "stress_yz", "stress_xz", "von_mises"}));
+  const auto names = [](const mesh::Element &element,
+                        const fem::Kinematics kinematics = fem::Kinematics::plane_strain) {
+    auto box = small_box(element);
+    box.lower[0] = 0;
+    return fem::stress_names(body(box, world(), {}, kinematics));
+  };
+  EXPECT_EQ(names({2, 1}), (std::vector<std::string>{"stress_xx", "stress_yy", "stress_xy", "von_mises"}));
+  EXPECT_EQ(names({2, 1}, fem::Kinematics::axisymmetric),
+            (std::vector<std::string>{"stress_xx", "stress_yy", "stress_xy", "stress_theta", "von_mises"}));
+  EXPECT_EQ(names({3, 1}), (std::vector<std::string>{"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_yz",
+                                                     "stress_xz", "von_mises"}));
 }
 
 } // namespace

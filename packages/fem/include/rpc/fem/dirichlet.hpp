@@ -29,15 +29,15 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
 struct DirichletDofs {
   DeviceView<char *> fixed; ///< (overlap dofs) 1 where prescribed
   DeviceView<int *>
-      condition;     ///< (owned dofs) index of the condition that prescribes it, the last of several; -1 if free
+      condition;     ///< (owned dofs) index of the condition that prescribes it, the last of several; -1 if free, or
+                     ///< held by the axis of an axisymmetric body
   RCP<Vector> value; ///< (owned dofs) [m], 0 where free
   GO num_fixed = 0;  ///< over all ranks
 };
 
-/// Collective.
-/// @throws rpc::Error (bad_input) if a side does not exist, a value is NaN or infinite, or two conditions prescribe
-/// different
-///         values at one node
+/// u_r = 0 on the axis of an axisymmetric body is prescribed without a condition. Collective.
+/// @throws rpc::Error (bad_input) if a side does not exist, a value is NaN or infinite, two conditions prescribe different
+///         values at one node, or one another radial displacement on the axis
 DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<DirichletCondition> &conditions);
 
 /// f, (owned dofs), becomes 0 where displacements are prescribed; fences.
@@ -76,7 +76,7 @@ ElasticProblem elastic_problem(const Discretization &d, const EliminatedStiffnes
                                DirichletDofs dirichlet);
 
 /// Force with which each condition holds the body: the sum of internal - external forces over the unknowns that it
-/// prescribes [N], in 2D per m. Collective. (2.11)
+/// prescribes [N], in the plane per m; the radial component of an axisymmetric body cancels to 0. Collective. (2.11)
 /// @param out_of_balance  (owned dofs) internal minus all external forces, contact included [N]
 std::vector<std::array<double, 3>> reaction_forces(const Discretization &d, const DirichletDofs &dirichlet,
                                                    int num_conditions, const Vector &out_of_balance);

@@ -37,6 +37,7 @@ struct CongruentCells {
 struct Discretization {
   std::shared_ptr<const mesh::Mesh> mesh;
   Kinematics kinematics = Kinematics::plane_strain;
+  double on_axis = 0; ///< of an axisymmetric body: nodes with r up to this lie on the axis, where u_r = 0 [m]
   ReferenceElement reference;
   RCP<const Map> owned_dofs;     ///< rows
   RCP<const Map> overlap_dofs;   ///< columns
@@ -48,10 +49,14 @@ struct Discretization {
   RCP<const CrsGraph> graph; ///< fill-complete, columns ascending
 
   int dim() const { return mesh->dim(); }
+  bool axisymmetric() const { return kinematics == Kinematics::axisymmetric; }
+  /// Whether forces, energies and areas are those of a slice of the body, per metre across the plane.
+  bool per_metre() const { return dim() == 2 && !axisymmetric(); }
 };
 
 /// Collective.
 /// @param kinematics  the default for a mesh in space
+/// @throws rpc::Error (bad_input) if it is none for a mesh in space, (bad_mesh) on every rank if a node of an axisymmetric body lies at r < 0, naming the farthest
 Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, Kinematics kinematics = Kinematics::plane_strain);
 
 /// Values with those of the neighbours' nodes, (overlap dofs), from those of the owned ones; collective. The same vector where

@@ -42,7 +42,7 @@ Teuchos::ParameterList valid_material_parameters();
 Materials material_options(const Teuchos::ParameterList &list);
 
 /// Lame's constants of each block of a mesh, (2.3): (blocks; lambda, mu) [Pa]. In plane stress lambda is that of the strains in the
-/// plane, (2.4).
+/// plane, (2.3a).
 /// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
 DeviceView<double **> lame_table(const Discretization &d, const Materials &materials);
 

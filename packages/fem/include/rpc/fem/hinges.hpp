@@ -10,7 +10,7 @@ namespace rpc::fem
 ///
 /// A piece is what cells join over facets. Pieces move as rigid bodies that agree at the nodes which they share; the joints
 /// are stiff enough if prescribed displacements leave them no motions but those of the body as a whole. Whether contact
-/// alone would stop a joint is not looked into.
+/// alone would stop a joint is not looked into. Joints of an axisymmetric body are circles, and stiff.
 ///
 /// Costs a look at the cells around each node. Where there are such points, rank 0 gets the cells that several ranks
 /// know, the joints and up to six held directions of each piece; collective.

@@ -51,8 +51,8 @@ independent_rows_of_all(const Comm &comm, const std::vector<std::vector<RigidMot
 std::vector<RigidMotion> null_space(const std::vector<RigidMotion> &rows, const std::vector<RigidMotion> &space,
                                     double tolerance);
 
-/// Orthonormal basis of all motions.
-std::vector<RigidMotion> all_motions(int dim);
+/// Orthonormal basis of all motions: of an axisymmetric body the one along its axis, all others strain it.
+std::vector<RigidMotion> all_motions(int dim, Kinematics kinematics = Kinematics::plane_strain);
 
 /// Below this a row of size 1 is rounding: a part that is held on 1e-8 of its length counts as hinged.
 constexpr double rigid_tolerance = 1e-8;
@@ -64,7 +64,7 @@ std::vector<std::vector<RigidMotion>> free_motions(const Discretization &d, cons
 
 /// The forces on each part along its modes.
 struct Resultant {
-  RigidMotion force{};  ///< [N], moments over the radius; 2D per m
+  RigidMotion force{};  ///< [N], moments over the radius; in the plane per m
   double magnitude = 0; ///< sum of the sizes of all its terms [N]: 1e-16 of it is rounding
 };
 /// @param force  (owned dofs) [N]; collective

@@ -19,13 +19,13 @@ public:
   /// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
   RecoveredStress(Discretization d, Materials materials, const Vector &u);
 
-  /// Columns: xx, yy, xy (2D); xx, yy, zz, xy, yz, xz (3D); and last the von Mises stress, which in plane strain counts
+  /// Columns: xx, yy, xy (2D), in axisymmetry then theta; xx, yy, zz, xy, yz, xz (3D); and last the von Mises stress, which in plane strain counts
   /// sigma_zz = lambda (eps_xx + eps_yy); in plane stress sigma_zz = 0. Where blocks meet, a node has a mean of both sides.
-  /// @return (owned nodes; 4 or 7) [Pa]; collective
+  /// @return (owned nodes; 4, 5 or 7) [Pa]; collective
   RCP<MultiVector> at_nodes() const;
 
   /// int over each cell of (s* - s) : C^-1 (s* - s), for the recovered stress s* and that of u: twice the elastic energy
-  /// of their difference (owned cells) [J], in 2D per m.                                                  (10.2)
+  /// of their difference (owned cells) [J], in the plane per m.                                                  (10.2)
   DeviceView<double *> squared_difference() const;
 
   /// s* n at the points of ReferenceElement::facet, n the outward normal: (facets, points, dim) [Pa].
@@ -39,6 +39,6 @@ private:
 };
 
 /// Names of the columns of RecoveredStress::at_nodes: stress_xx, ..., von_mises.
-std::vector<std::string> stress_names(int dim);
+std::vector<std::string> stress_names(const Discretization &d);
 
 } // namespace rpc::fem

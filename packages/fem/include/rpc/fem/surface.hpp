@@ -9,20 +9,24 @@ namespace rpc::fem
 /// (n, dim) Where nodes are [m], on the host.
 HostPoints node_positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node);
 
-/// What the points of ReferenceElement::facet stand for on a side: (facets * points), facet by facet [m^(dim-1)].
+/// What the points of ReferenceElement::facet stand for on a side: (facets * points), facet by facet [m^(dim-1), axisymmetric:
+/// m^2].
 DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &side);
+/// How far the facets of a side reach, (facets) [m]: in the plane their lengths, in space the roots of their areas.
+DeviceView<double *> facet_size(const Discretization &d, const mesh::Side &side);
 
 /// Owned nodes of a side with what nodal quadrature needs: int f ds ~ sum_i weight_i f(x_i). doc/theory.md (2.7)
 ///
-/// The vertices of quadratic triangles have weight 0, see mesh::nodal_rule(); all other weights are positive.
+/// The vertices of quadratic triangles have weight 0, see mesh::nodal_rule(), and so have, with order 2, nodes on the axis of an
+/// axisymmetric body (2.7a); all other weights are positive.
 struct SurfaceNodes {
   DeviceView<LO *> node;       ///< (n) owned node lids, ascending
-  DeviceView<double *> weight; ///< (n) w_i [m^(dim-1)]
+  DeviceView<double *> weight; ///< (n) w_i [m^(dim-1), axisymmetric: m^2]
   DeviceView<double **>
       normal; ///< (n, dim) outward unit normal of the body, averaged by area over the facets at the node
 };
 
-/// @throws rpc::Error (bad_mesh) on every rank if facets are degenerate at a node; collective
+/// @throws rpc::Error (bad_mesh) on every rank if a facet has no area; collective
 SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side);
 
 /// For each node of a side that `known` leaves out, the mean over the known nodes with which it shares a facet; 0 if
