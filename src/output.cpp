@@ -2,6 +2,7 @@
 
 #include "rpc/core/on_root.hpp"
 #include "rpc/fem/stress.hpp"
+#include "rpc/fem/surface.hpp"
 #include "rpc/io/atomic_file.hpp"
 #include "rpc/io/contact_csv.hpp"
 #include "rpc/io/exodus.hpp"
@@ -144,15 +145,21 @@ nlohmann::ordered_json vector_json(const std::array<double, 3> &v, const int dim
   return std::vector<double>(v.begin(), v.begin() + dim);
 }
 
-void add_sums(nlohmann::ordered_json &json, const contact::ContactSums &sums, const int dim)
+/// "contact_length", or "contact_area" of a body with its whole surface.
+std::string extent_key(const std::string &what, const fem::Discretization &d)
+{
+  return what + (d.per_metre() ? "_length" : "_area");
+}
+
+void add_sums(nlohmann::ordered_json &json, const contact::ContactSums &sums, const fem::Discretization &d)
 {
   json["contact_nodes"] = sums.num_nodes;
-  json["contact_force"] = vector_json(sums.force, dim);
+  json["contact_force"] = vector_json(sums.force, d.dim());
   json["max_pressure"] = sums.max_pressure;
   json["max_penetration"] = sums.max_penetration;
   json["max_initial_penetration"] = sums.max_initial_penetration;
-  json[dim == 2 ? "contact_length" : "contact_area"] = sums.contact_length;
-  json[dim == 2 ? "yielded_length" : "yielded_area"] = sums.yielded_length;
+  json[extent_key("contact", d)] = sums.contact_length;
+  json[extent_key("yielded", d)] = sums.yielded_length;
 }
 
 /// A number that may be unknown: null then.
@@ -180,8 +187,10 @@ void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution
                                   {"contact_force", maybe(a.errors.contact_force)},
                                   {"max_pressure", maybe(a.errors.max_pressure)},
                                   {"contact_pressure_l2_relative", maybe(a.errors.contact_pressure)},
-                                  {"contact_length", maybe(a.errors.contact_length)}};
-  json["adaptation"]["errors_unknown"] = a.errors.unknown;
+                                  {extent_key("contact", s.discretization), maybe(a.errors.contact_length)}};
+  auto &unknown = json["adaptation"]["errors_unknown"] = nlohmann::ordered_json::object();
+  for (const auto &[name, reason] : a.errors.unknown)
+    unknown[name == "contact_length" ? extent_key("contact", s.discretization) : name] = reason;
   auto &cycles = json["adaptation"]["cycles"] = nlohmann::ordered_json::array();
   for (const adapt::Cycle &c : a.cycles)
     cycles.push_back({{"dofs", c.dofs},
@@ -189,7 +198,7 @@ void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution
                       {"energy_J", c.energy},
                       {"contact_force", vector_json(c.contact_force, s.discretization.dim())},
                       {"max_pressure", c.max_pressure},
-                      {"contact_length", c.contact_length},
+                      {extent_key("contact", s.discretization), c.contact_length},
                       {"newton_iterations", c.newton_iterations},
                       {"linear_iterations", c.linear_iterations},
                       {"seconds", c.seconds}});
@@ -215,10 +224,10 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["energy_J"] = s.energy;
   json["strain_energy"] = 0.5 * s.energy_norm_squared;
   json["energy_norm_squared"] = s.energy_norm_squared;
-  add_sums(json, s.contact.total, mesh.dim());
+  add_sums(json, s.contact.total, s.discretization);
   json["contact_sides"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.contact.size(); ++k)
-    add_sums(json["contact_sides"][scene.model.contact[k].side], s.contact.sides[k], mesh.dim());
+    add_sums(json["contact_sides"][scene.model.contact[k].side], s.contact.sides[k], s.discretization);
   json["reaction_force"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.dirichlet.size(); ++k)
     json["reaction_force"][scene.model.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());

@@ -36,7 +36,7 @@ int sum(const std::vector<int> &values)
   return std::accumulate(values.begin(), values.end(), 0);
 }
 
-void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, const bool flat)
+void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, const bool per_metre)
 {
   const std::string outcome = !adaptation.reached         ? "NOT TO THE TARGET: " + adaptation.reason
                               : adaptation.reason.empty() ? "the error is what was asked for"
@@ -54,9 +54,9 @@ void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, co
     return;
   }
   print(out, "    errors by the sequence: J %s, contact force %s, max. pressure %s, pressure in L2 %s, in contact %s\n",
-        bar_text(e.energy, flat ? " J/m" : " J").c_str(), bar_text(e.contact_force, flat ? " N/m" : " N").c_str(),
-        bar_text(e.max_pressure, " Pa").c_str(), bar_text(e.contact_pressure, "").c_str(),
-        bar_text(e.contact_length, flat ? " m" : " m^2").c_str());
+        bar_text(e.energy, per_metre ? " J/m" : " J").c_str(),
+        bar_text(e.contact_force, per_metre ? " N/m" : " N").c_str(), bar_text(e.max_pressure, " Pa").c_str(),
+        bar_text(e.contact_pressure, "").c_str(), bar_text(e.contact_length, per_metre ? " m" : " m^2").c_str());
   for (const auto &[name, reason] : e.unknown) print(out, "    no error of %s: %s\n", name.c_str(), reason.c_str());
 }
 
@@ -121,20 +121,21 @@ void print_estimate(std::ostream &out, const Scene &scene, const Solution &s)
 
 void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &files)
 {
-  const bool flat = s.discretization.dim() == 2;
+  const bool flat = s.discretization.dim() == 2, per_metre = s.discretization.per_metre();
   const auto &c = s.contact.total;
   print(out, "\n%s: %s\n", s.uzawa.converged ? "converged" : "NOT CONVERGED", s.uzawa.reason.c_str());
   const auto &held = s.uzawa.residuals;
   print(out, "  optimality          kkt %.1e, equilibrium %.1e, energy balance %.1e, duality gap %.1e\n",
         held.kkt_residual, held.equilibrium_residual, held.energy_balance, held.duality_gap);
-  print(out, "  energy J            %.9g %s\n", s.energy, flat ? "J/m" : "J");
+  print(out, "  energy J            %.9g %s\n", s.energy, per_metre ? "J/m" : "J");
   if (!scene.model.contact.empty()) {
     print(out, "  contact force       (%.6g, %.6g%s) %s\n", c.force[0], c.force[1],
-          flat ? "" : (", " + std::to_string(c.force[2])).c_str(), flat ? "N/m" : "N");
+          flat ? "" : (", " + std::to_string(c.force[2])).c_str(), per_metre ? "N/m" : "N");
     print(out, "  max. pressure       %.6g Pa\n", c.max_pressure);
     print(out, "  max. penetration    %.6g m\n", c.max_penetration);
     if (c.max_initial_penetration > 0) print(out, "  initial penetration %.6g m\n", c.max_initial_penetration);
-    print(out, "  in contact          %.6g, yielded %.6g %s\n", c.contact_length, c.yielded_length, flat ? "m" : "m^2");
+    print(out, "  in contact          %.6g, yielded %.6g %s\n", c.contact_length, c.yielded_length,
+          per_metre ? "m" : "m^2");
   }
   if (s.estimate) {
     print(out, "  ");
@@ -157,7 +158,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
   for (const auto &level : s.levels)
     print(out, "    predicted by      %zu dofs: %d Newton, %d CG iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
-  if (s.adaptation) print_adaptation(out, *s.adaptation, flat);
+  if (s.adaptation) print_adaptation(out, *s.adaptation, per_metre);
   for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
   const auto &t = s.seconds;
   print(out,

@@ -151,7 +151,7 @@ std::string nothing_strained(const Solution &s)
   std::ostringstream reason;
   reason << "nothing is strained";
   if (s.energy_norm_squared > 0)
-    reason << ": the strain energy " << s.energy_norm_squared << (s.discretization.dim() == 2 ? " J/m" : " J")
+    reason << ": the strain energy " << s.energy_norm_squared << (s.discretization.per_metre() ? " J/m" : " J")
            << " is rounding, which may reach " << s.estimate->rounding;
   return reason.str();
 }

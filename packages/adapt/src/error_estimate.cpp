@@ -3,6 +3,7 @@
 #include "rpc/core/math.hpp"
 #include "rpc/fem/rounding.hpp"
 #include "rpc/fem/stress.hpp"
+#include "rpc/fem/surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +28,8 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
   // count with p |v|, which is of first order, and differ between numbers of ranks.
   const double accuracy = 1e-7 * result.total.max_pressure;
   const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, normal + c.dim));
-  owned->getVectorNonConst(yield)->putScalar(highest_yield); // a node that is no point is open: no pressure, no normal
+  owned->getVectorNonConst(yield)->putScalar(
+      highest_yield); // a node that misses the obstacle is open: no pressure, no normal
   const LO begin = c.first(side);
   const auto p = result.pressure, v = result.penetration;
   {
@@ -52,7 +54,8 @@ struct ContactTerms {
   DeviceView<LO **> facets;        // (facets, facet nodes)                    in
   DeviceView<LO *> cell;           // (facets)                                 in
   DeviceView<double **> value;     // (points, facet nodes)                    in
-  DeviceView<double *> measure;    // (facets * points)           [m^(dim-1)]  in
+  DeviceView<double *> measure;    // (facets * points)           [m^(dim-1)]  in, axisymmetric: m^2
+  DeviceView<double *> size;       // (facets)                           [m]  in
   DeviceView<double ***> traction; // (facets, points, dim), recovered   [Pa]  in
   DeviceView<double ***> applied;  // (facets, points, dim)              [Pa]  in
   DeviceView<int *> block;         // (cells)                                  in
@@ -112,11 +115,9 @@ struct ContactTerms {
   {
     if (cell(f) >= num_owned_cells) return;
     const int dim = static_cast<int>(traction.extent(2)), points = static_cast<int>(value.extent(0));
-    double size = 0;
-    for (int q = 0; q < points; ++q) size += measure(f * points + q);
     const int of = block(cell(f));
     // Stresses that balance r and fall to 0 over the depth h have the energy h/3 r^2 / (lambda + 2 mu).
-    const double compliance = (dim == 2 ? size : math::sqrt(size)) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
+    const double compliance = size(f) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
     const FacetState state = state_of(f);
     double out_of_balance = 0, product = 0;
     for (int q = 0; q < points; ++q) {
@@ -201,9 +202,8 @@ struct NodalPressures {
   {
     if (terms.cell(f) >= terms.num_owned_cells || !(highest > 0)) return;
     const int nodes = static_cast<int>(terms.facets.extent(1)), points = static_cast<int>(terms.value.extent(0));
-    double size = 0;
-    for (int q = 0; q < points; ++q) size += terms.measure(f * points + q);
-    const double length = terms.traction.extent(2) == 2 ? size : math::sqrt(size);
+    double area = 0;
+    for (int q = 0; q < points; ++q) area += terms.measure(f * points + q);
     const int block = terms.block(terms.cell(f));
     const double modulus = terms.lame(block, 0) + 2 * terms.lame(block, 1);
     double most = at(f, 0, pressure), least = most;
@@ -214,11 +214,12 @@ struct NodalPressures {
       for (int b = 0; b < nodes; ++b) {
         const double other = at(f, b, pressure), other_xi = at(f, b, yield);
         if (p >= xi && other < other_xi && other_xi > highest && other_xi > (1 + jump) * xi) yield_jumps += 1;
-        if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) * modulus > highest * length) gap_jumps += 1;
+        if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) * modulus > highest * terms.size(f))
+          gap_jumps += 1;
       }
     }
     if (most >= near_peak * highest) drop = math::fmax(drop, (most - least) / highest);
-    if (most > 0 && !(least > 0)) ends += size / 2;
+    if (most > 0 && !(least > 0)) ends += area / 2;
   }
 };
 
@@ -269,6 +270,7 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
                              side.cell,
                              d.reference.facet.value,
                              fem::facet_measure(d, side),
+                             fem::facet_size(d, side),
                              recovered.tractions(side),
                              fem::tractions_on(d, side, loads),
                              mesh.block,

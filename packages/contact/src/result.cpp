@@ -13,7 +13,7 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
                        const LO end, const DeviceView<double *> &p)
 {
   Vector value(d.mesh->owned_nodes), known(d.mesh->owned_nodes);
-  known.putScalar(1); // a node of the side that is no point has no pressure
+  known.putScalar(1); // a node of the side from which the normal misses the obstacle has no pressure
   const Kokkos::RangePolicy<ExecutionSpace, LO> points(begin, end);
   {
     const auto to = device_write(value);
@@ -140,6 +140,7 @@ ContactResult contact_result(const fem::Discretization &d, const std::vector<con
   fill_fields(c, u, result);
   for (int k = 0; k < c.num_sides(); ++k) {
     result.sides.push_back(sums_of(d.mesh->comm(), c, result, c.first(k), c.first(k + 1)));
+    if (d.axisymmetric()) result.sides.back().force[0] = 0; // around the axis radial forces cancel
     result.total += result.sides.back();
   }
   return result;

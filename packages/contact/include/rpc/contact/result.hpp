@@ -10,13 +10,14 @@ namespace rpc::contact
 
 /// Sums and maxima over a contact side, or all of them, on all ranks.
 struct ContactSums {
-  GO num_nodes = 0;                   ///< that have a weight
-  std::array<double, 3> force{};      ///< of the foundation on the body, sum of -w p normal [N], in 2D per m
+  GO num_nodes = 0; ///< that have a weight
+  std::array<double, 3>
+      force{}; ///< of the foundation on the body, sum of -w p normal [N], in the plane per m; of an axisymmetric body along its axis
   double max_pressure = 0;            ///< [Pa]
   double max_penetration = 0;         ///< largest u_nu - g where > 0 [m]
   double max_initial_penetration = 0; ///< largest -g where > 0 [m]
-  double contact_length = 0;          ///< sum of weights with p > 0 [m^(dim-1)]
-  double yielded_length = 0;          ///< sum of weights with p = xi [m^(dim-1)]
+  double contact_length = 0;          ///< sum of weights with p > 0 [m^(dim-1), axisymmetric: m^2]
+  double yielded_length = 0;          ///< sum of weights with p = xi [m^(dim-1), axisymmetric: m^2]
 
   ContactSums &operator+=(const ContactSums &other);
 };
