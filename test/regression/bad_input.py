@@ -54,6 +54,10 @@ ASSIGNMENTS = [
     (["Material->Young's Modulus=-1"], ['"Material->Young\'s Modulus" must be > 0', "got -1"]),
     (["Material->Poisson's Ratio=0.5"], ['"Material->Poisson\'s Ratio" must be in (-1, 0.5)', "got 0.5"]),
     (["Material->Poisson's Ratio=-1"], ['"Material->Poisson\'s Ratio" must be in (-1, 0.5)', "got -1"]),
+    # kinematics
+    (["Kinematics=plane"], ['"Kinematics" must be plane strain, plane stress or axisymmetric', '"plane"']),
+    (["Kinematics=axisymmetric", "Mesh->Lower={0,0,0}", "Mesh->Upper={5,1,1}", "Mesh->Cells={4,4,4}"],
+     ['"Kinematics" = axisymmetric is for plane meshes', "Remove it"]),
     # fields
     (["Contact->Yield Stress=0"], ['"Contact->Yield Stress" must be > 0 [Pa]', "got 0"]),
     (["Contact->Yield Stress=-inf"], ['"Contact->Yield Stress" must be > 0 [Pa]', "got -inf"]),
@@ -103,6 +107,9 @@ ASSIGNMENTS = [
 
 # The same, where the ranks have to agree on what is wrong.
 COLLECTIVE_ASSIGNMENTS = [
+    (["Kinematics=plane stress", "Material->Dilatation=projected"],
+     ['"Material->Dilatation" = projected', "plane stress", "Take auto or full"]),
+    (["Kinematics=axisymmetric", "Dirichlet->left->X=1"], ['"Dirichlet->left->X" must be 0 on the axis', "got 1", "(0, "]),
     (["Mesh->Lower={0,0,0}", "Mesh->Upper={5,1,1}", "Mesh->Cells={880,880,880}"],
      ['"Mesh->Cells" give a rank', "nodes, which take at least", "GiB", "Use fewer cells"]),
     (["Contact->Side=" + "n" * 10000], ['"Contact->Side" names the side "nnn', "nnn [...] nnn", "left, right, bottom, top"]),
@@ -254,6 +261,10 @@ class BadInput(RpcTestCase):
                                ["1 x 1 cells cannot be divided among", "Use fewer ranks or more cells"])])
 
     @unittest.skipIf(RANKS > 1, "needs one rank: every rank reads the deck")
+    def test_nodes_beyond_the_axis_are_a_bad_mesh(self):
+        self.expect_refusals([("axis", ["--input=beam.xml", SMALL, "--set=Kinematics=axisymmetric", "--set=Mesh->Lower={-1,0}",
+                                        "--output=out"], BAD_MESH, ["node at (-1, ", "beyond the axis", "x >= 0"])])
+
     def test_truncated_deck_is_never_an_internal_error(self):
         whole = BEAM.read_bytes()
         jobs = []
