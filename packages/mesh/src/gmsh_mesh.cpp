@@ -76,7 +76,7 @@ std::string remedy_for_type(const int number)
   const GmshType *const type = gmsh_type(number);
   const std::string shape = type ? type->shape : "";
   if (shape == "Prism" || shape == "Pyramid")
-    return "; recombine all surfaces of the volume (hexahedra), or none (tetrahedra)";
+    return "; without Recombine there are tetrahedra, and with Mesh.SubdivisionAlgorithm = 2 besides hexahedra";
   constexpr int quadrilateral_8 = 16, hexahedron_20 = 17;
   if (number == quadrilateral_8 || number == hexahedron_20) return "; mesh with Mesh.SecondOrderIncomplete = 0";
   return "";

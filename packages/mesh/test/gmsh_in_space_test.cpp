@@ -117,6 +117,14 @@ TEST(GmshInSpace, DimensionIsKnownBeforeTheMesh)
   expect_error(ExitCode::bad_mesh, "syntax error", [] { dimension_of("Point("); });
 }
 
+TEST(GmshInSpace, TetrahedraAreDividedIntoHexahedra)
+{
+  const MeshData mesh = read_geo(tetrahedra + "Mesh.SubdivisionAlgorithm = 2;\n");
+  EXPECT_EQ(mesh.element.name(), "Q2");
+  EXPECT_NEAR(volume(mesh), 6, 1e-13);
+  EXPECT_NEAR(volume_within_sides(mesh), 6, 1e-13);
+}
+
 TEST(GmshInSpace, CoarserMeshesHaveFewerCells)
 {
   const auto coarse = rpc::mesh::coarser(GmshOptions{octant, .3, 2}, 2);
@@ -141,7 +149,7 @@ TEST(GmshInSpace, RefusalsNameFileRuleAndRemedy)
   refused(solid + volume_named + "Physical Surface(7) = {1};\n",
           {"physical surface 7", "Physical Surface(\"contact\", 7)"});
   refused(box("out[] = Extrude {0, 0, 3} { Surface{1}; Layers{2}; Recombine; };\n") + volume_named,
-          {"\"Prism 18\"", "recombine all surfaces of the volume (hexahedra), or none (tetrahedra)"});
+          {"\"Prism 18\"", "without Recombine there are tetrahedra", "Mesh.SubdivisionAlgorithm = 2"});
   refused(solid + volume_named +
               "more[] = Extrude {0, 0, 1} { Surface{out[0]}; };\n"
               "Physical Volume(\"cap\") = {more[1]}; Physical Surface(\"between\") = {out[0]};\n",
