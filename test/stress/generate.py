@@ -473,10 +473,13 @@ def dim3_scene(rng):
         holders = rng.choice([{"left": dict.fromkeys("XYZ", ZERO)}, {"left": dict.fromkeys("XYZ", ZERO), "right": dict.fromkeys("XYZ", ZERO)},
                               {"left": {"X": ZERO}, "back": {"Z": ZERO}, "right": {"Y": ZERO}}])
     field = f.Constant(q / solid["E"] * log_uniform(rng, -2, 0)) if rng.random() < 0.3 else ZERO
-    return Scene(mesh={"Type": "box", "Cells": number, "Element": "Q1"}, lengths={"Lower": (0.0,) * 3, "Upper": tuple(size)}, dim=3,
+    element = rng.choice(ELEMENTS)
+    order = int(element[1])
+    number = tuple(max(2, (n + order - 1) // order) for n in number)
+    return Scene(mesh={"Type": "box", "Cells": number, "Element": element}, lengths={"Lower": (0.0,) * 3, "Upper": tuple(size)}, dim=3,
                  contact=[ContactSide("bottom", xi, field)], material=solid, dirichlet=holders, traction={"top": [ZERO, load, ZERO]},
                  body_force=[0.0, weight, 0.0] if weight else None, expect=expect,
-                 applied=[0.0, -total, 0.0] if uniform else None, cell=min(s / n for s, n in zip(size, number)))
+                 applied=[0.0, -total, 0.0] if uniform else None, cell=min(s / n for s, n in zip(size, number)) / order)
 
 
 def no_solution_scene(rng):

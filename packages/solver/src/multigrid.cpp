@@ -246,6 +246,8 @@ RCP<CoarseSolver> coarse_solver(const CrsMatrix &A, const Teuchos::ParameterList
 {
   if (A.getComm()->getSize() == 1 || list.isParameter("coarse: type")) return Teuchos::null;
   if (!muelu::has_repartitioning) return rcp(new GatheredSolver);
+  if (list.isType<std::string>("verbosity")) // what MueLu does only later, when it sets up the hierarchy
+    MueLu::VerboseObject::SetDefaultVerbLevel(MueLu::toVerbLevel(list.get<std::string>("verbosity")));
   return rcp(new GuardedSolver(MueLu::DirectSolver<double, LO, GO, Node>().Copy()));
 }
 
