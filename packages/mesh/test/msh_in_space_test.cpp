@@ -2,11 +2,11 @@
 
 #include "expect_error.hpp"
 #include "measures.hpp"
+#include "msh_text.hpp"
 #include "rpc/core/tpetra.hpp"
 #include "rpc/mesh/gmsh.hpp"
 #include "rpc/mesh/make_mesh.hpp"
 #include "same_mesh.hpp"
-#include "scratch_file.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <cmath>
@@ -23,54 +23,19 @@ using rpc::ExitCode;
 using rpc::mesh::MeshData;
 using rpc::mesh::read_gmsh;
 using rpc::test::expect_error;
+using rpc::test::expect_refused;
 using rpc::test::expect_same_mesh;
 using rpc::test::integrals;
+using rpc::test::path_of_data;
+using rpc::test::read_data;
+using rpc::test::read_text;
 using rpc::test::ScratchFile;
 using rpc::test::volume;
 using rpc::test::volume_within_sides;
 
-std::string path_of_data(const std::string &name)
-{
-  return std::string(RPC_TEST_DATA_DIR) + "/" + name;
-}
-
-MeshData read_data(const std::string &name)
-{
-  return read_gmsh({path_of_data(name), 1, 0});
-}
-
-MeshData read_text(const std::string &text)
-{
-  const ScratchFile file("mesh.msh", text);
-  return read_gmsh({file.path(), 1, 0});
-}
-
-void expect_refused(const std::string &text, const std::initializer_list<std::string> &parts)
-{
-  expect_error(ExitCode::bad_mesh, "mesh.msh\": ", [&] { read_text(text); });
-  expect_error(ExitCode::bad_mesh, parts, [&] { read_text(text); });
-}
-
 using Point = std::array<double, 3>;
 
-/// A .msh 2.2 of what a test changes: each list is one of lines, without the counts.
-struct Msh {
-  std::vector<std::string> names, nodes, elements;
-
-  std::string text() const
-  {
-    std::string all = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-    const auto add = [&](const std::string &section, const std::vector<std::string> &lines) {
-      all += "$" + section + "\n" + std::to_string(lines.size()) + "\n";
-      for (const auto &line : lines) all += line + "\n";
-      all += "$End" + section + "\n";
-    };
-    add("PhysicalNames", names);
-    add("Nodes", nodes);
-    add("Elements", elements);
-    return all;
-  }
-};
+using Msh = rpc::test::MshText;
 
 /// Two tetrahedra with the face 2, 3, 4 in common: cell 11 of "lower" with a facet in "bottom", cell 12 of "upper".
 Msh tetrahedra()

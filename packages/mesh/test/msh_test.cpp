@@ -1,6 +1,7 @@
 // Reading .msh files: needs no gmsh.
 
 #include "expect_error.hpp"
+#include "msh_text.hpp"
 #include "rpc/mesh/gmsh.hpp"
 #include "same_mesh.hpp"
 #include "scratch_file.hpp"
@@ -18,50 +19,25 @@ using rpc::mesh::GmshOptions;
 using rpc::mesh::MeshData;
 using rpc::mesh::read_gmsh;
 using rpc::test::expect_error;
+using rpc::test::expect_refused;
 using rpc::test::expect_same_mesh;
+using rpc::test::read_data;
+using rpc::test::read_text;
 using rpc::test::ScratchFile;
-
-MeshData read_data(const std::string &name)
-{
-  return read_gmsh({std::string(RPC_TEST_DATA_DIR) + "/" + name, 1, 0});
-}
 
 std::string text_of_data(const std::string &name)
 {
-  std::ifstream file(std::string(RPC_TEST_DATA_DIR) + "/" + name, std::ios::binary);
+  std::ifstream file(rpc::test::path_of_data(name), std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-MeshData read_text(const std::string &text)
-{
-  const ScratchFile file("mesh.msh", text);
-  return read_gmsh({file.path(), 1, 0});
-}
-
-void expect_refused(const std::string &text, const std::initializer_list<std::string> &parts)
-{
-  expect_error(ExitCode::bad_mesh, "mesh.msh\": ", [&] { read_text(text); });
-  expect_error(ExitCode::bad_mesh, parts, [&] { read_text(text); });
-}
-
-/// A .msh 2.2 from its parts, with the counts that go with them.
-struct Msh {
-  std::vector<std::string> names = {"1 1 \"left\"", "1 2 \"right\"", "2 3 \"steel\"", "2 4 \"rubber\""};
-  std::vector<std::string> nodes = {"1 0 0 0", "2 1 0 0", "3 2 0 0", "4 0 1 0", "5 1 1 0", "6 2 1 0"};
-  std::vector<std::string> elements = {"1 1 2 1 0 1 4", "2 1 2 2 0 3 6", "3 3 2 3 0 1 2 5 4", "4 3 2 4 0 2 3 6 5"};
-
-  std::string text() const
+/// Two blocks of one square each, side by side.
+struct Msh : rpc::test::MshText {
+  Msh()
+      : MshText{{"1 1 \"left\"", "1 2 \"right\"", "2 3 \"steel\"", "2 4 \"rubber\""},
+                {"1 0 0 0", "2 1 0 0", "3 2 0 0", "4 0 1 0", "5 1 1 0", "6 2 1 0"},
+                {"1 1 2 1 0 1 4", "2 1 2 2 0 3 6", "3 3 2 3 0 1 2 5 4", "4 3 2 4 0 2 3 6 5"}}
   {
-    std::string all = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-    const auto add = [&](const std::string &section, const std::vector<std::string> &lines) {
-      all += "$" + section + "\n" + std::to_string(lines.size()) + "\n";
-      for (const auto &line : lines) all += line + "\n";
-      all += "$End" + section + "\n";
-    };
-    add("PhysicalNames", names);
-    add("Nodes", nodes);
-    add("Elements", elements);
-    return all;
   }
 };
 

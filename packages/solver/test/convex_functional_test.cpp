@@ -133,19 +133,27 @@ public:
   }
 };
 
+/// @param u  the start, and where it ends
+solver::MinimizeResult minimized(Chain &chain, const RCP<Vector> &u, const double scale,
+                                 const solver::NewtonReport &report)
+{
+  const auto map = u->getMap();
+  const auto place = rcp(new MultiVector(map, 1)), constant = rcp(new MultiVector(map, 1));
+  for (LO i = 0; i < num_local(*map); ++i) place->replaceLocalValue(i, 0, double(map->getGlobalElement(i)));
+  constant->putScalar(1);
+  solver::LinearSolver linear({}, chain.hessian(), place, constant);
+  return solver::minimize(chain, linear, u, scale, {}, nullptr, report);
+}
+
 TEST(ConvexFunctional, ThatHasNothingToDoWithContactIsMinimized)
 {
   for (const int n : {40, 3000}) { // factored, and by multigrid
     Chain chain(n);
     const auto map = chain.hessian()->getDomainMap();
-    const auto place = rcp(new MultiVector(map, 1)), constant = rcp(new MultiVector(map, 1));
-    for (LO i = 0; i < num_local(*map); ++i) place->replaceLocalValue(i, 0, double(map->getGlobalElement(i)));
-    constant->putScalar(1);
-    solver::LinearSolver linear({}, chain.hessian(), place, constant);
     const auto u = rcp(new Vector(map));
     std::vector<double> values;
     const auto record = [&](const solver::NewtonStep &, const Vector &at) { values.push_back(chain.value(at)); };
-    const auto result = solver::minimize(chain, linear, u, push * std::sqrt(n), {}, nullptr, record);
+    const auto result = minimized(chain, u, push * std::sqrt(n), record);
     EXPECT_TRUE(result.converged) << result.reason;
     EXPECT_GE(result.steps, 2);
     EXPECT_TRUE(std::is_sorted(values.rbegin(), values.rend())) << "the functional falls";
@@ -194,13 +202,8 @@ TEST(ConvexFunctional, IsMinimizedThoughItsSweepsLeadBackBeforeKinks)
   // Three unknowns in the middle meet the wall. With a sweep before each direction, each step would end at once at the wall.
   ReopenedChain chain(9, 1e9);
   const auto map = chain.hessian()->getDomainMap();
-  const auto place = rcp(new MultiVector(map, 1)), constant = rcp(new MultiVector(map, 1));
-  for (LO i = 0; i < num_local(*map); ++i) place->replaceLocalValue(i, 0, double(map->getGlobalElement(i)));
-  constant->putScalar(1);
-  solver::LinearSolver linear({}, chain.hessian(), place, constant);
   const auto u = rcp(new Vector(map));
-  const auto result =
-      solver::minimize(chain, linear, u, push, {}, nullptr, [](const solver::NewtonStep &, const Vector &) {});
+  const auto result = minimized(chain, u, push, [](const solver::NewtonStep &, const Vector &) {});
   EXPECT_TRUE(result.converged) << result.reason;
   EXPECT_LE(result.steps, 20);
   Vector F(map);
