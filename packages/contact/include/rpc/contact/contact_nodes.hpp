@@ -42,8 +42,9 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
 /// The nodes of the contact sides that this rank owns, each a point with a weight; side by side, so that a node of two
 /// sides is two points. doc/theory.md (2.7), (3.4)
 ///
-/// A node from which the side's normal misses the obstacle never touches: it is no point. A node without weight, a vertex of
-/// quadratic triangles, takes no part in the solution: its direction is 0, and its pressure follows from its neighbours'.
+/// A node from which the side's normal misses the obstacle never touches: it is no point. A node without weight (a vertex of
+/// quadratic triangles; with order 2 a node on the axis of an axisymmetric body) takes no part in the solution: its direction is
+/// 0, and its pressure follows from its neighbours'.
 ///
 /// v_i = direction_i . u_i - free_gap_i is the penetration of node i, where `direction` is the normal without its
 /// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether
