@@ -294,6 +294,21 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
   return options;
 }
 
+std::optional<BoxOptions> halved(const BoxOptions &options)
+{
+  constexpr double stretched = 1.7;
+  const auto length = [&options](const int d) { return (options.upper[d] - options.lower[d]) / options.cells[d]; };
+  double shortest = std::numeric_limits<double>::infinity(); // of those that can be made longer
+  for (int d = 0; d < options.element.dim; ++d)
+    if (options.cells[d] > 1) shortest = std::min(shortest, length(d));
+  if (!std::isfinite(shortest)) return std::nullopt;
+  BoxOptions coarse = options;
+  coarse.element.order = 1;
+  for (int d = 0; d < options.element.dim; ++d)
+    if (options.cells[d] > 1 && length(d) <= stretched * shortest) coarse.cells[d] = (options.cells[d] + 1) / 2;
+  return coarse;
+}
+
 Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
 {
   const std::size_t dim = options.element.dim;
@@ -336,6 +351,7 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
 
   Mesh mesh;
   mesh.element = options.element;
+  mesh.box = std::make_shared<const BoxOptions>(options);
   const GO total = grid.node_offset(comm->getSize());
   const GO invalid = Teuchos::OrdinalTraits<GO>::invalid();
   mesh.owned_nodes = rcp(new Map(total, num_owned, 0, comm));

@@ -495,6 +495,39 @@ TEST(Box, MoreRanksThanTheCellsCanServeIsABadMeshOnEveryRank)
   });
 }
 
+TEST(HalvedBox, HasHalfTheCellsRoundedUpInEachDirection)
+{
+  const auto coarse = rpc::mesh::halved({{0, 0, 0}, {6, 4, 2}, {15, 10, 5}, Element{3, 2, Shape::simplex}});
+  ASSERT_TRUE(coarse);
+  EXPECT_EQ(coarse->cells, (std::vector<int>{8, 5, 3}));
+  EXPECT_TRUE(coarse->element == (Element{3, 1, Shape::simplex}));
+  EXPECT_EQ(coarse->upper, (std::vector<double>{6, 4, 2}));
+}
+
+TEST(HalvedBox, StretchedCellsBecomeSquareFirst)
+{
+  BoxOptions box{{0, 0}, {8, 1}, {8, 64}, Element{2, 1}}; // cells of 1 x 1/64
+  for (const int across : {32, 16, 8, 4}) {
+    box = *rpc::mesh::halved(box);
+    EXPECT_EQ(box.cells, (std::vector<int>{8, across}));
+  }
+  box.cells = {8, 1};
+  box = *rpc::mesh::halved(box);
+  EXPECT_EQ(box.cells, (std::vector<int>{4, 1})) << "a direction of one cell stays";
+}
+
+TEST(HalvedBox, IsNoneOfOneCell)
+{
+  EXPECT_FALSE(rpc::mesh::halved({{0, 0}, {1, 2}, {1, 1}, Element{2, 1}}));
+}
+
+TEST(Box, TheMeshKnowsIt)
+{
+  const Made made({{1, 2}, {4, 3}, {8, 4}, Element{2, 1}});
+  ASSERT_TRUE(made.mesh.box);
+  EXPECT_EQ(made.mesh.box->cells, (std::vector<int>{8, 4}));
+}
+
 TEST(Diameter, IsTheDiagonalWhereverTheBoxLies)
 {
   for (const double shift : {0., 100., -100.}) {

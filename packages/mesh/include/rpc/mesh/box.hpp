@@ -3,6 +3,7 @@
 #include "rpc/mesh/mesh.hpp"
 
 #include <Teuchos_ParameterList.hpp>
+#include <optional>
 #include <vector>
 
 namespace rpc::mesh
@@ -21,6 +22,11 @@ void add_box_parameters(Teuchos::ParameterList &valid);
 
 /// @throws rpc::Error (bad_input) on anything out of range
 BoxOptions box_options(const Teuchos::ParameterList &list);
+
+/// The next coarser box for multigrid: of order 1, with half as many cells, rounded up, in the directions in which cells are
+/// shortest; those in which they are more than 1.7 times as long keep theirs, so that stretched cells become square ones first.
+/// Sides and places of the body are the same. None where no direction can be halved.
+std::optional<BoxOptions> halved(const BoxOptions &options);
 
 /// Makes this rank's part of a box; no communication of mesh data, and no rank holds the whole.
 ///

@@ -3,11 +3,14 @@
 #include "rpc/core/tpetra.hpp"
 #include "rpc/mesh/element.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace rpc::mesh
 {
+
+struct BoxOptions;
 
 /// A named part of the boundary: those of its facets that touch a node which this rank owns, or belong to a cell which
 /// it owns. Over all ranks each facet has an owned cell once.
@@ -35,8 +38,9 @@ struct Mesh {
   HostView<GO *> node_id;       ///< (owned nodes)
   HostView<GO *> cell_id;       ///< (owned cells); over the whole mesh they run block by block
   LO num_owned_cells = 0;
-  std::vector<std::string> blocks; ///< names of the parts of the body, the same on all ranks
-  std::vector<Side> sides;         ///< the same on all ranks, though a rank may have no facets of one
+  std::vector<std::string> blocks;       ///< names of the parts of the body, the same on all ranks
+  std::vector<Side> sides;               ///< the same on all ranks, though a rank may have no facets of one
+  std::shared_ptr<const BoxOptions> box; ///< of which the mesh was made; null if it is no evenly divided box
 
   int dim() const { return element.dim; }
   LO num_owned_nodes() const { return num_local(*owned_nodes); }
