@@ -31,6 +31,7 @@ std::shared_ptr<const mesh::Mesh> mapped(const mesh::BoxOptions &box, const Map 
     for (int c = 0; c < 2; ++c) coords(n, c) = x[c];
   }
   Kokkos::deep_copy(mesh->coords, coords);
+  mesh->box = nullptr;
   return mesh;
 }
 

@@ -65,6 +65,7 @@ mesh::Mesh box_mesh(const Scene &scene, const bool distorts)
     for (int c = 0; c < 3; ++c) coords(n, c) = moved[c];
   }
   Kokkos::deep_copy(mesh.coords, coords);
+  mesh.box = nullptr;
   return mesh;
 }
 
