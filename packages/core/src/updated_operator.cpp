@@ -149,6 +149,48 @@ void multiply_rows(const NodePoints &p, const DeviceView<LO *> &lead, const Devi
   Kokkos::fence();
 }
 
+/// (points) The points' nodes, each once.
+DeviceView<LO *> nodes_of_leads(const NodePoints &p, const DeviceView<LO *> &lead)
+{
+  const DeviceView<LO *> node("rpc::operator::changing_nodes", p.size());
+  Kokkos::parallel_for(
+      "rpc::operator::changing_nodes", device_range(p.size()),
+      KOKKOS_LAMBDA(const LO i) { node(i) = lead(i) == i ? p.node(i) : -1; });
+  Kokkos::fence();
+  return node;
+}
+
+/// Copies the points' blocks to where their nodes' are.
+void scatter_blocks(const DeviceView<LO *> &node, const DeviceView<double ***> &from, const DeviceView<double ***> &to)
+{
+  const int dim = static_cast<int>(from.extent(1));
+  Kokkos::parallel_for(
+      "rpc::operator::scatter_blocks", device_range(static_cast<LO>(node.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        if (node(i) < 0) return;
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) to(node(i), k, l) = from(i, k, l);
+      });
+  Kokkos::fence();
+}
+
+/// y at the points' nodes += (block - base) x.
+void add_update(const NodePoints &p, const DeviceView<LO *> &lead, const DeviceView<double ***> &block,
+                const DeviceView<double ***> &base, const Vector &x, Vector &y)
+{
+  const auto from = device_read(x); // an owned node's columns have its rows' lids
+  const auto to = device_write(y);
+  Kokkos::parallel_for(
+      "rpc::operator::add_update", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
+        if (lead(i) != i) return;
+        for (int k = 0; k < p.dim; ++k) {
+          double sum = 0;
+          for (int l = 0; l < p.dim; ++l) sum += (block(i, k, l) - base(i, k, l)) * from(p.dof(i, l));
+          to(p.dof(i, k)) += sum;
+        }
+      });
+  Kokkos::fence();
+}
+
 /// Takes over what is to be added. @return number of points where it changed, on this rank
 LO take_over(const DeviceView<double *> &from, const DeviceView<double *> &to)
 {
@@ -218,9 +260,25 @@ void list_changes(const NodePoints &p, const DeviceView<double *> &rest, const U
 
 } // namespace
 
+void read_node_blocks(const CrsMatrix &A, const int dim, const DeviceView<double ***> &block)
+{
+  const auto matrix = A.getLocalMatrixDevice();
+  Kokkos::parallel_for(
+      "rpc::operator::read_blocks", device_range(static_cast<LO>(block.extent(0))), KOKKOS_LAMBDA(const LO node) {
+        for (int k = 0; k < dim; ++k) {
+          const LO row = dof(dim, node, k);
+          std::size_t at = matrix.graph.row_map(row);
+          while (matrix.graph.entries(at) != dof(dim, node, 0)) ++at;
+          for (int l = 0; l < dim; ++l) block(node, k, l) = matrix.values(at + l);
+        }
+      });
+  Kokkos::fence();
+}
+
 UpdatedOperator::UpdatedOperator(RCP<CrsMatrix> K, const NodePoints &points)
-    : matrix_(std::move(K)), points_(points), added_("rpc::operator::added", points.size()),
-      written_("rpc::operator::written", points.size()), entry_("rpc::operator::entry", points.size(), points.dim),
+    : matrix_(std::move(K)), rows_(RepeatedRows::of(matrix_, points.dim)), points_(points),
+      added_("rpc::operator::added", points.size()), written_("rpc::operator::written", points.size()),
+      entry_("rpc::operator::entry", points.size(), points.dim),
       base_blocks_("rpc::operator::base_blocks", points.size(), points.dim, points.dim),
       blocks_("rpc::operator::blocks", points.size(), points.dim, points.dim)
 {
@@ -240,15 +298,22 @@ void UpdatedOperator::apply_with(const DeviceView<double ***> &blocks, const Mul
     imported->doImport(x, *importer, Tpetra::INSERT);
     columns = imported;
   }
-  matrix_->localApply(*columns, y);
-  for (std::size_t v = 0; v < x.getNumVectors(); ++v)
-    multiply_rows(points_, lead_, entry_, blocks, *matrix_, *columns->getVector(v), *y.getVectorNonConst(v));
+  if (!rows_) matrix_->localApply(*columns, y);
+  for (std::size_t v = 0; v < x.getNumVectors(); ++v) {
+    const auto from = columns->getVector(v);
+    const auto to = y.getVectorNonConst(v);
+    if (rows_) rows_->apply(*from, *to);
+    if (rows_ && !is_written_)
+      add_update(points_, lead_, blocks, base_blocks_, *from, *to);
+    else
+      multiply_rows(points_, lead_, entry_, blocks, *matrix_, *from, *to);
+  }
 }
 
 void UpdatedOperator::apply(const MultiVector &x, MultiVector &y, const Teuchos::ETransp, const double alpha,
                             const double beta) const
 {
-  if (!has_changes_) { // the matrix is H
+  if (!has_changes_ && !rows_) { // the matrix is H
     matrix_->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
   } else if (alpha == 1 && beta == 0) {
     apply_with(blocks_, x, y);
@@ -261,7 +326,7 @@ void UpdatedOperator::apply(const MultiVector &x, MultiVector &y, const Teuchos:
 
 void UpdatedOperator::apply_base(const Vector &u, Vector &Ku) const
 {
-  if (is_written_)
+  if (is_written_ || rows_)
     apply_with(base_blocks_, u, Ku);
   else
     matrix_->apply(u, Ku);
@@ -285,6 +350,21 @@ void UpdatedOperator::write(const double most)
   const DeviceView<double ***> blocks("rpc::operator::written_blocks", points_.size(), points_.dim, points_.dim);
   update_blocks(points_, lead_, written_, base_blocks_, blocks);
   write_blocks(points_, lead_, entry_, blocks, *matrix_);
+}
+
+DeviceView<LO *> UpdatedOperator::changing_nodes() const
+{
+  return nodes_of_leads(points_, lead_);
+}
+
+DeviceView<double ***> UpdatedOperator::base_blocks() const
+{
+  const int dim = points_.dim;
+  const DeviceView<double ***> block(Kokkos::ViewAllocateWithoutInitializing("rpc::operator::all_base_blocks"),
+                                     num_local(*matrix_->getRowMap()) / dim, dim, dim);
+  read_node_blocks(*matrix_, dim, block);
+  scatter_blocks(changing_nodes(), base_blocks_, block);
+  return block;
 }
 
 UpdatedOperator::Changes UpdatedOperator::changes() const

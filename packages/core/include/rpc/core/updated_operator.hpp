@@ -1,12 +1,18 @@
 #pragma once
 
 #include "rpc/core/node_points.hpp"
+#include "rpc/core/repeated_rows.hpp"
 #include "rpc/core/tpetra.hpp"
 
 #include <limits>
+#include <optional>
 
 namespace rpc
 {
+
+/// block <- the diagonal blocks of the nodes of a matrix, in which an owned node's first column has its first row's lid.
+/// @param block  (owned nodes, dim, dim)
+void read_node_blocks(const CrsMatrix &A, int dim, const DeviceView<double ***> &block);
 
 /// A symmetric positive definite operator with an update of rank one at each of some points, which changes often:
 ///
@@ -43,6 +49,15 @@ public:
   /// Grows with each change of H.
   int revision() const { return revision_; }
   int dofs_per_node() const { return points_.dim; }
+  const NodePoints &points() const { return points_; }
+  /// (points) as they were last set.
+  const DeviceView<double *> &added() const { return added_; }
+  /// (owned nodes, dim, dim) The diagonal blocks of K.
+  DeviceView<double ***> base_blocks() const;
+  /// (points) The node whose block a point changes; -1 for a point that is not the first one at its node.
+  DeviceView<LO *> changing_nodes() const;
+  /// (points, dim, dim) The blocks of H at these nodes.
+  const DeviceView<double ***> &changing_blocks() const { return blocks_; }
 
   /// Points whose part of H is not in the matrix: each adds coefficient m m^T to its node's own block. Of this rank.
   struct Changes {
@@ -64,6 +79,7 @@ private:
   void apply_with(const DeviceView<double ***> &blocks, const MultiVector &x, MultiVector &y) const;
 
   RCP<CrsMatrix> matrix_;
+  std::optional<RepeatedRows> rows_; // of K, where they repeat
   NodePoints points_;
   DeviceView<LO *> lead_;                // (points) first point of the same node
   DeviceView<double *> added_, written_; // (points) of H, and of the matrix

@@ -1,0 +1,309 @@
+#include "rpc/core/repeated_rows.hpp"
+
+#include "rpc/core/device_values.hpp"
+#include "rpc/core/dofs.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
+#define RPC_HAS_VECTORS
+#endif
+
+namespace rpc
+{
+namespace
+{
+
+constexpr int most_kinds = 600;
+constexpr double least_part = 0.75; // of the nodes that repeat
+constexpr short unknown = -1;
+
+using LocalMatrix = CrsMatrix::local_matrix_device_type;
+
+/// A block of a row in the list of a kind: four numbers in the plane, column after column; in space three columns of four, the last
+/// of which is 0.
+template <int Dim>
+constexpr int padded = Dim == 2 ? 4 : 12;
+template <int Dim>
+KOKKOS_INLINE_FUNCTION constexpr int place_in_block(const int row, const int column)
+{
+  return Dim == 2 ? 2 * column + row : 4 * column + row;
+}
+
+/// Gives `kind` to the nodes without one whose rows are those of the example.
+struct TakeKind {
+  LocalMatrix A;             // in
+  int dim;                   //
+  LO example;                // node
+  short kind;                //
+  DeviceView<short *> taken; // (owned nodes)  inout
+
+  KOKKOS_FUNCTION bool same(const LO node) const
+  {
+    const LO shift = dof(dim, node - example, 0);
+    for (int k = 0; k < dim; ++k) {
+      const auto of_node = A.graph.row_map(dof(dim, node, k)), of_example = A.graph.row_map(dof(dim, example, k));
+      const auto length = A.graph.row_map(dof(dim, node, k) + 1) - of_node;
+      if (A.graph.row_map(dof(dim, example, k) + 1) - of_example != length) return false;
+      if (k == 0)
+        for (std::size_t e = 0; e < length; e += dim)
+          if (A.graph.entries(of_node + e) - A.graph.entries(of_example + e) != shift) return false;
+      for (std::size_t e = 0; e < length; ++e)
+        if (A.values(of_node + e) != A.values(of_example + e)) return false;
+    }
+    return true;
+  }
+  /// @param took   += 1 if the node took it
+  /// @param first  the first node that is left without
+  KOKKOS_FUNCTION void operator()(const LO node, LO &took, LO &first) const
+  {
+    if (taken(node) != unknown) return;
+    if (same(node)) {
+      taken(node) = kind;
+      ++took;
+    } else if (node < first) {
+      first = node;
+    }
+  }
+};
+
+/// Copies the rows of the kinds' examples.
+template <int Dim>
+struct ListKinds {
+  LocalMatrix A;              // in
+  DeviceView<LO *> example;   // (kinds)       in
+  DeviceView<LO *> begin;     // (kinds + 1)   in
+  DeviceView<LO *> offset;    // (neighbours)  out
+  DeviceView<double *> value; // (neighbours * padded)  out
+
+  KOKKOS_FUNCTION void operator()(const LO kind) const
+  {
+    const LO node = example(kind);
+    for (LO n = begin(kind); n < begin(kind + 1); ++n) {
+      const LO at = Dim * (n - begin(kind));
+      offset(n) = node_of(Dim, A.graph.entries(A.graph.row_map(dof(Dim, node, 0)) + at)) - node;
+      for (int i = 0; i < Dim; ++i)
+        for (int j = 0; j < Dim; ++j)
+          value(padded<Dim> * n + place_in_block<Dim>(i, j)) = A.values(A.graph.row_map(dof(Dim, node, i)) + at + j);
+    }
+  }
+};
+
+/// The rows of one node.
+template <int Dim, class In, class Out>
+struct MultiplyNode {
+  LocalMatrix A;              //                        in
+  DeviceView<short *> kind;   // (owned nodes)          in
+  DeviceView<LO *> begin;     // (kinds + 1)            in
+  DeviceView<LO *> offset;    // (neighbours)           in
+  DeviceView<double *> value; // (neighbours * padded)  in
+  In x;                       // (columns)              in
+  Out y;                      // (rows)                 out
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    const int k = kind(node);
+    double sum[Dim] = {};
+    if (k >= 0) {
+      for (LO n = begin(k); n < begin(k + 1); ++n) {
+        const LO first = dof(Dim, node + offset(n), 0);
+        for (int j = 0; j < Dim; ++j)
+          for (int i = 0; i < Dim; ++i) sum[i] += value(padded<Dim> * n + place_in_block<Dim>(i, j)) * x(first + j);
+      }
+    } else {
+      for (int i = 0; i < Dim; ++i)
+        for (auto e = A.graph.row_map(dof(Dim, node, i)); e < A.graph.row_map(dof(Dim, node, i) + 1); ++e)
+          sum[i] += A.values(e) * x(A.graph.entries(e));
+    }
+    for (int i = 0; i < Dim; ++i) y(dof(Dim, node, i)) = sum[i];
+  }
+};
+
+#ifdef RPC_HAS_VECTORS
+
+using Four = double __attribute__((vector_size(32)));
+
+/// Neighbours of one kind, for the loops below.
+struct Stencil {
+  const LO *offset;
+  const double *value;
+  LO size;
+};
+
+/// The rows of `Count` nodes of one kind that follow each other: they share what is read of the kind.
+template <int Dim, int Count>
+__attribute__((always_inline)) inline void multiply_some(const Stencil &stencil, const double *const x, double *const y)
+{
+  Four sum[Count] = {};
+  for (LO n = 0; n < stencil.size; ++n) {
+    const double *const from = x + Dim * static_cast<std::ptrdiff_t>(stencil.offset[n]);
+    const double *const value = stencil.value + padded<Dim> * static_cast<std::ptrdiff_t>(n);
+    if constexpr (Dim == 2) {
+      Four block;
+      __builtin_memcpy(&block, value, sizeof(block));
+      for (int c = 0; c < Count; ++c) {
+        const double a = from[2 * c], b = from[2 * c + 1];
+        sum[c] += block * Four{a, a, b, b};
+      }
+    } else {
+      Four column[3];
+      __builtin_memcpy(&column, value, sizeof(column));
+      for (int c = 0; c < Count; ++c) {
+        const double a = from[3 * c], b = from[3 * c + 1], d = from[3 * c + 2];
+        sum[c] += column[0] * Four{a, a, a, a};
+        sum[c] += column[1] * Four{b, b, b, b};
+        sum[c] += column[2] * Four{d, d, d, d};
+      }
+    }
+  }
+  for (int c = 0; c < Count; ++c)
+    if constexpr (Dim == 2) {
+      y[2 * c] = sum[c][0] + sum[c][2];
+      y[2 * c + 1] = sum[c][1] + sum[c][3];
+    } else {
+      for (int i = 0; i < 3; ++i) y[3 * c + i] = sum[c][i];
+    }
+}
+
+/// @param x, y  at the first of the nodes
+/// @param count  of nodes
+template <int Dim>
+__attribute__((always_inline)) inline void multiply_run_inline(const Stencil &stencil, const LO count, const double *x,
+                                                               double *y)
+{
+  constexpr int at_once = 4;
+  LO done = 0;
+  for (; done + at_once <= count; done += at_once, x += Dim * at_once, y += Dim * at_once)
+    multiply_some<Dim, at_once>(stencil, x, y);
+  for (; done < count; ++done, x += Dim, y += Dim) multiply_some<Dim, 1>(stencil, x, y);
+}
+
+// The widest vectors that the processor has.
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void
+multiply_run_2d(const Stencil &stencil, const LO count, const double *const x, double *const y)
+{
+  multiply_run_inline<2>(stencil, count, x, y);
+}
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void
+multiply_run_3d(const Stencil &stencil, const LO count, const double *const x, double *const y)
+{
+  multiply_run_inline<3>(stencil, count, x, y);
+}
+
+/// The rows of some nodes that follow each other.
+template <int Dim, class In, class Out>
+struct MultiplyNodes {
+  static constexpr LO nodes_at_once = 512;
+
+  MultiplyNode<Dim, In, Out> one;
+  LO num_nodes;
+
+  void operator()(const LO chunk) const
+  {
+    const LO last = std::min((chunk + 1) * nodes_at_once, num_nodes);
+    LO node = chunk * nodes_at_once;
+    while (node < last) {
+      const short k = one.kind(node);
+      LO end = node + 1;
+      while (end < last && one.kind(end) == k) ++end;
+      if (k < 0) {
+        for (; node < end; ++node) one(node);
+        continue;
+      }
+      const LO begin = one.begin(k);
+      const Stencil stencil{one.offset.data() + begin, one.value.data() + padded<Dim> * static_cast<std::size_t>(begin),
+                            one.begin(k + 1) - begin};
+      const double *const x = one.x.data() + dof(Dim, static_cast<std::ptrdiff_t>(node), 0);
+      double *const y = one.y.data() + dof(Dim, static_cast<std::ptrdiff_t>(node), 0);
+      if constexpr (Dim == 2)
+        multiply_run_2d(stencil, end - node, x, y);
+      else
+        multiply_run_3d(stencil, end - node, x, y);
+      node = end;
+    }
+  }
+};
+
+#endif
+
+template <int Dim, class In, class Out>
+void multiply(const MultiplyNode<Dim, In, Out> &one)
+{
+  const LO num_nodes = static_cast<LO>(one.kind.extent(0));
+#ifdef RPC_HAS_VECTORS
+  using Nodes = MultiplyNodes<Dim, In, Out>;
+  const LO chunks = (num_nodes + Nodes::nodes_at_once - 1) / Nodes::nodes_at_once;
+  Kokkos::parallel_for("rpc::repeated_rows::multiply", device_range(chunks), Nodes{one, num_nodes});
+#else
+  Kokkos::parallel_for("rpc::repeated_rows::multiply", device_range(num_nodes), one);
+#endif
+  Kokkos::fence();
+}
+
+} // namespace
+
+std::optional<RepeatedRows> RepeatedRows::of(RCP<const CrsMatrix> A, const int dim)
+{
+  const LocalMatrix matrix = A->getLocalMatrixDevice();
+  const LO num_nodes = node_of(dim, matrix.numRows());
+  if (num_nodes == 0) return std::nullopt;
+  const DeviceView<short *> kind(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::kind"), num_nodes);
+  Kokkos::deep_copy(kind, unknown);
+  std::vector<LO> examples;
+  LO next = 0, repeated = 0;
+  for (int tried = 0; next < num_nodes && tried < most_kinds; ++tried) {
+    const TakeKind take{matrix, dim, next, static_cast<short>(examples.size()), kind};
+    const LO example = next;
+    LO took = 0;
+    Kokkos::parallel_reduce("rpc::repeated_rows::take_kind", device_range(num_nodes), take, Kokkos::Sum<LO>(took),
+                            Kokkos::Min<LO>(next));
+    if (next < example) break; // a value that is not a number
+    repeated += took - 1; // all but the example
+    examples.push_back(example);
+    if (next >= num_nodes) break;
+    // Few rows of many kinds promise a mesh without order.
+    if (tried > 100 && repeated < least_part * num_nodes) return std::nullopt;
+  }
+  if (repeated < least_part * num_nodes) return std::nullopt;
+  const auto row_map = to_host(matrix.graph.row_map);
+  std::vector<LO> begin{0};
+  for (const LO node : examples)
+    begin.push_back(begin.back() + static_cast<LO>(row_map(dof(dim, node, 0) + 1) - row_map(dof(dim, node, 0))) / dim);
+  RepeatedRows result;
+  result.A_ = std::move(A);
+  result.dim_ = dim;
+  result.kind_ = kind;
+  result.begin_ = device_values(begin, "rpc::repeated_rows::begin");
+  result.offset_ = DeviceView<LO *>("rpc::repeated_rows::offset", begin.back());
+  const auto example = device_values(examples, "rpc::repeated_rows::example");
+  const auto kinds = device_range(static_cast<LO>(examples.size()));
+  if (dim == 2) {
+    result.value_ = DeviceView<double *>("rpc::repeated_rows::value", std::size_t(padded<2>) * begin.back());
+    Kokkos::parallel_for("rpc::repeated_rows::list", kinds,
+                         ListKinds<2>{matrix, example, result.begin_, result.offset_, result.value_});
+  } else {
+    result.value_ = DeviceView<double *>("rpc::repeated_rows::value", std::size_t(padded<3>) * begin.back());
+    Kokkos::parallel_for("rpc::repeated_rows::list", kinds,
+                         ListKinds<3>{matrix, example, result.begin_, result.offset_, result.value_});
+  }
+  Kokkos::fence();
+  return result;
+}
+
+void RepeatedRows::apply(const Vector &x, Vector &y) const
+{
+  const auto from = device_read(x);
+  const auto to = device_write(y);
+  const auto matrix = A_->getLocalMatrixDevice();
+  using In = std::decay_t<decltype(from)>;
+  using Out = std::decay_t<decltype(to)>;
+  if (dim_ == 2)
+    multiply(MultiplyNode<2, In, Out>{matrix, kind_, begin_, offset_, value_, from, to});
+  else
+    multiply(MultiplyNode<3, In, Out>{matrix, kind_, begin_, offset_, value_, from, to});
+}
+
+} // namespace rpc

@@ -1,0 +1,88 @@
+#include "rpc/core/repeated_rows.hpp"
+
+#include "rpc/fem/dirichlet.hpp"
+#include "rpc/fem/elasticity.hpp"
+#include "rpc/mesh/box.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace rpc;
+
+/// K of a box that is held at its left side; its upper half may be shorn off its cells' shape.
+RCP<CrsMatrix> stiffness(const mesh::Element &element, const double shear = 0)
+{
+  const int n = element.order == 1 ? 14 : 8;
+  mesh::BoxOptions box{{0, 0}, {2, 1}, {n, n}, element};
+  if (element.dim == 3) box = {{0, 0, 0}, {2, 1, 1}, {n, n, n}, element};
+  auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+  if (shear > 0) {
+    const auto coords = Kokkos::create_mirror_view(mesh->coords);
+    Kokkos::deep_copy(coords, mesh->coords);
+    for (std::size_t node = 0; node < coords.extent(0); ++node)
+      coords(node, 0) += shear * std::sin(7 * coords(node, 0)) * std::cos(5 * coords(node, 1));
+    Kokkos::deep_copy(mesh->coords, coords);
+    mesh->box = nullptr;
+  }
+  const auto d = fem::discretize(mesh);
+  fem::DirichletCondition held{"left", "left", {ScalarField(0.), ScalarField(0.)}};
+  const auto dirichlet = fem::dirichlet_dofs(d, {held});
+  return fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, fem::Material{100, 0.3}), dirichlet).matrix;
+}
+
+/// |y - A x| / |A x| on this rank, x without order.
+double difference(const RepeatedRows &rows, const CrsMatrix &A)
+{
+  Vector x(A.getColMap()), y(A.getRowMap()), expected(A.getRowMap());
+  for (LO i = 0; i < num_local(*A.getColMap()); ++i)
+    x.replaceLocalValue(i, std::sin(12.9898 * static_cast<double>(A.getColMap()->getGlobalElement(i))));
+  A.localApply(x, expected);
+  y.putScalar(7);
+  rows.apply(x, y);
+  const auto found = y.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto values = expected.getLocalViewHost(Tpetra::Access::ReadOnly);
+  double difference = 0, size = 0; // of this rank: others may have no rows that repeat
+  for (std::size_t i = 0; i < found.extent(0); ++i) {
+    difference += (found(i, 0) - values(i, 0)) * (found(i, 0) - values(i, 0));
+    size += values(i, 0) * values(i, 0);
+  }
+  return std::sqrt(difference / size);
+}
+
+TEST(RepeatedRows, GiveTheProductsOfTheMatrix)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const auto A = stiffness(element);
+    const auto rows = RepeatedRows::of(A, element.dim);
+    // Where a rank's border leaves few rows inside, it may have none.
+    if (A->getComm()->getSize() == 1) {
+      ASSERT_TRUE(rows) << element.name();
+      EXPECT_LT(rows->num_kinds(), element.dim == 2 ? 60 : 600) << element.name();
+    }
+    if (rows) EXPECT_LT(difference(*rows, *A), 1e-14) << element.name() << " in " << element.dim << "D";
+  }
+}
+
+TEST(RepeatedRows, RowsThatAreAloneAreReadFromTheMatrix)
+{
+  const auto A = stiffness({2, 1});
+  {
+    const auto values = A->getLocalMatrixHost().values;
+    for (int k = 0; k < 40; ++k) values(values.extent(0) / 2 + 3 * k) *= 1 + 0.01 * k;
+  }
+  const auto rows = RepeatedRows::of(A, 2);
+  if (A->getComm()->getSize() == 1) ASSERT_TRUE(rows);
+  if (rows) EXPECT_LT(difference(*rows, *A), 1e-14);
+}
+
+TEST(RepeatedRows, AreNoneWhereCellsDiffer)
+{
+  EXPECT_FALSE(RepeatedRows::of(stiffness({2, 1}, 0.02), 2));
+  EXPECT_FALSE(RepeatedRows::of(stiffness({3, 1}, 0.02), 3));
+}
+
+} // namespace
