@@ -51,7 +51,8 @@ void note_skipped(const Task &task, Solution &s)
   skip(contact.num_total > contact.num_fixed && s.uzawa.iterations == 1,
        "multiplier updates: pressures of the chosen states obey the contact law");
   skip(s.linear.local_corrections > 0, "multigrid set-ups: " + std::to_string(s.linear.local_corrections) +
-                                           " changes of states did with solves around the changed nodes");
+                                           " changes of states did with work near the changed nodes");
+  skip(!s.linear.fallback.empty(), "multigrid on coarser meshes, for the algebraic one: " + s.linear.fallback);
   skip(min_all(mesh.comm(), shapes) > 0, "cell matrices: cells are alike, one for each shape is enough");
   skip(!task.adapt.estimate, "error estimate: not asked for");
 }

@@ -1,6 +1,9 @@
 #include "rpc/analysis/problem.hpp"
 
+#include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/core/finite.hpp"
+
+#include <utility>
 
 namespace rpc::analysis
 {
@@ -16,8 +19,7 @@ fem::VectorField seen_at(fem::VectorField field, const double t)
 /// Prolongators of quadratic elements want more smoothing: 32 to 35 instead of 34 to 37 iterations on the beam (P2).
 solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const mesh::Element &element)
 {
-  if (element.order == 2 && !options.muelu.isParameter("sa: damping factor"))
-    options.muelu.set("sa: damping factor", 1.6);
+  if (element.order == 2) options.damping = 1.6;
   return options;
 }
 
@@ -73,8 +75,11 @@ Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, con
   eliminated_ = fem::eliminate_dirichlet(d, K, dirichlet);
   operator_ = rcp(
       new UpdatedOperator(eliminated_.matrix, contact::contact_nodes(d, model_.contact, dirichlet, model_.materials)));
+  solver::MakeMeshLevels levels;
+  if (has_mesh_levels(*d.mesh))
+    levels = [d, model = model_, prescribed = dirichlet.fixed] { return mesh_levels(d, model, prescribed); };
   linear_ = std::make_shared<solver::LinearSolver>(tuned(linear, d.mesh->element), operator_, fem::node_coordinates(d),
-                                                   fem::rigid_body_modes(d));
+                                                   fem::rigid_body_modes(d), std::move(levels));
 }
 
 Step Problem::step(const double t) const

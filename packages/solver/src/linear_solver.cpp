@@ -2,6 +2,7 @@
 
 #include "gathered_solver.hpp"
 #include "local_correction.hpp"
+#include "mesh_multigrid.hpp"
 #include "muelu_parameters.hpp"
 #include "multigrid.hpp"
 #include "rpc/core/error.hpp"
@@ -56,33 +57,36 @@ public:
 
   RCP<const Map> getDomainMap() const override { return map_; }
   RCP<const Map> getRangeMap() const override { return map_; }
-  /// y <- B x, for x that are 0 on the correction's patch; Belos asks for no more.
+  /// y <- B x, for x that are 0 on the correction's patch, if there is one; Belos asks for no more.
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
   {
     constexpr int applications_between = 8; // a sum over all ranks each time
     if (++applications_ % applications_between == 0 && interrupted(*map_->getComm())) throw Interrupted();
-    if (!correction) {
-      multigrid->apply(x, y);
-      return;
-    }
+    if (!correction) return plain(x, y);
     for (std::size_t k = 0; k < x.getNumVectors(); ++k)
       correction->apply_off_patch(*multigrid, *x.getVector(k), *y.getVectorNonConst(k));
   }
   /// The same for any x, to its end.
   void cycle(const MultiVector &x, MultiVector &y) const
   {
-    if (!correction) {
-      multigrid->apply(x, y);
-      return;
-    }
+    if (!correction) return plain(x, y);
     for (std::size_t k = 0; k < x.getNumVectors(); ++k)
       correction->apply(*multigrid, *x.getVector(k), *y.getVectorNonConst(k));
   }
 
-  RCP<Multigrid> multigrid; ///< null: to be made anew
-  std::optional<LocalCorrection> correction;
+  RCP<MeshMultigrid> on_meshes;              ///< null: not used, or to be made
+  RCP<Multigrid> multigrid;                  ///< algebraic; null: not used, or to be made anew
+  std::optional<LocalCorrection> correction; // of the algebraic one
 
 private:
+  void plain(const MultiVector &x, MultiVector &y) const
+  {
+    if (on_meshes.is_null())
+      multigrid->apply(x, y);
+    else
+      on_meshes->apply(x, y);
+  }
+
   RCP<const Map> map_;
   mutable int applications_ = 0;
 };
@@ -122,6 +126,36 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
   return list;
 }
 
+/// MueLu's hierarchy for the order-1 matrix of a mesh that has no coarser one.
+class AlgebraicSolver : public CoarsestSolver
+{
+public:
+  AlgebraicSolver(const MeshLevel &level, Teuchos::ParameterList list)
+      : A_(level.stiffness), list_(std::move(list)), residual_(rcp(new Vector(A_->getDomainMap()))),
+        correction_(rcp(new Vector(A_->getDomainMap())))
+  {
+    list_.sublist("user data").set("Coordinates", level.coordinates);
+    list_.sublist("user data").set("Nullspace", level.null_space);
+    multigrid_ = make_multigrid(A_, list_);
+  }
+  void update() override { renew_multigrid(A_, *multigrid_); }
+  /// Two cycles: the matrix is small beside that of order 2, and one cycle costs it a third more CG iterations.
+  void apply(const Vector &b, Vector &x) const override
+  {
+    multigrid_->apply(b, x);
+    residual_->assign(b);
+    A_->apply(x, *residual_, Teuchos::NO_TRANS, -1., 1.);
+    multigrid_->apply(*residual_, *correction_);
+    x.update(1., *correction_, 1.);
+  }
+
+private:
+  RCP<CrsMatrix> A_;
+  Teuchos::ParameterList list_;
+  RCP<Multigrid> multigrid_;
+  RCP<Vector> residual_, correction_;
+};
+
 /// Belos refuses values by itself, but passes over names that it does not know.
 void check_belos(const std::string &method, const Teuchos::ParameterList &user)
 {
@@ -150,6 +184,8 @@ struct LinearSolver::Impl {
   RCP<UpdatedOperator> H;
   RCP<MultiVector> coordinates, null_space;
   Teuchos::ParameterList muelu;
+  MakeMeshLevels make_levels; // null: the hierarchy is algebraic
+  bool singular = false;      // a matrix was met that neither hierarchy can solve for
   RCP<Preconditioner> preconditioner;
   int revision = -1;               // of H, that the preconditioner fits
   bool renewed = false;            // of an older hierarchy some parts are left
@@ -170,8 +206,12 @@ Teuchos::ParameterList valid_linear_solver_parameters()
             "Krylov method by its name in Belos; the matrix is symmetric positive definite.");
   valid.set("Tolerance", 1e-11, "|r|/|b| of a linear solve at least, in (0, 1): most need not be as good.");
   valid.set("Maximum Iterations", 500, "of a linear solve, > 0.");
+  valid.set(
+      "Multigrid", "auto",
+      "`mesh`: on coarser meshes of the same body, where there are some: of order 1 for order 2, and coarser boxes; "
+      "`algebraic`: by MueLu from the matrix; `auto`: `mesh` unless `MueLu` is given.");
   valid.set("Reuse", "tP",
-            "What of the multigrid hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
+            "What of an algebraic hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
             "tentative prolongator), `RP` (transfer operators).");
   set_pass_through(valid, "Belos", "Handed to Belos as it is.");
   set_pass_through(
@@ -188,6 +228,7 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
   options.method = list.get<std::string>("Method");
   options.tolerance = list.get<double>("Tolerance");
   options.max_iterations = list.get<int>("Maximum Iterations");
+  options.multigrid = list.get<std::string>("Multigrid");
   options.reuse = list.get<std::string>("Reuse");
   options.belos = list.sublist("Belos");
   options.muelu = list.sublist("MueLu");
@@ -195,6 +236,9 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
               "deck: \"Linear Solver->Tolerance\" must be in (0, 1), got " << options.tolerance);
   RPC_REQUIRE(options.max_iterations > 0,
               "deck: \"Linear Solver->Maximum Iterations\" must be > 0, got " << options.max_iterations);
+  RPC_REQUIRE(options.multigrid == "auto" || options.multigrid == "mesh" || options.multigrid == "algebraic",
+              "deck: \"Linear Solver->Multigrid\" must be one of auto, mesh, algebraic, got \"" << options.multigrid
+                                                                                                << "\"");
   RPC_REQUIRE(options.reuse == "none" || options.reuse == "tP" || options.reuse == "RP",
               "deck: \"Linear Solver->Reuse\" must be one of none, tP, RP, got \"" << options.reuse << "\"");
   check_belos(options.method, options.belos);
@@ -203,16 +247,22 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
 }
 
 LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H,
-                           const RCP<MultiVector> &coordinates, const RCP<MultiVector> &null_space)
+                           const RCP<MultiVector> &coordinates, const RCP<MultiVector> &null_space,
+                           MakeMeshLevels levels)
     : options_(std::move(options)), impl_(std::make_unique<Impl>())
 {
   impl_->H = H;
   impl_->muelu = muelu_defaults(*H->matrix(), static_cast<int>(coordinates->getNumVectors()));
   impl_->muelu.set("reuse: type", options_.reuse);
+  impl_->muelu.set("sa: damping factor", options_.damping);
   if (options_.muelu.isParameter("smoother: type")) impl_->muelu.remove("smoother: params"); // of another type
   impl_->muelu.setParameters(options_.muelu);
   impl_->coordinates = coordinates;
   impl_->null_space = null_space;
+  const bool small = static_cast<GO>(H->matrix()->getGlobalNumRows()) <= most_rows_set_up_anew;
+  const bool automatic = !small && options_.muelu.numParams() == 0;
+  if (options_.multigrid == "mesh" || (options_.multigrid == "auto" && automatic))
+    impl_->make_levels = std::move(levels);
 
   const auto belos = Teuchos::parameterList("Belos");
   belos->set("Verbosity", static_cast<int>(Belos::Errors));
@@ -277,8 +327,35 @@ bool LinearSolver::renew(const RCP<CrsMatrix> &A)
   }
 }
 
+void LinearSolver::prepare_on_meshes()
+{
+  RCP<MeshMultigrid> &multigrid = impl_->preconditioner->on_meshes;
+  const int revision = impl_->H->revision();
+  if (!multigrid.is_null() && revision == impl_->revision) return;
+  const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
+  const double start = Teuchos::Time::wallTime();
+  if (multigrid.is_null()) {
+    const MeshLevels levels = impl_->make_levels();
+    multigrid =
+        rcp(new MeshMultigrid(impl_->H, levels, [&](const MeshLevel &coarsest) -> std::unique_ptr<CoarsestSolver> {
+          if (levels.down_to_few) return direct_solver(coarsest.stiffness);
+          Teuchos::ParameterList list = muelu_defaults(*coarsest.stiffness, impl_->H->dofs_per_node());
+          list.set("reuse: type", options_.reuse == "none" ? "tP" : options_.reuse);
+          list.setParameters(options_.muelu);
+          return std::make_unique<AlgebraicSolver>(coarsest, list);
+        }));
+    ++counts_.preconditioner_setups;
+  } else {
+    multigrid->update();
+    ++counts_.local_corrections;
+  }
+  impl_->revision = revision;
+  counts_.setup_seconds += Teuchos::Time::wallTime() - start;
+}
+
 void LinearSolver::prepare()
 {
+  if (impl_->make_levels) return prepare_on_meshes();
   const int revision = impl_->H->revision();
   if (!impl_->preconditioner->multigrid.is_null() && revision == impl_->revision) return;
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
@@ -364,6 +441,35 @@ void LinearSolver::set_up_if_worn(const double tolerance)
 
 LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const double tolerance)
 {
+  return impl_->make_levels ? solve_by_meshes(b, x, tolerance) : solve_algebraically(b, x, tolerance);
+}
+
+/// Where multigrid on meshes fails, the algebraic one has a try. It takes over if it does better.
+LinearSolver::Result LinearSolver::solve_by_meshes(const Vector &b, Vector &x, const double tolerance)
+{
+  const Result result = try_to_solve(b, x, tolerance);
+  const bool good = result.converged && result.iterations <= patience;
+  if (good || result.interrupted || (result.broken && impl_->singular)) return result;
+  const MakeMeshLevels levels = std::exchange(impl_->make_levels, {});
+  impl_->preconditioner->on_meshes = Teuchos::null;
+  impl_->revision = -1;
+  counts_.fallback = result.converged ? std::to_string(result.iterations) + " CG iterations" : result.reason;
+  if (result.converged) return result;
+  const Result other = solve_algebraically(b, x, tolerance);
+  if (other.broken && !other.interrupted) { // it is not the hierarchy: an active set leaves the body unheld
+    impl_->singular = true;
+    impl_->preconditioner->multigrid = Teuchos::null;
+    impl_->preconditioner->correction.reset();
+    impl_->make_levels = levels;
+    impl_->revision = -1;
+    impl_->H->write(0);
+    counts_.fallback.clear();
+  }
+  return other;
+}
+
+LinearSolver::Result LinearSolver::solve_algebraically(const Vector &b, Vector &x, const double tolerance)
+{
   set_up_if_worn(tolerance);
   Result result = try_to_solve(b, x, tolerance);
   const auto good = [&result] { return result.interrupted || (result.converged && result.iterations <= patience); };
@@ -406,7 +512,7 @@ LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, cons
     result.converged = impl_->manager->solve() == Belos::Converged;
     if (correction) x.update(1., *on_patch, 1.);
     result.iterations = impl_->manager->getNumIters();
-    judge_preconditioner(result.iterations, left * impl_->manager->achievedTol());
+    if (!impl_->make_levels) judge_preconditioner(result.iterations, left * impl_->manager->achievedTol());
     counts_.iterations.push_back(result.iterations);
     counts_.solve_seconds += Teuchos::Time::wallTime() - start;
     if (!result.converged)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/core/updated_operator.hpp"
+#include "rpc/solver/mesh_levels.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <memory>
@@ -15,9 +16,11 @@ struct LinearSolverOptions {
   std::string method = "Pseudoblock CG"; ///< name in Belos' solver factory
   double tolerance = 1e-11;              ///< |r| / |b|, dimensionless, > 0
   int max_iterations = 500;              ///< > 0
-  std::string reuse = "tP";              ///< what of a hierarchy outlives a change of the matrix: none, tP, RP
-  Teuchos::ParameterList belos;          ///< on top of the defaults
-  Teuchos::ParameterList muelu;          ///< on top of the defaults
+  std::string multigrid = "auto";        ///< from where the hierarchy comes: auto, mesh, algebraic
+  std::string reuse = "tP";     ///< what of an algebraic hierarchy outlives a change of the matrix: none, tP, RP
+  double damping = 4. / 3;      ///< of algebraic prolongators for the whole matrix, unless `muelu` says it
+  Teuchos::ParameterList belos; ///< on top of the defaults
+  Teuchos::ParameterList muelu; ///< on top of the defaults
 };
 
 /// Parameters of the deck's `Linear Solver` sublist; `Belos` and `MueLu` pass through.
@@ -29,25 +32,28 @@ LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list);
 struct LinearSolverCounts {
   std::vector<int> iterations;   ///< per solve
   int preconditioner_setups = 0; ///< of multigrid, of any kind
-  int local_corrections = 0;     ///< changes of contact that did with a correction of the preconditioner
+  int local_corrections = 0;     ///< changes of contact that the preconditioner followed near the contact points only
+  std::string fallback;          ///< why multigrid on coarser meshes was given up; empty if it was not
   double setup_seconds = 0;
   double solve_seconds = 0;
 };
 
-/// Belos with a smoothed-aggregation MueLu hierarchy that knows the rigid body modes.
+/// Belos with multigrid: on coarser meshes where there are some, mesh_levels.hpp, followed by an algebraic hierarchy where they do
+/// not lead down to few unknowns; else smoothed aggregation by MueLu that knows the rigid body modes.
 ///
-/// The hierarchy is set up at the first solve, for contact nodes that are at most a little stiffer than the body. Exact solves
-/// around them bring in the rest of their stiffness and follow changes of the contact states, doc/theory.md (4.8), (4.9). The
-/// hierarchy is set up again, reusing what `reuse` allows, when these get too large or CG says so, and from scratch where a
-/// solve fails.
+/// Either is set up at the first solve. On meshes it follows changes of the contact states exactly, (4.7a). An algebraic hierarchy is
+/// set up for contact nodes that are at most a little stiffer than the body. Exact solves around them bring in the rest of their
+/// stiffness and follow changes of the contact states, doc/theory.md (4.8), (4.9). It is set up again, reusing what `reuse` allows,
+/// when these get too large or CG says so, and from scratch where a solve fails. Where multigrid on meshes fails, the algebraic one
+/// takes over.
 class LinearSolver
 {
 public:
   /// @param H            may change between solves; its matrix is written when the hierarchy is set up
   /// @param coordinates  (nodes; dim)          @param null_space  (rows of A; rigid body modes)
-  /// Collective.
+  /// @param levels       makes the coarser meshes; may be null: there are none. Collective.
   LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, const RCP<MultiVector> &coordinates,
-               const RCP<MultiVector> &null_space);
+               const RCP<MultiVector> &null_space, MakeMeshLevels levels = {});
   ~LinearSolver();
 
   struct Result {
@@ -70,6 +76,7 @@ public:
 
 private:
   void prepare();
+  void prepare_on_meshes();
   void set_up();
   bool renew(const RCP<CrsMatrix> &A);
   double excess(double digits) const;
@@ -77,6 +84,8 @@ private:
   bool strengthen();
   void judge_preconditioner(int iterations, double residual);
   Result try_to_solve(const Vector &b, Vector &x, double tolerance);
+  Result solve_by_meshes(const Vector &b, Vector &x, double tolerance);
+  Result solve_algebraically(const Vector &b, Vector &x, double tolerance);
 
   struct Impl;
   LinearSolverOptions options_;

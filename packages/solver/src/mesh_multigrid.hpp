@@ -1,0 +1,58 @@
+#pragma once
+
+#include "rpc/core/updated_operator.hpp"
+#include "rpc/solver/mesh_levels.hpp"
+
+#include <functional>
+#include <memory>
+
+namespace rpc::solver
+{
+
+/// What solves for the coarsest of the given levels.
+class CoarsestSolver
+{
+public:
+  virtual ~CoarsestSolver() = default;
+  /// The matrix has changed; collective. @throws std::runtime_error on all ranks if it is not positive definite
+  virtual void update() = 0;
+  /// x <- about A^-1 b, by a symmetric positive definite operator; collective.
+  virtual void apply(const Vector &b, Vector &x) const = 0;
+};
+
+/// By a factor of the whole matrix on each rank.
+std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A);
+
+/// One V cycle of multigrid on given meshes, for H = K + contact. Its transfers do not depend on the contact states: contact is
+/// brought to each coarse mesh by these, in place, so that a change of states costs as much work as there are contact points.
+/// Symmetric and positive definite.                                                                 doc/theory.md (4.7a)
+class MeshMultigrid : public Operator
+{
+public:
+  using MakeCoarsestSolver = std::function<std::unique_ptr<CoarsestSolver>(const MeshLevel &)>;
+
+  /// Collective. @param levels  at least one
+  /// @throws std::runtime_error on all ranks if a matrix is not positive definite
+  MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &levels, const MakeCoarsestSolver &make_coarsest);
+  ~MeshMultigrid() override;
+
+  /// Follows H; collective.
+  void update();
+
+  /// y <- B x; collective.
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
+             double beta = 0) const override;
+  RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
+
+private:
+  struct Level;
+  void write_contact();
+  void cycle(std::size_t level, const Vector &b, Vector &x) const;
+
+  RCP<const UpdatedOperator> H_;
+  std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
+  std::unique_ptr<CoarsestSolver> coarsest_;
+};
+
+} // namespace rpc::solver

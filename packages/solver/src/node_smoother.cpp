@@ -1,0 +1,263 @@
+#include "node_smoother.hpp"
+
+#include "rpc/core/dofs.hpp"
+#include "rpc/core/math.hpp"
+
+#include <Teuchos_LAPACK.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace rpc::solver
+{
+namespace
+{
+
+// Lanczos steps for the largest eigenvalue: they find it to a few per cent, which the factor covers.
+constexpr int lanczos_steps = 10;
+constexpr double margin = 1.08;
+
+/// Inverts some symmetric blocks by their cofactors.
+template <int Dim>
+struct InvertBlocks {
+  DeviceView<LO *> node;          // (n) rows of `inverse`, < 0: none       in
+  DeviceView<double ***> block;   // (n, Dim, Dim)                          in
+  DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)                out
+
+  /// @param bad  counts blocks that are not positive definite
+  KOKKOS_FUNCTION void operator()(const LO i, LO &bad) const
+  {
+    const LO n = node.extent(0) == 0 ? i : node(i);
+    if (n < 0) return;
+    double a[Dim][Dim];
+    for (int k = 0; k < Dim; ++k)
+      for (int l = 0; l < Dim; ++l) a[k][l] = 0.5 * (block(i, k, l) + block(i, l, k));
+    // By a Cholesky factor: blocks of stiff contact have eigenvalues of very different size.
+    double factor[Dim][Dim] = {}, back[Dim][Dim] = {};
+    for (int k = 0; k < Dim; ++k) {
+      double pivot = a[k][k];
+      for (int m = 0; m < k; ++m) pivot -= factor[k][m] * factor[k][m];
+      if (!(pivot > 0)) {
+        ++bad;
+        return;
+      }
+      factor[k][k] = math::sqrt(pivot);
+      for (int l = k + 1; l < Dim; ++l) {
+        double rest = a[l][k];
+        for (int m = 0; m < k; ++m) rest -= factor[l][m] * factor[k][m];
+        factor[l][k] = rest / factor[k][k];
+      }
+    }
+    for (int k = 0; k < Dim; ++k) {
+      back[k][k] = 1 / factor[k][k];
+      for (int l = k + 1; l < Dim; ++l) {
+        double sum = 0;
+        for (int m = k; m < l; ++m) sum -= factor[l][m] * back[m][k];
+        back[l][k] = sum / factor[l][l];
+      }
+    }
+    for (int k = 0; k < Dim; ++k)
+      for (int l = 0; l < Dim; ++l) {
+        double sum = 0;
+        for (int m = k > l ? k : l; m < Dim; ++m) sum += back[m][k] * back[m][l];
+        inverse(n, k, l) = sum;
+      }
+  }
+};
+
+/// move <- keep move + add D^-1 (b - product), x <- x + move; without a product, x <- move.
+template <int Dim, class In, class Out>
+struct ChebyshevStep {
+  DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)  in
+  In b, product;                  // (owned dofs)             in
+  double keep, add;               //
+  bool at_zero;                   // x = 0, and so is the product
+  Out move, x;                    // (owned dofs)             inout
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    double r[Dim];
+    for (int k = 0; k < Dim; ++k) {
+      const LO i = dof(Dim, node, k);
+      r[k] = at_zero ? b(i) : b(i) - product(i);
+    }
+    for (int k = 0; k < Dim; ++k) {
+      const LO i = dof(Dim, node, k);
+      double z = 0;
+      for (int l = 0; l < Dim; ++l) z += inverse(node, k, l) * r[l];
+      const double d = keep == 0 ? add * z : keep * move(i) + add * z;
+      move(i) = d;
+      x(i) = at_zero ? d : x(i) + d;
+    }
+  }
+};
+
+/// z <- D^-1 r, for the eigenvalue.
+template <int Dim, class In, class Out>
+struct ApplyInverse {
+  DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)  in
+  In r;                           // (owned dofs)             in
+  Out z;                          // (owned dofs)             out
+
+  KOKKOS_FUNCTION void operator()(const LO node) const
+  {
+    for (int k = 0; k < Dim; ++k) {
+      double sum = 0;
+      for (int l = 0; l < Dim; ++l) sum += inverse(node, k, l) * r(dof(Dim, node, l));
+      z(dof(Dim, node, k)) = sum;
+    }
+  }
+};
+
+void apply_inverse(const DeviceView<double ***> &inverse, const Vector &r, Vector &z)
+{
+  const auto from = device_read(r);
+  const auto to = device_write(z);
+  const auto range = device_range(static_cast<LO>(inverse.extent(0)));
+  if (inverse.extent(1) == 2)
+    Kokkos::parallel_for("rpc::solver::apply_inverse", range,
+                         ApplyInverse<2, decltype(from), decltype(to)>{inverse, from, to});
+  else
+    Kokkos::parallel_for("rpc::solver::apply_inverse", range,
+                         ApplyInverse<3, decltype(from), decltype(to)>{inverse, from, to});
+  Kokkos::fence();
+}
+
+/// Values in [-1, 1] without order that depend on the unknowns' gids alone: the same on any number of ranks.
+void fill_without_order(Vector &x)
+{
+  const auto to = device_write(x);
+  const auto map = x.getMap()->getLocalMap();
+  Kokkos::parallel_for(
+      "rpc::solver::fill_without_order", device_range(static_cast<LO>(x.getLocalLength())), KOKKOS_LAMBDA(const LO i) {
+        unsigned long long hash = static_cast<unsigned long long>(map.getGlobalElement(i)) + 0x9e3779b97f4a7c15ULL;
+        hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ULL; // splitmix64
+        hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebULL;
+        hash ^= hash >> 31;
+        to(i) = static_cast<double>(hash >> 11) * (2. / 9007199254740992.) - 1;
+      });
+  Kokkos::fence();
+}
+
+/// (owned nodes, dim, dim) <- their inverses, at some nodes; collective.
+void invert(const Comm &comm, const DeviceView<LO *> &node, const DeviceView<double ***> &block,
+            const DeviceView<double ***> &inverse)
+{
+  LO bad = 0;
+  const auto range = device_range(static_cast<LO>(block.extent(0)));
+  if (inverse.extent(1) == 2)
+    Kokkos::parallel_reduce("rpc::solver::invert_blocks", range, InvertBlocks<2>{node, block, inverse}, bad);
+  else
+    Kokkos::parallel_reduce("rpc::solver::invert_blocks", range, InvertBlocks<3>{node, block, inverse}, bad);
+  if (sum_all(comm, GO(bad)) > 0)
+    throw std::runtime_error("multigrid: a node's block of the matrix is not positive definite");
+}
+
+DeviceView<double ***> as_large_as(const DeviceView<double ***> &block)
+{
+  return DeviceView<double ***>(Kokkos::ViewAllocateWithoutInitializing("rpc::solver::inverse_blocks"), block.extent(0),
+                                block.extent(1), block.extent(2));
+}
+
+} // namespace
+
+/// From the coefficients of the conjugate gradients for some right side.
+double largest_eigenvalue(const Operator &A, const DeviceView<double ***> &block)
+{
+  const auto map = A.getDomainMap();
+  const auto inverse = as_large_as(block);
+  invert(*map->getComm(), {}, block, inverse);
+  Vector r(map), z(map), p(map), q(map);
+  fill_without_order(r);
+  apply_inverse(inverse, r, z);
+  p.update(1., z, 0.);
+  double rho = r.dot(z);
+  const double enough = 1e-24 * rho; // nothing is left where there are fewer eigenvalues than steps
+  std::vector<double> diagonal, beside;
+  double last_alpha = 1, last_beta = 0;
+  for (int k = 0; k < lanczos_steps && rho > enough; ++k) {
+    A.apply(p, q);
+    const double energy = p.dot(q);
+    if (!(energy > 0)) throw std::runtime_error("multigrid: the matrix of a level is not positive definite");
+    const double alpha = rho / energy;
+    r.update(-alpha, q, 1.);
+    apply_inverse(inverse, r, z);
+    const double next = r.dot(z), beta = next / rho;
+    diagonal.push_back(1 / alpha + last_beta / last_alpha);
+    beside.push_back(std::sqrt(beta) / alpha);
+    p.update(1., z, beta);
+    rho = next;
+    last_alpha = alpha;
+    last_beta = beta;
+  }
+  if (diagonal.empty()) throw std::runtime_error("multigrid: the matrix of a level is not finite");
+  int info = 0;
+  double none = 0, work = 0;
+  Teuchos::LAPACK<int, double>().STEQR('N', static_cast<int>(diagonal.size()), diagonal.data(), beside.data(), &none, 1,
+                                       &work, &info);
+  const double largest = margin * diagonal.back();
+  if (info != 0 || !std::isfinite(largest))
+    throw std::runtime_error("multigrid: no largest eigenvalue of a level was found");
+  return largest;
+}
+
+NodeSmoother::NodeSmoother(RCP<const Operator> A, const DeviceView<double ***> &block, const double largest,
+                           const Options &options)
+    : A_(std::move(A)), options_(options), inverse_(as_large_as(block)), largest_(largest),
+      move_(rcp(new Vector(A_->getDomainMap()))), product_(rcp(new Vector(A_->getDomainMap())))
+{
+  set_blocks({}, block);
+}
+
+void NodeSmoother::set_blocks(const DeviceView<LO *> &node, const DeviceView<double ***> &block)
+{
+  invert(*A_->getDomainMap()->getComm(), node, block, inverse_);
+}
+
+void NodeSmoother::step(const Vector &b, const double keep, const double add, const bool at_zero, Vector &x) const
+{
+  const auto from = device_read(b);
+  const auto product = device_read(*product_);
+  const auto move = device_write(*move_);
+  const auto to = device_write(x);
+  const auto range = device_range(static_cast<LO>(inverse_.extent(0)));
+  using In = std::decay_t<decltype(from)>;
+  using Out = std::decay_t<decltype(to)>;
+  if (inverse_.extent(1) == 2)
+    Kokkos::parallel_for("rpc::solver::chebyshev_step", range,
+                         ChebyshevStep<2, In, Out>{inverse_, from, product, keep, add, at_zero, move, to});
+  else
+    Kokkos::parallel_for("rpc::solver::chebyshev_step", range,
+                         ChebyshevStep<3, In, Out>{inverse_, from, product, keep, add, at_zero, move, to});
+  Kokkos::fence();
+}
+
+void NodeSmoother::polynomial(const Vector &b, const bool at_zero, Vector &x) const
+{
+  const double smallest = largest_ / options_.ratio;
+  const double centre = 0.5 * (largest_ + smallest), radius = 0.5 * (largest_ - smallest), sigma = centre / radius;
+  double rho = 1 / sigma;
+  for (int k = 0; k < options_.degree; ++k) {
+    const bool zero = at_zero && k == 0;
+    if (!zero) A_->apply(x, *product_);
+    if (k == 0) {
+      step(b, 0, 1 / centre, zero, x);
+    } else {
+      const double next = 1 / (2 * sigma - rho);
+      step(b, next * rho, 2 * next / radius, false, x);
+      rho = next;
+    }
+  }
+}
+
+void NodeSmoother::start(const Vector &b, Vector &x) const
+{
+  polynomial(b, true, x);
+}
+
+void NodeSmoother::improve(const Vector &b, Vector &x) const
+{
+  polynomial(b, false, x);
+}
+
+} // namespace rpc::solver

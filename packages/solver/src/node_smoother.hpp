@@ -1,0 +1,53 @@
+#pragma once
+
+#include "rpc/core/tpetra.hpp"
+
+namespace rpc::solver
+{
+
+/// The largest eigenvalue of D^-1 A, by some steps of Lanczos' method and with a margin for its error; the same on any number of
+/// ranks up to rounding. Collective.
+/// @param block  (owned nodes, dim, dim) D
+/// @throws std::runtime_error on all ranks if A or D is not positive definite
+double largest_eigenvalue(const Operator &A, const DeviceView<double ***> &block);
+
+/// Chebyshev polynomials of D^-1 A for a symmetric positive definite A, D its diagonal blocks of the nodes: they damp what lies
+/// between the largest eigenvalue of D^-1 A and a part of it.                                          doc/theory.md (4.7b)
+///
+/// D follows a change of A by its blocks at some nodes.
+class NodeSmoother
+{
+public:
+  struct Options {
+    int degree = 2;     ///< > 0
+    double ratio = 10.; ///< of the largest eigenvalue to the smallest one that is damped, > 1
+  };
+
+  /// @param A        what it smooths for
+  /// @param block    (owned nodes, dim, dim) D
+  /// @param largest  upper bound of the eigenvalues of D^-1 A, also when both change. Collective.
+  /// @throws std::runtime_error on all ranks if D is not positive definite
+  NodeSmoother(RCP<const Operator> A, const DeviceView<double ***> &block, double largest, const Options &options);
+
+  /// D changes at some nodes; collective.
+  /// @param node   (n) owned nodes; those below 0 are passed over
+  /// @param block  (n, dim, dim)
+  void set_blocks(const DeviceView<LO *> &node, const DeviceView<double ***> &block);
+
+  /// x <- p(D^-1 A) D^-1 b: the polynomial's x for x = 0 at the start.
+  void start(const Vector &b, Vector &x) const;
+  /// x <- the same, from where x is.
+  void improve(const Vector &b, Vector &x) const;
+
+private:
+  void step(const Vector &b, double keep, double add, bool at_zero, Vector &x) const;
+  void polynomial(const Vector &b, bool at_zero, Vector &x) const;
+
+  RCP<const Operator> A_;
+  Options options_;
+  DeviceView<double ***> inverse_; // (owned nodes, dim, dim) of D
+  double largest_;
+  RCP<Vector> move_, product_; // of the last step; A x
+};
+
+} // namespace rpc::solver

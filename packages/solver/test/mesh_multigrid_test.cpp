@@ -1,0 +1,273 @@
+#include "../src/mesh_multigrid.hpp"
+
+#include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/mesh/box.hpp"
+#include "rpc/solver/linear_solver.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <memory>
+#include <numeric>
+#include <string>
+
+namespace
+{
+
+using namespace rpc;
+using solver::LinearSolver;
+using solver::LinearSolverOptions;
+using solver::MeshLevels;
+using solver::MeshMultigrid;
+
+/// A block with odd numbers of cells, clamped at its left side, that may touch with its bottom (in space: its back).
+struct Block {
+  fem::Discretization d;
+  analysis::Model model;
+  fem::DirichletDofs dirichlet;
+  RCP<UpdatedOperator> H;
+
+  /// @param cells   of the lattice, for each direction
+  /// @param is_box  whether there are coarser boxes; else the mesh counts as one from a file
+  Block(const mesh::Element &element, const std::vector<int> &cells, const bool is_box = true,
+        const std::vector<double> &upper = {2, 1, 1})
+  {
+    mesh::BoxOptions box{{0, 0}, {upper[0], upper[1]}, {cells[0], cells[1]}, element};
+    if (element.dim == 3) box = {{0, 0, 0}, upper, cells, element};
+    auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+    if (!is_box) mesh->box = nullptr;
+    d = fem::discretize(mesh);
+    fem::DirichletCondition held{"left", "left", {ScalarField(0.), ScalarField(0.)}};
+    if (element.dim == 3) held.displacement[2] = ScalarField(0.);
+    model.materials = fem::Material{1000, 0.3};
+    model.dirichlet = {held};
+    contact::ContactOptions foundation;
+    foundation.side = element.dim == 2 ? "bottom" : "back";
+    foundation.normal = contact::Normal::fixed; // aslant: no unknown is stiffened by itself
+    foundation.direction = element.dim == 2 ? Point{0.6, -0.8, 0} : Point{0.48, 0.36, -0.8};
+    foundation.yield_stress = ScalarField(1.);
+    foundation.gap = ScalarField(0.);
+    model.contact = {foundation};
+    dirichlet = fem::dirichlet_dofs(d, model.dirichlet);
+    auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), dirichlet).matrix;
+    H = rcp(new UpdatedOperator(K, contact::contact_nodes(d, model.contact, dirichlet, model.materials)));
+  }
+  MeshLevels levels() const { return analysis::mesh_levels(d, model, dirichlet.fixed); }
+
+  /// Contact nodes for which `is_closed` holds at their x are closed: 1e5 times as stiff as they are.
+  void close(const std::function<bool(double)> &is_closed) const
+  {
+    const NodePoints &points = H->points();
+    const auto node = to_host(points.node);
+    const auto own = to_host(H->own_stiffness());
+    const auto coords = to_host(d.mesh->coords);
+    HostView<double *> added("added", points.size());
+    for (LO i = 0; i < points.size(); ++i) added(i) = is_closed(coords(node(i), 0)) ? 1e5 * own(i) : 0;
+    H->set(to_device(added));
+  }
+  void close_half() const
+  {
+    close([](const double x) { return std::fmod(x, 0.6) < 0.3; });
+  }
+
+  /// Without order, 0 where prescribed.
+  Vector vector(const double phase) const
+  {
+    Vector v(d.owned_dofs);
+    const auto fixed = to_host(dirichlet.fixed);
+    const auto id = d.mesh->node_id;
+    for (LO i = 0; i < num_local(*d.owned_dofs); ++i) {
+      const double number = static_cast<double>(dof(d.dim(), id(node_of(d.dim(), i)), component_of(d.dim(), i)));
+      v.replaceLocalValue(i, fixed(i) ? 0 : std::sin(phase + 12.9898 * number * (1 + 1e-3 * number)));
+    }
+    return v;
+  }
+  std::unique_ptr<LinearSolver> solver(LinearSolverOptions options = {}, const bool with_levels = true) const
+  {
+    if (options.multigrid == "auto" && with_levels) options.multigrid = "mesh";
+    return std::make_unique<LinearSolver>(options, H, fem::node_coordinates(d), fem::rigid_body_modes(d),
+                                          with_levels ? solver::MakeMeshLevels([this] { return levels(); }) : nullptr);
+  }
+};
+
+std::string text_of(const mesh::Element &element)
+{
+  return element.name() + " in " + std::to_string(element.dim) + "D";
+}
+std::vector<int> some_cells(const mesh::Element &element)
+{
+  const bool one = element.order == 1;
+  if (element.dim == 2) return one ? std::vector<int>{67, 35, 0} : std::vector<int>{35, 17, 0};
+  return one ? std::vector<int>{23, 11, 13} : std::vector<int>{11, 5, 7};
+}
+
+/// The solver for the coarsest level that these meshes lead to.
+std::unique_ptr<solver::CoarsestSolver> directly(const solver::MeshLevel &level)
+{
+  return solver::direct_solver(level.stiffness);
+}
+
+double relative_difference(const Vector &a, const Vector &b)
+{
+  Vector difference(a, Teuchos::Copy);
+  difference.update(-1., b, 1.);
+  return difference.norm2() / b.norm2();
+}
+
+TEST(MeshMultigrid, IsSymmetricAndPositive)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const Block block(element, some_cells(element));
+    block.close_half();
+    const MeshLevels levels = block.levels();
+    ASSERT_TRUE(levels.down_to_few) << text_of(element);
+    const MeshMultigrid B(block.H, levels, directly);
+    const Vector x = block.vector(1), y = block.vector(2);
+    Vector Bx(x.getMap()), By(x.getMap());
+    B.apply(x, Bx);
+    B.apply(y, By);
+    EXPECT_NEAR(Bx.dot(y), By.dot(x), 1e-10 * std::sqrt(Bx.dot(x) * By.dot(y))) << text_of(element);
+    EXPECT_GT(Bx.dot(x), 0) << text_of(element);
+    EXPECT_GT(By.dot(y), 0) << text_of(element);
+  }
+}
+
+/// Iterations to 1e-8 with an unordered right side, nothing and every other stretch of the contact side closed.
+TEST(MeshMultigrid, NeedsFewIterations)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const int most = element.dim == 2 ? (element == mesh::Element{2, 1} ? 12 : 15) : (element.order == 1 ? 14 : 20);
+    const Block block(element, some_cells(element));
+    const auto solver = block.solver();
+    const Vector b = block.vector(3);
+    Vector x(b.getMap()), Hx(b.getMap());
+    for (const bool closed : {false, true}) {
+      if (closed) block.close_half();
+      const auto result = solver->solve(b, x, 1e-8);
+      EXPECT_TRUE(result.converged) << result.reason;
+      EXPECT_LE(result.iterations, most) << text_of(element) << (closed ? ", closed" : "");
+      block.H->apply(x, Hx);
+      EXPECT_LT(relative_difference(Hx, b), 1.1e-8) << text_of(element);
+    }
+    EXPECT_EQ(solver->counts().preconditioner_setups, 1) << text_of(element);
+    EXPECT_EQ(solver->counts().local_corrections, 1) << text_of(element);
+    EXPECT_EQ(solver->counts().fallback, "") << text_of(element);
+  }
+}
+
+/// A hierarchy that has followed the states is that which is made for them.
+TEST(MeshMultigrid, FollowsTheStatesExactly)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const Block block(element, some_cells(element));
+    block.close_half();
+    MeshMultigrid B(block.H, block.levels(), directly);
+    for (int k = 0; k < 3; ++k) {
+      block.close([k](const double x) { return std::fmod(x + 0.1 * k, 0.5) < 0.2; });
+      B.update();
+    }
+    const MeshMultigrid anew(block.H, block.levels(), directly);
+    const Vector x = block.vector(4);
+    Vector Bx(x.getMap()), expected(x.getMap());
+    B.apply(x, Bx);
+    anew.apply(x, expected);
+    EXPECT_LT(relative_difference(Bx, expected), 1e-10) << text_of(element);
+  }
+}
+
+TEST(MeshMultigrid, IterationsDoNotGrowWithTheMesh)
+{
+  std::vector<int> iterations;
+  for (const int n : {16, 32, 64, 128}) {
+    const Block block({2, 1}, {2 * n, n});
+    block.close_half();
+    const Vector b = block.vector(5);
+    Vector x(b.getMap());
+    iterations.push_back(block.solver()->solve(b, x, 1e-8).iterations);
+  }
+  EXPECT_LE(iterations.back(), iterations[1] + 2);
+  EXPECT_LE(iterations.back(), 12);
+}
+
+/// Stretched cells: only the direction in which they are short is halved, until they are square.
+TEST(MeshMultigrid, TakesStretchedCells)
+{
+  for (const double length : {1., 10., 100.}) {
+    const Block block({2, 1}, {40, 40}, true, {length, 1, 1});
+    block.close_half();
+    const Vector b = block.vector(6);
+    Vector x(b.getMap());
+    const auto result = block.solver()->solve(b, x, 1e-8);
+    EXPECT_TRUE(result.converged) << result.reason;
+    EXPECT_LE(result.iterations, 25) << length;
+  }
+}
+
+/// Of order 2 without coarser boxes: MueLu's hierarchy follows the mesh of order 1.
+TEST(MeshMultigrid, EndsAlgebraicallyWhereThereIsNoCoarserMesh)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    if (element.order == 1) continue;
+    const Block block(element, some_cells(element), false);
+    const MeshLevels levels = block.levels();
+    ASSERT_EQ(levels.level.size(), 1U) << text_of(element);
+    const auto solver = block.solver();
+    const Vector b = block.vector(7);
+    Vector x(b.getMap());
+    for (const bool closed : {false, true}) {
+      if (closed) block.close_half();
+      const auto result = solver->solve(b, x, 1e-8);
+      EXPECT_TRUE(result.converged) << result.reason;
+      EXPECT_LE(result.iterations, element.dim == 2 ? 15 : 20) << text_of(element) << (closed ? ", closed" : "");
+    }
+    EXPECT_EQ(solver->counts().preconditioner_setups, 1) << text_of(element);
+  }
+}
+
+/// Coarse matrices that are not positive definite: the algebraic hierarchy takes over, and the counts say why.
+TEST(MeshMultigrid, GivesWayToTheAlgebraicOneWhereItFails)
+{
+  const Block block({2, 1}, {67, 35});
+  LinearSolverOptions options;
+  options.multigrid = "mesh";
+  LinearSolver solver(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d), [&] {
+    MeshLevels levels = block.levels();
+    levels.level.back().stiffness->scale(-1.);
+    return levels;
+  });
+  const Vector b = block.vector(8);
+  Vector x(b.getMap()), Hx(b.getMap());
+  const auto result = solver.solve(b, x, 1e-8);
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_NE(solver.counts().fallback, "");
+  block.H->apply(x, Hx);
+  EXPECT_LT(relative_difference(Hx, b), 1.1e-8);
+}
+
+TEST(LinearSolver, TakesMeshesUnlessMueLuIsGiven)
+{
+  const Block block({2, 1}, {67, 35});
+  const Vector b = block.vector(9);
+  Vector x(b.getMap());
+  const auto makes_levels = [&](const std::function<void(LinearSolverOptions &)> &set) {
+    bool made = false;
+    LinearSolverOptions options;
+    set(options);
+    LinearSolver solver(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d), [&] {
+      made = true;
+      return block.levels();
+    });
+    EXPECT_TRUE(solver.solve(b, x, 1e-6).converged);
+    return made;
+  };
+  EXPECT_TRUE(makes_levels([](LinearSolverOptions &) {}));
+  EXPECT_FALSE(makes_levels([](LinearSolverOptions &options) { options.multigrid = "algebraic"; }));
+  EXPECT_FALSE(makes_levels([](LinearSolverOptions &options) { options.muelu.set("max levels", 3); }));
+  EXPECT_TRUE(makes_levels([](LinearSolverOptions &options) {
+    options.muelu.set("max levels", 3);
+    options.multigrid = "mesh";
+  }));
+}
+
+} // namespace
