@@ -18,6 +18,8 @@ namespace
 {
 
 constexpr int most_kinds = 600;
+constexpr std::size_t enough_kinds = 30;
+constexpr double few_nodes = 0.05;
 constexpr double least_part = 0.75; // of the nodes that repeat
 constexpr short unknown = -1;
 
@@ -31,6 +33,12 @@ template <int Dim>
 KOKKOS_INLINE_FUNCTION constexpr int place_in_block(const int row, const int column)
 {
   return Dim == 2 ? 2 * column + row : 4 * column + row;
+}
+
+KOKKOS_INLINE_FUNCTION LO node_at(const LO place, const LO num_nodes)
+{
+  const LO rest = num_nodes - num_nodes / 2;
+  return place < rest ? num_nodes / 2 + place : place - rest;
 }
 
 /// Gives `kind` to the nodes without one whose rows are those of the example.
@@ -56,16 +64,18 @@ struct TakeKind {
     }
     return true;
   }
+  /// @param place  of the node, counted from the middle of the numbers: inside the mesh, where most rows repeat
   /// @param took   += 1 if the node took it
-  /// @param first  the first node that is left without
-  KOKKOS_FUNCTION void operator()(const LO node, LO &took, LO &first) const
+  /// @param first  the first place that is left without
+  KOKKOS_FUNCTION void operator()(const LO place, LO &took, LO &first) const
   {
+    const LO node = node_at(place, static_cast<LO>(taken.extent(0)));
     if (taken(node) != unknown) return;
     if (same(node)) {
       taken(node) = kind;
       ++took;
-    } else if (node < first) {
-      first = node;
+    } else if (place < first) {
+      first = place;
     }
   }
 };
@@ -249,23 +259,22 @@ std::optional<RepeatedRows> RepeatedRows::of(RCP<const CrsMatrix> A, const int d
 {
   const LocalMatrix matrix = A->getLocalMatrixDevice();
   const LO num_nodes = node_of(dim, matrix.numRows());
-  if (num_nodes == 0) return std::nullopt;
+  if (num_nodes == 0 || dim < 2) return std::nullopt;
   const DeviceView<short *> kind(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::kind"), num_nodes);
   Kokkos::deep_copy(kind, unknown);
   std::vector<LO> examples;
-  LO next = 0, repeated = 0;
-  for (int tried = 0; next < num_nodes && tried < most_kinds; ++tried) {
-    const TakeKind take{matrix, dim, next, static_cast<short>(examples.size()), kind};
-    const LO example = next;
+  LO next = 0, repeated = 0; // the first place without a kind
+  while (next < num_nodes && static_cast<int>(examples.size()) < most_kinds) {
+    const LO place = next;
+    const TakeKind take{matrix, dim, node_at(place, num_nodes), static_cast<short>(examples.size()), kind};
     LO took = 0;
     Kokkos::parallel_reduce("rpc::repeated_rows::take_kind", device_range(num_nodes), take, Kokkos::Sum<LO>(took),
                             Kokkos::Min<LO>(next));
-    if (next < example) break; // a value that is not a number
-    repeated += took - 1; // all but the example
-    examples.push_back(example);
-    if (next >= num_nodes) break;
-    // Few rows of many kinds promise a mesh without order.
-    if (tried > 100 && repeated < least_part * num_nodes) return std::nullopt;
+    if (took == 0) return std::nullopt; // values that are not numbers
+    repeated += took - 1;               // all but the example
+    examples.push_back(take.example);
+    // Few rows of many kinds promise a mesh without order, and each kind costs a pass over the nodes.
+    if (examples.size() == enough_kinds && repeated < few_nodes * num_nodes) return std::nullopt;
   }
   if (repeated < least_part * num_nodes) return std::nullopt;
   const auto row_map = to_host(matrix.graph.row_map);

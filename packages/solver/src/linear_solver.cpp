@@ -2,7 +2,6 @@
 
 #include "gathered_solver.hpp"
 #include "local_correction.hpp"
-#include "mesh_multigrid.hpp"
 #include "muelu_parameters.hpp"
 #include "multigrid.hpp"
 #include "rpc/core/error.hpp"
@@ -10,6 +9,7 @@
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/muelu.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/solver/mesh_multigrid.hpp"
 
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>

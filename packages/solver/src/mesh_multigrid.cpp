@@ -1,4 +1,4 @@
-#include "mesh_multigrid.hpp"
+#include "rpc/solver/mesh_multigrid.hpp"
 
 #include "band_cholesky.hpp"
 #include "coarse_contact.hpp"

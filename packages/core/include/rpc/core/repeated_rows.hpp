@@ -16,8 +16,8 @@ class RepeatedRows
 public:
   /// @param A    fill-complete; each node's unknowns are consecutive rows with equal columns, and so are its columns. It is kept, and
   ///             its values as they are now are those of the repeated rows.
-  /// @param dim  2 or 3
-  /// @return nothing where less than three quarters of this rank's rows repeat
+  /// @param dim  unknowns of a node
+  /// @return nothing where less than three quarters of this rank's rows repeat, or a node has one unknown
   static std::optional<RepeatedRows> of(RCP<const CrsMatrix> A, int dim);
 
   /// y <- A x, of this rank.

@@ -1,4 +1,4 @@
-#include "../src/mesh_multigrid.hpp"
+#include "rpc/solver/mesh_multigrid.hpp"
 
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/mesh/box.hpp"
