@@ -4,7 +4,7 @@ import math
 
 import fields as f
 from plane import Body, Grid
-from scene import ContactSide, Scene, verdict
+from scene import ContactSide, Scene, applied_resultant, verdict
 
 ELEMENTS = ["Q1", "P1", "Q2", "P2"]
 MOST_NODES = 1500
@@ -417,9 +417,7 @@ def near_limit(rng, scene):
     """Scales a yield stress so that the load is 50 to 97 % of what the foundation carries."""
     grid = scene.body.parts[0]
     carried = sum(w * scene.contact[0].xi(*grid.nodes[k]) * -nu[1] for k, (w, nu) in grid.contact_nodes("bottom").items())
-    load = -sum(w * fields[1](x, y) for side, fields in scene.traction.items() for x, y, w in grid.side_points(side))
-    if scene.body_force:
-        load -= sum(w for _, _, w in grid.body_points()) * scene.body_force[1]
+    load = -applied_resultant(scene)[1]
     if load > 0:
         scene.contact[0].xi = scene.contact[0].xi * (load / carried / rng.choice([0.5, 0.8, 0.9, 0.95, 0.969]))
 

@@ -1,5 +1,5 @@
-"""Plane bodies from mapped grids: their sides, contact nodes and loads as doc/theory.md (2.1), (2.7) has them, and their .msh
-file. An implementation apart from rpc's, for what a scene must do."""
+"""Plane and axisymmetric bodies from mapped grids: their sides, contact nodes and loads as doc/theory.md (2.1), (2.7), (2.7a) has them, and
+the .msh file of bodies of any dimension. An implementation apart from rpc's, for what a scene must do."""
 import math
 
 GAUSS = {
@@ -7,6 +7,7 @@ GAUSS = {
     4: [(s * math.sqrt(3 / 7 + t * 2 / 7 * math.sqrt(6 / 5)), (18 - t * math.sqrt(30)) / 36) for s in (-1, 1) for t in (-1, 1)],
 }
 MSH_TYPE = {"P1": 2, "Q1": 3, "P2": 9, "Q2": 10}
+MSH_EDGE = {1: 1, 2: 8}
 
 
 def shapes(order, t):
@@ -21,14 +22,18 @@ class Grid:
 
     place(s, t): base coordinates; keep(i, j): whether the cell is there; block(i, j): its block; inner sides of what is not
     kept are named `inner`. Other sides: bottom (t = 0), right, top, left, with a prefix. Edges run with the body on the left.
+    An axisymmetric body has x >= 0 as its radius; its weights carry 2 pi x.
     """
 
-    def __init__(self, nx, ny, element, place, keep=None, block=None, prefix="", distort=None, diagonals=None):
+    dim = 2
+
+    def __init__(self, nx, ny, element, place, keep=None, block=None, prefix="", distort=None, diagonals=None, axisymmetric=False):
         self.nx, self.ny, self.element, self.prefix = nx, ny, element, prefix
         self.order = int(element[1])
         self.keep = keep or (lambda i, j: True)
         self.block = block or (lambda i, j: "body")
         self.diagonals = diagonals or (lambda i, j: False)
+        self.axisymmetric = axisymmetric
         p = self.order
         self.columns, self.rows = p * nx + 1, p * ny + 1
         self.nodes = [place(i / (p * nx), j / (p * ny)) for j in range(self.rows) for i in range(self.columns)]
@@ -78,31 +83,41 @@ class Grid:
         p = self.order
         return sorted({self.node(p * i + a, p * j + b) for i, j in self.cells() for a in range(p + 1) for b in range(p + 1)})
 
+    def around(self, x):
+        """How much longer a point's circle is than it counts in the plane."""
+        return 2 * math.pi * x if self.axisymmetric else 1.0
+
     def contact_nodes(self, side):
-        """{node: (weight, unit normal)} of nodal quadrature (2.7)."""
+        """{node: (weight, unit normal)} of nodal quadrature (2.7), (2.7a); nodes without weight are left out."""
         sums = {}
-        points = {1: [(-1, 1.0), (1, 1.0)], 2: [(-1, 1 / 3), (0, 4 / 3), (1, 1 / 3)]}[self.order]
         for edge in self.sides.get(side, []):
-            for k, (t, omega) in zip(edge, points):
+            for k, omega, t in self._nodal_rule(edge):
                 dx, dy = self._tangent(edge, t)
                 w, nx, ny = sums.get(k, (0.0, 0.0, 0.0))
                 sums[k] = (w + omega * math.hypot(dx, dy), nx + omega * dy, ny - omega * dx)
-        return {k: (w, (nx / math.hypot(nx, ny), ny / math.hypot(nx, ny))) for k, (w, nx, ny) in sums.items()}
+        return {k: (w, (nx / math.hypot(nx, ny), ny / math.hypot(nx, ny))) for k, (w, nx, ny) in sums.items() if w > 0}
+
+    def _nodal_rule(self, edge):
+        """(node, weight, place on the edge)"""
+        xs = [self.around(self.nodes[k][0]) for k in edge]
+        if self.order == 1:  # the mean over the edge of N_a 2 pi x, twice
+            return [(k, (2 * mine + other) / 3, 0.0) for k, mine, other in zip(edge, xs, xs[::-1])]
+        return [(k, omega * x, t) for k, x, (t, omega) in zip(edge, xs, [(-1, 1 / 3), (0, 4 / 3), (1, 1 / 3)])]
 
     def _tangent(self, edge, t):
         dn = shapes(self.order, t)[1]
         return tuple(sum(d * self.nodes[k][c] for d, k in zip(dn, edge)) for c in (0, 1))
 
     def side_points(self, side):
-        """(x, y, weight) of rpc's rule for loads on a side."""
+        """((x, y), weight) of rpc's rule for loads on a side."""
         for edge in self.sides.get(side, []):
             for t, omega in GAUSS[self.order + 2]:
                 n = shapes(self.order, t)[0]
-                yield (sum(a * self.nodes[k][0] for a, k in zip(n, edge)), sum(a * self.nodes[k][1] for a, k in zip(n, edge)),
-                       omega * math.hypot(*self._tangent(edge, t)))
+                x, y = (sum(a * self.nodes[k][c] for a, k in zip(n, edge)) for c in (0, 1))
+                yield (x, y), omega * math.hypot(*self._tangent(edge, t)) * self.around(x)
 
     def body_points(self):
-        """(x, y, weight) of Simpson's rule over each bilinear cell's corners, middles and centre: exact for uniform forces on
+        """((x, y), weight) of Simpson's rule over each bilinear cell's corners, middles and centre: exact for uniform forces on
         straight cells."""
         p = self.order
         rule = [(-1, 1 / 3), (0, 4 / 3), (1, 1 / 3)]
@@ -115,7 +130,7 @@ class Grid:
                     dt = [b * (1 + a * s) / 4 for b in (-1, 1) for a in (-1, 1)]
                     dot = lambda f, c: sum(v * x[c] for v, x in zip(f, corner))
                     det = dot(ds, 0) * dot(dt, 1) - dot(ds, 1) * dot(dt, 0)
-                    yield dot(n, 0), dot(n, 1), ws * wt * det
+                    yield (dot(n, 0), dot(n, 1)), ws * wt * det * self.around(dot(n, 0))
 
     def elements(self):
         """(block, nodes in gmsh's order)"""
@@ -137,6 +152,21 @@ class Grid:
                         middles.append(at((place[a][0] + place[b][0]) // 2, (place[a][1] + place[b][1]) // 2))
                 yield self.block(i, j), [corners[c] for c in triangle] + middles
 
+    def smallest_cell(self):
+        """Shortest distance of two vertices of a cell that share an edge."""
+        return min(math.dist(self.nodes[nodes[a]], self.nodes[nodes[a - 1]])
+                   for _, nodes in self.elements() for a in range(3 if self.element[0] == "P" else 4))
+
+    def facets(self):
+        """(side, nodes in gmsh's order)"""
+        for side, edges in sorted(self.sides.items()):
+            for edge in edges:
+                yield side, [edge[0], edge[-1]] + edge[1:-1]
+
+    def msh_types(self):
+        """gmsh's numbers of facets and cells."""
+        return MSH_EDGE[self.order], MSH_TYPE[self.element]
+
 
 class Body:
     """Grids that share no node; each is a part of the body. Sides of one name belong together."""
@@ -148,9 +178,7 @@ class Body:
         return sum(len(grid.used_nodes()) for grid in self.parts)
 
     def smallest_cell(self):
-        """Shortest distance of two vertices of a cell that share an edge."""
-        return min(math.dist(grid.nodes[nodes[a]], grid.nodes[nodes[a - 1]])
-                   for grid in self.parts for _, nodes in grid.elements() for a in range(3 if grid.element[0] == "P" else 4))
+        return min(grid.smallest_cell() for grid in self.parts)
 
     def sides(self):
         return sorted({side for grid in self.parts for side in grid.sides})
@@ -159,24 +187,23 @@ class Body:
         """gmsh's format 2.2, coordinates times length."""
         blocks = sorted({block for grid in self.parts for block, _ in grid.elements()})
         sides = self.sides()
-        order = self.parts[0].order
+        dim = self.parts[0].dim
+        facet_type, cell_type = self.parts[0].msh_types()
         tag, nodes, elements = {}, [], []
         for g, grid in enumerate(self.parts):
             for k in grid.used_nodes():
                 tag[g, k] = len(nodes) + 1
                 nodes.append(grid.nodes[k])
         for g, grid in enumerate(self.parts):
-            for side, edges in sorted(grid.sides.items()):
-                for edge in edges:
-                    ends = [edge[0], edge[-1]] + edge[1:-1]
-                    elements.append(({1: 1, 2: 8}[order], sides.index(side) + 1, [tag[g, k] for k in ends]))
+            for side, facet in grid.facets():
+                elements.append((facet_type, sides.index(side) + 1, [tag[g, k] for k in facet]))
             for block, cell in grid.elements():
-                elements.append((MSH_TYPE[grid.element], len(sides) + blocks.index(block) + 1, [tag[g, k] for k in cell]))
+                elements.append((cell_type, len(sides) + blocks.index(block) + 1, [tag[g, k] for k in cell]))
         lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(sides) + len(blocks))]
-        lines += [f'1 {n + 1} "{name}"' for n, name in enumerate(sides)]
-        lines += [f'2 {len(sides) + n + 1} "{name}"' for n, name in enumerate(blocks)]
+        lines += [f'{dim - 1} {n + 1} "{name}"' for n, name in enumerate(sides)]
+        lines += [f'{dim} {len(sides) + n + 1} "{name}"' for n, name in enumerate(blocks)]
         lines += ["$EndPhysicalNames", "$Nodes", str(len(nodes))]
-        lines += [f"{n + 1} {x * length!r} {y * length!r} 0" for n, (x, y) in enumerate(nodes)]
+        lines += [" ".join([str(n + 1)] + [repr(x * length) for x in node] + ["0"] * (3 - dim)) for n, node in enumerate(nodes)]
         lines += ["$EndNodes", "$Elements", str(len(elements))]
         lines += [" ".join(map(str, [n + 1, kind, 2, group, group] + nodes)) for n, (kind, group, nodes) in enumerate(elements)]
         return "\n".join(lines + ["$EndElements", ""])

@@ -6,6 +6,7 @@ from xml.sax.saxutils import quoteattr
 from fields import Constant
 
 COMPONENTS = "XYZ"
+AXISYMMETRIC = "axisymmetric"
 # What a refusal's message must say, one of the alternatives.
 REASONS = {
     "limit": [["at most"]],
@@ -16,6 +17,20 @@ REASONS = {
     "pressed": [["presses"], ["yield stress"]],
 }
 MARGIN = 0.03  # of the limit load, on both sides: no scene comes closer
+MOST_MODES = 3  # free rigid motions of a part that `verdict` can judge
+
+
+def dot(a, b):
+    return sum(u * v for u, v in zip(a, b))
+
+
+def difference(a, b):
+    return tuple(u - v for u, v in zip(a, b))
+
+
+def unit(a):
+    size = math.hypot(*a)
+    return tuple(v / size for v in a)
 
 
 @dataclasses.dataclass
@@ -24,27 +39,29 @@ class ContactSide:
     xi: object  # Field [stress]
     gap: object = Constant(0.0)  # Field [length], without an obstacle
     normal: object = None  # None: rpc's default; "surface", "foundation", or a vector
-    obstacle: dict = None  # Type, and Point, Normal or Centre, Radius, Encloses Body
+    obstacle: dict = None  # Type, and Point, Normal or Centre, Radius, Encloses Body or Point, Axis, Radius, Encloses Body
 
-    def at(self, x, y, outward):
+    def at(self, point, outward):
         """Normal and gap of a node; None if the normal misses the obstacle."""
         if not self.obstacle:
-            return (self.normal if isinstance(self.normal, tuple) else outward), self.gap(x, y)
-        if self.obstacle["Type"] == "plane":
-            n = self.obstacle["Normal"]
-            size = math.hypot(*n)
-            n = (n[0] / size, n[1] / size)
-            nu = self._direction(outward, (-n[0], -n[1]))
-            p = self.obstacle["Point"]
-            return nu, ((x - p[0]) * n[0] + (y - p[1]) * n[1]) / -(nu[0] * n[0] + nu[1] * n[1])
-        c, radius = self.obstacle["Centre"], self.obstacle["Radius"]
-        sign = 1 if self.obstacle.get("Encloses Body") else -1
-        m = (x - c[0], y - c[1])
-        size = math.hypot(*m)
-        nu = self._direction(outward, (sign * m[0] / size, sign * m[1] / size))
-        along = m[0] * nu[0] + m[1] * nu[1]
-        within = along * along - m[0] ** 2 - m[1] ** 2 + radius * radius
-        return None if within < 0 else (nu, -along + sign * math.sqrt(within))
+            return (self.normal if isinstance(self.normal, tuple) else outward), self.gap(*point)
+        given = self.obstacle
+        if given["Type"] == "plane":
+            n = unit(given["Normal"])
+            nu = self._direction(outward, tuple(-v for v in n))
+            descent, height = -dot(nu, n), dot(difference(point, given["Point"]), n)
+            return (nu, height / descent) if descent > 1e-9 else None
+        sign = 1 if given.get("Encloses Body") else -1
+        axis = unit(given["Axis"]) if given["Type"] == "cylinder" else None
+        across = lambda v: difference(v, [dot(v, axis) * a for a in axis]) if axis else v
+        m = across(difference(point, given["Centre"] if "Centre" in given else given["Point"]))
+        nu = self._direction(outward, tuple(sign * v for v in unit(m)))
+        way = across(nu)
+        square, along, rest = dot(way, way), dot(m, way), dot(m, m) - given["Radius"] ** 2
+        within = along * along - square * rest
+        if square < 1e-18 or within < 0 or (sign < 0 < along and rest > 0):
+            return None
+        return nu, (sign * math.sqrt(within) - along) / square
 
     def _direction(self, outward, foundation):
         if self.normal == "surface":
@@ -64,11 +81,16 @@ class Scene:
     lengths: dict = dataclasses.field(default_factory=dict)  # mesh parameters that are lengths
     file: object = None  # f(length) -> text of Mesh->File
     dim: int = 2
+    kinematics: str = None  # of a plane mesh; None: rpc's default
     cell: float = 0.1  # size of the smallest cell, where there is no body
     expect: str = None  # "solution" or a key of REASONS where `body` is None
     applied: list = None  # resultant of the load, where known
     units: tuple = (1.0, 1.0)  # of length and stress
     exodus: bool = False
+
+    def load_power(self):
+        """Forces are stresses times this power of the length."""
+        return 2 if self.kinematics == AXISYMMETRIC else self.dim - 1
 
     def stiffest(self):
         return max([self.material["E"]] + [e for e, _ in self.material["blocks"].values()])
@@ -130,6 +152,8 @@ def deck(scene, mesh_file=None):
         material["Blocks"] = {name: {"Young's Modulus": e * stress, "Poisson's Ratio": nu}
                               for name, (e, nu) in scene.material["blocks"].items()}
     lists = {"Mesh": mesh, "Material": material}
+    if scene.kinematics:
+        lists["Kinematics"] = scene.kinematics
     lists["Dirichlet"] = {side: {c: _field(f, length, length) for c, f in components.items()}
                           for side, components in scene.dirichlet.items()}
     lists["Traction"] = {side: {c: _field(f, length, stress) for c, f in zip(COMPONENTS, fields)}
@@ -192,30 +216,39 @@ def _extreme_rays(points, dim):
 
 
 class _Part:
-    """A connected part of a body: its free rigid motions, (u, v, w) -> (u - w y, v + w x) in coordinates scaled by its size."""
+    """A connected part of a body: its free rigid motions, in coordinates scaled by its size: (u, v, w) -> (u - w y, v + w x) in the plane;
+    in space (t, r) -> t + r x (x, y, z)."""
 
     def __init__(self, scene, grid):
         self.scene, self.grid = scene, grid
-        used = grid.used_nodes()
-        lows = [min(grid.nodes[k][c] for k in used) for c in (0, 1)]
-        highs = [max(grid.nodes[k][c] for k in used) for c in (0, 1)]
+        places = [grid.nodes[k] for k in grid.used_nodes()]
+        lows, highs = [min(c) for c in zip(*places)], [max(c) for c in zip(*places)]
         self.centre, self.size = [(a + b) / 2 for a, b in zip(lows, highs)], math.dist(lows, highs) / 2
         rows, self.prescribed = [], {}
         for side, components in scene.dirichlet.items():
             for k in grid.side_nodes(side):
-                x, y = self.relative(*grid.nodes[k])
+                motion = self.motion(grid.nodes[k])
                 for component, field in components.items():
-                    rows.append([1, 0, -y] if component == "X" else [0, 1, x])
+                    rows.append(motion[COMPONENTS.index(component)])
                     self.prescribed.setdefault(k, {})[component] = field(*grid.nodes[k])
-        self.modes = _null_space(rows, 3)
+        if scene.kinematics == AXISYMMETRIC:  # a body of revolution moves along its axis only
+            rows += [[1, 0, 0], [0, 0, 1]]
+            for k, place in enumerate(grid.nodes):
+                if place[0] == 0:
+                    self.prescribed.setdefault(k, {})["X"] = 0.0
+        self.modes = _null_space(rows, 3 if scene.dim == 2 else 6)
 
-    def relative(self, x, y):
-        return (x - self.centre[0]) / self.size, (y - self.centre[1]) / self.size
+    def motion(self, point):
+        """Displacement at a point: for each component its factors of the motion's numbers."""
+        x = [v / self.size for v in difference(point, self.centre)]
+        if len(x) == 2:
+            return [[1, 0, -x[1]], [0, 1, x[0]]]
+        return [[1, 0, 0, 0, x[2], -x[1]], [0, 1, 0, -x[2], 0, x[0]], [0, 0, 1, x[1], -x[0], 0]]
 
-    def work(self, fx, fy, x, y):
-        """Of a force at (x, y) on each free motion."""
-        x, y = self.relative(x, y)
-        return [fx * m[0] + fy * m[1] + (fy * x - fx * y) * m[2] for m in self.modes]
+    def work(self, force, point):
+        """Of a force at a point on each free motion."""
+        motion = self.motion(point)
+        return [sum(f * dot(row, mode) for f, row in zip(force, motion)) for mode in self.modes]
 
     def contact(self):
         """([work of the normal on each motion], force that the foundation can bear) of nodes that can move along the normal;
@@ -223,33 +256,30 @@ class _Part:
         points, trouble = [], None
         for contact in self.scene.contact:
             nodes = self.grid.contact_nodes(contact.side)
-            facing = {k: contact.at(*self.grid.nodes[k], outward) for k, (_, outward) in nodes.items()}
+            facing = {k: contact.at(self.grid.nodes[k], outward) for k, (_, outward) in nodes.items()}
             if nodes and not any(facing.values()):
                 return [], "missed"
             largest = max((abs(gap) for _, gap in filter(None, facing.values())), default=0)
             for k, (w, _) in nodes.items():
                 if not facing[k]:
                     continue
-                x, y = self.grid.nodes[k]
+                place = self.grid.nodes[k]
                 nu, gap = facing[k]
                 fixed = self.prescribed.get(k, {})
-                if math.hypot(*(0 if c in fixed else v for c, v in zip("XY", nu))) > 1e-9:
-                    points.append((self.work(*nu, x, y), w * contact.xi(x, y)))
+                if math.hypot(*(0 if c in fixed else v for c, v in zip(COMPONENTS, nu))) > 1e-9:
+                    points.append((self.work(nu, place), w * contact.xi(*place)))
                     continue
-                v = sum(fixed.get(c, 0) * n for c, n in zip("XY", nu)) - gap
+                v = sum(fixed.get(c, 0) * n for c, n in zip(COMPONENTS, nu)) - gap
                 scale = max([abs(gap)] + [abs(u) for u in fixed.values()])
-                if v > 1e-13 * scale and math.isinf(contact.xi(x, y)):  # far out on a bump the gap may be 1e-88: too close to call
+                if v > 1e-13 * scale and math.isinf(contact.xi(*place)):  # far out on a bump the gap may be 1e-88: too close to call
                     trouble = "pressed" if v > 1e-6 * max(scale, largest) or trouble == "pressed" else "close"
         return points, trouble
 
     def load(self):
         """Work of the load on each motion, and the sum of its forces' sizes."""
-        forces = [(w * f[0](x, y), w * f[1](x, y), x, y) for side, f in self.scene.traction.items()
-                  for x, y, w in self.grid.side_points(side)]
-        if self.scene.body_force:
-            forces += [(w * self.scene.body_force[0], w * self.scene.body_force[1], x, y) for x, y, w in self.grid.body_points()]
+        forces = _applied_forces(self.scene, self.grid)
         works = [self.work(*force) for force in forces]
-        return [sum(w[m] for w in works) for m in range(len(self.modes))], sum(math.hypot(*f[:2]) for f in forces)
+        return [sum(w[m] for w in works) for m in range(len(self.modes))], sum(math.hypot(*f) for f, _ in forces)
 
     def verdict(self):
         """J is bounded below and grows in all directions if and only if for each free motion d
@@ -259,6 +289,8 @@ class _Part:
             return "pressed" if trouble == "pressed" else None
         if not self.modes:
             return "solution"
+        if len(self.modes) > MOST_MODES:
+            return None
         if _null_space([a for a, _ in points], len(self.modes)):
             return "mode"
         load, total = self.load()
@@ -266,9 +298,8 @@ class _Part:
         return next((v for v in (None, "lifted", "mode", "limit", "tilted") if v in verdicts), "solution")
 
     def _verdict_of_ray(self, d, points, load, total):
-        dot = lambda a: sum(u * v for u, v in zip(a, d))
-        held = sum(c * dot(a) for a, c in points if dot(a) > 1e-9)
-        pull = dot(load)
+        held = sum(c * dot(a, d) for a, c in points if dot(a, d) > 1e-9)
+        pull = dot(load, d)
         if held == 0:
             if abs(pull) <= 1e-9 * total:
                 return "mode"
@@ -293,15 +324,23 @@ def verdict(scene):
     return "part" if len(verdicts) > 1 and bad[0] in ("mode", "lifted", "tilted") and len(bad) < len(verdicts) else bad[0]
 
 
+def _applied_forces(scene, grid):
+    """[force, point] of all quadrature points."""
+    forces = [([w * f(*point) for f in fields], point) for side, fields in scene.traction.items() for point, w in grid.side_points(side)]
+    return forces + [([w * f for f in scene.body_force], point) for point, w in (grid.body_points() if scene.body_force else [])]
+
+
 def applied_resultant(scene):
-    """Of tractions and body forces, in base units; None where it is not known."""
+    """Of tractions and body forces, in base units, along the axis only of an axisymmetric body; None where it is not known."""
     if scene.body is None:
         return scene.applied
-    total = [0.0, 0.0]
-    for grid in scene.body.parts:
-        for side, fields in scene.traction.items():
-            for x, y, w in grid.side_points(side):
-                total = [total[0] + w * fields[0](x, y), total[1] + w * fields[1](x, y)]
-        for x, y, w in grid.body_points() if scene.body_force else []:
-            total = [total[0] + w * scene.body_force[0], total[1] + w * scene.body_force[1]]
-    return total
+    forces = [force for grid in scene.body.parts for force, _ in _applied_forces(scene, grid)]
+    total = [sum(force[c] for force in forces) for c in range(scene.dim)]
+    return [0.0, total[1]] if scene.kinematics == AXISYMMETRIC else total
+
+
+def radial_size(scene):
+    """Sum of the sizes of the radial loads of an axisymmetric body, which its resultant does not show, in base units; else 0."""
+    if scene.body is None or scene.kinematics != AXISYMMETRIC:
+        return 0.0
+    return sum(abs(force[0]) for grid in scene.body.parts for force, _ in _applied_forces(scene, grid))

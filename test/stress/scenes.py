@@ -6,7 +6,8 @@ Scene K comes from the seed and K alone. A scene that has a solution must exit 0
 at most 40 Newton steps (60 in the families of test/families), and its files must hold finite numbers, pressures in [0, xi] and
 forces that balance. One without must exit 5 with one message that gives the reason. Which is which is known from the data (scene.py). Where |K||u|, rounded, is above
 1e-8 of the load, no program in double precision can tell, and residuals up to that rounding pass: the column `rounding` counts
-those scenes. The exit code is 1 if a scene failed. --keep=DIR keeps the folders of failed scenes, and of --only.
+those scenes. Every 20 scenes a line on standard error says how many are done; interrupted (SIGINT, SIGTERM), the report is of these. The exit
+code is 1 if a scene failed or was not run. --keep=DIR keeps the folders of failed scenes, and of --only.
 """
 import argparse
 import concurrent.futures
@@ -30,15 +31,18 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "families")
 
 import families  # noqa: E402, after its folder
 import generate  # noqa: E402
-from scene import REASONS, applied_resultant, deck  # noqa: E402
+import space  # noqa: E402
+from scene import REASONS, applied_resultant, deck, radial_size  # noqa: E402
 
 TIME_LIMIT = 120  # [s]
 TOLERANCE = 1e-8  # on each certificate
 CERTIFICATES = ["kkt_residual", "equilibrium_residual", "energy_balance", "duality_gap"]
 MOST_NEWTON, MOST_IN_FAMILIES = 40, 60
+EACH = 20  # scenes from one line of progress to the next
 LARGER = 0.2  # of the scenes of test/families: meshes of their size "middle"
 ZONES = (50, 150, 500, math.inf)  # contact points
 BALANCE = 1e-6  # forces, relative to the largest of them
+UNLOADED = 1e-4  # of the stresses within a cell: the largest force at least where nothing acts on a body
 NULLABLE = {"multiplier_change"}
 os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT", "1")  # Open MPI refuses root, as in a container, unless told twice
 os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
@@ -50,8 +54,8 @@ def family_scene(name):
     return lambda rng: families.scene(name, rng, "middle" if rng.random() < LARGER else "small")
 
 
-FAMILIES = {**generate.FAMILIES, **{name: family_scene(name) for name in families.FAMILIES}}
-assert len(FAMILIES) == len(generate.FAMILIES) + len(families.FAMILIES), "two families of one name"
+FAMILIES = {**generate.FAMILIES, **{name: family_scene(name) for name in families.FAMILIES}, **space.FAMILIES}
+assert len(FAMILIES) == len(generate.FAMILIES) + len(families.FAMILIES) + len(space.FAMILIES), "two families of one name"
 
 
 @dataclasses.dataclass
@@ -111,14 +115,20 @@ def contact_rows(folder):
         return [{k: v if k in ("state", "side") else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
 
 
-def rounding(scene, summary, rows):
-    """What rounding of u leaves of equilibrium: eps |K||u| over the load, in the terms of one cell."""
+def stress_of_cell(scene, rows):
+    """E u over the size of a cell [Pa]: what K takes together to get the stresses."""
     length, stress = scene.units
     cell = (scene.body.smallest_cell() if scene.body else scene.cell) * length
     u = max([abs(row["u_nu"]) for row in rows] + [abs(row["gap"]) for row in rows if row["pressure"] > 0]
             + [abs(f(x, 0)) * length for c in scene.dirichlet.values() for f in c.values() for x in (0, 0.5, 1)])
+    return scene.stiffest() * stress * u / cell
+
+
+def rounding(scene, summary, rows):
+    """What rounding of u leaves of equilibrium: eps |K||u| over the load, in the terms of one cell."""
+    stress = scene.units[1]
     load = max([summary["max_pressure"]] + [abs(f(x, 0)) * stress for fs in scene.traction.values() for f in fs for x in (0, 0.5, 1)])
-    return 4 * 2.0 ** -53 * scene.stiffest() * stress * scene.softening() * u / cell / load if load > 0 else 0.0
+    return 4 * 2.0 ** -53 * scene.softening() * stress_of_cell(scene, rows) / load if load > 0 else 0.0
 
 
 def check_solution(scene, folder, outcome, code, stdout, stderr):
@@ -163,17 +173,20 @@ def check_numbers(scene, summary, rows, floor, complain):
     applied = None if unknown_load(scene) else applied_resultant(scene)
     if applied is None:
         return
+    unit = stress * length ** scene.load_power()
     forces = list(summary["reaction_force"].values()) + [summary["contact_force"]]
-    forces.append([a * stress * length ** (scene.dim - 1) for a in applied])
+    forces.append([a * unit for a in applied])
     rest = math.hypot(*(sum(force[c] for force in forces) for c in range(scene.dim)))
-    scale = max(math.hypot(*force) for force in forces)
+    scale = max([math.hypot(*force) for force in forces] + [radial_size(scene) * unit])
+    if not (scene.traction or scene.body_force or summary["max_pressure"]):  # moved without a touch: forces are what the solver leaves
+        scale = max(scale, UNLOADED * stress_of_cell(scene, rows) * unit / stress)
     if not rest <= max(BALANCE, 100 * floor) * scale:
         complain(f"forces do not balance: {rest:.3g} is left of {scale:.3g}")
 
 
 def unknown_load(scene):
-    """Body forces on curved cells are integrated by another rule here."""
-    return bool(scene.body_force and scene.body and scene.file and scene.body.parts[0].order == 2)
+    """Body forces on curved cells in the plane are integrated by another rule here."""
+    return bool(scene.body_force and scene.dim == 2 and scene.body and scene.file and scene.body.parts[0].order == 2)
 
 
 def check_refusal(verdict, outcome, code, stderr):
@@ -250,9 +263,14 @@ def rerun(options, outcome):
     return f"{sys.argv[0]} --rpc={options.rpc} --seed={options.seed} --only={outcome.number} --keep=DIR"
 
 
-def report(options, outcomes):
+def progress(outcomes, asked, start):
+    failed = sum(1 for o in outcomes if o.complaints)
+    print(f"{len(outcomes)} of {asked} scenes, {failed} failed, {(time.monotonic() - start) / 60:.1f} min", file=sys.stderr, flush=True)
+
+
+def report(options, outcomes, asked):
     failed = [o for o in outcomes if o.complaints]
-    print(f"\nseed {options.seed}, {len(outcomes)} scenes\n\n{table(outcomes)}\n\n{zone_table(outcomes)}\n")
+    print(f"\nseed {options.seed}, {len(outcomes)} of {asked} scenes\n\n{table(outcomes)}\n\n{zone_table(outcomes)}\n")
     for o in failed:
         print(f"FAILED {o.number} {o.family}: {'; '.join(o.complaints)}")
     if failed:
@@ -261,8 +279,9 @@ def report(options, outcomes):
     for what, key in [("Newton steps", "newton"), ("CG iterations", "cg"), ("seconds", "seconds")]:
         worst = sorted(solved, key=lambda o: -getattr(o, key))[:3]
         print(f"most {what}: " + ", ".join(f"{getattr(o, key):.4g} ({o.family}, --only={o.number})" for o in worst))
-    print(f"\n{len(failed)} of {len(outcomes)} scenes failed")
-    return 1 if failed else 0
+    stopped = "" if len(outcomes) == asked else f"; stopped after {len(outcomes)} of {asked}"
+    print(f"\n{len(failed)} of {len(outcomes)} scenes failed{stopped}")
+    return 1 if failed or stopped else 0
 
 
 def chosen(options):
@@ -271,6 +290,24 @@ def chosen(options):
     numbers_ = range(options.first, options.first + options.scenes)
     names = list(FAMILIES)
     return [k for k in numbers_ if not options.family or names[k % len(names)] in options.family.split(",")]
+
+
+def judge_all(options, numbers_):
+    """Outcomes of scenes in order: all of them, or those until the run is interrupted."""
+    outcomes, start = [], time.monotonic()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    pool = concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs)
+    try:
+        for outcome in pool.map(lambda number: judge(options, number), numbers_):
+            outcomes.append(outcome)
+            if outcome.complaints:
+                print(f"{outcome.number} {outcome.family}: {'; '.join(outcome.complaints)}", file=sys.stderr, flush=True)
+            if len(outcomes) % EACH == 0:
+                progress(outcomes, len(numbers_), start)
+    except KeyboardInterrupt:
+        print("interrupted: scenes that run come to their end", file=sys.stderr, flush=True)
+    pool.shutdown(cancel_futures=True)
+    return outcomes
 
 
 def main():
@@ -288,13 +325,8 @@ def main():
     options = parser.parse_args()
     options.rpc = os.path.abspath(options.rpc)
     print(f"seed {options.seed}", flush=True)
-    outcomes = []
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for outcome in pool.map(lambda number: judge(options, number), chosen(options)):
-            outcomes.append(outcome)
-            if outcome.complaints:
-                print(f"{outcome.number} {outcome.family}: {'; '.join(outcome.complaints)}", file=sys.stderr, flush=True)
-    return report(options, outcomes)
+    numbers_ = chosen(options)
+    return report(options, judge_all(options, numbers_), len(numbers_))
 
 
 if __name__ == "__main__":
