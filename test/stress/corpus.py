@@ -4,6 +4,10 @@ import dataclasses
 import pathlib
 import re
 
+from plane import Body
+from solid import Bricks
+from space import cap
+
 # One deck with a bit of everything that a deck may hold.
 FULL = """<ParameterList name="full">
   <ParameterList name="Mesh">
@@ -112,6 +116,86 @@ SOLID = """<ParameterList name="solid">
 """
 
 
+# What only bodies in space may hold: curved cells, a ball and a rod as obstacles.
+CURVED = """<ParameterList name="curved">
+  <ParameterList name="Mesh">
+    <Parameter name="Type" type="string" value="gmsh"/>
+    <Parameter name="File" type="string" value="MESH"/>
+  </ParameterList>
+  <ParameterList name="Material">
+    <Parameter name="Young's Modulus" type="double" value="1000"/>
+    <Parameter name="Poisson's Ratio" type="double" value="0.45"/>
+    <ParameterList name="Blocks">
+      <ParameterList name="body"><Parameter name="Dilatation" type="string" value="projected"/></ParameterList>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Dirichlet">
+    <ParameterList name="top">
+      <Parameter name="X" type="double" value="0"/>
+      <Parameter name="Y" type="string" value="-0.02 - 0.001*x*z"/>
+      <Parameter name="Z" type="double" value="0"/>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Traction">
+    <ParameterList name="front"><Parameter name="Z" type="string" value="-y"/></ParameterList>
+  </ParameterList>
+  <ParameterList name="Contact">
+    <Parameter name="Side" type="string" value="bottom"/>
+    <Parameter name="Yield Stress" type="string" value="60 + 10*z"/>
+    <ParameterList name="Obstacle">
+      <Parameter name="Type" type="string" value="sphere"/>
+      <Parameter name="Centre" type="Array(double)" value="{0.5, 5, 0.5}"/>
+      <Parameter name="Radius" type="double" value="5"/>
+      <Parameter name="Encloses Body" type="bool" value="true"/>
+    </ParameterList>
+    <ParameterList name="Sides">
+      <ParameterList name="right">
+        <Parameter name="Normal" type="string" value="1, 0, 0"/>
+        <ParameterList name="Obstacle">
+          <Parameter name="Type" type="string" value="cylinder"/>
+          <Parameter name="Point" type="Array(double)" value="{3, 0.5, 0}"/>
+          <Parameter name="Axis" type="Array(double)" value="{0, 0.1, 1}"/>
+          <Parameter name="Radius" type="double" value="1.99"/>
+        </ParameterList>
+      </ParameterList>
+    </ParameterList>
+  </ParameterList>
+  <ParameterList name="Adapt"><Parameter name="Estimate Error" type="bool" value="true"/></ParameterList>
+</ParameterList>
+"""
+
+TUBE = """<ParameterList name="tube">
+  <Parameter name="Kinematics" type="string" value="axisymmetric"/>
+  <ParameterList name="Mesh">
+    <Parameter name="Lower" type="Array(double)" value="{1, 0}"/>
+    <Parameter name="Upper" type="Array(double)" value="{2, 1}"/>
+    <Parameter name="Cells" type="Array(int)" value="{6, 4}"/>
+    <Parameter name="Element" type="string" value="Q2"/>
+  </ParameterList>
+  <ParameterList name="Dirichlet">
+    <ParameterList name="bottom"><Parameter name="Y" type="double" value="0"/></ParameterList>
+  </ParameterList>
+  <ParameterList name="Traction">
+    <ParameterList name="left"><Parameter name="X" type="string" value="0.01*(1 + y)"/></ParameterList>
+  </ParameterList>
+  <ParameterList name="Contact">
+    <Parameter name="Side" type="string" value="right"/>
+    <Parameter name="Gap" type="string" value="0.001*y"/>
+    <Parameter name="Yield Stress" type="double" value="0.005"/>
+    <ParameterList name="Sides">
+      <ParameterList name="top">
+        <ParameterList name="Obstacle">
+          <Parameter name="Type" type="string" value="plane"/>
+          <Parameter name="Point" type="Array(double)" value="{0, 1}"/>
+          <Parameter name="Normal" type="Array(double)" value="{0.01, -1}"/>
+        </ParameterList>
+      </ParameterList>
+    </ParameterList>
+  </ParameterList>
+</ParameterList>
+"""
+
+
 @dataclasses.dataclass(frozen=True)
 class Scene:
     deck: str
@@ -139,6 +223,9 @@ def scenes(source):
 
     beam = replaced(beam, (r"\{160, 32\}", "{10, 2}"))
     cube = replaced(beam, (r"\{0, 0\}", "{0, 0, 0}"), (r"\{5, 1\}", "{5, 1, 1}"), (r"\{10, 2\}", "{5, 2, 2}"))
+    sparse = r'\g<0>\n    <Parameter name="Size Factor" type="double" value="25"/>'
+    solid = replaced((source / "input/block.xml").read_text(), (r"\{12, 12, 6\}", "{2, 3, 2}"))
+    ball, revolved = ((source / f"input/{name}.xml").read_text() for name in ("ball", "ball_axisymmetric"))
     mesh_decks = {"sector": SECTOR, "octant": replaced(SOLID, ("HELD", "flat"), ("CONTACT", "sphere")),
                   "bricks": replaced(SOLID, ("HELD", "held"), ("CONTACT", "contact"))}
     texts = {
@@ -152,9 +239,21 @@ def scenes(source):
         "layers.xml": [layers, decks / "layers.geo"],
         "quads.xml": [replaced(layers, (r"layers\.geo", "layers_quads.geo")), decks / "layers_quads.geo"],
         "full.xml": [FULL, decks / "layers.geo"],
+        "solid_block.xml": [solid],
+        "tetrahedra.xml": [replaced(solid, ("Q2", "P2"))],
+        "ball.xml": [replaced(ball, (r"<Parameter name=\"File\".*/>", sparse)), source / "input/ball.geo"],
+        "ball_cut.xml": [replaced(ball, (r"<Parameter name=\"File\".*/>", sparse), (r"ball\.geo", "ball_cut.geo")),
+                         ("ball_cut.geo", (source / "input/ball.geo").read_text() + "Mesh.SubdivisionAlgorithm = 2;\nMesh.ElementOrder = 1;\n")],
+        "ball_axisymmetric.xml": [replaced(revolved, (r"<Parameter name=\"File\".*/>", sparse)), source / "input/ball_axisymmetric.geo"],
+        "tube.xml": [TUBE],
+        "sheet.xml": [replaced(beam, (r"<ParameterList name=\"Mesh\">", r'<Parameter name="Kinematics" type="string" value="plane stress"/>\n\g<0>'))],
     }
+    for element in ("P1", "Q1", "P2", "Q2"):
+        name = f"curved_{element}.msh"
+        body = Body(Bricks((2, 2, 2) if element[1] == "2" else (3, 2, 3), element, cap(1.2, 1.0, 1.0)))
+        texts[f"curved_{element}.xml"] = [CURVED.replace("MESH", name), (name, body.msh(1.0))]
     for mesh in sorted([*data.glob("*.msh"), *data.glob("*.geo")]):
         name = f"{mesh.stem}_geo.xml" if mesh.suffix == ".geo" else f"{mesh.stem}.xml"
         texts[name] = [mesh_decks[mesh.name.partition("_")[0].partition(".")[0]].replace("MESH", mesh.name), mesh]
-    return {name: Scene(name, {name: text.encode(), **{path.name: path.read_bytes() for path in paths}})
-            for name, (text, *paths) in texts.items()}
+    file = lambda given: (given.name, given.read_bytes()) if isinstance(given, pathlib.Path) else (given[0], given[1].encode())
+    return {name: Scene(name, {name: text.encode(), **dict(map(file, files))}) for name, (text, *files) in texts.items()}

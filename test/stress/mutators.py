@@ -23,6 +23,30 @@ STRINGS = [b"", b" ", b"\xff\xfe", b"\x01\x02\x1b[31m", b"a" * 33, b"b" * 300, b
            b"{1e308, -1e308}", b"{{0}}", b"true", b"no"]
 
 
+OBSTACLES = [f'<ParameterList name="Obstacle">{"".join(given)}</ParameterList>'.encode() for given in [
+    ['<Parameter name="Type" type="string" value="sphere"/>', '<Parameter name="Radius" type="double" value="1"/>'],
+    ['<Parameter name="Type" type="string" value="sphere"/>', '<Parameter name="Centre" type="Array(double)" value="{0.5, 0.5, 0.5}"/>',
+     '<Parameter name="Radius" type="double" value="0.3"/>'],
+    ['<Parameter name="Type" type="string" value="sphere"/>', '<Parameter name="Centre" type="Array(double)" value="{0, 0, 0}"/>',
+     '<Parameter name="Radius" type="double" value="1e-9"/>', '<Parameter name="Encloses Body" type="bool" value="true"/>'],
+    ['<Parameter name="Type" type="string" value="sphere"/>', '<Parameter name="Centre" type="Array(double)" value="{0, -1e6}"/>',
+     '<Parameter name="Radius" type="double" value="1e6"/>'],
+    ['<Parameter name="Type" type="string" value="cylinder"/>', '<Parameter name="Point" type="Array(double)" value="{0, -2, 0}"/>',
+     '<Parameter name="Axis" type="Array(double)" value="{0, 0, 0}"/>', '<Parameter name="Radius" type="double" value="2"/>'],
+    ['<Parameter name="Type" type="string" value="cylinder"/>', '<Parameter name="Point" type="Array(double)" value="{0.5, 0, 0.5}"/>',
+     '<Parameter name="Axis" type="Array(double)" value="{0, 1, 0}"/>', '<Parameter name="Radius" type="double" value="3"/>'],
+    ['<Parameter name="Type" type="string" value="cylinder"/>', '<Parameter name="Point" type="Array(double)" value="{0.5, -2, 0.5}"/>',
+     '<Parameter name="Axis" type="Array(double)" value="{1, 0, 1e-300}"/>', '<Parameter name="Radius" type="double" value="2"/>'],
+    ['<Parameter name="Type" type="string" value="plane"/>', '<Parameter name="Point" type="Array(double)" value="{0, 0, 0}"/>',
+     '<Parameter name="Normal" type="Array(double)" value="{0, -1, 0}"/>'],
+    ['<Parameter name="Type" type="string" value="plane"/>', '<Parameter name="Point" type="Array(double)" value="{0, 0, 0}"/>',
+     '<Parameter name="Normal" type="Array(double)" value="{1, 0, 0}"/>'],
+]]
+KINEMATICS = [b"axisymmetric", b"plane stress", b"plane strain", b"spherical", b""]
+# gmsh's number of each kind of cell or facet: its nodes. Among them what rpc refuses: prisms, pyramids, 20-node hexahedra.
+MSH_NODES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 12: 27, 13: 18, 14: 14, 15: 1, 16: 8, 17: 20, 18: 15, 19: 13, 29: 20}
+
+
 def replace_at(data, match, piece, group=0):
     return data[:match.start(group)] + piece + data[match.end(group):]
 
@@ -141,6 +165,21 @@ def xml_extreme(rng, data, pool):
     return replace_at(data, match, number(rng, match[2], pool), 2)
 
 
+def xml_obstacle(rng, data, pool):
+    """Another foundation, of the wrong dimension perhaps, within the body, without a normal, or one that the body does not face."""
+    match = pick(rng, re.compile(rb'<ParameterList name="Obstacle">.*?</ParameterList>', re.DOTALL), data)
+    if match:
+        return replace_at(data, match, rng.choice(OBSTACLES))
+    begin = data.find(b'<ParameterList name="Contact">')
+    return data if begin < 0 else data[:begin + 30] + rng.choice(OBSTACLES) + data[begin + 30:]
+
+
+def xml_kinematics(rng, data, pool):
+    begin = data.find(b"<ParameterList name=\"Mesh\">")
+    given = b'<Parameter name="Kinematics" type="string" value="' + rng.choice(KINEMATICS) + b'"/>\n'
+    return data if begin < 0 else data[:begin] + given + data[begin:]
+
+
 def subtrees(data):
     """(begin, end) of every element, with the blanks before it."""
     found, open_lists = [], []
@@ -248,6 +287,75 @@ def msh_coordinate(rng, data, pool):
     return data[:begin] + number(rng, data[begin:end], pool) + data[end:]
 
 
+def msh_elements(data):
+    """(begin, end, words, place of its first node) of the elements of an ASCII file of version 2.2."""
+    found = []
+    for begin, end in msh_rows(data, b"Elements") if b"2.2 0 8" in data else []:
+        words = data[begin:end].split()
+        if len(words) > 3 and words[2].isdigit() and 3 + int(words[2]) < len(words):
+            found.append((begin, end, words, 3 + int(words[2])))
+    return found
+
+
+def with_row(data, begin, end, words):
+    return data[:begin] + b" ".join(words) + b"\n" + data[end:]
+
+
+def msh_kind(rng, data, pool):
+    """A cell or facet of another kind, with as many nodes as that has, and at times of a kind that does not fit its nodes."""
+    elements = msh_elements(data)
+    if not elements:
+        return msh_node_number(rng, data, pool)
+    begin, end, words, first = rng.choice(elements)
+    kind = rng.choice(list(MSH_NODES))
+    nodes = words[first:]
+    if rng.random() < 0.8:
+        nodes = [nodes[k % len(nodes)] for k in range(MSH_NODES[kind])]
+    return with_row(data, begin, end, [words[0], b"%d" % kind] + words[2:first] + nodes)
+
+
+def msh_turned(rng, data, pool):
+    """The nodes of some elements in the opposite order: of a facet no fault, of a cell one."""
+    for _ in range(rng.choice([1, 1, 5])):
+        elements = msh_elements(data)
+        if not elements:
+            return msh_inverted(rng, data, pool)
+        begin, end, words, first = rng.choice(elements)
+        data = with_row(data, begin, end, words[:first] + words[first:][::-1])
+    return data
+
+
+def msh_inside(rng, data, pool):
+    """The nodes of another element for a facet: one that lies inside of the body, or belongs to no cell, or stands there twice."""
+    elements = msh_elements(data)
+    if not elements:
+        return msh_extra(rng, data, pool)
+    (begin, end, words, first), (_, _, other, start) = elements[rng.randrange(max(1, len(elements) // 2))], rng.choice(elements)
+    nodes = rng.sample(other[start:], min(len(words), len(other)) - first) if rng.random() < 0.5 else other[start:start + len(words) - first]
+    return with_row(data, begin, end, words[:first] + nodes)
+
+
+def msh_places(rng, data, pool):
+    """Coordinates of many nodes: mirrored, moved, flattened, or the last nodes of a cell, its middle ones, moved on their own."""
+    rows = msh_rows(data, b"Nodes") if b"2.2 0 8" in data else []
+    rows = [(begin, end) for begin, end in rows if len(data[begin:end].split()) == 4]
+    if not rows:
+        return msh_coordinate(rng, data, pool)
+    places = {words[0]: [float(word) for word in words[1:]] for words in (data[begin:end].split() for begin, end in rows)}
+    kind, c = rng.choice(["mirror", "move", "flatten", "middle", "middle", "far"]), rng.randrange(3)
+    chosen = list(places)
+    if kind == "middle":
+        elements = msh_elements(data)
+        _, _, words, first = rng.choice(elements)
+        chosen = [node for node in words[max(first, len(words) - rng.randint(1, 4)):] if node in places]
+    for node in chosen:
+        place = places[node]
+        place[c] = {"mirror": -place[c], "move": place[c] - 0.5, "flatten": 0.0, "middle": place[c] + rng.uniform(-0.4, 0.4),
+                    "far": place[c] + 1e9}[kind]
+    text = b"".join(node + b" " + b" ".join(repr(v).encode() for v in place) + b"\n" for node, place in places.items())
+    return data[:rows[0][0]] + text + data[rows[-1][1]:]
+
+
 def msh_byte_order(rng, data, pool):
     """All words of the sections turned around, as another kind of machine writes them."""
     one = data.find(struct.pack("<i", 1), data.find(b"$MeshFormat"))
@@ -269,9 +377,10 @@ ANY = {"flip": flip_bytes, "insert": insert_bytes, "delete": delete_bytes, "trun
        "number": number, "token": token}
 DECK = {"xml type": xml_type, "xml string": xml_string, "xml value": xml_value, "xml name": xml_name,
         "xml expression": xml_expression, "xml cells": xml_cells, "xml extreme": xml_extreme, "xml subtree": xml_subtree,
-        "xml nested": xml_nested}
+        "xml nested": xml_nested, "xml obstacle": xml_obstacle, "xml kinematics": xml_kinematics}
 MSH = {"msh node number": msh_node_number, "msh inverted": msh_inverted, "msh extra": msh_extra,
-       "msh coordinate": msh_coordinate, "msh byte order": msh_byte_order}
+       "msh coordinate": msh_coordinate, "msh byte order": msh_byte_order, "msh kind": msh_kind, "msh turned": msh_turned,
+       "msh inside": msh_inside, "msh places": msh_places}
 # gmsh's language can start programs: only words of the corpus in new places, and no new ones.
 GEO = {"geo lines": lines, "geo number": number, "geo token": token, "geo truncate": truncate}
 
@@ -282,7 +391,7 @@ def kinds_for(name):
         return {kind: 2 for kind in GEO} | {"geo number": 4}
     weights = {kind: 2 for kind in ANY} | {"empty": 0.5, "missing": 0.5, "folder": 0.5}
     own = MSH if name.endswith(".msh") else DECK if name.endswith(".xml") else {"xml cells": xml_cells}
-    return weights | {kind: 5 for kind in own} | ({"xml extreme": 12, "xml nested": 1} if own is DECK else {})
+    return weights | {kind: 5 for kind in own} | ({"xml extreme": 12, "xml nested": 1, "xml kinematics": 2} if own is DECK else {})
 
 
 ALL = ANY | DECK | MSH | GEO
