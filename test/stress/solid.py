@@ -189,12 +189,15 @@ class Bricks:
             yield self._facet_nodes(corners), [sum(c) / len(places) for c in zip(*places)]
 
     def contact_nodes(self, side):
-        """{node: (weight, unit normal)} of nodal quadrature (2.7); nodes without weight are left out."""
+        """{node: (weight, unit normal)} of nodal quadrature (2.7), on linear quadrilaterals int N_a; nodes without weight are left out."""
+        places = [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0)]
         if self.simplex:
             rule = [(k + (3 if self.order == 2 else 0), at, 1 / 6) for k, at in enumerate(THIRD[self.order])]
+        elif self.order == 1:
+            rule = [(a, (s, t), ws * wt * (1 + p * s) * (1 + q * t) / 4) for a, (p, q) in enumerate(places[:4])
+                    for s, ws in GAUSS[3] for t, wt in GAUSS[3]]
         else:
-            line = {1: [(-1, 1.0), (1, 1.0)], 2: [(-1, 1 / 3), (0, 4 / 3), (1, 1 / 3)]}[self.order]
-            places = [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0)]
+            line = [(-1, 1 / 3), (0, 4 / 3), (1, 1 / 3)]
             rule = [(places.index((s, t)), (s, t), ws * wt) for s, ws in line for t, wt in line]
         sums = {}
         for nodes, inside in self._facets_of(side):

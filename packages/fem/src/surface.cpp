@@ -40,11 +40,14 @@ FacetPoints facet_points(const Discretization &d, const mesh::Side &side, const 
   return {d.mesh->coords, side.facets, table.value, table.gradient, table.weight, d.axisymmetric()};
 }
 
-/// The rule of nodal quadrature: Gauss-Lobatto's, whose points are the nodes. With the factor r its two points would leave
-/// out the axis, and not meet a constant pressure: then int N_a itself, for which facet's rule is exact.        (2.7a)
+/// The rule of nodal quadrature: one whose points are the nodes, or that of int N_a where this would not meet a constant pressure: with
+/// order 1 in axisymmetry, where Lobatto's points would also leave out the axis, and on quadrilaterals that are no parallelograms. (2.7a)
 const BasisTable &nodal_rule(const Discretization &d)
 {
-  return d.axisymmetric() && d.mesh->element.order == 1 ? d.reference.facet : d.reference.facet_nodal;
+  const mesh::Element facet = d.mesh->element.facet();
+  const bool varies =
+      d.axisymmetric() || (facet.dim == 2 && facet.shape == mesh::Shape::tensor); // the area along a facet
+  return varies && facet.order == 1 ? d.reference.facet : d.reference.facet_nodal;
 }
 
 /// A weight that is less of the facets' areas is rounding: the node has none.

@@ -1,6 +1,7 @@
 #include "rpc/fem/surface.hpp"
 
 #include "bodies.hpp"
+#include "rpc/fem/elasticity.hpp"
 
 #include <set>
 
@@ -92,6 +93,26 @@ TEST(SurfaceNodes, WeightsArePositiveOnTheSideAloneAndSumToItsArea)
       const bool quadratic_triangles = element == mesh::Element{3, 2, mesh::Shape::simplex};
       EXPECT_EQ(without, quadratic_triangles ? vertices : 0);
     }
+  }
+}
+
+TEST(SurfaceNodes, WeightsAreTheForcesOfAUniformPressureOnFacetsOfAnyShape)
+{
+  for (const auto &element : elements()) {
+    if (element == mesh::Element{3, 2, mesh::Shape::simplex}) continue; // curved by the map
+    SCOPED_TRACE(text_of(element));
+    const auto d = body(small_box(element), world(), [](const Point &x) {
+      return Point{x[0] * (1 + 0.5 * x[2]), x[1], x[2] * (1 + 0.3 * x[0])}; // straight edges, no parallelograms
+    });
+    Vector load(d.owned_dofs);
+    fem::add_traction(d, d.mesh->side("bottom", "test"), {ScalarField(0), ScalarField(1), ScalarField(0)}, "test",
+                      load);
+    const auto force = load.getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto all = weights_and_normals(d, "bottom");
+    std::vector<double> weight;
+    for (std::size_t k = 0; k < all.size(); k += d.dim() + 1) weight.push_back(all[k]);
+    EXPECT_LT(difference(weight, by_node_id(*d.mesh, 1, [&](const LO n, int) { return force(d.dim() * n + 1, 0); })),
+              1e-14);
   }
 }
 
