@@ -383,7 +383,7 @@ struct EvaluatePatches {
         for (int a = 0; a < vertices; ++a) add(node, node_cell(k), a, trust, s, count);
       }
     }
-    constexpr int columns = Dim == 2 && !Axisymmetric ? 3 : components;
+    const int columns = polynomials.body.plane_stress ? 3 : components; // which has none across the plane
     for (int m = 0; m < components; ++m) s[m] /= count;
     for (int m = 0; m < columns; ++m) result(node, m) = s[m];
     result(node, columns) = von_mises(s);

@@ -105,7 +105,8 @@ struct Recovery {
 std::vector<std::string> stress_names(const Discretization &d)
 {
   if (d.axisymmetric()) return {"stress_xx", "stress_yy", "stress_xy", "stress_theta", "von_mises"};
-  if (d.dim() == 2) return {"stress_xx", "stress_yy", "stress_xy", "von_mises"};
+  if (d.kinematics == Kinematics::plane_stress) return {"stress_xx", "stress_yy", "stress_xy", "von_mises"};
+  if (d.dim() == 2) return {"stress_xx", "stress_yy", "stress_xy", "stress_zz", "von_mises"};
   return {"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_yz", "stress_xz", "von_mises"};
 }
 

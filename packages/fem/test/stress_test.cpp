@@ -35,7 +35,7 @@ std::vector<double> hookes_law(const int dim)
   const double mean = (s[0][0] + s[1][1] + s[2][2]) / 3; // von Mises by the deviator, sqrt(3/2 dev : dev)
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) square += 1.5 * std::pow(s[i][j] - (i == j ? mean : 0), 2);
-  if (dim == 2) return {s[0][0], s[1][1], s[0][1], std::sqrt(square)};
+  if (dim == 2) return {s[0][0], s[1][1], s[0][1], s[2][2], std::sqrt(square)};
   return {s[0][0], s[1][1], s[2][2], s[0][1], s[1][2], s[0][2], std::sqrt(square)};
 }
 
@@ -256,7 +256,9 @@ TEST(StressNames, AreOnePerColumnVonMisesLast)
     box.lower[0] = 0;
     return fem::stress_names(body(box, world(), {}, kinematics));
   };
-  EXPECT_EQ(names({2, 1}), (std::vector<std::string>{"stress_xx", "stress_yy", "stress_xy", "von_mises"}));
+  EXPECT_EQ(names({2, 1}), (std::vector<std::string>{"stress_xx", "stress_yy", "stress_xy", "stress_zz", "von_mises"}));
+  EXPECT_EQ(names({2, 1}, fem::Kinematics::plane_stress),
+            (std::vector<std::string>{"stress_xx", "stress_yy", "stress_xy", "von_mises"}));
   EXPECT_EQ(names({2, 1}, fem::Kinematics::axisymmetric),
             (std::vector<std::string>{"stress_xx", "stress_yy", "stress_xy", "stress_theta", "von_mises"}));
   EXPECT_EQ(names({3, 1}), (std::vector<std::string>{"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_yz",
