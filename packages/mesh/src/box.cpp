@@ -216,18 +216,27 @@ Side side_of_box(const BoxSide &box_side, const Parts &parts, const Grid &grid, 
   return make_side(box_side.name, mesh, cell, ordinal);
 }
 
-/// What a run takes for each of a rank's nodes at least [B]: mesh, matrix, multigrid. Measured: 2D 2100 to 3100, 3D
-/// 11 000.
-double bytes_per_node(const int dim)
+/// Nodes that share a cell with a node of a large box, itself included, on average.
+double mean_neighbours(const Element &element)
 {
-  return dim == 2 ? 1500 : 8000;
+  const bool simplex = element.shape == Shape::simplex;
+  if (element.dim == 2) return element.order == 1 ? (simplex ? 7 : 9) : simplex ? 11.5 : 16;
+  return element.order == 1 ? (simplex ? 15 : 27) : simplex ? 28.75 : 64;
+}
+
+/// What a run takes for each of a rank's nodes at least [B]: mesh and fields, and the matrix twice, for multigrid has one as large.
+/// Measured: P1, Q1, P2, Q2 in the plane 2100, 2300, 2400, 3000, in space 9000, 11 000, 14 000, 25 000.
+double bytes_per_node(const Element &element)
+{
+  const double matrix = mean_neighbours(element) * element.dim * element.dim * (sizeof(double) + sizeof(LO));
+  return 1000 + 2 * matrix;
 }
 
 /// Refuses a box that could only run out of memory later.
 void require_memory(const BoxOptions &options, const GO nodes_of_rank, const Comm &comm)
 {
   constexpr double gib = 1 << 30;
-  const double need = bytes_per_node(options.element.dim) * static_cast<double>(nodes_of_rank);
+  const double need = bytes_per_node(options.element) * static_cast<double>(nodes_of_rank);
   std::optional<std::string> message;
   if (const double limit = memory_limit(); need > limit) {
     std::ostringstream text;
