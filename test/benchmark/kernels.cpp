@@ -1,10 +1,11 @@
 /// Times of the kernels that a solve consists of, beside the memory bandwidth that a STREAM triad reaches in the same run.
 ///
-///     kernels [--cells=256,512] [Google Benchmark's options]
+///     kernels [--cells=256,512] [--cells-in-space=16,32] [Google Benchmark's options]
 ///     mpirun -n 2 kernels    # the triad alone, on all ranks at once
 ///
 /// Each kernel reports the bytes that it must move at least (every array once), the least time per item (cell or row), the
-/// bandwidth that follows, and its fraction of the triad's. Q2 and P2 take half the cells in each direction: as many nodes.
+/// bandwidth that follows, and its fraction of the triad's. Q2 and P2 take half the cells in each direction: as many nodes. In
+/// space the elements' names end in 3D.
 
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/mesh/box.hpp"
@@ -45,17 +46,22 @@ double triad(const Comm &comm)
   return best;
 }
 
-/// The beam's body, its stiffness matrix and what a kernel needs of them.
+/// The beam's body, in space as deep as it is high, its stiffness matrix and what a kernel needs of them.
 struct Body {
   fem::Discretization d;
   fem::Material material{2000, 0.3};
   RCP<CrsMatrix> K;
 
-  Body(const std::string &element, int n)
+  Body(const std::string &element, const int dim, int n)
   {
-    mesh::BoxOptions box{{0, 0}, {5, 1}, {}, mesh::parse_element(element, 2)};
+    mesh::BoxOptions box{{0, 0}, {5, 1}, {}, mesh::parse_element(element, dim)};
     n /= box.element.order;
     box.cells = {5 * n, n};
+    if (dim == 3) {
+      box.lower.push_back(0);
+      box.upper.push_back(1);
+      box.cells.push_back(n);
+    }
     d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
     K = fem::assemble_stiffness(d, material);
   }
@@ -142,12 +148,12 @@ using Kernel = void (*)(benchmark::State &, double, const Body &);
 class Bodies
 {
 public:
-  const Body &get(const std::string &element, const int n)
+  const Body &get(const std::string &element, const int dim, const int n)
   {
-    const std::string name = element + std::to_string(n);
+    const std::string name = element + std::to_string(dim) + '/' + std::to_string(n);
     if (name != name_) {
       body_.reset();
-      body_ = std::make_unique<Body>(element, n);
+      body_ = std::make_unique<Body>(element, dim, n);
       name_ = name;
     }
     return *body_;
@@ -158,20 +164,23 @@ private:
   std::unique_ptr<Body> body_;
 };
 
-void register_kernels(const int n, const std::string &element, const double stream, Bodies &bodies)
+void register_kernels(const int n, const std::string &element, const int dim, const double stream, Bodies &bodies)
 {
+  const std::string body = std::to_string(n) + "/" + element + (dim == 3 ? " 3D/" : "/");
   const std::pair<const char *, Kernel> kernels[] = {
       {"assembly", assembly}, {"internal work", internal_work}, {"SpMV", spmv}, {"Chebyshev", chebyshev}};
   for (const auto &[name, kernel] : kernels)
-    benchmark::RegisterBenchmark((std::to_string(n) + "/" + element + "/" + name).c_str(),
-                                 [n, element, stream, kernel = kernel, &bodies](benchmark::State &state) {
-                                   kernel(state, stream, bodies.get(element, n));
-                                 })
-        ->UseManualTime();
+    benchmark::RegisterBenchmark((body + name).c_str(), [n, element, dim, stream, kernel = kernel,
+                                                         &bodies](benchmark::State &state) {
+      kernel(state, stream, bodies.get(element, dim, n));
+    })->UseManualTime();
 }
 
-std::vector<int> numbers(const std::string &text)
+/// The numbers of an option, separated by commas, or those given where it is absent.
+std::vector<int> numbers(const int argc, char **argv, const std::string &option, std::string text)
 {
+  for (int i = 1; i < argc; ++i)
+    if (std::string(argv[i]).rfind(option, 0) == 0) text = std::string(argv[i]).substr(option.size());
   std::vector<int> result;
   std::istringstream stream(text);
   for (std::string number; std::getline(stream, number, ',');) result.push_back(std::stoi(number));
@@ -188,10 +197,8 @@ int main(int argc, char *argv[])
   mallopt(M_TOP_PAD, 256 << 20);
 #endif
   benchmark::Initialize(&argc, argv);
-  std::string cells = "256,512";
-  const std::string option = "--cells=";
-  for (int i = 1; i < argc; ++i)
-    if (std::string(argv[i]).rfind(option, 0) == 0) cells = std::string(argv[i]).substr(option.size());
+  const auto in_plane = numbers(argc, argv, "--cells=", "256,512");
+  const auto in_space = numbers(argc, argv, "--cells-in-space=", "16,32");
   const Tpetra::ScopeGuard scope(&argc, &argv);
   const auto comm = Tpetra::getDefaultComm();
   const double stream = triad(*comm);
@@ -202,8 +209,9 @@ int main(int argc, char *argv[])
   })->Iterations(1);
   Bodies bodies;
   if (comm->getSize() == 1) // the program's own runs show what more ranks bring
-    for (const int n : numbers(cells))
-      for (const char *element : {"Q1", "P1", "Q2", "P2"}) register_kernels(n, element, stream, bodies);
+    for (const auto &[dim, sizes] : {std::pair(2, in_plane), std::pair(3, in_space)})
+      for (const int n : sizes)
+        for (const char *element : {"Q1", "P1", "Q2", "P2"}) register_kernels(n, element, dim, stream, bodies);
   if (comm->getRank() == 0) benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

@@ -25,12 +25,13 @@ def kernels(bench):
     title = "Kernels on one rank"
     if not bench.kernels:
         return skipped(title, "it takes Google Benchmark (libbenchmark-dev)")
-    found = run(bench, 1, "--cells=" + ",".join(map(str, bench.sizes["kernels"])))
+    plane, space = (",".join(map(str, sizes)) for sizes in bench.sizes["kernels"])
+    found = run(bench, 1, "--cells=" + plane, "--cells-in-space=" + space)
     table = Table(title,
                   "Bytes: what must move at least, every array once (kernels.cpp counts them). Times: the least of many, also the "
                   "triad's. A Chebyshev sweep has degree 2 and starts from a given vector, as after a coarse correction. Items: "
                   "cells for assembly and internal work, rows for the others. Q2 and P2 have half of 1/h cells each way: "
-                  "as many nodes. STREAM triad in the same run: %.1f GB/s." % found["triad"]["GB/s"],
+                  "as many nodes. 3D: the same body, as deep as it is high. STREAM triad in the same run: %.1f GB/s." % found["triad"]["GB/s"],
                   ["1/h", "element", "kernel", "items", "bytes per item", "ns per item", "GB/s", "of triad"])
     for name, entry in found.items():
         if name == "triad":
