@@ -70,7 +70,9 @@ const Body q1_full{{2, 1}, fem::Dilatation::full, "Q1 full"}, q1{{2, 1}, fem::Di
     q2_full{{2, 2}, fem::Dilatation::full, "Q2 full"}, q2{{2, 2}, fem::Dilatation::projected, "Q2"},
     p2_full{{2, 2, mesh::Shape::simplex}, fem::Dilatation::full, "P2 full"},
     p2{{2, 2, mesh::Shape::simplex}, fem::Dilatation::projected, "P2"},
-    hex_full{{3, 1}, fem::Dilatation::full, "Q1 full in 3D"}, hex{{3, 1}, fem::Dilatation::projected, "Q1 in 3D"};
+    hex_full{{3, 1}, fem::Dilatation::full, "Q1 full in 3D"}, hex{{3, 1}, fem::Dilatation::projected, "Q1 in 3D"},
+    tet_full{{3, 2, mesh::Shape::simplex}, fem::Dilatation::full, "P2 full in 3D"},
+    tet{{3, 2, mesh::Shape::simplex}, fem::Dilatation::projected, "P2 in 3D"};
 
 ScalarField field(const std::function<double(const Point &)> &function)
 {
@@ -132,28 +134,32 @@ std::array<double, 2> strain_errors(const Solution &s, const Exact &exact)
   std::array<double, 2> sums{};
   for (LO cell = 0; cell < mesh.num_owned_cells; ++cell) {
     for (int q = 0; q < points; ++q) {
-      double x[2] = {}, J[2][2] = {}, reference[2][2] = {}, depth = dim == 3 ? 0 : 1;
-      for (int a = 0; a < nodes; ++a) {
-        if (dim == 3) depth += slope(q, a, 2) * coords(cells(cell, a), 2);
-        for (int i = 0; i < 2; ++i) {
+      double x[3] = {}, J[3][3] = {}, reference[3][3] = {}; // J = dx_i / dX_j, reference = du_i / dX_j
+      if (dim == 2) J[2][2] = 1;
+      for (int a = 0; a < nodes; ++a)
+        for (int i = 0; i < dim; ++i) {
           x[i] += value(q, a) * coords(cells(cell, a), i);
-          for (int j = 0; j < 2; ++j) {
+          for (int j = 0; j < dim; ++j) {
             J[i][j] += slope(q, a, j) * coords(cells(cell, a), i);
             reference[i][j] += slope(q, a, j) * u(dim * cells(cell, a) + i);
           }
         }
-      }
-      const double det = J[0][0] * J[1][1] - J[0][1] * J[1][0];
-      const double inverse[2][2] = {{J[1][1] / det, -J[0][1] / det}, {-J[1][0] / det, J[0][0] / det}};
-      const auto expected = exact.gradient(x[0], x[1]);
-      for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j) {
-          const auto found = [&](const int r, const int c) {
-            return reference[r][0] * inverse[0][c] + reference[r][1] * inverse[1][c];
-          };
-          const double strain = 0.5 * (expected[i][j] + expected[j][i]);
-          sums[0] += weight(q) * det * depth * std::pow(0.5 * (found(i, j) + found(j, i)) - strain, 2);
-          sums[1] += weight(q) * det * depth * strain * strain;
+      const auto cofactor = [&](const int r, const int c) {
+        return J[(r + 1) % 3][(c + 1) % 3] * J[(r + 2) % 3][(c + 2) % 3] -
+               J[(r + 1) % 3][(c + 2) % 3] * J[(r + 2) % 3][(c + 1) % 3];
+      };
+      const double det = J[0][0] * cofactor(0, 0) + J[0][1] * cofactor(0, 1) + J[0][2] * cofactor(0, 2);
+      const auto found = [&](const int r, const int c) {
+        double sum = 0;
+        for (int k = 0; k < dim; ++k) sum += reference[r][k] * cofactor(c, k) / det;
+        return sum;
+      };
+      const auto in_plane = exact.gradient(x[0], x[1]);
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+          const double strain = i < 2 && j < 2 ? 0.5 * (in_plane[i][j] + in_plane[j][i]) : 0;
+          sums[0] += weight(q) * det * std::pow(0.5 * (found(i, j) + found(j, i)) - strain, 2);
+          sums[1] += weight(q) * det * strain * strain;
         }
     }
   }
@@ -279,6 +285,20 @@ TEST(Locking3d, ProjectedQ1DoesNotLockInHexahedra)
       EXPECT_LT(fine.*error, 2 * (moderate.*error));
   }
   EXPECT_GT(errors_of(hex_full, 0.4999, 16).displacement, 0.5);
+}
+
+TEST(Locking3d, ProjectedP2LosesAccuracyButDoesNotLockInTetrahedra)
+{
+  const Errors moderate = errors_of(tet, 0.3, 16);
+  for (const double nu : {0.49, 0.4999}) {
+    const Errors coarse = errors_of(tet, nu, 8), fine = errors_of(tet, nu, 16);
+    EXPECT_GT(std::log2(coarse.strain / fine.strain), 1.2); // towards 1: a constant pressure per cell
+    EXPECT_GT(std::log2(coarse.displacement / fine.displacement), 1.9);
+    EXPECT_GT(std::log2(coarse.stress / fine.stress), 1.8);
+    for (const auto error : {&Errors::strain, &Errors::displacement, &Errors::stress, &Errors::pressure})
+      EXPECT_LT(fine.*error, 2 * (moderate.*error));
+  }
+  EXPECT_GT(errors_of(tet_full, 0.49, 8).stress, 0.5);
 }
 
 /// Largest second difference of the pressure along the contact side, away from its end, over the largest pressure.
