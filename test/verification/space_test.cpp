@@ -64,6 +64,17 @@ TEST(Block, HasOneEnergyByAllElements)
   }
 }
 
+TEST(Block, TakesFewStepsHoweverDeepTheFoundationLiesInIt)
+{
+  for (const char *gap : {"1e10*(x^2 + y^2 - 1)", "1e12*(x^2 + y^2 - 1)"}) { // its forces are as many times the load
+    const Solution s = run_scene(
+        input + "block.xml", {"Mesh->Cells={4,4,2}", "Contact->Yield Stress=inf", std::string("Contact->Gap=") + gap});
+    EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+    EXPECT_EQ(s.uzawa.newton_iterations.size(), 1u);
+    EXPECT_LE(s.uzawa.newton_iterations.front(), 12) << gap; // 200 where rounding counted as progress
+  }
+}
+
 /// The block in other axes and units; the first assignments are common.
 Solution block(const std::string &element, std::vector<std::string> assignments)
 {

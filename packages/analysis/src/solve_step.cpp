@@ -292,7 +292,9 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     const bool solved_well = norm_ <= target_;
     confirmed_ =
         solved_well && (functional_.pressure_error(u) <= pressure_tolerance_ || ++updates_ > most_updates); // (5.10)
-    const bool stalled = !rough_ && !solved_well && !(norm_ < 0.5 * before_);
+    // Rounding may end progress below: where the foundation's forces are many times the load, F grows and falls with each step.
+    const bool stalled = !rough_ && !solved_well && !(norm_ < 0.5 * std::min(before_, confirmed_norm_));
+    if (!rough_) confirmed_norm_ = norm_;
     if (confirmed_) return Verdict::converged;
     if (stalled) return Verdict::over;
     rough_ = false;

@@ -46,7 +46,8 @@ private:
   bool rough_;                                     // solves are, while the active set changes
   bool confirmed_ = false, decided_ = false;
   double norm_ = std::numeric_limits<double>::infinity(),
-         before_ = norm_; // |F|_2 for the active set, after and before the step
+         before_ = norm_,      // |F|_2 for the active set, after and before the step
+      confirmed_norm_ = norm_; // and after the last one that confirmed the active set
   int steps_ = 0;
   int changes_ = 0; // of the active set
   int updates_ = 0; // of the multipliers alone, the active set being confirmed
