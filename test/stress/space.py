@@ -139,7 +139,8 @@ def geometry(rng, text, size, cut, order=None):
     """Mesh parameters of a geometry in space that rpc has meshed; cut: its tetrahedra into hexahedra."""
     head = lambda length: f"L = {length!r}; S = {size * length!r};\nGeometry.Tolerance = {1e-8 * length!r};\n"
     tail = "Mesh.SubdivisionAlgorithm = 2;\n" if cut else ""
-    return {"mesh": {"Type": "gmsh", "Order": order or rng.choice([1, 2])}, "file": lambda length: head(length) + text + tail, "body": None, "cell": size / 8, "dim": 3}
+    return {"mesh": {"Type": "gmsh", "Order": order or rng.choice([1, 2])}, "file": lambda length: head(length) + text + tail, "body": None,
+            "cell": size / 8, "dim": 3}
 
 
 OCTANT = """Point(1) = {0, L, 0, S}; Point(2) = {L, L, 0, S}; Point(3) = {0, L, L, S}; Point(4) = {0, 0, 0, %(fine)r*S};
@@ -270,9 +271,10 @@ def gmsh_solid_scene(rng):
     radius += 2 * max(1, values["radius"]) if encloses else 0
     z, away = 0.0 if shape == "octant" else values["depth"] / 2, depth * rng.choice([0.0, 0.0, 0.3, 0.0 if clamped else -0.3])
     centre = (x, (1 if encloses else -1) * radius - away, z)
+    along = rng.choice([(0.0, 0.0, 1.0)] if encloses else [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)])
     obstacle = {"plane": {"Type": "plane", "Point": (0.0, -away, 0.0), "Normal": (0.0, 1.0, 0.0)},
                 "sphere": {"Type": "sphere", "Centre": centre, "Radius": radius},
-                "cylinder": {"Type": "cylinder", "Point": centre, "Axis": rng.choice([(0.0, 0.0, 1.0)] if encloses else [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)]), "Radius": radius}}
+                "cylinder": {"Type": "cylinder", "Point": centre, "Axis": along, "Radius": radius}}
     chosen = {**obstacle.get({"bowl": "sphere", "trough": "cylinder"}.get(kind, kind)), **({"Encloses Body": True} if encloses else {})}
     xi = f.INFINITE if rng.random() < 0.3 else f.Constant(pressure_of_round(depth) * e * log_uniform(rng, -1, 0.3))
     return Scene(contact=[ContactSide("bottom", xi, normal=rng.choice([None, DOWN]), obstacle=chosen)], material=solid_material, dirichlet=holders,
@@ -311,7 +313,7 @@ def revolved(rng, element, inner, width):
         arc = rounded_place(2 * width, 1.0, width * log_uniform(rng, 0.1, 2))
         place = lambda s, t: (inner + s * width, arc((1 + s) / 2, t)[1])
         return written(Body(Grid(nx, ny, element, place, axisymmetric=True)))
-    size = rng.uniform(0.1, 0.3)
+    size = rng.uniform(0.1, 0.24)
     shift = lambda i, j: (rng.uniform(-size, size) * width / nx, rng.uniform(-size, size) / ny)
     return written(Body(Grid(nx, ny, element, place, distort=shift, axisymmetric=True)))
 
