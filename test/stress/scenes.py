@@ -305,6 +305,8 @@ def judge_all(options, numbers_):
             if len(outcomes) % EACH == 0:
                 progress(outcomes, len(numbers_), start)
     except KeyboardInterrupt:
+        for name in (signal.SIGINT, signal.SIGTERM):  # which may come twice
+            signal.signal(name, signal.SIG_IGN)
         print("interrupted: scenes that run come to their end", file=sys.stderr, flush=True)
     pool.shutdown(cancel_futures=True)
     return outcomes
