@@ -10,10 +10,11 @@ namespace rpc::fem
 namespace
 {
 
-/// Two triangles, or six tetrahedra, to a cell of a box, in two kinds of such cells.
-int most_kinds(const mesh::Element &element)
+/// A cell of a box is one cell, two triangles or six tetrahedra.
+int parts_of_cell(const mesh::Element &element)
 {
-  return element.dim == 3 && element.shape == mesh::Shape::simplex ? 12 : 4;
+  if (element.shape == mesh::Shape::tensor) return 1;
+  return element.dim == 2 ? 2 : 6;
 }
 constexpr signed char unknown = -1;
 
@@ -81,15 +82,18 @@ CongruentCells congruent_cells(const mesh::Mesh &mesh)
   const LO num_cells = mesh.num_cells();
   DeviceView<signed char *> of_cell(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::kind_of_cell"), num_cells);
   Kokkos::deep_copy(of_cell, unknown);
+  const int parts = parts_of_cell(mesh.element);
+  const int most_kinds =
+      parts * (mesh.dim() == 2 ? 4 : 8); // the last cells of a box may have another length in each direction
   std::vector<LO> examples;
   LO next = 0;
   for (LO count = 0; count < num_cells;) {
-    // Few cells of one kind promise a mesh without order, and each kind costs a pass over the cells.
-    if (static_cast<int>(examples.size()) == most_kinds(mesh.element)) return {};
+    // Few cells of the first kinds promise a mesh without order, and each kind costs a pass over the cells.
+    if (static_cast<int>(examples.size()) == most_kinds) return {};
     examples.push_back(next);
     const auto kind = static_cast<signed char>(examples.size() - 1);
     const LO took = mesh.dim() == 2 ? take_kind<2>(mesh, kind, of_cell, next) : take_kind<3>(mesh, kind, of_cell, next);
-    if (took < num_cells / (2 * most_kinds(mesh.element))) return {};
+    if (kind < parts && took < num_cells / (4 * parts)) return {};
     count += took;
   }
   return {of_cell, device_values(examples, "rpc::fem::kind_example")};

@@ -51,7 +51,9 @@ struct Vertices {
   LO num_owned = 0;
 };
 
-Vertices vertices_of(const mesh::Mesh &mesh, const HostView<LO **>::HostMirror &cells)
+/// @param cells  of the mesh, on the host
+template <class Cells>
+Vertices vertices_of(const mesh::Mesh &mesh, const Cells &cells)
 {
   Vertices vertices;
   vertices.place.assign(mesh.num_local_nodes(), -1);

@@ -99,27 +99,34 @@ struct Cell {
   Matrix k;
 };
 
+template <int Dim, int Count>
+std::vector<Cell> cells_of(const fem::Discretization &d, const fem::Material &material)
+{
+  constexpr int dofs = Dim * Count;
+  const LO num_cells = d.mesh->num_cells();
+  const fem::CellStiffness<Dim, Count> stiffness{fem::elastic_cells<Dim, Count>(d, material)};
+  const DeviceView<double *[dofs][dofs]> device("matrix", num_cells);
+  EXPECT_EQ(fem::tabulate_stiffness(stiffness, fem::CellsFrom{0, d.mesh->block}, num_cells, device), 0);
+  const auto matrix = to_host(device);
+  const auto conn = to_host(d.mesh->cells);
+  std::vector<Cell> cells;
+  for (LO c = 0; c < num_cells; ++c) {
+    Cell cell;
+    for (int a = 0; a < Count; ++a) cell.x.push_back(point_of(d, conn(c, a)));
+    cell.k.assign(dofs, std::vector<double>(dofs));
+    for (int r = 0; r < dofs; ++r)
+      for (int s = 0; s < dofs; ++s) cell.k[r][s] = matrix(c, r, s);
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
 /// Places and stiffness of each cell of a body that one rank has whole.
 std::vector<Cell> cells_of(const fem::Discretization &d, const fem::Material &material)
 {
   std::vector<Cell> cells;
-  fem::with_static_extents(d.mesh->element, [&](const auto dim, const auto nodes) {
-    constexpr int dofs = dim * nodes;
-    const LO num_cells = d.mesh->num_cells();
-    const fem::CellStiffness<dim, nodes> stiffness{fem::elastic_cells<dim, nodes>(d, material)};
-    const DeviceView<double *[dofs][dofs]> device("matrix", num_cells);
-    EXPECT_EQ(fem::tabulate_stiffness(stiffness, fem::CellsFrom{0, d.mesh->block}, num_cells, device), 0);
-    const auto matrix = to_host(device);
-    const auto conn = to_host(d.mesh->cells);
-    for (LO c = 0; c < num_cells; ++c) {
-      Cell cell;
-      for (int a = 0; a < nodes; ++a) cell.x.push_back(point_of(d, conn(c, a)));
-      cell.k.assign(dofs, std::vector<double>(dofs));
-      for (int r = 0; r < dofs; ++r)
-        for (int s = 0; s < dofs; ++s) cell.k[r][s] = matrix(c, r, s);
-      cells.push_back(cell);
-    }
-  });
+  fem::with_static_extents(d.mesh->element,
+                           [&](const auto dim, const auto nodes) { cells = cells_of<dim, nodes>(d, material); });
   return cells;
 }
 

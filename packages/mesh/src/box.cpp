@@ -135,18 +135,22 @@ void number_nodes(Numbering &numbering, const LO num_nodes)
 
 void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView<double **> &coords)
 {
-  Kokkos::Array<double, 3> lower{}, upper{}, last{};
+  Kokkos::Array<double, 3> lower{}, upper{}, last_cell{}, last_length{};
   const int dim = options.element.dim;
+  const double order = options.element.order;
   for (int d = 0; d < dim; ++d) {
     lower[d] = options.lower[d];
     upper[d] = options.upper[d];
-    last[d] = double(options.cells[d]) * options.element.order;
+    last_cell[d] = options.cells[d] - 1;
+    last_length[d] = options.last_in(d);
   }
   Kokkos::parallel_for(
       "rpc::mesh::box_coords", device_range(static_cast<LO>(coords.extent(0))), KOKKOS_LAMBDA(const LO lid) {
         const Index at = n.node_at(lid);
-        for (int d = 0; d < dim; ++d) { // both ends exact
-          const double t = at[d] / last[d];
+        for (int d = 0; d < dim; ++d) {                       // both ends exact
+          const double beyond = at[d] - order * last_cell[d]; // nodes in the last cell
+          const double along = beyond > 0 ? order * last_cell[d] + last_length[d] * beyond : at[d];
+          const double t = along / (order * (last_cell[d] + last_length[d]));
           coords(lid, d) = (1 - t) * lower[d] + t * upper[d];
         }
       });
@@ -306,15 +310,19 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
 std::optional<BoxOptions> halved(const BoxOptions &options)
 {
   constexpr double stretched = 1.7;
-  const auto length = [&options](const int d) { return (options.upper[d] - options.lower[d]) / options.cells[d]; };
+  const int dim = options.element.dim;
   double shortest = std::numeric_limits<double>::infinity(); // of those that can be made longer
-  for (int d = 0; d < options.element.dim; ++d)
-    if (options.cells[d] > 1) shortest = std::min(shortest, length(d));
+  for (int d = 0; d < dim; ++d)
+    if (options.cells[d] > 1) shortest = std::min(shortest, options.cell_length(d));
   if (!std::isfinite(shortest)) return std::nullopt;
   BoxOptions coarse = options;
   coarse.element.order = 1;
-  for (int d = 0; d < options.element.dim; ++d)
-    if (options.cells[d] > 1 && length(d) <= stretched * shortest) coarse.cells[d] = (options.cells[d] + 1) / 2;
+  coarse.last.resize(dim, 1.);
+  for (int d = 0; d < dim; ++d) {
+    if (options.cells[d] == 1 || options.cell_length(d) > stretched * shortest) continue;
+    coarse.cells[d] = options.cells[d] / 2;
+    coarse.last[d] = (options.cells[d] % 2 + 1 + options.last_in(d)) / 2; // of the last two or three
+  }
   return coarse;
 }
 

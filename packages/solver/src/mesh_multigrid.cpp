@@ -23,8 +23,11 @@ namespace
 constexpr NodeSmoother::Options order_one{3, 10}, order_two{3, 16};
 
 // Bound of the largest eigenvalue of D^-1 C for contact C alone: it is that of an interpolation's mass on a facet, (3/2)^2 on
-// quadrilaterals, 2 on triangles, 3/2 on edges.                                                                  (4.7b)
+// quadrilaterals, 2 on triangles, 3/2 on edges.                                                                  (4.7c)
 constexpr double largest_of_contact = 2.25;
+// Closed points count on coarse meshes as so many times their own stiffness. With a quarter or four times that, CG takes a fourth more
+// iterations.                                                                                                    (4.7b)
+constexpr double most_stiffness = 1;
 
 /// K of an updated operator.
 class Base : public Operator
@@ -92,15 +95,74 @@ private:
   std::optional<BandCholesky> factor_;
 };
 
-/// (points of all ranks) What contact adds at each point [N/m].
+/// (points of all ranks) What contact adds at each point on coarse meshes [N/m].                                  (4.7b)
 DeviceView<double *> stiffness_of_all(const UpdatedOperator &H)
 {
   const auto added = to_host(H.added());
+  const auto own = to_host(H.own_stiffness());
   const auto weight = to_host(H.points().weight);
   std::vector<double> mine;
-  for (std::size_t i = 0; i < added.extent(0); ++i) mine.push_back(added(i) > 0 ? added(i) * weight(i) : 0);
+  for (std::size_t i = 0; i < added.extent(0); ++i)
+    mine.push_back(added(i) > 0 ? std::min(added(i), most_stiffness * own(i)) * weight(i) : 0);
   return device_values(gathered_by_all(*H.getDomainMap()->getComm(), std::move(mine)),
                        "rpc::solver::contact_stiffness");
+}
+
+/// v <- T v or T^T v at the points' nodes, T = H_ii^-1 K_ii with the own blocks of both: the move that is left of v where contact
+/// resists it.                                                                                                    (4.7b)
+/// @param v  (owned dofs), at the points' nodes   @param kept  (points, dim) what T acts on is v less this; T v is added to it
+template <int Dim, class Values>
+struct Truncate {
+  DeviceView<LO *> node;          // (points)                      in
+  DeviceView<double ***> base;    // (points, Dim, Dim)            in
+  DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)       in
+  bool transposed;                //
+  DeviceView<double **> kept;     // (points, Dim)                 in
+  Values v;                       //                               inout
+
+  KOKKOS_FUNCTION void operator()(const LO i) const
+  {
+    const LO n = node(i);
+    if (n < 0) return;
+    double x[Dim], y[Dim];
+    for (int k = 0; k < Dim; ++k) x[k] = v(dof(Dim, n, k)) - kept(i, k);
+    for (int pass = 0; pass < 2; ++pass) {
+      const bool by_base = (pass == 0) != transposed;
+      for (int k = 0; k < Dim; ++k) {
+        y[k] = 0;
+        for (int l = 0; l < Dim; ++l) y[k] += (by_base ? base(i, k, l) : inverse(n, k, l)) * x[l];
+      }
+      for (int k = 0; k < Dim; ++k) x[k] = y[k];
+    }
+    for (int k = 0; k < Dim; ++k) v(dof(Dim, n, k)) = kept(i, k) + x[k];
+  }
+};
+
+void truncate(const DeviceView<LO *> &node, const DeviceView<double ***> &base, const DeviceView<double ***> &inverse,
+              const bool transposed, const DeviceView<double **> &kept, Vector &v)
+{
+  const auto values = device_write(v);
+  using Values = std::decay_t<decltype(values)>;
+  const auto range = device_range(static_cast<LO>(node.extent(0)));
+  if (base.extent(1) == 2)
+    Kokkos::parallel_for("rpc::solver::truncate", range,
+                         Truncate<2, Values>{node, base, inverse, transposed, kept, values});
+  else
+    Kokkos::parallel_for("rpc::solver::truncate", range,
+                         Truncate<3, Values>{node, base, inverse, transposed, kept, values});
+  Kokkos::fence();
+}
+
+/// (points, dim) What v is at the points' nodes.
+void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView<double **> &kept)
+{
+  const auto from = device_read(v);
+  const int dim = static_cast<int>(kept.extent(1));
+  Kokkos::parallel_for(
+      "rpc::solver::take_values", device_range(static_cast<LO>(node.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < dim && node(i) >= 0; ++k) kept(i, k) = from(dof(dim, node(i), k));
+      });
+  Kokkos::fence();
 }
 
 /// (owned nodes, dim, dim) Diagonal blocks of an assembled matrix.
@@ -145,7 +207,7 @@ struct MeshMultigrid::Level {
 
 MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &levels,
                              const MakeCoarsestSolver &make_coarsest)
-    : H_(std::move(H))
+    : H_(std::move(H)), contact_node_(H_->changing_nodes()), contact_base_(H_->changing_base_blocks())
 {
   const int dim = H_->dofs_per_node();
   PointSupports points = point_supports(H_->points(), *H_->getDomainMap());
@@ -177,7 +239,7 @@ void MeshMultigrid::write_contact()
 {
   const auto stiffness = stiffness_of_all(*H_);
   for (const auto &level : levels_) level->coarse->write(stiffness);
-  levels_[0]->smoother->set_blocks(H_->changing_nodes(), H_->changing_blocks());
+  levels_[0]->smoother->set_blocks(contact_node_, H_->changing_blocks());
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const CoarseContact &contact = *levels_[l - 1]->coarse;
     levels_[l]->smoother->set_blocks(contact.nodes(), contact.blocks());
@@ -188,6 +250,24 @@ void MeshMultigrid::update()
 {
   write_contact();
   coarsest_->update();
+}
+
+/// On the finest mesh coarse functions are truncated where contact resists them.                                  (4.7b)
+void MeshMultigrid::cycle_from_finest(const Vector &b, Vector &x) const
+{
+  const Level &level = *levels_[0];
+  const auto inverse = level.smoother->inverse_blocks();
+  const DeviceView<double **> kept("rpc::solver::kept", contact_node_.extent(0), H_->dofs_per_node());
+  level.smoother->start(b, x);
+  level.A->apply(x, *level.residual);
+  level.residual->update(1., b, -1.);
+  truncate(contact_node_, contact_base_, inverse, true, kept, *level.residual);
+  level.restriction->apply(*level.residual, *level.coarse_residual, NodeInterpolation::Write::replace);
+  cycle(1, *level.coarse_residual, *level.correction);
+  take_values(contact_node_, x, kept);
+  level.prolongation->apply(*level.correction, x, NodeInterpolation::Write::add);
+  truncate(contact_node_, contact_base_, inverse, false, kept, x);
+  level.smoother->improve(b, x);
 }
 
 void MeshMultigrid::cycle(const std::size_t l, const Vector &b, Vector &x) const
@@ -205,7 +285,7 @@ void MeshMultigrid::cycle(const std::size_t l, const Vector &b, Vector &x) const
 
 void MeshMultigrid::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
-  for (std::size_t k = 0; k < x.getNumVectors(); ++k) cycle(0, *x.getVector(k), *y.getVectorNonConst(k));
+  for (std::size_t k = 0; k < x.getNumVectors(); ++k) cycle_from_finest(*x.getVector(k), *y.getVectorNonConst(k));
 }
 
 } // namespace rpc::solver

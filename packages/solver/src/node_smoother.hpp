@@ -12,7 +12,7 @@ namespace rpc::solver
 double largest_eigenvalue(const Operator &A, const DeviceView<double ***> &block);
 
 /// Chebyshev polynomials of D^-1 A for a symmetric positive definite A, D its diagonal blocks of the nodes: they damp what lies
-/// between the largest eigenvalue of D^-1 A and a part of it.                                          doc/theory.md (4.7b)
+/// between the largest eigenvalue of D^-1 A and a part of it.                                          doc/theory.md (4.7c)
 ///
 /// D follows a change of A by its blocks at some nodes.
 class NodeSmoother
@@ -33,6 +33,9 @@ public:
   /// @param node   (n) owned nodes; those below 0 are passed over
   /// @param block  (n, dim, dim)
   void set_blocks(const DeviceView<LO *> &node, const DeviceView<double ***> &block);
+
+  /// (owned nodes, dim, dim) D^-1.
+  const DeviceView<double ***> &inverse_blocks() const { return inverse_; }
 
   /// x <- p(D^-1 A) D^-1 b: the polynomial's x for x = 0 at the start.
   void start(const Vector &b, Vector &x) const;

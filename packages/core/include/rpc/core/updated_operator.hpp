@@ -56,7 +56,8 @@ public:
   DeviceView<double ***> base_blocks() const;
   /// (points) The node whose block a point changes; -1 for a point that is not the first one at its node.
   DeviceView<LO *> changing_nodes() const;
-  /// (points, dim, dim) The blocks of H at these nodes.
+  /// (points, dim, dim) The blocks of K and of H at these nodes.
+  const DeviceView<double ***> &changing_base_blocks() const { return base_blocks_; }
   const DeviceView<double ***> &changing_blocks() const { return blocks_; }
 
   /// Points whose part of H is not in the matrix: each adds coefficient m m^T to its node's own block. Of this rank.

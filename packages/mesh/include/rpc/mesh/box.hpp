@@ -9,12 +9,21 @@
 namespace rpc::mesh
 {
 
-/// An axis-parallel box, divided evenly. 2D or 3D by the length of its arrays.
+/// An axis-parallel box, divided evenly but for the last cells. 2D or 3D by the length of its arrays.
 struct BoxOptions {
   std::vector<double> lower; ///< [m]
   std::vector<double> upper; ///< [m]   upper > lower
   std::vector<int> cells;    ///<       > 0 in each direction
   Element element;
+  /// Length of the last cell in each direction over that of all others, > 0. Empty: 1, as decks have it.
+  std::vector<double> last = {};
+
+  double last_in(const int direction) const { return last.empty() ? 1 : last[direction]; }
+  /// Of all cells but the last one [m].
+  double cell_length(const int direction) const
+  {
+    return (upper[direction] - lower[direction]) / (cells[direction] - 1 + last_in(direction));
+  }
 };
 
 /// Adds the box's parameters to a valid list.
@@ -23,9 +32,9 @@ void add_box_parameters(Teuchos::ParameterList &valid);
 /// @throws rpc::Error (bad_input) on anything out of range
 BoxOptions box_options(const Teuchos::ParameterList &list);
 
-/// The next coarser box for multigrid: of order 1, with half as many cells, rounded up, in the directions in which cells are
-/// shortest; those in which they are more than 1.7 times as long keep theirs, so that stretched cells become square ones first.
-/// Sides and places of the body are the same. None where no direction can be halved.
+/// The next coarser box for multigrid, of order 1: in the directions in which cells are shortest, each two cells are one, and of an odd
+/// number the last three, so that its functions are among those of the finer box; directions in which cells are more than 1.7 times as
+/// long keep theirs, so that stretched cells become square ones first. None where no direction has more than one cell.
 std::optional<BoxOptions> halved(const BoxOptions &options);
 
 /// Makes this rank's part of a box; no communication of mesh data, and no rank holds the whole.

@@ -48,9 +48,12 @@ public:
 private:
   struct Level;
   void write_contact();
+  void cycle_from_finest(const Vector &b, Vector &x) const;
   void cycle(std::size_t level, const Vector &b, Vector &x) const;
 
   RCP<const UpdatedOperator> H_;
+  DeviceView<LO *> contact_node_;              // (points) owned node; -1 for one that another point has already
+  DeviceView<double ***> contact_base_;        // (points, dim, dim) K's own blocks there
   std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
   std::unique_ptr<CoarsestSolver> coarsest_;
 };
