@@ -23,6 +23,8 @@ constexpr double few_nodes = 0.05;
 constexpr double least_part = 0.75; // of the nodes that repeat
 constexpr short unknown = -1;
 
+constexpr bool on_gpu = !Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
+
 using LocalMatrix = CrsMatrix::local_matrix_device_type;
 
 /// A block of a row in the list of a kind: four numbers in the plane, column after column; in space three columns of four, the last
@@ -124,9 +126,11 @@ struct MultiplyNode {
           for (int i = 0; i < Dim; ++i) sum[i] += value(padded<Dim> * n + place_in_block<Dim>(i, j)) * x(first + j);
       }
     } else {
-      for (int i = 0; i < Dim; ++i)
-        for (auto e = A.graph.row_map(dof(Dim, node, i)); e < A.graph.row_map(dof(Dim, node, i) + 1); ++e)
-          sum[i] += A.values(e) * x(A.graph.entries(e));
+      const auto first = A.graph.row_map(dof(Dim, node, 0)), length = A.graph.row_map(dof(Dim, node, 0) + 1) - first;
+      for (std::size_t e = 0; e < length; e += Dim)
+        for (int i = 0; i < Dim; ++i)
+          for (int j = 0; j < Dim; ++j)
+            sum[i] += A.values(first + i * length + e + j) * x(A.graph.entries(first + e) + j);
     }
     for (int i = 0; i < Dim; ++i) y(dof(Dim, node, i)) = sum[i];
   }
@@ -203,6 +207,47 @@ multiply_run_3d(const Stencil &stencil, const LO count, const double *const x, d
   multiply_run_inline<3>(stencil, count, x, y);
 }
 
+/// Rows as they lie in the matrix: those of a node follow each other and have the same columns, so that one of them tells all.
+struct NodeRows {
+  const LocalMatrix::row_map_type::non_const_value_type *begin; // (rows + 1)
+  const LO *column;                                             // (entries)
+  const double *value;                                          // (entries)
+};
+
+/// The rows of some nodes, each entry of a block with a sum of its own: no addition waits for another one.
+/// @param x  (columns)   @param y  at the first of the nodes
+template <int Dim>
+__attribute__((always_inline)) inline void multiply_alone_inline(const NodeRows &rows, const LO first_node,
+                                                                 const LO count, const double *const x, double *y)
+{
+  for (LO node = first_node; node < first_node + count; ++node, y += Dim) {
+    const auto first = rows.begin[dof(Dim, node, 0)], length = rows.begin[dof(Dim, node, 0) + 1] - first;
+    const double *const value = rows.value + first;
+    const LO *const column = rows.column + first;
+    double sum[Dim][Dim] = {};
+    for (std::size_t e = 0; e < length; e += Dim) {
+      const double *const from = x + column[e];
+      for (int i = 0; i < Dim; ++i)
+        for (int j = 0; j < Dim; ++j) sum[i][j] += value[i * length + e + j] * from[j];
+    }
+    for (int i = 0; i < Dim; ++i) {
+      double all = sum[i][0];
+      for (int j = 1; j < Dim; ++j) all += sum[i][j];
+      y[i] = all;
+    }
+  }
+}
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void
+multiply_alone_2d(const NodeRows &rows, const LO first_node, const LO count, const double *const x, double *const y)
+{
+  multiply_alone_inline<2>(rows, first_node, count, x, y);
+}
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void
+multiply_alone_3d(const NodeRows &rows, const LO first_node, const LO count, const double *const x, double *const y)
+{
+  multiply_alone_inline<3>(rows, first_node, count, x, y);
+}
+
 /// The rows of some nodes that follow each other.
 template <int Dim, class In, class Out>
 struct MultiplyNodes {
@@ -220,7 +265,12 @@ struct MultiplyNodes {
       LO end = node + 1;
       while (end < last && one.kind(end) == k) ++end;
       if (k < 0) {
-        for (; node < end; ++node) one(node);
+        const NodeRows rows{one.A.graph.row_map.data(), one.A.graph.entries.data(), one.A.values.data()};
+        if constexpr (Dim == 2)
+          multiply_alone_2d(rows, node, end - node, one.x.data(), &one.y(dof(Dim, node, 0)));
+        else
+          multiply_alone_3d(rows, node, end - node, one.x.data(), &one.y(dof(Dim, node, 0)));
+        node = end;
         continue;
       }
       const LO begin = one.begin(k);
@@ -264,19 +314,26 @@ std::optional<RepeatedRows> RepeatedRows::of(RCP<const CrsMatrix> A, const int d
   Kokkos::deep_copy(kind, unknown);
   std::vector<LO> examples;
   LO next = 0, repeated = 0; // the first place without a kind
+  bool has_kinds = true;
   while (next < num_nodes && static_cast<int>(examples.size()) < most_kinds) {
     const LO place = next;
     const TakeKind take{matrix, dim, node_at(place, num_nodes), static_cast<short>(examples.size()), kind};
     LO took = 0;
     Kokkos::parallel_reduce("rpc::repeated_rows::take_kind", device_range(num_nodes), take, Kokkos::Sum<LO>(took),
                             Kokkos::Min<LO>(next));
-    if (took == 0) return std::nullopt; // values that are not numbers
-    repeated += took - 1;               // all but the example
+    has_kinds = took > 0; // else there are values that are not numbers
+    if (!has_kinds) break;
+    repeated += took - 1; // all but the example
     examples.push_back(take.example);
     // Few rows of many kinds promise a mesh without order, and each kind costs a pass over the nodes.
-    if (examples.size() == enough_kinds && repeated < few_nodes * num_nodes) return std::nullopt;
+    has_kinds = examples.size() < enough_kinds || repeated >= few_nodes * num_nodes;
+    if (!has_kinds) break;
   }
-  if (repeated < least_part * num_nodes) return std::nullopt;
+  if (!has_kinds || repeated < least_part * num_nodes) {
+    if (on_gpu) return std::nullopt; // where a thread for each node would read entries far apart
+    examples.clear();
+    Kokkos::deep_copy(kind, unknown);
+  }
   const auto row_map = to_host(matrix.graph.row_map);
   std::vector<LO> begin{0};
   for (const LO node : examples)
