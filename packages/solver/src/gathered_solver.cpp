@@ -63,6 +63,7 @@ void GatheredSolver::Apply(XpetraVectors &x, const XpetraVectors &b, bool) const
   rpc::MultiVector &to = Conversions::MV2NonConstTpetraMV(x);
   const rpc::Map &map = *from.getMap();
   const int num_local = static_cast<int>(from.getLocalLength());
+  Kokkos::fence(); // the host reads and writes what kernels may still be at
   const auto right = from.getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto left = to.getLocalViewHost(Tpetra::Access::OverwriteAll);
   for (std::size_t k = 0; k < from.getNumVectors(); ++k) {

@@ -80,6 +80,7 @@ public:
   {
     const Map &map = *b.getMap();
     std::vector<double> all(map.getGlobalNumElements());
+    Kokkos::fence(); // the host reads and writes what kernels may still be at
     {
       const auto from = b.getLocalViewHost(Tpetra::Access::ReadOnly);
       for (LO i = 0; i < num_local(map); ++i) all[map.getGlobalElement(i)] = from(i, 0);
