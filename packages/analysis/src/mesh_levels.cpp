@@ -38,7 +38,7 @@ DeviceView<char *> at_vertices(const DeviceView<char *> &prescribed, const Devic
   return flag;
 }
 
-solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, fem::DirichletDofs dirichlet,
+solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, const fem::DirichletDofs &dirichlet,
                            RCP<CrsMatrix> interpolation)
 {
   auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), dirichlet).matrix;
@@ -80,7 +80,7 @@ solver::MeshLevels mesh_levels(const fem::Discretization &finest, const Model &m
     d = fem::discretize(lower.mesh, model.kinematics);
     fem::DirichletDofs dirichlet;
     dirichlet.fixed = at_vertices(prescribed, lower.node, dim);
-    levels.level.push_back(level_on(d, model, std::move(dirichlet), lower.interpolation));
+    levels.level.push_back(level_on(d, model, dirichlet, lower.interpolation));
   }
   const GO few = d.dim() == 2 ? few_2d : few_3d;
   const auto num_unknowns = [&d] { return static_cast<GO>(d.owned_dofs->getGlobalNumElements()); };

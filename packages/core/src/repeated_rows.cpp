@@ -21,7 +21,7 @@ constexpr int most_kinds = 600;
 constexpr std::size_t enough_kinds = 30;
 constexpr double few_nodes = 0.05;
 constexpr double least_part = 0.75; // of the nodes that repeat
-constexpr short unknown = -1;
+constexpr short no_kind = -1;
 
 constexpr bool on_gpu = !Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
 
@@ -72,7 +72,7 @@ struct TakeKind {
   KOKKOS_FUNCTION void operator()(const LO place, LO &took, LO &first) const
   {
     const LO node = node_at(place, static_cast<LO>(taken.extent(0)));
-    if (taken(node) != unknown) return;
+    if (taken(node) != no_kind) return;
     if (same(node)) {
       taken(node) = kind;
       ++took;
@@ -311,7 +311,7 @@ std::optional<RepeatedRows> RepeatedRows::of(RCP<const CrsMatrix> A, const int d
   const LO num_nodes = node_of(dim, matrix.numRows());
   if (num_nodes == 0 || dim < 2) return std::nullopt;
   const DeviceView<short *> kind(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::kind"), num_nodes);
-  Kokkos::deep_copy(kind, unknown);
+  Kokkos::deep_copy(kind, no_kind);
   std::vector<LO> examples;
   LO next = 0, repeated = 0; // the first place without a kind
   bool has_kinds = true;
@@ -332,7 +332,7 @@ std::optional<RepeatedRows> RepeatedRows::of(RCP<const CrsMatrix> A, const int d
   if (!has_kinds || repeated < least_part * num_nodes) {
     if (on_gpu) return std::nullopt; // where a thread for each node would read entries far apart
     examples.clear();
-    Kokkos::deep_copy(kind, unknown);
+    Kokkos::deep_copy(kind, no_kind);
   }
   const auto row_map = to_host(matrix.graph.row_map);
   std::vector<LO> begin{0};

@@ -130,8 +130,8 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
 class AlgebraicSolver : public CoarsestSolver
 {
 public:
-  AlgebraicSolver(const MeshLevel &level, Teuchos::ParameterList list)
-      : A_(level.stiffness), list_(std::move(list)), residual_(rcp(new Vector(A_->getDomainMap()))),
+  AlgebraicSolver(const MeshLevel &level, const Teuchos::ParameterList &list)
+      : A_(level.stiffness), list_(list), residual_(rcp(new Vector(A_->getDomainMap()))),
         correction_(rcp(new Vector(A_->getDomainMap())))
   {
     list_.sublist("user data").set("Coordinates", level.coordinates);

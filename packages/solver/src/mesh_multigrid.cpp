@@ -27,7 +27,7 @@ constexpr NodeSmoother::Options order_one{3, 10}, order_two{3, 16};
 constexpr double largest_of_contact = 2.25;
 // Closed points count on coarse meshes as so many times their own stiffness. With a quarter or four times that, CG takes a fourth more
 // iterations.                                                                                                    (4.7b)
-constexpr double most_stiffness = 1;
+constexpr double most_on_coarse_meshes = 1;
 
 /// K of an updated operator.
 class Base : public Operator
@@ -104,7 +104,7 @@ DeviceView<double *> stiffness_of_all(const UpdatedOperator &H)
   const auto weight = to_host(H.points().weight);
   std::vector<double> mine;
   for (std::size_t i = 0; i < added.extent(0); ++i)
-    mine.push_back(added(i) > 0 ? std::min(added(i), most_stiffness * own(i)) * weight(i) : 0);
+    mine.push_back(added(i) > 0 ? std::min(added(i), most_on_coarse_meshes * own(i)) * weight(i) : 0);
   return device_values(gathered_by_all(*H.getDomainMap()->getComm(), std::move(mine)),
                        "rpc::solver::contact_stiffness");
 }
