@@ -9,7 +9,6 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <memory>
-#include <numeric>
 #include <string>
 
 namespace
@@ -83,11 +82,12 @@ struct Block {
     }
     return v;
   }
-  std::unique_ptr<LinearSolver> solver(LinearSolverOptions options = {}, const bool with_levels = true) const
+  std::unique_ptr<LinearSolver> solver() const
   {
-    if (options.multigrid == "auto" && with_levels) options.multigrid = "mesh";
+    LinearSolverOptions options;
+    options.multigrid = "mesh";
     return std::make_unique<LinearSolver>(options, H, fem::node_coordinates(d), fem::rigid_body_modes(d),
-                                          with_levels ? solver::MakeMeshLevels([this] { return levels(); }) : nullptr);
+                                          [this] { return levels(); });
   }
 };
 

@@ -253,40 +253,28 @@ void MeshMultigrid::update()
   coarsest_->update();
 }
 
-/// On the finest mesh coarse functions are truncated where contact resists them.                                  (4.7b)
-void MeshMultigrid::cycle_from_finest(const Vector &b, Vector &x) const
-{
-  const Level &level = *levels_[0];
-  const auto inverse = level.smoother->inverse_blocks();
-  const DeviceView<double **> kept("rpc::solver::kept", contact_node_.extent(0), H_->dofs_per_node());
-  level.smoother->start(b, x);
-  level.A->apply(x, *level.residual);
-  level.residual->update(1., b, -1.);
-  truncate(contact_node_, contact_base_, inverse, true, kept, *level.residual);
-  level.restriction->apply(*level.residual, *level.coarse_residual, NodeInterpolation::Write::replace);
-  cycle(1, *level.coarse_residual, *level.correction);
-  take_values(contact_node_, x, kept);
-  level.prolongation->apply(*level.correction, x, NodeInterpolation::Write::add);
-  truncate(contact_node_, contact_base_, inverse, false, kept, x);
-  level.smoother->improve(b, x);
-}
-
 void MeshMultigrid::cycle(const std::size_t l, const Vector &b, Vector &x) const
 {
   if (l == levels_.size()) return coarsest_->apply(b, x);
   const Level &level = *levels_[l];
+  const bool finest =
+      l == 0; // where coarse functions are truncated at contact points                             (4.7b)
+  const DeviceView<double **> kept("rpc::solver::kept", finest ? contact_node_.extent(0) : 0, H_->dofs_per_node());
   level.smoother->start(b, x);
   level.A->apply(x, *level.residual);
   level.residual->update(1., b, -1.);
+  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), true, kept, *level.residual);
   level.restriction->apply(*level.residual, *level.coarse_residual, NodeInterpolation::Write::replace);
   cycle(l + 1, *level.coarse_residual, *level.correction);
+  if (finest) take_values(contact_node_, x, kept);
   level.prolongation->apply(*level.correction, x, NodeInterpolation::Write::add);
+  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), false, kept, x);
   level.smoother->improve(b, x);
 }
 
 void MeshMultigrid::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
-  for (std::size_t k = 0; k < x.getNumVectors(); ++k) cycle_from_finest(*x.getVector(k), *y.getVectorNonConst(k));
+  for (std::size_t k = 0; k < x.getNumVectors(); ++k) cycle(0, *x.getVector(k), *y.getVectorNonConst(k));
 }
 
 } // namespace rpc::solver

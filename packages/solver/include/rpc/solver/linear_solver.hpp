@@ -41,7 +41,7 @@ struct LinearSolverCounts {
 /// Belos with multigrid: on coarser meshes where there are some, mesh_levels.hpp, followed by an algebraic hierarchy where they do
 /// not lead down to few unknowns; else smoothed aggregation by MueLu that knows the rigid body modes.
 ///
-/// Either is set up at the first solve. On meshes it follows changes of the contact states exactly, (4.7a). An algebraic hierarchy is
+/// Either is set up at the first solve. On meshes it follows changes of the contact states in place, (4.7a). An algebraic hierarchy is
 /// set up for contact nodes that are at most a little stiffer than the body. Exact solves around them bring in the rest of their
 /// stiffness and follow changes of the contact states, doc/theory.md (4.8), (4.9). It is set up again, reusing what `reuse` allows,
 /// when these get too large or CG says so, and from scratch where a solve fails. Where multigrid on meshes fails, the algebraic one

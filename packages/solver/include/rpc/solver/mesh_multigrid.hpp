@@ -23,9 +23,10 @@ public:
 /// By a factor of the whole matrix on each rank.
 std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A);
 
-/// One V cycle of multigrid on given meshes, for H = K + contact. Its transfers do not depend on the contact states: contact is
-/// brought to each coarse mesh by these, in place, so that a change of states costs as much work as there are contact points.
-/// Symmetric and positive definite.                                                                 doc/theory.md (4.7a)
+/// One V cycle of multigrid on given meshes, for H = K + contact. The interpolation between meshes does not depend on the contact
+/// states. It brings contact to each coarse matrix in place, and coarse functions are truncated at the contact points of the finest
+/// mesh: a change of states costs as much work as there are contact points. Symmetric and positive definite.
+/// doc/theory.md (4.7a), (4.7b)
 class MeshMultigrid : public Operator
 {
 public:
@@ -48,7 +49,6 @@ public:
 private:
   struct Level;
   void write_contact();
-  void cycle_from_finest(const Vector &b, Vector &x) const;
   void cycle(std::size_t level, const Vector &b, Vector &x) const;
 
   RCP<const UpdatedOperator> H_;
