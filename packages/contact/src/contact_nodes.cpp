@@ -35,15 +35,15 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
   Kokkos::parallel_reduce(
       "rpc::contact::largest_gap", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &most) {
-        const double gap = nodes.gap(i) < 0 ? -nodes.gap(i) : nodes.gap(i);
-        if (gap > most) most = gap;
+        const double gap = nodes.gap(i) + nodes.dent(i), size = gap < 0 ? -gap : gap;
+        if (size > most) most = size;
       },
       Kokkos::Max<double>(largest_gap));
   // Prescribed displacements and gaps that are meant to be equal differ by rounding: sin(pi) is not 0.
   const double rounding = 1e-12 * (std::max(0., max_all(comm, largest_gap)) + dirichlet.value->normInf());
   Kokkos::parallel_for(
       "rpc::contact::directions", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        double length = 0, free_gap = nodes.gap(i);
+        double length = 0, free_gap = nodes.gap(i) + nodes.dent(i);
         for (int k = 0; k < nodes.dim; ++k) {
           const LO dof = nodes.dof(i, k);
           if (fixed(dof)) free_gap -= nodes.normal(i, k) * value(dof);
@@ -54,17 +54,44 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
         const bool weightless = nodes.weight(i) == 0;
         nodes.fixed(i) = weightless || length < 1e-16;
         for (int k = 0; k < nodes.dim && nodes.fixed(i); ++k) nodes.direction(i, k) = 0;
-        const bool open_to_choice = weightless || (free_gap < rounding && free_gap > -rounding);
+        const bool touches = free_gap < rounding && free_gap > -rounding && nodes.compliance(i) == 0;
+        const bool open_to_choice = weightless || touches;
         nodes.free_gap(i) = nodes.fixed(i) && open_to_choice ? 0 : free_gap;
       });
   Kokkos::fence();
 }
+
+/// A number of the foundation's law and the rule for it.
+struct LawParameter {
+  ScalarField ContactOptions::*field;
+  const char *name, *bound;
+  bool may_be_zero, may_be_infinite;
+
+  bool allows(const double value) const
+  {
+    return (value > 0 || (may_be_zero && value == 0)) && (may_be_infinite || std::isfinite(value));
+  }
+  /// "deck: "Contact->Yield Stress" must be > 0 [Pa] ..., got "
+  std::string rule(const std::string &path) const
+  {
+    return "deck: \"" + path + "->" + name + "\" must be " + bound + ", got ";
+  }
+};
+const LawParameter law_parameters[] = {
+    {&ContactOptions::yield_stress, "Yield Stress", "> 0 [Pa] (inf for a rigid foundation)", false, true},
+    {&ContactOptions::hardening, "Hardening", "finite and >= 0 [Pa/m]", true, false},
+    {&ContactOptions::stiffness, "Stiffness", "> 0 [Pa/m] (inf for a foundation that is rigid until it yields)", false, true},
+};
 
 /// Parameters of one contact side.
 void add_side_parameters(Teuchos::ParameterList &valid)
 {
   set_field(valid, "Yield Stress", "inf",
             "xi > 0 [Pa]: pressure at which the foundation gives way; `inf`: rigid (Signorini). Number or expression.");
+  set_field(valid, "Hardening", "0",
+            "H >= 0 [Pa/m]: what the yield stress grows by with the depth of the dent. Number or expression.");
+  set_field(valid, "Stiffness", "inf",
+            "k > 0 [Pa/m]: the foundation is a spring before it yields, p = k v; `inf`: rigid. Number or expression.");
   set_field(valid, "Gap", "0",
             "g [m]: distance to the foundation along the normal, where there is no obstacle; < 0: initial penetration. "
             "Number or expression.");
@@ -112,14 +139,16 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
   options.path = path;
   options.side = side;
   options.yield_stress = parse(field_text(list, "Yield Stress"), path + "->Yield Stress");
+  options.hardening = parse(field_text(list, "Hardening"), path + "->Hardening");
+  options.stiffness = parse(field_text(list, "Stiffness"), path + "->Stiffness");
   options.gap = parse(field_text(list, "Gap"), path + "->Gap");
   options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle");
   options.penalty = penalty_from(field_text(list, "Penalty"), path);
   const bool obstacle = options.obstacle.kind != Obstacle::Kind::none;
   const auto &normal = list.get<std::string>("Normal");
-  RPC_REQUIRE(!options.yield_stress.is_constant() || options.yield_stress.constant > 0,
-              "deck: \"" << path << "->Yield Stress\" must be > 0 [Pa] (inf for a rigid foundation), got "
-                         << options.yield_stress.text);
+  for (const LawParameter &parameter : law_parameters)
+    RPC_REQUIRE(!(options.*parameter.field).is_constant() || parameter.allows((options.*parameter.field).constant),
+                parameter.rule(path) << (options.*parameter.field).text);
   RPC_REQUIRE(!obstacle || list.getEntry("Gap").isDefault(), "deck: \"" << path << "->Gap\" does not go with \"" << path
                                                                         << "->Obstacle\", from which the gap follows");
   RPC_REQUIRE(obstacle || normal != "foundation",
@@ -141,7 +170,7 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
 
 /// Values at this rank's nodes of one side, on the host.
 struct SideValues {
-  HostView<double *> yield, gap;
+  HostView<double *> yield, hardening, stiffness, gap;
   HostView<double **> normal;
   std::vector<bool> misses; // whether the normal misses the obstacle
 };
@@ -208,7 +237,9 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
   const LO n = static_cast<LO>(points.extent(0));
   SideValues values;
   values.misses.assign(n, false);
-  values.yield = evaluate(options.yield_stress, points, options.path + "->Yield Stress", comm, true);
+  HostView<double *> *const of_law[] = {&values.yield, &values.hardening, &values.stiffness};
+  for (std::size_t k = 0; k < std::size(law_parameters); ++k)
+    *of_law[k] = evaluate(options.*law_parameters[k].field, points, options.path + "->" + law_parameters[k].name, comm, true);
   values.gap = evaluate(options.gap, points, options.path + "->Gap", comm);
   values.normal = HostView<double **>("rpc::contact::side_normal", n, points.extent(1));
   const auto outward = to_host(surface_normal);
@@ -225,15 +256,16 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
             << values.gap(i) << " at " << place(points, i);
     bad = message.str();
   }
-  for (LO i = 0; i < n && !bad; ++i) {
-    if (values.yield(i) > 0) continue;
-    std::ostringstream message;
-    message << "deck: \"" << options.path << "->Yield Stress\" must be > 0 [Pa] (inf for a rigid foundation), got "
-            << values.yield(i);
-    if (!options.yield_stress.is_constant())
-      message << " from \"" << options.yield_stress.text << "\" at " << place(points, i);
-    bad = message.str();
-  }
+  for (std::size_t k = 0; k < std::size(law_parameters); ++k)
+    for (LO i = 0; i < n && !bad; ++i) {
+      const double value = (*of_law[k])(i);
+      if (law_parameters[k].allows(value)) continue;
+      const ScalarField &field = options.*law_parameters[k].field;
+      std::ostringstream message;
+      message << law_parameters[k].rule(options.path) << value;
+      if (!field.is_constant()) message << " from \"" << field.text << "\" at " << place(points, i);
+      bad = message.str();
+    }
   throw_if_any(comm, ExitCode::bad_input, bad);
   return values;
 }
@@ -295,17 +327,23 @@ void count_points(ContactNodes &c, const Comm &comm)
   c.num_total = sum_all(comm, GO(c.size())) - c.num_weightless;
 }
 
+/// Values of this rank's contact nodes on the host, in the order of the nodes.
+struct PointValues {
+  std::vector<LO> node;
+  std::vector<double> weight, normal, gap, dent, yield, hardening, compliance, penalty;
+};
+
 /// Refuses nodes that a prescribed displacement presses into a foundation that cannot give way; collective.
 void require_room(const ContactNodes &c, const std::vector<ContactOptions> &options, const mesh::Mesh &mesh)
 {
   const HostPoints points = fem::node_positions(mesh, c.node);
   const auto fixed = to_host(c.fixed);
   const auto free_gap = to_host(c.free_gap);
-  const auto xi = to_host(c.yield);
+  const auto xi = to_host(c.yield), compliance = to_host(c.compliance);
   std::optional<std::string> bad;
   for (int side = 0; side < c.num_sides(); ++side)
     for (LO i = c.first(side); i < c.first(side + 1) && !bad; ++i) {
-      if (!fixed(i) || std::isfinite(xi(i)) || !(-free_gap(i) > 0)) continue;
+      if (!fixed(i) || std::isfinite(xi(i)) || compliance(i) > 0 || !(-free_gap(i) > 0)) continue;
       std::ostringstream message;
       message << "contact: the prescribed displacement presses the node at " << place(points, i) << " by "
               << -free_gap(i) << " [m] into the foundation of side \"" << options[side].side
@@ -357,16 +395,18 @@ std::vector<const mesh::Side *> contact_sides(const mesh::Mesh &mesh, const std:
 }
 
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                           const fem::DirichletDofs &dirichlet, const fem::Materials &materials)
+                           const fem::DirichletDofs &dirichlet, const fem::Materials &materials,
+                           const MultiVector *const dents)
 {
   const mesh::Mesh &mesh = *d.mesh;
   const Comm &comm = mesh.comm();
   ContactNodes c;
   c.dim = d.dim();
   c.first = HostView<LO *>("rpc::contact::first", options.size() + 1);
-  std::vector<LO> node;
-  std::vector<double> weight, normal, gap, yield, penalty;
+  PointValues points;
   const std::vector<const mesh::Side *> sides = contact_sides(mesh, options);
+  decltype(dents->getLocalViewHost(Tpetra::Access::ReadOnly)) host_dents;
+  if (dents) host_dents = dents->getLocalViewHost(Tpetra::Access::ReadOnly);
   for (std::size_t k = 0; k < options.size(); ++k) {
     const auto surface = fem::surface_nodes(d, *sides[k]);
     const SideValues values = side_values(options[k], fem::node_positions(mesh, surface.node), surface.normal, comm);
@@ -378,25 +418,32 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
         ++c.num_missing;
         continue;
       }
-      node.push_back(side_node(i));
-      weight.push_back(side_weight(i));
-      gap.push_back(values.gap(i));
-      yield.push_back(values.yield(i));
-      penalty.push_back(options[k].penalty);
-      for (int component = 0; component < c.dim; ++component) normal.push_back(values.normal(i, component));
+      const double dent = dents ? host_dents(side_node(i), k) : 0;
+      points.node.push_back(side_node(i));
+      points.weight.push_back(side_weight(i));
+      points.gap.push_back(values.gap(i));
+      points.dent.push_back(dent);
+      points.yield.push_back(values.yield(i) + values.hardening(i) * dent);
+      points.hardening.push_back(values.hardening(i));
+      points.compliance.push_back(1 / values.stiffness(i));
+      points.penalty.push_back(options[k].penalty);
+      for (int component = 0; component < c.dim; ++component) points.normal.push_back(values.normal(i, component));
     }
-    c.first(k + 1) = static_cast<LO>(node.size());
+    c.first(k + 1) = static_cast<LO>(points.node.size());
   }
-  c.node = device_values(node, "rpc::contact::node");
-  c.weight = device_values(weight, "rpc::contact::weight");
-  c.gap = device_values(gap, "rpc::contact::gap");
-  c.yield = device_values(yield, "rpc::contact::yield");
-  c.penalty = device_values(penalty, "rpc::contact::penalty");
+  c.node = device_values(points.node, "rpc::contact::node");
+  c.weight = device_values(points.weight, "rpc::contact::weight");
+  c.gap = device_values(points.gap, "rpc::contact::gap");
+  c.dent = device_values(points.dent, "rpc::contact::dent");
+  c.yield = device_values(points.yield, "rpc::contact::yield");
+  c.hardening = device_values(points.hardening, "rpc::contact::hardening");
+  c.compliance = device_values(points.compliance, "rpc::contact::compliance");
+  c.penalty = device_values(points.penalty, "rpc::contact::penalty");
   if (!options.empty()) c.scaling = scaling_of(d, materials, c.node);
-  c.normal = device_rows(normal, c.dim, "rpc::contact::normal");
-  c.direction = DeviceView<double **>("rpc::contact::direction", node.size(), c.dim);
-  c.free_gap = DeviceView<double *>("rpc::contact::free_gap", node.size());
-  c.fixed = DeviceView<char *>("rpc::contact::fixed", node.size());
+  c.normal = device_rows(points.normal, c.dim, "rpc::contact::normal");
+  c.direction = DeviceView<double **>("rpc::contact::direction", points.node.size(), c.dim);
+  c.free_gap = DeviceView<double *>("rpc::contact::free_gap", points.node.size());
+  c.fixed = DeviceView<char *>("rpc::contact::fixed", points.node.size());
   c.num_missing = sum_all(comm, c.num_missing);
   take_over_dirichlet(c, dirichlet, comm);
   count_points(c, comm);

@@ -1,6 +1,6 @@
 #include "held_part.hpp"
 
-#include "rpc/contact/law/rigid_plastic.hpp"
+#include "rpc/contact/law/foundation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -94,7 +94,7 @@ Reactions reactions_of(const fem::Discretization &d, const fem::Parts &parts, co
         }
         fem::along_modes(c.dim, arm, m, row);
         for (int k = 0; k < 6; ++k) along(i, k) = row[k];
-        limit(i) = is_rigid(c.yield(i)) ? inf : c.weight(i) * c.yield(i);
+        limit(i) = is_rigid(c.yield(i)) || c.hardening(i) > 0 ? inf : c.weight(i) * c.yield(i);
         if (!is_rigid(limit(i))) add_shared(strength(p), limit(i));
       });
   const auto mine = to_host(strength);

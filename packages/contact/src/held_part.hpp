@@ -12,7 +12,7 @@ namespace rpc::contact
 /// What the foundation can do along the rigid motions of the parts, at the contact nodes.         doc/theory.md (9.4)
 struct Reactions {
   DeviceView<double *[6]> along; ///< (n) m_i . r_k(x_i), of the node's own part; 0 where it takes no part in contact
-  DeviceView<double *> limit;    ///< (n) w_i xi_i [N], inf where rigid
+  DeviceView<double *> limit;    ///< (n) w_i xi_i [N], inf where rigid or hardening
   DeviceView<int *> part;        ///< (n) -1 where the node takes no part in contact
   std::vector<double> strength;  ///< (parts) sum of the finite limits [N]
 };

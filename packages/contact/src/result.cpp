@@ -20,8 +20,8 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
     const auto flag = device_write(known);
     Kokkos::parallel_for(
         "rpc::contact::known_pressure", points, KOKKOS_LAMBDA(const LO i) {
-          if (c.fixed(i) && c.free_gap(i) < 0) p(i) = c.yield(i);
-          if (c.fixed(i) && c.free_gap(i) == 0)
+          if (c.fixed(i)) p(i) = pressure_at(-c.free_gap(i), foundation(c, i));
+          if (c.fixed(i) && c.free_gap(i) == 0 && (c.compliance(i) == 0 || c.weight(i) == 0))
             flag(c.node(i)) = 0;
           else
             to(c.node(i)) = p(i);
@@ -32,7 +32,7 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
   const auto from = device_read(value);
   Kokkos::parallel_for(
       "rpc::contact::completed_pressure", points, KOKKOS_LAMBDA(const LO i) {
-        if (c.fixed(i)) p(i) = clamp(from(c.node(i)), 0, c.yield(i));
+        if (c.fixed(i)) p(i) = admissible(from(c.node(i)), foundation(c, i));
       });
 }
 
@@ -154,7 +154,7 @@ double pressure_distance(const Comm &comm, const ContactNodes &contact, const De
   Kokkos::parallel_reduce(
       "rpc::contact::pressure_distance", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &part) {
-        const double difference = p(i) - (q.extent(0) > 0 ? clamp(q(i), 0, c.yield(i)) : 0);
+        const double difference = p(i) - (q.extent(0) > 0 ? admissible(q(i), foundation(c, i)) : 0);
         if (!c.fixed(i)) part += c.weight(i) * difference * difference;
       },
       sum);

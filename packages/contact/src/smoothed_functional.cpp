@@ -43,7 +43,7 @@ void start_multipliers(const ContactNodes &c, const double pressure_bound, const
   Kokkos::parallel_for(
       "rpc::contact::start", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         const bool apart = c.scaling(i) * c.free_gap(i) > 1e-9 * c.yield(i); // more than rounding
-        lambda(i) = c.fixed(i) || apart || c.yield(i) > pressure_bound ? 0 : 0.5 * c.yield(i);
+        lambda(i) = c.fixed(i) || apart || c.yield(i) > pressure_bound || c.compliance(i) > 0 ? 0 : 0.5 * c.yield(i);
       });
 }
 
@@ -85,19 +85,21 @@ ContactNodes with_penalties(ContactNodes c, const DeviceView<double *> &own)
   return c;
 }
 
-/// (contact nodes) What the states add to K: r where a node is closed, else the weak spring [Pa/m].
+/// (contact nodes) What the states add to K: the stiffness of the law's branch, and the weak spring where a node is not closed [Pa/m].
 DeviceView<double *> added_stiffness(const ContactNodes &c, const DeviceView<State *> &active, const double spring)
 {
   DeviceView<double *> added("rpc::contact::added", c.size());
   Kokkos::parallel_for(
       "rpc::contact::stiffen", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (!c.fixed(i)) added(i) = active(i) == State::closed ? c.penalty(i) : spring * c.scaling(i);
+        if (c.fixed(i)) return;
+        added(i) = branch_stiffness(active(i), c.penalty(i), foundation(c, i));
+        if (active(i) != State::closed) added(i) += spring * c.scaling(i);
       });
   Kokkos::fence();
   return added;
 }
 
-/// This rank's sum_i w_i Psi_i(v_i) (smoothed) or sum_i w_i lambda_i v_i.
+/// This rank's sum_i w_i Psi_i(v_i) (smoothed) or sum_i w_i (lambda_i v_i - psi_i*(lambda_i)).
 double energy_at_nodes(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u, const bool smoothed)
 {
   const auto x = device_read(u);
@@ -106,11 +108,12 @@ double energy_at_nodes(const ContactNodes &c, const DeviceView<double *> &lambda
       "rpc::contact::energy", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &part) {
         const double v = penetration(c, i, x);
-        const double xi = c.yield(i);
+        const Foundation f = foundation(c, i);
         if (c.fixed(i))
-          part += c.weight(i) * plastic_energy(v, xi);
+          part += c.weight(i) * foundation_energy(v, f);
         else
-          part += c.weight(i) * (smoothed ? smoothed_energy(v, lambda(i), c.penalty(i), xi) : lambda(i) * v);
+          part += c.weight(i) * (smoothed ? smoothed_energy(v, lambda(i), c.penalty(i), f)
+                                          : lambda(i) * v - conjugate_energy(lambda(i), f));
       },
       sum);
   return sum;
@@ -134,11 +137,13 @@ DeviceView<double *> pressures(const ContactNodes &c, const DeviceView<double *>
   const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::pressure", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i) { p(i) = pressure(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i)); });
+      KOKKOS_LAMBDA(const LO i) {
+        p(i) = pressure(penetration(c, i, x), lambda(i), c.penalty(i), foundation(c, i));
+      });
   return p;
 }
 
-/// (contact nodes) The pressures of an active set, whether they lie in [0, xi] or not.
+/// (contact nodes) The pressures of an active set, whether the law admits them or not.
 DeviceView<double *> active_set_pressures(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u,
                                           const DeviceView<State *> &active)
 {
@@ -146,10 +151,7 @@ DeviceView<double *> active_set_pressures(const ContactNodes &c, const DeviceVie
   const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::active_set_pressure", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (active(i) == State::closed)
-          p(i) = lambda(i) + c.penalty(i) * penetration(c, i, x);
-        else
-          p(i) = active(i) == State::yielding ? c.yield(i) : 0;
+        p(i) = branch_pressure(active(i), penetration(c, i, x), lambda(i), c.penalty(i), foundation(c, i));
       });
   return p;
 }
@@ -164,7 +166,7 @@ void first_states(const ContactNodes &c, const Vector &u, const DeviceView<doubl
         const double rho = first_weight * c.scaling(i);
         next(i) = c.fixed(i)  ? State::open
                   : all_close ? State::closed
-                              : state(penetration(c, i, x), lambda(i), rho, c.yield(i));
+                              : state(penetration(c, i, x), lambda(i), rho, foundation(c, i));
       });
   Kokkos::fence();
 }
@@ -175,13 +177,13 @@ double largest_pressure(const ContactNodes &c, const DeviceView<double *> &p)
   double largest = 0;
   Kokkos::parallel_reduce(
       "rpc::contact::largest_pressure", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &most) { most = larger(most, clamp(p(i), 0, c.yield(i))); },
+      KOKKOS_LAMBDA(const LO i, double &most) { most = larger(most, admissible(p(i), foundation(c, i))); },
       Kokkos::Max<double>(largest));
   return std::max(0., largest);
 }
 
 /// A point that violates the contact law by more than a pressure goes from closed to open or yielding, else to closed. For a
-/// penetration stands k v, with k the stiffness of the node alone.
+/// penetration of an open point and a new dent, v - c p, of a yielding one stands k times that, with k the stiffness of the node alone.
 void next_states(const ContactNodes &c, const Vector &u, const DeviceView<State *> &active,
                  const DeviceView<double *> &p, const DeviceView<double *> &own, const double bound,
                  const DeviceView<State *> &next)
@@ -191,7 +193,8 @@ void next_states(const ContactNodes &c, const Vector &u, const DeviceView<State 
       "rpc::contact::next_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         next(i) = active(i);
         if (c.fixed(i)) return;
-        const double kv = own(i) * penetration(c, i, x);
+        const double dent = active(i) == State::yielding ? c.compliance(i) * p(i) : 0;
+        const double kv = own(i) * (penetration(c, i, x) - dent);
         if (active(i) == State::closed)
           next(i) = p(i) < -bound ? State::open : p(i) > c.yield(i) + bound ? State::yielding : State::closed;
         else if ((active(i) == State::open ? kv : -kv) > bound)
@@ -222,7 +225,7 @@ void move_points(const ContactNodes &c, const DeviceView<double *> &lambda, cons
           if (c.fixed(i)) return;
           const double length = squared_length(c, i);
           move(i) = best_move(along_direction(c, i, slope) / length, stiffness(i), c.weight(i), penetration(c, i, x),
-                              lambda(i), c.penalty(i), c.yield(i)) /
+                              lambda(i), c.penalty(i), foundation(c, i)) /
                     length;
         });
     Kokkos::fence();
@@ -257,7 +260,7 @@ void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &
   Kokkos::fence();
 }
 
-/// lambda <- p, brought into [0, xi]. @return |change|_2 / |lambda|_2 over all ranks, 0 if nothing changed; collective
+/// lambda <- p, or the nearest pressure that the law admits. @return |change|_2 / |lambda|_2 over all ranks, 0 if nothing changed; collective
 double replace_multipliers(const Comm &comm, const ContactNodes &c, const DeviceView<double *> &p,
                            const DeviceView<double *> &lambda)
 {
@@ -266,7 +269,7 @@ double replace_multipliers(const Comm &comm, const ContactNodes &c, const Device
       "rpc::contact::replace_multipliers", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &change, double &size) {
         if (c.fixed(i)) return;
-        const double next = clamp(p(i), 0, c.yield(i));
+        const double next = admissible(p(i), foundation(c, i));
         change += (next - lambda(i)) * (next - lambda(i));
         size += next * next;
         lambda(i) = next;
@@ -334,9 +337,10 @@ LineModel::Value LineModel::at(const double t) const
   Kokkos::parallel_reduce(
       "rpc::contact::line_model", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &slope, double &curvature) {
-        const double r = c.penalty(i), xi = c.yield(i), moved = v(i) + t * dv(i);
-        slope += c.weight(i) * dv(i) * (pressure(moved, lambda(i), r, xi) - pressure(v(i), lambda(i), r, xi));
-        if (state(moved, lambda(i), r, xi) == State::closed) curvature += c.weight(i) * r * dv(i) * dv(i);
+        const Foundation f = foundation(c, i);
+        const double r = c.penalty(i), moved = v(i) + t * dv(i);
+        slope += c.weight(i) * dv(i) * (pressure(moved, lambda(i), r, f) - pressure(v(i), lambda(i), r, f));
+        curvature += c.weight(i) * branch_stiffness(state(moved, lambda(i), r, f), r, f) * dv(i) * dv(i);
       },
       sums[0], sums[1]);
   double all[2];
@@ -405,7 +409,7 @@ void SmoothedFunctional::start_from(const ContactState &state, Vector &u)
   const auto from = state.multiplier, to = lambda_;
   Kokkos::parallel_for(
       "rpc::contact::start_from", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i) { to(i) = c.fixed(i) ? 0 : clamp(from(i), 0, c.yield(i)); });
+      KOKKOS_LAMBDA(const LO i) { to(i) = c.fixed(i) ? 0 : admissible(from(i), foundation(c, i)); });
   Kokkos::fence();
 }
 
@@ -489,7 +493,7 @@ GO SmoothedFunctional::update_hessian(const Vector &u)
   const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::update_hessian", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        if (!c.fixed(i)) active(i) = state(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i));
+        if (!c.fixed(i)) active(i) = state(penetration(c, i, x), lambda(i), c.penalty(i), foundation(c, i));
       });
   has_active_set_ = true;
   return update_stiffness();
@@ -525,15 +529,16 @@ void SmoothedFunctional::take_active_set(const ActiveSetChoice &choice, Vector &
   for_each_point_by_group( // a node of two sides is moved for one after the other
       "rpc::contact::take_active_set", c, KOKKOS_LAMBDA(const LO i) {
         if (c.fixed(i)) return;
-        if (next(i) == State::closed && active(i) != State::closed) {
-          const double move = penetration(c, i, x) / squared_length(c, i);
-          for (int k = 0; k < c.dim; ++k) x(c.dof(i, k)) -= move * c.direction(i, k);
-        }
+        const Foundation f = foundation(c, i);
+        const bool closes = next(i) == State::closed && active(i) != State::closed;
         active(i) = next(i);
         if (next(i) == State::closed)
-          lambda(i) = clamp(p(i), 0, c.yield(i));
+          lambda(i) = clamp(p(i), 0, f.yield);
         else
-          lambda(i) = next(i) == State::yielding ? c.yield(i) : 0;
+          lambda(i) = next(i) == State::open ? 0 : larger(f.yield, admissible(p(i), f));
+        if (!closes) return;
+        const double move = (penetration(c, i, x) - f.compliance * lambda(i)) / squared_length(c, i);
+        for (int k = 0; k < c.dim; ++k) x(c.dof(i, k)) -= move * c.direction(i, k);
       });
   Kokkos::fence();
   update_stiffness();
@@ -566,7 +571,7 @@ StateCounts SmoothedFunctional::count_states(const Vector &u) const
       "rpc::contact::count_states", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, GO &open, GO &closed, GO &yielding) {
         if (c.fixed(i)) return;
-        const State s = state(penetration(c, i, x), lambda(i), c.penalty(i), c.yield(i));
+        const State s = state(penetration(c, i, x), lambda(i), c.penalty(i), foundation(c, i));
         open += s == State::open;
         closed += s == State::closed;
         yielding += s == State::yielding;
@@ -621,7 +626,13 @@ double SmoothedFunctional::pressure_error(const Vector &u) const
       KOKKOS_LAMBDA(const LO i, double &worst, double &scale) {
         if (c.fixed(i)) return;
         scale = larger(scale, lambda(i));
-        if (active(i) == State::closed) worst = larger(worst, own(i) * magnitude(penetration(c, i, x)));
+        // What the penalty is stretched by, (p - lambda)/r; of a closed point on a rigid foundation v.
+        const double v = penetration(c, i, x), r = c.penalty(i);
+        const Foundation f = foundation(c, i);
+        if (active(i) == State::closed)
+          worst = larger(worst, own(i) * magnitude((v - f.compliance * lambda(i)) / softening(r, f)));
+        else if (active(i) == State::yielding && f.hardening > 0)
+          worst = larger(worst, own(i) * magnitude(branch_pressure(State::yielding, v, lambda(i), r, f) - lambda(i)) / r);
       },
       Kokkos::Max<double>(error), Kokkos::Max<double>(largest));
   const double mine[2] = {error, largest};
@@ -655,12 +666,11 @@ double SmoothedFunctional::contact_law_residual(const Vector &u) const
       "rpc::contact::law_residual", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &worst, double &pressure_scale, double &distance_scale) {
         if (c.fixed(i)) return;
-        const double rho_v = c.scaling(i) * penetration(c, i, x);
-        const double p = lambda(i);
-        const double miss = p - clamp(p + rho_v, 0, c.yield(i));
+        const double v = penetration(c, i, x), p = lambda(i);
+        const double miss = p - pressure(v, p, c.scaling(i), foundation(c, i));
         worst = larger(worst, magnitude(miss));
         pressure_scale = larger(pressure_scale, p);
-        distance_scale = larger(distance_scale, magnitude(rho_v));
+        distance_scale = larger(distance_scale, magnitude(c.scaling(i) * v));
       },
       Kokkos::Max<double>(violation), Kokkos::Max<double>(largest), Kokkos::Max<double>(deepest));
   const double mine[3] = {violation, largest, deepest};
@@ -680,19 +690,22 @@ ContactEnergy SmoothedFunctional::contact_energy(const Vector &u) const
       "rpc::contact::largest_multiplier", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &most) { most = larger(most, lambda(i)); }, Kokkos::Max<double>(largest));
   const double bound = 2 * max_all(*comm_, std::max(0., largest));
-  double sums[2] = {0, 0};
+  double sums[3] = {0, 0, 0};
   Kokkos::parallel_reduce(
       "rpc::contact::contact_energy", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &dissipated, double &duality_gap) {
+      KOKKOS_LAMBDA(const LO i, double &dissipated, double &stored, double &duality_gap) {
         if (c.fixed(i)) return;
-        const double v = penetration(c, i, x), xi = c.yield(i) < bound ? c.yield(i) : bound;
-        dissipated += c.weight(i) * plastic_energy(v, lambda(i));
-        duality_gap += c.weight(i) * (plastic_energy(v, xi) - lambda(i) * v);
+        const double v = penetration(c, i, x), p = lambda(i);
+        Foundation f = foundation(c, i);
+        dissipated += c.weight(i) * dissipation(new_dent(v, p, f), p, f);
+        stored += c.weight(i) * 0.5 * f.compliance * p * p;
+        if (f.yield > bound) f.yield = bound;
+        duality_gap += c.weight(i) * (foundation_energy(v, f) + conjugate_energy(p, f) - p * v);
       },
-      sums[0], sums[1]);
-  double all[2];
-  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, sums, all);
-  return {all[0], all[1]};
+      sums[0], sums[1], sums[2]);
+  double all[3];
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 3, sums, all);
+  return {all[0], all[1], all[2]};
 }
 
 } // namespace rpc::contact

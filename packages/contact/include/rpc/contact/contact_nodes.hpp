@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/contact/law/foundation.hpp"
 #include "rpc/contact/obstacle.hpp"
 #include "rpc/core/field.hpp"
 #include "rpc/core/node_points.hpp"
@@ -8,6 +9,7 @@
 #include "rpc/fem/surface.hpp"
 
 #include <Teuchos_ParameterList.hpp>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,9 @@ struct ContactOptions {
   std::string path = "Contact"; ///< in the deck, for messages
   std::string side;
   ScalarField yield_stress; ///< xi > 0 [Pa], may be inf
+  ScalarField hardening = ScalarField(0.); ///< H >= 0 [Pa/m], what the yield stress grows by with the dent
+  ScalarField stiffness =
+      ScalarField(std::numeric_limits<double>::infinity()); ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
   ScalarField gap; ///< g [m], distance to the foundation along the normal; < 0 is initial penetration. Without obstacle
   Obstacle obstacle; ///< the foundation's surface, from which the gap follows
   Normal normal = Normal::surface;
@@ -48,13 +53,16 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
 ///
 /// v_i = direction_i . u_i - free_gap_i is the penetration of node i, where `direction` is the normal without its
 /// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether
-/// has direction 0: it takes no part in the solution, and its pressure is 0 if it stays clear, xi if it is pressed in,
-/// and open to choice at v = 0.
+/// has direction 0: it takes no part in the solution, and its pressure is what the law says at its v: 0 if it stays clear, xi if
+/// it is pressed in, and open to choice where a rigid foundation has v = 0.
 struct ContactNodes : NodePoints { // a group is a side; `direction` is the normal, prescribed components 0
   DeviceView<double **> normal;    ///< (n, dim) unit normal nu, from the body into the foundation
-  DeviceView<double *> gap;        ///< (n) g [m]
-  DeviceView<double *> free_gap;   ///< (n) g - normal . u_prescribed [m]
-  DeviceView<double *> yield;      ///< (n) xi [Pa]
+  DeviceView<double *> gap;        ///< (n) g [m], to the surface without dents
+  DeviceView<double *> dent;       ///< (n) w >= 0 [m], what earlier steps have left of dents
+  DeviceView<double *> free_gap;   ///< (n) g + w - normal . u_prescribed [m]
+  DeviceView<double *> yield;      ///< (n) xi + H w [Pa]
+  DeviceView<double *> hardening;  ///< (n) H [Pa/m]
+  DeviceView<double *> compliance; ///< (n) c = 1/k [m/Pa]
   DeviceView<double *> scaling;    ///< (n) rho = E / diameter, with the largest E around the node [Pa/m]
   DeviceView<double *> penalty;    ///< (n) r [Pa/m], 0 where it is to be chosen
   DeviceView<char *> fixed;        ///< (n) 1 where direction = 0
@@ -68,16 +76,24 @@ struct ContactNodes : NodePoints { // a group is a side; `direction` is the norm
 
 /// Collective.
 /// @param materials  what the body is made of, for `scaling`
-/// @throws rpc::Error bad_input if a side does not exist, xi <= 0 or NaN, the gap is not finite somewhere,
+/// @param dents      w >= 0 [m] that earlier steps have left, (owned nodes; sides); null: none
+/// @throws rpc::Error bad_input if a side does not exist, a number of the law is out of range, the gap is not finite somewhere,
 /// the normal leads to the obstacle from no node of a side, or a node lies in the foundation and its normal does not cross
 /// the foundation's surface (the place is named); no_solution if a prescribed displacement presses a node into a rigid
 /// foundation
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                           const fem::DirichletDofs &dirichlet, const fem::Materials &materials = {});
+                           const fem::DirichletDofs &dirichlet, const fem::Materials &materials = {},
+                           const MultiVector *dents = nullptr);
 
 /// The sides of a mesh that the options name.
 /// @throws rpc::Error (bad_input) if one does not exist
 std::vector<const mesh::Side *> contact_sides(const mesh::Mesh &mesh, const std::vector<ContactOptions> &options);
+
+/// The law at one node, for kernels.
+KOKKOS_INLINE_FUNCTION Foundation foundation(const ContactNodes &c, const LO i)
+{
+  return {c.yield(i), c.hardening(i), c.compliance(i)};
+}
 
 /// v_i = direction_i . u_i - free_gap_i at one node, for kernels [m].
 template <class U>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "rpc/contact/contact_nodes.hpp"
-#include "rpc/contact/law/rigid_plastic.hpp"
+#include "rpc/contact/law/foundation.hpp"
 
 namespace rpc::contact
 {

@@ -47,7 +47,7 @@ DeviceView<double *> completed_pressure(const fem::Discretization &d, const std:
 
 /// |p - q|_2 over the contact sides, by the weights of their nodes, but for those whose normal displacement is prescribed
 /// [Pa m^(1/2)], in 3D [Pa m]; collective.
-/// @param q  brought into [0, xi]; an empty one is 0
+/// @param q  as near as the law admits it; an empty one is 0
 double pressure_distance(const Comm &comm, const ContactNodes &c, const DeviceView<double *> &p,
                          const DeviceView<double *> &q);
 

@@ -15,10 +15,10 @@ struct StateCounts {
 
 /// Energies of (u, lambda) at the contact nodes, over all ranks.
 struct ContactEnergy {
-  double dissipated = 0; ///< sum_i w_i lambda_i v_i+ [J]
-  double duality_gap =
-      0; ///< sum_i w_i (xi_i v_i+ - lambda_i v_i) [J], each term >= 0: what the contact law misses, with
-         ///< twice the largest multiplier in place of any higher xi                             (5.5)
+  double dissipated = 0; ///< sum_i w_i int (xi_i + H_i w) dw over the new dents [J]; perfectly plastic: xi_i v_i+   (3.14)
+  double stored = 0;     ///< sum_i w_i c_i lambda_i^2/2 in the foundation's springs [J]
+  double duality_gap = 0; ///< sum_i w_i (psi_i(v_i) + psi_i*(lambda_i) - lambda_i v_i) [J], each term >= 0: what the contact
+                          ///< law misses, with twice the largest multiplier in place of any higher xi               (5.5)
 };
 
 /// The next active set of the primal-dual active-set iteration, and the pressures that it was chosen by.
@@ -54,7 +54,7 @@ private:
 /// What the generalized Newton iteration minimizes for given multipliers, its gradient and its generalized Hessian.
 ///
 ///     M(u) = u.Ku/2 - b.u + sum_i w_i Psi_i(v_i(u))                                                doc/theory.md (4.1)
-///     F(u) = Ku - b + sum_i w_i Psi_i'(v_i) m_i,     H(u) = K + sum over closed i of r_i w_i m_i m_i^T      (4.2)
+///     F(u) = Ku - b + sum_i w_i Psi_i'(v_i) m_i,     H(u) = K + sum_i w_i Psi_i''(v_i) m_i m_i^T            (4.2)
 ///
 /// with m_i the node's direction. Contact terms touch only contact rows. All vectors are on owned dofs; all members are
 /// collective.
@@ -72,16 +72,16 @@ public:
 
   /// M(u) [J], with the energy of prescribed displacements, up to a constant once the origin has moved.
   double value(const Vector &u) const override;
-  /// Energy of the problem itself, J(u) = Pi(u) + sum_i w_i xi_i v_i+ [J], computed as Pi(u) + sum_i w_i lambda_i v_i:
-  /// the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a closed node. (1.4),
-  /// (5.14)
+  /// Energy of the problem itself, J(u) = Pi(u) + sum_i w_i psi_i(v_i) [J], computed as Pi(u) + sum_i w_i (lambda_i v_i -
+  /// psi_i*(lambda_i)): the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a closed
+  /// node. (1.4), (5.14)
   /// @param u  displacement from 0
   double energy(const Vector &u) const;
   void gradient(const Vector &u, Vector &F) const override;
   /// G <- Ku - b, all of a gradient that takes a product with K.
   void elastic_gradient(const Vector &u, Vector &G) const;
-  /// The gradient at u of the quadratic functional that the active set stands for: closed nodes carry lambda + r v, whatever
-  /// that is, open ones 0, yielding ones xi. (5.6)
+  /// The gradient at u of the quadratic functional that the active set stands for: each point carries what the branch of its
+  /// state says, whether the law admits it or not; perfectly plastic: lambda + r v, 0 or xi. (5.6)
   /// @param gradient  of the functional itself at u
   void active_set_gradient(const Vector &u, const Vector &gradient, Vector &F) const;
   /// One nonlinear sweep: each contact node moves along its direction to the minimum of a bound of M, in which nodes do not
@@ -110,7 +110,7 @@ public:
   void move_origin(Vector &u);
   /// Where u is, seen from 0: what results are read from.
   Vector displacement(const Vector &u) const;
-  /// Starts from a state, such as that of the step before or another mesh's: takes its multipliers, brought into [0, xi].
+  /// Starts from a state, such as that of the step before or another mesh's: takes its multipliers, as near as the law admits them.
   /// @param[in,out] u  takes its displacement, but for what is prescribed
   void start_from(const ContactState &state, Vector &u);
   /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
@@ -125,11 +125,11 @@ public:
 
   /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   (5.1)
   double update_multipliers(const Vector &u);
-  /// The same with the pressures of the active set, brought into [0, xi]: where it is confirmed, a rounding error of v at an open
+  /// The same with the pressures of the active set, as near as the law admits them: where it is confirmed, a rounding error of v at an open
   /// or yielding point does not count r times.
   double take_active_set_pressures(const Vector &u);
 
-  /// About the largest error of the pressures lambda + r v at closed nodes, over the largest pressure: the share k/r that the
+  /// About the largest error of the pressures at nodes that are not open, over the largest pressure: the share k/r that the
   /// penalty leaves of the last change, with k the node's own stiffness.                                       (5.10)
   double pressure_error(const Vector &u) const;
 
