@@ -76,13 +76,16 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
   int cycle = 0;
+  rpc::Film film;
   const auto keep = [&](const rpc::Scene &of, rpc::Solution &solution) {
     rpc::Scene named = of;
     named.name = rpc::cycle_name(of, ++cycle);
-    if (scene.adapt.write_all) rpc::write_results(named, solution, line.output, start);
+    rpc::Film of_mesh;
+    if (scene.adapt.write_all) rpc::write_results(named, solution, line.output, start, of_mesh);
   };
-  rpc::Solution solution = rpc::solve(scene, comm, out, keep);
-  const auto files = rpc::write_results(scene, solution, line.output, start);
+  const auto keep_step = [&](const rpc::Scene &of, rpc::Solution &solution) { film.add(of, solution, line.output); };
+  rpc::Solution solution = rpc::solve(scene, comm, out, keep, keep_step);
+  const auto files = rpc::write_results(scene, solution, line.output, start, film);
   rpc::print_summary(out, scene, solution, files);
   if (scene.output.timers) {
     timers->stopBaseTimer();

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 namespace rpc
 {
@@ -25,12 +26,12 @@ constexpr int most_cycles = 1000;
 std::vector<std::string> all_files(const std::string &name, const std::string &folder)
 {
   const std::string stem = (std::filesystem::path(folder) / name).string();
-  return {stem + ".e", stem + ".contact.csv", stem + ".json"};
+  return {stem + ".e", stem + ".contact.csv", stem + ".json", stem + ".history.csv"};
 }
 
 /// Where the results of a scene go under a name; empty what is not asked for.
 struct ResultPaths {
-  std::string exodus, csv, json;
+  std::string exodus, csv, json, history;
 
   ResultPaths(const Scene &scene, const std::string &name, const std::string &folder)
   {
@@ -38,10 +39,12 @@ struct ResultPaths {
     if (scene.output.exodus) exodus = files[0];
     if (scene.output.csv && !scene.model.contact.empty()) csv = files[1];
     if (scene.output.json) json = files[2];
+    if (scene.output.csv && !scene.steps.times.empty()) history = files[3];
   }
+  std::vector<std::string> all() const { return {exodus, csv, history, json}; }
   void require_replaceable() const
   {
-    for (const std::string &path : {exodus, csv, json})
+    for (const std::string &path : all())
       if (!path.empty()) io::require_replaceable(path);
   }
 };
@@ -93,6 +96,7 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const Solution &s)
   const auto shown = shown_points(contact, s.contact, n);
   fields.push_back({"contact_pressure", scatter(shown, to_host(s.contact.pressure), 0)});
   fields.push_back({"gap", scatter(shown, to_host(contact.gap), 0)});
+  fields.push_back({"dent", scatter(shown, to_host(s.contact.dent), 0)});
   fields.push_back({"penetration", scatter(shown, to_host(s.contact.penetration), 0)});
   fields.push_back({"contact_status", scatter(shown, to_host(s.contact.state), -1)});
   const auto normal = to_host(contact.normal);
@@ -133,6 +137,7 @@ void write_csv(const std::string &path, const Scene &scene, const Solution &s)
     table.u_nu = part_of(s.contact.normal_displacement, begin, end);
     table.gap = part_of(contact.gap, begin, end);
     table.pressure = part_of(s.contact.pressure, begin, end);
+    table.dent = part_of(s.contact.dent, begin, end);
     table.state = part_of(s.contact.state, begin, end);
     table.facets = io::owned_facets(mesh, mesh.side(table.side, scene.model.contact[k].path + "->Side"), node_ids);
     tables.push_back(table);
@@ -160,6 +165,61 @@ void add_sums(nlohmann::ordered_json &json, const contact::ContactSums &sums, co
   json["max_initial_penetration"] = sums.max_initial_penetration;
   json[extent_key("contact", d)] = sums.contact_length;
   json[extent_key("yielded", d)] = sums.yielded_length;
+  json["max_dent"] = sums.max_dent;
+  json["dent_volume"] = sums.dent_volume;
+}
+
+void add_steps(nlohmann::ordered_json &json, const Solution &s)
+{
+  auto &steps = json["steps"] = nlohmann::ordered_json::array();
+  for (const analysis::StepRecord &step : s.history) {
+    nlohmann::ordered_json entry = {{"time", step.time},
+                                    {"converged", step.converged},
+                                    {"strain_energy", step.energies.strain},
+                                    {"foundation_energy", step.energies.foundation},
+                                    {"dissipated_energy", step.energies.dissipated},
+                                    {"work", step.energies.work}};
+    add_sums(entry, step.contact, s.discretization);
+    entry["parts"] = step.parts;
+    entry["newton_iterations"] = step.newton_iterations;
+    entry["linear_solves"] = step.linear_solves;
+    entry["linear_iterations"] = step.linear_iterations;
+    entry["preconditioner_setups"] = step.preconditioner_setups;
+    entry["seconds"] = step.seconds;
+    steps.push_back(entry);
+  }
+}
+
+/// One row for each load step; for each Dirichlet condition its mean displacement and its reaction.
+std::string history_text(const Scene &scene, const Solution &s)
+{
+  const int dim = s.discretization.dim();
+  const std::string axes = "xyz";
+  std::ostringstream text;
+  text.precision(17);
+  text << "time,strain_energy,foundation_energy,dissipated_energy,work,max_pressure,max_penetration,max_dent,dent_"
+          "volume,"
+       << extent_key("contact", s.discretization) << ',' << extent_key("yielded", s.discretization);
+  for (int c = 0; c < dim; ++c) text << ",contact_force_" << axes[c];
+  for (const auto &condition : scene.model.dirichlet)
+    for (const char *const what : {"_displacement_", "_reaction_"})
+      for (int c = 0; c < dim; ++c) text << ',' << io::csv_quoted(condition.name + what + axes[c]);
+  text << ",newton_iterations,linear_iterations,parts,seconds\n";
+  for (const analysis::StepRecord &step : s.history) {
+    const contact::ContactSums &sums = step.contact;
+    text << step.time << ',' << step.energies.strain << ',' << step.energies.foundation << ','
+         << step.energies.dissipated << ',' << step.energies.work << ',' << sums.max_pressure << ','
+         << sums.max_penetration << ',' << sums.max_dent << ',' << sums.dent_volume << ',' << sums.contact_length << ','
+         << sums.yielded_length;
+    for (int c = 0; c < dim; ++c) text << ',' << sums.force[c];
+    for (std::size_t k = 0; k < step.reactions.size(); ++k) {
+      for (int c = 0; c < dim; ++c) text << ',' << step.displacements[k][c];
+      for (int c = 0; c < dim; ++c) text << ',' << step.reactions[k][c];
+    }
+    text << ',' << step.newton_iterations << ',' << step.linear_iterations << ',' << step.parts << ',' << step.seconds
+         << '\n';
+  }
+  return text.str();
 }
 
 /// A number that may be unknown: null then.
@@ -221,6 +281,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["fixed_contact_nodes"] = s.functional->contact().num_fixed;
   json["ranks"] = mesh.comm().getSize();
   json["execution_space"] = ExecutionSpace::name();
+  json["time"] = s.time;
   json["energy_J"] = s.energy;
   json["strain_energy"] = 0.5 * s.energy_norm_squared;
   json["energy_norm_squared"] = s.energy_norm_squared;
@@ -244,6 +305,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["preconditioner_setups"] = s.linear.preconditioner_setups;
   json["local_corrections"] = s.linear.local_corrections;
   json["matrix_assemblies"] = s.matrix_assemblies;
+  if (!s.history.empty()) add_steps(json, s);
   add_errors(json, scene, s);
   json["skipped"] = s.skipped;
   json["levels"] = nlohmann::ordered_json::array();
@@ -287,7 +349,7 @@ std::vector<std::string> older_files(const Scene &scene, const Solution &s, cons
     bool found = false;
     for (const std::string &file : all_files(name, folder)) {
       std::error_code none;
-      if (file == paths.exodus || file == paths.csv || file == paths.json) continue;
+      if (const auto ours = paths.all(); std::find(ours.begin(), ours.end(), file) != ours.end()) continue;
       if (!std::filesystem::exists(file, none)) continue;
       older.push_back(file);
       found = true;
@@ -301,13 +363,40 @@ std::vector<std::string> older_files(const Scene &scene, const Solution &s, cons
   return older;
 }
 
-std::vector<std::string> write_results(const Scene &scene, Solution &s, const std::string &folder, const double start)
+void Film::write(const Scene &scene, const Solution &s, const std::string &folder)
+{
+  const auto fields = nodal_fields(scene, s);
+  if (!file_) {
+    std::vector<std::string> names;
+    for (const auto &field : fields) names.push_back(field.name);
+    mesh_ = s.discretization.mesh;
+    file_ = std::make_unique<io::ExodusFile>(ResultPaths(scene, scene.name, folder).exodus, scene.name, *mesh_, names);
+  }
+  file_->write(s.time, fields);
+  written_ = static_cast<int>(s.history.size());
+}
+
+void Film::add(const Scene &scene, const Solution &s, const std::string &folder)
+{
+  if (scene.output.exodus && s.history.size() % scene.steps.write_every == 0) write(scene, s, folder);
+}
+
+void Film::finish(const Scene &scene, const Solution &s, const std::string &folder)
+{
+  if (!file_ || written_ < static_cast<int>(s.history.size())) write(scene, s, folder);
+  file_->commit();
+}
+
+std::vector<std::string> write_results(const Scene &scene, Solution &s, const std::string &folder, const double start,
+                                       Film &film)
 {
   const double begin = Teuchos::Time::wallTime();
   const ResultPaths paths(scene, scene.name, folder);
   const mesh::Mesh &mesh = *s.discretization.mesh;
-  if (!paths.exodus.empty()) io::write_exodus(paths.exodus, scene.name, mesh, scene.time, nodal_fields(scene, s));
+  if (!paths.exodus.empty()) film.finish(scene, s, folder);
   if (!paths.csv.empty()) write_csv(paths.csv, scene, s);
+  if (!paths.history.empty())
+    on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.history, history_text(scene, s)); });
   on_root(mesh.comm(), ExitCode::internal_error, [&] {
     for (const std::string &file : older_files(scene, s, paths, folder)) io::remove_older(file);
   });
@@ -321,7 +410,7 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
     on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.json, text); });
   }
   std::vector<std::string> files;
-  for (const std::string &path : {paths.exodus, paths.csv, paths.json})
+  for (const std::string &path : paths.all())
     if (!path.empty()) files.push_back(path);
   return files;
 }

@@ -85,7 +85,11 @@ void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const
           static_cast<long long>(contact.num_missing));
   const std::string locking = fem::locking_note(d, scene.model.materials);
   if (!locking.empty()) print(out_, "note: %s\n", locking.c_str());
-  print(out_, "uzawa newton   |F|/|b|     step    open  closed  yields krylov   time [s]\n");
+  if (scene.steps.times.empty())
+    print(out_, "uzawa newton   |F|/|b|     step    open  closed  yields krylov   time [s]\n");
+  else
+    print(out_, "    step         t      |force|     max. p    max. dent    dissipated parts Newton krylov   time [s]  "
+                "left [s]\n");
   out_ << std::flush;
 }
 
@@ -106,6 +110,19 @@ void ConsoleTable::uzawa(const analysis::UzawaResult &result)
   const auto &c = result.residuals;
   print(out_, "%5d     -- kkt %.1e, equilibrium %.1e, energy balance %.1e, duality gap %.1e\n", result.iterations,
         c.kkt_residual, c.equilibrium_residual, c.energy_balance, c.duality_gap);
+  out_ << std::flush;
+}
+
+void ConsoleTable::load_step(const Scene &scene, const Solution &s)
+{
+  const analysis::StepRecord &step = s.history.back();
+  const auto &force = step.contact.force;
+  const std::size_t done = s.history.size(), all = scene.steps.times.size();
+  const double now = Teuchos::Time::wallTime() - start_;
+  print(out_, "%4zu/%-4zu %9.4g %12.6g %10.4g %12.4g %13.6g %5d %6d %6d %10.3f %9.1f%s\n", done, all, step.time,
+        std::hypot(force[0], force[1], force[2]), step.contact.max_pressure, step.contact.max_dent,
+        step.energies.dissipated, step.parts, step.newton_iterations, step.linear_iterations, now,
+        now / static_cast<double>(done) * static_cast<double>(all - done), step.converged ? "" : " NOT CONVERGED");
   out_ << std::flush;
 }
 
@@ -134,6 +151,12 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
     print(out, "  max. pressure       %.6g Pa\n", c.max_pressure);
     print(out, "  max. penetration    %.6g m\n", c.max_penetration);
     if (c.max_initial_penetration > 0) print(out, "  initial penetration %.6g m\n", c.max_initial_penetration);
+    if (!s.history.empty()) {
+      const analysis::Energies &e = s.history.back().energies;
+      print(out, "  dents               at most %.6g m, volume %.6g\n", c.max_dent, c.dent_volume);
+      print(out, "  since the start     work %.6g, strain %.6g, foundation %.6g, dissipated %.6g %s\n", e.work,
+            e.strain, e.foundation, e.dissipated, per_metre ? "J/m" : "J");
+    }
     print(out, "  in contact          %.6g, yielded %.6g %s\n", c.contact_length, c.yielded_length,
           per_metre ? "m" : "m^2");
   }

@@ -17,6 +17,8 @@ public:
   /// @param uzawa  number of the Uzawa iteration
   void newton(int uzawa, const solver::NewtonStep &step, const contact::StateCounts &states);
   void uzawa(const analysis::UzawaResult &result);
+  /// The last step of the solution's history, and the time that the others will take.
+  void load_step(const Scene &scene, const Solution &solution);
 
 private:
   std::ostream &out_;

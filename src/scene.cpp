@@ -39,6 +39,7 @@ Teuchos::ParameterList valid_deck()
   valid.sublist("Traction") = fem::valid_traction_parameters();
   valid.sublist("Body Force") = fem::valid_body_force_parameters();
   valid.sublist("Contact") = contact::valid_contact_parameters();
+  valid.sublist("Steps") = analysis::valid_steps_parameters();
   valid.sublist("Nested Iteration") = analysis::valid_prediction_parameters();
   valid.sublist("Adapt") = adapt::valid_adapt_parameters();
   valid.sublist("Uzawa") = analysis::valid_uzawa_parameters();
@@ -68,6 +69,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.model.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, io::parse_field);
   scene.model.contact = contact::contact_options(deck.sublist("Contact"), dim, io::parse_field);
   scene.step.prediction = analysis::prediction_options(deck.sublist("Nested Iteration"));
+  scene.steps = analysis::steps_options(deck.sublist("Steps"));
   scene.adapt = adapt::adapt_options(deck.sublist("Adapt"));
   scene.step.uzawa = analysis::uzawa_options(deck.sublist("Uzawa"));
   scene.step.newton = solver::newton_options(deck.sublist("NOX"));
@@ -75,6 +77,10 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   const Teuchos::ParameterList &output = deck.sublist("Output");
   scene.output = {output.get<bool>("Exodus"), output.get<bool>("CSV"), output.get<bool>("JSON"),
                   output.get<bool>("Timers")};
+  RPC_REQUIRE(!scene.adapt.adapts() || scene.steps.times.empty(),
+              "deck: \"Adapt->Target Relative Error\" goes with one step: meshes that adapt from step to step are not "
+              "available yet. "
+              "Leave \"Steps->Times\" empty, or the target at 0; \"Adapt->Estimate Error\" tells the error.");
   RPC_REQUIRE(
       !scene.adapt.adapts() || dim == 2,
       "deck: \"Adapt->Target Relative Error\" goes with plane meshes: adaptive ones in space are not available yet. "

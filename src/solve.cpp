@@ -8,19 +8,26 @@ namespace rpc
 {
 
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
-               const std::function<void(const Scene &, Solution &)> &keep)
+               const std::function<void(const Scene &, Solution &)> &keep,
+               const std::function<void(const Scene &, Solution &)> &keep_step)
 {
   std::optional<ConsoleTable> table; // of one mesh
   adapt::Listener listener;
   listener.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &contact) {
     table.emplace(console).scene(scene, d, contact);
   };
-  listener.step.newton = [&](const int uzawa, const solver::NewtonStep &step, const contact::StateCounts &states) {
-    table->newton(uzawa, step, states);
-  };
-  listener.step.uzawa = [&](const analysis::UzawaResult &result) { table->uzawa(result); };
+  const bool several_steps = !scene.steps.times.empty(); // a line for each is enough then
+  if (!several_steps)
+    listener.step.newton = [&](const int uzawa, const solver::NewtonStep &step, const contact::StateCounts &states) {
+      table->newton(uzawa, step, states);
+    };
+  if (!several_steps) listener.step.uzawa = [&](const analysis::UzawaResult &result) { table->uzawa(result); };
   listener.estimate = [&](const Solution &solution) { print_estimate(console, scene, solution); };
   listener.note = [&](const std::string &note) { console << "note: " << note << std::endl; };
+  listener.load_step = [&](Solution &solution) {
+    table->load_step(scene, solution);
+    if (keep_step) keep_step(scene, solution);
+  };
   if (keep) listener.cycle = [&](Solution &solution) { keep(scene, solution); };
   Solution solution = adapt::solve(scene, comm, listener);
   if (!scene.output.exodus) solution.skipped.push_back("stress recovery and nodal fields: no Exodus file");

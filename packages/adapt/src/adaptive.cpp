@@ -223,6 +223,7 @@ Solution solve_adaptively(const Task &task, const RCP<const Comm> &comm, const L
 
 Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
+  if (!task.steps.times.empty()) return solve_steps(task, comm, listener);
   if (task.adapt.adapts()) return solve_adaptively(task, comm, listener);
   return solve_on(task, task.mesh, nullptr, comm, listener);
 }

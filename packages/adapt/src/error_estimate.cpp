@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rpc::adapt
 {
@@ -16,7 +17,7 @@ namespace
 using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadOnly));
 
 // Columns of what a side's facets read at their nodes.
-enum Column { pressure, penetration, yield, normal };
+enum Column { pressure, penetration, yield, hardening, compliance, normal };
 
 /// What the contact nodes of one side know, at the nodes of its facets (overlap nodes; columns).
 RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const contact::ContactNodes &c,
@@ -24,7 +25,7 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
 {
   // A yield stress out of reach, maybe infinite, gives way to one that no pressure reaches either.
   const double highest_yield = 2 * std::max(result.total.max_pressure, 1e-300);
-  // Nodes that neither are open nor yield have v = 0. What a solve leaves there, up to 1e-8 of the largest pressure, would
+  // Nodes that neither are open nor yield have v = c p. What a solve leaves there, up to 1e-8 of the largest pressure, would
   // count with p |v|, which is of first order, and differ between numbers of ranks.
   const double accuracy = 1e-7 * result.total.max_pressure;
   const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, normal + c.dim));
@@ -39,9 +40,12 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
           const LO i = begin + k, node = c.node(i);
           to(node, int(pressure)) = p(i);
           const bool closed = p(i) > 0 && p(i) < c.yield(i);
-          const double size = v(i) < 0 ? -v(i) : v(i);
-          to(node, int(penetration)) = closed && c.scaling(i) * size <= accuracy ? 0 : v(i);
+          const double now = v(i) - c.dent(i), elastic = c.compliance(i) * p(i);
+          const double miss = now < elastic ? elastic - now : now - elastic;
+          to(node, int(penetration)) = closed && c.scaling(i) * miss <= accuracy ? elastic : now;
           to(node, int(yield)) = c.yield(i) < highest_yield ? c.yield(i) : highest_yield;
+          to(node, int(hardening)) = c.hardening(i);
+          to(node, int(compliance)) = c.compliance(i);
           for (int j = 0; j < c.dim; ++j) to(node, normal + j) = c.normal(i, j);
         });
     Kokkos::fence();
@@ -117,23 +121,26 @@ struct ContactTerms {
     const int dim = static_cast<int>(traction.extent(2)), points = static_cast<int>(value.extent(0));
     const int of = block(cell(f));
     // Stresses that balance r and fall to 0 over the depth h have the energy h/3 r^2 / (lambda + 2 mu).
-    const double compliance = size(f) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
+    const double facet_compliance = size(f) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
     const FacetState state = state_of(f);
     double out_of_balance = 0, product = 0;
     for (int q = 0; q < points; ++q) {
       const Point x = point(f, q, state == FacetState::mixed);
-      const double xi = math::fmax(0., x.at[yield]); // an interpolant may fall below its nodal values
+      // An interpolant may fall below its nodal values.
+      const contact::Foundation law{math::fmax(0., x.at[yield]), math::fmax(0., x.at[hardening]),
+                                    math::fmax(0., x.at[compliance])};
       const double v = x.at[penetration], share = measure(f * points + q);
       // Of all pressures that the law admits, that of the least sum of both terms will do where the multiplier tells none.
-      const double p =
-          contact::clamp(state == FacetState::mixed ? v / compliance + x.recovered : x.at[pressure], 0, xi);
-      product += share * (v > 0 ? (xi - p) * v : -p * v);
+      const double p = state == FacetState::mixed ? contact::pressure(v, x.recovered, 1 / facet_compliance, law)
+                                                  : contact::admissible(x.at[pressure], law);
+      product += share * (contact::foundation_energy(v, law) + contact::conjugate_energy(p, law) - p * v);
       for (int i = 0; i < dim; ++i) {
         const double r = x.rest[i] + p * x.at[normal + i];
-        out_of_balance += compliance * share * r * r;
+        out_of_balance += facet_compliance * share * r * r;
       }
-      const double other = x.at[pressure] - contact::clamp(x.recovered, 0, xi);
-      if (state == FacetState::closed || state == FacetState::mixed) difference += share * other * other;
+      const double other = x.at[pressure] - contact::admissible(x.recovered, law);
+      const bool known = state == FacetState::open || (state == FacetState::yielding && law.hardening == 0);
+      if (!known) difference += share * other * other;
     }
     squared(f) = out_of_balance + 2 * product;
     equilibrium += out_of_balance;
@@ -163,8 +170,9 @@ struct PeakDifference {
 
   KOKKOS_FUNCTION void operator()(const LO f, double &most) const
   {
-    if (terms.state_of(f) ==
-        ContactTerms::FacetState::yielding) { // the pressure is the yield stress, known at the nodes
+    // The pressure is the yield stress, known at the nodes.
+    if (terms.state_of(f) == ContactTerms::FacetState::yielding &&
+        terms.field(terms.facets(f, 0), int(hardening)) == 0) {
       double high = 0, low = highest;
       for (std::size_t a = 0; a < terms.facets.extent(1); ++a) {
         const double p = terms.field(terms.facets(f, a), int(pressure));
@@ -178,7 +186,7 @@ struct PeakDifference {
       const auto x = terms.point(f, q, false);
       const double p = x.at[pressure];
       if (!(p > 0 && p >= share * highest)) continue;
-      const double difference = p - contact::clamp(x.recovered, 0, x.at[yield]);
+      const double difference = p - contact::admissible(x.recovered, {x.at[yield], x.at[hardening], x.at[compliance]});
       most = math::fmax(most, difference < 0 ? -difference : difference);
     }
   }
@@ -223,14 +231,16 @@ struct NodalPressures {
   }
 };
 
-/// The highest yield stress at the points of all contact sides, maybe infinite; collective.
-double highest_yield_stress(const Comm &comm, const contact::ContactNodes &c)
+/// What no pressure can exceed at the points of all contact sides, maybe infinite; collective.
+double highest_bound(const Comm &comm, const contact::ContactNodes &c)
 {
-  const auto yield = c.yield;
+  const auto yield = c.yield, harder = c.hardening;
+  const double inf = std::numeric_limits<double>::infinity();
   double highest = 0;
   Kokkos::parallel_reduce(
       "rpc::adapt::highest_yield_stress", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &most) { most = math::fmax(most, yield(i)); }, Kokkos::Max<double>(highest));
+      KOKKOS_LAMBDA(const LO i, double &most) { most = math::fmax(most, harder(i) > 0 ? inf : yield(i)); },
+      Kokkos::Max<double>(highest));
   return max_all(comm, std::max(0., highest));
 }
 
@@ -258,7 +268,7 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
   estimate.squared = recovered.squared_difference();
   const auto squared = estimate.squared;
   const double highest = result.total.max_pressure;
-  estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_yield_stress(mesh.comm(), contact);
+  estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_bound(mesh.comm(), contact);
   double sums[7] = {}, peak = 0, drop = 0; // Kokkos' maximum over no facets is -DBL_MAX
   Kokkos::parallel_reduce(
       "rpc::adapt::recovery", device_range(mesh.num_owned_cells),

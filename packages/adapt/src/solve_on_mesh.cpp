@@ -24,10 +24,16 @@ std::shared_ptr<const analysis::Problem> make_problem(const Task &task, const me
   return std::make_shared<analysis::Problem>(mesh, task.model, task.linear_solver, task.time);
 }
 
-/// The scene on coarser and coarser meshes.
-analysis::CoarserProblem coarser_meshes(const Task &task, const mesh::MeshOptions &options, const RCP<const Comm> &comm)
+Task at_first_time(Task task)
 {
-  return [&task, options, comm](const int level) -> std::shared_ptr<const analysis::Problem> {
+  task.time = task.steps.times.front();
+  return task;
+}
+
+/// The scene on coarser and coarser meshes.
+analysis::CoarserProblem coarser_meshes(Task task, const mesh::MeshOptions &options, const RCP<const Comm> &comm)
+{
+  return [task = std::move(task), options, comm](const int level) -> std::shared_ptr<const analysis::Problem> {
     std::optional<mesh::MeshOptions> coarse = options;
     for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, task.step.prediction.coarsening);
     PhaseSeconds seconds;
@@ -59,10 +65,44 @@ void note_skipped(const Task &task, Solution &s)
 
 } // namespace
 
+Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
+{
+  Solution s;
+  PhaseSeconds seconds;
+  const auto problem = make_problem(at_first_time(task), task.mesh, comm, seconds);
+  analysis::LoadHistory history(problem, task.step, task.steps.max_halvings,
+                                coarser_meshes(at_first_time(task), task.mesh, comm));
+  std::vector<analysis::StepRecord> records;
+  if (listener.mesh) listener.mesh(problem->discretization(), problem->step(task.steps.times.front()).contact);
+  for (const double t : task.steps.times) {
+    s = Solution{};
+    static_cast<analysis::StepSolution &>(s) = history.advance(t, listener.step);
+    s.discretization = history.problem().discretization();
+    s.time = t;
+    s.matrix_assemblies = history.matrix_assemblies();
+    records.push_back(history.last());
+    s.history = records;
+    if (task.adapt.estimate) {
+      const Timed phase("estimate", seconds.estimate);
+      s.estimate = estimate_error(s.discretization, task.model.materials, history.problem().contact_sides(),
+                                  history.problem().model().tractions, s.functional->contact(), s.contact, *s.u);
+    }
+    seconds.prediction += s.prediction_seconds;
+    seconds.setup += s.linear.setup_seconds;
+    seconds.solve += s.solve_seconds;
+    s.seconds = seconds;
+    note_skipped(task, s);
+    if (listener.load_step) listener.load_step(s);
+    if (!s.uzawa.converged) break;
+  }
+  return s;
+}
+
 Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solution *const previous,
                   const RCP<const Comm> &comm, const Listener &listener)
 {
   Solution s;
+  s.time = task.time;
   const auto problem = make_problem(task, options, comm, s.seconds);
   const fem::Discretization &d = s.discretization = problem->discretization();
   analysis::Step step;
@@ -72,21 +112,22 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   }
   throw_if_interrupted(*comm, "before the first solve; no results are written");
   if (listener.mesh) listener.mesh(d, step.contact);
-  std::optional<contact::ContactState> start;
+  std::vector<contact::ContactState> starts;
   if (previous) {
     const Timed phase("prediction", s.seconds.prediction);
     const contact::ContactNodes &points = previous->functional->contact();
     const auto state =
         contact::with_weightless(previous->state(), points, previous->discretization,
                                  contact::contact_sides(*previous->discretization.mesh, task.model.contact));
-    start = contact::interpolated(*fem::interpolation(previous->discretization, d), points, state, step.contact,
-                                  d.owned_dofs);
+    starts.push_back(contact::interpolated(*fem::interpolation(previous->discretization, d), points, state,
+                                           step.contact, d.owned_dofs));
   }
-  static_cast<analysis::StepSolution &>(s) = analysis::solve_step(*problem, step, task.step, start ? &*start : nullptr,
-                                                                  coarser_meshes(task, options, comm), listener.step);
+  static_cast<analysis::StepSolution &>(s) =
+      analysis::solve_step(*problem, step, task.step, starts, coarser_meshes(task, options, comm), listener.step);
   s.matrix_assemblies = 1;
   if (task.adapt.adapts()) s.pressure_norm = contact::pressure_distance(*comm, step.contact, s.contact.pressure, {});
-  if (start) s.pressure_change = contact::pressure_distance(*comm, step.contact, s.contact.pressure, start->multiplier);
+  if (previous)
+    s.pressure_change = contact::pressure_distance(*comm, step.contact, s.contact.pressure, starts.front().multiplier);
   if (task.adapt.estimate) {
     const Timed phase("estimate", s.seconds.estimate);
     s.estimate = estimate_error(d, task.model.materials, problem->contact_sides(), task.model.tractions,

@@ -59,14 +59,18 @@ Model Model::seen_at(const double t) const
   model.body_force = analysis::seen_at(model.body_force, t);
   for (auto &side : model.contact) {
     side.yield_stress = side.yield_stress.seen_at(t);
+    side.hardening = side.hardening.seen_at(t);
+    side.stiffness = side.stiffness.seen_at(t);
     side.gap = side.gap.seen_at(t);
+    side.obstacle = side.obstacle.seen_at(t);
   }
   return model;
 }
 
 Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
                  const double t)
-    : model_(model.seen_at(t)), discretization_(fem::discretize(std::move(mesh), model_.kinematics))
+    : model_(model.seen_at(t)), linear_options_(linear),
+      discretization_(fem::discretize(std::move(mesh), model_.kinematics))
 {
   const fem::Discretization &d = discretization_;
   const auto dirichlet = prescribed_of(d, model_);
@@ -82,18 +86,39 @@ Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, con
                                                    fem::rigid_body_modes(d), std::move(levels));
 }
 
-Step Problem::step(const double t) const
+Step Problem::step(const double t, const MultiVector *const dents) const
 {
   const fem::Discretization &d = discretization_;
   const Model now = model_.seen_at(t);
   auto dirichlet = prescribed_of(d, now);
-  Step step{t, {}, contact::contact_nodes(d, now.contact, dirichlet, now.materials), {}};
+  Step step{t, {}, contact::contact_nodes(d, now.contact, dirichlet, now.materials, dents), {}};
   step.elastic = fem::elastic_problem(d, eliminated_, loads_of(d, now), std::move(dirichlet));
   require_finite(*step.elastic.load, "the forces of prescribed displacements",
                  [&d] { return fem::node_coordinates(d); });
   step.support =
       contact::check_support(d, step.elastic.dirichlet, *step.elastic.applied_load, step.contact, now.contact);
   return step;
+}
+
+bool Problem::serves(const Step &step) const
+{
+  const NodePoints mine = operator_->points(), other = step.contact;
+  LO differences = mine.size() == other.size() ? 0 : 1;
+  if (differences == 0)
+    Kokkos::parallel_reduce(
+        "rpc::analysis::compare_points", device_range(mine.size()),
+        KOKKOS_LAMBDA(const LO i, LO &count) {
+          bool same = mine.node(i) == other.node(i);
+          for (int k = 0; k < mine.dim; ++k) same = same && mine.direction(i, k) == other.direction(i, k);
+          count += same ? 0 : 1;
+        },
+        differences);
+  return max_all(discretization_.mesh->comm(), differences) == 0;
+}
+
+std::shared_ptr<const Problem> Problem::remade(const double t) const
+{
+  return std::make_shared<Problem>(discretization_.mesh, model_, linear_options_, t);
 }
 
 std::vector<const mesh::Side *> Problem::contact_sides() const

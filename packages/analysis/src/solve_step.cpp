@@ -72,6 +72,30 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepS
   return fem::reaction_forces(d, elastic.dirichlet, static_cast<int>(problem.model().dirichlet.size()), out_of_balance);
 }
 
+/// Starts from the state whose displacement and multipliers are nearest to equilibrium.
+void start_from_nearest(SmoothedFunctional &functional, const std::vector<contact::ContactState> &starts, Vector &u)
+{
+  const Vector rest(u, Teuchos::Copy);
+  const auto take = [&](const contact::ContactState &state) {
+    u.assign(rest);
+    functional.start_from(state, u);
+  };
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  Vector F(u.getMap());
+  for (std::size_t k = 0; k < starts.size() && starts.size() > 1; ++k) {
+    take(starts[k]);
+    functional.elastic_gradient(u, F);
+    F.update(1., functional.multiplier_forces(), 1.);
+    fem::clear_prescribed(functional.problem().dirichlet, F);
+    const double out_of_balance = F.norm2();
+    if (!(out_of_balance < least)) continue;
+    least = out_of_balance;
+    nearest = k;
+  }
+  if (starts.size() == 1 || nearest + 1 < starts.size()) take(starts[nearest]);
+}
+
 /// What the linear solver has done since.
 solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now)
 {
@@ -89,7 +113,7 @@ solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before
 // The step ------------------------------------------------------------------------------------------------------------
 
 StepSolution solve_step(const Problem &problem, const Step &step, const StepOptions &options,
-                        const contact::ContactState *const start, const CoarserProblem &coarser,
+                        const std::vector<contact::ContactState> &starts, const CoarserProblem &coarser,
                         const Progress &progress)
 {
   StepSolution s;
@@ -101,8 +125,8 @@ StepSolution solve_step(const Problem &problem, const Step &step, const StepOpti
   solver::check_nox_parameters(*s.functional, iterate.linear(), s.u, options.newton);
   {
     const Timed timer("prediction", s.prediction_seconds);
-    if (start)
-      s.functional->start_from(*start, *s.u);
+    if (!starts.empty())
+      start_from_nearest(*s.functional, starts, *s.u);
     else
       s.not_predicted = predict(iterate, step.time, options, coarser, 1, s.levels);
   }

@@ -80,7 +80,8 @@ struct LawParameter {
 const LawParameter law_parameters[] = {
     {&ContactOptions::yield_stress, "Yield Stress", "> 0 [Pa] (inf for a rigid foundation)", false, true},
     {&ContactOptions::hardening, "Hardening", "finite and >= 0 [Pa/m]", true, false},
-    {&ContactOptions::stiffness, "Stiffness", "> 0 [Pa/m] (inf for a foundation that is rigid until it yields)", false, true},
+    {&ContactOptions::stiffness, "Stiffness", "> 0 [Pa/m] (inf for a foundation that is rigid until it yields)", false,
+     true},
 };
 
 /// Parameters of one contact side.
@@ -100,6 +101,10 @@ void add_side_parameters(Teuchos::ParameterList &valid)
             "obstacle), or a fixed one as numbers, `0, -1`. Default: `foundation` with an obstacle, else `surface`.");
   valid.sublist("Obstacle", false, "Surface of the foundation, from which the gap follows.") =
       valid_obstacle_parameters();
+  valid.set("Remembers", "auto",
+            "Whether the foundation keeps its dents from one of `Steps` to the next: `auto` (it does), `true`, or "
+            "`false` for a law "
+            "that is reversible.");
   set_field(valid, "Penalty", "auto",
             "r of the modified Lagrangian: `auto` (from the stiffness and the weight of each node), or a number > 0 "
             "[Pa/m] to "
@@ -142,7 +147,11 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
   options.hardening = parse(field_text(list, "Hardening"), path + "->Hardening");
   options.stiffness = parse(field_text(list, "Stiffness"), path + "->Stiffness");
   options.gap = parse(field_text(list, "Gap"), path + "->Gap");
-  options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle");
+  options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle", parse);
+  const auto &remembers = list.get<std::string>("Remembers");
+  RPC_REQUIRE(remembers == "auto" || remembers == "true" || remembers == "false",
+              "deck: \"" << path << "->Remembers\" must be one of auto, true, false, got \"" << remembers << "\"");
+  options.remembers = remembers != "false";
   options.penalty = penalty_from(field_text(list, "Penalty"), path);
   const bool obstacle = options.obstacle.kind != Obstacle::Kind::none;
   const auto &normal = list.get<std::string>("Normal");
@@ -239,7 +248,8 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
   values.misses.assign(n, false);
   HostView<double *> *const of_law[] = {&values.yield, &values.hardening, &values.stiffness};
   for (std::size_t k = 0; k < std::size(law_parameters); ++k)
-    *of_law[k] = evaluate(options.*law_parameters[k].field, points, options.path + "->" + law_parameters[k].name, comm, true);
+    *of_law[k] =
+        evaluate(options.*law_parameters[k].field, points, options.path + "->" + law_parameters[k].name, comm, true);
   values.gap = evaluate(options.gap, points, options.path + "->Gap", comm);
   values.normal = HostView<double **>("rpc::contact::side_normal", n, points.extent(1));
   const auto outward = to_host(surface_normal);

@@ -1,5 +1,6 @@
 #include "rpc/contact/contact_state.hpp"
 
+#include "rpc/contact/node_columns.hpp"
 #include "rpc/contact/result.hpp"
 
 namespace rpc::contact
@@ -33,33 +34,6 @@ void from_columns(const MultiVector &columns, const int dim, Vector &u)
   Kokkos::fence();
 }
 
-/// One column of the multipliers for each side, 0 away from it.
-void scatter(const ContactNodes &c, const DeviceView<double *> &lambda, MultiVector &columns)
-{
-  for (int side = 0; side < c.num_sides(); ++side) {
-    const LO begin = c.first(side);
-    const auto to = columns.getLocalViewDevice(Tpetra::Access::ReadWrite);
-    Kokkos::parallel_for(
-        "rpc::contact::scatter_multipliers", device_range(c.first(side + 1) - begin),
-        KOKKOS_LAMBDA(const LO i) { to(c.node(begin + i), side) = lambda(begin + i); });
-    Kokkos::fence();
-  }
-}
-
-DeviceView<double *> gathered(const ContactNodes &c, const MultiVector &columns)
-{
-  const DeviceView<double *> lambda("rpc::contact::gathered_multiplier", c.size());
-  for (int side = 0; side < c.num_sides(); ++side) {
-    const LO begin = c.first(side);
-    const auto from = columns.getLocalViewDevice(Tpetra::Access::ReadOnly);
-    Kokkos::parallel_for(
-        "rpc::contact::gather_multipliers", device_range(c.first(side + 1) - begin),
-        KOKKOS_LAMBDA(const LO i) { lambda(begin + i) = from(c.node(begin + i), side); });
-    Kokkos::fence();
-  }
-  return lambda;
-}
-
 } // namespace
 
 ContactState with_weightless(ContactState state, const ContactNodes &c, const fem::Discretization &d,
@@ -87,10 +61,9 @@ ContactState interpolated(const CrsMatrix &interpolation, const ContactNodes &co
   ContactState result{rcp(new Vector(fine_dofs)), {}, {}};
   from_columns(to, dim, *result.displacement);
   if (sides == 0) return result;
-  MultiVector lambda_from(interpolation.getDomainMap(), sides), lambda_to(interpolation.getRangeMap(), sides);
-  scatter(coarse, state.multiplier, lambda_from);
-  interpolation.apply(lambda_from, lambda_to);
-  result.multiplier = gathered(fine, lambda_to);
+  MultiVector lambda(interpolation.getRangeMap(), sides);
+  interpolation.apply(*node_columns(coarse, state.multiplier, interpolation.getDomainMap()), lambda);
+  result.multiplier = at_points(fine, lambda);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "rpc/contact/obstacle.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
 
 #include <Teuchos_Array.hpp>
 #include <cmath>
@@ -42,6 +43,26 @@ Point point_of(const Teuchos::ParameterList &list, const std::string &name, cons
   return point;
 }
 
+/// The coordinates of a point as functions of time alone.
+std::array<ScalarField, 3> path_of(const Teuchos::ParameterList &list, const std::string &name, const int dim,
+                                   const std::string &path, const FieldParser &parse)
+{
+  const auto texts = field_texts(list, name);
+  RPC_REQUIRE(static_cast<int>(texts.size()) == dim, "deck: \"" << path << "->" << name << "\" must hold " << dim
+                                                                << " numbers or expressions of t, got "
+                                                                << texts.size());
+  std::array<ScalarField, 3> fields;
+  for (int c = 0; c < dim; ++c) {
+    fields[c] = parse(texts[c], path + "->" + name);
+    const double here = fields[c]({0, 0, 0}), there = fields[c]({0.7, 1.3, 2.1});
+    RPC_REQUIRE(here == there || (std::isnan(here) && std::isnan(there)),
+                "deck: \"" << path << "->" << name << "\" must not depend on x, y or z, got " << texts[c]);
+    RPC_REQUIRE(std::isfinite(here), "deck: \"" << path << "->" << name << "\" must be finite, got " << here
+                                                << (fields[c].is_constant() ? "" : " from " + texts[c]));
+  }
+  return fields;
+}
+
 /// Unit vector from one of any length.
 Point unit_of(const Teuchos::ParameterList &list, const std::string &name, const int dim, const std::string &path)
 {
@@ -66,16 +87,27 @@ Teuchos::ParameterList valid_obstacle_parameters()
   valid.set("Type", "none",
             "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`, or "
             "`none`: see Gap.");
-  valid.set("Point", Array<double>(), "plane: a point on it; cylinder: a point on its axis [m].");
+  set_fields(valid, "Point", "plane: a point on it; cylinder: a point on its axis [m]. Numbers, or expressions of t.");
   valid.set("Normal", Array<double>(), "plane: its normal, out of the foundation towards the body, of any length.");
   valid.set("Axis", Array<double>(), "cylinder: the direction of its axis, of any length.");
-  valid.set("Centre", Array<double>(), "sphere: its centre [m].");
+  set_fields(valid, "Centre", "sphere: its centre [m]. Numbers, or expressions of t.");
   valid.set("Radius", 0., "sphere, cylinder: its radius, > 0 [m].");
   valid.set("Encloses Body", false, "sphere, cylinder: whether the body lies inside of it and the foundation outside.");
   return valid;
 }
 
-Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, const std::string &path)
+Obstacle Obstacle::seen_at(const double t) const
+{
+  Obstacle seen = *this;
+  for (int c = 0; c < 3; ++c) {
+    seen.path[c] = path[c].seen_at(t);
+    if (!path[c].is_constant()) seen.point[c] = seen.path[c]({});
+  }
+  return seen;
+}
+
+Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, const std::string &path,
+                          const FieldParser &parse)
 {
   const auto &type = list.get<std::string>("Type");
   const bool sphere = type == "sphere" || type == "circle", cylinder = type == "cylinder", plane = type == "plane";
@@ -95,16 +127,16 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
   if (plane) refuse({"Centre", "Axis", "Radius", "Encloses Body"});
   if (plane) {
     obstacle.kind = Obstacle::Kind::plane;
-    obstacle.point = point_of(list, "Point", dim, path);
+    obstacle.path = path_of(list, "Point", dim, path, parse);
     obstacle.normal = unit_of(list, "Normal", dim, path);
   }
   if (sphere) {
     obstacle.kind = Obstacle::Kind::sphere;
-    obstacle.point = point_of(list, "Centre", dim, path);
+    obstacle.path = path_of(list, "Centre", dim, path, parse);
   }
   if (cylinder) {
     obstacle.kind = Obstacle::Kind::cylinder;
-    obstacle.point = point_of(list, "Point", dim, path);
+    obstacle.path = path_of(list, "Point", dim, path, parse);
     obstacle.axis = unit_of(list, "Axis", dim, path);
   }
   if (sphere || cylinder) {
@@ -113,6 +145,7 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
     RPC_REQUIRE(obstacle.radius > 0 && std::isfinite(obstacle.radius),
                 "deck: \"" << path << "->Radius\" must be > 0 and finite [m], got " << obstacle.radius);
   }
+  for (int c = 0; c < dim && obstacle.kind != Obstacle::Kind::none; ++c) obstacle.point[c] = obstacle.path[c]({});
   return obstacle;
 }
 

@@ -40,7 +40,7 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
 void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &result)
 {
   const auto u_nu = result.normal_displacement;
-  const auto v = result.penetration;
+  const auto v = result.penetration, dent = result.dent;
   const auto p = result.pressure;
   const auto s = result.state;
   const auto x = device_read(u);
@@ -49,6 +49,7 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
         u_nu(i) = 0;
         for (int k = 0; k < c.dim; ++k) u_nu(i) += c.normal(i, k) * x(c.dof(i, k));
         v(i) = u_nu(i) - c.gap(i);
+        dent(i) = c.dent(i) + new_dent(v(i) - c.dent(i), p(i), foundation(c, i));
         s(i) = static_cast<int>(p(i) >= c.yield(i) ? State::yielding : (p(i) > 0 ? State::closed : State::open));
       });
   Kokkos::fence();
@@ -57,10 +58,11 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
 /// Over the points [begin, end) of all ranks.
 ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult &result, const LO begin, const LO end)
 {
-  const auto v = result.penetration;
+  const auto v = result.penetration, dent = result.dent;
   const auto p = result.pressure;
   const Kokkos::RangePolicy<ExecutionSpace, LO> points(begin, end);
-  double force[3] = {}, contact = 0, yielded = 0, peak = 0, deepest = 0, initial = 0;
+  double force[3] = {}, contact = 0, yielded = 0, peak = 0, deepest = 0, initial = 0, most_dented = 0;
+  double volume = 0, dissipated = 0, stored = 0;
   GO nodes = 0;
   Kokkos::parallel_reduce(
       "rpc::contact::result_sums", points,
@@ -78,20 +80,31 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
       nodes);
   Kokkos::parallel_reduce(
       "rpc::contact::result_maxima", points,
-      KOKKOS_LAMBDA(const LO i, double &most, double &deep, double &overlap) {
+      KOKKOS_LAMBDA(const LO i, double &most, double &deep, double &overlap, double &dented) {
         if (!(c.weight(i) > 0)) return; // the contact law does not hold there
+        if (dent(i) > dented) dented = dent(i);
         if (p(i) > most) most = p(i);
         if (v(i) > deep) deep = v(i);
         if (-c.gap(i) > overlap) overlap = -c.gap(i);
       },
-      Kokkos::Max<double>(peak), Kokkos::Max<double>(deepest), Kokkos::Max<double>(initial));
+      Kokkos::Max<double>(peak), Kokkos::Max<double>(deepest), Kokkos::Max<double>(initial),
+      Kokkos::Max<double>(most_dented));
+  Kokkos::parallel_reduce(
+      "rpc::contact::result_energies", points,
+      KOKKOS_LAMBDA(const LO i, double &dents, double &lost, double &kept) {
+        const Foundation f = foundation(c, i);
+        dents += c.weight(i) * dent(i);
+        lost += c.weight(i) * dissipation(dent(i) - c.dent(i), p(i), f);
+        kept += c.weight(i) * 0.5 * f.compliance * p(i) * p(i);
+      },
+      volume, dissipated, stored);
 
-  const double sums[6] = {force[0], force[1], force[2], contact, yielded, double(nodes)};
-  double all[6];
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 6, sums, all);
-  const double maxima[3] = {peak, deepest, initial}; // Kokkos' maximum over no nodes is -DBL_MAX
-  double largest[3];
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 3, maxima, largest);
+  const double sums[9] = {force[0], force[1], force[2], contact, yielded, double(nodes), volume, dissipated, stored};
+  double all[9];
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 9, sums, all);
+  const double maxima[4] = {peak, deepest, initial, most_dented}; // Kokkos' maximum over no nodes is -DBL_MAX
+  double largest[4];
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 4, maxima, largest);
   ContactSums result_sums;
   result_sums.force = {all[0], all[1], all[2]};
   result_sums.contact_length = all[3];
@@ -100,6 +113,10 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
   result_sums.max_pressure = std::max(0., largest[0]);
   result_sums.max_penetration = std::max(0., largest[1]);
   result_sums.max_initial_penetration = std::max(0., largest[2]);
+  result_sums.max_dent = std::max(0., largest[3]);
+  result_sums.dent_volume = all[6];
+  result_sums.dissipated = all[7];
+  result_sums.foundation_energy = all[8];
   return result_sums;
 }
 
@@ -114,6 +131,10 @@ ContactSums &ContactSums::operator+=(const ContactSums &other)
   max_initial_penetration = std::max(max_initial_penetration, other.max_initial_penetration);
   contact_length += other.contact_length;
   yielded_length += other.yielded_length;
+  max_dent = std::max(max_dent, other.max_dent);
+  dent_volume += other.dent_volume;
+  dissipated += other.dissipated;
+  foundation_energy += other.foundation_energy;
   return *this;
 }
 
@@ -135,6 +156,7 @@ ContactResult contact_result(const fem::Discretization &d, const std::vector<con
   ContactResult result;
   result.normal_displacement = DeviceView<double *>("rpc::contact::u_nu", n);
   result.penetration = DeviceView<double *>("rpc::contact::penetration", n);
+  result.dent = DeviceView<double *>("rpc::contact::dent", n);
   result.state = DeviceView<int *>("rpc::contact::state", n);
   result.pressure = completed_pressure(d, sides, c, functional.multipliers());
   fill_fields(c, u, result);

@@ -137,9 +137,7 @@ DeviceView<double *> pressures(const ContactNodes &c, const DeviceView<double *>
   const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::pressure", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i) {
-        p(i) = pressure(penetration(c, i, x), lambda(i), c.penalty(i), foundation(c, i));
-      });
+      KOKKOS_LAMBDA(const LO i) { p(i) = pressure(penetration(c, i, x), lambda(i), c.penalty(i), foundation(c, i)); });
   return p;
 }
 
@@ -632,7 +630,8 @@ double SmoothedFunctional::pressure_error(const Vector &u) const
         if (active(i) == State::closed)
           worst = larger(worst, own(i) * magnitude((v - f.compliance * lambda(i)) / softening(r, f)));
         else if (active(i) == State::yielding && f.hardening > 0)
-          worst = larger(worst, own(i) * magnitude(branch_pressure(State::yielding, v, lambda(i), r, f) - lambda(i)) / r);
+          worst =
+              larger(worst, own(i) * magnitude(branch_pressure(State::yielding, v, lambda(i), r, f) - lambda(i)) / r);
       },
       Kokkos::Max<double>(error), Kokkos::Max<double>(largest));
   const double mine[2] = {error, largest};
@@ -690,22 +689,21 @@ ContactEnergy SmoothedFunctional::contact_energy(const Vector &u) const
       "rpc::contact::largest_multiplier", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &most) { most = larger(most, lambda(i)); }, Kokkos::Max<double>(largest));
   const double bound = 2 * max_all(*comm_, std::max(0., largest));
-  double sums[3] = {0, 0, 0};
+  double sums[2] = {0, 0};
   Kokkos::parallel_reduce(
       "rpc::contact::contact_energy", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &dissipated, double &stored, double &duality_gap) {
+      KOKKOS_LAMBDA(const LO i, double &dissipated, double &duality_gap) {
         if (c.fixed(i)) return;
         const double v = penetration(c, i, x), p = lambda(i);
         Foundation f = foundation(c, i);
         dissipated += c.weight(i) * dissipation(new_dent(v, p, f), p, f);
-        stored += c.weight(i) * 0.5 * f.compliance * p * p;
         if (f.yield > bound) f.yield = bound;
         duality_gap += c.weight(i) * (foundation_energy(v, f) + conjugate_energy(p, f) - p * v);
       },
-      sums[0], sums[1], sums[2]);
-  double all[3];
-  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 3, sums, all);
-  return {all[0], all[1], all[2]};
+      sums[0], sums[1]);
+  double all[2];
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, sums, all);
+  return {all[0], all[1]};
 }
 
 } // namespace rpc::contact

@@ -22,7 +22,11 @@ using Numbers = Teuchos::Array<double>;
 Obstacle read(Teuchos::ParameterList list, const int dim = 2)
 {
   validate(list, contact::valid_obstacle_parameters());
-  return contact::obstacle_options(list, dim, "Contact->Obstacle");
+  const auto parse = [](const std::string &text, const std::string &) {
+    return text.find('t') == std::string::npos ? ScalarField(std::stod(text))
+                                               : ScalarField(text, [](const Point &, double t) { return 2 * t; });
+  };
+  return contact::obstacle_options(list, dim, "Contact->Obstacle", parse);
 }
 
 Obstacle plane(const Numbers &point, const Numbers &normal)

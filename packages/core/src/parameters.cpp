@@ -31,9 +31,17 @@ public:
   void validate(const ParameterEntry &, const std::string &, const std::string &) const override {}
 };
 
-bool is_field(const ParameterEntry &entry)
+bool has_field_validator(const ParameterEntry &entry)
 {
   return dynamic_cast<const FieldValidator *>(entry.validator().get()) != nullptr;
+}
+bool is_fields(const ParameterEntry &entry)
+{
+  return has_field_validator(entry) && entry.isType<Array<std::string>>();
+}
+bool is_field(const ParameterEntry &entry)
+{
+  return has_field_validator(entry) && !is_fields(entry);
 }
 
 std::string quoted(const std::string &path, const std::string &name)
@@ -45,6 +53,7 @@ std::string type_name(const ParameterEntry &entry)
 {
   if (entry.isList()) return "sublist";
   if (is_field(entry)) return "number or expression";
+  if (is_fields(entry)) return "array of numbers or expressions";
   if (entry.isType<int>()) return "int";
   if (entry.isType<double>()) return "double";
   if (entry.isType<bool>()) return "bool";
@@ -62,6 +71,7 @@ std::optional<ParameterEntry> converted(const ParameterEntry &value, const Param
     if (value.isType<int>() || value.isType<double>() || value.isType<std::string>()) return value;
     return std::nullopt;
   }
+  if (is_fields(model) && (value.isType<Array<int>>() || value.isType<Array<double>>())) return value;
   if (value.getAny(false).type() == model.getAny(false).type()) return value;
   if (model.isType<double>() && value.isType<int>())
     return ParameterEntry(static_cast<double>(Teuchos::getValue<int>(value)));
@@ -102,6 +112,32 @@ std::optional<Array<T>> read_array(const std::string &text)
   return values;
 }
 
+/// "{0, min(t, 1) - 0.5}": the texts between commas that stand in no parentheses.
+std::optional<Array<std::string>> read_fields(const std::string &text)
+{
+  const auto first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
+  if (first == std::string::npos || first == last || text[first] != '{' || text[last] != '}') return std::nullopt;
+  Array<std::string> fields;
+  const std::string inside = text.substr(first + 1, last - first - 1);
+  if (inside.find_first_not_of(' ') == std::string::npos) return fields;
+  int depth = 0;
+  std::string field;
+  const auto add = [&] {
+    const auto begin = field.find_first_not_of(' '), end = field.find_last_not_of(' ');
+    fields.push_back(begin == std::string::npos ? "" : field.substr(begin, end - begin + 1));
+    field.clear();
+  };
+  for (const char c : inside) {
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == ',' && depth == 0)
+      add();
+    else
+      field += c;
+  }
+  add();
+  return fields;
+}
+
 /// The text as the type of `model`, or as the first type that fits where there is no model.
 std::optional<ParameterEntry> read_entry(const std::string &text, const ParameterEntry *model)
 {
@@ -116,6 +152,7 @@ std::optional<ParameterEntry> read_entry(const std::string &text, const Paramete
     return ParameterEntry(text);
   }
   if (is_field(*model) || model->isType<std::string>()) return ParameterEntry(text);
+  if (is_fields(*model)) return entry_of(read_fields(text));
   if (model->isType<int>()) return entry_of(read_as<int>(text));
   if (model->isType<double>()) return entry_of(read_as<double>(text));
   if (model->isType<bool>()) return entry_of(read_as<bool>(text));
@@ -128,6 +165,7 @@ std::optional<ParameterEntry> read_entry(const std::string &text, const Paramete
 /// What a value has to be, after "must be ".
 std::string rule_of(const ParameterEntry &model)
 {
+  if (is_fields(model)) return "an array of numbers or expressions, such as {0, 0.1*t}";
   if (model.isType<double>()) return "a double, and finite";
   if (model.isType<bool>()) return "a bool: true or false";
   if (model.isType<int>()) return "an int";
@@ -180,6 +218,35 @@ std::string field_text(const ParameterList &list, const std::string &name)
   else
     text << Teuchos::getValue<std::string>(entry);
   return text.str();
+}
+
+void set_fields(ParameterList &valid, const std::string &name, const std::string &doc)
+{
+  valid.set(name, Array<std::string>(), doc, Teuchos::rcp(new FieldValidator));
+}
+
+std::vector<std::string> field_texts(const ParameterList &list, const std::string &name)
+{
+  const ParameterEntry &entry = list.getEntry(name);
+  if (entry.isType<Array<std::string>>()) {
+    // What Teuchos reads from a deck keeps the blanks between the commas.
+    const auto &texts = Teuchos::getValue<Array<std::string>>(entry);
+    return {texts.begin(), texts.end()};
+  }
+  std::vector<std::string> texts;
+  const auto add = [&](const auto &numbers) {
+    for (const auto number : numbers) {
+      std::ostringstream text;
+      text.precision(std::numeric_limits<double>::max_digits10);
+      text << number;
+      texts.push_back(text.str());
+    }
+  };
+  if (entry.isType<Array<int>>())
+    add(Teuchos::getValue<Array<int>>(entry));
+  else
+    add(Teuchos::getValue<Array<double>>(entry));
+  return texts;
 }
 
 void set_pass_through(ParameterList &valid, const std::string &name, const std::string &doc)

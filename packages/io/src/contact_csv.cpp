@@ -23,7 +23,7 @@ namespace
 struct Row {
   GO id;
   std::array<double, 3> x;
-  double u_nu, gap, pressure;
+  double u_nu, gap, pressure, dent;
   int state;
   double area;  ///< weight in 3D [m^2]
   double s = 0; ///< arc length [m]
@@ -40,12 +40,13 @@ std::vector<Row> gather_rows(const Comm &comm, const ContactTable &table, const 
   const auto u_nu = gathered_by_root(comm, table.u_nu.data(), n);
   const auto gap = gathered_by_root(comm, table.gap.data(), n);
   const auto pressure = gathered_by_root(comm, table.pressure.data(), n);
+  const auto dent = gathered_by_root(comm, table.dent.data(), n);
   const auto state = gathered_by_root(comm, table.state.data(), n);
   const auto weight = gathered_by_root(comm, table.weight.data(), n);
   const auto x = gathered_by_root(comm, table.position.data(), n * dim);
   std::vector<Row> rows;
   for (std::size_t k = 0; k < id.size(); ++k) {
-    Row row{id[k], {}, u_nu[k], gap[k], pressure[k], state[k], weight[k]};
+    Row row{id[k], {}, u_nu[k], gap[k], pressure[k], dent[k], state[k], weight[k]};
     std::copy_n(x.begin() + k * dim, dim, row.x.begin());
     rows.push_back(row);
   }
@@ -128,15 +129,6 @@ void append(std::string &text, const double value)
   text += ',';
 }
 
-/// As RFC 4180 has it: in quotes if it holds a comma, a quote or a line's end.
-std::string quoted(const std::string &text)
-{
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
-}
-
 std::string csv(const std::vector<Row> &rows, const int dim, const std::string &side)
 {
   static const std::array<const char *, 3> states = {"open", "closed", "yielding"};
@@ -148,7 +140,9 @@ std::string csv(const std::vector<Row> &rows, const int dim, const std::string &
     if (dim == 3) append(text, row.area);
     for (const double value : {row.u_nu, row.gap, row.pressure}) append(text, value);
     text += states[row.state];
-    text += ',' + side + '\n';
+    text += ',' + side + ',';
+    append(text, row.dent);
+    text.back() = '\n';
   }
   return text;
 }
@@ -157,8 +151,9 @@ void require_equal_lengths(const Comm &comm, const ContactTable &table)
 {
   const std::size_t n = table.id.extent(0);
   std::optional<std::string> message;
-  for (const std::size_t length : {table.position.extent(0), table.u_nu.extent(0), table.gap.extent(0),
-                                   table.weight.extent(0), table.pressure.extent(0), table.state.extent(0)})
+  for (const std::size_t length :
+       {table.position.extent(0), table.u_nu.extent(0), table.gap.extent(0), table.weight.extent(0),
+        table.pressure.extent(0), table.dent.extent(0), table.state.extent(0)})
     if (length != n)
       message = "output: the contact table's columns must have a value for each of " + std::to_string(n) +
                 " nodes, got " + std::to_string(length);
@@ -174,6 +169,14 @@ void require_unique(const std::vector<Row> &rows)
 
 } // namespace
 
+std::string csv_quoted(const std::string &text)
+{
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
+
 void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const std::vector<ContactTable> &tables)
 {
   std::string text;
@@ -186,8 +189,8 @@ void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, con
     on_root(*comm, ExitCode::internal_error, [&] {
       require_unique(rows);
       if (dim == 2) rows = along_the_surface(rows, edges_of(rows, facets, width));
-      if (text.empty()) text = std::string(dim == 2 ? "x,y,s" : "x,y,z,area") + ",u_nu,gap,pressure,state,side\n";
-      text += csv(rows, dim, quoted(table.side));
+      if (text.empty()) text = std::string(dim == 2 ? "x,y,s" : "x,y,z,area") + ",u_nu,gap,pressure,state,side,dent\n";
+      text += csv(rows, dim, csv_quoted(table.side));
     });
   }
   on_root(*comm, ExitCode::internal_error, [&] { write_text(path, text); });

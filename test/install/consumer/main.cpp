@@ -1,7 +1,7 @@
 // A block pressed onto a rigid-plastic foundation, from C++: contact force and pressures.
 #include <Tpetra_Core.hpp>
 #include <iostream>
-#include <rpc/analysis/solve_step.hpp>
+#include <rpc/analysis/load_history.hpp>
 #include <rpc/mesh/box.hpp>
 
 int main(int argc, char **argv)
@@ -23,11 +23,11 @@ int main(int argc, char **argv)
   foundation.yield_stress = rpc::ScalarField(14.); // [Pa]
   model.contact = {foundation};
 
-  const rpc::analysis::Problem problem(mesh, model, {});
-  std::optional<rpc::contact::ContactState> before; // each step starts from the one before
+  // Each step starts from the one before, on the dents that it has left.
+  rpc::analysis::LoadHistory history(
+      std::make_shared<rpc::analysis::Problem>(mesh, model, rpc::solver::LinearSolverOptions{}), {}, 6);
   for (const double t : {0.5, 1.}) {
-    const auto solution = rpc::analysis::solve_step(problem, problem.step(t), {}, before ? &*before : nullptr);
-    before = solution.state();
+    const auto solution = history.advance(t);
     if (!solution.uzawa.converged) return 1;
     const auto pressure = rpc::to_host(solution.contact.pressure);
     std::cout << "t = " << t << ": contact force " << solution.contact.total.force[1] << " N/m, largest pressure "

@@ -2,7 +2,7 @@
 
 #include "rpc/adapt/error_estimate.hpp"
 #include "rpc/adapt/refinement.hpp"
-#include "rpc/analysis/solve_step.hpp"
+#include "rpc/analysis/load_history.hpp"
 #include "rpc/mesh/make_mesh.hpp"
 
 #include <array>
@@ -22,6 +22,7 @@ struct Task {
   double time = 1; ///< at which the scene is solved
   analysis::Model model;
   analysis::StepOptions step;
+  analysis::StepsOptions steps; ///< load steps; without times one, at `time`
   solver::LinearSolverOptions linear_solver;
   AdaptOptions adapt;
 };
@@ -75,9 +76,11 @@ struct Solution : analysis::StepSolution {
   fem::Discretization discretization;
   double pressure_norm = 0;   ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]; where meshes are adapted
   double pressure_change = 0; ///< the same of its change since the mesh before, if there was one
-  std::vector<std::string> skipped;      ///< what the scene allowed to leave out, and why
-  std::optional<ErrorEstimate> estimate; ///< where it is asked for
-  std::optional<Adaptation> adaptation;  ///< where the mesh is adapted
+  std::vector<std::string> skipped;          ///< what the scene allowed to leave out, and why
+  std::optional<ErrorEstimate> estimate;     ///< where it is asked for
+  std::optional<Adaptation> adaptation;      ///< where the mesh is adapted
+  double time = 1;                           ///< at which it is the solution
+  std::vector<analysis::StepRecord> history; ///< of load steps, up to this one
   int matrix_assemblies = 0;
   PhaseSeconds seconds;
 };
@@ -89,12 +92,17 @@ struct Listener {
   std::function<void(const Solution &)> estimate; ///< the error has been estimated
   std::function<void(const std::string &)> note;  ///< for the user
   std::function<void(Solution &)> cycle;          ///< one mesh of an adaptive run is solved
+  std::function<void(Solution &)> load_step; ///< one of several load steps is solved; its record is the history's last
 };
 
-/// Mesh, assembly, and solve_step(): from a task to its solution. With a target for the error, on as many meshes as that takes; the
+/// Mesh, assembly, and solve_step(), for each load step: from a task to its solution. With a target for the error, on as many meshes as that takes; the
 /// solution is the last one's, or where the target is not reached that with the least estimate. Collective on comm.
 /// @throws rpc::Error on every rank if the model does not fit its mesh; failing to converge is in the result
 Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
+
+/// The load steps of a task on its mesh, each from the one before; the solution is the last one's, or the first one's that does not
+/// converge.
+Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
 
 /// The same on one mesh, whatever the target for the error is.
 /// @param mesh      to be made, in place of the task's

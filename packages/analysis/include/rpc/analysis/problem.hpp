@@ -46,8 +46,14 @@ public:
           double t = 1);
 
   /// Loads, prescribed displacements and contact nodes at one time. Collective.
+  /// @param dents  that earlier steps have left, (owned nodes; sides) [m]; null: none
   /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()
-  Step step(double t) const;
+  Step step(double t, const MultiVector *dents = nullptr) const;
+  /// Whether contact acts at the same nodes in the same directions as at the time that this was made for. A foundation that moves
+  /// may change them. Collective.
+  bool serves(const Step &step) const;
+  /// The same problem made for another time: with a stiffness matrix and a linear solver of its own. Collective.
+  std::shared_ptr<const Problem> remade(double t) const;
 
   const fem::Discretization &discretization() const { return discretization_; }
   const Model &model() const { return model_; } ///< seen at the time of the first step
@@ -59,6 +65,7 @@ public:
 
 private:
   Model model_;
+  solver::LinearSolverOptions linear_options_;
   fem::Discretization discretization_;
   fem::EliminatedStiffness eliminated_;
   RCP<UpdatedOperator> operator_;

@@ -78,11 +78,12 @@ struct StepSolution {
 };
 
 /// The algorithm: predict, choose the active set, Newton with exact line search, Uzawa, optimality residuals. Collective.
-/// @param start    state of the step before, or of another mesh; null: coarser meshes predict one
+/// @param starts   states to start from, such as that of the step before or of another mesh: the one that is nearest to equilibrium
+///                 is taken; empty: coarser meshes predict one
 /// @param coarser  empty: there are no coarser meshes
 /// @throws rpc::Error (bad_input) where NOX refuses its options; failing to converge is in the result
 StepSolution solve_step(const Problem &problem, const Step &step, const StepOptions &options,
-                        const contact::ContactState *start = nullptr, const CoarserProblem &coarser = {},
+                        const std::vector<contact::ContactState> &starts = {}, const CoarserProblem &coarser = {},
                         const Progress &progress = {});
 
 } // namespace rpc::analysis

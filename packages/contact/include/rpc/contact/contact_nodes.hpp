@@ -27,15 +27,16 @@ enum class Normal {
 struct ContactOptions {
   std::string path = "Contact"; ///< in the deck, for messages
   std::string side;
-  ScalarField yield_stress; ///< xi > 0 [Pa], may be inf
+  ScalarField yield_stress;                ///< xi > 0 [Pa], may be inf
   ScalarField hardening = ScalarField(0.); ///< H >= 0 [Pa/m], what the yield stress grows by with the dent
-  ScalarField stiffness =
-      ScalarField(std::numeric_limits<double>::infinity()); ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
+  ScalarField stiffness = ScalarField(
+      std::numeric_limits<double>::infinity()); ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
   ScalarField gap; ///< g [m], distance to the foundation along the normal; < 0 is initial penetration. Without obstacle
   Obstacle obstacle; ///< the foundation's surface, from which the gap follows
   Normal normal = Normal::surface;
-  Point direction{};  ///< unit, of Normal::fixed
-  double penalty = 0; ///< r > 0 [Pa/m]; 0: chosen at each node, see SmoothedFunctional
+  Point direction{};     ///< unit, of Normal::fixed
+  double penalty = 0;    ///< r > 0 [Pa/m]; 0: chosen at each node, see SmoothedFunctional
+  bool remembers = true; ///< dents stay from step to step
 };
 
 /// Parameters of the deck's `Contact` sublist.

@@ -3,6 +3,7 @@
 #include "rpc/core/field.hpp"
 
 #include <Teuchos_ParameterList.hpp>
+#include <array>
 #include <optional>
 #include <string>
 
@@ -19,18 +20,23 @@ struct Obstacle {
   };
 
   Kind kind = Kind::none;
-  Point point{};         ///< of a plane, the centre of a sphere, or one on the axis of a cylinder [m]
-  Point normal{};        ///< of a plane, unit, out of the foundation towards the body
-  double radius = 0;     ///< of a sphere or cylinder [m]
-  bool encloses = false; ///< the body lies inside of the sphere or cylinder, the foundation outside
-  Point axis{};          ///< of a cylinder, unit
+  Point point{};                   ///< of a plane, the centre of a sphere, or one on the axis of a cylinder [m]
+  Point normal{};                  ///< of a plane, unit, out of the foundation towards the body
+  double radius = 0;               ///< of a sphere or cylinder [m]
+  bool encloses = false;           ///< the body lies inside of the sphere or cylinder, the foundation outside
+  Point axis{};                    ///< of a cylinder, unit
+  std::array<ScalarField, 3> path; ///< coordinates of `point` that change with time [m]; constant ones are not read
+
+  /// The same, with `point` where it is at a time.
+  Obstacle seen_at(double t) const;
 };
 
 /// Parameters of an `Obstacle` sublist.
 Teuchos::ParameterList valid_obstacle_parameters();
 /// @param path  of the sublist, for messages
 /// @throws rpc::Error (bad_input) on anything out of range, or given for another type of obstacle
-Obstacle obstacle_options(const Teuchos::ParameterList &list, int dim, const std::string &path);
+Obstacle obstacle_options(const Teuchos::ParameterList &list, int dim, const std::string &path,
+                          const FieldParser &parse);
 
 /// Unit normal of the foundation at the point of its surface nearest to x, pointing into the foundation; nothing at the
 /// centre of a sphere or on the axis of a cylinder. doc/theory.md (3.6)

@@ -17,7 +17,11 @@ struct ContactSums {
   double max_penetration = 0;         ///< largest u_nu - g where > 0 [m]
   double max_initial_penetration = 0; ///< largest -g where > 0 [m]
   double contact_length = 0;          ///< sum of weights with p > 0 [m^(dim-1), axisymmetric: m^2]
-  double yielded_length = 0;          ///< sum of weights with p = xi [m^(dim-1), axisymmetric: m^2]
+  double yielded_length = 0;          ///< sum of weights with p at the yield limit [m^(dim-1), axisymmetric: m^2]
+  double max_dent = 0;                ///< [m]
+  double dent_volume = 0;             ///< sum of w dent [m^dim, axisymmetric: m^3]
+  double dissipated = 0;              ///< sum of w int (xi + H w) dw over what this step adds to the dents [J]   (3.14)
+  double foundation_energy = 0;       ///< sum of w c p^2/2, stored in the foundation's springs [J]
 
   ContactSums &operator+=(const ContactSums &other);
 };
@@ -25,9 +29,10 @@ struct ContactSums {
 /// What a user reads off the contact sides: values at this rank's contact nodes, and sums over all ranks.
 struct ContactResult {
   DeviceView<double *> normal_displacement; ///< (n) u_nu [m]
-  DeviceView<double *> penetration;         ///< (n) u_nu - g [m]; > 0: the foundation has given way
+  DeviceView<double *> penetration;         ///< (n) u_nu - g [m], below the surface without dents
+  DeviceView<double *> dent;                ///< (n) w >= 0 [m], that of this step included                       (3.13)
   DeviceView<double *> pressure;            ///< (n) [Pa] >= 0
-  DeviceView<int *> state;                  ///< (n) State: open where p = 0, yielded where p = xi, else closed
+  DeviceView<int *> state;                  ///< (n) State: open where p = 0, yielded where p >= xi, else closed
 
   std::vector<ContactSums> sides; ///< in the order of the contact sides
   ContactSums total;

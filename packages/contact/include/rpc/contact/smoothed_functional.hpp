@@ -15,10 +15,11 @@ struct StateCounts {
 
 /// Energies of (u, lambda) at the contact nodes, over all ranks.
 struct ContactEnergy {
-  double dissipated = 0; ///< sum_i w_i int (xi_i + H_i w) dw over the new dents [J]; perfectly plastic: xi_i v_i+   (3.14)
-  double stored = 0;     ///< sum_i w_i c_i lambda_i^2/2 in the foundation's springs [J]
-  double duality_gap = 0; ///< sum_i w_i (psi_i(v_i) + psi_i*(lambda_i) - lambda_i v_i) [J], each term >= 0: what the contact
-                          ///< law misses, with twice the largest multiplier in place of any higher xi               (5.5)
+  double dissipated =
+      0; ///< sum_i w_i int (xi_i + H_i w) dw over the new dents [J]; perfectly plastic: xi_i v_i+   (3.14)
+  double duality_gap =
+      0; ///< sum_i w_i (psi_i(v_i) + psi_i*(lambda_i) - lambda_i v_i) [J], each term >= 0: what the contact
+         ///< law misses, with twice the largest multiplier in place of any higher xi               (5.5)
 };
 
 /// The next active set of the primal-dual active-set iteration, and the pressures that it was chosen by.

@@ -21,6 +21,12 @@ void set_field(Teuchos::ParameterList &valid, const std::string &name, const std
 /// Text of a field parameter, which a deck may give as int, double or string.
 std::string field_text(const Teuchos::ParameterList &list, const std::string &name);
 
+/// Declares an array of fields, by default empty: a deck gives numbers, or texts with expressions.
+void set_fields(Teuchos::ParameterList &valid, const std::string &name, const std::string &doc);
+
+/// Texts of an array of fields, which a deck may give as ints, doubles or strings.
+std::vector<std::string> field_texts(const Teuchos::ParameterList &list, const std::string &name);
+
 /// Declares a sublist whose content is handed on to a library unread.
 void set_pass_through(Teuchos::ParameterList &valid, const std::string &name, const std::string &doc);
 

@@ -8,6 +8,9 @@
 namespace rpc::io
 {
 
+/// A field of comma-separated values as RFC 4180 has it: in quotes if it holds a comma, a quote or a line's end.
+std::string csv_quoted(const std::string &text);
+
 /// What is known of this rank's nodes of one contact side; each node is on one rank.
 struct ContactTable {
   std::string side;
@@ -17,6 +20,7 @@ struct ContactTable {
   HostView<double *> u_nu;      ///< (nodes) normal displacement       [m]
   HostView<double *> gap;       ///< (nodes)                           [m]
   HostView<double *> pressure;  ///< (nodes) compression is > 0        [Pa]
+  HostView<double *> dent;      ///< (nodes) of the foundation         [m]
   HostView<int *> state;        ///< (nodes) 0 open, 1 closed, 2 yielding
   HostView<GO **> facets; ///< (facets, facet nodes) node ids, the two ends first; each facet of the side once over
                           ///< all ranks. A node that the table lacks is passed over. Not used in 3D. See
@@ -25,10 +29,10 @@ struct ContactTable {
 
 /// Writes the contact nodes as comma-separated values, whole or not at all; collective on comm.
 ///
-/// Sides come one after another. 2D: columns x, y, s, u_nu, gap, pressure, state, side; rows follow the chain of facets from its end with the smaller x,
+/// Sides come one after another. 2D: columns x, y, s, u_nu, gap, pressure, state, side, dent; rows follow the chain of facets from its end with the smaller x,
 /// then y, and s is the length of the way from there, straight from node to node [m]. Several chains follow each other
 /// by their first point, each with its own s; a closed one starts at its point with the smallest x, then y. 3D: columns
-/// x, y, z, area, u_nu, gap, pressure, state, side, with the weight of the node as area [m^2]; rows by id. Numbers read back as the same doubles; the file does not depend on
+/// x, y, z, area, u_nu, gap, pressure, state, side, dent, with the weight of the node as area [m^2]; rows by id. Numbers read back as the same doubles; the file does not depend on
 /// the number of ranks.
 /// @throws rpc::Error on every rank: bad_input for a folder that cannot be written to, internal_error for a failed
 /// write, columns

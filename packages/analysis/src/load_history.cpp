@@ -1,0 +1,272 @@
+#include "rpc/analysis/load_history.hpp"
+
+#include "rpc/contact/node_columns.hpp"
+#include "rpc/core/error.hpp"
+#include "rpc/core/interrupt.hpp"
+#include "rpc/fem/interpolation.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace rpc::analysis
+{
+namespace
+{
+
+/// Forces on the body from all but the foundation, f_int + sum of w p nu (owned dofs, [N]): loads, and at prescribed unknowns
+/// the reactions too.
+Vector other_forces(const Problem &problem, const StepSolution &s)
+{
+  Vector force(*s.uzawa.residuals.internal.forces, Teuchos::Copy);
+  force.update(-1., contact::contact_forces(problem.discretization(), s.functional->contact(), s.contact), 1.);
+  return force;
+}
+
+/// The same of a state that is remembered, on the mesh as it is.
+Vector other_forces(const Problem &problem, const contact::ContactNodes &points, const Memory &memory)
+{
+  const fem::Discretization &d = problem.discretization();
+  Vector force(*fem::internal_work(d, problem.model().materials, *memory.displacement).forces, Teuchos::Copy);
+  contact::ContactResult before;
+  before.pressure = contact::at_points(points, *memory.pressure);
+  force.update(-1., contact::contact_forces(d, points, before), 1.);
+  return force;
+}
+
+/// Work that the foundation's own motion does on body and foundation, -sum of w p dg by the trapezoidal rule [J]; collective.
+/// @param before_pressure, before_gap  (points)
+double work_of_motion(const Comm &comm, const contact::ContactNodes &contact, const contact::ContactResult &result,
+                      const DeviceView<double *> &before_pressure, const DeviceView<double *> &before_gap)
+{
+  const contact::ContactNodes c = contact;
+  const auto p = result.pressure;
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::analysis::work_of_motion", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) {
+        part -= 0.5 * c.weight(i) * (p(i) + before_pressure(i)) * (c.gap(i) - before_gap(i));
+      },
+      sum);
+  return sum_all(comm, sum);
+}
+
+/// Before the first step the body is at rest, and a foundation that overlaps it has moved in. Larger gaps did no work.
+DeviceView<double *> gaps_at_rest(const contact::ContactNodes &contact)
+{
+  const contact::ContactNodes c = contact;
+  const DeviceView<double *> gap("rpc::analysis::gaps_at_rest", c.size());
+  Kokkos::parallel_for(
+      "rpc::analysis::gaps_at_rest", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { gap(i) = c.gap(i) > 0 ? c.gap(i) : 0; });
+  Kokkos::fence();
+  return gap;
+}
+
+/// The energies after a step that began at `before`, null for the first one. (11.3)
+Energies energies_after(const Problem &problem, const StepSolution &s, const Memory *const before)
+{
+  const contact::ContactNodes &points = s.functional->contact();
+  const Comm &comm = problem.discretization().mesh->comm();
+  Energies energies = before ? before->energies : Energies{};
+  energies.strain = 0.5 * s.energy_norm_squared;
+  energies.foundation = s.contact.total.foundation_energy;
+  energies.dissipated += s.contact.total.dissipated;
+  Vector force = other_forces(problem, s), moved(*s.u, Teuchos::Copy);
+  DeviceView<double *> pressure("rpc::analysis::no_pressure", points.size()), gap;
+  if (before) {
+    force.update(1., other_forces(problem, points, *before), 1.);
+    moved.update(-1., *before->displacement, 1.);
+    pressure = contact::at_points(points, *before->pressure);
+    gap = contact::at_points(points, *before->gap);
+  } else {
+    gap = gaps_at_rest(points);
+  }
+  energies.work += 0.5 * force.dot(moved) + work_of_motion(comm, points, s.contact, pressure, gap);
+  return energies;
+}
+
+/// The dents that are to be remembered.
+RCP<const MultiVector> remembered_dents(const Problem &problem, const contact::ContactNodes &points,
+                                        const contact::ContactResult &result)
+{
+  const auto dents = contact::node_columns(points, result.dent, problem.discretization().mesh->owned_nodes);
+  const auto &sides = problem.model().contact;
+  for (std::size_t k = 0; k < sides.size(); ++k)
+    if (!sides[k].remembers) dents->getVectorNonConst(k)->putScalar(0);
+  return dents;
+}
+
+/// Dents of nodes that are no contact points now, since their normals miss the obstacle, stay as they are.
+void keep_dents_elsewhere(const contact::ContactNodes &contact, const MultiVector &before, MultiVector &now)
+{
+  const contact::ContactNodes c = contact;
+  MultiVector kept(before, Teuchos::Copy);
+  {
+    const auto to = kept.getLocalViewDevice(Tpetra::Access::ReadWrite);
+    for (int side = 0; side < c.num_sides(); ++side) {
+      const LO begin = c.first(side);
+      Kokkos::parallel_for(
+          "rpc::analysis::forget_points", device_range(c.first(side + 1) - begin),
+          KOKKOS_LAMBDA(const LO i) { to(c.node(begin + i), side) = 0; });
+    }
+    Kokkos::fence();
+  }
+  now.update(1., kept, 1.);
+}
+
+/// Means of the prescribed displacements over the nodes of each Dirichlet condition; 0 for components that are free.
+std::vector<std::array<double, 3>> prescribed_means(const Problem &problem, const StepSolution &s)
+{
+  const fem::Discretization &d = problem.discretization();
+  const fem::DirichletDofs &dirichlet = s.functional->problem().dirichlet;
+  const int conditions = static_cast<int>(problem.model().dirichlet.size());
+  Vector ones(d.owned_dofs);
+  ones.putScalar(1);
+  auto means = fem::reaction_forces(d, dirichlet, conditions, *s.u);
+  const auto numbers = fem::reaction_forces(d, dirichlet, conditions, ones);
+  for (int k = 0; k < conditions; ++k)
+    for (int c = 0; c < 3; ++c) means[k][c] = numbers[k][c] > 0 ? means[k][c] / numbers[k][c] : 0;
+  return means;
+}
+
+contact::ContactState state_of(const contact::ContactNodes &points, const Vector &u, const MultiVector &pressure)
+{
+  return {rcp(new Vector(u, Teuchos::Copy)), contact::at_points(points, pressure), {}};
+}
+
+/// The start for what is little beside the step before: from there, its rounding would be in the way.
+contact::ContactState at_rest(const contact::ContactNodes &points, const fem::Discretization &d)
+{
+  return {rcp(new Vector(d.owned_dofs)), DeviceView<double *>("rpc::analysis::no_pressure", points.size()), {}};
+}
+
+/// Where the last two steps lead by the time of the next one.
+contact::ContactState extrapolated(const Step &step, const Memory &before, const Memory &last)
+{
+  const double ratio = (step.time - last.time) / (last.time - before.time);
+  Vector u(*last.displacement, Teuchos::Copy);
+  MultiVector pressure(*last.pressure, Teuchos::Copy);
+  u.update(-ratio, *before.displacement, 1 + ratio);
+  pressure.update(-ratio, *before.pressure, 1 + ratio);
+  return state_of(step.contact, u, pressure);
+}
+
+/// Adds what solving a part of a step took.
+void add_work(const StepSolution &s, StepRecord &record)
+{
+  record.newton_iterations =
+      std::accumulate(s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end(), record.newton_iterations);
+  record.linear_solves += static_cast<int>(s.linear.iterations.size());
+  record.linear_iterations =
+      std::accumulate(s.linear.iterations.begin(), s.linear.iterations.end(), record.linear_iterations);
+  record.preconditioner_setups += s.linear.preconditioner_setups;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_steps_parameters()
+{
+  Teuchos::ParameterList valid("Steps");
+  valid.set(
+      "Times", Teuchos::Array<double>(),
+      "Times t of the load steps, rising: the foundation keeps the dents of each for the next. Empty: one step, at "
+      "`Time`.");
+  valid.set("Write Every", 1, "Each so manieth of the times goes into the Exodus file, and the last, > 0.");
+  valid.set("Max Halvings", 6, "A step that does not converge is halved, and its halves, so many times at most, >= 0.");
+  return valid;
+}
+
+StepsOptions steps_options(const Teuchos::ParameterList &list)
+{
+  const auto &times = list.get<Teuchos::Array<double>>("Times");
+  StepsOptions options{{times.begin(), times.end()}, list.get<int>("Write Every"), list.get<int>("Max Halvings")};
+  for (std::size_t k = 0; k < options.times.size(); ++k) {
+    RPC_REQUIRE(std::isfinite(options.times[k]), "deck: \"Steps->Times\" must be finite, got " << options.times[k]);
+    RPC_REQUIRE(k == 0 || options.times[k] > options.times[k - 1],
+                "deck: \"Steps->Times\" must rise, got " << options.times[k] << " after " << options.times[k - 1]);
+  }
+  RPC_REQUIRE(options.write_every > 0, "deck: \"Steps->Write Every\" must be > 0, got " << options.write_every);
+  RPC_REQUIRE(options.max_halvings >= 0 && options.max_halvings <= 30,
+              "deck: \"Steps->Max Halvings\" must be in [0, 30], got " << options.max_halvings);
+  return options;
+}
+
+LoadHistory::LoadHistory(std::shared_ptr<const Problem> problem, StepOptions options, const int max_halvings,
+                         CoarserProblem coarser)
+    : problem_(std::move(problem)), options_(std::move(options)), max_halvings_(max_halvings),
+      coarser_(std::move(coarser))
+{
+}
+
+void LoadHistory::go_on_from(Memory memory)
+{
+  memory_ = std::move(memory);
+  before_.reset();
+}
+
+StepSolution LoadHistory::advance(const double t, const Progress &progress,
+                                  const std::function<void(const Problem &, const Step &)> &now)
+{
+  const double start = Teuchos::Time::wallTime();
+  last_ = {};
+  last_.time = t;
+  last_.parts = 0;
+  StepSolution s = advance_in_parts(t, max_halvings_, progress, now);
+  last_.converged = s.uzawa.converged;
+  last_.contact = s.contact.total;
+  last_.displacements = prescribed_means(*problem_, s);
+  last_.reactions = s.reactions;
+  if (memory_) last_.energies = memory_->energies;
+  last_.seconds = Teuchos::Time::wallTime() - start;
+  return s;
+}
+
+StepSolution LoadHistory::advance_in_parts(const double t, const int halvings, const Progress &progress,
+                                           const std::function<void(const Problem &, const Step &)> &now)
+{
+  StepSolution s = solve(t, progress, now);
+  if (s.uzawa.converged || halvings == 0 || interrupted(problem_->discretization().mesh->comm())) return s;
+  const double from = memory_ ? memory_->time : 0; // the body is at rest at t = 0
+  const double half = 0.5 * (from + t);
+  if (!(half > from && half < t)) return s;
+  s = advance_in_parts(half, halvings - 1, progress, now);
+  return s.uzawa.converged ? advance_in_parts(t, halvings - 1, progress, now) : s;
+}
+
+StepSolution LoadHistory::solve(const double t, const Progress &progress,
+                                const std::function<void(const Problem &, const Step &)> &now)
+{
+  const MultiVector *const dents = memory_ ? memory_->dent.get() : nullptr;
+  Step step = problem_->step(t, dents);
+  if (!problem_->serves(step)) {
+    problem_ = problem_->remade(t);
+    step = problem_->step(t, dents);
+    ++matrix_assemblies_;
+  }
+  if (now) now(*problem_, step);
+  std::vector<contact::ContactState> starts;
+  if (memory_) starts.push_back(state_of(step.contact, *memory_->displacement, *memory_->pressure));
+  if (memory_ && before_) starts.push_back(extrapolated(step, *before_, *memory_));
+  if (memory_) starts.push_back(at_rest(step.contact, problem_->discretization()));
+  StepSolution s = solve_step(*problem_, step, options_, starts, coarser_, progress);
+  ++last_.parts;
+  add_work(s, last_);
+  if (!s.uzawa.converged) return s;
+  const auto owned_nodes = problem_->discretization().mesh->owned_nodes;
+  const auto dent = remembered_dents(*problem_, step.contact, s.contact);
+  const auto all = rcp(new MultiVector(*dent, Teuchos::Copy));
+  if (dents) keep_dents_elsewhere(step.contact, *dents, *all);
+  before_ = std::exchange(memory_, std::nullopt);
+  memory_ = Memory{t,
+                   rcp(new Vector(*s.u, Teuchos::Copy)),
+                   contact::node_columns(step.contact, s.contact.pressure, owned_nodes),
+                   all,
+                   contact::node_columns(step.contact, step.contact.gap, owned_nodes),
+                   energies_after(*problem_, s, before_ ? &*before_ : nullptr)};
+  return s;
+}
+
+} // namespace rpc::analysis
