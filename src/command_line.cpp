@@ -16,7 +16,7 @@ namespace rpc
 namespace
 {
 
-constexpr std::array options_with_value{"--input", "--output", "--set"};
+constexpr std::array options_with_value{"--input", "--output", "--restart", "--set"};
 constexpr std::array flags{"--check", "--print-parameters", "--version", "--help"};
 
 bool is_one_of(const std::string &text, const std::vector<std::string> &names)
@@ -112,6 +112,7 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   CommandLineProcessor parser(false, true, false);
   parser.setOption("input", &line.input, "");
   parser.setOption("output", &line.output, "");
+  parser.setOption("restart", &line.restart, "");
   parser.setOption("check", "run", &line.check, "");
   parser.setOption("print-parameters", "no-print-parameters", &line.print_parameters, "");
   parser.setOption("version", "no-version", &line.version, "");
@@ -164,6 +165,7 @@ Usage: rpc --input=DECK [options]
   --output=DIR         folder for the results, made if missing; default: the current one
   --set="A->B=VALUE"   sets a parameter of the deck, any number of times,
                        e.g. --set="Contact->Yield Stress=16" --set="Mesh->Cells={80, 16}"
+  --restart=FILE       goes on after the last step of a checkpoint, see "Steps->Checkpoint Every"
   --check              only reads and checks the deck
   --print-parameters   prints every parameter of a deck: type, default, meaning, unit
   --version            prints the version

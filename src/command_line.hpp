@@ -11,6 +11,7 @@ namespace rpc
 struct CommandLine {
   std::string input;                    ///< deck, as given
   std::string output = ".";             ///< folder
+  std::string restart;                  ///< checkpoint; empty: from the first step
   std::vector<std::string> assignments; ///< of --set, in order
   bool check = false;
   bool help = false;

@@ -1,3 +1,4 @@
+#include "checkpoint.hpp"
 #include "command_line.hpp"
 #include "output.hpp"
 #include "report.hpp"
@@ -77,6 +78,9 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
   int cycle = 0;
   rpc::Film film;
+  RPC_REQUIRE(line.restart.empty() || !scene.steps.times.empty(),
+              "command line: --restart goes with load steps; the deck has none, see \"Steps->Times\"");
+  rpc::Checkpoints checkpoints(scene, line.restart, line.output);
   const auto keep = [&](const rpc::Scene &of, rpc::Solution &solution) {
     rpc::Scene named = of;
     named.name = rpc::cycle_name(of, ++cycle);
@@ -84,7 +88,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     if (scene.adapt.write_all) rpc::write_results(named, solution, line.output, start, of_mesh);
   };
   const auto keep_step = [&](const rpc::Scene &of, rpc::Solution &solution) { film.add(of, solution, line.output); };
-  rpc::Solution solution = rpc::solve(scene, comm, out, keep, keep_step);
+  rpc::Solution solution = rpc::solve(scene, comm, out, keep, keep_step, &checkpoints);
   const auto files = rpc::write_results(scene, solution, line.output, start, film);
   rpc::print_summary(out, scene, solution, files);
   if (scene.output.timers) {

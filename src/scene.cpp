@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 namespace rpc
 {
@@ -21,6 +22,21 @@ Teuchos::ParameterList valid_output_parameters()
   valid.set("JSON", true, "Write <deck>.json: the summary.");
   valid.set("Timers", false, "Print the timer tree at the end.");
   return valid;
+}
+
+/// Every parameter of a list with its value, defaults included.
+std::string text_of(const Teuchos::ParameterList &list)
+{
+  std::ostringstream text;
+  text.precision(17);
+  for (auto it = list.begin(); it != list.end(); ++it) {
+    const std::string &name = list.name(it);
+    if (list.isSublist(name))
+      text << name << '{' << text_of(list.sublist(name)) << '}';
+    else
+      text << name << '=' << Teuchos::toString(list.entry(it).getAny(false)) << ';';
+  }
+  return text.str();
 }
 
 } // namespace
@@ -69,6 +85,9 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.model.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, io::parse_field);
   scene.model.contact = contact::contact_options(deck.sublist("Contact"), dim, io::parse_field);
   scene.step.prediction = analysis::prediction_options(deck.sublist("Nested Iteration"));
+  scene.identity.emplace_back("Kinematics", deck.get<std::string>("Kinematics"));
+  for (const char *const part : {"Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact"})
+    scene.identity.emplace_back(part, text_of(deck.sublist(part)));
   scene.steps = analysis::steps_options(deck.sublist("Steps"));
   scene.adapt = adapt::adapt_options(deck.sublist("Adapt"));
   scene.step.uzawa = analysis::uzawa_options(deck.sublist("Uzawa"));

@@ -5,6 +5,7 @@
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Teuchos_ParameterList.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rpc
@@ -19,6 +20,8 @@ struct OutputOptions {
 struct Scene : adapt::Task {
   std::string name; ///< of the deck's file, without folder and extension
   OutputOptions output;
+  /// What a checkpoint must agree with, part by part of the deck.
+  std::vector<std::pair<std::string, std::string>> identity;
 };
 
 /// Every parameter of a deck: the packages' lists put together.

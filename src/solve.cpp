@@ -1,5 +1,6 @@
 #include "solve.hpp"
 
+#include "checkpoint.hpp"
 #include "report.hpp"
 
 #include <optional>
@@ -9,7 +10,7 @@ namespace rpc
 
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
                const std::function<void(const Scene &, Solution &)> &keep,
-               const std::function<void(const Scene &, Solution &)> &keep_step)
+               const std::function<void(const Scene &, Solution &)> &keep_step, Checkpoints *const checkpoints)
 {
   std::optional<ConsoleTable> table; // of one mesh
   adapt::Listener listener;
@@ -28,6 +29,12 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     table->load_step(scene, solution);
     if (keep_step) keep_step(scene, solution);
   };
+  if (checkpoints) {
+    listener.resume = [&](const fem::Discretization &d) { return checkpoints->resume(d); };
+    listener.checkpoint = [&](const adapt::HistoryState &state, const fem::Discretization &d) {
+      checkpoints->write(state, d);
+    };
+  }
   if (keep) listener.cycle = [&](Solution &solution) { keep(scene, solution); };
   Solution solution = adapt::solve(scene, comm, listener);
   if (!scene.output.exodus) solution.skipped.push_back("stress recovery and nodal fields: no Exodus file");

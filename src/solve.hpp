@@ -3,20 +3,24 @@
 #include "scene.hpp"
 
 #include <functional>
+#include <optional>
 #include <ostream>
 
 namespace rpc
 {
 
 using adapt::Solution;
+class Checkpoints;
 
 /// Solves a deck's scene and tells the console about it; collective on comm.
 /// @param console  where the table of the iteration goes; a stream without a buffer prints nothing
 /// @param keep     called with the solution on each mesh of an adaptive run, from the first
 /// @param keep_step  called with the solution of each load step, where there are several
+/// @param checkpoints  of load steps, to go on from and to write
 /// @throws rpc::Error on every rank if the scene does not fit its mesh; failing to converge is in the result
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
                const std::function<void(const Scene &, Solution &)> &keep = {},
-               const std::function<void(const Scene &, Solution &)> &keep_step = {});
+               const std::function<void(const Scene &, Solution &)> &keep_step = {},
+               Checkpoints *checkpoints = nullptr);
 
 } // namespace rpc

@@ -10,24 +10,20 @@ namespace rpc::adapt
 namespace
 {
 
-std::shared_ptr<const analysis::Problem> make_problem(const Task &task, const mesh::MeshOptions &options,
-                                                      const RCP<const Comm> &comm, PhaseSeconds &seconds)
+std::shared_ptr<const mesh::Mesh> make_mesh(const mesh::MeshOptions &options, const RCP<const Comm> &comm,
+                                            PhaseSeconds &seconds)
 {
-  std::shared_ptr<const mesh::Mesh> mesh;
-  {
-    const Timed phase("mesh", seconds.mesh);
-    throw_if_interrupted(*comm, "before the mesh was made; no results are written");
-    mesh = std::make_shared<mesh::Mesh>(mesh::make_mesh(options, comm));
-  }
-  const Timed phase("assembly", seconds.assembly);
-  throw_if_interrupted(*comm, "before the assembly; no results are written");
-  return std::make_shared<analysis::Problem>(mesh, task.model, task.linear_solver, task.time);
+  const Timed phase("mesh", seconds.mesh);
+  throw_if_interrupted(*comm, "before the mesh was made; no results are written");
+  return std::make_shared<mesh::Mesh>(mesh::make_mesh(options, comm));
 }
 
-Task at_first_time(Task task)
+std::shared_ptr<const analysis::Problem> make_problem(const Task &task, std::shared_ptr<const mesh::Mesh> mesh,
+                                                      PhaseSeconds &seconds)
 {
-  task.time = task.steps.times.front();
-  return task;
+  const Timed phase("assembly", seconds.assembly);
+  throw_if_interrupted(mesh->comm(), "before the assembly; no results are written");
+  return std::make_shared<analysis::Problem>(std::move(mesh), task.model, task.linear_solver, task.time);
 }
 
 /// The scene on coarser and coarser meshes.
@@ -37,7 +33,7 @@ analysis::CoarserProblem coarser_meshes(Task task, const mesh::MeshOptions &opti
     std::optional<mesh::MeshOptions> coarse = options;
     for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, task.step.prediction.coarsening);
     PhaseSeconds seconds;
-    return coarse ? make_problem(task, *coarse, comm, seconds) : nullptr;
+    return coarse ? make_problem(task, make_mesh(*coarse, comm, seconds), seconds) : nullptr;
   };
 }
 
@@ -69,17 +65,28 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
 {
   Solution s;
   PhaseSeconds seconds;
-  const auto problem = make_problem(at_first_time(task), task.mesh, comm, seconds);
-  analysis::LoadHistory history(problem, task.step, task.steps.max_halvings,
-                                coarser_meshes(at_first_time(task), task.mesh, comm));
+  const auto mesh = make_mesh(task.mesh, comm, seconds);
+  std::optional<HistoryState> resumed;
+  if (listener.resume) resumed = listener.resume(fem::discretize(mesh, task.model.kinematics));
+  Task first = task;
+  first.time = resumed ? resumed->last.time : task.steps.times.front();
+  const auto problem = make_problem(first, mesh, seconds);
+  analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, coarser_meshes(first, task.mesh, comm));
   std::vector<analysis::StepRecord> records;
-  if (listener.mesh) listener.mesh(problem->discretization(), problem->step(task.steps.times.front()).contact);
+  int assemblies_before = 0;
+  if (resumed) {
+    records = resumed->records;
+    assemblies_before = resumed->matrix_assemblies;
+    history.go_on_from(resumed->last, resumed->before);
+  }
+  if (listener.mesh) listener.mesh(problem->discretization(), problem->step(first.time).contact);
   for (const double t : task.steps.times) {
+    if (resumed && t <= resumed->last.time) continue;
     s = Solution{};
     static_cast<analysis::StepSolution &>(s) = history.advance(t, listener.step);
     s.discretization = history.problem().discretization();
     s.time = t;
-    s.matrix_assemblies = history.matrix_assemblies();
+    s.matrix_assemblies = assemblies_before + history.matrix_assemblies();
     records.push_back(history.last());
     s.history = records;
     if (task.adapt.estimate) {
@@ -94,6 +101,12 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     note_skipped(task, s);
     if (listener.load_step) listener.load_step(s);
     if (!s.uzawa.converged) break;
+    const int every = task.steps.checkpoint_every;
+    if (!listener.checkpoint || every == 0 || records.size() % every != 0) continue;
+    HistoryState state{*history.memory(), std::nullopt, records, s.matrix_assemblies};
+    if (history.before()) state.before = *history.before();
+    listener.checkpoint(state, s.discretization);
+    if (t < task.steps.times.back()) history.start_anew();
   }
   return s;
 }
@@ -103,7 +116,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
 {
   Solution s;
   s.time = task.time;
-  const auto problem = make_problem(task, options, comm, s.seconds);
+  const auto problem = make_problem(task, make_mesh(options, comm, s.seconds), s.seconds);
   const fem::Discretization &d = s.discretization = problem->discretization();
   analysis::Step step;
   {

@@ -176,13 +176,20 @@ Teuchos::ParameterList valid_steps_parameters()
       "`Time`.");
   valid.set("Write Every", 1, "Each so manieth of the times goes into the Exodus file, and the last, > 0.");
   valid.set("Max Halvings", 6, "A step that does not converge is halved, and its halves, so many times at most, >= 0.");
+  valid.set("Checkpoint Every", 0,
+            "After each so manieth step a checkpoint is written, <deck>.checkpoint-NUMBER.e, from which --restart goes "
+            "on; 0: "
+            "none.");
   return valid;
 }
 
 StepsOptions steps_options(const Teuchos::ParameterList &list)
 {
   const auto &times = list.get<Teuchos::Array<double>>("Times");
-  StepsOptions options{{times.begin(), times.end()}, list.get<int>("Write Every"), list.get<int>("Max Halvings")};
+  StepsOptions options{{times.begin(), times.end()},
+                       list.get<int>("Write Every"),
+                       list.get<int>("Max Halvings"),
+                       list.get<int>("Checkpoint Every")};
   for (std::size_t k = 0; k < options.times.size(); ++k) {
     RPC_REQUIRE(std::isfinite(options.times[k]), "deck: \"Steps->Times\" must be finite, got " << options.times[k]);
     RPC_REQUIRE(k == 0 || options.times[k] > options.times[k - 1],
@@ -191,6 +198,8 @@ StepsOptions steps_options(const Teuchos::ParameterList &list)
   RPC_REQUIRE(options.write_every > 0, "deck: \"Steps->Write Every\" must be > 0, got " << options.write_every);
   RPC_REQUIRE(options.max_halvings >= 0 && options.max_halvings <= 30,
               "deck: \"Steps->Max Halvings\" must be in [0, 30], got " << options.max_halvings);
+  RPC_REQUIRE(options.checkpoint_every >= 0,
+              "deck: \"Steps->Checkpoint Every\" must be >= 0, got " << options.checkpoint_every);
   return options;
 }
 
@@ -201,10 +210,16 @@ LoadHistory::LoadHistory(std::shared_ptr<const Problem> problem, StepOptions opt
 {
 }
 
-void LoadHistory::go_on_from(Memory memory)
+void LoadHistory::go_on_from(Memory memory, std::optional<Memory> before)
 {
   memory_ = std::move(memory);
-  before_.reset();
+  before_ = std::move(before);
+}
+
+void LoadHistory::start_anew()
+{
+  problem_ = problem_->remade(memory_ ? memory_->time : last_.time);
+  ++matrix_assemblies_;
 }
 
 StepSolution LoadHistory::advance(const double t, const Progress &progress,

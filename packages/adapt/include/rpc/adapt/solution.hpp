@@ -85,6 +85,14 @@ struct Solution : analysis::StepSolution {
   PhaseSeconds seconds;
 };
 
+/// All that the next load step needs.
+struct HistoryState {
+  analysis::Memory last;
+  std::optional<analysis::Memory> before; ///< displacement and pressure of the step before the last one
+  std::vector<analysis::StepRecord> records;
+  int matrix_assemblies = 0;
+};
+
 /// What is told on the way; empty functions tell nothing. All are called on all ranks.
 struct Listener {
   std::function<void(const fem::Discretization &, const contact::ContactNodes &)> mesh; ///< one has been made
@@ -93,6 +101,10 @@ struct Listener {
   std::function<void(const std::string &)> note;  ///< for the user
   std::function<void(Solution &)> cycle;          ///< one mesh of an adaptive run is solved
   std::function<void(Solution &)> load_step; ///< one of several load steps is solved; its record is the history's last
+  /// The state to go on from, if it is not the first step.
+  std::function<std::optional<HistoryState>(const fem::Discretization &)> resume;
+  /// To be kept. The run itself goes on from here as from the checkpoint: with a new matrix and a new multigrid.
+  std::function<void(const HistoryState &, const fem::Discretization &)> checkpoint;
 };
 
 /// Mesh, assembly, and solve_step(), for each load step: from a task to its solution. With a target for the error, on as many meshes as that takes; the

@@ -14,6 +14,7 @@ struct StepsOptions {
   std::vector<double> times; ///< rising; empty: one step, at the deck's `Time`
   int write_every = 1;       ///< of the times, each so manieth goes into the results, and the last; > 0
   int max_halvings = 6;      ///< of a step that does not converge, >= 0
+  int checkpoint_every = 0;  ///< so manieth step; 0: never
 };
 
 /// Parameters of the deck's `Steps` sublist.
@@ -67,7 +68,10 @@ public:
               CoarserProblem coarser = {});
   /// The same, going on from what is remembered: dents of other meshes interpolated, for example.
   /// @param memory  on the problem's mesh
-  void go_on_from(Memory memory);
+  /// @param before  of the step before it, displacement and pressure, if there was one
+  void go_on_from(Memory memory, std::optional<Memory> before = std::nullopt);
+  /// Makes matrix and multigrid anew, so that what follows depends on memory() and before() alone, bit for bit.
+  void start_anew();
 
   /// The solution at t, later than all before it. A step that does not converge is halved.
   /// @param now       called with each (part of a) step that is about to be solved
@@ -77,7 +81,8 @@ public:
 
   const Problem &problem() const { return *problem_; }
   const Memory *memory() const { return memory_ ? &*memory_ : nullptr; }
-  const StepRecord &last() const { return last_; } ///< of advance()
+  const Memory *before() const { return before_ ? &*before_ : nullptr; } ///< of the step before
+  const StepRecord &last() const { return last_; }                       ///< of advance()
   int matrix_assemblies() const { return matrix_assemblies_; }
 
 private:

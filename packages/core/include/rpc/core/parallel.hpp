@@ -88,4 +88,35 @@ std::vector<T> gathered_by_root(const Comm &comm, const std::vector<T> &mine)
   return gathered_by_root(comm, mine.data(), mine.size());
 }
 
+/// The other way round: entries of an array of rank 0 that each rank asks for; collective.
+/// @param values  on rank 0   @param wanted  indices into it, of this rank
+template <class T>
+std::vector<T> scattered_from_root(const Comm &comm, const std::vector<T> &values, const std::vector<GO> &wanted)
+{
+  std::vector<T> mine(wanted.size());
+  const auto pick = [&values](const std::vector<GO> &indices) {
+    std::vector<T> picked(indices.size());
+    for (std::size_t k = 0; k < indices.size(); ++k) picked[k] = values[indices[k]];
+    return picked;
+  };
+  const GO count = static_cast<GO>(wanted.size());
+  std::vector<GO> counts(comm.getSize());
+  Teuchos::gatherAll(comm, 1, &count, comm.getSize(), counts.data());
+  if (comm.getRank() != 0) {
+    in_pieces(wanted.size(), [&](const std::size_t first, const int n) {
+      Teuchos::send(comm, n, wanted.data() + first, 0);
+      Teuchos::receive(comm, 0, n, mine.data() + first);
+    });
+    return mine;
+  }
+  mine = pick(wanted);
+  for (int rank = 1; rank < comm.getSize(); ++rank)
+    in_pieces(counts[rank], [&](const std::size_t, const int n) {
+      std::vector<GO> indices(n);
+      Teuchos::receive(comm, rank, n, indices.data());
+      Teuchos::send(comm, n, pick(indices).data(), rank);
+    });
+  return mine;
+}
+
 } // namespace rpc

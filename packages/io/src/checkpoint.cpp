@@ -1,0 +1,229 @@
+#include "rpc/io/checkpoint.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/on_root.hpp"
+#include "rpc/core/parallel.hpp"
+#include "rpc/io/gather.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <exodusII.h>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace rpc::io
+{
+namespace
+{
+
+// Exodus keeps texts in records of 80 characters, and readers cut blanks at their ends: each record ends with a mark.
+constexpr std::size_t record_length = 79;
+constexpr char mark = '|';
+const std::string signature = "rpc checkpoint ";
+
+/// A number in which all bits of the arguments take part.
+std::uint64_t scrambled(std::uint64_t x)
+{
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+std::uint64_t scrambled(const std::uint64_t a, const std::uint64_t b)
+{
+  return scrambled(scrambled(a + 0x9e3779b97f4a7c15ULL) ^ b);
+}
+std::uint64_t bits_of(const double value)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+/// Sum over all ranks modulo 2^64, in hexadecimal digits; collective.
+std::string number_of_all(const Comm &comm, const std::uint64_t mine)
+{
+  const std::vector<GO> halves = {static_cast<GO>(mine & 0xffffffffULL), static_cast<GO>(mine >> 32)};
+  const auto all = summed(comm, halves);
+  std::ostringstream text;
+  text << std::hex << static_cast<std::uint64_t>(all[0]) + (static_cast<std::uint64_t>(all[1]) << 32);
+  return text.str();
+}
+
+/// A number that stands for nodes, cells and sides, whatever the ranks; collective.
+std::string number_of(const mesh::Mesh &mesh)
+{
+  const auto coords = to_host(mesh.coords);
+  const auto cells = to_host(mesh.cells);
+  const auto ids = overlap_node_ids(mesh);
+  std::uint64_t sum = 0;
+  for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
+    for (int d = 0; d < mesh.dim(); ++d)
+      sum += scrambled(4 * static_cast<std::uint64_t>(mesh.node_id(n)) + d, bits_of(coords(n, d)));
+  const auto width = cells.extent(1);
+  for (LO c = 0; c < mesh.num_owned_cells; ++c)
+    for (std::size_t a = 0; a < width; ++a)
+      sum += scrambled(width * static_cast<std::uint64_t>(mesh.cell_id(c)) + a + 1,
+                       static_cast<std::uint64_t>(ids(cells(c, a))));
+  for (std::size_t s = 0; s < mesh.sides.size(); ++s) {
+    const auto cell = to_host(mesh.sides[s].cell);
+    const auto ordinal = to_host(mesh.sides[s].ordinal);
+    for (std::size_t f = 0; f < cell.extent(0); ++f)
+      if (cell(f) < mesh.num_owned_cells)
+        sum += scrambled(scrambled(s + 1, static_cast<std::uint64_t>(mesh.cell_id(cell(f)))),
+                         static_cast<std::uint64_t>(ordinal(f)));
+  }
+  return number_of_all(mesh.comm(), sum);
+}
+
+/// A number that stands for all values of fields at the owned nodes, whatever the ranks; collective.
+std::string number_of(const mesh::Mesh &mesh, const std::vector<NodalField> &fields)
+{
+  std::uint64_t sum = 0;
+  for (std::size_t f = 0; f < fields.size(); ++f)
+    for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
+      sum += scrambled(scrambled(f + 1, static_cast<std::uint64_t>(mesh.node_id(n))), bits_of(fields[f].values(n)));
+  return number_of_all(mesh.comm(), sum);
+}
+
+std::vector<std::string> records_of(const std::string &text)
+{
+  std::vector<std::string> records;
+  for (std::size_t first = 0; first < text.size(); first += record_length)
+    records.push_back(text.substr(first, record_length) + mark);
+  return records;
+}
+
+/// An Exodus file that is read; rank 0 only.
+class Reader
+{
+public:
+  explicit Reader(const std::string &path) : path_(path)
+  {
+    ex_opts(EX_DEFAULT); // errors come as return codes, not on the console
+    int word_size = sizeof(double), file_word_size = 0;
+    float version = 0;
+    RPC_REQUIRE(std::filesystem::is_regular_file(path), "restart: there is no file \"" << path << "\"");
+    id_ = ex_open(path.c_str(), EX_READ, &word_size, &file_word_size, &version);
+    if (id_ < 0) damaged("it is no Exodus file");
+  }
+  ~Reader()
+  {
+    if (id_ >= 0) ex_close(id_);
+  }
+  Reader(const Reader &) = delete;
+  Reader &operator=(const Reader &) = delete;
+
+  [[noreturn]] void damaged(const std::string &what) const
+  {
+    throw Error(ExitCode::bad_input, "restart: \"" + path_ + "\" is damaged or no checkpoint: " + what +
+                                         ". Take an older one, or start from the first step.");
+  }
+  std::string text() const
+  {
+    const int count = static_cast<int>(ex_inquire_int(id_, EX_INQ_INFO));
+    if (count <= 0) damaged("it has no text");
+    std::vector<std::vector<char>> buffers(count, std::vector<char>(MAX_LINE_LENGTH + 1, '\0'));
+    std::vector<char *> lines;
+    for (auto &buffer : buffers) lines.push_back(buffer.data());
+    if (ex_get_info(id_, lines.data()) < 0) damaged("its text cannot be read");
+    std::string text;
+    for (const char *const line : lines) {
+      const std::string record = line;
+      if (record.empty() || record.back() != mark) damaged("its text is cut");
+      text += record.substr(0, record.size() - 1);
+    }
+    return text;
+  }
+  double time() const
+  {
+    double time = 0;
+    if (ex_inquire_int(id_, EX_INQ_TIME) != 1 || ex_get_time(id_, 1, &time) < 0) damaged("it has not one time");
+    return time;
+  }
+  std::vector<double> field(const int index, const GO num_nodes) const
+  {
+    std::vector<double> values(num_nodes);
+    if (ex_inquire_int(id_, EX_INQ_NODES) != num_nodes) damaged("it has another number of nodes than it says");
+    if (ex_get_var(id_, 1, EX_NODAL, index + 1, 1, num_nodes, values.data()) < 0) damaged("a field cannot be read");
+    return values;
+  }
+
+private:
+  std::string path_;
+  int id_ = -1;
+};
+
+} // namespace
+
+void write_checkpoint(const std::string &path, const mesh::Mesh &mesh, const double time,
+                      const std::vector<NodalField> &fields, const std::string &text)
+{
+  std::vector<std::string> names;
+  for (const auto &field : fields) names.push_back(field.name);
+  const nlohmann::json header = {{"version", RPC_VERSION},
+                                 {"mesh", number_of(mesh)},
+                                 {"nodes", mesh.owned_nodes->getGlobalNumElements()},
+                                 {"values", number_of(mesh, fields)},
+                                 {"fields", names},
+                                 {"text", text}};
+  ExodusFile file(path, "rpc checkpoint", mesh, names, records_of(signature + header.dump()));
+  file.write(time, fields);
+  file.commit();
+}
+
+Checkpoint::Checkpoint(const std::string &path, const RCP<const Comm> &comm) : path_(path), comm_(comm)
+{
+  const std::string common = text_of_root(*comm, ExitCode::bad_input, [&] {
+    const Reader reader(path);
+    const std::string text = reader.text();
+    if (text.compare(0, signature.size(), signature) != 0) reader.damaged("its text is of another kind");
+    nlohmann::json header;
+    try {
+      header = nlohmann::json::parse(text.substr(signature.size()));
+      const std::string version = header.at("version");
+      RPC_REQUIRE(version == RPC_VERSION, "restart: \"" << path << "\" was written by version " << version
+                                                        << ", this is " << RPC_VERSION
+                                                        << ". Start from the first step.");
+      const GO nodes = header.at("nodes");
+      for (std::size_t f = 0; f < header.at("fields").size(); ++f)
+        values_.push_back(reader.field(static_cast<int>(f), nodes));
+      header["time"] = reader.time();
+    } catch (const nlohmann::json::exception &) {
+      reader.damaged("its text cannot be read");
+    }
+    return header.dump();
+  });
+  const auto header = nlohmann::json::parse(common);
+  time_ = header.at("time");
+  text_ = header.at("text");
+  mesh_number_ = header.at("mesh");
+  fields_number_ = header.at("values");
+  names_ = header.at("fields").get<std::vector<std::string>>();
+}
+
+std::vector<NodalField> Checkpoint::fields(const mesh::Mesh &mesh) const
+{
+  RPC_REQUIRE(number_of(mesh) == mesh_number_,
+              "restart: \"" << path_ << "\" belongs to another mesh. Restart with the mesh that it was written with.");
+  const LO n = mesh.num_owned_nodes();
+  std::vector<GO> ids(n);
+  for (LO i = 0; i < n; ++i) ids[i] = mesh.node_id(i);
+  std::vector<NodalField> fields;
+  for (std::size_t f = 0; f < names_.size(); ++f) {
+    NodalField field{names_[f], HostView<double *>("rpc::io::restart", n)};
+    const std::vector<double> none;
+    const auto mine = scattered_from_root(*comm_, values_.empty() ? none : values_[f], ids);
+    std::copy(mine.begin(), mine.end(), field.values.data());
+    fields.push_back(field);
+  }
+  RPC_REQUIRE(number_of(mesh, fields) == fields_number_,
+              "restart: \"" << path_
+                            << "\" is damaged: its fields are not those that were written. Take an older one, or start "
+                            << "from the first step.");
+  return fields;
+}
+
+} // namespace rpc::io

@@ -1,0 +1,238 @@
+#include "checkpoint.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/on_root.hpp"
+#include "rpc/io/atomic_file.hpp"
+#include "rpc/io/checkpoint.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+namespace rpc
+{
+namespace
+{
+
+using analysis::Energies;
+using analysis::Memory;
+using analysis::StepRecord;
+using contact::ContactSums;
+using nlohmann::json;
+
+constexpr std::size_t kept = 2;
+
+json to_json(const Energies &e)
+{
+  return {e.strain, e.foundation, e.dissipated, e.work};
+}
+Energies energies_from(const json &j)
+{
+  return {j.at(0), j.at(1), j.at(2), j.at(3)};
+}
+
+json to_json(const ContactSums &s)
+{
+  return {{"nodes", s.num_nodes},
+          {"force", s.force},
+          {"numbers",
+           {s.max_pressure, s.max_penetration, s.max_initial_penetration, s.contact_length, s.yielded_length,
+            s.max_dent, s.dent_volume, s.dissipated, s.foundation_energy}}};
+}
+ContactSums sums_from(const json &j)
+{
+  ContactSums s;
+  s.num_nodes = j.at("nodes");
+  s.force = j.at("force");
+  const json &numbers = j.at("numbers");
+  std::size_t k = 0;
+  for (double ContactSums::*const number :
+       {&ContactSums::max_pressure, &ContactSums::max_penetration, &ContactSums::max_initial_penetration,
+        &ContactSums::contact_length, &ContactSums::yielded_length, &ContactSums::max_dent, &ContactSums::dent_volume,
+        &ContactSums::dissipated, &ContactSums::foundation_energy})
+    s.*number = numbers.at(k++);
+  return s;
+}
+
+json to_json(const StepRecord &r)
+{
+  return {{"time", r.time},
+          {"parts", r.parts},
+          {"energies", to_json(r.energies)},
+          {"contact", to_json(r.contact)},
+          {"displacements", r.displacements},
+          {"reactions", r.reactions},
+          {"work", {r.newton_iterations, r.linear_solves, r.linear_iterations, r.preconditioner_setups}},
+          {"seconds", r.seconds}};
+}
+StepRecord record_from(const json &j)
+{
+  StepRecord r;
+  r.time = j.at("time");
+  r.converged = true; // no other step is gone on from
+  r.parts = j.at("parts");
+  r.energies = energies_from(j.at("energies"));
+  r.contact = sums_from(j.at("contact"));
+  r.displacements = j.at("displacements").get<std::vector<std::array<double, 3>>>();
+  r.reactions = j.at("reactions").get<std::vector<std::array<double, 3>>>();
+  const json &work = j.at("work");
+  r.newton_iterations = work.at(0);
+  r.linear_solves = work.at(1);
+  r.linear_iterations = work.at(2);
+  r.preconditioner_setups = work.at(3);
+  r.seconds = j.at("seconds");
+  return r;
+}
+
+/// Columns of a vector by node as fields, "name_1" and so on.
+void add_columns(std::vector<io::NodalField> &fields, const std::string &name, const MultiVector &columns)
+{
+  const auto from = columns.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t k = 0; k < columns.getNumVectors(); ++k) {
+    HostView<double *> values("rpc::checkpoint", from.extent(0));
+    for (std::size_t n = 0; n < values.extent(0); ++n) values(n) = from(n, k);
+    fields.push_back({name + std::to_string(k + 1), values});
+  }
+}
+void add_components(std::vector<io::NodalField> &fields, const std::string &name, const Vector &u, const int dim)
+{
+  const auto from = u.getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (int c = 0; c < dim; ++c) {
+    HostView<double *> values("rpc::checkpoint", from.extent(0) / dim);
+    for (std::size_t n = 0; n < values.extent(0); ++n) values(n) = from(dim * n + c, 0);
+    fields.push_back({name + std::to_string(c + 1), values});
+  }
+}
+
+/// Takes fields one after another.
+class FieldReader
+{
+public:
+  FieldReader(std::vector<io::NodalField> fields, const fem::Discretization &d) : fields_(std::move(fields)), d_(d) {}
+
+  RCP<const Vector> components()
+  {
+    const int dim = d_.dim();
+    const auto u = rcp(new Vector(d_.owned_dofs));
+    const auto to = u->getLocalViewHost(Tpetra::Access::OverwriteAll);
+    for (int c = 0; c < dim; ++c, ++next_)
+      for (LO n = 0; n < d_.mesh->num_owned_nodes(); ++n) to(dim * n + c, 0) = fields_.at(next_).values(n);
+    return u;
+  }
+  RCP<const MultiVector> columns(const int count)
+  {
+    const auto columns = rcp(new MultiVector(d_.mesh->owned_nodes, count));
+    const auto to = columns->getLocalViewHost(Tpetra::Access::OverwriteAll);
+    for (int k = 0; k < count; ++k, ++next_)
+      for (LO n = 0; n < d_.mesh->num_owned_nodes(); ++n) to(n, k) = fields_.at(next_).values(n);
+    return columns;
+  }
+
+private:
+  std::vector<io::NodalField> fields_;
+  const fem::Discretization &d_;
+  std::size_t next_ = 0;
+};
+
+std::string stem_of(const Scene &scene)
+{
+  return scene.name + ".checkpoint-";
+}
+
+} // namespace
+
+Checkpoints::Checkpoints(const Scene &scene, std::string restart, const std::string &folder)
+    : scene_(scene), restart_(std::move(restart)), folder_(folder)
+{
+}
+
+std::optional<adapt::HistoryState> Checkpoints::resume(const fem::Discretization &d) const
+{
+  if (restart_.empty()) return std::nullopt;
+  const io::Checkpoint file(restart_, d.mesh->owned_nodes->getComm());
+  adapt::HistoryState state;
+  const int sides = static_cast<int>(scene_.model.contact.size());
+  try {
+    const json text = json::parse(file.text());
+    for (const auto &[name, content] : scene_.identity)
+      RPC_REQUIRE(
+          text.at("deck").at(name) == content,
+          "restart: \""
+              << restart_ << "\" was written for another deck: \"" << name
+              << "\" is not the same. Restart with the deck that it was written with; \"Steps\", \"Output\" and the "
+                 "solvers' options may change.");
+    FieldReader reader(file.fields(*d.mesh), d);
+    state.last.time = file.time();
+    state.last.energies = energies_from(text.at("energies"));
+    state.last.displacement = reader.components();
+    state.last.pressure = reader.columns(sides);
+    state.last.dent = reader.columns(sides);
+    state.last.gap = reader.columns(sides);
+    if (text.contains("before")) {
+      state.before.emplace();
+      state.before->time = text.at("before");
+      state.before->displacement = reader.components();
+      state.before->pressure = reader.columns(sides);
+    }
+    state.matrix_assemblies = text.at("assemblies");
+    for (const json &record : text.at("records")) state.records.push_back(record_from(record));
+  } catch (const json::exception &) { // on all ranks: they read the same text
+    throw Error(ExitCode::bad_input, "restart: \"" + restart_ +
+                                         "\" is damaged: its text is not what was written. Take an older one, "
+                                         "or start from the first step.");
+  }
+  RPC_REQUIRE(scene_.steps.times.back() > state.last.time,
+              "restart: \"" << restart_ << "\" is of t = " << state.last.time
+                            << ", and none of \"Steps->Times\" is later: there is nothing to do");
+  return state;
+}
+
+void Checkpoints::write(const adapt::HistoryState &state, const fem::Discretization &d)
+{
+  json text = {{"energies", to_json(state.last.energies)}, {"assemblies", state.matrix_assemblies}};
+  for (const auto &[name, content] : scene_.identity) text["deck"][name] = content;
+  text["records"] = json::array();
+  for (const StepRecord &record : state.records) text["records"].push_back(to_json(record));
+  std::vector<io::NodalField> fields;
+  add_components(fields, "displacement_", *state.last.displacement, d.dim());
+  add_columns(fields, "pressure_", *state.last.pressure);
+  add_columns(fields, "dent_", *state.last.dent);
+  add_columns(fields, "gap_", *state.last.gap);
+  if (state.before) {
+    text["before"] = state.before->time;
+    add_components(fields, "before_displacement_", *state.before->displacement, d.dim());
+    add_columns(fields, "before_pressure_", *state.before->pressure);
+  }
+  std::ostringstream name;
+  name << stem_of(scene_) << std::setw(6) << std::setfill('0') << state.records.size() << ".e";
+  const std::string path = (std::filesystem::path(folder_) / name.str()).string();
+  io::write_checkpoint(path, *d.mesh, state.last.time, fields, text.dump());
+  on_root(d.mesh->comm(), ExitCode::internal_error, [&] { remove_others(path); });
+}
+
+void Checkpoints::remove_others(const std::string &newest)
+{
+  written_.push_back(newest);
+  const auto keep = [&](const std::string &path) {
+    std::error_code none;
+    const bool ours =
+        std::find(written_.end() - std::min(written_.size(), kept), written_.end(), path) != written_.end();
+    return ours || (written_.size() < kept && std::filesystem::equivalent(path, restart_, none));
+  };
+  std::vector<std::string> others;
+  for (const auto &entry : std::filesystem::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    const std::string stem = stem_of(scene_);
+    const bool checkpoint = name.size() == stem.size() + 8 && name.compare(0, stem.size(), stem) == 0 &&
+                            name.find_first_not_of("0123456789", stem.size()) == name.size() - 2 &&
+                            name.substr(name.size() - 2) == ".e";
+    const std::string path = (std::filesystem::path(folder_) / name).string();
+    if (checkpoint && !keep(path)) others.push_back(path);
+  }
+  for (const std::string &path : others) io::remove_older(path);
+}
+
+} // namespace rpc
