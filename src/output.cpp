@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iomanip>
 #include <sstream>
 
 namespace rpc
@@ -104,6 +105,16 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const Solution &s)
   for (int c = 0; c < dim; ++c)
     fields.push_back({component[c], scatter(shown, Kokkos::subview(normal, Kokkos::ALL, c), 0)});
   return fields;
+}
+
+/// Where a part of a film goes.
+/// @param part  from 1
+std::string part_name(const std::string &exodus, const int part)
+{
+  if (part == 1) return exodus;
+  std::ostringstream name;
+  name << exodus << "-s" << std::setw(4) << std::setfill('0') << part;
+  return name.str();
 }
 
 /// [begin, end) of a view, on the host.
@@ -341,8 +352,9 @@ void require_writable_results(const Scene &scene, const std::string &folder, con
 }
 
 /// Files of the same name that an earlier run has left and this run does not write, those of its meshes included.
+/// @param parts  of the film that this run has written
 std::vector<std::string> older_files(const Scene &scene, const Solution &s, const ResultPaths &paths,
-                                     const std::string &folder)
+                                     const std::string &folder, const int parts)
 {
   std::vector<std::string> older;
   const auto add_existing = [&](const std::string &name) {
@@ -357,6 +369,12 @@ std::vector<std::string> older_files(const Scene &scene, const Solution &s, cons
     return found;
   };
   add_existing(scene.name);
+  for (int part = parts + 1;; ++part) {
+    const std::string file = part_name(all_files(scene.name, folder)[0], std::max(part, 2));
+    std::error_code none;
+    if (!std::filesystem::exists(file, none)) break;
+    older.push_back(file);
+  }
   int cycle = scene.adapt.write_all && s.adaptation ? static_cast<int>(s.adaptation->cycles.size()) : 0;
   while (add_existing(cycle_name(scene, ++cycle))) {
   }
@@ -366,11 +384,13 @@ std::vector<std::string> older_files(const Scene &scene, const Solution &s, cons
 void Film::write(const Scene &scene, const Solution &s, const std::string &folder)
 {
   const auto fields = nodal_fields(scene, s);
-  if (!file_) {
+  if (!file_ || mesh_ != s.discretization.mesh) {
+    if (file_) file_->commit();
     std::vector<std::string> names;
     for (const auto &field : fields) names.push_back(field.name);
     mesh_ = s.discretization.mesh;
-    file_ = std::make_unique<io::ExodusFile>(ResultPaths(scene, scene.name, folder).exodus, scene.name, *mesh_, names);
+    file_ = std::make_unique<io::ExodusFile>(part_name(ResultPaths(scene, scene.name, folder).exodus, ++parts_),
+                                             scene.name, *mesh_, names);
   }
   file_->write(s.time, fields);
   written_ = static_cast<int>(s.history.size());
@@ -398,7 +418,7 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
   if (!paths.history.empty())
     on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.history, history_text(scene, s)); });
   on_root(mesh.comm(), ExitCode::internal_error, [&] {
-    for (const std::string &file : older_files(scene, s, paths, folder)) io::remove_older(file);
+    for (const std::string &file : older_files(scene, s, paths, folder, film.parts())) io::remove_older(file);
   });
   const double now = Teuchos::Time::wallTime();
   s.seconds.output = now - begin;

@@ -23,7 +23,8 @@ std::string cycle_name(const Scene &scene, int cycle);
 /// @throws rpc::Error (bad_input) on every rank
 void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm);
 
-/// The Exodus file of a run with load steps, a time for each: it appears with the other results.
+/// The Exodus file of a run with load steps, a time for each: it appears with the other results. Where the mesh changes from one step
+/// to the next, a new file begins, <deck>.e-s0002 and so on, as ParaView expects of one run.
 class Film
 {
 public:
@@ -31,6 +32,7 @@ public:
   void add(const Scene &scene, const Solution &solution, const std::string &folder);
   /// Adds the solution if it is not in yet, and finishes the file.
   void finish(const Scene &scene, const Solution &solution, const std::string &folder);
+  int parts() const { return parts_; } ///< files
 
 private:
   void write(const Scene &scene, const Solution &solution, const std::string &folder);
@@ -38,6 +40,7 @@ private:
   std::shared_ptr<const mesh::Mesh> mesh_; // which the file reads until its end
   std::unique_ptr<io::ExodusFile> file_;
   int written_ = 0; // number of the last step that is in
+  int parts_ = 0;   // files
 };
 
 /// Writes what the scene asks for into a folder, each file whole or not at all; collective. Results of one name belong to

@@ -1,6 +1,7 @@
 #include "report.hpp"
 
 #include <Teuchos_Time.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -117,12 +118,14 @@ void ConsoleTable::load_step(const Scene &scene, const Solution &s)
 {
   const analysis::StepRecord &step = s.history.back();
   const auto &force = step.contact.force;
-  const std::size_t done = s.history.size(), all = scene.steps.times.size();
+  const auto &times = scene.steps.times;
+  const auto left = static_cast<std::size_t>(times.end() - std::upper_bound(times.begin(), times.end(), step.time));
+  ++load_steps_;
   const double now = Teuchos::Time::wallTime() - start_;
-  print(out_, "%4zu/%-4zu %9.4g %12.6g %10.4g %12.4g %13.6g %5d %6d %6d %10.3f %9.1f%s\n", done, all, step.time,
-        std::hypot(force[0], force[1], force[2]), step.contact.max_pressure, step.contact.max_dent,
-        step.energies.dissipated, step.parts, step.newton_iterations, step.linear_iterations, now,
-        now / static_cast<double>(done) * static_cast<double>(all - done), step.converged ? "" : " NOT CONVERGED");
+  print(out_, "%4zu/%-4zu %9.4g %12.6g %10.4g %12.4g %13.6g %5d %6d %6d %10.3f %9.1f%s\n", s.history.size(),
+        s.history.size() + left, step.time, std::hypot(force[0], force[1], force[2]), step.contact.max_pressure,
+        step.contact.max_dent, step.energies.dissipated, step.parts, step.newton_iterations, step.linear_iterations,
+        now, now / load_steps_ * static_cast<double>(left), step.converged ? "" : " NOT CONVERGED");
   out_ << std::flush;
 }
 

@@ -23,6 +23,7 @@ public:
 private:
   std::ostream &out_;
   double start_;
+  int load_steps_ = 0; // of this run
 };
 
 /// A line on the error that a mesh is estimated to leave.

@@ -96,10 +96,10 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   const Teuchos::ParameterList &output = deck.sublist("Output");
   scene.output = {output.get<bool>("Exodus"), output.get<bool>("CSV"), output.get<bool>("JSON"),
                   output.get<bool>("Timers")};
-  RPC_REQUIRE(!scene.adapt.adapts() || scene.steps.times.empty(),
-              "deck: \"Adapt->Target Relative Error\" goes with one step: meshes that adapt from step to step are not "
-              "available yet. "
-              "Leave \"Steps->Times\" empty, or the target at 0; \"Adapt->Estimate Error\" tells the error.");
+  RPC_REQUIRE(
+      !scene.adapt.adapts() || scene.steps.checkpoint_every == 0,
+      "deck: \"Steps->Checkpoint Every\" does not go with \"Adapt->Target Relative Error\": a restart could not "
+      "make the adapted meshes again");
   RPC_REQUIRE(
       !scene.adapt.adapts() || dim == 2,
       "deck: \"Adapt->Target Relative Error\" goes with plane meshes: adaptive ones in space are not available yet. "

@@ -15,7 +15,8 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   std::optional<ConsoleTable> table; // of one mesh
   adapt::Listener listener;
   listener.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &contact) {
-    table.emplace(console).scene(scene, d, contact);
+    if (!table || scene.steps.times.empty()) table.emplace(console);
+    table->scene(scene, d, contact);
   };
   const bool several_steps = !scene.steps.times.empty(); // a line for each is enough then
   if (!several_steps)

@@ -163,13 +163,14 @@ std::size_t best_of(const std::vector<Cycle> &cycles)
   return std::min_element(cycles.begin(), cycles.end(), less) - cycles.begin();
 }
 
-Solution solve_adaptively(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
+/// @param earlier  the load step before, if there are several; its mesh is the first one
+Solution solve_adaptively(const Task &task, const Solution *const earlier, const RCP<const Comm> &comm,
+                          const Listener &listener)
 {
-  if (comm->getRank() == 0) mesh::start_gmsh_early();
   Adaptation adaptation;
   std::vector<Cycle> &cycles = adaptation.cycles;
   Planner planner(task);
-  std::optional<mesh::MeshOptions> options = task.mesh;
+  std::optional<mesh::MeshOptions> options = earlier ? earlier->mesh_options : task.mesh;
   std::optional<Solution> last, best;
   std::string hint;
   PhaseSeconds seconds;
@@ -177,7 +178,7 @@ Solution solve_adaptively(const Task &task, const RCP<const Comm> &comm, const L
     const double start = Teuchos::Time::wallTime();
     std::optional<Solution> next;
     try {
-      next = solve_on(task, *options, last ? &*last : nullptr, comm, listener);
+      next = solve_on(task, *options, last ? &*last : nullptr, earlier, comm, listener);
     } catch (const Error &failure) { // on all ranks
       if (!last) throw;
       adaptation.reason = interrupted(*comm) ? interruption() + " before the next mesh" : failure.what();
@@ -219,13 +220,34 @@ Solution solve_adaptively(const Task &task, const RCP<const Comm> &comm, const L
   return std::move(*best);
 }
 
+/// Load steps, each on meshes of its own.
+Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
+{
+  std::optional<Solution> earlier;
+  PhaseSeconds seconds;
+  for (const double t : task.steps.times) {
+    Task step = task;
+    step.time = t;
+    Solution s = solve_adaptively(step, earlier ? &*earlier : nullptr, comm, listener);
+    seconds += s.seconds;
+    s.seconds = seconds;
+    if (listener.load_step) listener.load_step(s);
+    earlier = std::move(s);
+    if (!succeeded(*earlier)) break;
+  }
+  return std::move(*earlier);
+}
+
 } // namespace
 
 Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
-  if (!task.steps.times.empty()) return solve_steps(task, comm, listener);
-  if (task.adapt.adapts()) return solve_adaptively(task, comm, listener);
-  return solve_on(task, task.mesh, nullptr, comm, listener);
+  const bool several_steps = !task.steps.times.empty();
+  if (!task.adapt.adapts())
+    return several_steps ? solve_steps(task, comm, listener)
+                         : solve_on(task, task.mesh, nullptr, nullptr, comm, listener);
+  if (comm->getRank() == 0) mesh::start_gmsh_early();
+  return several_steps ? solve_steps_adaptively(task, comm, listener) : solve_adaptively(task, nullptr, comm, listener);
 }
 
 PhaseSeconds &PhaseSeconds::operator+=(const PhaseSeconds &other)

@@ -85,6 +85,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     s = Solution{};
     static_cast<analysis::StepSolution &>(s) = history.advance(t, listener.step);
     s.discretization = history.problem().discretization();
+    s.mesh_options = task.mesh;
     s.time = t;
     s.matrix_assemblies = assemblies_before + history.matrix_assemblies();
     records.push_back(history.last());
@@ -112,11 +113,15 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
 }
 
 Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solution *const previous,
-                  const RCP<const Comm> &comm, const Listener &listener)
+                  const Solution *const earlier, const RCP<const Comm> &comm, const Listener &listener)
 {
   Solution s;
   s.time = task.time;
-  const auto problem = make_problem(task, make_mesh(options, comm, s.seconds), s.seconds);
+  s.mesh_options = options;
+  // The first mesh of a load step is that of the step before.
+  const bool same_mesh = earlier && !previous;
+  const auto mesh = same_mesh ? earlier->discretization.mesh : make_mesh(options, comm, s.seconds);
+  const auto problem = make_problem(task, mesh, s.seconds);
   const fem::Discretization &d = s.discretization = problem->discretization();
   analysis::Step step;
   {
@@ -135,9 +140,23 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
     starts.push_back(contact::interpolated(*fem::interpolation(previous->discretization, d), points, state,
                                            step.contact, d.owned_dofs));
   }
-  static_cast<analysis::StepSolution &>(s) =
-      analysis::solve_step(*problem, step, task.step, starts, coarser_meshes(task, options, comm), listener.step);
-  s.matrix_assemblies = 1;
+  const auto coarser = coarser_meshes(task, options, comm);
+  if (task.steps.times.empty()) {
+    static_cast<analysis::StepSolution &>(s) =
+        analysis::solve_step(*problem, step, task.step, starts, coarser, listener.step);
+    s.matrix_assemblies = 1;
+  } else {
+    analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, coarser);
+    if (earlier)
+      history.go_on_from(same_mesh ? *earlier->memory
+                                   : analysis::interpolated(*earlier->memory, earlier->discretization, d));
+    for (const auto &start : starts) history.offer(start);
+    static_cast<analysis::StepSolution &>(s) = history.advance(task.time, listener.step);
+    if (s.uzawa.converged) s.memory = *history.memory();
+    if (earlier) s.history = earlier->history;
+    s.history.push_back(history.last());
+    s.matrix_assemblies = history.matrix_assemblies();
+  }
   if (task.adapt.adapts()) s.pressure_norm = contact::pressure_distance(*comm, step.contact, s.contact.pressure, {});
   if (previous)
     s.pressure_change = contact::pressure_distance(*comm, step.contact, s.contact.pressure, starts.front().multiplier);

@@ -262,7 +262,7 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
     ++matrix_assemblies_;
   }
   if (now) now(*problem_, step);
-  std::vector<contact::ContactState> starts;
+  std::vector<contact::ContactState> starts = std::exchange(offered_, {});
   if (memory_) starts.push_back(state_of(step.contact, *memory_->displacement, *memory_->pressure));
   if (memory_ && before_) starts.push_back(extrapolated(step, *before_, *memory_));
   if (memory_) starts.push_back(at_rest(step.contact, problem_->discretization()));
@@ -282,6 +282,33 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
                    contact::node_columns(step.contact, step.contact.gap, owned_nodes),
                    energies_after(*problem_, s, before_ ? &*before_ : nullptr)};
   return s;
+}
+
+Memory interpolated(const Memory &memory, const fem::Discretization &from, const fem::Discretization &to)
+{
+  const auto interpolation = fem::interpolation(from, to);
+  const auto columns = [&](const MultiVector &values) {
+    const auto result = rcp(new MultiVector(interpolation->getRangeMap(), values.getNumVectors()));
+    if (values.getNumVectors() > 0) interpolation->apply(values, *result);
+    return result;
+  };
+  const auto not_below_zero = [](const RCP<MultiVector> &values) { // quadratic interpolants dip
+    const auto view = values->getLocalViewDevice(Tpetra::Access::ReadWrite);
+    const LO n = static_cast<LO>(view.extent(0)), sides = static_cast<LO>(view.extent(1));
+    Kokkos::parallel_for(
+        "rpc::analysis::not_below_zero", device_range(n), KOKKOS_LAMBDA(const LO node) {
+          for (LO k = 0; k < sides; ++k)
+            if (view(node, k) < 0) view(node, k) = 0;
+        });
+    Kokkos::fence();
+    return values;
+  };
+  Memory result = memory;
+  result.displacement = fem::interpolated(*interpolation, *memory.displacement, from.dim(), to.owned_dofs);
+  result.pressure = not_below_zero(columns(*memory.pressure));
+  result.dent = not_below_zero(columns(*memory.dent));
+  result.gap = columns(*memory.gap);
+  return result;
 }
 
 } // namespace rpc::analysis

@@ -429,4 +429,44 @@ RCP<CrsMatrix> interpolation(const Discretization &coarse, const Discretization 
   return matrix;
 }
 
+namespace
+{
+
+/// (owned dofs) -> (owned nodes; dim).
+void to_columns(const Vector &u, const int dim, MultiVector &columns)
+{
+  const auto from = device_read(u);
+  const auto to = columns.getLocalViewDevice(Tpetra::Access::OverwriteAll);
+  Kokkos::parallel_for(
+      "rpc::fem::to_columns", device_range(static_cast<LO>(columns.getLocalLength())), KOKKOS_LAMBDA(const LO node) {
+        for (int k = 0; k < dim; ++k) to(node, k) = from(dof(dim, node, k));
+      });
+  Kokkos::fence();
+}
+
+/// The other way round.
+void from_columns(const MultiVector &columns, const int dim, Vector &u)
+{
+  const auto from = columns.getLocalViewDevice(Tpetra::Access::ReadOnly);
+  const auto to = device_write(u);
+  Kokkos::parallel_for(
+      "rpc::fem::from_columns", device_range(static_cast<LO>(columns.getLocalLength())), KOKKOS_LAMBDA(const LO node) {
+        for (int k = 0; k < dim; ++k) to(dof(dim, node, k)) = from(node, k);
+      });
+  Kokkos::fence();
+}
+
+} // namespace
+
+RCP<Vector> interpolated(const CrsMatrix &interpolation, const Vector &u, const int dim,
+                         const RCP<const Map> &fine_dofs)
+{
+  MultiVector from(interpolation.getDomainMap(), dim), to(interpolation.getRangeMap(), dim);
+  to_columns(u, dim, from);
+  interpolation.apply(from, to);
+  const auto result = rcp(new Vector(fine_dofs));
+  from_columns(to, dim, *result);
+  return result;
+}
+
 } // namespace rpc::fem

@@ -76,10 +76,13 @@ struct Solution : analysis::StepSolution {
   fem::Discretization discretization;
   double pressure_norm = 0;   ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]; where meshes are adapted
   double pressure_change = 0; ///< the same of its change since the mesh before, if there was one
-  std::vector<std::string> skipped;          ///< what the scene allowed to leave out, and why
-  std::optional<ErrorEstimate> estimate;     ///< where it is asked for
-  std::optional<Adaptation> adaptation;      ///< where the mesh is adapted
-  double time = 1;                           ///< at which it is the solution
+  std::vector<std::string> skipped;      ///< what the scene allowed to leave out, and why
+  std::optional<ErrorEstimate> estimate; ///< where it is asked for
+  std::optional<Adaptation> adaptation;  ///< where the mesh is adapted
+  double time = 1;                       ///< at which it is the solution
+  std::optional<analysis::Memory>
+      memory;                     ///< what the next load step starts from, where there are several and it converged
+  mesh::MeshOptions mesh_options; ///< of its mesh
   std::vector<analysis::StepRecord> history; ///< of load steps, up to this one
   int matrix_assemblies = 0;
   PhaseSeconds seconds;
@@ -119,7 +122,8 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
 /// The same on one mesh, whatever the target for the error is.
 /// @param mesh      to be made, in place of the task's
 /// @param previous  solution on another mesh to start from; null: coarser meshes predict it
-Solution solve_on(const Task &task, const mesh::MeshOptions &mesh, const Solution *previous,
+/// @param earlier   solution of the load step before; without a previous mesh its mesh is taken. Null: there is none
+Solution solve_on(const Task &task, const mesh::MeshOptions &mesh, const Solution *previous, const Solution *earlier,
                   const RCP<const Comm> &comm, const Listener &listener);
 
 /// Whether all that was asked for came out.

@@ -70,6 +70,8 @@ public:
   /// @param memory  on the problem's mesh
   /// @param before  of the step before it, displacement and pressure, if there was one
   void go_on_from(Memory memory, std::optional<Memory> before = std::nullopt);
+  /// Another state from which the next step may start, beside those of the steps before.
+  void offer(contact::ContactState start) { offered_.push_back(std::move(start)); }
   /// Makes matrix and multigrid anew, so that what follows depends on memory() and before() alone, bit for bit.
   void start_anew();
 
@@ -95,6 +97,7 @@ private:
   int max_halvings_;
   CoarserProblem coarser_;
   std::optional<Memory> memory_, before_; // of the last step, and of the one before it
+  std::vector<contact::ContactState> offered_;
   StepRecord last_;
   int matrix_assemblies_ = 1;
 };

@@ -19,4 +19,8 @@ namespace rpc::fem
 /// @throws rpc::Error on every rank if the meshes have different dimensions
 RCP<CrsMatrix> interpolation(const Discretization &coarse, const Discretization &fine);
 
+/// A displacement on the finer mesh; collective.
+/// @param interpolation  see above   @param u  (coarse owned dofs)   @param fine_dofs  owned dofs of the finer mesh
+RCP<Vector> interpolated(const CrsMatrix &interpolation, const Vector &u, int dim, const RCP<const Map> &fine_dofs);
+
 } // namespace rpc::fem
