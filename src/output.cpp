@@ -389,8 +389,8 @@ void Film::write(const Scene &scene, const Solution &s, const std::string &folde
     std::vector<std::string> names;
     for (const auto &field : fields) names.push_back(field.name);
     mesh_ = s.discretization.mesh;
-    file_ = std::make_unique<io::ExodusFile>(part_name(ResultPaths(scene, scene.name, folder).exodus, ++parts_),
-                                             scene.name, *mesh_, names);
+    files_.push_back(part_name(ResultPaths(scene, scene.name, folder).exodus, static_cast<int>(files_.size()) + 1));
+    file_ = std::make_unique<io::ExodusFile>(files_.back(), scene.name, *mesh_, names);
   }
   file_->write(s.time, fields);
   written_ = static_cast<int>(s.history.size());
@@ -418,7 +418,8 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
   if (!paths.history.empty())
     on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.history, history_text(scene, s)); });
   on_root(mesh.comm(), ExitCode::internal_error, [&] {
-    for (const std::string &file : older_files(scene, s, paths, folder, film.parts())) io::remove_older(file);
+    for (const std::string &file : older_files(scene, s, paths, folder, static_cast<int>(film.files().size())))
+      io::remove_older(file);
   });
   const double now = Teuchos::Time::wallTime();
   s.seconds.output = now - begin;
@@ -429,9 +430,9 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
     const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.json, text); });
   }
-  std::vector<std::string> files;
+  std::vector<std::string> files = film.files();
   for (const std::string &path : paths.all())
-    if (!path.empty()) files.push_back(path);
+    if (!path.empty() && path != paths.exodus) files.push_back(path);
   return files;
 }
 

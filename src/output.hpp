@@ -32,7 +32,7 @@ public:
   void add(const Scene &scene, const Solution &solution, const std::string &folder);
   /// Adds the solution if it is not in yet, and finishes the file.
   void finish(const Scene &scene, const Solution &solution, const std::string &folder);
-  int parts() const { return parts_; } ///< files
+  const std::vector<std::string> &files() const { return files_; } ///< their paths
 
 private:
   void write(const Scene &scene, const Solution &solution, const std::string &folder);
@@ -40,7 +40,7 @@ private:
   std::shared_ptr<const mesh::Mesh> mesh_; // which the file reads until its end
   std::unique_ptr<io::ExodusFile> file_;
   int written_ = 0; // number of the last step that is in
-  int parts_ = 0;   // files
+  std::vector<std::string> files_;
 };
 
 /// Writes what the scene asks for into a folder, each file whole or not at all; collective. Results of one name belong to

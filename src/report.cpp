@@ -88,7 +88,7 @@ void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const
   if (!locking.empty()) print(out_, "note: %s\n", locking.c_str());
   if (scene.steps.times.empty())
     print(out_, "uzawa newton   |F|/|b|     step    open  closed  yields krylov   time [s]\n");
-  else
+  else if (load_steps_ == 0)
     print(out_, "    step         t      |force|     max. p    max. dent    dissipated parts Newton krylov   time [s]  "
                 "left [s]\n");
   out_ << std::flush;
