@@ -84,7 +84,7 @@ solver::MeshLevels mesh_levels(const fem::Discretization &finest, const Model &m
   }
   const GO few = d.dim() == 2 ? few_2d : few_3d;
   const auto num_unknowns = [&d] { return static_cast<GO>(d.owned_dofs->getGlobalNumElements()); };
-  while (num_unknowns() > few) {
+  while (levels.level.empty() || num_unknowns() > few) {
     auto coarse = halved(*d.mesh, model);
     if (!coarse) break;
     auto interpolation = fem::interpolation(*coarse, d);

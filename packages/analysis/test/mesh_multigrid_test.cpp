@@ -245,6 +245,23 @@ TEST(MeshMultigrid, GivesWayToTheAlgebraicOneWhereItFails)
   EXPECT_LT(relative_difference(Hx, b), 1.1e-8);
 }
 
+/// A mesh of few unknowns that could be solved directly has a coarser one all the same; where none can be had, none is used.
+TEST(MeshMultigrid, TakesSmallMeshes)
+{
+  const Block block({2, 1}, {12, 6});
+  const Vector b = block.vector(10);
+  Vector x(b.getMap());
+  const auto solver = block.solver();
+  EXPECT_TRUE(solver->solve(b, x, 1e-8).converged);
+  EXPECT_EQ(solver->counts().fallback, "");
+  LinearSolverOptions options;
+  options.multigrid = "mesh";
+  LinearSolver without(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d),
+                       [] { return MeshLevels(); });
+  EXPECT_TRUE(without.solve(b, x, 1e-8).converged);
+  EXPECT_NE(without.counts().fallback, "");
+}
+
 TEST(LinearSolver, TakesMeshesUnlessMueLuIsGiven)
 {
   const Block block({2, 1}, {67, 35});

@@ -19,6 +19,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 namespace rpc::solver
@@ -336,6 +337,7 @@ void LinearSolver::prepare_on_meshes()
   const double start = Teuchos::Time::wallTime();
   if (multigrid.is_null()) {
     const MeshLevels levels = impl_->make_levels();
+    if (levels.level.empty()) throw std::runtime_error("multigrid: a coarser mesh would be too small for the ranks");
     multigrid =
         rcp(new MeshMultigrid(impl_->H, levels, [&](const MeshLevel &coarsest) -> std::unique_ptr<CoarsestSolver> {
           if (levels.down_to_few) return direct_solver(coarsest.stiffness);
