@@ -41,6 +41,8 @@ constexpr double most_stiffness = 5;
 constexpr double full_digits = 8, few_digits = 2, setup_in_iterations = 12;
 // Set-ups for changed states; then corrections go on until CG runs out of patience.
 constexpr int most_setups_for_states = 1;
+// CG that breaks down with less of the error left, in energy, has met rounding, not a singular matrix: there most of it is left.
+constexpr double small_error = 1e-4;
 
 using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
 using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
@@ -486,6 +488,73 @@ LinearSolver::Result LinearSolver::solve_algebraically(const Vector &b, Vector &
   return try_to_solve(b, x, tolerance);
 }
 
+/// |x - H^-1 b|_H / |H^-1 b|_H; one cycle stands for H^-1. NaN where the cycle breaks down; collective.
+/// @param residual  b - H x
+double LinearSolver::energy_error(const Vector &b, const Vector &residual)
+{
+  return std::sqrt(inverse_energy(residual) / inverse_energy(b));
+}
+
+/// CG from x = 0. A breakdown is a result, with x as far as it came.
+LinearSolver::Result LinearSolver::iterate(const Vector &b, Vector &x, const double tolerance)
+{
+  Result result;
+  // What a solve on the patch leaves of b is 0 there, and so are all residuals that follow.                      (4.8)
+  const auto &correction = impl_->preconditioner->correction;
+  RCP<const Vector> rest = Teuchos::rcpFromRef(b);
+  RCP<Vector> on_patch;
+  double left = 1; // |rest|/|b|
+  if (correction) {
+    on_patch = rcp(new Vector(b.getMap()));
+    const auto off_patch = rcp(new Vector(b.getMap()));
+    correction->solve_on_patch(b, *on_patch, *off_patch);
+    left = off_patch->norm2() / b.norm2();
+    rest = off_patch;
+  }
+  const auto list = Teuchos::parameterList();
+  list->set("Convergence Tolerance", std::min(1., std::max(tolerance, options_.tolerance) / left));
+  impl_->manager->setParameters(list);
+  x.putScalar(0);
+  impl_->problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), RCP<const MultiVector>(rest));
+  try {
+    result.converged = impl_->manager->solve() == Belos::Converged;
+    result.iterations = impl_->manager->getNumIters();
+    const double residual = left * impl_->manager->achievedTol();
+    if (!impl_->make_levels) judge_preconditioner(result.iterations, residual);
+    if (!result.converged)
+      result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(residual) + " after " +
+                      std::to_string(result.iterations) + " iterations";
+  } catch (const std::bad_alloc &) { // on this rank alone
+    throw;
+  } catch (const std::exception &failure) { // such as an indefinite or singular matrix; the same on all ranks
+    result.broken = true;                   // how many iterations there were is not to be had
+    result.reason = "the linear solver broke down: " + one_line(failure.what());
+  }
+  if (correction) x.update(1., *on_patch, 1.);
+  return result;
+}
+
+/// CG breaks down, too, where rounding is all that it has left to work on: of a small remainder on the patch, where its
+/// preconditioner expects zeros. What is left then is solved for once more, from the residual as it is.          (4.9a)
+LinearSolver::Result LinearSolver::iterate_to_the_end(const Vector &b, Vector &x, const double tolerance)
+{
+  Result result = iterate(b, x, tolerance);
+  if (!result.broken || !std::isfinite(x.norm2())) return result;
+  Vector residual(b, Teuchos::Copy);
+  impl_->H->apply(x, residual, Teuchos::NO_TRANS, -1., 1.);
+  if (!(energy_error(b, residual) <= small_error)) return result;
+  Vector move(b.getMap());
+  const Result more = iterate(residual, move, tolerance * b.norm2() / residual.norm2());
+  result.broken = false;
+  result.converged = more.converged;
+  result.iterations += more.iterations;
+  if (more.converged) {
+    x.update(1., move, 1.);
+    result.reason.clear();
+  }
+  return result;
+}
+
 LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, const double tolerance)
 {
   Result result;
@@ -494,33 +563,10 @@ LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, cons
     prepare();
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
-    // What a solve on the patch leaves of b is 0 there, and so are all residuals that follow.                      (4.8)
-    const auto &correction = impl_->preconditioner->correction;
-    RCP<const Vector> rest = Teuchos::rcpFromRef(b);
-    RCP<Vector> on_patch;
-    double left = 1; // |rest|/|b|
-    if (correction) {
-      on_patch = rcp(new Vector(b.getMap()));
-      const auto off_patch = rcp(new Vector(b.getMap()));
-      correction->solve_on_patch(b, *on_patch, *off_patch);
-      left = off_patch->norm2() / b.norm2();
-      rest = off_patch;
-    }
-    const auto list = Teuchos::parameterList();
-    list->set("Convergence Tolerance", std::min(1., std::max(tolerance, options_.tolerance) / left));
-    impl_->manager->setParameters(list);
-    x.putScalar(0);
-    impl_->problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), RCP<const MultiVector>(rest));
-    result.converged = impl_->manager->solve() == Belos::Converged;
-    if (correction) x.update(1., *on_patch, 1.);
-    result.iterations = impl_->manager->getNumIters();
-    if (!impl_->make_levels) judge_preconditioner(result.iterations, left * impl_->manager->achievedTol());
+    result = iterate_to_the_end(b, x, tolerance);
     counts_.iterations.push_back(result.iterations);
     counts_.solve_seconds += Teuchos::Time::wallTime() - start;
-    if (!result.converged)
-      result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(left * impl_->manager->achievedTol()) +
-                      " after " + std::to_string(result.iterations) + " iterations";
-    if (!std::isfinite(x.norm2())) {
+    if (!result.broken && !std::isfinite(x.norm2())) {
       result.converged = false;
       result.broken = true;
       result.reason = describe_not_finite("the solution of linear solve " + std::to_string(counts_.iterations.size()),
@@ -533,9 +579,8 @@ LinearSolver::Result LinearSolver::try_to_solve(const Vector &b, Vector &x, cons
     throw;
   } catch (const std::bad_alloc &) { // on this rank alone
     throw;
-  } catch (
-      const std::exception &failure) { // a breakdown, such as an indefinite or singular matrix; the same on all ranks
-    counts_.iterations.push_back(0);   // how many there were is not to be had
+  } catch (const std::exception &failure) { // of a set-up, such as a singular matrix; the same on all ranks
+    counts_.iterations.push_back(0);
     result.broken = true;
     result.reason = "the linear solver broke down: " + one_line(failure.what());
   }

@@ -83,6 +83,9 @@ private:
   void set_up_if_worn(double tolerance);
   bool strengthen();
   void judge_preconditioner(int iterations, double residual);
+  double energy_error(const Vector &b, const Vector &residual);
+  Result iterate(const Vector &b, Vector &x, double tolerance);
+  Result iterate_to_the_end(const Vector &b, Vector &x, double tolerance);
   Result try_to_solve(const Vector &b, Vector &x, double tolerance);
   Result solve_by_meshes(const Vector &b, Vector &x, double tolerance);
   Result solve_algebraically(const Vector &b, Vector &x, double tolerance);
