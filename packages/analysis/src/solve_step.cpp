@@ -29,7 +29,8 @@ constexpr std::size_t least_nodes_predicted = 500;
 // lead to is a start in any case.
 constexpr int most_steps_predicting = 40;
 
-constexpr int most_changes = 10; // of the active set; then Newton with its sweep needs fewer steps
+constexpr int most_changes = 10;         // of the active set; then Newton with its sweep needs fewer steps
+constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
 // While the active set changes, solves bring the residual below this part of what it was, and of the load: three to five CG
 // iterations. With 1e-1 pressures are too rough to choose by, 1e-4 saves no step. What the multipliers of the last rough
 // solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
@@ -302,8 +303,25 @@ Minimization minimize(const Iterate &iterate, const StepOptions &options, const 
 ActiveSetStage::ActiveSetStage(SmoothedFunctional &functional, const ActiveSetTolerances &tolerances)
     : functional_(functional), scale_(functional.force_scale()), target_(tolerances.residual * scale_),
       pressure_tolerance_(tolerances.pressure), start_(functional.hessian()->getDomainMap()),
-      rough_(functional.contact().num_total > functional.contact().num_fixed) // else there is no state to choose
+      rough_(functional.contact().num_total > functional.contact().num_fixed), // else there is no state to choose
+      most_changes_(most_changes)
 {
+}
+
+bool ActiveSetStage::resume(const NewtonGroup &from)
+{
+  if (std::exchange(resumed_, true)) return false;
+  const Vector &u = solver::tpetra(from.getX());
+  functional_.update_hessian(u); // the states there
+  start_.assign(u);
+  seen_.clear();
+  choice_.reset();
+  norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
+  changes_ = updates_ = 0;
+  most_changes_ = most_changes_resumed;
+  rough_ = false; // a small residual may be all of the bending
+  decided_ = false;
+  return true;
 }
 
 /// What becomes of the iteration at a point, after the step that led there.
@@ -322,7 +340,7 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     if (confirmed_) return Verdict::converged;
     if (stalled) return Verdict::over;
     rough_ = false;
-  } else if (!seen_.insert(choice_->fingerprint).second || ++changes_ > most_changes) {
+  } else if (!seen_.insert(choice_->fingerprint).second || ++changes_ > most_changes_) {
     return Verdict::over; // in circles, or too slow
   } else if (steps_ == 1) {
     rough_ = true; // it touches after all

@@ -4,14 +4,6 @@
 
 namespace rpc::solver
 {
-namespace
-{
-
-/// A step length below this has ended at a kink.
-constexpr double cut_short = 0.02;
-
-} // namespace
-
 bool SweepDirection::compute(NOX::Abstract::Vector &direction, NOX::Abstract::Group &group,
                              const NOX::Solver::Generic &)
 {

@@ -30,6 +30,8 @@ public:
 
   Verdict judge(const solver::NewtonGroup &at) override;
   Step propose(solver::NewtonGroup &group, Vector &direction) override;
+  /// Once, for more changes than before, with good solves. doc/theory.md (5.9a)
+  bool resume(const solver::NewtonGroup &from) override;
 
   bool confirmed() const { return confirmed_; } ///< the active set is the solution's
   int steps() const { return steps_; }
@@ -44,7 +46,9 @@ private:
   std::optional<contact::ActiveSetChoice> choice_; // at the present point
   Vector start_;                                   // to go back to
   bool rough_;                                     // solves are, while the active set changes
+  int most_changes_;                               // of the active set
   bool confirmed_ = false, decided_ = false;
+  bool resumed_ = false;
   double norm_ = std::numeric_limits<double>::infinity(),
          before_ = norm_,      // |F|_2 for the active set, after and before the step
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set

@@ -16,10 +16,12 @@ class FirstStage;
 struct NewtonContext {
   ConvexFunctional &functional;
   LinearSolver &linear_solver;
-  double target_residual = 0;  ///< |F|_2 at which Newton stops; no linear solve need be better than this
-  FirstStage *stage = nullptr; ///< proposes the steps, as long as it is there; then Newton's directions do
+  double target_residual = 0;    ///< |F|_2 at which Newton stops; no linear solve need be better than this
+  FirstStage *stage = nullptr;   ///< proposes the steps, as long as it is there; then Newton's directions do
+  FirstStage *resting = nullptr; ///< the stage, once it is over
 
-  int steps = 0; ///< that took a linear solve
+  int steps = 0;       ///< that took a linear solve
+  int short_steps = 0; ///< of Newton's, since the stage was over
 
   // Last step
   double direction_norm = 0; ///< |d|_2 of the full step
