@@ -12,13 +12,13 @@ from rpc_run import BEAM, SMALL, SOURCE, RpcTestCase, errors, files, run_all
 
 YAML = SOURCE / "test" / "regression" / "decks" / "beam.yaml"
 OPTIONS = ["--input", "--output", "--set", "--check", "--print-parameters", "--version", "--help", "--kokkos-"]
-SUBLISTS = ["Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact", "Nested Iteration", "Adapt", "Uzawa", "NOX", "Linear Solver",
+SUBLISTS = ["Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact", "Steps", "Nested Iteration", "Adapt", "Uzawa", "NOX", "Linear Solver",
             "Linear Solver->Belos", "Linear Solver->MueLu", "Output"]
 
 NUMBER, INTEGERS, NUMBERS = (int, float), [int], [(int, float)]
 SUMMARY = {"converged": bool, "reason": str, "dofs": int, "contact_nodes": int, "ranks": int, "energy_J": NUMBER,
            "strain_energy": NUMBER, "energy_norm_squared": NUMBER, "contact_force": NUMBERS, "max_pressure": NUMBER, "max_penetration": NUMBER,
-           "contact_length": NUMBER, "yielded_length": NUMBER, "kkt_residual": NUMBER, "uzawa_iterations": int,
+           "contact_length": NUMBER, "yielded_length": NUMBER, "max_dent": NUMBER, "dent_volume": NUMBER, "time": NUMBER, "kkt_residual": NUMBER, "uzawa_iterations": int,
            "newton_iterations": INTEGERS, "linear_solves": int, "linear_iterations": INTEGERS,
            "preconditioner_setups": int, "local_corrections": int, "matrix_assemblies": int,
            "skipped": list, "levels": list, "seconds": dict}
@@ -162,7 +162,7 @@ class Results(RpcTestCase):
     def test_table_is_sorted_and_agrees_with_the_summary(self):
         summary = self.solve()
         text = (self.folder / "out" / "beam.contact.csv").read_text()
-        self.assertEqual(text.splitlines()[0], "x,y,s,u_nu,gap,pressure,state,side")
+        self.assertEqual(text.splitlines()[0], "x,y,s,u_nu,gap,pressure,state,side,dent")
         rows = [{k: v if k in ("state", "side") else float(v) for k, v in row.items()} for row in csv.DictReader(text.splitlines())]
         self.assertEqual(len(rows), summary["contact_nodes"])
         self.assertEqual([row["s"] for row in rows], sorted(row["s"] for row in rows))
@@ -171,7 +171,9 @@ class Results(RpcTestCase):
             self.assertEqual(row["y"], 0)
             self.assertTrue(0 <= row["pressure"] <= 16)
             self.assertEqual(row["state"], "yielding" if row["pressure"] == 16 else "closed" if row["pressure"] > 0 else "open")
+            self.assertAlmostEqual(row["dent"], row["u_nu"] - row["gap"] if row["pressure"] == 16 else 0, delta=1e-15)
         self.assertEqual(max(row["pressure"] for row in rows), summary["max_pressure"])
+        self.assertEqual(max(row["dent"] for row in rows), summary["max_dent"])
         self.assertAlmostEqual(max(row["u_nu"] - row["gap"] for row in rows), summary["max_penetration"], delta=1e-12)
         weights = [0.25 if 0 < row["x"] < 5 else 0.125 for row in rows]
         self.assertAlmostEqual(sum(w for w, row in zip(weights, rows) if row["state"] == "yielding"),
@@ -243,6 +245,61 @@ class Results(RpcTestCase):
         self.assertFalse(summary["converged"])
         self.assertRegex(summary["reason"], r"not finite appeared first in the forces on the nodes.* of the node at \([\d.]+, [\d.]+\)")
         self.assertIsNone(summary["energy_J"])
+
+
+class LoadSteps(RpcTestCase):
+    """input/indent.xml: pressed, lifted, pressed again deeper."""
+
+    LAWS = {"plastic": [], "hardening": ["--set=Contact->Hardening=200"], "springs": ["--set=Contact->Stiffness=1000"],
+            "reversible": ["--set=Contact->Remembers=false"]}
+
+    def indent(self):
+        """{law: (rows of the history by their time, summary)}"""
+        results = run_all([(["--input=indent.xml", "--set=Mesh->Size Factor=8", f"--output={law}", *arguments], self.folder)
+                           for law, arguments in self.LAWS.items()])
+        found = {}
+        for law, result in zip(self.LAWS, results):
+            self.assertEqual((result.returncode, errors(result)), (0, []), result.stdout)
+            self.assertEqual(files(self.folder / law), [f"indent.{end}" for end in ("contact.csv", "e", "history.csv", "json")])
+            rows = csv.DictReader((self.folder / law / "indent.history.csv").read_text().splitlines())
+            rows = [{name: float(value) for name, value in row.items()} for row in rows]
+            summary = json.loads((self.folder / law / "indent.json").read_text())
+            self.expect_agreement(rows, summary)
+            found[law] = {row["time"]: row for row in rows}
+        return found
+
+    def expect_agreement(self, rows, summary):
+        self.assertEqual([row["time"] for row in rows], [step["time"] for step in summary["steps"]])
+        self.assertEqual(summary["time"], 3)
+        for row, step in zip(rows, summary["steps"]):
+            self.assertTrue(step["converged"])
+            self.assertEqual(row["contact_force_y"], step["contact_force"][1])
+            for name in ("work", "strain_energy", "foundation_energy", "dissipated_energy", "max_dent", "dent_volume", "max_pressure"):
+                self.assertEqual(row[name], step[name])
+            self.assertAlmostEqual(row["top_reaction_y"], -row["contact_force_y"], delta=1e-6)
+        for name in ("contact_force", "max_dent", "contact_length", "strain_energy"):
+            self.assertEqual(summary[name], summary["steps"][-1][name])
+
+    def test_the_foundation_remembers_unless_it_is_told_not_to(self):
+        for law, steps in self.indent().items():
+            with self.subTest(law):
+                force = {t: step["contact_force_y"] for t, step in steps.items()}
+                dent = [step["max_dent"] for t, step in steps.items() if 1 <= t <= 2.5]
+                for lifted, again in [(1.75, 2.125), (1.625, 2.1875), (1.5, 2.25), (1.25, 2.375), (1, 2.5)]:  # in the same place
+                    self.assertAlmostEqual(force[lifted], force[again], delta=1e-7)
+                if law == "reversible":
+                    self.assertAlmostEqual(force[1.625], force[0.625], delta=1e-7)
+                    self.assertLess(min(dent), 0.7 * max(dent))
+                    continue
+                self.assertLess(force[1.625], 0.5 * force[0.625])
+                self.assertEqual(force[2], 0)
+                self.assertAlmostEqual(steps[2]["strain_energy"], 0, delta=1e-12)
+                self.assertAlmostEqual(min(dent), max(dent), delta=1e-9)
+                self.assertGreater(min(dent), 0.04)
+                self.assertGreater(steps[3]["max_dent"], 1.5 * max(dent))
+                last = steps[3]
+                elastic = last["strain_energy"] + last["foundation_energy"]
+                self.assertAlmostEqual(last["work"], elastic + last["dissipated_energy"], delta=0.03 * last["work"])
 
 
 class AdaptiveRuns(RpcTestCase):
