@@ -6,12 +6,14 @@ import re
 import sys
 
 import figure
+import history
 import surface
 from result import PictureError, Result
 from scene import Scene
 
-EPILOG = """contact_pressure, gap, penetration and contact_status are drawn on the contact side, in the plane as a diagram inside the
-foundation; the rest of the body has its von Mises stress. Default: contact_pressure if there is contact, else von_mises."""
+EPILOG = """contact_pressure, gap, dent, penetration and contact_status are drawn on the contact side, in the plane as a diagram inside
+the foundation; the rest of the body has its von Mises stress. Default: contact_pressure if there is contact, else von_mises.
+RESULT.history.csv, of load steps, gives force against displacement and the energies; several of them, each as LABEL=FILE, are compared."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -63,7 +65,7 @@ def options(arguments):
     """The command line, checked as far as that goes without the result."""
     parser = Parser(prog="bash doc/picture.sh", description="Makes a PNG of a result of rpc, in the plane or in space.",
                     epilog=EPILOG, allow_abbrev=False)
-    parser.add_argument("result", metavar="RESULT.e", help="Exodus file of rpc")
+    parser.add_argument("results", metavar="RESULT.e", nargs="+", help="Exodus file of rpc, or RESULT.history.csv, one or several")
     parser.add_argument("--output", metavar="FILE.png", help="default: RESULT.png beside RESULT.e")
     parser.add_argument("--field", metavar="NAME", help="a field of the file")
     parser.add_argument("--scale", metavar="FACTOR",
@@ -76,10 +78,27 @@ def options(arguments):
     found.time = parsed(number, "time", found.time, "a number")
     found.cut = parsed(plane, "cut", found.cut, "an axis and a number [m], such as x=0")
     found.view = parsed(vector, "view", found.view, "three numbers that are not all 0, such as 1,-1,0.5")
-    found.output = found.output or os.path.splitext(found.result)[0] + ".png"
+    found.histories = histories(found)
+    found.result = found.results[0]
+    found.output = found.output or os.path.splitext(found.histories[0][1] if found.histories else found.result)[0] + ".png"
     if not found.output.endswith(".png"):
         raise PictureError(f'--output must end in .png, got "{found.output}"')
     return found
+
+
+def histories(found):
+    """[(label, path)] of tables of load steps; empty if the result is an Exodus file."""
+    tables = [text for text in found.results if text.endswith(history.SUFFIX)]
+    if not tables and len(found.results) == 1:
+        return []
+    if len(tables) < len(found.results):
+        raise PictureError(f"several results must all end in {history.SUFFIX}; see --help")
+    if len(tables) > len(history.COLOURS):
+        raise PictureError(f"at most {len(history.COLOURS)} load histories go into one picture, got {len(tables)}")
+    for name in ("field", "scale", "time", "cut", "view"):
+        if getattr(found, name) is not None:
+            raise PictureError(f"--{name} does not go with {history.SUFFIX}")
+    return [("", text) if "=" not in text or os.path.isfile(text) else tuple(text.rsplit("=", 1)) for text in tables]
 
 
 def cut_of(result, found):
@@ -97,14 +116,19 @@ def cut_of(result, found):
     return surface.Cut(axis, value, 1 if below else -1)  # the side away from the foundation, if it is one of the two
 
 
+def picture_of(found):
+    """Of a body, as the bytes of a PNG."""
+    result = Result(found.result, found.time)
+    if result.dim == 2 and (found.cut or found.view):
+        raise PictureError("--cut and --view are for bodies in space")
+    return figure.draw(Scene(result, found.field, found.scale, cut_of(result, found)), found.view)
+
+
 def main(arguments):
     """Exit code; 2: something of the command line or the result does not fit."""
     try:
         found = options(arguments)
-        result = Result(found.result, found.time)
-        if result.dim == 2 and (found.cut or found.view):
-            raise PictureError("--cut and --view are for bodies in space")
-        figure.write(found.output, figure.draw(Scene(result, found.field, found.scale, cut_of(result, found)), found.view))
+        figure.write(found.output, history.draw(found.histories) if found.histories else picture_of(found))
     except PictureError as error:
         print(f"picture: error: {error}", file=sys.stderr)
         return 2

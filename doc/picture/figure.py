@@ -26,7 +26,7 @@ def label(name):
     """What a colour bar says of a field."""
     axes = name.rsplit("_", 1)[-1]
     known = {
-        "contact_pressure": "contact pressure [Pa]", "von_mises": "von Mises stress [Pa]", "gap": "gap [m]",
+        "contact_pressure": "contact pressure [Pa]", "von_mises": "von Mises stress [Pa]", "gap": "gap [m]", "dent": "dent [m]",
         "penetration": "penetration [m]", "contact_status": "contact status",
     }
     if name in known:
@@ -44,7 +44,7 @@ def coloring(name, values, contact):
     if name == "contact_status":
         return colors.BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3), colors.ListedColormap(["#d9d9d9", "#4292c6", "#cb181d"])
     low, high = (values.min(), values.max()) if len(values) else (0.0, 1.0)
-    if name in ("contact_pressure", "von_mises", "penetration"):
+    if name in ("contact_pressure", "von_mises", "dent", "penetration"):
         low, high = 0.0, max(high, 0.0)
     if high - low <= 1e-12 * max(abs(low), abs(high)):
         high = low + (abs(low) or 1.0)

@@ -58,7 +58,7 @@ class Result:
                      for n, name in enumerate(names(file, "name_elem_var"), 1)}
         wanted = self.vector_names("disp_")
         if "contact_status" in self.nodal:
-            wanted += ["gap", "penetration", *self.vector_names("contact_normal_")]
+            wanted += ["gap", "dent", "penetration", *self.vector_names("contact_normal_")]
         missing = [name for name in wanted if name not in self.nodal]
         if missing:
             raise PictureError(f'"{path}" has no field {missing[0]}; remedy: run this version of rpc again')

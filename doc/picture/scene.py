@@ -7,7 +7,7 @@ import surface
 from result import PictureError
 from surface import PLACE
 
-CONTACT_FIELDS = ("contact_pressure", "gap", "penetration", "contact_status")
+CONTACT_FIELDS = ("contact_pressure", "gap", "dent", "penetration", "contact_status")
 THICKNESS = 0.08  # of the foundation as it is drawn, of the body's size
 DIAGRAM = 0.85  # height of the largest value in the plane, of that thickness
 BEHIND = -1e-3  # z of the foundation in the plane, of the body's size
@@ -66,9 +66,9 @@ class Scene:
         top, normals = self._foundation()
         self.normal = normals[edges].mean(axis=(0, 1))
         top[:, 2] = BEHIND * self.result.size()
-        dent = self.scale * np.maximum(self.result.nodal["penetration"], 0)
+        sunk = self.scale * self._sunk()
         depth = THICKNESS * self.result.size()
-        self._add_layer("foundation", [surface.band(edges, top, normals, depth + dent.max() - dent, np.zeros(len(top)))])
+        self._add_layer("foundation", [surface.band(edges, top, normals, depth + sunk.max() - sunk, np.zeros(len(top)))])
         self._add_lines("foundation", edges, top, 0.9)
         if self.contact_field:
             values = self.result.nodal[self.contact_field]
@@ -114,8 +114,12 @@ class Scene:
         """Where the foundation's surface is drawn, (nodes, 3), and its normals; of use at contact nodes."""
         result = self.result
         normals = result.vector("contact_normal_")
-        gap = max(self.scale, 1) * result.nodal["gap"] + self.scale * np.maximum(result.nodal["penetration"], 0)
+        gap = max(self.scale, 1) * result.nodal["gap"] + self.scale * self._sunk()
         return result.positions + gap[:, None] * normals, normals
+
+    def _sunk(self):
+        """(nodes,) how far the foundation's surface lies below the one that it had at first: pressed in, or dented [m]."""
+        return np.maximum(np.maximum(self.result.nodal["penetration"], self.result.nodal["dent"]), 0)
 
     def _values(self, name):
         return self.result.nodal[name] if name in self.result.nodal else self.result.cell[name]

@@ -22,6 +22,7 @@ import command_line
 import elements
 import exodus_file
 import figure
+import history
 import raster
 import surface
 from result import Result
@@ -69,11 +70,20 @@ def box_file(path, element, n=2, shape=bent, **options):
         lowest[cells[:, :4]] = False
     fields = {f"disp_{axis}": 0.01 * positions[:, d] for d, axis in enumerate("xyz"[:dim])}
     fields |= {"von_mises": positions[:, 0], "contact_pressure": np.where(lowest, 2 + positions[:, 0], 0),
-               "gap": np.zeros(len(positions)), "penetration": np.zeros(len(positions)),
+               "gap": np.zeros(len(positions)), "dent": np.zeros(len(positions)), "penetration": np.zeros(len(positions)),
                "contact_status": np.where(lowest, 1.0, -1.0)}
     fields |= {f"contact_normal_{axis}": np.where(lowest & (d == dim - 1), -1.0, 0.0) for d, axis in enumerate("xyz"[:dim])}
     exodus_file.write(path, element, positions, cells, fields, **options)
     return positions, cells
+
+
+def history_file(path, top=(0.0, -0.1, -0.05), **more):
+    """Three load steps of which the second presses most."""
+    columns = {"time": (1, 2, 3), "strain_energy": (0, 1, 0.2), "foundation_energy": (0, 0, 0), "dissipated_energy": (0, 2, 2),
+               "work": (0, 3, 2.2), "contact_length": (0, 1, 1), "contact_force_x": (0, 1, 0), "contact_force_y": (0, 9, 4),
+               "left_displacement_y": (0, 0, 0), "top_displacement_x": (0, 5, 0), "top_displacement_y": top, **more}
+    rows = [columns, *zip(*columns.values())]
+    path.write_text("".join(",".join(str(entry) for entry in row) + "\n" for row in rows))
 
 
 def areas(triangles):
@@ -268,6 +278,27 @@ class Pictures(RpcTestCase):
         box_file(self.folder / "box.e", "TETRA10", times=(0.5, 1.0))
         self.expect_picture("box.png", "box.e", "--time=0.5", "--field=contact_status", "--view=1,2,0.5", "--cut=y=0.5")
 
+    def test_load_steps(self):
+        history_file(self.folder / "a.history.csv")
+        history_file(self.folder / "b.history.csv", top=(0, 0, 0))
+        self.expect_picture("a.history.png", "a.history.csv")
+        for name, tables in (("both.png", ["H = 2=a.history.csv", "b.history.csv"]), ("b.png", ["b.history.csv"])):
+            self.assertEqual(self.picture(*tables, f"--output={name}"), (0, f"wrote {name}\n", ""))
+            self.assertEqual(matplotlib.image.imread(self.folder / name).ndim, 3)
+
+    def test_refusals_of_load_steps(self):
+        history_file(self.folder / "a.history.csv")
+        (self.folder / "old.history.csv").write_text("time,work\n1,0\n")
+        (self.folder / "empty.history.csv").write_text("time,work\n")
+        (self.folder / "text.history.csv").write_text("time,work\nsoon,much\n")
+        self.expect_refusal_of(["none.history.csv"], '"none.history.csv": no such file', "Steps->Times")
+        self.expect_refusal_of(["old.history.csv"], "no column contact_force_x", "run this version of rpc again")
+        for name in ("empty.history.csv", "text.history.csv"):
+            self.expect_refusal_of([name], f'"{name}" is no table of numbers')
+        self.expect_refusal_of(["a.history.csv", "box.e"], "must all end in .history.csv")
+        self.expect_refusal_of(["a.history.csv"] * 7, "at most 6", "got 7")
+        self.expect_refusal_of(["a.history.csv", "--field=gap"], "--field does not go with .history.csv")
+
     def test_exit_code_of_the_process(self):
         command = [sys.executable, "-B", SOURCE / "doc" / "picture" / "command_line.py", "none.e"]
         self.assertEqual(subprocess.run(command, cwd=self.folder, capture_output=True, check=False).returncode, 2)
@@ -278,7 +309,7 @@ class Pictures(RpcTestCase):
         box_file(self.folder / "other.e", "TRI3", n=1, program="paraview")
         positions, cells = exodus_file.box("TRI3", 1)
         exodus_file.write(self.folder / "old.e", "TRI3", positions, cells,
-                          {name: 0 * positions[:, 0] for name in ("disp_x", "disp_y", "gap", "penetration", "contact_status")})
+                          {name: 0 * positions[:, 0] for name in ("disp_x", "disp_y", "gap", "dent", "penetration", "contact_status")})
         (self.folder / "text.e").write_text("no mesh")
         (self.folder / "short.e").write_bytes((self.folder / "box.e").read_bytes()[:700])
         self.expect_refusal_of([], "RESULT.e", "--help")
@@ -306,7 +337,7 @@ class Choices(RpcTestCase):
     def result(self, displacement, gap):
         positions, cells = exodus_file.box("QUAD4", 2)
         zero = 0 * positions[:, 0]
-        fields = {"disp_x": zero, "disp_y": zero + displacement, "gap": zero + gap, "penetration": zero, "contact_status": zero,
+        fields = {"disp_x": zero, "disp_y": zero + displacement, "gap": zero + gap, "dent": zero, "penetration": zero, "contact_status": zero,
                   "contact_normal_x": zero, "contact_normal_y": zero - 1}
         exodus_file.write(self.folder / "box.e", "QUAD4", positions, cells, fields)
         return Result(str(self.folder / "box.e"))
@@ -316,6 +347,27 @@ class Choices(RpcTestCase):
                                          (1e-3, 0.02, 1)):
             with self.subTest((displacement, gap)):
                 self.assertAlmostEqual(automatic_scale(self.result(displacement, gap)) / scale, 1, delta=1e-9)
+
+    def test_force_is_drawn_over_the_displacement_along_it(self):
+        def history_of(**columns):
+            history_file(self.folder / "a.history.csv", **columns)
+            return history.History(str(self.folder / "a.history.csv"))
+
+        downwards, upwards = history_of(), history_of(top=(0, 0.1, 0.05), contact_force_y=(0, -9, -4))
+        self.assertEqual((downwards.axis, downwards.sign, downwards.moved()), ("y", 1, [0, 0.1, 0.05]))
+        self.assertEqual((upwards.axis, upwards.sign, upwards.moved()), ("y", -1, [0, 0.1, 0.05]))
+        self.assertIsNone(history_of(top=(0, 0, 0)).moved())
+
+    def test_dents_stay_where_nothing_touches(self):
+        box_file(self.folder / "box.e", "QUAD4")
+        result = Result(str(self.folder / "box.e"))
+        lowest = result.contact_nodes()
+        result.nodal["dent"] = np.where(lowest, 0.03, 0)
+        result.nodal["penetration"] = np.where(lowest, -0.01, 0)
+        for scale in (1, 5):
+            top, normals = Scene(result, scale=scale)._foundation()
+            depth = ((top - result.positions) * normals).sum(axis=1)[lowest]
+            self.assertLess(abs(depth - 0.03 * scale).max(), 1e-12)
 
     def test_view_turns_the_foundation_downwards_and_looks_into_the_cut(self):
         box_file(self.folder / "box.e", "HEX8")

@@ -1,0 +1,97 @@
+"""The load steps of one or several runs as a diagram: force against displacement, and the energies of a single run."""
+import csv
+import io
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+from result import PictureError  # noqa: E402
+
+DPI = 140
+SUFFIX = ".history.csv"
+STYLE = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3}
+COLOURS = ("#1b6ca8", "#d1495b", "#2e933c", "#8d6a9f", "#c77d0a", "0.3")
+ENERGIES = (("dissipated_energy", "dissipated", "#d1495b"), ("strain_energy", "elastic, in the body", "#1b6ca8"),
+            ("foundation_energy", "elastic, in the foundation", "#8fbfdc"))
+
+
+class History:
+    """The columns of a file, {name: [number of each step]}."""
+
+    def __init__(self, path):
+        try:
+            with open(path, newline="") as file:
+                rows = list(csv.DictReader(file))
+            self.columns = {name: [float(row[name]) for row in rows] for name in rows[0]}
+        except OSError:
+            raise PictureError(f'"{path}": no such file; rpc writes one for decks with Steps->Times') from None
+        except (ValueError, TypeError, KeyError, IndexError, csv.Error, UnicodeDecodeError):
+            raise PictureError(f'"{path}" is no table of numbers, or an empty one') from None
+        missing = [name for name in ("time", "work", "contact_force_x", *(name for name, _, _ in ENERGIES)) if name not in self.columns]
+        if missing:
+            raise PictureError(f'"{path}" has no column {missing[0]}; remedy: run this version of rpc again')
+        self.unit = "/m" if "contact_length" in self.columns else ""
+        self.axis = max((axis for axis in "xyz" if f"contact_force_{axis}" in self.columns),
+                        key=lambda axis: reach(self.columns[f"contact_force_{axis}"]))
+        self.force = self.columns[f"contact_force_{self.axis}"]
+        self.sign = 1 if sum(self.force) >= 0 else -1
+
+    def moved(self):
+        """The prescribed displacement along the force that changes most, positive towards the foundation; None if none does."""
+        found = [name for name in self.columns if name.endswith(f"_displacement_{self.axis}")]
+        most = max(found, key=lambda name: spread(self.columns[name]), default=None)
+        if most is None or spread(self.columns[most]) == 0:
+            return None
+        return [-self.sign * value for value in self.columns[most]]
+
+
+def reach(values):
+    """The largest size."""
+    return max(abs(value) for value in values)
+
+
+def spread(values):
+    """Largest less least value, 0 included: bodies start at rest."""
+    return max(*values, 0) - min(*values, 0)
+
+
+def draw(files):
+    """The diagram as the bytes of a PNG. @param files [(label, path)]; a label may be empty"""
+    histories = [(label, History(path)) for label, path in files]
+    alone = len(histories) == 1
+    with plt.rc_context(STYLE):
+        figure, panels = plt.subplots(1, 2 if alone else 1, figsize=(10 if alone else 7.5, 4), layout="constrained", squeeze=False)
+        add_forces(panels[0][0], histories)
+        if alone:
+            add_energies(panels[0][1], histories[0][1])
+        file = io.BytesIO()
+        figure.savefig(file, format="png", dpi=DPI)
+        plt.close(figure)
+    return file.getvalue()
+
+
+def add_forces(axes, histories):
+    """Force against displacement, or against t where no displacement is prescribed along it."""
+    by_time = any(history.moved() is None for _, history in histories)
+    for (label, history), colour in zip(histories, COLOURS):
+        along = history.columns["time"] if by_time else [0, *history.moved()]
+        force = [history.sign * value for value in history.force]
+        axes.plot(along, force if by_time else [0, *force], ".-", ms=5, lw=1.4, color=colour, label=label)
+    axes.set(xlabel="t" if by_time else "prescribed displacement [m]", ylabel=f"contact force [N{histories[0][1].unit}]", ylim=(0, None))
+    if any(label for label, _ in histories):
+        axes.legend(frameon=False)
+
+
+def add_energies(axes, history):
+    """What has become of the work, one energy upon the other."""
+    rest = [0.0] * (history.columns["time"][0] > 0)  # the body is at rest at t = 0
+    time = rest + history.columns["time"]
+    shown = [entry for entry in ENERGIES if reach(history.columns[entry[0]]) > 0]
+    if shown:
+        axes.stackplot(time, [rest + history.columns[name] for name, _, _ in shown], labels=[label for _, label, _ in shown],
+                       colors=[colour for _, _, colour in shown], alpha=0.75)
+    axes.plot(time, rest + history.columns["work"], "k--", lw=1.2, label="work")
+    axes.set(xlabel="t", ylabel=f"energy since the start [J{history.unit}]", xlim=(min(time), max(time) if len(time) > 1 else None))
+    axes.legend(frameon=False, loc="upper left")
