@@ -28,10 +28,18 @@ for xi in inf 100; do
 done
 "$rpc" --input="$root/input/block.xml" --output="$work" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 
+for law in "Yield Stress=20" Hardening=200 Stiffness=1000; do
+  "$rpc" --input="$root/input/indent.xml" --output="$work/${law%%[ =]*}" --set="Contact->$law" >"$work/log" ||
+    { cat "$work/log" >&2; exit 1; }
+done
+
 bash "$root/doc/picture.sh" "$work/16/beam.e" --output="$here/beam.png"
 bash "$root/doc/picture.sh" "$work/ball_inf/ball.e" --output="$here/ball.png"
 bash "$root/doc/picture.sh" "$work/block.e" --output="$here/block.png"
 /usr/bin/python3 "$here/ball_pressure.py" "$here/ball_pressure.png" "$work/ball_inf" "$work/ball_100"
 /usr/bin/python3 "$here/beam_contact.py" "$here/beam_contact.png" "${curves[@]}"
 /usr/bin/python3 "$here/adapted_meshes.py" "$here/adapted_meshes.png" "$work"/{beam,hertz}_adaptive{.e,.contact.csv}
+bash "$root/doc/picture.sh" --output="$here/indent_force.png" "perfectly plastic=$work/Yield/indent.history.csv" \
+  "hardening, H = 200 Pa/m=$work/Hardening/indent.history.csv" "on springs, k = 1000 Pa/m=$work/Stiffness/indent.history.csv"
+/usr/bin/python3 "$here/indent.py" "$here/indent.png" "$work"/{Yield,Hardening,Stiffness}/indent.e
 ls -l "$here"/*.png
