@@ -73,7 +73,9 @@ Energies energies_after(const Problem &problem, const StepSolution &s, const Mem
   Energies energies = before ? before->energies : Energies{};
   energies.strain = 0.5 * s.energy_norm_squared;
   energies.foundation = s.contact.total.foundation_energy;
-  energies.dissipated += s.contact.total.dissipated;
+  const auto &sides = problem.model().contact;
+  for (std::size_t k = 0; k < sides.size(); ++k) // what denting takes comes back where dents do not stay
+    (sides[k].remembers ? energies.dissipated : energies.foundation) += s.contact.sides[k].dissipated;
   Vector force = other_forces(problem, s), moved(*s.u, Teuchos::Copy);
   DeviceView<double *> pressure("rpc::analysis::no_pressure", points.size()), gap;
   if (before) {
