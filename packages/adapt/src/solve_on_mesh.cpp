@@ -143,7 +143,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   const auto coarser = coarser_meshes(task, options, comm);
   if (task.steps.times.empty()) {
     static_cast<analysis::StepSolution &>(s) =
-        analysis::solve_step(*problem, step, task.step, starts, coarser, listener.step);
+        analysis::solve_step(*problem, step, task.step, {starts, {}}, coarser, listener.step);
     s.matrix_assemblies = 1;
   } else {
     analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, coarser);

@@ -66,7 +66,10 @@ DeviceView<double *> gaps_at_rest(const contact::ContactNodes &contact)
 }
 
 /// The energies after a step that began at `before`, null for the first one. (11.3)
-Energies energies_after(const Problem &problem, const StepSolution &s, const Memory *const before)
+/// @param force_before  see other_forces(), at `before`; null: not known
+/// @param force         the same after the step
+Energies energies_after(const Problem &problem, const StepSolution &s, const Memory *const before,
+                        const Vector *const force_before, const Vector &force)
 {
   const contact::ContactNodes &points = s.functional->contact();
   const Comm &comm = problem.discretization().mesh->comm();
@@ -76,17 +79,18 @@ Energies energies_after(const Problem &problem, const StepSolution &s, const Mem
   const auto &sides = problem.model().contact;
   for (std::size_t k = 0; k < sides.size(); ++k) // what denting takes comes back where dents do not stay
     (sides[k].remembers ? energies.dissipated : energies.foundation) += s.contact.sides[k].dissipated;
-  Vector force = other_forces(problem, s), moved(*s.u, Teuchos::Copy);
+  Vector mean(force, Teuchos::Copy), moved(*s.u, Teuchos::Copy);
+  mean.scale(0.5);
   DeviceView<double *> pressure("rpc::analysis::no_pressure", points.size()), gap;
   if (before) {
-    force.update(1., other_forces(problem, points, *before), 1.);
+    mean.update(0.5, force_before ? *force_before : other_forces(problem, points, *before), 1.);
     moved.update(-1., *before->displacement, 1.);
     pressure = contact::at_points(points, *before->pressure);
     gap = contact::at_points(points, *before->gap);
   } else {
     gap = gaps_at_rest(points);
   }
-  energies.work += 0.5 * force.dot(moved) + work_of_motion(comm, points, s.contact, pressure, gap);
+  energies.work += mean.dot(moved) + work_of_motion(comm, points, s.contact, pressure, gap);
   return energies;
 }
 
@@ -216,10 +220,13 @@ void LoadHistory::go_on_from(Memory memory, std::optional<Memory> before)
 {
   memory_ = std::move(memory);
   before_ = std::move(before);
+  last_forces_ = Teuchos::null;
 }
 
 void LoadHistory::start_anew()
 {
+  on_coarser_mesh_.reset();
+  last_forces_ = Teuchos::null;
   problem_ = problem_->remade(memory_ ? memory_->time : last_.time);
   ++matrix_assemblies_;
 }
@@ -260,14 +267,18 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
   Step step = problem_->step(t, dents);
   if (!problem_->serves(step)) {
     problem_ = problem_->remade(t);
+    on_coarser_mesh_.reset();
     step = problem_->step(t, dents);
     ++matrix_assemblies_;
   }
   if (now) now(*problem_, step);
-  std::vector<contact::ContactState> starts = std::exchange(offered_, {});
-  if (memory_) starts.push_back(state_of(step.contact, *memory_->displacement, *memory_->pressure));
-  if (memory_ && before_) starts.push_back(extrapolated(step, *before_, *memory_));
-  if (memory_) starts.push_back(at_rest(step.contact, problem_->discretization()));
+  Starts starts{std::exchange(offered_, {}), {}};
+  if (memory_) {
+    starts.states.push_back(state_of(step.contact, *memory_->displacement, *memory_->pressure));
+    if (before_) starts.states.push_back(extrapolated(step, *before_, *memory_));
+    starts.states.push_back(at_rest(step.contact, problem_->discretization()));
+    starts.predicted = [&] { return predicted(step); };
+  }
   StepSolution s = solve_step(*problem_, step, options_, starts, coarser_, progress);
   ++last_.parts;
   add_work(s, last_);
@@ -276,22 +287,75 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
   const auto dent = remembered_dents(*problem_, step.contact, s.contact);
   const auto all = rcp(new MultiVector(*dent, Teuchos::Copy));
   if (dents) keep_dents_elsewhere(step.contact, *dents, *all);
+  const auto forces = rcp(new Vector(other_forces(*problem_, s)));
   before_ = std::exchange(memory_, std::nullopt);
   memory_ = Memory{t,
                    rcp(new Vector(*s.u, Teuchos::Copy)),
                    contact::node_columns(step.contact, s.contact.pressure, owned_nodes),
                    all,
                    contact::node_columns(step.contact, step.contact.gap, owned_nodes),
-                   energies_after(*problem_, s, before_ ? &*before_ : nullptr)};
+                   energies_after(*problem_, s, before_ ? &*before_ : nullptr, last_forces_.get(), *forces)};
+  last_forces_ = forces;
   return s;
+}
+
+/// A history on a coarser mesh, with the interpolations between the meshes.
+struct LoadHistory::Coarser {
+  LoadHistory history;
+  RCP<const CrsMatrix> to_coarse, to_fine;
+};
+
+std::optional<contact::ContactState> LoadHistory::predicted(const Step &step)
+{
+  const fem::Discretization &fine = problem_->discretization();
+  if (!coarser_ || !no_prediction(fine, step.contact, options_.prediction).empty()) return std::nullopt;
+  try {
+    if (!on_coarser_mesh_) {
+      const auto problem = coarser_(1);
+      if (!problem) return std::nullopt;
+      StepOptions rough = options_;
+      rough.newton.residual_tolerance = rough.uzawa.tolerance = options_.prediction.tolerance;
+      const auto coarser = [next = coarser_](const int level) { return next(level + 1); };
+      on_coarser_mesh_.reset(new Coarser{LoadHistory(problem, rough, 0, coarser),
+                                         fem::interpolation(fine, problem->discretization()),
+                                         fem::interpolation(problem->discretization(), fine)});
+    }
+    auto &[history, to_coarse, to_fine] = *on_coarser_mesh_;
+    if (!history.memory() || history.memory()->time != memory_->time) { // brings it to where this one is
+      const fem::Discretization &coarse = history.problem().discretization();
+      history.go_on_from(interpolated(*memory_, *to_coarse, coarse));
+      if (!history.solve(memory_->time, {}, {}).uzawa.converged) return std::nullopt;
+    }
+    const Memory before = *history.memory();
+    if (!history.solve(step.time, {}, {}).uzawa.converged) return std::nullopt;
+    Memory change = *history.memory();
+    const auto difference = [](const auto &now, const auto &then) {
+      const auto result = rcp(new std::decay_t<decltype(now)>(now, Teuchos::Copy));
+      result->update(-1., then, 1.);
+      return result;
+    };
+    const auto u = fem::interpolated(*to_fine, *difference(*change.displacement, *before.displacement), fine.dim(),
+                                     fine.owned_dofs);
+    u->update(1., *memory_->displacement, 1.);
+    MultiVector pressure(*memory_->pressure, Teuchos::Copy);
+    to_fine->apply(*difference(*change.pressure, *before.pressure), pressure, Teuchos::NO_TRANS, 1., 1.);
+    return state_of(step.contact, *u, pressure);
+  } catch (const Error &) { // an interrupt too: this mesh is where a run stops
+    on_coarser_mesh_.reset();
+    return std::nullopt;
+  }
 }
 
 Memory interpolated(const Memory &memory, const fem::Discretization &from, const fem::Discretization &to)
 {
-  const auto interpolation = fem::interpolation(from, to);
+  return interpolated(memory, *fem::interpolation(from, to), to);
+}
+
+Memory interpolated(const Memory &memory, const CrsMatrix &interpolation, const fem::Discretization &to)
+{
   const auto columns = [&](const MultiVector &values) {
-    const auto result = rcp(new MultiVector(interpolation->getRangeMap(), values.getNumVectors()));
-    if (values.getNumVectors() > 0) interpolation->apply(values, *result);
+    const auto result = rcp(new MultiVector(interpolation.getRangeMap(), values.getNumVectors()));
+    if (values.getNumVectors() > 0) interpolation.apply(values, *result);
     return result;
   };
   const auto not_below_zero = [](const RCP<MultiVector> &values) { // quadratic interpolants dip
@@ -306,7 +370,7 @@ Memory interpolated(const Memory &memory, const fem::Discretization &from, const
     return values;
   };
   Memory result = memory;
-  result.displacement = fem::interpolated(*interpolation, *memory.displacement, from.dim(), to.owned_dofs);
+  result.displacement = fem::interpolated(interpolation, *memory.displacement, to.dim(), to.owned_dofs);
   result.pressure = not_below_zero(columns(*memory.pressure));
   result.dent = not_below_zero(columns(*memory.dent));
   result.gap = columns(*memory.gap);

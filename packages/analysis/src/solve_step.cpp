@@ -39,6 +39,9 @@ constexpr int most_updates = 2;     // of multipliers at the end, even if pressu
 constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 
+// A start out of balance by less than this part of the load needs no coarser mesh: states hardly change from there.
+constexpr double near_equilibrium = 1e-7;
+
 constexpr double fast = 0.1; // an update that leaves more of the largest residual calls for a higher penalty
 
 /// A step of a problem with all that changes while it is solved.
@@ -73,28 +76,32 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepS
   return fem::reaction_forces(d, elastic.dirichlet, static_cast<int>(problem.model().dirichlet.size()), out_of_balance);
 }
 
-/// Starts from the state whose displacement and multipliers are nearest to equilibrium.
-void start_from_nearest(SmoothedFunctional &functional, const std::vector<contact::ContactState> &starts, Vector &u)
+/// Starts from the state whose displacement and multipliers are nearest to equilibrium, or from what is predicted where that is far.
+void start_from_nearest(SmoothedFunctional &functional, const Starts &starts, Vector &u)
 {
   const Vector rest(u, Teuchos::Copy);
   const auto take = [&](const contact::ContactState &state) {
     u.assign(rest);
     functional.start_from(state, u);
   };
+  const std::vector<contact::ContactState> &states = starts.states;
   std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), most = 0;
   Vector F(u.getMap());
-  for (std::size_t k = 0; k < starts.size() && starts.size() > 1; ++k) {
-    take(starts[k]);
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    take(states[k]);
     functional.elastic_gradient(u, F);
     F.update(1., functional.multiplier_forces(), 1.);
     fem::clear_prescribed(functional.problem().dirichlet, F);
     const double out_of_balance = F.norm2();
+    most = std::max(most, out_of_balance);
     if (!(out_of_balance < least)) continue;
     least = out_of_balance;
     nearest = k;
   }
-  if (starts.size() == 1 || nearest + 1 < starts.size()) take(starts[nearest]);
+  if (starts.predicted && least > near_equilibrium * std::max(functional.force_scale(), most))
+    if (const auto predicted = starts.predicted()) return take(*predicted);
+  if (nearest + 1 < states.size()) take(states[nearest]);
 }
 
 /// What the linear solver has done since.
@@ -114,7 +121,7 @@ solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before
 // The step ------------------------------------------------------------------------------------------------------------
 
 StepSolution solve_step(const Problem &problem, const Step &step, const StepOptions &options,
-                        const std::vector<contact::ContactState> &starts, const CoarserProblem &coarser,
+                        const Starts &starts, const CoarserProblem &coarser,
                         const Progress &progress)
 {
   StepSolution s;
@@ -126,7 +133,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, const StepOpti
   solver::check_nox_parameters(*s.functional, iterate.linear(), s.u, options.newton);
   {
     const Timed timer("prediction", s.prediction_seconds);
-    if (!starts.empty())
+    if (!starts.states.empty())
       start_from_nearest(*s.functional, starts, *s.u);
     else
       s.not_predicted = predict(iterate, step.time, options, coarser, 1, s.levels);
@@ -163,26 +170,24 @@ StepSolution solve_step(const Problem &problem, const Step &step, const StepOpti
 
 // Prediction: the solution on a coarser mesh, which a still coarser one predicts ------------------------------------------
 
-namespace
+std::string no_prediction(const fem::Discretization &d, const contact::ContactNodes &contact,
+                          const PredictionOptions &options)
 {
-
-/// Why no coarser mesh is to predict the solution on this one; empty if one is.
-std::string no_prediction(const Iterate &iterate, const PredictionOptions &options)
-{
-  const auto &contact = iterate.functional->contact();
   if (contact.num_total == contact.num_fixed) return "no node can touch";
   if (!options.enabled) return "switched off";
-  if (iterate.discretization().mesh->owned_nodes->getGlobalNumElements() < least_nodes_predicted)
-    return "the mesh is small";
+  if (d.mesh->owned_nodes->getGlobalNumElements() < least_nodes_predicted) return "the mesh is small";
   return "";
 }
+
+namespace
+{
 
 /// Starts an iterate from the solution on a coarser mesh. Nothing is lost where that fails.
 /// @return why it did; empty if it did not
 std::string predict(Iterate &iterate, const double t, const StepOptions &options, const CoarserProblem &coarser,
                     const int level, std::vector<LevelWork> &work)
 {
-  std::string reason = no_prediction(iterate, options.prediction);
+  std::string reason = no_prediction(iterate.discretization(), iterate.functional->contact(), options.prediction);
   if (!reason.empty()) return reason;
   try {
     const double start = Teuchos::Time::wallTime();

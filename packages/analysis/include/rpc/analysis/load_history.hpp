@@ -24,8 +24,9 @@ StepsOptions steps_options(const Teuchos::ParameterList &list);
 
 /// Energies since the first step began [J], in 2D per m. doc/theory.md (11.3)
 struct Energies {
-  double strain = 0;     ///< a(u, u)/2
-  double foundation = 0; ///< in the foundation's springs, sum of w c p^2/2
+  double strain = 0; ///< a(u, u)/2
+  double foundation =
+      0; ///< in the foundation's springs, sum of w c p^2/2; where dents do not stay all that denting took
   double dissipated = 0; ///< sum of w int (xi + H w) dw
   double work = 0; ///< of loads, prescribed displacements and the foundation's own motion, by the trapezoidal rule
 
@@ -63,7 +64,7 @@ struct StepRecord {
 class LoadHistory
 {
 public:
-  /// @param coarser  meshes that predict the first step
+  /// @param coarser  meshes that predict steps
   LoadHistory(std::shared_ptr<const Problem> problem, StepOptions options, int max_halvings,
               CoarserProblem coarser = {});
   /// The same, going on from what is remembered: dents of other meshes interpolated, for example.
@@ -88,6 +89,9 @@ public:
   int matrix_assemblies() const { return matrix_assemblies_; }
 
 private:
+  struct Coarser;
+  /// Where the same step leads on a coarser mesh; none where there is none or it fails.
+  std::optional<contact::ContactState> predicted(const Step &step);
   StepSolution solve(double t, const Progress &progress, const std::function<void(const Problem &, const Step &)> &now);
   StepSolution advance_in_parts(double t, int halvings, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
@@ -96,7 +100,10 @@ private:
   StepOptions options_;
   int max_halvings_;
   CoarserProblem coarser_;
-  std::optional<Memory> memory_, before_; // of the last step, and of the one before it
+  std::shared_ptr<Coarser> on_coarser_mesh_; // the same history; null until it is asked for
+  std::optional<Memory> memory_, before_;    // of the last step, and of the one before it
+  RCP<const Vector>
+      last_forces_; // on the body from all but the foundation, after the last step (owned dofs) [N]; null: not known
   std::vector<contact::ContactState> offered_;
   StepRecord last_;
   int matrix_assemblies_ = 1;
@@ -104,5 +111,7 @@ private:
 
 /// What is remembered, on another mesh of the same body: by interpolation; dents stay >= 0. Collective.
 Memory interpolated(const Memory &memory, const fem::Discretization &from, const fem::Discretization &to);
+/// @param interpolation  see fem::interpolation()
+Memory interpolated(const Memory &memory, const CrsMatrix &interpolation, const fem::Discretization &to);
 
 } // namespace rpc::analysis

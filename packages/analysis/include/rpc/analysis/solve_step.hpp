@@ -9,6 +9,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,10 @@ ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 /// The same scene on a coarser mesh; null where there is none.
 /// @param level  1 for the next coarser mesh, 2 for the one after it, ...
 using CoarserProblem = std::function<std::shared_ptr<const Problem>(int level)>;
+
+/// Why no coarser mesh is to predict the solution on this one; empty if one is.
+std::string no_prediction(const fem::Discretization &d, const contact::ContactNodes &contact,
+                          const PredictionOptions &options);
 
 /// What is told while a step is solved; empty functions tell nothing.
 struct Progress {
@@ -77,13 +82,20 @@ struct StepSolution {
   contact::ContactState state() const { return functional->current(*u); }
 };
 
+/// Where a step may start from.
+struct Starts {
+  /// Such as that of the step before or of another mesh: the nearest to equilibrium is taken.
+  std::vector<contact::ContactState> states;
+  /// Asked where that is far from equilibrium; empty, or returns none, where there is no better start. Collective.
+  std::function<std::optional<contact::ContactState>()> predicted;
+};
+
 /// The algorithm: predict, choose the active set, Newton with exact line search, Uzawa, optimality residuals. Collective.
-/// @param starts   states to start from, such as that of the step before or of another mesh: the one that is nearest to equilibrium
-///                 is taken; empty: coarser meshes predict one
+/// @param starts   without states coarser meshes predict one
 /// @param coarser  empty: there are no coarser meshes
 /// @throws rpc::Error (bad_input) where NOX refuses its options; failing to converge is in the result
 StepSolution solve_step(const Problem &problem, const Step &step, const StepOptions &options,
-                        const std::vector<contact::ContactState> &starts = {}, const CoarserProblem &coarser = {},
+                        const Starts &starts = {}, const CoarserProblem &coarser = {},
                         const Progress &progress = {});
 
 } // namespace rpc::analysis
