@@ -76,6 +76,29 @@ TEST(Problem, OfOneTimeGivesTheStepsOfAllOthers)
   }
 }
 
+TEST(Problem, OfASlenderBodyThatLiftsOffTakesFewSteps)
+{
+  // A strip on a roller, pressed near one end: the edges of its contact zone move by a node a step.
+  analysis::Model strip;
+  strip.materials = fem::Material{1000, -0.16};
+  const auto push = [](const Point &x) { return -0.15 * std::exp(-std::pow((x[0] - 12.3) / 1.73, 2)); };
+  strip.tractions.push_back({"top", "top", {ScalarField(0.), ScalarField("push", push), ScalarField(0.)}});
+  strip.dirichlet.push_back({"left", "left", {ScalarField(0.), std::nullopt, std::nullopt}});
+  contact::ContactOptions foundation;
+  foundation.side = "bottom";
+  foundation.yield_stress = ScalarField(2.77);
+  strip.contact.push_back(foundation);
+  const mesh::BoxOptions box{{0, 0}, {37.9, 1}, {54, 2}, {2, 1}};
+  const auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+  const Problem problem(mesh, strip, {}, 1);
+  const auto found = analysis::solve_step(problem, problem.step(1), {});
+  EXPECT_TRUE(found.uzawa.converged) << found.uzawa.reason;
+  EXPECT_GT(found.line_search_steps, 0) << "the rule settles: nothing is tested";
+  int steps = 0;
+  for (const int n : found.uzawa.newton_iterations) steps += n;
+  EXPECT_LE(steps, 40);
+}
+
 TEST(Problem, StepStartsFromTheStateOfTheOneBefore)
 {
   const auto mesh = block();

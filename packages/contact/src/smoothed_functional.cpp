@@ -1,5 +1,7 @@
 #include "rpc/contact/smoothed_functional.hpp"
 
+#include "rpc/core/parallel.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -317,6 +319,77 @@ std::uint64_t fingerprint_of(const Comm &comm, const ContactNodes &c, const Devi
 
 } // namespace
 
+namespace
+{
+
+/// What the contact points add to the gradient on a subspace, then to the rows of the curvature, one after the other.
+struct SubspaceSums {
+  using value_type = double[];
+  using size_type = LO;
+  const size_type value_count; // n + n n, for n directions
+  ContactNodes contact;
+  DeviceView<double *> v;
+  DeviceView<double **> dv;
+  DeviceView<double *> lambda, coefficient;
+
+  SubspaceSums(const ContactNodes &points, const DeviceView<double *> &at, const DeviceView<double **> &moves,
+               const DeviceView<double *> &multiplier, const DeviceView<double *> &a)
+      : value_count(static_cast<size_type>(a.extent(0) * (a.extent(0) + 1))), contact(points), v(at), dv(moves),
+        lambda(multiplier), coefficient(a)
+  {
+  }
+  KOKKOS_INLINE_FUNCTION void operator()(const LO i, double sum[]) const
+  {
+    const LO n = static_cast<LO>(coefficient.extent(0));
+    const double r = contact.penalty(i), xi = contact.yield(i), w = contact.weight(i);
+    double moved = v(i);
+    for (LO k = 0; k < n; ++k) moved += dv(i, k) * coefficient(k);
+    const double change = w * (pressure(moved, lambda(i), r, xi) - pressure(v(i), lambda(i), r, xi));
+    const double stiffness = state(moved, lambda(i), r, xi) == State::closed ? w * r : 0;
+    for (LO k = 0; k < n; ++k) {
+      sum[k] += change * dv(i, k);
+      for (LO l = 0; l < n; ++l) sum[n + n * k + l] += stiffness * dv(i, k) * dv(i, l);
+    }
+  }
+  KOKKOS_INLINE_FUNCTION void init(double sum[]) const
+  {
+    for (size_type k = 0; k < value_count; ++k) sum[k] = 0;
+  }
+  KOKKOS_INLINE_FUNCTION void join(double sum[], const double part[]) const
+  {
+    for (size_type k = 0; k < value_count; ++k) sum[k] += part[k];
+  }
+};
+
+} // namespace
+
+SubspaceModel::SubspaceModel(RCP<const Comm> comm, std::vector<double> at_0, std::vector<double> elastic,
+                             const ContactNodes &contact, DeviceView<double *> v, DeviceView<double **> dv,
+                             DeviceView<double *> lambda)
+    : comm_(std::move(comm)), at_0_(std::move(at_0)), elastic_(std::move(elastic)), contact_(contact), v_(std::move(v)),
+      dv_(std::move(dv)), lambda_(std::move(lambda))
+{
+}
+
+SubspaceModel::Value SubspaceModel::at(const std::vector<double> &a) const
+{
+  const std::size_t n = a.size();
+  HostView<double *> given("rpc::contact::coefficients", n);
+  std::copy(a.begin(), a.end(), given.data());
+  const SubspaceSums sums(contact_, v_, dv_, lambda_, to_device(given));
+  std::vector<double> mine(n * (n + 1));
+  Kokkos::parallel_reduce("rpc::contact::subspace_model", device_range(contact_.size()), sums, mine.data());
+  Kokkos::fence();
+  const auto all = summed(*comm_, mine);
+  Value value{at_0_, elastic_};
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t l = 0; l < n; ++l) value.gradient[k] += elastic_[n * k + l] * a[l];
+    value.gradient[k] += all[k];
+  }
+  for (std::size_t k = 0; k < n * n; ++k) value.curvature[k] += all[n + k];
+  return value;
+}
+
 LineModel::LineModel(RCP<const Comm> comm, const double slope_at_0, const double elastic_curvature,
                      const ContactNodes &contact, DeviceView<double *> v, DeviceView<double *> dv,
                      DeviceView<double *> lambda)
@@ -557,6 +630,32 @@ std::unique_ptr<LineFunction> SmoothedFunctional::along(const Vector &u, const V
       });
   Kokkos::fence();
   return std::make_unique<LineModel>(comm_, d.dot(F), d.dot(Kd), shifted_, v, dv, lambda_);
+}
+
+std::unique_ptr<SubspaceFunction>
+SmoothedFunctional::within(const Vector &u, const std::vector<RCP<const Vector>> &directions, const Vector &F) const
+{
+  const ContactNodes c = shifted_;
+  const std::size_t n = directions.size();
+  std::vector<double> at_0(n), elastic(n * n);
+  DeviceView<double *> v("rpc::contact::v", c.size());
+  DeviceView<double **> dv("rpc::contact::dv", c.size(), n);
+  const auto from = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::within", device_range(c.size()), KOKKOS_LAMBDA(const LO i) { v(i) = penetration(c, i, from); });
+  Vector Kd(u.getMap());
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vector &d = *directions[k];
+    hessian_->apply_base(d, Kd);
+    for (std::size_t l = 0; l <= k; ++l) elastic[n * k + l] = elastic[n * l + k] = Kd.dot(*directions[l]);
+    at_0[k] = d.dot(F);
+    const auto step = device_read(d);
+    Kokkos::parallel_for(
+        "rpc::contact::within", device_range(c.size()),
+        KOKKOS_LAMBDA(const LO i) { dv(i, k) = along_direction(c, i, step); });
+    Kokkos::fence();
+  }
+  return std::make_unique<SubspaceModel>(comm_, at_0, elastic, shifted_, v, dv, lambda_);
 }
 
 StateCounts SmoothedFunctional::count_states(const Vector &u) const

@@ -191,6 +191,46 @@ TEST(SmoothedFunctional, LineModelGivesTheSlopeOfTheFunctional)
   }
 }
 
+TEST(SmoothedFunctional, SubspaceModelGivesTheGradientOfTheFunctional)
+{
+  const Scene scene;
+  auto &functional = *scene.functional;
+  const auto u = scene.vector(0.05, 0.4);
+  const std::vector<RCP<const Vector>> directions{scene.vector(0.1, 2), scene.vector(0.3, 0.7), scene.vector(0.02, 5)};
+  const std::size_t n = directions.size();
+  Vector F(u->getMap());
+  functional.gradient(*u, F);
+  const auto model = functional.within(*u, directions, F);
+  const std::vector<double> cases[] = {{0, 0, 0}, {0.3, 0, 0}, {0.77, -0.4, 0.1}, {-0.6, 1.9, -2}};
+  for (const auto &a : cases) {
+    SCOPED_TRACE(a[0]);
+    const auto gradient = [&](const std::vector<double> &at) {
+      Vector there(*u, Teuchos::Copy), G(u->getMap());
+      for (std::size_t k = 0; k < n; ++k) there.update(at[k], *directions[k], 1.);
+      functional.gradient(there, G);
+      std::vector<double> values(n);
+      for (std::size_t k = 0; k < n; ++k) values[k] = G.dot(*directions[k]);
+      return values;
+    };
+    const auto value = model->at(a);
+    const auto expected = gradient(a);
+    const double size = *std::max_element(expected.begin(), expected.end(),
+                                          [](const double x, const double y) { return std::abs(x) < std::abs(y); });
+    for (std::size_t k = 0; k < n; ++k) {
+      EXPECT_NEAR(value.gradient[k], expected[k], 1e-11 * std::abs(size)) << k;
+      constexpr double h = 1e-6;
+      auto above = a, below = a;
+      above[k] += h;
+      below[k] -= h;
+      const auto up = gradient(above), down = gradient(below);
+      for (std::size_t l = 0; l < n; ++l)
+        EXPECT_NEAR(value.curvature[n * k + l], (up[l] - down[l]) / (2 * h),
+                    1e-6 * std::abs(value.curvature[n * k + k]) + 1e-6 * std::abs(value.curvature[n * l + l]))
+            << k << l;
+    }
+  }
+}
+
 TEST(SmoothedFunctional, PieceGradientIsTheGradientOnThePieceOfTheHessian)
 {
   const Scene scene;

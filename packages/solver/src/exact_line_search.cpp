@@ -3,17 +3,73 @@
 #include "rpc/solver/newton_group.hpp"
 
 #include <NOX_Solver_Generic.H>
+#include <Teuchos_LAPACK.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace rpc::solver
 {
+namespace
+{
+
+constexpr double rounding = 1e-12;      // of a slope, below which the sums' rounding decides
+constexpr double to_the_minimum = 1e-6; // a step that differs from 1 by less has met no kink: nothing is left to gain
+
+/// A line through a subspace.
+class LineWithin : public LineFunction
+{
+public:
+  LineWithin(const SubspaceFunction &function, const std::vector<double> &from, const std::vector<double> &direction)
+      : function_(function), from_(from), direction_(direction)
+  {
+  }
+  Value at(const double t) const override
+  {
+    const std::size_t n = from_.size();
+    std::vector<double> a(n);
+    for (std::size_t k = 0; k < n; ++k) a[k] = from_[k] + t * direction_[k];
+    const auto value = function_.at(a);
+    double slope = 0, curvature = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      slope += value.gradient[k] * direction_[k];
+      for (std::size_t l = 0; l < n; ++l) curvature += direction_[k] * value.curvature[n * k + l] * direction_[l];
+    }
+    return {slope, curvature};
+  }
+
+private:
+  const SubspaceFunction &function_;
+  const std::vector<double> &from_, &direction_;
+};
+
+/// -H^-1 g; empty where rounding leaves H indefinite. Directions may be as good as dependent: with the rounding of H on its
+/// diagonal, scaled to 1, the result still leads down.
+std::vector<double> newton_direction(const SubspaceFunction::Value &value)
+{
+  const std::size_t n = value.gradient.size();
+  std::vector<double> scale(n), H(n * n), d(n);
+  for (std::size_t k = 0; k < n; ++k) scale[k] = 1 / std::sqrt(value.curvature[n * k + k]);
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t l = 0; l < n; ++l) H[n * k + l] = scale[k] * value.curvature[n * k + l] * scale[l];
+    H[n * k + k] += rounding;
+    d[k] = -scale[k] * value.gradient[k];
+  }
+  const int size = static_cast<int>(n);
+  int info = 0;
+  Teuchos::LAPACK<int, double>().POSV('L', size, 1, H.data(), size, d.data(), size, &info);
+  if (info != 0) return {};
+  for (std::size_t k = 0; k < n; ++k) d[k] *= scale[k];
+  return d;
+}
+
+} // namespace
 
 double exact_step(const LineFunction &line)
 {
   const double start = line.at(0).slope;
   if (!(start < 0)) return 0;
-  const double zero = 1e-12 * -start; // below, the sums' rounding decides
+  const double zero = rounding * -start;
   double low = 0, high = std::numeric_limits<double>::infinity();
   double t = 1, previous_width = high;
   for (int trial = 0; trial < 200; ++trial) { // 53 halvings of any bracket, and its search by doubling
@@ -35,6 +91,23 @@ double exact_step(const LineFunction &line)
   return t;
 }
 
+std::vector<double> least_within(const SubspaceFunction &function, std::vector<double> a)
+{
+  constexpr int most_steps = 50; // what is left then the next step takes
+  double first = 0;
+  for (int step = 0; step < most_steps; ++step) {
+    const auto value = function.at(a);
+    const auto d = newton_direction(value);
+    double slope = 0;
+    for (std::size_t k = 0; k < d.size(); ++k) slope += value.gradient[k] * d[k];
+    if (step == 0) first = slope;
+    if (!(slope < rounding * first)) break;
+    const double t = exact_step(LineWithin(function, a, d));
+    for (std::size_t k = 0; k < a.size(); ++k) a[k] += t * d[k];
+  }
+  return a;
+}
+
 bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const NOX::Abstract::Vector &direction,
                               const NOX::Solver::Generic &solver)
 {
@@ -48,6 +121,20 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
   }
   context.step_length = step;
   group.computeX(from, direction, step);
+  if (most_earlier_ > 0 && !context.full_step && step > 0) {
+    auto directions = earlier_;
+    directions.push_back(rcp(new rpc::Vector(tpetra(direction), Teuchos::Copy)));
+    if (earlier_.size() == most_earlier_ && std::abs(step - 1) > to_the_minimum) {
+      std::vector<double> a(directions.size());
+      a.back() = step;
+      a = least_within(*context.functional.within(tpetra(from.getX()), directions, tpetra(from.getF())), std::move(a));
+      NoxVector moved(dynamic_cast<const NoxVector &>(from.getX()), NOX::DeepCopy);
+      for (std::size_t k = 0; k < a.size(); ++k) moved.data().update(a[k], *directions[k], 1.);
+      group.setX(moved);
+    }
+    if (directions.size() > most_earlier_) directions.erase(directions.begin());
+    earlier_ = std::move(directions);
+  }
   if (!(step > 0) && context.failure.empty())
     context.failure = "the functional does not fall along the Newton direction";
   return step > 0;
@@ -56,7 +143,7 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
 Teuchos::RCP<NOX::LineSearch::Generic> ExactLineSearchFactory::buildLineSearch(const Teuchos::RCP<NOX::GlobalData> &,
                                                                                Teuchos::ParameterList &) const
 {
-  return Teuchos::rcp(new ExactLineSearch);
+  return Teuchos::rcp(new ExactLineSearch(most_earlier_));
 }
 
 } // namespace rpc::solver

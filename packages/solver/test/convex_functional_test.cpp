@@ -1,5 +1,6 @@
 #include "rpc/core/convex_functional.hpp"
 
+#include "rpc/solver/exact_line_search.hpp"
 #include "rpc/solver/newton.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -114,8 +115,49 @@ public:
     return std::make_unique<AlongTheChain>(u.getMap()->getComm(), values_of(u), values_of(d), hardness_, F.dot(d),
                                            d.dot(Kd));
   }
+  std::unique_ptr<SubspaceFunction> within(const Vector &u, const std::vector<RCP<const Vector>> &directions,
+                                           const Vector &) const override
+  {
+    return std::make_unique<WithinTheChain>(*this, u, directions);
+  }
 
 private:
+  /// By gradients and products on the whole chain.
+  class WithinTheChain : public SubspaceFunction
+  {
+  public:
+    WithinTheChain(const Chain &chain, const Vector &u, std::vector<RCP<const Vector>> directions)
+        : chain_(chain), u_(u, Teuchos::Copy), directions_(std::move(directions))
+    {
+    }
+    Value at(const std::vector<double> &a) const override
+    {
+      const std::size_t n = a.size();
+      Vector x(u_, Teuchos::Copy), F(u_.getMap()), Hd(u_.getMap());
+      for (std::size_t k = 0; k < n; ++k) x.update(a[k], *directions_[k], 1.);
+      chain_.gradient(x, F);
+      const auto beyond = values_of(x);
+      Value value{std::vector<double>(n), std::vector<double>(n * n)};
+      for (std::size_t k = 0; k < n; ++k) {
+        value.gradient[k] = directions_[k]->dot(F);
+        chain_.hessian_->apply_base(*directions_[k], Hd);
+        const auto d = values_of(*directions_[k]);
+        {
+          const auto to = Hd.getLocalViewHost(Tpetra::Access::ReadWrite);
+          for (std::size_t i = 0; i < d.size(); ++i)
+            if (beyond[i] > wall) to(i, 0) += chain_.hardness_ * d[i];
+        }
+        for (std::size_t l = 0; l < n; ++l) value.curvature[n * k + l] = directions_[l]->dot(Hd);
+      }
+      return value;
+    }
+
+  private:
+    const Chain &chain_;
+    Vector u_;
+    std::vector<RCP<const Vector>> directions_;
+  };
+
   double hardness_;
   RCP<UpdatedOperator> hessian_;
 };
@@ -195,6 +237,35 @@ TEST(ConvexFunctional, SlopesAlongLinesAreThoseOfTheValue)
       previous = error;
     }
   }
+}
+
+TEST(ConvexFunctional, IsLeastWithinASubspaceWhereItsGradientVanishes)
+{
+  const Chain chain(60, 1e6);
+  const auto map = chain.hessian()->getDomainMap();
+  Vector u(map), F(map);
+  u.putScalar(1.9);
+  std::vector<RCP<const Vector>> directions;
+  for (int k = 0; k < 4; ++k) {
+    const auto d = rcp(new Vector(map));
+    for (LO i = 0; i < num_local(*map); ++i)
+      d->replaceLocalValue(i, std::sin(0.05 * (k + 1) * double(map->getGlobalElement(i) + 1)));
+    directions.push_back(d);
+  }
+  directions.push_back(directions[0]); // dependent
+  chain.gradient(u, F);
+  const auto function = chain.within(u, directions, F);
+  const std::vector<double> start{0.1, 0, 0.2, 0, 0};
+  const auto value_at = [&](const std::vector<double> &a) {
+    Vector there(u, Teuchos::Copy);
+    for (std::size_t k = 0; k < a.size(); ++k) there.update(a[k], *directions[k], 1.);
+    return chain.value(there);
+  };
+  const auto least = solver::least_within(*function, start);
+  EXPECT_LT(value_at(least), value_at(start));
+  double before = 0;
+  for (const double slope : function->at(start).gradient) before = std::max(before, std::abs(slope));
+  for (const double slope : function->at(least).gradient) EXPECT_LT(std::abs(slope), 1e-6 * before);
 }
 
 TEST(ConvexFunctional, IsMinimizedThoughItsSweepsLeadBackBeforeKinks)

@@ -52,6 +52,34 @@ private:
   DeviceView<double *> v_, dv_, lambda_;
 };
 
+/// The functional on u + sum_k a_k d_k: piecewise quadratic.                                             doc/theory.md (4.4a)
+///
+///     gradient_k(a) = gradient_k(0) + sum_l A_kl a_l + sum_i w_i dv_ik (Psi_i'(v_i + sum_l dv_il a_l) - Psi_i'(v_i))
+///
+/// with A_kl = d_k.K d_l, in the difference form of LineModel.
+class SubspaceModel : public SubspaceFunction
+{
+public:
+  /// @param at_0     (directions) gradient [J]
+  /// @param elastic  (directions x directions) A [J]
+  /// @param v        (points) [m]
+  /// @param dv       (points, directions) [m]
+  SubspaceModel(RCP<const Comm> comm, std::vector<double> at_0, std::vector<double> elastic,
+                const ContactNodes &contact, DeviceView<double *> v, DeviceView<double **> dv,
+                DeviceView<double *> lambda);
+
+  /// Gradient and curvature in [J].
+  Value at(const std::vector<double> &a) const override;
+
+private:
+  RCP<const Comm> comm_;
+  std::vector<double> at_0_, elastic_;
+  ContactNodes contact_;
+  DeviceView<double *> v_;
+  DeviceView<double **> dv_;
+  DeviceView<double *> lambda_;
+};
+
 /// What the generalized Newton iteration minimizes for given multipliers, its gradient and its generalized Hessian.
 ///
 ///     M(u) = u.Ku/2 - b.u + sum_i w_i Psi_i(v_i(u))                                                doc/theory.md (4.1)
@@ -118,6 +146,8 @@ public:
   void reset_multipliers();
   const RCP<UpdatedOperator> &hessian() const override { return hessian_; }
   std::unique_ptr<LineFunction> along(const Vector &u, const Vector &d, const Vector &F) const override;
+  std::unique_ptr<SubspaceFunction> within(const Vector &u, const std::vector<RCP<const Vector>> &directions,
+                                           const Vector &F) const override;
   StateCounts count_states(const Vector &u) const;
   /// By the number of nodes in each state.
   std::uint64_t piece(const Vector &u) const override;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace rpc
 {
@@ -21,6 +22,19 @@ public:
   virtual Value at(double t) const = 0;
 };
 
+/// A convex functional on u + sum_k a_k d_k, as far as its gradient in the coefficients a goes.
+class SubspaceFunction
+{
+public:
+  struct Value {
+    std::vector<double> gradient;  ///< (directions)
+    std::vector<double> curvature; ///< (directions x directions) of the piece that a lies on; symmetric, semidefinite
+  };
+  virtual ~SubspaceFunction() = default;
+  /// Collective. @param a  (directions) the same on all ranks
+  virtual Value at(const std::vector<double> &a) const = 0;
+};
+
 /// A convex functional with a Lipschitz continuous gradient and a generalized Hessian, which a generalized Newton iteration
 /// minimizes. All vectors are on the unknowns that this rank owns; all members are collective.
 class ConvexFunctional
@@ -35,6 +49,10 @@ public:
   virtual const RCP<UpdatedOperator> &hessian() const = 0;
   /// @param F  gradient at u
   virtual std::unique_ptr<LineFunction> along(const Vector &u, const Vector &d, const Vector &F) const = 0;
+
+  /// @param F  gradient at u
+  virtual std::unique_ptr<SubspaceFunction> within(const Vector &u, const std::vector<RCP<const Vector>> &directions,
+                                                   const Vector &F) const = 0;
 
   /// Lowers the value by a nonlinear smoother, where there is one: Newton's directions start from there.
   virtual void sweep(Vector &u) const { (void)u; }
