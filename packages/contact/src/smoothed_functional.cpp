@@ -317,11 +317,6 @@ std::uint64_t fingerprint_of(const Comm &comm, const ContactNodes &c, const Devi
   return static_cast<std::uint64_t>(all[0]) + (static_cast<std::uint64_t>(all[1]) << 32);
 }
 
-} // namespace
-
-namespace
-{
-
 /// What the contact points add to the gradient on a subspace, then to the rows of the curvature, one after the other.
 struct SubspaceSums {
   using value_type = double[];
@@ -341,11 +336,12 @@ struct SubspaceSums {
   KOKKOS_INLINE_FUNCTION void operator()(const LO i, double sum[]) const
   {
     const LO n = static_cast<LO>(coefficient.extent(0));
-    const double r = contact.penalty(i), xi = contact.yield(i), w = contact.weight(i);
+    const Foundation f = foundation(contact, i);
+    const double r = contact.penalty(i), w = contact.weight(i);
     double moved = v(i);
     for (LO k = 0; k < n; ++k) moved += dv(i, k) * coefficient(k);
-    const double change = w * (pressure(moved, lambda(i), r, xi) - pressure(v(i), lambda(i), r, xi));
-    const double stiffness = state(moved, lambda(i), r, xi) == State::closed ? w * r : 0;
+    const double change = w * (pressure(moved, lambda(i), r, f) - pressure(v(i), lambda(i), r, f));
+    const double stiffness = w * branch_stiffness(state(moved, lambda(i), r, f), r, f);
     for (LO k = 0; k < n; ++k) {
       sum[k] += change * dv(i, k);
       for (LO l = 0; l < n; ++l) sum[n + n * k + l] += stiffness * dv(i, k) * dv(i, l);
