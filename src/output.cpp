@@ -1,6 +1,7 @@
 #include "output.hpp"
 
 #include "rpc/core/on_root.hpp"
+#include "rpc/core/timed.hpp"
 #include "rpc/fem/stress.hpp"
 #include "rpc/fem/surface.hpp"
 #include "rpc/io/atomic_file.hpp"
@@ -383,6 +384,7 @@ std::vector<std::string> older_files(const Scene &scene, const Solution &s, cons
 
 void Film::write(const Scene &scene, const Solution &s, const std::string &folder)
 {
+  const Timed timer("film", seconds_);
   const auto fields = nodal_fields(scene, s);
   if (!file_ || mesh_ != s.discretization.mesh) {
     if (file_) file_->commit();
@@ -410,7 +412,7 @@ void Film::finish(const Scene &scene, const Solution &s, const std::string &fold
 std::vector<std::string> write_results(const Scene &scene, Solution &s, const std::string &folder, const double start,
                                        Film &film)
 {
-  const double begin = Teuchos::Time::wallTime();
+  const double begin = Teuchos::Time::wallTime() - film.seconds();
   const ResultPaths paths(scene, scene.name, folder);
   const mesh::Mesh &mesh = *s.discretization.mesh;
   if (!paths.exodus.empty()) film.finish(scene, s, folder);

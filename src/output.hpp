@@ -33,6 +33,7 @@ public:
   /// Adds the solution if it is not in yet, and finishes the file.
   void finish(const Scene &scene, const Solution &solution, const std::string &folder);
   const std::vector<std::string> &files() const { return files_; } ///< their paths
+  double seconds() const { return seconds_; }                      ///< that writing took [s]
 
 private:
   void write(const Scene &scene, const Solution &solution, const std::string &folder);
@@ -41,6 +42,7 @@ private:
   std::unique_ptr<io::ExodusFile> file_;
   int written_ = 0; // number of the last step that is in
   std::vector<std::string> files_;
+  double seconds_ = 0;
 };
 
 /// Writes what the scene asks for into a folder, each file whole or not at all; collective. Results of one name belong to

@@ -5,13 +5,14 @@ import json
 import math
 import re
 import shutil
+import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
 from rpc_run import BEAM, SMALL, SOURCE, RpcTestCase, errors, files, run_all
 
 YAML = SOURCE / "test" / "regression" / "decks" / "beam.yaml"
-OPTIONS = ["--input", "--output", "--set", "--check", "--print-parameters", "--version", "--help", "--kokkos-"]
+OPTIONS = ["--input", "--output", "--restart", "--set", "--check", "--print-parameters", "--version", "--help", "--kokkos-"]
 SUBLISTS = ["Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact", "Steps", "Nested Iteration", "Adapt", "Uzawa", "NOX", "Linear Solver",
             "Linear Solver->Belos", "Linear Solver->MueLu", "Output"]
 
@@ -301,6 +302,63 @@ class LoadSteps(RpcTestCase):
                 self.assertAlmostEqual(min(dent), max(dent), delta=1e-9)
                 self.assertGreater(min(dent), 0.04)
                 self.assertGreater(last["max_dent"], 1.5 * max(dent))
+
+
+class Restarts(RpcTestCase):
+    """Checkpoints of load steps, and runs that go on from them."""
+
+    DECK = ["--input=beam.xml", SMALL, "--set=Traction->top->Y=-20*sin(pi*t)*sin(pi*x/5)"]
+    TIMES = "--set=Steps->Times={0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9}"
+    EVERY = "--set=Steps->Checkpoint Every=2"
+
+    def summary(self, folder):
+        summary = json.loads((self.folder / folder / "beam.json").read_text())
+        for part in [summary, *summary["steps"]]:
+            part.pop("seconds")
+        return summary
+
+    def test_a_run_that_goes_on_ends_where_an_uninterrupted_one_does(self):
+        self.rpc(*self.DECK, self.TIMES, self.EVERY, "--output=whole")
+        self.assertEqual([name for name in files(self.folder / "whole") if "checkpoint" in name],
+                         ["beam.checkpoint-000006.e", "beam.checkpoint-000008.e"])  # the newest two
+        self.rpc(*self.DECK, self.TIMES, self.EVERY, "--output=again", "--restart=whole/beam.checkpoint-000006.e")
+        self.assertEqual(self.summary("whole"), self.summary("again"))  # bit for bit
+        self.assertEqual(*[(self.folder / run / "beam.contact.csv").read_bytes() for run in ["whole", "again"]])
+        self.assertGreater(self.summary("again")["steps"][-1]["dissipated_energy"], 0)  # there is something to remember
+        self.assertEqual(len(self.summary("again")["steps"]), 9)
+
+    def test_a_run_that_was_killed_goes_on(self):
+        whole = self.rpc(*self.DECK, self.TIMES, "--output=whole")
+        self.assertEqual(whole.returncode, 0)
+        process = self.start(*self.DECK, self.TIMES, "--set=Steps->Checkpoint Every=1", "--output=killed")
+        folder = self.folder / "killed"
+        while process.poll() is None and not list(folder.glob("*.checkpoint-*.e")):
+            time.sleep(0.002)
+        process.kill()
+        process.wait()
+        newest = max(folder.glob("*.checkpoint-*.e"))
+        self.rpc(*self.DECK, self.TIMES, "--output=again", f"--restart={newest}")
+        a, b = [self.summary(run)["steps"][-1] for run in ["whole", "again"]]
+        for name in ["dissipated_energy", "max_dent", "dent_volume", "strain_energy"]:
+            self.assertAlmostEqual(a[name], b[name], delta=1e-10)
+
+    def test_foreign_checkpoints_are_refused(self):
+        self.rpc(*self.DECK, self.TIMES, self.EVERY, "--output=whole")
+        checkpoint = "--restart=whole/beam.checkpoint-000006.e"
+        cases = [([checkpoint, "--set=Contact->Yield Stress=17"], ["another deck", '"Contact"']),
+                 ([checkpoint, "--set=Mesh->Cells={21,4}"], ["another deck", '"Mesh"']),
+                 ([checkpoint, "--set=Steps->Times={0.1, 0.6}"], ["t = 0.6", "nothing to do"]),
+                 (["--restart=whole/beam.e"], ["damaged or no checkpoint"]),
+                 (["--restart=none.e"], ['no file "none.e"'])]
+        results = run_all([([*self.DECK, self.TIMES, *arguments, "--output=out"], self.folder) for arguments, _ in cases])
+        for (arguments, parts), result in zip(cases, results):
+            with self.subTest(arguments):
+                self.expect_refusal(result, 2, ["restart:", *parts])
+        self.expect_refusal(self.rpc("--input=beam.xml", checkpoint, code=2), 2, ["--restart goes with load steps"])
+        # Later times, other output and other solvers are welcome.
+        self.rpc(*self.DECK, "--set=Steps->Times={0.65, 1.5}", "--set=Output->CSV=false", "--set=Uzawa->Tolerance=1e-9",
+                 "--output=on", checkpoint)
+        self.assertEqual([round(step["time"], 2) for step in self.summary("on")["steps"]], [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.65, 1.5])
 
 
 class AdaptiveRuns(RpcTestCase):

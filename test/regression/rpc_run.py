@@ -67,6 +67,13 @@ class RpcTestCase(unittest.TestCase):
             self.assertEqual(result.returncode, code, f"{arguments}\n{result.stdout}\n{result.stderr}")
         return result
 
+    def start(self, *arguments):
+        """A run that goes on by itself."""
+        process = subprocess.Popen(LAUNCH + [PROGRAM] + [str(a) for a in arguments], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        return process
+
     def solve(self, *arguments, deck="beam.xml", output="out", code=0):
         """A run of the small beam: its summary."""
         result = self.rpc(f"--input={deck}", SMALL, f"--output={output}", *arguments, code=code)

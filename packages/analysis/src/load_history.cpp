@@ -180,12 +180,11 @@ Teuchos::ParameterList valid_steps_parameters()
       "Times", Teuchos::Array<double>(),
       "Times t of the load steps, rising: the foundation keeps the dents of each for the next. Empty: one step, at "
       "`Time`.");
-  valid.set("Write Every", 1, "Each so manieth of the times goes into the Exodus file, and the last, > 0.");
+  valid.set("Write Every", 1, "Every N-th of the times goes into the Exodus file, and the last one; N > 0.");
   valid.set("Max Halvings", 6, "A step that does not converge is halved, and its halves, so many times at most, >= 0.");
   valid.set("Checkpoint Every", 0,
-            "After each so manieth step a checkpoint is written, <deck>.checkpoint-NUMBER.e, from which --restart goes "
-            "on; 0: "
-            "none.");
+            "After every N-th step a checkpoint is written, <deck>.checkpoint-NUMBER.e, from which --restart goes on; "
+            "0: none.");
   return valid;
 }
 

@@ -165,7 +165,8 @@ std::optional<ParameterEntry> read_entry(const std::string &text, const Paramete
 /// What a value has to be, after "must be ".
 std::string rule_of(const ParameterEntry &model)
 {
-  if (is_fields(model)) return "an array of numbers or expressions, such as {0, 0.1*t}";
+  if (is_fields(model))
+    return "an array of numbers, such as {0, 0.5}, or of strings with expressions, such as {0, 0.1*t}";
   if (model.isType<double>()) return "a double, and finite";
   if (model.isType<bool>()) return "a bool: true or false";
   if (model.isType<int>()) return "an int";

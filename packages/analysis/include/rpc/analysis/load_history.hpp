@@ -12,9 +12,9 @@ namespace rpc::analysis
 /// The deck's `Steps`.
 struct StepsOptions {
   std::vector<double> times; ///< rising; empty: one step, at the deck's `Time`
-  int write_every = 1;       ///< of the times, each so manieth goes into the results, and the last; > 0
+  int write_every = 1;       ///< every so many of the times one goes into the results, and the last; > 0
   int max_halvings = 6;      ///< of a step that does not converge, >= 0
-  int checkpoint_every = 0;  ///< so manieth step; 0: never
+  int checkpoint_every = 0;  ///< a checkpoint after every so many steps; 0: none
 };
 
 /// Parameters of the deck's `Steps` sublist.
