@@ -1,0 +1,258 @@
+#include "rpc/contact/facet_surface.hpp"
+
+#include "rpc/core/device_values.hpp"
+#include "rpc/core/parallel.hpp"
+#include "rpc/fem/surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace rpc::contact
+{
+namespace
+{
+
+constexpr double rounding = 1e-9; // of places within a facet, relative
+constexpr double margin = 0.5;    // of a facet, beyond the edge of the surface
+constexpr std::size_t few = 4;    // facets in a box that is not divided
+
+double dot(const Point &a, const Point &b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Point minus(const Point &a, const Point &b)
+{
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Point cross(const Point &a, const Point &b)
+{
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// A straight facet as weights of the nodes of the facet that it is a part of: (corners, nodes).
+using Part = std::vector<std::vector<double>>;
+
+/// The straight facets that stand for a facet of an element.
+std::vector<Part> straight_parts(const mesh::Element &facet)
+{
+  const int order = facet.order, nodes = facet.num_nodes();
+  std::map<std::array<int, 2>, int> node;
+  for (int a = 0; a < nodes; ++a) node[{facet.lattice()[a][0], facet.dim == 2 ? facet.lattice()[a][1] : 0}] = a;
+  std::vector<Part> parts;
+  /// The mean of some places of the lattice.
+  const auto at = [&](const std::vector<std::array<int, 2>> &places) {
+    std::vector<double> weights(nodes, 0.);
+    for (const auto &place : places) weights[node.at(place)] += 1. / static_cast<double>(places.size());
+    return weights;
+  };
+  for (int i = 0; i < order && facet.dim == 1; ++i) parts.push_back({at({{i, 0}}), at({{i + 1, 0}})});
+  for (int i = 0; i < order && facet.dim == 2; ++i)
+    for (int j = 0; j < order; ++j) {
+      const std::array<std::array<int, 2>, 4> around = {{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
+      if (facet.shape == mesh::Shape::tensor) {
+        const auto middle = at({around.begin(), around.end()});
+        for (int k = 0; k < 4; ++k) parts.push_back({middle, at({around[k]}), at({around[(k + 1) % 4]})});
+      } else {
+        if (i + j < order) parts.push_back({at({around[0]}), at({around[1]}), at({around[3]})});
+        if (i + j + 1 < order) parts.push_back({at({around[1]}), at({around[2]}), at({around[3]})});
+      }
+    }
+  return parts;
+}
+
+} // namespace
+
+StraightFacets straight_facets(const fem::Discretization &d, const mesh::Side &side, const Vector *const u,
+                               const Point &shift, const MultiVector &values, const int column)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  const int dim = mesh.dim();
+  const auto facets = to_host(side.facets);
+  const auto cell = to_host(side.cell);
+  const std::size_t per_facet = facets.extent(1);
+  std::vector<LO> nodes; // of facets that no other rank has, facet by facet
+  for (std::size_t f = 0; f < facets.extent(0); ++f)
+    for (std::size_t a = 0; a < per_facet && cell(f) < mesh.num_owned_cells; ++a) nodes.push_back(facets(f, a));
+  const auto places = fem::node_positions(mesh, device_values(nodes, "rpc::contact::facet_nodes"));
+  const auto overlap = fem::nodes_on_overlap(d, Teuchos::rcpFromRef(values));
+  const auto value = overlap->getLocalViewHost(Tpetra::Access::ReadOnly);
+  const RCP<const Vector> moved = u ? fem::on_overlap(d, *u) : Teuchos::null;
+  decltype(moved->getLocalViewHost(Tpetra::Access::ReadOnly)) displacement;
+  if (u) displacement = moved->getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto parts = straight_parts(mesh.element.facet());
+  StraightFacets mine;
+  mine.dim = dim;
+  for (std::size_t first = 0; first < nodes.size(); first += per_facet)
+    for (const Part &part : parts)
+      for (const auto &weights : part) {
+        Point x = shift;
+        double here = 0;
+        for (std::size_t a = 0; a < per_facet; ++a) {
+          if (weights[a] == 0) continue;
+          const LO node = nodes[first + a];
+          for (int c = 0; c < dim; ++c)
+            x[c] += weights[a] * (places(first + a, c) + (u ? displacement(dof(dim, node, c), 0) : 0));
+          here += weights[a] * value(node, column);
+        }
+        mine.corners.insert(mine.corners.end(), x.begin(), x.begin() + dim);
+        mine.values.push_back(here);
+      }
+  return {dim, gathered_by_all(mesh.comm(), std::move(mine.corners)),
+          gathered_by_all(mesh.comm(), std::move(mine.values))};
+}
+
+FacetSurface::FacetSurface(StraightFacets facets, const double beyond)
+    : facets_(std::move(facets)), beyond_(beyond), order_(facets_.size())
+{
+  std::iota(order_.begin(), order_.end(), std::size_t(0));
+  if (!order_.empty()) add_box(0, order_.size());
+}
+
+Point FacetSurface::corner(const std::size_t facet, const int k) const
+{
+  Point x{};
+  for (int c = 0; c < facets_.dim; ++c) x[c] = facets_.corners[(facet * facets_.dim + k) * facets_.dim + c];
+  return x;
+}
+
+void FacetSurface::add_box(const std::size_t first, const std::size_t last)
+{
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const std::size_t here = boxes_.size();
+  Box box{{inf, inf, inf}, {-inf, -inf, -inf}, first, last, 0};
+  double longest = 0; // edge, of the facets
+  for (std::size_t k = first; k < last; ++k)
+    for (int a = 0; a < facets_.dim; ++a) {
+      const Point x = corner(order_[k], a), edge = minus(corner(order_[k], (a + 1) % facets_.dim), x);
+      longest = std::max(longest, std::sqrt(dot(edge, edge)));
+      for (int c = 0; c < 3; ++c) {
+        box.lower[c] = std::min(box.lower[c], x[c]);
+        box.upper[c] = std::max(box.upper[c], x[c]);
+      }
+    }
+  int axis = 0;
+  for (int c = 1; c < 3; ++c)
+    if (box.upper[c] - box.lower[c] > box.upper[axis] - box.lower[axis]) axis = c;
+  // A place that counts to a triangle by `margin` on two of its sides lies off by an edge at most.
+  const double around = std::max(beyond_, longest);
+  for (int c = 0; c < 3; ++c) {
+    box.lower[c] -= around;
+    box.upper[c] += around;
+  }
+  boxes_.push_back(box);
+  if (last - first > few) {
+    const auto place = [&](const std::size_t facet) {
+      double sum = 0;
+      for (int a = 0; a < facets_.dim; ++a) sum += corner(facet, a)[axis];
+      return sum;
+    };
+    const std::size_t middle = first + (last - first) / 2;
+    const auto at = [&](const std::size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
+    std::nth_element(at(first), at(middle), at(last),
+                     [&](const std::size_t a, const std::size_t b) { return place(a) < place(b); });
+    add_box(first, middle);
+    add_box(middle, last);
+  }
+  boxes_[here].next = boxes_.size();
+}
+
+namespace
+{
+
+/// Where a line meets the straight line or plane of a facet.
+struct Meeting {
+  std::array<double, 3> weights{}; // of the corners, their sum is 1
+  double distance = 0;             // from x [m]
+};
+
+/// @param x  corners, seen from the line's point
+std::optional<Meeting> meet(const int dim, const std::array<Point, 3> &x, const Point &direction)
+{
+  Meeting meeting;
+  const Point along = minus(x[1], x[0]);
+  if (dim == 2) {
+    const Point normal = {along[1], -along[0], 0}; // as long as the facet
+    const double facing = dot(normal, direction);
+    if (!(facing > rounding * std::sqrt(dot(along, along)))) return std::nullopt;
+    const Point across = {direction[1], -direction[0], 0};
+    meeting.weights[1] = dot(x[0], across) / -dot(along, across);
+    meeting.weights[0] = 1 - meeting.weights[1];
+    meeting.distance = dot(x[0], normal) / facing;
+    return meeting;
+  }
+  const Point other = minus(x[2], x[0]), normal = cross(along, other);
+  const double facing = dot(normal, direction);
+  if (!(facing > rounding * std::sqrt(dot(normal, normal)))) return std::nullopt;
+  for (int k = 0; k < 3; ++k) meeting.weights[k] = dot(cross(x[(k + 1) % 3], x[(k + 2) % 3]), direction) / facing;
+  meeting.distance = dot(x[0], normal) / facing;
+  return meeting;
+}
+
+/// Whether a line meets a box.
+bool meets(const Point &lower, const Point &upper, const Point &x, const Point &direction)
+{
+  double from = -std::numeric_limits<double>::infinity(), to = -from;
+  for (int c = 0; c < 3; ++c) {
+    const double low = lower[c] - x[c], high = upper[c] - x[c];
+    if (std::abs(direction[c]) < std::numeric_limits<double>::min()) {
+      if (low > 0 || high < 0) return false;
+      continue;
+    }
+    const double a = low / direction[c], b = high / direction[c];
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  }
+  return from <= to;
+}
+
+} // namespace
+
+std::optional<double> FacetSurface::along(const Point &x, const Point &direction) const
+{
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const int dim = facets_.dim;
+  std::optional<double> value;
+  double least_off = inf, least_distance = inf;
+  const auto look_at = [&](const std::size_t facet) {
+    std::array<Point, 3> seen{};
+    for (int k = 0; k < dim; ++k) seen[k] = minus(corner(facet, k), x);
+    const auto meeting = meet(dim, seen, direction);
+    if (!meeting) return;
+    std::array<double, 3> inside{};
+    double sum = 0, deepest = 0;
+    for (int k = 0; k < dim; ++k) {
+      inside[k] = std::max(0., meeting->weights[k]);
+      sum += inside[k];
+      deepest = std::max(deepest, -meeting->weights[k]);
+    }
+    Point away{}; // from the facet
+    double here = 0;
+    for (int k = 0; k < dim; ++k) {
+      inside[k] /= sum;
+      here += inside[k] * facets_.values[facet * dim + k];
+      for (int c = 0; c < 3; ++c) away[c] += (meeting->weights[k] - inside[k]) * seen[k][c];
+    }
+    double off = std::sqrt(dot(away, away));
+    if (deepest > margin && off > beyond_ * (1 + rounding)) return;
+    if (deepest <= rounding) off = 0;
+    const double distance = std::abs(meeting->distance);
+    if (off > least_off || (off == least_off && distance >= least_distance)) return;
+    least_off = off;
+    least_distance = distance;
+    value = here;
+  };
+  for (std::size_t k = 0; k < boxes_.size();) {
+    const Box &box = boxes_[k];
+    const bool met = meets(box.lower, box.upper, x, direction);
+    for (std::size_t n = box.first; n < box.last && met && box.last - box.first <= few; ++n) look_at(order_[n]);
+    k = met ? k + 1 : box.next;
+  }
+  return value;
+}
+
+} // namespace rpc::contact

@@ -1,0 +1,100 @@
+#include "rpc/contact/facet_surface.hpp"
+
+#include "blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+using contact::FacetSurface;
+using contact::StraightFacets;
+
+TEST(FacetSurface, OfSegmentsIsMetFromInsideAtTheNearestPlace)
+{
+  // Two runs one below the other, from left to right: their normals lead down.
+  const FacetSurface surface(StraightFacets{2, {0, 0, 1, 0, 1, 0, 2, 1, 0, -3, 2, -3}, {1, 2, 2, 4, 7, 7}});
+  const Point down = {0, -1, 0}, up = {0, 1, 0};
+  EXPECT_NEAR(surface.along({0.25, 5, 0}, down).value(), 1.25, 1e-14);
+  EXPECT_NEAR(surface.along({0.25, -1, 0}, down).value(), 1.25, 1e-14) << "behind";
+  EXPECT_NEAR(surface.along({0.25, -2, 0}, down).value(), 7, 1e-14);
+  EXPECT_NEAR(surface.along({1.5, 0, 0}, down).value(), 3, 1e-14);
+  EXPECT_NEAR(surface.along({1.5, 0.5, 0}, {std::sqrt(0.5), -std::sqrt(0.5), 0}).value(), 3, 1e-14);
+  EXPECT_FALSE(surface.along({0.25, 0, 0}, up)) << "its normals lead the other way";
+  EXPECT_FALSE(surface.along({5, 0, 0}, down));
+}
+
+TEST(FacetSurface, EndsHalfAFacetBeyondItsEdgeOrWhereItIsTold)
+{
+  const StraightFacets facets{2, {0, 0, 1, 0, 1, 0, 2, 0}, {1, 2, 2, 4}};
+  const Point down = {0, -1, 0};
+  EXPECT_EQ(FacetSurface(facets).along({2.4, 0, 0}, down).value(), 4);
+  EXPECT_EQ(FacetSurface(facets).along({-0.4, 0, 0}, down).value(), 1);
+  EXPECT_FALSE(FacetSurface(facets).along({2.6, 0, 0}, down));
+  EXPECT_EQ(FacetSurface(facets, 0.7).along({2.6, 0, 0}, down).value(), 4);
+  EXPECT_FALSE(FacetSurface(facets, 0.7).along({2.8, 0, 0}, down));
+}
+
+TEST(FacetSurface, WithoutFacetsIsMetNowhere)
+{
+  EXPECT_FALSE(FacetSurface(StraightFacets{3, {}, {}}).along({0, 0, 0}, {0, -1, 0}));
+}
+
+TEST(FacetSurface, OfASideMeetsLinearValuesToRounding)
+{
+  const Function linear = [](const Point &x) { return 2 + 0.5 * x[0] - 0.75 * x[2]; };
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const auto d = block(element);
+    const auto &side = d.mesh->side("bottom", "test");
+    // Moved along itself, tilted and stretched, and then looked up as it lies.
+    const PointFunction move = [](const Point &x) {
+      return Point{0.3 + 0.1 * x[0], 0.2 * x[0] - 0.1 * x[2], 0.2 * x[0]};
+    };
+    const FacetSurface still(contact::straight_facets(d, side, nullptr, {}, *at_nodes(d, linear), 0));
+    const auto u = displacement(d, move);
+    const FacetSurface moved(contact::straight_facets(d, side, u.get(), {0, 4, 0}, *at_nodes(d, linear), 0));
+    for (int k = 0; k <= 20; ++k) {
+      const Point x = {1 + 0.1 * k, 0, element.dim == 3 ? -0.5 + 0.5 * std::sin(5. * k) : 0};
+      const Point along = {0.6, -0.8, 0};
+      EXPECT_NEAR(still.along({x[0], 3, x[2]}, {0, -1, 0}).value(), linear(x), 1e-14) << element.name();
+      EXPECT_NEAR(still.along({x[0] - 0.6, 0.8, x[2]}, along).value(), linear(x), 1e-14) << element.name();
+      Point y = x;
+      const Point by = move(x);
+      for (int c = 0; c < 3; ++c) y[c] += (c < element.dim ? by[c] : 0) + (c == 1 ? 4 : 0) - 0.1 * along[c];
+      EXPECT_NEAR(moved.along(y, along).value(), linear(x), 1e-13) << element.name();
+    }
+  }
+}
+
+TEST(FacetSurface, OfABentSideIsOfSecondOrder)
+{
+  // The bottom is an arc of radius 2 about the origin, the body around it: its normals lead to the origin.
+  const PointFunction bend = [](const Point &x) {
+    const double angle = x[0] - 2, radius = 2 + x[1];
+    return Point{radius * std::sin(angle), radius * std::cos(angle), x[2]};
+  };
+  const Function values = [](const Point &x) { return std::sin(3 * std::atan2(x[0], x[1])) * (1 + x[2]); };
+  for (const mesh::Element &element : mesh::all_elements()) {
+    double worst[2] = {};
+    for (const int refinement : {1, 2}) {
+      const auto d = block(element, bend, refinement);
+      const FacetSurface surface(
+          contact::straight_facets(d, d.mesh->side("bottom", "test"), nullptr, {}, *at_nodes(d, values), 0));
+      for (int k = 0; k <= 97; ++k) {
+        const double angle = -1 + 2 * k / 97.;
+        const Point x = {2 * std::sin(angle), 2 * std::cos(angle), element.dim == 3 ? -0.3 : 0};
+        const auto met = surface.along({0.9 * x[0], 0.9 * x[1], x[2]}, {-x[0] / 2, -x[1] / 2, 0});
+        ASSERT_TRUE(met) << element.name();
+        worst[refinement - 1] = std::max(worst[refinement - 1], std::abs(*met - values(x)));
+      }
+    }
+    EXPECT_LT(worst[0], 0.08) << element.name() << " in " << element.dim;
+    EXPECT_GT(worst[0] / worst[1], 3) << element.name() << " in " << element.dim;
+  }
+}
+
+} // namespace
