@@ -105,6 +105,9 @@ void add_side_parameters(Teuchos::ParameterList &valid)
             "Whether the foundation keeps its dents from one of `Steps` to the next: `auto` (it does), `true`, or "
             "`false` for a law "
             "that is reversible.");
+  valid.set("Dents Move With", "body",
+            "Where dents stay if the body slides or the obstacle moves along itself, between `Steps`: `body`, at the "
+            "body's points (small motions), or `foundation`, where they lie: a point meets the dents at its place.");
   set_field(valid, "Penalty", "auto",
             "r of the modified Lagrangian: `auto` (from the stiffness and the weight of each node), or a number > 0 "
             "[Pa/m] to "
@@ -152,6 +155,13 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
   RPC_REQUIRE(remembers == "auto" || remembers == "true" || remembers == "false",
               "deck: \"" << path << "->Remembers\" must be one of auto, true, false, got \"" << remembers << "\"");
   options.remembers = remembers != "false";
+  const auto &carrier = list.get<std::string>("Dents Move With");
+  RPC_REQUIRE(carrier == "body" || carrier == "foundation",
+              "deck: \"" << path << "->Dents Move With\" must be body or foundation, got \"" << carrier << "\"");
+  RPC_REQUIRE(carrier == "body" || options.remembers,
+              "deck: \"" << path << "->Dents Move With\" = foundation does not go with \"" << path
+                         << "->Remembers\" = false: there are no dents");
+  options.dents_move_with = carrier == "body" ? DentsMoveWith::body : DentsMoveWith::foundation;
   options.penalty = penalty_from(field_text(list, "Penalty"), path);
   const bool obstacle = options.obstacle.kind != Obstacle::Kind::none;
   const auto &normal = list.get<std::string>("Normal");

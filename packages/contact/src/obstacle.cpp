@@ -146,6 +146,7 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
                 "deck: \"" << path << "->Radius\" must be > 0 and finite [m], got " << obstacle.radius);
   }
   for (int c = 0; c < dim && obstacle.kind != Obstacle::Kind::none; ++c) obstacle.point[c] = obstacle.path[c]({});
+  obstacle.origin = obstacle.point;
   return obstacle;
 }
 

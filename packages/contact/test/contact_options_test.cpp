@@ -185,4 +185,17 @@ TEST(ContactOptions, ValuesOutOfRangeAreRefusedByPathOnASideOrNone)
   expect_refused(obstacle, {"\"Contact->Sides->wall->Obstacle->Type\"", "\"cone\""});
 }
 
+TEST(ContactOptions, SayWhatDentsMoveWith)
+{
+  ParameterList list = bottom();
+  EXPECT_EQ(read(list)[0].dents_move_with, contact::DentsMoveWith::body);
+  list.set("Dents Move With", "foundation");
+  EXPECT_EQ(read(list)[0].dents_move_with, contact::DentsMoveWith::foundation);
+  list.set("Remembers", "false");
+  expect_refused(list, {"Contact->Dents Move With", "foundation", "Contact->Remembers", "false"});
+  list = bottom();
+  list.set("Dents Move With", "obstacle");
+  expect_refused(list, {"Contact->Dents Move With", "body or foundation", "obstacle"});
+}
+
 } // namespace

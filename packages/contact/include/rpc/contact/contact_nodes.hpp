@@ -23,6 +23,9 @@ enum class Normal {
   fixed       ///< one direction for all nodes
 };
 
+/// What dents stay with when the body slides or the obstacle moves along itself, see moving_dents.hpp.
+enum class DentsMoveWith { body, foundation };
+
 /// A side that may touch the foundation, and the foundation's law there.
 struct ContactOptions {
   std::string path = "Contact"; ///< in the deck, for messages
@@ -37,6 +40,7 @@ struct ContactOptions {
   Point direction{};     ///< unit, of Normal::fixed
   double penalty = 0;    ///< r > 0 [Pa/m]; 0: chosen at each node, see SmoothedFunctional
   bool remembers = true; ///< dents stay from step to step
+  DentsMoveWith dents_move_with = DentsMoveWith::body;
 };
 
 /// Parameters of the deck's `Contact` sublist.
