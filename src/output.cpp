@@ -193,6 +193,7 @@ void add_steps(nlohmann::ordered_json &json, const Solution &s)
                                     {"work", step.energies.work}};
     add_sums(entry, step.contact, s.discretization);
     entry["parts"] = step.parts;
+    entry["solves"] = step.solves;
     entry["newton_iterations"] = step.newton_iterations;
     entry["linear_solves"] = step.linear_solves;
     entry["linear_iterations"] = step.linear_iterations;

@@ -89,6 +89,8 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   for (const char *const part : {"Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact"})
     scene.identity.emplace_back(part, text_of(deck.sublist(part)));
   scene.steps = analysis::steps_options(deck.sublist("Steps"));
+  for (auto &side : scene.model.contact)
+    if (!scene.steps.times.empty()) side.obstacle.origin = side.obstacle.seen_at(scene.steps.times.front()).point;
   scene.adapt = adapt::adapt_options(deck.sublist("Adapt"));
   scene.step.uzawa = analysis::uzawa_options(deck.sublist("Uzawa"));
   scene.step.newton = solver::newton_options(deck.sublist("NOX"));

@@ -1,8 +1,10 @@
 #include "rpc/analysis/load_history.hpp"
 
+#include "rpc/contact/moving_dents.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/fem/interpolation.hpp"
 
 #include <Teuchos_Array.hpp>
@@ -15,6 +17,11 @@ namespace rpc::analysis
 {
 namespace
 {
+
+// Solves of a step for the dents that points meet where it leads them, each from the one before: the dents' slopes are small, so that
+// two to four do.
+constexpr int most_searches = 8;
+constexpr double dents_settled = 1e-7; // of the deepest dent: changes of the dents met that call for no further solve
 
 /// Forces on the body from all but the foundation, f_int + sum of w p nu (owned dofs, [N]): loads, and at prescribed unknowns
 /// the reactions too.
@@ -36,10 +43,28 @@ Vector other_forces(const Problem &problem, const contact::ContactNodes &points,
   return force;
 }
 
+/// (points) The gap that changes by motion alone: g, and where points move along dents that too [m].
+/// @param dent  (points) that they stand on
+DeviceView<double *> moving_gap(const Problem &problem, const contact::ContactNodes &points,
+                                const DeviceView<double *> &dent)
+{
+  const contact::ContactNodes c = points;
+  const DeviceView<double *> gap("rpc::analysis::moving_gap", c.size());
+  Kokkos::deep_copy(gap, c.gap);
+  for (int side = 0; side < c.num_sides(); ++side)
+    if (problem.model().contact[side].dents_move_with == contact::DentsMoveWith::foundation)
+      Kokkos::parallel_for(
+          "rpc::analysis::moving_gap", Kokkos::RangePolicy<ExecutionSpace, LO>(c.first(side), c.first(side + 1)),
+          KOKKOS_LAMBDA(const LO i) { gap(i) += dent(i); });
+  Kokkos::fence();
+  return gap;
+}
+
 /// Work that the foundation's own motion does on body and foundation, -sum of w p dg by the trapezoidal rule [J]; collective.
-/// @param before_pressure, before_gap  (points)
+/// @param gap, before_pressure, before_gap  (points)
 double work_of_motion(const Comm &comm, const contact::ContactNodes &contact, const contact::ContactResult &result,
-                      const DeviceView<double *> &before_pressure, const DeviceView<double *> &before_gap)
+                      const DeviceView<double *> &gap, const DeviceView<double *> &before_pressure,
+                      const DeviceView<double *> &before_gap)
 {
   const contact::ContactNodes c = contact;
   const auto p = result.pressure;
@@ -47,7 +72,7 @@ double work_of_motion(const Comm &comm, const contact::ContactNodes &contact, co
   Kokkos::parallel_reduce(
       "rpc::analysis::work_of_motion", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &part) {
-        part -= 0.5 * c.weight(i) * (p(i) + before_pressure(i)) * (c.gap(i) - before_gap(i));
+        part -= 0.5 * c.weight(i) * (p(i) + before_pressure(i)) * (gap(i) - before_gap(i));
       },
       sum);
   return sum_all(comm, sum);
@@ -81,28 +106,18 @@ Energies energies_after(const Problem &problem, const StepSolution &s, const Mem
     (sides[k].remembers ? energies.dissipated : energies.foundation) += s.contact.sides[k].dissipated;
   Vector mean(force, Teuchos::Copy), moved(*s.u, Teuchos::Copy);
   mean.scale(0.5);
-  DeviceView<double *> pressure("rpc::analysis::no_pressure", points.size()), gap;
+  DeviceView<double *> pressure("rpc::analysis::no_pressure", points.size()), before_gap;
   if (before) {
     mean.update(0.5, force_before ? *force_before : other_forces(problem, points, *before), 1.);
     moved.update(-1., *before->displacement, 1.);
     pressure = contact::at_points(points, *before->pressure);
-    gap = contact::at_points(points, *before->gap);
+    before_gap = contact::at_points(points, *before->gap);
   } else {
-    gap = gaps_at_rest(points);
+    before_gap = gaps_at_rest(points);
   }
-  energies.work += mean.dot(moved) + work_of_motion(comm, points, s.contact, pressure, gap);
+  energies.work += mean.dot(moved) + work_of_motion(comm, points, s.contact, moving_gap(problem, points, points.dent),
+                                                    pressure, before_gap);
   return energies;
-}
-
-/// The dents that are to be remembered.
-RCP<const MultiVector> remembered_dents(const Problem &problem, const contact::ContactNodes &points,
-                                        const contact::ContactResult &result)
-{
-  const auto dents = contact::node_columns(points, result.dent, problem.discretization().mesh->owned_nodes);
-  const auto &sides = problem.model().contact;
-  for (std::size_t k = 0; k < sides.size(); ++k)
-    if (!sides[k].remembers) dents->getVectorNonConst(k)->putScalar(0);
-  return dents;
 }
 
 /// Dents of nodes that are no contact points now, since their normals miss the obstacle, stay as they are.
@@ -121,6 +136,82 @@ void keep_dents_elsewhere(const contact::ContactNodes &contact, const MultiVecto
     Kokkos::fence();
   }
   now.update(1., kept, 1.);
+}
+
+/// (points) What a step has added to the dents.
+DeviceView<double *> added_dents(const contact::ContactNodes &contact, const contact::ContactResult &result)
+{
+  const contact::ContactNodes c = contact;
+  const auto dent = result.dent;
+  const DeviceView<double *> added("rpc::analysis::added_dents", c.size());
+  Kokkos::parallel_for(
+      "rpc::analysis::added_dents", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { added(i) = dent(i) - c.dent(i); });
+  Kokkos::fence();
+  return added;
+}
+
+/// The dents that are to be remembered, (owned nodes; sides), from those before the step, null for none. Collective.
+/// @param sides  seen at the time of the step
+RCP<const MultiVector> dents_after(const Problem &problem, const std::vector<contact::ContactOptions> &sides,
+                                   const contact::ContactNodes &points, const StepSolution &s,
+                                   const MultiVector *const before)
+{
+  const fem::Discretization &d = problem.discretization();
+  const auto owned_nodes = d.mesh->owned_nodes;
+  const auto dents = contact::node_columns(points, s.contact.dent, owned_nodes);
+  for (std::size_t k = 0; k < sides.size(); ++k)
+    if (!sides[k].remembers) dents->getVectorNonConst(k)->putScalar(0);
+  if (before) keep_dents_elsewhere(points, *before, *dents);
+  if (!contact::any_moves_with_foundation(sides)) return dents;
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    if (sides[k].dents_move_with != contact::DentsMoveWith::foundation) continue;
+    const auto column = dents->getVectorNonConst(k);
+    column->putScalar(0);
+    if (before) column->update(1., *before->getVector(k), 0.);
+  }
+  const auto added = contact::node_columns(points, added_dents(points, s.contact), owned_nodes);
+  contact::add_where_they_lie(d, sides, *added, *s.u, *dents);
+  return dents;
+}
+
+/// Where a step is expected to lead from a displacement: along with the mean change of what is prescribed. Collective.
+/// @param u  (owned dofs) [m]
+Vector moved_along(const Problem &problem, const double t, const Vector &u)
+{
+  const fem::Discretization &d = problem.discretization();
+  const int dim = d.dim();
+  const auto dirichlet = fem::dirichlet_dofs(d, problem.model().seen_at(t).dirichlet);
+  Vector moved(u, Teuchos::Copy);
+  std::vector<double> sums(6, 0.); // of the changes and their numbers, by component
+  {
+    const auto condition = to_host(dirichlet.condition);
+    const auto from = u.getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto to = dirichlet.value->getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (std::size_t i = 0; i < condition.extent(0); ++i) {
+      if (condition(i) < 0) continue;
+      const int c = component_of(dim, static_cast<LO>(i));
+      sums[c] += to(i, 0) - from(i, 0);
+      ++sums[3 + c];
+    }
+  }
+  sums = summed(d.mesh->comm(), sums);
+  const auto to = moved.getLocalViewHost(Tpetra::Access::ReadWrite);
+  for (std::size_t i = 0; i < to.extent(0); ++i) {
+    const int c = component_of(dim, static_cast<LO>(i));
+    if (sums[3 + c] > 0) to(i, 0) += sums[c] / sums[3 + c];
+  }
+  return moved;
+}
+
+/// Whether dents that points meet have changed by no more than what calls for no further solve. Collective.
+bool settled(const MultiVector &used, const MultiVector &met, const MultiVector &dents)
+{
+  MultiVector change(met, Teuchos::Copy);
+  change.update(-1., used, 1.);
+  for (std::size_t k = 0; k < dents.getNumVectors(); ++k)
+    if (change.getVector(k)->normInf() > dents_settled * dents.getVector(k)->normInf()) return false;
+  return true;
 }
 
 /// Means of the prescribed displacements over the nodes of each Dirichlet condition; 0 for components that are free.
@@ -236,7 +327,7 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   const double start = Teuchos::Time::wallTime();
   last_ = {};
   last_.time = t;
-  last_.parts = 0;
+  last_.parts = 0; // counted as they are solved
   StepSolution s = advance_in_parts(t, max_halvings_, progress, now);
   last_.converged = s.uzawa.converged;
   last_.contact = s.contact.total;
@@ -262,12 +353,18 @@ StepSolution LoadHistory::advance_in_parts(const double t, const int halvings, c
 StepSolution LoadHistory::solve(const double t, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now)
 {
-  const MultiVector *const dents = memory_ ? memory_->dent.get() : nullptr;
-  Step step = problem_->step(t, dents);
+  const auto sides = problem_->model().seen_at(t).contact;
+  const bool on_foundation = memory_ && contact::any_moves_with_foundation(sides);
+  const auto met_at = [&](const Vector &u) {
+    return contact::dents_met(problem_->discretization(), sides, memory_->dent, u);
+  };
+  RCP<const MultiVector> met = memory_ ? memory_->dent : Teuchos::null;
+  if (on_foundation) met = met_at(moved_along(*problem_, t, *memory_->displacement));
+  Step step = problem_->step(t, met.get());
   if (!problem_->serves(step)) {
     problem_ = problem_->remade(t);
     on_coarser_mesh_.reset();
-    step = problem_->step(t, dents);
+    step = problem_->step(t, met.get());
     ++matrix_assemblies_;
   }
   if (now) now(*problem_, step);
@@ -278,22 +375,32 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
     starts.states.push_back(at_rest(step.contact, problem_->discretization()));
     starts.predicted = [&] { return predicted(step); };
   }
-  StepSolution s = solve_step(*problem_, step, options_, starts, coarser_, progress);
   ++last_.parts;
-  add_work(s, last_);
-  if (!s.uzawa.converged) return s;
+  StepSolution s;
+  for (int search = 1;; ++search) {
+    s = solve_step(*problem_, step, options_, starts, coarser_, progress);
+    ++last_.solves;
+    add_work(s, last_);
+    if (!s.uzawa.converged) return s;
+    if (!on_foundation || search == most_searches) break;
+    const auto next = met_at(*s.u);
+    if (settled(*met, *next, *memory_->dent)) break;
+    met = next;
+    step = problem_->step(t, met.get());
+    starts = {{s.state()}, {}};
+  }
+  const auto dents = dents_after(*problem_, sides, step.contact, s, memory_ ? memory_->dent.get() : nullptr);
+  contact::take_dents_of_foundation(problem_->discretization(), sides, *dents, s.contact);
   const auto owned_nodes = problem_->discretization().mesh->owned_nodes;
-  const auto dent = remembered_dents(*problem_, step.contact, s.contact);
-  const auto all = rcp(new MultiVector(*dent, Teuchos::Copy));
-  if (dents) keep_dents_elsewhere(step.contact, *dents, *all);
   const auto forces = rcp(new Vector(other_forces(*problem_, s)));
   before_ = std::exchange(memory_, std::nullopt);
-  memory_ = Memory{t,
-                   rcp(new Vector(*s.u, Teuchos::Copy)),
-                   contact::node_columns(step.contact, s.contact.pressure, owned_nodes),
-                   all,
-                   contact::node_columns(step.contact, step.contact.gap, owned_nodes),
-                   energies_after(*problem_, s, before_ ? &*before_ : nullptr, last_forces_.get(), *forces)};
+  memory_ =
+      Memory{t,
+             rcp(new Vector(*s.u, Teuchos::Copy)),
+             contact::node_columns(step.contact, s.contact.pressure, owned_nodes),
+             dents,
+             contact::node_columns(step.contact, moving_gap(*problem_, step.contact, s.contact.dent), owned_nodes),
+             energies_after(*problem_, s, before_ ? &*before_ : nullptr, last_forces_.get(), *forces)};
   last_forces_ = forces;
   return s;
 }

@@ -39,8 +39,11 @@ struct Memory {
   double time = 0;
   RCP<const Vector> displacement;  ///< (owned dofs) from 0 [m]
   RCP<const MultiVector> pressure; ///< (owned nodes; sides) [Pa]
-  RCP<const MultiVector> dent;     ///< (owned nodes; sides) w, 0 where a side does not remember [m]
-  RCP<const MultiVector> gap;      ///< (owned nodes; sides) g, to the surface without dents [m]
+  RCP<const MultiVector>
+      dent; ///< (owned nodes; sides) w, 0 where a side does not remember [m]; of a side whose dents move with
+            ///< the foundation, at the nodes' places in the mesh, see contact/moving_dents.hpp
+  RCP<const MultiVector> gap; ///< (owned nodes; sides) g, to the surface without dents; where points move along dents,
+                              ///< to the surface with those that they stand on [m]
   Energies energies;
 };
 
@@ -49,6 +52,8 @@ struct StepRecord {
   double time = 0;
   bool converged = false;
   int parts = 1; ///< steps that it took: more than one where it was halved
+  int solves =
+      0; ///< of its parts: more than these where points met other dents at the places to which a solve had led them
   Energies energies;
   contact::ContactSums contact;
   std::vector<std::array<double, 3>> displacements; ///< mean prescribed ones of each Dirichlet condition [m]
