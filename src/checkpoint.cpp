@@ -61,6 +61,7 @@ json to_json(const StepRecord &r)
 {
   return {{"time", r.time},
           {"parts", r.parts},
+          {"solves", r.solves},
           {"energies", to_json(r.energies)},
           {"contact", to_json(r.contact)},
           {"displacements", r.displacements},
@@ -74,6 +75,7 @@ StepRecord record_from(const json &j)
   r.time = j.at("time");
   r.converged = true; // no other step is gone on from
   r.parts = j.at("parts");
+  r.solves = j.at("solves");
   r.energies = energies_from(j.at("energies"));
   r.contact = sums_from(j.at("contact"));
   r.displacements = j.at("displacements").get<std::vector<std::array<double, 3>>>();

@@ -56,13 +56,26 @@ TEST(MovingDents, AreMetWhereTheyLieAfterAMoveByWholeCells)
     expect_at_side(d, "bottom", *met, expected, 1e-14);
 
     auto beside = on("bottom"); // the obstacle moves instead
-    beside.obstacle.kind = contact::Obstacle::Kind::plane;
-    beside.obstacle.normal = {0, 1, 0};
-    beside.obstacle.origin = {7, 0, 1};
-    for (int c = 0; c < 3; ++c) beside.obstacle.point[c] = beside.obstacle.origin[c] - move[c];
     beside.normal = contact::Normal::foundation;
+    beside.obstacle.normal = {0, 1, 0};
     const Vector none(d.owned_dofs);
-    expect_at_side(d, "bottom", *contact::dents_met(d, {beside}, dents, none), expected, 1e-14);
+    for (const auto kind : {contact::Obstacle::Kind::plane, contact::Obstacle::Kind::sphere}) {
+      const bool plane = kind == contact::Obstacle::Kind::plane;
+      beside.obstacle.kind = kind;
+      beside.obstacle.origin = {1.7, -2, element.dim == 3 ? -0.4 : 0};
+      for (int c = 0; c < 3; ++c)
+        beside.obstacle.point[c] = beside.obstacle.origin[c] - (c != 1 || plane ? move[c] : 0);
+      expect_at_side(d, "bottom", *contact::dents_met(d, {beside}, dents, none), expected, 1e-14);
+      const auto added = rcp(new MultiVector(d.mesh->owned_nodes, 1));
+      contact::add_where_they_lie(d, {beside}, *met, none, *added);
+      expect_at_side(
+          d, "bottom", *added,
+          [&](const Point &y) {
+            const bool under_the_body = y[0] > 1 + move[0] - 1e-9 && y[2] < move[2] + 1e-9;
+            return under_the_body ? dent(y) : 0;
+          },
+          1e-14);
+    }
 
     auto with_body = on("bottom");
     with_body.dents_move_with = DentsMoveWith::body;
