@@ -5,7 +5,7 @@
 
 #include <vector>
 
-/// Dents of a foundation that the body's points move along.                               doc/theory.md, section 11
+/// Dents of a foundation that the body's points move along.                               doc/theory.md (11.4)
 ///
 /// Where "Dents Move With" = foundation, the dents of a side lie on the foundation's surface: that of node j lies where the node is
 /// in the mesh, seen from the foundation, which is where it was at the first step. Point i stands at
