@@ -28,8 +28,8 @@ struct NewtonContext {
   double step_length = 1;
   bool full_step = false; ///< the line search takes the direction as it is
   int linear_iterations = 0;
-  GO changes = 0;      ///< places where the last Hessian changed
-  std::string failure; ///< of the linear solver or the line search
+  GO changes = 0;           ///< places where the last Hessian changed
+  std::string failure = {}; ///< of the linear solver or the line search
 };
 
 /// A point of the Newton iteration: u, F(u) and the Newton direction. NOX holds two of them. doc/theory.md (4.2)
