@@ -791,7 +791,8 @@ ContactEnergy SmoothedFunctional::contact_energy(const Vector &u) const
         if (c.fixed(i)) return;
         const double v = penetration(c, i, x), p = lambda(i);
         Foundation f = foundation(c, i);
-        dissipated += c.weight(i) * dissipation(new_dent(v, p, f), p, f);
+        const double dent = v - f.compliance * p;
+        if (dent > 0) dissipated += c.weight(i) * larger(0, dissipation(dent, p, f));
         if (f.yield > bound) f.yield = bound;
         duality_gap += c.weight(i) * (foundation_energy(v, f) + conjugate_energy(p, f) - p * v);
       },

@@ -25,7 +25,7 @@ struct Obstacle {
   double radius = 0;               ///< of a sphere or cylinder [m]
   bool encloses = false;           ///< the body lies inside of the sphere or cylinder, the foundation outside
   Point axis{};                    ///< of a cylinder, unit
-  std::array<ScalarField, 3> path; ///< coordinates of `point` that change with time [m]; constant ones are not read
+  std::array<ScalarField, 3> path = {}; ///< coordinates of `point` that change with time [m]; constant ones are not read
   Point origin{};                  ///< where `point` is at the first of several steps [m]
 
   /// The same, with `point` where it is at a time.

@@ -16,7 +16,8 @@ struct StateCounts {
 /// Energies of (u, lambda) at the contact nodes, over all ranks.
 struct ContactEnergy {
   double dissipated =
-      0; ///< sum_i w_i int (xi_i + H_i w) dw over the new dents [J]; perfectly plastic: xi_i v_i+   (3.14)
+      0; ///< sum_i w_i (lambda_i - H_i d_i / 2) d_i, d = (v - c lambda)+ [J]; where the law holds the work that new dents
+         ///< have taken up; perfectly plastic: lambda_i v_i+                                                     (3.14)
   double duality_gap =
       0; ///< sum_i w_i (psi_i(v_i) + psi_i*(lambda_i) - lambda_i v_i) [J], each term >= 0: what the contact
          ///< law misses, with twice the largest multiplier in place of any higher xi               (5.5)
