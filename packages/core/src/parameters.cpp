@@ -112,14 +112,10 @@ std::optional<Array<T>> read_array(const std::string &text)
   return values;
 }
 
-/// "{0, min(t, 1) - 0.5}": the texts between commas that stand in no parentheses.
-std::optional<Array<std::string>> read_fields(const std::string &text)
+/// "0, min(t, 1) - 0.5": the texts between commas that stand in no parentheses, without blanks around them.
+std::vector<std::string> split_fields(const std::string &texts)
 {
-  const auto first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
-  if (first == std::string::npos || first == last || text[first] != '{' || text[last] != '}') return std::nullopt;
-  Array<std::string> fields;
-  const std::string inside = text.substr(first + 1, last - first - 1);
-  if (inside.find_first_not_of(' ') == std::string::npos) return fields;
+  std::vector<std::string> fields;
   int depth = 0;
   std::string field;
   const auto add = [&] {
@@ -127,7 +123,7 @@ std::optional<Array<std::string>> read_fields(const std::string &text)
     fields.push_back(begin == std::string::npos ? "" : field.substr(begin, end - begin + 1));
     field.clear();
   };
-  for (const char c : inside) {
+  for (const char c : texts) {
     depth += c == '(' ? 1 : c == ')' ? -1 : 0;
     if (c == ',' && depth == 0)
       add();
@@ -136,6 +132,16 @@ std::optional<Array<std::string>> read_fields(const std::string &text)
   }
   add();
   return fields;
+}
+
+/// "{0, min(t, 1) - 0.5}".
+std::optional<Array<std::string>> read_fields(const std::string &text)
+{
+  const auto first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
+  if (first == std::string::npos || first == last || text[first] != '{' || text[last] != '}') return std::nullopt;
+  const std::string inside = text.substr(first + 1, last - first - 1);
+  if (inside.find_first_not_of(' ') == std::string::npos) return Array<std::string>();
+  return Array<std::string>(split_fields(inside));
 }
 
 /// The text as the type of `model`, or as the first type that fits where there is no model.
@@ -230,9 +236,11 @@ std::vector<std::string> field_texts(const ParameterList &list, const std::strin
 {
   const ParameterEntry &entry = list.getEntry(name);
   if (entry.isType<Array<std::string>>()) {
-    // What Teuchos reads from a deck keeps the blanks between the commas.
-    const auto &texts = Teuchos::getValue<Array<std::string>>(entry);
-    return {texts.begin(), texts.end()};
+    // What Teuchos reads from a deck it has cut at all commas, those between parentheses too.
+    const auto &pieces = Teuchos::getValue<Array<std::string>>(entry);
+    std::string texts;
+    for (int k = 0; k < static_cast<int>(pieces.size()); ++k) texts += (k > 0 ? "," : "") + pieces[k];
+    return pieces.empty() ? std::vector<std::string>() : split_fields(texts);
   }
   std::vector<std::string> texts;
   const auto add = [&](const auto &numbers) {

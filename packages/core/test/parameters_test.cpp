@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace
 {
@@ -33,6 +35,7 @@ ParameterList valid_deck()
   contact.set("Steps", 3, "Number of steps.");
   contact.set("Verbose", false, "Whether to talk.");
   rpc::set_field(contact, "Gap", "0", "Gap [m].");
+  rpc::set_fields(contact, "Centre", "Where it is [m].");
   rpc::set_pass_through(valid, "NOX", "Handed on to NOX.");
   entry.set("Side", "", "Side of the mesh.");
   rpc::set_field(entry, "X", "", "Displacement [m].");
@@ -265,6 +268,54 @@ TEST(FieldText, DoublesKeepAllTheirDigits)
     list.set("Gap", value);
     EXPECT_EQ(std::stod(field_text(list, "Gap")), value) << field_text(list, "Gap");
   }
+}
+
+using Texts = std::vector<std::string>;
+
+TEST(FieldTexts, AreReadFromNumbersAndFromExpressions)
+{
+  const auto read = [](const auto &array) {
+    ParameterList deck;
+    deck.sublist("Contact").set("Centre", array);
+    rpc::validate(deck, valid_deck());
+    return rpc::field_texts(deck.sublist("Contact"), "Centre");
+  };
+  EXPECT_EQ(read(Array<int>(tuple(1, -2))), (Texts{"1", "-2"}));
+  EXPECT_EQ(read(Array<double>(tuple(0.1, 1e-300, 3.))),
+            (Texts{"0.10000000000000001", "1.0000000000000001e-300", "3"}));
+  EXPECT_EQ(read(Array<std::string>(tuple<std::string>("0", "0.1*t"))), (Texts{"0", "0.1*t"}));
+  EXPECT_EQ(read(Array<std::string>()), Texts{});
+  ParameterList deck;
+  rpc::validate(deck, valid_deck());
+  EXPECT_EQ(rpc::field_texts(deck.sublist("Contact"), "Centre"), Texts{});
+}
+
+TEST(FieldTexts, CommasBetweenParenthesesCutNoExpression)
+{
+  // As Teuchos cuts "{min(t, max(1, 2)), 0, (t)}" in a deck.
+  ParameterList list;
+  list.set("Centre", Array<std::string>(tuple<std::string>("min(t", " max(1", " 2))", " 0 ", " (t)")));
+  EXPECT_EQ(rpc::field_texts(list, "Centre"), (Texts{"min(t, max(1, 2))", "0", "(t)"}));
+  const auto set = [](const std::string &text) {
+    ParameterList deck = assigned("Contact->Centre=" + text);
+    rpc::validate(deck, valid_deck());
+    return rpc::field_texts(deck.sublist("Contact"), "Centre");
+  };
+  EXPECT_EQ(set("{min(t, max(1, 2)), 0, (t)}"), (Texts{"min(t, max(1, 2))", "0", "(t)"}));
+  EXPECT_EQ(set(" { 0.5 } "), Texts{"0.5"});
+  EXPECT_EQ(set("{1, -2}"), (Texts{"1", "-2"}));
+  EXPECT_EQ(set("{}"), Texts{});
+}
+
+TEST(FieldTexts, AreRefusedByTheirRuleWhereTheyAreNoArray)
+{
+  for (const std::string text : {"0", "t", "0, t", "{0, t", ""})
+    expect_refused("Contact->Centre=" + text, {"\"Contact->Centre\"", "array of numbers or expressions", "{0, 0.1*t}"});
+  ParameterList deck;
+  deck.sublist("Contact").set("Centre", 3);
+  expect_invalid(deck, {"\"Contact->Centre\"", "array of numbers or expressions", "int"});
+  deck.sublist("Contact").set("Centre", Array<int>(tuple(3)));
+  rpc::validate(deck, valid_deck());
 }
 
 TEST(Validate, RefusedValueIsSpeltAsInADeck)
