@@ -408,4 +408,82 @@ TEST(ContactNodes, PressedIntoARigidFoundationNameItsSide)
   });
 }
 
+/// w(x, y) at all nodes, for one side each.
+RCP<MultiVector> dents_of(const fem::Discretization &d, const std::vector<std::function<double(double, double)>> &sides)
+{
+  const auto dents = rcp(new MultiVector(d.mesh->owned_nodes, sides.size()));
+  const auto to = dents->getLocalViewHost(Tpetra::Access::OverwriteAll);
+  const auto coords = to_host(d.mesh->coords);
+  for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n)
+    for (std::size_t k = 0; k < sides.size(); ++k) to(n, k) = sides[k](coords(n, 0), coords(n, 1));
+  return dents;
+}
+
+TEST(ContactNodes, DentsMoveTheFoundationAwayAndHardenIt)
+{
+  const auto d = body();
+  auto floor = touching("bottom"), wall = touching("left");
+  floor.yield_stress = ScalarField("1+x", [](const Point &x) { return 1 + x[0]; });
+  floor.hardening = ScalarField("5+x", [](const Point &x) { return 5 + x[0]; });
+  floor.stiffness = ScalarField("2+x", [](const Point &x) { return 2 + x[0]; });
+  floor.gap = ScalarField(0.1);
+  wall.yield_stress = ScalarField(7.);
+  wall.gap = ScalarField(-0.05);
+  const auto of_floor = [](const double x, double) { return 0.02 * x; };
+  const auto of_wall = [](double, const double y) { return 0.3 + y; };
+  const auto dents = dents_of(d, {of_floor, of_wall});
+  const auto none = fem::dirichlet_dofs(d, {});
+  const auto c = contact::contact_nodes(d, {floor, wall}, none, {}, dents.get()),
+             bare = contact::contact_nodes(d, {floor, wall}, none);
+  const auto coords = to_host(d.mesh->coords);
+  const auto node = to_host(c.node);
+  const auto gap = to_host(c.gap), free_gap = to_host(c.free_gap), dent = to_host(c.dent), yield = to_host(c.yield),
+             hardening = to_host(c.hardening), compliance = to_host(c.compliance);
+  const auto bare_dent = to_host(bare.dent), bare_yield = to_host(bare.yield), bare_gap = to_host(bare.free_gap);
+  ASSERT_EQ(c.num_total, 8);
+  for (LO i = 0; i < c.size(); ++i) {
+    const double x = coords(node(i), 0), y = coords(node(i), 1);
+    const bool on_floor = i < c.first(1);
+    EXPECT_EQ(dent(i), on_floor ? of_floor(x, y) : of_wall(x, y));
+    EXPECT_EQ(gap(i), on_floor ? 0.1 : -0.05); // to the surface without dents
+    EXPECT_NEAR(free_gap(i), gap(i) + dent(i), 1e-16);
+    EXPECT_NEAR(yield(i), on_floor ? 1 + x + (5 + x) * 0.02 * x : 7, 1e-15);
+    EXPECT_EQ(hardening(i), on_floor ? 5 + x : 0);
+    EXPECT_NEAR(compliance(i), on_floor ? 1 / (2 + x) : 0, 1e-16);
+    EXPECT_EQ(bare_dent(i), 0);
+    EXPECT_EQ(bare_yield(i), on_floor ? 1 + x : 7);
+    EXPECT_EQ(bare_gap(i), gap(i));
+  }
+}
+
+TEST(ContactNodes, RefuseNumbersOfTheLawThatAreOutOfRangeSomewhere)
+{
+  const auto d = body();
+  auto floor = touching("bottom");
+  floor.hardening = ScalarField("1-x", [](const Point &x) { return 1 - x[0]; });
+  expect_error(ExitCode::bad_input, {"\"Contact->Hardening\"", ">= 0 [Pa/m]", "got -", "\"1-x\"", ", 0)"},
+               [&] { nodes_of(d, {floor}); });
+  floor.hardening = ScalarField("1/x", [](const Point &x) { return 1 / x[0]; });
+  expect_error(ExitCode::bad_input, {"\"Contact->Hardening\"", "finite", "inf", "\"1/x\"", "(0, 0)"},
+               [&] { nodes_of(d, {floor}); });
+  floor.hardening = ScalarField(0.);
+  floor.stiffness = ScalarField("x", [](const Point &x) { return x[0]; });
+  expect_error(ExitCode::bad_input, {"\"Contact->Stiffness\"", "> 0 [Pa/m]", "got 0", "\"x\"", "(0, 0)"},
+               [&] { nodes_of(d, {floor}); });
+  floor.stiffness = ScalarField("1/x", [](const Point &x) { return 1 / x[0]; }); // rigid at x = 0
+  EXPECT_EQ(nodes_of(d, {floor}).num_total, 5);
+}
+
+TEST(ContactNodes, MayBePressedIntoAFoundationThatNeverYieldsButGivesWayElastically)
+{
+  const auto d = body();
+  const auto held = fem::dirichlet_dofs(d, {{"left", "left", {ScalarField(0.), ScalarField(-0.1)}}});
+  auto floor = touching("bottom");
+  floor.stiffness = ScalarField(50.);
+  EXPECT_EQ(contact::contact_nodes(d, {floor}, held).num_fixed, 1);
+  // A dent as deep as that makes room in a rigid one too.
+  const auto dents = dents_of(d, {[](double, double) { return 0.1; }});
+  EXPECT_EQ(contact::contact_nodes(d, {touching("bottom")}, held, {}, dents.get()).num_fixed, 1);
+}
+
 } // namespace

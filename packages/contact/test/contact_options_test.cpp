@@ -71,7 +71,10 @@ TEST(ContactOptions, DefaultsAreARigidFoundationWithoutGapAlongTheSurfaceNormal)
   EXPECT_EQ(options[0].side, "bottom");
   EXPECT_EQ(options[0].yield_stress.constant, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(options[0].gap.is_zero());
-  EXPECT_EQ(options[0].penalty, 0); // auto
+  EXPECT_TRUE(options[0].hardening.is_zero());
+  EXPECT_EQ(options[0].stiffness.constant, std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(options[0].remembers); // auto
+  EXPECT_EQ(options[0].penalty, 0);  // auto
   EXPECT_EQ(options[0].normal, Normal::surface);
   EXPECT_EQ(options[0].obstacle.kind, Obstacle::Kind::none);
 }
@@ -180,6 +183,7 @@ TEST(ContactOptions, ValuesOutOfRangeAreRefusedByPathOnASideOrNone)
   };
   for (const double value : {0., -1., nan}) refused("Yield Stress", value);
   for (const double value : {0., -1., nan, inf}) refused("Penalty", value);
+  for (const double value : {0., -1., nan, -inf}) refused("Stiffness", value);
   ParameterList obstacle;
   obstacle.sublist("Sides").sublist("wall").sublist("Obstacle").set("Type", "cone");
   expect_refused(obstacle, {"\"Contact->Sides->wall->Obstacle->Type\"", "\"cone\""});
@@ -196,6 +200,33 @@ TEST(ContactOptions, SayWhatDentsMoveWith)
   list = bottom();
   list.set("Dents Move With", "obstacle");
   expect_refused(list, {"Contact->Dents Move With", "body or foundation", "obstacle"});
+}
+
+TEST(ContactOptions, HardeningIsFiniteAndNotNegative)
+{
+  EXPECT_EQ(read(bottom().set("Hardening", 0))[0].hardening.constant, 0);
+  EXPECT_EQ(read(bottom().set("Hardening", 2.5))[0].hardening.constant, 2.5);
+  for (const std::string text : {"-1", "-1e-300", "nan", "inf", "-inf"})
+    expect_refused(bottom().set("Hardening", text), {"\"Contact->Hardening\"", ">= 0 [Pa/m]", "finite", "got " + text});
+}
+
+TEST(ContactOptions, StiffnessMayBeInfinite)
+{
+  EXPECT_EQ(read(bottom().set("Stiffness", 1e9))[0].stiffness.constant, 1e9);
+  EXPECT_EQ(read(bottom().set("Stiffness", "inf"))[0].stiffness.constant, std::numeric_limits<double>::infinity());
+}
+
+TEST(ContactOptions, AFoundationRemembersUnlessToldNotTo)
+{
+  EXPECT_TRUE(read(bottom().set("Remembers", "auto"))[0].remembers);
+  EXPECT_TRUE(read(bottom().set("Remembers", "true"))[0].remembers);
+  EXPECT_FALSE(read(bottom().set("Remembers", "false"))[0].remembers);
+  for (const std::string text : {"True", "no", ""})
+    expect_refused(bottom().set("Remembers", text),
+                   {"\"Contact->Remembers\"", "auto, true, false", "got \"" + text + "\""});
+  ParameterList entry;
+  entry.sublist("Sides").sublist("wall").set("Remembers", "never");
+  expect_refused(entry, {"\"Contact->Sides->wall->Remembers\"", "\"never\""});
 }
 
 } // namespace

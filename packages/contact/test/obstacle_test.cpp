@@ -195,7 +195,8 @@ TEST(ObstacleOptions, RefuseWhatDoesNotFit)
     expect_error(ExitCode::bad_input, words, [&] { read(list); });
   };
   refuse("one of none, plane, sphere, circle, cylinder", [](auto &list) { list.set("Type", "cone"); });
-  refuse("must hold 2 numbers, got 3", [](auto &list) { list.set("Point", Numbers(Teuchos::tuple(0., 0., 0.))); });
+  refuse("must hold 2 numbers or expressions of t, got 3",
+         [](auto &list) { list.set("Point", Numbers(Teuchos::tuple(0., 0., 0.))); });
   refuse("must hold 2 numbers, got 0", [](auto &list) { list.remove("Normal"); });
   refuse("length > 0", [](auto &list) { list.set("Normal", Numbers(Teuchos::tuple(0., 0.))); });
   refuse("does not go with", [](auto &list) { list.set("Radius", 1.); });
@@ -206,6 +207,64 @@ TEST(ObstacleOptions, RefuseWhatDoesNotFit)
     list.set("Type", "circle");
     list.set("Centre", Numbers(Teuchos::tuple(0., 0.)));
   });
+}
+
+TEST(Obstacle, PointsAndCentresMoveWithTime)
+{
+  Teuchos::ParameterList floor;
+  floor.set("Type", "plane");
+  floor.set("Point", Teuchos::Array<std::string>(Teuchos::tuple<std::string>("5", "t")));
+  floor.set("Normal", Numbers(Teuchos::tuple(0., 1.)));
+  const Obstacle at_first = read(floor), later = at_first.seen_at(3);
+  EXPECT_EQ(at_first.point, (Point{5, 2, 0})); // the test's parser takes it for 2 t, seen at t = 1
+  EXPECT_EQ(later.point, (Point{5, 6, 0}));
+  EXPECT_EQ(*distance_along(later, {1, 10}, {0, -1}), 4);
+  EXPECT_EQ(later.seen_at(0.5).point, (Point{5, 1, 0}));
+
+  Teuchos::ParameterList ball;
+  ball.set("Type", "sphere");
+  ball.set("Centre", Teuchos::Array<std::string>(Teuchos::tuple<std::string>("t", "0", "-4")));
+  ball.set("Radius", 2.);
+  EXPECT_EQ(read(ball, 3).seen_at(2).point, (Point{4, 0, -4}));
+
+  Teuchos::ParameterList rod = cylinder_list(false);
+  rod.set("Point", Teuchos::Array<std::string>(Teuchos::tuple<std::string>("1", "2", "t")));
+  EXPECT_EQ(read(rod, 3).seen_at(2).point, (Point{1, 2, 4}));
+  EXPECT_EQ(read(cylinder_list(false), 3).seen_at(2).point, (Point{1, 2, -7})); // numbers stay where they are
+
+  // Made without a deck: where it is said to be, whatever the time.
+  const Obstacle made{Obstacle::Kind::plane, {7, 8, 0}, {0, 1, 0}};
+  EXPECT_EQ(made.seen_at(5).point, (Point{7, 8, 0}));
+}
+
+TEST(Obstacle, MovesWithTimeAloneAndToPlacesAlone)
+{
+  const auto refuses = [](const ScalarField &field, const std::initializer_list<std::string> &parts) {
+    Teuchos::ParameterList list;
+    list.set("Type", "plane");
+    list.set("Point", Teuchos::Array<std::string>(Teuchos::tuple<std::string>("0", "formula")));
+    list.set("Normal", Numbers(Teuchos::tuple(0., 1.)));
+    validate(list, contact::valid_obstacle_parameters());
+    const auto parse = [&](const std::string &text, const std::string &) {
+      return text == "formula" ? field : ScalarField(std::stod(text));
+    };
+    expect_error(ExitCode::bad_input, parts, [&] { contact::obstacle_options(list, 2, "Contact->Obstacle", parse); });
+  };
+  const std::string name = "\"Contact->Obstacle->Point\"";
+  for (int c = 0; c < 3; ++c)
+    refuses(ScalarField("formula", [c](const Point &x, const double t) { return t + x[c]; }),
+            {name, "must not depend on x, y or z", "formula"});
+  refuses(ScalarField("formula", [](const Point &, double) { return std::nan(""); }), {name, "finite", "formula"});
+}
+
+TEST(Obstacle, TakesAsManyCoordinatesAsThereAreDimensions)
+{
+  Teuchos::ParameterList list;
+  list.set("Type", "circle");
+  list.set("Radius", 1.);
+  list.set("Centre", Teuchos::Array<std::string>(Teuchos::tuple<std::string>("t", "0", "0")));
+  expect_error(ExitCode::bad_input, {"\"Contact->Obstacle->Centre\"", "must hold 2 numbers or expressions of t, got 3"},
+               [&] { read(list); });
 }
 
 } // namespace

@@ -182,4 +182,109 @@ TEST(ContactForces, AddUpAtANodeOfTwoSidesAndReachHeldNodes)
   EXPECT_EQ(sum_all(solved.scene.d.mesh->comm(), held), 1); // it is held in the foundation, which yields
 }
 
+/// The same with dents from before, on foundations that harden and are elastic.
+struct SolvedOnDents {
+  Scene scene;
+  RCP<Vector> u;
+  ContactResult result;
+
+  SolvedOnDents() : scene(options())
+  {
+    const auto dents = rcp(new MultiVector(scene.d.mesh->owned_nodes, 2));
+    const auto coords = to_host(scene.d.mesh->coords);
+    const auto to = dents->getLocalViewHost(Tpetra::Access::OverwriteAll);
+    for (LO n = 0; n < scene.d.mesh->num_owned_nodes(); ++n) {
+      to(n, 0) = 0.01 * coords(n, 0);
+      to(n, 1) = 0.004 * (1 - coords(n, 1));
+    }
+    const auto &problem = scene.functional->problem();
+    const auto nodes = contact::contact_nodes(scene.d, options(), problem.dirichlet, scene.material, dents.get());
+    const auto K =
+        fem::eliminate_dirichlet(scene.d, fem::assemble_stiffness(scene.d, scene.material), problem.dirichlet);
+    scene.functional =
+        std::make_shared<contact::SmoothedFunctional>(problem, nodes, rcp(new UpdatedOperator(K.matrix, nodes)));
+    u = scene.vector(0.08, 3.1);
+    for (int k = 0; k < 400; ++k) scene.functional->update_multipliers(*u); // to the law, at this u
+    const auto &mesh = *scene.d.mesh;
+    result = contact::contact_result(scene.d, {&mesh.side("bottom", "test"), &mesh.side("right", "test")},
+                                     *scene.functional, *u);
+  }
+  static std::vector<contact::ContactOptions> options()
+  {
+    std::vector options{below(40), beside(25)};
+    options[0].hardening = ScalarField(9.);
+    options[1].stiffness = ScalarField(80.);
+    return options;
+  }
+};
+
+TEST(ContactResult, DentsGrowByWhatTheFoundationGaveWayAndPenetrationIsMeasuredFromItsFirstSurface)
+{
+  const SolvedOnDents solved;
+  const auto &c = solved.scene.functional->contact();
+  const Comm &comm = solved.scene.d.mesh->comm();
+  const auto before = to_host(c.dent), dent = to_host(solved.result.dent), p = to_host(solved.result.pressure),
+             v = to_host(solved.result.penetration), u_nu = to_host(solved.result.normal_displacement),
+             gap = to_host(c.gap), xi = to_host(c.yield), H = to_host(c.hardening), compliance = to_host(c.compliance),
+             weight = to_host(c.weight);
+  const auto fixed = to_host(c.fixed);
+  GO grown = 0, kept = 0;
+  for (int side = 0; side < 2; ++side) {
+    double deepest = 0, volume = 0, dissipated = 0, stored = 0;
+    for (LO i = c.first(side); i < c.first(side + 1); ++i) {
+      EXPECT_NEAR(v(i), u_nu(i) - gap(i), 1e-16);
+      EXPECT_GE(dent(i), before(i));
+      if (p(i) < xi(i)) {
+        EXPECT_EQ(dent(i), before(i));
+        kept += before(i) > 0 && p(i) > 0;
+      } else if (!fixed(i)) {
+        EXPECT_NEAR(dent(i), v(i) - compliance(i) * p(i), 1e-15);
+        EXPECT_NEAR(p(i), xi(i) + H(i) * (dent(i) - before(i)), 1e-12);
+        grown += dent(i) > before(i);
+      }
+      const double more = dent(i) - before(i);
+      deepest = std::max(deepest, dent(i));
+      volume += weight(i) * dent(i);
+      dissipated += weight(i) * (xi(i) * more + 0.5 * H(i) * more * more);
+      stored += weight(i) * 0.5 * compliance(i) * p(i) * p(i);
+    }
+    const ContactSums &sums = solved.result.sides[side];
+    EXPECT_EQ(sums.max_dent, max_all(comm, deepest));
+    EXPECT_NEAR(sums.dent_volume, sum_all(comm, volume), 1e-16);
+    EXPECT_NEAR(sums.dissipated, sum_all(comm, dissipated), 1e-13);
+    EXPECT_NEAR(sums.foundation_energy, sum_all(comm, stored), 1e-14);
+    EXPECT_GT(sums.dissipated, 0);
+    EXPECT_EQ(sums.foundation_energy > 0, side == 1);
+  }
+  EXPECT_GT(sum_all(comm, grown), 0);
+  EXPECT_GT(sum_all(comm, kept), 0);
+  const ContactSums &a = solved.result.sides[0], &b = solved.result.sides[1], &total = solved.result.total;
+  EXPECT_EQ(total.max_dent, std::max(a.max_dent, b.max_dent));
+  EXPECT_NEAR(total.dent_volume, a.dent_volume + b.dent_volume, 1e-16);
+  EXPECT_NEAR(total.dissipated, a.dissipated + b.dissipated, 1e-15);
+  EXPECT_NEAR(total.foundation_energy, a.foundation_energy + b.foundation_energy, 1e-15);
+}
+
+TEST(ContactResult, NodesThatAreHeldHaveThePressureOfTheirLawAtTheirPenetration)
+{
+  // Held 0.1 deep: in the spring of an elastic foundation, or past its limit.
+  for (const double yield : {3., 30.}) {
+    auto floor = below(40);
+    floor.gap = ScalarField(0.);
+    floor.yield_stress = ScalarField(yield);
+    floor.hardening = ScalarField(20.);
+    floor.stiffness = ScalarField(80.);
+    const Scene scene(std::vector{floor}, held("bottom", {0, -0.1, 0}));
+    const auto result = contact::contact_result(scene.d, {&scene.d.mesh->side("bottom", "test")}, *scene.functional,
+                                                *scene.functional->problem().dirichlet.value);
+    const auto p = to_host(result.pressure), dent = to_host(result.dent);
+    const double beyond = 0.1 - yield / 80, expected = yield == 3 ? 3 + beyond * 80 * 20 / 100 : 8;
+    for (std::size_t i = 0; i < p.extent(0); ++i) {
+      EXPECT_NEAR(p(i), expected, 1e-12);
+      EXPECT_NEAR(dent(i), yield == 3 ? 0.1 - expected / 80 : 0, 1e-14);
+    }
+    EXPECT_NEAR(result.total.force[1], 2 * expected, 1e-12);
+  }
+}
+
 } // namespace

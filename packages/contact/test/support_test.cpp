@@ -150,6 +150,20 @@ Scene tipping(const double yield, const double left, const double right) // [Pa]
   return scene;
 }
 
+TEST(Support, OfAFoundationThatHardensInPartsIsThatOfTheRestAtMost)
+{
+  // Its right half hardens: no load is too much there, but one on the left half is, which turns it about the right one.
+  const auto with = [](const double left, const double right) {
+    Scene scene = tipping(25, left, right);
+    scene.foundations.resize(1);
+    scene.held = {hold("bottom", {0})};
+    scene.foundations[0].hardening = ScalarField("step", [](const Point &x) { return x[0] > 2.1 ? 3. : 0.; });
+    return scene;
+  };
+  EXPECT_TRUE(with(1, 1e6).check().by_contact_only);
+  with(1e6, 1).refuses({"support: the load turns the body about (", "counterclockwise"});
+}
+
 TEST(Support, OfABodyBetweenWallsIsJudgedInEveryDirection)
 {
   // Walls keep it from moving sideways as far as they press: without a load they press on neither side, but both hold.
@@ -286,6 +300,22 @@ TEST(Support, SeesAWeakFloorBesideAStrongWall)
   Scene heavy = scene;
   heavy.tractions = {pull("top", 0, -1.1)};
   heavy.refuses({"side \"bottom\"", "4.4 [N/m]", "4 [N/m]"});
+}
+
+TEST(Support, OfAFoundationThatHardensHasNoLimit)
+{
+  const auto with = [](const double y, const double hardening, const double stiffness) {
+    Scene scene{plate(), {hold("left", {0})}, {on("bottom", 25)}, {pull("top", 0, y)}};
+    scene.foundations[0].hardening = ScalarField(hardening);
+    scene.foundations[0].stiffness = ScalarField(stiffness);
+    return scene;
+  };
+  EXPECT_TRUE(with(-1e9, 1e-3, inf).check().by_contact_only);
+  EXPECT_TRUE(with(-1e9, 1e-3, 7).check().by_contact_only);
+  with(1, 1e-3, inf).refuses({"pulls the body away from the foundation"});
+  // An elastic foundation that yields without hardening carries what a rigid one does.
+  EXPECT_TRUE(with(-0.99 * 25, 0, 7).check().by_contact_only);
+  with(-1.01 * 25, 0, 7).refuses({"carries at most 100 [N/m]"});
 }
 
 } // namespace
