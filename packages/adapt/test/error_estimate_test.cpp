@@ -266,4 +266,72 @@ TEST(ErrorEstimate, DoesNotCountWhatASolveLeavesOfPenetrationAtClosedNodes)
   }
 }
 
+/// What contradicts the law, 2 sum of (psi(v) + psi*(p) - p v) over the bottom, where all nodes are at the pressure p and the
+/// penetration v on dents w.
+double contradiction(const mesh::Element &element, const contact::ContactOptions &law, const double w, const double p,
+                     const double v)
+{
+  Squeezed body(element, 1, 0, p);
+  contact::ContactOptions options = law;
+  options.side = "bottom";
+  MultiVector dents(body.d.mesh->owned_nodes, 1);
+  dents.putScalar(w);
+  body.nodes = contact::contact_nodes(body.d, {options}, fem::dirichlet_dofs(body.d, {}), steel, &dents);
+  Kokkos::deep_copy(body.result.penetration, v);
+  const auto estimate = body.estimate();
+  const auto squared = to_host(estimate.squared);
+  for (LO cell = 0; cell < static_cast<LO>(squared.extent(0)); ++cell) EXPECT_GE(squared(cell), 0);
+  return estimate.complementarity;
+}
+
+TEST(ErrorEstimate, KnowsWhatContradictsTheLawOfOtherFoundations)
+{
+  contact::ContactOptions hardening, elastic, both;
+  hardening.yield_stress = elastic.yield_stress = both.yield_stress = ScalarField(20.);
+  hardening.hardening = both.hardening = ScalarField(300.);
+  elastic.stiffness = both.stiffness = ScalarField(1000.);
+  const double twice = 2 * Squeezed::length, slope = 1 / (1 / 1000. + 1 / 300.); // of spring and hardening in series
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    // v and p as the law has them, at first and on dents: xi + 300 w at v = w + 0.02.
+    for (const double w : {0., 0.05}) {
+      const double xi = 20 + 300 * w;
+      EXPECT_NEAR(contradiction(element, hardening, w, xi + 6, w + 0.02), 0, 1e-11);
+      EXPECT_NEAR(contradiction(element, hardening, w, 7, w), 0, 1e-11); // closed
+      EXPECT_NEAR(contradiction(element, elastic, w, 15, w + 0.015), 0, 1e-11);
+      EXPECT_NEAR(contradiction(element, elastic, w, 20, w + 0.06), 0, 1e-11);
+      EXPECT_NEAR(contradiction(element, both, w, 15, w + 0.015), 0, 1e-11);
+      EXPECT_NEAR(contradiction(element, both, w, xi + slope * 0.01, w + xi / 1000 + 0.01), 0, 1e-11);
+      // Off by 0.01 m on a branch of slope H, k or both.
+      EXPECT_NEAR(contradiction(element, hardening, w, xi + 6, w + 0.03), twice * 0.5 * 300 * 1e-4, 1e-10);
+      EXPECT_NEAR(contradiction(element, elastic, w, 11, w + 0.001), twice * 0.5 * 1000 * 1e-4, 1e-10);
+      EXPECT_NEAR(contradiction(element, both, w, xi + slope * 0.01, w + xi / 1000 + 0.02), twice * 0.5 * slope * 1e-4,
+                  1e-10);
+      // Pressure across a gap, less than all that the dent leaves: p d + what the spring would store.
+      EXPECT_NEAR(contradiction(element, hardening, w, 7, w - 0.01), twice * 7 * 0.01, 1e-10);
+      EXPECT_NEAR(contradiction(element, elastic, w, 7, w - 0.01), twice * (7 * 0.01 + 0.5 * 7 * 7 / 1000), 1e-10);
+    }
+  }
+}
+
+TEST(ErrorEstimate, OfAHardeningFoundationKnowsNoBoundOfThePressure)
+{
+  // The peak is no yield stress, which it may exceed further on.
+  for (const double hardening : {0., 300.}) {
+    Squeezed body({2, 1}, 20, 0, 26);
+    contact::ContactOptions options;
+    options.side = "bottom";
+    options.yield_stress = ScalarField(20.);
+    options.hardening = ScalarField(hardening);
+    body.nodes = contact::contact_nodes(body.d, {options}, fem::dirichlet_dofs(body.d, {}), steel);
+    Kokkos::deep_copy(body.result.penetration, 0.02);
+    if (hardening == 0) Kokkos::deep_copy(body.result.pressure, 20.);
+    body.result.total.max_pressure = hardening == 0 ? 20 : 26;
+    const auto estimate = body.estimate();
+    EXPECT_EQ(estimate.peak.at_bound, hardening == 0);
+    // What the stress tells of pressures that are the yield stress is nothing new; of hardening ones it is.
+    EXPECT_EQ(estimate.pressure > 0, hardening > 0);
+  }
+}
+
 } // namespace
