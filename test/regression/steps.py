@@ -1,0 +1,212 @@
+"""Load steps as a user gets them: their summary, table and film, and the same on several ranks."""
+
+import csv
+import json
+import math
+import struct
+import subprocess
+import unittest
+
+from rpc_run import BEAM, PROGRAM, RANKS, SMALL, RpcTestCase, errors, files
+
+# Up, back to a fifth, up again, on.
+TO_AND_FRO = "-20*sin(pi*x/5)*(t <= 1 ? t : t <= 2 ? 1.8 - 0.8*t : t <= 3 ? 0.8*t - 1.4 : 0.5*t - 0.5)"
+LOADED = [f"--set=Traction->top->Y={TO_AND_FRO}", "--set=Steps->Times={0.5, 1, 2, 3, 4}", "--set=Contact->Yield Stress=12"]
+LAWS = {"plastic": [], "hardening": ["--set=Contact->Hardening=300"], "elastic": ["--set=Contact->Stiffness=4000"],
+        "both": ["--set=Contact->Hardening=300", "--set=Contact->Stiffness=4000"]}
+COUNTS = {"parts", "newton_iterations", "linear_solves", "linear_iterations", "preconditioner_setups", "seconds"}
+
+
+class Film:
+    """Times and nodal variables of an Exodus file: NetCDF in its classic format, read by the manual."""
+
+    def __init__(self, path):
+        self.bytes, self.at = path.read_bytes(), 4
+        assert self.bytes[:3] == b"CDF" and self.bytes[3] in (1, 2, 5)
+        self.count, self.offset = (">Q" if self.bytes[3] == 5 else ">I"), (">I" if self.bytes[3] == 1 else ">Q")
+        records = self._number()
+        dimensions = self._entries(lambda: (self._name(), self._number()))
+        self._entries(self._attribute)
+        variables = dict(self._entries(self._variable))
+        sizes = [size for _, size in dimensions]
+        inner = lambda of: math.prod(size for size in (sizes[d] for d in of) if size > 0)
+        width = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8}
+        moving = {n: v for n, v in variables.items() if v[0] and sizes[v[0][0]] == 0}
+        stride = sum(-(-inner(of) * width[kind] // 4) * 4 for of, kind, _ in moving.values())
+        doubles = lambda at, n: list(struct.unpack_from(f">{n}d", self.bytes, at))
+        self.times = [doubles(variables["time_whole"][2] + k * stride, 1)[0] for k in range(records)]
+        of, _, at = variables["name_nod_var"]
+        length = sizes[of[1]]
+        names = [self.bytes[at + k * length:at + (k + 1) * length].split(b"\0")[0].decode().strip() for k in range(sizes[of[0]])]
+        self.nodal = {}
+        for k, name in enumerate(names, 1):
+            of, _, at = variables[f"vals_nod_var{k}"]
+            self.nodal[name] = [doubles(at + r * stride, inner(of)) for r in range(records)]
+
+    def _take(self, form):
+        value, = struct.unpack_from(form, self.bytes, self.at)
+        self.at += struct.calcsize(form)
+        return value
+
+    def _number(self):
+        return self._take(self.count)
+
+    def _name(self):
+        size = self._number()
+        name = self.bytes[self.at:self.at + size].decode()
+        self.at += -(-size // 4) * 4
+        return name
+
+    def _entries(self, read):
+        self._take(">I")
+        return [read() for _ in range(self._number())]
+
+    def _attribute(self):
+        self._name()
+        width = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8}[self._take(">I")]
+        size = self._number() * width
+        self.at += -(-size // 4) * 4
+
+    def _variable(self):
+        name = self._name()
+        of = [self._number() for _ in range(self._number())]
+        self._entries(self._attribute)
+        kind = self._take(">I")
+        self._number()
+        return name, (of, kind, self._take(self.offset))
+
+
+def rows(path):
+    return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(path.read_text().splitlines())]
+
+
+class Steps(RpcTestCase):
+    def expect_near(self, a, b, scale, name):
+        for x, y in zip(a if isinstance(a, list) else [a], b if isinstance(b, list) else [b]):
+            self.assertLessEqual(abs(x - y), 1e-10 * scale, name)
+
+    def test_every_step_is_in_the_summary_the_table_and_the_film(self):
+        summary = self.solve(*LOADED, *LAWS["both"])
+        steps = summary["steps"]
+        times = [0.5, 1, 2, 3, 4]
+        self.assertEqual([step["time"] for step in steps], times)
+        self.assertTrue(all(step["converged"] and step["parts"] == 1 for step in steps))
+        self.assertEqual((summary["time"], summary["matrix_assemblies"]), (4, 1))
+        for key in ["contact_force", "max_pressure", "max_penetration", "contact_length", "yielded_length", "max_dent", "dent_volume",
+                    "strain_energy"]:
+            self.assertEqual(summary[key], steps[-1][key], key)
+        dents = [step["max_dent"] for step in steps]
+        self.assertEqual(dents[0], 0)
+        self.assertGreater(dents[1], 1e-4)
+        self.assertEqual(dents[2], dents[1])
+        self.assertAlmostEqual(dents[3], dents[1], delta=1e-12)
+        self.assertGreater(dents[4], 1.1 * dents[3])
+        for key in ["strain_energy", "foundation_energy", "work"]:
+            self.assertLess(steps[2][key], 0.7 * steps[1][key], key)
+        self.assertEqual(steps[2]["dissipated_energy"], steps[1]["dissipated_energy"])
+
+        table = rows(self.folder / "out" / "beam.history.csv")
+        self.assertEqual(len(table), 5)
+        names = {"dissipated_energy": "dissipated_energy", "max_dent": "max_dent", "time": "time", "work": "work", "parts": "parts",
+                 "max_pressure": "max_pressure", "dent_volume": "dent_volume", "newton_iterations": "newton_iterations"}
+        for row, step in zip(table, steps):
+            for column, key in names.items():
+                self.assertEqual(row[column], step[key], column)
+            self.assertEqual([row["contact_force_x"], row["contact_force_y"]], step["contact_force"])
+            # what presses the beam down, the foundation and its ends hold up
+            load = 20 * [0.5, 1, 0.2, 1, 1.5][times.index(step["time"])] * 2 * 5 / math.pi
+            self.assertAlmostEqual(row["contact_force_y"] + row["left_reaction_y"] + row["right_reaction_y"], load, delta=0.02 * load)
+
+        film = Film(self.folder / "out" / "beam.e")
+        self.assertEqual(film.times, times)
+        for number, dent in enumerate(dents):
+            self.assertAlmostEqual(max(film.nodal["dent"][number]), dent, delta=1e-15)
+        last = rows_of_contact(self.folder / "out" / "beam.contact.csv")
+        self.assertAlmostEqual(max(row["dent"] for row in last), dents[-1], delta=1e-15)
+
+    def test_not_every_step_need_be_in_the_film(self):
+        for every, times in [(2, [1, 3, 4]), (3, [2, 4]), (9, [4])]:
+            summary = self.solve(*LOADED, f"--set=Steps->Write Every={every}")
+            self.assertEqual(len(summary["steps"]), 5)
+            self.assertEqual(Film(self.folder / "out" / "beam.e").times, times)
+
+    def test_without_steps_there_is_no_history(self):
+        summary = self.solve()
+        self.assertNotIn("steps", summary)
+        self.assertEqual(files(self.folder / "out"), ["beam.contact.csv", "beam.e", "beam.json"])
+        self.assertEqual(Film(self.folder / "out" / "beam.e").times, [1])
+
+    def test_one_step_is_the_run_without_steps(self):
+        for law in LAWS.values():
+            whole = self.solve(*law)
+            step = self.solve(*law, "--set=Steps->Times={1}")
+            for key in ["energy_J", "contact_force", "max_pressure", "max_dent", "newton_iterations", "linear_iterations"]:
+                self.assertEqual(step[key], whole[key], key)
+
+    def test_a_foundation_that_forgets_is_that_of_its_last_step(self):
+        alone = self.solve(*LOADED, "--set=Steps->Times={4}")
+        forgets = self.solve(*LOADED, "--set=Contact->Remembers=false")
+        remembers = self.solve(*LOADED)
+        scale = abs(alone["energy_J"])
+        self.assertAlmostEqual(forgets["energy_J"], alone["energy_J"], delta=1e-9 * scale)
+        self.assertGreater(abs(remembers["energy_J"] - alone["energy_J"]), 1e-3 * scale)
+        self.assertTrue(all(step["dissipated_energy"] == 0 for step in forgets["steps"]))
+
+    def test_an_obstacle_moves_along_its_expressions(self):
+        # A floor that rises into the beam is a gap that falls below zero; the way that its point goes aside is none.
+        free = ["--set=Traction->top->Y=0", "--set=Steps->Times={1, 2, 3}", *LAWS["both"]]
+        height = "(0.01*min(t, 2) - 0.004*max(t - 2, 0))"
+        moving = self.solve(*free, "--set=Contact->Obstacle->Type=plane", "--set=Contact->Obstacle->Normal={0, 1}",
+                            "--set=Contact->Obstacle->Point={7*t, " + height + "}")
+        gaps = self.solve(*free, f"--set=Contact->Gap=-{height}")
+        for a, b in zip(moving["steps"], gaps["steps"]):
+            for key in ["strain_energy", "dissipated_energy", "work", "max_dent", "max_pressure"]:
+                self.assertAlmostEqual(a[key], b[key], delta=1e-9 * max(step[key] for step in gaps["steps"]))
+        forces = [step["contact_force"][1] for step in moving["steps"]]
+        self.assertGreater(forces[0], 0)
+        self.assertGreater(forces[1], forces[0])
+        self.assertLess(forces[2], 0.9 * forces[1])
+        self.assertEqual(moving["matrix_assemblies"], 1)
+
+    def test_a_step_that_needs_more_iterations_than_allowed_is_halved_and_the_run_says_so(self):
+        hard = [*LOADED, "--set=Steps->Times={1}", "--set=Nested Iteration->Enabled=false", "--set=Uzawa->Maximum Iterations=1",
+                "--set=Contact->Gap=0.004*sin(pi*x/5)"]
+        needed = sum(self.solve(*hard)["newton_iterations"])
+        self.assertGreater(needed, 2)
+        few = [*hard, f"--set=NOX->Maximum Iterations={needed - 1}"]
+        stopped = self.solve(*few, "--set=Steps->Max Halvings=0", code=4)
+        self.assertFalse(stopped["steps"][-1]["converged"])
+        halved = self.solve(*few, "--set=Steps->Max Halvings=8")
+        self.assertEqual(len(halved["steps"]), 1)
+        self.assertGreater(halved["steps"][0]["parts"], 2)
+        self.assertEqual(rows(self.folder / "out" / "beam.history.csv")[0]["parts"], halved["steps"][0]["parts"])
+        self.assertEqual(Film(self.folder / "out" / "beam.e").times, [1])
+
+    def test_times_that_do_not_rise_are_refused(self):
+        result = self.rpc("--input=beam.xml", SMALL, "--set=Steps->Times={1, 2, 2}", code=None)
+        self.expect_refusal(result, 2, ['"Steps->Times"', "rise", "got 2 after 2"])
+        self.assertEqual(files(self.folder), [])
+
+    @unittest.skipIf(RANKS == 1, "on several ranks")
+    def test_histories_do_not_depend_on_the_number_of_ranks(self):
+        tight = ["--set=Uzawa->Tolerance=1e-11", "--set=NOX->Residual Tolerance=1e-12"]
+        for name, law in LAWS.items():
+            arguments = [f"--input={BEAM}", SMALL, *LOADED, *law, *tight]
+            alone = subprocess.run([PROGRAM, *arguments, "--output=alone"], cwd=self.folder, capture_output=True, text=True, timeout=600)
+            self.assertEqual((alone.returncode, errors(alone)), (0, []), alone.stdout + alone.stderr)
+            many = self.solve(*LOADED, *law, *tight)
+            one = json.loads((self.folder / "alone" / "beam.json").read_text())
+            self.assertEqual((one["ranks"], many["ranks"]), (1, RANKS))
+            for key in set(one["steps"][0]) - COUNTS:
+                value = lambda step: step[key] if isinstance(step[key], list) else [step[key]]
+                scale = max(max(map(abs, value(step))) for step in one["steps"])
+                for a, b in zip(one["steps"], many["steps"]):
+                    self.expect_near(value(a), value(b), scale, f"{name}: {key} at t = {a['time']}")
+
+
+def rows_of_contact(path):
+    return [{k: v if k in ("state", "side") else float(v) for k, v in row.items()} for row in csv.DictReader(path.read_text().splitlines())]
+
+
+if __name__ == "__main__":
+    unittest.main()
