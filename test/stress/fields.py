@@ -40,6 +40,26 @@ class Constant(Field):
 INFINITE = Constant(math.inf)
 
 
+class InTime(Field):
+    """A field times a factor of time: 0 at t = 0, factors[k - 1] at t = k, straight in between."""
+
+    def __init__(self, field, factors):
+        self.field, self.factors = field, factors
+        super().__init__(f"({field.text})*({ramp(factors)})", None)
+
+    def at(self, time):
+        return self.field * factor_at(self.factors, time)
+
+
+def ramp(factors):
+    """The expression of t for such factors."""
+    return " + ".join(f"({value!r})*max(0, 1 - abs(t - {k}))" for k, value in enumerate(factors, 1))
+
+
+def factor_at(factors, time):
+    return sum(value * max(0.0, 1 - abs(time - k)) for k, value in enumerate(factors, 1))
+
+
 def linear(at_zero, slope):
     return Field(f"{at_zero!r} + ({slope!r})*X", lambda x, y, z: at_zero + slope * x)
 

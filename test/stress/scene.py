@@ -3,7 +3,7 @@ import dataclasses
 import math
 from xml.sax.saxutils import quoteattr
 
-from fields import Constant
+from fields import Constant, InTime, factor_at, ramp
 
 COMPONENTS = "XYZ"
 AXISYMMETRIC = "axisymmetric"
@@ -39,7 +39,11 @@ class ContactSide:
     xi: object  # Field [stress]
     gap: object = Constant(0.0)  # Field [length], without an obstacle
     normal: object = None  # None: rpc's default; "surface", "foundation", or a vector
+    hardening: float = 0.0  # [stress/length]
+    stiffness: float = math.inf  # [stress/length]
+    remembers: bool = True
     obstacle: dict = None  # Type, and Point, Normal or Centre, Radius, Encloses Body or Point, Axis, Radius, Encloses Body
+    motion: tuple = None  # (direction, factors of time) in which its point or centre moves [length]
 
     def at(self, point, outward):
         """Normal and gap of a node; None if the normal misses the obstacle."""
@@ -62,6 +66,13 @@ class ContactSide:
         if square < 1e-18 or within < 0 or (sign < 0 < along and rest > 0):
             return None
         return nu, (sign * math.sqrt(within) - along) / square
+
+    def seen_at(self, time):
+        if not self.motion:
+            return self
+        name = "Centre" if "Centre" in self.obstacle else "Point"
+        place = tuple(a + d * factor_at(self.motion[1], time) for a, d in zip(self.obstacle[name], self.motion[0]))
+        return dataclasses.replace(self, obstacle={**self.obstacle, name: place}, motion=None)
 
     def _direction(self, outward, foundation):
         if self.normal == "surface":
@@ -87,6 +98,15 @@ class Scene:
     applied: list = None  # resultant of the load, where known
     units: tuple = (1.0, 1.0)  # of length and stress
     exodus: bool = False
+    times: list = None  # of load steps; fields are InTime then
+
+    def at(self, time):
+        """The scene as it is at one time."""
+        seen = lambda field: field.at(time) if isinstance(field, InTime) else field
+        return dataclasses.replace(
+            self, times=None, contact=[contact.seen_at(time) for contact in self.contact],
+            dirichlet={side: {c: seen(f) for c, f in fields.items()} for side, fields in self.dirichlet.items()},
+            traction={side: [seen(f) for f in fields] for side, fields in self.traction.items()})
 
     def load_power(self):
         """Forces are stresses times this power of the length."""
@@ -115,6 +135,8 @@ def _entry(name, value):
     if isinstance(value, bool):
         return _parameter(name, "bool", str(value).lower())
     if isinstance(value, (tuple, list)):
+        if all(isinstance(v, str) for v in value):
+            return _parameter(name, "Array(string)", "{" + ", ".join(value) + "}")
         kind = "int" if all(isinstance(v, int) for v in value) else "double"
         return _parameter(name, f"Array({kind})", "{" + ", ".join(repr(v) for v in value) + "}")
     kind = {float: "double", int: "int", str: "string"}[type(value)]
@@ -129,6 +151,12 @@ def _field(field, length, unit):
 
 def _contact(side, length, stress):
     entries = {"Side": side.side, "Yield Stress": "inf" if side.xi(0) == math.inf else _field(side.xi, length, stress)}
+    if side.hardening:
+        entries["Hardening"] = side.hardening * stress / length
+    if not math.isinf(side.stiffness):
+        entries["Stiffness"] = side.stiffness * stress / length
+    if not side.remembers:
+        entries["Remembers"] = "false"
     if isinstance(side.normal, str):
         entries["Normal"] = side.normal
     elif side.normal:
@@ -138,6 +166,9 @@ def _contact(side, length, stress):
     scaled = {"Point": length, "Centre": length, "Radius": length}
     times = lambda v, f: [float(x) * f for x in v] if isinstance(v, (list, tuple)) else float(v) * f
     obstacle = {k: times(v, scaled[k]) if k in scaled else v for k, v in side.obstacle.items()}
+    if side.motion:
+        name = "Centre" if "Centre" in obstacle else "Point"
+        obstacle[name] = [f"{x!r} + ({d * length!r})*({ramp(side.motion[1])})" for x, d in zip(obstacle[name], side.motion[0])]
     return {**entries, "Obstacle": obstacle}
 
 
@@ -164,6 +195,8 @@ def deck(scene, mesh_file=None):
     for number, side in enumerate(scene.contact[1:]):
         contact.setdefault("Sides", {})[f"further {number}"] = _contact(side, length, stress)
     lists["Contact"] = contact
+    if scene.times:
+        lists["Steps"] = {"Times": [float(t) for t in scene.times]}
     lists["Output"] = {"Exodus": scene.exodus}
     return _list("scene", lists) + "\n"
 

@@ -166,7 +166,8 @@ def check_numbers(scene, summary, rows, floor, complain):
     length, stress = scene.units
     sides = {contact.side: contact for contact in scene.contact}
     for row in rows:
-        xi = sides[row["side"]].xi(*(row[c] / length for c in "xyz"[:scene.dim])) * stress
+        side = sides[row["side"]]
+        xi = side.xi(*(row[c] / length for c in "xyz"[:scene.dim])) * stress + side.hardening * stress / length * row["dent"]
         if not 0 <= row["pressure"] <= xi * (1 + 1e-7) or any(not math.isfinite(v) for v in row.values() if isinstance(v, float)):
             complain(f"contact node at ({row['x']}, {row['y']}): pressure {row['pressure']}, xi {xi}")
             break
