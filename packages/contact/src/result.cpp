@@ -32,8 +32,15 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
   const auto from = device_read(value);
   Kokkos::parallel_for(
       "rpc::contact::completed_pressure", points, KOKKOS_LAMBDA(const LO i) {
-        if (c.fixed(i)) p(i) = admissible(from(c.node(i)), foundation(c, i));
+        if (!c.fixed(i)) return;
+        const bool rests = c.weight(i) > 0 && c.free_gap(i) == 0; // and has made no dent
+        p(i) = rests ? clamp(from(c.node(i)), 0, c.yield(i)) : admissible(from(c.node(i)), foundation(c, i));
       });
+}
+
+KOKKOS_INLINE_FUNCTION double larger_of_zero(const double x)
+{
+  return x > 0 ? x : 0;
 }
 
 /// Displacement, penetration and state of each node, from its pressure.
@@ -49,7 +56,11 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
         u_nu(i) = 0;
         for (int k = 0; k < c.dim; ++k) u_nu(i) += c.normal(i, k) * x(c.dof(i, k));
         v(i) = u_nu(i) - c.gap(i);
-        dent(i) = c.dent(i) + new_dent(v(i) - c.dent(i), p(i), foundation(c, i));
+        const Foundation f = foundation(c, i);
+        // Points without weight have the pressures of their neighbours, and the dents that go with them.
+        const bool lent = !(c.weight(i) > 0) && f.hardening > 0;
+        dent(i) =
+            c.dent(i) + (lent ? larger_of_zero((p(i) - f.yield) / f.hardening) : new_dent(v(i) - c.dent(i), p(i), f));
         s(i) = static_cast<int>(p(i) >= c.yield(i) ? State::yielding : (p(i) > 0 ? State::closed : State::open));
       });
   Kokkos::fence();
