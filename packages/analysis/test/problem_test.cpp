@@ -106,7 +106,8 @@ TEST(Problem, StepStartsFromTheStateOfTheOneBefore)
   const auto before = analysis::solve_step(problem, problem.step(0.9), {});
   const auto state = before.state();
   const auto step = problem.step(1);
-  const auto warm = analysis::solve_step(problem, step, {}, {state}), cold = analysis::solve_step(problem, step, {});
+  const auto warm = analysis::solve_step(problem, step, {}, {{state}, {}}),
+             cold = analysis::solve_step(problem, step, {});
   expect_equal(warm, cold);
   EXPECT_EQ(warm.linear.preconditioner_setups, 0) << "K is that of the step before";
   EXPECT_LE(warm.uzawa.newton_iterations[0], cold.uzawa.newton_iterations[0]);

@@ -315,13 +315,17 @@ TEST(FoundationLaw, NewDentBringsTheYieldLimitToThePressureAndTheRestIsInTheSpri
       const double p = pressure_at(v, f), w = new_dent(v, p, f);
       EXPECT_GE(w, 0) << name(f);
       EXPECT_LE(p, (f.yield + f.hardening * w) * (1 + 1e-14)) << name(f);
-      if (v > 0) EXPECT_NEAR(w + f.compliance * p, v, 1e-15) << name(f) << " " << v;
+      if (v > 0) {
+        EXPECT_NEAR(w + f.compliance * p, v, 1e-15) << name(f) << " " << v;
+      }
       // What pressing in took is in the spring, or lost.
       EXPECT_NEAR(foundation_energy(v, f), 0.5 * f.compliance * p * p + dissipation(w, p, f), 1e-14) << name(f);
       // Pressed again, as far as it is, it gives way no further.
       const Foundation after{f.yield + f.hardening * w, f.hardening, f.compliance};
       EXPECT_NEAR(new_dent(v - w, p, after), 0, 1e-16) << name(f);
-      if (f.compliance > 0) EXPECT_NEAR(pressure_at(v - w, after), p, 1e-13) << name(f);
+      if (f.compliance > 0) {
+        EXPECT_NEAR(pressure_at(v - w, after), p, 1e-13) << name(f);
+      }
     }
 }
 
