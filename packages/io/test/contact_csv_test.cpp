@@ -38,6 +38,7 @@ ContactTable empty_table(const std::size_t n, const int dim)
           HostView<double *>("u_nu", n),
           HostView<double *>("gap", n),
           HostView<double *>("pressure", n),
+          HostView<double *>("dent", n),
           HostView<int *>("state", n),
           {}};
 }
@@ -115,18 +116,20 @@ TEST_F(ContactCsv, WritesOneRowPerNodeExactly)
     dealt.u_nu(k) = 1e-300 * id;
     dealt.gap(k) = M_PI * id;
     dealt.pressure(k) = 2. / 3 * id;
+    dealt.dent(k) = 0.7 * id;
     dealt.state(k) = id;
   }
   write_contact_csv(path_, comm_, {dealt});
   comm_->barrier();
   const std::string text = text_of(path_);
-  EXPECT_EQ(text.substr(0, text.find('\n')), "x,y,s,u_nu,gap,pressure,state,side");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "x,y,s,u_nu,gap,pressure,state,side,dent");
   const auto rows = cells_of(text);
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(std::stod(rows[2][0]), 1. / 3);
   EXPECT_EQ(std::stod(rows[3][3]), 2e-300);
   EXPECT_EQ(std::stod(rows[2][4]), M_PI);
   EXPECT_EQ(std::stod(rows[2][5]), 2. / 3);
+  EXPECT_EQ(std::stod(rows[2][8]), 0.7);
   EXPECT_EQ(rows[1][0], "0.1");
   EXPECT_EQ(rows[1][6], "open");
   EXPECT_EQ(rows[2][6], "closed");
@@ -176,11 +179,11 @@ TEST_F(ContactCsv, SidesFollowEachOtherUnderTheirNames)
   left.side = "left, or \"west\"";
   write_contact_csv(path_, comm_, {left, bottom});
   comm_->barrier();
-  EXPECT_EQ(text_of(path_), "x,y,s,u_nu,gap,pressure,state,side\n"
-                            "0,0,0,0,0,0,open,\"left, or \"\"west\"\"\"\n"
-                            "0,1,1,0,0,1,open,\"left, or \"\"west\"\"\"\n"
-                            "0,0,0,0,0,0,open,side\n"
-                            "1,0,1,0,0,2,open,side\n");
+  EXPECT_EQ(text_of(path_), "x,y,s,u_nu,gap,pressure,state,side,dent\n"
+                            "0,0,0,0,0,0,open,\"left, or \"\"west\"\"\",0\n"
+                            "0,1,1,0,0,1,open,\"left, or \"\"west\"\"\",0\n"
+                            "0,0,0,0,0,0,open,side,0\n"
+                            "1,0,1,0,0,2,open,side,0\n");
 }
 
 TEST_F(ContactCsv, EmptyTableGivesAHeaderOnly)
@@ -228,7 +231,7 @@ TEST_F(ContactCsv, In3dRowsComeById)
   write_contact_csv(path_, comm_, {table});
   comm_->barrier();
   EXPECT_EQ(text_of(path_),
-            "x,y,z,area,u_nu,gap,pressure,state,side\n0,0,8,0.25,0,0,0,open,side\n0,0,9,0,0,0,0,open,side\n");
+            "x,y,z,area,u_nu,gap,pressure,state,side,dent\n0,0,8,0.25,0,0,0,open,side,0\n0,0,9,0,0,0,0,open,side,0\n");
 }
 
 TEST_F(ContactCsv, BadTableIsRefusedOnEveryRank)
