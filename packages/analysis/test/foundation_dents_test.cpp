@@ -1,4 +1,5 @@
 #include "rpc/analysis/load_history.hpp"
+#include "rpc/contact/moving_dents.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/mesh/box.hpp"
@@ -211,6 +212,7 @@ TEST(DentsOnTheFoundation, AreFoundAgainThereAndBackUnderAnyElement)
       s = history.advance(t);
       ASSERT_TRUE(s.uzawa.converged) << element.name() << ": " << s.uzawa.reason;
       EXPECT_EQ(s.contact.total.max_pressure > 0, t == 5) << t;
+      EXPECT_EQ(history.last().solves, 1) << "the prescribed motion tells where points will stand";
     }
     EXPECT_LT(relative(history.last().energies.dissipated, dissipated), 1e-8) << element.name();
     EXPECT_LT(relative(s.contact.total.force[1], first.contact.total.force[1]), 1e-8) << element.name();
@@ -218,6 +220,27 @@ TEST(DentsOnTheFoundation, AreFoundAgainThereAndBackUnderAnyElement)
     added.update(1., *history.memory()->dent, -1.);
     EXPECT_LT(added.getVector(0)->normInf(), 1e-8 * deepest) << element.name();
   }
+}
+
+TEST(DentsOnTheFoundation, AreMetWhereAStepLeadsPointsThatAreFree)
+{
+  const Course slide{{0, 1.4 * cell}}, press{{0.2, 0.15}};
+  Model model = pressed(slide, press, DentsMoveWith::foundation);
+  model.dirichlet.erase(model.dirichlet.begin()); // the bottom slides as the top and the foundation's dents lead it
+  LoadHistory history(problem(model), exact(), 0);
+  ASSERT_TRUE(history.advance(1).uzawa.converged);
+  const RCP<const MultiVector> before = history.memory()->dent;
+  const StepSolution s = history.advance(2);
+  ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+  EXPECT_GT(s.contact.total.contact_length, 0);
+  EXPECT_GT(history.last().solves, 1);
+  EXPECT_LE(history.last().solves, 5);
+  EXPECT_EQ(history.last().parts, 1);
+  const fem::Discretization &d = history.problem().discretization();
+  const contact::ContactNodes &points = s.functional->contact();
+  const auto met = along_bottom(d, *contact::node_columns(points, points.dent, d.mesh->owned_nodes));
+  const auto where_they_lie = along_bottom(d, *contact::dents_met(d, model.contact, before, *s.u));
+  for (int i = 0; i < num_points; ++i) EXPECT_NEAR(met[i], where_they_lie[i], 1e-6 * before->getVector(0)->normInf());
 }
 
 TEST(DentsOnTheFoundation, OfAnObstacleThatMovesAreThoseOfABodyThatSlidesTheOtherWay)
