@@ -133,7 +133,8 @@ struct ContactTerms {
       // Of all pressures that the law admits, that of the least sum of both terms will do where the multiplier tells none.
       const double p = state == FacetState::mixed ? contact::pressure(v, x.recovered, 1 / facet_compliance, law)
                                                   : contact::admissible(x.at[pressure], law);
-      product += share * (contact::foundation_energy(v, law) + contact::conjugate_energy(p, law) - p * v);
+      // By Fenchel and Young >= 0, but for rounding.
+      product += share * math::fmax(0., contact::foundation_energy(v, law) + contact::conjugate_energy(p, law) - p * v);
       for (int i = 0; i < dim; ++i) {
         const double r = x.rest[i] + p * x.at[normal + i];
         out_of_balance += facet_compliance * share * r * r;

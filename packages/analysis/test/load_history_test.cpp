@@ -643,7 +643,7 @@ TEST(LoadHistory, WhatIsRememberedGoesToOtherMeshesByInterpolation)
 TEST(Steps, TimesMustRiseAndNumbersBeInRange)
 {
   const auto read = [](const Teuchos::Array<double> &times, const int every, const int halvings) {
-    Teuchos::ParameterList list;
+    Teuchos::ParameterList list = analysis::valid_steps_parameters();
     list.set("Times", times);
     list.set("Write Every", every);
     list.set("Max Halvings", halvings);

@@ -96,7 +96,7 @@ TEST(Problem, OfASlenderBodyThatLiftsOffTakesFewSteps)
   EXPECT_GT(found.line_search_steps, 0) << "the rule settles: nothing is tested";
   int steps = 0;
   for (const int n : found.uzawa.newton_iterations) steps += n;
-  EXPECT_LE(steps, 40);
+  EXPECT_LE(steps, 50); // 60 without the search within the span of the last directions
 }
 
 TEST(Problem, StepStartsFromTheStateOfTheOneBefore)

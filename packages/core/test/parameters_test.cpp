@@ -281,8 +281,7 @@ TEST(FieldTexts, AreReadFromNumbersAndFromExpressions)
     return rpc::field_texts(deck.sublist("Contact"), "Centre");
   };
   EXPECT_EQ(read(Array<int>(tuple(1, -2))), (Texts{"1", "-2"}));
-  EXPECT_EQ(read(Array<double>(tuple(0.1, 1e-300, 3.))),
-            (Texts{"0.10000000000000001", "1e-300", "3"}));
+  EXPECT_EQ(read(Array<double>(tuple(0.1, 1e-300, 3.))), (Texts{"0.10000000000000001", "1e-300", "3"}));
   EXPECT_EQ(read(Array<std::string>(tuple<std::string>("0", "0.1*t"))), (Texts{"0", "0.1*t"}));
   EXPECT_EQ(read(Array<std::string>()), Texts{});
   ParameterList deck;
@@ -310,10 +309,11 @@ TEST(FieldTexts, CommasBetweenParenthesesCutNoExpression)
 TEST(FieldTexts, AreRefusedByTheirRuleWhereTheyAreNoArray)
 {
   for (const std::string text : {"0", "t", "0, t", "{0, t", ""})
-    expect_refused("Contact->Centre=" + text, {"\"Contact->Centre\"", "array of numbers or expressions", "{0, 0.1*t}"});
+    expect_refused("Contact->Centre=" + text, {"\"Contact->Centre\"", "array of numbers, such as",
+                                               "of strings with expressions, such as {0, 0.1*t}"});
   ParameterList deck;
   deck.sublist("Contact").set("Centre", 3);
-  expect_invalid(deck, {"\"Contact->Centre\"", "array of numbers or expressions", "int"});
+  expect_invalid(deck, {"\"Contact->Centre\"", "array of numbers", "int"});
   deck.sublist("Contact").set("Centre", Array<int>(tuple(3)));
   rpc::validate(deck, valid_deck());
 }

@@ -96,7 +96,7 @@ protected:
     const auto rows = cells_of(text_of(path_));
     ASSERT_EQ(rows.size(), ids.size() + 1);
     for (std::size_t k = 0; k < ids.size(); ++k) {
-      ASSERT_EQ(rows[k + 1].size(), 8u);
+      ASSERT_EQ(rows[k + 1].size(), 9u);
       EXPECT_EQ(std::stod(rows[k + 1][5]), ids[k]) << "row " << k;
       EXPECT_NEAR(std::stod(rows[k + 1][2]), lengths[k], 1e-14) << "row " << k;
     }

@@ -41,6 +41,8 @@ struct Line {
     nodes.weight = fill("weight", [&] { return 0.1 + unit(random); });
     nodes.yield =
         fill("yield", [&] { return unit(random) < 0.1 ? std::numeric_limits<double>::infinity() : 1 + unit(random); });
+    nodes.hardening = fill("hardening", [] { return 0.; });
+    nodes.compliance = fill("compliance", [] { return 0.; });
     nodes.penalty = fill("penalty", [&] { return std::pow(10, 8 * unit(random)); }); // kinks at all scales
     v = fill("v", [&] { return sign(random); });
     dv = fill("dv", [&] { return sign(random); });
