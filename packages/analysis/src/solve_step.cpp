@@ -120,9 +120,8 @@ solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before
 
 // The step ------------------------------------------------------------------------------------------------------------
 
-StepSolution solve_step(const Problem &problem, const Step &step, const StepOptions &options,
-                        const Starts &starts, const CoarserProblem &coarser,
-                        const Progress &progress)
+StepSolution solve_step(const Problem &problem, const Step &step, const StepOptions &options, const Starts &starts,
+                        const CoarserProblem &coarser, const Progress &progress)
 {
   StepSolution s;
   s.support = step.support;

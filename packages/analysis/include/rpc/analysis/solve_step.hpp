@@ -94,8 +94,7 @@ struct Starts {
 /// @param starts   without states coarser meshes predict one
 /// @param coarser  empty: there are no coarser meshes
 /// @throws rpc::Error (bad_input) where NOX refuses its options; failing to converge is in the result
-StepSolution solve_step(const Problem &problem, const Step &step, const StepOptions &options,
-                        const Starts &starts = {}, const CoarserProblem &coarser = {},
-                        const Progress &progress = {});
+StepSolution solve_step(const Problem &problem, const Step &step, const StepOptions &options, const Starts &starts = {},
+                        const CoarserProblem &coarser = {}, const Progress &progress = {});
 
 } // namespace rpc::analysis

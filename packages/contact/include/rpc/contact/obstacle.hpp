@@ -20,13 +20,14 @@ struct Obstacle {
   };
 
   Kind kind = Kind::none;
-  Point point{};                   ///< of a plane, the centre of a sphere, or one on the axis of a cylinder [m]
-  Point normal{};                  ///< of a plane, unit, out of the foundation towards the body
-  double radius = 0;               ///< of a sphere or cylinder [m]
-  bool encloses = false;           ///< the body lies inside of the sphere or cylinder, the foundation outside
-  Point axis{};                    ///< of a cylinder, unit
-  std::array<ScalarField, 3> path = {}; ///< coordinates of `point` that change with time [m]; constant ones are not read
-  Point origin{};                  ///< where `point` is at the first of several steps [m]
+  Point point{};         ///< of a plane, the centre of a sphere, or one on the axis of a cylinder [m]
+  Point normal{};        ///< of a plane, unit, out of the foundation towards the body
+  double radius = 0;     ///< of a sphere or cylinder [m]
+  bool encloses = false; ///< the body lies inside of the sphere or cylinder, the foundation outside
+  Point axis{};          ///< of a cylinder, unit
+  std::array<ScalarField, 3> path =
+      {};         ///< coordinates of `point` that change with time [m]; constant ones are not read
+  Point origin{}; ///< where `point` is at the first of several steps [m]
 
   /// The same, with `point` where it is at a time.
   Obstacle seen_at(double t) const;

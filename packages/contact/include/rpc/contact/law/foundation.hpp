@@ -71,8 +71,7 @@ KOKKOS_INLINE_FUNCTION double branch_pressure(const State s, const double v, con
   if (s == State::open) return 0;
   const double z = lambda + r * v, softer = softening(r, f);
   if (s == State::closed) return z / softer;
-  return f.hardening == 0 ? f.yield
-                          : f.yield + f.hardening * ((z - softer * f.yield) / (softer * f.hardening + r));
+  return f.hardening == 0 ? f.yield : f.yield + f.hardening * ((z - softer * f.yield) / (softer * f.hardening + r));
 }
 
 /// Psi'(v): the smoothed pressure, and after a solve the next multiplier. Perfectly plastic: clamp(lambda + r v, 0, xi).
