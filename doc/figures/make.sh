@@ -42,4 +42,6 @@ bash "$root/doc/picture.sh" "$work/block.e" --output="$here/block.png"
 bash "$root/doc/picture.sh" --output="$here/indent_force.png" "perfectly plastic=$work/Yield/indent.history.csv" \
   "hardening, H = 200 Pa/m=$work/Hardening/indent.history.csv" "on springs, k = 1000 Pa/m=$work/Stiffness/indent.history.csv"
 /usr/bin/python3 "$here/indent.py" "$here/indent.png" "$work"/{Yield,Hardening,Stiffness}/indent.e
+"$rpc" --input="$root/input/track.xml" --output="$work" >"$work/log" || { cat "$work/log" >&2; exit 1; }
+/usr/bin/python3 "$here/track.py" "$here/track.png" "$work/track.e"
 ls -l "$here"/*.png
