@@ -371,7 +371,7 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
   Starts starts{std::exchange(offered_, {}), {}};
   if (memory_) {
     starts.states.push_back(state_of(step.contact, *memory_->displacement, *memory_->pressure));
-    if (before_) starts.states.push_back(extrapolated(step, *before_, *memory_));
+    if (before_ && before_->time < memory_->time) starts.states.push_back(extrapolated(step, *before_, *memory_));
     starts.states.push_back(at_rest(step.contact, problem_->discretization()));
     starts.predicted = [&] { return predicted(step); };
   }
