@@ -102,7 +102,7 @@ Step Problem::step(const double t, const MultiVector *const dents) const
 
 bool Problem::serves(const Step &step) const
 {
-  const NodePoints mine = operator_->points(), other = step.contact;
+  const NodePoints &mine = operator_->points(), &other = step.contact;
   LO differences = mine.size() == other.size() ? 0 : 1;
   if (differences == 0)
     Kokkos::parallel_reduce(

@@ -17,11 +17,11 @@ namespace rpc::contact
 namespace
 {
 
-constexpr double rounding = 1e-9; // of places within a facet, relative
-constexpr double margin = 0.5;    // of a facet, beyond the edge of the surface
-constexpr std::size_t few = 4;    // facets in a box that is not divided
+constexpr double facet_rounding = 1e-9; // of places within a facet, relative
+constexpr double margin = 0.5;          // of a facet, beyond the edge of the surface
+constexpr std::size_t few = 4;          // facets in a box that is not divided
 
-double dot(const Point &a, const Point &b)
+double inner(const Point &a, const Point &b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -129,7 +129,7 @@ void FacetSurface::add_box(const std::size_t first, const std::size_t last)
   for (std::size_t k = first; k < last; ++k)
     for (int a = 0; a < facets_.dim; ++a) {
       const Point x = corner(order_[k], a), edge = minus(corner(order_[k], (a + 1) % facets_.dim), x);
-      longest = std::max(longest, std::sqrt(dot(edge, edge)));
+      longest = std::max(longest, std::sqrt(inner(edge, edge)));
       for (int c = 0; c < 3; ++c) {
         box.lower[c] = std::min(box.lower[c], x[c]);
         box.upper[c] = std::max(box.upper[c], x[c]);
@@ -177,19 +177,19 @@ std::optional<Meeting> meet(const int dim, const std::array<Point, 3> &x, const 
   const Point along = minus(x[1], x[0]);
   if (dim == 2) {
     const Point normal = {along[1], -along[0], 0}; // as long as the facet
-    const double facing = dot(normal, direction);
-    if (!(facing > rounding * std::sqrt(dot(along, along)))) return std::nullopt;
+    const double facing = inner(normal, direction);
+    if (!(facing > facet_rounding * std::sqrt(inner(along, along)))) return std::nullopt;
     const Point across = {direction[1], -direction[0], 0};
-    meeting.weights[1] = dot(x[0], across) / -dot(along, across);
+    meeting.weights[1] = inner(x[0], across) / -inner(along, across);
     meeting.weights[0] = 1 - meeting.weights[1];
-    meeting.distance = dot(x[0], normal) / facing;
+    meeting.distance = inner(x[0], normal) / facing;
     return meeting;
   }
   const Point other = minus(x[2], x[0]), normal = cross(along, other);
-  const double facing = dot(normal, direction);
-  if (!(facing > rounding * std::sqrt(dot(normal, normal)))) return std::nullopt;
-  for (int k = 0; k < 3; ++k) meeting.weights[k] = dot(cross(x[(k + 1) % 3], x[(k + 2) % 3]), direction) / facing;
-  meeting.distance = dot(x[0], normal) / facing;
+  const double facing = inner(normal, direction);
+  if (!(facing > facet_rounding * std::sqrt(inner(normal, normal)))) return std::nullopt;
+  for (int k = 0; k < 3; ++k) meeting.weights[k] = inner(cross(x[(k + 1) % 3], x[(k + 2) % 3]), direction) / facing;
+  meeting.distance = inner(x[0], normal) / facing;
   return meeting;
 }
 
@@ -237,9 +237,9 @@ std::optional<double> FacetSurface::along(const Point &x, const Point &direction
       here += inside[k] * facets_.values[facet * dim + k];
       for (int c = 0; c < 3; ++c) away[c] += (meeting->weights[k] - inside[k]) * seen[k][c];
     }
-    double off = std::sqrt(dot(away, away));
-    if (deepest > margin && off > beyond_ * (1 + rounding)) return;
-    if (deepest <= rounding) off = 0;
+    double off = std::sqrt(inner(away, away));
+    if (deepest > margin && off > beyond_ * (1 + facet_rounding)) return;
+    if (deepest <= facet_rounding) off = 0;
     const double distance = std::abs(meeting->distance);
     if (off > least_off || (off == least_off && distance >= least_distance)) return;
     least_off = off;
