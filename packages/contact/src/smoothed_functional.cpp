@@ -1,5 +1,6 @@
 #include "rpc/contact/smoothed_functional.hpp"
 
+#include "rpc/core/fingerprint.hpp"
 #include "rpc/core/parallel.hpp"
 
 #include <algorithm>
@@ -291,14 +292,6 @@ DeviceView<double *> left_of_gap(const ContactNodes &c, const Vector &u)
   return gap;
 }
 
-/// A number in which all bits of the argument take part.
-KOKKOS_INLINE_FUNCTION std::uint64_t scrambled(std::uint64_t x)
-{
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
-
 /// Sum over all ranks of a number for each node and its state.
 std::uint64_t fingerprint_of(const Comm &comm, const ContactNodes &c, const DeviceView<State *> &state)
 {
@@ -310,11 +303,7 @@ std::uint64_t fingerprint_of(const Comm &comm, const ContactNodes &c, const Devi
         part += scrambled((rank << 40) + 4 * static_cast<std::uint64_t>(i) + static_cast<std::uint64_t>(state(i)) + 1);
       },
       sum);
-  // As halves, for sums of 64 bits would overflow a signed GO.
-  const GO halves[2] = {static_cast<GO>(sum & 0xffffffffULL), static_cast<GO>(sum >> 32)};
-  GO all[2];
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 2, halves, all);
-  return static_cast<std::uint64_t>(all[0]) + (static_cast<std::uint64_t>(all[1]) << 32);
+  return sum_of_bits(comm, sum);
 }
 
 /// What the contact points add to the gradient on a subspace, then to the rows of the curvature, one after the other.

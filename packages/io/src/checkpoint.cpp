@@ -1,6 +1,7 @@
 #include "rpc/io/checkpoint.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/fingerprint.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/io/gather.hpp"
@@ -24,17 +25,6 @@ constexpr std::size_t record_length = 79;
 constexpr char mark = '|';
 const std::string signature = "rpc checkpoint ";
 
-/// A number in which all bits of the arguments take part.
-std::uint64_t scrambled(std::uint64_t x)
-{
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
-std::uint64_t scrambled(const std::uint64_t a, const std::uint64_t b)
-{
-  return scrambled(scrambled(a + 0x9e3779b97f4a7c15ULL) ^ b);
-}
 std::uint64_t bits_of(const double value)
 {
   std::uint64_t bits;
@@ -42,13 +32,11 @@ std::uint64_t bits_of(const double value)
   return bits;
 }
 
-/// Sum over all ranks modulo 2^64, in hexadecimal digits; collective.
+/// sum_of_bits() in hexadecimal digits; collective.
 std::string number_of_all(const Comm &comm, const std::uint64_t mine)
 {
-  const std::vector<GO> halves = {static_cast<GO>(mine & 0xffffffffULL), static_cast<GO>(mine >> 32)};
-  const auto all = summed(comm, halves);
   std::ostringstream text;
-  text << std::hex << static_cast<std::uint64_t>(all[0]) + (static_cast<std::uint64_t>(all[1]) << 32);
+  text << std::hex << sum_of_bits(comm, mine);
   return text.str();
 }
 
