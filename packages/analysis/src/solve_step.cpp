@@ -85,6 +85,7 @@ void start_from_nearest(SmoothedFunctional &functional, const Starts &starts, Ve
     functional.start_from(state, u);
   };
   const std::vector<contact::ContactState> &states = starts.states;
+  if (states.size() == 1 && !starts.predicted) return take(states[0]); // nothing to choose
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity(), most = 0;
   Vector F(u.getMap());
