@@ -37,6 +37,15 @@ analysis::CoarserProblem coarser_meshes(Task task, const mesh::MeshOptions &opti
   };
 }
 
+/// Estimates the error where that is asked for; tractions on contact sides are those of the solution's time. Collective.
+void add_estimate(const Task &task, const analysis::Problem &problem, Solution &s, PhaseSeconds &seconds)
+{
+  if (!task.adapt.estimate) return;
+  const Timed phase("estimate", seconds.estimate);
+  s.estimate = estimate_error(s.discretization, task.model.materials, problem.contact_sides(),
+                              task.model.seen_at(s.time).tractions, s.functional->contact(), s.contact, *s.u);
+}
+
 /// Adds what the way through the scene did not tell by itself; collective.
 void note_skipped(const Task &task, Solution &s)
 {
@@ -90,11 +99,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     s.matrix_assemblies = assemblies_before + history.matrix_assemblies();
     records.push_back(history.last());
     s.history = records;
-    if (task.adapt.estimate) {
-      const Timed phase("estimate", seconds.estimate);
-      s.estimate = estimate_error(s.discretization, task.model.materials, history.problem().contact_sides(),
-                                  history.problem().model().tractions, s.functional->contact(), s.contact, *s.u);
-    }
+    add_estimate(task, history.problem(), s, seconds);
     seconds.prediction += s.prediction_seconds;
     seconds.setup += s.linear.setup_seconds;
     seconds.solve += s.solve_seconds;
@@ -160,11 +165,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   if (task.adapt.adapts()) s.pressure_norm = contact::pressure_distance(*comm, step.contact, s.contact.pressure, {});
   if (previous)
     s.pressure_change = contact::pressure_distance(*comm, step.contact, s.contact.pressure, starts.front().multiplier);
-  if (task.adapt.estimate) {
-    const Timed phase("estimate", s.seconds.estimate);
-    s.estimate = estimate_error(d, task.model.materials, problem->contact_sides(), task.model.tractions,
-                                s.functional->contact(), s.contact, *s.u);
-  }
+  add_estimate(task, *problem, s, s.seconds);
   note_skipped(task, s);
   s.seconds.prediction += s.prediction_seconds;
   s.seconds.setup = s.linear.setup_seconds;
