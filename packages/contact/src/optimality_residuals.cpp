@@ -1,5 +1,7 @@
 #include "rpc/contact/optimality_residuals.hpp"
 
+#include "rpc/fem/rigid_motion.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,38 +9,6 @@ namespace rpc::contact
 {
 namespace
 {
-
-/// u less the mean of its prescribed values, component by component: energies do not see translations, but rounding does. The
-/// radial component of an axisymmetric body is strain, and stays.
-Vector without_translation(const fem::Discretization &d, const fem::DirichletDofs &dirichlet, const Vector &u)
-{
-  const int dim = d.dim(), first = d.axisymmetric() ? 1 : 0;
-  const auto fixed = dirichlet.fixed;
-  Vector rest(u, Teuchos::Copy);
-  const auto x = device_write(rest);
-  const LO n = static_cast<LO>(u.getLocalLength());
-  double sums[3] = {0, 0, 0}, counts[3] = {0, 0, 0};
-  for (int component = first; component < dim; ++component)
-    Kokkos::parallel_reduce(
-        "rpc::contact::mean_prescribed", device_range(n / dim),
-        KOKKOS_LAMBDA(const LO node, double &sum, double &count) {
-          const LO dof = rpc::dof(dim, node, component);
-          if (!fixed(dof)) return;
-          sum += x(dof);
-          count += 1;
-        },
-        sums[component], counts[component]);
-  Kokkos::Array<double, 3> mean;
-  for (int component = 0; component < 3; ++component) {
-    const double count = sum_all(*u.getMap()->getComm(), counts[component]);
-    const double sum = sum_all(*u.getMap()->getComm(), sums[component]);
-    mean[component] = count > 0 ? sum / count : 0;
-  }
-  Kokkos::parallel_for(
-      "rpc::contact::without_translation", device_range(n), KOKKOS_LAMBDA(const LO dof) { x(dof) -= mean[dof % dim]; });
-  Kokkos::fence();
-  return rest;
-}
 
 /// u . f over the unknowns that are prescribed, or over the others; collective.
 double work(const fem::DirichletDofs &dirichlet, const bool prescribed, const Vector &u, const Vector &f)
@@ -92,7 +62,7 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   residuals.equilibrium_residual =
       residual.norm2() / std::max({functional.force_scale(), contact.norm2(), residuals.internal.force_norm});
 
-  const Vector moved = without_translation(d, dirichlet, u);
+  const Vector moved = fem::without_rigid_motion(d, dirichlet, u);
   const double of_load = work(dirichlet, false, moved, *problem.applied_load),
                of_contact = work(dirichlet, false, moved, contact),
                of_supports = work(dirichlet, true, moved, internal);

@@ -145,6 +145,49 @@ TEST(Resultants, AreWhatTheLoadDoesAlongEachMode)
   }
 }
 
+// What is left of a rigid motion and of a displacement `other` that vanishes where the body is held.
+void expect_rest(const fem::Discretization &d, const std::vector<fem::DirichletCondition> &held,
+                 const std::function<Point(const Point &)> &rigid, const std::function<Point(const Point &)> &other)
+{
+  const auto sum = [&](const Point &x) {
+    const Point a = rigid(x), b = other(x);
+    return Point{a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+  };
+  Vector error = fem::without_rigid_motion(d, fem::dirichlet_dofs(d, held), *interpolate(d, sum));
+  error.update(-1., *interpolate(d, other), 1.);
+  EXPECT_LT(error.normInf(), 1e-13);
+}
+
+TEST(WithoutRigidMotion, LeavesWhatIsNotPrescribed)
+{
+  const auto turned = [](const Point &x) {
+    return Point{3 - 0.2 * x[1] + 0.4 * x[2], -7 + 0.2 * x[0] - 0.3 * x[2], 5 - 0.4 * x[0] + 0.3 * x[1]};
+  };
+  const auto turned_in_plane = [](const Point &x) { return Point{3 - 0.2 * x[1], -7 + 0.2 * x[0], 0}; };
+  const auto from_left = [](const Point &x) { return Point{std::sin(x[0] + 1), (x[0] + 1) * x[1], 0}; }; // x = -1
+  expect_rest(body(plane, world()), {hold("left", {0, 1})}, turned_in_plane, from_left);
+  expect_rest(body(space, world()), {hold("left", {0, 1, 2})}, turned, from_left);
+  // One end of a rolled body says nothing of motions along the rollers.
+  const auto along_rollers = [](const Point &x) { return Point{4 + x[1], 0, 0}; };
+  const auto turned_about_centre = [](const Point &x) { return Point{x[1] - 2.5, 2 - x[0], 0}; };
+  expect_rest(body(plane, world()), {hold("bottom", {1})}, turned_about_centre, along_rollers);
+  expect_rest(
+      body(plane, world()), {}, [](const Point &) { return Point{}; }, from_left);
+}
+
+TEST(WithoutRigidMotion, OfAnAxisymmetricBodyIsAlongItsAxis)
+{
+  const auto d = body({{1, 0}, {2, 1}, {3, 2}, {2, 1}}, world(), {}, fem::Kinematics::axisymmetric);
+  expect_rest(
+      d, {hold("top", {0, 1})},
+      [](const Point &) {
+        return Point{0, 9, 0};
+      },
+      [](const Point &x) {
+        return Point{0.1 + x[0], x[1] - 1, 0};
+      });
+}
+
 TEST(MotionInWords, NamesTheAxisOfAScrew)
 {
   fem::Part part;

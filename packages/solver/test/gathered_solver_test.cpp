@@ -108,7 +108,7 @@ public:
     fail_if(in_apply_);
     x.update(2., b, 0.);
   }
-  RCP<solver::CoarseSolver> Copy() const override { return rcp(new Failing(*this)); }
+  RCP<solver::CoarseSolver> Copy() const override { return rcp(new Failing(in_setup_, in_apply_)); }
   std::size_t getNodeSmootherComplexity() const override { return 0; }
 
 private:

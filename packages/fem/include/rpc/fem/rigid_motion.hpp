@@ -70,6 +70,11 @@ struct Resultant {
 /// @param force  (owned dofs) [N]; collective
 std::vector<Resultant> resultants(const Discretization &d, const Parts &parts, const Vector &force);
 
+/// u less the rigid motion that is nearest, in the mean square, to its prescribed values; an axisymmetric body moves along its
+/// axis only. Strain energy does not see that motion, but rounding does.                        doc/theory.md (5.4)
+/// @param u  (owned dofs) [m]; collective
+Vector without_rigid_motion(const Discretization &d, const DirichletDofs &dirichlet, const Vector &u);
+
 /// The same motions by a basis that reads well: translations, along the axes if possible, then rotations.
 std::vector<RigidMotion> readable_basis(std::vector<RigidMotion> motions, int dim);
 
