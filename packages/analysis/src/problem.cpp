@@ -74,6 +74,7 @@ Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, con
 {
   const fem::Discretization &d = discretization_;
   const auto dirichlet = prescribed_of(d, model_);
+  free_parts_ = contact::free_parts(d, dirichlet);
   const auto K = fem::assemble_stiffness(d, model_.materials);
   require_finite(*K, "the stiffness matrix, from \"Material\" and \"Mesh\"", [&d] { return fem::node_coordinates(d); });
   eliminated_ = fem::eliminate_dirichlet(d, K, dirichlet);
@@ -95,8 +96,7 @@ Step Problem::step(const double t, const MultiVector *const dents) const
   step.elastic = fem::elastic_problem(d, eliminated_, loads_of(d, now), std::move(dirichlet));
   require_finite(*step.elastic.load, "the forces of prescribed displacements",
                  [&d] { return fem::node_coordinates(d); });
-  step.support =
-      contact::check_support(d, step.elastic.dirichlet, *step.elastic.applied_load, step.contact, now.contact);
+  step.support = contact::check_support(d, free_parts_, *step.elastic.applied_load, step.contact, now.contact);
   return step;
 }
 

@@ -62,7 +62,8 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   residuals.equilibrium_residual =
       residual.norm2() / std::max({functional.force_scale(), contact.norm2(), residuals.internal.force_norm});
 
-  const Vector moved = fem::without_rigid_motion(d, dirichlet, u);
+  const bool at_rest = dirichlet.value->normInf() == 0; // the supports
+  const Vector moved = at_rest ? Vector(u, Teuchos::View) : fem::without_rigid_motion(d, dirichlet, u);
   const double of_load = work(dirichlet, false, moved, *problem.applied_load),
                of_contact = work(dirichlet, false, moved, contact),
                of_supports = work(dirichlet, true, moved, internal);

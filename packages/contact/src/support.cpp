@@ -189,14 +189,21 @@ std::vector<Motions> sliding_motions(const Comm &comm, const Reactions &reaction
 
 } // namespace
 
-Support check_support(const fem::Discretization &d, const fem::DirichletDofs &dirichlet, const Vector &applied_load,
+FreeParts free_parts(const fem::Discretization &d, const fem::DirichletDofs &dirichlet)
+{
+  const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::support"));
+  fem::require_stiff_joints(d, dirichlet);
+  FreeParts body{fem::connected_parts(d), {}};
+  body.motions = fem::free_motions(d, body.parts, dirichlet);
+  return body;
+}
+
+Support check_support(const fem::Discretization &d, const FreeParts &body, const Vector &applied_load,
                       const ContactNodes &contact, const std::vector<ContactOptions> &options)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::support"));
   const Comm &comm = d.mesh->comm();
-  fem::require_stiff_joints(d, dirichlet);
-  const fem::Parts parts = fem::connected_parts(d);
-  const std::vector<Motions> motions = fem::free_motions(d, parts, dirichlet);
+  const auto &[parts, motions] = body;
   Support support;
   support.num_parts = parts.size();
   for (const Motions &free : motions) support.by_contact_only = support.by_contact_only || !free.empty();

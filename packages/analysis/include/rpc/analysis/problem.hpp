@@ -41,7 +41,7 @@ public:
   /// Assembles the stiffness matrix and finds the contact nodes. Collective.
   /// @param t  time of the first step; which displacements are prescribed does not depend on it
   /// @throws rpc::Error bad_input where the model does not fit the mesh or numbers overflow, naming what they belong to;
-  ///         bad_mesh for a cell with a Jacobian <= 0; no_solution as contact::contact_nodes()
+  ///         bad_mesh for a cell with a Jacobian <= 0; no_solution as contact::contact_nodes() and contact::free_parts()
   Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
           double t = 1);
 
@@ -67,6 +67,7 @@ private:
   Model model_;
   solver::LinearSolverOptions linear_options_;
   fem::Discretization discretization_;
+  contact::FreeParts free_parts_;
   fem::EliminatedStiffness eliminated_;
   RCP<UpdatedOperator> operator_;
   std::shared_ptr<solver::LinearSolver> linear_;

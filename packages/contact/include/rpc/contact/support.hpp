@@ -1,6 +1,8 @@
 #pragma once
 
 #include "rpc/contact/contact_nodes.hpp"
+#include "rpc/fem/parts.hpp"
+#include "rpc/fem/rigid_motion.hpp"
 
 #include <vector>
 
@@ -13,17 +15,25 @@ struct Support {
   bool by_contact_only = false; ///< some part has rigid motions that nothing but contact stops
 };
 
+/// The parts of a body with the rigid motions that prescribed displacements leave to each.
+struct FreeParts {
+  fem::Parts parts;
+  std::vector<std::vector<fem::RigidMotion>> motions; ///< by part, see fem::free_motions()
+};
+/// Costs O(nodes) small and depends on the mesh and on which unknowns are prescribed only. Collective.
+/// @throws rpc::Error (no_solution) on every rank, where pieces of a part can move in their joint
+FreeParts free_parts(const fem::Discretization &d, const fem::DirichletDofs &dirichlet);
+
 /// Looks for rigid motions that neither prescribed displacements nor the foundation stop, before anything is solved.
 ///
 /// The discrete problem has a solution if and only if, part by part, what the load does along the free rigid motions lies
 /// in the set Z of what the foundation can do against it; it is determined only if it lies inside.
 ///                                                                                         doc/theory.md (9.2) - (9.6)
-/// Costs O(nodes) small if prescribed displacements hold every part, else some hundred sums over the contact nodes.
+/// Costs nothing if prescribed displacements hold every part, else some hundred sums over the contact nodes.
 /// @param applied_load  (owned dofs) [N], before elimination; collective
-/// @throws rpc::Error (no_solution) on every rank, naming part, motion and forces: a motion that nothing stops, of a
-///         part or in a joint of its pieces; a load
+/// @throws rpc::Error (no_solution) on every rank, naming part, motion and forces: a motion that nothing stops; a load
 ///         beyond what the foundation carries, or away from it; a load that leaves the position open
-Support check_support(const fem::Discretization &d, const fem::DirichletDofs &dirichlet, const Vector &applied_load,
+Support check_support(const fem::Discretization &d, const FreeParts &body, const Vector &applied_load,
                       const ContactNodes &contact, const std::vector<ContactOptions> &options);
 
 } // namespace rpc::contact
