@@ -303,6 +303,13 @@ class LoadSteps(RpcTestCase):
                 self.assertGreater(min(dent), 0.04)
                 self.assertGreater(last["max_dent"], 1.5 * max(dent))
 
+    def test_meshes_that_predict_the_last_step_are_listed(self):
+        summary = self.solve("--set=Mesh->Cells={80,16}", "--set=Steps->Times={0.5,1}", "--set=Traction->top->Y=-20*t*sin(pi*x/5)")
+        self.assertGreater(len(summary["levels"]), 0)
+        for level in summary["levels"]:
+            self.assertLess(level["dofs"], summary["dofs"])
+            self.assertGreater(level["newton_iterations"], 0)
+
 
 class Restarts(RpcTestCase):
     """Checkpoints of load steps, and runs that go on from them."""
@@ -460,6 +467,15 @@ class AdaptiveRuns(RpcTestCase):
         self.assertAlmostEqual(summary["error_estimate"]["effectivity"], 1, delta=0.1)
         self.assertNotIn("adaptation", summary)
         self.assertNotIn("error_estimate", self.solve())
+
+    def test_an_estimate_takes_tractions_at_the_time_of_its_step(self):
+        arguments = ("--set=Adapt->Estimate Error=true", "--set=Contact->Yield Stress=inf",
+                     "--set=Traction->top->Y=-5*t*sin(pi*x/5)", "--set=Traction->bottom->X=3*t*x*(5-x)")
+        at_once, in_steps = self.solve(*arguments, "--set=Time=2"), self.solve(*arguments, "--set=Steps->Times={1,2}")
+        self.assertGreater(at_once["error_estimate"]["contact_equilibrium"], 0)
+        for part, value in at_once["error_estimate"].items():
+            if part not in ("rounding", "exact_relative", "effectivity"):
+                self.assertAlmostEqual(in_steps["error_estimate"][part], value, delta=1e-5 * abs(value), msg=part)
 
 
 class PassThrough(RpcTestCase):

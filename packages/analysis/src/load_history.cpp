@@ -251,11 +251,15 @@ contact::ContactState extrapolated(const Step &step, const Memory &before, const
   return state_of(step.contact, u, pressure);
 }
 
+int newton_steps(const StepSolution &s)
+{
+  return std::accumulate(s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end(), 0);
+}
+
 /// Adds what solving a part of a step took.
 void add_work(const StepSolution &s, StepRecord &record)
 {
-  record.newton_iterations =
-      std::accumulate(s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end(), record.newton_iterations);
+  record.newton_iterations += newton_steps(s);
   record.linear_solves += static_cast<int>(s.linear.iterations.size());
   record.linear_iterations =
       std::accumulate(s.linear.iterations.begin(), s.linear.iterations.end(), record.linear_iterations);
@@ -373,7 +377,7 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
     starts.states.push_back(state_of(step.contact, *memory_->displacement, *memory_->pressure));
     if (before_ && before_->time < memory_->time) starts.states.push_back(extrapolated(step, *before_, *memory_));
     starts.states.push_back(at_rest(step.contact, problem_->discretization()));
-    starts.predicted = [&] { return predicted(step); };
+    starts.predicted = [&](std::vector<LevelWork> &work) { return predicted(step, work); };
   }
   ++last_.parts;
   StepSolution s;
@@ -411,10 +415,11 @@ struct LoadHistory::Coarser {
   RCP<const CrsMatrix> to_coarse, to_fine;
 };
 
-std::optional<contact::ContactState> LoadHistory::predicted(const Step &step)
+std::optional<contact::ContactState> LoadHistory::predicted(const Step &step, std::vector<LevelWork> &work)
 {
   const fem::Discretization &fine = problem_->discretization();
   if (!coarser_ || !no_prediction(fine, step.contact, options_.prediction).empty()) return std::nullopt;
+  const double start = Teuchos::Time::wallTime();
   try {
     if (!on_coarser_mesh_) {
       const auto problem = coarser_(1);
@@ -433,7 +438,11 @@ std::optional<contact::ContactState> LoadHistory::predicted(const Step &step)
       if (!history.solve(memory_->time, {}, {}).uzawa.converged) return std::nullopt;
     }
     const Memory before = *history.memory();
-    if (!history.solve(step.time, {}, {}).uzawa.converged) return std::nullopt;
+    StepSolution coarse = history.solve(step.time, {}, {});
+    if (!coarse.uzawa.converged) return std::nullopt;
+    work = std::move(coarse.levels);
+    work.push_back({coarse.u->getGlobalLength(), newton_steps(coarse), coarse.linear.iterations,
+                    coarse.linear.preconditioner_setups, Teuchos::Time::wallTime() - start});
     Memory change = *history.memory();
     const auto difference = [](const auto &now, const auto &then) {
       const auto result = rcp(new std::decay_t<decltype(now)>(now, Teuchos::Copy));

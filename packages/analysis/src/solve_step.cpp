@@ -77,7 +77,7 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepS
 }
 
 /// Starts from the state whose displacement and multipliers are nearest to equilibrium, or from what is predicted where that is far.
-void start_from_nearest(SmoothedFunctional &functional, const Starts &starts, Vector &u)
+void start_from_nearest(SmoothedFunctional &functional, const Starts &starts, Vector &u, std::vector<LevelWork> &work)
 {
   const Vector rest(u, Teuchos::Copy);
   const auto take = [&](const contact::ContactState &state) {
@@ -101,7 +101,7 @@ void start_from_nearest(SmoothedFunctional &functional, const Starts &starts, Ve
     nearest = k;
   }
   if (starts.predicted && least > near_equilibrium * std::max(functional.force_scale(), most))
-    if (const auto predicted = starts.predicted()) return take(*predicted);
+    if (const auto predicted = starts.predicted(work)) return take(*predicted);
   if (nearest + 1 < states.size()) take(states[nearest]);
 }
 
@@ -134,7 +134,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, const StepOpti
   {
     const Timed timer("prediction", s.prediction_seconds);
     if (!starts.states.empty())
-      start_from_nearest(*s.functional, starts, *s.u);
+      start_from_nearest(*s.functional, starts, *s.u, s.levels);
     else
       s.not_predicted = predict(iterate, step.time, options, coarser, 1, s.levels);
   }

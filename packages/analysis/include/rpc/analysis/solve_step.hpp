@@ -87,7 +87,8 @@ struct Starts {
   /// Such as that of the step before or of another mesh: the nearest to equilibrium is taken.
   std::vector<contact::ContactState> states;
   /// Asked where that is far from equilibrium; empty, or returns none, where there is no better start. Collective.
-  std::function<std::optional<contact::ContactState>()> predicted;
+  /// @param work  of coarser meshes, from the coarsest; appended to
+  std::function<std::optional<contact::ContactState>(std::vector<LevelWork> &work)> predicted;
 };
 
 /// The algorithm: predict, choose the active set, Newton with exact line search, Uzawa, optimality residuals. Collective.
