@@ -303,12 +303,16 @@ class LoadSteps(RpcTestCase):
                 self.assertGreater(min(dent), 0.04)
                 self.assertGreater(last["max_dent"], 1.5 * max(dent))
 
-    def test_meshes_that_predict_the_last_step_are_listed(self):
-        summary = self.solve("--set=Mesh->Cells={80,16}", "--set=Steps->Times={0.5,1}", "--set=Traction->top->Y=-20*t*sin(pi*x/5)")
-        self.assertGreater(len(summary["levels"]), 0)
-        for level in summary["levels"]:
-            self.assertLess(level["dofs"], summary["dofs"])
-            self.assertGreater(level["newton_iterations"], 0)
+    def test_coarser_meshes_predict_a_step_in_which_points_begin_to_yield(self):
+        for hardening in (0, 1000):  # with hardening the extrapolated pressures are in equilibrium, but beyond the yield limit
+            summary = self.solve("--set=Mesh->Cells={80,16}", "--set=Steps->Times={0.3,0.6,1}",
+                                 "--set=Traction->top->Y=-20*t*sin(pi*x/5)", f"--set=Contact->Hardening={hardening}")
+            self.assertEqual(summary["steps"][1]["yielded_length"], 0)
+            self.assertGreater(summary["steps"][2]["yielded_length"], 0)
+            self.assertGreater(len(summary["levels"]), 0, hardening)
+            for level in summary["levels"]:
+                self.assertLess(level["dofs"], summary["dofs"])
+                self.assertGreater(level["newton_iterations"], 0)
 
 
 class Restarts(RpcTestCase):

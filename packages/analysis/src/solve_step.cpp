@@ -39,7 +39,8 @@ constexpr int most_updates = 2;     // of multipliers at the end, even if pressu
 constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 
-// A start out of balance by less than this part of the load needs no coarser mesh: states hardly change from there.
+// A start out of balance by less than this part of the load, and off the contact law by less than this part of the pressure, needs
+// no coarser mesh: states hardly change from there.
 constexpr double near_equilibrium = 1e-7;
 
 constexpr double fast = 0.1; // an update that leaves more of the largest residual calls for a higher penalty
@@ -100,9 +101,10 @@ void start_from_nearest(SmoothedFunctional &functional, const Starts &starts, Ve
     least = out_of_balance;
     nearest = k;
   }
-  if (starts.predicted && least > near_equilibrium * std::max(functional.force_scale(), most))
-    if (const auto predicted = starts.predicted(work)) return take(*predicted);
   if (nearest + 1 < states.size()) take(states[nearest]);
+  if (starts.predicted && (least > near_equilibrium * std::max(functional.force_scale(), most) ||
+                           functional.contact_law_residual(u) > near_equilibrium))
+    if (const auto predicted = starts.predicted(work)) take(*predicted);
 }
 
 /// What the linear solver has done since.
