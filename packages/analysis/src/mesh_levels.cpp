@@ -13,8 +13,10 @@ namespace rpc::analysis
 namespace
 {
 
-// Unknowns that a factor on each rank takes no time for.
-constexpr GO few_2d = 700, few_3d = 1300;
+// Unknowns that boxes are halved down to: a factor of theirs takes no time, though each change of states asks for one.
+constexpr GO few_2d = 700, few_3d = 400;
+// Unknowns of a coarsest mesh that is still factored, where there is no coarser one.
+constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
 
 /// Which components of which sides are prescribed, whatever their values.
 std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondition> conditions)
@@ -91,7 +93,7 @@ solver::MeshLevels mesh_levels(const fem::Discretization &finest, const Model &m
     d = std::move(*coarse);
     levels.level.push_back(level_on(d, model, fem::dirichlet_dofs(d, held), std::move(interpolation)));
   }
-  levels.down_to_few = num_unknowns() <= 4 * few;
+  levels.down_to_few = num_unknowns() <= (d.dim() == 2 ? most_factored_2d : most_factored_3d);
   return levels;
 }
 
