@@ -1,16 +1,21 @@
-/// Times of the kernels that a solve consists of, beside the memory bandwidth that a STREAM triad reaches in the same run.
+/// Times of the kernels that a solve consists of, those of multigrid's cycle among them, beside the memory bandwidth that a STREAM
+/// triad reaches in the same run.
 ///
 ///     kernels [--cells=256,512] [--cells-in-space=16,32] [Google Benchmark's options]
 ///     mpirun -n 2 kernels    # the triad alone, on all ranks at once
 ///
-/// Each kernel reports the bytes that it must move at least (every array once), the least time per item (cell or row), the
-/// bandwidth that follows, and its fraction of the triad's. Q2 and P2 take half the cells in each direction: as many nodes. In
+/// Each kernel reports the bytes that it must move at least (every array once), for products and what consists of them the floating
+/// point operations, the least time per item (cell or row), the rates that follow, and the bandwidth's fraction of the triad's. Q2 and P2 take half the cells in each direction: as many nodes. In
 /// space the elements' names end in 3D.
 
+#include "node_interpolation.hpp"
+#include "node_smoother.hpp"
+#include "rpc/core/updated_operator.hpp"
 #include "rpc/fem/elasticity.hpp"
+#include "rpc/fem/interpolation.hpp"
+#include "rpc/fem/order_one.hpp"
 #include "rpc/mesh/box.hpp"
 
-#include <Ifpack2_Chebyshev.hpp>
 #include <Kokkos_Timer.hpp>
 #include <Tpetra_Core.hpp>
 #include <algorithm>
@@ -65,6 +70,32 @@ struct Body {
     d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
     K = fem::assemble_stiffness(d, material);
   }
+  /// K as the solver has it; nothing can touch.
+  RCP<UpdatedOperator> stiffness() const
+  {
+    NodePoints none;
+    none.dim = d.dim();
+    none.first = HostView<LO *>("rpc::benchmark::no_groups", 1);
+    return rcp(new UpdatedOperator(K, none));
+  }
+  /// From the next level of multigrid: order 1, or half as many cells each way.
+  solver::NodeInterpolation from_coarser(RCP<const Map> &coarse_dofs, double &entries) const
+  {
+    RCP<CrsMatrix> nodes;
+    if (d.mesh->element.order == 2) {
+      const fem::OrderOne lower = fem::order_one(d);
+      coarse_dofs = fem::discretize(lower.mesh).owned_dofs;
+      nodes = lower.interpolation;
+    } else {
+      const auto half = mesh::make_box(*mesh::halved(*d.mesh->box), Tpetra::getDefaultComm());
+      const auto coarse = fem::discretize(std::make_shared<mesh::Mesh>(half));
+      coarse_dofs = coarse.owned_dofs;
+      nodes = fem::interpolation(coarse, d);
+    }
+    entries = static_cast<double>(nodes->getLocalMatrixDevice().nnz());
+    const DeviceView<char *> free("rpc::benchmark::free", num_local(*d.owned_dofs));
+    return {nodes, d.dim(), free, coarse_dofs, d.owned_dofs};
+  }
   double cells() const { return d.mesh->num_cells(); }
   double rows() const { return num_local(*d.owned_dofs); }
   double entries() const { return static_cast<double>(K->getLocalMatrixDevice().nnz()); }
@@ -79,9 +110,11 @@ struct Body {
   }
 };
 
-/// Runs a kernel as often as Google Benchmark asks for. @param bytes  moved at least; @param items  cells or rows
+/// Runs a kernel as often as Google Benchmark asks for.
+/// @param bytes  moved at least   @param flops  0: not counted   @param items  cells or rows
 template <class Kernel>
-void measure(benchmark::State &state, const double stream, const double bytes, const double items, const Kernel &kernel)
+void measure(benchmark::State &state, const double stream, const double bytes, const double flops, const double items,
+             const Kernel &kernel)
 {
   kernel();                                              // page faults, lazy set-up
   double best = std::numeric_limits<double>::infinity(); // as of the triad
@@ -95,8 +128,10 @@ void measure(benchmark::State &state, const double stream, const double bytes, c
   }
   state.counters["items"] = items;
   state.counters["bytes"] = bytes;
+  state.counters["flops"] = flops;
   state.counters["ns_per_item"] = 1e9 * best / items;
   state.counters["GB/s"] = 1e-9 * bytes / best;
+  state.counters["GFlop/s"] = 1e-9 * flops / best;
   state.counters["of_triad"] = 1e-9 * bytes / best / stream;
 }
 
@@ -104,7 +139,7 @@ void assembly(benchmark::State &state, const double stream, const Body &body)
 {
   // The pattern is that of the graph: of the matrix only values are written.
   const double bytes = body.mesh_bytes() + body.node_graph_bytes() + 8 * body.entries();
-  measure(state, stream, bytes, body.cells(), [&] { fem::assemble_stiffness(body.d, body.material); });
+  measure(state, stream, bytes, 0, body.cells(), [&] { fem::assemble_stiffness(body.d, body.material); });
 }
 
 void internal_work(benchmark::State &state, const double stream, const Body &body)
@@ -112,34 +147,61 @@ void internal_work(benchmark::State &state, const double stream, const Body &bod
   Vector u(body.d.owned_dofs);
   u.randomize();
   const double bytes = body.mesh_bytes() + 8 * 2 * body.rows(); // reads u, writes f
-  measure(state, stream, bytes, body.cells(), [&] { fem::internal_work(body.d, body.material, u); });
+  measure(state, stream, bytes, 0, body.cells(), [&] { fem::internal_work(body.d, body.material, u); });
 }
 
-void spmv(benchmark::State &state, const double stream, const Body &body)
+/// Rows as KokkosKernels reads them.
+void csr_product(benchmark::State &state, const double stream, const Body &body)
 {
   Vector x(body.d.owned_dofs), y(body.d.owned_dofs);
   x.randomize();
   const double bytes = body.matrix_bytes() + 8 * 2 * body.rows(); // reads x, writes y
-  measure(state, stream, bytes, body.rows(), [&] { body.K->apply(x, y); });
+  measure(state, stream, bytes, 2 * body.entries(), body.rows(), [&] { body.K->apply(x, y); });
 }
 
-/// As MueLu's smoother after the coarse correction: a degree of 2 from an approximation that is not zero.
-void chebyshev(benchmark::State &state, const double stream, const Body &body)
+/// Rows that repeat are kept once: a number a node is read instead.
+double product_bytes(const Body &body)
 {
-  Ifpack2::Chebyshev<Tpetra::RowMatrix<double, LO, GO, Node>> smoother(body.K);
-  Teuchos::ParameterList list;
-  list.set("chebyshev: degree", 2);
-  list.set("chebyshev: ratio eigenvalue", 7.);
-  list.set("chebyshev: zero starting solution", false);
-  smoother.setParameters(list);
-  smoother.initialize();
-  smoother.compute();
+  return 2 * body.rows() / body.d.dim() + 8 * 2 * body.rows();
+}
+
+void product(benchmark::State &state, const double stream, const Body &body)
+{
+  const auto K = body.stiffness();
+  Vector x(body.d.owned_dofs), y(body.d.owned_dofs);
+  x.randomize();
+  measure(state, stream, product_bytes(body), 2 * body.entries(), body.rows(), [&] { K->apply_base(x, y); });
+}
+
+/// As after the coarse correction: from an approximation that is not zero.
+void smoother(benchmark::State &state, const double stream, const Body &body)
+{
+  const auto K = body.stiffness();
+  const solver::NodeSmoother::Options options;
+  const auto blocks = K->base_blocks();
+  const solver::NodeSmoother smoother(K, blocks, solver::largest_eigenvalue(*K, blocks), options);
   Vector b(body.d.owned_dofs), x(body.d.owned_dofs);
   b.randomize();
-  // Each of the 2 steps reads the matrix, its diagonal, b, the step before (the first has none) and x, and writes the step
-  // (the last need not) and x.
-  const double bytes = 2 * body.matrix_bytes() + 8 * 10 * body.rows();
-  measure(state, stream, bytes, body.rows(), [&] { smoother.apply(b, x); });
+  // After each product a step reads the product, the inverse block, b, the step before (the first has none) and x, and writes the
+  // step (the last need not) and x.
+  const double bytes =
+      options.degree * (product_bytes(body) + 8 * (6 + body.d.dim()) * body.rows()) - 8 * 2 * body.rows();
+  const double flops = options.degree * (2 * body.entries() + (2 * body.d.dim() + 5) * body.rows());
+  measure(state, stream, bytes, flops, body.rows(), [&] { smoother.improve(b, x); });
+}
+
+/// The coarse correction is interpolated and added.
+void prolongation(benchmark::State &state, const double stream, const Body &body)
+{
+  RCP<const Map> coarse_dofs;
+  double entries = 0;
+  const solver::NodeInterpolation interpolation = body.from_coarser(coarse_dofs, entries);
+  Vector coarse(coarse_dofs), x(body.d.owned_dofs);
+  coarse.randomize();
+  const double bytes = (8 + sizeof(LO)) * entries + sizeof(std::size_t) * body.rows() / body.d.dim() +
+                       17 * body.rows() + 8 * num_local(*coarse_dofs);
+  measure(state, stream, bytes, 2 * body.d.dim() * entries, body.rows(),
+          [&] { interpolation.apply(coarse, x, solver::NodeInterpolation::Write::add); });
 }
 
 using Kernel = void (*)(benchmark::State &, double, const Body &);
@@ -167,8 +229,9 @@ private:
 void register_kernels(const int n, const std::string &element, const int dim, const double stream, Bodies &bodies)
 {
   const std::string body = std::to_string(n) + "/" + element + (dim == 3 ? " 3D/" : "/");
-  const std::pair<const char *, Kernel> kernels[] = {
-      {"assembly", assembly}, {"internal work", internal_work}, {"SpMV", spmv}, {"Chebyshev", chebyshev}};
+  const std::pair<const char *, Kernel> kernels[] = {{"assembly", assembly},       {"internal work", internal_work},
+                                                     {"CSR product", csr_product}, {"product", product},
+                                                     {"smoother", smoother},       {"prolongation", prolongation}};
   for (const auto &[name, kernel] : kernels)
     benchmark::RegisterBenchmark((body + name).c_str(), [n, element, dim, stream, kernel = kernel,
                                                          &bodies](benchmark::State &state) {

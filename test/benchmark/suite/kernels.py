@@ -29,14 +29,17 @@ def kernels(bench):
     found = run(bench, 1, "--cells=" + plane, "--cells-in-space=" + space)
     table = Table(title,
                   "Bytes: what must move at least, every array once (kernels.cpp counts them). Times: the least of many, also the "
-                  "triad's. A Chebyshev sweep has degree 2 and starts from a given vector, as after a coarse correction. Items: "
-                  "cells for assembly and internal work, rows for the others. Q2 and P2 have half of 1/h cells each way: "
+                  "triad's. Product, smoother and prolongation are those of multigrid's cycle: rows that repeat are kept once, and the "
+                  "smoother, of degree 2, starts from a given vector, as after a coarse correction; the CSR product is KokkosKernels'. "
+                  "Items: cells for assembly and internal work, rows for the others. Q2 and P2 have half of 1/h cells each way: "
                   "as many nodes. 3D: the same body, as deep as it is high. STREAM triad in the same run: %.1f GB/s." % found["triad"]["GB/s"],
-                  ["1/h", "element", "kernel", "items", "bytes per item", "ns per item", "GB/s", "of triad"])
+                  ["1/h", "element", "kernel", "items", "bytes per item", "flops per item", "ns per item", "GB/s", "of triad", "GFlop/s"])
     for name, entry in found.items():
         if name == "triad":
             continue
         n, element, kernel = name.split("/")
+        flops = entry["flops"]
         table.add(n, element, kernel, "%d" % entry["items"], "%.0f" % (entry["bytes"] / entry["items"]),
-                  "%.1f" % entry["ns_per_item"], "%.2f" % entry["GB/s"], "%.0f %%" % (100 * entry["of_triad"]))
+                  "%.0f" % (flops / entry["items"]) if flops else "", "%.1f" % entry["ns_per_item"], "%.2f" % entry["GB/s"],
+                  "%.0f %%" % (100 * entry["of_triad"]), "%.2f" % entry["GFlop/s"] if flops else "")
     return table
