@@ -21,19 +21,6 @@ constexpr double facet_rounding = 1e-9; // of places within a facet, relative
 constexpr double margin = 0.5;          // of a facet, beyond the edge of the surface
 constexpr std::size_t few = 4;          // facets in a box that is not divided
 
-double inner(const Point &a, const Point &b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point minus(const Point &a, const Point &b)
-{
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Point cross(const Point &a, const Point &b)
-{
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// A straight facet as weights of the nodes of the facet that it is a part of: (corners, nodes).
 using Part = std::vector<std::vector<double>>;
 
@@ -128,8 +115,8 @@ void FacetSurface::add_box(const std::size_t first, const std::size_t last)
   double longest = 0; // edge, of the facets
   for (std::size_t k = first; k < last; ++k)
     for (int a = 0; a < facets_.dim; ++a) {
-      const Point x = corner(order_[k], a), edge = minus(corner(order_[k], (a + 1) % facets_.dim), x);
-      longest = std::max(longest, std::sqrt(inner(edge, edge)));
+      const Point x = corner(order_[k], a), edge = difference(corner(order_[k], (a + 1) % facets_.dim), x);
+      longest = std::max(longest, length(edge));
       for (int c = 0; c < 3; ++c) {
         box.lower[c] = std::min(box.lower[c], x[c]);
         box.upper[c] = std::max(box.upper[c], x[c]);
@@ -174,20 +161,20 @@ struct Meeting {
 std::optional<Meeting> meet(const int dim, const std::array<Point, 3> &x, const Point &direction)
 {
   Meeting meeting;
-  const Point along = minus(x[1], x[0]);
+  const Point along = difference(x[1], x[0]);
   if (dim == 2) {
     const Point normal = {along[1], -along[0], 0}; // as long as the facet
     const double facing = inner(normal, direction);
-    if (!(facing > facet_rounding * std::sqrt(inner(along, along)))) return std::nullopt;
+    if (!(facing > facet_rounding * length(along))) return std::nullopt;
     const Point across = {direction[1], -direction[0], 0};
     meeting.weights[1] = inner(x[0], across) / -inner(along, across);
     meeting.weights[0] = 1 - meeting.weights[1];
     meeting.distance = inner(x[0], normal) / facing;
     return meeting;
   }
-  const Point other = minus(x[2], x[0]), normal = cross(along, other);
+  const Point other = difference(x[2], x[0]), normal = cross(along, other);
   const double facing = inner(normal, direction);
-  if (!(facing > facet_rounding * std::sqrt(inner(normal, normal)))) return std::nullopt;
+  if (!(facing > facet_rounding * length(normal))) return std::nullopt;
   for (int k = 0; k < 3; ++k) meeting.weights[k] = inner(cross(x[(k + 1) % 3], x[(k + 2) % 3]), direction) / facing;
   meeting.distance = inner(x[0], normal) / facing;
   return meeting;
@@ -220,7 +207,7 @@ std::optional<double> FacetSurface::along(const Point &x, const Point &direction
   double least_off = inf, least_distance = inf;
   const auto look_at = [&](const std::size_t facet) {
     std::array<Point, 3> seen{};
-    for (int k = 0; k < dim; ++k) seen[k] = minus(corner(facet, k), x);
+    for (int k = 0; k < dim; ++k) seen[k] = difference(corner(facet, k), x);
     const auto meeting = meet(dim, seen, direction);
     if (!meeting) return;
     std::array<double, 3> inside{};
@@ -237,7 +224,7 @@ std::optional<double> FacetSurface::along(const Point &x, const Point &direction
       here += inside[k] * facets_.values[facet * dim + k];
       for (int c = 0; c < 3; ++c) away[c] += (meeting->weights[k] - inside[k]) * seen[k][c];
     }
-    double off = std::sqrt(inner(away, away));
+    double off = length(away);
     if (deepest > margin && off > beyond_ * (1 + facet_rounding)) return;
     if (deepest <= facet_rounding) off = 0;
     const double distance = std::abs(meeting->distance);

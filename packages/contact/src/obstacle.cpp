@@ -16,19 +16,6 @@ using Teuchos::Array;
 
 constexpr double rounding = 1e-9; ///< of positions and directions, relative
 
-double dot(const Point &a, const Point &b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point difference(const Point &a, const Point &b)
-{
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Point scaled(const double s, const Point &a)
-{
-  return {s * a[0], s * a[1], s * a[2]};
-}
-
 Point point_of(const Teuchos::ParameterList &list, const std::string &name, const int dim, const std::string &path)
 {
   const auto &numbers = list.get<Array<double>>(name);
@@ -67,16 +54,16 @@ std::array<ScalarField, 3> path_of(const Teuchos::ParameterList &list, const std
 Point unit_of(const Teuchos::ParameterList &list, const std::string &name, const int dim, const std::string &path)
 {
   const Point given = point_of(list, name, dim, path);
-  const double length = std::hypot(given[0], given[1], given[2]);
-  RPC_REQUIRE(length > 0 && std::isfinite(length),
-              "deck: \"" << path << "->" << name << "\" must have a length > 0, got " << length);
-  return scaled(1 / length, given);
+  const double size = length(given);
+  RPC_REQUIRE(size > 0 && std::isfinite(size),
+              "deck: \"" << path << "->" << name << "\" must have a length > 0, got " << size);
+  return scaled(1 / size, given);
 }
 
 /// A vector without its part along the axis of a cylinder; all of it for a sphere.
 Point across(const Obstacle &obstacle, const Point &v)
 {
-  return difference(v, scaled(dot(v, obstacle.axis), obstacle.axis));
+  return difference(v, scaled(inner(v, obstacle.axis), obstacle.axis));
 }
 
 } // namespace
@@ -154,7 +141,7 @@ std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x)
 {
   if (obstacle.kind == Obstacle::Kind::plane) return scaled(-1, obstacle.normal);
   const Point from_centre = across(obstacle, difference(x, obstacle.point));
-  const double distance = std::sqrt(dot(from_centre, from_centre));
+  const double distance = length(from_centre);
   if (!(distance > 0)) return std::nullopt;
   return scaled((obstacle.encloses ? 1 : -1) / distance, from_centre);
 }
@@ -162,8 +149,8 @@ std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x)
 bool lies_in(const Obstacle &obstacle, const Point &x)
 {
   const Point from = across(obstacle, difference(x, obstacle.point));
-  const double distance = std::sqrt(dot(from, from));
-  if (obstacle.kind == Obstacle::Kind::plane) return dot(from, obstacle.normal) < -rounding * distance;
+  const double distance = length(from);
+  if (obstacle.kind == Obstacle::Kind::plane) return inner(from, obstacle.normal) < -rounding * distance;
   const double beyond = distance - obstacle.radius;
   return (obstacle.encloses ? beyond : -beyond) > rounding * obstacle.radius;
 }
@@ -172,17 +159,17 @@ std::optional<double> distance_along(const Obstacle &obstacle, const Point &x, c
 {
   const Point from = across(obstacle, difference(x, obstacle.point));
   if (obstacle.kind == Obstacle::Kind::plane) {
-    const double descent = -dot(direction, obstacle.normal);
+    const double descent = -inner(direction, obstacle.normal);
     if (!(descent > rounding)) return std::nullopt;
-    return dot(from, obstacle.normal) / descent;
+    return inner(from, obstacle.normal) / descent;
   }
   // |from + g way| = radius: the root that crosses the surface from the body's part of space. Of a cylinder only what is across
   // its axis counts.
   const Point way = across(obstacle, direction);
-  const double square = dot(way, way);
+  const double square = inner(way, way);
   if (!(square > rounding * rounding)) return std::nullopt; // along the axis
-  const double along = dot(from, way);
-  double discriminant = along * along - square * (dot(from, from) - obstacle.radius * obstacle.radius);
+  const double along = inner(from, way);
+  double discriminant = along * along - square * (inner(from, from) - obstacle.radius * obstacle.radius);
   // A tangent meets the surface that encloses its point, whatever the rounding.
   if (obstacle.encloses && discriminant < 0 && !lies_in(obstacle, x)) discriminant = 0;
   const bool leads_in = obstacle.encloses || along < 0 || lies_in(obstacle, x);

@@ -71,21 +71,6 @@ Point angular_velocity(const RigidMotion &q, const double radius, const int dim)
   return {q[5] / radius, -q[4] / radius, q[3] / radius};
 }
 
-double length(const Point &a)
-{
-  return std::hypot(a[0], a[1], a[2]);
-}
-
-Point scaled(const Point &a, const double factor)
-{
-  return {factor * a[0], factor * a[1], factor * a[2]};
-}
-
-Point cross(const Point &a, const Point &b)
-{
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// Lists the owned nodes with a prescribed unknown, ascending. @return how many there are; an empty list stays empty
 LO list_held_nodes(const DeviceView<char *> &fixed, const int dim, const LO num_owned, const DeviceView<LO *> &list)
 {
@@ -373,18 +358,18 @@ MotionInWords in_words(const RigidMotion &q, const Part &part, const int dim)
   words.rotates = length(omega) * part.radius > 1e-6 * length(t);
   words.size = words.rotates ? length(omega) : length(t);
   if (!words.rotates) {
-    words.where = "along " + point_text(scaled(t, 1 / words.size), dim, 1);
+    words.where = "along " + point_text(scaled(1 / words.size, t), dim, 1);
     return words;
   }
   // r = 0 at centre + omega x t / |omega|^2, in 3D up to what advances along the axis
-  const Point offset = scaled(cross(omega, t), 1 / (words.size * words.size));
+  const Point offset = scaled(1 / (words.size * words.size), cross(omega, t));
   const Point at{part.centre[0] + offset[0], part.centre[1] + offset[1], part.centre[2] + offset[2]};
   const std::string place = point_text(at, dim, part.radius);
   if (dim == 2) {
     words.where = "about " + place + (omega[2] > 0 ? ", counterclockwise" : ", clockwise");
     return words;
   }
-  const Point axis = scaled(omega, 1 / words.size);
+  const Point axis = scaled(1 / words.size, omega);
   words.where = "about the axis through " + place + " along " + point_text(axis, dim, 1);
   const double advance = (t[0] * axis[0] + t[1] * axis[1] + t[2] * axis[2]) / words.size;
   if (std::abs(advance) > 1e-6 * part.radius) {

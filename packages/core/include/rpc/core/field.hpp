@@ -1,15 +1,13 @@
 #pragma once
 
-#include <array>
+#include "rpc/core/point.hpp"
+
 #include <functional>
 #include <string>
 #include <utility>
 
 namespace rpc
 {
-
-/// A point in space; absent dimensions are 0 [m].
-using Point = std::array<double, 3>;
 
 /// A scalar function of position and time that a user gave as a number or as an expression of x, y, z, t, seen at one time.
 ///
