@@ -33,13 +33,14 @@ PEERS = (Peer("scikit-fem, SuperLU", SKFEM, ("skfem_superlu.py", "{scene}", "{n}
          Peer("scikit-fem, PETSc MUMPS", PETSC, ("skfem_petsc.py", "{scene}", "{n}", "{xi}", "mumps"), finest={"block": 12}),
          Peer("scikit-fem, PETSc hypre", PETSC, ("skfem_petsc.py", "{scene}", "{n}", "{xi}", "hypre"), direct=False, threads=False),
          Peer("scikit-fem, PETSc GAMG", PETSC, ("skfem_petsc.py", "{scene}", "{n}", "{xi}", "gamg"), direct=False, threads=False),
-         Peer("scikit-fem, MUMPS Schur complement", PETSC, ("skfem_schur.py", "{scene}", "{n}", "{xi}")),
+         Peer("scikit-fem, MUMPS Schur complement", PETSC, ("skfem_schur.py", "{scene}", "{n}", "{xi}"),
+              finest={"block": 12}),
          Peer("GetFEM, MUMPS", ("getfem",), ("getfem_contact.py", "{scene}", "{n}"), rigid=True, finest={"block": 12}))
 
 
 class Scene(typing.NamedTuple):
-    """What the peers are compared on. xi [Pa]: of the peers that can; least: by what the criteria say of, peer's time over rpc's
-    on one rank."""
+    """What the peers are compared on. xi [Pa]: of the peers that can; least: what the criteria ask of peer's time over rpc's on one
+    rank."""
 
     title: str
     xi: str
@@ -159,8 +160,9 @@ def comparison(bench, scene, sizes):
                   "with threads run with 1 and with %d of them, the faster one is shown. CPU: its CPU time over rpc's on 1 rank. "
                   "By %s with %s. %s"
                   % (repeats, ENERGY_TOLERANCE, cores, python.base, python.blas,
-                     "Criteria: at 1/h = %d, xi = %s Pa the best peer takes at least %s x rpc's time on 1 rank."
-                     % (judged, xi, ", ".join(("%g %s" % (least, whom)).strip() for whom, _, least in criteria))
+                     "Criteria: at 1/h = %d, xi = %s Pa %s rpc's time on 1 rank."
+                     % (judged, xi, ", ".join("the best %stakes at least %g x" % (whom + " " * bool(whom), least)
+                                              for whom, _, least in criteria))
                      if judged else "No criterion: the meshes are too small."),
                   ["peer", "1/h", "dofs", "xi [Pa]", "J [%s]" % unit, "Newton", "CG", "threads", "time [s]", "over 1 rank",
                    "over 2 ranks", "CPU", ""])
