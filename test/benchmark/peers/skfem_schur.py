@@ -1,17 +1,17 @@
-"""The beam with scikit-fem, condensed to its contact unknowns by MUMPS: python3 skfem_schur.py N XI
+"""A scene with scikit-fem, condensed to its contact unknowns by MUMPS: python3 skfem_schur.py SCENE N XI
 
 One factorization gives the Schur complement; Newton works on that dense matrix. petsc4py does not wrap PETSc's functions for it,
 hence ctypes.
 """
+import copy
 import ctypes
 import sys
-import types
 
 import numpy as np
 
-from beam import R, Beam, newton
 from petsc4py import PETSc
 from report import Clock, report
+from scene import SCENES, energy, newton
 
 
 def library():
@@ -23,8 +23,8 @@ def library():
 class Condensed:
     """K^-1 and the Schur complement of the contact unknowns, from one factorization."""
 
-    def __init__(self, beam):
-        K, size = beam.K, len(beam.contact)
+    def __init__(self, scene):
+        K, size = scene.K, len(scene.contact)
         matrix = PETSc.Mat().createAIJ(K.shape, csr=(K.indptr, K.indices, K.data))
         matrix.setOption(PETSc.Mat.Option.SPD, True)
         self.pc = PETSc.PC().create()
@@ -34,7 +34,7 @@ class Condensed:
         self.pc.setFactorSetUpSolverType()
         petsc, pointer = library(), ctypes.c_void_p
         factor = pointer(self.pc.getFactorMatrix().handle)
-        contact = PETSc.IS().createGeneral(beam.contact.astype(PETSc.IntType))
+        contact = PETSc.IS().createGeneral(scene.contact.astype(PETSc.IntType))
         schur, status, entries = pointer(), ctypes.c_int(), pointer()
         failed = petsc.MatFactorSetSchurIS(factor, pointer(contact.handle))
         self.pc.setUp()
@@ -55,23 +55,21 @@ class Condensed:
         return x.getArray().copy()
 
 
-def main(n, xi):
+def main(scene, n, xi):
     clock = Clock()
-    beam = Beam(int(n))
+    scene = SCENES[scene](int(n), float(xi))
     clock.phase("assembly")
-    condensed = Condensed(beam)
-    S, K, f, contact = condensed.schur, beam.K, beam.f, beam.contact
-    start = condensed.solve(f)
+    condensed = Condensed(scene)
+    S, contact = condensed.schur, scene.contact
+    start = condensed.solve(scene.f)
     clock.phase("factorization")
-    reduced = types.SimpleNamespace(K=S, f=S @ start[contact], contact=np.arange(len(contact)), weight=beam.weight)
-    y, _, counts = newton(reduced, float(xi), R, lambda diagonal, rhs, _: np.linalg.solve(S + np.diag(diagonal), rhs))
-    forces = f.copy()
+    reduced = copy.copy(scene)
+    reduced.K, reduced.f, reduced.contact = S, S @ start[contact], np.arange(len(contact))
+    y, _, counts = newton(reduced, lambda diagonal, rhs, _: np.linalg.solve(S + np.diag(diagonal), rhs))
+    forces = scene.f.copy()
     forces[contact] += S @ y - reduced.f
     x = condensed.solve(forces)
-    energy = 0.5 * x @ (K @ x) - f @ x
-    if np.isfinite(float(xi)):
-        energy += float(xi) * beam.weight @ np.maximum(-x[contact], 0)
-    report(clock, energy, beam.dofs, **counts)
+    report(clock, energy(scene, x, scene.K @ x), scene.dofs, **counts)
 
 
 if __name__ == "__main__":

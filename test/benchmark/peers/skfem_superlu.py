@@ -1,26 +1,26 @@
-"""The beam with scikit-fem and SciPy's SuperLU: python3 skfem_superlu.py N XI"""
+"""A scene with scikit-fem and SciPy's SuperLU: python3 skfem_superlu.py SCENE N XI"""
 import sys
 
 import scipy.sparse as sparse
 from scipy.sparse.linalg import splu
 
-from beam import R, Beam, newton
 from report import Clock, report
+from scene import SCENES, newton
 
 
-def main(n, xi):
+def main(scene, n, xi):
     clock = Clock()
-    beam = Beam(int(n))
+    scene = SCENES[scene](int(n), float(xi))
     clock.phase("assembly")
-    stiffness = beam.K.tocsc()
+    stiffness = scene.K.tocsc()
 
     def solve(diagonal, rhs, _):
         factor = splu(stiffness + sparse.diags(diagonal, format="csc"), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
                       options={"SymmetricMode": True})
         return factor.solve(rhs)
 
-    _, energy, counts = newton(beam, float(xi), R, solve)
-    report(clock, energy, beam.dofs, **counts)
+    _, energy, counts = newton(scene, solve)
+    report(clock, energy, scene.dofs, **counts)
 
 
 if __name__ == "__main__":

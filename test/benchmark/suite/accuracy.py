@@ -110,17 +110,17 @@ def beam_results(bench, xi):
 def peer_results(bench, xi):
     """(name, element, result) of peers on uniform boxes, and why there are no others."""
     found, reasons = [], []
-    for name, modules, _, command, _ in peers.PEERS:
-        if name not in PEERS:
+    for peer in peers.PEERS:
+        if peer.name not in PEERS:
             continue
-        reason = bench.python.lacks(modules)
+        reason = bench.python.lacks(peer.modules)
         try:
-            found += [(PEERS[name], "Q1", bench.python.run(command, n, xi, 1))
+            found += [(PEERS[peer.name], "Q1", bench.python.run(peer.command, "beam", n, xi, 1))
                       for n in bench.sizes["accuracy"]["peers"] if not reason]
         except Failure as failure:
             reason = str(failure).strip().splitlines()[-1]
         if reason:
-            reasons.append("%s: %s" % (name, reason))
+            reasons.append("%s: %s" % (peer.name, reason))
     return found, reasons
 
 

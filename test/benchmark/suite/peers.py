@@ -1,25 +1,68 @@
 """The same problem by what a user might take instead, in the same run."""
 import glob
+import itertools
 import json
 import os
 import subprocess
 import statistics
 import sys
+import typing
 
 from .program import Failure, can_import, execute, find_python
 from .table import Table, skipped
 
 HERE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "peers")
-LEAST_RATIO = 15.0  # peer's time over rpc's on one rank
-ENERGY_TOLERANCE = 1e-7  # [J/m] between peer and rpc: the same discrete problem
+ENERGY_TOLERANCE = 4e-7  # of J, between peer and rpc: the same discrete problem
 TIMEOUT = 600  # [s]
-# name, modules, xi [Pa], command, whether its libraries have threads
-PEERS = (("scikit-fem, SuperLU", ("skfem",), "16", ("skfem_superlu.py", "{n}", "{xi}"), False),
-         ("scikit-fem, PETSc MUMPS", ("skfem", "petsc4py"), "16", ("skfem_petsc.py", "{n}", "{xi}", "mumps"), True),
-         ("scikit-fem, PETSc hypre", ("skfem", "petsc4py"), "16", ("skfem_petsc.py", "{n}", "{xi}", "hypre"), False),
-         ("scikit-fem, PETSc GAMG", ("skfem", "petsc4py"), "16", ("skfem_petsc.py", "{n}", "{xi}", "gamg"), False),
-         ("scikit-fem, MUMPS Schur complement", ("skfem", "petsc4py"), "16", ("skfem_schur.py", "{n}", "{xi}"), True),
-         ("GetFEM, MUMPS", ("getfem",), "inf", ("getfem_contact.py", "{n}"), True))
+
+
+class Peer(typing.NamedTuple):
+    """finest: by scene the last mesh, 1/h, that it runs on; no limit where the scene is not named."""
+
+    name: str
+    modules: tuple
+    command: tuple
+    rigid: bool = False  # takes no foundation but a rigid one
+    direct: bool = True
+    threads: bool = True  # its libraries have some
+    finest: dict = {}
+
+
+SKFEM, PETSC = ("skfem",), ("skfem", "petsc4py")
+PEERS = (Peer("scikit-fem, SuperLU", SKFEM, ("skfem_superlu.py", "{scene}", "{n}", "{xi}"), threads=False, finest={"block": 4}),
+         Peer("scikit-fem, PETSc MUMPS", PETSC, ("skfem_petsc.py", "{scene}", "{n}", "{xi}", "mumps"), finest={"block": 12}),
+         Peer("scikit-fem, PETSc hypre", PETSC, ("skfem_petsc.py", "{scene}", "{n}", "{xi}", "hypre"), direct=False, threads=False),
+         Peer("scikit-fem, PETSc GAMG", PETSC, ("skfem_petsc.py", "{scene}", "{n}", "{xi}", "gamg"), direct=False, threads=False),
+         Peer("scikit-fem, MUMPS Schur complement", PETSC, ("skfem_schur.py", "{scene}", "{n}", "{xi}"),
+              finest={"block": 12}),
+         Peer("GetFEM, MUMPS", ("getfem",), ("getfem_contact.py", "{scene}", "{n}"), rigid=True, finest={"block": 12}))
+
+
+class Scene(typing.NamedTuple):
+    """What the peers are compared on. xi [Pa]: of the peers that can; least: what the criteria ask of peer's time over rpc's on one
+    rank."""
+
+    title: str
+    xi: str
+    unit: str  # of J
+    run: typing.Callable  # (bench, n, xi, ranks) -> result
+    least: tuple  # (of whom, Peer -> whether it is one of them, ratio)
+
+
+def run_beam(bench, n, xi, ranks):
+    return bench.program.beam(n, xi, ranks, fresh=True)
+
+
+def run_block(bench, n, xi, ranks):
+    """xi [Pa]: in the middle, half as much more at the right end."""
+    return bench.program.run("block.xml", ranks, fresh=True, **{
+        "Mesh->Cells": "{%d, %d, %d}" % (2 * n, 2 * n, n), "Mesh->Element": "Q1", "Contact->Yield Stress": "%s*(1 + x/2)" % xi
+        if xi != "inf" else xi})
+
+
+SCENES = {"beam": Scene("Peers: the beam, Q1", "16", "J/m", run_beam,
+                        (("of multigrid", lambda peer: not peer.direct, 15.0), ("of direct ways", lambda peer: peer.direct, 5.0))),
+          "block": Scene("Peers in space: the block, Q1", "18", "J", run_block, (("", lambda peer: True, 10.0),))}
 
 
 class Python:
@@ -60,11 +103,12 @@ class Python:
         """Why the first of the modules that is missing is missing; None if all are there."""
         return next((self.reasons[module] for module in modules if not self.has(module)), None)
 
-    def run(self, command, n, xi, threads, fresh=False):
+    def run(self, command, scene, n, xi, threads, fresh=False):
         """Equal runs once, unless fresh. A result is what the script reports, with `process` and `cpu` [s]."""
-        key = (command, n, xi, threads)
+        key = (command, scene, n, xi, threads)
         if fresh or key not in self.results:
-            self.results[key] = self._run(command[0], [argument.format(n=n, xi=xi) for argument in command[1:]], threads)
+            arguments = [argument.format(scene=scene, n=n, xi=xi) for argument in command[1:]]
+            self.results[key] = self._run(command[0], arguments, threads)
         return self.results[key]
 
     def _run(self, script, arguments, threads):
@@ -74,60 +118,90 @@ class Python:
         return {**json.loads(run.output.splitlines()[-1]), "process": run.seconds, "cpu": run.cpu_seconds}
 
 
-def compare(bench, python, n, xi, command, threads, repeats):
+def compare(bench, scene, peer, n, xi, threads, repeats):
     """A peer in turns with rpc: its last result with medians of its time (process), of its time over rpc's on 1 and 2 ranks
-    (over 1, over 2) and of its CPU time over that of 1 rank (cpu), and the difference of J."""
+    (over 1, over 2) and of its CPU time over that of 1 rank (cpu), and the relative difference of J."""
     runs = []
     for _ in range(repeats):
-        ours = [bench.program.beam(n, xi, ranks, fresh=True) for ranks in (1, 2)]
-        runs.append((python.run(command, n, xi, threads, fresh=True), *ours))
-    peer, ours, _ = runs[-1]
-    return {**peer, "threads": threads, "difference": peer["J"] - ours["energy_J"],
-            "process": statistics.median(peer["process"] for peer, _, _ in runs),
-            "over 1": statistics.median(peer["process"] / one["process"] for peer, one, _ in runs),
-            "over 2": statistics.median(peer["process"] / two["process"] for peer, _, two in runs),
-            "cpu": statistics.median(peer["cpu"] / one["cpu"] for peer, one, _ in runs)}
+        ours = [SCENES[scene].run(bench, n, xi, ranks) for ranks in (1, 2)]
+        runs.append((bench.python.run(peer.command, scene, n, xi, threads, fresh=True), *ours))
+    theirs, ours, _ = runs[-1]
+    return {**theirs, "threads": threads, "difference": theirs["J"] / ours["energy_J"] - 1,
+            "process": statistics.median(theirs["process"] for theirs, _, _ in runs),
+            "over 1": statistics.median(theirs["process"] / one["process"] for theirs, one, _ in runs),
+            "over 2": statistics.median(theirs["process"] / two["process"] for theirs, _, two in runs),
+            "cpu": statistics.median(theirs["cpu"] / one["cpu"] for theirs, one, _ in runs)}
 
 
-def peers(bench):
-    meshes, repeats, judged = bench.sizes["peers"]
-    title = "Peers: the beam, Q1"
+def wrapped(steps):
+    """Counts of a list, shortened: 5 3 1 1 1 -> 5 3 1x3."""
+    groups = [(value, len(list(equal))) for value, equal in itertools.groupby(steps)]
+    return " ".join(str(value) if count == 1 else "%dx%d" % (value, count) for value, count in groups)
+
+
+def judge(table, scene, n, ratios):
+    """Adds a row for each criterion; ratios: (over 1 rank, peer)."""
+    for whom, belongs, least in SCENES[scene].least:
+        of_them = [(ratio, peer.name) for ratio, peer in ratios if belongs(peer)]
+        if of_them:
+            ratio, name = min(of_them)
+            table.add("best %s: %s" % (whom, name) if whom else "best: " + name, n, "", SCENES[scene].xi, *[""] * 5, "%.2f" % ratio,
+                      "", "", table.check(ratio >= least))
+
+
+def comparison(bench, scene, sizes):
+    meshes, repeats, judged = sizes
+    title, xi, unit, _, criteria = SCENES[scene]
     python = bench.python
     cores = len(os.sched_getaffinity(0))
     table = Table(title,
                   "Whole processes, taken in turns with rpc's on 1 and 2 ranks (the latter with mpirun's start); medians of %d. "
-                  "The same discrete problem: J within %g J/m of rpc's. Peers with threads run with 1 and with %d of them, the "
-                  "faster one is shown. CPU: its CPU time over rpc's on 1 rank. By %s with %s. %s"
+                  "The same discrete problem: J within %g of rpc's, relative. Newton: steps for each set of multipliers. Peers "
+                  "with threads run with 1 and with %d of them, the faster one is shown. CPU: its CPU time over rpc's on 1 rank. "
+                  "By %s with %s. %s"
                   % (repeats, ENERGY_TOLERANCE, cores, python.base, python.blas,
-                     "Criterion: at 1/h = %d, xi = 16 Pa the best peer takes at least %g x rpc's time on 1 rank."
-                     % (judged, LEAST_RATIO) if judged else "No criterion: the meshes are too small."),
-                  ["peer", "1/h", "xi [Pa]", "J [J/m]", "Newton", "threads", "time [s]", "over 1 rank", "over 2 ranks", "CPU",
-                   ""])
+                     "Criteria: at 1/h = %d, xi = %s Pa %s rpc's time on 1 rank."
+                     % (judged, xi, ", ".join("the best %stakes at least %g x" % (whom + " " * bool(whom), least)
+                                              for whom, _, least in criteria))
+                     if judged else "No criterion: the meshes are too small."),
+                  ["peer", "1/h", "dofs", "xi [Pa]", "J [%s]" % unit, "Newton", "CG", "threads", "time [s]", "over 1 rank",
+                   "over 2 ranks", "CPU", ""])
     missing = []
     for n in meshes:
         ratios = []
-        for name, modules, xi, command, threaded in PEERS:
-            reason = python.lacks(modules)
+        for peer in PEERS:
+            reason = python.lacks(peer.modules)
             if reason:
-                missing.append("%s: %s" % (name, reason))
+                missing.append("%s: %s" % (peer.name, reason))
                 continue
+            if n > peer.finest.get(scene, n):
+                missing.append("%s at 1/h = %d: it takes too long" % (peer.name, n))
+                continue
+            law = "inf" if peer.rigid else xi
             try:
-                best = min((compare(bench, python, n, xi, command, threads, repeats)
-                            for threads in ([1, cores] if threaded and cores > 1 else [1])), key=lambda run: run["over 1"])
+                best = min((compare(bench, scene, peer, n, law, threads, repeats)
+                            for threads in ([1, cores] if peer.threads and cores > 1 else [1])), key=lambda run: run["over 1"])
             except Failure as failure:
-                table.add(name, n, xi, *[""] * 7, str(failure).strip().splitlines()[-1])
+                table.add(peer.name, n, "", law, *[""] * 8, str(failure).strip().splitlines()[-1])
                 continue
             same = abs(best["difference"]) <= ENERGY_TOLERANCE
-            table.add(name, n, xi, "%.8f" % best["J"], " ".join(map(str, best["newton"])), best["threads"],
-                      "%.2f" % best["process"], "%.2f" % best["over 1"], "%.2f" % best["over 2"], "%.2f" % best["cpu"],
-                      "" if same else table.check(False))
-            if xi == "16":
-                ratios.append((best["over 1"], name))
-        if n == judged and ratios:
-            ratio, name = min(ratios)
-            table.add("best: " + name, n, "16", *[""] * 4, "%.2f" % ratio, "", "", table.check(ratio >= LEAST_RATIO))
+            table.add(peer.name, n, best["dofs"], law, "%.8f" % best["J"], wrapped(best["newton"]),
+                      "" if peer.direct else sum(best["linear_iterations"]), best["threads"], "%.2f" % best["process"],
+                      "%.2f" % best["over 1"], "%.2f" % best["over 2"], "%.2f" % best["cpu"], "" if same else table.check(False))
+            if not peer.rigid:
+                ratios.append((best["over 1"], peer))
+        if n == judged:
+            judge(table, scene, n, ratios)
     if len(table.rows) == 1:
         return skipped(title, "; ".join(dict.fromkeys(missing)))
     if missing:
         table.note += " Skipped: %s." % "; ".join(dict.fromkeys(missing))
     return table
+
+
+def peers(bench):
+    return comparison(bench, "beam", bench.sizes["peers"])
+
+
+def peers_in_space(bench):
+    return comparison(bench, "block", bench.sizes["peers in space"])
