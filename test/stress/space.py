@@ -310,7 +310,8 @@ def revolved(rng, element, inner, width):
         return {"mesh": {"Type": "box", "Cells": (nx, ny), "Element": element}, "lengths": {"Lower": (inner, 0.0), "Upper": (inner + width, 1.0)},
                 "body": Body(Grid(nx, ny, element, place, axisymmetric=True))}
     if shape == "round":  # lowest at the inner end
-        arc = rounded_place(2 * width, 1.0, width * log_uniform(rng, 0.1, 2))
+        least = (width * width + 0.49) / 1.4  # the arc rises by 0.7 at most, below the top
+        arc = rounded_place(2 * width, 1.0, max(least, width * log_uniform(rng, 0.1, 2)))
         place = lambda s, t: (inner + s * width, arc((1 + s) / 2, t)[1])
         return written(Body(Grid(nx, ny, element, place, axisymmetric=True)))
     size = rng.uniform(0.1, 0.24)

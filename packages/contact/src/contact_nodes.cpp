@@ -15,6 +15,8 @@ namespace
 {
 
 constexpr double largest_gap = 1e50; // [m], as that of meshes: squares must not overflow
+// Of the body's diameter, far below the rounding of places: the tail of an exponential is no gap, and no overlap to solve for.
+constexpr double no_gap = 1e-30;
 
 std::string place(const HostPoints &points, const LO i)
 {
@@ -250,8 +252,9 @@ void face_obstacle(SideValues &values, const ContactOptions &options, const Host
   throw_if_any(comm, ExitCode::bad_input, missing);
 }
 
+/// @param diameter  of the body [m]
 SideValues side_values(const ContactOptions &options, const HostPoints &points,
-                       const DeviceView<double **> &surface_normal, const Comm &comm)
+                       const DeviceView<double **> &surface_normal, const double diameter, const Comm &comm)
 {
   const LO n = static_cast<LO>(points.extent(0));
   SideValues values;
@@ -270,6 +273,7 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
 
   std::optional<std::string> bad;
   for (LO i = 0; i < n && !bad; ++i) {
+    if (std::abs(values.gap(i)) <= no_gap * diameter) values.gap(i) = 0;
     if (std::abs(values.gap(i)) <= largest_gap) continue;
     std::ostringstream message;
     message << "deck: \"" << options.path << "->Gap\" must be at most " << largest_gap << " [m] in size, got "
@@ -429,7 +433,8 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   if (dents) host_dents = dents->getLocalViewHost(Tpetra::Access::ReadOnly);
   for (std::size_t k = 0; k < options.size(); ++k) {
     const auto surface = fem::surface_nodes(d, *sides[k]);
-    const SideValues values = side_values(options[k], fem::node_positions(mesh, surface.node), surface.normal, comm);
+    const SideValues values =
+        side_values(options[k], fem::node_positions(mesh, surface.node), surface.normal, mesh::diameter(mesh), comm);
     require_outward(options[k], surface, values, comm);
     const auto side_node = to_host(surface.node);
     const auto side_weight = to_host(surface.weight);

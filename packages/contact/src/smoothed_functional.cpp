@@ -750,7 +750,9 @@ double SmoothedFunctional::contact_law_residual(const Vector &u) const
       KOKKOS_LAMBDA(const LO i, double &worst, double &pressure_scale, double &distance_scale) {
         if (c.fixed(i)) return;
         const double v = penetration(c, i, x), p = lambda(i);
-        const double miss = p - pressure(v, p, c.scaling(i), foundation(c, i));
+        const Foundation f = foundation(c, i);
+        const double rho = c.scaling(i) + f.hardening; // a softer one would see less of what a stiff foundation misses
+        const double miss = p - pressure(v, p, rho, f);
         worst = larger(worst, magnitude(miss));
         pressure_scale = larger(pressure_scale, p);
         distance_scale = larger(distance_scale, magnitude(c.scaling(i) * v));

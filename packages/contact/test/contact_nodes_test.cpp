@@ -177,6 +177,24 @@ TEST(ContactNodes, FixedNormalTakesTheGapAlongItself)
   expect_points(d, nodes_of(d, {options}), [](const Point &x) { return Expected{{0.6, -0.8, 0}, x[0] / 4}; });
 }
 
+TEST(ContactNodes, TailOfAnExponentialIsNoGap)
+{
+  const auto d = body();
+  const auto coords = to_host(d.mesh->coords);
+  for (const double sign : {1., -1.}) {
+    auto options = touching("bottom");
+    options.gap = ScalarField("tail", [sign](const Point &x) { return sign * std::exp(-60 * x[0]); });
+    const auto c = nodes_of(d, {options});
+    const auto gap = to_host(c.gap), free_gap = to_host(c.free_gap);
+    const auto node = to_host(c.node);
+    for (LO i = 0; i < c.size(); ++i) { // 1, 9e-14, 9e-27 and then below 1e-30 of the diameter
+      const double x = coords(node(i), 0);
+      EXPECT_EQ(gap(i), x < 1.2 ? sign * std::exp(-60 * x) : 0.) << x;
+      EXPECT_EQ(free_gap(i), gap(i));
+    }
+  }
+}
+
 /// A slope below the bottom, which it cuts at x = 2/3: n . (x - p) = 0.4 - 0.6 x at (x, 0).
 Obstacle slope()
 {
