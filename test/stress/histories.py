@@ -203,8 +203,9 @@ def solver_rest(scene, rows):
     return rest ** 2 / (scene.stiffest() * stress) * length ** scene.dim
 
 
-def balances(coarse, fine, start):
-    return misses(fine, start) <= FALLS * misses(coarse, start) + ROUNDING * at_work(fine)
+def balances(scene, coarse, fine, start):
+    rest = ROUNDING * at_work(fine) + len(fine[0]["steps"]) * solver_rest(scene, fine[1])
+    return misses(fine, start) <= FALLS * misses(coarse, start) + rest
 
 
 def check_memory(scene, whole, part, number, complain):
@@ -254,10 +255,10 @@ def judge(options, number):
             quarters = run(options, finer, folder / "quarters", complain)
             if quarters:
                 check_run(finer, *quarters, complain)
-                if not balances(whole, quarters, steps[0]):  # steps too large to show an order, which their parts must
+                if not balances(scene, whole, quarters, steps[0]):  # steps too large to show an order, which their parts must
                     finest = dataclasses.replace(scene, times=[k / 16 for k in range(1, 16 * len(steps) + 1)])
                     sixteenths = run(options, finest, folder / "sixteenths", complain)
-                    if sixteenths and not balances(quarters, sixteenths, steps[0]):
+                    if sixteenths and not balances(scene, quarters, sixteenths, steps[0]):
                         complain("energy missed: " + ", ".join(f"{misses(r, steps[0]):.3g}" for r in (whole, quarters, sixteenths))
                                  + f" of {at_work(sixteenths):.3g}")
             if len(steps) > 1:

@@ -42,6 +42,7 @@ EACH = 20  # scenes from one line of progress to the next
 LARGER = 0.2  # of the scenes of test/families: meshes of their size "middle"
 ZONES = (50, 150, 500, math.inf)  # contact points
 BALANCE = 1e-6  # forces, relative to the largest of them
+NO_STRAIN = 1e-30  # a load that strains a body by less is the tail of an exponential
 UNLOADED = 1e-4  # of the stresses within a cell: the largest force at least where nothing acts on a body
 NULLABLE = {"multiplier_change"}
 os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT", "1")  # Open MPI refuses root, as in a container, unless told twice
@@ -181,6 +182,7 @@ def check_numbers(scene, summary, rows, floor, complain):
     scale = max([math.hypot(*force) for force in forces] + [radial_size(scene) * unit])
     if not (scene.traction or scene.body_force or summary["max_pressure"]):  # moved without a touch: forces are what the solver leaves
         scale = max(scale, UNLOADED * stress_of_cell(scene, rows) * unit / stress)
+    scale = max(scale, NO_STRAIN * scene.stiffest() * unit)
     if not rest <= max(BALANCE, 100 * floor) * scale:
         complain(f"forces do not balance: {rest:.3g} is left of {scale:.3g}")
 

@@ -78,6 +78,73 @@ double work_of_motion(const Comm &comm, const contact::ContactNodes &contact, co
   return sum_all(comm, sum);
 }
 
+/// Whether an obstacle is elsewhere at another time.
+bool moves_between(const Model &model, const double t, const double other)
+{
+  const auto a = model.seen_at(t).contact, b = model.seen_at(other).contact;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    if (a[k].obstacle.kind != contact::Obstacle::Kind::none && a[k].obstacle.point != b[k].obstacle.point) return true;
+  return false;
+}
+
+/// The contact points of another time, without dents; collective.
+contact::ContactNodes points_at(const Problem &problem, const double t)
+{
+  const Model model = problem.model().seen_at(t);
+  const fem::Discretization &d = problem.discretization();
+  return contact::contact_nodes(d, model.contact, fem::dirichlet_dofs(d, model.dirichlet), model.materials);
+}
+
+/// (points, dim) The normals that the points had before; their own where they were no points. Collective.
+DeviceView<double **> normals_before(const contact::ContactNodes &contact, const contact::ContactNodes &before,
+                                     const RCP<const Map> &owned_nodes)
+{
+  const contact::ContactNodes c = contact, b = before;
+  const DeviceView<double **> normal("rpc::analysis::normals_before", c.size(), c.dim);
+  Kokkos::deep_copy(normal, c.normal);
+  const DeviceView<double *> ones("rpc::analysis::ones", b.size());
+  Kokkos::deep_copy(ones, 1.);
+  const auto was_point = contact::at_points(c, *contact::node_columns(b, ones, owned_nodes));
+  const DeviceView<double *> component("rpc::analysis::normal_component", b.size());
+  for (int k = 0; k < c.dim; ++k) {
+    Kokkos::parallel_for(
+        "rpc::analysis::normal_component", device_range(b.size()),
+        KOKKOS_LAMBDA(const LO i) { component(i) = b.normal(i, k); });
+    Kokkos::fence();
+    const auto at = contact::at_points(c, *contact::node_columns(b, component, owned_nodes));
+    Kokkos::parallel_for(
+        "rpc::analysis::normals_before", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+          if (was_point(i) > 0) normal(i, k) = at(i);
+        });
+    Kokkos::fence();
+  }
+  return normal;
+}
+
+/// Work that the foundation does where its motion turns the normals, sum of w p u . d nu by the trapezoidal rule [J]; collective.
+/// @param u, before_u      (owned dofs) [m]
+/// @param before_pressure  (points)
+/// @param before_normal    (points, dim)
+double work_of_turning(const Comm &comm, const contact::ContactNodes &contact, const contact::ContactResult &result,
+                       const Vector &u, const Vector &before_u, const DeviceView<double *> &before_pressure,
+                       const DeviceView<double **> &before_normal)
+{
+  const contact::ContactNodes c = contact;
+  const auto p = result.pressure;
+  const auto x = device_read(u), y = device_read(before_u);
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::analysis::work_of_turning", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) {
+        double along = 0;
+        for (int k = 0; k < c.dim; ++k)
+          along += (x(c.dof(i, k)) + y(c.dof(i, k))) * (c.normal(i, k) - before_normal(i, k));
+        part += 0.25 * c.weight(i) * (p(i) + before_pressure(i)) * along;
+      },
+      sum);
+  return sum_all(comm, sum);
+}
+
 /// Before the first step the body is at rest, and a foundation that overlaps it has moved in. Larger gaps did no work.
 DeviceView<double *> gaps_at_rest(const contact::ContactNodes &contact)
 {
@@ -91,9 +158,10 @@ DeviceView<double *> gaps_at_rest(const contact::ContactNodes &contact)
 }
 
 /// The energies after a step that began at `before`, null for the first one. (11.3)
+/// @param t             of the step
 /// @param force_before  see other_forces(), at `before`; null: not known
 /// @param force         the same after the step
-Energies energies_after(const Problem &problem, const StepSolution &s, const Memory *const before,
+Energies energies_after(const Problem &problem, const double t, const StepSolution &s, const Memory *const before,
                         const Vector *const force_before, const Vector &force)
 {
   const contact::ContactNodes &points = s.functional->contact();
@@ -108,10 +176,16 @@ Energies energies_after(const Problem &problem, const StepSolution &s, const Mem
   mean.scale(0.5);
   DeviceView<double *> pressure("rpc::analysis::no_pressure", points.size()), before_gap;
   if (before) {
-    mean.update(0.5, force_before ? *force_before : other_forces(problem, points, *before), 1.);
+    const bool moves = moves_between(problem.model(), t, before->time);
+    const contact::ContactNodes points_before = moves ? points_at(problem, before->time) : points;
+    mean.update(0.5, force_before ? *force_before : other_forces(problem, points_before, *before), 1.);
     moved.update(-1., *before->displacement, 1.);
     pressure = contact::at_points(points, *before->pressure);
     before_gap = contact::at_points(points, *before->gap);
+    if (moves)
+      energies.work +=
+          work_of_turning(comm, points, s.contact, *s.u, *before->displacement, pressure,
+                          normals_before(points, points_before, problem.discretization().mesh->owned_nodes));
   } else {
     before_gap = gaps_at_rest(points);
   }
@@ -404,7 +478,7 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
              contact::node_columns(step.contact, s.contact.pressure, owned_nodes),
              dents,
              contact::node_columns(step.contact, moving_gap(*problem_, step.contact, s.contact.dent), owned_nodes),
-             energies_after(*problem_, s, before_ ? &*before_ : nullptr, last_forces_.get(), *forces)};
+             energies_after(*problem_, t, s, before_ ? &*before_ : nullptr, last_forces_.get(), *forces)};
   last_forces_ = forces;
   return s;
 }

@@ -594,6 +594,34 @@ TEST(LoadHistory, EnergiesBalanceToTheSquareOfTheStep)
   }
 }
 
+TEST(LoadHistory, EnergiesBalanceToTheSquareOfTheStepWhereNormalsTurn)
+{
+  auto model = column(laws[0], [](double) { return 0.02; });
+  model.dirichlet = {prescribed("top", ScalarField(0.1), ScalarField(-0.02))};
+  auto &ball = model.contact[0].obstacle;
+  ball.kind = contact::Obstacle::Kind::sphere;
+  ball.radius = 3;
+  ball.path[0] = in_time([](const Point &, const double t) { return 0.8 + 0.2 * t; });
+  ball.path[1] = ScalarField(-3.);
+  ball.point = {0.8, -3, 0};
+  model.contact[0].normal = contact::Normal::foundation;
+  std::vector<double> missed;
+  for (const int steps : {4, 16}) {
+    auto history = history_of(model, close(), 0, 1, 2);
+    advance(history, 1);
+    double sum = 0, before = history.last().energies.imbalance();
+    for (int k = 1; k <= steps; ++k) {
+      advance(history, 1 + 1. * k / steps);
+      const double now = history.last().energies.imbalance();
+      sum += std::abs(now - before);
+      before = now;
+    }
+    missed.push_back(sum);
+  }
+  EXPECT_GT(missed[1], 1e-10);
+  EXPECT_GT(std::log2(missed[0] / missed[1]) / 2, 1.5) << missed[0] << " " << missed[1];
+}
+
 TEST(LoadHistory, EnergiesBalanceExactlyOnProportionalElasticPaths)
 {
   // Without gap, yielding and states that change, all is linear in the load, and the trapezoid exact.
