@@ -125,10 +125,15 @@ def stress_of_cell(scene, rows):
     return scene.stiffest() * stress * u / cell
 
 
+def largest_traction(scene):
+    """In the scene's unit of stress, at the time that it is seen at."""
+    return max([abs(f(x, 0)) for fs in scene.traction.values() for f in fs for x in (0, 0.5, 1)], default=0.0)
+
+
 def rounding(scene, summary, rows):
     """What rounding of u leaves of equilibrium: eps |K||u| over the load, in the terms of one cell."""
     stress = scene.units[1]
-    load = max([summary["max_pressure"]] + [abs(f(x, 0)) * stress for fs in scene.traction.values() for f in fs for x in (0, 0.5, 1)])
+    load = max(summary["max_pressure"], largest_traction(scene) * stress)
     return 4 * 2.0 ** -53 * scene.softening() * stress_of_cell(scene, rows) / load if load > 0 else 0.0
 
 
@@ -180,7 +185,7 @@ def check_numbers(scene, summary, rows, floor, complain):
     forces.append([a * unit for a in applied])
     rest = math.hypot(*(sum(force[c] for force in forces) for c in range(scene.dim)))
     scale = max([math.hypot(*force) for force in forces] + [radial_size(scene) * unit])
-    if not (scene.traction or scene.body_force or summary["max_pressure"]):  # moved without a touch: forces are what the solver leaves
+    if not (largest_traction(scene) or scene.body_force or summary["max_pressure"]):  # moved without a touch: forces are what the solver leaves
         scale = max(scale, UNLOADED * stress_of_cell(scene, rows) * unit / stress)
     scale = max(scale, NO_STRAIN * scene.stiffest() * unit)
     if not rest <= max(BALANCE, 100 * floor) * scale:
