@@ -1,6 +1,7 @@
 #include "rpc/fem/hinges.hpp"
 
 #include "point_text.hpp"
+#include "rpc/core/fingerprint.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/fem/rigid_motion.hpp"
@@ -31,15 +32,6 @@ int num_facet_vertices(const mesh::Element &element)
   return element.dim == 2 ? 2 : element.shape == mesh::Shape::tensor ? 4 : 3;
 }
 
-/// Bits of a number mixed so that sums of several tell the numbers (S. Vigna's splitmix64).
-KOKKOS_INLINE_FUNCTION std::uint64_t mixed(std::uint64_t x)
-{
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
 /// Counts the owned nodes where the cells around are not all joined over facets that hold the node.
 struct CountPinchedNodes {
   static constexpr int most_cells = 64; // around a node; one with more counts
@@ -57,7 +49,7 @@ struct CountPinchedNodes {
     for (std::size_t a = 0; a < facets.extent(1); ++a) {
       const LO vertex = cells(cell, facets(facet, a));
       holds = holds || vertex == node;
-      sum += mixed(static_cast<std::uint64_t>(vertex));
+      sum += splitmix64(static_cast<std::uint64_t>(vertex)); // the sum of several tells the numbers
     }
     return holds ? sum : 0;
   }

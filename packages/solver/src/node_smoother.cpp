@@ -1,6 +1,7 @@
 #include "node_smoother.hpp"
 
 #include "rpc/core/dofs.hpp"
+#include "rpc/core/fingerprint.hpp"
 #include "rpc/core/math.hpp"
 
 #include <Teuchos_LAPACK.hpp>
@@ -130,10 +131,7 @@ void fill_without_order(Vector &x)
   const auto map = x.getMap()->getLocalMap();
   Kokkos::parallel_for(
       "rpc::solver::fill_without_order", device_range(static_cast<LO>(x.getLocalLength())), KOKKOS_LAMBDA(const LO i) {
-        unsigned long long hash = static_cast<unsigned long long>(map.getGlobalElement(i)) + 0x9e3779b97f4a7c15ULL;
-        hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ULL; // splitmix64
-        hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebULL;
-        hash ^= hash >> 31;
+        const std::uint64_t hash = splitmix64(static_cast<std::uint64_t>(map.getGlobalElement(i)));
         to(i) = static_cast<double>(hash >> 11) * (2. / 9007199254740992.) - 1;
       });
   Kokkos::fence();

@@ -96,7 +96,7 @@ public:
 private:
   struct Coarser;
   /// Where the same step leads on a coarser mesh; none where there is none or it fails.
-  /// @param work  of that mesh and coarser ones, appended to
+  /// @param work  becomes that on this mesh and coarser ones, from the coarsest
   std::optional<contact::ContactState> predicted(const Step &step, std::vector<LevelWork> &work);
   StepSolution solve(double t, const Progress &progress, const std::function<void(const Problem &, const Step &)> &now);
   StepSolution advance_in_parts(double t, int halvings, const Progress &progress,

@@ -87,7 +87,7 @@ struct Starts {
   /// Such as that of the step before or of another mesh: the nearest to equilibrium is taken.
   std::vector<contact::ContactState> states;
   /// Asked where that is far from equilibrium; empty, or returns none, where there is no better start. Collective.
-  /// @param work  of coarser meshes, from the coarsest; appended to
+  /// @param work  becomes that on coarser meshes, from the coarsest
   std::function<std::optional<contact::ContactState>(std::vector<LevelWork> &work)> predicted;
 };
 

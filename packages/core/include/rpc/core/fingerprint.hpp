@@ -15,10 +15,15 @@ KOKKOS_INLINE_FUNCTION std::uint64_t scrambled(std::uint64_t x)
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
   return x ^ (x >> 31);
 }
+/// The same, by S. Vigna's splitmix64: numbers that follow each other, 0 among them, become unrelated ones.
+KOKKOS_INLINE_FUNCTION std::uint64_t splitmix64(const std::uint64_t x)
+{
+  return scrambled(x + 0x9e3779b97f4a7c15ULL);
+}
 /// The same of two, whose order counts.
 KOKKOS_INLINE_FUNCTION std::uint64_t scrambled(const std::uint64_t a, const std::uint64_t b)
 {
-  return scrambled(scrambled(a + 0x9e3779b97f4a7c15ULL) ^ b);
+  return scrambled(splitmix64(a) ^ b);
 }
 
 /// Sum over all ranks modulo 2^64; collective.
