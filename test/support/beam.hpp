@@ -47,8 +47,8 @@ struct Beam {
     const auto dirichlet = fem::dirichlet_dofs(d, held);
     const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
     const auto nodes = contact::contact_nodes(d, {foundation}, dirichlet, material);
-    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K, load, dirichlet), nodes,
-                                                               rcp(new UpdatedOperator(K.matrix, nodes)));
+    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K.couplings, load, dirichlet),
+                                                               nodes, rcp(new UpdatedOperator(K.matrix, nodes)));
     linear = std::make_shared<solver::LinearSolver>(options, functional->hessian(), fem::node_coordinates(d),
                                                     fem::rigid_body_modes(d));
     u = rcp(new Vector(d.owned_dofs));

@@ -65,8 +65,8 @@ struct Scene {
     const auto dirichlet = fem::dirichlet_dofs(d, {condition});
     const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
     const auto nodes = contact::contact_nodes(d, foundations, dirichlet, material);
-    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K, load, dirichlet), nodes,
-                                                               rcp(new UpdatedOperator(K.matrix, nodes)));
+    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K.couplings, load, dirichlet),
+                                                               nodes, rcp(new UpdatedOperator(K.matrix, nodes)));
   }
   explicit Scene(const double penalty = 40) : Scene(std::vector{below(penalty)}) {}
 

@@ -393,10 +393,15 @@ void LoadHistory::go_on_from(Memory memory, std::optional<Memory> before)
 
 void LoadHistory::start_anew()
 {
-  on_coarser_mesh_.reset();
   last_forces_ = Teuchos::null;
-  problem_ = problem_->remade(memory_ ? memory_->time : last_.time);
-  ++matrix_assemblies_;
+  remake(memory_ ? memory_->time : last_.time);
+}
+
+void LoadHistory::remake(const double t)
+{
+  on_coarser_mesh_.reset();
+  assembled_before_ += problem_->stiffness()->has_matrix();
+  problem_ = problem_->remade(t);
 }
 
 StepSolution LoadHistory::advance(const double t, const Progress &progress,
@@ -440,10 +445,8 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
   if (on_foundation) met = met_at(moved_along(*problem_, t, *memory_->displacement));
   Step step = problem_->step(t, met.get());
   if (!problem_->serves(step)) {
-    problem_ = problem_->remade(t);
-    on_coarser_mesh_.reset();
+    remake(t);
     step = problem_->step(t, met.get());
-    ++matrix_assemblies_;
   }
   if (now) now(*problem_, step);
   Starts starts{std::exchange(offered_, {}), {}};

@@ -75,11 +75,20 @@ Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, con
   const fem::Discretization &d = discretization_;
   const auto dirichlet = prescribed_of(d, model_);
   free_parts_ = contact::free_parts(d, dirichlet);
-  const auto K = fem::assemble_stiffness(d, model_.materials);
-  require_finite(*K, "the stiffness matrix, from \"Material\" and \"Mesh\"", [&d] { return fem::node_coordinates(d); });
-  eliminated_ = fem::eliminate_dirichlet(d, K, dirichlet);
-  operator_ = rcp(
-      new UpdatedOperator(eliminated_.matrix, contact::contact_nodes(d, model_.contact, dirichlet, model_.materials)));
+  const auto assembled = [d, materials = model_.materials, dirichlet] {
+    const auto K = fem::assemble_stiffness(d, materials);
+    require_finite(*K, "the stiffness matrix, from \"Material\" and \"Mesh\"",
+                   [&d] { return fem::node_coordinates(d); });
+    return fem::eliminate_dirichlet(d, K, dirichlet);
+  };
+  const auto repeated = fem::repeated_stiffness(d, model_.materials, dirichlet);
+  const fem::EliminatedStiffness K = repeated ? fem::EliminatedStiffness{} : assembled();
+  couplings_ = repeated ? repeated->couplings : K.couplings;
+  const auto points = contact::contact_nodes(d, model_.contact, dirichlet, model_.materials);
+  operator_ = repeated ? rcp(new UpdatedOperator({repeated->rows, d.owned_dofs, d.overlap_dofs, d.dof_import,
+                                                  [assembled] { return assembled().matrix; }},
+                                                 points))
+                       : rcp(new UpdatedOperator(K.matrix, points));
   solver::MakeMeshLevels levels;
   if (has_mesh_levels(*d.mesh))
     levels = [d, model = model_, prescribed = dirichlet.fixed] { return mesh_levels(d, model, prescribed); };
@@ -93,7 +102,7 @@ Step Problem::step(const double t, const MultiVector *const dents) const
   const Model now = model_.seen_at(t);
   auto dirichlet = prescribed_of(d, now);
   Step step{t, {}, contact::contact_nodes(d, now.contact, dirichlet, now.materials, dents), {}};
-  step.elastic = fem::elastic_problem(d, eliminated_, loads_of(d, now), std::move(dirichlet));
+  step.elastic = fem::elastic_problem(d, couplings_, loads_of(d, now), std::move(dirichlet));
   require_finite(*step.elastic.load, "the forces of prescribed displacements",
                  [&d] { return fem::node_coordinates(d); });
   step.support = contact::check_support(d, free_parts_, *step.elastic.applied_load, step.contact, now.contact);

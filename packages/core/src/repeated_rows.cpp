@@ -17,89 +17,54 @@ namespace rpc
 namespace
 {
 
-constexpr int most_kinds = 600;
-constexpr std::size_t enough_kinds = 30;
-constexpr double few_nodes = 0.05;
-constexpr double least_part = 0.75; // of the nodes that repeat
-constexpr short no_kind = -1;
-
 constexpr bool on_gpu = !Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
 
-using LocalMatrix = CrsMatrix::local_matrix_device_type;
+using LocalMatrix = RepeatedRows::LocalMatrix;
 
-/// A block of a row in the list of a kind: four numbers in the plane, column after column; in space three columns of four, the last
-/// of which is 0.
 template <int Dim>
-constexpr int padded = Dim == 2 ? 4 : 12;
-template <int Dim>
-KOKKOS_INLINE_FUNCTION constexpr int place_in_block(const int row, const int column)
-{
-  return Dim == 2 ? 2 * column + row : 4 * column + row;
-}
+constexpr std::size_t padded = RepeatedRows::block_size(Dim);
 
-KOKKOS_INLINE_FUNCTION LO node_at(const LO place, const LO num_nodes)
-{
-  const LO rest = num_nodes - num_nodes / 2;
-  return place < rest ? num_nodes / 2 + place : place - rest;
-}
+/// Whether two nodes have the same rows, but for a shift of the columns' numbers.
+struct SameRows {
+  LocalMatrix A; // in
+  int dim;       //
 
-/// Gives `kind` to the nodes without one whose rows are those of the example.
-struct TakeKind {
-  LocalMatrix A;             // in
-  int dim;                   //
-  LO example;                // node
-  short kind;                //
-  DeviceView<short *> taken; // (owned nodes)  inout
-
-  KOKKOS_FUNCTION bool same(const LO node) const
+  KOKKOS_FUNCTION bool operator()(const LO node, const LO other) const
   {
-    const LO shift = dof(dim, node - example, 0);
+    const LO shift = dof(dim, node - other, 0);
     for (int k = 0; k < dim; ++k) {
-      const auto of_node = A.graph.row_map(dof(dim, node, k)), of_example = A.graph.row_map(dof(dim, example, k));
+      const auto of_node = A.graph.row_map(dof(dim, node, k)), of_other = A.graph.row_map(dof(dim, other, k));
       const auto length = A.graph.row_map(dof(dim, node, k) + 1) - of_node;
-      if (A.graph.row_map(dof(dim, example, k) + 1) - of_example != length) return false;
+      if (A.graph.row_map(dof(dim, other, k) + 1) - of_other != length) return false;
       if (k == 0)
         for (std::size_t e = 0; e < length; e += dim)
-          if (A.graph.entries(of_node + e) - A.graph.entries(of_example + e) != shift) return false;
+          if (A.graph.entries(of_node + e) - A.graph.entries(of_other + e) != shift) return false;
       for (std::size_t e = 0; e < length; ++e)
-        if (A.values(of_node + e) != A.values(of_example + e)) return false;
+        if (A.values(of_node + e) != A.values(of_other + e)) return false;
     }
     return true;
   }
-  /// @param place  of the node, counted from the middle of the numbers: inside the mesh, where most rows repeat
-  /// @param took   += 1 if the node took it
-  /// @param first  the first place that is left without
-  KOKKOS_FUNCTION void operator()(const LO place, LO &took, LO &first) const
-  {
-    const LO node = node_at(place, static_cast<LO>(taken.extent(0)));
-    if (taken(node) != no_kind) return;
-    if (same(node)) {
-      taken(node) = kind;
-      ++took;
-    } else if (place < first) {
-      first = place;
-    }
-  }
 };
 
-/// Copies the rows of the kinds' examples.
-template <int Dim>
+/// Lists the rows of the kinds' examples.
 struct ListKinds {
-  LocalMatrix A;              // in
-  DeviceView<LO *> example;   // (kinds)       in
+  int dim;
+  RowsOfNodes examples;       // (kinds)       in
   DeviceView<LO *> begin;     // (kinds + 1)   in
   DeviceView<LO *> offset;    // (neighbours)  out
-  DeviceView<double *> value; // (neighbours * padded)  out
+  DeviceView<double *> value; // (neighbours * size of a block)  out
 
   KOKKOS_FUNCTION void operator()(const LO kind) const
   {
-    const LO node = example(kind);
+    const auto &A = examples.rows;
+    const LO node = examples.node(kind), place = examples.place(kind);
     for (LO n = begin(kind); n < begin(kind + 1); ++n) {
-      const LO at = Dim * (n - begin(kind));
-      offset(n) = node_of(Dim, A.graph.entries(A.graph.row_map(dof(Dim, node, 0)) + at)) - node;
-      for (int i = 0; i < Dim; ++i)
-        for (int j = 0; j < Dim; ++j)
-          value(padded<Dim> * n + place_in_block<Dim>(i, j)) = A.values(A.graph.row_map(dof(Dim, node, i)) + at + j);
+      const LO at = dim * (n - begin(kind));
+      offset(n) = node_of(dim, A.graph.entries(A.graph.row_map(dof(dim, place, 0)) + at)) - node;
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          value(RepeatedRows::block_size(dim) * n + RepeatedRows::place_in_block(dim, i, j)) =
+              A.values(A.graph.row_map(dof(dim, place, i)) + at + j);
     }
   }
 };
@@ -107,8 +72,8 @@ struct ListKinds {
 /// The rows of one node.
 template <int Dim, class In, class Out>
 struct MultiplyNode {
-  LocalMatrix A;              //                        in
-  DeviceView<short *> kind;   // (owned nodes)          in
+  LocalMatrix rest;           //                        in
+  DeviceView<int *> kind;     // (owned nodes)          in
   DeviceView<LO *> begin;     // (kinds + 1)            in
   DeviceView<LO *> offset;    // (neighbours)           in
   DeviceView<double *> value; // (neighbours * padded)  in
@@ -123,14 +88,16 @@ struct MultiplyNode {
       for (LO n = begin(k); n < begin(k + 1); ++n) {
         const LO first = dof(Dim, node + offset(n), 0);
         for (int j = 0; j < Dim; ++j)
-          for (int i = 0; i < Dim; ++i) sum[i] += value(padded<Dim> * n + place_in_block<Dim>(i, j)) * x(first + j);
+          for (int i = 0; i < Dim; ++i)
+            sum[i] += value(padded<Dim> * n + RepeatedRows::place_in_block(Dim, i, j)) * x(first + j);
       }
     } else {
-      const auto first = A.graph.row_map(dof(Dim, node, 0)), length = A.graph.row_map(dof(Dim, node, 0) + 1) - first;
+      const LO row = dof(Dim, -1 - k, 0);
+      const auto first = rest.graph.row_map(row), length = rest.graph.row_map(row + 1) - first;
       for (std::size_t e = 0; e < length; e += Dim)
         for (int i = 0; i < Dim; ++i)
           for (int j = 0; j < Dim; ++j)
-            sum[i] += A.values(first + i * length + e + j) * x(A.graph.entries(first + e) + j);
+            sum[i] += rest.values(first + i * length + e + j) * x(rest.graph.entries(first + e) + j);
     }
     for (int i = 0; i < Dim; ++i) y(dof(Dim, node, i)) = sum[i];
   }
@@ -291,15 +258,16 @@ struct MultiplyNodes {
     const LO last = std::min((chunk + 1) * nodes_at_once, num_nodes);
     LO node = chunk * nodes_at_once;
     while (node < last) {
-      const short k = one.kind(node);
+      const int k = one.kind(node);
       LO end = node + 1;
-      while (end < last && one.kind(end) == k) ++end;
+      while (end < last && one.kind(end) == (k < 0 ? one.kind(end - 1) - 1 : k)) ++end;
       if (k < 0) {
-        const NodeRows rows{one.A.graph.row_map.data(), one.A.graph.entries.data(), one.A.values.data()};
+        const NodeRows rows{one.rest.graph.row_map.data(), one.rest.graph.entries.data(), one.rest.values.data()};
+        double *const y = &one.y(dof(Dim, node, 0));
         if constexpr (Dim == 2)
-          multiply_alone_2d(rows, node, end - node, one.x.data(), &one.y(dof(Dim, node, 0)));
+          multiply_alone_2d(rows, -1 - k, end - node, one.x.data(), y);
         else
-          multiply_alone_3d(rows, node, end - node, one.x.data(), &one.y(dof(Dim, node, 0)));
+          multiply_alone_3d(rows, -1 - k, end - node, one.x.data(), y);
         node = end;
         continue;
       }
@@ -333,73 +301,123 @@ void multiply(const MultiplyNode<Dim, In, Out> &one)
   Kokkos::fence();
 }
 
+/// Nodes of no kind find their rows in a matrix of all nodes.
+void number_the_rest(const DeviceView<int *> &kind, const bool has_kinds)
+{
+  Kokkos::parallel_for(
+      "rpc::repeated_rows::number_the_rest", device_range(static_cast<LO>(kind.extent(0))),
+      KOKKOS_LAMBDA(const LO node) {
+        if (!has_kinds || kind(node) < 0) kind(node) = -1 - node;
+      });
+  Kokkos::fence();
+}
+
+/// Or in one of some nodes.
+/// @param first  of those of no kind
+void number_the_rest(const DeviceView<int *> &kind, const RowsOfNodes &rows, const LO first)
+{
+  Kokkos::parallel_for(
+      "rpc::repeated_rows::number_the_rest", Kokkos::RangePolicy<ExecutionSpace, LO>(first, rows.size()),
+      KOKKOS_LAMBDA(const LO i) { kind(rows.node(i)) = -1 - rows.place(i); });
+  Kokkos::fence();
+}
+
+/// (kinds + 1) Where the neighbours of each example begin in a list.
+DeviceView<LO *> neighbours_begin(const RowsOfNodes &examples, const int dim)
+{
+  const DeviceView<LO *> begin("rpc::repeated_rows::begin", examples.size() + 1);
+  const auto row_map = examples.rows.graph.row_map;
+  const auto place = examples.place;
+  Kokkos::parallel_scan(
+      "rpc::repeated_rows::begin", device_range(examples.size()), KOKKOS_LAMBDA(const LO k, LO &sum, const bool last) {
+        const LO row = dof(dim, place(k), 0);
+        sum += static_cast<LO>(row_map(row + 1) - row_map(row)) / dim;
+        if (last) begin(k + 1) = sum;
+      });
+  Kokkos::fence();
+  return begin;
+}
+
 } // namespace
 
-std::optional<RepeatedRows> RepeatedRows::of(RCP<const CrsMatrix> A, const int dim)
+RepeatedRows RepeatedRows::of(RCP<const CrsMatrix> A, const int dim)
 {
   const LocalMatrix matrix = A->getLocalMatrixDevice();
   const LO num_nodes = node_of(dim, matrix.numRows());
-  if (num_nodes == 0 || dim < 2) return std::nullopt;
-  const DeviceView<short *> kind(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::kind"), num_nodes);
-  Kokkos::deep_copy(kind, no_kind);
-  std::vector<LO> examples;
-  LO next = 0, repeated = 0; // the first place without a kind
-  bool has_kinds = true;
-  while (next < num_nodes && static_cast<int>(examples.size()) < most_kinds) {
-    const LO place = next;
-    const TakeKind take{matrix, dim, node_at(place, num_nodes), static_cast<short>(examples.size()), kind};
-    LO took = 0;
-    Kokkos::parallel_reduce("rpc::repeated_rows::take_kind", device_range(num_nodes), take, Kokkos::Sum<LO>(took),
-                            Kokkos::Min<LO>(next));
-    has_kinds = took > 0; // else there are values that are not numbers
-    if (!has_kinds) break;
-    repeated += took - 1; // all but the example
-    examples.push_back(take.example);
-    // Few rows of many kinds promise a mesh without order, and each kind costs a pass over the nodes.
-    has_kinds = examples.size() < enough_kinds || repeated >= few_nodes * num_nodes;
-    if (!has_kinds) break;
-  }
-  if (!has_kinds || repeated < least_part * num_nodes) {
-    if (on_gpu) return std::nullopt; // where a thread for each node would read entries far apart
-    examples.clear();
-    Kokkos::deep_copy(kind, no_kind);
-  }
-  const auto row_map = to_host(matrix.graph.row_map);
-  std::vector<LO> begin{0};
-  for (const LO node : examples)
-    begin.push_back(begin.back() + static_cast<LO>(row_map(dof(dim, node, 0) + 1) - row_map(dof(dim, node, 0))) / dim);
   RepeatedRows result;
-  result.A_ = std::move(A);
   result.dim_ = dim;
-  result.kind_ = kind;
-  result.begin_ = device_values(begin, "rpc::repeated_rows::begin");
-  result.offset_ = DeviceView<LO *>("rpc::repeated_rows::offset", begin.back());
-  const auto example = device_values(examples, "rpc::repeated_rows::example");
-  const auto kinds = device_range(static_cast<LO>(examples.size()));
-  if (dim == 2) {
-    result.value_ = DeviceView<double *>("rpc::repeated_rows::value", std::size_t(padded<2>) * begin.back());
-    Kokkos::parallel_for("rpc::repeated_rows::list", kinds,
-                         ListKinds<2>{matrix, example, result.begin_, result.offset_, result.value_});
-  } else {
-    result.value_ = DeviceView<double *>("rpc::repeated_rows::value", std::size_t(padded<3>) * begin.back());
-    Kokkos::parallel_for("rpc::repeated_rows::list", kinds,
-                         ListKinds<3>{matrix, example, result.begin_, result.offset_, result.value_});
-  }
-  Kokkos::fence();
+  result.A_ = std::move(A);
+  const auto kinds = dim > 1 ? alike_nodes_of(num_nodes, SameRows{matrix, dim}) : std::nullopt;
+  result.kind_ =
+      kinds ? kinds->kind
+            : DeviceView<int *>(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::kind"), num_nodes);
+  number_the_rest(result.kind_, kinds.has_value());
+  const auto example = device_values(kinds ? kinds->example : std::vector<LO>{}, "rpc::repeated_rows::example");
+  result.list_kinds({example, example, matrix});
   return result;
+}
+
+RepeatedRows RepeatedRows::of(const AlikeNodes &kinds, const RowsOfNodes &rows, const int dim)
+{
+  RepeatedRows result;
+  result.dim_ = dim;
+  result.rest_ = rows.rows;
+  result.kind_ = kinds.kind;
+  const LO num_kinds = static_cast<LO>(kinds.example.size());
+  number_the_rest(result.kind_, rows, num_kinds);
+  const std::pair<LO, LO> examples(0, num_kinds);
+  result.list_kinds({Kokkos::subview(rows.node, examples), Kokkos::subview(rows.place, examples), rows.rows});
+  return result;
+}
+
+void RepeatedRows::list_kinds(const RowsOfNodes &examples)
+{
+  begin_ = neighbours_begin(examples, dim_);
+  LO num_neighbours = 0;
+  Kokkos::deep_copy(num_neighbours, Kokkos::subview(begin_, examples.size()));
+  offset_ = DeviceView<LO *>("rpc::repeated_rows::offset", num_neighbours);
+  value_ = DeviceView<double *>("rpc::repeated_rows::value", block_size(dim_) * num_neighbours);
+  Kokkos::parallel_for("rpc::repeated_rows::list", device_range(examples.size()),
+                       ListKinds{dim_, examples, begin_, offset_, value_});
+  Kokkos::fence();
+}
+
+bool RepeatedRows::pays() const
+{
+  return dim_ > 1 && (!on_gpu || num_kinds() > 0);
+}
+
+RepeatedRows::Blocks RepeatedRows::blocks() const
+{
+  return {dim_, kind_, begin_, offset_, value_, rest()};
+}
+
+DeviceView<double ***> diagonal_blocks(const RepeatedRows &rows)
+{
+  const int dim = rows.dim();
+  const DeviceView<double ***> block(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::diagonal_blocks"),
+                                     rows.num_nodes(), dim, dim);
+  const auto from = rows.blocks();
+  Kokkos::parallel_for(
+      "rpc::repeated_rows::read_diagonal_blocks", device_range(rows.num_nodes()), KOKKOS_LAMBDA(const LO node) {
+        const LO own = from.own(node);
+        for (int i = 0; i < dim; ++i)
+          for (int j = 0; j < dim; ++j) block(node, i, j) = from.entry(node, own, i, j);
+      });
+  Kokkos::fence();
+  return block;
 }
 
 void RepeatedRows::apply(const Vector &x, Vector &y) const
 {
   const auto from = device_read(x);
   const auto to = device_write(y);
-  const auto matrix = A_->getLocalMatrixDevice();
   using In = std::decay_t<decltype(from)>;
   using Out = std::decay_t<decltype(to)>;
   if (dim_ == 2)
-    multiply(MultiplyNode<2, In, Out>{matrix, kind_, begin_, offset_, value_, from, to});
+    multiply(MultiplyNode<2, In, Out>{rest(), kind_, begin_, offset_, value_, from, to});
   else
-    multiply(MultiplyNode<3, In, Out>{matrix, kind_, begin_, offset_, value_, from, to});
+    multiply(MultiplyNode<3, In, Out>{rest(), kind_, begin_, offset_, value_, from, to});
 }
 
 } // namespace rpc

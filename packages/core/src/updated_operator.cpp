@@ -9,22 +9,36 @@ namespace rpc
 namespace
 {
 
-/// Where each point's own block of K lies, and what it holds.
-void find_own_blocks(const NodePoints &p, const CrsMatrix &K, const DeviceView<std::size_t **> &entry,
-                     const DeviceView<double ***> &block)
+/// (points, dim) Where each node's own block begins in its rows.
+DeviceView<std::size_t **> own_entries(const NodePoints &p, const CrsMatrix &K)
 {
+  const DeviceView<std::size_t **> entry("rpc::operator::entry", p.size(), p.dim);
   const auto A = K.getLocalMatrixDevice();
   Kokkos::parallel_for(
-      "rpc::operator::find_blocks", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
+      "rpc::operator::own_entries", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
         for (int k = 0; k < p.dim; ++k) {
-          const LO row = p.dof(i, k);
-          std::size_t at = A.graph.row_map(row);
+          std::size_t at = A.graph.row_map(p.dof(i, k));
           while (A.graph.entries(at) != p.dof(i, 0)) ++at; // an owned node's first column has its first row's lid
           entry(i, k) = at;
-          for (int l = 0; l < p.dim; ++l) block(i, k, l) = A.values(at + l);
         }
       });
   Kokkos::fence();
+  return entry;
+}
+
+/// (points, dim, dim) The own blocks of the points' nodes.
+DeviceView<double ***> own_blocks(const NodePoints &p, const RepeatedRows &rows)
+{
+  const DeviceView<double ***> block("rpc::operator::base_blocks", p.size(), p.dim, p.dim);
+  const auto from = rows.blocks();
+  Kokkos::parallel_for(
+      "rpc::operator::own_blocks", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
+        const LO own = from.own(p.node(i));
+        for (int k = 0; k < p.dim; ++k)
+          for (int l = 0; l < p.dim; ++l) block(i, k, l) = from.entry(p.node(i), own, k, l);
+      });
+  Kokkos::fence();
+  return block;
 }
 
 /// (points) The first point of the same node.
@@ -68,24 +82,23 @@ void add_directions(const NodePoints &p, Vector &directions)
   Kokkos::fence();
 }
 
-/// (points) Sums over the rows of the points' nodes of |K| times the directions at the matrix's columns; collective.
-DeviceView<double *> coupled_stiffness_of(const NodePoints &p, const CrsMatrix &K)
+/// (points) Sums over the rows of the points' nodes of |K| times the directions at the columns.
+/// @param directions  (columns)
+DeviceView<double *> coupled_stiffness_of(const NodePoints &p, const RepeatedRows &rows, const Vector &directions)
 {
-  Vector directions(K.getDomainMap());
-  add_directions(p, directions);
-  const Vector columns = at_columns(K, directions);
-  const auto A = K.getLocalMatrixDevice();
-  const auto at = device_read(columns);
+  const auto K = rows.blocks();
+  const auto at = device_read(directions);
   const DeviceView<double *> stiffness("rpc::operator::coupled_stiffness", p.size());
   Kokkos::parallel_for(
       "rpc::operator::sum_couplings", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
         double sum = 0;
+        const LO size = K.size(p.node(i));
         for (int k = 0; k < p.dim; ++k) {
           const double m = p.direction(i, k);
-          const LO row = p.dof(i, k);
           if (m == 0) continue;
-          for (auto e = A.graph.row_map(row); e < A.graph.row_map(row + 1); ++e)
-            sum += std::fabs(m * A.values(e)) * at(A.graph.entries(e));
+          for (LO n = 0; n < size; ++n)
+            for (int l = 0; l < p.dim; ++l)
+              sum += std::fabs(m * K.entry(p.node(i), n, k, l)) * at(dof(p.dim, K.column(p.node(i), n), l));
         }
         const double length = squared_length(p, i);
         stiffness(i) = length > 0 ? sum / (length * std::sqrt(length)) : 0;
@@ -260,61 +273,62 @@ void list_changes(const NodePoints &p, const DeviceView<double *> &rest, const U
 
 } // namespace
 
-void read_node_blocks(const CrsMatrix &A, const int dim, const DeviceView<double ***> &block)
+UpdatedOperator::UpdatedOperator(RCP<CrsMatrix> K, const NodePoints &points)
+    : UpdatedOperator({RepeatedRows::of(K, points.dim), K->getDomainMap(), K->getColMap(), K->getGraph()->getImporter(),
+                       [K] { return K; }},
+                      points)
 {
-  const auto matrix = A.getLocalMatrixDevice();
-  Kokkos::parallel_for(
-      "rpc::operator::read_blocks", device_range(static_cast<LO>(block.extent(0))), KOKKOS_LAMBDA(const LO node) {
-        for (int k = 0; k < dim; ++k) {
-          const LO row = dof(dim, node, k);
-          std::size_t at = matrix.graph.row_map(row);
-          while (matrix.graph.entries(at) != dof(dim, node, 0)) ++at;
-          for (int l = 0; l < dim; ++l) block(node, k, l) = matrix.values(at + l);
-        }
-      });
-  Kokkos::fence();
+  matrix();
 }
 
-UpdatedOperator::UpdatedOperator(RCP<CrsMatrix> K, const NodePoints &points)
-    : matrix_(std::move(K)), rows_(RepeatedRows::of(matrix_, points.dim)), points_(points),
+UpdatedOperator::UpdatedOperator(UnassembledMatrix K, const NodePoints &points)
+    : rows_(std::move(K.rows)), dofs_(std::move(K.dofs)), columns_(std::move(K.columns)),
+      importer_(std::move(K.importer)), assemble_(std::move(K.assemble)), points_(points),
       added_("rpc::operator::added", points.size()), written_("rpc::operator::written", points.size()),
-      entry_("rpc::operator::entry", points.size(), points.dim),
-      base_blocks_("rpc::operator::base_blocks", points.size(), points.dim, points.dim),
-      blocks_("rpc::operator::blocks", points.size(), points.dim, points.dim)
+      base_blocks_(own_blocks(points_, rows_)), blocks_("rpc::operator::blocks", points.size(), points.dim, points.dim)
 {
-  find_own_blocks(points_, *matrix_, entry_, base_blocks_);
   Kokkos::deep_copy(blocks_, base_blocks_);
-  lead_ = leads(points_, num_local(*matrix_->getRowMap()) / points_.dim);
+  lead_ = leads(points_, rows_.num_nodes());
   own_stiffness_ = own_stiffness_of(points_, base_blocks_);
-  coupled_stiffness_ = coupled_stiffness_of(points_, *matrix_);
+  Vector directions(dofs_);
+  add_directions(points_, directions);
+  coupled_stiffness_ = coupled_stiffness_of(points_, rows_, at_columns(columns_, importer_, directions));
+}
+
+const RCP<CrsMatrix> &UpdatedOperator::matrix() const
+{
+  if (!matrix_.is_null()) return matrix_;
+  matrix_ = assemble_();
+  entry_ = own_entries(points_, *matrix_);
+  return matrix_;
 }
 
 void UpdatedOperator::apply_with(const DeviceView<double ***> &blocks, const MultiVector &x, MultiVector &y) const
 {
-  const auto importer = matrix_->getGraph()->getImporter();
   RCP<const MultiVector> columns = Teuchos::rcpFromRef(x);
-  if (!importer.is_null()) {
-    const auto imported = rcp(new MultiVector(matrix_->getColMap(), x.getNumVectors(), false));
-    imported->doImport(x, *importer, Tpetra::INSERT);
+  if (!importer_.is_null()) {
+    const auto imported = rcp(new MultiVector(columns_, x.getNumVectors(), false));
+    imported->doImport(x, *importer_, Tpetra::INSERT);
     columns = imported;
   }
-  if (!rows_) matrix_->localApply(*columns, y);
+  const bool by_rows = rows_.pays();
+  if (!by_rows) matrix()->localApply(*columns, y);
   for (std::size_t v = 0; v < x.getNumVectors(); ++v) {
     const auto from = columns->getVector(v);
     const auto to = y.getVectorNonConst(v);
-    if (rows_) rows_->apply(*from, *to);
-    if (rows_ && !is_written_)
+    if (by_rows) rows_.apply(*from, *to);
+    if (by_rows && !(is_written_ && rows_.reads_matrix()))
       add_update(points_, lead_, blocks, base_blocks_, *from, *to);
     else
-      multiply_rows(points_, lead_, entry_, blocks, *matrix_, *from, *to);
+      multiply_rows(points_, lead_, entry_, blocks, *matrix(), *from, *to);
   }
 }
 
 void UpdatedOperator::apply(const MultiVector &x, MultiVector &y, const Teuchos::ETransp, const double alpha,
                             const double beta) const
 {
-  if (!has_changes_ && !rows_) { // the matrix is H
-    matrix_->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
+  if (!has_changes_ && !rows_.pays()) { // the matrix is H
+    matrix()->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
   } else if (alpha == 1 && beta == 0) {
     apply_with(blocks_, x, y);
   } else {
@@ -326,10 +340,10 @@ void UpdatedOperator::apply(const MultiVector &x, MultiVector &y, const Teuchos:
 
 void UpdatedOperator::apply_base(const Vector &u, Vector &Ku) const
 {
-  if (is_written_ || rows_)
+  if (is_written_ || rows_.pays())
     apply_with(base_blocks_, u, Ku);
   else
-    matrix_->apply(u, Ku);
+    matrix()->apply(u, Ku);
 }
 
 GO UpdatedOperator::set(const DeviceView<double *> &added)
@@ -349,7 +363,8 @@ void UpdatedOperator::write(const double most)
   is_written_ = sum_all(*getDomainMap()->getComm(), GO(not_zero)) > 0;
   const DeviceView<double ***> blocks("rpc::operator::written_blocks", points_.size(), points_.dim, points_.dim);
   update_blocks(points_, lead_, written_, base_blocks_, blocks);
-  write_blocks(points_, lead_, entry_, blocks, *matrix_);
+  const auto A = matrix();
+  write_blocks(points_, lead_, entry_, blocks, *A);
 }
 
 DeviceView<LO *> UpdatedOperator::changing_nodes() const
@@ -359,11 +374,8 @@ DeviceView<LO *> UpdatedOperator::changing_nodes() const
 
 DeviceView<double ***> UpdatedOperator::base_blocks() const
 {
-  const int dim = points_.dim;
-  const DeviceView<double ***> block(Kokkos::ViewAllocateWithoutInitializing("rpc::operator::all_base_blocks"),
-                                     num_local(*matrix_->getRowMap()) / dim, dim, dim);
-  read_node_blocks(*matrix_, dim, block);
-  scatter_blocks(changing_nodes(), base_blocks_, block);
+  const auto block = diagonal_blocks(rows_);
+  scatter_blocks(changing_nodes(), base_blocks_, block); // where the matrix may be written
   return block;
 }
 

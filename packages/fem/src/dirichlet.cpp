@@ -1,6 +1,7 @@
 #include "rpc/fem/dirichlet.hpp"
 
 #include "component_name.hpp"
+#include "prescribed_couplings.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/error.hpp"
@@ -109,67 +110,10 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
   return prescribed;
 }
 
-/// (owned dofs) Number of a row's entries in the columns of prescribed unknowns.
-DeviceView<LO *> prescribed_columns(const Discretization &d, const CrsMatrix &K, const DeviceView<char *> &fixed)
-{
-  const DeviceView<LO *> count("rpc::fem::prescribed_columns", num_local(*d.owned_dofs));
-  const auto A = K.getLocalMatrixDevice();
-  const auto nodes = d.nodes;
-  const int dim = d.dim();
-  Kokkos::parallel_for(
-      "rpc::fem::count_prescribed_columns", device_range(d.mesh->num_owned_nodes()), KOKKOS_LAMBDA(const LO node) {
-        int touched = 0; // few nodes are: the others' entries need not be read
-        for (auto k = nodes.row(node); k < nodes.row(node + 1); ++k)
-          for (int c = 0; c < dim; ++c) touched |= fixed(dof(dim, nodes.col(k), c));
-        if (touched == 0) return;
-        for (LO row = dof(dim, node, 0); row < dof(dim, node + 1, 0); ++row)
-          for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k)
-            count(row) += fixed(A.graph.entries(k)) != 0;
-      });
-  return count;
-}
-
-/// @param count  see prescribed_columns
-EliminatedStiffness listed_couplings(const CrsMatrix &K, const DeviceView<char *> &fixed, const DeviceView<LO *> &count)
-{
-  const auto A = K.getLocalMatrixDevice();
-  const SparseRows rows = sparse_rows(count, "rpc::fem::coupled");
-  const auto row = rows.row;
-  const auto begin = rows.begin;
-  const DeviceView<LO *> column("rpc::fem::coupling_column", rows.num_entries);
-  const DeviceView<double *> value("rpc::fem::coupling", rows.num_entries);
-  Kokkos::parallel_for(
-      "rpc::fem::list_couplings", device_range(static_cast<LO>(row.extent(0))), KOKKOS_LAMBDA(const LO i) {
-        std::size_t next = begin(i);
-        for (auto k = A.graph.row_map(row(i)); k < A.graph.row_map(row(i) + 1); ++k)
-          if (fixed(A.graph.entries(k))) {
-            column(next) = A.graph.entries(k);
-            value(next++) = A.values(k);
-          }
-      });
-  Kokkos::fence();
-  return {Teuchos::null, row, begin, column, value};
-}
-
-/// Entries between an unknown that is prescribed and any other become 0.
-void clear_couplings(CrsMatrix &K, const DeviceView<char *> &fixed, const DeviceView<LO *> &count)
-{
-  const auto A = K.getLocalMatrixDevice();
-  Kokkos::parallel_for(
-      "rpc::fem::clear_couplings", device_range(static_cast<LO>(count.extent(0))), KOKKOS_LAMBDA(const LO row) {
-        if (count(row) == 0) return; // a prescribed unknown has its own column, at least
-        for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k) {
-          const LO col = A.graph.entries(k); // a row's own column has its lid in both maps
-          if (col != row && (fixed(row) || fixed(col))) A.values(k) = 0;
-        }
-      });
-  Kokkos::fence();
-}
-
 /// load <- load - K u_D at free unknowns, diag(K) u_D at prescribed ones.
 /// @param value  (overlap dofs) u_D
 /// @return this rank's part of u_D K u_D/2 + u_D diag(K) u_D/2, of which diag(K) is in the eliminated problem
-double add_prescribed_forces(const EliminatedStiffness &K, const DeviceView<char *> &fixed, const Vector &value,
+double add_prescribed_forces(const PrescribedCouplings &K, const DeviceView<char *> &fixed, const Vector &value,
                              Vector &load)
 {
   const auto u = device_read(value);
@@ -289,25 +233,86 @@ void clear_prescribed(const DirichletDofs &dirichlet, Vector &f)
   Kokkos::fence();
 }
 
+DeviceView<LO *> nodes_beside_prescribed(const Discretization &d, const DeviceView<char *> &fixed)
+{
+  const LO num_nodes = d.mesh->num_owned_nodes();
+  const DeviceView<LO *> beside("rpc::fem::beside_prescribed", num_nodes);
+  const auto nodes = d.nodes;
+  const int dim = d.dim();
+  Kokkos::parallel_for(
+      "rpc::fem::find_prescribed_neighbours", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
+        for (auto k = nodes.row(node); k < nodes.row(node + 1); ++k)
+          for (int c = 0; c < dim; ++c) beside(node) |= fixed(dof(dim, nodes.col(k), c));
+      });
+  return sparse_rows(beside, "rpc::fem::beside_prescribed").row;
+}
+
+PrescribedCouplings listed_couplings(const RowsOfNodes &list, const int dim, const DeviceView<char *> &fixed)
+{
+  const auto A = list.rows;
+  const auto node = list.node, place = list.place;
+  const DeviceView<LO *> count("rpc::fem::prescribed_columns", num_dofs(dim, list.size()));
+  Kokkos::parallel_for(
+      "rpc::fem::count_prescribed_columns", device_range(num_dofs(dim, list.size())), KOKKOS_LAMBDA(const LO i) {
+        const LO row = dof(dim, place(node_of(dim, i)), component_of(dim, i));
+        for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k)
+          count(i) += fixed(A.graph.entries(k)) != 0;
+      });
+  const SparseRows rows = sparse_rows(count, "rpc::fem::coupled");
+  const auto listed = rows.row;
+  const auto begin = rows.begin;
+  const DeviceView<LO *> row("rpc::fem::coupled_row", listed.extent(0)),
+      column("rpc::fem::coupling_column", rows.num_entries);
+  const DeviceView<double *> value("rpc::fem::coupling", rows.num_entries);
+  Kokkos::parallel_for(
+      "rpc::fem::list_couplings", device_range(static_cast<LO>(listed.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        const LO of_list = node_of(dim, listed(i)), from = dof(dim, place(of_list), component_of(dim, listed(i)));
+        row(i) = dof(dim, node(of_list), component_of(dim, listed(i)));
+        std::size_t next = begin(i);
+        for (auto k = A.graph.row_map(from); k < A.graph.row_map(from + 1); ++k)
+          if (fixed(A.graph.entries(k))) {
+            column(next) = A.graph.entries(k);
+            value(next++) = A.values(k);
+          }
+      });
+  Kokkos::fence();
+  return {row, begin, column, value};
+}
+
+void clear_couplings(const RowsOfNodes &list, const int dim, const DeviceView<char *> &fixed)
+{
+  const auto A = list.rows;
+  const auto node = list.node, place = list.place;
+  Kokkos::parallel_for(
+      "rpc::fem::clear_couplings", device_range(num_dofs(dim, list.size())), KOKKOS_LAMBDA(const LO i) {
+        const LO own = dof(dim, node(node_of(dim, i)), component_of(dim, i)),
+                 row = dof(dim, place(node_of(dim, i)), component_of(dim, i));
+        for (auto k = A.graph.row_map(row); k < A.graph.row_map(row + 1); ++k) {
+          const LO col = A.graph.entries(k); // a row's own column has its lid in both maps
+          if (col != own && (fixed(own) || fixed(col))) A.values(k) = 0;
+        }
+      });
+  Kokkos::fence();
+}
+
 EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DirichletDofs &dirichlet)
 {
-  const auto count = prescribed_columns(d, *K, dirichlet.fixed);
-  EliminatedStiffness eliminated = listed_couplings(*K, dirichlet.fixed, count);
-  clear_couplings(*K, dirichlet.fixed, count);
-  eliminated.matrix = std::move(K);
+  const auto nodes = nodes_beside_prescribed(d, dirichlet.fixed); // few: the others' entries need not be read
+  const RowsOfNodes rows{nodes, nodes, K->getLocalMatrixDevice()};
+  EliminatedStiffness eliminated{std::move(K), listed_couplings(rows, d.dim(), dirichlet.fixed)};
+  clear_couplings(rows, d.dim(), dirichlet.fixed);
   return eliminated;
 }
 
-ElasticProblem elastic_problem(const Discretization &d, const EliminatedStiffness &stiffness, RCP<Vector> applied_load,
+ElasticProblem elastic_problem(const Discretization &d, const PrescribedCouplings &couplings, RCP<Vector> applied_load,
                                DirichletDofs dirichlet)
 {
   ElasticProblem problem;
   const Vector &prescribed = *dirichlet.value;
-  problem.stiffness = stiffness.matrix;
   problem.load = rcp(new Vector(*applied_load, Teuchos::Copy));
   if (prescribed.normInf() > 0) {
     const double own_energy =
-        add_prescribed_forces(stiffness, dirichlet.fixed, *on_overlap(d, prescribed), *problem.load);
+        add_prescribed_forces(couplings, dirichlet.fixed, *on_overlap(d, prescribed), *problem.load);
     problem.energy_offset = sum_all(d.mesh->comm(), own_energy) - applied_load->dot(prescribed);
   } else {
     clear_prescribed(dirichlet, *problem.load);

@@ -113,23 +113,6 @@ void fill_dof_graph(const FillDofGraph<Dim> &fill)
   Kokkos::fence();
 }
 
-RCP<const CrsGraph> dof_graph(const Discretization &d)
-{
-  using LocalGraph = CrsGraph::local_graph_device_type;
-  const LO num_nodes = d.mesh->num_owned_nodes();
-  const int dim = d.dim();
-  LocalGraph::row_map_type::non_const_type row("rpc::fem::graph_row", num_dofs(dim, num_nodes) + 1);
-  LocalGraph::entries_type::non_const_type col(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_col"),
-                                               std::size_t(dim) * dim * d.nodes.col.extent(0));
-  if (dim == 2)
-    fill_dof_graph(FillDofGraph<2>{d.nodes, row, col});
-  else
-    fill_dof_graph(FillDofGraph<3>{d.nodes, row, col});
-  const RCP<CrsGraph> graph = rcp(new CrsGraph(d.owned_dofs, d.overlap_dofs, row, col));
-  graph->expertStaticFillComplete(d.owned_dofs, d.owned_dofs, d.dof_import);
-  return graph;
-}
-
 /// What is rounding of a mesh's coordinates, relative to its size.
 constexpr double axis_rounding = 1e-10;
 
@@ -183,8 +166,24 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, const Kinemati
   if (!d.axisymmetric()) d.congruent = congruent_cells(*d.mesh); // where cells are alike, radii are not
   d.node_to_cells = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
   d.nodes = node_graph(*d.mesh, d.node_to_cells);
-  d.graph = dof_graph(d);
   return d;
+}
+
+RCP<const CrsGraph> dof_graph(const Discretization &d)
+{
+  using LocalGraph = CrsGraph::local_graph_device_type;
+  const LO num_nodes = d.mesh->num_owned_nodes();
+  const int dim = d.dim();
+  LocalGraph::row_map_type::non_const_type row("rpc::fem::graph_row", num_dofs(dim, num_nodes) + 1);
+  LocalGraph::entries_type::non_const_type col(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_col"),
+                                               std::size_t(dim) * dim * d.nodes.col.extent(0));
+  if (dim == 2)
+    fill_dof_graph(FillDofGraph<2>{d.nodes, row, col});
+  else
+    fill_dof_graph(FillDofGraph<3>{d.nodes, row, col});
+  const RCP<CrsGraph> graph = rcp(new CrsGraph(d.owned_dofs, d.overlap_dofs, row, col));
+  graph->expertStaticFillComplete(d.owned_dofs, d.owned_dofs, d.dof_import);
+  return graph;
 }
 
 RCP<const Vector> on_overlap(const Discretization &d, const Vector &owned)

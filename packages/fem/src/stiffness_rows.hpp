@@ -133,16 +133,14 @@ struct NodeStiffness {
   DeviceView<signed char *> kind;          // (cells)                                in
   DeviceView<double *[dofs][dofs]> matrix; // (kinds * blocks, dofs, dofs)   [N/m]  in
   int num_blocks;                          //                                        in
-  LO num_owned;                            // nodes
   NodeToCells node_to_cells;               //                                        in
   NodeGraph nodes;                         //                                        in
-  DeviceView<double *> values;             // (matrix entries)                [N/m]  out
 
-  KOKKOS_FUNCTION void gather(const LO node) const
+  /// @param rows  (Dim, neighbours * Dim)  [N/m]  out
+  KOKKOS_FUNCTION void gather(const LO node, double *const rows) const
   {
     const std::size_t begin = nodes.row(node);
     const LO length = static_cast<LO>(nodes.row(node + 1) - begin);
-    double *const rows = &values(Dim * Dim * begin);
     for (LO k = 0; k < Dim * Dim * length; ++k) rows[k] = 0;
     for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k) {
       const LO cell = node_to_cells.cell(k);
@@ -171,65 +169,76 @@ struct NodeStiffness {
     }
     return differs == 0;
   }
+};
 
+/// The rows of all nodes of a matrix.
+template <int Dim, int Nodes>
+struct MatrixRows {
+  NodeStiffness<Dim, Nodes> stiffness;
+  LO num_owned;                // nodes
+  DeviceView<double *> values; // (matrix entries)  [N/m]  out
+
+  KOKKOS_FUNCTION double *of(const LO node) const { return &values(Dim * Dim * stiffness.nodes.row(node)); }
+  KOKKOS_FUNCTION void gather(const LO node) const { stiffness.gather(node, of(node)); }
   KOKKOS_FUNCTION void copy(const LO node, const LO from) const
   {
-    const std::size_t begin = nodes.row(from), size = Dim * Dim * (nodes.row(from + 1) - begin);
-    const double *const source = &values(Dim * Dim * begin);
-    double *const rows = &values(Dim * Dim * nodes.row(node));
+    const std::size_t size = Dim * Dim * (stiffness.nodes.row(from + 1) - stiffness.nodes.row(from));
+    const double *const source = of(from);
+    double *const rows = of(node);
     for (std::size_t k = 0; k < size; ++k) rows[k] = source[k];
+  }
+  /// The owned node of the example whose rows are the same; -1 if there is none.
+  KOKKOS_FUNCTION LO same_as(const LO node, const LO example) const
+  {
+    for (int a = 0; a < Nodes; ++a) {
+      const LO other = stiffness.cells(example, a);
+      if (other == node || (other < num_owned && stiffness.same_rows(node, other))) return other;
+    }
+    return -1;
   }
 };
 
 /// The rows of one cell's nodes, for others to copy.
 template <int Dim, int Nodes>
 struct GatherExamples {
-  NodeStiffness<Dim, Nodes> stiffness;
+  MatrixRows<Dim, Nodes> rows;
   LO example; // cell
 
   KOKKOS_FUNCTION void operator()(const LO a) const
   {
-    const LO node = stiffness.cells(example, a);
-    if (node < stiffness.num_owned) stiffness.gather(node);
+    const LO node = rows.stiffness.cells(example, a);
+    if (node < rows.num_owned) rows.gather(node);
   }
 };
 
 /// All other rows: copied where a mesh repeats itself, which costs a third of gathering them.
 template <int Dim, int Nodes>
 struct GatherStiffness {
-  NodeStiffness<Dim, Nodes> stiffness;
+  MatrixRows<Dim, Nodes> rows;
   LO example; // cell
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
-    for (int a = 0; a < Nodes; ++a) {
-      const LO other = stiffness.cells(example, a);
-      if (other == node) return;
-      if (other < stiffness.num_owned && stiffness.same_rows(node, other)) return stiffness.copy(node, other);
-    }
-    stiffness.gather(node);
+    const LO other = rows.same_as(node, example);
+    if (other < 0)
+      rows.gather(node);
+    else if (other != node)
+      rows.copy(node, other);
   }
 };
 
 /// The same in two passes, for GPUs: where rows repeat, fill_entries() copies them.
 template <int Dim, int Nodes>
 struct GatherOrFindSource {
-  NodeStiffness<Dim, Nodes> stiffness;
+  MatrixRows<Dim, Nodes> rows;
   LO example;              // cell
   DeviceView<LO *> source; // (owned nodes) whose rows are to be copied; -1 where nothing is left to do   out
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
-    source(node) = -1;
-    for (int a = 0; a < Nodes; ++a) {
-      const LO other = stiffness.cells(example, a);
-      if (other == node) return;
-      if (other < stiffness.num_owned && stiffness.same_rows(node, other)) {
-        source(node) = other;
-        return;
-      }
-    }
-    stiffness.gather(node);
+    const LO other = rows.same_as(node, example);
+    source(node) = other == node ? -1 : other;
+    if (other < 0) rows.gather(node);
   }
 };
 

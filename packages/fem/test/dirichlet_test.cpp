@@ -48,12 +48,15 @@ RCP<Vector> some_load(const fem::Discretization &d)
   return load;
 }
 
-fem::ElasticProblem eliminated(const fem::Discretization &d, const std::vector<DirichletCondition> &conditions,
-                               const RCP<Vector> &load)
+struct Eliminated : fem::ElasticProblem {
+  RCP<CrsMatrix> stiffness;
+};
+Eliminated eliminated(const fem::Discretization &d, const std::vector<DirichletCondition> &conditions,
+                      const RCP<Vector> &load)
 {
   auto dirichlet = fem::dirichlet_dofs(d, conditions);
   const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, steel), dirichlet);
-  return fem::elastic_problem(d, K, load, dirichlet);
+  return {fem::elastic_problem(d, K.couplings, load, dirichlet), K.matrix};
 }
 
 /// Solution of a dense system by Cholesky's method; fails unless the matrix is positive definite.

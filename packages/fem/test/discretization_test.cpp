@@ -66,8 +66,9 @@ TEST(Discretization, GraphJoinsAllUnknownsOfNodesThatShareACellAndNoOthers)
     const auto d = body(box, world());
     const auto adjacent = adjacency(box);
     const auto ids = overlap_node_ids(*d.mesh);
-    const auto graph = d.graph->getLocalGraphHost();
-    ASSERT_TRUE(d.graph->isFillComplete());
+    const auto pattern = fem::dof_graph(d);
+    const auto graph = pattern->getLocalGraphHost();
+    ASSERT_TRUE(pattern->isFillComplete());
     ASSERT_EQ(static_cast<LO>(graph.numRows()), d.dim() * d.mesh->num_owned_nodes());
     for (LO row = 0; row < static_cast<LO>(graph.numRows()); ++row) {
       std::set<GO> expected, found; // unknown c of node id
@@ -118,8 +119,9 @@ TEST(Discretization, UnknownsAreNumberedByNodeInEveryMap)
     };
     expect_numbered(*d.mesh->owned_nodes, *d.owned_dofs);
     expect_numbered(*d.mesh->overlap_nodes, *d.overlap_dofs);
-    EXPECT_TRUE(d.graph->getColMap()->isSameAs(*d.overlap_dofs));
-    EXPECT_TRUE(d.graph->getRowMap()->isSameAs(*d.owned_dofs));
+    const auto graph = fem::dof_graph(d);
+    EXPECT_TRUE(graph->getColMap()->isSameAs(*d.overlap_dofs));
+    EXPECT_TRUE(graph->getRowMap()->isSameAs(*d.owned_dofs));
   }
 }
 

@@ -318,7 +318,7 @@ TEST_P(AllElements, CountCellsThatAreInsideOut)
   const auto d = body_of(mirrored, alone());
   fem::with_static_extents(d.mesh->element, [&](const auto dimension, const auto nodes) {
     const fem::CellStiffness<dimension, nodes> stiffness{fem::elastic_cells<dimension, nodes>(d, steel)};
-    const DeviceView<double *> values("values", d.graph->getLocalGraphDevice().entries.extent(0));
+    const DeviceView<double *> values("values", fem::dof_graph(d)->getLocalGraphDevice().entries.extent(0));
     EXPECT_EQ(fem::add_tabulated_stiffness(d, stiffness, 2, values), d.mesh->num_cells());
   });
   expect_error(ExitCode::bad_mesh, "inverted", [&] { fem::assemble_stiffness(d, steel); });

@@ -240,7 +240,7 @@ CoarseContact::CoarseContact(const PointSupports &points, RCP<CrsMatrix> A, cons
 
 void CoarseContact::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
-  if (!rows_) return A_->apply(x, y);
+  if (!rows_.pays()) return A_->apply(x, y);
   const auto importer = A_->getGraph()->getImporter();
   for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
     RCP<const Vector> columns = x.getVector(k);
@@ -250,7 +250,7 @@ void CoarseContact::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp
       columns = imported;
     }
     const auto to = y.getVectorNonConst(k);
-    rows_->apply(*columns, *to);
+    rows_.apply(*columns, *to);
     multiply_rows(*A_, dim_, nodes_, *columns, *to);
   }
 }

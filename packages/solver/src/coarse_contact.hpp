@@ -4,7 +4,6 @@
 #include "rpc/core/repeated_rows.hpp"
 #include "rpc/core/tpetra.hpp"
 
-#include <optional>
 #include <vector>
 
 namespace rpc::solver
@@ -52,13 +51,15 @@ public:
 
   /// (n) Owned nodes with entries that change, ascending.
   const DeviceView<LO *> &nodes() const { return nodes_; }
+  /// (owned nodes, dim, dim) The diagonal blocks of all nodes, as long as no contact is written.
+  DeviceView<double ***> base_blocks() const { return diagonal_blocks(rows_); }
   /// (n, dim, dim) Their present diagonal blocks.
   DeviceView<double ***> blocks() const;
 
 private:
   int dim_;
   RCP<CrsMatrix> A_;
-  std::optional<RepeatedRows> rows_;     // of the matrix without contact, where they repeat
+  RepeatedRows rows_;                    // of the matrix without contact
   DeviceView<LO *> row_, column_;        // (blocks) owned node; column's node
   DeviceView<std::size_t **> entry_;     // (blocks, dim) where the block begins in each of its rows
   DeviceView<double ***> base_;          // (blocks, dim, dim) without contact

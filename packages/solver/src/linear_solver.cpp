@@ -95,7 +95,7 @@ private:
 };
 
 /// Smoothed aggregation with a polynomial smoother, which is the same on every backend and number of ranks.
-Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_node)
+Teuchos::ParameterList muelu_defaults(const Map &dofs, const int dofs_per_node)
 {
   Teuchos::ParameterList list("MueLu");
   list.set("verbosity", "none");
@@ -112,8 +112,8 @@ Teuchos::ParameterList muelu_defaults(const CrsMatrix &A, const int dofs_per_nod
   smoother.set("chebyshev: ratio eigenvalue", 7.);
   smoother.set("chebyshev: eigenvalue max iterations", 20);
   // On several ranks there is always a level below the finest one, so that what is solved directly has gone to one rank.
-  const GO rows = static_cast<GO>(A.getGlobalNumRows());
-  const bool alone = A.getComm()->getSize() == 1;
+  const GO rows = static_cast<GO>(dofs.getGlobalNumElements());
+  const bool alone = dofs.getComm()->getSize() == 1;
   constexpr GO most = muelu::has_repartitioning ? 1000 : most_gathered_rows;
   list.set("coarse: max size", alone ? 1000 : static_cast<int>(std::clamp<GO>(rows / 4, 1, most)));
   if (muelu::has_repartitioning && !alone) { // the direct coarse solvers of 13.2 are wrong on a distributed matrix
@@ -255,14 +255,14 @@ LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperato
     : options_(std::move(options)), impl_(std::make_unique<Impl>())
 {
   impl_->H = H;
-  impl_->muelu = muelu_defaults(*H->matrix(), static_cast<int>(coordinates->getNumVectors()));
+  impl_->muelu = muelu_defaults(*H->getDomainMap(), static_cast<int>(coordinates->getNumVectors()));
   impl_->muelu.set("reuse: type", options_.reuse);
   impl_->muelu.set("sa: damping factor", options_.damping);
   if (options_.muelu.isParameter("smoother: type")) impl_->muelu.remove("smoother: params"); // of another type
   impl_->muelu.setParameters(options_.muelu);
   impl_->coordinates = coordinates;
   impl_->null_space = null_space;
-  const bool small = static_cast<GO>(H->matrix()->getGlobalNumRows()) <= most_rows_set_up_anew;
+  const bool small = static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew;
   const bool automatic = !small && options_.muelu.numParams() == 0;
   if (options_.multigrid == "mesh" || (options_.multigrid == "auto" && automatic))
     impl_->make_levels = std::move(levels);
@@ -343,7 +343,7 @@ void LinearSolver::prepare_on_meshes()
     multigrid =
         rcp(new MeshMultigrid(impl_->H, levels, [&](const MeshLevel &coarsest) -> std::unique_ptr<CoarsestSolver> {
           if (levels.down_to_few) return direct_solver(coarsest.stiffness);
-          Teuchos::ParameterList list = muelu_defaults(*coarsest.stiffness, impl_->H->dofs_per_node());
+          Teuchos::ParameterList list = muelu_defaults(*coarsest.stiffness->getDomainMap(), impl_->H->dofs_per_node());
           list.set("reuse: type", options_.reuse == "none" ? "tP" : options_.reuse);
           list.setParameters(options_.muelu);
           return std::make_unique<AlgebraicSolver>(coarsest, list);
@@ -366,7 +366,7 @@ void LinearSolver::prepare()
   const double start = Teuchos::Time::wallTime();
   auto &correction = impl_->preconditioner->correction;
   const bool exists = !impl_->preconditioner->multigrid.is_null();
-  const bool tiny = static_cast<GO>(impl_->H->matrix()->getGlobalNumRows()) <= most_rows_set_up_anew;
+  const bool tiny = static_cast<GO>(impl_->H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew;
   bool fits = false;
   if (exists && !impl_->worn && !tiny) {
     correction = LocalCorrection::around(*impl_->H);
@@ -417,7 +417,7 @@ bool LinearSolver::strengthen()
   for (const char *name : {"coarse: max size", "smoother: type", "smoother: params"})
     if (options_.muelu.isParameter(name)) return false;
   if (std::exchange(impl_->strengthened, true)) return false;
-  const GO rows = static_cast<GO>(impl_->H->matrix()->getGlobalNumRows());
+  const GO rows = static_cast<GO>(impl_->H->getDomainMap()->getGlobalNumElements());
   if (impl_->H->getDomainMap()->getComm()->getSize() == 1 && rows <= most_direct_rows) {
     impl_->muelu.set("coarse: max size", static_cast<int>(rows) + 1);
     impl_->muelu.set("reuse: type", "none");

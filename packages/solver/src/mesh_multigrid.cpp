@@ -166,16 +166,6 @@ void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView
   Kokkos::fence();
 }
 
-/// (owned nodes, dim, dim) Diagonal blocks of an assembled matrix.
-DeviceView<double ***> node_blocks(const CrsMatrix &A, const int dim)
-{
-  const LO num_nodes = node_of(dim, num_local(*A.getRowMap()));
-  const DeviceView<double ***> block(Kokkos::ViewAllocateWithoutInitializing("rpc::solver::node_blocks"), num_nodes,
-                                     dim, dim);
-  read_node_blocks(A, dim, block);
-  return block;
-}
-
 } // namespace
 
 std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A)
@@ -225,7 +215,7 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     levels_.push_back(std::move(level));
   }
   for (std::size_t l = 0; l < levels_.size(); ++l) { // contact is not in the coarse matrices yet
-    const auto block = l == 0 ? H_->base_blocks() : node_blocks(*levels.level[l - 1].stiffness, dim);
+    const auto block = l == 0 ? H_->base_blocks() : levels_[l - 1]->coarse->base_blocks();
     const double largest = l == 0 ? largest_eigenvalue(Base(H_), block) : largest_eigenvalue(*levels_[l]->A, block);
     levels_[l]->smoother = std::make_unique<NodeSmoother>(levels_[l]->A, block, std::max(largest, largest_of_contact),
                                                           l == 0 && levels.order == 2 ? order_two : order_one);

@@ -34,8 +34,8 @@ struct Block {
     below.normal = contact::Normal::fixed;
     below.direction = {0.36, -0.8, 0.48};
     const auto nodes = contact::contact_nodes(d, {below, beside}, dirichlet, material);
-    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K, load, dirichlet), nodes,
-                                                               rcp(new UpdatedOperator(K.matrix, nodes)));
+    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K.couplings, load, dirichlet),
+                                                               nodes, rcp(new UpdatedOperator(K.matrix, nodes)));
   }
 
   /// Waves that depend on the place alone: 0 where prescribed.

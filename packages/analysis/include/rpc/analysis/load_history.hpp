@@ -91,7 +91,8 @@ public:
   const Memory *memory() const { return memory_ ? &*memory_ : nullptr; }
   const Memory *before() const { return before_ ? &*before_ : nullptr; } ///< of the step before
   const StepRecord &last() const { return last_; }                       ///< of advance()
-  int matrix_assemblies() const { return matrix_assemblies_; }
+  /// Where rows repeat, K is assembled only if an algebraic preconditioner asks for it.
+  int matrix_assemblies() const { return assembled_before_ + problem_->stiffness()->has_matrix(); }
 
 private:
   struct Coarser;
@@ -99,6 +100,8 @@ private:
   /// @param work  becomes that on this mesh and coarser ones, from the coarsest
   std::optional<contact::ContactState> predicted(const Step &step, std::vector<LevelWork> &work);
   StepSolution solve(double t, const Progress &progress, const std::function<void(const Problem &, const Step &)> &now);
+  /// Goes on with the same problem, made for another time.
+  void remake(double t);
   StepSolution advance_in_parts(double t, int halvings, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
 
@@ -112,7 +115,7 @@ private:
       last_forces_; // on the body from all but the foundation, after the last step (owned dofs) [N]; null: not known
   std::vector<contact::ContactState> offered_;
   StepRecord last_;
-  int matrix_assemblies_ = 1;
+  int assembled_before_ = 0; // for earlier problems
 };
 
 /// What is remembered, on another mesh of the same body: by interpolation; dents stay >= 0. Collective.

@@ -38,7 +38,7 @@ struct Step {
 class Problem
 {
 public:
-  /// Assembles the stiffness matrix and finds the contact nodes. Collective.
+  /// Assembles the stiffness matrix, or lists its rows where they repeat, and finds the contact nodes. Collective.
   /// @param t  time of the first step; which displacements are prescribed does not depend on it
   /// @throws rpc::Error bad_input where the model does not fit the mesh or numbers overflow, naming what they belong to;
   ///         bad_mesh for a cell with a Jacobian <= 0; no_solution as contact::contact_nodes() and contact::free_parts()
@@ -68,7 +68,7 @@ private:
   solver::LinearSolverOptions linear_options_;
   fem::Discretization discretization_;
   contact::FreeParts free_parts_;
-  fem::EliminatedStiffness eliminated_;
+  fem::PrescribedCouplings couplings_;
   RCP<UpdatedOperator> operator_;
   std::shared_ptr<solver::LinearSolver> linear_;
 };

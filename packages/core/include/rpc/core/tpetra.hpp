@@ -49,16 +49,22 @@ inline auto device_write(Vector &v)
   return Kokkos::subview(v.getLocalViewDevice(Tpetra::Access::ReadWrite), Kokkos::ALL(), 0);
 }
 
-/// What a vector on a matrix's domain holds at its columns, those of other ranks too; collective.
+/// What a vector holds at some columns, those of other ranks too; collective.
+/// @param importer  of the vector to the columns; null where these are its indices
+inline Vector at_columns(const RCP<const Map> &columns, const RCP<const Import> &importer, const Vector &x)
+{
+  Vector result(columns);
+  if (importer.is_null())
+    result.update(1., x, 0.);
+  else
+    result.doImport(x, *importer, Tpetra::INSERT);
+  return result;
+}
+
+/// The same at the columns of a matrix on whose domain the vector is.
 inline Vector at_columns(const CrsMatrix &A, const Vector &x)
 {
-  Vector columns(A.getColMap());
-  const auto importer = A.getGraph()->getImporter();
-  if (importer.is_null())
-    columns.update(1., x, 0.);
-  else
-    columns.doImport(x, *importer, Tpetra::INSERT);
-  return columns;
+  return at_columns(A.getColMap(), A.getGraph()->getImporter(), x);
 }
 
 /// Sum, maximum or minimum of one number over all ranks; collective.

@@ -4,15 +4,19 @@
 #include "rpc/core/repeated_rows.hpp"
 #include "rpc/core/tpetra.hpp"
 
+#include <functional>
 #include <limits>
-#include <optional>
 
 namespace rpc
 {
 
-/// block <- the diagonal blocks of the nodes of a matrix, in which an owned node's first column has its first row's lid.
-/// @param block  (owned nodes, dim, dim)
-void read_node_blocks(const CrsMatrix &A, int dim, const DeviceView<double ***> &block);
+/// A matrix whose rows are known, and which is assembled where somebody asks for it.
+struct UnassembledMatrix {
+  RepeatedRows rows;
+  RCP<const Map> dofs, columns;
+  RCP<const Import> importer;               ///< of a vector to the columns; null where these are the dofs
+  std::function<RCP<CrsMatrix>()> assemble; ///< collective
+};
 
 /// A symmetric positive definite operator with an update of rank one at each of some points, which changes often:
 ///
@@ -20,21 +24,23 @@ void read_node_blocks(const CrsMatrix &A, int dim, const DeviceView<double ***> 
 ///
 /// with m_i the point's direction. The update lies in the diagonal blocks of the points' nodes.
 ///
-/// The assembled matrix is there for preconditioners: it holds K and as much of the update as was last written into it, so
+/// The assembled matrix is there for algebraic preconditioners: it holds K and as much of the update as was last written into it, so
 /// that a preconditioner made for it stays valid while H changes. Products do not see what was written. They take the rows
 /// of the points' nodes from K's own blocks and the present update: to subtract what was written would leave the rounding of
-/// the largest of them. All members are collective.
+/// the largest of them. Where rows repeat, products need no matrix, and there may be none. All members are collective.
 class UpdatedOperator : public Operator
 {
 public:
   /// @param K  assembled, all its own; each node's unknowns are consecutive rows with equal columns
   UpdatedOperator(RCP<CrsMatrix> K, const NodePoints &points);
+  /// The same of a K that is not assembled yet.
+  UpdatedOperator(UnassembledMatrix K, const NodePoints &points);
 
   /// y <- alpha H x + beta y.
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
              double beta = 0) const override;
-  RCP<const Map> getDomainMap() const override { return matrix_->getDomainMap(); }
-  RCP<const Map> getRangeMap() const override { return matrix_->getRangeMap(); }
+  RCP<const Map> getDomainMap() const override { return dofs_; }
+  RCP<const Map> getRangeMap() const override { return dofs_; }
   bool hasTransposeApply() const override { return false; }
 
   /// Ku <- K u.
@@ -45,7 +51,9 @@ public:
   GO set(const DeviceView<double *> &added);
   /// Brings the matrix to H, with at most `most` times a point's own stiffness added at each: time for a new preconditioner.
   void write(double most = std::numeric_limits<double>::infinity());
-  const RCP<CrsMatrix> &matrix() const { return matrix_; }
+  /// Assembled now if it was not before.
+  const RCP<CrsMatrix> &matrix() const;
+  bool has_matrix() const { return !matrix_.is_null(); }
   /// Grows with each change of H.
   int revision() const { return revision_; }
   int dofs_per_node() const { return points_.dim; }
@@ -79,15 +87,19 @@ public:
 private:
   void apply_with(const DeviceView<double ***> &blocks, const MultiVector &x, MultiVector &y) const;
 
-  RCP<CrsMatrix> matrix_;
-  std::optional<RepeatedRows> rows_; // of K, where they repeat
+  RepeatedRows rows_; // of K
+  RCP<const Map> dofs_, columns_;
+  RCP<const Import> importer_;
+  std::function<RCP<CrsMatrix>()> assemble_;
+  mutable RCP<CrsMatrix> matrix_; // null: nobody has asked for it
   NodePoints points_;
   DeviceView<LO *> lead_;                // (points) first point of the same node
   DeviceView<double *> added_, written_; // (points) of H, and of the matrix
   bool has_changes_ = false;             // of H since the matrix was written
   bool is_written_ = false;              // the matrix is not K
   DeviceView<double *> own_stiffness_, coupled_stiffness_;
-  DeviceView<std::size_t **> entry_;   // (points, dim) where the node's own block begins in each of its rows
+  // (points, dim) where the node's own block begins in each of its rows of the matrix
+  mutable DeviceView<std::size_t **> entry_;
   DeviceView<double ***> base_blocks_; // (points, dim, dim) own blocks of K, and of H: that of a lead counts
   DeviceView<double ***> blocks_;
   int revision_ = 0;

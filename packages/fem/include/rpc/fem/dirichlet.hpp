@@ -1,7 +1,9 @@
 #pragma once
 
 #include "rpc/core/field.hpp"
+#include "rpc/core/repeated_rows.hpp"
 #include "rpc/fem/discretization.hpp"
+#include "rpc/fem/elasticity.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <array>
@@ -43,36 +45,49 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
 /// f, (owned dofs), becomes 0 where displacements are prescribed; fences.
 void clear_prescribed(const DirichletDofs &dirichlet, Vector &f);
 
-/// A stiffness matrix without the couplings of prescribed unknowns, and these couplings: what a step with other prescribed values
-/// needs of them. Which unknowns are prescribed is fixed.
-struct EliminatedStiffness {
-  RCP<CrsMatrix> matrix; ///< K_FF, and the diagonal of K_DD; symmetric positive definite if rigid motions are held
-  // The entries of K in the columns of prescribed unknowns, (K_FD; K_DD), row after row.
+/// The entries of a stiffness matrix in the columns of prescribed unknowns, (K_FD; K_DD), row after row: what a step with other
+/// prescribed values needs of them. Which unknowns are prescribed is fixed.
+struct PrescribedCouplings {
   DeviceView<LO *> row;            ///< (rows) owned dofs with such entries, ascending
   DeviceView<std::size_t *> begin; ///< (rows + 1) where a row's entries begin
   DeviceView<LO *> column;         ///< (entries) overlap dofs
   DeviceView<double *> value;      ///< (entries)
 };
 
+/// A stiffness matrix without the couplings of prescribed unknowns, and these couplings.
+struct EliminatedStiffness {
+  RCP<CrsMatrix> matrix; ///< K_FF, and the diagonal of K_DD; symmetric positive definite if rigid motions are held
+  PrescribedCouplings couplings;
+};
+
 /// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays.               doc/theory.md (2.9)
 /// @param K  becomes the matrix; collective
 EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DirichletDofs &dirichlet);
 
-/// The discrete elastic problem with its boundary conditions built in: find u with stiffness u = load, where nothing
-/// touches.
+/// The same of a matrix that is not assembled, for most of its rows repeat those of a few nodes.
+struct RepeatedStiffness {
+  RepeatedRows rows; ///< without the couplings of prescribed unknowns
+  PrescribedCouplings couplings;
+};
+
+/// @return nothing where less than three quarters of the rows repeat, on any rank, or where the assembly has something to complain of; collective
+std::optional<RepeatedStiffness> repeated_stiffness(const Discretization &d, const Materials &materials,
+                                                    const DirichletDofs &dirichlet);
+
+/// The discrete elastic problem with its boundary conditions built in: find u with K u = load, where nothing touches and K is without
+/// the couplings of prescribed unknowns.
 struct ElasticProblem {
-  RCP<CrsMatrix> stiffness; ///< without the couplings of prescribed unknowns
   RCP<Vector> load;         ///< with the forces of prescribed displacements [N]
   RCP<Vector> applied_load; ///< [N]
   DirichletDofs dirichlet;
   double energy_offset =
-      0; ///< Pi(u) = u.(stiffness u)/2 - load.u + energy_offset, Pi being that of the problem before elimination [J]
+      0; ///< Pi(u) = u.(K u)/2 - load.u + energy_offset, Pi being that of the problem before elimination [J]
 };
 
 /// The problem of one load and one set of prescribed values; costs no more than a few vectors. Collective. (2.9)
 /// @param applied_load  (owned dofs) [N]
 /// @param dirichlet     of the unknowns that were eliminated
-ElasticProblem elastic_problem(const Discretization &d, const EliminatedStiffness &stiffness, RCP<Vector> applied_load,
+ElasticProblem elastic_problem(const Discretization &d, const PrescribedCouplings &couplings, RCP<Vector> applied_load,
                                DirichletDofs dirichlet);
 
 /// Force with which each condition holds the body: the sum of internal - external forces over the unknowns that it

@@ -46,7 +46,6 @@ struct Discretization {
   CongruentCells congruent;
   NodeToCells node_to_cells;
   NodeGraph nodes;
-  RCP<const CrsGraph> graph; ///< fill-complete, columns ascending
 
   int dim() const { return mesh->dim(); }
   bool axisymmetric() const { return kinematics == Kinematics::axisymmetric; }
@@ -58,6 +57,9 @@ struct Discretization {
 /// @param kinematics  the default for a mesh in space
 /// @throws rpc::Error (bad_input) if it is none for a mesh in space, (bad_mesh) on every rank if a node of an axisymmetric body lies at r < 0, naming the farthest
 Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, Kinematics kinematics = Kinematics::plane_strain);
+
+/// The pattern of every matrix: fill-complete, columns ascending. Collective.
+RCP<const CrsGraph> dof_graph(const Discretization &d);
 
 /// Values with those of the neighbours' nodes, (overlap dofs), from those of the owned ones; collective. The same vector where
 /// there are no neighbours: for reading while the one given lives and stays as it is.
