@@ -303,7 +303,8 @@ const RCP<CrsMatrix> &UpdatedOperator::matrix() const
   return matrix_;
 }
 
-void UpdatedOperator::apply_with(const DeviceView<double ***> &blocks, const MultiVector &x, MultiVector &y) const
+void UpdatedOperator::apply_with(const DeviceView<double ***> &blocks, const bool rounded, const MultiVector &x,
+                                 MultiVector &y) const
 {
   RCP<const MultiVector> columns = Teuchos::rcpFromRef(x);
   if (!importer_.is_null()) {
@@ -316,8 +317,11 @@ void UpdatedOperator::apply_with(const DeviceView<double ***> &blocks, const Mul
   for (std::size_t v = 0; v < x.getNumVectors(); ++v) {
     const auto from = columns->getVector(v);
     const auto to = y.getVectorNonConst(v);
-    if (by_rows) rows_.apply(*from, *to);
-    if (by_rows && !(is_written_ && rows_.reads_matrix()))
+    if (rounded)
+      rounded_->apply(*from, *to);
+    else if (by_rows)
+      rows_.apply(*from, *to);
+    if (rounded || (by_rows && !(is_written_ && rows_.reads_matrix())))
       add_update(points_, lead_, blocks, base_blocks_, *from, *to);
     else
       multiply_rows(points_, lead_, entry_, blocks, *matrix(), *from, *to);
@@ -330,10 +334,10 @@ void UpdatedOperator::apply(const MultiVector &x, MultiVector &y, const Teuchos:
   if (!has_changes_ && !rows_.pays()) { // the matrix is H
     matrix()->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
   } else if (alpha == 1 && beta == 0) {
-    apply_with(blocks_, x, y);
+    apply_with(blocks_, false, x, y);
   } else {
     MultiVector product(y.getMap(), y.getNumVectors(), false);
-    apply_with(blocks_, x, product);
+    apply_with(blocks_, false, x, product);
     y.update(alpha, product, beta);
   }
 }
@@ -341,9 +345,29 @@ void UpdatedOperator::apply(const MultiVector &x, MultiVector &y, const Teuchos:
 void UpdatedOperator::apply_base(const Vector &u, Vector &Ku) const
 {
   if (is_written_ || rows_.pays())
-    apply_with(base_blocks_, u, Ku);
+    apply_with(base_blocks_, false, u, Ku);
   else
     matrix()->apply(u, Ku);
+}
+
+void UpdatedOperator::apply_rounded(const MultiVector &x, MultiVector &y) const
+{
+  if (rounded_)
+    apply_with(blocks_, true, x, y);
+  else
+    apply(x, y);
+}
+
+void UpdatedOperator::apply_base_rounded(const MultiVector &x, MultiVector &y) const
+{
+  apply_with(base_blocks_, rounded_ != nullptr, x, y);
+}
+
+void UpdatedOperator::allow_rounding()
+{
+  constexpr bool on_host = Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
+  if (on_host && !rounded_ && !is_written_ && rows_.reads_matrix() && rows_.num_kinds() == 0 && rows_.dim() > 1)
+    rounded_ = std::make_shared<RoundedRows>(*matrix(), rows_.dim());
 }
 
 GO UpdatedOperator::set(const DeviceView<double *> &added)

@@ -340,6 +340,7 @@ void LinearSolver::prepare_on_meshes()
   if (multigrid.is_null()) {
     const MeshLevels levels = impl_->make_levels();
     if (levels.level.empty()) throw std::runtime_error("multigrid: a coarser mesh would be too small for the ranks");
+    impl_->H->allow_rounding();
     multigrid =
         rcp(new MeshMultigrid(impl_->H, levels, [&](const MeshLevel &coarsest) -> std::unique_ptr<CoarsestSolver> {
           if (levels.down_to_few) return direct_solver(coarsest.stiffness);

@@ -29,14 +29,30 @@ constexpr double largest_of_contact = 2.25;
 // iterations.                                                                                                    (4.7b)
 constexpr double most_on_coarse_meshes = 1;
 
-/// K of an updated operator.
+/// K of an updated operator, as the cycle takes it.
 class Base : public Operator
 {
 public:
   explicit Base(RCP<const UpdatedOperator> H) : H_(std::move(H)) {}
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
   {
-    H_->apply_base(*x.getVector(0), *y.getVectorNonConst(0));
+    H_->apply_base_rounded(x, y);
+  }
+  RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
+
+private:
+  RCP<const UpdatedOperator> H_;
+};
+
+/// The operator itself, as the cycle takes it.
+class Rounded : public Operator
+{
+public:
+  explicit Rounded(RCP<const UpdatedOperator> H) : H_(std::move(H)) {}
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
+  {
+    H_->apply_rounded(x, y);
   }
   RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
   RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
@@ -206,7 +222,7 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     const MeshLevel &coarse = levels.level[l];
     auto level = std::make_unique<Level>();
     if (l == 0)
-      level->A = H_;
+      level->A = rcp(new Rounded(H_));
     else
       level->A = levels_.back()->coarse;
     level->add_transfers(coarse, dim, l == 0 ? levels.prescribed : levels.level[l - 1].prescribed);

@@ -2,10 +2,12 @@
 
 #include "rpc/core/node_points.hpp"
 #include "rpc/core/repeated_rows.hpp"
+#include "rpc/core/rounded_rows.hpp"
 #include "rpc/core/tpetra.hpp"
 
 #include <functional>
 #include <limits>
+#include <memory>
 
 namespace rpc
 {
@@ -45,6 +47,11 @@ public:
 
   /// Ku <- K u.
   void apply_base(const Vector &u, Vector &Ku) const;
+  /// y <- H x and y <- K x, up to single precision where that saves time: for preconditioners. See allow_rounding().
+  void apply_rounded(const MultiVector &x, MultiVector &y) const;
+  void apply_base_rounded(const MultiVector &x, MultiVector &y) const;
+  /// Keeps K's rows in single precision too where they are read one by one, on the host, and nothing is written into the matrix.
+  void allow_rounding();
 
   /// @param added  (points) >= 0
   /// @return number of points where it changed, over all ranks
@@ -85,9 +92,10 @@ public:
   const DeviceView<double *> &coupled_stiffness() const { return coupled_stiffness_; }
 
 private:
-  void apply_with(const DeviceView<double ***> &blocks, const MultiVector &x, MultiVector &y) const;
+  void apply_with(const DeviceView<double ***> &blocks, bool rounded, const MultiVector &x, MultiVector &y) const;
 
-  RepeatedRows rows_; // of K
+  RepeatedRows rows_;                          // of K
+  std::shared_ptr<const RoundedRows> rounded_; // or null
   RCP<const Map> dofs_, columns_;
   RCP<const Import> importer_;
   std::function<RCP<CrsMatrix>()> assemble_;
