@@ -497,7 +497,8 @@ void check(const Assembly &assembly, const int dim)
 
 void require_stiff_joints(const Discretization &d, const DirichletDofs &dirichlet)
 {
-  if (d.axisymmetric() || !has_pinched_nodes(d)) return;
+  const bool is_box = d.mesh->box != nullptr; // whose cells are joined over their facets
+  if (is_box || d.axisymmetric() || !has_pinched_nodes(d)) return;
   const Pieces pieces = pieces_of(d, dirichlet);
   on_root(d.mesh->comm(), ExitCode::internal_error, [&] {
     for (const Assembly &assembly : assemblies_of(pieces, d.dim(), d.mesh->element.num_vertices()))

@@ -65,6 +65,8 @@ public:
   {
     constexpr int applications_between = 8; // a sum over all ranks each time
     if (++applications_ % applications_between == 0 && interrupted(*map_->getComm())) throw Interrupted();
+    // Belos' CG preconditions a residual before it looks whether the residual is small enough to stop.
+    if (enough > 0 && x.getNumVectors() == 1 && x.getVector(0)->norm2() <= enough) return y.assign(x);
     if (!correction) return plain(x, y);
     for (std::size_t k = 0; k < x.getNumVectors(); ++k)
       correction->apply_off_patch(*multigrid, *x.getVector(k), *y.getVectorNonConst(k));
@@ -80,6 +82,7 @@ public:
   RCP<MeshMultigrid> on_meshes;              ///< null: not used, or to be made
   RCP<Multigrid> multigrid;                  ///< algebraic; null: not used, or to be made anew
   std::optional<LocalCorrection> correction; // of the algebraic one
+  double enough = 0; // CG stops at residuals of this norm, which need no preconditioner; 0: not known
 
 private:
   void plain(const MultiVector &x, MultiVector &y) const
@@ -198,6 +201,7 @@ struct LinearSolver::Impl {
   bool worn = false;               // corrections do not suffice any more
   int setups_for_states = 0;
   bool strengthened = false;
+  bool stops_by_residual = false; // Belos' CG, at |r| <= tolerance |b|
   RCP<LinearProblem> problem;
   RCP<SolverManager> manager;
 };
@@ -205,7 +209,7 @@ struct LinearSolver::Impl {
 Teuchos::ParameterList valid_linear_solver_parameters()
 {
   Teuchos::ParameterList valid("Linear Solver");
-  valid.set("Method", "Pseudoblock CG",
+  valid.set("Method", LinearSolverOptions().method,
             "Krylov method by its name in Belos; the matrix is symmetric positive definite.");
   valid.set("Tolerance", 1e-11, "|r|/|b| of a linear solve at least, in (0, 1): most need not be as good.");
   valid.set("Maximum Iterations", 500, "of a linear solve, > 0.");
@@ -271,6 +275,7 @@ LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperato
   belos->set("Verbosity", static_cast<int>(Belos::Errors));
   belos->set("Maximum Iterations", options_.max_iterations);
   belos->setParameters(options_.belos);
+  impl_->stops_by_residual = options_.belos.numParams() == 0 && options_.method == LinearSolverOptions().method;
   impl_->preconditioner = rcp(new Preconditioner(H->getDomainMap()));
   impl_->problem = rcp(new LinearProblem(H, Teuchos::null, Teuchos::null));
   impl_->problem->setRightPrec(impl_->preconditioner);
@@ -515,6 +520,9 @@ LinearSolver::Result LinearSolver::iterate(const Vector &b, Vector &x, const dou
   const auto list = Teuchos::parameterList();
   list->set("Convergence Tolerance", std::min(1., std::max(tolerance, options_.tolerance) / left));
   impl_->manager->setParameters(list);
+  constexpr double surely = 1 - 1e-12; // Belos divides by |rest|
+  impl_->preconditioner->enough =
+      impl_->stops_by_residual ? surely * list->get<double>("Convergence Tolerance") * rest->norm2() : 0;
   x.putScalar(0);
   impl_->problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), RCP<const MultiVector>(rest));
   try {
