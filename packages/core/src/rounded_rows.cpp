@@ -145,6 +145,20 @@ Multiply multiply_in(const int dim)
   return dim == 2 ? multiply_nodes<2> : multiply_nodes<3>;
 }
 
+/// Where the blocks of each node begin, its own left out. @return number of all
+std::size_t find_begins(const LocalMatrix &A, const int dim, const DeviceView<std::size_t *> &begin)
+{
+  std::size_t num_blocks = 0;
+  Kokkos::parallel_scan(
+      "rpc::rounded_rows::begin", device_range(static_cast<LO>(begin.extent(0)) - 1),
+      KOKKOS_LAMBDA(const LO node, std::size_t &sum, const bool last) {
+        sum += (A.graph.row_map(dof(dim, node, 1)) - A.graph.row_map(dof(dim, node, 0))) / dim - 1;
+        if (last) begin(node + 1) = sum;
+      },
+      num_blocks);
+  return num_blocks;
+}
+
 } // namespace
 
 RoundedRows::RoundedRows(const CrsMatrix &A, const int dim) : dim_(dim)
@@ -152,15 +166,7 @@ RoundedRows::RoundedRows(const CrsMatrix &A, const int dim) : dim_(dim)
   const LocalMatrix matrix = A.getLocalMatrixDevice();
   const LO num_nodes = node_of(dim, matrix.numRows());
   begin_ = DeviceView<std::size_t *>("rpc::rounded_rows::begin", num_nodes + 1);
-  const auto begin = begin_;
-  std::size_t num_blocks = 0;
-  Kokkos::parallel_scan(
-      "rpc::rounded_rows::begin", device_range(num_nodes),
-      KOKKOS_LAMBDA(const LO node, std::size_t &sum, const bool last) {
-        sum += (matrix.graph.row_map(dof(dim, node, 1)) - matrix.graph.row_map(dof(dim, node, 0))) / dim - 1;
-        if (last) begin(node + 1) = sum;
-      },
-      num_blocks);
+  const std::size_t num_blocks = find_begins(matrix, dim, begin_);
   column_ = DeviceView<LO *>(Kokkos::ViewAllocateWithoutInitializing("rpc::rounded_rows::column"), num_blocks);
   value_ = DeviceView<float *>("rpc::rounded_rows::value", dim * dim * num_blocks + 4); // read by fours
   sum_ = DeviceView<double *>("rpc::rounded_rows::sum", dim * dim * num_nodes);
