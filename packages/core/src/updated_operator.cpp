@@ -273,7 +273,7 @@ void list_changes(const NodePoints &p, const DeviceView<double *> &rest, const U
 
 } // namespace
 
-UpdatedOperator::UpdatedOperator(RCP<CrsMatrix> K, const NodePoints &points)
+UpdatedOperator::UpdatedOperator(const RCP<CrsMatrix> &K, const NodePoints &points)
     : UpdatedOperator({RepeatedRows::of(K, points.dim), K->getDomainMap(), K->getColMap(), K->getGraph()->getImporter(),
                        [K] { return K; }},
                       points)

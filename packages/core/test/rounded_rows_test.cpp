@@ -51,7 +51,17 @@ std::array<double, 2> error_and_size(const CrsMatrix &A, const int dim, const Ve
   return {y.norm2(), expected.norm2()};
 }
 
-TEST(RoundedRows, GiveProductsUpToSinglePrecision)
+/// They are for the host.
+class RoundedRowsTest : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    if (!Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible) GTEST_SKIP() << "kernels run on a GPU";
+  }
+};
+
+TEST_F(RoundedRowsTest, GiveProductsUpToSinglePrecision)
 {
   for (const mesh::Element &element : mesh::all_elements())
     for (const bool is_held : {false, true}) {
@@ -63,7 +73,7 @@ TEST(RoundedRows, GiveProductsUpToSinglePrecision)
     }
 }
 
-TEST(RoundedRows, GiveATranslationNoForce)
+TEST_F(RoundedRowsTest, GiveATranslationNoForce)
 {
   for (const mesh::Element &element : mesh::all_elements()) {
     const auto d = body(element);

@@ -220,20 +220,11 @@ Side side_of_box(const BoxSide &box_side, const Parts &parts, const Grid &grid, 
   return make_side(box_side.name, mesh, cell, ordinal);
 }
 
-/// Nodes that share a cell with a node of a large box, itself included, on average.
-double mean_neighbours(const Element &element)
-{
-  const bool simplex = element.shape == Shape::simplex;
-  if (element.dim == 2) return element.order == 1 ? (simplex ? 7 : 9) : simplex ? 11.5 : 16;
-  return element.order == 1 ? (simplex ? 15 : 27) : simplex ? 28.75 : 64;
-}
-
-/// What a run takes for each of a rank's nodes at least [B]: mesh and fields, and the matrix twice, for multigrid has one as large.
-/// Measured: P1, Q1, P2, Q2 in the plane 2100, 2300, 2400, 3000, in space 9000, 11 000, 14 000, 25 000.
+/// What a run takes for each of a rank's nodes at least [B]: mesh, fields and coarser meshes. There is no matrix of the finest mesh.
+/// Measured: P1, Q1, P2, Q2 in the plane 900 to 950, in space 1580, 1660, 1530, 1880.
 double bytes_per_node(const Element &element)
 {
-  const double matrix = mean_neighbours(element) * element.dim * element.dim * (sizeof(double) + sizeof(LO));
-  return 1000 + 2 * matrix;
+  return element.dim == 2 ? 800 : 1400;
 }
 
 /// Refuses a box that could only run out of memory later.

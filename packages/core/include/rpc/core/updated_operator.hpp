@@ -34,7 +34,7 @@ class UpdatedOperator : public Operator
 {
 public:
   /// @param K  assembled, all its own; each node's unknowns are consecutive rows with equal columns
-  UpdatedOperator(RCP<CrsMatrix> K, const NodePoints &points);
+  UpdatedOperator(const RCP<CrsMatrix> &K, const NodePoints &points);
   /// The same of a K that is not assembled yet.
   UpdatedOperator(UnassembledMatrix K, const NodePoints &points);
 
