@@ -363,10 +363,12 @@ void UpdatedOperator::apply_base_rounded(const MultiVector &x, MultiVector &y) c
   apply_with(base_blocks_, rounded_ != nullptr, x, y);
 }
 
-void UpdatedOperator::allow_rounding()
+void UpdatedOperator::allow_rounding(const bool allowed)
 {
+  if (!allowed) rounded_.reset();
   constexpr bool on_host = Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
-  if (on_host && !rounded_ && !is_written_ && rows_.reads_matrix() && rows_.num_kinds() == 0 && rows_.dim() > 1)
+  if (allowed && on_host && !rounded_ && !is_written_ && rows_.reads_matrix() && rows_.num_kinds() == 0 &&
+      rows_.dim() > 1)
     rounded_ = std::make_shared<RoundedRows>(*matrix(), rows_.dim());
 }
 

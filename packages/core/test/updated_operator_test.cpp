@@ -157,4 +157,29 @@ TEST(UpdatedOperator, OfSweepsBoundsTheEnergyOfAllMovesAtOnce)
   }
 }
 
+TEST(UpdatedOperator, RoundsTheBodyButNotTheUpdate)
+{
+  Stiffness s;
+  const auto product = [&](const bool rounded, const bool with_update) {
+    Vector y(s.u->getMap());
+    if (with_update)
+      rounded ? s.H.apply_rounded(*s.u, y) : s.H.apply(*s.u, y);
+    else
+      rounded ? s.H.apply_base_rounded(*s.u, y) : s.H.apply_base(*s.u, y);
+    return y;
+  };
+  const auto distance = [](Vector a, const Vector &b) {
+    a.update(-1., b, 1.);
+    return a.norm2();
+  };
+  const double force = product(false, false).norm2();
+  EXPECT_EQ(distance(product(true, false), product(false, false)), 0) << "before it is allowed to";
+  s.H.allow_rounding(true);
+  s.H.set(s.added([](LO) { return 1e12; })); // single precision would be off by 1e5
+  for (const bool with_update : {false, true})
+    EXPECT_LT(distance(product(true, with_update), product(false, with_update)), 1e-6 * force);
+  s.H.allow_rounding(false);
+  EXPECT_EQ(distance(product(true, true), product(false, true)), 0);
+}
+
 } // namespace

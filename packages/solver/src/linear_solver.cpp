@@ -345,7 +345,7 @@ void LinearSolver::prepare_on_meshes()
   if (multigrid.is_null()) {
     const MeshLevels levels = impl_->make_levels();
     if (levels.level.empty()) throw std::runtime_error("multigrid: a coarser mesh would be too small for the ranks");
-    impl_->H->allow_rounding();
+    impl_->H->allow_rounding(true);
     multigrid =
         rcp(new MeshMultigrid(impl_->H, levels, [&](const MeshLevel &coarsest) -> std::unique_ptr<CoarsestSolver> {
           if (levels.down_to_few) return direct_solver(coarsest.stiffness);
@@ -462,6 +462,7 @@ LinearSolver::Result LinearSolver::solve_by_meshes(const Vector &b, Vector &x, c
   if (good || result.interrupted || (result.broken && impl_->singular)) return result;
   const MakeMeshLevels levels = std::exchange(impl_->make_levels, {});
   impl_->preconditioner->on_meshes = Teuchos::null;
+  impl_->H->allow_rounding(false);
   impl_->revision = -1;
   counts_.fallback = result.converged ? std::to_string(result.iterations) + " CG iterations" : result.reason;
   if (result.converged) return result;

@@ -50,8 +50,9 @@ public:
   /// y <- H x and y <- K x, up to single precision where that saves time: for preconditioners. See allow_rounding().
   void apply_rounded(const MultiVector &x, MultiVector &y) const;
   void apply_base_rounded(const MultiVector &x, MultiVector &y) const;
-  /// Keeps K's rows in single precision too where they are read one by one, on the host, and nothing is written into the matrix.
-  void allow_rounding();
+  /// Keeps K's rows in single precision too, or no longer: where they are read one by one, on the host, and nothing is written into
+  /// the matrix.
+  void allow_rounding(bool allowed);
 
   /// @param added  (points) >= 0
   /// @return number of points where it changed, over all ranks
