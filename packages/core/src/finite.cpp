@@ -49,24 +49,6 @@ Vector largest_in_rows(const CrsMatrix &A)
   return result;
 }
 
-/// Whether the sum of all entries' squares stays finite, for sure: none is more than its share; collective.
-bool squares_are_finite(const CrsMatrix &A)
-{
-  const auto local = A.getLocalMatrixDevice();
-  const double share = std::numeric_limits<double>::max() / static_cast<double>(A.getGlobalNumEntries());
-  LO bad = 0;
-  Kokkos::parallel_reduce(
-      "rpc::core::large_entries", device_range(local.numRows()),
-      KOKKOS_LAMBDA(const LO i, LO &count) {
-        LO of_row = 0;
-        for (auto k = local.graph.row_map(i); k < local.graph.row_map(i + 1); ++k)
-          of_row += !(local.values(k) * local.values(k) <= share);
-        count += of_row;
-      },
-      bad);
-  return max_all(*A.getComm(), bad) == 0;
-}
-
 /// "nan in direction Y of the node at (0.5, 1)"
 std::string describe(const Vector &v, const MultiVector &coordinates, const LO lid)
 {
@@ -113,7 +95,24 @@ void require_finite(const Vector &v, const std::string &what, const std::functio
 
 void require_finite(const CrsMatrix &A, const std::string &what, const std::function<RCP<MultiVector>()> &coordinates)
 {
-  if (!squares_are_finite(A)) refuse(what, largest_in_rows(A), *coordinates());
+  const bool here = squares_are_finite(A.getLocalMatrixDevice(), static_cast<double>(A.getGlobalNumEntries()));
+  if (min_all(*A.getComm(), here ? 1 : 0) == 0) refuse(what, largest_in_rows(A), *coordinates());
+}
+
+bool squares_are_finite(const CrsMatrix::local_matrix_device_type &rows, const double num_entries)
+{
+  const double share = std::numeric_limits<double>::max() / num_entries;
+  LO bad = 0;
+  Kokkos::parallel_reduce(
+      "rpc::core::large_entries", device_range(rows.numRows()),
+      KOKKOS_LAMBDA(const LO i, LO &count) {
+        LO of_row = 0;
+        for (auto k = rows.graph.row_map(i); k < rows.graph.row_map(i + 1); ++k)
+          of_row += !(rows.values(k) * rows.values(k) <= share);
+        count += of_row;
+      },
+      bad);
+  return bad == 0;
 }
 
 } // namespace rpc

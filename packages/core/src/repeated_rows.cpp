@@ -2,15 +2,12 @@
 
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/dofs.hpp"
+#include "vectors.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
-#define RPC_HAS_VECTORS
-#endif
 
 namespace rpc
 {
@@ -302,12 +299,12 @@ void multiply(const MultiplyNode<Dim, In, Out> &one)
 }
 
 /// Nodes of no kind find their rows in a matrix of all nodes.
-void number_the_rest(const DeviceView<int *> &kind, const bool has_kinds)
+void number_the_rest(const DeviceView<int *> &kind)
 {
   Kokkos::parallel_for(
       "rpc::repeated_rows::number_the_rest", device_range(static_cast<LO>(kind.extent(0))),
       KOKKOS_LAMBDA(const LO node) {
-        if (!has_kinds || kind(node) < 0) kind(node) = -1 - node;
+        if (kind(node) < 0) kind(node) = -1 - node;
       });
   Kokkos::fence();
 }
@@ -348,10 +345,13 @@ RepeatedRows RepeatedRows::of(RCP<const CrsMatrix> A, const int dim)
   result.dim_ = dim;
   result.A_ = std::move(A);
   const auto kinds = dim > 1 ? alike_nodes_of(num_nodes, SameRows{matrix, dim}) : std::nullopt;
-  result.kind_ =
-      kinds ? kinds->kind
-            : DeviceView<int *>(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::kind"), num_nodes);
-  number_the_rest(result.kind_, kinds.has_value());
+  if (kinds) {
+    result.kind_ = kinds->kind;
+  } else {
+    result.kind_ = DeviceView<int *>(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::kind"), num_nodes);
+    Kokkos::deep_copy(result.kind_, -1);
+  }
+  number_the_rest(result.kind_);
   const auto example = device_values(kinds ? kinds->example : std::vector<LO>{}, "rpc::repeated_rows::example");
   result.list_kinds({example, example, matrix});
   return result;

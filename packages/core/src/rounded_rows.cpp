@@ -1,12 +1,12 @@
 #include "rpc/core/rounded_rows.hpp"
 
 #include "rpc/core/dofs.hpp"
+#include "vectors.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
-#define RPC_HAS_VECTORS
+#ifdef RPC_HAS_VECTORS
 #include <immintrin.h>
 #endif
 

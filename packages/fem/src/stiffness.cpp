@@ -3,9 +3,9 @@
 #include "prescribed_couplings.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/finite.hpp"
 #include "stiffness_rows.hpp"
 
-#include <limits>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -220,19 +220,6 @@ RowsOfNodes rows_of(const NodeStiffness<Dim, Nodes> &stiffness, const DeviceView
   return {node, place, rows};
 }
 
-/// Whether the sum of the squares of all a matrix's entries stays finite, for sure, if its rows repeat these.
-bool squares_are_finite(const RowsOfNodes &rows, const GO num_rows)
-{
-  const auto value = rows.rows.values;
-  const double most_in_row = static_cast<double>(value.extent(0)) + 1;
-  const double share = std::numeric_limits<double>::max() / (most_in_row * static_cast<double>(num_rows));
-  LO bad = 0;
-  Kokkos::parallel_reduce(
-      "rpc::fem::large_entries", device_range(static_cast<LO>(value.extent(0))),
-      KOKKOS_LAMBDA(const LO k, LO &count) { count += !(value(k) * value(k) <= share); }, bad);
-  return bad == 0;
-}
-
 template <int Dim, int Nodes>
 std::optional<RepeatedStiffness> repeated_rows(const Discretization &d, const CellStiffness<Dim, Nodes> &cells,
                                                const DeviceView<char *> &fixed)
@@ -248,7 +235,9 @@ std::optional<RepeatedStiffness> repeated_rows(const Discretization &d, const Ce
       alike_nodes_of(num_owned, SameEliminatedRows<Dim, Nodes>{stiffness, fixed, flagged(beside, num_owned)});
   if (!on_all(kinds.has_value())) return std::nullopt;
   const auto rows = rows_of(stiffness, nodes_with_rows(*kinds), num_columns);
-  if (!on_all(squares_are_finite(rows, static_cast<GO>(d.owned_dofs->getGlobalNumElements())))) return std::nullopt;
+  const double num_rows = static_cast<double>(d.owned_dofs->getGlobalNumElements());
+  const double most_in_row = static_cast<double>(rows.rows.nnz()) + 1;
+  if (!on_all(squares_are_finite(rows.rows, most_in_row * num_rows))) return std::nullopt;
   const auto couplings = listed_couplings(rows_of(stiffness, beside, num_columns), Dim, fixed);
   clear_couplings(rows, Dim, fixed);
   return RepeatedStiffness{RepeatedRows::of(*kinds, rows, Dim), couplings};

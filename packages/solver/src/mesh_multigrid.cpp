@@ -29,36 +29,24 @@ constexpr double largest_of_contact = 2.25;
 // iterations.                                                                                                    (4.7b)
 constexpr double most_on_coarse_meshes = 1;
 
-/// K of an updated operator, as the cycle takes it.
-class Base : public Operator
-{
-public:
-  explicit Base(RCP<const UpdatedOperator> H) : H_(std::move(H)) {}
-  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
-  {
-    H_->apply_base_rounded(x, y);
-  }
-  RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
-  RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
-
-private:
-  RCP<const UpdatedOperator> H_;
-};
-
-/// The operator itself, as the cycle takes it.
+/// An updated operator as the cycle takes it, up to single precision; or K alone.
 class Rounded : public Operator
 {
 public:
-  explicit Rounded(RCP<const UpdatedOperator> H) : H_(std::move(H)) {}
+  Rounded(RCP<const UpdatedOperator> H, const bool with_update) : H_(std::move(H)), with_update_(with_update) {}
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
   {
-    H_->apply_rounded(x, y);
+    if (with_update_)
+      H_->apply_rounded(x, y);
+    else
+      H_->apply_base_rounded(x, y);
   }
   RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
   RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
 
 private:
   RCP<const UpdatedOperator> H_;
+  bool with_update_;
 };
 
 class DirectSolver : public CoarsestSolver
@@ -222,7 +210,7 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     const MeshLevel &coarse = levels.level[l];
     auto level = std::make_unique<Level>();
     if (l == 0)
-      level->A = rcp(new Rounded(H_));
+      level->A = rcp(new Rounded(H_, true));
     else
       level->A = levels_.back()->coarse;
     level->add_transfers(coarse, dim, l == 0 ? levels.prescribed : levels.level[l - 1].prescribed);
@@ -232,7 +220,8 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
   }
   for (std::size_t l = 0; l < levels_.size(); ++l) { // contact is not in the coarse matrices yet
     const auto block = l == 0 ? H_->base_blocks() : levels_[l - 1]->coarse->base_blocks();
-    const double largest = l == 0 ? largest_eigenvalue(Base(H_), block) : largest_eigenvalue(*levels_[l]->A, block);
+    const double largest =
+        l == 0 ? largest_eigenvalue(Rounded(H_, false), block) : largest_eigenvalue(*levels_[l]->A, block);
     levels_[l]->smoother = std::make_unique<NodeSmoother>(levels_[l]->A, block, std::max(largest, largest_of_contact),
                                                           l == 0 && levels.order == 2 ? order_two : order_one);
   }

@@ -29,4 +29,8 @@ void require_finite(const Vector &v, const std::string &what, const std::functio
 /// The same for a matrix and its Frobenius norm; the place is that of the row.
 void require_finite(const CrsMatrix &A, const std::string &what, const std::function<RCP<MultiVector>()> &coordinates);
 
+/// Whether the sum of the squares of a matrix's entries stays finite for sure, as far as these rows tell: none is more than its share.
+/// @param num_entries  of the whole matrix, at least
+bool squares_are_finite(const CrsMatrix::local_matrix_device_type &rows, double num_entries);
+
 } // namespace rpc
