@@ -39,6 +39,7 @@ template std::vector<GO> CanonicalOrder::gather(const GO *, int) const;
 
 HostView<GO *> overlap_node_ids(const mesh::Mesh &mesh)
 {
+  if (mesh.comm().getSize() == 1) return mesh.node_id;
   using IdVector = Tpetra::Vector<GO, LO, GO, Node>;
   IdVector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes);
   {

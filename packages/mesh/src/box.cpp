@@ -176,6 +176,20 @@ void fill_cells(const Numbering &n, const Element &element, const Parts &parts, 
       });
 }
 
+/// (count) Numbers that do not depend on the ranks, by the lattice of the whole box, x fastest.
+/// @param owned  positions, each of so many parts   @param extent  of the lattice
+HostView<GO *> lattice_ids(const Block &owned, const Index &extent, const LO count, const int parts)
+{
+  const DeviceView<GO *> id(Kokkos::view_alloc("rpc::mesh::lattice_ids", Kokkos::WithoutInitializing), count);
+  Kokkos::parallel_for(
+      "rpc::mesh::lattice_ids", device_range(count), KOKKOS_LAMBDA(const LO i) {
+        const Index at = owned.at(i / parts);
+        id(i) = parts * (at[0] + extent[0] * (at[1] + extent[1] * at[2])) + i % parts;
+      });
+  Kokkos::fence();
+  return to_host(id);
+}
+
 Side side_of_box(const BoxSide &box_side, const Parts &parts, const Grid &grid, const Numbering &numbering,
                  const std::vector<Index> &halo, const Block &local_cells, const Mesh &mesh)
 {
@@ -348,7 +362,8 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   const LO num_nodes = num_owned + static_cast<LO>(ghosts.size());
   std::vector<Index> ghost_positions;
   Teuchos::Array<GO> gids;
-  for (LO n = 0; n < num_owned; ++n) gids.push_back(first + n);
+  if (comm->getSize() > 1)
+    for (LO n = 0; n < num_owned; ++n) gids.push_back(first + n);
   for (const Ghost &ghost : ghosts) {
     gids.push_back(ghost.gid);
     ghost_positions.push_back(ghost.at);
@@ -376,20 +391,13 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   fill_coords(numbering, options, mesh.coords);
   fill_cells(numbering, mesh.element, parts, mesh.cells);
 
-  // Rank-independent numbers: the lattice of the whole box, x fastest.
   Index nodes{1, 1, 1}, cells{1, 1, 1};
   for (int d = 0; d < mesh.dim(); ++d) {
     cells[d] = options.cells[d];
     nodes[d] = GO(options.cells[d]) * options.element.order + 1;
   }
-  const auto lattice_id = [](const Index &at, const Index &extent) {
-    return at[0] + extent[0] * (at[1] + extent[1] * at[2]);
-  };
-  mesh.node_id = HostView<GO *>("rpc::mesh::node_id", num_owned);
-  mesh.cell_id = HostView<GO *>("rpc::mesh::cell_id", mesh.num_owned_cells);
-  for (LO n = 0; n < num_owned; ++n) mesh.node_id(n) = lattice_id(numbering.owned_nodes.at(n), nodes);
-  for (LO c = 0; c < mesh.num_owned_cells; ++c)
-    mesh.cell_id(c) = num_parts * lattice_id(numbering.owned_cells.at(c / num_parts), cells) + c % num_parts;
+  mesh.node_id = lattice_ids(numbering.owned_nodes, nodes, num_owned, 1);
+  mesh.cell_id = lattice_ids(numbering.owned_cells, cells, mesh.num_owned_cells, num_parts);
 
   for (const BoxSide &box_side : box_sides)
     if (box_side.direction < mesh.dim())

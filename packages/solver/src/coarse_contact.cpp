@@ -7,6 +7,7 @@
 #include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <unordered_map>
@@ -18,6 +19,48 @@ namespace
 {
 
 const LO invalid = Teuchos::OrdinalTraits<LO>::invalid();
+
+/// Some of a matrix's own rows, on the host.
+struct HostRows {
+  std::vector<std::size_t> begin{0}; // (rows + 1) where a row's entries begin here
+  HostView<std::size_t *> first;     // (rows)     and among all of the matrix
+  HostView<LO *> column;             // (entries)  local
+  HostView<double *> value;          // (entries)
+};
+
+/// Only these rows leave the device. @param rows  local
+HostRows on_host(const CrsMatrix &A, const std::vector<LO> &rows)
+{
+  const auto matrix = A.getLocalMatrixDevice();
+  const auto row = device_values(rows, "rpc::solver::picked_rows");
+  const LO n = static_cast<LO>(rows.size());
+  const DeviceView<std::size_t *> first("rpc::solver::picked_first", n);
+  const DeviceView<LO *> length("rpc::solver::picked_length", n);
+  Kokkos::parallel_for(
+      "rpc::solver::picked_lengths", device_range(n), KOKKOS_LAMBDA(const LO i) {
+        first(i) = matrix.graph.row_map(row(i));
+        length(i) = static_cast<LO>(matrix.graph.row_map(row(i) + 1) - first(i));
+      });
+  Kokkos::fence();
+  HostRows picked;
+  const auto lengths = to_host(length);
+  for (LO i = 0; i < n; ++i) picked.begin.push_back(picked.begin.back() + lengths(i));
+  const auto begin = device_values(picked.begin, "rpc::solver::picked_begin");
+  const DeviceView<LO *> column("rpc::solver::picked_column", picked.begin.back());
+  const DeviceView<double *> value("rpc::solver::picked_value", picked.begin.back());
+  Kokkos::parallel_for(
+      "rpc::solver::pick_rows", device_range(n), KOKKOS_LAMBDA(const LO i) {
+        for (LO e = 0; e < length(i); ++e) {
+          column(begin(i) + e) = matrix.graph.entries(first(i) + e);
+          value(begin(i) + e) = matrix.values(first(i) + e);
+        }
+      });
+  Kokkos::fence();
+  picked.first = to_host(first);
+  picked.column = to_host(column);
+  picked.value = to_host(value);
+  return picked;
+}
 
 /// Some rows of an interpolation, from whatever rank owns them.
 struct Rows {
@@ -32,22 +75,19 @@ Rows rows_of(const CrsMatrix &P, const std::set<GO> &wanted)
 {
   const Comm &comm = *P.getComm();
   const Map &rows = *P.getRowMap(), &columns = *P.getColMap();
-  const auto begin = to_host(P.getLocalMatrixDevice().graph.row_map);
-  const auto entries = to_host(P.getLocalMatrixDevice().graph.entries);
-  const auto values = to_host(P.getLocalMatrixDevice().values);
   std::vector<GO> row, column;
-  std::vector<int> length;
-  std::vector<double> value;
+  std::vector<LO> lids;
   for (const GO gid : wanted) {
     const LO lid = rows.getLocalElement(gid);
     if (lid == invalid) continue;
     row.push_back(gid);
-    length.push_back(static_cast<int>(begin(lid + 1) - begin(lid)));
-    for (auto e = begin(lid); e < begin(lid + 1); ++e) {
-      column.push_back(columns.getGlobalElement(entries(e)));
-      value.push_back(values(e));
-    }
+    lids.push_back(lid);
   }
+  const HostRows mine = on_host(P, lids);
+  std::vector<int> length;
+  std::vector<double> value(mine.value.data(), mine.value.data() + mine.value.extent(0));
+  for (std::size_t i = 0; i < lids.size(); ++i) length.push_back(static_cast<int>(mine.begin[i + 1] - mine.begin[i]));
+  for (std::size_t e = 0; e < value.size(); ++e) column.push_back(columns.getGlobalElement(mine.column(e)));
   Rows all;
   all.column = gathered_by_all(comm, std::move(column));
   all.value = gathered_by_all(comm, std::move(value));
@@ -57,8 +97,12 @@ Rows rows_of(const CrsMatrix &P, const std::set<GO> &wanted)
   return all;
 }
 
-/// One pair of nodes with the points that couple them.
-using Parts = std::vector<std::pair<int, double>>;
+/// What a point adds to the block of a pair of nodes.
+struct Part {
+  LO row, column; // owned node; column's node
+  int point;
+  double coefficient;
+};
 
 /// values <- base + sum over parts of stiffness times coefficient m m^T.
 template <class Values>
@@ -159,64 +203,79 @@ CoarseContact::CoarseContact(const PointSupports &points, RCP<CrsMatrix> A, cons
     : dim_(points.dim), A_(std::move(A)), rows_(RepeatedRows::of(A_, dim_)), prescribed_(prescribed)
 {
   const Map &rows = *A_->getRowMap(), &columns = *A_->getColMap();
-  const auto matrix = A_->getLocalMatrixDevice();
-  const auto row_map = to_host(matrix.graph.row_map);
-  const auto entries = to_host(matrix.graph.entries);
-  const auto values = to_host(matrix.values);
-  const auto lid = [dim = dim_](const Map &map, const GO node) { return map.getLocalElement(dof(dim, node, 0)); };
-  // Where the block of a column's node begins in the first row of a node; the row's length if the nodes share no cell.
-  const auto place = [&](const LO row, const LO column) {
-    const std::size_t first = row_map(dof(dim_, row, 0)), last = row_map(dof(dim_, row, 0) + 1);
+  std::vector<LO> row_node, column_node; // (supports' entries) local nodes, -1: none here
+  const auto local_node = [dim = dim_](const Map &map, const GO node) {
+    const LO at = map.getLocalElement(dof(dim, node, 0));
+    return at == invalid ? -1 : node_of(dim, at);
+  };
+  for (const GO node : points.node) {
+    row_node.push_back(local_node(rows, node));
+    column_node.push_back(local_node(columns, node));
+  }
+  std::vector<LO> nodes; // owned ones around the points
+  std::copy_if(row_node.begin(), row_node.end(), std::back_inserter(nodes), [](const LO node) { return node >= 0; });
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  std::vector<LO> their_rows;
+  for (const LO node : nodes)
+    for (int k = 0; k < dim_; ++k) their_rows.push_back(dof(dim_, node, k));
+  const HostRows around = on_host(*A_, their_rows);
+  const auto number = [&](const LO node) { // of a node's first row
+    return dim_ * static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
+  };
+  // Where the block of a column's node begins in each row of a node; the row's length if the nodes share no cell.
+  const auto place = [&](const std::size_t row, const LO column) {
+    const std::size_t first = around.begin[row], last = around.begin[row + 1];
     std::size_t at = first;
-    while (at < last && entries(at) != dof(dim_, column, 0)) ++at;
+    while (at < last && around.column(at) != dof(dim_, column, 0)) ++at;
     return at - first;
   };
-  std::map<std::pair<LO, LO>, Parts> pairs; // of owned nodes and columns
+  std::vector<Part> parts;
   for (int p = 0; p < points.size(); ++p)
     for (std::size_t k = points.begin[p]; k < points.begin[p + 1]; ++k) {
-      const LO row_dof = lid(rows, points.node[k]);
-      if (row_dof == invalid) continue;
-      const LO row = node_of(dim_, row_dof);
-      const std::size_t length = row_map(row_dof + 1) - row_map(row_dof);
+      const LO row = row_node[k];
+      if (row < 0) continue;
+      const std::size_t first = number(row);
+      const std::size_t length = around.begin[first + 1] - around.begin[first];
       for (std::size_t l = points.begin[p]; l < points.begin[p + 1]; ++l) {
         const double both = points.weight[k] * points.weight[l];
-        const LO column_dof = lid(columns, points.node[l]);
-        const LO column = column_dof == invalid ? invalid : node_of(dim_, column_dof);
-        if (column != invalid && place(row, column) < length)
-          pairs[{row, column}].emplace_back(p, both);
+        const LO column = column_node[l];
+        if (column >= 0 && place(first, column) < length)
+          parts.push_back({row, column, p, both});
         else
-          pairs[{row, row}].emplace_back(p, std::abs(both)); // 2 a b <= a^2 + b^2
+          parts.push_back({row, row, p, std::abs(both)}); // 2 a b <= a^2 + b^2
       }
     }
-  const std::size_t n = pairs.size();
-  std::vector<LO> row, column, nodes;
-  std::vector<std::size_t> begin{0};
+  std::stable_sort(parts.begin(), parts.end(), [](const Part &a, const Part &b) {
+    return a.row < b.row || (a.row == b.row && a.column < b.column);
+  });
+  std::vector<LO> row, column;
+  std::vector<std::size_t> begin;
   std::vector<int> point;
   std::vector<double> coefficient;
+  for (const Part &part : parts) {
+    if (row.empty() || row.back() != part.row || column.back() != part.column) {
+      row.push_back(part.row);
+      column.push_back(part.column);
+      begin.push_back(point.size());
+    }
+    point.push_back(part.point);
+    coefficient.push_back(part.coefficient);
+  }
+  begin.push_back(point.size());
+  const std::size_t n = row.size();
   entry_ = DeviceView<std::size_t **>("rpc::solver::coarse_entry", n, dim_);
   base_ = DeviceView<double ***>("rpc::solver::coarse_base", n, dim_, dim_);
   const auto entry = Kokkos::create_mirror_view(entry_);
   const auto base = Kokkos::create_mirror_view(base_);
-  std::vector<std::size_t> own;
-  std::size_t b = 0;
-  for (const auto &[pair, parts] : pairs) {
-    const std::size_t at = place(pair.first, pair.second);
+  std::vector<std::size_t> own; // blocks on the diagonal
+  for (std::size_t b = 0; b < n; ++b) {
+    const std::size_t first = number(row[b]), at = place(first, column[b]);
     for (int i = 0; i < dim_; ++i) {
-      entry(b, i) = row_map(dof(dim_, pair.first, i)) + at;
-      for (int j = 0; j < dim_; ++j) base(b, i, j) = values(entry(b, i) + j);
+      entry(b, i) = around.first(first + i) + at;
+      for (int j = 0; j < dim_; ++j) base(b, i, j) = around.value(around.begin[first + i] + at + j);
     }
-    if (pair.first == pair.second) {
-      nodes.push_back(pair.first);
-      own.push_back(b);
-    }
-    row.push_back(pair.first);
-    column.push_back(pair.second);
-    for (const auto &[p, weight] : parts) {
-      point.push_back(p);
-      coefficient.push_back(weight);
-    }
-    begin.push_back(point.size());
-    ++b;
+    if (row[b] == column[b]) own.push_back(b);
   }
   own_entry_ = DeviceView<std::size_t **>("rpc::solver::coarse_own_entry", nodes.size(), dim_);
   const auto own_entry = Kokkos::create_mirror_view(own_entry_);
