@@ -31,8 +31,10 @@ namespace
 constexpr int patience = 150;
 constexpr GO most_direct_rows = 100000;
 
-// Rows up to which multigrid is nearly a factorization, and made anew whenever contact changes.
+// Rows up to which a preconditioner is made anew whenever contact changes: a factor, where it takes no more multiplications than this,
+// and else multigrid that is nearly one.
 constexpr GO most_rows_set_up_anew = 2500;
+constexpr double most_work_of_factor = 1e7;
 // Multigrid is made for closed nodes of at most so many times their own stiffness: with all of the penalty, coarse functions
 // could not move near them, and CG would take a third more iterations. The rest is left to the correction.   (4.9)
 constexpr double most_stiffness = 5;
@@ -79,7 +81,17 @@ public:
       correction->apply(*multigrid, *x.getVector(k), *y.getVectorNonConst(k));
   }
 
+  /// Whether there is one that needs no coarser meshes.
+  bool is_made() const { return direct || !multigrid.is_null(); }
+  /// To be made anew from nothing.
+  void forget()
+  {
+    direct.reset();
+    multigrid = Teuchos::null;
+  }
+
   RCP<MeshMultigrid> on_meshes;              ///< null: not used, or to be made
+  std::unique_ptr<CoarsestSolver> direct;    ///< of few unknowns; null: not used, or to be made anew
   RCP<Multigrid> multigrid;                  ///< algebraic; null: not used, or to be made anew
   std::optional<LocalCorrection> correction; // of the algebraic one
   double enough = 0; // CG stops at residuals of this norm, which need no preconditioner; 0: not known
@@ -87,10 +99,9 @@ public:
 private:
   void plain(const MultiVector &x, MultiVector &y) const
   {
-    if (on_meshes.is_null())
-      multigrid->apply(x, y);
-    else
-      on_meshes->apply(x, y);
+    if (!on_meshes.is_null()) return on_meshes->apply(x, y);
+    if (!direct) return multigrid->apply(x, y);
+    for (std::size_t k = 0; k < x.getNumVectors(); ++k) direct->apply(*x.getVector(k), *y.getVectorNonConst(k));
   }
 
   RCP<const Map> map_;
@@ -132,19 +143,24 @@ Teuchos::ParameterList muelu_defaults(const Map &dofs, const int dofs_per_node)
   return list;
 }
 
-/// MueLu's hierarchy for the order-1 matrix of a mesh that has no coarser one.
+/// MueLu's hierarchy for the order-1 matrix of a mesh that has no coarser one. It is renewed where much of contact has changed.
 class AlgebraicSolver : public CoarsestSolver
 {
 public:
   AlgebraicSolver(const MeshLevel &level, const Teuchos::ParameterList &list)
-      : A_(level.stiffness), list_(list), residual_(rcp(new Vector(A_->getDomainMap()))),
-        correction_(rcp(new Vector(A_->getDomainMap())))
+      : now_(level.stiffness), A_(rcp(new CrsMatrix(*level.stiffness, Teuchos::Copy))), list_(list),
+        residual_(rcp(new Vector(A_->getDomainMap()))), correction_(rcp(new Vector(A_->getDomainMap())))
   {
     list_.sublist("user data").set("Coordinates", level.coordinates);
     list_.sublist("user data").set("Nullspace", level.null_space);
     multigrid_ = make_multigrid(A_, list_);
   }
-  void update() override { renew_multigrid(A_, *multigrid_); }
+  void update() override
+  {
+    Kokkos::deep_copy(A_->getLocalMatrixDevice().values, now_->getLocalMatrixDevice().values);
+    renew_multigrid(A_, *multigrid_);
+  }
+  double most_change() const override { return small_change; }
   /// Two cycles: the matrix is small beside that of order 2, and one cycle costs it a third more CG iterations.
   void apply(const Vector &b, Vector &x) const override
   {
@@ -156,7 +172,11 @@ public:
   }
 
 private:
-  RCP<CrsMatrix> A_;
+  // By measurement: a renewal costs two CG iterations, and smaller changes as many in a whole step.
+  static constexpr double small_change = 0.1;
+
+  RCP<const CrsMatrix> now_; // follows the states
+  RCP<CrsMatrix> A_;         // what the hierarchy was made for
   Teuchos::ParameterList list_;
   RCP<Multigrid> multigrid_;
   RCP<Vector> residual_, correction_;
@@ -191,6 +211,7 @@ struct LinearSolver::Impl {
   RCP<MultiVector> coordinates, null_space;
   Teuchos::ParameterList muelu;
   MakeMeshLevels make_levels; // null: the hierarchy is algebraic
+  bool few = false;           // unknowns: the preconditioner is made anew for each state
   bool singular = false;      // a matrix was met that neither hierarchy can solve for
   RCP<Preconditioner> preconditioner;
   int revision = -1;               // of H, that the preconditioner fits
@@ -266,8 +287,9 @@ LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperato
   impl_->muelu.setParameters(options_.muelu);
   impl_->coordinates = coordinates;
   impl_->null_space = null_space;
-  const bool small = static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew;
-  const bool automatic = !small && options_.muelu.numParams() == 0;
+  const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
+  impl_->few = unknowns <= most_rows_set_up_anew;
+  const bool automatic = unknowns > few_unknowns(H->dofs_per_node()) && options_.muelu.numParams() == 0;
   if (options_.multigrid == "mesh" || (options_.multigrid == "auto" && automatic))
     impl_->make_levels = std::move(levels);
 
@@ -296,11 +318,12 @@ void LinearSolver::set_up()
   const RCP<CrsMatrix> &A = impl_->H->matrix();
   auto &correction = impl_->preconditioner->correction;
   correction.reset();
-  if (static_cast<GO>(A->getGlobalNumRows()) > most_rows_set_up_anew) {
+  if (!impl_->few) {
     impl_->H->write(most_stiffness);
     correction = LocalCorrection::around(*impl_->H);
   }
   if (!correction) impl_->H->write();
+  if (factor(A)) return;
   impl_->renewed = !multigrid.is_null() && impl_->muelu.get<std::string>("reuse: type") != "none" && renew(A);
   if (!impl_->renewed) {
     Teuchos::ParameterList list = impl_->muelu;
@@ -314,9 +337,27 @@ void LinearSolver::set_up()
       throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
     }
   }
+  made_anew();
+}
+
+void LinearSolver::made_anew()
+{
   impl_->worn = false;
   impl_->fresh = true;
   ++counts_.preconditioner_setups;
+}
+
+/// Few unknowns are factored, unless the deck says how to solve for them.
+/// @return whether that could be done
+bool LinearSolver::factor(const RCP<CrsMatrix> &A)
+{
+  auto &direct = impl_->preconditioner->direct;
+  direct.reset();
+  const bool asked_otherwise = options_.multigrid != "auto" || options_.muelu.numParams() > 0;
+  if (!impl_->few || asked_otherwise || impl_->strengthened) return false;
+  direct = direct_solver(A, most_work_of_factor);
+  if (direct) made_anew();
+  return direct != nullptr;
 }
 
 /// @return whether the old hierarchy could be used again; MueLu leaves it half-cleared where it fails
@@ -348,7 +389,12 @@ void LinearSolver::prepare_on_meshes()
     impl_->H->allow_rounding(true);
     multigrid =
         rcp(new MeshMultigrid(impl_->H, levels, [&](const MeshLevel &coarsest) -> std::unique_ptr<CoarsestSolver> {
-          if (levels.down_to_few) return direct_solver(coarsest.stiffness);
+          if (levels.down_to_few) {
+            auto direct = direct_solver(coarsest.stiffness);
+            if (!direct)
+              throw std::runtime_error("multigrid: the matrix of the coarsest mesh is not positive definite");
+            return direct;
+          }
           Teuchos::ParameterList list = muelu_defaults(*coarsest.stiffness->getDomainMap(), impl_->H->dofs_per_node());
           list.set("reuse: type", options_.reuse == "none" ? "tP" : options_.reuse);
           list.setParameters(options_.muelu);
@@ -367,14 +413,13 @@ void LinearSolver::prepare()
 {
   if (impl_->make_levels) return prepare_on_meshes();
   const int revision = impl_->H->revision();
-  if (!impl_->preconditioner->multigrid.is_null() && revision == impl_->revision) return;
+  const bool exists = impl_->preconditioner->is_made();
+  if (exists && revision == impl_->revision) return;
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
   const double start = Teuchos::Time::wallTime();
   auto &correction = impl_->preconditioner->correction;
-  const bool exists = !impl_->preconditioner->multigrid.is_null();
-  const bool tiny = static_cast<GO>(impl_->H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew;
   bool fits = false;
-  if (exists && !impl_->worn && !tiny) {
+  if (exists && !impl_->worn && !impl_->few) {
     correction = LocalCorrection::around(*impl_->H);
     counts_.local_corrections += correction.has_value();
     fits = correction || sum_all(*impl_->H->getDomainMap()->getComm(), GO(impl_->H->changes().size())) == 0;
@@ -432,7 +477,7 @@ bool LinearSolver::strengthen()
     smoother.set("chebyshev: degree", 8);
     smoother.set("chebyshev: ratio eigenvalue", 50.);
   }
-  impl_->preconditioner->multigrid = Teuchos::null;
+  impl_->preconditioner->forget();
   return true;
 }
 
@@ -469,7 +514,7 @@ LinearSolver::Result LinearSolver::solve_by_meshes(const Vector &b, Vector &x, c
   const Result other = solve_algebraically(b, x, tolerance);
   if (other.broken && !other.interrupted) { // it is not the hierarchy: an active set leaves the body unheld
     impl_->singular = true;
-    impl_->preconditioner->multigrid = Teuchos::null;
+    impl_->preconditioner->forget();
     impl_->preconditioner->correction.reset();
     impl_->make_levels = levels;
     impl_->revision = -1;
@@ -486,7 +531,7 @@ LinearSolver::Result LinearSolver::solve_algebraically(const Vector &b, Vector &
   const auto good = [&result] { return result.interrupted || (result.converged && result.iterations <= patience); };
   if (good()) return result;
   if (!impl_->fresh || impl_->renewed) { // a hierarchy for these states, from scratch, before anything else is blamed
-    impl_->preconditioner->multigrid = Teuchos::null;
+    impl_->preconditioner->forget();
     if (result.converged) return result;
     result = try_to_solve(b, x, tolerance);
     if (good()) return result;

@@ -52,9 +52,10 @@ private:
 class DirectSolver : public CoarsestSolver
 {
 public:
-  explicit DirectSolver(RCP<const CrsMatrix> A) : A_(std::move(A)) { update(); }
+  explicit DirectSolver(RCP<const CrsMatrix> A) : A_(std::move(A)) {}
 
-  void update() override
+  /// @return whether there is a factor; collective
+  bool factor(const double most_work)
   {
     const Comm &comm = *A_->getComm();
     const Map &rows = *A_->getRowMap(), &columns = *A_->getColMap();
@@ -75,9 +76,13 @@ public:
     const SymmetricEntries all{gathered_by_all(comm, std::move(mine.row)),
                                gathered_by_all(comm, std::move(mine.column)),
                                gathered_by_all(comm, std::move(mine.value))};
-    factor_ = BandCholesky::factor(static_cast<int>(rows.getGlobalNumElements()), all,
-                                   std::numeric_limits<double>::infinity());
-    if (!factor_) throw std::runtime_error("multigrid: the matrix of the coarsest mesh is not positive definite");
+    factor_ = BandCholesky::factor(static_cast<int>(rows.getGlobalNumElements()), all, most_work);
+    return factor_.has_value();
+  }
+  void update() override
+  {
+    if (!factor(std::numeric_limits<double>::infinity()))
+      throw std::runtime_error("multigrid: the matrix of the coarsest mesh is not positive definite");
   }
 
   void apply(const Vector &b, Vector &x) const override
@@ -111,6 +116,22 @@ DeviceView<double *> stiffness_of_all(const UpdatedOperator &H)
     mine.push_back(added(i) > 0 ? std::min(added(i), most_on_coarse_meshes * own(i)) * weight(i) : 0);
   return device_values(gathered_by_all(*H.getDomainMap()->getComm(), std::move(mine)),
                        "rpc::solver::contact_stiffness");
+}
+
+/// Sum of the changes over the larger one of the sums, in [0, 2].
+double changed_part(const DeviceView<double *> &before, const DeviceView<double *> &now)
+{
+  double change = 0, sum_before = 0, sum_now = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::changed_part", device_range(static_cast<LO>(now.extent(0))),
+      KOKKOS_LAMBDA(const LO i, double &difference, double &old, double &present) {
+        difference += now(i) > before(i) ? now(i) - before(i) : before(i) - now(i);
+        old += before(i);
+        present += now(i);
+      },
+      change, sum_before, sum_now);
+  const double whole = std::max(sum_before, sum_now);
+  return whole > 0 ? change / whole : 0;
 }
 
 /// v <- T v or T^T v at the points' nodes, T = H_ii^-1 K_ii with the own blocks of both: the move that is left of v where contact
@@ -172,9 +193,10 @@ void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView
 
 } // namespace
 
-std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A)
+std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, const double most_work)
 {
-  return std::make_unique<DirectSolver>(std::move(A));
+  auto solver = std::make_unique<DirectSolver>(std::move(A));
+  return solver->factor(most_work) ? std::move(solver) : nullptr;
 }
 
 /// A mesh with what leads from it to the next coarser one.
@@ -225,13 +247,14 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     levels_[l]->smoother = std::make_unique<NodeSmoother>(levels_[l]->A, block, std::max(largest, largest_of_contact),
                                                           l == 0 && levels.order == 2 ? order_two : order_one);
   }
-  write_contact();
+  contact_of_coarsest_ = write_contact();
   coarsest_ = make_coarsest(levels.level.back());
 }
 
 MeshMultigrid::~MeshMultigrid() = default;
 
-void MeshMultigrid::write_contact()
+/// @return (points of all ranks) what contact adds on coarse meshes
+DeviceView<double *> MeshMultigrid::write_contact()
 {
   const auto stiffness = stiffness_of_all(*H_);
   for (const auto &level : levels_) level->coarse->write(stiffness);
@@ -240,11 +263,14 @@ void MeshMultigrid::write_contact()
     const CoarseContact &contact = *levels_[l - 1]->coarse;
     levels_[l]->smoother->set_blocks(contact.nodes(), contact.blocks());
   }
+  return stiffness;
 }
 
 void MeshMultigrid::update()
 {
-  write_contact();
+  const auto stiffness = write_contact();
+  if (!(changed_part(contact_of_coarsest_, stiffness) > coarsest_->most_change())) return;
+  contact_of_coarsest_ = stiffness;
   coarsest_->update();
 }
 

@@ -45,7 +45,7 @@ struct LinearSolverCounts {
 /// set up for contact nodes that are at most a little stiffer than the body. Exact solves around them bring in the rest of their
 /// stiffness and follow changes of the contact states, doc/theory.md (4.8), (4.9). It is set up again, reusing what `reuse` allows,
 /// when these get too large or CG says so, and from scratch where a solve fails. Where multigrid on meshes fails, the algebraic one
-/// takes over.
+/// takes over. Of few unknowns the matrix is factored.
 class LinearSolver
 {
 public:
@@ -78,6 +78,8 @@ private:
   void prepare();
   void prepare_on_meshes();
   void set_up();
+  void made_anew();
+  bool factor(const RCP<CrsMatrix> &A);
   bool renew(const RCP<CrsMatrix> &A);
   double excess(double digits) const;
   void set_up_if_worn(double tolerance);

@@ -8,13 +8,19 @@
 namespace rpc::solver
 {
 
+/// Unknowns whose factor takes next to no time, though each change of contact states asks for one: boxes are halved down to so many.
+inline GO few_unknowns(const int dim)
+{
+  return dim == 2 ? 800 : 400;
+}
+
 /// A coarser mesh of the same body, for multigrid.
 struct MeshLevel {
-  RCP<CrsMatrix> stiffness;      ///< K of this mesh, prescribed unknowns eliminated; multigrid adds contact to it
-  RCP<CrsMatrix> interpolation;  ///< (owned nodes of the next finer mesh x owned nodes of this one)
-  DeviceView<char *> prescribed; ///< (columns of `stiffness`) 1 where the displacement is prescribed
-  RCP<MultiVector> coordinates;  ///< (owned nodes; dim) [m]
-  RCP<MultiVector> null_space;   ///< (owned dofs; rigid body modes)
+  RCP<CrsMatrix> stiffness;           ///< K of this mesh, prescribed unknowns eliminated; multigrid adds contact to it
+  RCP<const CrsMatrix> interpolation; ///< (owned nodes of the next finer mesh x owned nodes of this one)
+  DeviceView<char *> prescribed;      ///< (columns of `stiffness`) 1 where the displacement is prescribed
+  RCP<MultiVector> coordinates;       ///< (owned nodes; dim) [m]
+  RCP<MultiVector> null_space;        ///< (owned dofs; rigid body modes)
 };
 
 /// From the finest of them to the coarsest one; nodes have consecutive gids from 0, a node's unknowns follow each other.

@@ -4,6 +4,7 @@
 #include "rpc/solver/mesh_levels.hpp"
 
 #include <functional>
+#include <limits>
 #include <memory>
 
 namespace rpc::solver
@@ -16,12 +17,17 @@ public:
   virtual ~CoarsestSolver() = default;
   /// The matrix has changed; collective. @throws std::runtime_error on all ranks if it is not positive definite
   virtual void update() = 0;
+  /// What part of the contact stiffness may change before update() is called: until then the solver is that of earlier states.
+  virtual double most_change() const { return 0; }
   /// x <- about A^-1 b, by a symmetric positive definite operator; collective.
   virtual void apply(const Vector &b, Vector &x) const = 0;
 };
 
-/// By a factor of the whole matrix on each rank.
-std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A);
+/// By a factor of the whole matrix on each rank; collective.
+/// @param most_work  refuses what takes more multiplications
+/// @return null where it would take more, or the matrix is not positive definite
+std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A,
+                                              double most_work = std::numeric_limits<double>::infinity());
 
 /// One V cycle of multigrid on given meshes, for H = K + contact. The interpolation between meshes does not depend on the contact
 /// states. It brings contact to each coarse matrix in place, and coarse functions are truncated at the contact points of the finest
@@ -48,7 +54,7 @@ public:
 
 private:
   struct Level;
-  void write_contact();
+  DeviceView<double *> write_contact();
   void cycle(std::size_t level, const Vector &b, Vector &x) const;
 
   RCP<const UpdatedOperator> H_;
@@ -56,6 +62,7 @@ private:
   DeviceView<double ***> contact_base_;        // (points, dim, dim) K's own blocks there
   std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
   std::unique_ptr<CoarsestSolver> coarsest_;
+  DeviceView<double *> contact_of_coarsest_; // (points of all ranks) stiffness that it is made for
 };
 
 } // namespace rpc::solver
