@@ -26,10 +26,12 @@ std::shared_ptr<const analysis::Problem> make_problem(const Task &task, std::sha
   return std::make_shared<analysis::Problem>(std::move(mesh), task.model, task.linear_solver, task.time);
 }
 
-/// The scene on coarser and coarser meshes.
+/// The scene on coarser and coarser meshes: those that multigrid needs too where they are boxes, else made by the options.
 analysis::CoarserProblem coarser_meshes(Task task, const mesh::MeshOptions &options, const RCP<const Comm> &comm)
 {
-  return [task = std::move(task), options, comm](const int level) -> std::shared_ptr<const analysis::Problem> {
+  return [task = std::move(task), options, comm](const analysis::Problem &finer,
+                                                 const int level) -> std::shared_ptr<const analysis::Problem> {
+    if (const auto nested = finer.coarser(task.step.prediction.coarsening, task.time)) return nested;
     std::optional<mesh::MeshOptions> coarse = options;
     for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, task.step.prediction.coarsening);
     PhaseSeconds seconds;

@@ -499,11 +499,11 @@ std::optional<contact::ContactState> LoadHistory::predicted(const Step &step, st
   const double start = Teuchos::Time::wallTime();
   try {
     if (!on_coarser_mesh_) {
-      const auto problem = coarser_(1);
+      const auto problem = coarser_(*problem_, 1);
       if (!problem) return std::nullopt;
       StepOptions rough = options_;
       rough.newton.residual_tolerance = rough.uzawa.tolerance = options_.prediction.tolerance;
-      const auto coarser = [next = coarser_](const int level) { return next(level + 1); };
+      const auto coarser = [next = coarser_](const Problem &finer, const int level) { return next(finer, level + 1); };
       on_coarser_mesh_.reset(new Coarser{LoadHistory(problem, rough, 0, coarser),
                                          fem::interpolation(fine, problem->discretization()),
                                          fem::interpolation(problem->discretization(), fine)});

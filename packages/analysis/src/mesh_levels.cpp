@@ -1,11 +1,5 @@
 #include "rpc/analysis/mesh_levels.hpp"
 
-#include "rpc/core/error.hpp"
-#include "rpc/fem/interpolation.hpp"
-#include "rpc/fem/order_one.hpp"
-#include "rpc/mesh/box.hpp"
-
-#include <optional>
 #include <utility>
 
 namespace rpc::analysis
@@ -13,8 +7,6 @@ namespace rpc::analysis
 namespace
 {
 
-// Unknowns that boxes are halved down to: a factor of theirs takes no time, though each change of states asks for one.
-constexpr GO few_2d = 700, few_3d = 400;
 // Unknowns of a coarsest mesh that is still factored, where there is no coarser one.
 constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
 
@@ -41,59 +33,38 @@ DeviceView<char *> at_vertices(const DeviceView<char *> &prescribed, const Devic
 }
 
 solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, const fem::DirichletDofs &dirichlet,
-                           RCP<CrsMatrix> interpolation)
+                           RCP<const CrsMatrix> interpolation)
 {
   auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), dirichlet).matrix;
   return {std::move(K), std::move(interpolation), dirichlet.fixed, fem::node_coordinates(d), fem::rigid_body_modes(d)};
 }
 
-/// The box with half as many cells; none where it would be too small for the ranks.
-std::optional<fem::Discretization> halved(const mesh::Mesh &mesh, const Model &model)
-{
-  if (!mesh.box) return std::nullopt;
-  const auto options = mesh::halved(*mesh.box);
-  if (!options) return std::nullopt;
-  try {
-    return fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(*options, mesh.owned_nodes->getComm())),
-                           model.kinematics);
-  } catch (const Error &) { // too few cells, on all ranks
-    return std::nullopt;
-  }
-}
-
 } // namespace
 
-bool has_mesh_levels(const mesh::Mesh &mesh)
-{
-  return mesh.element.order == 2 || (mesh.box && mesh::halved(*mesh.box));
-}
-
-solver::MeshLevels mesh_levels(const fem::Discretization &finest, const Model &model,
-                               const DeviceView<char *> &prescribed)
+solver::MeshLevels mesh_levels(NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed)
 {
   solver::MeshLevels levels;
   levels.prescribed = prescribed;
-  levels.order = finest.mesh->element.order;
-  fem::Discretization d = finest;
+  const int dim = finest.discretization().dim();
+  levels.order = finest.discretization().mesh->element.order;
   const auto held = held_sides(model.dirichlet);
-  if (d.mesh->element.order == 2) {
-    const fem::OrderOne lower = fem::order_one(d);
-    const int dim = d.dim();
-    d = fem::discretize(lower.mesh, model.kinematics);
-    fem::DirichletDofs dirichlet;
-    dirichlet.fixed = at_vertices(prescribed, lower.node, dim);
-    levels.level.push_back(level_on(d, model, dirichlet, lower.interpolation));
-  }
-  const GO few = d.dim() == 2 ? few_2d : few_3d;
-  const auto num_unknowns = [&d] { return static_cast<GO>(d.owned_dofs->getGlobalNumElements()); };
-  while (levels.level.empty() || num_unknowns() > few) {
-    auto coarse = halved(*d.mesh, model);
+  const auto num_unknowns = [](const NestedMesh &mesh) {
+    return static_cast<GO>(mesh.discretization().owned_dofs->getGlobalNumElements());
+  };
+  NestedMesh *mesh = &finest;
+  while (levels.level.empty() || num_unknowns(*mesh) > solver::few_unknowns(dim)) {
+    NestedMesh *const coarse = mesh->coarser().get();
     if (!coarse) break;
-    auto interpolation = fem::interpolation(*coarse, d);
-    d = std::move(*coarse);
-    levels.level.push_back(level_on(d, model, fem::dirichlet_dofs(d, held), std::move(interpolation)));
+    mesh = coarse;
+    const fem::Discretization &d = mesh->discretization();
+    fem::DirichletDofs dirichlet;
+    if (mesh->node_of_finer().extent(0) > 0)
+      dirichlet.fixed = at_vertices(prescribed, mesh->node_of_finer(), dim);
+    else
+      dirichlet = fem::dirichlet_dofs(d, held);
+    levels.level.push_back(level_on(d, model, dirichlet, mesh->to_finer()));
   }
-  levels.down_to_few = num_unknowns() <= (d.dim() == 2 ? most_factored_2d : most_factored_3d);
+  levels.down_to_few = num_unknowns(*mesh) <= (dim == 2 ? most_factored_2d : most_factored_3d);
   return levels;
 }
 

@@ -44,7 +44,9 @@ Teuchos::ParameterList valid_prediction_parameters()
             "Whether a solution on a coarser mesh, itself predicted by one on a still coarser mesh, is the start: for "
             "boxes and "
             ".geo files of 500 nodes and more.");
-  valid.set("Coarsening", 4., "Ratio of cell lengths from one mesh to the next, in [1.5, 100].");
+  valid.set("Coarsening", 4.,
+            "Ratio of cell lengths from one mesh to the next, in [1.5, 100]. Boxes are halved until about so few nodes "
+            "are left.");
   valid.set("Tolerance", 1e-4, "Bound on |F|_2/|load|_2 on the coarser meshes, in (0, 1).");
   return valid;
 }

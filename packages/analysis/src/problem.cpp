@@ -3,6 +3,7 @@
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/core/finite.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace rpc::analysis
@@ -69,10 +70,15 @@ Model Model::seen_at(const double t) const
 
 Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
                  const double t)
-    : model_(model.seen_at(t)), linear_options_(linear),
-      discretization_(fem::discretize(std::move(mesh), model_.kinematics))
+    : Problem(std::make_shared<NestedMesh>(fem::discretize(std::move(mesh), model.kinematics)), model, linear, t)
 {
-  const fem::Discretization &d = discretization_;
+}
+
+Problem::Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
+                 const double t)
+    : model_(model.seen_at(t)), linear_options_(linear), mesh_(std::move(mesh))
+{
+  const fem::Discretization &d = discretization();
   const auto dirichlet = prescribed_of(d, model_);
   free_parts_ = contact::free_parts(d, dirichlet);
   const auto assembled = [d, materials = model_.materials, dirichlet] {
@@ -90,15 +96,20 @@ Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, con
                                                  points))
                        : rcp(new UpdatedOperator(K.matrix, points));
   solver::MakeMeshLevels levels;
-  if (has_mesh_levels(*d.mesh))
-    levels = [d, model = model_, prescribed = dirichlet.fixed] { return mesh_levels(d, model, prescribed); };
+  if (mesh_->may_have_coarser())
+    levels = [finest = mesh_, model = model_, prescribed = dirichlet.fixed] {
+      const auto made = mesh_levels(*finest, model, prescribed);
+      if (finest->is_finest())
+        finest->forget_coarser(); // prediction has been before, and multigrid needs no more of them
+      return made;
+    };
   linear_ = std::make_shared<solver::LinearSolver>(tuned(linear, d.mesh->element), operator_, fem::node_coordinates(d),
                                                    fem::rigid_body_modes(d), std::move(levels));
 }
 
 Step Problem::step(const double t, const MultiVector *const dents) const
 {
-  const fem::Discretization &d = discretization_;
+  const fem::Discretization &d = discretization();
   const Model now = model_.seen_at(t);
   auto dirichlet = prescribed_of(d, now);
   Step step{t, {}, contact::contact_nodes(d, now.contact, dirichlet, now.materials, dents), {}};
@@ -122,17 +133,31 @@ bool Problem::serves(const Step &step) const
           count += same ? 0 : 1;
         },
         differences);
-  return max_all(discretization_.mesh->comm(), differences) == 0;
+  return max_all(discretization().mesh->comm(), differences) == 0;
 }
 
 std::shared_ptr<const Problem> Problem::remade(const double t) const
 {
-  return std::make_shared<Problem>(discretization_.mesh, model_, linear_options_, t);
+  return std::make_shared<Problem>(mesh_, model_, linear_options_, t);
+}
+
+std::shared_ptr<const Problem> Problem::coarser(const double factor, const double t) const
+{
+  if (!discretization().mesh->box) return nullptr;
+  constexpr double about = 2; // few cells in a direction have relatively many nodes
+  const auto nodes = [](const NestedMesh &mesh) {
+    return static_cast<double>(mesh.discretization().mesh->owned_nodes->getGlobalNumElements());
+  };
+  const double most = about * nodes(*mesh_) / std::pow(factor, discretization().dim());
+  auto mesh = mesh_;
+  do mesh = mesh->coarser();
+  while (mesh && (nodes(*mesh) > most || mesh->node_of_finer().extent(0) > 0)); // such a mesh has no sides
+  return mesh ? std::make_shared<Problem>(mesh, model_, linear_options_, t) : nullptr;
 }
 
 std::vector<const mesh::Side *> Problem::contact_sides() const
 {
-  return contact::contact_sides(*discretization_.mesh, model_.contact);
+  return contact::contact_sides(*discretization().mesh, model_.contact);
 }
 
 } // namespace rpc::analysis

@@ -6,7 +6,6 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
-#include "rpc/fem/interpolation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -193,7 +192,7 @@ std::string predict(Iterate &iterate, const double t, const StepOptions &options
   if (!reason.empty()) return reason;
   try {
     const double start = Teuchos::Time::wallTime();
-    const auto problem = coarser ? coarser(level) : nullptr;
+    const auto problem = coarser ? coarser(iterate.problem, level) : nullptr;
     if (!problem) return "a mesh from a file cannot be made coarser";
     Iterate coarse(*problem, problem->step(t));
     predict(coarse, t, options, coarser, level + 1, work);
@@ -202,12 +201,12 @@ std::string predict(Iterate &iterate, const double t, const StepOptions &options
     rough.newton.max_iterations = std::min(options.newton.max_iterations, most_steps_predicting);
     const Minimization found = minimize(coarse, rough, 1, [](const solver::NewtonStep &, const Vector &) {});
     if (!found.active_set_confirmed) coarse.functional->update_multipliers(*coarse.u);
-    const auto interpolation = fem::interpolation(coarse.discretization(), iterate.discretization());
+    const auto way = interpolation(problem->mesh(), iterate.problem.mesh());
     const contact::ContactNodes &points = coarse.functional->contact();
     const auto state = contact::with_weightless(coarse.functional->current(coarse.functional->displacement(*coarse.u)),
                                                 points, coarse.discretization(), problem->contact_sides());
-    const auto predicted = contact::interpolated(*interpolation, points, state, iterate.functional->contact(),
-                                                 iterate.discretization().owned_dofs);
+    const auto predicted =
+        contact::interpolated(*way, points, state, iterate.functional->contact(), iterate.discretization().owned_dofs);
     iterate.functional->start_from(predicted, *iterate.u);
     const auto &counts = coarse.linear().counts();
     work.push_back({coarse.discretization().owned_dofs->getGlobalNumElements(), found.steps, counts.iterations,

@@ -5,6 +5,7 @@
 #include "rpc/solver/linear_solver.hpp"
 
 #include <Tpetra_Core.hpp>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -52,7 +53,11 @@ struct Block {
     auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), dirichlet).matrix;
     H = rcp(new UpdatedOperator(K, contact::contact_nodes(d, model.contact, dirichlet, model.materials)));
   }
-  MeshLevels levels() const { return analysis::mesh_levels(d, model, dirichlet.fixed); }
+  MeshLevels levels() const
+  {
+    analysis::NestedMesh finest(d);
+    return analysis::mesh_levels(finest, model, dirichlet.fixed);
+  }
 
   /// Contact nodes for which `is_closed` holds at their x are closed: 1e5 times as stiff as they are.
   void close(const std::function<bool(double)> &is_closed) const
@@ -225,6 +230,49 @@ TEST(MeshMultigrid, EndsAlgebraicallyWhereThereIsNoCoarserMesh)
   }
 }
 
+/// A solver for the coarsest mesh that counts how often it is made to follow the states.
+class Counting : public solver::CoarsestSolver
+{
+public:
+  Counting(std::unique_ptr<CoarsestSolver> solver, int &updates) : solver_(std::move(solver)), updates_(updates) {}
+  void update() override
+  {
+    ++updates_;
+    solver_->update();
+  }
+  double most_change() const override { return 0.1; }
+  void apply(const Vector &b, Vector &x) const override { solver_->apply(b, x); }
+
+private:
+  std::unique_ptr<CoarsestSolver> solver_;
+  int &updates_;
+};
+
+/// Small changes add up until the coarsest solver follows.
+TEST(MeshMultigrid, RenewsWhatIsDearWhereMuchHasChanged)
+{
+  const Block block({2, 1}, {67, 35});
+  const auto close_up_to = [&](const double x) { block.close([x](const double at) { return at < x; }); };
+  close_up_to(1);
+  int updates = 0;
+  MeshMultigrid B(block.H, block.levels(),
+                  [&](const solver::MeshLevel &level) { return std::make_unique<Counting>(directly(level), updates); });
+  B.update();
+  EXPECT_EQ(updates, 0); // nothing has changed
+  close_up_to(1.06);
+  B.update();
+  EXPECT_EQ(updates, 0);
+  close_up_to(1.2); // a sixth more than it was made for
+  B.update();
+  EXPECT_EQ(updates, 1);
+  close_up_to(1.14);
+  B.update();
+  EXPECT_EQ(updates, 1);
+  close_up_to(0);
+  B.update();
+  EXPECT_EQ(updates, 2);
+}
+
 /// Coarse matrices that are not positive definite: the algebraic hierarchy takes over, and the counts say why.
 TEST(MeshMultigrid, GivesWayToTheAlgebraicOneWhereItFails)
 {
@@ -285,6 +333,47 @@ TEST(LinearSolver, GoesOnFromTheResidualWhereRoundingEndsCG)
       EXPECT_LT(std::sqrt(solver.inverse_energy(residual) / solver.inverse_energy(b)), 1e-4);
     }
   }
+}
+
+/// Few unknowns are factored for each choice of states, unless the deck says otherwise.
+TEST(LinearSolver, FactorsFewUnknowns)
+{
+  const Block block({2, 1}, {20, 10});
+  const Vector b = block.vector(12);
+  Vector x(b.getMap());
+  const auto iterations = [&](const std::function<void(LinearSolverOptions &)> &set) {
+    LinearSolverOptions options;
+    set(options);
+    LinearSolver solver(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d));
+    int most = 0;
+    for (const double end : {0., 0.7, 1.3}) {
+      block.close([end](const double at) { return at < end; });
+      const auto result = solver.solve(b, x, 1e-6);
+      EXPECT_TRUE(result.converged) << result.reason;
+      most = std::max(most, result.iterations);
+    }
+    EXPECT_EQ(solver.counts().preconditioner_setups, 3);
+    return most;
+  };
+  EXPECT_EQ(iterations([](LinearSolverOptions &) {}), 1);
+  const auto small_levels = [](LinearSolverOptions &options) { options.muelu.set("coarse: max size", 20); };
+  EXPECT_GT(iterations(small_levels), 1);
+}
+
+/// Where nothing holds the body there is no factor; that is a result, not an exception.
+TEST(LinearSolver, TellsWhereFewUnknownsHaveNoFactor)
+{
+  const Block block({2, 1}, {20, 10});
+  const auto K = fem::assemble_stiffness(block.d, block.model.materials); // nothing is prescribed
+  K->resumeFill();
+  K->scale(-1.);
+  K->fillComplete();
+  const auto H = rcp(new UpdatedOperator(
+      K, contact::contact_nodes(block.d, block.model.contact, block.dirichlet, block.model.materials)));
+  LinearSolver solver({}, H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d));
+  const Vector b = block.vector(13);
+  Vector x(b.getMap());
+  EXPECT_FALSE(solver.solve(b, x, 1e-6).converged);
 }
 
 TEST(LinearSolver, TakesMeshesUnlessMueLuIsGiven)

@@ -21,7 +21,7 @@ ContactState with_weightless(ContactState state, const ContactNodes &c, const fe
   return state;
 }
 
-ContactState interpolated(const CrsMatrix &interpolation, const ContactNodes &coarse, const ContactState &state,
+ContactState interpolated(const Operator &interpolation, const ContactNodes &coarse, const ContactState &state,
                           const ContactNodes &fine, const RCP<const Map> &fine_dofs)
 {
   const int sides = fine.num_sides();

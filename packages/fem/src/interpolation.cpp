@@ -458,8 +458,7 @@ void from_columns(const MultiVector &columns, const int dim, Vector &u)
 
 } // namespace
 
-RCP<Vector> interpolated(const CrsMatrix &interpolation, const Vector &u, const int dim,
-                         const RCP<const Map> &fine_dofs)
+RCP<Vector> interpolated(const Operator &interpolation, const Vector &u, const int dim, const RCP<const Map> &fine_dofs)
 {
   MultiVector from(interpolation.getDomainMap(), dim), to(interpolation.getRangeMap(), dim);
   to_columns(u, dim, from);

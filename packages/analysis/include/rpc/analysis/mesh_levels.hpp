@@ -1,18 +1,14 @@
 #pragma once
 
+#include "rpc/analysis/nested_mesh.hpp"
 #include "rpc/analysis/problem.hpp"
 #include "rpc/solver/mesh_levels.hpp"
 
 namespace rpc::analysis
 {
 
-/// Whether there are coarser meshes of a body for multigrid: of lower order, or boxes.
-bool has_mesh_levels(const mesh::Mesh &mesh);
-
-/// The same body on coarser and coarser meshes: of order 1 on the same cells, then boxes of half as many cells in each direction
-/// down to a few hundred unknowns. A body from gmsh has no others than the first. Collective.
+/// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns. Collective.
 /// @param prescribed  (overlap dofs) 1 where the displacement of the finest mesh is prescribed
-solver::MeshLevels mesh_levels(const fem::Discretization &finest, const Model &model,
-                               const DeviceView<char *> &prescribed);
+solver::MeshLevels mesh_levels(NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed);
 
 } // namespace rpc::analysis

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/analysis/nested_mesh.hpp"
 #include "rpc/contact/contact_nodes.hpp"
 #include "rpc/contact/support.hpp"
 #include "rpc/fem/dirichlet.hpp"
@@ -44,6 +45,8 @@ public:
   ///         bad_mesh for a cell with a Jacobian <= 0; no_solution as contact::contact_nodes() and contact::free_parts()
   Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
           double t = 1);
+  Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
+          double t = 1);
 
   /// Loads, prescribed displacements and contact nodes at one time. Collective.
   /// @param dents  that earlier steps have left, (owned nodes; sides) [m]; null: none
@@ -54,8 +57,12 @@ public:
   bool serves(const Step &step) const;
   /// The same problem made for another time: with a stiffness matrix and a linear solver of its own. Collective.
   std::shared_ptr<const Problem> remade(double t) const;
+  /// The same scene on one of the boxes that this one leads to: the first whose cells are about `factor` times as long, by the number of
+  /// nodes. Null where there is none. Collective.
+  std::shared_ptr<const Problem> coarser(double factor, double t) const;
 
-  const fem::Discretization &discretization() const { return discretization_; }
+  const fem::Discretization &discretization() const { return mesh_->discretization(); }
+  const NestedMesh &mesh() const { return *mesh_; }
   const Model &model() const { return model_; } ///< seen at the time of the first step
   /// The contact sides, in the order of the model's.
   std::vector<const mesh::Side *> contact_sides() const;
@@ -66,7 +73,7 @@ public:
 private:
   Model model_;
   solver::LinearSolverOptions linear_options_;
-  fem::Discretization discretization_;
+  std::shared_ptr<NestedMesh> mesh_;
   contact::FreeParts free_parts_;
   fem::PrescribedCouplings couplings_;
   RCP<UpdatedOperator> operator_;

@@ -37,9 +37,9 @@ struct StepOptions {
 /// When the active-set iteration is content, by the options for Newton and Uzawa. (5.10)
 ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 
-/// The same scene on a coarser mesh; null where there is none.
-/// @param level  1 for the next coarser mesh, 2 for the one after it, ...
-using CoarserProblem = std::function<std::shared_ptr<const Problem>(int level)>;
+/// The same scene on the next coarser mesh; null where there is none.
+/// @param finer  the scene on the mesh before   @param level  1 for the mesh after the finest, 2 for the one after it, ...
+using CoarserProblem = std::function<std::shared_ptr<const Problem>(const Problem &finer, int level)>;
 
 /// Why no coarser mesh is to predict the solution on this one; empty if one is.
 std::string no_prediction(const fem::Discretization &d, const contact::ContactNodes &contact,

@@ -20,9 +20,9 @@ ContactState with_weightless(ContactState state, const ContactNodes &c, const fe
 
 /// The state on another mesh of the same scene: displacement and multipliers by interpolation, side by side, without an active
 /// set. Collective.
-/// @param interpolation  (fine owned nodes x coarse owned nodes), see fem::interpolation()
+/// @param interpolation  (fine owned nodes x coarse owned nodes), such as fem::interpolation()
 /// @param fine_dofs      owned dofs of the other mesh
-ContactState interpolated(const CrsMatrix &interpolation, const ContactNodes &coarse, const ContactState &state,
+ContactState interpolated(const Operator &interpolation, const ContactNodes &coarse, const ContactState &state,
                           const ContactNodes &fine, const RCP<const Map> &fine_dofs);
 
 } // namespace rpc::contact

@@ -21,6 +21,6 @@ RCP<CrsMatrix> interpolation(const Discretization &coarse, const Discretization 
 
 /// A displacement on the finer mesh; collective.
 /// @param interpolation  see above   @param u  (coarse owned dofs)   @param fine_dofs  owned dofs of the finer mesh
-RCP<Vector> interpolated(const CrsMatrix &interpolation, const Vector &u, int dim, const RCP<const Map> &fine_dofs);
+RCP<Vector> interpolated(const Operator &interpolation, const Vector &u, int dim, const RCP<const Map> &fine_dofs);
 
 } // namespace rpc::fem

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "rpc/fem/discretization.hpp"
+
+#include <memory>
+#include <utility>
+
+namespace rpc::analysis
+{
+
+/// A mesh of a body that leads to coarser ones: of order 1 on the same cells, then boxes of half as many cells in each direction.
+/// Each is made when it is first asked for, and kept: multigrid and nested iteration share them. A body from gmsh has no others than
+/// the first.
+class NestedMesh
+{
+public:
+  /// The finest mesh.
+  explicit NestedMesh(fem::Discretization d) : discretization_(std::move(d)) {}
+
+  const fem::Discretization &discretization() const { return discretization_; }
+  /// Whether there are to be coarser meshes; those of few cells may be too small for the ranks.
+  bool may_have_coarser() const;
+  /// The next coarser mesh; null where there is none. Collective.
+  std::shared_ptr<NestedMesh> coarser();
+  /// The same, as long as it is kept; null if it was not made.
+  const std::shared_ptr<NestedMesh> &made_coarser() const { return coarser_; }
+  /// Coarser meshes that nobody else holds go; they are made anew where they are asked for.
+  void forget_coarser();
+
+  bool is_finest() const { return to_finer_.is_null(); }
+  /// (owned nodes of the finer mesh x owned nodes) Null for the finest mesh.
+  const RCP<const CrsMatrix> &to_finer() const { return to_finer_; }
+  /// (overlap nodes) The node of the finer mesh at the same place; empty unless this is the mesh of order 1 on the same cells.
+  const DeviceView<LO *> &node_of_finer() const { return node_of_finer_; }
+
+private:
+  fem::Discretization discretization_;
+  RCP<const CrsMatrix> to_finer_;
+  DeviceView<LO *> node_of_finer_;
+  bool asked_ = false; // for a coarser one
+  std::shared_ptr<NestedMesh> coarser_;
+};
+
+/// Interpolation of the values at the owned nodes of a coarse mesh to those of a finer one: step by step where the one leads to the
+/// other, else found by a search, see fem::interpolation(). Collective.
+RCP<const Operator> interpolation(const NestedMesh &coarse, const NestedMesh &fine);
+
+} // namespace rpc::analysis

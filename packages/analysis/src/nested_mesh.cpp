@@ -1,0 +1,94 @@
+#include "rpc/analysis/nested_mesh.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/fem/interpolation.hpp"
+#include "rpc/fem/order_one.hpp"
+#include "rpc/mesh/box.hpp"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace rpc::analysis
+{
+namespace
+{
+
+/// The box with half as many cells; none where it would be too small for the ranks.
+std::optional<fem::Discretization> halved(const fem::Discretization &d)
+{
+  if (!d.mesh->box) return std::nullopt;
+  const auto options = mesh::halved(*d.mesh->box);
+  if (!options) return std::nullopt;
+  try {
+    return fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(*options, d.mesh->owned_nodes->getComm())),
+                           d.kinematics);
+  } catch (const Error &) { // too few cells, on all ranks
+    return std::nullopt;
+  }
+}
+
+/// Interpolations one after the other.
+class Steps : public Operator
+{
+public:
+  /// @param steps  from the coarsest mesh, at least one
+  explicit Steps(std::vector<RCP<const CrsMatrix>> steps) : steps_(std::move(steps)) {}
+  RCP<const Map> getDomainMap() const override { return steps_.front()->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return steps_.back()->getRangeMap(); }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double alpha, double beta) const override
+  {
+    RCP<const MultiVector> values = Teuchos::rcpFromRef(x);
+    for (std::size_t k = 0; k + 1 < steps_.size(); ++k) {
+      const auto next = rcp(new MultiVector(steps_[k]->getRangeMap(), x.getNumVectors()));
+      steps_[k]->apply(*values, *next);
+      values = next;
+    }
+    steps_.back()->apply(*values, y, Teuchos::NO_TRANS, alpha, beta);
+  }
+
+private:
+  std::vector<RCP<const CrsMatrix>> steps_;
+};
+
+} // namespace
+
+bool NestedMesh::may_have_coarser() const
+{
+  const mesh::Mesh &mesh = *discretization_.mesh;
+  return mesh.element.order == 2 || (mesh.box && mesh::halved(*mesh.box));
+}
+
+std::shared_ptr<NestedMesh> NestedMesh::coarser()
+{
+  if (std::exchange(asked_, true)) return coarser_;
+  const fem::Discretization &d = discretization_;
+  if (d.mesh->element.order == 2) {
+    fem::OrderOne lower = fem::order_one(d);
+    coarser_ = std::make_shared<NestedMesh>(fem::discretize(std::move(lower.mesh), d.kinematics));
+    coarser_->to_finer_ = lower.interpolation;
+    coarser_->node_of_finer_ = lower.node;
+  } else if (auto box = halved(d)) {
+    coarser_ = std::make_shared<NestedMesh>(std::move(*box));
+    coarser_->to_finer_ = fem::interpolation(coarser_->discretization(), d);
+  }
+  return coarser_;
+}
+
+void NestedMesh::forget_coarser()
+{
+  coarser_.reset();
+  asked_ = false;
+}
+
+RCP<const Operator> interpolation(const NestedMesh &coarse, const NestedMesh &fine)
+{
+  std::vector<RCP<const CrsMatrix>> steps;
+  for (const NestedMesh *mesh = fine.made_coarser().get(); mesh; mesh = mesh->made_coarser().get()) {
+    steps.insert(steps.begin(), mesh->to_finer());
+    if (mesh == &coarse) return rcp(new Steps(std::move(steps)));
+  }
+  return fem::interpolation(coarse.discretization(), fine.discretization());
+}
+
+} // namespace rpc::analysis

@@ -1,0 +1,141 @@
+#include "rpc/analysis/nested_mesh.hpp"
+
+#include "rpc/analysis/problem.hpp"
+#include "rpc/fem/interpolation.hpp"
+#include "rpc/mesh/box.hpp"
+
+#include <Tpetra_Core.hpp>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <memory>
+
+namespace
+{
+
+using namespace rpc;
+using analysis::NestedMesh;
+using analysis::Problem;
+
+/// With odd numbers of cells on the way to coarser boxes; triangles and tetrahedra are nested in even ones alone.
+std::shared_ptr<const mesh::Mesh> box_of(const mesh::Element &element, const bool odd = true)
+{
+  const bool plane = element.dim == 2;
+  const int n = element.order == 1 ? 2 : 1, less = odd ? 1 : 0;
+  const mesh::BoxOptions box =
+      plane ? mesh::BoxOptions{{0, 0}, {2, 1}, {(40 - less) * n, (20 - less) * n}, element}
+            : mesh::BoxOptions{{0, 0, 0}, {2, 1, 1}, {(16 - less) * n, (8 - less) * n, 8 * n}, element};
+  return std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+}
+
+/// A block held at its top that may touch with its bottom.
+Problem problem_on(const mesh::Element &element)
+{
+  analysis::Model model;
+  fem::DirichletCondition held{"held", element.dim == 2 ? "top" : "front", {ScalarField(0.), ScalarField(-0.01)}};
+  if (element.dim == 3) held.displacement = {ScalarField(0.), ScalarField(0.), ScalarField(-0.01)};
+  model.materials = fem::Material{1000, 0.3};
+  model.dirichlet = {held};
+  contact::ContactOptions foundation;
+  foundation.side = element.dim == 2 ? "bottom" : "back";
+  foundation.yield_stress = ScalarField(1.);
+  foundation.gap = ScalarField(0.);
+  model.contact = {foundation};
+  return Problem(box_of(element), model, solver::LinearSolverOptions());
+}
+
+std::size_t num_nodes(const fem::Discretization &d)
+{
+  return d.mesh->owned_nodes->getGlobalNumElements();
+}
+
+TEST(NestedMesh, KeepsWhatItHasMadeUntilToldToForget)
+{
+  NestedMesh finest(fem::discretize(box_of({2, 1})));
+  EXPECT_TRUE(finest.is_finest());
+  EXPECT_TRUE(finest.may_have_coarser());
+  EXPECT_EQ(finest.made_coarser(), nullptr);
+  const auto coarser = finest.coarser();
+  ASSERT_NE(coarser, nullptr);
+  EXPECT_FALSE(coarser->is_finest());
+  EXPECT_EQ(num_nodes(coarser->discretization()), 40U * 20U);
+  EXPECT_EQ(finest.coarser(), coarser);
+  EXPECT_EQ(finest.made_coarser(), coarser);
+  finest.forget_coarser();
+  EXPECT_EQ(finest.made_coarser(), nullptr);
+  EXPECT_NE(finest.coarser(), coarser);
+}
+
+/// Step by step as by a search.
+TEST(NestedMesh, InterpolatesStepByStep)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    NestedMesh finest(fem::discretize(box_of(element, element.shape == mesh::Shape::tensor)));
+    const auto coarse = finest.coarser()->coarser();
+    ASSERT_NE(coarse, nullptr);
+    const auto steps = analysis::interpolation(*coarse, finest);
+    const auto search = fem::interpolation(coarse->discretization(), finest.discretization());
+    MultiVector values(steps->getDomainMap(), 2), by_steps(steps->getRangeMap(), 2), by_search(steps->getRangeMap(), 2);
+    const auto id = coarse->discretization().mesh->node_id;
+    for (LO n = 0; n < num_local(*steps->getDomainMap()); ++n)
+      for (int k = 0; k < 2; ++k) values.replaceLocalValue(n, k, std::sin(k + 0.7 * static_cast<double>(id(n))));
+    steps->apply(values, by_steps);
+    search->apply(values, by_search);
+    by_search.update(-1., by_steps, 1.);
+    for (int k = 0; k < 2; ++k) EXPECT_LT(by_search.getVector(k)->normInf(), 1e-12) << element.name();
+    EXPECT_GT(by_steps.getVector(0)->normInf(), 0.5);
+  }
+}
+
+/// Nested iteration's coarse mesh is one of those that multigrid uses. It has sides, and a quarter as many nodes in each direction.
+TEST(NestedMesh, ServesAProblemOnACoarserMesh)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const Problem problem = problem_on(element);
+    const auto coarser = problem.coarser(4, 1);
+    ASSERT_NE(coarser, nullptr) << element.name();
+    const auto first = problem.mesh().made_coarser();
+    ASSERT_NE(first, nullptr);
+    EXPECT_EQ(&coarser->mesh(), first->made_coarser().get()) << element.name();
+    EXPECT_EQ(coarser->discretization().mesh->element.order, 1);
+    const double ratio = static_cast<double>(num_nodes(problem.discretization())) /
+                         static_cast<double>(num_nodes(coarser->discretization()));
+    EXPECT_GT(ratio, 0.5 * std::pow(4, element.dim)) << element.name();
+    EXPECT_LT(ratio, 1.5 * std::pow(4, element.dim)) << element.name();
+    EXPECT_GT(coarser->step(1).contact.num_total, 0);
+  }
+}
+
+/// Multigrid of the finest mesh lets the coarser ones go; that of a coarser one leaves them to the finer.
+TEST(NestedMesh, IsForgottenByTheFinestMultigridOnly)
+{
+  const Problem problem = problem_on({2, 1});
+  const auto coarser = problem.coarser(2, 1);
+  ASSERT_NE(coarser, nullptr);
+  const auto solve = [](const Problem &on) {
+    Vector b(on.discretization().owned_dofs), x(on.discretization().owned_dofs);
+    b.putScalar(1);
+    on.linear_solver().solve(b, x, 1e-2);
+    return on.linear_solver().counts().fallback;
+  };
+  EXPECT_EQ(solve(*coarser), "");
+  EXPECT_NE(coarser->mesh().made_coarser(), nullptr);
+  EXPECT_NE(problem.mesh().made_coarser(), nullptr);
+  EXPECT_EQ(solve(problem), "");
+  EXPECT_EQ(problem.mesh().made_coarser(), nullptr);
+}
+
+/// A mesh that is no box has none that could predict.
+TEST(NestedMesh, LeavesOtherMeshesAlone)
+{
+  for (const int order : {1, 2}) {
+    auto mesh = std::make_shared<mesh::Mesh>(*box_of({2, order}));
+    mesh->box = nullptr;
+    NestedMesh finest(fem::discretize(mesh));
+    EXPECT_EQ(finest.may_have_coarser(), order == 2);
+    const auto coarser = finest.coarser();
+    EXPECT_EQ(coarser != nullptr, order == 2);
+    if (coarser) EXPECT_EQ(coarser->coarser(), nullptr);
+  }
+}
+
+} // namespace
