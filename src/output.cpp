@@ -131,7 +131,7 @@ void write_csv(const std::string &path, const Scene &scene, const Solution &s)
 {
   const mesh::Mesh &mesh = *s.discretization.mesh;
   const auto &contact = s.functional->contact();
-  const auto coords = to_host(mesh.coords);
+  const HostPoints position = fem::node_positions(mesh, contact.node);
   const auto node_ids = io::overlap_node_ids(mesh);
   std::vector<io::ContactTable> tables;
   for (int k = 0; k < contact.num_sides(); ++k) {
@@ -143,7 +143,7 @@ void write_csv(const std::string &path, const Scene &scene, const Solution &s)
     const auto node = part_of(contact.node, begin, end);
     for (LO i = 0; i < end - begin; ++i) {
       table.id(i) = mesh.node_id(node(i));
-      for (int c = 0; c < mesh.dim(); ++c) table.position(i, c) = coords(node(i), c);
+      for (int c = 0; c < mesh.dim(); ++c) table.position(i, c) = position(begin + i, c);
     }
     table.weight = part_of(contact.weight, begin, end);
     table.u_nu = part_of(s.contact.normal_displacement, begin, end);

@@ -176,18 +176,21 @@ void fill_cells(const Numbering &n, const Element &element, const Parts &parts, 
       });
 }
 
-/// (count) Numbers that do not depend on the ranks, by the lattice of the whole box, x fastest.
+/// (positions * parts) Numbers that do not depend on the ranks, by the lattice of the whole box, x fastest.
 /// @param owned  positions, each of so many parts   @param extent  of the lattice
-HostView<GO *> lattice_ids(const Block &owned, const Index &extent, const LO count, const int parts)
+HostView<GO *> lattice_ids(const Block &owned, const Index &extent, const int parts)
 {
-  const DeviceView<GO *> id(Kokkos::view_alloc("rpc::mesh::lattice_ids", Kokkos::WithoutInitializing), count);
-  Kokkos::parallel_for(
-      "rpc::mesh::lattice_ids", device_range(count), KOKKOS_LAMBDA(const LO i) {
-        const Index at = owned.at(i / parts);
-        id(i) = parts * (at[0] + extent[0] * (at[1] + extent[1] * at[2])) + i % parts;
-      });
-  Kokkos::fence();
-  return to_host(id);
+  HostView<GO *> ids(Kokkos::view_alloc("rpc::mesh::lattice_ids", Kokkos::WithoutInitializing), parts * owned.size());
+  GO *next = ids.data();
+  const int fast = owned.axes[0], mid = owned.axes[1], slow = owned.axes[2];
+  Index at{};
+  for (at[slow] = owned.begin[slow]; at[slow] < owned.end[slow]; ++at[slow])
+    for (at[mid] = owned.begin[mid]; at[mid] < owned.end[mid]; ++at[mid])
+      for (at[fast] = owned.begin[fast]; at[fast] < owned.end[fast]; ++at[fast]) {
+        const GO id = at[0] + extent[0] * (at[1] + extent[1] * at[2]);
+        for (int part = 0; part < parts; ++part) *next++ = parts * id + part;
+      }
+  return ids;
 }
 
 Side side_of_box(const BoxSide &box_side, const Parts &parts, const Grid &grid, const Numbering &numbering,
@@ -396,8 +399,8 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
     cells[d] = options.cells[d];
     nodes[d] = GO(options.cells[d]) * options.element.order + 1;
   }
-  mesh.node_id = lattice_ids(numbering.owned_nodes, nodes, num_owned, 1);
-  mesh.cell_id = lattice_ids(numbering.owned_cells, cells, mesh.num_owned_cells, num_parts);
+  mesh.node_id = lattice_ids(numbering.owned_nodes, nodes, 1);
+  mesh.cell_id = lattice_ids(numbering.owned_cells, cells, num_parts);
 
   for (const BoxSide &box_side : box_sides)
     if (box_side.direction < mesh.dim())

@@ -2,13 +2,15 @@
 
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/dofs.hpp"
+#include "rpc/core/graph.hpp"
 #include "rpc/core/parallel.hpp"
 
 #include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
+#include <limits>
+#include <numeric>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -97,12 +99,132 @@ Rows rows_of(const CrsMatrix &P, const std::set<GO> &wanted)
   return all;
 }
 
-/// What a point adds to the block of a pair of nodes.
+/// Blocks of a matrix to which points add, by rows, and what they add.
+struct PointBlocks {
+  std::vector<LO> nodes;             // owned ones around the points, ascending
+  std::vector<LO> row, column;       // (blocks) owned node; column's node
+  std::vector<std::size_t> entry;    // (blocks * dim) where the block begins in each of its rows
+  std::vector<double> base;          // (blocks * dim * dim)
+  std::vector<std::size_t> own;      // (nodes) their blocks on the diagonal
+  std::vector<std::size_t> begin{0}; // (blocks + 1) where a block's parts begin
+  std::vector<int> point;            // (parts)
+  std::vector<double> coefficient;   // (parts) product of the weights at both nodes
+};
+
+/// What a point adds to a block of a node's rows.
 struct Part {
-  LO row, column; // owned node; column's node
+  std::size_t place; // of the block in the rows
   int point;
   double coefficient;
 };
+
+/// Local nodes of some gids, -1 for those that a map of unknowns does not have.
+std::vector<LO> local_nodes(const Map &dofs, const int dim, const std::vector<GO> &gids)
+{
+  std::vector<LO> nodes;
+  for (const GO gid : gids) {
+    const LO at = dofs.getLocalElement(dof(dim, gid, 0));
+    nodes.push_back(at == invalid ? -1 : node_of(dim, at));
+  }
+  return nodes;
+}
+
+/// The entries of the points' supports that lie at each of some nodes.
+/// @param nodes  ascending   @param node  (entries) of them, or -1
+Lists entries_at(const std::vector<LO> &nodes, const std::vector<LO> &node)
+{
+  std::vector<std::size_t> number; // of an entry's node
+  Lists lists;
+  lists.begin.assign(nodes.size() + 1, 0);
+  for (const LO n : node) {
+    number.push_back(static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), n) - nodes.begin()));
+    if (n >= 0) ++lists.begin[number.back() + 1];
+  }
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.value.resize(lists.begin.back());
+  std::vector<std::size_t> next(lists.begin.begin(), lists.begin.end() - 1);
+  for (std::size_t k = 0; k < node.size(); ++k)
+    if (node[k] >= 0) lists.value[next[number[k]]++] = static_cast<int>(k);
+  return lists;
+}
+
+/// Appends the blocks of a node's rows, by their columns, with their parts in the order of the points.
+/// @param first  the node's first row among `around`
+void add_blocks(const HostRows &around, const std::size_t first, const int dim, const std::vector<Part> &parts,
+                PointBlocks &blocks)
+{
+  const LO node = blocks.nodes[first / dim];
+  const std::size_t start = around.begin[first], length = around.begin[first + 1] - start;
+  std::vector<std::size_t> begin(length / dim + 1);
+  for (const Part &part : parts) ++begin[part.place + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  const std::size_t so_far = blocks.point.size();
+  for (std::size_t place = 0; place + 1 < begin.size(); ++place) {
+    if (begin[place] == begin[place + 1]) continue;
+    const LO column = node_of(dim, around.column(start + dim * place));
+    if (column == node) blocks.own.push_back(blocks.row.size());
+    blocks.row.push_back(node);
+    blocks.column.push_back(column);
+    blocks.begin.push_back(so_far + begin[place + 1]);
+    for (int i = 0; i < dim; ++i) {
+      blocks.entry.push_back(around.first(first + i) + dim * place);
+      for (int j = 0; j < dim; ++j) blocks.base.push_back(around.value(around.begin[first + i] + dim * place + j));
+    }
+  }
+  blocks.point.resize(so_far + parts.size());
+  blocks.coefficient.resize(so_far + parts.size());
+  for (const Part &part : parts) {
+    const std::size_t to = so_far + begin[part.place]++;
+    blocks.point[to] = part.point;
+    blocks.coefficient[to] = part.coefficient;
+  }
+}
+
+/// Couplings of nodes that share no cell of the mesh become their bound on the diagonal, 2 a b <= a^2 + b^2.
+PointBlocks blocks_of(const PointSupports &points, const CrsMatrix &A)
+{
+  const int dim = points.dim;
+  const Map &rows = *A.getRowMap(), &columns = *A.getColMap();
+  const std::vector<LO> row_node = local_nodes(rows, dim, points.node);
+  const std::vector<LO> column_node = local_nodes(columns, dim, points.node);
+  PointBlocks blocks;
+  auto &nodes = blocks.nodes;
+  std::copy_if(row_node.begin(), row_node.end(), std::back_inserter(nodes), [](const LO node) { return node >= 0; });
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  if (nodes.empty()) return blocks;
+  std::vector<LO> their_rows;
+  for (const LO node : nodes)
+    for (int k = 0; k < dim; ++k) their_rows.push_back(dof(dim, node, k));
+  const HostRows around = on_host(A, their_rows);
+  std::vector<int> point_of; // (supports' entries)
+  for (int p = 0; p < points.size(); ++p) point_of.resize(points.begin[p + 1], p);
+  const Lists entries = entries_at(nodes, row_node);
+
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> place_of(num_local(columns) / dim, none); // of columns' nodes in the rows of a node
+  std::vector<Part> parts;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const std::size_t first = dim * n, start = around.begin[first], places = (around.begin[first + 1] - start) / dim;
+    const auto column_at = [&](const std::size_t place) { return node_of(dim, around.column(start + dim * place)); };
+    for (std::size_t place = 0; place < places; ++place) place_of[column_at(place)] = place;
+    parts.clear();
+    for (std::size_t e = entries.begin[n]; e < entries.begin[n + 1]; ++e) {
+      const int k = entries.value[e], p = point_of[k];
+      for (std::size_t l = points.begin[p]; l < points.begin[p + 1]; ++l) {
+        const double both = points.weight[k] * points.weight[l];
+        const std::size_t place = column_node[l] < 0 ? none : place_of[column_node[l]];
+        if (place == none)
+          parts.push_back({place_of[nodes[n]], p, std::abs(both)});
+        else
+          parts.push_back({place, p, both});
+      }
+    }
+    add_blocks(around, first, dim, parts, blocks);
+    for (std::size_t place = 0; place < places; ++place) place_of[column_at(place)] = none;
+  }
+  return blocks;
+}
 
 /// values <- base + sum over parts of stiffness times coefficient m m^T.
 template <class Values>
@@ -144,14 +266,13 @@ void multiply_rows(const CrsMatrix &A, const int dim, const DeviceView<LO *> &no
   const auto from = device_read(x);
   const auto to = device_write(y);
   Kokkos::parallel_for(
-      "rpc::solver::multiply_rows", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO n) {
-        for (int k = 0; k < dim; ++k) {
-          const LO row = dof(dim, nodes(n), k);
-          double sum = 0;
-          for (auto e = matrix.graph.row_map(row); e < matrix.graph.row_map(row + 1); ++e)
-            sum += matrix.values(e) * from(matrix.graph.entries(e));
-          to(row) = sum;
-        }
+      "rpc::solver::multiply_rows", device_range(num_dofs(dim, static_cast<LO>(nodes.extent(0)))),
+      KOKKOS_LAMBDA(const LO i) {
+        const LO row = dof(dim, nodes(node_of(dim, i)), component_of(dim, i));
+        double sum = 0;
+        for (auto e = matrix.graph.row_map(row); e < matrix.graph.row_map(row + 1); ++e)
+          sum += matrix.values(e) * from(matrix.graph.entries(e));
+        to(row) = sum;
       });
   Kokkos::fence();
 }
@@ -183,14 +304,20 @@ PointSupports coarser(const PointSupports &fine, const CrsMatrix &interpolation)
   PointSupports coarse;
   coarse.dim = fine.dim;
   coarse.direction = fine.direction;
+  std::vector<std::pair<GO, double>> support;
   for (int i = 0; i < fine.size(); ++i) {
-    std::map<GO, double> support;
+    support.clear();
     for (std::size_t k = fine.begin[i]; k < fine.begin[i + 1]; ++k) {
       const std::size_t row = rows.place.at(fine.node[k]);
       for (std::size_t e = rows.begin[row]; e < rows.begin[row + 1]; ++e)
-        support[rows.column[e]] += fine.weight[k] * rows.value[e];
+        support.emplace_back(rows.column[e], fine.weight[k] * rows.value[e]);
     }
+    std::stable_sort(support.begin(), support.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
     for (const auto &[node, weight] : support) {
+      if (coarse.node.size() > coarse.begin.back() && coarse.node.back() == node) {
+        coarse.weight.back() += weight;
+        continue;
+      }
       coarse.node.push_back(node);
       coarse.weight.push_back(weight);
     }
@@ -202,95 +329,31 @@ PointSupports coarser(const PointSupports &fine, const CrsMatrix &interpolation)
 CoarseContact::CoarseContact(const PointSupports &points, RCP<CrsMatrix> A, const DeviceView<char *> &prescribed)
     : dim_(points.dim), A_(std::move(A)), rows_(RepeatedRows::of(A_, dim_)), prescribed_(prescribed)
 {
-  const Map &rows = *A_->getRowMap(), &columns = *A_->getColMap();
-  std::vector<LO> row_node, column_node; // (supports' entries) local nodes, -1: none here
-  const auto local_node = [dim = dim_](const Map &map, const GO node) {
-    const LO at = map.getLocalElement(dof(dim, node, 0));
-    return at == invalid ? -1 : node_of(dim, at);
-  };
-  for (const GO node : points.node) {
-    row_node.push_back(local_node(rows, node));
-    column_node.push_back(local_node(columns, node));
-  }
-  std::vector<LO> nodes; // owned ones around the points
-  std::copy_if(row_node.begin(), row_node.end(), std::back_inserter(nodes), [](const LO node) { return node >= 0; });
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::vector<LO> their_rows;
-  for (const LO node : nodes)
-    for (int k = 0; k < dim_; ++k) their_rows.push_back(dof(dim_, node, k));
-  const HostRows around = on_host(*A_, their_rows);
-  const auto number = [&](const LO node) { // of a node's first row
-    return dim_ * static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
-  };
-  // Where the block of a column's node begins in each row of a node; the row's length if the nodes share no cell.
-  const auto place = [&](const std::size_t row, const LO column) {
-    const std::size_t first = around.begin[row], last = around.begin[row + 1];
-    std::size_t at = first;
-    while (at < last && around.column(at) != dof(dim_, column, 0)) ++at;
-    return at - first;
-  };
-  std::vector<Part> parts;
-  for (int p = 0; p < points.size(); ++p)
-    for (std::size_t k = points.begin[p]; k < points.begin[p + 1]; ++k) {
-      const LO row = row_node[k];
-      if (row < 0) continue;
-      const std::size_t first = number(row);
-      const std::size_t length = around.begin[first + 1] - around.begin[first];
-      for (std::size_t l = points.begin[p]; l < points.begin[p + 1]; ++l) {
-        const double both = points.weight[k] * points.weight[l];
-        const LO column = column_node[l];
-        if (column >= 0 && place(first, column) < length)
-          parts.push_back({row, column, p, both});
-        else
-          parts.push_back({row, row, p, std::abs(both)}); // 2 a b <= a^2 + b^2
-      }
-    }
-  std::stable_sort(parts.begin(), parts.end(), [](const Part &a, const Part &b) {
-    return a.row < b.row || (a.row == b.row && a.column < b.column);
-  });
-  std::vector<LO> row, column;
-  std::vector<std::size_t> begin;
-  std::vector<int> point;
-  std::vector<double> coefficient;
-  for (const Part &part : parts) {
-    if (row.empty() || row.back() != part.row || column.back() != part.column) {
-      row.push_back(part.row);
-      column.push_back(part.column);
-      begin.push_back(point.size());
-    }
-    point.push_back(part.point);
-    coefficient.push_back(part.coefficient);
-  }
-  begin.push_back(point.size());
-  const std::size_t n = row.size();
+  const PointBlocks blocks = blocks_of(points, *A_);
+  const std::size_t n = blocks.row.size();
   entry_ = DeviceView<std::size_t **>("rpc::solver::coarse_entry", n, dim_);
   base_ = DeviceView<double ***>("rpc::solver::coarse_base", n, dim_, dim_);
+  own_entry_ = DeviceView<std::size_t **>("rpc::solver::coarse_own_entry", blocks.own.size(), dim_);
   const auto entry = Kokkos::create_mirror_view(entry_);
   const auto base = Kokkos::create_mirror_view(base_);
-  std::vector<std::size_t> own; // blocks on the diagonal
-  for (std::size_t b = 0; b < n; ++b) {
-    const std::size_t first = number(row[b]), at = place(first, column[b]);
-    for (int i = 0; i < dim_; ++i) {
-      entry(b, i) = around.first(first + i) + at;
-      for (int j = 0; j < dim_; ++j) base(b, i, j) = around.value(around.begin[first + i] + at + j);
-    }
-    if (row[b] == column[b]) own.push_back(b);
-  }
-  own_entry_ = DeviceView<std::size_t **>("rpc::solver::coarse_own_entry", nodes.size(), dim_);
   const auto own_entry = Kokkos::create_mirror_view(own_entry_);
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (int k = 0; k < dim_; ++k) own_entry(i, k) = entry(own[i], k);
+  for (std::size_t b = 0; b < n; ++b)
+    for (int i = 0; i < dim_; ++i) {
+      entry(b, i) = blocks.entry[dim_ * b + i];
+      for (int j = 0; j < dim_; ++j) base(b, i, j) = blocks.base[dim_ * (dim_ * b + i) + j];
+    }
+  for (std::size_t k = 0; k < blocks.own.size(); ++k)
+    for (int i = 0; i < dim_; ++i) own_entry(k, i) = entry(blocks.own[k], i);
   direction_ = DeviceView<double **>("rpc::solver::point_direction", points.size(), dim_);
   const auto direction = Kokkos::create_mirror_view(direction_);
   for (int p = 0; p < points.size(); ++p)
     for (int k = 0; k < dim_; ++k) direction(p, k) = points.direction[static_cast<std::size_t>(dim_) * p + k];
-  row_ = device_values(row, "rpc::solver::coarse_row");
-  column_ = device_values(column, "rpc::solver::coarse_column");
-  nodes_ = device_values(nodes, "rpc::solver::coarse_nodes");
-  begin_ = device_values(begin, "rpc::solver::coarse_begin");
-  point_ = device_values(point, "rpc::solver::coarse_point");
-  coefficient_ = device_values(coefficient, "rpc::solver::coarse_coefficient");
+  row_ = device_values(blocks.row, "rpc::solver::coarse_row");
+  column_ = device_values(blocks.column, "rpc::solver::coarse_column");
+  nodes_ = device_values(blocks.nodes, "rpc::solver::coarse_nodes");
+  begin_ = device_values(blocks.begin, "rpc::solver::coarse_begin");
+  point_ = device_values(blocks.point, "rpc::solver::coarse_point");
+  coefficient_ = device_values(blocks.coefficient, "rpc::solver::coarse_coefficient");
   Kokkos::deep_copy(entry_, entry);
   Kokkos::deep_copy(base_, base);
   Kokkos::deep_copy(own_entry_, own_entry);
