@@ -7,6 +7,8 @@ namespace rpc::analysis
 namespace
 {
 
+// Unknowns that boxes are halved down to: a factor of theirs takes no time, though each change of states asks for one.
+constexpr GO few_2d = 800, few_3d = 400;
 // Unknowns of a coarsest mesh that is still factored, where there is no coarser one.
 constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
 
@@ -52,7 +54,7 @@ solver::MeshLevels mesh_levels(NestedMesh &finest, const Model &model, const Dev
     return static_cast<GO>(mesh.discretization().owned_dofs->getGlobalNumElements());
   };
   NestedMesh *mesh = &finest;
-  while (levels.level.empty() || num_unknowns(*mesh) > solver::few_unknowns(dim)) {
+  while (levels.level.empty() || num_unknowns(*mesh) > (dim == 2 ? few_2d : few_3d)) {
     NestedMesh *const coarse = mesh->coarser().get();
     if (!coarse) break;
     mesh = coarse;

@@ -143,7 +143,8 @@ std::shared_ptr<const Problem> Problem::remade(const double t) const
 
 std::shared_ptr<const Problem> Problem::coarser(const double factor, const double t) const
 {
-  if (!discretization().mesh->box) return nullptr;
+  const mesh::Mesh &own = *discretization().mesh;
+  if (!own.box || own.element.order == 2) return nullptr;
   constexpr double about = 2; // few cells in a direction have relatively many nodes
   const auto nodes = [](const NestedMesh &mesh) {
     return static_cast<double>(mesh.discretization().mesh->owned_nodes->getGlobalNumElements());
@@ -151,7 +152,7 @@ std::shared_ptr<const Problem> Problem::coarser(const double factor, const doubl
   const double most = about * nodes(*mesh_) / std::pow(factor, discretization().dim());
   auto mesh = mesh_;
   do mesh = mesh->coarser();
-  while (mesh && (nodes(*mesh) > most || mesh->node_of_finer().extent(0) > 0)); // such a mesh has no sides
+  while (mesh && nodes(*mesh) > most);
   return mesh ? std::make_shared<Problem>(mesh, model_, linear_options_, t) : nullptr;
 }
 

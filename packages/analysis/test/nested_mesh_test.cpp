@@ -86,17 +86,17 @@ TEST(NestedMesh, InterpolatesStepByStep)
   }
 }
 
-/// Nested iteration's coarse mesh is one of those that multigrid uses. It has sides, and a quarter as many nodes in each direction.
+/// Nested iteration's coarse mesh is one of those that multigrid uses, with a quarter as many nodes in each direction.
 TEST(NestedMesh, ServesAProblemOnACoarserMesh)
 {
   for (const mesh::Element &element : mesh::all_elements()) {
     const Problem problem = problem_on(element);
     const auto coarser = problem.coarser(4, 1);
-    ASSERT_NE(coarser, nullptr) << element.name();
+    ASSERT_EQ(coarser != nullptr, element.order == 1) << element.name();
+    if (!coarser) continue;
     const auto first = problem.mesh().made_coarser();
     ASSERT_NE(first, nullptr);
     EXPECT_EQ(&coarser->mesh(), first->made_coarser().get()) << element.name();
-    EXPECT_EQ(coarser->discretization().mesh->element.order, 1);
     const double ratio = static_cast<double>(num_nodes(problem.discretization())) /
                          static_cast<double>(num_nodes(coarser->discretization()));
     EXPECT_GT(ratio, 0.5 * std::pow(4, element.dim)) << element.name();

@@ -35,6 +35,8 @@ constexpr GO most_direct_rows = 100000;
 // and else multigrid that is nearly one.
 constexpr GO most_rows_set_up_anew = 2500;
 constexpr double most_work_of_factor = 1e7;
+// Rows up to which even MueLu's hierarchy is a direct solver: coarser meshes would save little there, and CG would leave a rest.
+constexpr GO few_rows = 1000;
 // Multigrid is made for closed nodes of at most so many times their own stiffness: with all of the penalty, coarse functions
 // could not move near them, and CG would take a third more iterations. The rest is left to the correction.   (4.9)
 constexpr double most_stiffness = 5;
@@ -128,8 +130,9 @@ Teuchos::ParameterList muelu_defaults(const Map &dofs, const int dofs_per_node)
   // On several ranks there is always a level below the finest one, so that what is solved directly has gone to one rank.
   const GO rows = static_cast<GO>(dofs.getGlobalNumElements());
   const bool alone = dofs.getComm()->getSize() == 1;
-  constexpr GO most = muelu::has_repartitioning ? 1000 : most_gathered_rows;
-  list.set("coarse: max size", alone ? 1000 : static_cast<int>(std::clamp<GO>(rows / 4, 1, most)));
+  constexpr GO most = muelu::has_repartitioning ? few_rows : most_gathered_rows;
+  list.set("coarse: max size",
+           alone ? static_cast<int>(few_rows) : static_cast<int>(std::clamp<GO>(rows / 4, 1, most)));
   if (muelu::has_repartitioning && !alone) { // the direct coarse solvers of 13.2 are wrong on a distributed matrix
     list.set("repartition: enable", true);
     list.set("repartition: partitioner", "zoltan2");
@@ -289,7 +292,7 @@ LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperato
   impl_->null_space = null_space;
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
   impl_->few = unknowns <= most_rows_set_up_anew;
-  const bool automatic = unknowns > few_unknowns(H->dofs_per_node()) && options_.muelu.numParams() == 0;
+  const bool automatic = unknowns > few_rows && options_.muelu.numParams() == 0;
   if (options_.multigrid == "mesh" || (options_.multigrid == "auto" && automatic))
     impl_->make_levels = std::move(levels);
 

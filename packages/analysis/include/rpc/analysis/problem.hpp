@@ -58,7 +58,7 @@ public:
   /// The same problem made for another time: with a stiffness matrix and a linear solver of its own. Collective.
   std::shared_ptr<const Problem> remade(double t) const;
   /// The same scene on one of the boxes that this one leads to: the first whose cells are about `factor` times as long, by the number of
-  /// nodes. Null where there is none. Collective.
+  /// nodes. Null where there is none, and for order 2: linear elements, too stiff in bending, predict worse. Collective.
   std::shared_ptr<const Problem> coarser(double factor, double t) const;
 
   const fem::Discretization &discretization() const { return mesh_->discretization(); }

@@ -8,12 +8,6 @@
 namespace rpc::solver
 {
 
-/// Unknowns whose factor takes next to no time, though each change of contact states asks for one: boxes are halved down to so many.
-inline GO few_unknowns(const int dim)
-{
-  return dim == 2 ? 800 : 400;
-}
-
 /// A coarser mesh of the same body, for multigrid.
 struct MeshLevel {
   RCP<CrsMatrix> stiffness;           ///< K of this mesh, prescribed unknowns eliminated; multigrid adds contact to it
