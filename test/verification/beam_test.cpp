@@ -187,13 +187,21 @@ TEST(Beam, ForcesBalance)
 }
 
 /// A thin plate under a load on a few cells: it lifts off beside the load. Newton's steps alone, from kink to kink, are
-/// 60 to 100 and end with the same energy.
+/// 60 to 100 and end with the same energy. Rounding decides which way the active set takes: 1e-7 more of Young's modulus changes the
+/// number of steps, 32 in most cases, to 17 or 53. Hence the median of three.
 TEST(SlenderBeam, DoesNotCreepAndTakesRoundingForWhatItIs)
 {
-  const Solution s = run_scene(std::string(RPC_TEST_DECKS) + "/slender.xml", {});
-  EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
-  EXPECT_NEAR(s.energy, -2.664421e-10, 1e-6 * 2.664421e-10);
-  EXPECT_LE(sum(s.uzawa.newton_iterations), 40);
+  std::vector<int> steps;
+  for (const char *modulus : {"1710.6662031294459", "1710.6663741960662", "1710.6665452626865"}) {
+    const Solution s =
+        run_scene(std::string(RPC_TEST_DECKS) + "/slender.xml", {std::string("Material->Young's Modulus=") + modulus});
+    EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+    EXPECT_NEAR(s.energy, -2.664421e-10, 1e-6 * 2.664421e-10);
+    steps.push_back(sum(s.uzawa.newton_iterations));
+  }
+  std::sort(steps.begin(), steps.end());
+  EXPECT_LE(steps[1], 40);
+  EXPECT_LE(steps[2], 60);
 }
 
 } // namespace
