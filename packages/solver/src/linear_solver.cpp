@@ -175,7 +175,8 @@ public:
   }
 
 private:
-  // By measurement: a renewal costs two CG iterations, and smaller changes as many in a whole step.
+  // By measurement: a renewal takes as long as two CG iterations. While contact has changed less, the old hierarchy costs all solves of
+  // a step together about two iterations.
   static constexpr double small_change = 0.1;
 
   RCP<const CrsMatrix> now_; // follows the states
@@ -213,9 +214,9 @@ struct LinearSolver::Impl {
   RCP<UpdatedOperator> H;
   RCP<MultiVector> coordinates, null_space;
   Teuchos::ParameterList muelu;
-  MakeMeshLevels make_levels; // null: the hierarchy is algebraic
-  bool few = false;           // unknowns: the preconditioner is made anew for each state
-  bool singular = false;      // a matrix was met that neither hierarchy can solve for
+  MakeMeshLevels make_levels;       // null: the hierarchy is algebraic
+  bool made_for_each_state = false; // the preconditioner of few unknowns, anew for each choice of contact states
+  bool singular = false;            // a matrix was met that neither hierarchy can solve for
   RCP<Preconditioner> preconditioner;
   int revision = -1;               // of H, that the preconditioner fits
   bool renewed = false;            // of an older hierarchy some parts are left
@@ -291,7 +292,7 @@ LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperato
   impl_->coordinates = coordinates;
   impl_->null_space = null_space;
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
-  impl_->few = unknowns <= most_rows_set_up_anew;
+  impl_->made_for_each_state = unknowns <= most_rows_set_up_anew;
   const bool automatic = unknowns > few_rows && options_.muelu.numParams() == 0;
   if (options_.multigrid == "mesh" || (options_.multigrid == "auto" && automatic))
     impl_->make_levels = std::move(levels);
@@ -321,7 +322,7 @@ void LinearSolver::set_up()
   const RCP<CrsMatrix> &A = impl_->H->matrix();
   auto &correction = impl_->preconditioner->correction;
   correction.reset();
-  if (!impl_->few) {
+  if (!impl_->made_for_each_state) {
     impl_->H->write(most_stiffness);
     correction = LocalCorrection::around(*impl_->H);
   }
@@ -357,7 +358,7 @@ bool LinearSolver::factor(const RCP<CrsMatrix> &A)
   auto &direct = impl_->preconditioner->direct;
   direct.reset();
   const bool asked_otherwise = options_.multigrid != "auto" || options_.muelu.numParams() > 0;
-  if (!impl_->few || asked_otherwise || impl_->strengthened) return false;
+  if (!impl_->made_for_each_state || asked_otherwise || impl_->strengthened) return false;
   direct = direct_solver(A, most_work_of_factor);
   if (direct) made_anew();
   return direct != nullptr;
@@ -392,12 +393,7 @@ void LinearSolver::prepare_on_meshes()
     impl_->H->allow_rounding(true);
     multigrid =
         rcp(new MeshMultigrid(impl_->H, levels, [&](const MeshLevel &coarsest) -> std::unique_ptr<CoarsestSolver> {
-          if (levels.down_to_few) {
-            auto direct = direct_solver(coarsest.stiffness);
-            if (!direct)
-              throw std::runtime_error("multigrid: the matrix of the coarsest mesh is not positive definite");
-            return direct;
-          }
+          if (levels.down_to_few) return direct_solver(coarsest.stiffness);
           Teuchos::ParameterList list = muelu_defaults(*coarsest.stiffness->getDomainMap(), impl_->H->dofs_per_node());
           list.set("reuse: type", options_.reuse == "none" ? "tP" : options_.reuse);
           list.setParameters(options_.muelu);
@@ -422,7 +418,7 @@ void LinearSolver::prepare()
   const double start = Teuchos::Time::wallTime();
   auto &correction = impl_->preconditioner->correction;
   bool fits = false;
-  if (exists && !impl_->worn && !impl_->few) {
+  if (exists && !impl_->worn && !impl_->made_for_each_state) {
     correction = LocalCorrection::around(*impl_->H);
     counts_.local_corrections += correction.has_value();
     fits = correction || sum_all(*impl_->H->getDomainMap()->getComm(), GO(impl_->H->changes().size())) == 0;

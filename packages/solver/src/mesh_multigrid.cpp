@@ -29,6 +29,8 @@ constexpr double largest_of_contact = 2.25;
 // iterations.                                                                                                    (4.7b)
 constexpr double most_on_coarse_meshes = 1;
 
+constexpr const char *not_definite = "multigrid: the matrix of the coarsest mesh is not positive definite";
+
 /// An updated operator as the cycle takes it, up to single precision; or K alone.
 class Rounded : public Operator
 {
@@ -81,8 +83,7 @@ public:
   }
   void update() override
   {
-    if (!factor(std::numeric_limits<double>::infinity()))
-      throw std::runtime_error("multigrid: the matrix of the coarsest mesh is not positive definite");
+    if (!factor(std::numeric_limits<double>::infinity())) throw std::runtime_error(not_definite);
   }
 
   void apply(const Vector &b, Vector &x) const override
@@ -249,6 +250,7 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
   }
   contact_of_coarsest_ = write_contact();
   coarsest_ = make_coarsest(levels.level.back());
+  if (!coarsest_) throw std::runtime_error(not_definite);
 }
 
 MeshMultigrid::~MeshMultigrid() = default;

@@ -36,6 +36,7 @@ std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A,
 class MeshMultigrid : public Operator
 {
 public:
+  /// Null where the matrix is not positive definite.
   using MakeCoarsestSolver = std::function<std::unique_ptr<CoarsestSolver>(const MeshLevel &)>;
 
   /// Collective. @param levels  at least one
