@@ -10,7 +10,7 @@
 
 #include "node_interpolation.hpp"
 #include "node_smoother.hpp"
-#include "rpc/core/updated_operator.hpp"
+#include "rpc/algebra/updated_operator.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/interpolation.hpp"
 #include "rpc/fem/order_one.hpp"

@@ -12,14 +12,15 @@ import sys
 # What each package may include; src is the program.
 ALLOWED = {
     "core": "",
+    "algebra": "core",
     "mesh": "core",
-    "fem": "core mesh",
-    "contact": "core mesh fem",
-    "solver": "core",
+    "fem": "core algebra mesh",
+    "contact": "core algebra mesh fem",
+    "solver": "core algebra",
     "io": "core mesh",
-    "analysis": "core mesh fem contact solver",
-    "adapt": "core mesh fem contact solver io analysis",
-    "src": "core mesh fem contact solver io analysis adapt",
+    "analysis": "core algebra mesh fem contact solver",
+    "adapt": "core algebra mesh fem contact solver io analysis",
+    "src": "core algebra mesh fem contact solver io analysis adapt",
 }
 # Who may include headers of Trilinos that begin so.
 LIBRARIES = {

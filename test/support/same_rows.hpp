@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/repeated_rows.hpp"
+#include "rpc/algebra/repeated_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "bodies.hpp"
-#include "rpc/core/updated_operator.hpp"
+#include "rpc/algebra/updated_operator.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "same_rows.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "rpc/core/node_points.hpp"
-#include "rpc/core/repeated_rows.hpp"
+#include "rpc/algebra/node_points.hpp"
+#include "rpc/algebra/repeated_rows.hpp"
 #include "rpc/core/tpetra.hpp"
 
 #include <vector>

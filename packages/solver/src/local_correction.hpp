@@ -1,7 +1,7 @@
 #pragma once
 
 #include "band_cholesky.hpp"
-#include "rpc/core/updated_operator.hpp"
+#include "rpc/algebra/updated_operator.hpp"
 
 #include <memory>
 #include <optional>

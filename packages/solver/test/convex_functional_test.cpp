@@ -1,4 +1,4 @@
-#include "rpc/core/convex_functional.hpp"
+#include "rpc/algebra/convex_functional.hpp"
 
 #include "rpc/solver/exact_line_search.hpp"
 #include "rpc/solver/newton.hpp"

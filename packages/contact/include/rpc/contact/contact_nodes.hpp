@@ -1,9 +1,9 @@
 #pragma once
 
+#include "rpc/algebra/node_points.hpp"
 #include "rpc/contact/law/foundation.hpp"
 #include "rpc/contact/obstacle.hpp"
 #include "rpc/core/field.hpp"
-#include "rpc/core/node_points.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/surface.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "rpc/algebra/convex_functional.hpp"
 #include "rpc/contact/contact_nodes.hpp"
 #include "rpc/contact/contact_state.hpp"
-#include "rpc/core/convex_functional.hpp"
 
 namespace rpc::contact
 {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "rpc/algebra/repeated_rows.hpp"
 #include "rpc/core/field.hpp"
-#include "rpc/core/repeated_rows.hpp"
 #include "rpc/fem/discretization.hpp"
 #include "rpc/fem/elasticity.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/convex_functional.hpp"
+#include "rpc/algebra/convex_functional.hpp"
 
 #include <NOX_LineSearch_Generic.H>
 #include <NOX_LineSearch_UserDefinedFactory.H>

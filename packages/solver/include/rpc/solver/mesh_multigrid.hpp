@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/updated_operator.hpp"
+#include "rpc/algebra/updated_operator.hpp"
 #include "rpc/solver/mesh_levels.hpp"
 
 #include <functional>

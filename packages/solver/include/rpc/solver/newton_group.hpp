@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/convex_functional.hpp"
+#include "rpc/algebra/convex_functional.hpp"
 #include "rpc/solver/linear_solver.hpp"
 #include "rpc/solver/nox_vector.hpp"
 

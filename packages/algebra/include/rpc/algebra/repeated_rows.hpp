@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/alike_nodes.hpp"
+#include "rpc/algebra/alike_nodes.hpp"
 #include "rpc/core/tpetra.hpp"
 
 namespace rpc

@@ -1,4 +1,4 @@
-#include "rpc/core/repeated_rows.hpp"
+#include "rpc/algebra/repeated_rows.hpp"
 
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/dofs.hpp"

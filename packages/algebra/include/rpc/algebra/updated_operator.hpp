@@ -1,8 +1,8 @@
 #pragma once
 
-#include "rpc/core/node_points.hpp"
-#include "rpc/core/repeated_rows.hpp"
-#include "rpc/core/rounded_rows.hpp"
+#include "rpc/algebra/node_points.hpp"
+#include "rpc/algebra/repeated_rows.hpp"
+#include "rpc/algebra/rounded_rows.hpp"
 #include "rpc/core/tpetra.hpp"
 
 #include <functional>

@@ -1,4 +1,4 @@
-#include "rpc/core/updated_operator.hpp"
+#include "rpc/algebra/updated_operator.hpp"
 
 #include "foundation_scene.hpp"
 

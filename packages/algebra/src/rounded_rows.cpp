@@ -1,4 +1,4 @@
-#include "rpc/core/rounded_rows.hpp"
+#include "rpc/algebra/rounded_rows.hpp"
 
 #include "rpc/core/dofs.hpp"
 #include "vectors.hpp"

@@ -1,4 +1,4 @@
-#include "rpc/core/rounded_rows.hpp"
+#include "rpc/algebra/rounded_rows.hpp"
 
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"

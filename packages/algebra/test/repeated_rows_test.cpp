@@ -1,4 +1,4 @@
-#include "rpc/core/repeated_rows.hpp"
+#include "rpc/algebra/repeated_rows.hpp"
 
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"
