@@ -10,7 +10,7 @@
 
 #include "node_interpolation.hpp"
 #include "node_smoother.hpp"
-#include "rpc/algebra/updated_operator.hpp"
+#include "rpc/algebra/stiffness_operator.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/interpolation.hpp"
 #include "rpc/fem/order_one.hpp"
@@ -70,14 +70,7 @@ struct Body {
     d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
     K = fem::assemble_stiffness(d, material);
   }
-  /// K as the solver has it; nothing can touch.
-  RCP<UpdatedOperator> stiffness() const
-  {
-    NodePoints none;
-    none.dim = d.dim();
-    none.first = HostView<LO *>("rpc::benchmark::no_groups", 1);
-    return rcp(new UpdatedOperator(K, none));
-  }
+  RCP<StiffnessOperator> stiffness() const { return rcp(new StiffnessOperator(K, d.dim())); }
   /// From the next level of multigrid: order 1, or half as many cells each way.
   solver::NodeInterpolation from_coarser(RCP<const Map> &coarse_dofs, double &entries) const
   {
@@ -170,7 +163,7 @@ void product(benchmark::State &state, const double stream, const Body &body)
   const auto K = body.stiffness();
   Vector x(body.d.owned_dofs), y(body.d.owned_dofs);
   x.randomize();
-  measure(state, stream, product_bytes(body), 2 * body.entries(), body.rows(), [&] { K->apply_base(x, y); });
+  measure(state, stream, product_bytes(body), 2 * body.entries(), body.rows(), [&] { K->apply(x, y); });
 }
 
 /// As after the coarse correction: from an approximation that is not zero.
@@ -178,7 +171,7 @@ void smoother(benchmark::State &state, const double stream, const Body &body)
 {
   const auto K = body.stiffness();
   const solver::NodeSmoother::Options options;
-  const auto blocks = K->base_blocks();
+  const auto blocks = K->diagonal_blocks();
   const solver::NodeSmoother smoother(K, blocks, solver::largest_eigenvalue(*K, blocks), options);
   Vector b(body.d.owned_dofs), x(body.d.owned_dofs);
   b.randomize();

@@ -5,6 +5,7 @@
 #include "rpc/mesh/box.hpp"
 #include "rpc/solver/linear_solver.hpp"
 #include "rpc/solver/newton.hpp"
+#include "updated.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <cmath>
@@ -48,7 +49,7 @@ struct Beam {
     const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
     const auto nodes = contact::contact_nodes(d, {foundation}, dirichlet, material);
     functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K.couplings, load, dirichlet),
-                                                               nodes, rcp(new UpdatedOperator(K.matrix, nodes)));
+                                                               nodes, updated(K.matrix, nodes));
     linear = std::make_shared<solver::LinearSolver>(options, functional->hessian(), fem::node_coordinates(d),
                                                     fem::rigid_body_modes(d));
     u = rcp(new Vector(d.owned_dofs));

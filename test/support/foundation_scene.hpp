@@ -3,6 +3,7 @@
 #include "rpc/contact/smoothed_functional.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/mesh/box.hpp"
+#include "updated.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <cmath>
@@ -66,7 +67,7 @@ struct Scene {
     const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
     const auto nodes = contact::contact_nodes(d, foundations, dirichlet, material);
     functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K.couplings, load, dirichlet),
-                                                               nodes, rcp(new UpdatedOperator(K.matrix, nodes)));
+                                                               nodes, updated(K.matrix, nodes));
   }
   explicit Scene(const double penalty = 40) : Scene(std::vector{below(penalty)}) {}
 

@@ -151,7 +151,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   if (task.steps.times.empty()) {
     static_cast<analysis::StepSolution &>(s) =
         analysis::solve_step(*problem, step, task.step, {starts, {}}, coarser, listener.step);
-    s.matrix_assemblies = problem->stiffness()->has_matrix();
+    s.matrix_assemblies = problem->stiffness().has_matrix();
   } else {
     analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, coarser);
     if (earlier)

@@ -1,6 +1,9 @@
 #include "rpc/algebra/updated_operator.hpp"
 
-#include <cmath>
+#include "rpc/core/error.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <utility>
 
 namespace rpc
 {
@@ -9,411 +12,180 @@ namespace rpc
 namespace
 {
 
-/// (points, dim) Where each node's own block begins in its rows.
-DeviceView<std::size_t **> own_entries(const NodePoints &p, const CrsMatrix &K)
+// Of a block's largest entry: what the factors of a w m m^T leave of symmetry.
+constexpr double rounding_of_symmetry = 1e-14;
+
+/// The place of a node in an ascending list, or -1.
+KOKKOS_INLINE_FUNCTION LO place_of(const LO node, const DeviceView<LO *> &nodes)
 {
-  const DeviceView<std::size_t **> entry("rpc::operator::entry", p.size(), p.dim);
-  const auto A = K.getLocalMatrixDevice();
-  Kokkos::parallel_for(
-      "rpc::operator::own_entries", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < p.dim; ++k) {
-          std::size_t at = A.graph.row_map(p.dof(i, k));
-          while (A.graph.entries(at) != p.dof(i, 0)) ++at; // an owned node's first column has its first row's lid
-          entry(i, k) = at;
-        }
-      });
-  Kokkos::fence();
-  return entry;
+  LO low = 0, high = static_cast<LO>(nodes.extent(0));
+  while (low < high) {
+    const LO middle = low + (high - low) / 2;
+    if (nodes(middle) < node)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < static_cast<LO>(nodes.extent(0)) && nodes(low) == node ? low : -1;
 }
 
-/// (points, dim, dim) The own blocks of the points' nodes.
-DeviceView<double ***> own_blocks(const NodePoints &p, const RepeatedRows &rows)
+/// (nodes, dim, dim) The sums of the points' blocks at their nodes.
+DeviceView<double ***> summed_at_nodes(const NodePoints &p, const DeviceView<double ***> &block,
+                                       const DeviceView<LO *> &nodes)
 {
-  const DeviceView<double ***> block("rpc::operator::base_blocks", p.size(), p.dim, p.dim);
-  const auto from = rows.blocks();
-  Kokkos::parallel_for(
-      "rpc::operator::own_blocks", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
-        const LO own = from.own(p.node(i));
-        for (int k = 0; k < p.dim; ++k)
-          for (int l = 0; l < p.dim; ++l) block(i, k, l) = from.entry(p.node(i), own, k, l);
-      });
-  Kokkos::fence();
-  return block;
-}
-
-/// (points) The first point of the same node.
-DeviceView<LO *> leads(const NodePoints &p, const LO num_nodes)
-{
-  const DeviceView<LO *> lead("rpc::operator::lead", p.size()), of_node("rpc::operator::lead_of_node", num_nodes);
-  Kokkos::deep_copy(of_node, -1);
+  const DeviceView<double ***> sum("rpc::algebra::update", nodes.extent(0), p.dim, p.dim);
   for_each_point_by_group(
-      "rpc::operator::find_leads", p, KOKKOS_LAMBDA(const LO i) {
-        if (of_node(p.node(i)) < 0) of_node(p.node(i)) = i;
-        lead(i) = of_node(p.node(i));
-      });
-  Kokkos::fence();
-  return lead;
-}
-
-DeviceView<double *> own_stiffness_of(const NodePoints &p, const DeviceView<double ***> &block)
-{
-  DeviceView<double *> stiffness("rpc::operator::own_stiffness", p.size());
-  Kokkos::parallel_for(
-      "rpc::operator::own_stiffness", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
-        double along = 0;
+      "rpc::algebra::sum_blocks", p, KOKKOS_LAMBDA(const LO i) {
+        const LO at = place_of(p.node(i), nodes);
+        if (at < 0) return;
         for (int k = 0; k < p.dim; ++k)
-          for (int l = 0; l < p.dim; ++l) along += p.direction(i, k) * block(i, k, l) * p.direction(i, l);
-        const double length = squared_length(p, i);
-        stiffness(i) = length > 0 ? along / (length * p.weight(i)) : 0;
-      });
-  return stiffness;
-}
-
-/// directions += |m_i|/|m_i|, entry by entry, at the node of each point.
-void add_directions(const NodePoints &p, Vector &directions)
-{
-  const auto to = device_write(directions);
-  for_each_point_by_group(
-      "rpc::operator::directions", p, KOKKOS_LAMBDA(const LO i) {
-        const double length = squared_length(p, i);
-        if (length > 0)
-          for (int k = 0; k < p.dim; ++k) to(p.dof(i, k)) += std::fabs(p.direction(i, k)) / std::sqrt(length);
+          for (int l = 0; l < p.dim; ++l) sum(at, k, l) += block(i, k, l);
       });
   Kokkos::fence();
+  return sum;
 }
 
-/// (points) Sums over the rows of the points' nodes of |K| times the directions at the columns.
-/// @param directions  (columns)
-DeviceView<double *> coupled_stiffness_of(const NodePoints &p, const RepeatedRows &rows, const Vector &directions)
-{
-  const auto K = rows.blocks();
-  const auto at = device_read(directions);
-  const DeviceView<double *> stiffness("rpc::operator::coupled_stiffness", p.size());
-  Kokkos::parallel_for(
-      "rpc::operator::sum_couplings", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
-        double sum = 0;
-        const LO size = K.size(p.node(i));
-        for (int k = 0; k < p.dim; ++k) {
-          const double m = p.direction(i, k);
-          if (m == 0) continue;
-          for (LO n = 0; n < size; ++n)
-            for (int l = 0; l < p.dim; ++l)
-              sum += std::fabs(m * K.entry(p.node(i), n, k, l)) * at(dof(p.dim, K.column(p.node(i), n), l));
-        }
-        const double length = squared_length(p, i);
-        stiffness(i) = length > 0 ? sum / (length * std::sqrt(length)) : 0;
-      });
-  Kokkos::fence();
-  return stiffness;
-}
-
-/// block = base + sum over the node's points of added w m m^T, for the leads.
-void update_blocks(const NodePoints &p, const DeviceView<LO *> &lead, const DeviceView<double *> &added,
-                   const DeviceView<double ***> &base, const DeviceView<double ***> &block)
-{
-  Kokkos::deep_copy(block, base);
-  for_each_point_by_group(
-      "rpc::operator::update_blocks", p, KOKKOS_LAMBDA(const LO i) {
-        if (added(i) == 0) return;
-        for (int k = 0; k < p.dim; ++k)
-          for (int l = 0; l < p.dim; ++l)
-            block(lead(i), k, l) += added(i) * p.weight(i) * p.direction(i, k) * p.direction(i, l);
-      });
-  Kokkos::fence();
-}
-
-/// Puts the leads' blocks into the matrix.
-void write_blocks(const NodePoints &p, const DeviceView<LO *> &lead, const DeviceView<std::size_t **> &entry,
-                  const DeviceView<double ***> &block, CrsMatrix &A)
-{
-  const auto values = A.getLocalMatrixDevice().values;
-  Kokkos::parallel_for(
-      "rpc::operator::write_blocks", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
-        if (lead(i) != i) return;
-        for (int k = 0; k < p.dim; ++k)
-          for (int l = 0; l < p.dim; ++l) values(entry(i, k) + l) = block(i, k, l);
-      });
-  Kokkos::fence();
-}
-
-/// y at the rows of the points' nodes <- these rows of A times x, with other blocks in the place of the nodes' own.
-/// @param x  (columns)  @param y  (rows)
-void multiply_rows(const NodePoints &p, const DeviceView<LO *> &lead, const DeviceView<std::size_t **> &entry,
-                   const DeviceView<double ***> &block, const CrsMatrix &A, const Vector &x, Vector &y)
-{
-  const auto matrix = A.getLocalMatrixDevice();
-  const auto from = device_read(x);
-  const auto to = device_write(y);
-  Kokkos::parallel_for(
-      "rpc::operator::multiply_rows", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
-        if (lead(i) != i) return;
-        for (int k = 0; k < p.dim; ++k) {
-          const LO row = p.dof(i, k);
-          const std::size_t own = entry(i, k);
-          double sum = 0;
-          for (std::size_t e = matrix.graph.row_map(row); e < own; ++e)
-            sum += matrix.values(e) * from(matrix.graph.entries(e));
-          for (int l = 0; l < p.dim; ++l) sum += block(i, k, l) * from(matrix.graph.entries(own + l));
-          for (std::size_t e = own + p.dim; e < matrix.graph.row_map(row + 1); ++e)
-            sum += matrix.values(e) * from(matrix.graph.entries(e));
-          to(row) = sum;
-        }
-      });
-  Kokkos::fence();
-}
-
-/// (points) The points' nodes, each once.
-DeviceView<LO *> nodes_of_leads(const NodePoints &p, const DeviceView<LO *> &lead)
-{
-  const DeviceView<LO *> node("rpc::operator::changing_nodes", p.size());
-  Kokkos::parallel_for(
-      "rpc::operator::changing_nodes", device_range(p.size()),
-      KOKKOS_LAMBDA(const LO i) { node(i) = lead(i) == i ? p.node(i) : -1; });
-  Kokkos::fence();
-  return node;
-}
-
-/// Copies the points' blocks to where their nodes' are.
-void scatter_blocks(const DeviceView<LO *> &node, const DeviceView<double ***> &from, const DeviceView<double ***> &to)
-{
-  const int dim = static_cast<int>(from.extent(1));
-  Kokkos::parallel_for(
-      "rpc::operator::scatter_blocks", device_range(static_cast<LO>(node.extent(0))), KOKKOS_LAMBDA(const LO i) {
-        if (node(i) < 0) return;
-        for (int k = 0; k < dim; ++k)
-          for (int l = 0; l < dim; ++l) to(node(i), k, l) = from(i, k, l);
-      });
-  Kokkos::fence();
-}
-
-/// y at the points' nodes += (block - base) x.
-void add_update(const NodePoints &p, const DeviceView<LO *> &lead, const DeviceView<double ***> &block,
-                const DeviceView<double ***> &base, const Vector &x, Vector &y)
-{
-  const auto from = device_read(x); // an owned node's columns have its rows' lids
-  const auto to = device_write(y);
-  Kokkos::parallel_for(
-      "rpc::operator::add_update", device_range(p.size()), KOKKOS_LAMBDA(const LO i) {
-        if (lead(i) != i) return;
-        for (int k = 0; k < p.dim; ++k) {
-          double sum = 0;
-          for (int l = 0; l < p.dim; ++l) sum += (block(i, k, l) - base(i, k, l)) * from(p.dof(i, l));
-          to(p.dof(i, k)) += sum;
-        }
-      });
-  Kokkos::fence();
-}
-
-/// Takes over what is to be added. @return number of points where it changed, on this rank
-LO take_over(const DeviceView<double *> &from, const DeviceView<double *> &to)
-{
-  LO changed = 0;
-  Kokkos::parallel_reduce(
-      "rpc::operator::take_over", device_range(static_cast<LO>(to.extent(0))),
-      KOKKOS_LAMBDA(const LO i, LO &count) {
-        count += from(i) != to(i);
-        to(i) = from(i);
-      },
-      changed);
-  return changed;
-}
-
-/// to <- from, at most `most` times a point's own stiffness.
-/// @return (number of points that it bounds, number of points where anything is added), on this rank
-std::pair<LO, LO> bound(const DeviceView<double *> &from, const DeviceView<double *> &own, const double most,
-                        const DeviceView<double *> &to)
-{
-  LO bounded = 0, added = 0;
-  Kokkos::parallel_reduce(
-      "rpc::operator::bound", device_range(static_cast<LO>(to.extent(0))),
-      KOKKOS_LAMBDA(const LO i, LO &beyond_bound, LO &not_zero) {
-        const bool beyond = from(i) > most * own(i);
-        to(i) = beyond ? most * own(i) : from(i);
-        beyond_bound += beyond;
-        not_zero += to(i) != 0;
-      },
-      bounded, added);
-  return {bounded, added};
-}
-
-/// (points) added - written.
-DeviceView<double *> difference(const DeviceView<double *> &added, const DeviceView<double *> &written)
-{
-  const LO n = static_cast<LO>(added.extent(0));
-  DeviceView<double *> rest("rpc::operator::unwritten", n);
-  Kokkos::parallel_for(
-      "rpc::operator::difference", device_range(n), KOKKOS_LAMBDA(const LO i) { rest(i) = added(i) - written(i); });
-  Kokkos::fence();
-  return rest;
-}
-
-LO count_not_zero(const DeviceView<double *> &values)
+/// This rank's number of points at other nodes.
+LO count_elsewhere(const NodePoints &p, const DeviceView<LO *> &nodes)
 {
   LO count = 0;
   Kokkos::parallel_reduce(
-      "rpc::operator::count_changes", device_range(static_cast<LO>(values.extent(0))),
-      KOKKOS_LAMBDA(const LO i, LO &part) { part += values(i) != 0; }, count);
+      "rpc::algebra::count_elsewhere", device_range(p.size()),
+      KOKKOS_LAMBDA(const LO i, LO &part) { part += place_of(p.node(i), nodes) < 0; }, count);
   return count;
 }
 
-void list_changes(const NodePoints &p, const DeviceView<double *> &rest, const UpdatedOperator::Changes &list)
+/// This rank's number of nodes where two updates differ.
+LO count_differences(const DeviceView<double ***> &a, const DeviceView<double ***> &b)
 {
-  Kokkos::parallel_scan(
-      "rpc::operator::list_changes", device_range(p.size()), KOKKOS_LAMBDA(const LO i, LO &at, const bool last) {
-        if (rest(i) == 0) return;
-        if (last) {
-          list.node(at) = p.node(i);
-          list.coefficient(at) = rest(i) * p.weight(i);
-          for (int k = 0; k < p.dim; ++k) list.direction(at, k) = p.direction(i, k);
+  const int dim = static_cast<int>(a.extent(1));
+  LO count = 0;
+  Kokkos::parallel_reduce(
+      "rpc::algebra::count_differences", device_range(static_cast<LO>(a.extent(0))),
+      KOKKOS_LAMBDA(const LO n, LO &part) {
+        bool differs = false;
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) differs = differs || a(n, k, l) != b(n, k, l);
+        part += differs;
+      },
+      count);
+  return count;
+}
+
+/// This rank's number of blocks that are not symmetric.
+LO count_unsymmetric(const DeviceView<double ***> &block)
+{
+  const int dim = static_cast<int>(block.extent(1));
+  LO count = 0;
+  Kokkos::parallel_reduce(
+      "rpc::algebra::count_unsymmetric", device_range(static_cast<LO>(block.extent(0))),
+      KOKKOS_LAMBDA(const LO n, LO &part) {
+        double largest = 0, difference = 0;
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) {
+            const double size = block(n, k, l) < 0 ? -block(n, k, l) : block(n, k, l);
+            const double twist = block(n, k, l) - block(n, l, k);
+            if (size > largest) largest = size;
+            if (twist > difference) difference = twist;
+          }
+        part += difference > rounding_of_symmetry * largest;
+      },
+      count);
+  return count;
+}
+
+/// y at the nodes += alpha U x.
+void add_update(const DeviceView<LO *> &nodes, const DeviceView<double ***> &update, const double alpha,
+                const Vector &x, Vector &y)
+{
+  const int dim = static_cast<int>(update.extent(1));
+  const auto from = device_read(x);
+  const auto to = device_write(y);
+  Kokkos::parallel_for(
+      "rpc::algebra::add_update", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO n) {
+        for (int k = 0; k < dim; ++k) {
+          double sum = 0;
+          for (int l = 0; l < dim; ++l) sum += update(n, k, l) * from(dof(dim, nodes(n), l));
+          to(dof(dim, nodes(n), k)) += alpha * sum;
         }
-        ++at;
       });
   Kokkos::fence();
+}
+void add_update(const DeviceView<LO *> &nodes, const DeviceView<double ***> &update, const double alpha,
+                const MultiVector &x, MultiVector &y)
+{
+  for (std::size_t v = 0; v < x.getNumVectors(); ++v)
+    add_update(nodes, update, alpha, *x.getVector(v), *y.getVectorNonConst(v));
+}
+
+DeviceView<double ***> sum_of(const DeviceView<double ***> &a, const DeviceView<double ***> &b)
+{
+  const int dim = static_cast<int>(a.extent(1));
+  const DeviceView<double ***> sum("rpc::algebra::updated_blocks", a.extent(0), dim, dim);
+  Kokkos::parallel_for(
+      "rpc::algebra::updated_blocks", device_range(static_cast<LO>(a.extent(0))), KOKKOS_LAMBDA(const LO n) {
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) sum(n, k, l) = a(n, k, l) + b(n, k, l);
+      });
+  Kokkos::fence();
+  return sum;
 }
 
 } // namespace
 
-UpdatedOperator::UpdatedOperator(const RCP<CrsMatrix> &K, const NodePoints &points)
-    : UpdatedOperator({RepeatedRows::of(K, points.dim), K->getDomainMap(), K->getColMap(), K->getGraph()->getImporter(),
-                       [K] { return K; }},
-                      points)
+UpdatedOperator::UpdatedOperator(RCP<const StiffnessOperator> K, DeviceView<LO *> nodes)
+    : K_(std::move(K)), nodes_(std::move(nodes)), base_blocks_(K_->diagonal_blocks(nodes_)),
+      update_("rpc::algebra::update", nodes_.extent(0), K_->dofs_per_node(), K_->dofs_per_node())
 {
-  matrix();
-}
-
-UpdatedOperator::UpdatedOperator(UnassembledMatrix K, const NodePoints &points)
-    : rows_(std::move(K.rows)), dofs_(std::move(K.dofs)), columns_(std::move(K.columns)),
-      importer_(std::move(K.importer)), assemble_(std::move(K.assemble)), points_(points),
-      added_("rpc::operator::added", points.size()), written_("rpc::operator::written", points.size()),
-      base_blocks_(own_blocks(points_, rows_)), blocks_("rpc::operator::blocks", points.size(), points.dim, points.dim)
-{
-  Kokkos::deep_copy(blocks_, base_blocks_);
-  lead_ = leads(points_, rows_.num_nodes());
-  own_stiffness_ = own_stiffness_of(points_, base_blocks_);
-  Vector directions(dofs_);
-  add_directions(points_, directions);
-  coupled_stiffness_ = coupled_stiffness_of(points_, rows_, at_columns(columns_, importer_, directions));
-}
-
-const RCP<CrsMatrix> &UpdatedOperator::matrix() const
-{
-  if (!matrix_.is_null()) return matrix_;
-  matrix_ = assemble_();
-  entry_ = own_entries(points_, *matrix_);
-  return matrix_;
-}
-
-void UpdatedOperator::apply_with(const DeviceView<double ***> &blocks, const bool rounded, const MultiVector &x,
-                                 MultiVector &y) const
-{
-  RCP<const MultiVector> columns = Teuchos::rcpFromRef(x);
-  if (!importer_.is_null()) {
-    const auto imported = rcp(new MultiVector(columns_, x.getNumVectors(), false));
-    imported->doImport(x, *importer_, Tpetra::INSERT);
-    columns = imported;
-  }
-  const bool by_rows = rows_.pays();
-  if (!by_rows) matrix()->localApply(*columns, y);
-  for (std::size_t v = 0; v < x.getNumVectors(); ++v) {
-    const auto from = columns->getVector(v);
-    const auto to = y.getVectorNonConst(v);
-    if (rounded)
-      rounded_->apply(*from, *to);
-    else if (by_rows)
-      rows_.apply(*from, *to);
-    if (rounded || (by_rows && !(is_written_ && rows_.reads_matrix())))
-      add_update(points_, lead_, blocks, base_blocks_, *from, *to);
-    else
-      multiply_rows(points_, lead_, entry_, blocks, *matrix(), *from, *to);
-  }
 }
 
 void UpdatedOperator::apply(const MultiVector &x, MultiVector &y, const Teuchos::ETransp, const double alpha,
                             const double beta) const
 {
-  if (!has_changes_ && !rows_.pays()) { // the matrix is H
-    matrix()->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
-  } else if (alpha == 1 && beta == 0) {
-    apply_with(blocks_, false, x, y);
-  } else {
-    MultiVector product(y.getMap(), y.getNumVectors(), false);
-    apply_with(blocks_, false, x, product);
-    y.update(alpha, product, beta);
-  }
-}
-
-void UpdatedOperator::apply_base(const Vector &u, Vector &Ku) const
-{
-  if (is_written_ || rows_.pays())
-    apply_with(base_blocks_, false, u, Ku);
-  else
-    matrix()->apply(u, Ku);
+  K_->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
+  add_update(nodes_, update_, alpha, x, y);
 }
 
 void UpdatedOperator::apply_rounded(const MultiVector &x, MultiVector &y) const
 {
-  if (rounded_)
-    apply_with(blocks_, true, x, y);
-  else
-    apply(x, y);
+  apply_base_rounded(x, y);
+  add_update(nodes_, update_, 1, x, y);
 }
 
 void UpdatedOperator::apply_base_rounded(const MultiVector &x, MultiVector &y) const
 {
-  apply_with(base_blocks_, rounded_ != nullptr, x, y);
+  if (rounded_)
+    K_->apply_rounded(*rounded_, x, y);
+  else
+    K_->apply(x, y);
 }
 
 void UpdatedOperator::allow_rounding(const bool allowed)
 {
-  if (!allowed) rounded_.reset();
-  constexpr bool on_host = Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
-  if (allowed && on_host && !rounded_ && !is_written_ && rows_.reads_matrix() && rows_.num_kinds() == 0 &&
-      rows_.dim() > 1)
-    rounded_ = std::make_shared<RoundedRows>(*matrix(), rows_.dim());
+  if (!allowed)
+    rounded_.reset();
+  else if (!rounded_)
+    rounded_ = K_->rounded_rows();
 }
 
-GO UpdatedOperator::set(const DeviceView<double *> &added)
+GO UpdatedOperator::set(const NodePoints &points, const DeviceView<double ***> &block)
 {
-  const GO changed = sum_all(*getDomainMap()->getComm(), GO(take_over(added, added_)));
-  if (changed == 0) return 0;
-  update_blocks(points_, lead_, added_, base_blocks_, blocks_);
-  has_changes_ = true;
+  const auto next = summed_at_nodes(points, block, nodes_);
+  const GO mine[3] = {count_differences(next, update_), count_unsymmetric(next), count_elsewhere(points, nodes_)};
+  GO all[3];
+  Teuchos::reduceAll(*getDomainMap()->getComm(), Teuchos::REDUCE_SUM, 3, mine, all);
+  RPC_REQUIRE_CODE(all[2] == 0, ExitCode::internal_error,
+                   "operator: " << all[2] << " points lie at nodes without an update");
+  if (all[0] == 0) return 0;
+  update_ = next;
+  symmetric_ = all[1] == 0;
   ++revision_;
-  return changed;
+  return all[0];
 }
 
-void UpdatedOperator::write(const double most)
+DeviceView<double ***> UpdatedOperator::blocks() const
 {
-  const auto [bounded, not_zero] = bound(added_, own_stiffness_, most, written_);
-  has_changes_ = sum_all(*getDomainMap()->getComm(), GO(bounded)) > 0;
-  is_written_ = sum_all(*getDomainMap()->getComm(), GO(not_zero)) > 0;
-  const DeviceView<double ***> blocks("rpc::operator::written_blocks", points_.size(), points_.dim, points_.dim);
-  update_blocks(points_, lead_, written_, base_blocks_, blocks);
-  const auto A = matrix();
-  write_blocks(points_, lead_, entry_, blocks, *A);
-}
-
-DeviceView<LO *> UpdatedOperator::changing_nodes() const
-{
-  return nodes_of_leads(points_, lead_);
-}
-
-DeviceView<double ***> UpdatedOperator::base_blocks() const
-{
-  const auto block = diagonal_blocks(rows_);
-  scatter_blocks(changing_nodes(), base_blocks_, block); // where the matrix may be written
-  return block;
-}
-
-UpdatedOperator::Changes UpdatedOperator::changes() const
-{
-  const auto unwritten = difference(added_, written_);
-  const LO n = count_not_zero(unwritten);
-  const Changes list{DeviceView<LO *>("rpc::operator::changed_node", n),
-                     DeviceView<double **>("rpc::operator::changed_direction", n, points_.dim),
-                     DeviceView<double *>("rpc::operator::changed_stiffness", n)};
-  if (n > 0) list_changes(points_, unwritten, list);
-  return list;
+  return sum_of(base_blocks_, update_);
 }
 
 } // namespace rpc

@@ -1,7 +1,11 @@
 #include "rpc/algebra/updated_operator.hpp"
 
 #include "foundation_scene.hpp"
+#include "rpc/algebra/along_points.hpp"
+#include "rpc/algebra/bounded_update.hpp"
 
+#include <cmath>
+#include <functional>
 #include <gtest/gtest.h>
 
 namespace
@@ -10,36 +14,36 @@ namespace
 using namespace rpc;
 using namespace rpc::test;
 
-/// K of a block with contact points on two of its sides, which share a node, and an operator that starts from it.
+/// K of a block with contact points on two of its sides, which share a node, and an operator on it.
 struct Stiffness {
   Scene scene{std::vector{below(40), beside(40)}};
-  CrsMatrix K{*scene.functional->hessian()->matrix(), Teuchos::Copy};
-  UpdatedOperator H{rcp(new CrsMatrix(K, Teuchos::Copy)), scene.functional->contact()};
+  contact::ContactNodes points = scene.functional->contact();
+  CrsMatrix K{*scene.functional->hessian()->base().matrix(), Teuchos::Copy};
+  RCP<const StiffnessOperator> base = rcp(new StiffnessOperator(rcp(new CrsMatrix(K, Teuchos::Copy)), 2));
+  UpdatedOperator H{base, distinct_nodes({points.node})};
   RCP<Vector> u = scene.vector(1, 0.3);
 
-  /// (contact nodes) value(i) where the node is to be stiffened, 0 at held ones.
-  DeviceView<double *> added(const std::function<double(LO)> &value) const
+  /// (contact nodes) w a(i) m m^T, 0 at held points.
+  DeviceView<double ***> added(const std::function<double(LO)> &a) const
   {
-    const auto fixed = to_host(scene.functional->contact().fixed);
+    const auto fixed = to_host(points.fixed);
+    const auto weight = to_host(points.weight);
     HostView<double *> host("added", fixed.extent(0));
-    for (std::size_t i = 0; i < host.extent(0); ++i) host(i) = fixed(i) ? 0 : value(static_cast<LO>(i));
-    return to_device(host);
+    for (std::size_t i = 0; i < host.extent(0); ++i) host(i) = fixed(i) ? 0 : weight(i) * a(static_cast<LO>(i));
+    return along_directions(points, host);
   }
-  /// K u + sum_i added_i w_i m_i (m_i . u), by hand.
-  Vector by_hand(const DeviceView<double *> &added) const
+  /// K u + sum_i e_i block_i e_i^T u, by hand.
+  Vector by_hand(const DeviceView<double ***> &block) const
   {
     Vector y(u->getMap());
     K.apply(*u, y);
-    const auto &c = scene.functional->contact();
-    const auto node = to_host(c.node);
-    const auto m = to_host(c.direction);
-    const auto w = to_host(c.weight), s = to_host(added);
+    const auto node = to_host(points.node);
+    const auto B = to_host(block);
     const auto x = u->getLocalViewHost(Tpetra::Access::ReadOnly);
     const auto to = y.getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (LO i = 0; i < c.size(); ++i) {
-      const double along = m(i, 0) * x(2 * node(i), 0) + m(i, 1) * x(2 * node(i) + 1, 0);
-      for (int k = 0; k < 2; ++k) to(2 * node(i) + k, 0) += s(i) * w(i) * along * m(i, k);
-    }
+    for (LO i = 0; i < points.size(); ++i)
+      for (int k = 0; k < 2; ++k)
+        for (int l = 0; l < 2; ++l) to(2 * node(i) + k, 0) += B(i, k, l) * x(2 * node(i) + l, 0);
     return y;
   }
   double difference(const Operator &A, const Vector &y) const
@@ -49,18 +53,40 @@ struct Stiffness {
     Au.update(-1., y, 1.);
     return Au.norm2() / y.norm2();
   }
+  GO num_nodes() const { return sum_all(*u->getMap()->getComm(), GO(H.nodes().extent(0))); }
 };
 
-TEST(UpdatedOperator, AppliesWhatWasAddedWhetherWrittenOrNot)
+TEST(UpdatedOperator, AddsTheBlocksOfAllPointsOfANode)
 {
   Stiffness s;
-  const auto some = s.added([](const LO i) { return i % 2 ? 30. : 0.; });
-  EXPECT_GT(s.H.set(some), 0);
-  EXPECT_LT(s.difference(s.H, s.by_hand(some)), 1e-14);
-  EXPECT_LT(s.difference(*s.H.matrix(), s.by_hand(s.added([](LO) { return 0.; }))), 1e-14);
-  s.H.write();
-  EXPECT_LT(s.difference(s.H, s.by_hand(some)), 1e-14);
-  EXPECT_LT(s.difference(*s.H.matrix(), s.by_hand(some)), 1e-14);
+  EXPECT_LT(s.num_nodes(), sum_all(*s.u->getMap()->getComm(), GO(s.points.size()))) << "a node of two sides";
+  const auto some = s.added([](const LO i) { return i % 2 ? 30. : 0.; }), all = s.added([](LO) { return 7.; });
+  for (const auto &block : {some, all}) {
+    EXPECT_GT(s.H.set(s.points, block), 0);
+    EXPECT_LT(s.difference(s.H, s.by_hand(block)), 1e-14);
+    EXPECT_TRUE(s.H.is_symmetric());
+  }
+}
+
+TEST(UpdatedOperator, TakesBlocksThatAreNotSymmetric)
+{
+  Stiffness s;
+  const DeviceView<double ***> block("block", s.points.size(), 2, 2);
+  const auto to = Kokkos::create_mirror_view(block);
+  for (LO i = 0; i < s.points.size(); ++i)
+    for (int k = 0; k < 2; ++k)
+      for (int l = 0; l < 2; ++l) to(i, k, l) = std::sin(1 + i + 2 * k + 5 * l);
+  Kokkos::deep_copy(block, to);
+  s.H.set(s.points, block);
+  EXPECT_LT(s.difference(s.H, s.by_hand(block)), 1e-14);
+  EXPECT_FALSE(s.H.is_symmetric());
+  Vector y(*s.u, Teuchos::Copy), expected(*s.u, Teuchos::Copy); // alpha and beta
+  expected.update(-2., s.by_hand(block), 3.);
+  s.H.apply(*s.u, y, Teuchos::NO_TRANS, -2, 3);
+  y.update(-1., expected, 1.);
+  EXPECT_LT(y.norm2(), 1e-14 * expected.norm2());
+  s.H.set(s.points, s.added([](LO) { return 0.; }));
+  EXPECT_TRUE(s.H.is_symmetric());
 }
 
 TEST(UpdatedOperator, HasARevisionForEachChange)
@@ -68,34 +94,22 @@ TEST(UpdatedOperator, HasARevisionForEachChange)
   Stiffness s;
   const int first = s.H.revision();
   const auto all = s.added([](LO) { return 7.; });
-  const GO free = s.scene.functional->contact().num_total - s.scene.functional->contact().num_fixed;
-  EXPECT_EQ(s.H.set(all), free);
+  EXPECT_GT(s.H.set(s.points, all), 0);
   EXPECT_EQ(s.H.revision(), first + 1);
-  EXPECT_EQ(s.H.set(all), 0);
-  s.H.write();
+  EXPECT_EQ(s.H.set(s.points, all), 0);
   EXPECT_EQ(s.H.revision(), first + 1);
+  const bool has_first = s.points.size() > 0 && s.u->getMap()->getComm()->getRank() == 0;
+  const auto fixed = to_host(s.points.fixed);
+  const GO one = sum_all(*s.u->getMap()->getComm(), GO(has_first && !fixed(0)));
+  EXPECT_EQ(s.H.set(s.points, s.added([&](const LO i) { return has_first && i == 0 ? 6. : 7.; })), one);
+  ASSERT_EQ(one, 1);
 }
 
-TEST(UpdatedOperator, ListsNodesThatDifferFromTheMatrix)
+TEST(UpdatedOperator, RefusesPointsAtOtherNodes)
 {
   Stiffness s;
-  const auto all = s.added([](LO) { return 7.; });
-  const GO free = s.scene.functional->contact().num_total - s.scene.functional->contact().num_fixed;
-  const auto &comm = *s.u->getMap()->getComm();
-  EXPECT_EQ(sum_all(comm, GO(s.H.changes().size())), 0);
-  s.H.set(all);
-  EXPECT_EQ(sum_all(comm, GO(s.H.changes().size())), free);
-  s.H.write();
-  EXPECT_EQ(sum_all(comm, GO(s.H.changes().size())), 0);
-  s.H.set(s.added([](const LO i) { return i == 0 ? 0. : 7.; }));
-  const auto changes = s.H.changes();
-  const auto coefficient = to_host(changes.coefficient), w = to_host(s.scene.functional->contact().weight);
-  const auto node = to_host(changes.node), of = to_host(s.scene.functional->contact().node);
-  ASSERT_LE(changes.size(), 1);
-  if (changes.size() == 1) {
-    EXPECT_EQ(node(0), of(0));
-    EXPECT_DOUBLE_EQ(coefficient(0), -7 * w(0));
-  }
+  UpdatedOperator nowhere(s.base, DeviceView<LO *>());
+  EXPECT_THROW(nowhere.set(s.points, s.added([](LO) { return 1.; })), Error);
 }
 
 TEST(UpdatedOperator, OfLargePenaltiesLeavesNoRoundingInTheElasticProduct)
@@ -103,38 +117,55 @@ TEST(UpdatedOperator, OfLargePenaltiesLeavesNoRoundingInTheElasticProduct)
   Stiffness s;
   Vector Ku(s.u->getMap()), same(s.u->getMap());
   s.K.apply(*s.u, Ku);
-  s.H.set(s.added([](LO) { return 1e12; }));
-  s.H.write();
+  s.H.set(s.points, s.added([](LO) { return 1e12; }));
   s.H.apply_base(*s.u, same);
   same.update(-1., Ku, 1.);
   EXPECT_LE(same.norm2(), 1e-15 * Ku.norm2());
-  s.H.set(s.added([](LO) { return 0.; })); // released, with the penalty still in the matrix
+  s.H.set(s.points, s.added([](LO) { return 0.; }));
   EXPECT_LE(s.difference(s.H, Ku), 1e-15);
 }
 
-TEST(UpdatedOperator, IsWrittenUpToABound)
+TEST(UpdatedOperator, IsWrittenIntoACopyAndLeavesKAsItIs)
 {
   Stiffness s;
-  const auto own = to_host(s.H.own_stiffness());
-  const auto soft_and_hard = [&](const double hard) {
-    return s.added([&](const LO i) { return (i % 2 ? hard : 0.5) * own(i); });
-  };
-  s.H.set(soft_and_hard(100));
-  s.H.write(5);
-  EXPECT_LT(s.difference(s.H, s.by_hand(soft_and_hard(100))), 1e-13);
-  EXPECT_LT(s.difference(*s.H.matrix(), s.by_hand(soft_and_hard(5))), 1e-14);
-  const auto changes = s.H.changes();
-  const auto coefficient = to_host(changes.coefficient);
-  for (LO i = 0; i < changes.size(); ++i) EXPECT_GT(coefficient(i), 0);
+  const auto block = s.added([](const LO i) { return i % 2 ? 30. : 0.; });
+  const auto none = s.added([](LO) { return 0.; });
+  s.H.set(s.points, block);
+  const auto A = s.base->copy();
+  EXPECT_EQ(A->getCrsGraph().get(), s.base->matrix()->getCrsGraph().get());
+  write_update(*A, s.H, s.H.update());
+  EXPECT_LT(s.difference(*A, s.by_hand(block)), 1e-14);
+  EXPECT_LT(s.difference(*s.base, s.by_hand(none)), 1e-14);
+  EXPECT_LT(s.difference(*s.base->matrix(), s.by_hand(none)), 1e-14);
+  EXPECT_LT(s.difference(s.H, s.by_hand(block)), 1e-14);
+}
+
+TEST(UpdatedOperator, HasTheBlocksOfBothParts)
+{
+  Stiffness s;
+  s.H.set(s.points, s.added([](const LO i) { return 10. + i; }));
+  const auto A = s.base->copy();
+  write_update(*A, s.H, s.H.update());
+  const StiffnessOperator sum(A, 2);
+  const auto expected = to_host(sum.diagonal_blocks(s.H.nodes())), blocks = to_host(s.H.blocks());
+  const auto all = to_host(s.base->diagonal_blocks()), base = to_host(s.H.base_blocks());
+  const auto node = to_host(s.H.nodes());
+  for (std::size_t n = 0; n < node.extent(0); ++n)
+    for (int k = 0; k < 2; ++k)
+      for (int l = 0; l < 2; ++l) {
+        EXPECT_EQ(blocks(n, k, l), expected(n, k, l));
+        EXPECT_EQ(base(n, k, l), all(node(n), k, l));
+      }
 }
 
 TEST(UpdatedOperator, OfSweepsBoundsTheEnergyOfAllMovesAtOnce)
 {
   Stiffness s;
-  const auto &c = s.scene.functional->contact();
+  const auto &c = s.points;
   const auto node = to_host(c.node);
   const auto m = to_host(c.direction);
-  const auto kappa = to_host(s.H.coupled_stiffness());
+  const auto kappa = to_host(coupled_stiffness(*s.base, c)), own = to_host(own_stiffness(*s.base, c));
+  const auto weight = to_host(c.weight);
   const auto coords = to_host(s.scene.d.mesh->coords);
   for (const double frequency : {0., 1., 20.}) { // moves together, and against each other
     Vector d(s.u->getMap()), Kd(s.u->getMap());
@@ -147,7 +178,7 @@ TEST(UpdatedOperator, OfSweepsBoundsTheEnergyOfAllMovesAtOnce)
         const double move = std::cos(frequency * coords(node(i), 0));
         for (int k = 0; k < 2; ++k) to(2 * node(i) + k, 0) += move * m(i, k) / (length * length);
         bound += kappa(i) * move * move;
-        alone += to_host(s.H.own_stiffness())(i) * to_host(c.weight)(i) / (length * length) * move * move;
+        alone += own(i) * weight(i) / (length * length) * move * move;
       }
     }
     s.K.apply(d, Kd);
@@ -175,7 +206,7 @@ TEST(UpdatedOperator, RoundsTheBodyButNotTheUpdate)
   const double force = product(false, false).norm2();
   EXPECT_EQ(distance(product(true, false), product(false, false)), 0) << "before it is allowed to";
   s.H.allow_rounding(true);
-  s.H.set(s.added([](LO) { return 1e12; })); // single precision would be off by 1e5
+  s.H.set(s.points, s.added([](LO) { return 1e12; })); // single precision would be off by 1e5
   for (const bool with_update : {false, true})
     EXPECT_LT(distance(product(true, with_update), product(false, with_update)), 1e-6 * force);
   s.H.allow_rounding(false);

@@ -394,14 +394,9 @@ void LoadHistory::go_on_from(Memory memory, std::optional<Memory> before)
 void LoadHistory::start_anew()
 {
   last_forces_ = Teuchos::null;
-  remake(memory_ ? memory_->time : last_.time);
-}
-
-void LoadHistory::remake(const double t)
-{
   on_coarser_mesh_.reset();
-  assembled_before_ += problem_->stiffness()->has_matrix();
-  problem_ = problem_->remade(t);
+  assembled_before_ += problem_->stiffness().has_matrix();
+  problem_ = problem_->remade(memory_ ? memory_->time : last_.time);
 }
 
 StepSolution LoadHistory::advance(const double t, const Progress &progress,
@@ -444,10 +439,6 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
   RCP<const MultiVector> met = memory_ ? memory_->dent : Teuchos::null;
   if (on_foundation) met = met_at(moved_along(*problem_, t, *memory_->displacement));
   Step step = problem_->step(t, met.get());
-  if (!problem_->serves(step)) {
-    remake(t);
-    step = problem_->step(t, met.get());
-  }
   if (now) now(*problem_, step);
   Starts starts{std::exchange(offered_, {}), {}};
   if (memory_) {

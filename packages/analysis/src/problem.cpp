@@ -2,6 +2,7 @@
 
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/core/finite.hpp"
+#include "rpc/fem/surface.hpp"
 
 #include <cmath>
 #include <utility>
@@ -48,6 +49,14 @@ fem::DirichletDofs prescribed_of(const fem::Discretization &d, const Model &mode
   return dirichlet;
 }
 
+/// (n) Owned nodes of some sides, ascending.
+DeviceView<LO *> nodes_of(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides)
+{
+  std::vector<DeviceView<LO *>> lists;
+  for (const mesh::Side *const side : sides) lists.push_back(fem::surface_nodes(d, *side).node);
+  return distinct_nodes(lists);
+}
+
 } // namespace
 
 Model Model::seen_at(const double t) const
@@ -90,11 +99,11 @@ Problem::Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, const sol
   const auto repeated = fem::repeated_stiffness(d, model_.materials, dirichlet);
   const fem::EliminatedStiffness K = repeated ? fem::EliminatedStiffness{} : assembled();
   couplings_ = repeated ? repeated->couplings : K.couplings;
-  const auto points = contact::contact_nodes(d, model_.contact, dirichlet, model_.materials);
-  operator_ = repeated ? rcp(new UpdatedOperator({repeated->rows, d.owned_dofs, d.overlap_dofs, d.dof_import,
-                                                  [assembled] { return assembled().matrix; }},
-                                                 points))
-                       : rcp(new UpdatedOperator(K.matrix, points));
+  const auto stiffness = repeated
+                             ? rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.overlap_dofs, d.dof_import,
+                                                          [assembled] { return assembled().matrix; }}))
+                             : rcp(new StiffnessOperator(K.matrix, d.dim()));
+  hessian_ = rcp(new UpdatedOperator(stiffness, nodes_of(d, contact_sides())));
   solver::MakeMeshLevels levels;
   if (mesh_->may_have_coarser())
     levels = [finest = mesh_, model = model_, prescribed = dirichlet.fixed] {
@@ -103,7 +112,7 @@ Problem::Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, const sol
         finest->forget_coarser(); // prediction has been before, and multigrid needs no more of them
       return made;
     };
-  linear_ = std::make_shared<solver::LinearSolver>(tuned(linear, d.mesh->element), operator_, fem::node_coordinates(d),
+  linear_ = std::make_shared<solver::LinearSolver>(tuned(linear, d.mesh->element), hessian_, fem::node_coordinates(d),
                                                    fem::rigid_body_modes(d), std::move(levels));
 }
 
@@ -118,22 +127,6 @@ Step Problem::step(const double t, const MultiVector *const dents) const
                  [&d] { return fem::node_coordinates(d); });
   step.support = contact::check_support(d, free_parts_, *step.elastic.applied_load, step.contact, now.contact);
   return step;
-}
-
-bool Problem::serves(const Step &step) const
-{
-  const NodePoints &mine = operator_->points(), &other = step.contact;
-  LO differences = mine.size() == other.size() ? 0 : 1;
-  if (differences == 0)
-    Kokkos::parallel_reduce(
-        "rpc::analysis::compare_points", device_range(mine.size()),
-        KOKKOS_LAMBDA(const LO i, LO &count) {
-          bool same = mine.node(i) == other.node(i);
-          for (int k = 0; k < mine.dim; ++k) same = same && mine.direction(i, k) == other.direction(i, k);
-          count += same ? 0 : 1;
-        },
-        differences);
-  return max_all(discretization().mesh->comm(), differences) == 0;
 }
 
 std::shared_ptr<const Problem> Problem::remade(const double t) const

@@ -51,7 +51,7 @@ struct Iterate {
   RCP<Vector> u; // (owned dofs) [m]
 
   Iterate(const Problem &of, const Step &step)
-      : problem(of), functional(std::make_shared<SmoothedFunctional>(step.elastic, step.contact, of.stiffness())),
+      : problem(of), functional(std::make_shared<SmoothedFunctional>(step.elastic, step.contact, of.hessian())),
         u(rcp(new Vector(*step.elastic.dirichlet.value, Teuchos::Copy)))
   {
     if (step.support.by_contact_only) functional->hold_by_contact();

@@ -419,27 +419,70 @@ TEST(LoadHistory, AFoundationThatMovesIsABodyThatMovesTheOtherWay)
   }
 }
 
-TEST(LoadHistory, AFoundationThatTurnsItsNormalsIsAssembledForAnew)
+/// A ball below the block that moves along it: contact acts at other nodes and in other directions at each time.
+analysis::Model over_a_ball(const contact::Normal normal, const double radius)
 {
-  auto model = column(laws[0], [](double) { return 0.02; });
+  auto model = column(laws[1], [](double) { return 0.02; });
   auto &ball = model.contact[0].obstacle;
   ball.kind = contact::Obstacle::Kind::sphere;
-  ball.radius = 3;
-  ball.path[0] = in_time([](const Point &, const double t) { return 0.8 + 0.1 * t; });
-  ball.path[1] = ScalarField(-3.);
-  ball.point = {0.9, -3, 0};
-  model.contact[0].normal = contact::Normal::foundation;
-  auto history = history_of(model);
-  advance(history, 1);
-  EXPECT_EQ(history.matrix_assemblies(), 1);
-  const StepSolution s = advance(history, 2);
-  EXPECT_EQ(history.matrix_assemblies(), 2);
-  const auto normal = to_host(s.functional->contact().normal);
-  const auto node = to_host(s.functional->contact().node);
-  const auto coords = to_host(history.problem().discretization().mesh->coords);
-  for (std::size_t i = 0; i < node.extent(0); ++i) {
-    const double dx = coords(node(i), 0) - 1.0, length = std::hypot(dx, 3.);
-    EXPECT_NEAR(normal(i, 0), -dx / length, 1e-14);
+  ball.radius = radius;
+  ball.path[0] = in_time([](const Point &, const double t) { return 0.7 + 0.06 * t; });
+  ball.path[1] = ScalarField(-radius);
+  ball.point = {0.76, -radius, 0};
+  model.contact[0].normal = normal;
+  return model;
+}
+
+TEST(LoadHistory, AFoundationThatTurnsItsNormalsIsFollowed)
+{
+  auto history = history_of(over_a_ball(contact::Normal::foundation, 3));
+  for (const double t : {1., 2.}) {
+    const StepSolution s = advance(history, t);
+    const auto normal = to_host(s.functional->contact().normal);
+    const auto node = to_host(s.functional->contact().node);
+    const auto coords = to_host(history.problem().discretization().mesh->coords);
+    for (std::size_t i = 0; i < node.extent(0); ++i) {
+      const double dx = coords(node(i), 0) - (0.7 + 0.06 * t), length = std::hypot(dx, 3.);
+      EXPECT_NEAR(normal(i, 0), -dx / length, 1e-14);
+    }
+  }
+}
+
+/// Ten steps with one stiffness and one multigrid, or with new ones for each of them. With the body's normals only the nodes above
+/// the ball are points.
+TEST(LoadHistory, AFoundationThatTurnsItsNormalsNeedsNoOtherMatrixAndNoOtherMultigrid)
+{
+  for (const auto normal : {contact::Normal::foundation, contact::Normal::surface}) {
+    for (const bool box : {true, false}) {
+      solver::LinearSolverOptions linear;
+      linear.multigrid = box ? "mesh" : "algebraic";
+      const auto model = over_a_ball(normal, 0.5);
+      const auto history = [&] {
+        return LoadHistory(std::make_shared<Problem>(block(4), model, linear, 1), close(), 0);
+      };
+      LoadHistory one = history(), anew = history();
+      int setups = 0;
+      LO most = 0;
+      for (int step = 1; step <= 10; ++step) {
+        if (step > 1) anew.start_anew();
+        const StepSolution s = advance(one, step);
+        advance(anew, step);
+        setups += one.last().preconditioner_setups;
+        const LO points = sum_all(one.problem().discretization().mesh->comm(), s.functional->contact().size());
+        most = std::max(most, points);
+        const analysis::Energies &x = one.last().energies, &y = anew.last().energies;
+        EXPECT_GT(y.strain, 0);
+        EXPECT_GT(y.dissipated, 0);
+        EXPECT_NEAR(x.strain, y.strain, 1e-9 * y.strain) << step;
+        EXPECT_NEAR(x.work, y.work, 1e-9 * std::abs(y.work)) << step;
+        EXPECT_NEAR(x.dissipated, y.dissipated, 1e-9 * y.dissipated) << step;
+      }
+      EXPECT_EQ(one.matrix_assemblies(), box ? 0 : 1);
+      EXPECT_EQ(anew.matrix_assemblies(), box ? 0 : 10);
+      if (box) EXPECT_EQ(setups, 1);
+      EXPECT_LE(setups, 2) << "corrections around the contact nodes may wear out once";
+      if (normal == contact::Normal::surface) EXPECT_LT(most, 49) << "points among the 49 nodes of the side";
+    }
   }
 }
 

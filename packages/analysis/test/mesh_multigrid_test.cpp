@@ -1,8 +1,10 @@
 #include "rpc/solver/mesh_multigrid.hpp"
 
+#include "rpc/algebra/along_points.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/mesh/box.hpp"
 #include "rpc/solver/linear_solver.hpp"
+#include "updated.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <algorithm>
@@ -26,6 +28,7 @@ struct Block {
   fem::Discretization d;
   analysis::Model model;
   fem::DirichletDofs dirichlet;
+  contact::ContactNodes points;
   RCP<UpdatedOperator> H;
 
   /// @param cells   of the lattice, for each direction
@@ -51,7 +54,8 @@ struct Block {
     model.contact = {foundation};
     dirichlet = fem::dirichlet_dofs(d, model.dirichlet);
     auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), dirichlet).matrix;
-    H = rcp(new UpdatedOperator(K, contact::contact_nodes(d, model.contact, dirichlet, model.materials)));
+    points = contact::contact_nodes(d, model.contact, dirichlet, model.materials);
+    H = test::updated(K, points);
   }
   MeshLevels levels() const
   {
@@ -62,13 +66,12 @@ struct Block {
   /// Contact nodes for which `is_closed` holds at their x are closed: 1e5 times as stiff as they are.
   void close(const std::function<bool(double)> &is_closed) const
   {
-    const NodePoints &points = H->points();
     const auto node = to_host(points.node);
-    const auto own = to_host(H->own_stiffness());
+    const auto own = to_host(own_stiffness(H->base(), points)), weight = to_host(points.weight);
     const auto coords = to_host(d.mesh->coords);
     HostView<double *> added("added", points.size());
-    for (LO i = 0; i < points.size(); ++i) added(i) = is_closed(coords(node(i), 0)) ? 1e5 * own(i) : 0;
-    H->set(to_device(added));
+    for (LO i = 0; i < points.size(); ++i) added(i) = is_closed(coords(node(i), 0)) ? 1e5 * own(i) * weight(i) : 0;
+    H->set(points, test::along_directions(points, added));
   }
   void close_half() const
   {
@@ -368,8 +371,7 @@ TEST(LinearSolver, TellsWhereFewUnknownsHaveNoFactor)
   K->resumeFill();
   K->scale(-1.);
   K->fillComplete();
-  const auto H = rcp(new UpdatedOperator(
-      K, contact::contact_nodes(block.d, block.model.contact, block.dirichlet, block.model.materials)));
+  const auto H = test::updated(K, block.points);
   LinearSolver solver({}, H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d));
   const Vector b = block.vector(13);
   Vector x(b.getMap());

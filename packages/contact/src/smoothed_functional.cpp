@@ -1,5 +1,6 @@
 #include "rpc/contact/smoothed_functional.hpp"
 
+#include "rpc/algebra/along_points.hpp"
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/core/parallel.hpp"
 
@@ -100,6 +101,20 @@ DeviceView<double *> added_stiffness(const ContactNodes &c, const DeviceView<Sta
       });
   Kokkos::fence();
   return added;
+}
+
+/// (contact nodes, dim, dim) What is added to the blocks of K, a w m m^T.
+DeviceView<double ***> added_blocks(const ContactNodes &c, const DeviceView<double *> &added)
+{
+  const DeviceView<double ***> block("rpc::contact::added_blocks", c.size(), c.dim, c.dim);
+  Kokkos::parallel_for(
+      "rpc::contact::added_blocks", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k)
+          for (int l = 0; l < c.dim; ++l)
+            block(i, k, l) = added(i) * c.weight(i) * c.direction(i, k) * c.direction(i, l);
+      });
+  Kokkos::fence();
+  return block;
 }
 
 /// This rank's sum_i w_i Psi_i(v_i) (smoothed) or sum_i w_i (lambda_i v_i - psi_i*(lambda_i)).
@@ -407,7 +422,8 @@ LineModel::Value LineModel::at(const double t) const
 SmoothedFunctional::SmoothedFunctional(fem::ElasticProblem problem, ContactNodes contact, RCP<UpdatedOperator> hessian)
     : comm_(hessian->getDomainMap()->getComm()), problem_(std::move(problem)), contact_(std::move(contact)),
       lambda_("rpc::contact::multiplier", contact_.size()), active_set_("rpc::contact::active_set", contact_.size()),
-      hessian_(std::move(hessian))
+      hessian_(std::move(hessian)), own_(own_stiffness(hessian_->base(), contact_)),
+      coupled_(coupled_stiffness(hessian_->base(), contact_))
 {
   Vector applied(*problem_.applied_load, Teuchos::Copy), lifted(*problem_.load, Teuchos::Copy);
   fem::clear_prescribed(problem_.dirichlet, applied);
@@ -417,7 +433,7 @@ SmoothedFunctional::SmoothedFunctional(fem::ElasticProblem problem, ContactNodes
   const double weight = sum_all(*comm_, free_weight(contact_));
   pressure_bound_ = weight > 0 ? beyond_reach * lifted.norm1() / weight : 0;
   reset_multipliers();
-  contact_ = with_penalties(contact_, hessian_->own_stiffness());
+  contact_ = with_penalties(contact_, own_);
   shifted_ = contact_;
   load_ = problem_.load;
 }
@@ -435,7 +451,7 @@ void SmoothedFunctional::step_taken(const double length)
 bool SmoothedFunctional::raise_penalty()
 {
   const ContactNodes c = contact_;
-  const auto own = hessian_->own_stiffness();
+  const auto own = own_;
   LO raised = 0;
   Kokkos::parallel_reduce(
       "rpc::contact::raise_penalty", device_range(c.size()),
@@ -453,7 +469,7 @@ bool SmoothedFunctional::raise_penalty()
 
 GO SmoothedFunctional::update_stiffness()
 {
-  return hessian_->set(added_stiffness(contact_, active_set_, spring_));
+  return hessian_->set(contact_, added_blocks(contact_, added_stiffness(contact_, active_set_, spring_)));
 }
 
 void SmoothedFunctional::start_from(const ContactState &state, Vector &u)
@@ -538,7 +554,7 @@ void SmoothedFunctional::sweep(Vector &u) const
 {
   Vector G(u.getMap());
   elastic_gradient(u, G);
-  move_points(shifted_, lambda_, hessian_->coupled_stiffness(), G, u);
+  move_points(shifted_, lambda_, coupled_, G, u);
 }
 
 GO SmoothedFunctional::update_hessian(const Vector &u)
@@ -563,7 +579,7 @@ ActiveSetChoice SmoothedFunctional::choose_active_set(const Vector &u, const dou
   if (has_active_set_) {
     choice.pressure = active_set_pressures(c, lambda_, u, active_set_);
     const double bound = negligible * max_all(*comm_, largest_pressure(c, choice.pressure));
-    next_states(c, u, active_set_, choice.pressure, hessian_->own_stiffness(), bound, next);
+    next_states(c, u, active_set_, choice.pressure, own_, bound, next);
   } else {
     first_states(c, u, lambda_, spring_ > 0 && !warm_start_, next);
   }
@@ -700,7 +716,7 @@ double SmoothedFunctional::pressure_error(const Vector &u) const
   const ContactNodes c = shifted_;
   const auto lambda = lambda_;
   const auto active = active_set_;
-  const auto own = hessian_->own_stiffness();
+  const auto own = own_;
   const auto x = device_read(u);
   double error = 0, largest = 0;
   Kokkos::parallel_reduce(

@@ -2,6 +2,7 @@
 
 #include "dense.hpp"
 #include "foundation_scene.hpp"
+#include "rpc/algebra/bounded_update.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ struct Judged : Scene {
   DenseInverse inverse;
 
   Judged(const std::vector<contact::ContactOptions> &foundations, const fem::DirichletCondition &condition)
-      : Scene(foundations, condition), K(*functional->hessian()->matrix(), Teuchos::Copy), inverse(K)
+      : Scene(foundations, condition), K(*functional->hessian()->base().matrix(), Teuchos::Copy), inverse(K)
   {
   }
   explicit Judged(const std::vector<contact::ContactOptions> &foundations = {below(40)}, const Point &top = {})
@@ -79,8 +80,10 @@ struct Judged : Scene {
       for (int newton = 0; newton < 30; ++newton) {
         functional->update_hessian(*u);
         functional->gradient(*u, F);
-        functional->hessian()->write();
-        Vector d = DenseInverse(*functional->hessian()->matrix()).times(F);
+        const UpdatedOperator &H = *functional->hessian();
+        const auto A = H.base().copy();
+        write_update(*A, H, H.update());
+        Vector d = DenseInverse(*A).times(F);
         d.scale(-1.);
         u->update(step_along(functional->along(*u, d, F)), d, 1.);
         if (d.normInf() < 1e-15) break;

@@ -201,8 +201,7 @@ struct SolvedOnDents {
     const auto nodes = contact::contact_nodes(scene.d, options(), problem.dirichlet, scene.material, dents.get());
     const auto K =
         fem::eliminate_dirichlet(scene.d, fem::assemble_stiffness(scene.d, scene.material), problem.dirichlet);
-    scene.functional =
-        std::make_shared<contact::SmoothedFunctional>(problem, nodes, rcp(new UpdatedOperator(K.matrix, nodes)));
+    scene.functional = std::make_shared<contact::SmoothedFunctional>(problem, nodes, test::updated(K.matrix, nodes));
     u = scene.vector(0.08, 3.1);
     for (int k = 0; k < 400; ++k) scene.functional->update_multipliers(*u); // to the law, at this u
     const auto &mesh = *scene.d.mesh;

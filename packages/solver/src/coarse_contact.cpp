@@ -226,7 +226,7 @@ PointBlocks blocks_of(const PointSupports &points, const CrsMatrix &A)
   return blocks;
 }
 
-/// values <- base + sum over parts of stiffness times coefficient m m^T.
+/// values <- base + sum over parts of coefficient times the point's update.
 template <class Values>
 struct WriteBlocks {
   int dim;
@@ -236,9 +236,8 @@ struct WriteBlocks {
   DeviceView<std::size_t *> begin;  // (blocks + 1)
   DeviceView<int *> point;          // (parts)
   DeviceView<double *> coefficient; // (parts)
-  DeviceView<double **> direction;  // (points, dim)
   DeviceView<char *> prescribed;    // (columns)
-  DeviceView<double *> stiffness;   // (points)
+  DeviceView<double ***> update;    // (points, dim, dim)
   Values values;                    // (matrix entries)  out
 
   KOKKOS_FUNCTION void operator()(const LO b) const
@@ -246,9 +245,8 @@ struct WriteBlocks {
     double block[3][3] = {};
     for (std::size_t k = begin(b); k < begin(b + 1); ++k) {
       const int p = point(k);
-      const double scaled = stiffness(p) * coefficient(k);
       for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) block[i][j] += scaled * direction(p, i) * direction(p, j);
+        for (int j = 0; j < dim; ++j) block[i][j] += coefficient(k) * update(p, i, j);
     }
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) {
@@ -279,20 +277,15 @@ void multiply_rows(const CrsMatrix &A, const int dim, const DeviceView<LO *> &no
 
 } // namespace
 
-PointSupports point_supports(const NodePoints &points, const Map &dofs)
+PointSupports point_supports(const DeviceView<LO *> &nodes, const int dim, const Map &dofs)
 {
-  const auto node = to_host(points.node);
-  const auto direction = to_host(points.direction);
+  const auto node = to_host(nodes);
   PointSupports result;
-  result.dim = points.dim;
+  result.dim = dim;
   std::vector<GO> gids;
-  std::vector<double> along;
-  for (LO i = 0; i < points.size(); ++i) {
-    gids.push_back(node_of(points.dim, dofs.getGlobalElement(dof(points.dim, node(i), 0))));
-    for (int k = 0; k < points.dim; ++k) along.push_back(direction(i, k));
-  }
+  for (std::size_t i = 0; i < node.extent(0); ++i)
+    gids.push_back(node_of(dim, dofs.getGlobalElement(dof(dim, node(i), 0))));
   result.node = gathered_by_all(*dofs.getComm(), std::move(gids));
-  result.direction = gathered_by_all(*dofs.getComm(), std::move(along));
   result.weight.assign(result.node.size(), 1.);
   for (std::size_t i = 0; i < result.node.size(); ++i) result.begin.push_back(i + 1);
   return result;
@@ -303,7 +296,6 @@ PointSupports coarser(const PointSupports &fine, const CrsMatrix &interpolation)
   const Rows rows = rows_of(interpolation, std::set<GO>(fine.node.begin(), fine.node.end()));
   PointSupports coarse;
   coarse.dim = fine.dim;
-  coarse.direction = fine.direction;
   std::vector<std::pair<GO, double>> support;
   for (int i = 0; i < fine.size(); ++i) {
     support.clear();
@@ -344,10 +336,6 @@ CoarseContact::CoarseContact(const PointSupports &points, RCP<CrsMatrix> A, cons
     }
   for (std::size_t k = 0; k < blocks.own.size(); ++k)
     for (int i = 0; i < dim_; ++i) own_entry(k, i) = entry(blocks.own[k], i);
-  direction_ = DeviceView<double **>("rpc::solver::point_direction", points.size(), dim_);
-  const auto direction = Kokkos::create_mirror_view(direction_);
-  for (int p = 0; p < points.size(); ++p)
-    for (int k = 0; k < dim_; ++k) direction(p, k) = points.direction[static_cast<std::size_t>(dim_) * p + k];
   row_ = device_values(blocks.row, "rpc::solver::coarse_row");
   column_ = device_values(blocks.column, "rpc::solver::coarse_column");
   nodes_ = device_values(blocks.nodes, "rpc::solver::coarse_nodes");
@@ -357,7 +345,6 @@ CoarseContact::CoarseContact(const PointSupports &points, RCP<CrsMatrix> A, cons
   Kokkos::deep_copy(entry_, entry);
   Kokkos::deep_copy(base_, base);
   Kokkos::deep_copy(own_entry_, own_entry);
-  Kokkos::deep_copy(direction_, direction);
 }
 
 void CoarseContact::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
@@ -377,13 +364,12 @@ void CoarseContact::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp
   }
 }
 
-void CoarseContact::write(const DeviceView<double *> &stiffness)
+void CoarseContact::write(const DeviceView<double ***> &update)
 {
   const auto values = A_->getLocalMatrixDevice().values;
   Kokkos::parallel_for("rpc::solver::write_contact", device_range(static_cast<LO>(row_.extent(0))),
                        WriteBlocks<std::decay_t<decltype(values)>>{dim_, row_, column_, entry_, base_, begin_, point_,
-                                                                   coefficient_, direction_, prescribed_, stiffness,
-                                                                   values});
+                                                                   coefficient_, prescribed_, update, values});
   Kokkos::fence();
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "rpc/algebra/node_points.hpp"
 #include "rpc/algebra/repeated_rows.hpp"
 #include "rpc/core/tpetra.hpp"
 
@@ -9,20 +8,19 @@
 namespace rpc::solver
 {
 
-/// The contact points of all ranks, rank after rank, with their supports on one mesh: the displacement of point i is
+/// The contact nodes of all ranks, rank after rank, with their supports on one mesh: the displacement of node i is
 /// sum_k weight[k] u(node[k]), k from begin[i] to begin[i + 1].
 struct PointSupports {
   int dim = 2;
   std::vector<std::size_t> begin{0}; ///< (points + 1)
   std::vector<GO> node;              ///< (entries) gids
   std::vector<double> weight;        ///< (entries)
-  std::vector<double> direction;     ///< (points * dim) m_i
 
   int size() const { return static_cast<int>(begin.size()) - 1; }
 };
 
-/// Those on the mesh whose nodes the points are; collective.
-PointSupports point_supports(const NodePoints &points, const Map &dofs);
+/// Those on the mesh whose nodes these are; collective.
+PointSupports point_supports(const DeviceView<LO *> &nodes, int dim, const Map &dofs);
 
 /// The same points on the next coarser mesh; collective.
 /// @param interpolation  (nodes of the mesh x nodes of the coarser one)
@@ -30,7 +28,7 @@ PointSupports coarser(const PointSupports &fine, const CrsMatrix &interpolation)
 
 /// The matrix of a coarse mesh with contact: A and, with P the interpolation to the finest mesh,
 ///
-///     P^T (sum_i stiffness_i m_i m_i^T) P.                                                      doc/theory.md (4.7a)
+///     P^T (sum_i e_i U_i e_i^T) P.                                                              doc/theory.md (4.7a)
 ///
 /// The sum is written into the entries of the nodes around the points, in place. Couplings of nodes that share no cell of the coarse mesh are
 /// replaced by their bound on the diagonal; they occur where meshes are not nested.
@@ -46,8 +44,8 @@ public:
   RCP<const Map> getDomainMap() const override { return A_->getDomainMap(); }
   RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
 
-  /// @param stiffness  (points of all ranks) [N/m] >= 0
-  void write(const DeviceView<double *> &stiffness);
+  /// @param update  (points of all ranks, dim, dim) [N/m]
+  void write(const DeviceView<double ***> &update);
 
   /// (n) Owned nodes with entries that change, ascending.
   const DeviceView<LO *> &nodes() const { return nodes_; }
@@ -66,7 +64,6 @@ private:
   DeviceView<std::size_t *> begin_;      // (blocks + 1) where a block's parts begin
   DeviceView<int *> point_;              // (parts)
   DeviceView<double *> coefficient_;     // (parts) product of the weights at both nodes
-  DeviceView<double **> direction_;      // (points, dim)
   DeviceView<char *> prescribed_;        // (columns of A)
   DeviceView<LO *> nodes_;               // (n)
   DeviceView<std::size_t **> own_entry_; // (n, dim) where the node's own block begins

@@ -4,6 +4,7 @@
 #include "local_correction.hpp"
 #include "muelu_parameters.hpp"
 #include "multigrid.hpp"
+#include "rpc/algebra/bounded_update.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -212,6 +213,8 @@ void check_belos(const std::string &method, const Teuchos::ParameterList &user)
 
 struct LinearSolver::Impl {
   RCP<UpdatedOperator> H;
+  RCP<CrsMatrix> matrix;          // what algebraic preconditioners are made for; null: none was made yet
+  DeviceView<double ***> written; // (nodes of H, dim, dim) the update in it
   RCP<MultiVector> coordinates, null_space;
   Teuchos::ParameterList muelu;
   MakeMeshLevels make_levels;       // null: the hierarchy is algebraic
@@ -319,14 +322,20 @@ const MultiVector &LinearSolver::coordinates() const
 void LinearSolver::set_up()
 {
   RCP<Multigrid> &multigrid = impl_->preconditioner->multigrid;
-  const RCP<CrsMatrix> &A = impl_->H->matrix();
+  const UpdatedOperator &H = *impl_->H;
+  RCP<CrsMatrix> &A = impl_->matrix;
+  if (A.is_null()) A = H.base().copy();
+  const auto write = [&](const DeviceView<double ***> &update) {
+    impl_->written = update;
+    write_update(*A, H, update);
+  };
   auto &correction = impl_->preconditioner->correction;
   correction.reset();
   if (!impl_->made_for_each_state) {
-    impl_->H->write(most_stiffness);
-    correction = LocalCorrection::around(*impl_->H);
+    write(bounded_update(H, most_stiffness));
+    correction = LocalCorrection::around(H, *A, impl_->written);
   }
-  if (!correction) impl_->H->write();
+  if (!correction) write(bounded_update(H));
   if (factor(A)) return;
   impl_->renewed = !multigrid.is_null() && impl_->muelu.get<std::string>("reuse: type") != "none" && renew(A);
   if (!impl_->renewed) {
@@ -419,9 +428,9 @@ void LinearSolver::prepare()
   auto &correction = impl_->preconditioner->correction;
   bool fits = false;
   if (exists && !impl_->worn && !impl_->made_for_each_state) {
-    correction = LocalCorrection::around(*impl_->H);
+    correction = LocalCorrection::around(*impl_->H, *impl_->matrix, impl_->written);
     counts_.local_corrections += correction.has_value();
-    fits = correction || sum_all(*impl_->H->getDomainMap()->getComm(), GO(impl_->H->changes().size())) == 0;
+    fits = correction || num_changes(*impl_->H, impl_->written) == 0;
     impl_->fresh = false;
   }
   if (!fits) {
@@ -517,7 +526,6 @@ LinearSolver::Result LinearSolver::solve_by_meshes(const Vector &b, Vector &x, c
     impl_->preconditioner->correction.reset();
     impl_->make_levels = levels;
     impl_->revision = -1;
-    impl_->H->write(0);
     counts_.fallback.clear();
   }
   return other;

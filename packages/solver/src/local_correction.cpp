@@ -1,5 +1,6 @@
 #include "local_correction.hpp"
 
+#include "rpc/algebra/bounded_update.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/core/sparse_rows.hpp"
 
@@ -22,8 +23,70 @@ constexpr int layers_2d = 2, layers_3d = 0;
 // takes.
 constexpr double work_per_row = 3e3;
 
+/// Nodes where two updates differ, and by what. Of this rank.
+struct Changes {
+  DeviceView<LO *> node;        // (n) owned nodes, ascending
+  DeviceView<double ***> block; // (n, dim, dim)
+
+  LO size() const { return static_cast<LO>(node.extent(0)); }
+};
+
+/// (nodes, dim, dim) The symmetric part of H's update less what was written.
+DeviceView<double ***> differences(const UpdatedOperator &H, const DeviceView<double ***> &written)
+{
+  const DeviceView<double ***> rest = bounded_update(H);
+  const int dim = H.dofs_per_node();
+  Kokkos::parallel_for(
+      "rpc::solver::differences", device_range(static_cast<LO>(rest.extent(0))), KOKKOS_LAMBDA(const LO n) {
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) rest(n, k, l) -= written(n, k, l);
+      });
+  Kokkos::fence();
+  return rest;
+}
+
+KOKKOS_INLINE_FUNCTION bool is_zero(const DeviceView<double ***> &block, const LO n)
+{
+  for (std::size_t k = 0; k < block.extent(1); ++k)
+    for (std::size_t l = 0; l < block.extent(2); ++l)
+      if (block(n, k, l) != 0) return false;
+  return true;
+}
+
+LO count_not_zero(const DeviceView<double ***> &block)
+{
+  LO count = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::count_changes", device_range(static_cast<LO>(block.extent(0))),
+      KOKKOS_LAMBDA(const LO n, LO &part) { part += !is_zero(block, n); }, count);
+  return count;
+}
+
+Changes changes_of(const UpdatedOperator &H, const DeviceView<double ***> &written)
+{
+  const auto rest = differences(H, written);
+  const auto nodes = H.nodes();
+  const int dim = H.dofs_per_node();
+  const LO n = count_not_zero(rest);
+  const Changes list{DeviceView<LO *>("rpc::solver::changed_node", n),
+                     DeviceView<double ***>("rpc::solver::changed_block", n, dim, dim)};
+  Kokkos::parallel_scan(
+      "rpc::solver::list_changes", device_range(static_cast<LO>(rest.extent(0))),
+      KOKKOS_LAMBDA(const LO i, LO &at, const bool last) {
+        if (is_zero(rest, i)) return;
+        if (last) {
+          list.node(at) = nodes(i);
+          for (int k = 0; k < dim; ++k)
+            for (int l = 0; l < dim; ++l) list.block(at, k, l) = rest(i, k, l);
+        }
+        ++at;
+      });
+  Kokkos::fence();
+  return list;
+}
+
 /// (owned dofs) 1 at the changed nodes, else 0.
-void mark_changed(const UpdatedOperator::Changes &changes, const int dim, Vector &mark)
+void mark_changed(const Changes &changes, const int dim, Vector &mark)
 {
   const auto to = device_write(mark);
   const auto node = changes.node;
@@ -119,7 +182,7 @@ PatchColumns patch_columns(const CrsMatrix &A, const Vector &place)
 }
 
 /// Adds the changes, which lie in the diagonal blocks of patch nodes, to the entries of their rows.
-void add_changes(const UpdatedOperator::Changes &changes, const int dim, const Vector &place, const PatchColumns &list)
+void add_changes(const Changes &changes, const int dim, const Vector &place, const PatchColumns &list)
 {
   const auto at = device_read(place);
   const LO num_rows = static_cast<LO>(list.row.extent(0));
@@ -137,8 +200,7 @@ void add_changes(const UpdatedOperator::Changes &changes, const int dim, const V
         for (int k = 0; k < dim; ++k)
           for (std::size_t e = list.begin(low + k); e < list.begin(low + k + 1); ++e)
             for (int l = 0; l < dim; ++l)
-              if (list.column(e) == static_cast<int>(at(first + l)) - 1)
-                add_shared(list.value(e), changes.coefficient(i) * changes.direction(i, k) * changes.direction(i, l));
+              if (list.column(e) == static_cast<int>(at(first + l)) - 1) list.value(e) += changes.block(i, k, l);
       });
   Kokkos::fence();
 }
@@ -240,14 +302,18 @@ DeviceView<double *> times_columns(const PatchEntries &list, const int size, con
 
 } // namespace
 
-std::optional<LocalCorrection> LocalCorrection::around(const UpdatedOperator &H)
+GO num_changes(const UpdatedOperator &H, const DeviceView<double ***> &written)
+{
+  return sum_all(*H.getDomainMap()->getComm(), GO(count_not_zero(differences(H, written))));
+}
+
+std::optional<LocalCorrection> LocalCorrection::around(const UpdatedOperator &H, const CrsMatrix &A,
+                                                       const DeviceView<double ***> &written)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::local_correction"));
-  const CrsMatrix &A = *H.matrix();
   const Comm &comm = *A.getComm();
-  const auto changes = H.changes();
-  const GO num_changes = sum_all(comm, GO(changes.size()));
-  if (num_changes == 0) return std::nullopt;
+  const Changes changes = changes_of(H, written);
+  if (sum_all(comm, GO(changes.size())) == 0) return std::nullopt;
   Vector place(A.getRowMap());
   mark_changed(changes, H.dofs_per_node(), place);
   for (int layer = 0; layer < (H.dofs_per_node() == 2 ? layers_2d : layers_3d); ++layer) add_layer(A, place);

@@ -24,7 +24,10 @@ struct PatchEntries {
   DeviceView<double *> value;      ///< (entries)
 };
 
-/// Carries a preconditioner M of a stiffness's matrix over to the stiffness itself, H, by exact solves on a patch, the
+/// Number of nodes of all ranks at which the symmetric part of H's update is another one than what was written; collective.
+GO num_changes(const UpdatedOperator &H, const DeviceView<double ***> &written);
+
+/// Carries a preconditioner M of a matrix A over to the stiffness H, by exact solves on a patch, the
 /// unknowns of the contact nodes where the two differ and, in the plane, of some layers of cells around them:
 ///
 ///     B = Q + (I - Q H) M (I - H Q),    Q = R^T (R H R^T)^-1 R                                    doc/theory.md (4.8)
@@ -33,8 +36,11 @@ struct PatchEntries {
 class LocalCorrection
 {
 public:
-  /// Collective. @return nothing where H is its matrix, or the patch would be too large
-  static std::optional<LocalCorrection> around(const UpdatedOperator &H);
+  /// Collective. Of an update that is not symmetric it takes the symmetric part.
+  /// @param A        K with an earlier update in it   @param written  (nodes of H, dim, dim) that one, symmetric
+  /// @return nothing where H is A, or the patch would be too large
+  static std::optional<LocalCorrection> around(const UpdatedOperator &H, const CrsMatrix &A,
+                                               const DeviceView<double ***> &written);
 
   /// y <- B x; collective.
   void apply(const Operator &M, const Vector &x, Vector &y) const;

@@ -4,7 +4,8 @@
 #include "coarse_contact.hpp"
 #include "node_interpolation.hpp"
 #include "node_smoother.hpp"
-#include "rpc/core/device_values.hpp"
+#include "rpc/algebra/bounded_update.hpp"
+#include "rpc/core/math.hpp"
 #include "rpc/core/parallel.hpp"
 
 #include <Tpetra_RowMatrixTransposer.hpp>
@@ -25,7 +26,7 @@ constexpr NodeSmoother::Options order_one{3, 10}, order_two{3, 16};
 // Bound of the largest eigenvalue of D^-1 C for contact C alone: it is that of an interpolation's mass on a facet, (3/2)^2 on
 // quadrilaterals, 2 on triangles, 3/2 on edges.                                                                  (4.7c)
 constexpr double largest_of_contact = 2.25;
-// Closed points count on coarse meshes as so many times their own stiffness. With a quarter or four times that, CG takes a fourth more
+// The update of a node counts on coarse meshes as so many times its own stiffness. With a quarter or four times that, CG takes a fourth more
 // iterations.                                                                                                    (4.7b)
 constexpr double most_on_coarse_meshes = 1;
 
@@ -106,33 +107,47 @@ private:
   std::optional<BandCholesky> factor_;
 };
 
-/// (points of all ranks) What contact adds at each point on coarse meshes [N/m].                                  (4.7b)
-DeviceView<double *> stiffness_of_all(const UpdatedOperator &H)
+/// (nodes of all ranks, dim, dim) The blocks of all ranks.
+DeviceView<double ***> of_all(const Comm &comm, const DeviceView<double ***> &block)
 {
-  const auto added = to_host(H.added());
-  const auto own = to_host(H.own_stiffness());
-  const auto weight = to_host(H.points().weight);
+  const auto from = to_host(block);
+  const int dim = static_cast<int>(block.extent(1));
   std::vector<double> mine;
-  for (std::size_t i = 0; i < added.extent(0); ++i)
-    mine.push_back(added(i) > 0 ? std::min(added(i), most_on_coarse_meshes * own(i)) * weight(i) : 0);
-  return device_values(gathered_by_all(*H.getDomainMap()->getComm(), std::move(mine)),
-                       "rpc::solver::contact_stiffness");
+  for (std::size_t n = 0; n < from.extent(0); ++n)
+    for (int k = 0; k < dim; ++k)
+      for (int l = 0; l < dim; ++l) mine.push_back(from(n, k, l));
+  const auto all = gathered_by_all(comm, std::move(mine));
+  const DeviceView<double ***> result("rpc::solver::contact_of_all", all.size() / dim / dim, dim, dim);
+  const auto to = Kokkos::create_mirror_view(result);
+  for (std::size_t e = 0; e < all.size(); ++e) to(e / dim / dim, e / dim % dim, e % dim) = all[e];
+  Kokkos::deep_copy(result, to);
+  return result;
 }
 
-/// Sum of the changes over the larger one of the sums, in [0, 2].
-double changed_part(const DeviceView<double *> &before, const DeviceView<double *> &now)
+/// Sum of the changes over the larger one of the sums, in [0, 2], by the norms of the blocks; collective.
+double changed_part(const Comm &comm, const DeviceView<double ***> &before, const DeviceView<double ***> &now)
 {
-  double change = 0, sum_before = 0, sum_now = 0;
+  const int dim = static_cast<int>(now.extent(1));
+  double mine[3] = {0, 0, 0}, all[3];
   Kokkos::parallel_reduce(
       "rpc::solver::changed_part", device_range(static_cast<LO>(now.extent(0))),
-      KOKKOS_LAMBDA(const LO i, double &difference, double &old, double &present) {
-        difference += now(i) > before(i) ? now(i) - before(i) : before(i) - now(i);
-        old += before(i);
-        present += now(i);
+      KOKKOS_LAMBDA(const LO n, double &difference, double &old, double &present) {
+        double squares[3] = {};
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) {
+            const double a = before(n, k, l), b = now(n, k, l);
+            squares[0] += (b - a) * (b - a);
+            squares[1] += a * a;
+            squares[2] += b * b;
+          }
+        difference += math::sqrt(squares[0]);
+        old += math::sqrt(squares[1]);
+        present += math::sqrt(squares[2]);
       },
-      change, sum_before, sum_now);
-  const double whole = std::max(sum_before, sum_now);
-  return whole > 0 ? change / whole : 0;
+      mine[0], mine[1], mine[2]);
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 3, mine, all);
+  const double whole = std::max(all[1], all[2]);
+  return whole > 0 ? all[0] / whole : 0;
 }
 
 /// v <- T v or T^T v at the points' nodes, T = H_ii^-1 K_ii with the own blocks of both: the move that is left of v where contact
@@ -150,7 +165,6 @@ struct Truncate {
   KOKKOS_FUNCTION void operator()(const LO i) const
   {
     const LO n = node(i);
-    if (n < 0) return;
     double x[Dim], y[Dim];
     for (int k = 0; k < Dim; ++k) x[k] = v(dof(Dim, n, k)) - kept(i, k);
     for (int pass = 0; pass < 2; ++pass) {
@@ -187,7 +201,7 @@ void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView
   const int dim = static_cast<int>(kept.extent(1));
   Kokkos::parallel_for(
       "rpc::solver::take_values", device_range(static_cast<LO>(node.extent(0))), KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < dim && node(i) >= 0; ++k) kept(i, k) = from(dof(dim, node(i), k));
+        for (int k = 0; k < dim; ++k) kept(i, k) = from(dof(dim, node(i), k));
       });
   Kokkos::fence();
 }
@@ -225,10 +239,10 @@ struct MeshMultigrid::Level {
 
 MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &levels,
                              const MakeCoarsestSolver &make_coarsest)
-    : H_(std::move(H)), contact_node_(H_->changing_nodes()), contact_base_(H_->changing_base_blocks())
+    : H_(std::move(H)), contact_node_(H_->nodes()), contact_base_(H_->base_blocks())
 {
   const int dim = H_->dofs_per_node();
-  PointSupports points = point_supports(H_->points(), *H_->getDomainMap());
+  PointSupports points = point_supports(contact_node_, dim, *H_->getDomainMap());
   for (std::size_t l = 0; l < levels.level.size(); ++l) {
     const MeshLevel &coarse = levels.level[l];
     auto level = std::make_unique<Level>();
@@ -242,7 +256,7 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     levels_.push_back(std::move(level));
   }
   for (std::size_t l = 0; l < levels_.size(); ++l) { // contact is not in the coarse matrices yet
-    const auto block = l == 0 ? H_->base_blocks() : levels_[l - 1]->coarse->base_blocks();
+    const auto block = l == 0 ? H_->base().diagonal_blocks() : levels_[l - 1]->coarse->base_blocks();
     const double largest =
         l == 0 ? largest_eigenvalue(Rounded(H_, false), block) : largest_eigenvalue(*levels_[l]->A, block);
     levels_[l]->smoother = std::make_unique<NodeSmoother>(levels_[l]->A, block, std::max(largest, largest_of_contact),
@@ -255,24 +269,26 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
 
 MeshMultigrid::~MeshMultigrid() = default;
 
-/// @return (points of all ranks) what contact adds on coarse meshes
-DeviceView<double *> MeshMultigrid::write_contact()
+/// @return (contact nodes, dim, dim) what contact adds on coarse meshes                                          (4.7b)
+DeviceView<double ***> MeshMultigrid::write_contact()
 {
-  const auto stiffness = stiffness_of_all(*H_);
-  for (const auto &level : levels_) level->coarse->write(stiffness);
-  levels_[0]->smoother->set_blocks(contact_node_, H_->changing_blocks());
+  const auto update = bounded_update(*H_, most_on_coarse_meshes);
+  const auto all = of_all(*H_->getDomainMap()->getComm(), update);
+  for (const auto &level : levels_) level->coarse->write(all);
+  levels_[0]->smoother->set_blocks(contact_node_, H_->blocks());
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const CoarseContact &contact = *levels_[l - 1]->coarse;
     levels_[l]->smoother->set_blocks(contact.nodes(), contact.blocks());
   }
-  return stiffness;
+  return update;
 }
 
 void MeshMultigrid::update()
 {
-  const auto stiffness = write_contact();
-  if (!(changed_part(contact_of_coarsest_, stiffness) > coarsest_->most_change())) return;
-  contact_of_coarsest_ = stiffness;
+  const auto update = write_contact();
+  const double part = changed_part(*H_->getDomainMap()->getComm(), contact_of_coarsest_, update);
+  if (!(part > coarsest_->most_change())) return;
+  contact_of_coarsest_ = update;
   coarsest_->update();
 }
 

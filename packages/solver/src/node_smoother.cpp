@@ -18,10 +18,11 @@ namespace
 constexpr int lanczos_steps = 10;
 constexpr double margin = 1.08;
 
-/// Inverts some symmetric blocks by their cofactors.
+/// Inverts the symmetric parts of some blocks by their Cholesky factors: blocks of stiff contact have eigenvalues of very different
+/// size, and cofactors would lose the small ones.
 template <int Dim>
 struct InvertBlocks {
-  DeviceView<LO *> node;          // (n) rows of `inverse`, < 0: none       in
+  DeviceView<LO *> node;          // (n) rows of `inverse`; empty: all      in
   DeviceView<double ***> block;   // (n, Dim, Dim)                          in
   DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)                out
 
@@ -29,11 +30,9 @@ struct InvertBlocks {
   KOKKOS_FUNCTION void operator()(const LO i, LO &bad) const
   {
     const LO n = node.extent(0) == 0 ? i : node(i);
-    if (n < 0) return;
     double a[Dim][Dim];
     for (int k = 0; k < Dim; ++k)
       for (int l = 0; l < Dim; ++l) a[k][l] = 0.5 * (block(i, k, l) + block(i, l, k));
-    // By a Cholesky factor: blocks of stiff contact have eigenvalues of very different size.
     double factor[Dim][Dim] = {}, back[Dim][Dim] = {};
     for (int k = 0; k < Dim; ++k) {
       double pivot = a[k][k];

@@ -30,8 +30,8 @@ public:
   NodeSmoother(RCP<const Operator> A, const DeviceView<double ***> &block, double largest, const Options &options);
 
   /// D changes at some nodes; collective.
-  /// @param node   (n) owned nodes; those below 0 are passed over
-  /// @param block  (n, dim, dim)
+  /// @param node   (n) owned nodes
+  /// @param block  (n, dim, dim); of a block that is not symmetric its symmetric part counts
   void set_blocks(const DeviceView<LO *> &node, const DeviceView<double ***> &block);
 
   /// (owned nodes, dim, dim) D^-1.

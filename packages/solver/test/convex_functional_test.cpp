@@ -82,7 +82,8 @@ public:
     Kokkos::deep_copy(points.node, node);
     Kokkos::deep_copy(points.weight, 1.);
     Kokkos::deep_copy(points.direction, 1.);
-    hessian_ = rcp(new UpdatedOperator(K, points));
+    hessian_ = rcp(new UpdatedOperator(rcp(new StiffnessOperator(K, 1)), points.node));
+    points_ = points;
   }
 
   double value(const Vector &u) const override
@@ -103,9 +104,11 @@ public:
   GO update_hessian(const Vector &u) override
   {
     const auto x = values_of(u);
-    HostView<double *> added("added", x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) added(i) = x[i] > wall ? hardness_ : 0;
-    return hessian_->set(to_device(added));
+    const DeviceView<double ***> added("added", x.size(), 1, 1);
+    const auto to = Kokkos::create_mirror_view(added);
+    for (std::size_t i = 0; i < x.size(); ++i) to(i, 0, 0) = x[i] > wall ? hardness_ : 0;
+    Kokkos::deep_copy(added, to);
+    return hessian_->set(points_, added);
   }
   const RCP<UpdatedOperator> &hessian() const override { return hessian_; }
   std::unique_ptr<LineFunction> along(const Vector &u, const Vector &d, const Vector &F) const override
@@ -159,6 +162,7 @@ private:
   };
 
   double hardness_;
+  NodePoints points_;
   RCP<UpdatedOperator> hessian_;
 };
 

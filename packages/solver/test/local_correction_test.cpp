@@ -1,6 +1,7 @@
 #include "../src/local_correction.hpp"
 
 #include "beam.hpp"
+#include "rpc/algebra/bounded_update.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -33,15 +34,25 @@ private:
   Vector inverse_;
 };
 
+/// The matrix of a beam's stiffness as it is now.
+struct Written {
+  const UpdatedOperator &H;
+  RCP<CrsMatrix> A = H.base().copy();
+  DeviceView<double ***> update = bounded_update(H);
+
+  explicit Written(const Beam &beam) : H(*beam.functional->hessian()) { write_update(*A, H, update); }
+  std::optional<LocalCorrection> correction() const { return LocalCorrection::around(H, *A, update); }
+};
+
 TEST(LocalCorrection, IsNoneWithoutChanges)
 {
   Beam beam;
   open_between(beam, 2, 2.1);
-  beam.functional->hessian()->write();
-  EXPECT_FALSE(LocalCorrection::around(*beam.functional->hessian()));
+  const Written written(beam);
+  EXPECT_FALSE(written.correction());
   for (const double to : {2.2, 4.99}) {
     open_between(beam, 2, to);
-    EXPECT_TRUE(LocalCorrection::around(*beam.functional->hessian())) << to;
+    EXPECT_TRUE(written.correction()) << to;
   }
 }
 
@@ -49,9 +60,9 @@ TEST(LocalCorrection, HoldsTwoLayersAroundTheNode)
 {
   Beam beam;
   open_between(beam, 2, 2.001);
-  beam.functional->hessian()->write();
+  const Written written(beam);
   open_between(beam, 1.99, 2.01); // the node at 2
-  const auto correction = LocalCorrection::around(*beam.functional->hessian());
+  const auto correction = written.correction();
   ASSERT_TRUE(correction);
   EXPECT_EQ(correction->size(), 2 * 5 * 3);
 }
@@ -60,11 +71,11 @@ TEST(LocalCorrection, IsSymmetricPositiveAndExactOnThePatch)
 {
   Beam beam;
   open_between(beam, 2, 2.001);
-  beam.functional->hessian()->write();
+  const Written written(beam);
   open_between(beam, 1.9, 2.2);
   const auto &H = *beam.functional->hessian();
-  const Diagonal M(*H.matrix());
-  const auto correction = LocalCorrection::around(H);
+  const Diagonal M(*written.A);
+  const auto correction = written.correction();
   ASSERT_TRUE(correction);
   const auto map = beam.u->getMap();
   Vector x(map), y(map), Bx(map), By(map), HBx(map);

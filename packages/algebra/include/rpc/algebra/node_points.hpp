@@ -3,6 +3,8 @@
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/kokkos.hpp"
 
+#include <vector>
+
 namespace rpc
 {
 
@@ -20,6 +22,9 @@ struct NodePoints {
   /// The unknown of one component at the node of point i, for kernels.
   KOKKOS_INLINE_FUNCTION LO dof(const LO i, const int component) const { return rpc::dof(dim, node(i), component); }
 };
+
+/// (n) The nodes of some lists, each once, ascending.
+DeviceView<LO *> distinct_nodes(const std::vector<DeviceView<LO *>> &lists);
 
 /// Runs work(i) for all points, group after group: what it does to the node of point i meets no other thread.
 template <class Work>

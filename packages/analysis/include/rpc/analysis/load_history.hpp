@@ -63,7 +63,7 @@ struct StepRecord {
 };
 
 /// Steps one after another on one mesh: each starts from the one before, on the dents that it has left. One stiffness matrix and one
-/// multigrid serve all of them, unless the foundation moves so that the directions change in which contact acts.
+/// multigrid serve all of them.
 ///
 /// All members are collective.
 class LoadHistory
@@ -92,7 +92,7 @@ public:
   const Memory *before() const { return before_ ? &*before_ : nullptr; } ///< of the step before
   const StepRecord &last() const { return last_; }                       ///< of advance()
   /// Where rows repeat, K is assembled only if an algebraic preconditioner asks for it.
-  int matrix_assemblies() const { return assembled_before_ + problem_->stiffness()->has_matrix(); }
+  int matrix_assemblies() const { return assembled_before_ + problem_->stiffness().has_matrix(); }
 
 private:
   struct Coarser;
@@ -100,8 +100,6 @@ private:
   /// @param work  becomes that on this mesh and coarser ones, from the coarsest
   std::optional<contact::ContactState> predicted(const Step &step, std::vector<LevelWork> &work);
   StepSolution solve(double t, const Progress &progress, const std::function<void(const Problem &, const Step &)> &now);
-  /// Goes on with the same problem, made for another time.
-  void remake(double t);
   StepSolution advance_in_parts(double t, int halvings, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
 

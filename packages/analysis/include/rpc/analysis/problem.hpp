@@ -39,7 +39,7 @@ struct Step {
 class Problem
 {
 public:
-  /// Assembles the stiffness matrix, or lists its rows where they repeat, and finds the contact nodes. Collective.
+  /// Assembles the stiffness matrix, or lists its rows where they repeat. Collective.
   /// @param t  time of the first step; which displacements are prescribed does not depend on it
   /// @throws rpc::Error bad_input where the model does not fit the mesh or numbers overflow, naming what they belong to;
   ///         bad_mesh for a cell with a Jacobian <= 0; no_solution as contact::contact_nodes() and contact::free_parts()
@@ -52,10 +52,7 @@ public:
   /// @param dents  that earlier steps have left, (owned nodes; sides) [m]; null: none
   /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()
   Step step(double t, const MultiVector *dents = nullptr) const;
-  /// Whether contact acts at the same nodes in the same directions as at the time that this was made for. A foundation that moves
-  /// may change them. Collective.
-  bool serves(const Step &step) const;
-  /// The same problem made for another time: with a stiffness matrix and a linear solver of its own. Collective.
+  /// The same problem with a stiffness and a linear solver of its own, seen at another time. Collective.
   std::shared_ptr<const Problem> remade(double t) const;
   /// The same scene on one of the boxes that this one leads to: the first whose cells are about `factor` times as long, by the number of
   /// nodes. Null where there is none, and for order 2: linear elements, too stiff in bending, predict worse. Collective.
@@ -66,8 +63,11 @@ public:
   const Model &model() const { return model_; } ///< seen at the time of the first step
   /// The contact sides, in the order of the model's.
   std::vector<const mesh::Side *> contact_sides() const;
-  /// K with an update at the contact nodes: one for all steps, and the linear solver with its preconditioner belongs to it.
-  const RCP<UpdatedOperator> &stiffness() const { return operator_; }
+  /// K: which displacements are prescribed decides about it, and nothing else that may change from step to step.
+  const StiffnessOperator &stiffness() const { return hessian_->base(); }
+  /// K with an update at the nodes of the contact sides, whether or not they face an obstacle now: one for all steps. The linear solver
+  /// with its preconditioner belongs to it.
+  const RCP<UpdatedOperator> &hessian() const { return hessian_; }
   solver::LinearSolver &linear_solver() const { return *linear_; }
 
 private:
@@ -76,7 +76,7 @@ private:
   std::shared_ptr<NestedMesh> mesh_;
   contact::FreeParts free_parts_;
   fem::PrescribedCouplings couplings_;
-  RCP<UpdatedOperator> operator_;
+  RCP<UpdatedOperator> hessian_;
   std::shared_ptr<solver::LinearSolver> linear_;
 };
 

@@ -97,7 +97,7 @@ private:
 class SmoothedFunctional : public ConvexFunctional
 {
 public:
-  /// @param hessian  K with an update at the contact nodes, which is this functional's from here on
+  /// @param hessian  K with an update at the contact nodes, among others; it is this functional's from here on
   SmoothedFunctional(fem::ElasticProblem problem, ContactNodes contact, RCP<UpdatedOperator> hessian);
 
   /// M(u) [J], with the energy of prescribed displacements, up to a constant once the origin has moved.
@@ -200,9 +200,11 @@ private:
   DeviceView<double *> lambda_;    // (contact nodes) [Pa]
   DeviceView<State *> active_set_; // (contact nodes) states that hessian() belongs to
   RCP<UpdatedOperator> hessian_;
-  double spring_ = 0;           // weak springs at nodes that are not closed, in units of contact_.scaling
-  bool warm_start_ = false;     // multipliers are a guess to start from
-  bool has_active_set_ = false; // else active_set_ is that of K itself, and says nothing about pressures
+  DeviceView<double *> own_;     // (contact nodes) stiffness of the node alone [Pa/m]
+  DeviceView<double *> coupled_; // (contact nodes) bound of the stiffness of moves of all of them (4.6)
+  double spring_ = 0;            // weak springs at nodes that are not closed, in units of contact_.scaling
+  bool warm_start_ = false;      // multipliers are a guess to start from
+  bool has_active_set_ = false;  // else active_set_ is that of K itself, and says nothing about pressures
 };
 
 } // namespace rpc::contact

@@ -49,7 +49,7 @@ struct LinearSolverCounts {
 class LinearSolver
 {
 public:
-  /// @param H            may change between solves; its matrix is written when the hierarchy is set up
+  /// @param H            may change between solves
   /// @param coordinates  (nodes; dim)          @param null_space  (rows of A; rigid body modes)
   /// @param levels       makes the coarser meshes; may be null: there are none. Collective.
   LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, const RCP<MultiVector> &coordinates,

@@ -55,15 +55,15 @@ public:
 
 private:
   struct Level;
-  DeviceView<double *> write_contact();
+  DeviceView<double ***> write_contact();
   void cycle(std::size_t level, const Vector &b, Vector &x) const;
 
   RCP<const UpdatedOperator> H_;
-  DeviceView<LO *> contact_node_;              // (points) owned node; -1 for one that another point has already
-  DeviceView<double ***> contact_base_;        // (points, dim, dim) K's own blocks there
+  DeviceView<LO *> contact_node_;              // (nodes) those of H
+  DeviceView<double ***> contact_base_;        // (nodes, dim, dim) K's own blocks there
   std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
   std::unique_ptr<CoarsestSolver> coarsest_;
-  DeviceView<double *> contact_of_coarsest_; // (points of all ranks) stiffness that it is made for
+  DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) update that it is made for
 };
 
 } // namespace rpc::solver

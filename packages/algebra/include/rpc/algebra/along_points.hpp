@@ -1,0 +1,17 @@
+#pragma once
+
+#include "rpc/algebra/node_points.hpp"
+#include "rpc/algebra/stiffness_operator.hpp"
+
+namespace rpc
+{
+
+/// (points) m . K_ii m / (w m . m) with the own block of the point's node: what it takes to move the node alone. 0 where the
+/// direction m is.
+DeviceView<double *> own_stiffness(const StiffnessOperator &K, const NodePoints &points);
+
+/// (points) kappa_i = sum_j |m_i . K_ij m_j| / |m_i|^2 over all points j, with |.| entry by entry: the energy of moves
+/// s_i m_i/|m_i|^2 of all points at once is at most sum_i kappa_i s_i^2/2. Collective.                            (4.6)
+DeviceView<double *> coupled_stiffness(const StiffnessOperator &K, const NodePoints &points);
+
+} // namespace rpc

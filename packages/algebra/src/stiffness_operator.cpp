@@ -1,0 +1,95 @@
+#include "rpc/algebra/stiffness_operator.hpp"
+
+namespace rpc
+{
+namespace
+{
+
+/// What x is at the columns; x itself where these are the rows.
+RCP<const MultiVector> at_columns_of(const StiffnessOperator &K, const MultiVector &x)
+{
+  if (K.importer().is_null()) return Teuchos::rcpFromRef(x);
+  const auto imported = rcp(new MultiVector(K.columns(), x.getNumVectors(), false));
+  imported->doImport(x, *K.importer(), Tpetra::INSERT);
+  return imported;
+}
+
+/// y <- A x for rows of any kind, vector by vector.
+template <class Rows>
+void multiply_vectors(const Rows &rows, const MultiVector &columns, MultiVector &y)
+{
+  for (std::size_t v = 0; v < y.getNumVectors(); ++v) rows.apply(*columns.getVector(v), *y.getVectorNonConst(v));
+}
+
+} // namespace
+
+StiffnessOperator::StiffnessOperator(RCP<const CrsMatrix> K, const int dim)
+    : rows_(RepeatedRows::of(K, dim)), dofs_(K->getDomainMap()), columns_(K->getColMap()),
+      importer_(K->getGraph()->getImporter()), matrix_(K), was_assembled_(true)
+{
+}
+
+StiffnessOperator::StiffnessOperator(UnassembledMatrix K)
+    : rows_(std::move(K.rows)), dofs_(std::move(K.dofs)), columns_(std::move(K.columns)),
+      importer_(std::move(K.importer)), assemble_(std::move(K.assemble))
+{
+}
+
+void StiffnessOperator::apply(const MultiVector &x, MultiVector &y, const Teuchos::ETransp, const double alpha,
+                              const double beta) const
+{
+  if (!rows_.pays()) {
+    matrix()->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
+  } else if (alpha == 1 && beta == 0) {
+    multiply_vectors(rows_, *at_columns_of(*this, x), y);
+  } else {
+    MultiVector product(y.getMap(), y.getNumVectors(), false);
+    multiply_vectors(rows_, *at_columns_of(*this, x), product);
+    y.update(alpha, product, beta);
+  }
+}
+
+std::shared_ptr<const RoundedRows> StiffnessOperator::rounded_rows() const
+{
+  constexpr bool on_host = Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
+  if (!on_host || !rows_.reads_matrix() || rows_.num_kinds() > 0 || rows_.dim() == 1) return nullptr;
+  return std::make_shared<RoundedRows>(*matrix(), rows_.dim());
+}
+
+void StiffnessOperator::apply_rounded(const RoundedRows &rounded, const MultiVector &x, MultiVector &y) const
+{
+  multiply_vectors(rounded, *at_columns_of(*this, x), y);
+}
+
+DeviceView<double ***> StiffnessOperator::diagonal_blocks(const DeviceView<LO *> &nodes) const
+{
+  const int dim = rows_.dim();
+  const DeviceView<double ***> block("rpc::algebra::diagonal_blocks", nodes.extent(0), dim, dim);
+  const auto from = rows_.blocks();
+  Kokkos::parallel_for(
+      "rpc::algebra::diagonal_blocks", device_range(static_cast<LO>(nodes.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        const LO own = from.own(nodes(i));
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) block(i, k, l) = from.entry(nodes(i), own, k, l);
+      });
+  Kokkos::fence();
+  return block;
+}
+
+const RCP<const CrsMatrix> &StiffnessOperator::matrix() const
+{
+  if (matrix_.is_null()) {
+    matrix_ = assemble_();
+    was_assembled_ = true;
+  }
+  return matrix_;
+}
+
+RCP<CrsMatrix> StiffnessOperator::copy() const
+{
+  if (!matrix_.is_null()) return rcp(new CrsMatrix(*matrix_, Teuchos::Copy));
+  was_assembled_ = true;
+  return assemble_();
+}
+
+} // namespace rpc
