@@ -2,7 +2,8 @@
 
     python3 structure.py [<root of the sources>]
 
-Prints each arrow that is not allowed, and each Kokkos kernel that the program itself launches; the exit code is 1 if there is one.
+Prints each arrow that is not allowed, each Kokkos kernel that the program itself launches, and each name that differs between Trilinos
+versions outside VERSION_HEADERS; the exit code is 1 if there is one.
 """
 
 import pathlib
@@ -31,6 +32,17 @@ LIBRARIES = {
     "Amesos2": "solver",
 }
 PROGRAM_KERNELS = set()
+# Names that differ between Trilinos versions, doc/trilinos_versions.md, and the only place where they may stand.
+VERSION_NAMES = re.compile(r"""
+    \b(?: getNode(?:Num|Element)\w*                           # of Tpetra's and Xpetra's maps and matrices: getLocal...
+        | getLocal(?:NumElements|ElementList|NumRows|NumCols|NumEntries)
+        | TRILINOS_\w*VERSION | KOKKOS_VERSION | HAVE_MUELU_\w+
+        | [A-Z]\w*_kokkos | (?:Get|Set)KokkosRefactor          # MueLu's factories that 13.2 has twice
+        | MueLu::(?:LW)?Graph(?:Base)?                         # gone or merged
+        | MueLu::Utilities | MV2(?:NonConst)?TpetraMV2? | Op2(?:NonConst)?Tpetra\w+ | Tpetra\w+_To_Xpetra\w+
+        | Kokkos::Experimental
+    )\b""", re.VERBOSE)
+VERSION_HEADERS = "packages/core/include/rpc/core"
 FOR_TESTS = {"mesh", "fem"}  # a package's tests may make their bodies with these
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
@@ -88,6 +100,16 @@ def check_kernels(root):
                 yield f"{file.relative_to(root)}:{number}: a kernel in the program"
 
 
+def check_versions(root):
+    for top in ("packages", "src", "test"):
+        for file in code(root / top):
+            if file.parent == root / VERSION_HEADERS:
+                continue
+            for number, line in enumerate(file.read_text().splitlines(), 1):
+                for name in VERSION_NAMES.findall(line.split("//")[0]):
+                    yield f"{file.relative_to(root)}:{number}: {name} differs between Trilinos versions: it belongs into {VERSION_HEADERS}"
+
+
 def violations(root):
     folders = sorted(path.parent for path in root.glob("packages/*/CMakeLists.txt"))
     for folder in folders:
@@ -98,6 +120,7 @@ def violations(root):
     yield from check_includes(root, "src", root / "src")
     yield from check_links(root)
     yield from check_kernels(root)
+    yield from check_versions(root)
 
 
 def main():

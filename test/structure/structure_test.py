@@ -59,6 +59,20 @@ class Structure(unittest.TestCase):
         found = self.violations(**{"src__output.cpp": "void f()\n{\n  Kokkos::parallel_for(3, g);\n}\n"})
         self.assertEqual(found, ["src/output.cpp:3: a kernel in the program"])
 
+    def test_finds_a_name_of_one_trilinos_version_outside_core(self):
+        for line in ("map.getNodeNumElements()", "map->getLocalElementList()", "#if TRILINOS_MAJOR_MINOR_VERSION >= 130400",
+                     "MueLu::Aggregates_kokkos<LO> a;", "#include MUELU_HEADER(Aggregates_kokkos)", "MueLu::GraphBase<LO> &g",
+                     "MueLu::TpetraCrs_To_XpetraMatrix<double>(A)", "Kokkos::Experimental::sqrt(x)"):
+            for where in ("packages__mesh__src__a.cpp", "packages__mesh__test__a_test.cpp", "src__a.cpp", "test__support__a.hpp"):
+                found = self.violations(**{where: "\n" + line + "\n"})
+                self.assertEqual(len(found), 1, line)
+                self.assertTrue(found[0].startswith(where.replace("__", "/") + ":2: "), found)
+            self.assertEqual(self.violations(**{"packages__core__include__rpc__core__a.hpp": line}), [])
+
+    def test_takes_other_names_for_those_of_any_version(self):
+        for line in ("start_kokkos(arguments)", "num_local(map)", "getNodeSmootherComplexity()", "x; // MueLu::GraphBase is gone"):
+            self.assertEqual(self.violations(**{"packages__mesh__src__a.cpp": line}), [])
+
 
 if __name__ == "__main__":
     unittest.main()

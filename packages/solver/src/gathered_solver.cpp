@@ -1,11 +1,10 @@
 #include "gathered_solver.hpp"
 
+#include "rpc/core/error.hpp"
+#include "rpc/core/muelu.hpp"
 #include "rpc/core/parallel.hpp"
 
-#include "rpc/core/error.hpp"
-
 #include <MueLu_Level.hpp>
-#include <MueLu_Utilities.hpp>
 #include <Teuchos_LAPACK.hpp>
 #include <stdexcept>
 
@@ -15,8 +14,6 @@ namespace
 {
 
 constexpr std::size_t most_dense_rows = 5000; // 200 MB on each rank
-
-using Conversions = MueLu::Utilities<double, LO, GO, Node>;
 
 } // namespace
 
@@ -43,7 +40,7 @@ void GatheredSolver::Setup(MueLu::Level &level)
                   << "\"max levels\", or give a \"coarse: type\".");
   size_ = static_cast<int>(rows.getGlobalNumElements());
   std::vector<double> mine(static_cast<std::size_t>(size_) * size_);
-  for (int row = 0; row < static_cast<int>(rows.getNodeNumElements()); ++row) {
+  for (int row = 0; row < num_local(rows); ++row) {
     Teuchos::ArrayView<const int> column;
     Teuchos::ArrayView<const double> value;
     A->getLocalRowView(row, column, value);
@@ -59,8 +56,8 @@ void GatheredSolver::Setup(MueLu::Level &level)
 
 void GatheredSolver::Apply(XpetraVectors &x, const XpetraVectors &b, bool) const
 {
-  const rpc::MultiVector &from = Conversions::MV2TpetraMV(b);
-  rpc::MultiVector &to = Conversions::MV2NonConstTpetraMV(x);
+  const rpc::MultiVector &from = muelu::to_tpetra(b);
+  rpc::MultiVector &to = muelu::to_tpetra(x);
   const rpc::Map &map = *from.getMap();
   const int num_local = static_cast<int>(from.getLocalLength());
   Kokkos::fence(); // the host reads and writes what kernels may still be at

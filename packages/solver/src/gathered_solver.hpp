@@ -1,16 +1,13 @@
 #pragma once
 
-#include "rpc/core/tpetra.hpp"
+#include "rpc/core/xpetra.hpp"
 
 #include <MueLu_SmootherPrototype.hpp>
-#include <Xpetra_Matrix.hpp>
 #include <vector>
 
 namespace rpc::solver
 {
 
-using XpetraMatrix = Xpetra::Matrix<double, LO, GO, Node>;
-using XpetraVectors = Xpetra::MultiVector<double, LO, GO, Node>;
 using CoarseSolver = MueLu::SmootherPrototype<double, LO, GO, Node>;
 
 /// Rows to which multigrid coarsens then: their dense factor costs next to nothing.

@@ -3,10 +3,10 @@
 
 #include "expect_error.hpp"
 #include "grid.hpp"
+#include "rpc/core/muelu.hpp"
 
 #include <MueLu_Level.hpp>
 #include <MueLu_NoFactory.hpp>
-#include <MueLu_Utilities.hpp>
 #include <gtest/gtest.h>
 #include <stdexcept>
 
@@ -21,7 +21,7 @@ using solver::GatheredSolver;
 void set_up(GatheredSolver &solver, const RCP<CrsMatrix> &A)
 {
   MueLu::Level level;
-  level.Set("A", RCP<solver::XpetraMatrix>(MueLu::TpetraCrs_To_XpetraMatrix<double, LO, GO, Node>(A)));
+  level.Set("A", muelu::to_xpetra(A));
   solver.SetFactory("A", MueLu::NoFactory::getRCP());
   level.Request(solver);
   solver.Setup(level);
@@ -31,8 +31,7 @@ MultiVector applied(const GatheredSolver &solver, const MultiVector &b, const do
 {
   const auto right = rcp(new MultiVector(b, Teuchos::Copy)), left = rcp(new MultiVector(b.getMap(), b.getNumVectors()));
   left->putScalar(start);
-  const RCP<solver::XpetraVectors> from = MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(right),
-                                   to = MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(left);
+  const RCP<XpetraVectors> from = muelu::to_xpetra(right), to = muelu::to_xpetra(left);
   solver.Apply(*to, *from, false);
   return MultiVector(*left, Teuchos::Copy);
 }
@@ -103,7 +102,7 @@ public:
   Failing(const bool in_setup, const bool in_apply) : in_setup_(in_setup), in_apply_(in_apply) {}
   void DeclareInput(MueLu::Level &) const override {}
   void Setup(MueLu::Level &) override { fail_if(in_setup_); }
-  void Apply(solver::XpetraVectors &x, const solver::XpetraVectors &b, bool) const override
+  void Apply(XpetraVectors &x, const XpetraVectors &b, bool) const override
   {
     fail_if(in_apply_);
     x.update(2., b, 0.);
@@ -124,8 +123,7 @@ TEST(GuardedSolver, TellsAllRanksOfAFailureOnOneByTheNorm)
   const Grid grid(4);
   const auto b = rcp(new MultiVector(grid.map, 1)), x = rcp(new MultiVector(grid.map, 1));
   b->putScalar(1.);
-  const RCP<solver::XpetraVectors> from = MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(b),
-                                   to = MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(x);
+  const RCP<XpetraVectors> from = muelu::to_xpetra(b), to = muelu::to_xpetra(x);
   for (const auto &[in_setup, in_apply] : {std::pair{false, false}, {true, false}, {false, true}}) {
     const auto guarded = solver::GuardedSolver(rcp(new Failing(in_setup, in_apply))).Copy();
     MueLu::Level level;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "rpc/core/tpetra.hpp"
+#include "rpc/core/xpetra.hpp"
 
 #include <MueLu_Aggregates.hpp>
 #include <MueLu_AmalgamationFactory.hpp>
 #include <MueLu_AmalgamationInfo.hpp>
+#include <MueLu_FactoryManager.hpp>
 #include <MueLu_UncoupledAggregationFactory.hpp>
 #include <MueLu_Utilities.hpp>
 #include <MueLu_config.hpp>
@@ -14,6 +16,8 @@
 #include <MueLu_Aggregates_kokkos.hpp>
 #include <MueLu_AmalgamationFactory_kokkos.hpp>
 #include <MueLu_AmalgamationInfo_kokkos.hpp>
+#include <MueLu_LWGraph.hpp>
+#include <MueLu_LWGraph_kokkos.hpp>
 #include <MueLu_UncoupledAggregationFactory_kokkos.hpp>
 #include <MueLu_Utilities_kokkos.hpp>
 #endif
@@ -44,6 +48,11 @@ using DeviceAggregation = MueLu::UncoupledAggregationFactory_kokkos<LO, GO, Node
 using DeviceAmalgamation = MueLu::AmalgamationFactory_kokkos<double, LO, GO, Node>;
 using DeviceAmalgamationInfo = MueLu::AmalgamationInfo_kokkos<LO, GO, Node>;
 using DeviceUtilities = MueLu::Utilities_kokkos<double, LO, GO, Node>;
+
+// Graphs of nodes; later versions have no host graph of its own.
+using DeviceGraph = MueLu::LWGraph_kokkos<LO, GO, Node>;
+using HostGraph = MueLu::LWGraph<LO, GO, Node>;
+using HostGraphBase = MueLu::GraphBase<LO, GO, Node>;
 #else
 inline constexpr bool is_doubled = false;
 using DeviceAggregates = HostAggregates;
@@ -52,5 +61,35 @@ using DeviceAmalgamation = HostAmalgamation;
 using DeviceAmalgamationInfo = HostAmalgamationInfo;
 using DeviceUtilities = HostUtilities;
 #endif
+
+/// Whether a level is made by the factories for many threads.
+inline bool takes_device_factories(const MueLu::FactoryManager<double, LO, GO, Node> &manager)
+{
+#ifdef RPC_MUELU_IS_DOUBLED
+  return manager.GetKokkosRefactor();
+#else
+  static_cast<void>(manager);
+  return true;
+#endif
+}
+
+/// What MueLu takes in place of Tpetra's matrix and vectors, which it shares.
+inline RCP<XpetraMatrix> to_xpetra(const RCP<CrsMatrix> &A)
+{
+  return MueLu::TpetraCrs_To_XpetraMatrix<double, LO, GO, Node>(A);
+}
+inline RCP<XpetraVectors> to_xpetra(const RCP<MultiVector> &v)
+{
+  return MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(v);
+}
+/// Tpetra's vectors behind MueLu's.
+inline const MultiVector &to_tpetra(const XpetraVectors &v)
+{
+  return HostUtilities::MV2TpetraMV(v);
+}
+inline MultiVector &to_tpetra(XpetraVectors &v)
+{
+  return HostUtilities::MV2NonConstTpetraMV(v);
+}
 
 } // namespace rpc::muelu
