@@ -89,6 +89,7 @@ public:
 
   void apply(const Vector &b, Vector &x) const override
   {
+    if (!factor_) throw std::runtime_error(not_definite); // the last update failed
     const Map &map = *b.getMap();
     std::vector<double> all(map.getGlobalNumElements());
     Kokkos::fence(); // the host reads and writes what kernels may still be at

@@ -2,6 +2,7 @@
 
 #include "gathered_solver.hpp"
 #include "guarded_solver.hpp"
+#include "one_thread_aggregates.hpp"
 #include "rpc/core/muelu.hpp"
 
 #include <MueLu_CreateTpetraPreconditioner.hpp>
@@ -9,18 +10,14 @@
 #include <MueLu_FactoryManager.hpp>
 #include <MueLu_SingleLevelFactoryBase.hpp>
 #include <MueLu_SmootherFactory.hpp>
-#ifdef RPC_MUELU_IS_DOUBLED
-#include <MueLu_LWGraph.hpp>
-#include <MueLu_LWGraph_kokkos.hpp>
-#endif
-#include <algorithm>
+#include <exception>
+#include <new>
 
 namespace rpc::solver
 {
 namespace
 {
 
-using XpetraMap = Xpetra::Map<LO, GO, Node>;
 using Translation = Teuchos::Array<LO>;
 
 /// Nodes of unknowns, as MueLu wants them told.
@@ -32,9 +29,9 @@ struct Nodes {
 /// Whether unknown k of a map's local node n has the gid size * (the node's gid) + k, for all of them on this rank.
 bool node_by_node(const XpetraMap &unknowns, const LO size)
 {
-  if (unknowns.getIndexBase() != 0 || unknowns.getNodeNumElements() % size != 0) return false;
-  if (unknowns.isContiguous()) return unknowns.getNodeNumElements() == 0 || unknowns.getMinGlobalIndex() % size == 0;
-  const auto gids = unknowns.getNodeElementList();
+  if (unknowns.getIndexBase() != 0 || num_local(unknowns) % size != 0) return false;
+  if (unknowns.isContiguous()) return num_local(unknowns) == 0 || unknowns.getMinGlobalIndex() % size == 0;
+  const auto gids = local_gids(unknowns);
   for (Teuchos_Ordinal k = 0; k < gids.size(); ++k)
     if (gids[k] % size != k % size || gids[k] != gids[k - k % size] + k % size) return false;
   return true;
@@ -43,16 +40,16 @@ bool node_by_node(const XpetraMap &unknowns, const LO size)
 /// Collective.
 Nodes nodes_of(const XpetraMap &unknowns, const LO size)
 {
-  Nodes nodes{Teuchos::null, rcp(new Translation(unknowns.getNodeNumElements()))};
+  Nodes nodes{Teuchos::null, rcp(new Translation(num_local(unknowns)))};
   LO n = 0;
   for (auto to = nodes.of_unknown->begin(); to != nodes.of_unknown->end(); ++n)
     for (LO k = 0; k < size; ++k) *to++ = n;
   using MapFactory = Xpetra::MapFactory<LO, GO, Node>;
   if (unknowns.isContiguous()) {
-    nodes.map = MapFactory::Build(unknowns.lib(), unknowns.getGlobalNumElements() / size,
-                                  unknowns.getNodeNumElements() / size, 0, unknowns.getComm());
+    nodes.map = MapFactory::Build(unknowns.lib(), unknowns.getGlobalNumElements() / size, num_local(unknowns) / size, 0,
+                                  unknowns.getComm());
   } else {
-    const auto gids = unknowns.getNodeElementList();
+    const auto gids = local_gids(unknowns);
     Teuchos::Array<GO> of_nodes(gids.size() / size);
     for (Teuchos_Ordinal k = 0; k < of_nodes.size(); ++k) of_nodes[k] = gids[size * k] / size;
     nodes.map = MapFactory::Build(unknowns.lib(), Teuchos::OrdinalTraits<Xpetra::global_size_t>::invalid(), of_nodes(),
@@ -61,7 +58,7 @@ Nodes nodes_of(const XpetraMap &unknowns, const LO size)
   return nodes;
 }
 
-/// Stands in for MueLu's AmalgamationFactory or AmalgamationFactory_kokkos.
+/// Stands in for MueLu's AmalgamationFactory, for one thread or for many.
 template <class Info, class Original>
 class NodeByNode : public MueLu::SingleLevelFactoryBase
 {
@@ -103,142 +100,16 @@ private:
   Original original_;
 };
 
-#ifdef RPC_MUELU_IS_DOUBLED
-
-using DeviceGraph = MueLu::LWGraph_kokkos<LO, GO, Node>;
-using HostGraph = MueLu::LWGraph<LO, GO, Node>;
-using muelu::DeviceAggregates;
-using muelu::DeviceAggregation;
-using muelu::HostAggregates;
-using muelu::HostAggregation;
-
-/// A host copy as MueLu takes it.
-template <class View>
-auto host_array(const View &device)
-{
-  const auto host = to_host(device);
-  return Teuchos::arcpWithEmbeddedObj(host.data(), 0, host.extent(0), host, false);
-}
-
-/// The nodes' graph for MueLu's factories of one thread, from that for many.
-class GraphOnHost : public MueLu::SingleLevelFactoryBase
-{
-public:
-  RCP<const Teuchos::ParameterList> GetValidParameterList() const override
-  {
-    const auto valid = Teuchos::parameterList();
-    for (const char *name : {"A", "Graph"}) valid->set<RCP<const MueLu::FactoryBase>>(name, Teuchos::null);
-    return valid;
-  }
-  void DeclareInput(MueLu::Level &level) const override
-  {
-    Input(level, "A");
-    Input(level, "Graph");
-  }
-  void Build(MueLu::Level &level) const override
-  {
-    const auto A = Get<RCP<XpetraMatrix>>(level, "A");
-    const auto graph = Get<RCP<DeviceGraph>>(level, "Graph");
-    const LO size = A->GetFixedBlockSize();
-    const auto offsets = host_array(graph->getRowPtrs());
-    const auto columns = host_array(graph->getEntries());
-    const Teuchos::ArrayRCP<LO> rows(offsets.size());
-    std::copy(offsets.begin(), offsets.end(), rows.begin());
-    const RCP<MueLu::GraphBase<LO, GO, Node>> host =
-        rcp(new HostGraph(rows, Teuchos::arcp_const_cast<LO>(columns), graph->GetDomainMap(), graph->GetImportMap()));
-    host->SetBoundaryNodeMap(prescribed_nodes(*A, size));
-    Set(level, "Graph", host);
-    Set(level, "DofsPerNode", size);
-  }
-
-private:
-  /// Nodes whose rows have nothing beside the diagonal: no aggregate takes them.
-  static Teuchos::ArrayRCP<const bool> prescribed_nodes(const XpetraMatrix &A, const LO size)
-  {
-    const auto rows = to_host(muelu::DeviceUtilities::DetectDirichletRows(A));
-    Teuchos::ArrayRCP<bool> nodes(rows.extent(0) / size, true);
-    for (std::size_t row = 0; row < rows.extent(0); ++row)
-      if (!rows(row)) nodes[row / size] = false;
-    return nodes;
-  }
-};
-
-/// MueLu's aggregates of one thread, for its factories for many: they are the same on all backends and in all runs, more even
-/// than those by coloring (12 CG iterations on the beam instead of 15 to 20), and take no longer: 13.2 colors on one thread too.
-class AggregatesOfOneThread : public MueLu::SingleLevelFactoryBase
-{
-public:
-  AggregatesOfOneThread(const Teuchos::ParameterList &options, const RCP<const MueLu::FactoryBase> &device_graph)
-      : host_(rcp(new HostAggregation))
-  {
-    const auto graph = rcp(new GraphOnHost);
-    graph->SetFactory("Graph", device_graph);
-    host_->SetFactory("Graph", graph);
-    host_->SetFactory("DofsPerNode", graph);
-    Teuchos::ParameterList taken;
-    const auto valid = host_->GetValidParameterList();
-    for (auto it = options.begin(); it != options.end(); ++it)
-      if (options.name(it).rfind("aggregation: ", 0) == 0 && valid->isParameter(options.name(it)))
-        taken.setEntry(options.name(it), options.entry(it));
-    host_->SetParameterList(taken);
-  }
-  void DeclareInput(MueLu::Level &level) const override { level.DeclareInput("Aggregates", host_.get(), this); }
-  void Build(MueLu::Level &level) const override
-  {
-    const auto from = level.Get<RCP<HostAggregates>>("Aggregates", host_.get());
-    const auto to = rcp(new DeviceAggregates(from->GetMap()));
-    to->SetNumAggregates(from->GetNumAggregates());
-    copy(*from->GetVertex2AggId(), *to->GetVertex2AggIdNonConst());
-    copy(*from->GetProcWinner(), *to->GetProcWinnerNonConst());
-    to->AggregatesCrossProcessors(false);
-    to->ComputeAggregateSizes(true);
-    Set(level, "Aggregates", to);
-  }
-
-private:
-  using Indices = Xpetra::MultiVector<LO, LO, GO, Node>;
-  static void copy(const Indices &from, Indices &to)
-  {
-    const auto values = from.getData(0);
-    const auto view = to.getDeviceLocalView(Xpetra::Access::OverwriteAll);
-    const auto column = Kokkos::subview(view, Kokkos::ALL(), 0);
-    const Kokkos::View<const LO *, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(values.getRawPtr(), values.size());
-    Kokkos::deep_copy(column, host);
-  }
-
-  RCP<HostAggregation> host_;
-};
-
-/// Puts the aggregates in the place of those that many threads would make, unless the user wants these.
-void use_one_thread_aggregates(MueLu::FactoryManager<double, LO, GO, Node> &manager)
-{
-  using Teuchos::rcp_const_cast;
-  using Teuchos::rcp_dynamic_cast;
-  const auto threaded = rcp_dynamic_cast<const DeviceAggregation>(manager.GetFactory("Aggregates"));
-  if (threaded.is_null()) return;
-  const Teuchos::ParameterList &options = threaded->GetParameterList();
-  if (!options.get<bool>("aggregation: deterministic")) return;
-  const RCP<MueLu::FactoryBase> aggregates = rcp(new AggregatesOfOneThread(options, manager.GetFactory("Graph")));
-  manager.SetFactory("Aggregates", aggregates);
-  for (const char *user : {"Ptent", "CoarseMap"}) // MueLu has told them already
-    rcp_const_cast<MueLu::Factory>(rcp_dynamic_cast<const MueLu::Factory>(manager.GetFactory(user), true))
-        ->SetFactory("Aggregates", aggregates);
-}
-
-#endif
-
 /// Stand-ins for factories of one level.
 void replace_factories(MueLu::FactoryManager<double, LO, GO, Node> &manager)
 {
-#ifdef RPC_MUELU_IS_DOUBLED
-  if (manager.GetKokkosRefactor()) {
+  if (muelu::takes_device_factories(manager)) {
     manager.SetFactory("UnAmalgamationInfo",
                        rcp(new NodeByNode<muelu::DeviceAmalgamationInfo, muelu::DeviceAmalgamation>));
     use_one_thread_aggregates(manager);
-    return;
+  } else {
+    manager.SetFactory("UnAmalgamationInfo", rcp(new NodeByNode<muelu::HostAmalgamationInfo, muelu::HostAmalgamation>));
   }
-#endif
-  manager.SetFactory("UnAmalgamationInfo", rcp(new NodeByNode<muelu::HostAmalgamationInfo, muelu::HostAmalgamation>));
 }
 
 /// What solves on the coarsest level of several ranks, where the user has not said it: none on one rank.
@@ -256,7 +127,7 @@ void wrap(Teuchos::ParameterList &user_data, const std::string &name)
 {
   if (!user_data.isParameter(name)) return;
   const auto vectors = user_data.get<RCP<MultiVector>>(name);
-  user_data.set(name, RCP<XpetraVectors>(MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(vectors)));
+  user_data.set(name, muelu::to_xpetra(vectors));
 }
 
 } // namespace
@@ -278,7 +149,7 @@ RCP<Multigrid> make_multigrid(const RCP<CrsMatrix> &A, Teuchos::ParameterList li
       manager.SetFactory("CoarseSolver", rcp(new MueLu::SmootherFactory<double, LO, GO, Node>(solver)));
   }
   const auto hierarchy = interpreter.CreateHierarchy();
-  const RCP<XpetraMatrix> matrix = MueLu::TpetraCrs_To_XpetraMatrix<double, LO, GO, Node>(A);
+  const RCP<XpetraMatrix> matrix = muelu::to_xpetra(A);
   hierarchy->setlib(Xpetra::UseTpetra);
   MueLu::HierarchyUtils<double, LO, GO, Node>::AddNonSerializableDataToHierarchy(interpreter, *hierarchy, user_data);
   hierarchy->GetLevel(0)->Set("A", matrix);
@@ -287,9 +158,17 @@ RCP<Multigrid> make_multigrid(const RCP<CrsMatrix> &A, Teuchos::ParameterList li
   return rcp(new Multigrid(hierarchy));
 }
 
-void renew_multigrid(const RCP<CrsMatrix> &A, Multigrid &multigrid)
+bool renew_multigrid(const RCP<CrsMatrix> &A, RCP<Multigrid> &multigrid)
 {
-  MueLu::ReuseTpetraPreconditioner(A, multigrid);
+  try {
+    MueLu::ReuseTpetraPreconditioner(A, *multigrid);
+    return true;
+  } catch (const std::bad_alloc &) { // on this rank alone
+    throw;
+  } catch (const std::exception &) { // on all ranks
+    multigrid = Teuchos::null;
+    return false;
+  }
 }
 
 } // namespace rpc::solver

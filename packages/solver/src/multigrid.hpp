@@ -18,6 +18,9 @@ using Multigrid = MueLu::TpetraOperator<double, LO, GO, Node>;
 RCP<Multigrid> make_multigrid(const RCP<CrsMatrix> &A, Teuchos::ParameterList list);
 
 /// The same hierarchy for other values of the matrix, as far as "reuse: type" keeps it; collective.
-void renew_multigrid(const RCP<CrsMatrix> &A, Multigrid &multigrid);
+/// @param[in,out] multigrid  null where that fails, for MueLu leaves it half-cleared: such as where reused prolongators do not fit a
+///                           pattern without its zeros
+/// @return whether it could be done
+bool renew_multigrid(const RCP<CrsMatrix> &A, RCP<Multigrid> &multigrid);
 
 } // namespace rpc::solver

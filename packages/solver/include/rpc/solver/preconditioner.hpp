@@ -1,0 +1,49 @@
+#pragma once
+
+#include "rpc/core/tpetra.hpp"
+
+#include <string>
+
+namespace rpc::solver
+{
+
+/// An approximation B of H^-1 for a Krylov method, with H = K + contact. B is linear. It stays as it is until prepare() brings it to
+/// the present H. Symmetric and positive definite where K is, whatever contact adds. All members are collective.
+class Preconditioner : public Operator
+{
+public:
+  /// What prepare() did.
+  enum class Prepared {
+    unchanged, ///< nothing: B is that of the present H
+    updated,   ///< B followed H by work near the contact nodes
+    made,      ///< B was set up, from nothing or from parts of the last one
+    refused    ///< this kind of B cannot be had for the present H, and must not be applied
+  };
+  /// Brings B to the present H, by its revision.
+  /// @param tolerance  |r|/|b| of the solve to come, in (0, 1]: worn parts are renewed only where that pays
+  /// @throws std::exception on all ranks where the set-up fails, such as of a singular matrix; then B must not be applied
+  virtual Prepared prepare(double tolerance) = 0;
+  /// Drops what is set up: the next prepare() starts from nothing.
+  virtual void forget() = 0;
+  /// For the summary, such as "algebraic".
+  virtual std::string name() const = 0;
+
+  /// Where a Krylov method starts for a symmetric H: an x with its rest = b - H x. Null, null: from 0, with b.
+  struct Start {
+    RCP<Vector> x, rest;
+  };
+  /// From what part of the unknowns can be solved for exactly, if any.
+  virtual Start start(const Vector &) const { return {}; }
+  /// y <- B r for the residuals r that follow from this start only, where that takes less work.
+  virtual void apply_to_residual(const MultiVector &r, MultiVector &y) const { apply(r, y); }
+};
+
+/// About F . H^-1 F, F . B F.
+inline double inverse_energy(const Preconditioner &B, const Vector &F)
+{
+  Vector x(F.getMap());
+  B.apply(F, x);
+  return F.dot(x);
+}
+
+} // namespace rpc::solver

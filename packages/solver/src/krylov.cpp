@@ -1,0 +1,192 @@
+#include "krylov.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/interrupt.hpp"
+
+#include <BelosLinearProblem.hpp>
+#include <BelosSolverFactory.hpp>
+#include <BelosTpetraAdapter.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <new>
+
+namespace rpc::solver
+{
+namespace
+{
+
+// CG that breaks down with less of the error left, in energy, has met rounding, not a singular matrix: there most of it is left.
+constexpr double small_error = 1e-4;
+// Iterations after which GMRES restarts, each of which keeps a vector: with multigrid it takes fewer.
+constexpr int gmres_vectors = 50;
+
+constexpr const char *gmres = "Pseudoblock GMRES";
+
+using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
+using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
+using SolverFactory = Belos::SolverFactory<double, MultiVector, Operator>;
+
+/// Of Belos' names: methods that break down, or go wrong, where H is not symmetric.
+bool needs_symmetry(std::string method)
+{
+  std::transform(method.begin(), method.end(), method.begin(),
+                 [](const unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  const auto has = [&method](const char *part) { return method.find(part) != std::string::npos; };
+  return (has("CG") && !has("BICG")) || has("PCPG") || has("MINRES");
+}
+
+/// |x - H^-1 b|_H / |H^-1 b|_H; the preconditioner stands for H^-1. NaN where it breaks down.
+/// @param residual  b - H x
+double energy_error(const Preconditioner &B, const Vector &b, const Vector &residual)
+{
+  try {
+    return std::sqrt(inverse_energy(B, residual) / inverse_energy(B, b));
+  } catch (const Error &) {
+    throw;
+  } catch (const std::bad_alloc &) { // on this rank alone
+    throw;
+  } catch (const std::exception &) { // such as a singular coarse matrix; the same on all ranks
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+} // namespace
+
+/// The preconditioner as Belos applies it: to residuals of CG, or to any vectors. Now and then it looks whether the run is to stop:
+/// the solves of a big scene take minutes.
+class Krylov::Applied : public Operator
+{
+public:
+  explicit Applied(RCP<const Map> map) : map_(std::move(map)) {}
+
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
+  {
+    constexpr int applications_between = 8; // a sum over all ranks each time
+    if (++applications_ % applications_between == 0 && interrupted(*map_->getComm())) throw Interrupted();
+    // Belos' CG preconditions a residual before it looks whether the residual is small enough to stop.
+    if (enough > 0 && x.getNumVectors() == 1 && x.getVector(0)->norm2() <= enough) return y.assign(x);
+    if (to_residuals)
+      B->apply_to_residual(x, y);
+    else
+      B->apply(x, y);
+  }
+
+  const Preconditioner *B = nullptr;
+  bool to_residuals = false;
+  double enough = 0; // CG stops at residuals of this norm, which need no preconditioner; 0: not known
+
+private:
+  RCP<const Map> map_;
+  mutable int applications_ = 0;
+};
+
+struct Krylov::Method {
+  /// @param list  on top of rpc's defaults
+  Method(const std::string &name, const int max_iterations, const Teuchos::ParameterList &list,
+         const RCP<const Operator> &H)
+      : needs_symmetric_H(needs_symmetry(name)),
+        stops_by_residual(list.numParams() == 0 && name == LinearSolverOptions().method),
+        preconditioner(rcp(new Applied(H->getDomainMap()))),
+        problem(rcp(new LinearProblem(H, Teuchos::null, Teuchos::null)))
+  {
+    const auto belos = Teuchos::parameterList("Belos");
+    belos->set("Verbosity", static_cast<int>(Belos::Errors));
+    belos->set("Maximum Iterations", max_iterations);
+    belos->setParameters(list);
+    problem->setRightPrec(preconditioner);
+    manager = SolverFactory().create(name, belos);
+    manager->setProblem(problem);
+  }
+
+  bool needs_symmetric_H;
+  bool stops_by_residual; // at |r| <= tolerance |b|, as Belos' CG does unless the deck says otherwise
+  RCP<Applied> preconditioner;
+  RCP<LinearProblem> problem;
+  RCP<SolverManager> manager;
+};
+
+Krylov::Krylov(const LinearSolverOptions &options, const RCP<const Operator> &H)
+    : options_(options), H_(H),
+      of_deck_(std::make_unique<Method>(options.method, options.max_iterations, options.belos, H))
+{
+}
+
+Krylov::~Krylov() = default;
+
+/// From what the preconditioner solves for exactly, else from 0.
+KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Preconditioner &B, const Vector &b,
+                             Vector &x, const double tolerance)
+{
+  KrylovResult result;
+  const Preconditioner::Start start = is_symmetric ? B.start(b) : Preconditioner::Start();
+  const RCP<const Vector> rest = start.rest.is_null() ? Teuchos::rcpFromRef(b) : RCP<const Vector>(start.rest);
+  const double left = start.rest.is_null() ? 1 : rest->norm2() / b.norm2();
+  const auto list = Teuchos::parameterList();
+  const double least = std::min(1., tolerance / left);
+  list->set("Convergence Tolerance", least);
+  method.manager->setParameters(list);
+  constexpr double surely = 1 - 1e-12; // Belos divides by |rest|
+  method.preconditioner->enough = method.stops_by_residual ? surely * least * rest->norm2() : 0;
+  method.preconditioner->to_residuals = is_symmetric;
+  method.preconditioner->B = &B;
+  x.putScalar(0);
+  method.problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), RCP<const MultiVector>(rest));
+  try {
+    result.converged = method.manager->solve() == Belos::Converged;
+    result.iterations = method.manager->getNumIters();
+    result.residual = left * method.manager->achievedTol();
+    if (!result.converged)
+      result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(result.residual) + " after " +
+                      std::to_string(result.iterations) + " iterations";
+  } catch (const std::bad_alloc &) { // on this rank alone
+    throw;
+  } catch (const std::exception &failure) { // such as an indefinite or singular matrix; the same on all ranks
+    result.broken = true;
+    result.residual = std::numeric_limits<double>::quiet_NaN();
+    result.reason = "the linear solver broke down: " + one_line(failure.what());
+  }
+  if (!start.x.is_null()) x.update(1., *start.x, 1.);
+  return result;
+}
+
+// CG breaks down, too, where rounding is all that it has left to work on: of a small remainder on the patch, where its
+// preconditioner expects zeros. What is left then is solved for once more, from the residual as it is.          (4.9a)
+KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, const Vector &b, Vector &x,
+                           const double tolerance)
+{
+  Method &method = is_symmetric ? *of_deck_ : for_any_matrix();
+  KrylovResult result = iterate(method, is_symmetric, B, b, x, std::max(tolerance, options_.tolerance));
+  if (!result.broken || !std::isfinite(x.norm2())) return result;
+  Vector residual(b, Teuchos::Copy);
+  H_->apply(x, residual, Teuchos::NO_TRANS, -1., 1.);
+  if (!(energy_error(B, b, residual) <= small_error)) return result;
+  Vector move(b.getMap());
+  const double rest = std::max(tolerance * b.norm2() / residual.norm2(), options_.tolerance);
+  KrylovResult more = iterate(method, is_symmetric, B, residual, move, rest);
+  if (more.converged)
+    x.update(1., move, 1.);
+  else
+    more.reason = result.reason;
+  more.broken = false;
+  return more;
+}
+
+Krylov::Method &Krylov::for_any_matrix()
+{
+  if (!of_deck_->needs_symmetric_H) return *of_deck_;
+  if (gmres_) return *gmres_;
+  Teuchos::ParameterList list;
+  list.set("Num Blocks", std::min(gmres_vectors, options_.max_iterations));
+  list.set("Maximum Restarts", options_.max_iterations);
+  const auto known = SolverFactory().create(gmres, Teuchos::parameterList())->getValidParameters();
+  for (auto it = options_.belos.begin(); it != options_.belos.end(); ++it)
+    if (known->isParameter(it->first)) list.setEntry(it->first, it->second);
+  gmres_ = std::make_unique<Method>(gmres, options_.max_iterations, list, H_);
+  return *gmres_;
+}
+
+} // namespace rpc::solver

@@ -1,0 +1,88 @@
+#include "rpc/solver/linear_solver_options.hpp"
+
+#include "muelu_parameters.hpp"
+#include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
+#include "rpc/core/tpetra.hpp"
+
+#include <BelosSolverFactory.hpp>
+#include <BelosTpetraAdapter.hpp>
+#include <set>
+
+namespace rpc::solver
+{
+namespace
+{
+
+/// Belos refuses values by itself, but passes over names that it does not know.
+void check_belos(const std::string &method, const Teuchos::ParameterList &user)
+{
+  Belos::SolverFactory<double, MultiVector, Operator> factory;
+  const auto methods = factory.supportedSolverNames(); // some come twice
+  const std::set<std::string> sorted(methods.begin(), methods.end());
+  RPC_REQUIRE(factory.isSupported(method), "deck: \"Linear Solver->Method\" must be one that Belos knows, got \""
+                                               << method << "\". It knows: " << join({sorted.begin(), sorted.end()}));
+  try {
+    const auto list = Teuchos::parameterList("Linear Solver->Belos");
+    list->setParameters(user);
+    require_known(user, names_of(*factory.create(method, list)->getValidParameters()), "Linear Solver->Belos");
+    RPC_REQUIRE(!user.isParameter("Convergence Tolerance"),
+                "deck: \"Linear Solver->Belos->Convergence Tolerance\" is set by rpc for each solve; give the bound as "
+                "\"Linear Solver->Tolerance\"");
+  } catch (const Error &) {
+    throw;
+  } catch (const std::exception &failure) {
+    throw Error(ExitCode::bad_input, "deck: \"Linear Solver->Belos\": " + one_line(failure.what()));
+  }
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_linear_solver_parameters()
+{
+  Teuchos::ParameterList valid("Linear Solver");
+  valid.set("Method", LinearSolverOptions().method,
+            "Krylov method by its name in Belos; the matrix is symmetric positive definite.");
+  valid.set("Tolerance", 1e-11, "|r|/|b| of a linear solve at least, in (0, 1): most need not be as good.");
+  valid.set("Maximum Iterations", 500, "of a linear solve, > 0.");
+  valid.set(
+      "Multigrid", "auto",
+      "`mesh`: on coarser meshes of the same body, where there are some: of order 1 for order 2, and coarser boxes; "
+      "`algebraic`: by MueLu from the matrix; `auto`: `mesh` unless `MueLu` is given.");
+  valid.set("Reuse", "tP",
+            "What of an algebraic hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
+            "tentative prolongator), `RP` (transfer operators).");
+  set_pass_through(valid, "Belos", "Handed to Belos as it is.");
+  set_pass_through(
+      valid, "MueLu",
+      "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing. Where CG takes more "
+      "than 150 iterations, a factorization takes over on one rank up to 100000 unknowns, else a stronger "
+      "smoother, unless the coarse size or the smoother are given here.");
+  return valid;
+}
+
+LinearSolverOptions linear_solver_options(const Teuchos::ParameterList &list)
+{
+  LinearSolverOptions options;
+  options.method = list.get<std::string>("Method");
+  options.tolerance = list.get<double>("Tolerance");
+  options.max_iterations = list.get<int>("Maximum Iterations");
+  options.multigrid = list.get<std::string>("Multigrid");
+  options.reuse = list.get<std::string>("Reuse");
+  options.belos = list.sublist("Belos");
+  options.muelu = list.sublist("MueLu");
+  RPC_REQUIRE(options.tolerance > 0 && options.tolerance < 1,
+              "deck: \"Linear Solver->Tolerance\" must be in (0, 1), got " << options.tolerance);
+  RPC_REQUIRE(options.max_iterations > 0,
+              "deck: \"Linear Solver->Maximum Iterations\" must be > 0, got " << options.max_iterations);
+  RPC_REQUIRE(options.multigrid == "auto" || options.multigrid == "mesh" || options.multigrid == "algebraic",
+              "deck: \"Linear Solver->Multigrid\" must be one of auto, mesh, algebraic, got \"" << options.multigrid
+                                                                                                << "\"");
+  RPC_REQUIRE(options.reuse == "none" || options.reuse == "tP" || options.reuse == "RP",
+              "deck: \"Linear Solver->Reuse\" must be one of none, tP, RP, got \"" << options.reuse << "\"");
+  check_belos(options.method, options.belos);
+  check_muelu_parameters(options.muelu, "Linear Solver->MueLu");
+  return options;
+}
+
+} // namespace rpc::solver

@@ -1,0 +1,62 @@
+#pragma once
+
+namespace rpc::solver
+{
+
+/// CG iterations beyond which a solve is slow.
+constexpr int patience = 150;
+
+/// How a linear solve went that was not good. Values are bits.
+enum Outcome : unsigned {
+  slow = 1,   ///< it converged, in more than `patience` iterations
+  failed = 2, ///< it stopped before it converged
+  broken = 4  ///< the set-up or the Krylov method broke down: the matrix may be singular
+};
+
+/// What it was preconditioned with.
+enum class Used {
+  meshes,       ///< multigrid on coarser meshes
+  meshes_again, ///< the same, after matrices were met that neither hierarchy could solve for
+  stand_in,     ///< factor or algebraic hierarchy, in the solve in which multigrid on meshes failed
+  factor,       ///< of H, of few unknowns
+  algebraic,    ///< a hierarchy that followed changes of states, or reused parts
+  from_scratch  ///< a hierarchy made from nothing for these states
+};
+
+/// What takes over: in the same solve where it failed or broke down, for the next one where it was slow.
+enum class Next {
+  nothing,    ///< the result stands
+  stand_in,   ///< the factor or the algebraic hierarchy, instead of meshes
+  anew,       ///< the algebraic hierarchy, from nothing
+  stronger,   ///< the algebraic hierarchy with a factor or a stronger smoother; once, and not against the deck
+  meshes_back ///< multigrid on meshes, for the next solve; the result stands: the matrix is singular
+};
+
+/// A row of the policy.
+struct Rule {
+  Used used;
+  unsigned outcomes; ///< for which it holds
+  Next next;
+};
+
+// clang-format off
+/// The whole policy of what is tried where a linear solve fails or is slow. There is one row for each case.
+constexpr Rule policy[] = {
+    // after               that was                next
+    {Used::meshes,         slow | failed | broken, Next::stand_in},    // coarse meshes miss what the matrix tells; it stays
+    {Used::meshes_again,   slow | failed,          Next::stand_in},    // the same
+    {Used::meshes_again,                   broken, Next::nothing},     // an active set leaves the body unheld, once more
+    {Used::stand_in,       slow | failed,          Next::stronger},    // aggregation misses slow modes
+    {Used::stand_in,                       broken, Next::meshes_back}, // not the hierarchy: an active set leaves the body unheld
+    {Used::factor,         slow | failed,          Next::stronger},    // its rounding is too large
+    {Used::factor,                         broken, Next::nothing},     // the matrix is singular
+    {Used::algebraic,      slow | failed | broken, Next::anew},        // corrections or reused parts may be to blame
+    {Used::from_scratch,   slow | failed,          Next::stronger},    // aggregation misses slow modes
+    {Used::from_scratch,                   broken, Next::nothing},     // the matrix is singular
+};
+// clang-format on
+
+/// The row for a case.
+const Rule &rule_for(Used used, Outcome outcome);
+
+} // namespace rpc::solver

@@ -1,0 +1,165 @@
+#include "preconditioner/algebraic.hpp"
+
+#include "muelu_defaults.hpp"
+#include "rpc/algebra/bounded_update.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace rpc::solver
+{
+namespace
+{
+
+// Up to how many unknowns a stronger preconditioner is a factorization.
+constexpr GO most_direct_rows = 100000;
+// Multigrid is made for closed nodes of at most so many times their own stiffness: with all of the penalty, coarse functions
+// could not move near them, and CG would take a third more iterations. The rest is left to the correction.   (4.9)
+constexpr double most_stiffness = 5;
+// Corrections have worn out where they cost a solve of so many digits more CG iterations than a set-up takes the time of. Solves
+// of few digits tell little.
+constexpr double full_digits = 8, few_digits = 2, setup_in_iterations = 12;
+// Set-ups for changed states; then corrections go on until CG runs out of patience.
+constexpr int most_setups_for_states = 1;
+
+Teuchos::ParameterList list_for(const Map &dofs, const int dofs_per_node, const LinearSolverOptions &options)
+{
+  Teuchos::ParameterList list = muelu_defaults(dofs, dofs_per_node);
+  list.set("reuse: type", options.reuse);
+  list.set("sa: damping factor", options.damping);
+  if (options.muelu.isParameter("smoother: type")) list.remove("smoother: params"); // of another type
+  list.setParameters(options.muelu);
+  return list;
+}
+
+bool leaves_strength_open(const Teuchos::ParameterList &user)
+{
+  for (const char *name : {"coarse: max size", "smoother: type", "smoother: params"})
+    if (user.isParameter(name)) return false;
+  return true;
+}
+
+} // namespace
+
+Algebraic::Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options,
+                     const bool for_each_state)
+    : H_(std::move(H)), body_(std::move(body)),
+      muelu_(list_for(*H_->getDomainMap(), static_cast<int>(body_.coordinates->getNumVectors()), options)),
+      for_each_state_(for_each_state), may_strengthen_(leaves_strength_open(options.muelu))
+{
+}
+
+Preconditioner::Prepared Algebraic::prepare(const double tolerance)
+{
+  const int revision = H_->revision();
+  const bool exists = !multigrid_.is_null();
+  const bool renewal_pays = is_worn_ && excess(-std::log10(tolerance)) > setup_in_iterations;
+  if (exists && revision == revision_ && !renewal_pays) return Prepared::unchanged;
+  if (exists && !is_worn_ && !for_each_state_) {
+    correction_ = LocalCorrection::around(*H_, *A_, written_);
+    is_fresh_ = false;
+    const bool is_exact = !correction_ && num_changes(*H_, written_) == 0;
+    if (correction_ || is_exact) {
+      revision_ = revision;
+      return is_exact ? Prepared::unchanged : Prepared::updated;
+    }
+  }
+  setups_for_states_ += exists;
+  set_up();
+  revision_ = revision;
+  return Prepared::made;
+}
+
+void Algebraic::write(const DeviceView<double ***> &update)
+{
+  written_ = update;
+  write_update(*A_, *H_, update);
+}
+
+void Algebraic::set_up()
+{
+  correction_.reset();
+  if (A_.is_null()) A_ = H_->base().copy();
+  if (!for_each_state_) {
+    write(bounded_update(*H_, most_stiffness));
+    correction_ = LocalCorrection::around(*H_, *A_, written_);
+  }
+  if (!correction_) write(bounded_update(*H_));
+  is_fresh_ = true;
+  is_worn_ = false;
+  is_renewed_ =
+      !multigrid_.is_null() && muelu_.get<std::string>("reuse: type") != "none" && renew_multigrid(A_, multigrid_);
+  if (is_renewed_) return;
+  Teuchos::ParameterList list = muelu_;
+  list.sublist("user data").set("Coordinates", body_.coordinates);
+  list.sublist("user data").set("Nullspace", body_.null_space);
+  multigrid_ = Teuchos::null; // two hierarchies would take twice the memory
+  multigrid_ = make_multigrid(A_, list);
+}
+
+void Algebraic::forget()
+{
+  multigrid_ = Teuchos::null;
+  correction_.reset();
+  A_ = Teuchos::null;
+  is_fresh_ = true;
+  is_renewed_ = false;
+}
+
+void Algebraic::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
+{
+  if (!correction_) return multigrid_->apply(x, y);
+  for (std::size_t k = 0; k < x.getNumVectors(); ++k)
+    correction_->apply(*multigrid_, *x.getVector(k), *y.getVectorNonConst(k));
+}
+
+// What a solve on the patch leaves of b is 0 there, and so are all residuals that follow.                           (4.8)
+Preconditioner::Start Algebraic::start(const Vector &b) const
+{
+  if (!correction_) return {};
+  const Start start{rcp(new Vector(b.getMap())), rcp(new Vector(b.getMap()))};
+  correction_->solve_on_patch(b, *start.x, *start.rest);
+  return start;
+}
+
+void Algebraic::apply_to_residual(const MultiVector &r, MultiVector &y) const
+{
+  if (!correction_) return multigrid_->apply(r, y);
+  for (std::size_t k = 0; k < r.getNumVectors(); ++k)
+    correction_->apply_off_patch(*multigrid_, *r.getVector(k), *y.getVectorNonConst(k));
+}
+
+void Algebraic::learn(const int iterations, const double residual)
+{
+  const double digits = -std::log10(residual);
+  if (!(digits > few_digits)) return;
+  iterations_per_digit_ = iterations / digits;
+  if (is_fresh_)
+    usual_iterations_ = iterations_per_digit_;
+  else
+    is_worn_ = setups_for_states_ < most_setups_for_states && excess(full_digits) > setup_in_iterations;
+}
+
+/// CG iterations that a solve of so many digits would save right after a set-up.
+double Algebraic::excess(const double digits) const
+{
+  return usual_iterations_ > 0 ? (iterations_per_digit_ - usual_iterations_) * digits : 0;
+}
+
+bool Algebraic::strengthen()
+{
+  if (!may_strengthen_ || std::exchange(strengthened_, true)) return false;
+  const GO rows = static_cast<GO>(getDomainMap()->getGlobalNumElements());
+  if (getDomainMap()->getComm()->getSize() == 1 && rows <= most_direct_rows) {
+    muelu_.set("coarse: max size", static_cast<int>(rows) + 1);
+    muelu_.set("reuse: type", "none");
+  } else {
+    Teuchos::ParameterList &smoother = muelu_.sublist("smoother: params");
+    smoother.set("chebyshev: degree", 8);
+    smoother.set("chebyshev: ratio eigenvalue", 50.);
+  }
+  forget();
+  return true;
+}
+
+} // namespace rpc::solver

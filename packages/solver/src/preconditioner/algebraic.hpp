@@ -1,0 +1,74 @@
+#pragma once
+
+#include "local_correction.hpp"
+#include "multigrid.hpp"
+#include "rpc/algebra/updated_operator.hpp"
+#include "rpc/solver/linear_solver_options.hpp"
+#include "rpc/solver/preconditioner.hpp"
+
+#include <optional>
+
+namespace rpc::solver
+{
+
+/// MueLu's hierarchy for a matrix that is softer than H, with exact solves on a patch around the contact nodes that bring in the rest
+/// of H and its later changes, doc/theory.md (4.8), (4.9). It is set up again, keeping what `Reuse` allows, where the patch would be
+/// too large or CG says that the corrections have worn out. Or, for few unknowns, for each choice of contact states. Of an update that is
+/// not symmetric it takes the symmetric part.
+class Algebraic : public Preconditioner
+{
+public:
+  /// What a hierarchy is made of.
+  struct Body {
+    RCP<MultiVector> coordinates; ///< (nodes; dim) [m]
+    RCP<MultiVector> null_space;  ///< (dofs; rigid body modes)
+  };
+  /// @param for_each_state  made for H itself whenever it changes, without a patch
+  Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options, bool for_each_state);
+
+  Prepared prepare(double tolerance) override;
+  void forget() override;
+  std::string name() const override { return strengthened_ ? "stronger algebraic" : "algebraic"; }
+
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
+             double beta = 0) const override;
+  Start start(const Vector &b) const override; ///< x = Q b
+  void apply_to_residual(const MultiVector &r, MultiVector &y) const override;
+  RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
+
+  /// Whether it was made from nothing, for the present H: then a failure is not that of corrections or of reused parts.
+  bool is_from_scratch() const { return is_fresh_ && !is_renewed_; }
+  /// CG's iterations to |r|/|b| = residual, from which it learns when it has worn out.
+  void learn(int iterations, double residual);
+  /// For nearly incompressible or badly shaped cells, where aggregation misses slow modes: a factorization by MueLu on one rank, where
+  /// that is affordable, else a stronger smoother. At most once, and not against what the deck asks for.
+  /// @return whether it is another preconditioner now, to be made from nothing
+  bool strengthen();
+
+private:
+  void set_up();
+  void write(const DeviceView<double ***> &update);
+  double excess(double digits) const;
+
+  RCP<const UpdatedOperator> H_;
+  Body body_;
+  Teuchos::ParameterList muelu_;
+  bool for_each_state_;
+  bool may_strengthen_; // the deck leaves coarse size and smoother to rpc
+
+  RCP<CrsMatrix> A_;               // K with a bounded update; null: none was made yet
+  DeviceView<double ***> written_; // (nodes of H, dim, dim) that update
+  RCP<Multigrid> multigrid_;       // null: to be made from nothing
+  std::optional<LocalCorrection> correction_;
+  int revision_ = -1;       // of H when it was last brought to it
+  bool is_fresh_ = false;   // no states have changed since the last set-up
+  bool is_renewed_ = false; // the last set-up reused the one before
+  bool is_worn_ = false;    // corrections do not suffice any more
+  bool strengthened_ = false;
+  int setups_for_states_ = 0;       // that took the place of an earlier hierarchy
+  double usual_iterations_ = 0;     // for each digit, right after a set-up; 0: not known
+  double iterations_per_digit_ = 0; // of the last solve
+};
+
+} // namespace rpc::solver

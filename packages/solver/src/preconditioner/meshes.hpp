@@ -1,0 +1,46 @@
+#pragma once
+
+#include "rpc/algebra/updated_operator.hpp"
+#include "rpc/solver/linear_solver_options.hpp"
+#include "rpc/solver/mesh_levels.hpp"
+#include "rpc/solver/mesh_multigrid.hpp"
+#include "rpc/solver/preconditioner.hpp"
+
+namespace rpc::solver
+{
+
+/// Multigrid on coarser meshes, (4.7a). The coarsest matrix is factored where it has few unknowns; else MueLu's hierarchy follows.
+/// The meshes are made at the first set-up. Changes of contact are followed in place.
+class Meshes : public Preconditioner
+{
+public:
+  /// @param levels  not null
+  Meshes(RCP<UpdatedOperator> H, MakeMeshLevels levels, LinearSolverOptions options)
+      : H_(std::move(H)), make_levels_(std::move(levels)), options_(std::move(options))
+  {
+  }
+
+  /// @throws std::runtime_error where there is no coarser mesh, or a coarse matrix is not positive definite
+  Prepared prepare(double tolerance) override;
+  void forget() override;
+  std::string name() const override { return "meshes"; }
+
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp = Teuchos::NO_TRANS, double = 1,
+             double = 0) const override
+  {
+    multigrid_->apply(x, y);
+  }
+  RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
+
+private:
+  std::unique_ptr<CoarsestSolver> coarsest(const MeshLevel &level, bool has_few_unknowns) const;
+
+  RCP<UpdatedOperator> H_;
+  MakeMeshLevels make_levels_;
+  LinearSolverOptions options_;
+  RCP<MeshMultigrid> multigrid_; // null: to be made
+  int revision_ = -1;            // of H when it was last brought to it
+};
+
+} // namespace rpc::solver
