@@ -1,0 +1,153 @@
+#include "../src/krylov.hpp"
+
+#include "grid.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <string>
+
+namespace
+{
+
+using namespace rpc;
+using rpc::test::Grid;
+using solver::Krylov;
+using solver::KrylovResult;
+using solver::LinearSolverOptions;
+
+/// The grid's diagonal.
+class Diagonal : public solver::Preconditioner
+{
+public:
+  explicit Diagonal(const CrsMatrix &A) : inverse_(A.getRowMap())
+  {
+    A.getLocalDiagCopy(inverse_);
+    inverse_.reciprocal(inverse_);
+  }
+  Prepared prepare(double) override { return Prepared::unchanged; }
+  void forget() override { FAIL() << "nobody asked for that"; }
+  std::string name() const override { return "diagonal"; }
+  RCP<const Map> getDomainMap() const override { return inverse_.getMap(); }
+  RCP<const Map> getRangeMap() const override { return inverse_.getMap(); }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp = Teuchos::NO_TRANS, double = 1,
+             double = 0) const override
+  {
+    y.elementWiseMultiply(1., inverse_, x, 0.);
+  }
+
+private:
+  Vector inverse_;
+};
+
+/// The grid's matrix and a rotation of both unknowns of each node: positive, but not symmetric.
+class Rotating : public Operator
+{
+public:
+  Rotating(RCP<const CrsMatrix> A, const double rotation) : A_(std::move(A)), rotation_(rotation) {}
+  RCP<const Map> getDomainMap() const override { return A_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, const double alpha,
+             const double beta) const override
+  {
+    A_->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
+    const auto from = x.getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto to = y.getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t row = 0; row < from.extent(0); row += 2) {
+      to(row, 0) += alpha * rotation_ * from(row + 1, 0);
+      to(row + 1, 0) -= alpha * rotation_ * from(row, 0);
+    }
+  }
+
+private:
+  RCP<const CrsMatrix> A_;
+  double rotation_;
+};
+
+/// |b - H x| / |b|
+double residual_of(const Operator &H, const Vector &x, const Vector &b)
+{
+  Vector r(b, Teuchos::Copy);
+  H.apply(x, r, Teuchos::NO_TRANS, -1., 1.);
+  return r.norm2() / b.norm2();
+}
+
+struct Case {
+  Grid grid{24};
+  Diagonal B{*grid.A};
+  RCP<const Operator> H = rcp(new Rotating(grid.A, 2));
+  Vector b = grid.right_side(), x{grid.map};
+
+  KrylovResult solve(const LinearSolverOptions &options, const bool is_symmetric = false, const double tolerance = 1e-9)
+  {
+    return Krylov(options, H).solve(B, is_symmetric, b, x, tolerance);
+  }
+};
+
+TEST(Krylov, SolvesForAMatrixThatIsNotSymmetricByGmres)
+{
+  Case of;
+  const auto result = of.solve({});
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_GE(result.iterations, 10);
+  EXPECT_LE(result.iterations, 60);
+  EXPECT_LT(residual_of(*of.H, of.x, of.b), 1.01e-9);
+  EXPECT_NEAR(result.residual, residual_of(*of.H, of.x, of.b), 1e-10);
+  const auto wrong = of.solve({}, true);
+  EXPECT_FALSE(wrong.converged && residual_of(*of.H, of.x, of.b) < 1e-8)
+      << "CG needs symmetry: else this tells nothing";
+}
+
+TEST(Krylov, KeepsTheDecksMethodWhereItTakesAnyMatrix)
+{
+  Case of;
+  LinearSolverOptions options;
+  const int many = of.solve(options).iterations;
+  options.method = "Block GMRES";
+  options.belos.set("Num Blocks", 3);
+  options.belos.set("Maximum Restarts", 500);
+  const auto result = of.solve(options);
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_GT(result.iterations, many) << "restarts after three iterations make it slower";
+}
+
+TEST(Krylov, HandsToGmresWhatItKnowsOfTheListForCG)
+{
+  Case of;
+  LinearSolverOptions options;
+  options.belos.set("Maximum Iterations", 5);
+  options.belos.set("Assert Positive Definiteness", false); // GMRES knows no such name
+  const auto result = of.solve(options);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.iterations, 5);
+}
+
+TEST(Krylov, SolvesOnceForCGAndOnceForGmresWithOneObject)
+{
+  Case of;
+  Krylov krylov({}, of.grid.A);
+  int iterations[2][2];
+  for (auto &round : iterations)
+    for (const bool is_symmetric : {true, false}) {
+      const auto result = krylov.solve(of.B, is_symmetric, of.b, of.x, 1e-9);
+      EXPECT_TRUE(result.converged) << result.reason;
+      EXPECT_LT(of.grid.relative_residual(of.x, of.b), 1.01e-9);
+      round[is_symmetric] = result.iterations;
+    }
+  for (const bool is_symmetric : {true, false}) EXPECT_EQ(iterations[0][is_symmetric], iterations[1][is_symmetric]);
+}
+
+TEST(Krylov, TellsOfAMatrixThatIsNotPositiveDefinite)
+{
+  Case of;
+  of.grid.A->resumeFill();
+  of.grid.A->scale(-1.);
+  of.grid.A->fillComplete();
+  of.H = of.grid.A;
+  const auto result = of.solve({}, true);
+  EXPECT_TRUE(result.broken);
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.reason.find("broke down"), std::string::npos) << result.reason;
+  EXPECT_TRUE(std::isnan(result.residual));
+}
+
+} // namespace

@@ -1,0 +1,211 @@
+#include "rpc/solver/linear_solver.hpp"
+
+#include "supported_grid.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <stdexcept>
+#include <string>
+
+// What a linear solver does after a solve that failed, and for further right sides.
+
+namespace
+{
+
+using namespace rpc;
+using rpc::test::SupportedGrid;
+using solver::LinearSolver;
+using solver::LinearSolverOptions;
+using solver::MeshLevels;
+using solver::solver_path;
+
+constexpr int large = 40, small = 20; // 3200 unknowns, for a hierarchy that outlives the states, and 800, for a factor
+
+LinearSolverOptions options_for(const std::string &multigrid)
+{
+  LinearSolverOptions options;
+  options.multigrid = multigrid;
+  return options;
+}
+
+bool contains(const std::string &text, const std::string &part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+TEST(FailedSolve, OfMeshesIsTakenOverByTheAlgebraicHierarchyWhichSaysWhy)
+{
+  const SupportedGrid body(large);
+  const auto solver =
+      body.solver(options_for("mesh"), []() -> MeshLevels { throw std::runtime_error("no such mesh"); });
+  const Vector b = body.grid.right_side();
+  Vector x(b.getMap());
+  for (int k = 0; k < 2; ++k) {
+    const auto result = solver->solve(b, x, 1e-8);
+    EXPECT_TRUE(result.converged) << result.reason;
+    EXPECT_LT(body.residual(x, b), 1.01e-8);
+  }
+  const auto &counts = solver->counts();
+  EXPECT_EQ(counts.fallback, "the linear solver broke down: no such mesh");
+  EXPECT_EQ(solver_path(counts), "meshes -> algebraic: the linear solver broke down: no such mesh");
+  EXPECT_EQ(counts.preconditioner_setups, 1);
+  EXPECT_EQ(counts.iterations.size(), 3U) << "the meshes are not tried again";
+  EXPECT_EQ(counts.iterations[0], 0);
+  EXPECT_EQ(counts.iterations[1], counts.iterations[2]);
+}
+
+TEST(FailedSolve, OfFewUnknownsOnMeshesIsTakenOverByAFactor)
+{
+  const SupportedGrid body(25); // 1250 unknowns: meshes come first
+  const auto solver = body.solver(options_for("auto"), [] { return MeshLevels(); });
+  const Vector b = body.grid.right_side();
+  Vector x(b.getMap());
+  EXPECT_TRUE(solver->solve(b, x, 1e-8).converged);
+  EXPECT_LE(solver->counts().iterations.back(), 2);
+  EXPECT_EQ(
+      solver_path(solver->counts()),
+      "meshes -> factor: the linear solver broke down: multigrid: a coarser mesh would be too small for the ranks");
+}
+
+/// Springs that pull make H indefinite: CG breaks down with any hierarchy, and it is not the hierarchy that is to blame.
+TEST(FailedSolve, OfAnIndefiniteMatrixIsBrokenAndTheMeshesComeBack)
+{
+  const SupportedGrid body(large);
+  const auto solver = body.solver(options_for("mesh"), [&] { return body.levels(); });
+  const Vector b = body.grid.right_side();
+  Vector x(b.getMap());
+  body.hold(0, 20, 5);
+  const auto before = solver->solve(b, x, 1e-8);
+  EXPECT_TRUE(before.converged) << before.reason;
+  const Vector expected(x, Teuchos::Copy);
+  std::size_t solves = 1;
+  for (const int attempts : {2, 1}) { // the second time it is known that neither will do
+    body.hold(0, 20, -500);
+    const int revision = body.H->revision();
+    const auto result = solver->solve(b, x, 1e-8);
+    EXPECT_TRUE(result.broken);
+    EXPECT_FALSE(result.converged);
+    EXPECT_FALSE(result.interrupted);
+    EXPECT_TRUE(contains(result.reason, "broke down")) << result.reason;
+    EXPECT_EQ(body.H->revision(), revision) << "H is not touched";
+    EXPECT_EQ(solver->counts().fallback, "") << "meshes were not given up";
+    solves += attempts;
+    EXPECT_EQ(solver->counts().iterations.size(), solves);
+    body.hold(0, 20, 5);
+    const auto after = solver->solve(b, x, 1e-8);
+    EXPECT_TRUE(after.converged) << after.reason;
+    EXPECT_EQ(after.iterations, before.iterations) << "with multigrid on meshes, as before";
+    EXPECT_EQ(solver->counts().iterations.size(), ++solves);
+    Vector difference(expected, Teuchos::Copy);
+    difference.update(-1., x, 1.);
+    EXPECT_LT(difference.norm2(), 1e-7 * expected.norm2());
+  }
+  const std::string path = solver_path(solver->counts());
+  EXPECT_EQ(path.rfind("meshes -> algebraic: the linear solver broke down: ", 0), 0U) << path;
+  EXPECT_TRUE(contains(path, " -> meshes: the matrix is singular")) << path;
+}
+
+/// CG that may take few iterations fails with a hierarchy that followed the states, with one made anew for them, and then gets
+/// something stronger.
+TEST(FailedSolve, ForgetsAHierarchyThatFollowedTheStatesBeforeItTakesAStrongerOne)
+{
+  if (Tpetra::getDefaultComm()->getSize() > 1) GTEST_SKIP() << "the stronger one is a factor on one rank alone";
+  const SupportedGrid body(large);
+  LinearSolverOptions options = options_for("algebraic");
+  options.max_iterations = 5;
+  const auto solver = body.solver(options);
+  const Vector b = body.grid.right_side();
+  Vector x(b.getMap());
+  EXPECT_TRUE(solver->solve(b, x, 0.1).converged);
+  EXPECT_EQ(solver->counts().preconditioner_setups, 1);
+  body.hold(3, 9, 100);
+  EXPECT_TRUE(solver->solve(b, x, 0.1).converged);
+  EXPECT_EQ(solver->counts().preconditioner_setups, 1);
+  EXPECT_EQ(solver->counts().local_corrections, 1);
+  const auto result = solver->solve(b, x, 1e-10);
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_LT(body.residual(x, b), 1.01e-10);
+  EXPECT_EQ(solver->counts().preconditioner_setups, 3);
+  const auto &iterations = solver->counts().iterations;
+  ASSERT_EQ(iterations.size(), 5U);
+  EXPECT_EQ(iterations[2], 5) << "as it followed";
+  EXPECT_EQ(iterations[3], 5) << "anew";
+  EXPECT_LE(iterations[4], 2) << "a factor";
+  const std::string path = solver_path(solver->counts());
+  EXPECT_EQ(path.rfind("algebraic -> algebraic: anew -> stronger algebraic: the linear solver stopped at ", 0), 0U)
+      << path;
+}
+
+TEST(FailedSolve, LeavesTheDecksChoiceAlone)
+{
+  const SupportedGrid body(large);
+  LinearSolverOptions options = options_for("algebraic");
+  options.max_iterations = 2;
+  options.muelu.set("coarse: max size", 50);
+  const auto solver = body.solver(options);
+  const Vector b = body.grid.right_side();
+  Vector x(b.getMap());
+  const auto result = solver->solve(b, x, 1e-10);
+  EXPECT_FALSE(result.converged);
+  EXPECT_FALSE(result.broken) << "x is as far as it came";
+  EXPECT_TRUE(contains(result.reason, "after 2 iterations")) << result.reason;
+  EXPECT_LT(body.residual(x, b), 1);
+  EXPECT_EQ(solver->counts().iterations.size(), 1U);
+  EXPECT_EQ(solver_path(solver->counts()), "algebraic");
+}
+
+TEST(LinearSolver, TakesAHierarchyWhereAFactorWouldBeTooLarge)
+{
+  const SupportedGrid body(35); // 2450 unknowns, whose band takes more multiplications than a factor may
+  const auto solver = body.solver(options_for("auto"));
+  const Vector b = body.grid.right_side();
+  Vector x(b.getMap());
+  for (const GO to : {10, 20, 20}) {
+    body.hold(0, to, 100);
+    EXPECT_TRUE(solver->solve(b, x, 1e-8).converged);
+    EXPECT_LT(body.residual(x, b), 1.01e-8);
+  }
+  EXPECT_EQ(solver->counts().preconditioner_setups, 2) << "one for each choice of states";
+  EXPECT_EQ(solver->counts().local_corrections, 0);
+  EXPECT_EQ(solver_path(solver->counts()), "algebraic: a factor is refused");
+}
+
+/// H stands still: a second right side costs its iterations, and nothing else.
+TEST(LinearSolver, SolvesForFurtherRightSidesWithoutASetUp)
+{
+  struct Kind {
+    const char *multigrid;
+    int nodes;
+    const char *path;
+  };
+  for (const Kind &kind :
+       {Kind{"mesh", large, "meshes"}, {"algebraic", large, "algebraic"}, {"auto", small, "factor"}}) {
+    const SupportedGrid body(kind.nodes);
+    const auto solver = body.solver(options_for(kind.multigrid), [&] { return body.levels(); });
+    const Vector first = body.grid.right_side();
+    Vector second(first.getMap()), zero(first.getMap()), x(first.getMap());
+    second.randomize();
+    body.hold(0, 5, 100);
+    EXPECT_TRUE(solver->solve(first, x, 0.1).converged);
+    body.hold(0, 7, 100);
+    const auto alone = solver->solve(first, x, 1e-8);
+    EXPECT_TRUE(alone.converged) << alone.reason;
+    const auto before = solver->counts();
+    for (const Vector *const b : {&second, &first}) {
+      x.putScalar(3.);
+      EXPECT_TRUE(solver->solve(*b, x, 1e-8).converged);
+      EXPECT_LT(body.residual(x, *b), 1.01e-8) << kind.path;
+    }
+    const auto &after = solver->counts();
+    EXPECT_EQ(after.iterations.back(), alone.iterations) << kind.path;
+    EXPECT_EQ(after.iterations.size(), before.iterations.size() + 2);
+    EXPECT_EQ(after.preconditioner_setups, before.preconditioner_setups) << kind.path;
+    EXPECT_EQ(after.local_corrections, before.local_corrections) << kind.path;
+    EXPECT_EQ(after.setup_seconds, before.setup_seconds) << kind.path;
+    EXPECT_EQ(solver_path(after), kind.path);
+    EXPECT_TRUE(solver->solve(zero, x, 1e-8).converged);
+    EXPECT_EQ(x.norm2(), 0) << kind.path;
+  }
+}
+
+} // namespace
