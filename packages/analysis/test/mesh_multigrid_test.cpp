@@ -2,10 +2,12 @@
 
 #include "rpc/algebra/along_points.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/mesh/box.hpp"
 #include "rpc/solver/linear_solver.hpp"
 #include "updated.hpp"
 
+#include <Teuchos_LAPACK.hpp>
 #include <Tpetra_Core.hpp>
 #include <algorithm>
 #include <cmath>
@@ -401,6 +403,77 @@ TEST(LinearSolver, TakesMeshesUnlessMueLuIsGiven)
     options.muelu.set("max levels", 3);
     options.multigrid = "mesh";
   }));
+}
+
+/// x by a dense factor of the whole matrix, which is made column by column.
+Vector solved_densely(const Operator &H, const Vector &b)
+{
+  const Map &map = *b.getMap();
+  const int n = static_cast<int>(map.getGlobalNumElements());
+  const LO own = num_local(map);
+  std::vector<double> matrix(static_cast<std::size_t>(n) * n), x(n);
+  Vector unit(b.getMap()), column(b.getMap());
+  const auto place = [&](const LO i) { return static_cast<std::size_t>(map.getGlobalElement(i)); };
+  const auto copy = [&](const Vector &from, double *const to) {
+    const auto values = from.getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (LO i = 0; i < own; ++i) to[place(i)] = values(i, 0);
+  };
+  for (int j = 0; j < n; ++j) {
+    const LO here = map.getLocalElement(j);
+    unit.putScalar(0);
+    if (here >= 0) unit.replaceLocalValue(here, 1.);
+    H.apply(unit, column);
+    copy(column, matrix.data() + static_cast<std::size_t>(n) * j);
+  }
+  copy(b, x.data());
+  matrix = summed(*map.getComm(), matrix);
+  x = summed(*map.getComm(), x);
+  std::vector<int> pivots(n);
+  int info = 0;
+  Teuchos::LAPACK<int, double>().GESV(n, 1, matrix.data(), n, pivots.data(), x.data(), n, &info);
+  EXPECT_EQ(info, 0);
+  Vector solution(b.getMap());
+  for (LO i = 0; i < own; ++i) solution.replaceLocalValue(i, x[place(i)]);
+  return solution;
+}
+
+/// Friction's tangent at closed nodes, with the coefficient of friction 0.3: the tangential force follows the normal one,
+/// s w m m^T + 0.3 s w t m^T. Preconditioners take its symmetric part.
+TEST(LinearSolver, SolvesByGmresWhereContactIsNotSymmetric)
+{
+  const Block block({2, 1}, {16, 9});
+  const auto own = to_host(own_stiffness(block.H->base(), block.points)), weight = to_host(block.points.weight);
+  const auto direction = to_host(block.points.direction);
+  const HostView<double ***> update("update", block.points.size(), 2, 2);
+  constexpr double stiffness = 1, friction = 0.3;
+  for (LO i = 0; i < block.points.size(); ++i) {
+    const double m[2] = {direction(i, 0), direction(i, 1)}, t[2] = {m[1], -m[0]};
+    for (int k = 0; k < 2; ++k)
+      for (int l = 0; l < 2; ++l) update(i, k, l) = stiffness * own(i) * weight(i) * (m[k] + friction * t[k]) * m[l];
+  }
+  EXPECT_TRUE(block.H->is_symmetric());
+  block.H->set(block.points, to_device(update));
+  EXPECT_FALSE(block.H->is_symmetric());
+  const Vector b = block.vector(14);
+  const Vector expected = solved_densely(*block.H, b);
+  Vector x(b.getMap());
+  struct Kind {
+    const char *multigrid, *path;
+    int most;
+  };
+  for (const Kind &kind : {Kind{"mesh", "meshes", 20}, {"algebraic", "algebraic", 20}, {"auto", "factor", 15}}) {
+    LinearSolverOptions options;
+    options.multigrid = kind.multigrid;
+    LinearSolver solver(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d),
+                        kind.path == std::string("meshes") ? solver::MakeMeshLevels([&] { return block.levels(); })
+                                                           : solver::MakeMeshLevels());
+    const auto result = solver.solve(b, x, 1e-9);
+    EXPECT_TRUE(result.converged) << kind.path << ": " << result.reason;
+    EXPECT_GT(result.iterations, 2) << kind.path;
+    EXPECT_LE(result.iterations, kind.most) << kind.path;
+    EXPECT_LT(relative_difference(x, expected), 1e-6) << kind.path;
+    EXPECT_EQ(solver_path(solver.counts()), kind.path);
+  }
 }
 
 } // namespace

@@ -208,4 +208,29 @@ TEST(LinearSolver, SolvesForFurtherRightSidesWithoutASetUp)
   }
 }
 
+/// Hierarchies and corrections are those of the symmetric part; GMRES brings in the rest.
+TEST(LinearSolver, FollowsStatesWhereTheUpdateIsNotSymmetric)
+{
+  for (const char *multigrid : {"mesh", "algebraic"}) {
+    const SupportedGrid body(large);
+    const auto solver = body.solver(options_for(multigrid), [&] { return body.levels(); });
+    const Vector b = body.grid.right_side();
+    Vector x(b.getMap());
+    for (const GO to : {10, 20, 30}) {
+      body.hold(5, to, 20, 0.3);
+      EXPECT_FALSE(body.H->is_symmetric());
+      const auto result = solver->solve(b, x, 1e-9);
+      EXPECT_TRUE(result.converged) << multigrid << ": " << result.reason;
+      EXPECT_LE(result.iterations, 40) << multigrid << " " << to;
+      EXPECT_LT(body.residual(x, b), 1.01e-9) << multigrid << " " << to;
+    }
+    body.hold(5, 30, 20);
+    EXPECT_TRUE(body.H->is_symmetric());
+    EXPECT_TRUE(solver->solve(b, x, 1e-9).converged);
+    EXPECT_LT(body.residual(x, b), 1.01e-9) << multigrid;
+    EXPECT_EQ(solver->counts().preconditioner_setups, 1) << multigrid;
+    EXPECT_EQ(solver->counts().fallback, "") << multigrid;
+  }
+}
+
 } // namespace

@@ -26,14 +26,17 @@ struct SupportedGrid {
     H = rcp(new UpdatedOperator(rcp(new StiffnessOperator(grid.A, 2)), points.node));
   }
 
-  /// Springs at nodes whose number in the row lies in [from, to); negative ones make H indefinite.
-  void hold(const GO from, const GO to, const double stiffness) const
+  /// Springs at nodes whose number in the row lies in [from, to); negative ones make H indefinite. With a rotation, part of a spring's
+  /// force turns aside, and H is not symmetric.
+  void hold(const GO from, const GO to, const double stiffness, const double rotation = 0) const
   {
     const HostView<double ***> block("block", points.size(), 2, 2);
     for (LO i = 0; i < points.size(); ++i) {
       const GO number = grid.map->getGlobalElement(2 * i) / 2;
-      if (number >= from && number < to)
-        for (int k = 0; k < 2; ++k) block(i, k, k) = stiffness;
+      if (number < from || number >= to) continue;
+      for (int k = 0; k < 2; ++k) block(i, k, k) = stiffness;
+      block(i, 0, 1) = rotation * stiffness;
+      block(i, 1, 0) = -rotation * stiffness;
     }
     H->set(points, to_device(block));
   }
