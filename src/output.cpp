@@ -94,7 +94,7 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const Solution &s)
   for (std::size_t k = 0; k < names.size(); ++k)
     fields.push_back({names[k], column(*stress, 1, 0, n, static_cast<int>(k))});
   if (scene.model.contact.empty()) return fields;
-  const contact::ContactNodes &contact = s.functional->contact();
+  const contact::ContactNodes &contact = s.step.contact;
   const auto shown = shown_points(contact, s.contact, n);
   fields.push_back({"contact_pressure", scatter(shown, to_host(s.contact.pressure), 0)});
   fields.push_back({"gap", scatter(shown, to_host(contact.gap), 0)});
@@ -130,7 +130,7 @@ HostView<Data *> part_of(const DeviceView<Data *> &values, const LO begin, const
 void write_csv(const std::string &path, const Scene &scene, const Solution &s)
 {
   const mesh::Mesh &mesh = *s.discretization.mesh;
-  const auto &contact = s.functional->contact();
+  const auto &contact = s.step.contact;
   const HostPoints position = fem::node_positions(mesh, contact.node);
   const auto node_ids = io::overlap_node_ids(mesh);
   std::vector<io::ContactTable> tables;
@@ -291,7 +291,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["element"] = mesh.element.name();
   json["cells"] = sum_all(mesh.comm(), GO(mesh.num_owned_cells));
   json["dofs"] = s.discretization.owned_dofs->getGlobalNumElements();
-  json["fixed_contact_nodes"] = s.functional->contact().num_fixed;
+  json["fixed_contact_nodes"] = s.step.contact.num_fixed;
   json["ranks"] = mesh.comm().getSize();
   json["execution_space"] = ExecutionSpace::name();
   json["time"] = s.time;

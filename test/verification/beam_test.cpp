@@ -41,7 +41,7 @@ TEST(Beam, EnergiesOfThePapersTable1AreReproduced)
     EXPECT_NEAR(s.energy, energy, 2e-6) << n;
     EXPECT_LE(s.uzawa.iterations, 3);
     EXPECT_EQ(s.discretization.owned_dofs->getGlobalNumElements(), 2u * (5 * n + 1) * (n + 1));
-    EXPECT_EQ(s.functional->contact().num_total, 5 * n + 1);
+    EXPECT_EQ(s.step.contact.num_total, 5 * n + 1);
     EXPECT_NEAR(s.contact.total.force[1], 10, 1e-9); // everything yields
   }
 }
@@ -176,12 +176,12 @@ TEST(Beam, ForcesBalance)
 {
   const Solution s = beam(32, "16");
   // Equilibrium tested with the solution itself: a(u, u) = b(u) - sum w p u_nu, at gap 0.
-  const auto &c = s.functional->contact();
+  const auto &c = s.step.contact;
   const auto w = to_host(c.weight), p = to_host(s.contact.pressure), v = to_host(s.contact.penetration);
   double mine = 0;
   for (LO i = 0; i < c.size(); ++i) mine += w(i) * p(i) * v(i);
   const double contact_work = sum_all(s.discretization.mesh->comm(), mine);
-  const double load_work = s.functional->problem().applied_load->dot(*s.u);
+  const double load_work = s.step.elastic.applied_load->dot(*s.u);
   EXPECT_NEAR(s.energy_norm_squared, load_work - contact_work, 1e-9 * load_work);
   EXPECT_NEAR(s.energy, 0.5 * s.energy_norm_squared - load_work + contact_work, 1e-9 * load_work); // xi v+ = p v
 }

@@ -37,8 +37,8 @@ double profile_error(const Solution &s)
 {
   const double force = s.contact.total.force[1];
   const double a = std::sqrt(4 * force * radius / (M_PI * modulus)), p0 = std::sqrt(force * modulus / (M_PI * radius));
-  const auto node = to_host(s.functional->contact().node);
-  const auto weight = to_host(s.functional->contact().weight);
+  const auto node = to_host(s.step.contact.node);
+  const auto weight = to_host(s.step.contact.weight);
   const auto coords = to_host(s.discretization.mesh->coords);
   const auto p = to_host(s.contact.pressure);
   double mine[2] = {0, 0}, all[2];

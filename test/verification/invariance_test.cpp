@@ -66,7 +66,7 @@ Outcome outcome_of(const Scene &scene, const Lattice &lattice)
   const Solution s = solve(scene, Tpetra::getDefaultComm(), nowhere);
   const mesh::Mesh &mesh = *s.discretization.mesh;
   const auto coords = to_host(mesh.coords);
-  const auto node = to_host(s.functional->contact().node);
+  const auto node = to_host(s.step.contact.node);
   const auto p = to_host(s.contact.pressure);
   const auto u = s.u->getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto place = [&](const LO n) { return lattice.nearest(coords(n, 0), coords(n, 1)); };
@@ -85,7 +85,7 @@ Outcome outcome_of(const Scene &scene, const Lattice &lattice)
                 s.energy_norm_squared,
                 std::vector<double>(lattice.size()),
                 {std::vector<double>(lattice.size()), std::vector<double>(lattice.size())}};
-  for (LO i = 0; i < s.functional->contact().size(); ++i) found.pressure[place(node(i))] = p(i);
+  for (LO i = 0; i < s.step.contact.size(); ++i) found.pressure[place(node(i))] = p(i);
   for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
     for (int c = 0; c < 2; ++c) found.u[c][place(n)] = u(2 * n + c, 0);
   found.pressure = summed(found.pressure);

@@ -285,7 +285,7 @@ TEST(Cylinder, PressedOnAFoundationHasUniformStressesAndIsHeldByIt)
   for (const auto &element : plane_elements) {
     SCOPED_TRACE(element.name());
     const Solved s = solved(from_the_axis(element), cylinder(10, 12));
-    EXPECT_TRUE(s.solution.support.by_contact_only);
+    EXPECT_TRUE(s.solution.step.support.by_contact_only);
     const auto p = to_host(s.solution.contact.pressure);
     for (std::size_t i = 0; i < p.extent(0); ++i) EXPECT_NEAR(p(i), 10, 1e-7);
     const auto &sums = s.solution.contact.total;

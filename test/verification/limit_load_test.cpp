@@ -38,7 +38,7 @@ void expect_solved(const Solution &s, const double load)
   EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
   EXPECT_LE(s.uzawa.residuals.worst(), 1e-8);
   EXPECT_NEAR(s.contact.total.force[1], load, 1e-8 * load);
-  EXPECT_TRUE(s.support.by_contact_only);
+  EXPECT_TRUE(s.step.support.by_contact_only);
 }
 
 class LimitLoad : public testing::TestWithParam<const char *>

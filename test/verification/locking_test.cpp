@@ -305,7 +305,7 @@ TEST(Locking3d, ProjectedP2LosesAccuracyButDoesNotLockInTetrahedra)
 double oscillation(const Solution &s)
 {
   const mesh::Mesh &mesh = *s.discretization.mesh;
-  const auto node = to_host(s.functional->contact().node);
+  const auto node = to_host(s.step.contact.node);
   const auto x = to_host(mesh.coords);
   const auto p = to_host(s.contact.pressure);
   const int intervals = 32 * mesh.element.order;

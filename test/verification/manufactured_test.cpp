@@ -47,7 +47,7 @@ std::array<double, 2> pressure_errors(const Solution &s)
   const mesh::Mesh &mesh = *d.mesh;
   Vector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes);
   {
-    const auto node = to_host(s.functional->contact().node);
+    const auto node = to_host(s.step.contact.node);
     const auto p = to_host(s.contact.pressure);
     const auto to = owned.getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 0; i < node.extent(0); ++i) to(node(i), 0) = p(i);
@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, Manufactured, testing::Values("P1", "Q1", "P2
 TEST(ManufacturedStates, AreWhereTheyShouldBe)
 {
   const Solution s = run_scene(deck, {});
-  const auto node = to_host(s.functional->contact().node);
+  const auto node = to_host(s.step.contact.node);
   const auto coords = to_host(s.discretization.mesh->coords);
   const auto state = to_host(s.contact.state);
   const auto v = to_host(s.contact.penetration);

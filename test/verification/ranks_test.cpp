@@ -67,7 +67,7 @@ Fields own_fields(const Solution &s)
   const auto u = s.u->getLocalViewHost(Tpetra::Access::ReadOnly);
   for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
     for (int k = 0; k < dim; ++k) fields.displacement[{mesh.node_id(n), k}] = u(dim * n + k, 0);
-  const auto &contact = s.functional->contact();
+  const auto &contact = s.step.contact;
   const auto node = to_host(contact.node);
   const auto p = to_host(s.contact.pressure);
   for (int side = 0; side < contact.num_sides(); ++side)

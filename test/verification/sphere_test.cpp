@@ -32,7 +32,7 @@ TEST(Sphere, PressesTheCubeWhoseCornersItMisses)
     ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
     EXPECT_NEAR(s.contact.total.force[2], -expected.force, 1e-5 * expected.force);
     EXPECT_NEAR(s.contact.total.force[0], 0, 1e-7 * expected.force);
-    const auto &contact = s.functional->contact();
+    const auto &contact = s.step.contact;
     EXPECT_EQ(contact.num_total, facing(expected.n));
     EXPECT_EQ(contact.num_total + contact.num_missing, (expected.n + 1) * (expected.n + 1));
     const double held = std::max_element(s.reactions.begin(), s.reactions.end(), [](const auto &a, const auto &b) {

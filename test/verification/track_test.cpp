@@ -18,7 +18,7 @@ constexpr double moved = 0.7;
 /// What contact nodes meet by where they are in the mesh, or stand along the foundation, on all ranks.
 std::map<double, double> dents_met(const Solution &s, const bool as_they_stand = false)
 {
-  const contact::ContactNodes &points = s.functional->contact();
+  const contact::ContactNodes &points = s.step.contact;
   const auto node = to_host(points.node);
   const auto coords = to_host(s.discretization.mesh->coords);
   const auto dent = to_host(s.contact.dent);

@@ -45,14 +45,14 @@ void add_estimate(const Task &task, const analysis::Problem &problem, Solution &
   if (!task.adapt.estimate) return;
   const Timed phase("estimate", seconds.estimate);
   s.estimate = estimate_error(s.discretization, task.model.materials, problem.contact_sides(),
-                              task.model.seen_at(s.time).tractions, s.functional->contact(), s.contact, *s.u);
+                              task.model.seen_at(s.time).tractions, s.step.contact, s.contact, *s.u);
 }
 
 /// Adds what the way through the scene did not tell by itself; collective.
 void note_skipped(const Task &task, Solution &s)
 {
   const mesh::Mesh &mesh = *s.discretization.mesh;
-  const auto &contact = s.functional->contact();
+  const auto &contact = s.step.contact;
   const LO shapes = static_cast<LO>(s.discretization.congruent.example.extent(0));
   const auto skip = [&s](const bool skipped, const std::string &what) {
     if (skipped) s.skipped.push_back(what);
@@ -140,9 +140,9 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   std::vector<contact::ContactState> starts;
   if (previous) {
     const Timed phase("prediction", s.seconds.prediction);
-    const contact::ContactNodes &points = previous->functional->contact();
+    const contact::ContactNodes &points = previous->step.contact;
     const auto state =
-        contact::with_weightless(previous->state(), points, previous->discretization,
+        contact::with_weightless(previous->state, points, previous->discretization,
                                  contact::contact_sides(*previous->discretization.mesh, task.model.contact));
     starts.push_back(contact::interpolated(*fem::interpolation(previous->discretization, d), points, state,
                                            step.contact, d.owned_dofs));

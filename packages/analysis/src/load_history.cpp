@@ -28,7 +28,7 @@ constexpr double dents_settled = 1e-7; // of the deepest dent: changes of the de
 Vector other_forces(const Problem &problem, const StepSolution &s)
 {
   Vector force(*s.uzawa.residuals.internal.forces, Teuchos::Copy);
-  force.update(-1., contact::contact_forces(problem.discretization(), s.functional->contact(), s.contact), 1.);
+  force.update(-1., contact::contact_forces(problem.discretization(), s.step.contact, s.contact), 1.);
   return force;
 }
 
@@ -164,7 +164,7 @@ DeviceView<double *> gaps_at_rest(const contact::ContactNodes &contact)
 Energies energies_after(const Problem &problem, const double t, const StepSolution &s, const Memory *const before,
                         const Vector *const force_before, const Vector &force)
 {
-  const contact::ContactNodes &points = s.functional->contact();
+  const contact::ContactNodes &points = s.step.contact;
   const Comm &comm = problem.discretization().mesh->comm();
   Energies energies = before ? before->energies : Energies{};
   energies.strain = 0.5 * s.energy_norm_squared;
@@ -292,7 +292,7 @@ bool settled(const MultiVector &used, const MultiVector &met, const MultiVector 
 std::vector<std::array<double, 3>> prescribed_means(const Problem &problem, const StepSolution &s)
 {
   const fem::Discretization &d = problem.discretization();
-  const fem::DirichletDofs &dirichlet = s.functional->problem().dirichlet;
+  const fem::DirichletDofs &dirichlet = s.step.elastic.dirichlet;
   const int conditions = static_cast<int>(problem.model().dirichlet.size());
   Vector ones(d.owned_dofs);
   ones.putScalar(1);
@@ -459,7 +459,7 @@ StepSolution LoadHistory::solve(const double t, const Progress &progress,
     if (settled(*met, *next, *memory_->dent)) break;
     met = next;
     step = problem_->step(t, met.get());
-    starts = {{s.state()}, {}};
+    starts = {{s.state}, {}};
   }
   const auto dents = dents_after(*problem_, sides, step.contact, s, memory_ ? memory_->dent.get() : nullptr);
   contact::take_dents_of_foundation(problem_->discretization(), sides, *dents, s.contact);

@@ -68,11 +68,10 @@ Minimization minimize(const Iterate &iterate, const StepOptions &options, int it
 /// Forces with which the Dirichlet conditions hold the body. (2.11)
 std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepSolution &s)
 {
-  const fem::ElasticProblem &elastic = s.functional->problem();
+  const fem::ElasticProblem &elastic = s.step.elastic;
   const fem::Discretization &d = problem.discretization();
   Vector out_of_balance(*s.uzawa.residuals.internal.forces, Teuchos::Copy);
-  out_of_balance.update(-1., *elastic.applied_load, -1., contact::contact_forces(d, s.functional->contact(), s.contact),
-                        1.);
+  out_of_balance.update(-1., *elastic.applied_load, -1., contact::contact_forces(d, s.step.contact, s.contact), 1.);
   return fem::reaction_forces(d, elastic.dirichlet, static_cast<int>(problem.model().dirichlet.size()), out_of_balance);
 }
 
@@ -126,16 +125,16 @@ StepSolution solve_step(const Problem &problem, const Step &step, const StepOpti
                         const CoarserProblem &coarser, const Progress &progress)
 {
   StepSolution s;
-  s.support = step.support;
+  s.step = step;
   Iterate iterate(problem, step);
-  s.functional = iterate.functional;
+  SmoothedFunctional &functional = *iterate.functional;
   s.u = iterate.u;
   const auto before = iterate.linear().counts();
-  solver::check_nox_parameters(*s.functional, iterate.linear(), s.u, options.newton);
+  solver::check_nox_parameters(functional, iterate.linear(), s.u, options.newton);
   {
     const Timed timer("prediction", s.prediction_seconds);
     if (!starts.states.empty())
-      start_from_nearest(*s.functional, starts, *s.u, s.levels);
+      start_from_nearest(functional, starts, *s.u, s.levels);
     else
       s.not_predicted = predict(iterate, step.time, options, coarser, 1, s.levels);
   }
@@ -144,25 +143,26 @@ StepSolution solve_step(const Problem &problem, const Step &step, const StepOpti
     const fem::Discretization &d = problem.discretization();
     const auto minimization = [&](const int iteration) {
       const auto report = [&](const solver::NewtonStep &newton, const Vector &u) {
-        if (progress.newton) progress.newton(iteration, newton, s.functional->count_states(u));
+        if (progress.newton) progress.newton(iteration, newton, functional.count_states(u));
       };
       const Minimization found = minimize(iterate, options, iteration, report);
       s.line_search_steps += found.line_search_steps;
       return found;
     };
     const auto residuals = [&](const Vector &u) {
-      return contact::optimality_residuals(d, problem.model().materials, *s.functional, u, [&](const Vector &residual) {
+      return contact::optimality_residuals(d, problem.model().materials, functional, u, [&](const Vector &residual) {
         return iterate.linear().inverse_energy(residual);
       });
     };
     const auto report = [&](const UzawaResult &result) {
       if (progress.uzawa) progress.uzawa(result);
     };
-    s.uzawa = uzawa(*s.functional, *s.u, minimization, residuals, options.uzawa, report);
-    s.contact = contact::contact_result(d, problem.contact_sides(), *s.functional, *s.u);
-    s.energy = s.functional->energy(*s.u);
+    s.uzawa = uzawa(functional, *s.u, minimization, residuals, options.uzawa, report);
+    s.contact = contact::contact_result(d, problem.contact_sides(), functional, *s.u);
+    s.energy = functional.energy(*s.u);
     s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
     s.reactions = reactions(problem, s);
+    s.state = functional.current(s.u);
   }
   s.linear = counts_since(before, iterate.linear().counts());
   s.solve_seconds -= s.linear.setup_seconds;
@@ -203,8 +203,9 @@ std::string predict(Iterate &iterate, const double t, const StepOptions &options
     if (!found.active_set_confirmed) coarse.functional->update_multipliers(*coarse.u);
     const auto way = interpolation(problem->mesh(), iterate.problem.mesh());
     const contact::ContactNodes &points = coarse.functional->contact();
-    const auto state = contact::with_weightless(coarse.functional->current(coarse.functional->displacement(*coarse.u)),
-                                                points, coarse.discretization(), problem->contact_sides());
+    const auto state = contact::with_weightless(
+        coarse.functional->current(rcp(new Vector(coarse.functional->displacement(*coarse.u), Teuchos::Copy))), points,
+        coarse.discretization(), problem->contact_sides());
     const auto predicted =
         contact::interpolated(*way, points, state, iterate.functional->contact(), iterate.discretization().owned_dofs);
     iterate.functional->start_from(predicted, *iterate.u);

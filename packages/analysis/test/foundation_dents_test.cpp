@@ -138,9 +138,9 @@ TEST(DentsOnTheFoundation, OfABodyWhoseBottomIsMovedAreThoseOfItsWay)
       volume += (i == 0 || i == num_points - 1 ? cell / 2 : cell) * expected[i];
     }
     const auto found = dents(history);
-    const auto points = along_bottom(history.problem().discretization(),
-                                     *contact::node_columns(s.functional->contact(), s.contact.dent,
-                                                            history.problem().discretization().mesh->owned_nodes));
+    const auto points = along_bottom(
+        history.problem().discretization(),
+        *contact::node_columns(s.step.contact, s.contact.dent, history.problem().discretization().mesh->owned_nodes));
     for (int i = 0; i < num_points; ++i) {
       EXPECT_NEAR(found[i], expected[i], 1e-14) << "t = " << t << ", point " << i;
       EXPECT_NEAR(points[i], met[i], 1e-14) << "t = " << t << ", point " << i;
@@ -237,7 +237,7 @@ TEST(DentsOnTheFoundation, AreMetWhereAStepLeadsPointsThatAreFree)
   EXPECT_LE(history.last().solves, 5);
   EXPECT_EQ(history.last().parts, 1);
   const fem::Discretization &d = history.problem().discretization();
-  const contact::ContactNodes &points = s.functional->contact();
+  const contact::ContactNodes &points = s.step.contact;
   const auto met = along_bottom(d, *contact::node_columns(points, points.dent, d.mesh->owned_nodes));
   const auto where_they_lie = along_bottom(d, *contact::dents_met(d, model.contact, before, *s.u));
   for (int i = 0; i < num_points; ++i) EXPECT_NEAR(met[i], where_they_lie[i], 1e-6 * before->getVector(0)->normInf());

@@ -356,7 +356,7 @@ TEST(LoadHistory, ReversibleLawForgetsAndItsEnergyComesBack)
       // what the foundation stores is sum of w psi(v): here by what the body and its loads leave of J, (1.4)
       const double stored = e.foundation, external = expected.energy - 0.5 * expected.energy_norm_squared - stored;
       double load_work = 0;
-      load_work = -s.functional->problem().applied_load->dot(*s.u);
+      load_work = -s.step.elastic.applied_load->dot(*s.u);
       EXPECT_NEAR(external, load_work, 1e-9 * std::abs(load_work)) << t;
     }
   }
@@ -438,8 +438,8 @@ TEST(LoadHistory, AFoundationThatTurnsItsNormalsIsFollowed)
   auto history = history_of(over_a_ball(contact::Normal::foundation, 3));
   for (const double t : {1., 2.}) {
     const StepSolution s = advance(history, t);
-    const auto normal = to_host(s.functional->contact().normal);
-    const auto node = to_host(s.functional->contact().node);
+    const auto normal = to_host(s.step.contact.normal);
+    const auto node = to_host(s.step.contact.node);
     const auto coords = to_host(history.problem().discretization().mesh->coords);
     for (std::size_t i = 0; i < node.extent(0); ++i) {
       const double dx = coords(node(i), 0) - (0.7 + 0.06 * t), length = std::hypot(dx, 3.);
@@ -468,7 +468,7 @@ TEST(LoadHistory, AFoundationThatTurnsItsNormalsNeedsNoOtherMatrixAndNoOtherMult
         const StepSolution s = advance(one, step);
         advance(anew, step);
         setups += one.last().preconditioner_setups;
-        const LO points = sum_all(one.problem().discretization().mesh->comm(), s.functional->contact().size());
+        const LO points = sum_all(one.problem().discretization().mesh->comm(), s.step.contact.size());
         most = std::max(most, points);
         const analysis::Energies &x = one.last().energies, &y = anew.last().energies;
         EXPECT_GT(y.strain, 0);
@@ -707,7 +707,7 @@ TEST(LoadHistory, WhatIsRememberedGoesToOtherMeshesByInterpolation)
   auto finer = history_of(uneven(laws[1], to_and_fro), close(), 0, 1, 2);
   finer.go_on_from(there);
   const StepSolution again = advance(finer, 3);
-  EXPECT_EQ(again.functional->contact().num_total, 25);
+  EXPECT_EQ(again.step.contact.num_total, 25);
   EXPECT_LT(again.contact.total.dissipated, 0.1 * history.last().energies.dissipated); // the dents are there already
 }
 

@@ -104,7 +104,7 @@ TEST(Problem, StepStartsFromTheStateOfTheOneBefore)
   const auto mesh = block();
   const Problem problem(mesh, model(), {}, 0.9);
   const auto before = analysis::solve_step(problem, problem.step(0.9), {});
-  const auto state = before.state();
+  const auto state = before.state;
   const auto step = problem.step(1);
   const auto warm = analysis::solve_step(problem, step, {}, {{state}, {}}),
              cold = analysis::solve_step(problem, step, {});

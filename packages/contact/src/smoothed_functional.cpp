@@ -691,10 +691,9 @@ double SmoothedFunctional::size(const Vector &u) const
   return displacement(u).norm2();
 }
 
-ContactState SmoothedFunctional::current(const Vector &u) const
+ContactState SmoothedFunctional::current(const RCP<const Vector> &u) const
 {
-  ContactState copy{rcp(new Vector(u, Teuchos::Copy)),
-                    DeviceView<double *>("rpc::contact::multiplier", contact_.size()),
+  ContactState copy{u, DeviceView<double *>("rpc::contact::multiplier", contact_.size()),
                     DeviceView<State *>("rpc::contact::active_set", contact_.size())};
   Kokkos::deep_copy(copy.multiplier, lambda_);
   Kokkos::deep_copy(copy.active_set, active_set_);

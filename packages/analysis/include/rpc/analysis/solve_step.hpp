@@ -61,11 +61,11 @@ struct LevelWork {
   double seconds = 0; ///< with all coarser ones
 };
 
-/// The solution of one step, and how it was found.
+/// The solution of one step, and how it was found. Plain data: it outlives its problem.
 struct StepSolution {
-  contact::Support support;
-  RCP<Vector> u; ///< (owned dofs) displacement from 0 [m]
-  std::shared_ptr<contact::SmoothedFunctional> functional;
+  Step step;                   ///< what was solved: loads, prescribed displacements, contact points
+  RCP<Vector> u;               ///< (owned dofs) displacement from 0 [m]
+  contact::ContactState state; ///< to start the next step from; its displacement is u
   UzawaResult uzawa;
   contact::ContactResult contact;
   double energy = 0;                            ///< J(u) [J], in 2D per m
@@ -77,9 +77,6 @@ struct StepSolution {
   std::vector<LevelWork> levels;                    ///< coarser meshes that predicted the solution, from the coarsest
   std::string not_predicted;                        ///< why no coarser mesh did; empty if one did
   double prediction_seconds = 0, solve_seconds = 0; ///< solve: without set-ups of multigrid
-
-  /// To start the next step from.
-  contact::ContactState state() const { return functional->current(*u); }
 };
 
 /// Where a step may start from.

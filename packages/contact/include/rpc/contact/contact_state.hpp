@@ -8,7 +8,7 @@ namespace rpc::contact
 
 /// Where a body and its foundation are: what one step hands to the next. Plain data.
 struct ContactState {
-  RCP<Vector> displacement;        ///< (owned dofs) from 0 [m]
+  RCP<const Vector> displacement;  ///< (owned dofs) from 0 [m]
   DeviceView<double *> multiplier; ///< (contact nodes) lambda [Pa]
   DeviceView<State *> active_set;  ///< (contact nodes); empty where it is not known
 };

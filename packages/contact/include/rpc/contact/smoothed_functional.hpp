@@ -181,9 +181,9 @@ public:
   const ContactNodes &contact() const { return contact_; } ///< with penetration from 0
   const fem::ElasticProblem &problem() const { return problem_; }
   const DeviceView<double *> &multipliers() const { return lambda_; }
-  /// The present state, in copies.
+  /// The present state: the displacement that is given, and copies of multipliers and states.
   /// @param u  displacement from 0
-  ContactState current(const Vector &u) const;
+  ContactState current(const RCP<const Vector> &u) const;
 
 private:
   GO update_stiffness(); // brings hessian() to the active set; number of nodes whose stiffness changed
