@@ -1,7 +1,10 @@
-#include "rpc/analysis/solve_step.hpp"
+#include "rpc/analysis/active_set.hpp"
+#include "rpc/analysis/load_history.hpp"
 #include "rpc/core/error.hpp"
 
+#include <Teuchos_Array.hpp>
 #include <algorithm>
+#include <cmath>
 
 namespace rpc::analysis
 {
@@ -59,6 +62,41 @@ PredictionOptions prediction_options(const Teuchos::ParameterList &list)
               "deck: \"Nested Iteration->Coarsening\" must be in [1.5, 100], got " << options.coarsening);
   RPC_REQUIRE(options.tolerance > 0 && options.tolerance < 1,
               "deck: \"Nested Iteration->Tolerance\" must be in (0, 1), got " << options.tolerance);
+  return options;
+}
+
+Teuchos::ParameterList valid_steps_parameters()
+{
+  Teuchos::ParameterList valid("Steps");
+  valid.set(
+      "Times", Teuchos::Array<double>(),
+      "Times t of the load steps, rising: the foundation keeps the dents of each for the next. Empty: one step, at "
+      "`Time`.");
+  valid.set("Write Every", 1, "Every N-th of the times goes into the Exodus file, and the last one; N > 0.");
+  valid.set("Max Halvings", 6, "A step that does not converge is halved, and its halves, so many times at most, >= 0.");
+  valid.set("Checkpoint Every", 0,
+            "After every N-th step a checkpoint is written, <deck>.checkpoint-NUMBER.e, from which --restart goes on; "
+            "0: none.");
+  return valid;
+}
+
+StepsOptions steps_options(const Teuchos::ParameterList &list)
+{
+  const auto &times = list.get<Teuchos::Array<double>>("Times");
+  StepsOptions options{{times.begin(), times.end()},
+                       list.get<int>("Write Every"),
+                       list.get<int>("Max Halvings"),
+                       list.get<int>("Checkpoint Every")};
+  for (std::size_t k = 0; k < options.times.size(); ++k) {
+    RPC_REQUIRE(std::isfinite(options.times[k]), "deck: \"Steps->Times\" must be finite, got " << options.times[k]);
+    RPC_REQUIRE(k == 0 || options.times[k] > options.times[k - 1],
+                "deck: \"Steps->Times\" must rise, got " << options.times[k] << " after " << options.times[k - 1]);
+  }
+  RPC_REQUIRE(options.write_every > 0, "deck: \"Steps->Write Every\" must be > 0, got " << options.write_every);
+  RPC_REQUIRE(options.max_halvings >= 0 && options.max_halvings <= 30,
+              "deck: \"Steps->Max Halvings\" must be in [0, 30], got " << options.max_halvings);
+  RPC_REQUIRE(options.checkpoint_every >= 0,
+              "deck: \"Steps->Checkpoint Every\" must be >= 0, got " << options.checkpoint_every);
   return options;
 }
 

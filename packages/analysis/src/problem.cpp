@@ -18,13 +18,6 @@ fem::VectorField seen_at(fem::VectorField field, const double t)
   return field;
 }
 
-/// Prolongators of quadratic elements want more smoothing: 32 to 35 instead of 34 to 37 iterations on the beam (P2).
-solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const mesh::Element &element)
-{
-  if (element.order == 2) options.damping = 1.6;
-  return options;
-}
-
 /// The nodal forces of a model's loads. Collective. @throws rpc::Error (bad_input) where numbers overflow
 RCP<Vector> loads_of(const fem::Discretization &d, const Model &model)
 {
@@ -77,18 +70,17 @@ Model Model::seen_at(const double t) const
   return model;
 }
 
-Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
-                 const double t)
-    : Problem(std::make_shared<NestedMesh>(fem::discretize(std::move(mesh), model.kinematics)), model, linear, t)
+Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const double t)
+    : Problem(std::make_shared<NestedMesh>(fem::discretize(std::move(mesh), model.kinematics)), model, t)
 {
 }
 
-Problem::Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
-                 const double t)
-    : model_(model.seen_at(t)), linear_options_(linear), mesh_(std::move(mesh))
+Problem::Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, const double t)
+    : model_(model.seen_at(t)), mesh_(std::move(mesh))
 {
   const fem::Discretization &d = discretization();
   const auto dirichlet = prescribed_of(d, model_);
+  prescribed_ = dirichlet.fixed;
   free_parts_ = contact::free_parts(d, dirichlet);
   const auto assembled = [d, materials = model_.materials, dirichlet] {
     const auto K = fem::assemble_stiffness(d, materials);
@@ -99,21 +91,20 @@ Problem::Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, const sol
   const auto repeated = fem::repeated_stiffness(d, model_.materials, dirichlet);
   const fem::EliminatedStiffness K = repeated ? fem::EliminatedStiffness{} : assembled();
   couplings_ = repeated ? repeated->couplings : K.couplings;
-  const auto stiffness = repeated
-                             ? rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.overlap_dofs, d.dof_import,
-                                                          [assembled] { return assembled().matrix; }}))
-                             : rcp(new StiffnessOperator(K.matrix, d.dim()));
-  hessian_ = rcp(new UpdatedOperator(stiffness, nodes_of(d, contact_sides())));
-  solver::MakeMeshLevels levels;
-  if (mesh_->may_have_coarser())
-    levels = [finest = mesh_, model = model_, prescribed = dirichlet.fixed] {
-      const auto made = mesh_levels(*finest, model, prescribed);
-      if (finest->is_finest())
-        finest->forget_coarser(); // prediction has been before, and multigrid needs no more of them
-      return made;
-    };
-  linear_ = std::make_shared<solver::LinearSolver>(tuned(linear, d.mesh->element), hessian_, fem::node_coordinates(d),
-                                                   fem::rigid_body_modes(d), std::move(levels));
+  stiffness_ = repeated ? rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.overlap_dofs, d.dof_import,
+                                                     [assembled] { return assembled().matrix; }}))
+                        : rcp(new StiffnessOperator(K.matrix, d.dim()));
+  candidates_ = nodes_of(d, contact_sides());
+}
+
+solver::MakeMeshLevels Problem::mesh_levels() const
+{
+  if (!mesh_->may_have_coarser()) return {};
+  return [finest = mesh_, model = model_, prescribed = prescribed_] {
+    const auto made = analysis::mesh_levels(*finest, model, prescribed);
+    if (finest->is_finest()) finest->forget_coarser(); // prediction has been before, and multigrid needs no more of them
+    return made;
+  };
 }
 
 Step Problem::step(const double t, const MultiVector *const dents) const
@@ -129,11 +120,6 @@ Step Problem::step(const double t, const MultiVector *const dents) const
   return step;
 }
 
-std::shared_ptr<const Problem> Problem::remade(const double t) const
-{
-  return std::make_shared<Problem>(mesh_, model_, linear_options_, t);
-}
-
 std::shared_ptr<const Problem> Problem::coarser(const double factor, const double t) const
 {
   const mesh::Mesh &own = *discretization().mesh;
@@ -146,7 +132,7 @@ std::shared_ptr<const Problem> Problem::coarser(const double factor, const doubl
   auto mesh = mesh_;
   do mesh = mesh->coarser();
   while (mesh && nodes(*mesh) > most);
-  return mesh ? std::make_shared<Problem>(mesh, model_, linear_options_, t) : nullptr;
+  return mesh ? std::make_shared<Problem>(mesh, model_, t) : nullptr;
 }
 
 std::vector<const mesh::Side *> Problem::contact_sides() const

@@ -1,9 +1,9 @@
 #include "rpc/contact/contact_nodes.hpp"
 
+#include "rpc/contact/law/judgement.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"
-#include "rpc/core/parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,137 +56,11 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
         const bool weightless = nodes.weight(i) == 0;
         nodes.fixed(i) = weightless || length < 1e-16;
         for (int k = 0; k < nodes.dim && nodes.fixed(i); ++k) nodes.direction(i, k) = 0;
-        const bool touches = free_gap < rounding && free_gap > -rounding && nodes.compliance(i) == 0;
+        const bool touches = free_gap < rounding && free_gap > -rounding && leaves_pressure_open(nodes.law(i));
         const bool open_to_choice = weightless || touches;
         nodes.free_gap(i) = nodes.fixed(i) && open_to_choice ? 0 : free_gap;
       });
   Kokkos::fence();
-}
-
-/// A number of the foundation's law and the rule for it.
-struct LawParameter {
-  ScalarField ContactOptions::*field;
-  const char *name, *bound;
-  bool may_be_zero, may_be_infinite;
-
-  bool allows(const double value) const
-  {
-    return (value > 0 || (may_be_zero && value == 0)) && (may_be_infinite || std::isfinite(value));
-  }
-  /// "deck: "Contact->Yield Stress" must be > 0 [Pa] ..., got "
-  std::string rule(const std::string &path) const
-  {
-    return "deck: \"" + path + "->" + name + "\" must be " + bound + ", got ";
-  }
-};
-const LawParameter law_parameters[] = {
-    {&ContactOptions::yield_stress, "Yield Stress", "> 0 [Pa] (inf for a rigid foundation)", false, true},
-    {&ContactOptions::hardening, "Hardening", "finite and >= 0 [Pa/m]", true, false},
-    {&ContactOptions::stiffness, "Stiffness", "> 0 [Pa/m] (inf for a foundation that is rigid until it yields)", false,
-     true},
-};
-
-/// Parameters of one contact side.
-void add_side_parameters(Teuchos::ParameterList &valid)
-{
-  set_field(valid, "Yield Stress", "inf",
-            "xi > 0 [Pa]: pressure at which the foundation gives way; `inf`: rigid (Signorini). Number or expression.");
-  set_field(valid, "Hardening", "0",
-            "H >= 0 [Pa/m]: what the yield stress grows by with the depth of the dent. Number or expression.");
-  set_field(valid, "Stiffness", "inf",
-            "k > 0 [Pa/m]: the foundation is a spring before it yields, p = k v; `inf`: rigid. Number or expression.");
-  set_field(valid, "Gap", "0",
-            "g [m]: distance to the foundation along the normal, where there is no obstacle; < 0: initial penetration. "
-            "Number or expression.");
-  valid.set("Normal", "",
-            "Direction in which contact acts: `surface` (outward normal of the body), `foundation` (normal of the "
-            "obstacle), or a fixed one as numbers, `0, -1`. Default: `foundation` with an obstacle, else `surface`.");
-  valid.sublist("Obstacle", false, "Surface of the foundation, from which the gap follows.") =
-      valid_obstacle_parameters();
-  valid.set("Remembers", "auto",
-            "Whether the foundation keeps its dents from one of `Steps` to the next: `auto` (it does), `true`, or "
-            "`false` for a law "
-            "that is reversible.");
-  valid.set("Dents Move With", "body",
-            "Where dents stay if the body slides or the obstacle moves along itself, between `Steps`: `body`, at the "
-            "body's points (small motions), or `foundation`, where they lie: a point meets the dents at its place.");
-  set_field(valid, "Penalty", "auto",
-            "r of the modified Lagrangian: `auto` (from the stiffness and the weight of each node), or a number > 0 "
-            "[Pa/m] to "
-            "start from. It is raised where the iteration is slow; the solution does not depend on it.");
-}
-
-/// Unit vector from a text like "0, -1".
-std::optional<Point> direction_from(const std::string &text, const int dim)
-{
-  std::istringstream in(text);
-  Point direction{};
-  char comma = ',';
-  for (int c = 0; c < dim; ++c)
-    if ((c > 0 && !(in >> comma)) || comma != ',' || !(in >> direction[c])) return std::nullopt;
-  const double length = std::hypot(direction[0], direction[1], direction[2]);
-  if (in >> comma || !(length > 0) || !std::isfinite(length)) return std::nullopt;
-  for (double &component : direction) component /= length;
-  return direction;
-}
-
-/// @return 0 for auto
-double penalty_from(const std::string &text, const std::string &path)
-{
-  if (text == "auto") return 0;
-  std::istringstream in(text);
-  double penalty = 0;
-  const bool number = (in >> penalty) && in.eof();
-  RPC_REQUIRE(number && penalty > 0 && std::isfinite(penalty),
-              "deck: \"" << path << "->Penalty\" must be `auto` or a finite number > 0 [Pa/m], got " << text);
-  return penalty;
-}
-
-ContactOptions side_options(const Teuchos::ParameterList &list, const std::string &path, const std::string &side,
-                            const int dim, const FieldParser &parse)
-{
-  ContactOptions options;
-  options.path = path;
-  options.side = side;
-  options.yield_stress = parse(field_text(list, "Yield Stress"), path + "->Yield Stress");
-  options.hardening = parse(field_text(list, "Hardening"), path + "->Hardening");
-  options.stiffness = parse(field_text(list, "Stiffness"), path + "->Stiffness");
-  options.gap = parse(field_text(list, "Gap"), path + "->Gap");
-  options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle", parse);
-  const auto &remembers = list.get<std::string>("Remembers");
-  RPC_REQUIRE(remembers == "auto" || remembers == "true" || remembers == "false",
-              "deck: \"" << path << "->Remembers\" must be one of auto, true, false, got \"" << remembers << "\"");
-  options.remembers = remembers != "false";
-  const auto &carrier = list.get<std::string>("Dents Move With");
-  RPC_REQUIRE(carrier == "body" || carrier == "foundation",
-              "deck: \"" << path << "->Dents Move With\" must be body or foundation, got \"" << carrier << "\"");
-  RPC_REQUIRE(carrier == "body" || options.remembers,
-              "deck: \"" << path << "->Dents Move With\" = foundation does not go with \"" << path
-                         << "->Remembers\" = false: there are no dents");
-  options.dents_move_with = carrier == "body" ? DentsMoveWith::body : DentsMoveWith::foundation;
-  options.penalty = penalty_from(field_text(list, "Penalty"), path);
-  const bool obstacle = options.obstacle.kind != Obstacle::Kind::none;
-  const auto &normal = list.get<std::string>("Normal");
-  for (const LawParameter &parameter : law_parameters)
-    RPC_REQUIRE(!(options.*parameter.field).is_constant() || parameter.allows((options.*parameter.field).constant),
-                parameter.rule(path) << (options.*parameter.field).text);
-  RPC_REQUIRE(!obstacle || list.getEntry("Gap").isDefault(), "deck: \"" << path << "->Gap\" does not go with \"" << path
-                                                                        << "->Obstacle\", from which the gap follows");
-  RPC_REQUIRE(obstacle || normal != "foundation",
-              "deck: \"" << path << "->Normal\" = foundation needs an \"" << path << "->Obstacle\"");
-  if (normal.empty()) {
-    options.normal = obstacle ? Normal::foundation : Normal::surface;
-  } else if (normal == "surface" || normal == "foundation") {
-    options.normal = normal == "surface" ? Normal::surface : Normal::foundation;
-  } else {
-    const auto direction = direction_from(normal, dim);
-    RPC_REQUIRE(direction, "deck: \"" << path << "->Normal\" must be surface, foundation or " << dim
-                                      << " numbers that are not all 0, as in \"" << (dim == 2 ? "0, -1" : "0, 0, -1")
-                                      << "\", got \"" << normal << "\"");
-    options.normal = Normal::fixed;
-    options.direction = *direction;
-  }
-  return options;
 }
 
 /// Values at this rank's nodes of one side, on the host.
@@ -357,17 +231,29 @@ struct PointValues {
   std::vector<double> weight, normal, gap, dent, yield, hardening, compliance, penalty;
 };
 
+/// (points) 1 where nothing can press a point in.
+DeviceView<char *> rigid_points(const ContactNodes &points)
+{
+  const ContactNodes c = points;
+  const DeviceView<char *> rigid("rpc::contact::rigid", c.size());
+  Kokkos::parallel_for(
+      "rpc::contact::rigid_points", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { rigid(i) = !gives_way(c.law(i)); });
+  Kokkos::fence();
+  return rigid;
+}
+
 /// Refuses nodes that a prescribed displacement presses into a foundation that cannot give way; collective.
 void require_room(const ContactNodes &c, const std::vector<ContactOptions> &options, const mesh::Mesh &mesh)
 {
   const HostPoints points = fem::node_positions(mesh, c.node);
   const auto fixed = to_host(c.fixed);
   const auto free_gap = to_host(c.free_gap);
-  const auto xi = to_host(c.yield), compliance = to_host(c.compliance);
+  const auto rigid = to_host(rigid_points(c));
   std::optional<std::string> bad;
   for (int side = 0; side < c.num_sides(); ++side)
     for (LO i = c.first(side); i < c.first(side + 1) && !bad; ++i) {
-      if (!fixed(i) || std::isfinite(xi(i)) || compliance(i) > 0 || !(-free_gap(i) > 0)) continue;
+      if (!fixed(i) || rigid(i) == 0 || !(-free_gap(i) > 0)) continue;
       std::ostringstream message;
       message << "contact: the prescribed displacement presses the node at " << place(points, i) << " by "
               << -free_gap(i) << " [m] into the foundation of side \"" << options[side].side
@@ -378,38 +264,6 @@ void require_room(const ContactNodes &c, const std::vector<ContactOptions> &opti
 }
 
 } // namespace
-
-Teuchos::ParameterList valid_contact_parameters()
-{
-  Teuchos::ParameterList valid("Contact"), entry;
-  valid.set("Side", "", "Side of the body that may touch the foundation; empty: none but those of `Sides`.");
-  add_side_parameters(valid);
-  entry.set("Side", "", "Side of the body; by default the side that the entry is named after.");
-  add_side_parameters(entry);
-  set_named_entries(valid, "Sides", entry, "Further contact sides, any number of entries with names of your choice.");
-  return valid;
-}
-
-std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, const int dim, const FieldParser &parse)
-{
-  std::vector<ContactOptions> options;
-  // Read even where it names no side: a wrong value is wrong in any case.
-  const ContactOptions first = side_options(list, "Contact", list.get<std::string>("Side"), dim, parse);
-  if (!first.side.empty()) options.push_back(first);
-  const Teuchos::ParameterList &sides = list.sublist("Sides");
-  for (auto it = sides.begin(); it != sides.end(); ++it) {
-    const std::string name = sides.name(it);
-    const Teuchos::ParameterList &entry = sides.sublist(name);
-    const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
-    options.push_back(side_options(entry, "Contact->Sides->" + name, side, dim, parse));
-  }
-  for (std::size_t a = 0; a < options.size(); ++a)
-    for (std::size_t b = 0; b < a; ++b)
-      RPC_REQUIRE(options[a].side != options[b].side, "deck: \"" << options[b].path << "\" and \"" << options[a].path
-                                                                 << "\" both name the side \"" << options[a].side
-                                                                 << "\"; give it one contact law");
-  return options;
-}
 
 std::vector<const mesh::Side *> contact_sides(const mesh::Mesh &mesh, const std::vector<ContactOptions> &options)
 {
@@ -460,10 +314,10 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   c.weight = device_values(points.weight, "rpc::contact::weight");
   c.gap = device_values(points.gap, "rpc::contact::gap");
   c.dent = device_values(points.dent, "rpc::contact::dent");
-  c.yield = device_values(points.yield, "rpc::contact::yield");
-  c.hardening = device_values(points.hardening, "rpc::contact::hardening");
-  c.compliance = device_values(points.compliance, "rpc::contact::compliance");
-  c.penalty = device_values(points.penalty, "rpc::contact::penalty");
+  c.law.yield = device_values(points.yield, "rpc::contact::yield");
+  c.law.hardening = device_values(points.hardening, "rpc::contact::hardening");
+  c.law.compliance = device_values(points.compliance, "rpc::contact::compliance");
+  c.given_penalty = device_values(points.penalty, "rpc::contact::penalty");
   if (!options.empty()) c.scaling = scaling_of(d, materials, c.node);
   c.normal = device_rows(points.normal, c.dim, "rpc::contact::normal");
   c.direction = DeviceView<double **>("rpc::contact::direction", points.node.size(), c.dim);

@@ -6,30 +6,47 @@
 
 namespace rpc::contact
 {
+Multipliers Multipliers::copy() const
+{
+  Multipliers result(DeviceView<double *>("rpc::contact::multiplier", normal.extent(0)));
+  Kokkos::deep_copy(result.normal, normal);
+  if (has_tangential()) {
+    result.tangential = DeviceView<double **>("rpc::contact::tangential", tangential.extent(0), tangential.extent(1));
+    Kokkos::deep_copy(result.tangential, tangential);
+  }
+  return result;
+}
+
 ContactState with_weightless(ContactState state, const ContactNodes &c, const fem::Discretization &d,
                              const std::vector<const mesh::Side *> &sides)
 {
   if (c.num_weightless == 0) return state;
-  const auto completed = completed_pressure(d, sides, c, state.multiplier);
+  const auto completed = completed_pressure(d, sides, c, state.multiplier.normal);
   const DeviceView<double *> lambda("rpc::contact::completed_multiplier", c.size());
-  const auto own = state.multiplier;
+  const auto own = state.multiplier.normal;
   Kokkos::parallel_for(
       "rpc::contact::complete_multipliers", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i) { lambda(i) = c.weight(i) > 0 ? own(i) : completed(i); });
   Kokkos::fence();
-  state.multiplier = lambda;
+  state.multiplier.normal = lambda;
   return state;
 }
 
 ContactState interpolated(const Operator &interpolation, const ContactNodes &coarse, const ContactState &state,
                           const ContactNodes &fine, const RCP<const Map> &fine_dofs)
 {
-  const int sides = fine.num_sides();
   ContactState result{fem::interpolated(interpolation, *state.displacement, fine.dim, fine_dofs), {}, {}};
-  if (sides == 0) return result;
-  MultiVector lambda(interpolation.getRangeMap(), sides);
-  interpolation.apply(*node_columns(coarse, state.multiplier, interpolation.getDomainMap()), lambda);
-  result.multiplier = at_points(fine, lambda);
+  if (fine.num_sides() == 0) return result;
+  const auto at_fine = [&](const MultiVector &columns) {
+    MultiVector values(interpolation.getRangeMap(), columns.getNumVectors());
+    interpolation.apply(columns, values);
+    return values;
+  };
+  const auto nodes = interpolation.getDomainMap();
+  result.multiplier.normal = at_points(fine, at_fine(*node_columns(coarse, state.multiplier.normal, nodes)));
+  if (sum_all(*nodes->getComm(), GO(state.multiplier.has_tangential())) > 0)
+    result.multiplier.tangential =
+        vectors_at_points(fine, at_fine(*node_columns(coarse, state.multiplier.tangential, nodes)));
   return result;
 }
 

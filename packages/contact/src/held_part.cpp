@@ -1,6 +1,6 @@
 #include "held_part.hpp"
 
-#include "rpc/contact/law/foundation.hpp"
+#include "rpc/contact/law/judgement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +81,6 @@ Reactions reactions_of(const fem::Discretization &d, const fem::Parts &parts, co
   const auto of_node = parts.of_node;
   const auto centre = parts.centre;
   const auto radius = parts.radius;
-  const double inf = std::numeric_limits<double>::infinity();
   Kokkos::parallel_for(
       "rpc::contact::along_modes", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         const int p = of_node(c.node(i));
@@ -94,7 +93,7 @@ Reactions reactions_of(const fem::Discretization &d, const fem::Parts &parts, co
         }
         fem::along_modes(c.dim, arm, m, row);
         for (int k = 0; k < 6; ++k) along(i, k) = row[k];
-        limit(i) = is_rigid(c.yield(i)) || c.hardening(i) > 0 ? inf : c.weight(i) * c.yield(i);
+        limit(i) = c.weight(i) * largest_bearable(c.law(i));
         if (!is_rigid(limit(i))) add_shared(strength(p), limit(i));
       });
   const auto mine = to_host(strength);

@@ -1,5 +1,6 @@
 #include "rpc/contact/optimality_residuals.hpp"
 
+#include "rpc/contact/energies.hpp"
 #include "rpc/fem/rigid_motion.hpp"
 
 #include <algorithm>
@@ -43,38 +44,39 @@ double OptimalityResiduals::worst() const
 }
 
 OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem::Materials &materials,
-                                         const SmoothedFunctional &functional, const Vector &u,
+                                         const fem::ElasticProblem &elastic, const ContactNodes &points,
+                                         const ContactState &state, const double force_scale,
                                          const std::function<double(const Vector &)> &residual_energy)
 {
-  const fem::ElasticProblem &problem = functional.problem();
-  const fem::DirichletDofs &dirichlet = problem.dirichlet;
+  const Vector &u = *state.displacement;
+  const fem::DirichletDofs &dirichlet = elastic.dirichlet;
   OptimalityResiduals residuals;
   residuals.internal = fem::internal_work(d, materials, u);
   const Vector &internal = *residuals.internal.forces;
   const double strain = residuals.internal.energy_norm_squared;
-  const Vector contact = functional.multiplier_forces();
-  Vector external(*problem.applied_load, Teuchos::Copy), residual(internal, Teuchos::Copy);
+  const Vector contact = multiplier_forces(points, state.multiplier, u.getMap());
+  Vector external(*elastic.applied_load, Teuchos::Copy), residual(internal, Teuchos::Copy);
   external.update(-1., contact, 1.);
   residual.update(-1., external, 1.);
   fem::clear_prescribed(dirichlet, residual);
 
-  residuals.kkt_residual = functional.contact_law_residual(u);
+  residuals.kkt_residual = contact_law_residual(points, state);
   residuals.equilibrium_residual =
-      residual.norm2() / std::max({functional.force_scale(), contact.norm2(), residuals.internal.force_norm});
+      residual.norm2() / std::max({force_scale, contact.norm2(), residuals.internal.force_norm});
 
   const bool at_rest = dirichlet.value->normInf() == 0; // the supports
   const Vector moved = at_rest ? Vector(u, Teuchos::View) : fem::without_rigid_motion(d, dirichlet, u);
-  const double of_load = work(dirichlet, false, moved, *problem.applied_load),
+  const double of_load = work(dirichlet, false, moved, *elastic.applied_load),
                of_contact = work(dirichlet, false, moved, contact),
                of_supports = work(dirichlet, true, moved, internal);
   // Where the strain energy is this small against the work of prescribed displacements on a body that stays behind, the
   // body moves as a whole, and what is left is rounding.
-  const double lifted = std::abs(problem.load->dot(u));
+  const double lifted = std::abs(elastic.load->dot(u));
   const double at_work =
       std::max({strain, std::abs(of_load), std::abs(of_contact), std::abs(of_supports), 1e-7 * lifted});
   residuals.energy_balance = ratio(std::abs(strain - of_load + of_contact - of_supports), at_work);
 
-  const ContactEnergy energy = functional.contact_energy(u);
+  const ContactEnergy energy = contact_energy(points, state);
   residuals.duality_gap = ratio(energy.duality_gap + 0.5 * std::max(0., residual_energy(residual)),
                                 std::max({0.5 * strain, energy.dissipated, 1e-12 * lifted}));
   return residuals;

@@ -1,5 +1,7 @@
 #include "rpc/contact/result.hpp"
 
+#include "rpc/contact/law/judgement.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,8 +22,8 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
     const auto flag = device_write(known);
     Kokkos::parallel_for(
         "rpc::contact::known_pressure", points, KOKKOS_LAMBDA(const LO i) {
-          if (c.fixed(i)) p(i) = pressure_at(-c.free_gap(i), foundation(c, i));
-          if (c.fixed(i) && c.free_gap(i) == 0 && (c.compliance(i) == 0 || c.weight(i) == 0))
+          if (c.fixed(i)) p(i) = pressure_at(-c.free_gap(i), c.law(i));
+          if (c.fixed(i) && c.free_gap(i) == 0 && (leaves_pressure_open(c.law(i)) || c.weight(i) == 0))
             flag(c.node(i)) = 0;
           else
             to(c.node(i)) = p(i);
@@ -34,13 +36,8 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
       "rpc::contact::completed_pressure", points, KOKKOS_LAMBDA(const LO i) {
         if (!c.fixed(i)) return;
         const bool rests = c.weight(i) > 0 && c.free_gap(i) == 0; // and has made no dent
-        p(i) = rests ? clamp(from(c.node(i)), 0, c.yield(i)) : admissible(from(c.node(i)), foundation(c, i));
+        p(i) = rests ? admissible_at_touch(from(c.node(i)), c.law(i)) : admissible(from(c.node(i)), c.law(i));
       });
-}
-
-KOKKOS_INLINE_FUNCTION double larger_of_zero(const double x)
-{
-  return x > 0 ? x : 0;
 }
 
 /// Displacement, penetration and state of each node, from its pressure.
@@ -56,12 +53,11 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
         u_nu(i) = 0;
         for (int k = 0; k < c.dim; ++k) u_nu(i) += c.normal(i, k) * x(c.dof(i, k));
         v(i) = u_nu(i) - c.gap(i);
-        const Foundation f = foundation(c, i);
+        const Foundation f = c.law(i);
         // Points without weight have the pressures of their neighbours, and the dents that go with them.
-        const bool lent = !(c.weight(i) > 0) && f.hardening > 0;
-        dent(i) =
-            c.dent(i) + (lent ? larger_of_zero((p(i) - f.yield) / f.hardening) : new_dent(v(i) - c.dent(i), p(i), f));
-        s(i) = static_cast<int>(p(i) >= c.yield(i) ? State::yielding : (p(i) > 0 ? State::closed : State::open));
+        const bool lent = !(c.weight(i) > 0) && hardens(f);
+        dent(i) = c.dent(i) + (lent ? dent_of_pressure(p(i), f) : new_dent(v(i) - c.dent(i), p(i), f));
+        s(i) = static_cast<int>(state_of_pressure(p(i), f));
       });
   Kokkos::fence();
 }
@@ -83,7 +79,7 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
         fy -= share * c.normal(i, 1);
         if (c.dim == 3) fz -= share * c.normal(i, 2);
         if (p(i) > 0) touched += c.weight(i);
-        if (p(i) >= c.yield(i)) given_way += c.weight(i);
+        if (state_of_pressure(p(i), c.law(i)) == State::yielding) given_way += c.weight(i);
       },
       force[0], force[1], force[2], contact, yielded);
   Kokkos::parallel_reduce(
@@ -103,10 +99,10 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
   Kokkos::parallel_reduce(
       "rpc::contact::result_energies", points,
       KOKKOS_LAMBDA(const LO i, double &dents, double &lost, double &kept) {
-        const Foundation f = foundation(c, i);
+        const Foundation f = c.law(i);
         dents += c.weight(i) * dent(i);
         lost += c.weight(i) * dissipation(dent(i) - c.dent(i), p(i), f);
-        kept += c.weight(i) * 0.5 * f.compliance * p(i) * p(i);
+        kept += c.weight(i) * stored_energy(p(i), f);
       },
       volume, dissipated, stored);
 
@@ -160,17 +156,17 @@ DeviceView<double *> completed_pressure(const fem::Discretization &d, const std:
 }
 
 ContactResult contact_result(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
-                             const SmoothedFunctional &functional, const Vector &u)
+                             const ContactNodes &points, const ContactState &state)
 {
-  const ContactNodes c = functional.contact();
+  const ContactNodes c = points;
   const LO n = c.size();
   ContactResult result;
   result.normal_displacement = DeviceView<double *>("rpc::contact::u_nu", n);
   result.penetration = DeviceView<double *>("rpc::contact::penetration", n);
   result.dent = DeviceView<double *>("rpc::contact::dent", n);
   result.state = DeviceView<int *>("rpc::contact::state", n);
-  result.pressure = completed_pressure(d, sides, c, functional.multipliers());
-  fill_fields(c, u, result);
+  result.pressure = completed_pressure(d, sides, c, state.multiplier.normal);
+  fill_fields(c, *state.displacement, result);
   for (int k = 0; k < c.num_sides(); ++k) {
     result.sides.push_back(sums_of(d.mesh->comm(), c, result, c.first(k), c.first(k + 1)));
     if (d.axisymmetric()) result.sides.back().force[0] = 0; // around the axis radial forces cancel
@@ -187,7 +183,7 @@ double pressure_distance(const Comm &comm, const ContactNodes &contact, const De
   Kokkos::parallel_reduce(
       "rpc::contact::pressure_distance", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &part) {
-        const double difference = p(i) - (q.extent(0) > 0 ? admissible(q(i), foundation(c, i)) : 0);
+        const double difference = p(i) - (q.extent(0) > 0 ? admissible(q(i), c.law(i)) : 0);
         if (!c.fixed(i)) part += c.weight(i) * difference * difference;
       },
       sum);

@@ -46,6 +46,7 @@ public:
   bool is_symmetric() const { return symmetric_; }
 
   const StiffnessOperator &base() const { return *K_; }
+  const RCP<const StiffnessOperator> &shared_base() const { return K_; }
   int dofs_per_node() const { return K_->dofs_per_node(); }
   const DeviceView<LO *> &nodes() const { return nodes_; }
   /// (nodes, dim, dim) U, those of K, and those of H.

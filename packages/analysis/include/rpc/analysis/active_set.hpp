@@ -1,6 +1,7 @@
 #pragma once
 
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/analysis/solve_step.hpp"
+#include "rpc/contact/iterate.hpp"
 #include "rpc/solver/first_stage.hpp"
 
 #include <cstdint>
@@ -17,6 +18,9 @@ struct ActiveSetTolerances {
   double pressure = 1e-7;  ///< error of pressures, over the largest, > 0
 };
 
+/// By the options for Newton and Uzawa. (5.10)
+ActiveSetTolerances active_set_tolerances(const StepOptions &options);
+
 /// The primal-dual active-set iteration as first steps of a NOX solver: the active set is chosen by the last pressures, and the
 /// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.7), (5.8), (5.9)
 ///
@@ -26,7 +30,7 @@ struct ActiveSetTolerances {
 class ActiveSetStage : public solver::FirstStage
 {
 public:
-  ActiveSetStage(contact::SmoothedFunctional &functional, const ActiveSetTolerances &tolerances);
+  ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances);
 
   Verdict judge(const solver::NewtonGroup &at) override;
   Step propose(solver::NewtonGroup &group, Vector &direction) override;
@@ -39,7 +43,7 @@ public:
 private:
   Verdict choose(const Vector &u);
 
-  contact::SmoothedFunctional &functional_;
+  contact::Iterate &iterate_;
   double scale_, target_;                          // of forces, and |F|_2 that is small enough [N]
   double pressure_tolerance_;                      // over the largest pressure
   std::set<std::uint64_t> seen_;                   // fingerprints of active sets
@@ -62,13 +66,13 @@ private:
 class SameActiveSet : public solver::FirstStage
 {
 public:
-  explicit SameActiveSet(const contact::SmoothedFunctional &functional) : functional_(functional) {}
+  explicit SameActiveSet(const contact::Iterate &iterate) : iterate_(iterate) {}
 
   Verdict judge(const solver::NewtonGroup &at) override;
   Step propose(solver::NewtonGroup &group, Vector &direction) override;
 
 private:
-  const contact::SmoothedFunctional &functional_;
+  const contact::Iterate &iterate_;
   bool proposed_ = false;
 };
 

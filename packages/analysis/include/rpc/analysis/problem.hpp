@@ -5,7 +5,7 @@
 #include "rpc/contact/support.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"
-#include "rpc/solver/linear_solver.hpp"
+#include "rpc/solver/mesh_levels.hpp"
 
 #include <memory>
 #include <string>
@@ -27,7 +27,7 @@ struct Model {
   Model seen_at(double t) const;
 };
 
-/// What acts on a body at one time: cheap to make again.
+/// What acts on a body at one time: cheap to make again. Plain data.
 struct Step {
   double time = 1;
   fem::ElasticProblem elastic;   ///< loads and prescribed displacements
@@ -35,7 +35,8 @@ struct Step {
   contact::Support support;      ///< what holds the body
 };
 
-/// A body on its mesh: what stays from step to step, made once. doc/theory.md, section 2
+/// A body on its mesh: what stays from step to step, made once. Nothing of it changes while steps are solved: that is SolverState's.
+/// K belongs to the body, not to its contact: it serves whatever gaps and normals there are. doc/theory.md, section 2
 class Problem
 {
 public:
@@ -43,17 +44,13 @@ public:
   /// @param t  time of the first step; which displacements are prescribed does not depend on it
   /// @throws rpc::Error bad_input where the model does not fit the mesh or numbers overflow, naming what they belong to;
   ///         bad_mesh for a cell with a Jacobian <= 0; no_solution as contact::contact_nodes() and contact::free_parts()
-  Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
-          double t = 1);
-  Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, const solver::LinearSolverOptions &linear,
-          double t = 1);
+  Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, double t = 1);
+  Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, double t = 1);
 
   /// Loads, prescribed displacements and contact nodes at one time. Collective.
   /// @param dents  that earlier steps have left, (owned nodes; sides) [m]; null: none
   /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()
   Step step(double t, const MultiVector *dents = nullptr) const;
-  /// The same problem with a stiffness and a linear solver of its own, seen at another time. Collective.
-  std::shared_ptr<const Problem> remade(double t) const;
   /// The same scene on one of the boxes that this one leads to: the first whose cells are about `factor` times as long, by the number of
   /// nodes. Null where there is none, and for order 2: linear elements, too stiff in bending, predict worse. Collective.
   std::shared_ptr<const Problem> coarser(double factor, double t) const;
@@ -63,21 +60,21 @@ public:
   const Model &model() const { return model_; } ///< seen at the time of the first step
   /// The contact sides, in the order of the model's.
   std::vector<const mesh::Side *> contact_sides() const;
-  /// K: which displacements are prescribed decides about it, and nothing else that may change from step to step.
-  const StiffnessOperator &stiffness() const { return hessian_->base(); }
-  /// K with an update at the nodes of the contact sides, whether or not they face an obstacle now: one for all steps. The linear solver
-  /// with its preconditioner belongs to it.
-  const RCP<UpdatedOperator> &hessian() const { return hessian_; }
-  solver::LinearSolver &linear_solver() const { return *linear_; }
+  /// K, prescribed unknowns eliminated. Assembled only where somebody asks for its matrix, if its rows repeat.
+  const RCP<const StiffnessOperator> &stiffness() const { return stiffness_; }
+  /// Owned nodes at which contact may act at some time, ascending: those of the contact sides.
+  const DeviceView<LO *> &contact_candidates() const { return candidates_; }
+  /// Makes the meshes that multigrid needs; null where there is no coarser one.
+  solver::MakeMeshLevels mesh_levels() const;
 
 private:
   Model model_;
-  solver::LinearSolverOptions linear_options_;
   std::shared_ptr<NestedMesh> mesh_;
+  DeviceView<char *> prescribed_; // (overlap dofs)
   contact::FreeParts free_parts_;
   fem::PrescribedCouplings couplings_;
-  RCP<UpdatedOperator> hessian_;
-  std::shared_ptr<solver::LinearSolver> linear_;
+  RCP<const StiffnessOperator> stiffness_;
+  DeviceView<LO *> candidates_;
 };
 
 } // namespace rpc::analysis

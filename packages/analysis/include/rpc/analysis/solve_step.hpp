@@ -1,14 +1,13 @@
 #pragma once
 
-#include "rpc/analysis/active_set.hpp"
-#include "rpc/analysis/problem.hpp"
+#include "rpc/analysis/solver_state.hpp"
 #include "rpc/analysis/uzawa.hpp"
+#include "rpc/contact/iterate.hpp"
 #include "rpc/contact/result.hpp"
 #include "rpc/solver/newton.hpp"
 
 #include <array>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,17 +33,6 @@ struct StepOptions {
   PredictionOptions prediction;
 };
 
-/// When the active-set iteration is content, by the options for Newton and Uzawa. (5.10)
-ActiveSetTolerances active_set_tolerances(const StepOptions &options);
-
-/// The same scene on the next coarser mesh; null where there is none.
-/// @param finer  the scene on the mesh before   @param level  1 for the mesh after the finest, 2 for the one after it, ...
-using CoarserProblem = std::function<std::shared_ptr<const Problem>(const Problem &finer, int level)>;
-
-/// Why no coarser mesh is to predict the solution on this one; empty if one is.
-std::string no_prediction(const fem::Discretization &d, const contact::ContactNodes &contact,
-                          const PredictionOptions &options);
-
 /// What is told while a step is solved; empty functions tell nothing.
 struct Progress {
   /// @param uzawa  number of the Uzawa iteration, from 1
@@ -61,10 +49,25 @@ struct LevelWork {
   double seconds = 0; ///< with all coarser ones
 };
 
+/// A start that coarser meshes predict.
+struct Prediction {
+  std::optional<contact::ContactState> start;
+  std::string reason;          ///< why there is none
+  std::vector<LevelWork> work; ///< on the meshes that were asked, from the coarsest
+};
+
+/// Where a step may start from.
+struct Starts {
+  /// Such as that of the step before or of another mesh: the nearest to equilibrium is taken.
+  std::vector<contact::ContactState> states;
+  /// Asked where there is none, or the nearest is far from equilibrium; empty: there are no coarser meshes. Collective.
+  std::function<Prediction()> predict;
+};
+
 /// The solution of one step, and how it was found. Plain data: it outlives its problem.
 struct StepSolution {
   Step step;                   ///< what was solved: loads, prescribed displacements, contact points
-  RCP<Vector> u;               ///< (owned dofs) displacement from 0 [m]
+  RCP<const Vector> u;         ///< (owned dofs) displacement from 0 [m]
   contact::ContactState state; ///< to start the next step from; its displacement is u
   UzawaResult uzawa;
   contact::ContactResult contact;
@@ -79,20 +82,10 @@ struct StepSolution {
   double prediction_seconds = 0, solve_seconds = 0; ///< solve: without set-ups of multigrid
 };
 
-/// Where a step may start from.
-struct Starts {
-  /// Such as that of the step before or of another mesh: the nearest to equilibrium is taken.
-  std::vector<contact::ContactState> states;
-  /// Asked where that is far from equilibrium; empty, or returns none, where there is no better start. Collective.
-  /// @param work  becomes that on coarser meshes, from the coarsest
-  std::function<std::optional<contact::ContactState>(std::vector<LevelWork> &work)> predicted;
-};
-
-/// The algorithm: predict, choose the active set, Newton with exact line search, Uzawa, optimality residuals. Collective.
-/// @param starts   without states coarser meshes predict one
-/// @param coarser  empty: there are no coarser meshes
+/// The algorithm: predict; repeat { choose states; solve; update multipliers }; judge. Collective.
+/// @param state  the problem's, which may come from steps before
 /// @throws rpc::Error (bad_input) where NOX refuses its options; failing to converge is in the result
-StepSolution solve_step(const Problem &problem, const Step &step, const StepOptions &options, const Starts &starts = {},
-                        const CoarserProblem &coarser = {}, const Progress &progress = {});
+StepSolution solve_step(const Problem &problem, const Step &step, SolverState &state, const StepOptions &options,
+                        const Starts &starts = {}, const Progress &progress = {});
 
 } // namespace rpc::analysis

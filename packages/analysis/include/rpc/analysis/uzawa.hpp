@@ -32,10 +32,11 @@ struct Minimization {
   bool converged = false;
   int steps = 0;                     ///< each one linear solve
   std::string reason;                ///< why not, if not
-  bool active_set_confirmed = false; ///< u is the minimum for the functional's active set, whose pressures obey the law
+  bool active_set_confirmed = false; ///< u is the minimum for the iterate's active set, whose pressures obey the law
   int line_search_steps = 0;         ///< of the steps, those of Newton's with its line search
 };
 
+/// How the Uzawa iteration went, so far or to its end.
 struct UzawaResult {
   bool converged = false; ///< the optimality residuals are small enough
   std::string reason;
@@ -45,16 +46,12 @@ struct UzawaResult {
   contact::OptimalityResiduals residuals;
 };
 
-/// Alternates minimization over u and multiplier update until the optimality residuals are small.      doc/theory.md (5.1)
-///
-/// Without a contact node there is nothing to alternate with: one minimization.
-/// @param[in,out] u  start, then solution: displacement from 0
-/// @param minimize   (iteration, from 1) brings u, as seen from the functional's origin, to the minimum for its present
-///                   multipliers; collective
-/// @param residuals  of a displacement from 0, with the functional's multipliers
-/// @param report     called after each iteration, for the console
-UzawaResult uzawa(contact::SmoothedFunctional &functional, Vector &u, const std::function<Minimization(int)> &minimize,
-                  const std::function<contact::OptimalityResiduals(const Vector &)> &residuals,
-                  const UzawaOptions &options, const std::function<void(const UzawaResult &)> &report);
+/// Whether an Uzawa iteration was the last one: it has converged, may not go on, or does not get any further. Writes `converged` and
+/// `reason` then.                                                                                       doc/theory.md (5.12)
+/// @param result    with the residuals of this iteration   @param found  its minimization
+/// @param previous  largest residual of the iteration before; NaN: there was none
+/// @param raise_penalty  asked for where an iteration was slow; returns whether anything could be raised. Collective
+bool is_over(UzawaResult &result, const Minimization &found, double previous, const UzawaOptions &options,
+             const Comm &comm, const std::function<bool()> &raise_penalty);
 
 } // namespace rpc::analysis

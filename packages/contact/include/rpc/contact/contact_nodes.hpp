@@ -1,53 +1,16 @@
 #pragma once
 
 #include "rpc/algebra/node_points.hpp"
-#include "rpc/contact/law/foundation.hpp"
-#include "rpc/contact/obstacle.hpp"
-#include "rpc/core/field.hpp"
+#include "rpc/contact/contact_options.hpp"
+#include "rpc/contact/law/foundations.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/surface.hpp"
 
-#include <Teuchos_ParameterList.hpp>
-#include <limits>
-#include <string>
 #include <vector>
 
 namespace rpc::contact
 {
-
-/// The normal nu along which penetration is measured.
-enum class Normal {
-  surface,    ///< outward normal of the body
-  foundation, ///< of the obstacle, into the foundation
-  fixed       ///< one direction for all nodes
-};
-
-/// What dents stay with when the body slides or the obstacle moves along itself, see moving_dents.hpp.
-enum class DentsMoveWith { body, foundation };
-
-/// A side that may touch the foundation, and the foundation's law there.
-struct ContactOptions {
-  std::string path = "Contact"; ///< in the deck, for messages
-  std::string side;
-  ScalarField yield_stress;                ///< xi > 0 [Pa], may be inf
-  ScalarField hardening = ScalarField(0.); ///< H >= 0 [Pa/m], what the yield stress grows by with the dent
-  ScalarField stiffness = ScalarField(
-      std::numeric_limits<double>::infinity()); ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
-  ScalarField gap; ///< g [m], distance to the foundation along the normal; < 0 is initial penetration. Without obstacle
-  Obstacle obstacle; ///< the foundation's surface, from which the gap follows
-  Normal normal = Normal::surface;
-  Point direction{};     ///< unit, of Normal::fixed
-  double penalty = 0;    ///< r > 0 [Pa/m]; 0: chosen at each node, see SmoothedFunctional
-  bool remembers = true; ///< dents stay from step to step
-  DentsMoveWith dents_move_with = DentsMoveWith::body;
-};
-
-/// Parameters of the deck's `Contact` sublist.
-Teuchos::ParameterList valid_contact_parameters();
-/// One entry per contact side; none if nothing touches.
-/// @throws rpc::Error (bad_input) on anything out of range that needs no mesh to be seen
-std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse);
 
 /// The nodes of the contact sides that this rank owns, each a point with a weight; side by side, so that a node of two
 /// sides is two points. doc/theory.md (2.7), (3.4)
@@ -60,21 +23,19 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
 /// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether
 /// has direction 0: it takes no part in the solution, and its pressure is what the law says at its v: 0 if it stays clear, xi if
 /// it is pressed in, and open to choice where a rigid foundation has v = 0.
-struct ContactNodes : NodePoints { // a group is a side; `direction` is the normal, prescribed components 0
-  DeviceView<double **> normal;    ///< (n, dim) unit normal nu, from the body into the foundation
-  DeviceView<double *> gap;        ///< (n) g [m], to the surface without dents
-  DeviceView<double *> dent;       ///< (n) w >= 0 [m], what earlier steps have left of dents
-  DeviceView<double *> free_gap;   ///< (n) g + w - normal . u_prescribed [m]
-  DeviceView<double *> yield;      ///< (n) xi + H w [Pa]
-  DeviceView<double *> hardening;  ///< (n) H [Pa/m]
-  DeviceView<double *> compliance; ///< (n) c = 1/k [m/Pa]
-  DeviceView<double *> scaling;    ///< (n) rho = E / diameter, with the largest E around the node [Pa/m]
-  DeviceView<double *> penalty;    ///< (n) r [Pa/m], 0 where it is to be chosen
-  DeviceView<char *> fixed;        ///< (n) 1 where direction = 0
-  GO num_total = 0;                ///< that have a weight, over all ranks
-  GO num_fixed = 0;                ///< of these, those whose normal displacement is prescribed, over all ranks
-  GO num_weightless = 0;           ///< over all ranks
-  GO num_missing = 0;              ///< nodes of the sides, over all ranks, from which the normal misses the obstacle
+struct ContactNodes : NodePoints {    // a group is a side; `direction` is the normal, prescribed components 0
+  DeviceView<double **> normal;       ///< (n, dim) unit normal nu, from the body into the foundation
+  DeviceView<double *> gap;           ///< (n) g [m], to the surface without dents
+  DeviceView<double *> dent;          ///< (n) w >= 0 [m], what earlier steps have left of dents
+  DeviceView<double *> free_gap;      ///< (n) g + w - normal . u_prescribed [m]
+  Foundations law;                    ///< (n) the foundation at the dents of earlier steps
+  DeviceView<double *> scaling;       ///< (n) rho = E / diameter, with the largest E around the node [Pa/m]
+  DeviceView<double *> given_penalty; ///< (n) r of the deck [Pa/m], 0 where it is to be chosen
+  DeviceView<char *> fixed;           ///< (n) 1 where direction = 0
+  GO num_total = 0;                   ///< that have a weight, over all ranks
+  GO num_fixed = 0;                   ///< of these, those whose normal displacement is prescribed, over all ranks
+  GO num_weightless = 0;              ///< over all ranks
+  GO num_missing = 0;                 ///< nodes of the sides, over all ranks, from which the normal misses the obstacle
 
   int num_sides() const { return num_groups(); }
 };
@@ -93,12 +54,6 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
 /// The sides of a mesh that the options name.
 /// @throws rpc::Error (bad_input) if one does not exist
 std::vector<const mesh::Side *> contact_sides(const mesh::Mesh &mesh, const std::vector<ContactOptions> &options);
-
-/// The law at one node, for kernels.
-KOKKOS_INLINE_FUNCTION Foundation foundation(const ContactNodes &c, const LO i)
-{
-  return {c.yield(i), c.hardening(i), c.compliance(i)};
-}
 
 /// v_i = direction_i . u_i - free_gap_i at one node, for kernels [m].
 template <class U>

@@ -6,11 +6,26 @@
 namespace rpc::contact
 {
 
-/// Where a body and its foundation are: what one step hands to the next. Plain data.
+/// Multipliers at the contact points.
+struct Multipliers {
+  DeviceView<double *> normal;      ///< (points) lambda >= 0 [Pa]
+  DeviceView<double **> tangential; ///< (points, dim) along the side [Pa]; empty: the law has none
+
+  Multipliers() = default;
+  Multipliers(DeviceView<double *> lambda, DeviceView<double **> along = {})
+      : normal(std::move(lambda)), tangential(std::move(along))
+  {
+  }
+  bool has_tangential() const { return tangential.extent(0) > 0; }
+  /// With numbers of its own.
+  Multipliers copy() const;
+};
+
+/// Where a body and its foundation are: what one step hands to the next, and what a solution is judged by. Plain data.
 struct ContactState {
-  RCP<const Vector> displacement;  ///< (owned dofs) from 0 [m]
-  DeviceView<double *> multiplier; ///< (contact nodes) lambda [Pa]
-  DeviceView<State *> active_set;  ///< (contact nodes); empty where it is not known
+  RCP<const Vector> displacement; ///< (owned dofs) from 0 [m]
+  Multipliers multiplier;
+  DeviceView<State *> active_set; ///< (points); empty where it is not known
 };
 
 /// A copy in which points without weight have the pressures of their neighbours as multipliers: for interpolation. Collective.

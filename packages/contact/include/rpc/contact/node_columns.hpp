@@ -10,7 +10,14 @@ namespace rpc::contact
 RCP<MultiVector> node_columns(const ContactNodes &c, const DeviceView<double *> &values,
                               const RCP<const Map> &owned_nodes);
 
+/// The same of vectors at the points: (owned nodes; sides x dim), the components of a side after each other.
+/// @param vectors  (points, dim); empty on a rank without points
+RCP<MultiVector> node_columns(const ContactNodes &c, const DeviceView<double **> &vectors,
+                              const RCP<const Map> &owned_nodes);
+
 /// (points) The values of such columns.
 DeviceView<double *> at_points(const ContactNodes &c, const MultiVector &columns);
+/// (points, dim) The same of vectors.
+DeviceView<double **> vectors_at_points(const ContactNodes &c, const MultiVector &columns);
 
 } // namespace rpc::contact

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/contact/contact_state.hpp"
 #include "rpc/fem/elasticity.hpp"
 
 #include <functional>
@@ -8,7 +8,8 @@
 namespace rpc::contact
 {
 
-/// How well (u, lambda) solves the discrete problem: four numbers without dimension, 0 at the solution.   doc/theory.md (5.2) to (5.5)
+/// How well (u, lambda) solves the discrete problem, how far it is from the saddle point of paper (7) - (9): four numbers without
+/// dimension, 0 at the solution.                                                              doc/theory.md (5.2) to (5.5)
 struct OptimalityResiduals {
   double equilibrium_residual = 0; ///< forces out of balance, over the forces at work                        (5.2)
   double kkt_residual = 0;         ///< largest violation of the contact law, over the largest pressure        (5.3)
@@ -22,10 +23,11 @@ struct OptimalityResiduals {
 };
 
 /// Judges (u, lambda) by sums over cells, not by the matrix that the solution came from; collective.
-/// @param u                displacement from 0 (owned dofs) [m]
+/// @param force_scale      size of the forces at work, see Iterate::force_scale() [N]
 /// @param residual_energy  F -> about F . K^-1 F [J], for a residual F (owned dofs, 0 where prescribed) [N]
 OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem::Materials &materials,
-                                         const SmoothedFunctional &functional, const Vector &u,
+                                         const fem::ElasticProblem &elastic, const ContactNodes &points,
+                                         const ContactState &state, double force_scale,
                                          const std::function<double(const Vector &)> &residual_energy);
 
 } // namespace rpc::contact

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/contact/contact_state.hpp"
 
 #include <array>
 #include <vector>
@@ -38,10 +38,10 @@ struct ContactResult {
   ContactSums total;
 };
 
-/// Reads displacement u and the functional's multipliers, see completed_pressure(); collective.
+/// Reads a state's displacement and multipliers, see completed_pressure(); collective.
 /// @param sides  that the contact nodes were made from
 ContactResult contact_result(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
-                             const SmoothedFunctional &functional, const Vector &u);
+                             const ContactNodes &points, const ContactState &state);
 
 /// Pressures at all points from those of the points that take part in the solution: the others get theirs as told at
 /// ContactNodes, and where the law leaves it open from their neighbours. doc/theory.md (3.5); collective

@@ -21,4 +21,14 @@ inline constexpr T infinity = Kokkos::Experimental::infinity<T>::value;
 template <class T>
 inline constexpr T largest = Kokkos::Experimental::finite_max<T>::value;
 
+/// The larger one; a NaN where one of them is.
+KOKKOS_INLINE_FUNCTION double larger(const double a, const double b)
+{
+  return a > b || a != a ? a : b;
+}
+KOKKOS_INLINE_FUNCTION double magnitude(const double x)
+{
+  return x < 0 ? -x : x;
+}
+
 } // namespace rpc::math

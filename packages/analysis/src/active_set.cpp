@@ -1,0 +1,155 @@
+#include "rpc/analysis/active_set.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace rpc::analysis
+{
+
+using solver::NewtonGroup;
+
+namespace
+{
+
+constexpr int most_changes = 10;         // of the active set; then Newton with its sweep needs fewer steps
+constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
+// While the active set changes, solves bring the residual below this part of what it was, and of the load: three to five CG
+// iterations. With 1e-1 pressures are too rough to choose by, 1e-4 saves no step. What the multipliers of the last rough
+// solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
+constexpr double forcing = 5e-3;
+constexpr int most_updates = 2;     // of multipliers at the end, even if pressures miss their tolerance then
+constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
+constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
+
+} // namespace
+
+// The active set: chosen by the last pressures, until a choice confirms itself --------------------------------------------
+
+ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances)
+    : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
+      pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
+      rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
+      most_changes_(most_changes)
+{
+}
+
+bool ActiveSetStage::resume(const NewtonGroup &from)
+{
+  if (std::exchange(resumed_, true)) return false;
+  const Vector &u = solver::tpetra(from.getX());
+  iterate_.update_hessian(u); // the states there
+  start_.assign(u);
+  seen_.clear();
+  choice_.reset();
+  norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
+  changes_ = updates_ = 0;
+  most_changes_ = most_changes_resumed;
+  rough_ = false; // a small residual may be all of the bending
+  decided_ = false;
+  return true;
+}
+
+/// What becomes of the iteration at a point, after the step that led there.
+ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
+{
+  choice_ = iterate_.choose_active_set(u, negligible * pressure_tolerance_); // (5.8)
+  // Nothing touches, as far as is known: one solve, for CG in one go keeps the energy balance to rounding.
+  if (choice_->changes == 0 && steps_ == 0) rough_ = false;
+  if (choice_->confirmed) {
+    const bool solved_well = norm_ <= target_;
+    confirmed_ =
+        solved_well && (iterate_.pressure_error(u) <= pressure_tolerance_ || ++updates_ > most_updates); // (5.10)
+    // Rounding may end progress below: where the foundation's forces are many times the load, F grows and falls with each step.
+    const bool stalled = !rough_ && !solved_well && !(norm_ < 0.5 * std::min(before_, confirmed_norm_));
+    if (!rough_) confirmed_norm_ = norm_;
+    if (confirmed_) return Verdict::converged;
+    if (stalled) return Verdict::over;
+    rough_ = false;
+  } else if (!seen_.insert(choice_->fingerprint).second || ++changes_ > most_changes_) {
+    return Verdict::over; // in circles, or too slow
+  } else if (steps_ == 1) {
+    rough_ = true; // it touches after all
+  }
+  return Verdict::go_on;
+}
+
+ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
+{
+  if (decided_) return confirmed_ ? Verdict::converged : Verdict::over;
+  const Vector &u = solver::tpetra(at.getX());
+  if (steps_ == 0) {
+    start_.assign(u);
+  } else {
+    Vector F(u.getMap());
+    iterate_.active_set_gradient(u, solver::tpetra(at.getF()), F); // (5.6)
+    norm_ = F.norm2();
+  }
+  return choose(u);
+}
+
+ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &direction)
+{
+  if (!choice_ && judge(group) != Verdict::go_on) return Step::none; // a user's status tests do not ask for the verdict
+  auto u = rcp(new Vector(solver::tpetra(group.getX()), Teuchos::Copy));
+  const auto move_to = [&] {
+    group.setX(solver::NoxVector(u));
+    group.computeF();
+  };
+  Vector F(u->getMap());
+  while (true) {
+    iterate_.take_active_set(*choice_, *u); // (5.7)
+    choice_.reset();
+    move_to();
+    iterate_.active_set_gradient(*u, solver::tpetra(group.getF()), F);
+    before_ = norm_ = F.norm2();
+    if (norm_ > target_) break;
+    const Verdict verdict = choose(*u); // nothing to solve for: the next choice
+    if (verdict == Verdict::go_on) continue;
+    decided_ = true;
+    direction.putScalar(0);
+    return verdict == Verdict::converged ? Step::full : Step::none;
+  }
+  if (!rough_) { // the remaining correction is small against u: solving for it keeps its relative accuracy       (5.13)
+    iterate_.move_origin(*u);
+    start_.putScalar(0);
+    move_to();
+  }
+  u = Teuchos::null; // a solve needs the memory
+  const double needed = std::max(enough * target_, rough_ ? forcing * std::min(scale_, norm_) : 0.);
+  const auto solved = solver::solve_for_direction(group.context(), F, direction, needed / norm_); // (5.9)
+  if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
+    if (!solved.interrupted) {
+      u = rcp(new Vector(start_, Teuchos::Copy));
+      iterate_.reset_multipliers();
+      move_to();
+    }
+    return Step::none;
+  }
+  direction.scale(-1.);
+  ++group.context().steps;
+  ++steps_;
+  return Step::full;
+}
+
+// After a multiplier update -----------------------------------------------------------------------------------------------
+
+SameActiveSet::Verdict SameActiveSet::judge(const NewtonGroup &at)
+{
+  return proposed_ || at.getNormF() <= at.context().target_residual ? Verdict::over : Verdict::go_on;
+}
+
+SameActiveSet::Step SameActiveSet::propose(NewtonGroup &group, Vector &direction)
+{
+  if (std::exchange(proposed_, true)) return Step::none;
+  const Vector &F = solver::tpetra(group.getF());
+  Vector G(F.getMap());
+  iterate_.active_set_gradient(solver::tpetra(group.getX()), F, G); // (5.6)
+  const auto solved =
+      solver::solve_for_direction(group.context(), G, direction, 0.1 * group.context().target_residual / G.norm2());
+  if (!solved.converged || !(direction.dot(F) > 0)) return Step::none;
+  direction.scale(-1.);
+  ++group.context().steps;
+  return Step::search;
+}
+
+} // namespace rpc::analysis

@@ -1,0 +1,156 @@
+#include "rpc/analysis/predictor.hpp"
+
+#include "rpc/analysis/load_history.hpp"
+#include "rpc/core/error.hpp"
+#include "rpc/fem/interpolation.hpp"
+
+#include <Teuchos_Time.hpp>
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace rpc::analysis
+{
+namespace
+{
+
+// Below, a solution costs about as much as its prediction.
+constexpr std::size_t least_nodes_predicted = 500;
+// Steps on a coarser mesh: with rough solves there they cost no more than a few elastic solves of the finer one, and what they
+// lead to is a start in any case.
+constexpr int most_steps_predicting = 40;
+
+/// Why no coarser mesh is to predict a step on this one; empty if one is.
+std::string no_prediction(const fem::Discretization &d, const contact::ContactNodes &contact, const bool enabled)
+{
+  if (contact.num_total == contact.num_fixed) return "no node can touch";
+  if (!enabled) return "switched off";
+  if (d.mesh->owned_nodes->getGlobalNumElements() < least_nodes_predicted) return "the mesh is small";
+  return "";
+}
+
+StepOptions rough(StepOptions options)
+{
+  options.newton.residual_tolerance = options.uzawa.tolerance = options.prediction.tolerance;
+  options.newton.max_iterations = std::min(options.newton.max_iterations, most_steps_predicting);
+  return options;
+}
+
+/// now - then.
+template <class Values>
+RCP<Values> difference(const Values &now, const Values &then)
+{
+  const auto result = rcp(new Values(now, Teuchos::Copy));
+  result->update(-1., then, 1.);
+  return result;
+}
+
+} // namespace
+
+/// The scene on a coarser mesh, with the interpolations between the meshes.
+struct Predictor::Coarser {
+  LoadHistory history;
+  RCP<const Operator> to_fine;
+  RCP<const Operator> to_coarse; // null until it is asked for
+};
+
+Predictor::Predictor(CoarserProblem coarser, StepOptions options, solver::LinearSolverOptions linear, const int level)
+    : coarser_problem_(std::move(coarser)), rough_(rough(std::move(options))), linear_(std::move(linear)), level_(level)
+{
+}
+Predictor::Predictor(Predictor &&) noexcept = default;
+Predictor::~Predictor() = default;
+
+void Predictor::forget()
+{
+  coarser_.reset();
+}
+
+Prediction Predictor::predict(const Problem &fine, const Step &step, const Memory *const last)
+{
+  Prediction prediction;
+  prediction.reason = no_prediction(fine.discretization(), step.contact, rough_.prediction.enabled);
+  if (!prediction.reason.empty()) return prediction;
+  try {
+    if (!coarser_) {
+      const auto problem = coarser_problem_ ? coarser_problem_(fine, level_) : nullptr;
+      if (!problem) {
+        prediction.reason = "a mesh from a file cannot be made coarser";
+        return prediction;
+      }
+      coarser_ = std::make_unique<Coarser>(
+          Coarser{LoadHistory(problem, rough_, 0, linear_, Predictor(coarser_problem_, rough_, linear_, level_ + 1)),
+                  interpolation(problem->mesh(), fine.mesh()), Teuchos::null});
+    }
+    return last ? from_last(fine, step, *last) : from_rest(fine, step);
+  } catch (const Error &failure) { // an interrupt too: the finest mesh is where a run stops with what it has found
+    forget();
+    prediction.reason = one_line(failure.what());
+    return prediction;
+  }
+}
+
+namespace
+{
+
+/// What a solution on a coarser mesh took, after what still coarser ones did.
+std::vector<LevelWork> work_of(const StepSolution &s, const double start)
+{
+  std::vector<LevelWork> work = s.levels;
+  work.push_back({s.u->getGlobalLength(),
+                  std::accumulate(s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end(), 0),
+                  s.linear.iterations, s.linear.preconditioner_setups, Teuchos::Time::wallTime() - start});
+  return work;
+}
+
+} // namespace
+
+/// The first step: one minimization there is enough, whatever becomes of it.                                    (5.11)
+Prediction Predictor::from_rest(const Problem &fine, const Step &step)
+{
+  const double start = Teuchos::Time::wallTime();
+  LoadHistory &history = coarser_->history;
+  StepOptions once = rough_;
+  once.uzawa.max_iterations = 1;
+  const StepSolution coarse = history.solve(step.time, once, {}, {});
+  const Problem &problem = history.problem();
+  const auto state =
+      contact::with_weightless(coarse.state, coarse.step.contact, problem.discretization(), problem.contact_sides());
+  return {contact::interpolated(*coarser_->to_fine, coarse.step.contact, state, step.contact,
+                                fine.discretization().owned_dofs),
+          "", work_of(coarse, start)};
+}
+
+/// A later step: what it changes.                                                                                (11.5)
+Prediction Predictor::from_last(const Problem &fine, const Step &step, const Memory &last)
+{
+  const double start = Teuchos::Time::wallTime();
+  auto &[history, to_fine, to_coarse] = *coarser_;
+  const fem::Discretization &d = fine.discretization(), &coarse_d = history.problem().discretization();
+  Prediction none;
+  none.reason = "the step does not converge on the coarser mesh";
+  if (!history.memory() || history.memory()->time != last.time) { // brings it to where the fine one is
+    if (to_coarse.is_null()) to_coarse = fem::interpolation(d, coarse_d);
+    history.go_on_from(interpolated(last, *to_coarse, coarse_d));
+    if (!history.solve(last.time, rough_, {}, {}).uzawa.converged) return none;
+  }
+  const Memory before = *history.memory();
+  const StepSolution coarse = history.solve(step.time, rough_, {}, {});
+  if (!coarse.uzawa.converged) return none;
+  const Memory &now = *history.memory();
+  Memory predicted = last;
+  const auto u =
+      fem::interpolated(*to_fine, *difference(*now.displacement, *before.displacement), d.dim(), d.owned_dofs);
+  u->update(1., *last.displacement, 1.);
+  predicted.displacement = u;
+  const auto changed = [&](const MultiVector &there_now, const MultiVector &there_before, const MultiVector &here) {
+    const auto result = rcp(new MultiVector(here, Teuchos::Copy));
+    to_fine->apply(*difference(there_now, there_before), *result, Teuchos::NO_TRANS, 1., 1.);
+    return result;
+  };
+  predicted.pressure = changed(*now.pressure, *before.pressure, *last.pressure);
+  if (!last.tangential.is_null()) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
+  return {state_of(step.contact, predicted), "", work_of(coarse, start)};
+}
+
+} // namespace rpc::analysis

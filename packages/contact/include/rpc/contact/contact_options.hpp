@@ -1,0 +1,60 @@
+#pragma once
+
+#include "rpc/contact/obstacle.hpp"
+#include "rpc/core/field.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace rpc::contact
+{
+
+/// The normal nu along which penetration is measured.
+enum class Normal {
+  surface,    ///< outward normal of the body
+  foundation, ///< of the obstacle, into the foundation
+  fixed       ///< one direction for all nodes
+};
+
+/// What dents stay with when the body slides or the obstacle moves along itself, see moving_dents.hpp.
+enum class DentsMoveWith { body, foundation };
+
+/// A side that may touch the foundation, and the foundation's law there.
+struct ContactOptions {
+  std::string path = "Contact"; ///< in the deck, for messages
+  std::string side;
+  ScalarField yield_stress;                ///< xi > 0 [Pa], may be inf
+  ScalarField hardening = ScalarField(0.); ///< H >= 0 [Pa/m], what the yield stress grows by with the dent
+  ScalarField stiffness = ScalarField(
+      std::numeric_limits<double>::infinity()); ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
+  ScalarField gap; ///< g [m], distance to the foundation along the normal; < 0 is initial penetration. Without obstacle
+  Obstacle obstacle; ///< the foundation's surface, from which the gap follows
+  Normal normal = Normal::surface;
+  Point direction{};     ///< unit, of Normal::fixed
+  double penalty = 0;    ///< r > 0 [Pa/m]; 0: chosen at each node, see penalties.hpp
+  bool remembers = true; ///< dents stay from step to step
+  DentsMoveWith dents_move_with = DentsMoveWith::body;
+};
+
+/// Parameters of the deck's `Contact` sublist.
+Teuchos::ParameterList valid_contact_parameters();
+/// One entry per contact side; none if nothing touches.
+/// @throws rpc::Error (bad_input) on anything out of range that needs no mesh to be seen
+std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse);
+
+/// A number of the foundation's law and the rule for it.
+struct LawParameter {
+  ScalarField ContactOptions::*field;
+  const char *name, *bound;
+  bool may_be_zero, may_be_infinite;
+
+  bool allows(double value) const;
+  /// "deck: "Contact->Yield Stress" must be > 0 [Pa] ..., got "
+  std::string rule(const std::string &path) const;
+};
+/// Yield stress, hardening, stiffness.
+extern const std::array<LawParameter, 3> law_parameters;
+
+} // namespace rpc::contact

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "rpc/contact/contact_state.hpp"
+#include "rpc/fem/elasticity.hpp"
+
+/// What a state of body and foundation means: energies, forces, and how far it is from the contact law. Displacements are from 0; all
+/// functions are collective.
+namespace rpc::contact
+{
+
+/// Energies of (u, lambda) at the contact nodes, over all ranks.
+struct ContactEnergy {
+  double dissipated =
+      0; ///< sum_i w_i (lambda_i - H_i d_i / 2) d_i, d = (v - c lambda)+ [J]; where the law holds the work that new dents
+         ///< have taken up; perfectly plastic: lambda_i v_i+                                                     (3.14)
+  double duality_gap =
+      0; ///< sum_i w_i (psi_i(v_i) + psi_i*(lambda_i) - lambda_i v_i) [J], each term >= 0: what the contact
+         ///< law misses, with twice the largest multiplier in place of any higher xi               (5.5)
+};
+
+/// Energy of the problem, J(u) = Pi(u) + sum_i w_i psi_i(v_i) [J], computed as Pi(u) + sum_i w_i (lambda_i v_i -
+/// psi_i*(lambda_i)): the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a closed
+/// node.                                                                                  paper (5), (6); (1.4), (5.14)
+/// @param K  the body's stiffness, prescribed unknowns eliminated
+double energy(const Operator &K, const fem::ElasticProblem &elastic, const ContactNodes &points,
+              const ContactState &state);
+
+/// Largest violation of the contact law by (u, lambda), dimensionless.                            paper (7) - (9); (5.3)
+double contact_law_residual(const ContactNodes &points, const ContactState &state);
+
+ContactEnergy contact_energy(const ContactNodes &points, const ContactState &state);
+
+/// sum_i w_i lambda_i m_i, what contact takes off the load (owned dofs, [N]).
+Vector multiplier_forces(const ContactNodes &points, const Multipliers &multiplier, const RCP<const Map> &dofs);
+
+} // namespace rpc::contact

@@ -1,0 +1,114 @@
+#pragma once
+
+#include "rpc/algebra/updated_operator.hpp"
+#include "rpc/contact/active_set.hpp"
+
+#include <vector>
+
+namespace rpc::contact
+{
+
+/// What changes while a step is solved, and what NOX minimizes meanwhile: origin, multipliers, penalties, active set, springs and
+/// Hessian, H(u) = K + sum_i w_i Psi_i''(v_i) m_i m_i^T. The formulas are those of SmoothedFunctional.       doc/theory.md (4.2)
+///
+/// Every u below is the displacement from the present origin, (5.13), at first 0. state() is the only way out: what results,
+/// energies and residuals are read from is a ContactState, whose displacement is from 0.
+class Iterate : public ConvexFunctional
+{
+public:
+  /// @param hessian  K with an update at the contact nodes, which is this iterate's from here on
+  Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<UpdatedOperator> hessian);
+
+  // What is minimized: see ConvexFunctional and SmoothedFunctional.
+  double value(const Vector &u) const override { return functional_.value(u); }
+  void gradient(const Vector &u, Vector &F) const override { functional_.gradient(u, F); }
+  std::unique_ptr<LineFunction> along(const Vector &u, const Vector &d, const Vector &F) const override
+  {
+    return functional_.along(u, d, F);
+  }
+  std::unique_ptr<SubspaceFunction> within(const Vector &u, const std::vector<RCP<const Vector>> &directions,
+                                           const Vector &F) const override
+  {
+    return functional_.within(u, directions, F);
+  }
+  void sweep(Vector &u) const override { functional_.sweep(coupled_, u); }
+  /// By the number of nodes in each state.
+  std::uint64_t piece(const Vector &u) const override;
+  /// Of the displacement from 0.
+  double size(const Vector &u) const override;
+  const RCP<UpdatedOperator> &hessian() const override { return hessian_; }
+  /// Takes the states at u for the active set, and brings hessian() to it: that is H(u).
+  GO update_hessian(const Vector &u) override;
+  /// Weakens the springs of hold_by_contact(), if there are any, from the next update of hessian() on, where a step beyond 1 tells
+  /// that the body bends so easily that it feels them.
+  void step_taken(double length) override;
+
+  const SmoothedFunctional &functional() const { return functional_; } ///< as seen from the present origin
+
+  // The active set: see active_set.hpp.
+  ActiveSetChoice choose_active_set(const Vector &u, double negligible) const;
+  /// Takes a choice, and brings hessian() to it.
+  void take_active_set(const ActiveSetChoice &choice, Vector &u);
+  /// @param gradient  of the functional itself at u   (5.6)
+  void active_set_gradient(const Vector &u, const Vector &gradient, Vector &F) const
+  {
+    functional_.active_set_gradient(active_.state, u, gradient, F);
+  }
+  double pressure_error(const Vector &u) const { return contact::pressure_error(functional_, active_, u, own_); }
+  StateCounts count_states(const Vector &u) const { return functional_.count_states(u); }
+  /// For bodies with rigid motions that only contact can hold: keeps a weak spring at nodes that are not closed in
+  /// hessian(), so that it stays positive definite, and closes all nodes in the first choice of an active set, unless
+  /// multipliers were given. The functional and its gradients do not change. (9.8)
+  void hold_by_contact();
+
+  // Multipliers and penalties.
+  /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   paper (11), (5.1)
+  double update_multipliers(const Vector &u);
+  /// The same with the pressures of the active set, as near as the law admits them: where it is confirmed, a rounding error of v at
+  /// an open or yielding point does not count r times.
+  double take_active_set_pressures(const Vector &u);
+  /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
+  void reset_multipliers();
+  /// Raises the penalties, as far as double precision bears it. @return whether any rose, on any rank             (5.12)
+  bool raise_penalty();
+
+  // Origin and state.
+  /// Starts from a state, such as that of the step before or another mesh's: takes its multipliers, as near as the law admits them.
+  /// @param[in,out] u  takes its displacement, but for what is prescribed
+  void start_from(const ContactState &state, Vector &u);
+  /// Moves the origin to where u is, and sets u to 0.                                                            (5.13)
+  void move_origin(Vector &u);
+  /// Where the iterate is: displacement from 0, and copies of multipliers and states.
+  ContactState state(const Vector &u) const;
+
+  /// |applied load|_2 on the free unknowns; without any, |contact force|_2; without that, what prescribed displacements do
+  /// to the free unknowns [N]; 1 if nothing acts. A rigid shift of the whole scene leaves it as it is where anything is
+  /// applied or touches.
+  double force_scale() const;
+  /// |Ku - b + sum_i w_i lambda_i m_i|_2 over the free unknowns [N]: how far u and the multipliers are from equilibrium.
+  double out_of_balance(const Vector &u) const;
+
+  const ContactNodes &points() const { return points_; } ///< with penetration from 0
+  const Multipliers &multipliers() const { return functional_.points().multiplier; }
+  const DeviceView<double *> &penalty() const { return functional_.points().penalty; } ///< (points) [Pa/m]
+  const DeviceView<double *> &own_stiffness() const { return own_; }                   ///< (points) [Pa/m]
+
+private:
+  GO update_stiffness(); // brings hessian() to the active set; number of nodes whose stiffness changed
+  double replace_multipliers(const DeviceView<double *> &p);
+
+  fem::DirichletDofs dirichlet_;
+  ContactNodes points_;
+  RCP<UpdatedOperator> hessian_;
+  DeviceView<double *> own_, coupled_; // (points) see own_stiffness(), coupled_stiffness()
+  SmoothedFunctional functional_;
+  RCP<Vector> origin_;             // null: 0
+  double applied_force_ = 0;       // |applied load|_2 on free unknowns [N]
+  double prescribed_force_ = 0;    // the same with the forces of prescribed displacements [N]
+  double pressure_bound_ = 0;      // pressure that the load will hardly reach anywhere [Pa]
+  ActiveSet active_;               // that hessian() belongs to
+  double spring_ = 0;              // weak springs at nodes that are not closed, in units of the points' scaling
+  bool multipliers_given_ = false; // by a start
+};
+
+} // namespace rpc::contact

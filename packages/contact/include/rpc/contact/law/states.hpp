@@ -1,0 +1,60 @@
+#pragma once
+
+#include "rpc/contact/law/foundation.hpp"
+#include "rpc/core/math.hpp"
+
+/// The states of a contact point: how they are chosen, and what a chosen state says of multiplier and place.  doc/theory.md (5.7),
+/// (5.8), (5.10)
+namespace rpc::contact
+{
+
+/// The multiplier that a step starts with: the paper's l = 0, half the yield limit, where the body touches. Where there is a gap, or
+/// where the yield limit is out of reach of the load, no pressure is the better guess.
+/// @param free_gap        gap to the foundation [m]   @param scaling  E / diameter [Pa/m]
+/// @param pressure_bound  above which a yield limit is out of reach [Pa]
+KOKKOS_INLINE_FUNCTION double first_multiplier(const double free_gap, const double scaling, const double pressure_bound,
+                                               const Foundation &f)
+{
+  const bool apart = scaling * free_gap > 1e-9 * f.yield; // more than rounding
+  return apart || f.yield > pressure_bound || f.compliance > 0 ? 0 : 0.5 * f.yield;
+}
+
+/// The next state of a point: one that violates the contact law by more than a pressure goes from closed to open or yielding, else
+/// to closed. The penetration of an open point, and the new dent v - c p of a yielding one, count times the point's own stiffness.
+/// (5.8)
+/// @param p      pressure on the branch of its present state [Pa]   @param own  stiffness of the point alone [Pa/m]
+/// @param bound  violations that change no state [Pa]
+KOKKOS_INLINE_FUNCTION State next_state(const State now, const double v, const double p, const double own,
+                                        const double bound, const Foundation &f)
+{
+  if (now == State::closed) return p < -bound ? State::open : p > f.yield + bound ? State::yielding : State::closed;
+  const double dent = now == State::yielding ? f.compliance * p : 0;
+  const double kv = own * (v - dent);
+  return (now == State::open ? kv : -kv) > bound ? State::closed : now;
+}
+
+/// The multiplier of a point that takes a state, from the pressure that the state was chosen by: as near as the state allows. (5.7)
+KOKKOS_INLINE_FUNCTION double multiplier_of(const State s, const double p, const Foundation &f)
+{
+  if (s == State::open) return 0;
+  if (s == State::closed) return clamp(p, 0, f.yield);
+  return math::larger(f.yield, admissible(p, f));
+}
+
+/// Where a closed point with a pressure stays: v = c p, the compressed spring [m].
+KOKKOS_INLINE_FUNCTION double resting_penetration(const double p, const Foundation &f)
+{
+  return f.compliance * p;
+}
+
+/// What the penalty of a point is stretched by, (p - lambda)/r [m]; of a closed point on a rigid foundation v. 0 where the
+/// state's pressure does not depend on v.                                                                         (5.10)
+KOKKOS_INLINE_FUNCTION double penalty_stretch(const State s, const double v, const double lambda, const double r,
+                                              const Foundation &f)
+{
+  if (s == State::closed) return (v - f.compliance * lambda) / softening(r, f);
+  if (s == State::yielding && f.hardening > 0) return (branch_pressure(s, v, lambda, r, f) - lambda) / r;
+  return 0;
+}
+
+} // namespace rpc::contact

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "rpc/contact/contact_nodes.hpp"
+
+namespace rpc::contact
+{
+
+/// (points) The penalties r of the modified Lagrangian [Pa/m]: those that are given, and where they are left open a multiple of the
+/// point's own stiffness over its weight; none exceeds what double precision bears. doc/theory.md (5.12)
+/// @param own  (points) see own_stiffness() [Pa/m]
+DeviceView<double *> chosen_penalties(const ContactNodes &points, const DeviceView<double *> &own);
+
+/// Raises penalties in place, as far as double precision bears it. Collective.
+/// @return whether any rose, on any rank                                                                        (5.12)
+bool raise_penalties(const Comm &comm, const DeviceView<double *> &own, const DeviceView<double *> &penalty);
+
+} // namespace rpc::contact

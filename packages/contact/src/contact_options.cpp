@@ -1,0 +1,169 @@
+#include "rpc/contact/contact_options.hpp"
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
+
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+namespace rpc::contact
+{
+
+const std::array<LawParameter, 3> law_parameters{
+    {{&ContactOptions::yield_stress, "Yield Stress", "> 0 [Pa] (inf for a rigid foundation)", false, true},
+     {&ContactOptions::hardening, "Hardening", "finite and >= 0 [Pa/m]", true, false},
+     {&ContactOptions::stiffness, "Stiffness", "> 0 [Pa/m] (inf for a foundation that is rigid until it yields)", false,
+      true}}};
+
+bool LawParameter::allows(const double value) const
+{
+  return (value > 0 || (may_be_zero && value == 0)) && (may_be_infinite || std::isfinite(value));
+}
+
+std::string LawParameter::rule(const std::string &path) const
+{
+  return "deck: \"" + path + "->" + name + "\" must be " + bound + ", got ";
+}
+
+namespace
+{
+
+/// Parameters of one contact side.
+void add_side_parameters(Teuchos::ParameterList &valid)
+{
+  set_field(valid, "Yield Stress", "inf",
+            "xi > 0 [Pa]: pressure at which the foundation gives way; `inf`: rigid (Signorini). Number or expression.");
+  set_field(valid, "Hardening", "0",
+            "H >= 0 [Pa/m]: what the yield stress grows by with the depth of the dent. Number or expression.");
+  set_field(valid, "Stiffness", "inf",
+            "k > 0 [Pa/m]: the foundation is a spring before it yields, p = k v; `inf`: rigid. Number or expression.");
+  set_field(valid, "Gap", "0",
+            "g [m]: distance to the foundation along the normal, where there is no obstacle; < 0: initial penetration. "
+            "Number or expression.");
+  valid.set("Normal", "",
+            "Direction in which contact acts: `surface` (outward normal of the body), `foundation` (normal of the "
+            "obstacle), or a fixed one as numbers, `0, -1`. Default: `foundation` with an obstacle, else `surface`.");
+  valid.sublist("Obstacle", false, "Surface of the foundation, from which the gap follows.") =
+      valid_obstacle_parameters();
+  valid.set("Remembers", "auto",
+            "Whether the foundation keeps its dents from one of `Steps` to the next: `auto` (it does), `true`, or "
+            "`false` for a law "
+            "that is reversible.");
+  valid.set("Dents Move With", "body",
+            "Where dents stay if the body slides or the obstacle moves along itself, between `Steps`: `body`, at the "
+            "body's points (small motions), or `foundation`, where they lie: a point meets the dents at its place.");
+  set_field(valid, "Penalty", "auto",
+            "r of the modified Lagrangian: `auto` (from the stiffness and the weight of each node), or a number > 0 "
+            "[Pa/m] to "
+            "start from. It is raised where the iteration is slow; the solution does not depend on it.");
+}
+
+/// Unit vector from a text like "0, -1".
+std::optional<Point> direction_from(const std::string &text, const int dim)
+{
+  std::istringstream in(text);
+  Point direction{};
+  char comma = ',';
+  for (int c = 0; c < dim; ++c)
+    if ((c > 0 && !(in >> comma)) || comma != ',' || !(in >> direction[c])) return std::nullopt;
+  const double length = std::hypot(direction[0], direction[1], direction[2]);
+  if (in >> comma || !(length > 0) || !std::isfinite(length)) return std::nullopt;
+  for (double &component : direction) component /= length;
+  return direction;
+}
+
+/// @return 0 for auto
+double penalty_from(const std::string &text, const std::string &path)
+{
+  if (text == "auto") return 0;
+  std::istringstream in(text);
+  double penalty = 0;
+  const bool number = (in >> penalty) && in.eof();
+  RPC_REQUIRE(number && penalty > 0 && std::isfinite(penalty),
+              "deck: \"" << path << "->Penalty\" must be `auto` or a finite number > 0 [Pa/m], got " << text);
+  return penalty;
+}
+
+ContactOptions side_options(const Teuchos::ParameterList &list, const std::string &path, const std::string &side,
+                            const int dim, const FieldParser &parse)
+{
+  ContactOptions options;
+  options.path = path;
+  options.side = side;
+  options.yield_stress = parse(field_text(list, "Yield Stress"), path + "->Yield Stress");
+  options.hardening = parse(field_text(list, "Hardening"), path + "->Hardening");
+  options.stiffness = parse(field_text(list, "Stiffness"), path + "->Stiffness");
+  options.gap = parse(field_text(list, "Gap"), path + "->Gap");
+  options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle", parse);
+  const auto &remembers = list.get<std::string>("Remembers");
+  RPC_REQUIRE(remembers == "auto" || remembers == "true" || remembers == "false",
+              "deck: \"" << path << "->Remembers\" must be one of auto, true, false, got \"" << remembers << "\"");
+  options.remembers = remembers != "false";
+  const auto &carrier = list.get<std::string>("Dents Move With");
+  RPC_REQUIRE(carrier == "body" || carrier == "foundation",
+              "deck: \"" << path << "->Dents Move With\" must be body or foundation, got \"" << carrier << "\"");
+  RPC_REQUIRE(carrier == "body" || options.remembers,
+              "deck: \"" << path << "->Dents Move With\" = foundation does not go with \"" << path
+                         << "->Remembers\" = false: there are no dents");
+  options.dents_move_with = carrier == "body" ? DentsMoveWith::body : DentsMoveWith::foundation;
+  options.penalty = penalty_from(field_text(list, "Penalty"), path);
+  const bool obstacle = options.obstacle.kind != Obstacle::Kind::none;
+  const auto &normal = list.get<std::string>("Normal");
+  for (const LawParameter &parameter : law_parameters)
+    RPC_REQUIRE(!(options.*parameter.field).is_constant() || parameter.allows((options.*parameter.field).constant),
+                parameter.rule(path) << (options.*parameter.field).text);
+  RPC_REQUIRE(!obstacle || list.getEntry("Gap").isDefault(), "deck: \"" << path << "->Gap\" does not go with \"" << path
+                                                                        << "->Obstacle\", from which the gap follows");
+  RPC_REQUIRE(obstacle || normal != "foundation",
+              "deck: \"" << path << "->Normal\" = foundation needs an \"" << path << "->Obstacle\"");
+  if (normal.empty()) {
+    options.normal = obstacle ? Normal::foundation : Normal::surface;
+  } else if (normal == "surface" || normal == "foundation") {
+    options.normal = normal == "surface" ? Normal::surface : Normal::foundation;
+  } else {
+    const auto direction = direction_from(normal, dim);
+    RPC_REQUIRE(direction, "deck: \"" << path << "->Normal\" must be surface, foundation or " << dim
+                                      << " numbers that are not all 0, as in \"" << (dim == 2 ? "0, -1" : "0, 0, -1")
+                                      << "\", got \"" << normal << "\"");
+    options.normal = Normal::fixed;
+    options.direction = *direction;
+  }
+  return options;
+}
+
+} // namespace
+
+Teuchos::ParameterList valid_contact_parameters()
+{
+  Teuchos::ParameterList valid("Contact"), entry;
+  valid.set("Side", "", "Side of the body that may touch the foundation; empty: none but those of `Sides`.");
+  add_side_parameters(valid);
+  entry.set("Side", "", "Side of the body; by default the side that the entry is named after.");
+  add_side_parameters(entry);
+  set_named_entries(valid, "Sides", entry, "Further contact sides, any number of entries with names of your choice.");
+  return valid;
+}
+
+std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, const int dim, const FieldParser &parse)
+{
+  std::vector<ContactOptions> options;
+  // Read even where it names no side: a wrong value is wrong in any case.
+  const ContactOptions first = side_options(list, "Contact", list.get<std::string>("Side"), dim, parse);
+  if (!first.side.empty()) options.push_back(first);
+  const Teuchos::ParameterList &sides = list.sublist("Sides");
+  for (auto it = sides.begin(); it != sides.end(); ++it) {
+    const std::string name = sides.name(it);
+    const Teuchos::ParameterList &entry = sides.sublist(name);
+    const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
+    options.push_back(side_options(entry, "Contact->Sides->" + name, side, dim, parse));
+  }
+  for (std::size_t a = 0; a < options.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      RPC_REQUIRE(options[a].side != options[b].side, "deck: \"" << options[b].path << "\" and \"" << options[a].path
+                                                                 << "\" both name the side \"" << options[a].side
+                                                                 << "\"; give it one contact law");
+  return options;
+}
+
+} // namespace rpc::contact

@@ -1,0 +1,101 @@
+#include "rpc/contact/energies.hpp"
+
+#include "rpc/contact/law/judgement.hpp"
+#include "rpc/contact/smoothed_functional.hpp"
+
+#include <algorithm>
+
+namespace rpc::contact
+{
+namespace
+{
+
+const Comm &comm_of(const ContactState &state)
+{
+  return *state.displacement->getMap()->getComm();
+}
+
+/// This rank's sum_i w_i (lambda_i v_i - psi_i*(lambda_i)); a point that takes no part has psi_i(v_i).
+double energy_at_points(const ContactNodes &c, const DeviceView<double *> &lambda, const Vector &u)
+{
+  const auto x = device_read(u);
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::energy", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) {
+        const double v = penetration(c, i, x);
+        part += c.weight(i) *
+                (c.fixed(i) ? foundation_energy(v, c.law(i)) : lambda(i) * v - conjugate_energy(lambda(i), c.law(i)));
+      },
+      sum);
+  return sum;
+}
+
+} // namespace
+
+double energy(const Operator &K, const fem::ElasticProblem &elastic, const ContactNodes &points,
+              const ContactState &state)
+{
+  const Vector &u = *state.displacement;
+  Vector Ku(u.getMap());
+  K.apply(u, Ku);
+  return 0.5 * u.dot(Ku) - elastic.load->dot(u) + elastic.energy_offset +
+         sum_all(comm_of(state), energy_at_points(points, state.multiplier.normal, u));
+}
+
+double contact_law_residual(const ContactNodes &points, const ContactState &state)
+{
+  const ContactNodes c = points;
+  const auto lambda = state.multiplier.normal;
+  const auto x = device_read(*state.displacement);
+  double violation = 0, largest = 0, deepest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::law_residual", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &worst, double &pressure_scale, double &distance_scale) {
+        if (c.fixed(i)) return;
+        const double v = penetration(c, i, x), p = lambda(i);
+        worst = math::larger(worst, math::magnitude(law_residual(v, p, c.scaling(i), c.law(i))));
+        pressure_scale = math::larger(pressure_scale, p);
+        distance_scale = math::larger(distance_scale, math::magnitude(c.scaling(i) * v));
+      },
+      Kokkos::Max<double>(violation), Kokkos::Max<double>(largest), Kokkos::Max<double>(deepest));
+  const double mine[3] = {violation, largest, deepest};
+  double all[3];
+  Teuchos::reduceAll(comm_of(state), Teuchos::REDUCE_MAX, 3, mine, all);
+  if (all[0] <= 0) return 0; // a maximum over no nodes is -DBL_MAX
+  return all[0] / (all[1] > 0 ? all[1] : all[2]);
+}
+
+ContactEnergy contact_energy(const ContactNodes &points, const ContactState &state)
+{
+  const ContactNodes c = points;
+  const auto lambda = state.multiplier.normal;
+  const auto x = device_read(*state.displacement);
+  double largest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::largest_multiplier", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &most) { most = math::larger(most, lambda(i)); }, Kokkos::Max<double>(largest));
+  const double bound = 2 * max_all(comm_of(state), std::max(0., largest));
+  double sums[2] = {0, 0};
+  Kokkos::parallel_reduce(
+      "rpc::contact::contact_energy", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &dissipated, double &gap) {
+        if (c.fixed(i)) return;
+        const double v = penetration(c, i, x);
+        dissipated += c.weight(i) * taken_up(v, lambda(i), c.law(i));
+        gap += c.weight(i) * duality_gap(v, lambda(i), bound, c.law(i));
+      },
+      sums[0], sums[1]);
+  double all[2];
+  Teuchos::reduceAll(comm_of(state), Teuchos::REDUCE_SUM, 2, sums, all);
+  return {all[0], all[1]};
+}
+
+Vector multiplier_forces(const ContactNodes &points, const Multipliers &multiplier, const RCP<const Map> &dofs)
+{
+  Vector force(dofs);
+  add_contact_force(points, multiplier.normal, force);
+  return force;
+}
+
+} // namespace rpc::contact

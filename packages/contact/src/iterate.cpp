@@ -1,0 +1,232 @@
+#include "rpc/contact/iterate.hpp"
+
+#include "rpc/algebra/along_points.hpp"
+#include "rpc/contact/energies.hpp"
+#include "rpc/contact/law/states.hpp"
+#include "rpc/contact/penalties.hpp"
+#include "rpc/core/fingerprint.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace rpc::contact
+{
+
+// Kernels are free functions: nvcc takes no device lambda in a constructor or a private member.
+namespace
+{
+
+// In units of E/diameter: weak enough not to slow Newton down once nodes close, strong against the rounding of K.
+constexpr double weak_spring = 1e-4, weakest_spring = 1e-10, weaken = 1e-2;
+constexpr double long_step = 1.1; // the step of a quadratic is 1
+// Multiple of the mean pressure, load over contact area, above which a yield limit counts as out of reach at the start.
+constexpr double beyond_reach = 100;
+
+void start_multipliers(const ContactNodes &c, const double pressure_bound, const DeviceView<double *> &lambda)
+{
+  Kokkos::parallel_for(
+      "rpc::contact::start", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        lambda(i) = c.fixed(i) ? 0 : first_multiplier(c.free_gap(i), c.scaling(i), pressure_bound, c.law(i));
+      });
+  Kokkos::fence();
+}
+
+/// This rank's sum of the weights of nodes that take part in the solution.
+double free_weight(const ContactNodes &c)
+{
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::free_weight", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) { part += c.fixed(i) ? 0 : c.weight(i); }, sum);
+  return sum;
+}
+
+/// to <- the nearest multipliers that the law admits.
+void take_admissible(const ContactNodes &c, const DeviceView<double *> &from, const DeviceView<double *> &to)
+{
+  Kokkos::parallel_for(
+      "rpc::contact::start_from", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { to(i) = c.fixed(i) ? 0 : admissible(from(i), c.law(i)); });
+  Kokkos::fence();
+}
+
+/// u <- from at free unknowns.
+void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &u)
+{
+  const auto fixed = dirichlet.fixed;
+  const auto source = device_read(from);
+  const auto to = device_write(u);
+  Kokkos::parallel_for(
+      "rpc::contact::take_free", device_range(static_cast<LO>(u.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
+        if (!fixed(dof)) to(dof) = source(dof);
+      });
+  Kokkos::fence();
+}
+
+/// This rank's (|change|^2, |lambda|^2) of lambda <- the nearest admissible p.
+std::pair<double, double> replace(const ContactNodes &c, const DeviceView<double *> &p,
+                                  const DeviceView<double *> &lambda)
+{
+  double changed = 0, whole = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::replace_multipliers", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &change, double &size) {
+        if (c.fixed(i)) return;
+        const double next = admissible(p(i), c.law(i));
+        change += (next - lambda(i)) * (next - lambda(i));
+        size += next * next;
+        lambda(i) = next;
+      },
+      changed, whole);
+  return {changed, whole};
+}
+
+} // namespace
+
+Iterate::Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<UpdatedOperator> hessian)
+    : dirichlet_(elastic.dirichlet), points_(std::move(points)), hessian_(std::move(hessian)),
+      own_(rpc::own_stiffness(hessian_->base(), points_)), coupled_(coupled_stiffness(hessian_->base(), points_)),
+      functional_(hessian_->shared_base(), elastic.load, elastic.energy_offset,
+                  {points_, chosen_penalties(points_, own_),
+                   Multipliers(DeviceView<double *>("rpc::contact::multiplier", points_.size()))}),
+      active_{DeviceView<State *>("rpc::contact::active_set", points_.size())}
+{
+  Vector applied(*elastic.applied_load, Teuchos::Copy), lifted(*elastic.load, Teuchos::Copy);
+  fem::clear_prescribed(dirichlet_, applied);
+  fem::clear_prescribed(dirichlet_, lifted);
+  applied_force_ = applied.norm2();
+  prescribed_force_ = lifted.norm2();
+  const double weight = sum_all(*lifted.getMap()->getComm(), free_weight(points_));
+  pressure_bound_ = weight > 0 ? beyond_reach * lifted.norm1() / weight : 0;
+  reset_multipliers();
+}
+
+std::uint64_t Iterate::piece(const Vector &u) const
+{
+  const StateCounts counts = count_states(u);
+  return scrambled(scrambled(static_cast<std::uint64_t>(counts.open)) + static_cast<std::uint64_t>(counts.closed));
+}
+
+double Iterate::size(const Vector &u) const
+{
+  if (origin_.is_null()) return u.norm2();
+  Vector sum(u, Teuchos::Copy);
+  sum.update(1., *origin_, 1.);
+  return sum.norm2();
+}
+
+GO Iterate::update_hessian(const Vector &u)
+{
+  functional_.take_states(u, active_.state);
+  active_.chosen = true;
+  return update_stiffness();
+}
+
+GO Iterate::update_stiffness()
+{
+  return hessian_->set(points_, added_blocks(functional_.points(), active_.state, spring_));
+}
+
+void Iterate::hold_by_contact()
+{
+  spring_ = weak_spring;
+}
+
+void Iterate::step_taken(const double length)
+{
+  if (length > long_step && spring_ > 0) spring_ = std::max(weaken * spring_, weakest_spring);
+}
+
+ActiveSetChoice Iterate::choose_active_set(const Vector &u, const double negligible) const
+{
+  if (active_.chosen) return next_choice(functional_, active_, u, own_, negligible);
+  return first_choice(functional_, active_, u, spring_ > 0 && !multipliers_given_);
+}
+
+void Iterate::take_active_set(const ActiveSetChoice &choice, Vector &u)
+{
+  take_choice(choice, functional_, active_, u);
+  update_stiffness();
+}
+
+double Iterate::replace_multipliers(const DeviceView<double *> &p)
+{
+  const auto [change, size] = replace(points_, p, multipliers().normal);
+  const double sums[2] = {change, size};
+  double all[2];
+  Teuchos::reduceAll(*hessian_->getDomainMap()->getComm(), Teuchos::REDUCE_SUM, 2, sums, all);
+  if (all[0] == 0) return 0;
+  return std::sqrt(all[0] / std::max(all[1], all[0])); // all multipliers gone to zero is a change of 1, not of infinity
+}
+
+double Iterate::update_multipliers(const Vector &u)
+{
+  return replace_multipliers(functional_.pressures(u));
+}
+
+double Iterate::take_active_set_pressures(const Vector &u)
+{
+  return replace_multipliers(functional_.active_set_pressures(active_.state, u));
+}
+
+void Iterate::reset_multipliers()
+{
+  if (prescribed_force_ > 0) // else nothing acts, and lambda = 0 is the solution
+    start_multipliers(points_, pressure_bound_, multipliers().normal);
+  multipliers_given_ = false;
+}
+
+bool Iterate::raise_penalty()
+{
+  const bool raised = raise_penalties(*hessian_->getDomainMap()->getComm(), own_, penalty());
+  update_stiffness();
+  return raised;
+}
+
+void Iterate::start_from(const ContactState &state, Vector &u)
+{
+  multipliers_given_ = true;
+  take_free(dirichlet_, *state.displacement, u);
+  if (state.multiplier.normal.extent(0) == 0) return; // no contact node on this rank
+  take_admissible(points_, state.multiplier.normal, multipliers().normal);
+}
+
+void Iterate::move_origin(Vector &u)
+{
+  functional_ = functional_.from(u);
+  if (origin_.is_null())
+    origin_ = rcp(new Vector(u, Teuchos::Copy));
+  else
+    origin_->update(1., u, 1.);
+  u.putScalar(0);
+}
+
+ContactState Iterate::state(const Vector &u) const
+{
+  const auto from_0 = rcp(new Vector(u, Teuchos::Copy));
+  if (!origin_.is_null()) from_0->update(1., *origin_, 1.);
+  ContactState state{from_0, multipliers().copy(),
+                     DeviceView<State *>("rpc::contact::active_set", active_.state.extent(0))};
+  Kokkos::deep_copy(state.active_set, active_.state);
+  return state;
+}
+
+double Iterate::force_scale() const
+{
+  if (applied_force_ > 0) return applied_force_;
+  const double contact_force = multiplier_forces(points_, multipliers(), hessian_->getDomainMap()).norm2();
+  if (contact_force > 0) return contact_force;
+  return prescribed_force_ > 0 ? prescribed_force_ : 1;
+}
+
+double Iterate::out_of_balance(const Vector &u) const
+{
+  Vector F(u.getMap());
+  functional_.elastic_gradient(u, F);
+  F.update(1., multiplier_forces(points_, multipliers(), u.getMap()), 1.);
+  fem::clear_prescribed(dirichlet_, F);
+  return F.norm2();
+}
+
+} // namespace rpc::contact

@@ -1,0 +1,198 @@
+#include "rpc/contact/line_models.hpp"
+
+#include "rpc/core/parallel.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace rpc::contact
+{
+namespace
+{
+
+/// (points) Penetrations at u.
+DeviceView<double *> penetrations(const ContactNodes &c, const Vector &u)
+{
+  const DeviceView<double *> v("rpc::contact::v", c.size());
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::penetrations", device_range(c.size()), KOKKOS_LAMBDA(const LO i) { v(i) = penetration(c, i, x); });
+  Kokkos::fence();
+  return v;
+}
+
+/// moves(:, k, :) <- the components of d at the points' nodes, as far as contact sees them: d_i along the direction. [m]
+void take_moves(const ContactNodes &c, const Vector &d, const LO k, const DeviceView<double **> &moves)
+{
+  const auto x = device_read(d);
+  Kokkos::parallel_for(
+      "rpc::contact::moves", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        for (int j = 0; j < c.dim; ++j) moves(i, c.dim * k + j) = x(c.dof(i, j));
+      });
+  Kokkos::fence();
+}
+
+/// m . d_k at point i, for kernels.
+KOKKOS_INLINE_FUNCTION double along(const ContactNodes &c, const DeviceView<double **> &moves, const LO i, const LO k)
+{
+  double sum = 0;
+  for (int j = 0; j < c.dim; ++j) sum += c.direction(i, j) * moves(i, c.dim * k + j);
+  return sum;
+}
+
+/// x . d_k at point i, for kernels. @param x  (dim)
+KOKKOS_INLINE_FUNCTION double inner_product(const ContactNodes &c, const double *const x,
+                                            const DeviceView<double **> &moves, const LO i, const LO k)
+{
+  double sum = 0;
+  for (int j = 0; j < c.dim; ++j) sum += x[j] * moves(i, c.dim * k + j);
+  return sum;
+}
+
+class LineModel : public LineFunction
+{
+public:
+  LineModel(RCP<const Comm> comm, const double slope_at_0, const double elastic_curvature, SmoothedPoints points,
+            DeviceView<double *> v, DeviceView<double **> moves)
+      : comm_(std::move(comm)), slope_at_0_(slope_at_0), elastic_curvature_(elastic_curvature),
+        points_(std::move(points)), v_(std::move(v)), moves_(std::move(moves))
+  {
+  }
+  Value at(double t) const override;
+
+private:
+  RCP<const Comm> comm_;
+  double slope_at_0_, elastic_curvature_;
+  SmoothedPoints points_;
+  DeviceView<double *> v_;
+  DeviceView<double **> moves_; // (points, dim)
+};
+
+/// This rank's (sum of the changes of the points' forces times the direction, of their stiffness along it) at t.
+std::pair<double, double> sums_along(const SmoothedPoints &s, const DeviceView<double *> &v,
+                                     const DeviceView<double **> &moves, const double t)
+{
+  double slope = 0, curvature = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::line_model", device_range(s.size()),
+      KOKKOS_LAMBDA(const LO i, double &change, double &bend) {
+        const ContactNodes &c = s.points;
+        const Response here = s.respond(i, {v(i)}), there = s.respond(i, {v(i) + t * along(c, moves, i, 0)});
+        for (int k = 0; k < c.dim; ++k) {
+          change += (there.force[k] - here.force[k]) * moves(i, k);
+          bend += moves(i, k) * inner_product(c, there.block[k], moves, i, 0);
+        }
+      },
+      slope, curvature);
+  return {slope, curvature};
+}
+
+LineFunction::Value LineModel::at(const double t) const
+{
+  const auto [slope, curvature] = sums_along(points_, v_, moves_, t);
+  const double sums[2] = {slope, curvature};
+  double all[2];
+  Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, sums, all);
+  return {slope_at_0_ + elastic_curvature_ * t + all[0], elastic_curvature_ + all[1]};
+}
+
+/// What the contact points add to the gradient on a subspace, then to the rows of the curvature, one after the other.
+struct SubspaceSums {
+  using value_type = double[];
+  using size_type = LO;
+  const size_type value_count; // n + n n, for n directions
+  SmoothedPoints points;
+  DeviceView<double *> v;
+  DeviceView<double **> moves; // (points, n dim)
+  DeviceView<double *> coefficient;
+
+  SubspaceSums(const SmoothedPoints &s, const DeviceView<double *> &at, const DeviceView<double **> &d,
+               const DeviceView<double *> &a)
+      : value_count(static_cast<size_type>(a.extent(0) * (a.extent(0) + 1))), points(s), v(at), moves(d), coefficient(a)
+  {
+  }
+  KOKKOS_INLINE_FUNCTION void operator()(const LO i, double sum[]) const
+  {
+    const ContactNodes &c = points.points;
+    const LO n = static_cast<LO>(coefficient.extent(0));
+    double moved = v(i);
+    for (LO k = 0; k < n; ++k) moved += along(c, moves, i, k) * coefficient(k);
+    const Response here = points.respond(i, {v(i)}), there = points.respond(i, {moved});
+    double change[3];
+    for (int j = 0; j < c.dim; ++j) change[j] = there.force[j] - here.force[j];
+    for (LO k = 0; k < n; ++k) {
+      sum[k] += inner_product(c, change, moves, i, k);
+      for (LO l = 0; l < n; ++l)
+        for (int j = 0; j < c.dim; ++j)
+          sum[n + n * k + l] += moves(i, c.dim * k + j) * inner_product(c, there.block[j], moves, i, l);
+    }
+  }
+  KOKKOS_INLINE_FUNCTION void init(double sum[]) const
+  {
+    for (size_type k = 0; k < value_count; ++k) sum[k] = 0;
+  }
+  KOKKOS_INLINE_FUNCTION void join(double sum[], const double part[]) const
+  {
+    for (size_type k = 0; k < value_count; ++k) sum[k] += part[k];
+  }
+};
+
+class SubspaceModel : public SubspaceFunction
+{
+public:
+  SubspaceModel(RCP<const Comm> comm, std::vector<double> at_0, std::vector<double> elastic, SmoothedPoints points,
+                DeviceView<double *> v, DeviceView<double **> moves)
+      : comm_(std::move(comm)), at_0_(std::move(at_0)), elastic_(std::move(elastic)), points_(std::move(points)),
+        v_(std::move(v)), moves_(std::move(moves))
+  {
+  }
+  Value at(const std::vector<double> &a) const override
+  {
+    const std::size_t n = a.size();
+    HostView<double *> given("rpc::contact::coefficients", n);
+    std::copy(a.begin(), a.end(), given.data());
+    const SubspaceSums sums(points_, v_, moves_, to_device(given));
+    std::vector<double> mine(n * (n + 1));
+    Kokkos::parallel_reduce("rpc::contact::subspace_model", device_range(points_.size()), sums, mine.data());
+    Kokkos::fence();
+    const auto all = summed(*comm_, mine);
+    Value value{at_0_, elastic_};
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t l = 0; l < n; ++l) value.gradient[k] += elastic_[n * k + l] * a[l];
+      value.gradient[k] += all[k];
+    }
+    for (std::size_t k = 0; k < n * n; ++k) value.curvature[k] += all[n + k];
+    return value;
+  }
+
+private:
+  RCP<const Comm> comm_;
+  std::vector<double> at_0_, elastic_;
+  SmoothedPoints points_;
+  DeviceView<double *> v_;
+  DeviceView<double **> moves_; // (points, directions dim)
+};
+
+} // namespace
+
+std::unique_ptr<LineFunction> line_model(RCP<const Comm> comm, const double slope_at_0, const double elastic_curvature,
+                                         const SmoothedPoints &points, const Vector &u, const Vector &d)
+{
+  const DeviceView<double **> moves("rpc::contact::moves", points.size(), points.points.dim);
+  take_moves(points.points, d, 0, moves);
+  return std::make_unique<LineModel>(std::move(comm), slope_at_0, elastic_curvature, points,
+                                     penetrations(points.points, u), moves);
+}
+
+std::unique_ptr<SubspaceFunction> subspace_model(RCP<const Comm> comm, std::vector<double> at_0,
+                                                 std::vector<double> elastic, const SmoothedPoints &points,
+                                                 const Vector &u, const std::vector<RCP<const Vector>> &directions)
+{
+  const LO n = static_cast<LO>(directions.size());
+  const DeviceView<double **> moves("rpc::contact::moves", points.size(), n * points.points.dim);
+  for (LO k = 0; k < n; ++k) take_moves(points.points, *directions[k], k, moves);
+  return std::make_unique<SubspaceModel>(std::move(comm), std::move(at_0), std::move(elastic), points,
+                                         penetrations(points.points, u), moves);
+}
+
+} // namespace rpc::contact

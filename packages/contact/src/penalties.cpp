@@ -1,0 +1,62 @@
+#include "rpc/contact/penalties.hpp"
+
+#include "rpc/core/math.hpp"
+
+namespace rpc::contact
+{
+namespace
+{
+
+// Multiples of a point's own stiffness k. One minimization leaves |v| of about p/(gamma k) with r = gamma k; rounding of v is amplified
+// by gamma.
+constexpr double default_penalty = 1e5, largest_penalty = 1e8, penalty_raise = 100;
+// Where the direction lies along no axis, the penalty is on the diagonal of unknowns along the surface too, and smoothers
+// that go by the diagonal do too little there: 160 CG iterations instead of 30 on the half cylinder's own normals.
+constexpr double default_slanting_penalty = 1e3;
+
+/// Whether a direction lies along an axis, up to rounding.
+KOKKOS_INLINE_FUNCTION bool along_an_axis(const ContactNodes &c, const LO i)
+{
+  double length = 0, largest = 0;
+  for (int k = 0; k < c.dim; ++k) {
+    const double square = c.direction(i, k) * c.direction(i, k);
+    length += square;
+    largest = math::larger(largest, square);
+  }
+  return length - largest <= 1e-12 * length;
+}
+
+} // namespace
+
+DeviceView<double *> chosen_penalties(const ContactNodes &points, const DeviceView<double *> &own)
+{
+  const ContactNodes c = points;
+  DeviceView<double *> penalty("rpc::contact::penalty", c.size());
+  Kokkos::parallel_for(
+      "rpc::contact::choose_penalty", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        penalty(i) = c.given_penalty(i) > 0 ? c.given_penalty(i)
+                     : along_an_axis(c, i)  ? default_penalty * own(i)
+                                            : default_slanting_penalty * own(i);
+        if (own(i) > 0 && penalty(i) > largest_penalty * own(i)) penalty(i) = largest_penalty * own(i);
+      });
+  Kokkos::fence();
+  return penalty;
+}
+
+bool raise_penalties(const Comm &comm, const DeviceView<double *> &own, const DeviceView<double *> &penalty)
+{
+  LO raised = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::raise_penalty", device_range(static_cast<LO>(penalty.extent(0))),
+      KOKKOS_LAMBDA(const LO i, LO &count) {
+        double next = math::larger(penalty_raise * penalty(i), default_penalty * own(i));
+        if (next > largest_penalty * own(i)) next = largest_penalty * own(i);
+        if (!(next > penalty(i))) return;
+        penalty(i) = next;
+        ++count;
+      },
+      raised);
+  return sum_all(comm, GO(raised)) > 0;
+}
+
+} // namespace rpc::contact
