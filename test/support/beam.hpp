@@ -1,6 +1,7 @@
 #pragma once
 
-#include "rpc/contact/smoothed_functional.hpp"
+#include "judged.hpp"
+#include "rpc/contact/iterate.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/mesh/box.hpp"
 #include "rpc/solver/linear_solver.hpp"
@@ -30,7 +31,8 @@ inline contact::ContactOptions below(const ScalarField &xi, const double penalty
 /// The paper's beam at 1/h = 16, by default with xi = 16, where the states are many.
 struct Beam {
   fem::Discretization d;
-  std::shared_ptr<contact::SmoothedFunctional> functional;
+  fem::ElasticProblem elastic;
+  std::shared_ptr<contact::Iterate> iterate;
   std::shared_ptr<solver::LinearSolver> linear;
   RCP<Vector> u;
 
@@ -48,9 +50,9 @@ struct Beam {
     const auto dirichlet = fem::dirichlet_dofs(d, held);
     const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
     const auto nodes = contact::contact_nodes(d, {foundation}, dirichlet, material);
-    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K.couplings, load, dirichlet),
-                                                               nodes, updated(K.matrix, nodes));
-    linear = std::make_shared<solver::LinearSolver>(options, functional->hessian(), fem::node_coordinates(d),
+    elastic = fem::elastic_problem(d, K.couplings, load, dirichlet);
+    iterate = std::make_shared<contact::Iterate>(elastic, nodes, updated(K.matrix, nodes));
+    linear = std::make_shared<solver::LinearSolver>(options, iterate->hessian(), fem::node_coordinates(d),
                                                     fem::rigid_body_modes(d));
     u = rcp(new Vector(d.owned_dofs));
   }
@@ -65,7 +67,7 @@ inline void open_between(Beam &beam, const double from, const double to)
     const auto u = beam.u->getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t n = 0; n < x.extent(0); ++n) u(2 * n + 1, 0) = x(n, 0) > from && x(n, 0) < to ? 1 : 0;
   }
-  beam.functional->update_hessian(*beam.u);
+  beam.iterate->update_hessian(*beam.u);
 }
 
 inline void ignore(const solver::NewtonStep &, const Vector &) {}
@@ -74,8 +76,7 @@ inline void ignore(const solver::NewtonStep &, const Vector &) {}
 inline solver::MinimizeResult minimize(Beam &beam, const solver::NewtonOptions &options = {},
                                        solver::FirstStage *stage = nullptr, const solver::NewtonReport &report = ignore)
 {
-  return solver::minimize(*beam.functional, *beam.linear, beam.u, beam.functional->force_scale(), options, stage,
-                          report);
+  return solver::minimize(*beam.iterate, *beam.linear, beam.u, beam.iterate->force_scale(), options, stage, report);
 }
 
 } // namespace rpc::test

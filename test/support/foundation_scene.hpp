@@ -1,6 +1,7 @@
 #pragma once
 
-#include "rpc/contact/smoothed_functional.hpp"
+#include "judged.hpp"
+#include "rpc/contact/iterate.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/mesh/box.hpp"
 #include "updated.hpp"
@@ -53,7 +54,8 @@ inline fem::DirichletCondition held(const std::string &side, const Point &displa
 /// top.
 struct Scene {
   fem::Discretization d;
-  std::shared_ptr<contact::SmoothedFunctional> functional;
+  fem::ElasticProblem elastic;
+  std::shared_ptr<contact::Iterate> iterate;
   fem::Material material{10, 0.3};
 
   explicit Scene(const std::vector<contact::ContactOptions> &foundations,
@@ -66,8 +68,8 @@ struct Scene {
     const auto dirichlet = fem::dirichlet_dofs(d, {condition});
     const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
     const auto nodes = contact::contact_nodes(d, foundations, dirichlet, material);
-    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K.couplings, load, dirichlet),
-                                                               nodes, updated(K.matrix, nodes));
+    elastic = fem::elastic_problem(d, K.couplings, load, dirichlet);
+    iterate = std::make_shared<contact::Iterate>(elastic, nodes, updated(K.matrix, nodes));
   }
   explicit Scene(const double penalty = 40) : Scene(std::vector{below(penalty)}) {}
 
@@ -77,7 +79,7 @@ struct Scene {
     const auto v = rcp(new Vector(d.owned_dofs));
     const auto to = v->getLocalViewHost(Tpetra::Access::OverwriteAll);
     const auto coords = to_host(d.mesh->coords);
-    const auto fixed = to_host(functional->problem().dirichlet.fixed);
+    const auto fixed = to_host(elastic.dirichlet.fixed);
     for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n) {
       const Point value = u({coords(n, 0), coords(n, 1), 0});
       for (int c = 0; c < 2; ++c) to(2 * n + c, 0) = fixed(2 * n + c) ? 0 : value[c];
@@ -95,20 +97,19 @@ struct Scene {
 };
 
 /// One choice of an active set, taken unless it confirms the present one.
-inline contact::ActiveSetChoice choose(contact::SmoothedFunctional &functional, const Vector &u,
-                                       const double negligible = 0)
+inline contact::ActiveSetChoice choose(contact::Iterate &iterate, const Vector &u, const double negligible = 0)
 {
-  const auto choice = functional.choose_active_set(u, negligible);
+  const auto choice = iterate.choose_active_set(u, negligible);
   Vector moved(u, Teuchos::Copy);
-  if (!choice.confirmed) functional.take_active_set(choice, moved);
+  if (!choice.confirmed) iterate.take_active_set(choice, moved);
   return choice;
 }
 
-inline void active_set_gradient(const contact::SmoothedFunctional &functional, const Vector &u, Vector &F)
+inline void active_set_gradient(const contact::Iterate &iterate, const Vector &u, Vector &F)
 {
   Vector G(u.getMap());
-  functional.gradient(u, G);
-  functional.active_set_gradient(u, G, F);
+  iterate.gradient(u, G);
+  iterate.active_set_gradient(u, G, F);
 }
 
 } // namespace rpc::test

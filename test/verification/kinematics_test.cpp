@@ -3,6 +3,7 @@
 #include "rpc/fem/stress.hpp"
 #include "rpc/mesh/box.hpp"
 #include "run_scene.hpp"
+#include "solved.hpp"
 
 #include <cmath>
 #include <functional>
@@ -72,8 +73,8 @@ struct Solved {
 
 Solved solved(const std::shared_ptr<const mesh::Mesh> &mesh, const analysis::Model &model)
 {
-  Solved s{std::make_shared<analysis::Problem>(mesh, model, solver::LinearSolverOptions{}), {}};
-  s.solution = analysis::solve_step(*s.problem, s.problem->step(1), {});
+  Solved s{std::make_shared<analysis::Problem>(mesh, model), {}};
+  s.solution = test::solved(*s.problem, s.problem->step(1));
   EXPECT_TRUE(s.solution.uzawa.converged) << s.solution.uzawa.reason;
   return s;
 }
@@ -305,7 +306,7 @@ TEST(Cylinder, PressedOnAFoundationHasUniformStressesAndIsHeldByIt)
 /// The message of the error with which a step is refused.
 std::string refusal(const mesh::Element &element, const analysis::Model &model)
 {
-  const analysis::Problem problem(from_the_axis(element), model, {});
+  const analysis::Problem problem(from_the_axis(element), model);
   try {
     problem.step(1);
   } catch (const Error &error) {

@@ -1,5 +1,6 @@
 #include "energy_of_difference.hpp"
 #include "run_scene.hpp"
+#include "solved.hpp"
 
 #include "rpc/analysis/solve_step.hpp"
 #include "rpc/fem/surface.hpp"
@@ -89,9 +90,9 @@ Errors errors(const std::string &element, const int n, const bool distorts)
   const std::string cells = std::to_string(3 * n) + "," + std::to_string(n) + "," + std::to_string(n);
   const Scene scene = read_scene(deck, {"Mesh->Element=" + element, "Mesh->Cells={" + cells + "}"});
   const auto mesh = std::make_shared<mesh::Mesh>(box_mesh(scene, distorts));
-  const analysis::Problem problem(mesh, scene.model, scene.linear_solver);
+  const analysis::Problem problem(mesh, scene.model);
   const analysis::Step step = problem.step(1);
-  const auto s = analysis::solve_step(problem, step, scene.step);
+  const auto s = test::solved(problem, step, scene.step, scene.linear_solver);
   EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
 
   const fem::Discretization &d = problem.discretization();

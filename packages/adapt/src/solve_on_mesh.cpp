@@ -23,7 +23,7 @@ std::shared_ptr<const analysis::Problem> make_problem(const Task &task, std::sha
 {
   const Timed phase("assembly", seconds.assembly);
   throw_if_interrupted(mesh->comm(), "before the assembly; no results are written");
-  return std::make_shared<analysis::Problem>(std::move(mesh), task.model, task.linear_solver, task.time);
+  return std::make_shared<analysis::Problem>(std::move(mesh), task.model, task.time);
 }
 
 /// The scene on coarser and coarser meshes: those that multigrid needs too where they are boxes, else made by the options.
@@ -82,7 +82,8 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   Task first = task;
   first.time = resumed ? resumed->last.time : task.steps.times.front();
   const auto problem = make_problem(first, mesh, seconds);
-  analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, coarser_meshes(first, task.mesh, comm));
+  analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver,
+                                coarser_meshes(first, task.mesh, comm));
   std::vector<analysis::StepRecord> records;
   int assemblies_before = 0;
   if (resumed) {
@@ -98,7 +99,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     s.discretization = history.problem().discretization();
     s.mesh_options = task.mesh;
     s.time = t;
-    s.matrix_assemblies = assemblies_before + history.matrix_assemblies();
+    s.matrix_assemblies = assemblies_before + history.problem().stiffness()->assemblies();
     records.push_back(history.last());
     s.history = records;
     add_estimate(task, history.problem(), s, seconds);
@@ -149,11 +150,16 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   }
   const auto coarser = coarser_meshes(task, options, comm);
   if (task.steps.times.empty()) {
+    analysis::SolverState state(*problem, task.linear_solver);
+    analysis::Starts from{starts, {}};
+    if (starts.empty())
+      from.predict = [&] { // the coarser scenes go before the finest one is solved
+        return analysis::Predictor(coarser, task.step, task.linear_solver).predict(*problem, step, nullptr);
+      };
     static_cast<analysis::StepSolution &>(s) =
-        analysis::solve_step(*problem, step, task.step, {starts, {}}, coarser, listener.step);
-    s.matrix_assemblies = problem->stiffness().has_matrix();
+        analysis::solve_step(*problem, step, state, task.step, from, listener.step);
   } else {
-    analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, coarser);
+    analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver, coarser);
     if (earlier)
       history.go_on_from(same_mesh ? *earlier->memory
                                    : analysis::interpolated(*earlier->memory, earlier->discretization, d));
@@ -162,11 +168,12 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
     if (s.uzawa.converged) s.memory = *history.memory();
     if (earlier) s.history = earlier->history;
     s.history.push_back(history.last());
-    s.matrix_assemblies = history.matrix_assemblies();
   }
+  s.matrix_assemblies = problem->stiffness()->assemblies();
   if (task.adapt.adapts()) s.pressure_norm = contact::pressure_distance(*comm, step.contact, s.contact.pressure, {});
   if (previous)
-    s.pressure_change = contact::pressure_distance(*comm, step.contact, s.contact.pressure, starts.front().multiplier);
+    s.pressure_change =
+        contact::pressure_distance(*comm, step.contact, s.contact.pressure, starts.front().multiplier.normal);
   add_estimate(task, *problem, s, s.seconds);
   note_skipped(task, s);
   s.seconds.prediction += s.prediction_seconds;

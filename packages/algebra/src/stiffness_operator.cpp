@@ -25,7 +25,7 @@ void multiply_vectors(const Rows &rows, const MultiVector &columns, MultiVector 
 
 StiffnessOperator::StiffnessOperator(RCP<const CrsMatrix> K, const int dim)
     : rows_(RepeatedRows::of(K, dim)), dofs_(K->getDomainMap()), columns_(K->getColMap()),
-      importer_(K->getGraph()->getImporter()), matrix_(K), was_assembled_(true)
+      importer_(K->getGraph()->getImporter()), matrix_(K), assemblies_(1)
 {
 }
 
@@ -80,7 +80,7 @@ const RCP<const CrsMatrix> &StiffnessOperator::matrix() const
 {
   if (matrix_.is_null()) {
     matrix_ = assemble_();
-    was_assembled_ = true;
+    ++assemblies_;
   }
   return matrix_;
 }
@@ -88,7 +88,7 @@ const RCP<const CrsMatrix> &StiffnessOperator::matrix() const
 RCP<CrsMatrix> StiffnessOperator::copy() const
 {
   if (!matrix_.is_null()) return rcp(new CrsMatrix(*matrix_, Teuchos::Copy));
-  was_assembled_ = true;
+  ++assemblies_;
   return assemble_();
 }
 

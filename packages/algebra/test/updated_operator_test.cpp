@@ -17,8 +17,8 @@ using namespace rpc::test;
 /// K of a block with contact points on two of its sides, which share a node, and an operator on it.
 struct Stiffness {
   Scene scene{std::vector{below(40), beside(40)}};
-  contact::ContactNodes points = scene.functional->contact();
-  CrsMatrix K{*scene.functional->hessian()->base().matrix(), Teuchos::Copy};
+  contact::ContactNodes points = scene.iterate->points();
+  CrsMatrix K{*scene.iterate->hessian()->base().matrix(), Teuchos::Copy};
   RCP<const StiffnessOperator> base = rcp(new StiffnessOperator(rcp(new CrsMatrix(K, Teuchos::Copy)), 2));
   UpdatedOperator H{base, distinct_nodes({points.node})};
   RCP<Vector> u = scene.vector(1, 0.3);

@@ -29,7 +29,7 @@ struct Found {
 Found solve(Beam &beam, const analysis::ActiveSetTolerances &tolerances = {},
             const solver::NewtonReport &report = rpc::test::ignore)
 {
-  analysis::ActiveSetStage stage(*beam.functional, tolerances);
+  analysis::ActiveSetStage stage(*beam.iterate, tolerances);
   const auto all = minimize(beam, {}, &stage, report);
   return {stage.steps(), stage.confirmed(), all};
 }
@@ -52,17 +52,17 @@ TEST(ActiveSet, OfTheBeamOnItsFoundationIsConfirmedByNewtonAtOnce)
       EXPECT_GE(found.steps, 1) << xi;
       EXPECT_LE(found.steps, 9) << xi;
       EXPECT_LE(found.newton_steps(), 1) << xi;
-      const auto states = beam.functional->count_states(*beam.u);
+      const auto states = beam.iterate->count_states(*beam.u);
       EXPECT_EQ(num_points(states), 79);
       const auto newton = minimize(beam);
       EXPECT_TRUE(newton.converged) << xi << ": " << newton.reason;
       EXPECT_LE(newton.steps, 1) << xi;
-      const auto confirmed = beam.functional->count_states(*beam.u);
+      const auto confirmed = beam.iterate->count_states(*beam.u);
       EXPECT_EQ(states.open, confirmed.open) << xi;
       EXPECT_EQ(states.closed, confirmed.closed) << xi;
       EXPECT_EQ(states.yielding, confirmed.yielding) << xi;
-      beam.functional->update_multipliers(*beam.u);
-      EXPECT_LT(beam.functional->contact_law_residual(beam.functional->displacement(*beam.u)), 1e-5) << xi;
+      beam.iterate->update_multipliers(*beam.u);
+      EXPECT_LT(contact_law_residual(*beam.iterate, *beam.iterate->state(*beam.u).displacement), 1e-5) << xi;
     }
   }
 }
@@ -77,7 +77,7 @@ TEST(ActiveSet, BringsPressuresToTheirTolerance)
     const Found found = solve(beam, own);
     EXPECT_TRUE(found.confirmed);
     EXPECT_TRUE(found.all.converged);
-    EXPECT_LE(beam.functional->pressure_error(*beam.u), tolerance);
+    EXPECT_LE(beam.iterate->pressure_error(*beam.u), tolerance);
     steps.push_back(found.steps);
   }
   EXPECT_LE(steps[0], steps[1]);
@@ -128,7 +128,7 @@ TEST(ActiveSet, StepsAreReportedLikeNewtons)
   std::vector<GO> points;
   const Found found = solve(beam, {}, [&](const solver::NewtonStep &step, const Vector &u) {
     seen.push_back(step);
-    points.push_back(num_points(beam.functional->count_states(u)));
+    points.push_back(num_points(beam.iterate->count_states(u)));
   });
   ASSERT_TRUE(found.confirmed);
   ASSERT_EQ(static_cast<int>(seen.size()), found.steps + 1); // with the start
@@ -156,13 +156,13 @@ TEST(ActiveSet, IsUndoneWhereTheSystemCannotBeSolved)
   solver::LinearSolverOptions weak;
   weak.max_iterations = 1;
   Beam beam(weak);
-  analysis::ActiveSetStage stage(*beam.functional, {});
+  analysis::ActiveSetStage stage(*beam.iterate, {});
   solver::NewtonOptions options;
   options.max_iterations = 1;
   minimize(beam, options, &stage);
   EXPECT_EQ(stage.steps(), 0);
   EXPECT_FALSE(stage.confirmed());
-  const auto lambda = to_host(beam.functional->multipliers());
+  const auto lambda = to_host(beam.iterate->multipliers().normal);
   double sum = 0;
   for (std::size_t i = 0; i < lambda.extent(0); ++i) sum += lambda(i);
   EXPECT_EQ(sum_all(beam.d.mesh->comm(), sum), 79 * 8.);
@@ -172,7 +172,7 @@ TEST(ActiveSet, StepsAreNotTakenWhereTheDeckAsksForOtherDirections)
 {
   for (const char *method : {"Sweep", "Newton"}) {
     Beam beam;
-    analysis::ActiveSetStage stage(*beam.functional, {});
+    analysis::ActiveSetStage stage(*beam.iterate, {});
     solver::NewtonOptions options;
     options.nox.sublist("Direction").set("Method", method);
     EXPECT_TRUE(minimize(beam, options, &stage).converged) << method;
@@ -183,7 +183,7 @@ TEST(ActiveSet, StepsAreNotTakenWhereTheDeckAsksForOtherDirections)
 TEST(ActiveSet, StopsAtTheUsersStatusTests)
 {
   Beam beam;
-  analysis::ActiveSetStage stage(*beam.functional, {});
+  analysis::ActiveSetStage stage(*beam.iterate, {});
   solver::NewtonOptions options;
   Teuchos::ParameterList &tests = options.nox.sublist("Status Tests");
   tests.set("Test Type", "MaxIters");
@@ -200,9 +200,9 @@ TEST(SameActiveSet, AfterAMultiplierUpdateTakesAStepFewerThanNewtonAlone)
   for (const bool same : {true, false}) {
     Beam beam({}, flat(16, 0));
     ASSERT_TRUE(solve(beam).all.converged);
-    beam.functional->update_multipliers(*beam.u);
-    beam.functional->move_origin(*beam.u);
-    analysis::SameActiveSet stage(*beam.functional);
+    beam.iterate->update_multipliers(*beam.u);
+    beam.iterate->move_origin(*beam.u);
+    analysis::SameActiveSet stage(*beam.iterate);
     const auto result = minimize(beam, {}, same ? &stage : nullptr);
     EXPECT_TRUE(result.converged) << result.reason;
     steps.push_back(result.steps);

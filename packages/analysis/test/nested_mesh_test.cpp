@@ -40,7 +40,7 @@ Problem problem_on(const mesh::Element &element)
   foundation.yield_stress = ScalarField(1.);
   foundation.gap = ScalarField(0.);
   model.contact = {foundation};
-  return Problem(box_of(element), model, solver::LinearSolverOptions());
+  return Problem(box_of(element), model);
 }
 
 std::size_t num_nodes(const fem::Discretization &d)
@@ -114,8 +114,9 @@ TEST(NestedMesh, IsForgottenByTheFinestMultigridOnly)
   const auto solve = [](const Problem &on) {
     Vector b(on.discretization().owned_dofs), x(on.discretization().owned_dofs);
     b.putScalar(1);
-    on.linear_solver().solve(b, x, 1e-2);
-    return on.linear_solver().counts().fallback;
+    analysis::SolverState state(on);
+    state.linear().solve(b, x, 1e-2);
+    return state.linear().counts().fallback;
   };
   EXPECT_EQ(solve(*coarser), "");
   EXPECT_NE(coarser->mesh().made_coarser(), nullptr);

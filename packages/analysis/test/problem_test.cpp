@@ -1,5 +1,8 @@
 #include "rpc/analysis/solve_step.hpp"
+
+#include "rpc/contact/energies.hpp"
 #include "rpc/mesh/box.hpp"
+#include "solved.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <cmath>
@@ -64,13 +67,12 @@ void expect_equal(const StepSolution &a, const StepSolution &b)
 TEST(Problem, OfOneTimeGivesTheStepsOfAllOthers)
 {
   const auto mesh = block();
-  const Problem of_start(mesh, model(), {}, 0.25);
+  const Problem of_start(mesh, model(), 0.25);
   for (const double t : {1., 0.25, 0.6}) {
-    const Problem of_its_own(mesh, model(), {}, t);
+    const Problem of_its_own(mesh, model(), t);
     const auto step = of_start.step(t);
     EXPECT_EQ(step.time, t);
-    const auto found = analysis::solve_step(of_start, step, {}),
-               expected = analysis::solve_step(of_its_own, of_its_own.step(t), {});
+    const auto found = test::solved(of_start, step), expected = test::solved(of_its_own, of_its_own.step(t));
     expect_equal(found, expected);
     EXPECT_GT(found.contact.total.contact_length, 0);
   }
@@ -90,8 +92,8 @@ TEST(Problem, OfASlenderBodyThatLiftsOffTakesFewSteps)
   strip.contact.push_back(foundation);
   const mesh::BoxOptions box{{0, 0}, {37.9, 1}, {54, 2}, {2, 1}};
   const auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
-  const Problem problem(mesh, strip, {}, 1);
-  const auto found = analysis::solve_step(problem, problem.step(1), {});
+  const Problem problem(mesh, strip, 1);
+  const auto found = test::solved(problem, problem.step(1));
   EXPECT_TRUE(found.uzawa.converged) << found.uzawa.reason;
   EXPECT_GT(found.line_search_steps, 0) << "the rule settles: nothing is tested";
   int steps = 0;
@@ -102,15 +104,70 @@ TEST(Problem, OfASlenderBodyThatLiftsOffTakesFewSteps)
 TEST(Problem, StepStartsFromTheStateOfTheOneBefore)
 {
   const auto mesh = block();
-  const Problem problem(mesh, model(), {}, 0.9);
-  const auto before = analysis::solve_step(problem, problem.step(0.9), {});
-  const auto state = before.state;
+  const Problem problem(mesh, model(), 0.9);
+  analysis::SolverState solver(problem);
+  const auto before = analysis::solve_step(problem, problem.step(0.9), solver, {});
   const auto step = problem.step(1);
-  const auto warm = analysis::solve_step(problem, step, {}, {{state}, {}}),
-             cold = analysis::solve_step(problem, step, {});
+  const auto warm = analysis::solve_step(problem, step, solver, {}, {{before.state}, {}}),
+             cold = test::solved(problem, step);
   expect_equal(warm, cold);
   EXPECT_EQ(warm.linear.preconditioner_setups, 0) << "K is that of the step before";
   EXPECT_LE(warm.uzawa.newton_iterations[0], cold.uzawa.newton_iterations[0]);
+}
+
+TEST(SolveStep, ResultsAndResidualsAreOfTheDisplacementFromZero)
+{
+  // A weak penalty takes several multiplier updates, before each of which the origin moves.
+  analysis::Model soft = model();
+  for (auto &side : soft.contact) side.penalty = 1e5;
+  const Problem problem(block(), soft, 1);
+  analysis::SolverState solver(problem);
+  const auto step = problem.step(1);
+  int reports = 0;
+  analysis::Progress progress;
+  progress.uzawa = [&](const analysis::UzawaResult &now) { EXPECT_EQ(now.iterations, ++reports); };
+  const auto s = analysis::solve_step(problem, step, solver, {}, {}, progress);
+  EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+  EXPECT_GT(reports, 1);
+  EXPECT_EQ(s.u.get(), s.state.displacement.get());
+  const contact::Iterate anew(step.elastic, step.contact, solver.hessian());
+  const auto judged = contact::optimality_residuals(problem.discretization(), problem.model().materials, step.elastic,
+                                                    step.contact, s.state, anew.force_scale(),
+                                                    [&](const Vector &F) { return solver.linear().inverse_energy(F); });
+  EXPECT_EQ(judged.kkt_residual, s.uzawa.residuals.kkt_residual);
+  EXPECT_EQ(judged.energy_balance, s.uzawa.residuals.energy_balance);
+  expect_equal(s, test::solved(Problem(block(), model(), 1), Problem(block(), model(), 1).step(1)));
+}
+
+TEST(SolveStep, ASolutionOutlivesItsProblem)
+{
+  std::optional<analysis::StepSolution> s;
+  {
+    const Problem problem(block(), model(), 1);
+    s = test::solved(problem, problem.step(1));
+  }
+  const Problem again(block(), model(), 1);
+  expect_equal(*s, test::solved(again, again.step(1)));
+  EXPECT_GT(s->u->norm2(), 0);
+  EXPECT_EQ(contact::contact_law_residual(s->step.contact, s->state), s->uzawa.residuals.kkt_residual);
+}
+
+TEST(SolverState, SolvesASecondRightSideWithAFrozenHessian)
+{
+  // z = H^-1 b for the active set that the step has ended on: what goal-oriented estimates and patch problems ask for.
+  const Problem problem(block(), model(), 1);
+  analysis::SolverState solver(problem);
+  const auto s = analysis::solve_step(problem, problem.step(1), solver, {});
+  ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+  const int revision = solver.hessian()->revision(), setups = solver.linear().counts().preconditioner_setups;
+  Vector b(*s.step.elastic.load, Teuchos::Copy), z(b.getMap()), Hz(b.getMap());
+  fem::clear_prescribed(s.step.elastic.dirichlet, b);
+  EXPECT_TRUE(solver.linear().solve(b, z, 1e-10).converged);
+  solver.hessian()->apply(z, Hz);
+  Hz.update(-1., b, 1.);
+  EXPECT_LE(Hz.norm2(), 1e-9 * b.norm2());
+  EXPECT_EQ(solver.hessian()->revision(), revision);
+  EXPECT_EQ(solver.linear().counts().preconditioner_setups, setups);
 }
 
 TEST(Problem, WorkOfTheSupportsAndLoadsIsTheChangeOfEnergy)
@@ -123,9 +180,9 @@ TEST(Problem, WorkOfTheSupportsAndLoadsIsTheChangeOfEnergy)
   apart.dirichlet[0].displacement = {in_time([](const Point &, const double t) { return 0.02 * t; }), ScalarField(0.),
                                      std::nullopt};
   apart.dirichlet.push_back({"right", "right", {ScalarField(0.), ScalarField(0.), std::nullopt}});
-  const Problem problem(block(), apart, {}, 1);
-  const double one = analysis::solve_step(problem, problem.step(1), {}).energy,
-               three = analysis::solve_step(problem, problem.step(3), {}).energy;
+  const Problem problem(block(), apart, 1);
+  const double one = test::solved(problem, problem.step(1)).energy,
+               three = test::solved(problem, problem.step(3)).energy;
   EXPECT_GT(one, 0);
   EXPECT_NEAR(three, 9 * one, 1e-9 * three);
 }

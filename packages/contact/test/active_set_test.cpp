@@ -1,4 +1,4 @@
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/contact/iterate.hpp"
 
 #include "foundation_scene.hpp"
 #include "rpc/algebra/along_points.hpp"
@@ -38,10 +38,10 @@ RCP<Vector> pressing(const Scene &scene, const double first, const double others
 /// Multipliers at the node x = 0 and at all others.
 void expect_multipliers(const Scene &scene, const double first, const double others)
 {
-  const auto &c = scene.functional->contact();
+  const auto &c = scene.iterate->points();
   const auto coords = to_host(scene.d.mesh->coords);
   const auto node = to_host(c.node);
-  const auto lambda = to_host(scene.functional->multipliers());
+  const auto lambda = to_host(scene.iterate->multipliers().normal);
   for (LO i = 0; i < c.size(); ++i)
     EXPECT_NEAR(lambda(i), coords(node(i), 0) == 0 ? first : others, 1e-14) << coords(node(i), 0);
 }
@@ -50,7 +50,7 @@ void expect_multipliers(const Scene &scene, const double first, const double oth
 std::unique_ptr<Scene> all_closed()
 {
   auto scene = std::make_unique<Scene>(std::vector{foundation()});
-  EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 0, 0)).changes, num_nodes);
+  EXPECT_EQ(choose(*scene->iterate, *pressing(*scene, 0, 0)).changes, num_nodes);
   expect_multipliers(*scene, 1.5, 1.5);
   return scene;
 }
@@ -58,10 +58,10 @@ std::unique_ptr<Scene> all_closed()
 TEST(ChooseStates, TakesThePressuresOfThePieceForMultipliersUpToTheLimits)
 {
   auto scene = all_closed();
-  EXPECT_EQ(choose(*scene->functional, *pressing(*scene, -1.6, 1.2)).changes, 1);
+  EXPECT_EQ(choose(*scene->iterate, *pressing(*scene, -1.6, 1.2)).changes, 1);
   expect_multipliers(*scene, 0, 2.7);
   scene = all_closed();
-  EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 1, 1.6)).changes, num_nodes - 1);
+  EXPECT_EQ(choose(*scene->iterate, *pressing(*scene, 1, 1.6)).changes, num_nodes - 1);
   expect_multipliers(*scene, 2.5, yield);
 }
 
@@ -69,10 +69,10 @@ TEST(ChooseStates, AnOpenNodeSticksBeforeItYieldsHoweverDeepItIs)
 {
   for (const double depth : {1e-9, 0.1, 1e3}) {
     const auto scene = all_closed();
-    choose(*scene->functional, *pressing(*scene, -1.6, 0)); // opens the first
-    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, depth * penalty, 0)).changes, 1);
-    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 0, 0)).changes, 0) << "closed on the foundation, with p = 0";
-    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 3.1, 0)).changes, 1);
+    choose(*scene->iterate, *pressing(*scene, -1.6, 0)); // opens the first
+    EXPECT_EQ(choose(*scene->iterate, *pressing(*scene, depth * penalty, 0)).changes, 1);
+    EXPECT_EQ(choose(*scene->iterate, *pressing(*scene, 0, 0)).changes, 0) << "closed on the foundation, with p = 0";
+    EXPECT_EQ(choose(*scene->iterate, *pressing(*scene, 3.1, 0)).changes, 1);
     expect_multipliers(*scene, yield, 1.5);
   }
 }
@@ -81,10 +81,10 @@ TEST(ChooseStates, AYieldedNodeSticksBeforeItOpensHoweverFarItIs)
 {
   for (const double height : {1e-9, 0.1, 1e3}) {
     const auto scene = all_closed();
-    choose(*scene->functional, *pressing(*scene, 1.6, 0)); // yields at the first
-    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, -height * penalty, 0)).changes, 1);
-    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, 0, 0)).changes, 0) << "closed, with p = xi";
-    EXPECT_EQ(choose(*scene->functional, *pressing(*scene, -3.1, 0)).changes, 1);
+    choose(*scene->iterate, *pressing(*scene, 1.6, 0)); // yields at the first
+    EXPECT_EQ(choose(*scene->iterate, *pressing(*scene, -height * penalty, 0)).changes, 1);
+    EXPECT_EQ(choose(*scene->iterate, *pressing(*scene, 0, 0)).changes, 0) << "closed, with p = xi";
+    EXPECT_EQ(choose(*scene->iterate, *pressing(*scene, -3.1, 0)).changes, 1);
     expect_multipliers(*scene, 0, 1.5);
   }
 }
@@ -92,15 +92,15 @@ TEST(ChooseStates, AYieldedNodeSticksBeforeItOpensHoweverFarItIs)
 TEST(ChooseStates, KeepsOpenAndYieldedNodesOnTheirSidesOfTheSurface)
 {
   const auto scene = all_closed();
-  choose(*scene->functional, *pressing(*scene, -1.6, 1.6)); // the first opens, the others yield
-  EXPECT_TRUE(choose(*scene->functional, *pressing(*scene, -0.1, 0.1)).confirmed);
+  choose(*scene->iterate, *pressing(*scene, -1.6, 1.6)); // the first opens, the others yield
+  EXPECT_TRUE(choose(*scene->iterate, *pressing(*scene, -0.1, 0.1)).confirmed);
   expect_multipliers(*scene, 0, yield);
 }
 
 TEST(ChooseStates, DoNothingWhereNoStateChanges)
 {
   const auto scene = all_closed();
-  const auto change = choose(*scene->functional, *pressing(*scene, 1, -1));
+  const auto change = choose(*scene->iterate, *pressing(*scene, 1, -1));
   EXPECT_EQ(change.changes, 0);
   expect_multipliers(*scene, 1.5, 1.5);
 }
@@ -109,40 +109,40 @@ TEST(ChooseStates, NegligibleViolationsChangeNoState)
 {
   const auto scene = all_closed();
   const auto u = pressing(*scene, -1.5 - 1e-3, 1); // p = -0.001 at the first node, 2.5 at the others
-  EXPECT_EQ(scene->functional->choose_active_set(*u, 1e-3).changes, 0);
-  EXPECT_EQ(scene->functional->choose_active_set(*u, 3e-4).changes, 1);
-  choose(*scene->functional, *u); // opens it
-  const auto own = to_host(own_stiffness(scene->functional->hessian()->base(), scene->functional->contact()));
+  EXPECT_EQ(scene->iterate->choose_active_set(*u, 1e-3).changes, 0);
+  EXPECT_EQ(scene->iterate->choose_active_set(*u, 3e-4).changes, 1);
+  choose(*scene->iterate, *u); // opens it
+  const auto own = to_host(own_stiffness(scene->iterate->hessian()->base(), scene->iterate->points()));
   double k = 0;
   for (std::size_t i = 0; i < own.extent(0); ++i) k = std::max(k, own(i));
   k = max_all(scene->d.mesh->comm(), k);
   const auto in = pressing(*scene, 1e-3 * penalty / k, 0); // k v = 0.001 at most, beside pressures of 2.5
-  EXPECT_EQ(scene->functional->choose_active_set(*in, 1e-3).changes, 0);
-  EXPECT_EQ(scene->functional->choose_active_set(*in, 0).changes, 1);
+  EXPECT_EQ(scene->iterate->choose_active_set(*in, 1e-3).changes, 0);
+  EXPECT_EQ(scene->iterate->choose_active_set(*in, 0).changes, 1);
 }
 
 TEST(ChooseStates, FirstStatesAreThoseOfMultipliersAndPenetrations)
 {
   Scene scene(std::vector{foundation()});
-  const auto &c = scene.functional->contact();
+  const auto &c = scene.iterate->points();
   DeviceView<double *> given("given", c.size());
   Kokkos::deep_copy(given, yield);
   Vector unused(scene.d.owned_dofs);
-  scene.functional->start_from({scene.vector(0, 0), given, {}},
-                               unused); // as of a coarser mesh: all yield or are about to
+  scene.iterate->start_from({scene.vector(0, 0), given, {}},
+                            unused); // as of a coarser mesh: all yield or are about to
   const auto u = scene.vector([](const Point &x) {
     return Point{0, x[0] == 0 ? 1. : -0.01, 0};
-  });                                                              // the first is far off
-  EXPECT_EQ(choose(*scene.functional, *u).changes, num_nodes - 1); // open is the state before any choice
+  });                                                           // the first is far off
+  EXPECT_EQ(choose(*scene.iterate, *u).changes, num_nodes - 1); // open is the state before any choice
   expect_multipliers(scene, 0, yield);
 }
 
 TEST(ChooseStates, FingerprintsAreEqualForEqualStates)
 {
   const auto scene = all_closed();
-  auto &functional = *scene->functional;
+  auto &iterate = *scene->iterate;
   const auto at = [&](const double first, const double others) {
-    return choose(functional, *pressing(*scene, first, others)).fingerprint;
+    return choose(iterate, *pressing(*scene, first, others)).fingerprint;
   };
   const auto closed = at(0, 0), first_open = at(-1.6, 0), again = at(-1.6, 0);
   EXPECT_NE(closed, first_open);
@@ -153,11 +153,11 @@ TEST(ChooseStates, FingerprintsAreEqualForEqualStates)
 TEST(ChooseStates, AllStickFirstWhereContactMustHoldTheBody)
 {
   const Scene free(std::vector{foundation(0.1)}), held_by_contact(std::vector{foundation(0.1)});
-  held_by_contact.functional->hold_by_contact();
-  EXPECT_EQ(choose(*free.functional, *pressing(free, 0, 0)).changes, 0);
-  EXPECT_EQ(choose(*held_by_contact.functional, *pressing(held_by_contact, 0, 0)).changes, num_nodes);
+  held_by_contact.iterate->hold_by_contact();
+  EXPECT_EQ(choose(*free.iterate, *pressing(free, 0, 0)).changes, 0);
+  EXPECT_EQ(choose(*held_by_contact.iterate, *pressing(held_by_contact, 0, 0)).changes, num_nodes);
   // p = 0 + r v with v = -0.1: pulled, they open again.
-  EXPECT_EQ(choose(*held_by_contact.functional, *pressing(held_by_contact, 0, 0)).changes, num_nodes);
+  EXPECT_EQ(choose(*held_by_contact.iterate, *pressing(held_by_contact, 0, 0)).changes, num_nodes);
 }
 
 /// On rollers at its left, so that only contact stops it from going down.
@@ -171,7 +171,7 @@ struct OnRollers : Scene {
   {
     const auto d = down(1);
     Vector Hd(d->getMap());
-    functional->hessian()->apply(*d, Hd);
+    iterate->hessian()->apply(*d, Hd);
     return d->dot(Hd);
   }
 };
@@ -179,11 +179,11 @@ struct OnRollers : Scene {
 TEST(HoldByContact, KeepsTheHessianPositiveDefiniteWhereNoNodeSticks)
 {
   const OnRollers loose, held;
-  held.functional->hold_by_contact();
+  held.iterate->hold_by_contact();
   for (const OnRollers *scene : {&loose, &held}) {
-    scene->functional->update_hessian(*scene->down(0.2)); // yield or stick
-    scene->functional->update_hessian(*scene->down(0));
-    EXPECT_EQ(scene->functional->count_states(*scene->down(0)).open, num_nodes);
+    scene->iterate->update_hessian(*scene->down(0.2)); // yield or stick
+    scene->iterate->update_hessian(*scene->down(0));
+    EXPECT_EQ(scene->iterate->count_states(*scene->down(0)).open, num_nodes);
   }
   const double rounding = 1e-12 * held.material.youngs_modulus;
   EXPECT_NEAR(loose.stiffness_down(), 0, rounding);
@@ -195,27 +195,27 @@ TEST(HoldByContact, KeepsTheHessianPositiveDefiniteWhereNoNodeSticks)
 TEST(HoldByContact, ChangesNeitherTheFunctionalNorItsGradients)
 {
   const OnRollers loose, held;
-  held.functional->hold_by_contact();
+  held.iterate->hold_by_contact();
   for (const double depth : {0., 0.12, 0.3}) { // open, closed, yielding
     const auto u = loose.down(depth), d = loose.vector(0.01, 0.7);
     u->update(1., *d, 1.);
     Vector F(u->getMap()), G(u->getMap());
     for (const bool piece : {false, true}) {
       const auto gradient = [&](const OnRollers &scene, Vector &to) {
-        scene.functional->update_hessian(*u);
+        scene.iterate->update_hessian(*u);
         if (piece)
-          active_set_gradient(*scene.functional, *u, to);
+          active_set_gradient(*scene.iterate, *u, to);
         else
-          scene.functional->gradient(*u, to);
+          scene.iterate->gradient(*u, to);
       };
       gradient(loose, F);
       gradient(held, G);
       G.update(-1., F, 1.);
       EXPECT_LT(G.norm2(), 1e-13 * F.norm2()) << depth;
     }
-    const double value = loose.functional->value(*u);
-    EXPECT_NEAR(held.functional->value(*u), value, 1e-13 * std::abs(value));
-    const auto line = loose.functional->along(*u, *d, F), same = held.functional->along(*u, *d, F);
+    const double value = loose.iterate->value(*u);
+    EXPECT_NEAR(held.iterate->value(*u), value, 1e-13 * std::abs(value));
+    const auto line = loose.iterate->along(*u, *d, F), same = held.iterate->along(*u, *d, F);
     EXPECT_NEAR(same->at(1).slope, line->at(1).slope, 1e-13 * std::abs(line->at(1).slope));
     EXPECT_NEAR(same->at(1).curvature, line->at(1).curvature, 1e-12 * line->at(1).curvature);
   }

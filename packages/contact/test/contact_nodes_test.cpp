@@ -109,7 +109,7 @@ TEST(ContactNodes, OfSeveralSidesComeSideBySideEachWithItsOwnLaw)
   EXPECT_EQ(c.num_fixed, 0);
   const auto coords = to_host(d.mesh->coords);
   const auto node = to_host(c.node);
-  const auto yield = to_host(c.yield), penalty = to_host(c.penalty), weight = to_host(c.weight);
+  const auto yield = to_host(c.law.yield), penalty = to_host(c.given_penalty), weight = to_host(c.weight);
   double length[2] = {0, 0};
   GO at_corner = 0;
   for (int side = 0; side < 2; ++side) {
@@ -455,9 +455,9 @@ TEST(ContactNodes, DentsMoveTheFoundationAwayAndHardenIt)
              bare = contact::contact_nodes(d, {floor, wall}, none);
   const auto coords = to_host(d.mesh->coords);
   const auto node = to_host(c.node);
-  const auto gap = to_host(c.gap), free_gap = to_host(c.free_gap), dent = to_host(c.dent), yield = to_host(c.yield),
-             hardening = to_host(c.hardening), compliance = to_host(c.compliance);
-  const auto bare_dent = to_host(bare.dent), bare_yield = to_host(bare.yield), bare_gap = to_host(bare.free_gap);
+  const auto gap = to_host(c.gap), free_gap = to_host(c.free_gap), dent = to_host(c.dent), yield = to_host(c.law.yield),
+             hardening = to_host(c.law.hardening), compliance = to_host(c.law.compliance);
+  const auto bare_dent = to_host(bare.dent), bare_yield = to_host(bare.law.yield), bare_gap = to_host(bare.free_gap);
   ASSERT_EQ(c.num_total, 8);
   for (LO i = 0; i < c.size(); ++i) {
     const double x = coords(node(i), 0), y = coords(node(i), 1);

@@ -14,7 +14,7 @@ using namespace rpc::test;
 /// (contact nodes) side(k) at a point of side k.
 DeviceView<double *> at_contact_nodes(const Scene &scene, const std::vector<std::function<double(const Point &)>> &side)
 {
-  const auto &c = scene.functional->contact();
+  const auto &c = scene.iterate->points();
   const auto node = to_host(c.node);
   const auto coords = to_host(scene.d.mesh->coords);
   HostView<double *> values("values", c.size());
@@ -26,8 +26,8 @@ DeviceView<double *> at_contact_nodes(const Scene &scene, const std::vector<std:
 contact::ContactState interpolated(const Scene &coarse, const Scene &fine, const RCP<Vector> &u,
                                    const DeviceView<double *> &multiplier)
 {
-  return contact::interpolated(*fem::interpolation(coarse.d, fine.d), coarse.functional->contact(), {u, multiplier, {}},
-                               fine.functional->contact(), fine.d.owned_dofs);
+  return contact::interpolated(*fem::interpolation(coarse.d, fine.d), coarse.iterate->points(), {u, multiplier, {}},
+                               fine.iterate->points(), fine.d.owned_dofs);
 }
 
 TEST(StartFrom, CarriesAffineDisplacementsAndMultipliersSideBySide)
@@ -39,15 +39,15 @@ TEST(StartFrom, CarriesAffineDisplacementsAndMultipliersSideBySide)
   const std::vector<std::function<double(const Point &)>> pressure{[](const Point &x) { return 0.3 + 0.4 * x[0]; },
                                                                    [](const Point &x) { return 2.5 - 2 * x[1]; }};
   Vector u(fine.d.owned_dofs);
-  fine.functional->start_from(
-      interpolated(coarse, fine, coarse.vector(displacement), at_contact_nodes(coarse, pressure)), u);
+  fine.iterate->start_from(interpolated(coarse, fine, coarse.vector(displacement), at_contact_nodes(coarse, pressure)),
+                           u);
   u.update(-1., *fine.vector(displacement), 1.);
   EXPECT_LT(u.norm2(), 1e-14);
-  const auto found = to_host(fine.functional->multipliers()), expected = to_host(at_contact_nodes(fine, pressure));
-  const auto fixed = to_host(fine.functional->contact().fixed);
+  const auto found = to_host(fine.iterate->multipliers().normal), expected = to_host(at_contact_nodes(fine, pressure));
+  const auto fixed = to_host(fine.iterate->points().fixed);
   const auto coords = to_host(fine.d.mesh->coords);
-  const auto node = to_host(fine.functional->contact().node);
-  for (LO i = 0; i < fine.functional->contact().size(); ++i) {
+  const auto node = to_host(fine.iterate->points().node);
+  for (LO i = 0; i < fine.iterate->points().size(); ++i) {
     if (coords(node(i), 1) > 1 - 1. / 3 - 1e-9) continue; // beside a held node, whose multiplier is 0 by convention
     EXPECT_NEAR(found(i), fixed(i) ? 0 : expected(i), 1e-14) << i;
   }
@@ -57,17 +57,17 @@ TEST(StartFrom, LeavesPrescribedDisplacementsAndStaysWithinTheYieldLimit)
 {
   const std::vector<contact::ContactOptions> foundations{below(40)};
   const Scene coarse(foundations, held("top", {0.5, 0, 0})), fine(foundations, held("top", {0, 0.25, 0}), 2);
-  Vector u(*fine.functional->problem().dirichlet.value, Teuchos::Copy);
+  Vector u(*fine.elastic.dirichlet.value, Teuchos::Copy);
   const auto above = at_contact_nodes(coarse, {[](const Point &) { return 100.; }});
-  fine.functional->start_from(interpolated(coarse, fine, coarse.vector(1, 2), above), u);
-  const auto fixed = to_host(fine.functional->problem().dirichlet.fixed);
-  const auto prescribed = fine.functional->problem().dirichlet.value->getLocalViewHost(Tpetra::Access::ReadOnly);
+  fine.iterate->start_from(interpolated(coarse, fine, coarse.vector(1, 2), above), u);
+  const auto fixed = to_host(fine.elastic.dirichlet.fixed);
+  const auto prescribed = fine.elastic.dirichlet.value->getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto now = u.getLocalViewHost(Tpetra::Access::ReadOnly);
   for (std::size_t dof = 0; dof < now.extent(0); ++dof)
     if (fixed(dof)) {
       EXPECT_EQ(now(dof, 0), prescribed(dof, 0)) << dof;
     }
-  const auto lambda = to_host(fine.functional->multipliers()), xi = to_host(fine.functional->contact().yield);
+  const auto lambda = to_host(fine.iterate->multipliers().normal), xi = to_host(fine.iterate->points().law.yield);
   for (std::size_t i = 0; i < lambda.extent(0); ++i) {
     EXPECT_GE(lambda(i), 0);
     EXPECT_LE(lambda(i), xi(i));

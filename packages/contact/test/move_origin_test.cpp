@@ -1,4 +1,4 @@
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/contact/iterate.hpp"
 
 #include "foundation_scene.hpp"
 
@@ -29,9 +29,9 @@ struct Pair {
     auto first = still.vector(0.2, 1.7);
     Vector rest(*start, Teuchos::Copy);
     rest.update(-1., *first, 1.);
-    moved.functional->move_origin(*first);
+    moved.iterate->move_origin(*first);
     EXPECT_EQ(first->norm2(), 0);
-    moved.functional->move_origin(rest);
+    moved.iterate->move_origin(rest);
     EXPECT_EQ(rest.norm2(), 0);
   }
   /// start + u, as the other sees it.
@@ -43,7 +43,7 @@ struct Pair {
   }
   void expect_equal_multipliers() const
   {
-    const auto a = to_host(moved.functional->multipliers()), b = to_host(still.functional->multipliers());
+    const auto a = to_host(moved.iterate->multipliers().normal), b = to_host(still.iterate->multipliers().normal);
     for (std::size_t i = 0; i < a.extent(0); ++i) EXPECT_NEAR(a(i), b(i), 1e-13);
   }
 };
@@ -52,8 +52,8 @@ TEST(MoveOrigin, DisplacementIsSeenFromZero)
 {
   const Pair pair;
   const auto u = pair.still.vector(0.05, 0.4);
-  EXPECT_LT(difference(pair.moved.functional->displacement(*u), pair.from_0(*u)), 1e-15);
-  EXPECT_EQ(difference(pair.still.functional->displacement(*u), *u), 0);
+  EXPECT_LT(difference(*pair.moved.iterate->state(*u).displacement, pair.from_0(*u)), 1e-15);
+  EXPECT_EQ(difference(*pair.still.iterate->state(*u).displacement, *u), 0);
 }
 
 TEST(MoveOrigin, ChangesNothingInGradientsAndStates)
@@ -62,7 +62,7 @@ TEST(MoveOrigin, ChangesNothingInGradientsAndStates)
   for (const double phase : {0.4, 2.1, 3.9}) {
     const auto u = pair.still.vector(0.05, phase), further = pair.still.vector(0.07, phase + 1);
     const Vector from_0 = pair.from_0(*u), further_from_0 = pair.from_0(*further);
-    auto &moved = *pair.moved.functional, &still = *pair.still.functional;
+    auto &moved = *pair.moved.iterate, &still = *pair.still.iterate;
     EXPECT_EQ(moved.update_hessian(*u), still.update_hessian(from_0));
     const auto a = moved.count_states(*u), b = still.count_states(from_0);
     EXPECT_EQ(a.open, b.open);
@@ -84,7 +84,7 @@ TEST(MoveOrigin, ChangesNothingInTheLineModelAndInDifferencesOfTheValue)
   const Pair pair;
   const auto u = pair.still.vector(0.05, 0.4), d = pair.still.vector(0.1, 2);
   const Vector from_0 = pair.from_0(*u);
-  auto &moved = *pair.moved.functional, &still = *pair.still.functional;
+  auto &moved = *pair.moved.iterate, &still = *pair.still.iterate;
   Vector F(u->getMap()), G(u->getMap());
   moved.gradient(*u, F);
   still.gradient(from_0, G);
@@ -104,14 +104,14 @@ TEST(MoveOrigin, ChangesNothingInMultiplierUpdates)
   const Pair pair;
   for (const double phase : {0.4, 2.1}) {
     const auto u = pair.still.vector(0.05, phase);
-    const double change = pair.still.functional->update_multipliers(pair.from_0(*u));
-    EXPECT_NEAR(pair.moved.functional->update_multipliers(*u), change, 1e-13);
+    const double change = pair.still.iterate->update_multipliers(pair.from_0(*u));
+    EXPECT_NEAR(pair.moved.iterate->update_multipliers(*u), change, 1e-13);
     pair.expect_equal_multipliers();
     // energies and the contact law take displacements from 0 in both
     const Vector from_0 = pair.from_0(*u);
-    EXPECT_EQ(pair.moved.functional->contact_law_residual(from_0), pair.still.functional->contact_law_residual(from_0));
-    const double energy = pair.still.functional->energy(from_0);
-    EXPECT_NEAR(pair.moved.functional->energy(from_0), energy, 1e-12 * std::abs(energy));
+    EXPECT_EQ(contact_law_residual(*pair.moved.iterate, from_0), contact_law_residual(*pair.still.iterate, from_0));
+    const double expected = energy(*pair.still.iterate, pair.still.elastic, from_0);
+    EXPECT_NEAR(energy(*pair.moved.iterate, pair.moved.elastic, from_0), expected, 1e-12 * std::abs(expected));
   }
 }
 
@@ -120,7 +120,7 @@ TEST(MoveOrigin, ChangesNothingInChoicesOfStates)
   const Pair pair;
   for (const double phase : {0.4, 2.1, 3.9, 0.8}) {
     const auto u = pair.still.vector(0.02, phase);
-    const auto a = choose(*pair.moved.functional, *u, 10), b = choose(*pair.still.functional, pair.from_0(*u), 10);
+    const auto a = choose(*pair.moved.iterate, *u, 10), b = choose(*pair.still.iterate, pair.from_0(*u), 10);
     EXPECT_EQ(a.changes, b.changes);
     EXPECT_EQ(a.fingerprint, b.fingerprint);
     pair.expect_equal_multipliers();
@@ -134,23 +134,23 @@ TEST(MoveOrigin, PenetrationsKeepDigitsOfTheirOwn)
   foundation.yield_stress = ScalarField(1e3);
   foundation.gap = field([](const Point &x) { return far + 0.1 * x[0] - 1e-6; });
   const Scene scene(std::vector{foundation}, held("top", {0, -far, 0}));
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector([](const Point &x) { return Point{0, -far - 0.1 * x[0], 0}; });
-  u->update(1., *functional.problem().dirichlet.value, 1.);
-  functional.move_origin(*u); // leaves v = 1e-6 and the rounding of far
+  u->update(1., *scene.elastic.dirichlet.value, 1.);
+  iterate.move_origin(*u); // leaves v = 1e-6 and the rounding of far
   const auto copy = [&] {
-    HostView<double *> lambda("lambda", functional.contact().size());
-    Kokkos::deep_copy(lambda, to_host(functional.multipliers()));
+    HostView<double *> lambda("lambda", iterate.points().size());
+    Kokkos::deep_copy(lambda, to_host(iterate.multipliers().normal));
     return lambda;
   };
   const auto zero = scene.vector(0, 0);
-  functional.update_multipliers(*zero);
+  iterate.update_multipliers(*zero);
   const auto before = copy();
-  functional.update_multipliers(*zero);
+  iterate.update_multipliers(*zero);
   const auto once = copy();
-  functional.update_multipliers(*scene.vector([](const Point &) { return Point{0, -change, 0}; }));
+  iterate.update_multipliers(*scene.vector([](const Point &) { return Point{0, -change, 0}; }));
   const auto twice = copy();
-  for (LO i = 0; i < functional.contact().size(); ++i) {
+  for (LO i = 0; i < iterate.points().size(); ++i) {
     EXPECT_NEAR(once(i) - before(i), penalty * 1e-6, penalty * 1e-12);
     EXPECT_NEAR((twice(i) - once(i)) - (once(i) - before(i)), penalty * change, 1e-6 * penalty * change);
   }
@@ -160,18 +160,18 @@ TEST(MoveOrigin, GradientKeepsTheDigitsOfSmallSteps)
 {
   // Far from 0, a step of 1e-12 changes the forces by what the matrix makes of it.
   const Scene scene(std::vector{below(1e4)}, held("top", {700, -300, 0}));
-  auto &functional = *scene.functional;
-  Vector u(*functional.problem().dirichlet.value, Teuchos::Copy);
+  auto &iterate = *scene.iterate;
+  Vector u(*scene.elastic.dirichlet.value, Teuchos::Copy);
   const auto all = scene.vector([](const Point &) { return Point{700, -300, 0}; });
   u.update(1., *all, 1.);
-  functional.update_hessian(u);
-  functional.move_origin(u);
+  iterate.update_hessian(u);
+  iterate.move_origin(u);
   Vector F(u.getMap()), G(u.getMap()), Hd(u.getMap());
-  functional.gradient(u, F);
+  iterate.gradient(u, F);
   const auto d = scene.vector([](const Point &x) { return Point{0, x[1] > 0 ? 1e-9 * std::sin(4 * x[0]) : 0, 0}; });
-  functional.gradient(*d, G);
+  iterate.gradient(*d, G);
   G.update(-1., F, 1.);
-  functional.hessian()->apply(*d, Hd);
+  iterate.hessian()->apply(*d, Hd);
   EXPECT_LT(difference(G, Hd), 1e-6);
 }
 

@@ -20,7 +20,7 @@ double value_at(const double x, const double y, const int side)
 TEST(NodeColumns, HoldTheValuesOfEachSideAndZeroElsewhere)
 {
   const Scene scene(std::vector{below(40), beside(25)});
-  const auto &c = scene.functional->contact();
+  const auto &c = scene.iterate->points();
   const auto coords = to_host(scene.d.mesh->coords);
   const auto node = to_host(c.node);
   const DeviceView<double *> values("values", c.size());
@@ -47,7 +47,7 @@ TEST(NodeColumns, HoldTheValuesOfEachSideAndZeroElsewhere)
 TEST(NodeColumns, AreNoneWithoutSides)
 {
   const Scene scene(std::vector<contact::ContactOptions>{});
-  const auto &c = scene.functional->contact();
+  const auto &c = scene.iterate->points();
   const auto columns = contact::node_columns(c, DeviceView<double *>("none", 0), scene.d.mesh->owned_nodes);
   EXPECT_EQ(columns->getNumVectors(), 0u);
   EXPECT_EQ(contact::at_points(c, *columns).extent(0), 0u);

@@ -22,7 +22,7 @@ struct Judged : Scene {
   DenseInverse inverse;
 
   Judged(const std::vector<contact::ContactOptions> &foundations, const fem::DirichletCondition &condition)
-      : Scene(foundations, condition), K(*functional->hessian()->base().matrix(), Teuchos::Copy), inverse(K)
+      : Scene(foundations, condition), K(*iterate->hessian()->base().matrix(), Teuchos::Copy), inverse(K)
   {
   }
   explicit Judged(const std::vector<contact::ContactOptions> &foundations = {below(40)}, const Point &top = {})
@@ -31,7 +31,8 @@ struct Judged : Scene {
   }
   OptimalityResiduals residuals(const Vector &u) const
   {
-    return contact::optimality_residuals(d, material, *functional, u,
+    return contact::optimality_residuals(d, material, elastic, iterate->points(), judged_at(*iterate, u),
+                                         iterate->force_scale(),
                                          [&](const Vector &F) { return F.dot(inverse.times(F)); });
   }
   /// K u - b + B lambda: 0 where prescribed.
@@ -39,7 +40,7 @@ struct Judged : Scene {
   {
     Vector F(u.getMap());
     K.apply(u, F);
-    F.update(1., functional->multiplier_forces(), -1., *functional->problem().load, 1.);
+    F.update(1., multiplier_forces(*iterate), -1., *elastic.load, 1.);
     return F;
   }
   /// Pi(u) [J]
@@ -47,17 +48,17 @@ struct Judged : Scene {
   {
     Vector Ku(u.getMap());
     K.apply(u, Ku);
-    return 0.5 * u.dot(Ku) - functional->problem().load->dot(u) + functional->problem().energy_offset;
+    return 0.5 * u.dot(Ku) - elastic.load->dot(u) + elastic.energy_offset;
   }
   /// sum_i w_i energy(v_i, lambda_i, xi_i)
   template <class Energy>
   double over_contact(const Vector &u, const Energy &energy) const
   {
-    const auto &c = functional->contact();
+    const auto &c = iterate->points();
     const auto node = to_host(c.node);
     const auto m = to_host(c.direction);
-    const auto w = to_host(c.weight), gap = to_host(c.free_gap), xi = to_host(c.yield),
-               lambda = to_host(functional->multipliers());
+    const auto w = to_host(c.weight), gap = to_host(c.free_gap), xi = to_host(c.law.yield),
+               lambda = to_host(iterate->multipliers().normal);
     const auto x = u.getLocalViewHost(Tpetra::Access::ReadOnly);
     double sum = 0;
     for (LO i = 0; i < c.size(); ++i)
@@ -68,27 +69,27 @@ struct Judged : Scene {
   RCP<Vector> displacement(const double scale, const double phase) const
   {
     const auto u = vector(scale, phase);
-    u->update(1., *functional->problem().dirichlet.value, 1.);
+    u->update(1., *elastic.dirichlet.value, 1.);
     return u;
   }
   /// The solution, with its multipliers: Newton with a line search, and many updates of a penalty that is easy on both.
   RCP<Vector> solution() const
   {
-    const auto u = rcp(new Vector(*functional->problem().dirichlet.value, Teuchos::Copy));
+    const auto u = rcp(new Vector(*elastic.dirichlet.value, Teuchos::Copy));
     Vector F(u->getMap());
     for (int uzawa = 0; uzawa < 150; ++uzawa) {
       for (int newton = 0; newton < 30; ++newton) {
-        functional->update_hessian(*u);
-        functional->gradient(*u, F);
-        const UpdatedOperator &H = *functional->hessian();
+        iterate->update_hessian(*u);
+        iterate->gradient(*u, F);
+        const UpdatedOperator &H = *iterate->hessian();
         const auto A = H.base().copy();
         write_update(*A, H, H.update());
         Vector d = DenseInverse(*A).times(F);
         d.scale(-1.);
-        u->update(step_along(functional->along(*u, d, F)), d, 1.);
+        u->update(step_along(iterate->along(*u, d, F)), d, 1.);
         if (d.normInf() < 1e-15) break;
       }
-      functional->update_multipliers(*u);
+      iterate->update_multipliers(*u);
     }
     return u;
   }
@@ -146,8 +147,8 @@ TEST(OptimalityResiduals, EquilibriumResidualIsThatOfTheMatrix)
   for (const Point top : {Point{}, Point{0.03, -0.02, 0}}) {
     const Judged scene({below(40), beside(25)}, top);
     const auto u = scene.displacement(0.05, 0.4);
-    scene.functional->update_multipliers(*u);
-    const double scale = std::max({scene.functional->force_scale(), scene.functional->multiplier_forces().norm2(),
+    scene.iterate->update_multipliers(*u);
+    const double scale = std::max({scene.iterate->force_scale(), multiplier_forces(*scene.iterate).norm2(),
                                    fem::internal_work(scene.d, scene.material, *u).force_norm});
     const double expected = scene.residual(*u).norm2() / scale;
     ASSERT_GT(expected, 0.01);
@@ -160,14 +161,14 @@ TEST(OptimalityResiduals, EnergyBalanceIsWhatTheResidualDoesAlongTheFreeUnknowns
   for (const Point top : {Point{}, Point{0.03, -0.02, 0}}) {
     const Judged scene({below(40), beside(25)}, top);
     const auto u = scene.displacement(0.05, 0.4);
-    scene.functional->update_multipliers(*u);
+    scene.iterate->update_multipliers(*u);
     // Less the translation by the prescribed displacement, nothing is left of that.
     const auto translated = scene.vector([&](const Point &) { return top; }); // 0 where prescribed
-    const Vector free = *plus(*plus(*u, -1, *scene.functional->problem().dirichlet.value), -1, *translated);
+    const Vector free = *plus(*plus(*u, -1, *scene.elastic.dirichlet.value), -1, *translated);
     Vector internal(u->getMap());
     fem::assemble_stiffness(scene.d, scene.material)->apply(*u, internal);
-    const double at_work = std::max({u->dot(internal), std::abs(free.dot(*scene.functional->problem().applied_load)),
-                                     std::abs(free.dot(scene.functional->multiplier_forces()))});
+    const double at_work = std::max({u->dot(internal), std::abs(free.dot(*scene.elastic.applied_load)),
+                                     std::abs(free.dot(multiplier_forces(*scene.iterate)))});
     const double expected = std::abs(free.dot(scene.residual(*u))) / at_work;
     ASSERT_GT(expected, 0.01);
     EXPECT_NEAR(scene.residuals(*u).energy_balance, expected, 1e-12 * expected);
@@ -179,16 +180,16 @@ TEST(OptimalityResiduals, DualityGapIsThePrimalLessTheDualEnergy)
   for (const Point top : {Point{}, Point{0.03, -0.02, 0}}) {
     const Judged scene({below(40)}, top);
     const auto u = scene.displacement(0.05, 0.4);
-    scene.functional->update_multipliers(*u);
-    const auto lambda = to_host(scene.functional->multipliers());
+    scene.iterate->update_multipliers(*u);
+    const auto lambda = to_host(scene.iterate->multipliers().normal);
     double largest = 0;
     for (std::size_t i = 0; i < lambda.extent(0); ++i) largest = std::max(largest, lambda(i));
     ASSERT_GE(2 * max_all(scene.d.mesh->comm(), largest), 3); // else the highest yield limit would be cut
 
     const double primal = scene.elastic_energy(*u) +
                           scene.over_contact(*u, [](double v, double, double xi) { return xi * std::max(v, 0.); });
-    Vector load(*scene.functional->problem().load, Teuchos::Copy);
-    load.update(-1., scene.functional->multiplier_forces(), 1.);
+    Vector load(*scene.elastic.load, Teuchos::Copy);
+    load.update(-1., multiplier_forces(*scene.iterate), 1.);
     const Vector lowest = scene.inverse.times(load);
     const double dual =
         scene.elastic_energy(lowest) + scene.over_contact(lowest, [](double v, double p, double) { return p * v; });
@@ -206,13 +207,13 @@ TEST(OptimalityResiduals, ContactEnergyIsSummedOverThePointsWithTwiceTheLargestM
   rigid.yield_stress = ScalarField(std::numeric_limits<double>::infinity());
   const Judged scene({rigid});
   const auto u = scene.displacement(0.05, 0.4);
-  scene.functional->update_multipliers(*u);
+  scene.iterate->update_multipliers(*u);
   double largest = 0;
-  const auto lambda = to_host(scene.functional->multipliers());
+  const auto lambda = to_host(scene.iterate->multipliers().normal);
   for (std::size_t i = 0; i < lambda.extent(0); ++i) largest = std::max(largest, lambda(i));
   largest = max_all(scene.d.mesh->comm(), largest);
   ASSERT_GT(largest, 0.1);
-  const auto energy = scene.functional->contact_energy(*u);
+  const auto energy = contact_energy(*scene.iterate, *u);
   const double gap =
       scene.over_contact(*u, [&](double v, double p, double) { return 2 * largest * std::max(v, 0.) - p * v; });
   EXPECT_NEAR(energy.duality_gap, gap, 1e-13 * gap);
@@ -226,7 +227,7 @@ TEST(OptimalityResiduals, OfTheSolutionIsZero)
   for (const Point top : {Point{}, Point{0.3, -0.2, 0}, Point{-0.1, 0.1, 0}}) {
     const Judged scene({below(40), beside(25)}, top);
     const auto u = scene.solution();
-    const auto states = scene.functional->count_states(*u);
+    const auto states = scene.iterate->count_states(*u);
     seen.open += states.open;
     seen.closed += states.closed;
     seen.yielding += states.yielding;
@@ -274,7 +275,7 @@ TEST(OptimalityResiduals, GapGrowsQuadraticallyWhereOnlyEquilibriumIsDisturbed)
   Vector Kd(d->getMap());
   scene.K.apply(*d, Kd);
   const double strain = fem::internal_work(scene.d, scene.material, *plus(*u, 1e-6, *d)).energy_norm_squared,
-               dissipated = scene.functional->contact_energy(*u).dissipated;
+               dissipated = contact_energy(*scene.iterate, *u).dissipated;
   const double expected = 0.5e-12 * d->dot(Kd) / std::max(0.5 * strain, dissipated);
   EXPECT_NEAR(whole.duality_gap, expected, 1e-5 * expected);
 }
@@ -285,7 +286,7 @@ TEST(OptimalityResiduals, GrowsWithADisturbanceOfTheMultipliers)
   const auto disturbed = [](const double t) {
     const Judged scene;
     const auto u = scene.solution();
-    scene.functional->update_multipliers(*plus(*u, t, *scene.vector(1, 2)));
+    scene.iterate->update_multipliers(*plus(*u, t, *scene.vector(1, 2)));
     return scene.residuals(*u);
   };
   const auto whole = disturbed(1e-5);
@@ -323,7 +324,7 @@ TEST(OptimalityResiduals, DoesNotSeeARigidMotionOfBodyAndFoundation)
     foundation.gap = field([r](const Point &x) { return 0.02 * (1 - x[0]) - r.y - r.turn * x[0]; }); // normal (0, -1)
     const Judged scene({foundation}, {"top", "top", {x_motion, y_motion}});
     const auto u = scene.solution(), d = scene.vector(1, 2);
-    scene.functional->update_multipliers(*plus(*u, t, *d));
+    scene.iterate->update_multipliers(*plus(*u, t, *d));
     return scene.residuals(*plus(*u, t, *scene.vector(1, 0.5)));
   };
   for (const Motion r : {Motion{0.5, -0.25, 0}, {-30, 20, 0}, {0, 0, 40}}) {

@@ -1,4 +1,4 @@
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/contact/iterate.hpp"
 
 #include "foundation_scene.hpp"
 
@@ -40,10 +40,10 @@ contact::ContactOptions touching(const double penalty, const double yield = 3)
 template <class Expected>
 void expect_penalties(const Scene &scene, const Expected &expected)
 {
-  const auto &c = scene.functional->contact();
+  const auto &c = scene.iterate->points();
   const auto coords = to_host(scene.d.mesh->coords);
   const auto node = to_host(c.node);
-  const auto penalty = to_host(c.penalty);
+  const auto penalty = to_host(scene.iterate->penalty());
   for (int side = 0; side < c.num_sides(); ++side) {
     for (LO i = c.first(side); i < c.first(side + 1); ++i) {
       const Point x{coords(node(i), 0), coords(node(i), 1), 0};
@@ -73,7 +73,7 @@ TEST(Penalty, IsBoundedByWhatDoublePrecisionBears)
   for (const double much : {1e15, 1.7e308}) {
     const Scene scene(std::vector{touching(much)});
     expect_penalties(scene, [](int, const Point &) { return 1e8 * own_stiffness(); });
-    EXPECT_FALSE(scene.functional->raise_penalty());
+    EXPECT_FALSE(scene.iterate->raise_penalty());
     expect_penalties(scene, [](int, const Point &) { return 1e8 * own_stiffness(); });
   }
 }
@@ -84,10 +84,10 @@ TEST(Penalty, RisesToTheOneOfItsOwnChoiceAtLeastAndUpToTheBound)
   const auto rises = [](const double given, const std::vector<double> &expected) {
     const Scene scene(std::vector{touching(given)});
     for (const double penalty : expected) {
-      EXPECT_TRUE(scene.functional->raise_penalty());
+      EXPECT_TRUE(scene.iterate->raise_penalty());
       expect_penalties(scene, [&](int, const Point &) { return penalty; });
     }
-    EXPECT_FALSE(scene.functional->raise_penalty());
+    EXPECT_FALSE(scene.iterate->raise_penalty());
     expect_penalties(scene, [&](int, const Point &) { return expected.back(); });
   };
   rises(0, {1e7 * own, 1e8 * own});
@@ -100,7 +100,7 @@ TEST(Penalty, RaisedAtOneNodeIsARaiseOnAllRanks)
 {
   // Given at the bound below, left open beside.
   const Scene scene(std::vector{touching(1e300), beside(0)});
-  EXPECT_TRUE(scene.functional->raise_penalty());
+  EXPECT_TRUE(scene.iterate->raise_penalty());
   expect_penalties(scene, [](const int side, const Point &x) {
     if (side == 0) return 1e8 * own_stiffness();
     if (x[1] == 0) return 1e5 * slanted_corner_stiffness();
@@ -115,39 +115,39 @@ double stiffness_of_middle(const Scene &scene)
     return Point{0, std::abs(x[0] - 1) < 1e-9 && x[1] == 0 ? 1. : 0., 0};
   });
   Vector He(e->getMap());
-  scene.functional->hessian()->apply(*e, He);
+  scene.iterate->hessian()->apply(*e, He);
   return e->dot(He);
 }
 
 TEST(Penalty, RaisedIsInTheHessianOfStuckNodesAtOnce)
 {
   const Scene scene(std::vector{touching(40)});
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const double elastic = stiffness_of_middle(scene);
   EXPECT_NEAR(elastic, own_stiffness() * h, 1e-13 * elastic);
-  functional.update_hessian(*scene.vector(0, 0)); // all stick
+  iterate.update_hessian(*scene.vector(0, 0)); // all stick
   EXPECT_NEAR(stiffness_of_middle(scene), elastic + 40 * h, 1e-12 * elastic);
-  const int before = functional.hessian()->revision();
-  ASSERT_TRUE(functional.raise_penalty());
-  EXPECT_GT(functional.hessian()->revision(), before);
+  const int before = iterate.hessian()->revision();
+  ASSERT_TRUE(iterate.raise_penalty());
+  EXPECT_GT(iterate.hessian()->revision(), before);
   EXPECT_NEAR(stiffness_of_middle(scene), elastic * (1 + 1e5), 1e-12 * 1e5 * elastic);
-  functional.update_hessian(*scene.vector([](const Point &) { return Point{0, 1, 0}; })); // all open
+  iterate.update_hessian(*scene.vector([](const Point &) { return Point{0, 1, 0}; })); // all open
   EXPECT_NEAR(stiffness_of_middle(scene), elastic, 1e-12 * elastic);
-  ASSERT_TRUE(functional.raise_penalty());
+  ASSERT_TRUE(iterate.raise_penalty());
   EXPECT_NEAR(stiffness_of_middle(scene), elastic, 1e-12 * elastic);
 }
 
 TEST(Penalty, RaisedIsInTheGradientEvenAfterTheOriginHasMoved)
 {
   const Scene scene(std::vector{touching(40)});
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   auto u = scene.vector([](const Point &) { return Point{}; });
-  functional.move_origin(*u);
-  ASSERT_TRUE(functional.raise_penalty());
+  iterate.move_origin(*u);
+  ASSERT_TRUE(iterate.raise_penalty());
   const double r = 1e5 * own_stiffness();
   u = scene.vector([&](const Point &) { return Point{0, -1 / r, 0}; }); // presses lambda + r v from 1.5 to 2.5
-  functional.update_multipliers(*u);
-  const auto lambda = to_host(functional.multipliers());
+  iterate.update_multipliers(*u);
+  const auto lambda = to_host(iterate.multipliers().normal);
   for (std::size_t i = 0; i < lambda.extent(0); ++i) EXPECT_NEAR(lambda(i), 2.5, 1e-12);
 }
 

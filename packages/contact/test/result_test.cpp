@@ -23,13 +23,13 @@ struct Solved {
 
   Solved()
   {
-    for (int k = 0; k < 20; ++k) scene.functional->update_multipliers(*u); // nodes go open or to their limit
-    scene.functional->update_multipliers(*scene.vector(0.02, 2));          // and some of them come back
+    for (int k = 0; k < 20; ++k) scene.iterate->update_multipliers(*u); // nodes go open or to their limit
+    scene.iterate->update_multipliers(*scene.vector(0.02, 2));          // and some of them come back
     const auto &mesh = *scene.d.mesh;
     result = contact::contact_result(scene.d, {&mesh.side("bottom", "test"), &mesh.side("right", "test")},
-                                     *scene.functional, *u);
+                                     scene.iterate->points(), judged_at(*scene.iterate, *u));
   }
-  const contact::ContactNodes &nodes() const { return scene.functional->contact(); }
+  const contact::ContactNodes &nodes() const { return scene.iterate->points(); }
 };
 
 TEST(ContactResult, FieldsFollowFromDisplacementAndPressureAtEachPoint)
@@ -37,10 +37,10 @@ TEST(ContactResult, FieldsFollowFromDisplacementAndPressureAtEachPoint)
   const Solved solved;
   const auto &c = solved.nodes();
   const auto node = to_host(c.node);
-  const auto gap = to_host(c.gap), yield = to_host(c.yield);
+  const auto gap = to_host(c.gap), yield = to_host(c.law.yield);
   const auto n = to_host(c.normal);
   const auto u_nu = to_host(solved.result.normal_displacement), v = to_host(solved.result.penetration);
-  const auto p = to_host(solved.result.pressure), lambda = to_host(solved.scene.functional->multipliers());
+  const auto p = to_host(solved.result.pressure), lambda = to_host(solved.scene.iterate->multipliers().normal);
   const auto fixed = to_host(c.fixed);
   const auto state = to_host(solved.result.state);
   const auto u = solved.u->getLocalViewHost(Tpetra::Access::ReadOnly);
@@ -65,7 +65,7 @@ TEST(ContactResult, SumsOfEachSideAreThoseOfItsPoints)
   const Solved solved;
   const auto &c = solved.nodes();
   const Comm &comm = solved.scene.d.mesh->comm();
-  const auto weight = to_host(c.weight), yield = to_host(c.yield), gap = to_host(c.gap);
+  const auto weight = to_host(c.weight), yield = to_host(c.law.yield), gap = to_host(c.gap);
   const auto normal = to_host(c.normal);
   const auto p = to_host(solved.result.pressure), v = to_host(solved.result.penetration);
   ASSERT_EQ(solved.result.sides.size(), 2u);
@@ -113,11 +113,11 @@ TEST(ContactResult, IsEmptyWithoutSides)
 {
   const Scene scene(std::vector<contact::ContactOptions>{});
   const auto u = scene.vector(0.05, 0.4);
-  const auto result = contact::contact_result(scene.d, {}, *scene.functional, *u);
+  const auto result = contact::contact_result(scene.d, {}, scene.iterate->points(), judged_at(*scene.iterate, *u));
   EXPECT_TRUE(result.sides.empty());
   EXPECT_EQ(result.total.num_nodes, 0);
   EXPECT_EQ(result.total.max_pressure, 0);
-  EXPECT_EQ(contact::contact_forces(scene.d, scene.functional->contact(), result).norm2(), 0);
+  EXPECT_EQ(contact::contact_forces(scene.d, scene.iterate->points(), result).norm2(), 0);
 }
 
 TEST(ContactResult, NodesThatMissTheObstacleLendNoPressureToHeldOnes)
@@ -133,11 +133,12 @@ TEST(ContactResult, NodesThatMissTheObstacleLendNoPressureToHeldOnes)
     return across > 0.5 ? 0 : std::sqrt(0.36 - across * across) - 0.7 - (across < 0.1 ? 0.01 : 0);
   });
   const Scene scene({options}, condition);
-  const auto &c = scene.functional->contact();
+  const auto &c = scene.iterate->points();
   EXPECT_EQ(c.num_total, 3);
   EXPECT_EQ(c.num_fixed, 3);
-  const Vector u(*scene.functional->problem().dirichlet.value, Teuchos::Copy);
-  const auto result = contact::contact_result(scene.d, {&scene.d.mesh->side("bottom", "test")}, *scene.functional, u);
+  const Vector u(*scene.elastic.dirichlet.value, Teuchos::Copy);
+  const auto result = contact::contact_result(scene.d, {&scene.d.mesh->side("bottom", "test")}, scene.iterate->points(),
+                                              judged_at(*scene.iterate, u));
   const auto coords = to_host(scene.d.mesh->coords);
   const auto node = to_host(c.node);
   const auto p = to_host(result.pressure);
@@ -197,16 +198,16 @@ struct SolvedOnDents {
       to(n, 0) = 0.01 * coords(n, 0);
       to(n, 1) = 0.004 * (1 - coords(n, 1));
     }
-    const auto &problem = scene.functional->problem();
+    const auto &problem = scene.elastic;
     const auto nodes = contact::contact_nodes(scene.d, options(), problem.dirichlet, scene.material, dents.get());
     const auto K =
         fem::eliminate_dirichlet(scene.d, fem::assemble_stiffness(scene.d, scene.material), problem.dirichlet);
-    scene.functional = std::make_shared<contact::SmoothedFunctional>(problem, nodes, test::updated(K.matrix, nodes));
+    scene.iterate = std::make_shared<contact::Iterate>(problem, nodes, test::updated(K.matrix, nodes));
     u = scene.vector(0.08, 3.1);
-    for (int k = 0; k < 400; ++k) scene.functional->update_multipliers(*u); // to the law, at this u
+    for (int k = 0; k < 400; ++k) scene.iterate->update_multipliers(*u); // to the law, at this u
     const auto &mesh = *scene.d.mesh;
     result = contact::contact_result(scene.d, {&mesh.side("bottom", "test"), &mesh.side("right", "test")},
-                                     *scene.functional, *u);
+                                     scene.iterate->points(), judged_at(*scene.iterate, *u));
   }
   static std::vector<contact::ContactOptions> options()
   {
@@ -220,12 +221,12 @@ struct SolvedOnDents {
 TEST(ContactResult, DentsGrowByWhatTheFoundationGaveWayAndPenetrationIsMeasuredFromItsFirstSurface)
 {
   const SolvedOnDents solved;
-  const auto &c = solved.scene.functional->contact();
+  const auto &c = solved.scene.iterate->points();
   const Comm &comm = solved.scene.d.mesh->comm();
   const auto before = to_host(c.dent), dent = to_host(solved.result.dent), p = to_host(solved.result.pressure),
              v = to_host(solved.result.penetration), u_nu = to_host(solved.result.normal_displacement),
-             gap = to_host(c.gap), xi = to_host(c.yield), H = to_host(c.hardening), compliance = to_host(c.compliance),
-             weight = to_host(c.weight);
+             gap = to_host(c.gap), xi = to_host(c.law.yield), H = to_host(c.law.hardening),
+             compliance = to_host(c.law.compliance), weight = to_host(c.weight);
   const auto fixed = to_host(c.fixed);
   GO grown = 0, kept = 0;
   for (int side = 0; side < 2; ++side) {
@@ -274,8 +275,9 @@ TEST(ContactResult, NodesThatAreHeldHaveThePressureOfTheirLawAtTheirPenetration)
     floor.hardening = ScalarField(20.);
     floor.stiffness = ScalarField(80.);
     const Scene scene(std::vector{floor}, held("bottom", {0, -0.1, 0}));
-    const auto result = contact::contact_result(scene.d, {&scene.d.mesh->side("bottom", "test")}, *scene.functional,
-                                                *scene.functional->problem().dirichlet.value);
+    const auto result =
+        contact::contact_result(scene.d, {&scene.d.mesh->side("bottom", "test")}, scene.iterate->points(),
+                                judged_at(*scene.iterate, *scene.elastic.dirichlet.value));
     const auto p = to_host(result.pressure), dent = to_host(result.dent);
     const double beyond = 0.1 - yield / 80, expected = yield == 3 ? 3 + beyond * 80 * 20 / 100 : 8;
     for (std::size_t i = 0; i < p.extent(0); ++i) {

@@ -1,4 +1,4 @@
-#include "rpc/contact/smoothed_functional.hpp"
+#include "rpc/contact/iterate.hpp"
 
 #include "foundation_scene.hpp"
 
@@ -26,31 +26,31 @@ TEST(SmoothedFunctional, GradientIsTheDerivativeOfTheValue)
 {
   const Scene scene;
   const auto u = scene.vector(0.05, 0.4), d = scene.vector(1, 2);
-  const auto states = scene.functional->count_states(*u);
+  const auto states = scene.iterate->count_states(*u);
   ASSERT_GT(states.open, 0); // all three pieces take part
   ASSERT_GT(states.closed, 0);
   ASSERT_GT(states.yielding, 0);
   Vector F(u->getMap());
-  scene.functional->gradient(*u, F);
+  scene.iterate->gradient(*u, F);
   const double exact = F.dot(*d), scale = F.norm2() * d->norm2();
   const double h = 1e-5; // keeps each node on its piece, where differences of a quadratic are exact
   const double difference =
-      (scene.functional->value(*plus(*u, h, *d)) - scene.functional->value(*plus(*u, -h, *d))) / (2 * h);
+      (scene.iterate->value(*plus(*u, h, *d)) - scene.iterate->value(*plus(*u, -h, *d))) / (2 * h);
   EXPECT_NEAR(difference, exact, 1e-9 * scale);
 }
 
 TEST(SmoothedFunctional, HessianIsTheDerivativeOfTheGradientOnEachPiece)
 {
   const Scene scene;
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4), d = scene.vector(1, 2);
-  EXPECT_GT(functional.update_hessian(*u), 0);
-  EXPECT_EQ(functional.update_hessian(*u), 0); // nothing changes twice
+  EXPECT_GT(iterate.update_hessian(*u), 0);
+  EXPECT_EQ(iterate.update_hessian(*u), 0); // nothing changes twice
   Vector Hd(u->getMap()), up(u->getMap()), down(u->getMap());
-  functional.hessian()->apply(*d, Hd);
+  iterate.hessian()->apply(*d, Hd);
   const double h = 1e-5;
-  functional.gradient(*plus(*u, h, *d), up);
-  functional.gradient(*plus(*u, -h, *d), down);
+  iterate.gradient(*plus(*u, h, *d), up);
+  iterate.gradient(*plus(*u, -h, *d), down);
   up.update(-1., down, 1.);
   up.scale(1 / (2 * h));
   up.update(-1., Hd, 1.);
@@ -58,13 +58,13 @@ TEST(SmoothedFunctional, HessianIsTheDerivativeOfTheGradientOnEachPiece)
 }
 
 /// |H d - (F(u + h d) - F(u - h d)) / 2h|_2 / |H d|_2 for the Hessian that is in the matrix.
-double hessian_error(const contact::SmoothedFunctional &functional, const Vector &u, const Vector &d)
+double hessian_error(const contact::Iterate &iterate, const Vector &u, const Vector &d)
 {
   Vector Hd(u.getMap()), up(u.getMap()), down(u.getMap());
-  functional.hessian()->apply(d, Hd);
+  iterate.hessian()->apply(d, Hd);
   const double h = 1e-5; // keeps each node on its piece
-  functional.gradient(*plus(u, h, d), up);
-  functional.gradient(*plus(u, -h, d), down);
+  iterate.gradient(*plus(u, h, d), up);
+  iterate.gradient(*plus(u, -h, d), down);
   up.update(-1., down, 1.);
   up.update(-1., Hd, 1 / (2 * h));
   return up.norm2() / Hd.norm2();
@@ -75,17 +75,17 @@ TEST(SmoothedFunctional, GradientIsTheDerivativeOfTheValueWhereSidesMeet)
   const Scene scene(std::vector{below(40), beside(25)});
   const auto u = scene.vector(0.05, 0.4), d = scene.vector(1, 2);
   Vector F(u->getMap());
-  scene.functional->gradient(*u, F);
+  scene.iterate->gradient(*u, F);
   const double h = 1e-5;
   const double difference =
-      (scene.functional->value(*plus(*u, h, *d)) - scene.functional->value(*plus(*u, -h, *d))) / (2 * h);
+      (scene.iterate->value(*plus(*u, h, *d)) - scene.iterate->value(*plus(*u, -h, *d))) / (2 * h);
   EXPECT_NEAR(difference, F.dot(*d), 1e-9 * F.norm2() * d->norm2());
 }
 
 TEST(SmoothedFunctional, HessianOfANodeOfTwoSidesIsTheDerivativeInEachOfItsStates)
 {
   const Scene scene(std::vector{below(40), beside(25)});
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   // The corner (2, 0) along the normals (0, -1) and (0.8, -0.6) of its two points, the other nodes anyhow. Multipliers
   // are 1.5 and 1.5: the first point is closed for v in (-0.0375, 0.0375), the second for v in (-0.06, 0.06).
   struct Case {
@@ -107,27 +107,27 @@ TEST(SmoothedFunctional, HessianOfANodeOfTwoSidesIsTheDerivativeInEachOfItsState
     const auto u = scene.vector([&](const Point &x) {
       return at_corner(x, corner, {0.05 * std::sin(5 * x[0] + x[1]), 0.05 * std::sin(0.4 + 5 * x[0] - k), 0});
     });
-    functional.update_hessian(*u);
-    EXPECT_EQ(functional.update_hessian(*u), 0);
+    iterate.update_hessian(*u);
+    EXPECT_EQ(iterate.update_hessian(*u), 0);
     // The corner's block of H along both of its unknowns, against K's alone, and everything at once.
     double along[2];
     for (int c = 0; c < 2; ++c) {
       const auto d = scene.vector([&](const Point &x) {
         return at_corner(x, {c == 0 ? 1. : 0., c == 1 ? 1. : 0., 0}, {});
       });
-      EXPECT_LT(hessian_error(functional, *u, *d), 1e-9) << c;
+      EXPECT_LT(hessian_error(iterate, *u, *d), 1e-9) << c;
       Vector Hd(u->getMap());
-      functional.hessian()->apply(*d, Hd);
+      iterate.hessian()->apply(*d, Hd);
       along[c] = Hd.dot(*d);
     }
-    EXPECT_LT(hessian_error(functional, *u, *scene.vector(1, 2)), 1e-9);
+    EXPECT_LT(hessian_error(iterate, *u, *scene.vector(1, 2)), 1e-9);
     // r w m m^T with weights 1/6 below and beside; K of the corner's cell by the diagonal of a cell of 1/3 x 1/3
     for (int c = 0; c < 2; ++c) {
       const auto d = alone.vector([&](const Point &x) {
         return at_corner(x, {c == 0 ? 1. : 0., c == 1 ? 1. : 0., 0}, {});
       });
       Vector Kd(u->getMap());
-      alone.functional->hessian()->apply(*d, Kd);
+      alone.iterate->hessian()->apply(*d, Kd);
       const double of_below = closed[k][0] && c == 1 ? 40. / 6 : 0,
                    of_beside = closed[k][1] ? 25. / 6 * (c == 0 ? 0.64 : 0.36) : 0;
       EXPECT_NEAR(along[c], Kd.dot(*d) + of_below + of_beside, 1e-13 * 40);
@@ -138,23 +138,23 @@ TEST(SmoothedFunctional, HessianOfANodeOfTwoSidesIsTheDerivativeInEachOfItsState
 TEST(SmoothedFunctional, StatesCountThePointsOfBothSides)
 {
   const Scene scene(std::vector{below(40), beside(25)});
-  const auto states = scene.functional->count_states(*scene.vector(0.05, 0.4));
+  const auto states = scene.iterate->count_states(*scene.vector(0.05, 0.4));
   EXPECT_EQ(states.open + states.closed + states.yielding, 7 + 3); // the held point at (2, 1) is in none
-  EXPECT_EQ(scene.functional->contact().num_total, 7 + 4);
-  EXPECT_EQ(scene.functional->contact().num_fixed, 1);
+  EXPECT_EQ(scene.iterate->points().num_total, 7 + 4);
+  EXPECT_EQ(scene.iterate->points().num_fixed, 1);
 }
 
 TEST(SmoothedFunctional, AcrossKinksTheGradientIsContinuousAndDifferencesConvergeAtFirstOrder)
 {
   // v crosses the kink of one node within the difference: the error of a one-sided Taylor step is O(h), not O(h^2).
   const Scene scene;
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4), d = scene.vector(1, 2);
   Vector F(u->getMap()), G(u->getMap());
-  functional.gradient(*u, F);
+  iterate.gradient(*u, F);
   double previous = 0;
   for (const double h : {0.02, 0.01, 0.005}) {
-    functional.gradient(*plus(*u, h, *d), G);
+    iterate.gradient(*plus(*u, h, *d), G);
     G.update(-1., F, 1.);
     const double jump = G.norm2();
     if (previous > 0) {
@@ -167,25 +167,25 @@ TEST(SmoothedFunctional, AcrossKinksTheGradientIsContinuousAndDifferencesConverg
 TEST(SmoothedFunctional, ValueDoesNotSeeWhichContactBlocksAreInTheMatrix)
 {
   const Scene scene(1e8);
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(1e-9, 0.4);
-  const double before = functional.value(*u);
-  ASSERT_GT(functional.update_hessian(*scene.vector(0, 0)), 0);
-  EXPECT_NEAR(functional.value(*u), before, 1e-9 * std::abs(before));
-  EXPECT_GT(functional.update_hessian(*scene.vector(1, 0.4)), 0);
+  const double before = iterate.value(*u);
+  ASSERT_GT(iterate.update_hessian(*scene.vector(0, 0)), 0);
+  EXPECT_NEAR(iterate.value(*u), before, 1e-9 * std::abs(before));
+  EXPECT_GT(iterate.update_hessian(*scene.vector(1, 0.4)), 0);
 }
 
 TEST(SmoothedFunctional, LineModelGivesTheSlopeOfTheFunctional)
 {
   const Scene scene;
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4), d = scene.vector(0.1, 2);
   Vector F(u->getMap());
-  functional.gradient(*u, F);
-  const auto line = functional.along(*u, *d, F);
+  iterate.gradient(*u, F);
+  const auto line = iterate.along(*u, *d, F);
   for (const double t : {0., 0.3, 0.77, 1.9, -0.6}) {
     Vector G(u->getMap());
-    functional.gradient(*plus(*u, t, *d), G);
+    iterate.gradient(*plus(*u, t, *d), G);
     EXPECT_NEAR(line->at(t).slope, G.dot(*d), 1e-12 * G.norm2() * d->norm2()) << t;
     const double h = 1e-7;
     const double bend = (line->at(t + h).slope - line->at(t - h).slope) / (2 * h);
@@ -196,20 +196,20 @@ TEST(SmoothedFunctional, LineModelGivesTheSlopeOfTheFunctional)
 TEST(SmoothedFunctional, SubspaceModelGivesTheGradientOfTheFunctional)
 {
   const Scene scene;
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4);
   const std::vector<RCP<const Vector>> directions{scene.vector(0.1, 2), scene.vector(0.3, 0.7), scene.vector(0.02, 5)};
   const std::size_t n = directions.size();
   Vector F(u->getMap());
-  functional.gradient(*u, F);
-  const auto model = functional.within(*u, directions, F);
+  iterate.gradient(*u, F);
+  const auto model = iterate.within(*u, directions, F);
   const std::vector<double> cases[] = {{0, 0, 0}, {0.3, 0, 0}, {0.77, -0.4, 0.1}, {-0.6, 1.9, -2}};
   for (const auto &a : cases) {
     SCOPED_TRACE(a[0]);
     const auto gradient = [&](const std::vector<double> &at) {
       Vector there(*u, Teuchos::Copy), G(u->getMap());
       for (std::size_t k = 0; k < n; ++k) there.update(at[k], *directions[k], 1.);
-      functional.gradient(there, G);
+      iterate.gradient(there, G);
       std::vector<double> values(n);
       for (std::size_t k = 0; k < n; ++k) values[k] = G.dot(*directions[k]);
       return values;
@@ -236,16 +236,16 @@ TEST(SmoothedFunctional, SubspaceModelGivesTheGradientOfTheFunctional)
 TEST(SmoothedFunctional, PieceGradientIsTheGradientOnThePieceOfTheHessian)
 {
   const Scene scene;
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4), far = scene.vector(0.08, 1.1);
-  functional.update_hessian(*u);
+  iterate.update_hessian(*u);
   Vector F(u->getMap()), G(u->getMap()), step(u->getMap());
-  functional.gradient(*u, F);
-  active_set_gradient(functional, *u, G);
+  iterate.gradient(*u, F);
+  active_set_gradient(iterate, *u, G);
   G.update(-1., F, 1.);
   EXPECT_LT(G.norm2(), 1e-13 * F.norm2()); // the piece at u is the Hessian's own
-  active_set_gradient(functional, *far, G);
-  functional.gradient(*far, F);
+  active_set_gradient(iterate, *far, G);
+  iterate.gradient(*far, F);
   G.update(-1., F, 1.);
   EXPECT_GT(G.norm2(), 1e-3 * F.norm2()); // elsewhere it is another one
 }
@@ -253,17 +253,17 @@ TEST(SmoothedFunctional, PieceGradientIsTheGradientOnThePieceOfTheHessian)
 TEST(SmoothedFunctional, MultiplierUpdateIsTheSmoothedPressureAndStaysWithinLimits)
 {
   const Scene scene;
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4);
-  const auto before = to_host(functional.multipliers());
+  const auto before = to_host(iterate.multipliers().normal);
   HostView<double *> old("old", before.extent(0));
   Kokkos::deep_copy(old, before);
-  const double change = functional.update_multipliers(*u);
+  const double change = iterate.update_multipliers(*u);
   EXPECT_GT(change, 0);
   EXPECT_LE(change, 1);
-  const auto now = to_host(functional.multipliers());
-  const auto &c = functional.contact();
-  const auto yield = to_host(c.yield), gap = to_host(c.gap);
+  const auto now = to_host(iterate.multipliers().normal);
+  const auto &c = iterate.points();
+  const auto yield = to_host(c.law.yield), gap = to_host(c.gap);
   const auto node = to_host(c.node);
   const auto x = u->getLocalViewHost(Tpetra::Access::ReadOnly);
   for (LO i = 0; i < c.size(); ++i) {
@@ -275,48 +275,47 @@ TEST(SmoothedFunctional, MultiplierUpdateIsTheSmoothedPressureAndStaysWithinLimi
 TEST(SmoothedFunctional, EnergiesAndResidualsDoNotDependOnTheNumberOfRanks)
 {
   const Scene scene;
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4);
-  functional.update_multipliers(*u);
+  iterate.update_multipliers(*u);
   // Values of one rank, to be met by all.
-  EXPECT_NEAR(functional.value(*u), 0.41911329126094887, 1e-13);
-  EXPECT_NEAR(functional.energy(*u), 0.41226150411482143, 1e-13);
+  EXPECT_NEAR(iterate.value(*u), 0.41911329126094887, 1e-13);
+  EXPECT_NEAR(energy(iterate, scene.elastic, *u), 0.41226150411482143, 1e-13);
   Vector residual(u->getMap());
-  functional.hessian()->apply(*u, residual); // K: no states were chosen
-  const Vector contact = functional.multiplier_forces();
-  residual.update(1., contact, -1., *functional.problem().load, 1.);
-  EXPECT_NEAR(residual.norm2() / std::max(functional.force_scale(), contact.norm2()), 3.4491199932704339, 1e-12);
-  const auto states = functional.count_states(*u);
+  iterate.hessian()->apply(*u, residual); // K: no states were chosen
+  const Vector contact = multiplier_forces(iterate);
+  residual.update(1., contact, -1., *scene.elastic.load, 1.);
+  EXPECT_NEAR(residual.norm2() / std::max(iterate.force_scale(), contact.norm2()), 3.4491199932704339, 1e-12);
+  const auto states = iterate.count_states(*u);
   EXPECT_EQ(states.open + states.closed + states.yielding, 7);
 }
 
 TEST(SmoothedFunctional, ContactLawResidualVanishesExactlyForPairsThatObeyTheLaw)
 {
   const Scene scene;
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4);
-  for (int k = 0; k < 200; ++k)
-    functional.update_multipliers(*u); // at a fixed u: lambda goes to 0 or xi, where v says so
-  EXPECT_LT(functional.contact_law_residual(*u), 1e-14);
-  functional.update_multipliers(*scene.vector(0.05, 3.4));
-  EXPECT_GT(functional.contact_law_residual(*u), 1e-3);
+  for (int k = 0; k < 200; ++k) iterate.update_multipliers(*u); // at a fixed u: lambda goes to 0 or xi, where v says so
+  EXPECT_LT(contact_law_residual(iterate, *u), 1e-14);
+  iterate.update_multipliers(*scene.vector(0.05, 3.4));
+  EXPECT_GT(contact_law_residual(iterate, *u), 1e-3);
 }
 
 /// The functional falls in each of so many sweeps, after which the gradient along all contact directions is below the bound [N].
 void expect_sweeps_to_balance(const Scene &scene, const int sweeps, const double bound)
 {
   const auto u = scene.vector(0.02, 0.3);
-  double before = scene.functional->value(*u);
+  double before = scene.iterate->value(*u);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    scene.functional->sweep(*u);
-    const double now = scene.functional->value(*u);
+    scene.iterate->sweep(*u);
+    const double now = scene.iterate->value(*u);
     EXPECT_LE(now, before + 1e-13 * std::abs(before)) << sweep;
     before = now;
   }
   Vector F(u->getMap());
-  scene.functional->gradient(*u, F);
+  scene.iterate->gradient(*u, F);
   const auto f = F.getLocalViewHost(Tpetra::Access::ReadOnly);
-  const auto &c = scene.functional->contact();
+  const auto &c = scene.iterate->points();
   const auto node = to_host(c.node);
   const auto m = to_host(c.direction);
   for (LO i = 0; i < c.size(); ++i) {
@@ -337,9 +336,9 @@ TEST(SmoothedFunctional, SweepsWhereOneNodeAloneMayTouch)
   foundation.gap = field([](const Point &x) { return x[0] == 0 ? 0 : 1; });
   const Scene scene(std::vector{foundation});
   const auto u = scene.vector(0.02, 0.3);
-  const double before = scene.functional->value(*u);
-  for (int sweep = 0; sweep < 3; ++sweep) scene.functional->sweep(*u); // ranks that have no contact node take part
-  EXPECT_LT(scene.functional->value(*u), before);
+  const double before = scene.iterate->value(*u);
+  for (int sweep = 0; sweep < 3; ++sweep) scene.iterate->sweep(*u); // ranks that have no contact node take part
+  EXPECT_LT(scene.iterate->value(*u), before);
 }
 
 // Foundations that harden, are elastic, or both -----------------------------------------------------------------------------
@@ -361,9 +360,9 @@ const std::vector<std::vector<contact::ContactOptions>> &all_foundations()
                                                                      foundations(9, 80)};
   return all;
 }
-void expect_all_states(const contact::SmoothedFunctional &functional, const Vector &u)
+void expect_all_states(const contact::Iterate &iterate, const Vector &u)
 {
-  const auto states = functional.count_states(u);
+  const auto states = iterate.count_states(u);
   EXPECT_GT(states.open, 0);
   EXPECT_GT(states.closed, 0);
   EXPECT_GT(states.yielding, 0);
@@ -373,17 +372,17 @@ TEST(OtherFoundations, GradientAndHessianAreDerivativesOnEachPiece)
 {
   for (const auto &options : all_foundations()) {
     const Scene scene(options);
-    auto &functional = *scene.functional;
+    auto &iterate = *scene.iterate;
     const auto u = scene.vector(0.08, 0.4), d = scene.vector(1, 2);
-    expect_all_states(functional, *u);
+    expect_all_states(iterate, *u);
     Vector F(u->getMap());
-    functional.gradient(*u, F);
+    iterate.gradient(*u, F);
     const double h = 1e-5;
-    const double difference = (functional.value(*plus(*u, h, *d)) - functional.value(*plus(*u, -h, *d))) / (2 * h);
+    const double difference = (iterate.value(*plus(*u, h, *d)) - iterate.value(*plus(*u, -h, *d))) / (2 * h);
     EXPECT_NEAR(difference, F.dot(*d), 1e-9 * F.norm2() * d->norm2());
-    EXPECT_GT(functional.update_hessian(*u), 0);
-    EXPECT_EQ(functional.update_hessian(*u), 0);
-    EXPECT_LT(hessian_error(functional, *u, *d), 1e-9);
+    EXPECT_GT(iterate.update_hessian(*u), 0);
+    EXPECT_EQ(iterate.update_hessian(*u), 0);
+    EXPECT_LT(hessian_error(iterate, *u, *d), 1e-9);
   }
 }
 
@@ -391,14 +390,14 @@ TEST(OtherFoundations, LineModelGivesTheSlopeOfTheFunctional)
 {
   for (const auto &options : all_foundations()) {
     const Scene scene(options);
-    auto &functional = *scene.functional;
+    auto &iterate = *scene.iterate;
     const auto u = scene.vector(0.08, 0.4), d = scene.vector(0.1, 2);
     Vector F(u->getMap());
-    functional.gradient(*u, F);
-    const auto line = functional.along(*u, *d, F);
+    iterate.gradient(*u, F);
+    const auto line = iterate.along(*u, *d, F);
     for (const double t : {0., 0.3, 0.77, 1.9, -0.6}) {
       Vector G(u->getMap());
-      functional.gradient(*plus(*u, t, *d), G);
+      iterate.gradient(*plus(*u, t, *d), G);
       EXPECT_NEAR(line->at(t).slope, G.dot(*d), 1e-12 * G.norm2() * d->norm2()) << t;
       const double h = 1e-7, bend = (line->at(t + h).slope - line->at(t - h).slope) / (2 * h);
       EXPECT_NEAR(line->at(t).curvature, bend, 1e-5 * std::abs(bend)) << t;
@@ -410,16 +409,16 @@ TEST(OtherFoundations, ActiveSetGradientIsTheGradientOnItsOwnPiece)
 {
   for (const auto &options : all_foundations()) {
     const Scene scene(options);
-    auto &functional = *scene.functional;
+    auto &iterate = *scene.iterate;
     const auto u = scene.vector(0.08, 0.4), far = scene.vector(0.15, 1.1);
-    functional.update_hessian(*u);
+    iterate.update_hessian(*u);
     Vector F(u->getMap()), G(u->getMap());
-    functional.gradient(*u, F);
-    active_set_gradient(functional, *u, G);
+    iterate.gradient(*u, F);
+    active_set_gradient(iterate, *u, G);
     G.update(-1., F, 1.);
     EXPECT_LT(G.norm2(), 1e-13 * F.norm2());
-    active_set_gradient(functional, *far, G);
-    functional.gradient(*far, F);
+    active_set_gradient(iterate, *far, G);
+    iterate.gradient(*far, F);
     G.update(-1., F, 1.);
     EXPECT_GT(G.norm2(), 1e-3 * F.norm2());
   }
@@ -429,18 +428,19 @@ TEST(OtherFoundations, ResidualDualityGapAndEnergyAgreeWhereTheLawHoldsAndTellWh
 {
   for (const auto &options : all_foundations()) {
     const Scene scene(options);
-    auto &functional = *scene.functional;
+    auto &iterate = *scene.iterate;
     const auto u = scene.vector(0.08, 0.4);
-    functional.update_multipliers(*scene.vector(0.08, 3.4));
-    EXPECT_GT(functional.contact_law_residual(*u), 1e-3);
-    EXPECT_GT(functional.contact_energy(*u).duality_gap, 1e-4);
-    for (int k = 0; k < 400; ++k) functional.update_multipliers(*u); // at a fixed u
-    EXPECT_LT(functional.contact_law_residual(*u), 1e-13);
-    EXPECT_NEAR(functional.contact_energy(*u).duality_gap, 0, 1e-13);
+    iterate.update_multipliers(*scene.vector(0.08, 3.4));
+    EXPECT_GT(contact_law_residual(iterate, *u), 1e-3);
+    EXPECT_GT(contact_energy(iterate, *u).duality_gap, 1e-4);
+    for (int k = 0; k < 400; ++k) iterate.update_multipliers(*u); // at a fixed u
+    EXPECT_LT(contact_law_residual(iterate, *u), 1e-13);
+    EXPECT_NEAR(contact_energy(iterate, *u).duality_gap, 0, 1e-13);
     // J = Pi + sum of w psi(v), by hand: psi is what is in springs, and what new dents have taken up
-    const auto &c = functional.contact();
-    const auto weight = to_host(c.weight), xi = to_host(c.yield), gap = to_host(c.gap), H = to_host(c.hardening),
-               compliance = to_host(c.compliance), lambda = to_host(functional.multipliers());
+    const auto &c = iterate.points();
+    const auto weight = to_host(c.weight), xi = to_host(c.law.yield), gap = to_host(c.gap),
+               H = to_host(c.law.hardening), compliance = to_host(c.law.compliance),
+               lambda = to_host(iterate.multipliers().normal);
     const auto node = to_host(c.node);
     const auto n = to_host(c.normal);
     const auto fixed = to_host(c.fixed);
@@ -464,12 +464,12 @@ TEST(OtherFoundations, ResidualDualityGapAndEnergyAgreeWhereTheLawHoldsAndTellWh
     const Comm &comm = scene.d.mesh->comm();
     const double all_lost = sum_all(comm, lost), all_stored = sum_all(comm, stored);
     EXPECT_GT(all_lost, 1e-3);
-    EXPECT_NEAR(functional.contact_energy(*u).dissipated, all_lost, 1e-12);
+    EXPECT_NEAR(contact_energy(iterate, *u).dissipated, all_lost, 1e-12);
     Vector Ku(u->getMap());
     Scene bare(std::vector<contact::ContactOptions>{});
-    bare.functional->hessian()->apply(*u, Ku);
-    const double elastic = 0.5 * u->dot(Ku) - functional.problem().load->dot(*u);
-    EXPECT_NEAR(functional.energy(*u), elastic + all_lost + all_stored + sum_all(comm, held), 1e-11);
+    bare.iterate->hessian()->apply(*u, Ku);
+    const double elastic = 0.5 * u->dot(Ku) - scene.elastic.load->dot(*u);
+    EXPECT_NEAR(energy(iterate, scene.elastic, *u), elastic + all_lost + all_stored + sum_all(comm, held), 1e-11);
   }
 }
 
@@ -485,17 +485,17 @@ TEST(OtherFoundations, ActiveSetMovesClosingPointsOntoTheCompressedSpring)
 {
   // What closes from open or yielding comes to v = c lambda: there r (v - c lambda) is no residual.
   const Scene scene(foundations(9, 80));
-  auto &functional = *scene.functional;
+  auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.08, 0.4);
-  functional.update_hessian(*scene.vector(0.08, 2.2)); // an active set that is not that of u
-  const auto choice = functional.choose_active_set(*u, 0);
+  iterate.update_hessian(*scene.vector(0.08, 2.2)); // an active set that is not that of u
+  const auto choice = iterate.choose_active_set(*u, 0);
   const auto next = to_host(choice.state);
   const auto moved = rcp(new Vector(*u, Teuchos::Copy));
-  functional.take_active_set(choice, *moved);
-  const auto &c = functional.contact();
+  iterate.take_active_set(choice, *moved);
+  const auto &c = iterate.points();
   const auto node = to_host(c.node);
-  const auto free_gap = to_host(c.free_gap), compliance = to_host(c.compliance), xi = to_host(c.yield),
-             lambda = to_host(functional.multipliers());
+  const auto free_gap = to_host(c.free_gap), compliance = to_host(c.law.compliance), xi = to_host(c.law.yield),
+             lambda = to_host(iterate.multipliers().normal);
   const auto n = to_host(c.direction);
   const auto fixed = to_host(c.fixed);
   const auto x = moved->getLocalViewHost(Tpetra::Access::ReadOnly), old = u->getLocalViewHost(Tpetra::Access::ReadOnly);

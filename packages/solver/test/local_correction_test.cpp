@@ -40,7 +40,7 @@ struct Written {
   RCP<CrsMatrix> A = H.base().copy();
   DeviceView<double ***> update = bounded_update(H);
 
-  explicit Written(const Beam &beam) : H(*beam.functional->hessian()) { write_update(*A, H, update); }
+  explicit Written(const Beam &beam) : H(*beam.iterate->hessian()) { write_update(*A, H, update); }
   std::optional<LocalCorrection> correction() const { return LocalCorrection::around(H, *A, update); }
 };
 
@@ -73,7 +73,7 @@ TEST(LocalCorrection, IsSymmetricPositiveAndExactOnThePatch)
   open_between(beam, 2, 2.001);
   const Written written(beam);
   open_between(beam, 1.9, 2.2);
-  const auto &H = *beam.functional->hessian();
+  const auto &H = *beam.iterate->hessian();
   const Diagonal M(*written.A);
   const auto correction = written.correction();
   ASSERT_TRUE(correction);

@@ -92,7 +92,7 @@ TEST(Newton, FullStepsCycleWhereExactStepsConverge)
     full_steps.max_iterations = 30;
     std::vector<std::array<GO, 3>> states;
     const auto record = [&](const solver::NewtonStep &, const Vector &u) {
-      const auto counts = full.functional->count_states(u);
+      const auto counts = full.iterate->count_states(u);
       states.push_back({counts.open, counts.closed, counts.yielding});
     };
     solver::MinimizeResult with_full, with_exact;
@@ -101,12 +101,12 @@ TEST(Newton, FullStepsCycleWhereExactStepsConverge)
       if (uzawa == 0 || with_full.converged) {
         states.clear();
         with_full = minimize(full, full_steps, nullptr, record);
-        full.functional->update_multipliers(*full.u);
+        full.iterate->update_multipliers(*full.u);
       }
       with_exact = minimize(exact);
       EXPECT_TRUE(with_exact.converged) << with_exact.reason;
       EXPECT_LE(with_exact.steps, 12);
-      exact.functional->update_multipliers(*exact.u);
+      exact.iterate->update_multipliers(*exact.u);
     }
     EXPECT_FALSE(with_full.converged);
     EXPECT_EQ(with_full.steps, 30);
@@ -118,18 +118,18 @@ TEST(Newton, FullStepsCycleWhereExactStepsConverge)
 TEST(Newton, FunctionalFallsAtEveryExactStep)
 {
   Beam beam;
-  double previous = beam.functional->value(*beam.u);
+  double previous = beam.iterate->value(*beam.u);
   solver::NewtonOptions options;
   options.max_iterations = 1;
   for (int k = 0; k < 12; ++k) {
     minimize(beam, options);
-    const double now = beam.functional->value(*beam.u);
+    const double now = beam.iterate->value(*beam.u);
     EXPECT_LE(now, previous + 1e-13 * std::abs(previous)) << k;
     previous = now;
   }
   Vector F(beam.u->getMap());
-  beam.functional->gradient(*beam.u, F);
-  EXPECT_LT(F.norm2(), 1e-10 * beam.functional->force_scale());
+  beam.iterate->gradient(*beam.u, F);
+  EXPECT_LT(F.norm2(), 1e-10 * beam.iterate->force_scale());
 }
 
 /// A beam, pressed on bumps that are rigid at some points and give way at others: kinks lie close to each other.
@@ -151,8 +151,8 @@ TEST(Newton, SweepsTakeItPastTheKinks)
   EXPECT_TRUE(swept.converged) << swept.reason;
   EXPECT_LE(swept.steps, 15);
   EXPECT_GE(crept.steps, 2 * swept.steps);
-  const double value = without.functional->value(*without.u);
-  EXPECT_LE(with.functional->value(*with.u), value + 1e-10 * std::abs(value));
+  const double value = without.iterate->value(*without.u);
+  EXPECT_LE(with.iterate->value(*with.u), value + 1e-10 * std::abs(value));
 }
 
 TEST(Newton, SaysWhyItFailed)
@@ -170,9 +170,9 @@ TEST(Newton, SaysWhyItFailed)
 /// |H x - load| / |load|
 double residual_of(const Beam &beam, const Vector &x)
 {
-  const Vector &load = *beam.functional->problem().load;
+  const Vector &load = *beam.elastic.load;
   Vector r(x.getMap());
-  beam.functional->hessian()->apply(x, r);
+  beam.iterate->hessian()->apply(x, r);
   r.update(-1., load, 1.);
   return r.norm2() / load.norm2();
 }
@@ -181,7 +181,7 @@ TEST(LinearSolver, FollowsChangesOfAFewNodesWithoutASetUp)
 {
   Beam beam;
   Vector x(beam.u->getMap());
-  const Vector &load = *beam.functional->problem().load;
+  const Vector &load = *beam.elastic.load;
   open_between(beam, 2, 2.01);
   const int fresh = beam.linear->solve(load, x, 1e-8).iterations;
   EXPECT_LT(residual_of(beam, x), 1.01e-8);
@@ -203,7 +203,7 @@ TEST(LinearSolver, SetsUpAgainOnceWhereAllStatesChange)
 {
   Beam beam;
   Vector x(beam.u->getMap());
-  const Vector &load = *beam.functional->problem().load;
+  const Vector &load = *beam.elastic.load;
   open_between(beam, 0.01, 4.99);
   const int open = beam.linear->solve(load, x, 1e-8).iterations;
   open_between(beam, 2, 2.01); // multigrid was made for a side that moves freely
@@ -222,7 +222,7 @@ TEST(LinearSolver, SetsUpAgainOnceWhereAllStatesChange)
 TEST(LinearSolver, InverseEnergyIsThatOfASolveUpToOneMultigridCycle)
 {
   Beam beam;
-  const Vector &F = *beam.functional->problem().load;
+  const Vector &F = *beam.elastic.load;
   Vector x(F.getMap()), zero(F.getMap());
   EXPECT_EQ(beam.linear->inverse_energy(zero), 0);
   EXPECT_TRUE(beam.linear->solve(F, x, 1e-8).converged);
@@ -238,10 +238,10 @@ TEST(LinearSolver, StopsEarlyWhereLessAccuracyIsAskedFor)
 {
   Beam beam;
   Vector x(beam.u->getMap());
-  const int fine = beam.linear->solve(*beam.functional->problem().load, x, 1e-11).iterations;
-  const int coarse = beam.linear->solve(*beam.functional->problem().load, x, 1e-2).iterations;
+  const int fine = beam.linear->solve(*beam.elastic.load, x, 1e-11).iterations;
+  const int coarse = beam.linear->solve(*beam.elastic.load, x, 1e-2).iterations;
   EXPECT_LT(coarse, fine);
-  EXPECT_EQ(beam.linear->solve(*beam.functional->problem().load, x, 1e-30).iterations, fine); // bounded by the options
+  EXPECT_EQ(beam.linear->solve(*beam.elastic.load, x, 1e-30).iterations, fine); // bounded by the options
 }
 
 } // namespace

@@ -18,7 +18,8 @@ using namespace rpc;
 /// and between walls at two sides.
 struct Block {
   fem::Discretization d;
-  std::shared_ptr<contact::SmoothedFunctional> functional;
+  fem::ElasticProblem elastic;
+  std::shared_ptr<contact::Iterate> iterate;
   const fem::Material material{10, 0.3};
 
   Block()
@@ -35,8 +36,8 @@ struct Block {
     below.normal = contact::Normal::fixed;
     below.direction = {0.36, -0.8, 0.48};
     const auto nodes = contact::contact_nodes(d, {below, beside}, dirichlet, material);
-    functional = std::make_shared<contact::SmoothedFunctional>(fem::elastic_problem(d, K.couplings, load, dirichlet),
-                                                               nodes, test::updated(K.matrix, nodes));
+    elastic = fem::elastic_problem(d, K.couplings, load, dirichlet);
+    iterate = std::make_shared<contact::Iterate>(elastic, nodes, test::updated(K.matrix, nodes));
   }
 
   /// Waves that depend on the place alone: 0 where prescribed.
@@ -45,7 +46,7 @@ struct Block {
     const auto v = rcp(new Vector(d.owned_dofs));
     const auto to = v->getLocalViewHost(Tpetra::Access::OverwriteAll);
     const auto x = to_host(d.mesh->coords);
-    const auto fixed = to_host(functional->problem().dirichlet.fixed);
+    const auto fixed = to_host(elastic.dirichlet.fixed);
     for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n)
       for (int k = 0; k < 3; ++k) {
         const double angle = phase + 5 * x(n, 0) + 3 * x(n, 1) + 4 * x(n, 2) + 2 * k;
@@ -75,11 +76,11 @@ TEST(InSpace, GradientIsTheDerivativeOfTheFunctional)
 {
   const Block block;
   const auto u = block.vector(0.05, 0.4), d = block.vector(1, 2);
-  expect_all_states(block.functional->count_states(*u));
+  expect_all_states(block.iterate->count_states(*u));
   Vector F(u->getMap());
-  block.functional->gradient(*u, F);
+  block.iterate->gradient(*u, F);
   const double difference =
-      (block.functional->value(plus(*u, step, *d)) - block.functional->value(plus(*u, -step, *d))) / (2 * step);
+      (block.iterate->value(plus(*u, step, *d)) - block.iterate->value(plus(*u, -step, *d))) / (2 * step);
   EXPECT_NEAR(difference, F.dot(*d), 1e-9 * F.norm2() * d->norm2());
 }
 
@@ -87,15 +88,15 @@ TEST(InSpace, HessianIsTheDerivativeOfTheGradient)
 {
   const Block block;
   const auto u = block.vector(0.05, 0.4), d = block.vector(1, 2);
-  EXPECT_GT(block.functional->update_hessian(*u), 0);
+  EXPECT_GT(block.iterate->update_hessian(*u), 0);
   Vector Hd(u->getMap()), up(u->getMap()), down(u->getMap()), Ad(u->getMap());
-  block.functional->hessian()->apply(*d, Hd);
-  block.functional->gradient(plus(*u, step, *d), up);
-  block.functional->gradient(plus(*u, -step, *d), down);
+  block.iterate->hessian()->apply(*d, Hd);
+  block.iterate->gradient(plus(*u, step, *d), up);
+  block.iterate->gradient(plus(*u, -step, *d), down);
   up.update(-1., down, 1.);
   up.update(-1., Hd, 1 / (2 * step));
   EXPECT_LT(up.norm2(), 1e-9 * Hd.norm2());
-  const UpdatedOperator &H = *block.functional->hessian();
+  const UpdatedOperator &H = *block.iterate->hessian();
   const auto A = H.base().copy();
   write_update(*A, H, H.update());
   A->apply(*d, Ad);
@@ -108,8 +109,8 @@ TEST(InSpace, SweepLowersTheFunctional)
   const Block block;
   const auto u = block.vector(0.05, 0.4);
   Vector moved(*u, Teuchos::Copy);
-  block.functional->sweep(moved);
-  EXPECT_LT(block.functional->value(moved), block.functional->value(*u));
+  block.iterate->sweep(moved);
+  EXPECT_LT(block.iterate->value(moved), block.iterate->value(*u));
   EXPECT_GT(plus(moved, -1, *u).norm2(), 1e-3 * u->norm2());
 }
 
@@ -118,16 +119,16 @@ TEST(InSpace, ExactStepEndsWhereTheDirectionIsNoDescentAnyMore)
   const Block block;
   const auto u = block.vector(0.05, 0.4), d = block.vector(1, 2);
   Vector F(u->getMap());
-  block.functional->gradient(*u, F);
+  block.iterate->gradient(*u, F);
   if (F.dot(*d) > 0) d->scale(-1.);
-  const double t = solver::exact_step(*block.functional->along(*u, *d, F));
+  const double t = solver::exact_step(*block.iterate->along(*u, *d, F));
   ASSERT_GT(t, 0);
   Vector there(u->getMap());
   const Vector at = plus(*u, t, *d);
-  block.functional->gradient(at, there);
+  block.iterate->gradient(at, there);
   EXPECT_NEAR(there.dot(*d) / F.dot(*d), 0, 1e-12);
   for (const double other : {0.9 * t, 1.1 * t})
-    EXPECT_GT(block.functional->value(plus(*u, other, *d)), block.functional->value(at));
+    EXPECT_GT(block.iterate->value(plus(*u, other, *d)), block.iterate->value(at));
 }
 
 /// A preconditioner that does nothing.
@@ -149,12 +150,12 @@ private:
 TEST(InSpace, LocalCorrectionIsSymmetricPositiveAndExactAtChangedPoints)
 {
   const Block block;
-  auto &H = *block.functional->hessian();
-  block.functional->update_hessian(*block.vector(0.05, 0.4));
+  auto &H = *block.iterate->hessian();
+  block.iterate->update_hessian(*block.vector(0.05, 0.4));
   const auto A = H.base().copy();
   const auto written = bounded_update(H);
   write_update(*A, H, written);
-  block.functional->update_hessian(*block.vector(0.05, 1.4));
+  block.iterate->update_hessian(*block.vector(0.05, 1.4));
   const auto correction = solver::LocalCorrection::around(H, *A, written);
   ASSERT_TRUE(correction);
   const auto x = block.vector(1, 0.2), y = block.vector(1, 2.5);

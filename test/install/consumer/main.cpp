@@ -24,8 +24,7 @@ int main(int argc, char **argv)
   model.contact = {foundation};
 
   // Each step starts from the one before, on the dents that it has left.
-  rpc::analysis::LoadHistory history(
-      std::make_shared<rpc::analysis::Problem>(mesh, model, rpc::solver::LinearSolverOptions{}), {}, 6);
+  rpc::analysis::LoadHistory history(std::make_shared<rpc::analysis::Problem>(mesh, model), {}, 6);
   for (const double t : {0.5, 1.}) {
     const auto solution = history.advance(t);
     if (!solution.uzawa.converged) return 1;

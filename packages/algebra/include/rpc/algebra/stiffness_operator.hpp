@@ -58,8 +58,8 @@ public:
   const RCP<const CrsMatrix> &matrix() const;
   /// A matrix that the caller may write into: with values of its own, and K's graph. Where K is not assembled, it is for this copy only.
   RCP<CrsMatrix> copy() const;
-  /// Whether K has been assembled, to be kept here or for a copy.
-  bool has_matrix() const { return was_assembled_; }
+  /// How often K has been assembled, to be kept here or for a copy.
+  int assemblies() const { return assemblies_; }
 
 private:
   RepeatedRows rows_;
@@ -67,7 +67,7 @@ private:
   RCP<const Import> importer_;
   std::function<RCP<CrsMatrix>()> assemble_;
   mutable RCP<const CrsMatrix> matrix_; // null: not kept
-  mutable bool was_assembled_ = false;
+  mutable int assemblies_ = 0;
 };
 
 } // namespace rpc

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/algebra/stiffness_operator.hpp"
 #include "rpc/analysis/nested_mesh.hpp"
 #include "rpc/contact/contact_nodes.hpp"
 #include "rpc/contact/support.hpp"

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "rpc/contact/energies.hpp"
+#include "rpc/contact/iterate.hpp"
+
+namespace rpc::test
+{
+
+/// An iterate's multipliers with a displacement from 0, whatever its origin is.
+inline contact::ContactState judged_at(const contact::Iterate &iterate, const Vector &from_0)
+{
+  return {rcp(new Vector(from_0, Teuchos::Copy)), iterate.multipliers(), {}};
+}
+inline double contact_law_residual(const contact::Iterate &iterate, const Vector &from_0)
+{
+  return contact::contact_law_residual(iterate.points(), judged_at(iterate, from_0));
+}
+inline contact::ContactEnergy contact_energy(const contact::Iterate &iterate, const Vector &from_0)
+{
+  return contact::contact_energy(iterate.points(), judged_at(iterate, from_0));
+}
+inline double energy(const contact::Iterate &iterate, const fem::ElasticProblem &elastic, const Vector &from_0)
+{
+  return contact::energy(iterate.hessian()->base(), elastic, iterate.points(), judged_at(iterate, from_0));
+}
+inline Vector multiplier_forces(const contact::Iterate &iterate)
+{
+  return contact::multiplier_forces(iterate.points(), iterate.multipliers(), iterate.hessian()->getDomainMap());
+}
+
+} // namespace rpc::test
