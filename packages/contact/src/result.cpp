@@ -1,6 +1,7 @@
 #include "rpc/contact/result.hpp"
 
 #include "rpc/contact/law/judgement.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,15 +63,27 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
   Kokkos::fence();
 }
 
+/// What the ranks' shares come to; collective.
+ContactSums over_all_ranks(const Comm &comm, ContactSums s)
+{
+  std::vector<double> sums{s.force[0], s.force[1], s.force[2], static_cast<double>(s.num_nodes)}, maxima;
+  for (const auto &q : contact_quantities) (q.combine == Combine::sum ? sums : maxima).push_back(s.*q.value);
+  sums = summed(comm, sums);
+  maxima = largest(comm, maxima);
+  std::copy_n(sums.begin(), 3, s.force.begin());
+  s.num_nodes = static_cast<GO>(sums[3]);
+  auto sum = sums.begin() + 4, maximum = maxima.begin();
+  for (const auto &q : contact_quantities) s.*q.value = q.combine == Combine::sum ? *sum++ : *maximum++;
+  return s;
+}
+
 /// Over the points [begin, end) of all ranks.
 ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult &result, const LO begin, const LO end)
 {
   const auto v = result.penetration, dent = result.dent;
   const auto p = result.pressure;
   const Kokkos::RangePolicy<ExecutionSpace, LO> points(begin, end);
-  double force[3] = {}, contact = 0, yielded = 0, peak = 0, deepest = 0, initial = 0, most_dented = 0;
-  double volume = 0, dissipated = 0, stored = 0;
-  GO nodes = 0;
+  ContactSums s;
   Kokkos::parallel_reduce(
       "rpc::contact::result_sums", points,
       KOKKOS_LAMBDA(const LO i, double &fx, double &fy, double &fz, double &touched, double &given_way) {
@@ -81,10 +94,10 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
         if (p(i) > 0) touched += c.weight(i);
         if (state_of_pressure(p(i), c.law(i)) == State::yielding) given_way += c.weight(i);
       },
-      force[0], force[1], force[2], contact, yielded);
+      s.force[0], s.force[1], s.force[2], s.contact_length, s.yielded_length);
   Kokkos::parallel_reduce(
       "rpc::contact::result_nodes", points, KOKKOS_LAMBDA(const LO i, GO &count) { count += c.weight(i) > 0 ? 1 : 0; },
-      nodes);
+      s.num_nodes);
   Kokkos::parallel_reduce(
       "rpc::contact::result_maxima", points,
       KOKKOS_LAMBDA(const LO i, double &most, double &deep, double &overlap, double &dented) {
@@ -94,8 +107,8 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
         if (v(i) > deep) deep = v(i);
         if (-c.gap(i) > overlap) overlap = -c.gap(i);
       },
-      Kokkos::Max<double>(peak), Kokkos::Max<double>(deepest), Kokkos::Max<double>(initial),
-      Kokkos::Max<double>(most_dented));
+      Kokkos::Max<double>(s.max_pressure), Kokkos::Max<double>(s.max_penetration),
+      Kokkos::Max<double>(s.max_initial_penetration), Kokkos::Max<double>(s.max_dent));
   Kokkos::parallel_reduce(
       "rpc::contact::result_energies", points,
       KOKKOS_LAMBDA(const LO i, double &dents, double &lost, double &kept) {
@@ -104,27 +117,10 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
         lost += c.weight(i) * dissipation(dent(i) - c.dent(i), p(i), f);
         kept += c.weight(i) * stored_energy(p(i), f);
       },
-      volume, dissipated, stored);
-
-  const double sums[9] = {force[0], force[1], force[2], contact, yielded, double(nodes), volume, dissipated, stored};
-  double all[9];
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 9, sums, all);
-  const double maxima[4] = {peak, deepest, initial, most_dented}; // Kokkos' maximum over no nodes is -DBL_MAX
-  double largest[4];
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, 4, maxima, largest);
-  ContactSums result_sums;
-  result_sums.force = {all[0], all[1], all[2]};
-  result_sums.contact_length = all[3];
-  result_sums.yielded_length = all[4];
-  result_sums.num_nodes = static_cast<GO>(all[5]);
-  result_sums.max_pressure = std::max(0., largest[0]);
-  result_sums.max_penetration = std::max(0., largest[1]);
-  result_sums.max_initial_penetration = std::max(0., largest[2]);
-  result_sums.max_dent = std::max(0., largest[3]);
-  result_sums.dent_volume = all[6];
-  result_sums.dissipated = all[7];
-  result_sums.foundation_energy = all[8];
-  return result_sums;
+      s.dent_volume, s.dissipated, s.foundation_energy);
+  for (const auto &q : contact_quantities) // Kokkos' maximum over no nodes is -DBL_MAX
+    if (q.combine == Combine::maximum) s.*q.value = std::max(0., s.*q.value);
+  return over_all_ranks(comm, s);
 }
 
 } // namespace
@@ -133,15 +129,7 @@ ContactSums &ContactSums::operator+=(const ContactSums &other)
 {
   num_nodes += other.num_nodes;
   for (int k = 0; k < 3; ++k) force[k] += other.force[k];
-  max_pressure = std::max(max_pressure, other.max_pressure);
-  max_penetration = std::max(max_penetration, other.max_penetration);
-  max_initial_penetration = std::max(max_initial_penetration, other.max_initial_penetration);
-  contact_length += other.contact_length;
-  yielded_length += other.yielded_length;
-  max_dent = std::max(max_dent, other.max_dent);
-  dent_volume += other.dent_volume;
-  dissipated += other.dissipated;
-  foundation_energy += other.foundation_energy;
+  add_numbers(contact_quantities, *this, other);
   return *this;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/contact/contact_state.hpp"
+#include "rpc/core/quantity.hpp"
 
 #include <array>
 #include <vector>
@@ -13,18 +14,58 @@ struct ContactSums {
   GO num_nodes = 0; ///< that have a weight
   std::array<double, 3>
       force{}; ///< of the foundation on the body, sum of -w p normal [N], in the plane per m; of an axisymmetric body along its axis
-  double max_pressure = 0;            ///< [Pa]
-  double max_penetration = 0;         ///< largest u_nu - g where > 0 [m]
-  double max_initial_penetration = 0; ///< largest -g where > 0 [m]
-  double contact_length = 0;          ///< sum of weights with p > 0 [m^(dim-1), axisymmetric: m^2]
-  double yielded_length = 0;          ///< sum of weights with p at the yield limit [m^(dim-1), axisymmetric: m^2]
-  double max_dent = 0;                ///< [m]
-  double dent_volume = 0;             ///< sum of w dent [m^dim, axisymmetric: m^3]
-  double dissipated = 0;              ///< sum of w int (xi + H w) dw over what this step adds to the dents [J]   (3.14)
-  double foundation_energy = 0;       ///< sum of w c p^2/2, stored in the foundation's springs [J]
+  // Numbers: units and how they combine stand in contact_quantities.
+  double max_pressure = 0;
+  double max_penetration = 0;         ///< largest u_nu - g where > 0
+  double max_initial_penetration = 0; ///< largest -g where > 0
+  double contact_length = 0;          ///< sum of weights with p > 0
+  double yielded_length = 0;          ///< sum of weights with p at the yield limit
+  double max_dent = 0;
+  double dent_volume = 0; ///< sum of w dent
+  double dissipated = 0;  ///< sum of w int (xi + H w) dw over what this step adds to the dents               (3.14)
+  double foundation_energy = 0; ///< sum of w c p^2/2, stored in the foundation's springs
 
   ContactSums &operator+=(const ContactSums &other);
 };
+
+/// The numbers of ContactSums, in the order of the summary. Energies are shown as sums over the steps, by analysis.
+inline constexpr std::array<Quantity<ContactSums>, 9> contact_quantities{{
+    {&ContactSums::max_pressure,
+     "max_pressure",
+     unit::pressure,
+     Combine::maximum,
+     {true, 1, "max. pressure", "", false, true}},
+    {&ContactSums::max_penetration, "max_penetration", unit::length, Combine::maximum, {true, 2, "max. penetration"}},
+    {&ContactSums::max_initial_penetration,
+     "max_initial_penetration",
+     unit::length,
+     Combine::maximum,
+     {true, 0, "initial penetration", "", true}},
+    {&ContactSums::contact_length,
+     "contact_length",
+     unit::extent,
+     Combine::sum,
+     {true, 5, "in contact", "", false, true},
+     "contact_area"},
+    {&ContactSums::yielded_length,
+     "yielded_length",
+     unit::extent,
+     Combine::sum,
+     {true, 6, "in contact", "yielded "},
+     "yielded_area"},
+    {&ContactSums::max_dent, "max_dent", unit::length, Combine::maximum, {true, 3, "dents", "at most ", true}},
+    {&ContactSums::dent_volume, "dent_volume", unit::volume, Combine::sum, {true, 4, "dents", "volume ", true}},
+    {&ContactSums::dissipated, "dissipated_energy", unit::energy},
+    {&ContactSums::foundation_energy, "foundation_energy", unit::energy},
+}};
+static_assert(sizeof(ContactSums) == sizeof(GO) + (3 + contact_quantities.size()) * sizeof(double),
+              "a number of ContactSums has no line in the table");
+
+/// Whether a side's law has friction: none of contact/law/ has yet. Tangential numbers appear where this holds.
+inline bool has_friction(const std::vector<ContactOptions> &)
+{
+  return false;
+}
 
 /// What a user reads off the contact sides: values at this rank's contact nodes, and sums over all ranks.
 struct ContactResult {

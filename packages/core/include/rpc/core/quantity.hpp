@@ -1,0 +1,102 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace rpc
+{
+
+/// Unit of a number in the results. Forces and energies of a plane body are per metre of its depth; those of a body in space or
+/// of revolution belong to the whole body.
+struct Unit {
+  const char *whole;
+  const char *per_metre;
+};
+
+namespace unit
+{
+inline constexpr Unit none{"", ""};
+inline constexpr Unit second{"s", "s"};
+inline constexpr Unit pressure{"Pa", "Pa"};
+inline constexpr Unit length{"m", "m"};
+inline constexpr Unit extent{"m^2", "m"};   ///< of a part of the surface
+inline constexpr Unit volume{"m^3", "m^2"}; ///< of a part of the surface times a length
+inline constexpr Unit force{"N", "N/m"};
+inline constexpr Unit energy{"J", "J/m"};
+} // namespace unit
+
+/// How the numbers of several sides, or of several ranks, come together.
+enum class Combine { sum, maximum };
+
+/// What a run must have for a number to be defined.
+enum class Needs { nothing, friction };
+
+/// Which numbers a run has, and in which units.
+struct ResultScope {
+  bool per_metre = false; ///< the body is plane
+  bool friction = false;  ///< the law of a contact side has friction
+};
+
+/// Where a number is shown.
+struct Shown {
+  bool summary = false;          ///< in the JSON file
+  int column = 0;                ///< place among the numbers of its record in the history, from 1; 0: not there
+  const char *heading = nullptr; ///< of its line on the console; numbers of one heading share a line. Null: no line
+  const char *label = "";        ///< on that line, before the number
+  bool only_positive = false;    ///< no line unless one of its numbers is > 0
+  bool meshes = false;           ///< in the summary's list of the meshes of an adaptive run
+};
+
+/// A number of the results. Tables of these are all that summary, history, console, checkpoint, sums over sides and ranks and
+/// the tests know of a record's numbers: one more number is a member and a line in the table.
+template <class Record, class Value = double>
+struct Quantity {
+  Value Record::*value;
+  const char *key; ///< in the files
+  Unit unit;
+  Combine combine = Combine::sum;
+  Shown shown = {};
+  const char *whole_key = nullptr; ///< key for a body that is not plane, where it differs
+  Needs needs = Needs::nothing;
+
+  std::string name(const ResultScope &scope) const { return scope.per_metre || !whole_key ? key : whole_key; }
+  std::string unit_name(const ResultScope &scope) const { return scope.per_metre ? unit.per_metre : unit.whole; }
+  bool defined(const ResultScope &scope) const { return needs == Needs::nothing || scope.friction; }
+  void add(Record &to, const Record &other) const
+  {
+    to.*value = combine == Combine::sum ? to.*value + other.*value : std::max(to.*value, other.*value);
+  }
+};
+
+/// The numbers of a table that a run has.
+template <class Table>
+auto defined_numbers(const Table &table, const ResultScope &scope)
+{
+  std::vector<std::decay_t<decltype(*std::begin(table))>> numbers;
+  for (const auto &q : table)
+    if (q.defined(scope)) numbers.push_back(q);
+  return numbers;
+}
+
+/// Those among them that are columns of the history, in their places.
+template <class Table>
+auto history_columns(const Table &table, const ResultScope &scope)
+{
+  auto numbers = defined_numbers(table, scope);
+  numbers.erase(std::remove_if(numbers.begin(), numbers.end(), [](const auto &q) { return q.shown.column == 0; }),
+                numbers.end());
+  std::sort(numbers.begin(), numbers.end(),
+            [](const auto &a, const auto &b) { return a.shown.column < b.shown.column; });
+  return numbers;
+}
+
+/// Adds another record's numbers, each as it is combined.
+template <class Table, class Record>
+void add_numbers(const Table &table, Record &to, const Record &other)
+{
+  for (const auto &q : table) q.add(to, other);
+}
+
+} // namespace rpc
