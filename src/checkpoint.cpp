@@ -1,5 +1,6 @@
 #include "checkpoint.hpp"
 
+#include "output/quantities.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/io/atomic_file.hpp"
@@ -25,66 +26,49 @@ using nlohmann::json;
 
 constexpr std::size_t kept = 2;
 
-json to_json(const Energies &e)
+json to_json(const ContactSums &s, const ResultScope &scope)
 {
-  return {e.strain, e.foundation, e.dissipated, e.work};
+  return {{"nodes", s.num_nodes}, {"force", s.force}, {"numbers", kept_numbers(contact::contact_quantities, s, scope)}};
 }
-Energies energies_from(const json &j)
-{
-  return {j.at(0), j.at(1), j.at(2), j.at(3)};
-}
-
-json to_json(const ContactSums &s)
-{
-  return {{"nodes", s.num_nodes},
-          {"force", s.force},
-          {"numbers",
-           {s.max_pressure, s.max_penetration, s.max_initial_penetration, s.contact_length, s.yielded_length,
-            s.max_dent, s.dent_volume, s.dissipated, s.foundation_energy}}};
-}
-ContactSums sums_from(const json &j)
+ContactSums sums_from(const json &j, const ResultScope &scope)
 {
   ContactSums s;
   s.num_nodes = j.at("nodes");
   s.force = j.at("force");
-  const json &numbers = j.at("numbers");
-  std::size_t k = 0;
-  for (double ContactSums::*const number :
-       {&ContactSums::max_pressure, &ContactSums::max_penetration, &ContactSums::max_initial_penetration,
-        &ContactSums::contact_length, &ContactSums::yielded_length, &ContactSums::max_dent, &ContactSums::dent_volume,
-        &ContactSums::dissipated, &ContactSums::foundation_energy})
-    s.*number = numbers.at(k++);
+  take_numbers(j.at("numbers"), contact::contact_quantities, s, scope);
   return s;
 }
 
-json to_json(const StepRecord &r)
+Energies energies_from(const json &j, const ResultScope &scope)
 {
-  return {{"time", r.time},
-          {"parts", r.parts},
-          {"solves", r.solves},
-          {"energies", to_json(r.energies)},
-          {"contact", to_json(r.contact)},
-          {"displacements", r.displacements},
-          {"reactions", r.reactions},
-          {"work", {r.newton_iterations, r.linear_solves, r.linear_iterations, r.preconditioner_setups}},
-          {"seconds", r.seconds}};
+  Energies energies;
+  take_numbers(j, analysis::energy_quantities, energies, scope);
+  return energies;
 }
-StepRecord record_from(const json &j)
+
+json to_json(const StepRecord &r, const ResultScope &scope)
+{
+  json entry = {{"time", r.time},
+                {"energies", kept_numbers(analysis::energy_quantities, r.energies, scope)},
+                {"contact", to_json(r.contact, scope)},
+                {"displacements", r.displacements},
+                {"reactions", r.reactions},
+                {"work", kept_numbers(analysis::step_work, r, scope)},
+                {"seconds", r.seconds}};
+  for (const auto &q : defined_numbers(analysis::step_parts, scope)) entry[q.key] = r.*q.value;
+  return entry;
+}
+StepRecord record_from(const json &j, const ResultScope &scope)
 {
   StepRecord r;
   r.time = j.at("time");
   r.converged = true; // no other step is gone on from
-  r.parts = j.at("parts");
-  r.solves = j.at("solves");
-  r.energies = energies_from(j.at("energies"));
-  r.contact = sums_from(j.at("contact"));
+  r.energies = energies_from(j.at("energies"), scope);
+  r.contact = sums_from(j.at("contact"), scope);
   r.displacements = j.at("displacements").get<std::vector<std::array<double, 3>>>();
   r.reactions = j.at("reactions").get<std::vector<std::array<double, 3>>>();
-  const json &work = j.at("work");
-  r.newton_iterations = work.at(0);
-  r.linear_solves = work.at(1);
-  r.linear_iterations = work.at(2);
-  r.preconditioner_setups = work.at(3);
+  take_numbers(j.at("work"), analysis::step_work, r, scope);
+  for (const auto &q : defined_numbers(analysis::step_parts, scope)) r.*q.value = j.at(q.key);
   r.seconds = j.at("seconds");
   return r;
 }
@@ -151,12 +135,13 @@ Checkpoints::Checkpoints(const Scene &scene, std::string restart, const std::str
 {
 }
 
-std::optional<adapt::HistoryState> Checkpoints::resume(const fem::Discretization &d) const
+std::optional<analysis::HistoryState> Checkpoints::resume(const fem::Discretization &d) const
 {
   if (restart_.empty()) return std::nullopt;
   const io::Checkpoint file(restart_, d.mesh->owned_nodes->getComm());
-  adapt::HistoryState state;
+  analysis::HistoryState state;
   const int sides = static_cast<int>(scene_.model.contact.size());
+  const ResultScope scope = analysis::result_scope(scene_.model, d);
   try {
     const json text = json::parse(file.text());
     for (const auto &[name, content] : scene_.identity)
@@ -168,7 +153,7 @@ std::optional<adapt::HistoryState> Checkpoints::resume(const fem::Discretization
                  "solvers' options may change.");
     FieldReader reader(file.fields(*d.mesh), d);
     state.last.time = file.time();
-    state.last.energies = energies_from(text.at("energies"));
+    state.last.energies = energies_from(text.at("energies"), scope);
     state.last.displacement = reader.components();
     state.last.pressure = reader.columns(sides);
     state.last.dent = reader.columns(sides);
@@ -180,7 +165,7 @@ std::optional<adapt::HistoryState> Checkpoints::resume(const fem::Discretization
       state.before->pressure = reader.columns(sides);
     }
     state.matrix_assemblies = text.at("assemblies");
-    for (const json &record : text.at("records")) state.records.push_back(record_from(record));
+    for (const json &record : text.at("records")) state.records.push_back(record_from(record, scope));
   } catch (const json::exception &) { // on all ranks: they read the same text
     throw Error(ExitCode::bad_input, "restart: \"" + restart_ +
                                          "\" is damaged: its text is not what was written. Take an older one, "
@@ -192,12 +177,14 @@ std::optional<adapt::HistoryState> Checkpoints::resume(const fem::Discretization
   return state;
 }
 
-void Checkpoints::write(const adapt::HistoryState &state, const fem::Discretization &d)
+void Checkpoints::write(const analysis::HistoryState &state, const fem::Discretization &d)
 {
-  json text = {{"energies", to_json(state.last.energies)}, {"assemblies", state.matrix_assemblies}};
+  const ResultScope scope = analysis::result_scope(scene_.model, d);
+  json text = {{"energies", kept_numbers(analysis::energy_quantities, state.last.energies, scope)},
+               {"assemblies", state.matrix_assemblies}};
   for (const auto &[name, content] : scene_.identity) text["deck"][name] = content;
   text["records"] = json::array();
-  for (const StepRecord &record : state.records) text["records"].push_back(to_json(record));
+  for (const StepRecord &record : state.records) text["records"].push_back(to_json(record, scope));
   std::vector<io::NodalField> fields;
   add_components(fields, "displacement_", *state.last.displacement, d.dim());
   add_columns(fields, "pressure_", *state.last.pressure);

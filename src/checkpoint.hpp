@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solve.hpp"
+#include "scene.hpp"
 
 #include <optional>
 #include <string>
@@ -20,9 +20,9 @@ public:
 
   /// What the run goes on from; none from the first step. Collective.
   /// @throws rpc::Error (bad_input) on every rank if the file is damaged, or belongs to another mesh, deck or version
-  std::optional<adapt::HistoryState> resume(const fem::Discretization &d) const;
+  std::optional<analysis::HistoryState> resume(const fem::Discretization &d) const;
   /// Writes a checkpoint. Collective.
-  void write(const adapt::HistoryState &state, const fem::Discretization &d);
+  void write(const analysis::HistoryState &state, const fem::Discretization &d);
 
 private:
   void remove_others(const std::string &newest);

@@ -1,6 +1,7 @@
 #include "checkpoint.hpp"
 #include "command_line.hpp"
-#include "output.hpp"
+#include "output/paths.hpp"
+#include "output/results.hpp"
 #include "report.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -78,7 +79,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
   int cycle = 0;
   rpc::Film film;
-  RPC_REQUIRE(line.restart.empty() || !scene.steps.times.empty(),
+  RPC_REQUIRE(line.restart.empty() || scene.has_steps(),
               "command line: --restart goes with load steps; the deck has none, see \"Steps->Times\"");
   rpc::Checkpoints checkpoints(scene, line.restart, line.output);
   const auto keep = [&](const rpc::Scene &of, rpc::Solution &solution) {
@@ -87,7 +88,9 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     rpc::Film of_mesh;
     if (scene.adapt.write_all) rpc::write_results(named, solution, line.output, start, of_mesh);
   };
-  const auto keep_step = [&](const rpc::Scene &of, rpc::Solution &solution) { film.add(of, solution, line.output); };
+  const auto keep_step = [&](const rpc::Scene &of, const rpc::analysis::Solution &solution) {
+    film.add(of, solution, line.output);
+  };
   rpc::Solution solution = rpc::solve(scene, comm, out, keep, keep_step, &checkpoints);
   const auto files = rpc::write_results(scene, solution, line.output, start, film);
   rpc::print_summary(out, scene, solution, files);

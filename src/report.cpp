@@ -1,5 +1,7 @@
 #include "report.hpp"
 
+#include "rpc/core/quantity.hpp"
+
 #include <Teuchos_Time.hpp>
 #include <algorithm>
 #include <cmath>
@@ -23,13 +25,67 @@ namespace
   out << line;
 }
 
+std::string number_text(const char *format, const double value)
+{
+  char text[60];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/// A vector in its components.
+std::string vector_text(const std::array<double, 3> &v, const int dim)
+{
+  std::string text;
+  for (int c = 0; c < dim; ++c) text += (c > 0 ? ", " : "(") + number_text("%.6g", v[c]);
+  return text + ")";
+}
+
+/// A line of numbers with one heading.
+struct Line {
+  std::string heading, numbers;
+};
+
+/// The lines that a record's numbers have on the console. The unit stands behind the last number where all have the same one.
+/// @param format  of a number
+template <class Table, class Record>
+std::vector<Line> lines(const Table &table, const Record &record, const ResultScope &scope, const char *const format)
+{
+  std::vector<Line> all;
+  const auto numbers = defined_numbers(table, scope);
+  for (auto first = numbers.begin(); first != numbers.end();) {
+    const auto end = std::find_if(first, numbers.end(), [&](const auto &q) {
+      return std::string(q.shown.heading ? q.shown.heading : "") != (first->shown.heading ? first->shown.heading : "");
+    });
+    const std::string unit = std::prev(end)->unit_name(scope);
+    const bool one_unit = std::all_of(first, end, [&](const auto &q) { return q.unit_name(scope) == unit; });
+    const bool shown = first->shown.heading && std::any_of(first, end, [&](const auto &q) {
+                         return !q.shown.only_positive || record.*q.value > 0;
+                       });
+    std::string text;
+    for (auto q = first; q != end; ++q) {
+      const bool with_unit = !q->unit_name(scope).empty() && (!one_unit || std::next(q) == end);
+      text += (q == first ? "" : ", ") + std::string(q->shown.label) + number_text(format, record.*q->value) +
+              (with_unit ? " " + q->unit_name(scope) : "");
+    }
+    if (shown) all.push_back({first->shown.heading, text});
+    first = end;
+  }
+  return all;
+}
+
+void print_lines(std::ostream &out, const std::vector<Line> &lines)
+{
+  for (const Line &line : lines) {
+    print(out, "  %-19s ", line.heading.c_str());
+    out << line.numbers << '\n';
+  }
+}
+
 /// An error bar, or that there is none.
-std::string bar_text(const double value, const char *unit)
+std::string bar_text(const double value, const std::string &unit)
 {
   if (std::isnan(value)) return "unknown";
-  char text[60];
-  std::snprintf(text, sizeof text, "%.1e%s", value, unit);
-  return text;
+  return number_text("%.1e", value) + (unit.empty() ? "" : " " + unit);
 }
 
 int sum(const std::vector<int> &values)
@@ -37,7 +93,7 @@ int sum(const std::vector<int> &values)
   return std::accumulate(values.begin(), values.end(), 0);
 }
 
-void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, const bool per_metre)
+void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, const ResultScope &scope)
 {
   const std::string outcome = !adaptation.reached         ? "NOT TO THE TARGET: " + adaptation.reason
                               : adaptation.reason.empty() ? "the error is what was asked for"
@@ -46,19 +102,22 @@ void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, co
   print(out, "    cycle     dofs    error            J    max. p  Newton  krylov  time [s]\n");
   for (std::size_t k = 0; k < adaptation.cycles.size(); ++k) {
     const adapt::Cycle &c = adaptation.cycles[k];
-    print(out, "    %5zu %8zu %8.2e %12.6g %9.4g %7d %7d %9.3f\n", k + 1, c.dofs, c.estimate, c.energy, c.max_pressure,
-          c.newton_iterations, sum(c.linear_iterations), c.seconds);
+    print(out, "    %5zu %8zu %8.2e %12.6g %9.4g %7d %7d %9.3f\n", k + 1, c.dofs, c.estimate, c.energy,
+          c.contact.max_pressure, c.newton_iterations, sum(c.linear_iterations), c.seconds);
   }
   const auto &e = adaptation.errors;
   if (std::isnan(e.energy)) {
     print(out, "    errors by the sequence: unknown, for these are the results of the first mesh\n");
     return;
   }
-  print(out, "    errors by the sequence: J %s, contact force %s, max. pressure %s, pressure in L2 %s, in contact %s\n",
-        bar_text(e.energy, per_metre ? " J/m" : " J").c_str(),
-        bar_text(e.contact_force, per_metre ? " N/m" : " N").c_str(), bar_text(e.max_pressure, " Pa").c_str(),
-        bar_text(e.contact_pressure, "").c_str(), bar_text(e.contact_length, per_metre ? " m" : " m^2").c_str());
-  for (const auto &[name, reason] : e.unknown) print(out, "    no error of %s: %s\n", name.c_str(), reason.c_str());
+  const char *separator = "    errors by the sequence: ";
+  for (const auto &q : defined_numbers(adapt::error_bars, scope)) {
+    out << separator << q.shown.label << bar_text(e.*q.value, q.unit_name(scope));
+    separator = ", ";
+  }
+  out << '\n';
+  for (const auto &[key, reason] : e.unknown)
+    out << "    no error of " << adapt::error_bar_name(key, scope) << ": " << reason << '\n';
 }
 
 } // namespace
@@ -86,7 +145,7 @@ void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const
           static_cast<long long>(contact.num_missing));
   const std::string locking = fem::locking_note(d, scene.model.materials);
   if (!locking.empty()) print(out_, "note: %s\n", locking.c_str());
-  if (scene.steps.times.empty())
+  if (!scene.has_steps())
     print(out_, "uzawa newton   |F|/|b|     step    open  closed  yields krylov   time [s]\n");
   else if (load_steps_ == 0)
     print(out_, "    step         t      |force|     max. p    max. dent    dissipated parts Newton krylov   time [s]  "
@@ -108,13 +167,11 @@ void ConsoleTable::newton(const int uzawa, const solver::NewtonStep &step, const
 
 void ConsoleTable::uzawa(const analysis::UzawaResult &result)
 {
-  const auto &c = result.residuals;
-  print(out_, "%5d     -- kkt %.1e, equilibrium %.1e, energy balance %.1e, duality gap %.1e\n", result.iterations,
-        c.kkt_residual, c.equilibrium_residual, c.energy_balance, c.duality_gap);
-  out_ << std::flush;
+  print(out_, "%5d     -- ", result.iterations);
+  out_ << lines(analysis::residual_quantities, result.residuals, {}, "%.1e").front().numbers << std::endl;
 }
 
-void ConsoleTable::load_step(const Scene &scene, const Solution &s)
+void ConsoleTable::load_step(const Scene &scene, const analysis::Solution &s)
 {
   const analysis::StepRecord &step = s.history.back();
   const auto &force = step.contact.force;
@@ -135,44 +192,34 @@ void print_estimate(std::ostream &out, const Scene &scene, const Solution &s)
   if (scene.adapt.adapts()) print(out, ", asked for: %.3e", scene.adapt.target);
   const double exact = exact_error(scene, s);
   if (!std::isnan(exact)) print(out, "; by the exact energy %.3e", exact);
-  if (only_rounding(s)) print(out, "; nothing is strained, what is estimated is rounding");
+  if (only_rounding(s)) print(out, ". The strain energy is at rounding level; the estimate is meaningless.");
   out << std::endl;
 }
 
 void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &files)
 {
-  const bool flat = s.discretization.dim() == 2, per_metre = s.discretization.per_metre();
-  const auto &c = s.contact.total;
-  print(out, "\n%s: %s\n", s.uzawa.converged ? "converged" : "NOT CONVERGED", s.uzawa.reason.c_str());
-  const auto &held = s.uzawa.residuals;
-  print(out, "  optimality          kkt %.1e, equilibrium %.1e, energy balance %.1e, duality gap %.1e\n",
-        held.kkt_residual, held.equilibrium_residual, held.energy_balance, held.duality_gap);
-  print(out, "  energy J            %.9g %s\n", s.energy, per_metre ? "J/m" : "J");
+  const int dim = s.discretization.dim();
+  const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
+  const auto unit_of = [&](const Unit &unit) { return scope.per_metre ? unit.per_metre : unit.whole; };
+  out << '\n' << (s.uzawa.converged ? "" : "NOT CONVERGED: ") << s.uzawa.reason << '\n';
+  print_lines(out, lines(analysis::residual_quantities, s.uzawa.residuals, scope, "%.1e"));
+  print(out, "  energy J            %.9g %s\n", s.energy, unit_of(unit::energy));
   if (!scene.model.contact.empty()) {
-    print(out, "  contact force       (%.6g, %.6g%s) %s\n", c.force[0], c.force[1],
-          flat ? "" : (", " + std::to_string(c.force[2])).c_str(), per_metre ? "N/m" : "N");
-    print(out, "  max. pressure       %.6g Pa\n", c.max_pressure);
-    print(out, "  max. penetration    %.6g m\n", c.max_penetration);
-    if (c.max_initial_penetration > 0) print(out, "  initial penetration %.6g m\n", c.max_initial_penetration);
-    if (!s.history.empty()) {
-      const analysis::Energies &e = s.history.back().energies;
-      print(out, "  dents               at most %.6g m, volume %.6g\n", c.max_dent, c.dent_volume);
-      print(out, "  since the start     work %.6g, strain %.6g, foundation %.6g, dissipated %.6g %s\n", e.work,
-            e.strain, e.foundation, e.dissipated, per_metre ? "J/m" : "J");
-    }
-    print(out, "  in contact          %.6g, yielded %.6g %s\n", c.contact_length, c.yielded_length,
-          per_metre ? "m" : "m^2");
+    print(out, "  contact force       %s %s\n", vector_text(s.contact.total.force, dim).c_str(), unit_of(unit::force));
+    print_lines(out, lines(contact::contact_quantities, s.contact.total, scope, "%.6g"));
+    if (!s.history.empty())
+      print_lines(out, lines(analysis::energy_quantities, s.history.back().energies, scope, "%.6g"));
   }
   if (s.estimate) {
     print(out, "  ");
     print_estimate(out, scene, s);
   }
   for (std::size_t k = 0; k < scene.model.contact.size() && scene.model.contact.size() > 1; ++k) {
-    const auto &side = s.contact.sides[k];
-    print(out, "    on \"%s\": force (%.6g, %.6g%s), max. pressure %.6g, in contact %.6g, yielded %.6g\n",
-          scene.model.contact[k].side.c_str(), side.force[0], side.force[1],
-          flat ? "" : (", " + std::to_string(side.force[2])).c_str(), side.max_pressure, side.contact_length,
-          side.yielded_length);
+    const contact::ContactSums &side = s.contact.sides[k];
+    out << "    on \"" << scene.model.contact[k].side << "\": force " << vector_text(side.force, dim);
+    for (const Line &line : lines(contact::contact_quantities, side, scope, "%.6g"))
+      out << ", " << line.heading << ' ' << line.numbers;
+    out << '\n';
   }
   print(out,
         "  work                %d Uzawa, %d Newton, %zu linear solves, %d CG iterations, %d preconditioner set-ups\n",
@@ -184,13 +231,9 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
   for (const auto &level : s.levels)
     print(out, "    predicted by      %zu dofs: %d Newton, %d CG iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
-  if (s.adaptation) print_adaptation(out, *s.adaptation, per_metre);
+  if (s.adaptation) print_adaptation(out, *s.adaptation, scope);
   for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
-  const auto &t = s.seconds;
-  print(out,
-        "  time [s]            mesh %.3f, assembly %.3f, prediction %.3f, set-up %.3f, solve %.3f, estimate %.3f, "
-        "output %.3f, total %.3f\n",
-        t.mesh, t.assembly, t.prediction, t.setup, t.solve, t.estimate, t.output, t.total);
+  print_lines(out, lines(analysis::phase_seconds, s.seconds, scope, "%.3f"));
   for (const auto &file : files) print(out, "  wrote %s\n", file.c_str());
 }
 

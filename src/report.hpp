@@ -18,7 +18,7 @@ public:
   void newton(int uzawa, const solver::NewtonStep &step, const contact::StateCounts &states);
   void uzawa(const analysis::UzawaResult &result);
   /// The last step of the solution's history, and the time that the others will take.
-  void load_step(const Scene &scene, const Solution &solution);
+  void load_step(const Scene &scene, const analysis::Solution &solution);
 
 private:
   std::ostream &out_;

@@ -89,8 +89,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   for (const char *const part : {"Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact"})
     scene.identity.emplace_back(part, text_of(deck.sublist(part)));
   scene.steps = analysis::steps_options(deck.sublist("Steps"));
-  for (auto &side : scene.model.contact)
-    if (!scene.steps.times.empty()) side.obstacle.origin = side.obstacle.seen_at(scene.steps.times.front()).point;
+  analysis::set_obstacle_origins(scene);
   scene.adapt = adapt::adapt_options(deck.sublist("Adapt"));
   scene.step.uzawa = analysis::uzawa_options(deck.sublist("Uzawa"));
   scene.step.newton = solver::newton_options(deck.sublist("NOX"));
@@ -98,18 +97,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   const Teuchos::ParameterList &output = deck.sublist("Output");
   scene.output = {output.get<bool>("Exodus"), output.get<bool>("CSV"), output.get<bool>("JSON"),
                   output.get<bool>("Timers")};
-  RPC_REQUIRE(
-      !scene.adapt.adapts() || scene.steps.checkpoint_every == 0,
-      "deck: \"Steps->Checkpoint Every\" does not go with \"Adapt->Target Relative Error\": a restart could not "
-      "make the adapted meshes again");
-  RPC_REQUIRE(
-      !scene.adapt.adapts() || dim == 2,
-      "deck: \"Adapt->Target Relative Error\" goes with plane meshes: adaptive ones in space are not available yet. "
-      "Leave it at 0; \"Adapt->Estimate Error\" tells the error.");
-  RPC_REQUIRE(
-      !scene.adapt.adapts() || mesh::with_sizes(scene.mesh, nullptr),
-      "deck: \"Adapt->Target Relative Error\" goes with a box or a .geo, which can be meshed anew; the mesh is a "
-      ".msh");
+  adapt::require_adaptable(scene, dim);
   return scene;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/adapt/solution.hpp"
+#include "rpc/adapt/solve.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Teuchos_ParameterList.hpp>

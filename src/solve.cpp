@@ -10,15 +10,16 @@ namespace rpc
 
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
                const std::function<void(const Scene &, Solution &)> &keep,
-               const std::function<void(const Scene &, Solution &)> &keep_step, Checkpoints *const checkpoints)
+               const std::function<void(const Scene &, const analysis::Solution &)> &keep_step,
+               Checkpoints *const checkpoints)
 {
   std::optional<ConsoleTable> table; // of one mesh
   adapt::Listener listener;
   listener.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &contact) {
-    if (!table || scene.steps.times.empty()) table.emplace(console);
+    if (!table || !scene.has_steps()) table.emplace(console);
     table->scene(scene, d, contact);
   };
-  const bool several_steps = !scene.steps.times.empty(); // a line for each is enough then
+  const bool several_steps = scene.has_steps(); // a line for each is enough then
   if (!several_steps)
     listener.step.newton = [&](const int uzawa, const solver::NewtonStep &step, const contact::StateCounts &states) {
       table->newton(uzawa, step, states);
@@ -26,13 +27,13 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   if (!several_steps) listener.step.uzawa = [&](const analysis::UzawaResult &result) { table->uzawa(result); };
   listener.estimate = [&](const Solution &solution) { print_estimate(console, scene, solution); };
   listener.note = [&](const std::string &note) { console << "note: " << note << std::endl; };
-  listener.load_step = [&](Solution &solution) {
+  listener.load_step = [&](const analysis::Solution &solution) {
     table->load_step(scene, solution);
     if (keep_step) keep_step(scene, solution);
   };
   if (checkpoints) {
     listener.resume = [&](const fem::Discretization &d) { return checkpoints->resume(d); };
-    listener.checkpoint = [&](const adapt::HistoryState &state, const fem::Discretization &d) {
+    listener.checkpoint = [&](const analysis::HistoryState &state, const fem::Discretization &d) {
       checkpoints->write(state, d);
     };
   }

@@ -20,7 +20,7 @@ class Checkpoints;
 /// @throws rpc::Error on every rank if the scene does not fit its mesh; failing to converge is in the result
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
                const std::function<void(const Scene &, Solution &)> &keep = {},
-               const std::function<void(const Scene &, Solution &)> &keep_step = {},
+               const std::function<void(const Scene &, const analysis::Solution &)> &keep_step = {},
                Checkpoints *checkpoints = nullptr);
 
 } // namespace rpc

@@ -1,4 +1,4 @@
-#include "rpc/io/gather.hpp"
+#include "rpc/mesh/canonical_order.hpp"
 #include "run_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct Meshes {
       const auto at = to_host(mesh.coords);
       std::vector<double> own;
       for (LO n = 0; n < mesh.num_owned_nodes(); ++n) own.insert(own.end(), {at(n, 0), at(n, 1)});
-      const io::CanonicalOrder order(mesh.owned_nodes->getComm(), mesh.node_id, "node");
+      const mesh::CanonicalOrder order(mesh.owned_nodes->getComm(), mesh.node_id, "node");
       coords.push_back(order.gather(own.data(), 2));
       estimate.push_back(relative_estimate(s));
     };

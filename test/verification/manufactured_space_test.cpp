@@ -2,6 +2,7 @@
 #include "run_scene.hpp"
 #include "solved.hpp"
 
+#include "rpc/adapt/estimators/recovered.hpp"
 #include "rpc/analysis/solve_step.hpp"
 #include "rpc/fem/surface.hpp"
 #include "rpc/mesh/make_mesh.hpp"
@@ -127,8 +128,8 @@ Errors errors(const std::string &element, const int n, const bool distorts)
   }
   std::array<double, 6> all;
   Teuchos::reduceAll(mesh->comm(), Teuchos::REDUCE_SUM, 6, mine.data(), all.data());
-  const auto estimate = adapt::estimate_error(d, scene.model.materials, problem.contact_sides(), scene.model.tractions,
-                                              step.contact, s.contact, *s.u);
+  const auto estimate = adapt::recovered_estimate(
+      {d, scene.model.materials, problem.contact_sides(), scene.model.tractions, step.contact, s.contact, *s.u});
   return {std::sqrt(all[0] / all[1]), std::sqrt(all[4] / all[5]), std::sqrt(all[2] / all[3]),
           std::sqrt(estimate.total() / all[0])};
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/adapt/refinement.hpp"
+#include "rpc/adapt/new_sizes.hpp"
 
 #include <vector>
 

@@ -4,7 +4,7 @@
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
-#include "rpc/io/gather.hpp"
+#include "rpc/mesh/canonical_order.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -45,7 +45,7 @@ std::string number_of(const mesh::Mesh &mesh)
 {
   const auto coords = to_host(mesh.coords);
   const auto cells = to_host(mesh.cells);
-  const auto ids = overlap_node_ids(mesh);
+  const auto ids = mesh::overlap_node_ids(mesh);
   std::uint64_t sum = 0;
   for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
     for (int d = 0; d < mesh.dim(); ++d)

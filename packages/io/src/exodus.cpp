@@ -4,7 +4,7 @@
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/io/atomic_file.hpp"
-#include "rpc/io/gather.hpp"
+#include "rpc/mesh/canonical_order.hpp"
 #include "rpc/mesh/mesh_data.hpp"
 
 #include <algorithm>
@@ -251,7 +251,7 @@ SideSet gather_side(const mesh::Mesh &mesh, const mesh::Side &side)
 /// Node numbers of owned cells, 1-based: (owned cells, nodes per cell), row by row.
 std::vector<int> owned_connectivity(const mesh::Mesh &mesh)
 {
-  const auto ids = overlap_node_ids(mesh);
+  const auto ids = mesh::overlap_node_ids(mesh);
   const auto cells = to_host(mesh.cells);
   const int width = mesh.element.num_nodes();
   std::vector<int> nodes;
@@ -272,7 +272,7 @@ std::vector<std::string> names_of(const std::vector<NodalField> &fields)
 
 struct ExodusFile::Impl {
   RCP<const Comm> comm;
-  CanonicalOrder nodes;
+  mesh::CanonicalOrder nodes;
   std::vector<std::string> names; // of the fields
   std::unique_ptr<Writer> writer; // rank 0 only
   int steps = 0;
@@ -285,8 +285,8 @@ ExodusFile::ExodusFile(const std::string &path, const std::string &title, const 
   require_names(mesh, fields);
   const Comm &comm = mesh.comm();
   const RCP<const Comm> shared_comm = mesh.owned_nodes->getComm();
-  impl_.reset(new Impl{shared_comm, CanonicalOrder(shared_comm, mesh.node_id, "node"), fields, nullptr});
-  const CanonicalOrder cells(shared_comm, mesh.cell_id, "cell");
+  impl_.reset(new Impl{shared_comm, mesh::CanonicalOrder(shared_comm, mesh.node_id, "node"), fields, nullptr});
+  const mesh::CanonicalOrder cells(shared_comm, mesh.cell_id, "cell");
   std::vector<SideSet> sides;
   for (const auto &side : mesh.sides) sides.push_back(gather_side(mesh, side));
   const Header header{title,       info, fields, mesh.element, mesh.blocks, block_sizes(mesh), impl_->nodes.size(),

@@ -1,7 +1,7 @@
 #include "rpc/io/contact_csv.hpp"
 
-#include "rpc/io/gather.hpp"
 #include "rpc/mesh/box.hpp"
+#include "rpc/mesh/canonical_order.hpp"
 #include "scratch.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -195,7 +195,7 @@ TEST_F(ContactCsv, BottomOfABoxIsSortedForAnyNumberOfRanks)
 {
   for (const int order : {1, 2}) {
     const auto mesh = rpc::mesh::make_box({{0, 0}, {5, 1}, {10, 4}, {2, order}}, comm_);
-    const auto ids = rpc::io::overlap_node_ids(mesh);
+    const auto ids = rpc::mesh::overlap_node_ids(mesh);
     const auto coords = rpc::to_host(mesh.coords);
     std::vector<LO> bottom;
     for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
@@ -206,7 +206,7 @@ TEST_F(ContactCsv, BottomOfABoxIsSortedForAnyNumberOfRanks)
       table.id(k) = ids(bottom[k]);
       for (int d = 0; d < 2; ++d) table.position(k, d) = coords(bottom[k], d);
     }
-    table.facets = rpc::io::owned_facets(mesh, mesh.side("bottom", "test"), ids);
+    table.facets = rpc::mesh::owned_facets(mesh, mesh.side("bottom", "test"), ids);
     write_contact_csv(path_, comm_, {table});
     comm_->barrier();
     const auto rows = cells_of(text_of(path_));

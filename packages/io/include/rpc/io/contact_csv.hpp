@@ -24,7 +24,7 @@ struct ContactTable {
   HostView<int *> state;        ///< (nodes) 0 open, 1 closed, 2 yielding
   HostView<GO **> facets; ///< (facets, facet nodes) node ids, the two ends first; each facet of the side once over
                           ///< all ranks. A node that the table lacks is passed over. Not used in 3D. See
-                          ///< owned_facets()
+                          ///< mesh::owned_facets()
 };
 
 /// Writes the contact nodes as comma-separated values, whole or not at all; collective on comm.

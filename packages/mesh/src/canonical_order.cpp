@@ -1,11 +1,11 @@
-#include "rpc/io/gather.hpp"
+#include "rpc/mesh/canonical_order.hpp"
 
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
 
 #include <algorithm>
 
-namespace rpc::io
+namespace rpc::mesh
 {
 
 CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const HostView<const GO *> &ids, const std::string &what)
@@ -16,8 +16,8 @@ CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const HostView<const
     std::vector<bool> seen(size_, false);
     for (const GO id : ids_) {
       RPC_REQUIRE_CODE(id >= 0 && id < size_ && !seen[id], ExitCode::internal_error,
-                       "io: the " << what << " ids must be each of 0 .. " << size_ - 1 << " once, got " << id
-                                  << (id >= 0 && id < size_ ? " twice" : ""));
+                       "mesh: the " << what << " ids must be each of 0 .. " << size_ - 1 << " once, got " << id
+                                    << (id >= 0 && id < size_ ? " twice" : ""));
       seen[id] = true;
     }
   });
@@ -37,7 +37,7 @@ template std::vector<double> CanonicalOrder::gather(const double *, int) const;
 template std::vector<int> CanonicalOrder::gather(const int *, int) const;
 template std::vector<GO> CanonicalOrder::gather(const GO *, int) const;
 
-HostView<GO *> overlap_node_ids(const mesh::Mesh &mesh)
+HostView<GO *> overlap_node_ids(const Mesh &mesh)
 {
   if (mesh.comm().getSize() == 1) return mesh.node_id;
   using IdVector = Tpetra::Vector<GO, LO, GO, Node>;
@@ -47,23 +47,23 @@ HostView<GO *> overlap_node_ids(const mesh::Mesh &mesh)
     for (LO n = 0; n < mesh.num_owned_nodes(); ++n) view(n, 0) = mesh.node_id(n);
   }
   overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
-  HostView<GO *> ids("rpc::io::overlap_node_ids", mesh.num_local_nodes());
+  HostView<GO *> ids("rpc::mesh::overlap_node_ids", mesh.num_local_nodes());
   const auto view = overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
   for (LO n = 0; n < mesh.num_local_nodes(); ++n) ids(n) = view(n, 0);
   return ids;
 }
 
-HostView<GO **> owned_facets(const mesh::Mesh &mesh, const mesh::Side &side, const HostView<GO *> &overlap_ids)
+HostView<GO **> owned_facets(const Mesh &mesh, const Side &side, const HostView<GO *> &overlap_ids)
 {
   const auto nodes = to_host(side.facets);
   const auto cell = to_host(side.cell);
   std::vector<LO> owned;
   for (LO f = 0; f < static_cast<LO>(cell.extent(0)); ++f)
     if (cell(f) < mesh.num_owned_cells) owned.push_back(f);
-  HostView<GO **> facets("rpc::io::owned_facets", owned.size(), mesh.element.num_facet_nodes());
+  HostView<GO **> facets("rpc::mesh::owned_facets", owned.size(), mesh.element.num_facet_nodes());
   for (std::size_t f = 0; f < owned.size(); ++f)
     for (std::size_t a = 0; a < facets.extent(1); ++a) facets(f, a) = overlap_ids(nodes(owned[f], a));
   return facets;
 }
 
-} // namespace rpc::io
+} // namespace rpc::mesh

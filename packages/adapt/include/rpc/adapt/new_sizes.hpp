@@ -1,29 +1,12 @@
 #pragma once
 
-#include "rpc/adapt/error_estimate.hpp"
+#include "rpc/adapt/estimator.hpp"
 #include "rpc/mesh/size_field.hpp"
 
-#include <Teuchos_ParameterList.hpp>
 #include <memory>
 
 namespace rpc::adapt
 {
-
-struct AdaptOptions {
-  double target = 0;       ///< of the relative error in the energy norm, in (0, 1); 0: one mesh, as it is given
-  long long max_dofs = 0;  ///< of any mesh but the first, > 0
-  int max_cycles = 0;      ///< meshes, > 0
-  double exact_energy = 0; ///< J of the exact solution [J], in 2D per m; NaN: unknown
-  bool estimate = false;   ///< whether the error is estimated; adapting implies it
-  bool write_all = false;  ///< results of every mesh, not of the last only
-
-  bool adapts() const { return target > 0; }
-};
-
-/// Parameters of the deck's `Adapt` sublist.
-Teuchos::ParameterList valid_adapt_parameters();
-/// @throws rpc::Error (bad_input) on anything out of range
-AdaptOptions adapt_options(const Teuchos::ParameterList &list);
 
 /// What new cell sizes are to bring about.
 struct SizeRequest {

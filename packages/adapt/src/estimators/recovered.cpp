@@ -1,4 +1,4 @@
-#include "rpc/adapt/error_estimate.hpp"
+#include "rpc/adapt/estimators/recovered.hpp"
 
 #include "rpc/core/math.hpp"
 #include "rpc/fem/rounding.hpp"
@@ -247,43 +247,31 @@ double highest_bound(const Comm &comm, const contact::ContactNodes &c)
 
 } // namespace
 
-std::string PressurePeak::unknown() const
+ErrorEstimate recovered_estimate(const EstimateInput &of)
 {
-  constexpr double unresolved = 0.2;
-  if (at_bound) return "";
-  if (yield_jump) return "the yield stress jumps next to a part that yields, where the pressure is singular";
-  if (gap_jump) return "contact ends where the gap jumps, where the pressure is singular";
-  if (drop <= unresolved) return "";
-  return "the pressure falls by " + std::to_string(std::lround(100 * drop)) +
-         " % within one cell where it is largest, as next to a singularity or a jump";
-}
-
-ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials &materials,
-                             const std::vector<const mesh::Side *> &sides, const std::vector<fem::TractionLoad> &loads,
-                             const contact::ContactNodes &contact, const contact::ContactResult &result,
-                             const Vector &u)
-{
+  const fem::Discretization &d = of.discretization;
+  const fem::Materials &materials = of.materials;
   const mesh::Mesh &mesh = *d.mesh;
-  const fem::RecoveredStress recovered(d, materials, u);
+  const fem::RecoveredStress recovered(d, materials, of.u);
   ErrorEstimate estimate;
   estimate.squared = recovered.squared_difference();
   const auto squared = estimate.squared;
-  const double highest = result.total.max_pressure;
-  estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_bound(mesh.comm(), contact);
+  const double highest = of.result.total.max_pressure;
+  estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_bound(mesh.comm(), of.contact);
   double sums[7] = {}, peak = 0, drop = 0; // Kokkos' maximum over no facets is -DBL_MAX
   Kokkos::parallel_reduce(
       "rpc::adapt::recovery", device_range(mesh.num_owned_cells),
       KOKKOS_LAMBDA(const LO cell, double &sum) { sum += squared(cell); }, sums[0]);
-  for (std::size_t k = 0; k < sides.size(); ++k) {
-    const mesh::Side &side = *sides[k];
-    const auto fields = at_overlap_nodes(d, contact, result, static_cast<int>(k));
+  for (std::size_t k = 0; k < of.sides.size(); ++k) {
+    const mesh::Side &side = *of.sides[k];
+    const auto fields = at_overlap_nodes(d, of.contact, of.result, static_cast<int>(k));
     const ContactTerms terms{side.facets,
                              side.cell,
                              d.reference.facet.value,
                              fem::facet_measure(d, side),
                              fem::facet_size(d, side),
                              recovered.tractions(side),
-                             fem::tractions_on(d, side, loads),
+                             fem::tractions_on(d, side, of.loads),
                              mesh.block,
                              fem::lame_table(d, materials),
                              fields->getLocalViewDevice(Tpetra::Access::ReadOnly),
@@ -304,10 +292,8 @@ ErrorEstimate estimate_error(const fem::Discretization &d, const fem::Materials 
   }
   double all[7];
   Teuchos::reduceAll(mesh.comm(), Teuchos::REDUCE_SUM, 7, sums, all);
-  estimate.recovery = all[0];
-  estimate.equilibrium = all[1];
-  estimate.complementarity = all[2];
-  estimate.rounding = fem::rounding_energy(d, materials, u);
+  estimate.parts = {{"recovery", all[0]}, {"contact_equilibrium", all[1]}, {"contact_complementarity", all[2]}};
+  estimate.rounding = fem::rounding_energy(d, materials, of.u);
   estimate.pressure = std::sqrt(all[3]);
   estimate.max_pressure = max_all(mesh.comm(), peak);
   estimate.peak.drop = max_all(mesh.comm(), drop);

@@ -1,44 +1,12 @@
-#include "rpc/adapt/refinement.hpp"
+#include "rpc/adapt/options.hpp"
 
 #include "rpc/core/error.hpp"
-#include "rpc/core/on_root.hpp"
-#include "rpc/io/gather.hpp"
-#include "size_plan.hpp"
 
 #include <cmath>
 #include <limits>
 
 namespace rpc::adapt
 {
-namespace
-{
-
-/// The mesh and its errors on rank 0; empty elsewhere. Collective.
-EstimatedMesh gathered(const fem::Discretization &d, const ErrorEstimate &estimate)
-{
-  const mesh::Mesh &mesh = *d.mesh;
-  const auto &comm = mesh.owned_nodes->getComm();
-  const io::CanonicalOrder nodes(comm, mesh.node_id, "node"), cells(comm, mesh.cell_id, "cell");
-  const auto coords = to_host(mesh.coords);
-  const auto vertices_of = to_host(mesh.cells);
-  const auto squared = to_host(estimate.squared);
-  const auto ids = io::overlap_node_ids(mesh);
-  EstimatedMesh all;
-  all.order = mesh.element.order;
-  all.vertices = mesh.element.num_vertices();
-  std::vector<double> x;
-  for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
-    for (int i = 0; i < 2; ++i) x.push_back(coords(n, i));
-  std::vector<int> vertices;
-  for (LO cell = 0; cell < mesh.num_owned_cells; ++cell)
-    for (int a = 0; a < all.vertices; ++a) vertices.push_back(static_cast<int>(ids(vertices_of(cell, a))));
-  all.coords = nodes.gather(x.data(), 2);
-  all.cells = cells.gather(vertices.data(), all.vertices);
-  all.squared = cells.gather(squared.data(), 1);
-  return all;
-}
-
-} // namespace
 
 Teuchos::ParameterList valid_adapt_parameters()
 {
@@ -75,18 +43,20 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-Sizes new_sizes(const fem::Discretization &d, const ErrorEstimate &estimate, const SizeRequest &request)
+void require_adaptable(const Task &task, const int dim)
 {
-  RPC_REQUIRE(d.dim() == 2, "deck: \"Adapt\" works in 2D only, got a mesh in " << d.dim() << "D");
-  const EstimatedMesh mesh = gathered(d, estimate);
-  Sizes sizes;
-  on_root(d.mesh->comm(), ExitCode::internal_error, [&] {
-    SizePlan plan = plan_sizes(mesh, request);
-    sizes.predicted_cells = plan.cells;
-    sizes.field = std::make_shared<mesh::SizeField>(std::move(plan.field));
-  });
-  Teuchos::broadcast(d.mesh->comm(), 0, Teuchos::outArg(sizes.predicted_cells));
-  return sizes;
+  RPC_REQUIRE(
+      !task.adapt.adapts() || task.steps.checkpoint_every == 0,
+      "deck: \"Steps->Checkpoint Every\" does not go with \"Adapt->Target Relative Error\": a restart could not "
+      "make the adapted meshes again");
+  RPC_REQUIRE(
+      !task.adapt.adapts() || dim == 2,
+      "deck: \"Adapt->Target Relative Error\" goes with plane meshes: adaptive ones in space are not available yet. "
+      "Leave it at 0; \"Adapt->Estimate Error\" tells the error.");
+  RPC_REQUIRE(
+      !task.adapt.adapts() || mesh::with_sizes(task.mesh, nullptr),
+      "deck: \"Adapt->Target Relative Error\" goes with a box or a .geo, which can be meshed anew; the mesh is a "
+      ".msh");
 }
 
 } // namespace rpc::adapt

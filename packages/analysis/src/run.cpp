@@ -1,11 +1,12 @@
-#include "rpc/adapt/solution.hpp"
+#include "rpc/analysis/run.hpp"
+
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
 #include "rpc/fem/interpolation.hpp"
 
 #include <optional>
 
-namespace rpc::adapt
+namespace rpc::analysis
 {
 namespace
 {
@@ -18,37 +19,28 @@ std::shared_ptr<const mesh::Mesh> make_mesh(const mesh::MeshOptions &options, co
   return std::make_shared<mesh::Mesh>(mesh::make_mesh(options, comm));
 }
 
-std::shared_ptr<const analysis::Problem> make_problem(const Task &task, std::shared_ptr<const mesh::Mesh> mesh,
-                                                      PhaseSeconds &seconds)
+std::shared_ptr<const Problem> make_problem(const Task &task, std::shared_ptr<const mesh::Mesh> mesh,
+                                            PhaseSeconds &seconds)
 {
   const Timed phase("assembly", seconds.assembly);
   throw_if_interrupted(mesh->comm(), "before the assembly; no results are written");
-  return std::make_shared<analysis::Problem>(std::move(mesh), task.model, task.time);
+  return std::make_shared<Problem>(std::move(mesh), task.model, task.time);
 }
 
 /// The scene on coarser and coarser meshes: those that multigrid needs too where they are boxes, else made by the options.
-analysis::CoarserProblem coarser_meshes(Task task, const mesh::MeshOptions &options, const RCP<const Comm> &comm)
+CoarserProblem coarser_meshes(Task task, const mesh::MeshOptions &options, const RCP<const Comm> &comm)
 {
-  return [task = std::move(task), options, comm](const analysis::Problem &finer,
-                                                 const int level) -> std::shared_ptr<const analysis::Problem> {
-    if (const auto nested = finer.coarser(task.step.prediction.coarsening, task.time)) return nested;
-    std::optional<mesh::MeshOptions> coarse = options;
-    for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, task.step.prediction.coarsening);
-    PhaseSeconds seconds;
-    return coarse ? make_problem(task, make_mesh(*coarse, comm, seconds), seconds) : nullptr;
-  };
+  return
+      [task = std::move(task), options, comm](const Problem &finer, const int level) -> std::shared_ptr<const Problem> {
+        if (const auto nested = finer.coarser(task.step.prediction.coarsening, task.time)) return nested;
+        std::optional<mesh::MeshOptions> coarse = options;
+        for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, task.step.prediction.coarsening);
+        PhaseSeconds seconds;
+        return coarse ? make_problem(task, make_mesh(*coarse, comm, seconds), seconds) : nullptr;
+      };
 }
 
-/// Estimates the error where that is asked for; tractions on contact sides are those of the solution's time. Collective.
-void add_estimate(const Task &task, const analysis::Problem &problem, Solution &s, PhaseSeconds &seconds)
-{
-  if (!task.adapt.estimate) return;
-  const Timed phase("estimate", seconds.estimate);
-  s.estimate = estimate_error(s.discretization, task.model.materials, problem.contact_sides(),
-                              task.model.seen_at(s.time).tractions, s.step.contact, s.contact, *s.u);
-}
-
-/// Adds what the way through the scene did not tell by itself; collective.
+/// Lists the parts of the algorithm that this run skipped, with reasons; collective.
 void note_skipped(const Task &task, Solution &s)
 {
   const mesh::Mesh &mesh = *s.discretization.mesh;
@@ -63,14 +55,37 @@ void note_skipped(const Task &task, Solution &s)
   skip(task.model.contact.empty(), "contact: no side may touch");
   skip(contact.num_total > contact.num_fixed && s.uzawa.iterations == 1,
        "multiplier updates: pressures of the chosen states obey the contact law");
-  skip(s.linear.local_corrections > 0, "multigrid set-ups: " + std::to_string(s.linear.local_corrections) +
-                                           " changes of states did with work near the changed nodes");
+  const int local = s.linear.local_corrections;
+  skip(local > 0, "multigrid set-ups: " + std::to_string(local) + (local == 1 ? " change" : " changes") +
+                      " of the active set reused the hierarchy with local updates");
   skip(!s.linear.fallback.empty(), "multigrid on coarser meshes, for the algebraic one: " + s.linear.fallback);
   skip(min_all(mesh.comm(), shapes) > 0, "cell matrices: cells are alike, one for each shape is enough");
-  skip(!task.adapt.estimate, "error estimate: not asked for");
 }
 
 } // namespace
+
+void set_obstacle_origins(Task &task)
+{
+  if (!task.has_steps()) return;
+  for (auto &side : task.model.contact) side.obstacle.origin = side.obstacle.seen_at(task.steps.times.front()).point;
+}
+
+PhaseSeconds &PhaseSeconds::operator+=(const PhaseSeconds &other)
+{
+  add_numbers(phase_seconds, *this, other);
+  return *this;
+}
+
+ResultScope result_scope(const Model &model, const fem::Discretization &d)
+{
+  return {d.per_metre(), contact::has_friction(model.contact)};
+}
+
+Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
+{
+  return task.has_steps() ? solve_steps(task, comm, listener)
+                          : solve_on(task, task.mesh, nullptr, nullptr, comm, listener);
+}
 
 Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
@@ -82,9 +97,9 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   Task first = task;
   first.time = resumed ? resumed->last.time : task.steps.times.front();
   const auto problem = make_problem(first, mesh, seconds);
-  analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver,
+  LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver,
                                 coarser_meshes(first, task.mesh, comm));
-  std::vector<analysis::StepRecord> records;
+  std::vector<StepRecord> records;
   int assemblies_before = 0;
   if (resumed) {
     records = resumed->records;
@@ -95,18 +110,19 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   for (const double t : task.steps.times) {
     if (resumed && t <= resumed->last.time) continue;
     s = Solution{};
-    static_cast<analysis::StepSolution &>(s) = history.advance(t, listener.step);
+    static_cast<StepSolution &>(s) = history.advance(t, listener.step);
     s.discretization = history.problem().discretization();
     s.mesh_options = task.mesh;
     s.time = t;
     s.matrix_assemblies = assemblies_before + history.problem().stiffness()->assemblies();
     records.push_back(history.last());
     s.history = records;
-    add_estimate(task, history.problem(), s, seconds);
-    seconds.prediction += s.prediction_seconds;
-    seconds.setup += s.linear.setup_seconds;
-    seconds.solve += s.solve_seconds;
     s.seconds = seconds;
+    s.seconds.prediction += s.prediction_seconds;
+    s.seconds.setup += s.linear.setup_seconds;
+    s.seconds.solve += s.solve_seconds;
+    if (listener.solved) listener.solved(history.problem(), s);
+    seconds = s.seconds;
     note_skipped(task, s);
     if (listener.load_step) listener.load_step(s);
     if (!s.uzawa.converged) break;
@@ -131,7 +147,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   const auto mesh = same_mesh ? earlier->discretization.mesh : make_mesh(options, comm, s.seconds);
   const auto problem = make_problem(task, mesh, s.seconds);
   const fem::Discretization &d = s.discretization = problem->discretization();
-  analysis::Step step;
+  Step step;
   {
     const Timed phase("assembly", s.seconds.assembly);
     step = problem->step(task.time);
@@ -149,32 +165,28 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
                                            step.contact, d.owned_dofs));
   }
   const auto coarser = coarser_meshes(task, options, comm);
-  if (task.steps.times.empty()) {
-    analysis::SolverState state(*problem, task.linear_solver);
-    analysis::Starts from{starts, {}};
+  if (!task.has_steps()) {
+    SolverState state(*problem, task.linear_solver);
+    Starts from{starts, {}};
     if (starts.empty())
       from.predict = [&] { // the coarser scenes go before the finest one is solved
-        return analysis::Predictor(coarser, task.step, task.linear_solver).predict(*problem, step, nullptr);
+        return Predictor(coarser, task.step, task.linear_solver).predict(*problem, step, nullptr);
       };
-    static_cast<analysis::StepSolution &>(s) =
-        analysis::solve_step(*problem, step, state, task.step, from, listener.step);
+    static_cast<StepSolution &>(s) =
+        solve_step(*problem, step, state, task.step, from, listener.step);
   } else {
-    analysis::LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver, coarser);
+    LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver, coarser);
     if (earlier)
-      history.go_on_from(same_mesh ? *earlier->memory
-                                   : analysis::interpolated(*earlier->memory, earlier->discretization, d));
+      history.go_on_from(same_mesh ? *earlier->memory : interpolated(*earlier->memory, earlier->discretization, d));
     for (const auto &start : starts) history.offer(start);
-    static_cast<analysis::StepSolution &>(s) = history.advance(task.time, listener.step);
+    static_cast<StepSolution &>(s) = history.advance(task.time, listener.step);
     if (s.uzawa.converged) s.memory = *history.memory();
     if (earlier) s.history = earlier->history;
     s.history.push_back(history.last());
   }
   s.matrix_assemblies = problem->stiffness()->assemblies();
-  if (task.adapt.adapts()) s.pressure_norm = contact::pressure_distance(*comm, step.contact, s.contact.pressure, {});
-  if (previous)
-    s.pressure_change =
-        contact::pressure_distance(*comm, step.contact, s.contact.pressure, starts.front().multiplier.normal);
-  add_estimate(task, *problem, s, s.seconds);
+  if (previous) s.start_pressure = starts.front().multiplier.normal;
+  if (listener.solved) listener.solved(*problem, s);
   note_skipped(task, s);
   s.seconds.prediction += s.prediction_seconds;
   s.seconds.setup = s.linear.setup_seconds;
@@ -182,4 +194,4 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
   return s;
 }
 
-} // namespace rpc::adapt
+} // namespace rpc::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace rpc::io
+namespace rpc::mesh
 {
 
 /// Collects data of entities that each have one owner on rank 0, ordered by their rank-independent id.
@@ -35,11 +35,11 @@ private:
 };
 
 /// Rank-independent id of every local node: (overlap nodes) 0-based. Collective.
-HostView<GO *> overlap_node_ids(const mesh::Mesh &mesh);
+HostView<GO *> overlap_node_ids(const Mesh &mesh);
 
 /// Facets of a side whose cell this rank owns, as rank-independent node ids: (facets, facet nodes).
 /// Over all ranks each facet of the side appears once.
 /// @param overlap_ids  see overlap_node_ids()
-HostView<GO **> owned_facets(const mesh::Mesh &mesh, const mesh::Side &side, const HostView<GO *> &overlap_ids);
+HostView<GO **> owned_facets(const Mesh &mesh, const Side &side, const HostView<GO *> &overlap_ids);
 
-} // namespace rpc::io
+} // namespace rpc::mesh

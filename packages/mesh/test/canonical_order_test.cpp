@@ -1,8 +1,8 @@
-#include "rpc/io/gather.hpp"
+#include "rpc/mesh/canonical_order.hpp"
 
+#include "expect_error.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/mesh/box.hpp"
-#include "scratch.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_Core.hpp>
@@ -19,7 +19,7 @@ using rpc::GO;
 using rpc::HostView;
 using rpc::LO;
 using rpc::RCP;
-using rpc::io::CanonicalOrder;
+using rpc::mesh::CanonicalOrder;
 using rpc::test::expect_error;
 
 /// Rank r of p owns the ids r, r + p, r + 2p, ... below n, the largest first.
@@ -92,7 +92,7 @@ TEST(OverlapNodeIds, AreKnownOfGhostsToo)
 {
   const auto comm = Tpetra::getDefaultComm();
   const auto mesh = box(comm);
-  const auto ids = rpc::io::overlap_node_ids(mesh);
+  const auto ids = rpc::mesh::overlap_node_ids(mesh);
   const auto coords = rpc::to_host(mesh.coords);
   ASSERT_EQ(static_cast<LO>(ids.extent(0)), mesh.num_local_nodes());
   for (LO n = 0; n < mesh.num_local_nodes(); ++n) EXPECT_NEAR(ids(n), coords(n, 0) + 6 * coords(n, 1), 1e-12);
@@ -102,7 +102,7 @@ TEST(OwnedFacets, EachFacetOfASideAppearsOnceOverAllRanks)
 {
   const auto comm = Tpetra::getDefaultComm();
   const auto mesh = box(comm);
-  const auto facets = rpc::io::owned_facets(mesh, mesh.side("bottom", "test"), rpc::io::overlap_node_ids(mesh));
+  const auto facets = rpc::mesh::owned_facets(mesh, mesh.side("bottom", "test"), rpc::mesh::overlap_node_ids(mesh));
   const auto all = rpc::gathered_by_root(*comm, facets.data(), facets.extent(0) * facets.extent(1));
   if (comm->getRank() != 0) return;
   ASSERT_EQ(all.size(), 10u);

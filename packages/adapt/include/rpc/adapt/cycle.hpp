@@ -1,0 +1,75 @@
+#pragma once
+
+#include "rpc/adapt/estimator.hpp"
+#include "rpc/core/quantity.hpp"
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rpc::adapt
+{
+
+/// One mesh of an adaptive run.
+struct Cycle {
+  std::size_t dofs = 0;
+  double estimate = 0;               ///< of the error in the energy norm, over that of the solution
+  double energy = 0;                 ///< J [J], in 2D per m
+  contact::ContactSums contact;      ///< of all sides
+  double pressure_change = 0;        ///< of the contact pressure since the mesh before, over its norm, both in L2
+  double recovered_pressure = 0;     ///< what that of the recovered stress differs by, over its norm, both in L2
+  double recovered_max_pressure = 0; ///< the same of the largest pressures [Pa]
+  PressurePeak peak;
+  double contact_ends = 0; ///< of facets that are partly open, half of them [m]
+  int newton_iterations = 0;
+  std::vector<int> linear_iterations; ///< per solve
+  double seconds = 0;
+};
+
+/// Errors of results as the sequence of meshes shows them, and for pressures the recovered stress if that shows more; each
+/// like the number that it belongs to. NaN where the meshes do not tell, as from one alone. doc/theory.md (10.7), (10.8)
+struct ObservedErrors {
+  double energy = 0;        ///< of J
+  double contact_force = 0; ///< 2-norm
+  double max_pressure = 0;
+  double contact_pressure = 0; ///< L2 norm over the contact sides, over that of the pressure
+  double contact_length = 0;
+  std::map<std::string, std::string> unknown; ///< why, by the key in the table below, for those that are NaN
+};
+
+inline constexpr std::array<Quantity<ObservedErrors>, 5> error_bars{{
+    {&ObservedErrors::energy, "energy_J", unit::energy, Combine::maximum, {true, 0, "", "J "}},
+    {&ObservedErrors::contact_force, "contact_force", unit::force, Combine::maximum, {true, 0, "", "contact force "}},
+    {&ObservedErrors::max_pressure, "max_pressure", unit::pressure, Combine::maximum, {true, 0, "", "max. pressure "}},
+    {&ObservedErrors::contact_pressure,
+     "contact_pressure_l2_relative",
+     unit::none,
+     Combine::maximum,
+     {true, 0, "", "pressure in L2 "}},
+    {&ObservedErrors::contact_length,
+     "contact_length",
+     unit::extent,
+     Combine::maximum,
+     {true, 0, "", "in contact "},
+     "contact_area"},
+}};
+static_assert(sizeof(ObservedErrors) == error_bars.size() * sizeof(double) + sizeof(std::map<std::string, std::string>),
+              "an error bar has no line in the table");
+
+/// The name in the files of the number that an error bar belongs to.
+/// @param key  of error_bars
+std::string error_bar_name(const std::string &key, const ResultScope &scope);
+
+/// Error bars of the last of several meshes.
+ObservedErrors observed_errors(const std::vector<Cycle> &cycles);
+
+/// What became of "Adapt".
+struct Adaptation {
+  bool reached = false;      ///< the target
+  std::string reason;        ///< why not, or why the target counts as reached where nothing is strained; else empty
+  std::vector<Cycle> cycles; ///< from the first mesh
+  ObservedErrors errors;     ///< of the one whose results these are
+};
+
+} // namespace rpc::adapt

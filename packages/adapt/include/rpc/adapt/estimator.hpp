@@ -1,0 +1,67 @@
+#pragma once
+
+#include "rpc/contact/result.hpp"
+#include "rpc/fem/elasticity.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace rpc::adapt
+{
+
+/// Whether the largest contact pressure can have an error bar: what the mesh shows of it.              doc/theory.md (10.8)
+struct PressurePeak {
+  bool at_bound = false; ///< it is the highest yield stress there is, and so exact
+  double drop =
+      0; ///< by how much the pressure falls within a facet whose highest is 0.98 of it, over the largest pressure
+  bool yield_jump = false; ///< a part that yields borders on a higher yield stress: the pressure is singular in between
+  bool gap_jump = false;   ///< contact ends where the gap jumps: the pressure is singular there
+
+  /// Why there is no bar; empty if there is one.
+  std::string unknown() const;
+};
+
+/// A part of an estimate, squared, over all ranks.
+struct ErrorPart {
+  std::string key; ///< in the summary
+  double squared;  ///< [J], in 2D per m; >= 0
+};
+
+/// Estimated error of a solution in the energy norm, squared: an estimate of 2 (J(u_h) - J(u)), which bounds a(e, e) for the
+/// error e.                                                                                     doc/theory.md (10.1)
+struct ErrorEstimate {
+  DeviceView<double *> squared; ///< (owned cells) the indicators eta_T^2 [J], in 2D per m
+  std::vector<ErrorPart> parts; ///< of eta^2, in the order of the summary
+  double rounding =
+      0; ///< an estimate, or a strain energy, that is no larger than this is rounding [J]; see rounding_energy()
+  // What the contact pressure and that of the recovered stress, held to [0, xi], disagree by.
+  double pressure = 0; ///< in L2 over facets that are neither all open nor all yielded [Pa m^(1/2)], in 3D [Pa m]
+  double max_pressure =
+      0; ///< the most at points with 0.9 of the largest pressure, on facets that have not all yielded [Pa]
+  PressurePeak peak;
+  double contact_ends =
+      0; ///< half of the facets that are partly open: the mesh does not tell where contact ends [m^(dim-1)]
+
+  double part(const std::string &key) const; ///< [J], in 2D per m
+  double total() const;                      ///< eta^2
+};
+
+/// A solution whose error is to be estimated.
+struct EstimateInput {
+  const fem::Discretization &discretization;
+  const fem::Materials &materials;
+  std::vector<const mesh::Side *> sides;       ///< the contact sides, in the order of the contact nodes
+  const std::vector<fem::TractionLoad> &loads; ///< of the scene; those on contact sides count
+  const contact::ContactNodes &contact;
+  const contact::ContactResult &result; ///< what the contact nodes came to
+  const Vector &u;                      ///< displacement from 0 (owned dofs) [m]
+};
+
+/// A way to estimate errors; collective.
+using Estimator = std::function<ErrorEstimate(const EstimateInput &)>;
+
+/// The one that runs use: that by recovered stresses, see recovered_estimate().
+Estimator estimator();
+
+} // namespace rpc::adapt

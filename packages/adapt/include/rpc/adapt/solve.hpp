@@ -1,0 +1,46 @@
+#pragma once
+
+#include "rpc/adapt/cycle.hpp"
+#include "rpc/adapt/estimator.hpp"
+#include "rpc/adapt/options.hpp"
+#include "rpc/analysis/run.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace rpc::adapt
+{
+
+/// All that a run has found.
+struct Solution : analysis::Solution {
+  double pressure_norm = 0;   ///< L2 norm of the contact pressure [Pa m^(1/2)], in 3D [Pa m]; where meshes are adapted
+  double pressure_change = 0; ///< the same of its change since the mesh before, if there was one
+  std::optional<ErrorEstimate> estimate; ///< where it is asked for
+  std::optional<Adaptation> adaptation;  ///< where the mesh is adapted
+};
+
+/// What is told on the way; empty functions tell nothing. All are called on all ranks. `solved` is not called: the error is
+/// estimated there.
+struct Listener : analysis::Listener {
+  std::function<void(const Solution &)> estimate; ///< the error on one mesh of an adaptive run has been estimated
+  std::function<void(const std::string &)> note;  ///< for the user
+  std::function<void(Solution &)> cycle;          ///< one mesh of an adaptive run is solved
+};
+
+/// From a task to its solution. With a target for the error, on as many meshes as that takes: the solution is the last one's, or
+/// where the target is not reached that with the least estimate. Collective on comm.
+/// @throws rpc::Error on every rank if the model does not fit its mesh; failing to converge is in the result
+Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
+
+/// Whether all that was asked for came out.
+bool succeeded(const Solution &solution);
+
+/// Whether an estimate tells that the strain energy is rounding: nothing is strained.
+bool only_rounding(const Solution &solution);
+/// The estimated error in the energy norm over that of the solution, where there is an estimate; 0 if nothing is strained.
+double relative_estimate(const Solution &solution);
+/// What it really is, sqrt(2 |J_h - J| / a(u_h, u_h)), where the deck tells the exact J; else NaN.
+double exact_error(const Task &task, const Solution &solution);
+
+} // namespace rpc::adapt

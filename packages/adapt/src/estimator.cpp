@@ -1,0 +1,42 @@
+#include "rpc/adapt/estimator.hpp"
+
+#include "rpc/adapt/estimators/recovered.hpp"
+#include "rpc/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rpc::adapt
+{
+
+std::string PressurePeak::unknown() const
+{
+  constexpr double unresolved = 0.2;
+  if (at_bound) return "";
+  if (yield_jump) return "the yield stress jumps next to a part that yields, where the pressure is singular";
+  if (gap_jump) return "contact ends where the gap jumps, where the pressure is singular";
+  if (drop <= unresolved) return "";
+  return "the pressure falls by " + std::to_string(std::lround(100 * drop)) +
+         " % within one cell where it is largest, as next to a singularity or a jump";
+}
+
+double ErrorEstimate::part(const std::string &key) const
+{
+  const auto found = std::find_if(parts.begin(), parts.end(), [&](const ErrorPart &part) { return part.key == key; });
+  RPC_REQUIRE_CODE(found != parts.end(), ExitCode::internal_error, "estimate: it has no part \"" << key << "\"");
+  return found->squared;
+}
+
+double ErrorEstimate::total() const
+{
+  double sum = 0;
+  for (const ErrorPart &part : parts) sum += part.squared;
+  return sum;
+}
+
+Estimator estimator()
+{
+  return recovered_estimate;
+}
+
+} // namespace rpc::adapt

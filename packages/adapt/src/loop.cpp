@@ -1,0 +1,195 @@
+#include "next_mesh.hpp"
+#include "rpc/adapt/solve.hpp"
+#include "rpc/core/error.hpp"
+#include "rpc/core/interrupt.hpp"
+#include "rpc/core/timed.hpp"
+
+#include <Teuchos_Time.hpp>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace rpc::adapt
+{
+namespace
+{
+
+/// A run on one mesh whose solution gets its error estimate, and what the loop reads of its pressures. Collective.
+/// @param run  with the listener that it is given
+template <class Run>
+Solution with_estimate(const Task &task, const Listener &listener, const Run &run)
+{
+  Solution s;
+  analysis::Listener all = listener;
+  all.solved = [&](const analysis::Problem &problem, analysis::Solution &found) {
+    const contact::ContactNodes &points = found.step.contact;
+    const Comm &comm = found.discretization.mesh->comm();
+    const auto &pressure = found.contact.pressure;
+    if (task.adapt.adapts()) s.pressure_norm = contact::pressure_distance(comm, points, pressure, {});
+    if (found.start_pressure)
+      s.pressure_change = contact::pressure_distance(comm, points, pressure, *found.start_pressure);
+    if (!task.adapt.estimate) return;
+    const Timed phase("estimate", found.seconds.estimate);
+    const auto loads = task.model.seen_at(found.time).tractions;
+    s.estimate = estimator()(
+        {found.discretization, task.model.materials, problem.contact_sides(), loads, points, found.contact, *found.u});
+  };
+  static_cast<analysis::Solution &>(s) = run(all);
+  if (!task.adapt.estimate) s.skipped.push_back("error estimate: not asked for");
+  return s;
+}
+
+/// @param previous, earlier  see analysis::solve_on()
+Solution solve_on_mesh(const Task &task, const mesh::MeshOptions &mesh, const Solution *const previous,
+                       const Solution *const earlier, const RCP<const Comm> &comm, const Listener &listener)
+{
+  return with_estimate(task, listener, [&](const analysis::Listener &all) {
+    return analysis::solve_on(task, mesh, previous, earlier, comm, all);
+  });
+}
+
+Cycle cycle_of(const Solution &s, const double seconds)
+{
+  Cycle cycle;
+  cycle.dofs = s.discretization.owned_dofs->getGlobalNumElements();
+  cycle.estimate = relative_estimate(s);
+  cycle.energy = s.energy;
+  cycle.contact = s.contact.total;
+  cycle.pressure_change = s.pressure_norm > 0 ? s.pressure_change / s.pressure_norm : 0;
+  for (const int steps : s.uzawa.newton_iterations) cycle.newton_iterations += steps;
+  cycle.linear_iterations = s.linear.iterations;
+  cycle.recovered_pressure = s.pressure_norm > 0 ? s.estimate->pressure / s.pressure_norm : 0;
+  cycle.recovered_max_pressure = s.estimate->max_pressure;
+  cycle.peak = s.estimate->peak;
+  cycle.contact_ends = s.estimate->contact_ends;
+  cycle.seconds = seconds;
+  return cycle;
+}
+
+/// Why there is nothing to adapt a mesh to.
+std::string nothing_strained(const Solution &s)
+{
+  std::ostringstream reason;
+  reason << "nothing is strained";
+  if (s.energy_norm_squared > 0)
+    reason << ": the strain energy " << s.energy_norm_squared << (s.discretization.per_metre() ? " J/m" : " J")
+           << " is rounding, which may reach " << s.estimate->rounding;
+  return reason.str();
+}
+
+/// The mesh with the least estimate; with the target met that is the last one.
+std::size_t best_of(const std::vector<Cycle> &cycles)
+{
+  const auto less = [](const Cycle &a, const Cycle &b) { return a.estimate < b.estimate; };
+  return std::min_element(cycles.begin(), cycles.end(), less) - cycles.begin();
+}
+
+/// @param earlier  the load step before, if there are several; its mesh is the first one
+Solution solve_adaptively(const Task &task, const Solution *const earlier, const RCP<const Comm> &comm,
+                          const Listener &listener)
+{
+  Adaptation adaptation;
+  std::vector<Cycle> &cycles = adaptation.cycles;
+  MeshPlanner planner(task);
+  std::optional<mesh::MeshOptions> options = earlier ? earlier->mesh_options : task.mesh;
+  std::optional<Solution> last, best;
+  std::string hint;
+  analysis::PhaseSeconds seconds;
+  while (options) {
+    const double start = Teuchos::Time::wallTime();
+    std::optional<Solution> next;
+    try {
+      next = solve_on_mesh(task, *options, last ? &*last : nullptr, earlier, comm, listener);
+    } catch (const Error &failure) { // on all ranks
+      if (!last) throw;
+      adaptation.reason = interrupted(*comm) ? interruption() + " before the next mesh" : failure.what();
+      break;
+    }
+    seconds += next->seconds;
+    if (last && !next->uzawa.converged) {
+      adaptation.reason = "no solution on the next mesh: " + next->uzawa.reason;
+      break;
+    }
+    last = std::move(next);
+    hint = fem::order_note(last->discretization, task.model.materials);
+    if (cycles.empty() && !hint.empty() && listener.note) listener.note(hint);
+    cycles.push_back(cycle_of(*last, Teuchos::Time::wallTime() - start));
+    if (!best || best_of(cycles) + 1 == cycles.size()) best = last;
+    if (listener.cycle) listener.cycle(*last);
+    if (!last->uzawa.converged || !std::isfinite(cycles.back().estimate)) {
+      adaptation.reason = "there is no solution to estimate an error of";
+      break;
+    }
+    if (listener.estimate) listener.estimate(*last);
+    adaptation.reached = cycles.back().estimate <= task.adapt.target;
+    if (only_rounding(*last)) adaptation.reason = nothing_strained(*last);
+    if (adaptation.reached) break;
+    if (last->estimate->total() <= last->estimate->rounding) {
+      adaptation.reason = "the estimated error is rounding of the displacements, which finer meshes do not reduce";
+      break;
+    }
+    if (static_cast<int>(cycles.size()) == task.adapt.max_cycles) {
+      adaptation.reason = "there were \"Adapt->Max Cycles\" = " + std::to_string(task.adapt.max_cycles) + " meshes";
+      break;
+    }
+    options = planner.next(last->discretization, *last->estimate, last->energy_norm_squared, adaptation.reason);
+  }
+  if (!adaptation.reached && !hint.empty() && !interrupted(*comm)) adaptation.reason += ". " + hint;
+  adaptation.errors = observed_errors({cycles.begin(), cycles.begin() + best_of(cycles) + 1});
+  best->adaptation = std::move(adaptation);
+  best->seconds = seconds;
+  return std::move(*best);
+}
+
+/// Load steps, each on meshes of its own.
+Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
+{
+  std::optional<Solution> earlier;
+  analysis::PhaseSeconds seconds;
+  for (const double t : task.steps.times) {
+    Task step = task;
+    step.time = t;
+    Solution s = solve_adaptively(step, earlier ? &*earlier : nullptr, comm, listener);
+    seconds += s.seconds;
+    s.seconds = seconds;
+    if (listener.load_step) listener.load_step(s);
+    earlier = std::move(s);
+    if (!succeeded(*earlier)) break;
+  }
+  return std::move(*earlier);
+}
+
+} // namespace
+
+Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
+{
+  if (!task.adapt.adapts())
+    return with_estimate(task, listener,
+                         [&](const analysis::Listener &all) { return analysis::solve(task, comm, all); });
+  if (comm->getRank() == 0) mesh::start_gmsh_early();
+  return task.has_steps() ? solve_steps_adaptively(task, comm, listener)
+                          : solve_adaptively(task, nullptr, comm, listener);
+}
+
+bool only_rounding(const Solution &s)
+{
+  return s.estimate && s.energy_norm_squared <= s.estimate->rounding;
+}
+
+double relative_estimate(const Solution &s)
+{
+  const double squared = s.estimate->total();
+  return squared == 0 || only_rounding(s) ? 0 : std::sqrt(squared / s.energy_norm_squared);
+}
+
+double exact_error(const Task &task, const Solution &s)
+{
+  return std::sqrt(2 * std::abs(s.energy - task.adapt.exact_energy) / s.energy_norm_squared);
+}
+
+bool succeeded(const Solution &s)
+{
+  return s.uzawa.converged && (!s.adaptation || s.adaptation->reached);
+}
+
+} // namespace rpc::adapt

@@ -1,0 +1,54 @@
+#include "next_mesh.hpp"
+
+#include "rpc/adapt/new_sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rpc::adapt
+{
+namespace
+{
+
+// A new mesh is to come that much below the target: what is predicted is met to some ten percent.
+constexpr double aim = 0.95;
+// The estimate falls by no more from one mesh to the next: a coarse mesh knows little of where a fine one is to be fine.
+constexpr double greatest_reduction = 4;
+// Near the target, what came out above what was planned is allowed for in the next plan, up to a factor, and cells hardly
+// grow, lest the next mesh loses what this one has.
+constexpr double near = 2, greatest_correction = 3, growth_near = 1.25, growth = 2.5;
+// A mesh has no more than so many times the cells that the order of the elements asks for: where a coarse one is to be
+// refined in many more, it has not seen what it estimates.
+constexpr double greatest_excess = 1.5;
+// Meshes are planned that much smaller than allowed: gmsh makes more cells or fewer than it is asked for.
+constexpr double share_of_max_dofs = 0.75;
+
+} // namespace
+
+std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d, const ErrorEstimate &estimate,
+                                                   const double energy_norm_squared, std::string &reason)
+{
+  const double eta = std::sqrt(estimate.total());
+  const double wanted = aim * task_.adapt.target * std::sqrt(energy_norm_squared);
+  const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
+  const bool is_near = eta < near * wanted;
+  const double missed = is_near ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
+  planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
+  const double bound = planned_ / missed;
+
+  const double dofs = static_cast<double>(d.owned_dofs->getGlobalNumElements());
+  const mesh::Mesh &mesh = *d.mesh;
+  const double cells = static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
+  const double most_dofs = share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
+  const double allowed = most_dofs * cells / dofs;
+  const double sensible = greatest_excess * cells * std::pow(eta / bound, 2. / mesh.element.order);
+  const auto sizes =
+      new_sizes(d, estimate, {bound * bound, std::min(allowed, sensible), is_near ? growth_near : growth});
+  if (dofs > 0.9 * most_dofs && sizes.predicted_cells > 0.9 * allowed) {
+    reason = "a mesh for the target would exceed \"Adapt->Max Dofs\" = " + std::to_string(task_.adapt.max_dofs);
+    return std::nullopt;
+  }
+  return mesh::with_sizes(task_.mesh, sizes.field);
+}
+
+} // namespace rpc::adapt

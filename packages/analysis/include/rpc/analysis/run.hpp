@@ -1,0 +1,81 @@
+#pragma once
+
+#include "rpc/analysis/load_history.hpp"
+#include "rpc/analysis/quantities.hpp"
+#include "rpc/mesh/make_mesh.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Runs on a given mesh: from a task to its solution, with load steps and checkpoints.
+namespace rpc::analysis
+{
+
+/// What is to be solved: a scene on its mesh.
+struct Task {
+  mesh::MeshOptions mesh;
+  double time = 1; ///< at which the scene is solved
+  Model model;
+  StepOptions step;
+  StepsOptions steps; ///< load steps; without times one, at `time`
+  solver::LinearSolverOptions linear_solver;
+
+  bool has_steps() const { return !steps.times.empty(); }
+};
+
+/// The motion of obstacles counts from the first load step, whatever mesh or checkpoint a run is on.
+void set_obstacle_origins(Task &task);
+
+/// What a run on one mesh has found.
+struct Solution : StepSolution {
+  fem::Discretization discretization;
+  std::vector<std::string> skipped; ///< what the scene allowed to leave out, and why
+  double time = 1;                  ///< at which it is the solution
+  std::optional<Memory> memory;     ///< what the next load step starts from, where there are several and it converged
+  /// (contact points) Pressure that the solution on the previous mesh gave as a start [Pa]; none without a previous mesh.
+  std::optional<DeviceView<double *>> start_pressure;
+  mesh::MeshOptions mesh_options;  ///< of its mesh
+  std::vector<StepRecord> history; ///< of load steps, up to this one
+  int matrix_assemblies = 0;
+  PhaseSeconds seconds;
+};
+
+/// All that the next load step needs.
+struct HistoryState {
+  Memory last;
+  std::optional<Memory> before; ///< displacement and pressure of the step before the last one
+  std::vector<StepRecord> records;
+  int matrix_assemblies = 0;
+};
+
+/// What is told on the way; empty functions tell nothing. All are called on all ranks.
+struct Listener {
+  std::function<void(const fem::Discretization &, const contact::ContactNodes &)> mesh; ///< one has been made
+  Progress step;
+  /// A solution is found, and nothing is told of it yet: what else is to be known of it, such as its error, is computed here.
+  std::function<void(const Problem &, Solution &)> solved;
+  std::function<void(Solution &)> load_step; ///< one of several load steps is solved; its record is the history's last
+  /// The state to go on from, if it is not the first step.
+  std::function<std::optional<HistoryState>(const fem::Discretization &)> resume;
+  /// To be kept. The run itself goes on from here as from the checkpoint: with a new matrix and a new multigrid.
+  std::function<void(const HistoryState &, const fem::Discretization &)> checkpoint;
+};
+
+/// Mesh, assembly and solve_step(), for each load step: from a task to its solution. Collective on comm.
+/// @throws rpc::Error on every rank if the model does not fit its mesh; failing to converge is in the result
+Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
+
+/// The load steps of a task on its mesh, each from the one before; the solution is the last one's, or the first one's that does not
+/// converge.
+Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
+
+/// One step of a task on one mesh.
+/// @param mesh      to be made, in place of the task's
+/// @param previous  solution on another mesh to start from; null: coarser meshes predict it
+/// @param earlier   solution of the load step before; without a previous mesh its mesh is taken. Null: there is none
+Solution solve_on(const Task &task, const mesh::MeshOptions &mesh, const Solution *previous, const Solution *earlier,
+                  const RCP<const Comm> &comm, const Listener &listener);
+
+} // namespace rpc::analysis

@@ -1,0 +1,55 @@
+#include "output/contact.hpp"
+
+#include "rpc/fem/surface.hpp"
+#include "rpc/io/contact_csv.hpp"
+#include "rpc/mesh/canonical_order.hpp"
+
+#include <vector>
+
+namespace rpc
+{
+namespace
+{
+
+/// [begin, end) of a view, on the host.
+template <class Data>
+HostView<Data *> part_of(const DeviceView<Data *> &values, const LO begin, const LO end)
+{
+  HostView<Data *> part(values.label(), end - begin);
+  Kokkos::deep_copy(part, Kokkos::subview(values, Kokkos::make_pair(begin, end)));
+  return part;
+}
+
+} // namespace
+
+void write_contact(const std::string &path, const Scene &scene, const analysis::Solution &s)
+{
+  const mesh::Mesh &mesh = *s.discretization.mesh;
+  const auto &contact = s.step.contact;
+  const HostPoints position = fem::node_positions(mesh, contact.node);
+  const auto node_ids = mesh::overlap_node_ids(mesh);
+  std::vector<io::ContactTable> tables;
+  for (int k = 0; k < contact.num_sides(); ++k) {
+    const LO begin = contact.first(k), end = contact.first(k + 1);
+    io::ContactTable table;
+    table.side = scene.model.contact[k].side;
+    table.id = HostView<GO *>("rpc::output::id", end - begin);
+    table.position = HostView<double **>("rpc::output::position", end - begin, mesh.dim());
+    const auto node = part_of(contact.node, begin, end);
+    for (LO i = 0; i < end - begin; ++i) {
+      table.id(i) = mesh.node_id(node(i));
+      for (int c = 0; c < mesh.dim(); ++c) table.position(i, c) = position(begin + i, c);
+    }
+    table.weight = part_of(contact.weight, begin, end);
+    table.u_nu = part_of(s.contact.normal_displacement, begin, end);
+    table.gap = part_of(contact.gap, begin, end);
+    table.pressure = part_of(s.contact.pressure, begin, end);
+    table.dent = part_of(s.contact.dent, begin, end);
+    table.state = part_of(s.contact.state, begin, end);
+    table.facets = mesh::owned_facets(mesh, mesh.side(table.side, scene.model.contact[k].path + "->Side"), node_ids);
+    tables.push_back(table);
+  }
+  io::write_contact_csv(path, mesh.owned_nodes->getComm(), tables);
+}
+
+} // namespace rpc

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "rpc/io/exodus.hpp"
+#include "scene.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rpc
+{
+
+/// The Exodus file of a run with load steps, a time for each: it appears with the other results. Where the mesh changes from one step
+/// to the next, a new file begins, <deck>.e-s0002 and so on, as ParaView expects of one run.
+class Film
+{
+public:
+  /// Adds the last of the solution's steps if it is to be written. Collective.
+  void add(const Scene &scene, const analysis::Solution &solution, const std::string &folder);
+  /// Adds the solution if it is not in yet, and finishes the file.
+  void finish(const Scene &scene, const analysis::Solution &solution, const std::string &folder);
+  const std::vector<std::string> &files() const { return files_; } ///< their paths
+  double seconds() const { return seconds_; }                      ///< that writing took [s]
+
+private:
+  void write(const Scene &scene, const analysis::Solution &solution, const std::string &folder);
+
+  std::shared_ptr<const mesh::Mesh> mesh_; // which the file reads until its end
+  std::unique_ptr<io::ExodusFile> file_;
+  int written_ = 0; // number of the last step that is in
+  std::vector<std::string> files_;
+  double seconds_ = 0;
+};
+
+} // namespace rpc

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "scene.hpp"
+#include "solve.hpp"
+
+#include <string>
+#include <vector>
+
+namespace rpc
+{
+
+/// The name of one mesh's results, "Adapt->Write All".
+/// @param cycle  from 1
+std::string cycle_name(const Scene &scene, int cycle);
+
+/// Where the results of a scene go; empty what is not asked for.
+struct ResultPaths {
+  std::string exodus, csv, json, history;
+
+  ResultPaths(const Scene &scene, const std::string &folder);
+  std::vector<std::string> all() const { return {exodus, csv, history, json}; }
+};
+
+/// Where a part of a film goes.
+/// @param part  from 1
+std::string film_part(const std::string &exodus, int part);
+
+/// Proves that the folder can be made and written to, and that nothing stands in the way of a scene's files, those of
+/// its cycles included: before the run, not after it. Collective.
+/// @throws rpc::Error (bad_input) on every rank
+void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm);
+
+/// Files of the same name that an earlier run has left and this run does not write, those of its meshes included.
+/// @param parts  of the film that this run has written
+std::vector<std::string> older_files(const Scene &scene, const Solution &solution, const std::string &folder,
+                                     int parts);
+
+} // namespace rpc

@@ -1,0 +1,44 @@
+#include "output/results.hpp"
+
+#include "output/contact.hpp"
+#include "output/history.hpp"
+#include "output/paths.hpp"
+#include "output/summary.hpp"
+#include "rpc/core/on_root.hpp"
+#include "rpc/io/atomic_file.hpp"
+
+#include <Teuchos_Time.hpp>
+
+namespace rpc
+{
+
+std::vector<std::string> write_results(const Scene &scene, Solution &s, const std::string &folder, const double start,
+                                       Film &film)
+{
+  const double begin = Teuchos::Time::wallTime() - film.seconds();
+  const ResultPaths paths(scene, folder);
+  const mesh::Mesh &mesh = *s.discretization.mesh;
+  if (!paths.exodus.empty()) film.finish(scene, s, folder);
+  if (!paths.csv.empty()) write_contact(paths.csv, scene, s);
+  if (!paths.history.empty())
+    on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.history, history_text(scene, s)); });
+  on_root(mesh.comm(), ExitCode::internal_error, [&] {
+    for (const std::string &file : older_files(scene, s, folder, static_cast<int>(film.files().size())))
+      io::remove_older(file);
+  });
+  const double now = Teuchos::Time::wallTime();
+  s.seconds.output = now - begin;
+  s.seconds.total = now - start;
+  if (!paths.json.empty()) { // last: its presence says that the others are complete and of this run
+    // Collective, hence outside. A deck's name may be no valid UTF-8.
+    const auto json = summary(scene, s);
+    const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.json, text); });
+  }
+  std::vector<std::string> files = film.files();
+  for (const std::string &path : paths.all())
+    if (!path.empty() && path != paths.exodus) files.push_back(path);
+  return files;
+}
+
+} // namespace rpc

@@ -1,0 +1,133 @@
+#include "output/summary.hpp"
+
+#include "output/quantities.hpp"
+
+#include <cmath>
+
+namespace rpc
+{
+namespace
+{
+
+nlohmann::ordered_json vector_json(const std::array<double, 3> &v, const int dim)
+{
+  return std::vector<double>(v.begin(), v.begin() + dim);
+}
+
+void add_sums(nlohmann::ordered_json &json, const contact::ContactSums &sums, const ResultScope &scope, const int dim)
+{
+  json["contact_nodes"] = sums.num_nodes;
+  json["contact_force"] = vector_json(sums.force, dim);
+  add_shown(json, contact::contact_quantities, sums, scope);
+}
+
+void add_steps(nlohmann::ordered_json &json, const Solution &s, const ResultScope &scope)
+{
+  auto &steps = json["steps"] = nlohmann::ordered_json::array();
+  for (const analysis::StepRecord &step : s.history) {
+    nlohmann::ordered_json entry = {{"time", step.time}, {"converged", step.converged}};
+    add_shown(entry, analysis::energy_quantities, step.energies, scope);
+    add_sums(entry, step.contact, scope, s.discretization.dim());
+    add_shown(entry, analysis::step_parts, step, scope);
+    add_shown(entry, analysis::step_work, step, scope);
+    entry["seconds"] = step.seconds;
+    steps.push_back(entry);
+  }
+}
+
+/// A number that may be unknown: null then.
+nlohmann::ordered_json maybe(const double value)
+{
+  return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+}
+
+nlohmann::ordered_json cycle_json(const adapt::Cycle &c, const ResultScope &scope, const int dim)
+{
+  nlohmann::ordered_json json = {{"dofs", c.dofs},
+                                 {"relative_estimate", c.estimate},
+                                 {"energy_J", c.energy},
+                                 {"contact_force", vector_json(c.contact.force, dim)}};
+  for (const auto &q : defined_numbers(contact::contact_quantities, scope))
+    if (q.shown.meshes) json[q.name(scope)] = c.contact.*q.value;
+  json["newton_iterations"] = c.newton_iterations;
+  json["linear_iterations"] = c.linear_iterations;
+  json["seconds"] = c.seconds;
+  return json;
+}
+
+void add_errors(nlohmann::ordered_json &json, const Scene &scene, const Solution &s)
+{
+  if (!s.estimate) return;
+  const double relative = relative_estimate(s), exact = exact_error(scene, s);
+  auto &estimate = json["error_estimate"];
+  estimate["energy_norm"] = std::sqrt(s.estimate->total());
+  estimate["relative"] = relative;
+  for (const adapt::ErrorPart &part : s.estimate->parts) estimate[part.key] = std::sqrt(part.squared);
+  estimate["rounding"] = std::sqrt(s.estimate->rounding);
+  estimate["exact_relative"] = maybe(exact);
+  estimate["effectivity"] = maybe(relative / exact);
+  if (!s.adaptation) return;
+  const adapt::Adaptation &a = *s.adaptation;
+  json["adaptation"] = {{"target", scene.adapt.target}, {"reached", a.reached}, {"reason", a.reason}};
+  const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
+  add_shown(json["adaptation"]["errors"], adapt::error_bars, a.errors, scope);
+  auto &unknown = json["adaptation"]["errors_unknown"] = nlohmann::ordered_json::object();
+  for (const auto &[key, reason] : a.errors.unknown) unknown[adapt::error_bar_name(key, scope)] = reason;
+  auto &cycles = json["adaptation"]["cycles"] = nlohmann::ordered_json::array();
+  for (const adapt::Cycle &c : a.cycles) cycles.push_back(cycle_json(c, scope, s.discretization.dim()));
+}
+
+} // namespace
+
+nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
+{
+  const mesh::Mesh &mesh = *s.discretization.mesh;
+  const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
+  nlohmann::ordered_json json;
+  json["rpc_version"] = RPC_VERSION;
+  json["deck"] = scene.name;
+  json["converged"] = s.uzawa.converged;
+  json["reason"] = s.uzawa.reason;
+  if (mesh.dim() == 2) json["kinematics"] = fem::name_of(s.discretization.kinematics);
+  json["element"] = mesh.element.name();
+  json["cells"] = sum_all(mesh.comm(), GO(mesh.num_owned_cells));
+  json["dofs"] = s.discretization.owned_dofs->getGlobalNumElements();
+  json["fixed_contact_nodes"] = s.step.contact.num_fixed;
+  json["ranks"] = mesh.comm().getSize();
+  json["execution_space"] = ExecutionSpace::name();
+  json["time"] = s.time;
+  json["energy_J"] = s.energy;
+  json["strain_energy"] = 0.5 * s.energy_norm_squared;
+  json["energy_norm_squared"] = s.energy_norm_squared;
+  add_sums(json, s.contact.total, scope, mesh.dim());
+  json["contact_sides"] = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < scene.model.contact.size(); ++k)
+    add_sums(json["contact_sides"][scene.model.contact[k].side], s.contact.sides[k], scope, mesh.dim());
+  json["reaction_force"] = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < scene.model.dirichlet.size(); ++k)
+    json["reaction_force"][scene.model.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());
+  add_shown(json, analysis::residual_quantities, s.uzawa.residuals, scope);
+  json["multiplier_change"] = s.uzawa.multiplier_change;
+  json["uzawa_iterations"] = s.uzawa.iterations;
+  json["newton_iterations"] = s.uzawa.newton_iterations;
+  json["line_search_steps"] = s.line_search_steps;
+  json["linear_solves"] = s.linear.iterations.size();
+  json["linear_iterations"] = s.linear.iterations;
+  json["preconditioner_setups"] = s.linear.preconditioner_setups;
+  json["local_corrections"] = s.linear.local_corrections;
+  json["matrix_assemblies"] = s.matrix_assemblies;
+  if (!s.history.empty()) add_steps(json, s, scope);
+  add_errors(json, scene, s);
+  json["skipped"] = s.skipped;
+  json["levels"] = nlohmann::ordered_json::array();
+  for (const auto &level : s.levels)
+    json["levels"].push_back({{"dofs", level.dofs},
+                              {"newton_iterations", level.newton_iterations},
+                              {"linear_iterations", level.linear_iterations},
+                              {"preconditioner_setups", level.preconditioner_setups},
+                              {"seconds", level.seconds}});
+  add_shown(json["seconds"], analysis::phase_seconds, s.seconds, scope);
+  return json;
+}
+
+} // namespace rpc
