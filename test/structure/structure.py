@@ -2,8 +2,9 @@
 
     python3 structure.py [<root of the sources>]
 
-Prints each arrow that is not allowed, each Kokkos kernel that the program itself launches, and each name that differs between Trilinos
-versions outside VERSION_HEADERS; the exit code is 1 if there is one.
+Prints each arrow that is not allowed, each line of the program that launches a kernel or works on a matrix, each name that differs
+between Trilinos versions outside VERSION_HEADERS, and each parameter of a contact law that is read outside its folder; the exit code
+is 1 if there is one.
 """
 
 import pathlib
@@ -20,7 +21,7 @@ ALLOWED = {
     "solver": "core algebra",
     "io": "core mesh",
     "analysis": "core algebra mesh fem contact solver",
-    "adapt": "core algebra mesh fem contact solver io analysis",
+    "adapt": "core algebra mesh fem contact solver analysis",
     "src": "core algebra mesh fem contact solver io analysis adapt",
 }
 # Who may include headers of Trilinos that begin so.
@@ -31,7 +32,6 @@ LIBRARIES = {
     "Ifpack2": "solver",
     "Amesos2": "solver",
 }
-PROGRAM_KERNELS = set()
 # Names that differ between Trilinos versions, doc/trilinos_versions.md, and the only place where they may stand.
 VERSION_NAMES = re.compile(r"""
     \b(?: getNode(?:Num|Element)\w*                           # of Tpetra's and Xpetra's maps and matrices: getLocal...
@@ -43,6 +43,18 @@ VERSION_NAMES = re.compile(r"""
         | Kokkos::Experimental
     )\b""", re.VERBOSE)
 VERSION_HEADERS = "packages/core/include/rpc/core"
+# Headers that a package may not include though they belong to one below it: a run gets its mesh from mesh/make_mesh.hpp.
+HIDDEN = {"analysis": ["rpc/mesh/gmsh"]}
+# What the program, which is left with command line, files and exit codes, does not do.
+NOT_IN_PROGRAM = {
+    "a kernel": re.compile(r"Kokkos::parallel_"),
+    "work on a matrix": re.compile(r"\b\w*(Matrix|Graph|Operator)\b|fillComplete|sumIntoLocal|replaceLocal"),
+}
+# Numbers of a contact law at a point, which the functions of law/ alone read; who fills them.
+LAW_PARAMETERS = re.compile(r"(?:\.|->)(?:yield|hardening|compliance)\b(?!_)")
+LAW_FOLDER = "packages/contact/include/rpc/contact/law"
+LAW_FILLERS = {"packages/contact/src/contact_nodes.cpp", "packages/contact/src/contact_options.cpp",
+               "packages/analysis/src/problem.cpp"}  # options of the deck, and the points' views
 FOR_TESTS = {"mesh", "fem"}  # a package's tests may make their bodies with these
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
@@ -75,6 +87,8 @@ def check_includes(root, package, folder):
             parts = header.split("/")
             if parts[0] == "rpc" and len(parts) > 2 and parts[1] not in may:
                 yield where
+            if not in_test and any(header.startswith(hidden) for hidden in HIDDEN.get(package, [])):
+                yield where
             for library, users in LIBRARIES.items():
                 if header.startswith(library + "_") or header.startswith(library.lower() + "_"):
                     if package not in users.split() and not in_test:
@@ -93,11 +107,12 @@ def check_links(root):
                 yield f"{file.relative_to(root)}: {name} links rpc::{other}"
 
 
-def check_kernels(root):
+def check_program(root):
     for file in code(root / "src"):
         for number, line in enumerate(file.read_text().splitlines(), 1):
-            if "Kokkos::parallel_" in line and str(file.relative_to(root)) not in PROGRAM_KERNELS:
-                yield f"{file.relative_to(root)}:{number}: a kernel in the program"
+            for what, pattern in NOT_IN_PROGRAM.items():
+                if pattern.search(line):
+                    yield f"{file.relative_to(root)}:{number}: {what} in the program"
 
 
 def check_versions(root):
@@ -110,6 +125,16 @@ def check_versions(root):
                     yield f"{file.relative_to(root)}:{number}: {name} differs between Trilinos versions: it belongs into {VERSION_HEADERS}"
 
 
+def check_law(root):
+    for top in ("packages", "src"):
+        for file in code(root / top):
+            if file.parent == root / LAW_FOLDER or "test" in file.parts or str(file.relative_to(root)) in LAW_FILLERS:
+                continue
+            for number, line in enumerate(file.read_text().splitlines(), 1):
+                if LAW_PARAMETERS.search(line.split("//")[0]):
+                    yield f"{file.relative_to(root)}:{number}: a parameter of the contact law is read outside {LAW_FOLDER}"
+
+
 def violations(root):
     folders = sorted(path.parent for path in root.glob("packages/*/CMakeLists.txt"))
     for folder in folders:
@@ -119,8 +144,9 @@ def violations(root):
             yield f"packages/{folder.name}: not in the table of test/structure/structure.py"
     yield from check_includes(root, "src", root / "src")
     yield from check_links(root)
-    yield from check_kernels(root)
+    yield from check_program(root)
     yield from check_versions(root)
+    yield from check_law(root)
 
 
 def main():

@@ -73,6 +73,28 @@ class Structure(unittest.TestCase):
         for line in ("start_kokkos(arguments)", "num_local(map)", "getNodeSmootherComplexity()", "x; // MueLu::GraphBase is gone"):
             self.assertEqual(self.violations(**{"packages__mesh__src__a.cpp": line}), [])
 
+    def test_finds_a_matrix_in_the_program(self):
+        found = self.violations(**{"src__report.cpp": "void f(const rpc::CrsMatrix &K)\n{\n  K.apply(x, y);\n}\n"})
+        self.assertEqual(found, ["src/report.cpp:1: work on a matrix in the program"])
+
+    def test_vectors_are_no_matrix(self):
+        self.assertEqual(self.violations(**{"src__film.cpp": "const MultiVector &v = *s.u;\n"}), [])
+
+    def test_indicators_do_not_write_files_and_runs_do_not_know_gmsh(self):
+        self.assertEqual(len(self.violations(**{
+            "packages__adapt__CMakeLists.txt": "rpc_add_package(adapt DEPENDS rpc::analysis)",
+            "packages__adapt__src__a.cpp": '#include "rpc/io/exodus.hpp"\n'})), 1)
+        found = self.violations(**{"packages__analysis__CMakeLists.txt": "rpc_add_package(analysis DEPENDS rpc::contact)",
+                                   "packages__analysis__src__run.cpp": '#include "rpc/mesh/make_mesh.hpp"\n#include "rpc/mesh/gmsh.hpp"\n'})
+        self.assertEqual(found, ["packages/analysis/src/run.cpp:2: analysis includes rpc/mesh/gmsh.hpp"])
+
+    def test_finds_a_parameter_of_the_law_that_is_read_outside_its_folder(self):
+        line = "const double most = c.law(i).yield;"
+        self.assertEqual(len(self.violations(**{"packages__contact__src__result.cpp": line})), 1)
+        self.assertEqual(self.violations(**{"packages__contact__include__rpc__contact__law__a.hpp": line}), [])
+        self.assertEqual(self.violations(**{"packages__contact__test__a_test.cpp": line}), [])
+        self.assertEqual(self.violations(**{"packages__contact__src__result.cpp": "peak.yield_jump = sums.yielded_length > 0;"}), [])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,5 +1,8 @@
 #include "rpc/adapt/estimators/recovered.hpp"
 
+#include "rpc/contact/law/interpolated.hpp"
+#include "rpc/contact/law/judgement.hpp"
+#include "rpc/contact/law/states.hpp"
 #include "rpc/core/math.hpp"
 #include "rpc/fem/rounding.hpp"
 #include "rpc/fem/stress.hpp"
@@ -17,7 +20,15 @@ namespace
 using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadOnly));
 
 // Columns of what a side's facets read at their nodes.
-enum Column { pressure, penetration, yield, hardening, compliance, normal };
+enum Column { pressure, penetration, law, normal = law + contact::law_columns };
+
+/// The columns of a node's law, for kernels.
+template <class Columns>
+struct LawAt {
+  const Columns &columns;
+  LO node;
+  KOKKOS_INLINE_FUNCTION double &operator()(const int k) const { return columns(node, law + k); }
+};
 
 /// What the contact nodes of one side know, at the nodes of its facets (overlap nodes; columns).
 RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const contact::ContactNodes &c,
@@ -29,23 +40,24 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
   // count with p |v|, which is of first order, and differ between numbers of ranks.
   const double accuracy = 1e-7 * result.total.max_pressure;
   const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, normal + c.dim));
-  owned->getVectorNonConst(yield)->putScalar(
-      highest_yield); // a node that misses the obstacle is open: no pressure, no normal
   const LO begin = c.first(side);
   const auto p = result.pressure, v = result.penetration;
   {
     const auto to = owned->getLocalViewDevice(Tpetra::Access::ReadWrite);
+    Kokkos::parallel_for( // a node that misses the obstacle is open: no pressure, no normal
+        "rpc::adapt::rigid_elsewhere", device_range(static_cast<LO>(to.extent(0))), KOKKOS_LAMBDA(const LO node) {
+          contact::to_columns_of_rigid(highest_yield, LawAt<decltype(to)>{to, node});
+        });
     Kokkos::parallel_for(
         "rpc::adapt::contact_fields", device_range(c.first(side + 1) - begin), KOKKOS_LAMBDA(const LO k) {
           const LO i = begin + k, node = c.node(i);
           to(node, int(pressure)) = p(i);
-          const bool closed = p(i) > 0 && p(i) < c.yield(i);
-          const double now = v(i) - c.dent(i), elastic = c.compliance(i) * p(i);
+          const contact::Foundation f = c.law(i);
+          const bool closed = contact::state_of_pressure(p(i), f) == contact::State::closed;
+          const double now = v(i) - c.dent(i), elastic = contact::resting_penetration(p(i), f);
           const double miss = now < elastic ? elastic - now : now - elastic;
           to(node, int(penetration)) = closed && c.scaling(i) * miss <= accuracy ? elastic : now;
-          to(node, int(yield)) = c.yield(i) < highest_yield ? c.yield(i) : highest_yield;
-          to(node, int(hardening)) = c.hardening(i);
-          to(node, int(compliance)) = c.compliance(i);
+          contact::to_columns(f, highest_yield, LawAt<decltype(to)>{to, node});
           for (int j = 0; j < c.dim; ++j) to(node, normal + j) = c.normal(i, j);
         });
     Kokkos::fence();
@@ -68,16 +80,28 @@ struct ContactTerms {
   LO num_owned_cells;
   DeviceView<double *> squared; // (facets), of owned cells    [J]       out
 
+  /// The law at a node of a facet.
+  KOKKOS_FUNCTION contact::Foundation law_at(const LO f, const std::size_t a) const
+  {
+    double column[contact::law_columns];
+    for (int k = 0; k < contact::law_columns; ++k) column[k] = field(facets(f, a), law + k);
+    return contact::from_columns(column);
+  }
+
   /// The state of the contact law at the nodes of a facet, or mixed: then what lies between them is not told.
   enum class FacetState { open = 1, closed = 2, yielding = 4, mixed };
   KOKKOS_FUNCTION FacetState state_of(const LO f) const
   {
     constexpr double jump = 0.1; // of the yield stress, over the lower one: its quadratic interpolant would be far off
     int state = 0;
-    double least = field(facets(f, 0), int(yield)), most = least;
+    double least = contact::yield_limit(law_at(f, 0)), most = least;
     for (std::size_t a = 0; a < facets.extent(1); ++a) {
-      const double p = field(facets(f, a), int(pressure)), xi = field(facets(f, a), int(yield));
-      state |= int(p >= xi ? FacetState::yielding : (p > 0 ? FacetState::closed : FacetState::open));
+      const contact::Foundation at_node = law_at(f, a);
+      const contact::State s = contact::state_of_pressure(field(facets(f, a), int(pressure)), at_node);
+      const double xi = contact::yield_limit(at_node);
+      state |= int(s == contact::State::yielding ? FacetState::yielding
+                   : s == contact::State::closed ? FacetState::closed
+                                                 : FacetState::open);
       least = math::fmin(least, xi);
       most = math::fmax(most, xi);
     }
@@ -126,21 +150,19 @@ struct ContactTerms {
     double out_of_balance = 0, product = 0;
     for (int q = 0; q < points; ++q) {
       const Point x = point(f, q, state == FacetState::mixed);
-      // An interpolant may fall below its nodal values.
-      const contact::Foundation law{math::fmax(0., x.at[yield]), math::fmax(0., x.at[hardening]),
-                                    math::fmax(0., x.at[compliance])};
+      const contact::Foundation foundation = contact::from_columns(x.at + law);
       const double v = x.at[penetration], share = measure(f * points + q);
-      // Of all pressures that the law admits, that of the least sum of both terms will do where the multiplier tells none.
-      const double p = state == FacetState::mixed ? contact::pressure(v, x.recovered, 1 / facet_compliance, law)
-                                                  : contact::admissible(x.at[pressure], law);
+      // On facets with several states: the admissible p that minimizes (10.3) + (10.4).
+      const double p = state == FacetState::mixed ? contact::pressure(v, x.recovered, 1 / facet_compliance, foundation)
+                                                  : contact::admissible(x.at[pressure], foundation);
       // By Fenchel and Young >= 0, but for rounding.
-      product += share * math::fmax(0., contact::foundation_energy(v, law) + contact::conjugate_energy(p, law) - p * v);
+      product += share * math::fmax(0., contact::foundation_energy(v, foundation) + contact::conjugate_energy(p, foundation) - p * v);
       for (int i = 0; i < dim; ++i) {
         const double r = x.rest[i] + p * x.at[normal + i];
         out_of_balance += facet_compliance * share * r * r;
       }
-      const double other = x.at[pressure] - contact::admissible(x.recovered, law);
-      const bool known = state == FacetState::open || (state == FacetState::yielding && law.hardening == 0);
+      const double other = x.at[pressure] - contact::admissible(x.recovered, foundation);
+      const bool known = state == FacetState::open || (state == FacetState::yielding && !contact::hardens(foundation));
       if (!known) difference += share * other * other;
     }
     squared(f) = out_of_balance + 2 * product;
@@ -173,7 +195,7 @@ struct PeakDifference {
   {
     // The pressure is the yield stress, known at the nodes.
     if (terms.state_of(f) == ContactTerms::FacetState::yielding &&
-        terms.field(terms.facets(f, 0), int(hardening)) == 0) {
+        !contact::hardens(terms.law_at(f, 0))) {
       double high = 0, low = highest;
       for (std::size_t a = 0; a < terms.facets.extent(1); ++a) {
         const double p = terms.field(terms.facets(f, a), int(pressure));
@@ -187,7 +209,7 @@ struct PeakDifference {
       const auto x = terms.point(f, q, false);
       const double p = x.at[pressure];
       if (!(p > 0 && p >= share * highest)) continue;
-      const double difference = p - contact::admissible(x.recovered, {x.at[yield], x.at[hardening], x.at[compliance]});
+      const double difference = p - contact::admissible(x.recovered, contact::from_columns(x.at + law));
       most = math::fmax(most, difference < 0 ? -difference : difference);
     }
   }
@@ -217,11 +239,11 @@ struct NodalPressures {
     const double modulus = terms.lame(block, 0) + 2 * terms.lame(block, 1);
     double most = at(f, 0, pressure), least = most;
     for (int a = 0; a < nodes; ++a) {
-      const double p = at(f, a, pressure), xi = at(f, a, yield);
+      const double p = at(f, a, pressure), xi = contact::yield_limit(terms.law_at(f, a));
       most = math::fmax(most, p);
       least = math::fmin(least, p);
       for (int b = 0; b < nodes; ++b) {
-        const double other = at(f, b, pressure), other_xi = at(f, b, yield);
+        const double other = at(f, b, pressure), other_xi = contact::yield_limit(terms.law_at(f, b));
         if (p >= xi && other < other_xi && other_xi > highest && other_xi > (1 + jump) * xi) yield_jumps += 1;
         if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) * modulus > highest * terms.size(f))
           gap_jumps += 1;
@@ -235,12 +257,11 @@ struct NodalPressures {
 /// What no pressure can exceed at the points of all contact sides, maybe infinite; collective.
 double highest_bound(const Comm &comm, const contact::ContactNodes &c)
 {
-  const auto yield = c.yield, harder = c.hardening;
-  const double inf = std::numeric_limits<double>::infinity();
+  const contact::ContactNodes points = c;
   double highest = 0;
   Kokkos::parallel_reduce(
       "rpc::adapt::highest_yield_stress", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &most) { most = math::fmax(most, harder(i) > 0 ? inf : yield(i)); },
+      KOKKOS_LAMBDA(const LO i, double &most) { most = math::fmax(most, contact::largest_bearable(points.law(i))); },
       Kokkos::Max<double>(highest));
   return max_all(comm, std::max(0., highest));
 }

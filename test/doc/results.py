@@ -1,0 +1,65 @@
+"""Every key and column of the files that a run writes is in doc/input.md, and the other way round."""
+
+import csv
+import json
+import pathlib
+import re
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "regression"))
+from rpc_run import SMALL, SOURCE, RpcTestCase  # noqa: E402
+
+NAMED = {"contact_sides", "reaction_force"}  # their keys are names of the deck
+MODELS = {"beam": ["--input=beam.xml", SMALL, "--set=Steps->Times={0.5, 1}", "--set=Adapt->Estimate Error=true"],
+          "beam_adaptive": ["--input=beam_adaptive.xml", "--set=Adapt->Target Relative Error=0.02"],
+          "block": ["--input=block.xml", "--set=Mesh->Cells={4, 4, 2}"]}
+
+
+def section(title):
+    text = (SOURCE / "doc" / "input.md").read_text()
+    return text.split(f"### `{title}`\n")[1].split("\n### ")[0]
+
+
+def code_words(text):
+    return set(re.findall(r"`([^`]+)`", text))
+
+
+def keys(value, name=None):
+    """All keys of a summary, those of objects inside it too."""
+    if isinstance(value, dict):
+        own = set() if name in NAMED else set(value)
+        return own.union(*(keys(inner, key) for key, inner in value.items()))
+    if isinstance(value, list):
+        return set().union(*(keys(inner) for inner in value))
+    return set()
+
+
+class Results(RpcTestCase):
+    def run_models(self):
+        for name, arguments in MODELS.items():
+            self.rpc(*arguments, "--output=out")
+            yield name, json.loads((self.folder / "out" / f"{name}.json").read_text())
+
+    def test_every_key_of_the_summary_is_documented_and_every_documented_key_is_written(self):
+        text = section("<deck>.json")
+        written = set().union(*(keys(summary) for _, summary in self.run_models()))
+        self.assertGreater(len(written), 60)
+        self.assertEqual(written - code_words(text), set())
+        listed = code_words("\n".join(line.split("|")[1] for line in text.splitlines() if line.startswith("|")))
+        self.assertGreater(len(listed), 40)
+        self.assertEqual(listed - written, set())
+
+    def test_every_column_is_documented(self):
+        self.rpc(*MODELS["beam"], "--output=out")
+        documented = code_words(section("<deck>.history.csv"))
+        header = next(csv.reader((self.folder / "out" / "beam.history.csv").read_text().splitlines()))
+        own = [name for name in header if not re.search(r"_(displacement|reaction)_[xyz]$", name)]
+        self.assertLess(len(own), len(header))
+        self.assertEqual(set(own) - documented, set())
+        header = next(csv.reader((self.folder / "out" / "beam.contact.csv").read_text().splitlines()))
+        self.assertEqual(set(header) - code_words(section("<deck>.contact.csv")), set())
+
+
+if __name__ == "__main__":
+    unittest.main()
