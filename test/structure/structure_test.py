@@ -64,7 +64,7 @@ class Structure(unittest.TestCase):
                      "MueLu::Aggregates_kokkos<LO> a;", "#include MUELU_HEADER(Aggregates_kokkos)", "MueLu::GraphBase<LO> &g",
                      "MueLu::TpetraCrs_To_XpetraMatrix<double>(A)", "Kokkos::Experimental::sqrt(x)"):
             for where in ("packages__mesh__src__a.cpp", "packages__mesh__test__a_test.cpp", "src__a.cpp", "test__support__a.hpp"):
-                found = self.violations(**{where: "\n" + line + "\n"})
+                found = [each for each in self.violations(**{where: "\n" + line + "\n"}) if "versions" in each]
                 self.assertEqual(len(found), 1, line)
                 self.assertTrue(found[0].startswith(where.replace("__", "/") + ":2: "), found)
             self.assertEqual(self.violations(**{"packages__core__include__rpc__core__a.hpp": line}), [])
