@@ -134,7 +134,6 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
   try {
     if (interrupted(*H->getDomainMap()->getComm())) throw Interrupted();
     prepare(std::max(tolerance, options.tolerance));
-    if (counts.path.empty()) record(*used, "");
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
     const KrylovResult done = krylov.solve(*used, H->is_symmetric(), b, x, tolerance);
@@ -235,6 +234,7 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const doubl
   impl_->stands_in = false;
   for (;;) {
     const Result result = impl_->attempt(b, x, tolerance);
+    if (impl_->counts.path.empty() && impl_->used) impl_->record(*impl_->used, "");
     const auto outcome = outcome_of(result);
     if (!outcome) return result;
     const Rule &rule = rule_for(impl_->used_for_policy(), *outcome);

@@ -13,8 +13,10 @@ namespace rpc::test
 /// Five-point differences on n x n nodes that are prescribed to be 0 all around, for two unknowns a node that a small spring at
 /// each node couples; symmetric, positive definite. Ranks share the nodes in order; the last one has few.
 struct Grid {
+  /// @param whole_blocks  with entries of 0, for who asks that the rows of a node have equal columns
   explicit Grid(
-      const int n, const std::function<GO(GO)> &gid = [](const GO unknown) { return unknown; })
+      const int n, const std::function<GO(GO)> &gid = [](const GO unknown) { return unknown; },
+      const bool whole_blocks = false)
   {
     const auto comm = Tpetra::getDefaultComm();
     const GO nodes = GO(n) * n, share = nodes / comm->getSize() + comm->getSize();
@@ -23,7 +25,7 @@ struct Grid {
     for (GO node = first; node < last; ++node)
       for (int k = 0; k < 2; ++k) own.push_back(gid(2 * node + k));
     map = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), own(), 0, comm));
-    A = rcp(new CrsMatrix(map, 6));
+    A = rcp(new CrsMatrix(map, 10));
     coordinates = rcp(new MultiVector(
         rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), last - first, 0, comm)), 2));
     null_space = rcp(new MultiVector(map, 2));
@@ -43,6 +45,9 @@ struct Grid {
           if (!exists) return;
           column.push_back(gid(unknown));
           value.push_back(entry);
+          if (!whole_blocks || unknown / 2 == node) return;
+          column.push_back(gid(unknown % 2 == 0 ? unknown + 1 : unknown - 1));
+          value.push_back(0);
         };
         add(true, 2 * node + k, 4.1);
         add(true, 2 * node + 1 - k, -0.1);

@@ -88,8 +88,8 @@ TEST(Krylov, SolvesForAMatrixThatIsNotSymmetricByGmres)
   Case of;
   const auto result = of.solve({});
   EXPECT_TRUE(result.converged) << result.reason;
-  EXPECT_GE(result.iterations, 10);
-  EXPECT_LE(result.iterations, 60);
+  EXPECT_GE(result.iterations, 51) << "it restarts";
+  EXPECT_LE(result.iterations, 100);
   EXPECT_LT(residual_of(*of.H, of.x, of.b), 1.01e-9);
   EXPECT_NEAR(result.residual, residual_of(*of.H, of.x, of.b), 1e-10);
   const auto wrong = of.solve({}, true);

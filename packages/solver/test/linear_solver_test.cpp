@@ -2,8 +2,8 @@
 
 #include "supported_grid.hpp"
 
-#include <cmath>
 #include <gtest/gtest.h>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
@@ -67,11 +67,14 @@ TEST(FailedSolve, OfFewUnknownsOnMeshesIsTakenOverByAFactor)
       "meshes -> factor: the linear solver broke down: multigrid: a coarser mesh would be too small for the ranks");
 }
 
-/// Springs that pull make H indefinite: CG breaks down with any hierarchy, and it is not the hierarchy that is to blame.
-TEST(FailedSolve, OfAnIndefiniteMatrixIsBrokenAndTheMeshesComeBack)
+/// Springs that pull make H indefinite, for which no multigrid on meshes can be made. Where the algebraic hierarchy breaks down as well, it
+/// is not the hierarchy that is to blame: the meshes are used again for other states.
+TEST(FailedSolve, OfBothHierarchiesIsBrokenAndTheMeshesComeBack)
 {
   const SupportedGrid body(large);
-  const auto solver = body.solver(options_for("mesh"), [&] { return body.levels(); });
+  LinearSolverOptions options = options_for("mesh");
+  options.muelu.set("smoother: type", "no such smoother");
+  const auto solver = body.solver(options, [&] { return body.levels(); });
   const Vector b = body.grid.right_side();
   Vector x(b.getMap());
   body.hold(0, 20, 5);
@@ -130,7 +133,7 @@ TEST(FailedSolve, ForgetsAHierarchyThatFollowedTheStatesBeforeItTakesAStrongerOn
   ASSERT_EQ(iterations.size(), 5U);
   EXPECT_EQ(iterations[2], 5) << "as it followed";
   EXPECT_EQ(iterations[3], 5) << "anew";
-  EXPECT_LE(iterations[4], 2) << "a factor";
+  EXPECT_LE(iterations[4], 3) << "a factor";
   const std::string path = solver_path(solver->counts());
   EXPECT_EQ(path.rfind("algebraic -> algebraic: anew -> stronger algebraic: the linear solver stopped at ", 0), 0U)
       << path;
@@ -191,7 +194,7 @@ TEST(LinearSolver, SolvesForFurtherRightSidesWithoutASetUp)
     const auto alone = solver->solve(first, x, 1e-8);
     EXPECT_TRUE(alone.converged) << alone.reason;
     const auto before = solver->counts();
-    for (const Vector *const b : {&second, &first}) {
+    for (const Vector *const b : std::initializer_list<const Vector *>{&second, &first}) {
       x.putScalar(3.);
       EXPECT_TRUE(solver->solve(*b, x, 1e-8).converged);
       EXPECT_LT(body.residual(x, *b), 1.01e-8) << kind.path;

@@ -11,7 +11,9 @@ namespace rpc::test
 
 /// A grid whose first row of nodes may be held by springs, for linear solvers: H = A + springs.
 struct SupportedGrid {
-  explicit SupportedGrid(const int n) : grid(n)
+  explicit SupportedGrid(const int n)
+      : grid(
+            n, [](const GO unknown) { return unknown; }, true)
   {
     const LO num_nodes = num_local(*grid.map) / 2;
     LO num_first = 0;
