@@ -8,7 +8,7 @@ namespace rpc::solver
 {
 
 /// An approximation B of H^-1 for a Krylov method, with H = K + contact. B is linear. It stays as it is until prepare() brings it to
-/// the present H. Symmetric and positive definite where K is, whatever contact adds. All members are collective.
+/// the present H. Symmetric and positive definite where H is. All members are collective.
 class Preconditioner : public Operator
 {
 public:
