@@ -1,29 +1,68 @@
 #include "rpc/core/exchange.hpp"
 
+#include "rpc/core/parallel.hpp"
+
 #include <algorithm>
-#include <numeric>
-#include <utility>
+#include <array>
 
 namespace rpc
 {
-
-Exchange::Exchange(const Comm &comm, std::vector<int> counts)
-    : comm_(comm), to_(std::move(counts)), from_(comm.getSize())
+namespace
 {
-  const int ranks = comm.getSize();
-  std::vector<int> all(static_cast<std::size_t>(ranks) * ranks);
-  Teuchos::gatherAll(comm, ranks, to_.data(), static_cast<int>(all.size()), all.data());
-  for (int rank = 0; rank < ranks; ++rank) from_[rank] = all[static_cast<std::size_t>(rank) * ranks + comm.getRank()];
+
+constexpr int rows_tag = 1, count_tag = 2; // of messages
+using Requests = std::vector<RCP<Teuchos::CommRequest<int>>>;
+
+void wait_all(const Comm &comm, Requests &requests)
+{
+  Teuchos::waitAll(comm, Teuchos::ArrayView<RCP<Teuchos::CommRequest<int>>>(requests));
+}
+
+} // namespace
+
+Exchange::Exchange(const Comm &comm, const std::vector<int> &counts) : comm_(comm)
+{
+  for (int rank = 0; rank < comm.getSize(); ++rank)
+    if (counts[rank] > 0) to_.push_back({rank, counts[rank]});
+  from_ = received_by(comm, to_);
+}
+
+/// Each rank learns from how many others it gets rows (one sum of as many numbers as there are ranks), and the counts from these.
+Exchange::Shares Exchange::received_by(const Comm &comm, const Shares &sent)
+{
+  std::vector<int> senders(comm.getSize());
+  for (const Share &share : sent) senders[share.rank] = 1;
+  senders = summed(comm, senders);
+  std::vector<std::array<int, 2>> to, from(senders[comm.getRank()]); // rank, count
+  Requests requests;
+  for (auto &message : from)
+    requests.push_back(Teuchos::ireceive(Teuchos::ArrayRCP<int>(message.data(), 0, 2, false), -1, count_tag, comm));
+  for (const Share &share : sent) to.push_back({comm.getRank(), share.count});
+  for (std::size_t k = 0; k < to.size(); ++k)
+    requests.push_back(
+        Teuchos::isend(Teuchos::ArrayRCP<const int>(to[k].data(), 0, 2, false), sent[k].rank, count_tag, comm));
+  wait_all(comm, requests);
+  std::sort(from.begin(), from.end());
+  Shares received;
+  for (const auto &[rank, count] : from) received.push_back({rank, count});
+  return received;
+}
+
+int Exchange::total(const Shares &shares)
+{
+  int total = 0;
+  for (const Share &share : shares) total += share.count;
+  return total;
 }
 
 int Exchange::num_sent() const
 {
-  return std::accumulate(to_.begin(), to_.end(), 0);
+  return total(to_);
 }
 
 int Exchange::num_received() const
 {
-  return std::accumulate(from_.begin(), from_.end(), 0);
+  return total(from_);
 }
 
 std::vector<double> Exchange::forward(const std::vector<double> &rows, const int width) const
@@ -36,33 +75,32 @@ std::vector<double> Exchange::back(const std::vector<double> &rows, const int wi
   return exchange(from_, to_, rows, width);
 }
 
-std::vector<double> Exchange::exchange(const std::vector<int> &to, const std::vector<int> &from,
-                                       const std::vector<double> &rows, const int width) const
+std::vector<double> Exchange::exchange(const Shares &to, const Shares &from, const std::vector<double> &rows,
+                                       const int width) const
 {
-  constexpr int tag = 1;
-  const auto total = [width](const std::vector<int> &counts) {
-    return std::accumulate(counts.begin(), counts.end(), std::size_t(0)) * width;
-  };
-  std::vector<double> received(total(from));
-  std::vector<RCP<Teuchos::CommRequest<int>>> requests;
+  std::vector<double> received(std::size_t(total(from)) * width);
+  Requests requests;
   std::size_t at = 0, own = 0;
-  for (int rank = 0; rank < comm_.getSize(); at += std::size_t(from[rank]) * width, ++rank) {
-    if (rank == comm_.getRank()) own = at;
-    if (rank == comm_.getRank() || from[rank] == 0) continue;
-    const Teuchos::ArrayRCP<double> buffer(received.data() + at, 0, from[rank] * width, false);
-    requests.push_back(Teuchos::ireceive(buffer, rank, tag, comm_));
+  for (const auto &[rank, count] : from) {
+    if (rank == comm_.getRank())
+      own = at;
+    else
+      requests.push_back(Teuchos::ireceive(Teuchos::ArrayRCP<double>(received.data() + at, 0, count * width, false),
+                                           rank, rows_tag, comm_));
+    at += std::size_t(count) * width;
   }
   at = 0;
-  for (int rank = 0; rank < comm_.getSize(); at += std::size_t(to[rank]) * width, ++rank) {
-    if (rank == comm_.getRank()) {
-      std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(at), std::size_t(to[rank]) * width,
+  for (const auto &[rank, count] : to) {
+    const std::size_t size = std::size_t(count) * width;
+    if (rank == comm_.getRank())
+      std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(at), size,
                   received.begin() + static_cast<std::ptrdiff_t>(own));
-    } else if (to[rank] > 0) {
-      const Teuchos::ArrayRCP<const double> buffer(rows.data() + at, 0, to[rank] * width, false);
-      requests.push_back(Teuchos::isend(buffer, rank, tag, comm_));
-    }
+    else
+      requests.push_back(Teuchos::isend(
+          Teuchos::ArrayRCP<const double>(rows.data() + at, 0, static_cast<int>(size), false), rank, rows_tag, comm_));
+    at += size;
   }
-  Teuchos::waitAll(comm_, Teuchos::ArrayView<RCP<Teuchos::CommRequest<int>>>(requests));
+  wait_all(comm_, requests);
   return received;
 }
 

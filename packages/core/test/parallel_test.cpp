@@ -26,6 +26,13 @@ TEST(GatheredByAll, OfNothingIsNothing)
   EXPECT_TRUE(rpc::gathered_by_all(*Tpetra::getDefaultComm(), std::vector<int>{}).empty());
 }
 
+TEST(SumBefore, IsThatOfLowerRanks)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const rpc::GO rank = comm->getRank();
+  EXPECT_EQ(rpc::sum_before(*comm, rank + 1), rank * (rank + 1) / 2);
+}
+
 TEST(GatheredByRoot, RankZeroGetsValuesInTheOrderOfTheRanks)
 {
   const auto comm = Tpetra::getDefaultComm();

@@ -8,12 +8,13 @@ namespace rpc
 {
 
 /// Questions to other ranks and their answers: rows of numbers go to the ranks that each rank chooses, and rows of another
-/// width come back in the same order. A message between two ranks has at most 2^31 bytes.
+/// width come back in the same order. Only ranks that have rows for each other send messages. A message between two ranks has at
+/// most 2^31 bytes.
 class Exchange
 {
 public:
   /// @param counts  (ranks) how many rows go to each rank, this one included; collective
-  Exchange(const Comm &comm, std::vector<int> counts);
+  Exchange(const Comm &comm, const std::vector<int> &counts);
 
   int num_sent() const;     ///< rows that this rank sends
   int num_received() const; ///< rows that it gets
@@ -26,11 +27,18 @@ public:
   std::vector<double> back(const std::vector<double> &rows, int width) const;
 
 private:
-  std::vector<double> exchange(const std::vector<int> &to, const std::vector<int> &from,
-                               const std::vector<double> &rows, int width) const;
+  /// Rows that go to a rank, or come from it; > 0.
+  struct Share {
+    int rank, count;
+  };
+  using Shares = std::vector<Share>; // ascending ranks
+
+  static Shares received_by(const Comm &comm, const Shares &sent);
+  static int total(const Shares &shares);
+  std::vector<double> exchange(const Shares &to, const Shares &from, const std::vector<double> &rows, int width) const;
 
   const Comm &comm_;
-  std::vector<int> to_, from_;
+  Shares to_, from_;
 };
 
 } // namespace rpc

@@ -37,7 +37,16 @@ std::vector<T> largest(const Comm &comm, const std::vector<T> &mine)
   return all;
 }
 
-/// What all ranks hold, rank after rank, on every rank; collective.
+/// Sum over the ranks before this one; collective.
+template <class T>
+T sum_before(const Comm &comm, const T value)
+{
+  T sum{};
+  Teuchos::scan(comm, Teuchos::REDUCE_SUM, value, Teuchos::outArg(sum));
+  return sum - value;
+}
+
+/// What all ranks hold, rank after rank, on every rank: for a few numbers a rank. Collective.
 template <class T>
 std::vector<T> gathered_by_all(const Comm &comm, std::vector<T> mine)
 {
