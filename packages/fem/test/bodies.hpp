@@ -72,6 +72,7 @@ inline fem::Discretization body(const mesh::BoxOptions &box, const RCP<const Com
     for (int d = 0; d < mesh->dim(); ++d) coords(n, d) = x[d];
   }
   Kokkos::deep_copy(mesh->coords, coords);
+  if (move) mesh->box = nullptr; // evenly divided no more
   return fem::discretize(mesh, kinematics);
 }
 

@@ -1,6 +1,7 @@
 #include "rpc/fem/interpolation.hpp"
 
 #include "bodies.hpp"
+#include "rpc/fem/order_one.hpp"
 
 #include <algorithm>
 
@@ -45,6 +46,15 @@ double error_of(const fem::Discretization &coarse, const fem::Discretization &fi
   return difference(interpolated(coarse, fine, f), by_node_id(fine, at_nodes(fine, f)));
 }
 
+/// The same mesh, which is no longer known to be a box: cells are searched for.
+fem::Discretization no_box(fem::Discretization d)
+{
+  const auto mesh = std::make_shared<mesh::Mesh>(*d.mesh);
+  mesh->box = nullptr;
+  d.mesh = mesh;
+  return d;
+}
+
 /// The small box with more cells; ranks divide it along another direction than the small one.
 mesh::BoxOptions finer_box(const mesh::Element &element)
 {
@@ -78,13 +88,116 @@ TEST(Interpolation, ReproducesTheCoarseSpace)
 {
   for_each_pair([](const mesh::Element &coarse, const mesh::Element &fine) {
     const auto from = body(small_box(coarse), world()), to = body(finer_box(fine), world());
+    ASSERT_TRUE(from.mesh->box && to.mesh->box);
     const auto f = [&](const Point &x) {
       const double product = coarse.shape == mesh::Shape::tensor ? x[0] * x[1] * (from.dim() == 3 ? x[2] : 1) : 0;
       return coarse.order == 1 ? Point{product + x[1], x[0] - 1, product - x[0]}
                                : Point{x[0] * x[0] - x[0] * x[1] + product, 2 + x[1] * x[1]};
     };
     EXPECT_LT(error_of(from, to, f), 1e-13);
+    EXPECT_LT(error_of(no_box(from), to, f), 1e-13);
   });
+}
+
+/// Rows of a matrix with gids of their columns, in the matrix' order of columns.
+std::vector<std::vector<std::pair<GO, double>>> rows_of(const CrsMatrix &matrix)
+{
+  const auto local = matrix.getLocalMatrixHost();
+  std::vector<std::vector<std::pair<GO, double>>> rows(local.numRows());
+  for (LO row = 0; row < local.numRows(); ++row)
+    for (auto k = local.graph.row_map(row); k < local.graph.row_map(row + 1); ++k) {
+      if (k > local.graph.row_map(row)) {
+        EXPECT_LT(local.graph.entries(k - 1), local.graph.entries(k));
+      }
+      rows[row].emplace_back(matrix.getColMap()->getGlobalElement(local.graph.entries(k)), local.values(k));
+    }
+  return rows;
+}
+
+/// Indices give the matrix of the search, entry by entry.
+void expect_rows_of_search(const fem::Discretization &from, const fem::Discretization &to)
+{
+  ASSERT_TRUE(from.mesh->box && to.mesh->box);
+  const auto by_index = fem::interpolation(from, to), by_search = fem::interpolation(no_box(from), no_box(to));
+  EXPECT_TRUE(by_index->getRowMap()->isSameAs(*by_search->getRowMap()));
+  EXPECT_TRUE(by_index->getDomainMap()->isSameAs(*by_search->getDomainMap()));
+  EXPECT_TRUE(by_index->getRangeMap()->isSameAs(*by_search->getRangeMap()));
+  const auto rows = rows_of(*by_index), searched = rows_of(*by_search);
+  ASSERT_EQ(rows.size(), searched.size());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    ASSERT_EQ(rows[row].size(), searched[row].size()) << "row " << row;
+    double sum = 0;
+    for (std::size_t k = 0; k < rows[row].size(); ++k) {
+      EXPECT_EQ(rows[row][k].first, searched[row][k].first);
+      EXPECT_NEAR(rows[row][k].second, searched[row][k].second, 1e-12);
+      sum += rows[row][k].second;
+    }
+    EXPECT_NEAR(sum, 1, 1e-14);
+  }
+}
+
+TEST(Interpolation, BetweenDivisionsOfABoxIsThatOfTheSearch)
+{
+  for_each_pair([](const mesh::Element &coarse, const mesh::Element &fine) {
+    const auto from = body(small_box(coarse), world()), to = body(finer_box(fine), world());
+    expect_rows_of_search(from, to);
+    expect_rows_of_search(to, from);
+  });
+}
+
+/// Down to boxes of a few cells, by ever longer last cells, and from the last one straight to the first and back.
+TEST(Interpolation, BetweenHalvedBoxesIsThatOfTheSearch)
+{
+  for (const mesh::Element &element : elements()) {
+    if (element.order == 2) continue;
+    SCOPED_TRACE(text_of(element));
+    auto box = small_box(element);
+    box.cells = element.dim == 2 ? std::vector<int>{27, 13} : std::vector<int>{11, 7, 9};
+    const auto finest = body(box, world());
+    auto fine = finest;
+    int levels = 0;
+    for (auto coarse = mesh::halved(box); coarse && coarse->cells[0] >= 3; coarse = mesh::halved(*coarse), ++levels) {
+      const auto next = body(*coarse, world());
+      expect_rows_of_search(next, fine);
+      fine = next;
+    }
+    EXPECT_GE(levels, 1);
+    expect_rows_of_search(fine, finest);
+    expect_rows_of_search(finest, fine);
+  }
+}
+
+/// Far from the origin too, where coordinates are rounded.
+TEST(Interpolation, OfHalvedCellsHasExactWeights)
+{
+  for (const mesh::Element &element : elements()) {
+    if (element.order == 2) continue;
+    SCOPED_TRACE(text_of(element));
+    auto box = small_box(element);
+    for (double &end : box.lower) end += 1e3;
+    for (double &end : box.upper) end += 1e3;
+    for (int &cells : box.cells) cells = 8;
+    const auto fine = body(box, world()), coarse = body(*mesh::halved(*mesh::halved(box)), world());
+    for (const auto &row : rows_of(*fem::interpolation(coarse, fine)))
+      for (const auto &[gid, weight] : row) EXPECT_EQ(64 * weight, std::round(64 * weight));
+    for (const auto &row : rows_of(*fem::interpolation(fine, coarse))) {
+      ASSERT_EQ(row.size(), 1U);
+      EXPECT_EQ(row[0].second, 1);
+    }
+  }
+}
+
+TEST(Interpolation, IsToldTheBoxOfTheVerticesOfOrderTwo)
+{
+  for (const mesh::Element &element : elements()) {
+    if (element.order == 1) continue;
+    SCOPED_TRACE(text_of(element));
+    const auto quadratic = body(finer_box(element), world());
+    const auto vertices = fem::discretize(fem::order_one(quadratic).mesh);
+    const auto coarse = body(*mesh::halved(*vertices.mesh->box), world());
+    expect_rows_of_search(coarse, vertices);
+    expect_rows_of_search(vertices, coarse);
+  }
 }
 
 TEST(Interpolation, RowsSumToOneEvenOutsideTheMesh)
@@ -146,7 +259,8 @@ TEST(Interpolation, IsExactAtPointsOfCurvedCells)
     if (element.dim == 3) continue;
     SCOPED_TRACE(text_of(element));
     const mesh::BoxOptions box{{0, 0}, {1, 1}, {2, 1}, element}, finer{{0, 0}, {1, 1}, {15, 13}, {2, 2}};
-    const auto straight = body(box, alone()), curved = body(box, alone(), ring), fine = body(finer, alone());
+    const auto straight = body(box, alone()), curved = body(box, alone(), ring),
+               fine = body(finer, alone(), [](const Point &x) { return x; });
     MultiVector x(fine.mesh->owned_nodes, 2);
     fem::interpolation(straight, fine)->apply(*fem::node_coordinates(curved), x); // where the cells' own maps take them
     Kokkos::deep_copy(fine.mesh->coords, x.getLocalViewDevice(Tpetra::Access::ReadOnly));

@@ -1,9 +1,10 @@
 #include "rpc/mesh/box.hpp"
 
-#include "box_grid.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/memory.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/mesh/box_grid.hpp"
+#include "rpc/mesh/box_parts.hpp"
 #include "rpc/mesh/mesh_data.hpp"
 
 #include <Teuchos_Array.hpp>
@@ -36,55 +37,13 @@ constexpr std::array<BoxSide, 6> box_sides{{{"left", 0, false},
                                             {"back", 2, false},
                                             {"front", 2, true}}};
 
-/// Cells of the mesh in one cell of the lattice: (parts, nodes per cell, dim) places of their nodes on the lattice {0..order}^dim.
-using Parts = std::vector<Element::Table>;
-
-/// A cell of the lattice is one tensor product, or simplices: two triangles, or six tetrahedra around its diagonal (Kuhn). One
-/// follows the edges of the cell from corner to corner, by the directions in one order; neighbours fit, for all cells are divided
-/// alike.
-Parts parts_of(const Element &element)
-{
-  const Element::Table &lattice = element.lattice();
-  if (element.shape == Shape::tensor) return {lattice};
-  std::vector<Element::Table> corners; // (parts, vertices, dim), 0 or 1
-  if (element.dim == 2) {
-    corners = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 1}, {0, 1}, {1, 0}}};
-  } else {
-    std::array<int, 3> direction{0, 1, 2};
-    do {
-      Element::Table path(4, std::vector<int>(3, 0));
-      for (int v = 1; v < 4; ++v) {
-        path[v] = path[v - 1];
-        path[v][direction[v - 1]] = 1;
-      }
-      const bool even = (direction[1] - direction[0] + 3) % 3 == 1; // an odd order mirrors the tetrahedron
-      if (!even) std::swap(path[1], path[2]);
-      corners.push_back(path);
-    } while (std::next_permutation(direction.begin(), direction.end()));
-  }
-  Parts parts;
-  for (const Element::Table &corner : corners) {
-    Element::Table places;
-    for (const auto &node : lattice) {
-      std::vector<int> place(element.dim);
-      for (int i = 0; i < element.dim; ++i) {
-        place[i] = element.order * corner[0][i];
-        for (int d = 0; d < element.dim; ++d) place[i] += node[d] * (corner[d + 1][i] - corner[0][i]);
-      }
-      places.push_back(place);
-    }
-    parts.push_back(places);
-  }
-  return parts;
-}
-
 /// A facet of a part of a lattice cell.
 struct PartFacet {
   int part, ordinal;
 };
 
 /// Those on one side of the lattice cell.
-std::vector<PartFacet> facets_on(const Element &element, const Parts &parts, const BoxSide &side)
+std::vector<PartFacet> facets_on(const Element &element, const BoxParts &parts, const BoxSide &side)
 {
   const int end = side.upper ? element.order : 0;
   std::vector<PartFacet> found;
@@ -156,7 +115,7 @@ void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView
       });
 }
 
-void fill_cells(const Numbering &n, const Element &element, const Parts &parts, const DeviceView<LO **> &cells)
+void fill_cells(const Numbering &n, const Element &element, const BoxParts &parts, const DeviceView<LO **> &cells)
 {
   const int nodes = element.num_nodes(), dim = element.dim, order = element.order;
   const int num_parts = static_cast<int>(parts.size());
@@ -193,13 +152,13 @@ HostView<GO *> lattice_ids(const Block &owned, const Index &extent, const int pa
   return ids;
 }
 
-Side side_of_box(const BoxSide &box_side, const Parts &parts, const Grid &grid, const Numbering &numbering,
+Side side_of_box(const BoxSide &box_side, const BoxParts &parts, const Grid &grid, const Numbering &numbering,
                  const std::vector<Index> &halo, const Block &local_cells, const Mesh &mesh)
 {
   // Only this rank's cells along the side are visited.
   Block layer = local_cells;
   const int d = box_side.direction;
-  const GO at_end = box_side.upper ? grid.num_cells()[d] - 1 : 0;
+  const GO at_end = box_side.upper ? grid.num_cells(d) - 1 : 0;
   const GO plane = box_side.upper ? mesh.element.order * (at_end + 1) : 0; // of nodes: a halo cell may reach it alone
   const bool present = numbering.owned_nodes.begin[d] <= plane && plane < numbering.owned_nodes.end[d];
   layer.begin[d] = at_end;
@@ -378,12 +337,12 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   Mesh mesh;
   mesh.element = options.element;
   mesh.box = std::make_shared<const BoxOptions>(options);
-  const GO total = grid.node_offset(comm->getSize());
+  const GO total = grid.num_nodes_total();
   const GO invalid = Teuchos::OrdinalTraits<GO>::invalid();
   mesh.owned_nodes = rcp(new Map(total, num_owned, 0, comm));
   mesh.overlap_nodes = mesh.owned_nodes;
   if (comm->getSize() > 1) mesh.overlap_nodes = rcp(new Map(invalid, gids(), 0, comm));
-  const Parts parts = parts_of(options.element);
+  const BoxParts parts = box_parts(options.element);
   const LO num_parts = static_cast<LO>(parts.size());
   mesh.num_owned_cells = num_parts * numbering.num_owned_cells;
   mesh.coords = DeviceView<double **>("rpc::mesh::coords", num_nodes, mesh.dim());

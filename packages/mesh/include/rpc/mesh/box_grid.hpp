@@ -1,15 +1,11 @@
 #pragma once
 
-#include "rpc/core/error.hpp"
 #include "rpc/mesh/box.hpp"
 
 #include <algorithm>
-#include <array>
-#include <limits>
-#include <string>
 #include <vector>
 
-/// The lattices of a box and their division among ranks; private to make_box().
+/// The lattices of a box, their division among ranks and the numbers of its nodes: what any rank knows of all others' parts.
 namespace rpc::mesh
 {
 
@@ -54,29 +50,22 @@ struct Block {
   }
 };
 
-/// The whole box and its division into blocks of cells, one per rank. Every rank can compute every other rank's block.
+/// The whole box and its division into blocks of cells, one per rank. Every rank can compute every other rank's block, in kernels too.
 ///
-/// A node on the border of two blocks belongs to the lower one.
+/// A node on the border of two blocks belongs to the lower one. Gids run rank by rank, blocks along x first, in the order of each
+/// block.
 class Grid
 {
 public:
-  Grid(const BoxOptions &options, const int num_ranks) : dim_(options.element.dim), order_(options.element.order)
-  {
-    for (int d = 0; d < dim_; ++d) cells_[d] = options.cells[d];
-    // The shortest direction runs fastest: least bandwidth, and blocks along the longest one share short borders.
-    std::sort(axes_.begin(), axes_.begin() + dim_, [&](const int a, const int b) { return cells_[a] < cells_[b]; });
-    choose_blocks(num_ranks);
-    offsets_.assign(num_ranks + 1, 0);
-    for (int rank = 0; rank < num_ranks; ++rank) offsets_[rank + 1] = offsets_[rank] + owned_nodes(rank).size();
-  }
+  /// @throws rpc::Error (bad_mesh) if there are fewer cells than ranks in every direction
+  Grid(const BoxOptions &options, int num_ranks);
 
-  Block owned_cells(const int rank) const
+  KOKKOS_INLINE_FUNCTION Block owned_cells(const int rank) const
   {
     Block block = empty_block();
-    const auto b = block_of(rank);
     for (int d = 0; d < 3; ++d) {
-      block.begin[d] = first_cell(d, b[d]);
-      block.end[d] = first_cell(d, b[d] + 1);
+      block.begin[d] = first_cell(d, block_of(rank, d));
+      block.end[d] = first_cell(d, block_of(rank, d) + 1);
     }
     return block;
   }
@@ -87,78 +76,70 @@ public:
     for (int d = 0; d < dim_; ++d) block.end[d] = std::min<GO>(block.end[d] + 1, cells_[d]);
     return block;
   }
-  Block owned_nodes(const int rank) const
+  KOKKOS_INLINE_FUNCTION Block owned_nodes(const int rank) const
   {
-    Block block = owned_cells(rank);
-    for (int d = 0; d < dim_; ++d) {
-      block.begin[d] = block.begin[d] == 0 ? 0 : order_ * block.begin[d] + 1;
-      block.end[d] = order_ * block.end[d] + 1;
+    Block block = empty_block();
+    for (int d = 0; d < 3; ++d) {
+      block.begin[d] = first_node(d, block_of(rank, d));
+      block.end[d] = first_node(d, block_of(rank, d) + 1);
     }
     return block;
   }
-  Block local_nodes(const int rank) const
+  Block local_nodes(const int rank) const { return nodes_of(local_cells(rank)); }
+  /// All nodes of a block of cells.
+  Block nodes_of(Block block) const
   {
-    Block block = local_cells(rank);
     for (int d = 0; d < dim_; ++d) {
       block.begin[d] = order_ * block.begin[d];
       block.end[d] = order_ * block.end[d] + 1;
     }
     return block;
   }
-  GO node_offset(const int rank) const { return offsets_[rank]; }
-  GO node_gid(const Index &node) const
+  /// The first gid of a rank.
+  KOKKOS_INLINE_FUNCTION GO node_offset(const int rank) const
   {
-    std::array<int, 3> b{};
+    const int x = block_of(rank, 0), y = block_of(rank, 1), z = block_of(rank, 2);
+    return first_node(0, x) * width(1, y) * width(2, z) +
+           num_nodes(0) * (first_node(1, y) * width(2, z) + num_nodes(1) * first_node(2, z));
+  }
+  KOKKOS_INLINE_FUNCTION GO node_gid(const Index &node) const
+  {
+    int b[3] = {0, 0, 0};
     for (int d = 0; d < dim_; ++d) {
       const GO cell = node[d] == 0 ? 0 : (node[d] - 1) / order_; // the lower one of the two that share the node
-      while (first_cell(d, b[d] + 1) <= cell) ++b[d];
+      b[d] = static_cast<int>(((cell + 1) * blocks_[d] - 1) / cells_[d]); // first_cell(b) <= cell < first_cell(b + 1)
     }
     const int rank = b[0] + blocks_[0] * (b[1] + blocks_[1] * b[2]);
-    return offsets_[rank] + owned_nodes(rank).index_of(node);
+    return node_offset(rank) + owned_nodes(rank).index_of(node);
   }
-  const std::array<int, 3> &num_cells() const { return cells_; }
+  GO num_nodes_total() const { return num_nodes(0) * num_nodes(1) * num_nodes(2); }
   GO num_cells_total() const { return GO(cells_[0]) * cells_[1] * cells_[2]; }
+  KOKKOS_INLINE_FUNCTION int num_cells(const int direction) const { return cells_[direction]; }
+  KOKKOS_INLINE_FUNCTION int order() const { return order_; }
 
 private:
-  Block empty_block() const
+  KOKKOS_INLINE_FUNCTION Block empty_block() const
   {
     Block block;
-    for (int d = 0; d < 3; ++d) block.axes[d] = axes_[d];
+    block.axes = axes_;
     return block;
   }
-  std::array<int, 3> block_of(const int rank) const
+  KOKKOS_INLINE_FUNCTION int block_of(const int rank, const int d) const
   {
-    return {rank % blocks_[0], rank / blocks_[0] % blocks_[1], rank / (blocks_[0] * blocks_[1])};
+    return d == 0 ? rank % blocks_[0] : d == 1 ? rank / blocks_[0] % blocks_[1] : rank / (blocks_[0] * blocks_[1]);
   }
-  GO first_cell(const int d, const int b) const { return GO(cells_[d]) * b / blocks_[d]; }
+  KOKKOS_INLINE_FUNCTION GO first_cell(const int d, const int b) const { return GO(cells_[d]) * b / blocks_[d]; }
+  KOKKOS_INLINE_FUNCTION GO first_node(const int d, const int b) const
+  {
+    return b == 0 ? 0 : (d < dim_ ? order_ * first_cell(d, b) + 1 : 1);
+  }
+  KOKKOS_INLINE_FUNCTION GO width(const int d, const int b) const { return first_node(d, b + 1) - first_node(d, b); }
+  KOKKOS_INLINE_FUNCTION GO num_nodes(const int d) const { return first_node(d, blocks_[d]); }
 
-  void choose_blocks(const int num_ranks)
-  {
-    double least = std::numeric_limits<double>::max();
-    for (int x = 1; x <= num_ranks; ++x) {
-      for (int y = 1; num_ranks % x == 0 && y <= num_ranks / x; ++y) {
-        const int z = num_ranks / x / y;
-        if (x * y * z != num_ranks || x > cells_[0] || y > cells_[1] || z > cells_[2]) continue;
-        const std::array<int, 3> blocks{x, y, z};
-        double shared = 0; // faces between blocks
-        for (int d = 0; d < 3; ++d) shared += (blocks[d] - 1) * (double(num_cells_total()) / cells_[d]);
-        if (shared < least) {
-          least = shared;
-          blocks_ = blocks;
-        }
-      }
-    }
-    RPC_REQUIRE_CODE(
-        least < std::numeric_limits<double>::max(), ExitCode::bad_mesh,
-        "box mesh: " << cells_[0] << " x " << cells_[1] << (dim_ == 3 ? " x " + std::to_string(cells_[2]) : "")
-                     << " cells cannot be divided among " << num_ranks << " ranks. Use fewer ranks or more cells.");
-  }
+  void choose_blocks(int num_ranks);
 
   int dim_, order_;
-  std::array<int, 3> cells_{1, 1, 1};
-  std::array<int, 3> axes_{0, 1, 2};
-  std::array<int, 3> blocks_{1, 1, 1};
-  std::vector<GO> offsets_;
+  Kokkos::Array<int, 3> cells_{{1, 1, 1}}, axes_{{0, 1, 2}}, blocks_{{1, 1, 1}};
 };
 
 /// Positions of `outer` that `inner` does not contain, in outer's order.
