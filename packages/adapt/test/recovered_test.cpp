@@ -129,8 +129,8 @@ TEST(RecoveredEstimate, KnowsWhatContradictsTheContactLaw)
 TEST(RecoveredEstimate, TakesNodesThatMissTheObstacleForOpenOnes)
 {
   // Free of pressure, over a foundation that is far from all nodes, or that some of them miss.
-  const contact::Obstacle below_all{contact::Obstacle::Kind::sphere, {1, -9, 0}, {}, 2, false};
-  const contact::Obstacle below_some{contact::Obstacle::Kind::sphere, {1, -9, 0}, {}, 0.6, false};
+  const contact::Obstacle below_all{contact::Sphere{2}, {1, -9, 0}};
+  const contact::Obstacle below_some{contact::Sphere{0.6}, {1, -9, 0}};
   for (const auto &element : plane_elements()) {
     SCOPED_TRACE(text_of(element));
     const Squeezed all(element, 100, 1, 0, below_all), some(element, 100, 1, 0, below_some);

@@ -41,7 +41,7 @@ bool moves_between(const Model &model, const double t, const double other)
 {
   const auto a = model.seen_at(t).contact, b = model.seen_at(other).contact;
   for (std::size_t k = 0; k < a.size(); ++k)
-    if (a[k].obstacle.kind != contact::Obstacle::Kind::none && a[k].obstacle.point != b[k].obstacle.point) return true;
+    if (a[k].obstacle.exists() && a[k].obstacle.point != b[k].obstacle.point) return true;
   return false;
 }
 

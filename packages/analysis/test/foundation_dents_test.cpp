@@ -252,8 +252,7 @@ TEST(DentsOnTheFoundation, OfAnObstacleThatMovesAreThoseOfABodyThatSlidesTheOthe
     contact::ContactOptions &side = model->contact[0];
     side.yield_stress = yield_stress;
     side.normal = contact::Normal::foundation;
-    side.obstacle.kind = contact::Obstacle::Kind::plane;
-    side.obstacle.normal = {0, 1, 0};
+    side.obstacle.surface = contact::Plane{{0, 1, 0}};
     side.gap = ScalarField(0.);
   }
   foundation.contact[0].obstacle.path[0] = in_time([slide](const double t) { return -slide(t); });

@@ -397,8 +397,7 @@ TEST(LoadHistory, AFoundationThatMovesIsABodyThatMovesTheOtherWay)
     standing.dirichlet[2].displacement[1] =
         in_time([tilted, depth](const Point &x, const double t) { return tilted(x, 0.01) + 0.01 - depth(t); });
     auto &plane = moving.contact[0].obstacle;
-    plane.kind = contact::Obstacle::Kind::plane;
-    plane.normal = {0, 1, 0};
+    plane.surface = contact::Plane{{0, 1, 0}};
     plane.path[0] = ScalarField(0.);
     plane.path[1] = in_time([depth](const Point &, const double t) { return depth(t); });
     standing.contact[0].obstacle = plane;
@@ -424,8 +423,7 @@ analysis::Model over_a_ball(const contact::Normal normal, const double radius)
 {
   auto model = column(laws[1], [](double) { return 0.02; });
   auto &ball = model.contact[0].obstacle;
-  ball.kind = contact::Obstacle::Kind::sphere;
-  ball.radius = radius;
+  ball.surface = contact::Sphere{radius};
   ball.path[0] = in_time([](const Point &, const double t) { return 0.7 + 0.06 * t; });
   ball.path[1] = ScalarField(-radius);
   ball.point = {0.76, -radius, 0};
@@ -642,8 +640,7 @@ TEST(LoadHistory, EnergiesBalanceToTheSquareOfTheStepWhereNormalsTurn)
   auto model = column(laws[0], [](double) { return 0.02; });
   model.dirichlet = {prescribed("top", ScalarField(0.1), ScalarField(-0.02))};
   auto &ball = model.contact[0].obstacle;
-  ball.kind = contact::Obstacle::Kind::sphere;
-  ball.radius = 3;
+  ball.surface = contact::Sphere{3};
   ball.path[0] = in_time([](const Point &, const double t) { return 0.8 + 0.2 * t; });
   ball.path[1] = ScalarField(-3.);
   ball.point = {0.8, -3, 0};

@@ -6,6 +6,7 @@
 #include "rpc/core/evaluate.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
@@ -96,11 +97,12 @@ void face_obstacle(SideValues &values, const ContactOptions &options, const Host
     if (options.normal == Normal::foundation) {
       const auto into = direction_into(options.obstacle, x);
       if (!into) {
-        const bool sphere = options.obstacle.kind == Obstacle::Kind::sphere;
-        bad = "deck: \"" + options.path + "->Obstacle->" + (sphere ? "Centre" : "Axis") +
-              "\" must be away from the nodes of side \"" + options.side +
-              "\", for it has no normal: there is one at " + place(points, i) + ". Move the " +
-              (sphere ? "centre" : "axis") + ", or give \"Normal\" as numbers.";
+        const std::string where = no_direction_at(options.obstacle);
+        std::string noun = where;
+        noun[0] = static_cast<char>(std::tolower(noun[0]));
+        bad = "deck: \"" + options.path + "->Obstacle->" + where + "\" must be away from the nodes of side \"" +
+              options.side + "\", for it has no normal: there is one at " + place(points, i) + ". Move the " + noun +
+              ", or give \"Normal\" as numbers.";
         continue;
       }
       direction = *into;
@@ -143,7 +145,7 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
   for (LO i = 0; i < n; ++i)
     for (std::size_t c = 0; c < points.extent(1); ++c)
       values.normal(i, c) = options.normal == Normal::fixed ? options.direction[c] : outward(i, c);
-  if (options.obstacle.kind != Obstacle::Kind::none) face_obstacle(values, options, points, comm);
+  if (options.obstacle.exists()) face_obstacle(values, options, points, comm);
 
   std::optional<std::string> bad;
   for (LO i = 0; i < n && !bad; ++i) {
@@ -181,7 +183,7 @@ void require_outward(const ContactOptions &options, const fem::SurfaceNodes &sur
   RPC_REQUIRE(facing > 0 || sum_all(comm, GO(weight.extent(0))) == 0,
               "deck: \"" << options.path << "->Normal\" must lead out of the body, from side \"" << options.side
                          << "\" into the foundation; it leads into the body. Turn it round"
-                         << (options.obstacle.kind == Obstacle::Kind::none ? "." : ", or the obstacle's."));
+                         << (options.obstacle.exists() ? ", or the obstacle's." : "."));
 }
 
 /// (n, dim) of the device, from a vector row by row.

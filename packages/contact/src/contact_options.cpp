@@ -108,7 +108,7 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
                          << "->Remembers\" = false: there are no dents");
   options.dents_move_with = carrier == "body" ? DentsMoveWith::body : DentsMoveWith::foundation;
   options.penalty = penalty_from(field_text(list, "Penalty"), path);
-  const bool obstacle = options.obstacle.kind != Obstacle::Kind::none;
+  const bool obstacle = options.obstacle.exists();
   const auto &normal = list.get<std::string>("Normal");
   for (const LawParameter &parameter : law_parameters)
     RPC_REQUIRE(!(options.*parameter.field).is_constant() || parameter.allows((options.*parameter.field).constant),

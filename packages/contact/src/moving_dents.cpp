@@ -1,6 +1,6 @@
 #include "rpc/contact/moving_dents.hpp"
 
-#include "rpc/contact/facet_surface.hpp"
+#include "rpc/contact/surface/facets.hpp"
 #include "rpc/core/parallel.hpp"
 
 #include <algorithm>

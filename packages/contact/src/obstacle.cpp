@@ -4,7 +4,9 @@
 #include "rpc/core/parameters.hpp"
 
 #include <Teuchos_Array.hpp>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace rpc::contact
@@ -14,20 +16,40 @@ namespace
 
 using Teuchos::Array;
 
-constexpr double rounding = 1e-9; ///< of positions and directions, relative
+/// Parameters of obstacles other than `Type`, in the order in which those that do not go with it are refused.
+const std::vector<std::string> parameters_of_types = {"Centre", "Point", "Normal", "Axis", "Radius", "Encloses Body"};
 
-Point point_of(const Teuchos::ParameterList &list, const std::string &name, const int dim, const std::string &path)
-{
-  const auto &numbers = list.get<Array<double>>(name);
-  RPC_REQUIRE(numbers.size() == dim,
-              "deck: \"" << path << "->" << name << "\" must hold " << dim << " numbers, got " << numbers.size());
-  Point point{};
-  for (int c = 0; c < dim; ++c) {
-    RPC_REQUIRE(std::isfinite(numbers[c]),
-                "deck: \"" << path << "->" << name << "\" must be finite, got " << numbers[c]);
-    point[c] = numbers[c];
+/// A kind of surface in a deck.
+struct Choice {
+  SurfaceKind kind;
+  Surface (*read)(const Teuchos::ParameterList &list, int dim, const std::string &path);
+
+  bool is(const std::string &type) const
+  {
+    return std::find(kind.types.begin(), kind.types.end(), type) != kind.types.end();
   }
-  return point;
+  bool has(const std::string &parameter) const
+  {
+    return parameter == kind.point ||
+           std::find(kind.parameters.begin(), kind.parameters.end(), parameter) != kind.parameters.end();
+  }
+};
+
+template <class Shape>
+Surface read_surface(const Teuchos::ParameterList &list, const int dim, const std::string &path)
+{
+  return Shape::read(list, dim, path);
+}
+
+template <std::size_t... Which>
+std::vector<Choice> choices(std::index_sequence<Which...>)
+{
+  return {{std::variant_alternative_t<Which, Surface>::kind(),
+           read_surface<std::variant_alternative_t<Which, Surface>>}...};
+}
+std::vector<Choice> choices()
+{
+  return choices(std::make_index_sequence<std::variant_size_v<Surface>>());
 }
 
 /// The coordinates of a point as functions of time alone.
@@ -50,22 +72,6 @@ std::array<ScalarField, 3> path_of(const Teuchos::ParameterList &list, const std
   return fields;
 }
 
-/// Unit vector from one of any length.
-Point unit_of(const Teuchos::ParameterList &list, const std::string &name, const int dim, const std::string &path)
-{
-  const Point given = point_of(list, name, dim, path);
-  const double size = length(given);
-  RPC_REQUIRE(size > 0 && std::isfinite(size),
-              "deck: \"" << path << "->" << name << "\" must have a length > 0, got " << size);
-  return scaled(1 / size, given);
-}
-
-/// A vector without its part along the axis of a cylinder; all of it for a sphere.
-Point across(const Obstacle &obstacle, const Point &v)
-{
-  return difference(v, scaled(inner(v, obstacle.axis), obstacle.axis));
-}
-
 } // namespace
 
 Teuchos::ParameterList valid_obstacle_parameters()
@@ -83,6 +89,32 @@ Teuchos::ParameterList valid_obstacle_parameters()
   return valid;
 }
 
+Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, const std::string &path,
+                          const FieldParser &parse)
+{
+  const auto &type = list.get<std::string>("Type");
+  if (type == "none") return {}; // switches an obstacle off, whatever it was
+  const std::vector<Choice> all = choices();
+  const auto choice = std::find_if(all.begin(), all.end(), [&](const Choice &c) { return c.is(type); });
+  std::string types = "none";
+  for (const Choice &c : all)
+    for (const std::string &name : c.kind.types) types += ", " + name;
+  RPC_REQUIRE(choice != all.end(),
+              "deck: \"" << path << "->Type\" must be one of " << types << ", got \"" << type << "\"");
+  RPC_REQUIRE(choice->kind.in_the_plane.empty() || dim == 3,
+              "deck: \"" << path << "->Type\" = " << type << " goes with a body in space; use "
+                         << choice->kind.in_the_plane << " in the plane");
+  for (const std::string &name : parameters_of_types)
+    RPC_REQUIRE(choice->has(name) || list.getEntry(name).isDefault(),
+                "deck: \"" << path << "->" << name << "\" does not go with \"" << path << "->Type\" = " << type);
+  Obstacle obstacle;
+  obstacle.path = path_of(list, choice->kind.point, dim, path, parse);
+  obstacle.surface = choice->read(list, dim, path);
+  for (int c = 0; c < dim; ++c) obstacle.point[c] = obstacle.path[c]({});
+  obstacle.origin = obstacle.point;
+  return obstacle;
+}
+
 Obstacle Obstacle::seen_at(const double t) const
 {
   Obstacle seen = *this;
@@ -93,89 +125,28 @@ Obstacle Obstacle::seen_at(const double t) const
   return seen;
 }
 
-Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, const std::string &path,
-                          const FieldParser &parse)
-{
-  const auto &type = list.get<std::string>("Type");
-  const bool sphere = type == "sphere" || type == "circle", cylinder = type == "cylinder", plane = type == "plane";
-  RPC_REQUIRE(type == "none" || plane || sphere || cylinder,
-              "deck: \"" << path << "->Type\" must be one of none, plane, sphere, circle, cylinder, got \"" << type
-                         << "\"");
-  RPC_REQUIRE(!cylinder || dim == 3,
-              "deck: \"" << path << "->Type\" = cylinder goes with a body in space; use circle in the plane");
-  const auto refuse = [&](const std::vector<std::string> &names) {
-    for (const auto &name : names)
-      RPC_REQUIRE(list.getEntry(name).isDefault(),
-                  "deck: \"" << path << "->" << name << "\" does not go with \"" << path << "->Type\" = " << type);
-  };
-  Obstacle obstacle; // `none` switches an obstacle off, whatever it was
-  if (sphere) refuse({"Point", "Normal", "Axis"});
-  if (cylinder) refuse({"Centre", "Normal"});
-  if (plane) refuse({"Centre", "Axis", "Radius", "Encloses Body"});
-  if (plane) {
-    obstacle.kind = Obstacle::Kind::plane;
-    obstacle.path = path_of(list, "Point", dim, path, parse);
-    obstacle.normal = unit_of(list, "Normal", dim, path);
-  }
-  if (sphere) {
-    obstacle.kind = Obstacle::Kind::sphere;
-    obstacle.path = path_of(list, "Centre", dim, path, parse);
-  }
-  if (cylinder) {
-    obstacle.kind = Obstacle::Kind::cylinder;
-    obstacle.path = path_of(list, "Point", dim, path, parse);
-    obstacle.axis = unit_of(list, "Axis", dim, path);
-  }
-  if (sphere || cylinder) {
-    obstacle.radius = list.get<double>("Radius");
-    obstacle.encloses = list.get<bool>("Encloses Body");
-    RPC_REQUIRE(obstacle.radius > 0 && std::isfinite(obstacle.radius),
-                "deck: \"" << path << "->Radius\" must be > 0 and finite [m], got " << obstacle.radius);
-  }
-  for (int c = 0; c < dim && obstacle.kind != Obstacle::Kind::none; ++c) obstacle.point[c] = obstacle.path[c]({});
-  obstacle.origin = obstacle.point;
-  return obstacle;
-}
-
 std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x)
 {
-  if (obstacle.kind == Obstacle::Kind::plane) return scaled(-1, obstacle.normal);
-  const Point from_centre = across(obstacle, difference(x, obstacle.point));
-  const double distance = length(from_centre);
-  if (!(distance > 0)) return std::nullopt;
-  return scaled((obstacle.encloses ? 1 : -1) / distance, from_centre);
+  return std::visit([&](const auto &surface) { return surface.direction_into(difference(x, obstacle.point)); },
+                    obstacle.surface.value());
+}
+
+std::string no_direction_at(const Obstacle &obstacle)
+{
+  return std::visit([](const auto &surface) { return surface.no_direction_at; }, obstacle.surface.value());
 }
 
 bool lies_in(const Obstacle &obstacle, const Point &x)
 {
-  const Point from = across(obstacle, difference(x, obstacle.point));
-  const double distance = length(from);
-  if (obstacle.kind == Obstacle::Kind::plane) return inner(from, obstacle.normal) < -rounding * distance;
-  const double beyond = distance - obstacle.radius;
-  return (obstacle.encloses ? beyond : -beyond) > rounding * obstacle.radius;
+  return std::visit([&](const auto &surface) { return surface.lies_in(difference(x, obstacle.point)); },
+                    obstacle.surface.value());
 }
 
 std::optional<double> distance_along(const Obstacle &obstacle, const Point &x, const Point &direction)
 {
-  const Point from = across(obstacle, difference(x, obstacle.point));
-  if (obstacle.kind == Obstacle::Kind::plane) {
-    const double descent = -inner(direction, obstacle.normal);
-    if (!(descent > rounding)) return std::nullopt;
-    return inner(from, obstacle.normal) / descent;
-  }
-  // |from + g way| = radius: the root that crosses the surface from the body's part of space. Of a cylinder only what is across
-  // its axis counts.
-  const Point way = across(obstacle, direction);
-  const double square = inner(way, way);
-  if (!(square > rounding * rounding)) return std::nullopt; // along the axis
-  const double along = inner(from, way);
-  double discriminant = along * along - square * (inner(from, from) - obstacle.radius * obstacle.radius);
-  // A tangent meets the surface that encloses its point, whatever the rounding.
-  if (obstacle.encloses && discriminant < 0 && !lies_in(obstacle, x)) discriminant = 0;
-  const bool leads_in = obstacle.encloses || along < 0 || lies_in(obstacle, x);
-  if (!(discriminant >= 0) || !leads_in) return std::nullopt;
-  const double root = std::sqrt(discriminant);
-  return ((obstacle.encloses ? root : -root) - along) / square;
+  return std::visit(
+      [&](const auto &surface) { return surface.distance_along(difference(x, obstacle.point), direction); },
+      obstacle.surface.value());
 }
 
 } // namespace rpc::contact

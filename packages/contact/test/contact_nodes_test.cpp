@@ -48,11 +48,11 @@ ContactNodes nodes_of(const fem::Discretization &d, const std::vector<ContactOpt
 /// A plane through a point, with a unit normal out of the foundation.
 Obstacle plane(const Point &point, const Point &normal)
 {
-  return {Obstacle::Kind::plane, point, normal};
+  return {contact::Plane{normal}, point};
 }
 Obstacle circle(const Point &centre, const double radius, const bool encloses = false)
 {
-  return {Obstacle::Kind::sphere, centre, {}, radius, encloses};
+  return {contact::Sphere{radius, encloses}, centre};
 }
 
 /// What every point of a side must have.

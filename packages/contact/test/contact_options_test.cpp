@@ -12,7 +12,6 @@ namespace
 using namespace rpc;
 using contact::ContactOptions;
 using contact::Normal;
-using contact::Obstacle;
 using rpc::test::expect_error;
 using Teuchos::ParameterList;
 
@@ -76,7 +75,7 @@ TEST(ContactOptions, DefaultsAreARigidFoundationWithoutGapAlongTheSurfaceNormal)
   EXPECT_TRUE(options[0].remembers); // auto
   EXPECT_EQ(options[0].penalty, 0);  // auto
   EXPECT_EQ(options[0].normal, Normal::surface);
-  EXPECT_EQ(options[0].obstacle.kind, Obstacle::Kind::none);
+  EXPECT_FALSE(options[0].obstacle.exists());
 }
 
 TEST(ContactOptions, NormalIsThatOfTheFoundationByDefaultWhereThereIsAnObstacle)
@@ -85,8 +84,8 @@ TEST(ContactOptions, NormalIsThatOfTheFoundationByDefaultWhereThereIsAnObstacle)
   add_floor(list);
   const auto options = read(list);
   EXPECT_EQ(options[0].normal, Normal::foundation);
-  EXPECT_EQ(options[0].obstacle.kind, Obstacle::Kind::plane);
-  EXPECT_EQ(options[0].obstacle.normal, (Point{0, 1, 0}));
+  ASSERT_TRUE(options[0].obstacle.exists());
+  EXPECT_EQ(std::get<contact::Plane>(*options[0].obstacle.surface).normal, (Point{0, 1, 0}));
   EXPECT_EQ(read(list.set("Normal", "surface"))[0].normal, Normal::surface);
   EXPECT_EQ(read(list.set("Normal", "foundation"))[0].normal, Normal::foundation);
   EXPECT_EQ(read(list.set("Normal", "0, -1"))[0].normal, Normal::fixed);

@@ -57,11 +57,12 @@ TEST(MovingDents, AreMetWhereTheyLieAfterAMoveByWholeCells)
 
     auto beside = on("bottom"); // the obstacle moves instead
     beside.normal = contact::Normal::foundation;
-    beside.obstacle.normal = {0, 1, 0};
     const Vector none(d.owned_dofs);
-    for (const auto kind : {contact::Obstacle::Kind::plane, contact::Obstacle::Kind::sphere}) {
-      const bool plane = kind == contact::Obstacle::Kind::plane;
-      beside.obstacle.kind = kind;
+    for (const bool plane : {true, false}) {
+      if (plane)
+        beside.obstacle.surface = contact::Plane{{0, 1, 0}};
+      else
+        beside.obstacle.surface = contact::Sphere{};
       beside.obstacle.origin = {1.7, -2, element.dim == 3 ? -0.4 : 0};
       for (int c = 0; c < 3; ++c)
         beside.obstacle.point[c] = beside.obstacle.origin[c] - (c != 1 || plane ? move[c] : 0);

@@ -181,7 +181,7 @@ TEST(Sphere, IsRoundInSpace)
   EXPECT_DOUBLE_EQ(*distance_along(ball, {1, 5, 7}, {0, -0.6, -0.8}), 3);
   EXPECT_DOUBLE_EQ(*distance_along(ball, {1, 2, 9}, {0, 0, -1}), 4);
   list.set("Type", "circle"); // its older name
-  EXPECT_EQ(read(list, 3).kind, Obstacle::Kind::sphere);
+  EXPECT_TRUE(std::holds_alternative<contact::Sphere>(*read(list, 3).surface));
 }
 
 TEST(ObstacleOptions, RefuseWhatDoesNotFit)
@@ -233,7 +233,7 @@ TEST(Obstacle, PointsAndCentresMoveWithTime)
   EXPECT_EQ(read(cylinder_list(false), 3).seen_at(2).point, (Point{1, 2, -7})); // numbers stay where they are
 
   // Made without a deck: where it is said to be, whatever the time.
-  const Obstacle made{Obstacle::Kind::plane, {7, 8, 0}, {0, 1, 0}};
+  const Obstacle made{contact::Plane{{0, 1, 0}}, {7, 8, 0}};
   EXPECT_EQ(made.seen_at(5).point, (Point{7, 8, 0}));
 }
 

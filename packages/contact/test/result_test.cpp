@@ -127,7 +127,7 @@ TEST(ContactResult, NodesThatMissTheObstacleLendNoPressureToHeldOnes)
   contact::ContactOptions options;
   options.side = "bottom";
   options.yield_stress = ScalarField(3.);
-  options.obstacle = {contact::Obstacle::Kind::sphere, {2. / 3, -0.7, 0}, {}, 0.6, false};
+  options.obstacle = {contact::Sphere{0.6}, {2. / 3, -0.7, 0}};
   fem::DirichletCondition condition = held("bottom");
   condition.displacement[1] = field([](const Point &x) {
     const double across = std::abs(x[0] - 2. / 3);

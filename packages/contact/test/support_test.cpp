@@ -16,7 +16,6 @@ namespace
 using namespace rpc;
 using contact::ContactOptions;
 using contact::Normal;
-using contact::Obstacle;
 using contact::Support;
 using rpc::test::expect_error;
 
@@ -121,7 +120,7 @@ TEST(Support, ComesFromNodesThatFaceTheObstacleAlone)
   // Of the bottom's nodes, 0.5 m apart, three face the circle.
   const auto with = [](const double y) {
     Scene scene{plate(), {hold("left", {0})}, {on("bottom", 2)}, {pull("top", 0, y)}};
-    scene.foundations[0].obstacle = {Obstacle::Kind::sphere, {2, -3, 0}, {}, 0.7, false};
+    scene.foundations[0].obstacle = {contact::Sphere{0.7}, {2, -3, 0}};
     return scene;
   };
   EXPECT_TRUE(with(-0.74).check().by_contact_only);
@@ -285,7 +284,7 @@ TEST(Support, OfAWedgeInAVShapedFoundationNeedsNoDirichletCondition)
 TEST(Support, OfABallInABowlIsNotDetermined)
 {
   auto floor = on("bottom", inf);
-  floor.obstacle = {Obstacle::Kind::sphere, {2, 5, 0}, {}, 6, true};
+  floor.obstacle = {contact::Sphere{6, true}, {2, 5, 0}};
   floor.normal = Normal::foundation;
   Scene{plate(), {}, {floor}, {pull("top", 0, -1)}}.refuses({"nothing holds the body against rotation about (2, 5)"});
 }

@@ -1,34 +1,37 @@
 #pragma once
 
+#include "rpc/contact/surface/cylinder.hpp"
+#include "rpc/contact/surface/plane.hpp"
+#include "rpc/contact/surface/sphere.hpp"
 #include "rpc/core/field.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <array>
 #include <optional>
 #include <string>
+#include <variant>
 
 namespace rpc::contact
 {
 
+/// A shape that the foundation's surface may have. Each answers for a point x, seen from the obstacle's `point`:
+///
+///     direction_into(x), lies_in(x), distance_along(x, direction)      as the functions of the same names below
+///     no_direction_at                                                  the parameter that says where it has no direction; "": nowhere
+///     kind(), read(list, dim, path)                                    how a deck describes it
+///
+/// A new one is a file in surface/, a line here, and the parameters that are new in valid_obstacle_parameters().
+using Surface = std::variant<Plane, Sphere, Cylinder>;
+
 /// The foundation's surface where it has a simple shape.
 struct Obstacle {
-  enum class Kind {
-    none,
-    plane,
-    sphere,  ///< in 2D a circle
-    cylinder ///< an endless one, in 3D
-  };
-
-  Kind kind = Kind::none;
-  Point point{};         ///< of a plane, the centre of a sphere, or one on the axis of a cylinder [m]
-  Point normal{};        ///< of a plane, unit, out of the foundation towards the body
-  double radius = 0;     ///< of a sphere or cylinder [m]
-  bool encloses = false; ///< the body lies inside of the sphere or cylinder, the foundation outside
-  Point axis{};          ///< of a cylinder, unit
+  std::optional<Surface> surface = {};
+  Point point{}; ///< of a plane, the centre of a sphere, or one on the axis of a cylinder [m]
   std::array<ScalarField, 3> path =
       {};         ///< coordinates of `point` that change with time [m]; constant ones are not read
   Point origin{}; ///< where `point` is at the first of several steps [m]
 
+  bool exists() const { return surface.has_value(); }
   /// The same, with `point` where it is at a time.
   Obstacle seen_at(double t) const;
 };
@@ -40,9 +43,13 @@ Teuchos::ParameterList valid_obstacle_parameters();
 Obstacle obstacle_options(const Teuchos::ParameterList &list, int dim, const std::string &path,
                           const FieldParser &parse);
 
+// Of an obstacle that exists:
+
 /// Unit normal of the foundation at the point of its surface nearest to x, pointing into the foundation; nothing at the
 /// centre of a sphere or on the axis of a cylinder. doc/theory.md (3.6)
 std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x);
+/// The parameter that says where there is no such normal, "Centre" or "Axis".
+std::string no_direction_at(const Obstacle &obstacle);
 
 /// Whether x lies in the foundation, deeper than rounding.
 bool lies_in(const Obstacle &obstacle, const Point &x);

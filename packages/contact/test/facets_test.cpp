@@ -1,4 +1,4 @@
-#include "rpc/contact/facet_surface.hpp"
+#include "rpc/contact/surface/facets.hpp"
 
 #include "blocks.hpp"
 

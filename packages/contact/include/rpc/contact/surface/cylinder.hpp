@@ -1,0 +1,28 @@
+#pragma once
+
+#include "rpc/contact/surface/kind.hpp"
+#include "rpc/core/point.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <optional>
+
+namespace rpc::contact
+{
+
+/// An endless cylinder in space; the obstacle's point lies on its axis. What it answers: see Surface.
+struct Cylinder {
+  static constexpr const char *no_direction_at = "Axis";
+
+  Point axis{};          ///< unit
+  double radius = 0;     ///< [m]
+  bool encloses = false; ///< the body lies inside of it, the foundation outside
+
+  std::optional<Point> direction_into(const Point &x) const;
+  bool lies_in(const Point &x) const;
+  std::optional<double> distance_along(const Point &x, const Point &direction) const;
+
+  static SurfaceKind kind();
+  static Cylinder read(const Teuchos::ParameterList &list, int dim, const std::string &path);
+};
+
+} // namespace rpc::contact

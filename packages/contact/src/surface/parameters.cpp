@@ -1,0 +1,36 @@
+#include "parameters.hpp"
+
+#include "rpc/core/error.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <cmath>
+
+namespace rpc::contact
+{
+
+Point unit_vector(const Teuchos::ParameterList &list, const std::string &name, const int dim, const std::string &path)
+{
+  const auto &numbers = list.get<Teuchos::Array<double>>(name);
+  RPC_REQUIRE(numbers.size() == dim,
+              "deck: \"" << path << "->" << name << "\" must hold " << dim << " numbers, got " << numbers.size());
+  Point given{};
+  for (int c = 0; c < dim; ++c) {
+    RPC_REQUIRE(std::isfinite(numbers[c]),
+                "deck: \"" << path << "->" << name << "\" must be finite, got " << numbers[c]);
+    given[c] = numbers[c];
+  }
+  const double size = length(given);
+  RPC_REQUIRE(size > 0 && std::isfinite(size),
+              "deck: \"" << path << "->" << name << "\" must have a length > 0, got " << size);
+  return scaled(1 / size, given);
+}
+
+double radius_of(const Teuchos::ParameterList &list, const std::string &path)
+{
+  const double radius = list.get<double>("Radius");
+  RPC_REQUIRE(radius > 0 && std::isfinite(radius),
+              "deck: \"" << path << "->Radius\" must be > 0 and finite [m], got " << radius);
+  return radius;
+}
+
+} // namespace rpc::contact

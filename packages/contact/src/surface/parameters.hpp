@@ -1,0 +1,21 @@
+#pragma once
+
+#include "rpc/core/point.hpp"
+
+#include <Teuchos_ParameterList.hpp>
+#include <string>
+
+/// Parameters that several surfaces have; private to surface/.
+namespace rpc::contact
+{
+
+constexpr double surface_rounding = 1e-9; ///< of positions and directions, relative
+
+/// Unit vector from one of any length.
+/// @param path  of the list, for messages   @throws rpc::Error (bad_input)
+Point unit_vector(const Teuchos::ParameterList &list, const std::string &name, int dim, const std::string &path);
+
+/// `Radius` [m]. @throws rpc::Error (bad_input) unless it is > 0 and finite
+double radius_of(const Teuchos::ParameterList &list, const std::string &path);
+
+} // namespace rpc::contact
