@@ -102,12 +102,12 @@ RCP<const MultiVector> dents_met(const fem::Discretization &d, const std::vector
                                   spread(d, nodes, u));
     const Point moved = motion(options[k].obstacle);
     const auto values = u.getLocalViewHost(Tpetra::Access::ReadOnly);
+    std::vector<Point> standing = nodes.place;
+    for (std::size_t i = 0; i < standing.size(); ++i)
+      for (int c = 0; c < dim; ++c) standing[i][c] += values(dof(dim, nodes.node(i), c), 0) - moved[c];
+    const auto found = values_along(d.mesh->comm(), foundation, standing, nodes.direction);
     const auto to = met->getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (std::size_t i = 0; i < nodes.place.size(); ++i) {
-      Point y = nodes.place[i];
-      for (int c = 0; c < dim; ++c) y[c] += values(dof(dim, nodes.node(i), c), 0) - moved[c];
-      to(nodes.node(i), k) = foundation.along(y, nodes.direction[i]).value_or(0);
-    }
+    for (std::size_t i = 0; i < found.size(); ++i) to(nodes.node(i), k) = found[i].value_or(0);
   }
   if (met.is_null()) return dents;
   return met;
@@ -125,9 +125,9 @@ void add_where_they_lie(const fem::Discretization &d, const std::vector<ContactO
     for (double &component : back) component = -component;
     const FacetSurface body(straight_facets(d, d.mesh->side(options[k].side, options[k].path + "->Side"), &u, back,
                                             added, static_cast<int>(k)));
+    const auto found = values_along(d.mesh->comm(), body, places.place, places.direction);
     const auto to = dents.getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (std::size_t i = 0; i < places.place.size(); ++i)
-      to(places.node(i), k) += body.along(places.place[i], places.direction[i]).value_or(0);
+    for (std::size_t i = 0; i < found.size(); ++i) to(places.node(i), k) += found[i].value_or(0);
   }
 }
 

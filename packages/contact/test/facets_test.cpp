@@ -2,6 +2,7 @@
 
 #include "blocks.hpp"
 
+#include <Tpetra_Core.hpp>
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -19,11 +20,11 @@ TEST(FacetSurface, OfSegmentsIsMetFromInsideAtTheNearestPlace)
   // Two runs one below the other, from left to right: their normals lead down.
   const FacetSurface surface(StraightFacets{2, {0, 0, 1, 0, 1, 0, 2, 1, 0, -3, 2, -3}, {1, 2, 2, 4, 7, 7}});
   const Point down = {0, -1, 0}, up = {0, 1, 0};
-  EXPECT_NEAR(surface.along({0.25, 5, 0}, down).value(), 1.25, 1e-14);
-  EXPECT_NEAR(surface.along({0.25, -1, 0}, down).value(), 1.25, 1e-14) << "behind";
-  EXPECT_NEAR(surface.along({0.25, -2, 0}, down).value(), 7, 1e-14);
-  EXPECT_NEAR(surface.along({1.5, 0, 0}, down).value(), 3, 1e-14);
-  EXPECT_NEAR(surface.along({1.5, 0.5, 0}, {std::sqrt(0.5), -std::sqrt(0.5), 0}).value(), 3, 1e-14);
+  EXPECT_NEAR(surface.along({0.25, 5, 0}, down).value().value, 1.25, 1e-14);
+  EXPECT_NEAR(surface.along({0.25, -1, 0}, down).value().value, 1.25, 1e-14) << "behind";
+  EXPECT_NEAR(surface.along({0.25, -2, 0}, down).value().value, 7, 1e-14);
+  EXPECT_NEAR(surface.along({1.5, 0, 0}, down).value().value, 3, 1e-14);
+  EXPECT_NEAR(surface.along({1.5, 0.5, 0}, {std::sqrt(0.5), -std::sqrt(0.5), 0}).value().value, 3, 1e-14);
   EXPECT_FALSE(surface.along({0.25, 0, 0}, up)) << "its normals lead the other way";
   EXPECT_FALSE(surface.along({5, 0, 0}, down));
 }
@@ -32,16 +33,50 @@ TEST(FacetSurface, EndsHalfAFacetBeyondItsEdgeOrWhereItIsTold)
 {
   const StraightFacets facets{2, {0, 0, 1, 0, 1, 0, 2, 0}, {1, 2, 2, 4}};
   const Point down = {0, -1, 0};
-  EXPECT_EQ(FacetSurface(facets).along({2.4, 0, 0}, down).value(), 4);
-  EXPECT_EQ(FacetSurface(facets).along({-0.4, 0, 0}, down).value(), 1);
+  EXPECT_EQ(FacetSurface(facets).along({2.4, 0, 0}, down).value().value, 4);
+  EXPECT_EQ(FacetSurface(facets).along({-0.4, 0, 0}, down).value().value, 1);
   EXPECT_FALSE(FacetSurface(facets).along({2.6, 0, 0}, down));
-  EXPECT_EQ(FacetSurface(facets, 0.7).along({2.6, 0, 0}, down).value(), 4);
+  EXPECT_EQ(FacetSurface(facets, 0.7).along({2.6, 0, 0}, down).value().value, 4);
   EXPECT_FALSE(FacetSurface(facets, 0.7).along({2.8, 0, 0}, down));
 }
 
 TEST(FacetSurface, WithoutFacetsIsMetNowhere)
 {
   EXPECT_FALSE(FacetSurface(StraightFacets{3, {}, {}}).along({0, 0, 0}, {0, -1, 0}));
+}
+
+/// The same direction for all; each rank asks for all lines.
+std::vector<std::optional<double>> values_of_all(const FacetSurface &mine, const std::vector<Point> &x,
+                                                 const Point &direction)
+{
+  return contact::values_along(*Tpetra::getDefaultComm(), mine, x, std::vector<Point>(x.size(), direction));
+}
+
+/// Each rank has a segment of [0, ranks], and a lower one of another value below it.
+TEST(FacetSurface, OfAllRanksIsMetAtTheNearestPlace)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const double r = comm->getRank(), ranks = comm->getSize();
+  const double below = ranks - 1 - r; // the lower ones are dealt out the other way round
+  const FacetSurface mine(
+      StraightFacets{2, {r, 0, r + 1, 0, below, -3, below + 1, -3}, {r, r + 1, 10 + below, 11 + below}});
+  const double mid = 0.3 + 0.5 * (ranks - 1);
+  const auto found = values_of_all(
+      mine, {{mid, 5, 0}, {mid, -1, 0}, {mid, -2, 0}, {ranks + 0.4, 0, 0}, {ranks + 2, 0, 0}}, {0, -1, 0});
+  EXPECT_NEAR(found[0].value(), mid, 1e-14);
+  EXPECT_NEAR(found[1].value(), mid, 1e-14) << "behind";
+  EXPECT_NEAR(found[2].value(), 10 + mid, 1e-14);
+  EXPECT_EQ(found[3].value(), ranks) << "half a facet beyond the edge";
+  EXPECT_FALSE(found[4]);
+}
+
+TEST(FacetSurface, OfARankWithoutFacetsIsMetOnOthers)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const bool has = comm->getRank() + 1 == comm->getSize();
+  const FacetSurface mine(has ? StraightFacets{2, {0, 0, 1, 0}, {1, 2}} : StraightFacets{2, {}, {}});
+  EXPECT_NEAR(values_of_all(mine, {{0.5, 1, 0}}, {0, -1, 0})[0].value(), 1.5, 1e-14);
+  EXPECT_TRUE(contact::values_along(*comm, mine, {}, {}).empty());
 }
 
 TEST(FacetSurface, OfASideMeetsLinearValuesToRounding)
@@ -57,15 +92,25 @@ TEST(FacetSurface, OfASideMeetsLinearValuesToRounding)
     const FacetSurface still(contact::straight_facets(d, side, nullptr, {}, *at_nodes(d, linear), 0));
     const auto u = displacement(d, move);
     const FacetSurface moved(contact::straight_facets(d, side, u.get(), {0, 4, 0}, *at_nodes(d, linear), 0));
+    const Point down = {0, -1, 0}, aslant = {0.6, -0.8, 0};
+    std::vector<Point> above, beside, at_moved;
+    std::vector<double> expected;
     for (int k = 0; k <= 20; ++k) {
       const Point x = {1 + 0.1 * k, 0, element.dim == 3 ? -0.5 + 0.5 * std::sin(5. * k) : 0};
-      const Point along = {0.6, -0.8, 0};
-      EXPECT_NEAR(still.along({x[0], 3, x[2]}, {0, -1, 0}).value(), linear(x), 1e-14) << element.name();
-      EXPECT_NEAR(still.along({x[0] - 0.6, 0.8, x[2]}, along).value(), linear(x), 1e-14) << element.name();
+      above.push_back({x[0], 3, x[2]});
+      beside.push_back({x[0] - 0.6, 0.8, x[2]});
       Point y = x;
       const Point by = move(x);
-      for (int c = 0; c < 3; ++c) y[c] += (c < element.dim ? by[c] : 0) + (c == 1 ? 4 : 0) - 0.1 * along[c];
-      EXPECT_NEAR(moved.along(y, along).value(), linear(x), 1e-13) << element.name();
+      for (int c = 0; c < 3; ++c) y[c] += (c < element.dim ? by[c] : 0) + (c == 1 ? 4 : 0) - 0.1 * aslant[c];
+      at_moved.push_back(y);
+      expected.push_back(linear(x));
+    }
+    const auto from_above = values_of_all(still, above, down), from_beside = values_of_all(still, beside, aslant),
+               of_moved = values_of_all(moved, at_moved, aslant);
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      EXPECT_NEAR(from_above[k].value(), expected[k], 1e-14) << element.name();
+      EXPECT_NEAR(from_beside[k].value(), expected[k], 1e-14) << element.name();
+      EXPECT_NEAR(of_moved[k].value(), expected[k], 1e-13) << element.name();
     }
   }
 }
@@ -84,12 +129,18 @@ TEST(FacetSurface, OfABentSideIsOfSecondOrder)
       const auto d = block(element, bend, refinement);
       const FacetSurface surface(
           contact::straight_facets(d, d.mesh->side("bottom", "test"), nullptr, {}, *at_nodes(d, values), 0));
+      std::vector<Point> places, inside, inwards;
       for (int k = 0; k <= 97; ++k) {
         const double angle = -1 + 2 * k / 97.;
         const Point x = {2 * std::sin(angle), 2 * std::cos(angle), element.dim == 3 ? -0.3 : 0};
-        const auto met = surface.along({0.9 * x[0], 0.9 * x[1], x[2]}, {-x[0] / 2, -x[1] / 2, 0});
-        ASSERT_TRUE(met) << element.name();
-        worst[refinement - 1] = std::max(worst[refinement - 1], std::abs(*met - values(x)));
+        places.push_back(x);
+        inside.push_back({0.9 * x[0], 0.9 * x[1], x[2]});
+        inwards.push_back({-x[0] / 2, -x[1] / 2, 0});
+      }
+      const auto met = contact::values_along(*Tpetra::getDefaultComm(), surface, inside, inwards);
+      for (std::size_t k = 0; k < met.size(); ++k) {
+        ASSERT_TRUE(met[k]) << element.name();
+        worst[refinement - 1] = std::max(worst[refinement - 1], std::abs(*met[k] - values(places[k])));
       }
     }
     EXPECT_LT(worst[0], 0.08) << element.name() << " in " << element.dim;

@@ -1,7 +1,8 @@
 #include "rpc/contact/surface/facets.hpp"
 
 #include "rpc/core/device_values.hpp"
-#include "rpc/core/parallel.hpp"
+#include "rpc/core/exchange.hpp"
+#include "rpc/core/rank_boxes.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <algorithm>
@@ -89,8 +90,7 @@ StraightFacets straight_facets(const fem::Discretization &d, const mesh::Side &s
         mine.corners.insert(mine.corners.end(), x.begin(), x.begin() + dim);
         mine.values.push_back(here);
       }
-  return {dim, gathered_by_all(mesh.comm(), std::move(mine.corners)),
-          gathered_by_all(mesh.comm(), std::move(mine.values))};
+  return mine;
 }
 
 FacetSurface::FacetSurface(StraightFacets facets, const double beyond)
@@ -109,27 +109,21 @@ Point FacetSurface::corner(const std::size_t facet, const int k) const
 
 void FacetSurface::add_box(const std::size_t first, const std::size_t last)
 {
-  constexpr double inf = std::numeric_limits<double>::infinity();
   const std::size_t here = boxes_.size();
-  Box box{{inf, inf, inf}, {-inf, -inf, -inf}, first, last, 0};
+  Box box{Bounds::empty(), first, last, 0};
   double longest = 0; // edge, of the facets
   for (std::size_t k = first; k < last; ++k)
     for (int a = 0; a < facets_.dim; ++a) {
       const Point x = corner(order_[k], a), edge = difference(corner(order_[k], (a + 1) % facets_.dim), x);
       longest = std::max(longest, length(edge));
-      for (int c = 0; c < 3; ++c) {
-        box.lower[c] = std::min(box.lower[c], x[c]);
-        box.upper[c] = std::max(box.upper[c], x[c]);
-      }
+      box.bounds.add(x);
     }
-  int axis = 0;
-  for (int c = 1; c < 3; ++c)
-    if (box.upper[c] - box.lower[c] > box.upper[axis] - box.lower[axis]) axis = c;
+  const int axis = box.bounds.longest();
   // A place that counts to a triangle by `margin` on two of its sides lies off by an edge at most.
   const double around = std::max(beyond_, longest);
   for (int c = 0; c < 3; ++c) {
-    box.lower[c] -= around;
-    box.upper[c] += around;
+    box.bounds.lower[c] -= around;
+    box.bounds.upper[c] += around;
   }
   boxes_.push_back(box);
   if (last - first > few) {
@@ -152,15 +146,15 @@ namespace
 {
 
 /// Where a line meets the straight line or plane of a facet.
-struct Meeting {
+struct InFacet {
   std::array<double, 3> weights{}; // of the corners, their sum is 1
   double distance = 0;             // from x [m]
 };
 
 /// @param x  corners, seen from the line's point
-std::optional<Meeting> meet(const int dim, const std::array<Point, 3> &x, const Point &direction)
+std::optional<InFacet> meet(const int dim, const std::array<Point, 3> &x, const Point &direction)
 {
-  Meeting meeting;
+  InFacet meeting;
   const Point along = difference(x[1], x[0]);
   if (dim == 2) {
     const Point normal = {along[1], -along[0], 0}; // as long as the facet
@@ -180,31 +174,12 @@ std::optional<Meeting> meet(const int dim, const std::array<Point, 3> &x, const 
   return meeting;
 }
 
-/// Whether a line meets a box.
-bool meets(const Point &lower, const Point &upper, const Point &x, const Point &direction)
-{
-  double from = -std::numeric_limits<double>::infinity(), to = -from;
-  for (int c = 0; c < 3; ++c) {
-    const double low = lower[c] - x[c], high = upper[c] - x[c];
-    if (std::abs(direction[c]) < std::numeric_limits<double>::min()) {
-      if (low > 0 || high < 0) return false;
-      continue;
-    }
-    const double a = low / direction[c], b = high / direction[c];
-    from = std::max(from, std::min(a, b));
-    to = std::min(to, std::max(a, b));
-  }
-  return from <= to;
-}
-
 } // namespace
 
-std::optional<double> FacetSurface::along(const Point &x, const Point &direction) const
+std::optional<FacetSurface::Meeting> FacetSurface::along(const Point &x, const Point &direction) const
 {
-  constexpr double inf = std::numeric_limits<double>::infinity();
   const int dim = facets_.dim;
-  std::optional<double> value;
-  double least_off = inf, least_distance = inf;
+  std::optional<Meeting> first;
   const auto look_at = [&](const std::size_t facet) {
     std::array<Point, 3> seen{};
     for (int k = 0; k < dim; ++k) seen[k] = difference(corner(facet, k), x);
@@ -227,19 +202,59 @@ std::optional<double> FacetSurface::along(const Point &x, const Point &direction
     double off = length(away);
     if (deepest > margin && off > beyond_ * (1 + facet_rounding)) return;
     if (deepest <= facet_rounding) off = 0;
-    const double distance = std::abs(meeting->distance);
-    if (off > least_off || (off == least_off && distance >= least_distance)) return;
-    least_off = off;
-    least_distance = distance;
-    value = here;
+    const Meeting found{off, std::abs(meeting->distance), here};
+    if (!first || found.before(*first)) first = found;
   };
   for (std::size_t k = 0; k < boxes_.size();) {
     const Box &box = boxes_[k];
-    const bool met = meets(box.lower, box.upper, x, direction);
+    const bool met = box.bounds.meets_line(x, direction);
     for (std::size_t n = box.first; n < box.last && met && box.last - box.first <= few; ++n) look_at(order_[n]);
     k = met ? k + 1 : box.next;
   }
-  return value;
+  return first;
+}
+
+Bounds FacetSurface::bounds() const
+{
+  return boxes_.empty() ? Bounds::empty() : boxes_.front().bounds;
+}
+
+std::vector<std::optional<double>> values_along(const Comm &comm, const FacetSurface &mine, const std::vector<Point> &x,
+                                                const std::vector<Point> &direction)
+{
+  const RankBoxes boxes = rank_boxes(comm, mine.bounds());
+  std::vector<std::pair<int, std::size_t>> sent; // rank, line
+  for (std::size_t n = 0; n < x.size(); ++n)
+    boxes.along(x[n], direction[n], [&](const int rank) { sent.emplace_back(rank, n); });
+  std::sort(sent.begin(), sent.end());
+  std::vector<int> counts(comm.getSize());
+  std::vector<double> lines;
+  for (const auto &[rank, n] : sent) {
+    ++counts[rank];
+    lines.insert(lines.end(), x[n].begin(), x[n].end());
+    lines.insert(lines.end(), direction[n].begin(), direction[n].end());
+  }
+  const Exchange exchange(comm, counts);
+  const std::vector<double> asked = exchange.forward(lines, 6);
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  std::vector<double> replies;
+  for (std::size_t k = 0; k < asked.size(); k += 6) {
+    const auto met = mine.along({asked[k], asked[k + 1], asked[k + 2]}, {asked[k + 3], asked[k + 4], asked[k + 5]});
+    if (met)
+      replies.insert(replies.end(), {met->off, met->distance, met->value});
+    else
+      replies.insert(replies.end(), {inf, inf, 0});
+  }
+  const std::vector<double> got = exchange.back(replies, 3);
+  std::vector<FacetSurface::Meeting> first(x.size(), {inf, inf, 0});
+  for (std::size_t k = 0; k < sent.size(); ++k) {
+    const FacetSurface::Meeting found{got[3 * k], got[3 * k + 1], got[3 * k + 2]};
+    if (found.before(first[sent[k].second])) first[sent[k].second] = found;
+  }
+  std::vector<std::optional<double>> values(x.size());
+  for (std::size_t n = 0; n < x.size(); ++n)
+    if (first[n].off < inf) values[n] = first[n].value;
+  return values;
 }
 
 } // namespace rpc::contact

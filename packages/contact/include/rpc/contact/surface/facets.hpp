@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/core/field.hpp"
+#include "rpc/core/bounds.hpp"
 #include "rpc/fem/discretization.hpp"
 
 #include <optional>
@@ -19,8 +20,8 @@ struct StraightFacets {
   std::size_t size() const { return values.size() / dim; }
 };
 
-/// A side's facets, of all ranks and on each of them, at x + u + shift: those of order 2 as several straight ones, quadrilaterals as
-/// four triangles about their middle. Collective.
+/// The facets of a side that this rank owns, at x + u + shift: those of order 2 as several straight ones, quadrilaterals as four
+/// triangles about their middle. Over all ranks each facet is there once. Collective.
 /// @param u       (owned dofs) [m]; null: 0
 /// @param values  (owned nodes; columns)
 /// @param column  of the values
@@ -34,14 +35,28 @@ public:
   /// @param beyond  a line that misses the surface by up to this much, or by half a facet, takes the value at its edge [m]
   explicit FacetSurface(StraightFacets facets, double beyond = 0);
 
-  /// The value where the line through x meets the surface: of several such places that which is nearest to x, among facets whose
-  /// normal has a part along the direction. Nothing if it misses the surface. Linear functions are met to rounding.
+  /// Where a line meets the surface.
+  struct Meeting {
+    double off = 0;      ///< by how much it misses the surface [m]
+    double distance = 0; ///< from x [m]
+    double value = 0;
+
+    /// Whether it counts instead of another one.
+    bool before(const Meeting &other) const
+    {
+      return off < other.off || (off == other.off && distance < other.distance);
+    }
+  };
+  /// Where the line through x meets the surface: of several such places that which is nearest to x, among facets whose normal has
+  /// a part along the direction. Nothing if it misses the surface. Linear functions are met to rounding.
   /// @param direction  unit
-  std::optional<double> along(const Point &x, const Point &direction) const;
+  std::optional<Meeting> along(const Point &x, const Point &direction) const;
+  /// Around all places that count as met by a line; empty without facets.
+  Bounds bounds() const;
 
 private:
   struct Box {
-    Point lower, upper;
+    Bounds bounds;
     std::size_t first, last; // of the facets in order_
     std::size_t next;        // box after its parts, which follow it
   };
@@ -53,5 +68,14 @@ private:
   std::vector<std::size_t> order_; // of facets, so that those of a box follow each other
   std::vector<Box> boxes_;         // each before its parts
 };
+
+/// The values where lines meet a surface of which each rank holds a part: lines go to the ranks whose boxes they meet, and the first
+/// meeting of all counts. Collective.
+/// @param mine       this rank's part; `beyond` the same on all ranks
+/// @param x          (lines) [m]
+/// @param direction  (lines) unit
+/// @return (lines) nothing where a line misses the surface
+std::vector<std::optional<double>> values_along(const Comm &comm, const FacetSurface &mine, const std::vector<Point> &x,
+                                                const std::vector<Point> &direction);
 
 } // namespace rpc::contact
