@@ -1,19 +1,12 @@
 #include "rpc/fem/hinges.hpp"
 
+#include "pieces.hpp"
+#include "pinched_nodes.hpp"
 #include "point_text.hpp"
-#include "rpc/core/fingerprint.hpp"
 #include "rpc/core/on_root.hpp"
-#include "rpc/core/parallel.hpp"
-#include "rpc/fem/rigid_motion.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <numeric>
-#include <set>
 #include <utility>
 
 namespace rpc::fem
@@ -25,282 +18,6 @@ using DenseRows = std::vector<std::vector<double>>;
 
 /// Pieces joined to each other in points, of which motions are worked out all at once.
 constexpr std::size_t most_pieces = 200;
-
-/// They are a facet's first nodes.
-int num_facet_vertices(const mesh::Element &element)
-{
-  return element.dim == 2 ? 2 : element.shape == mesh::Shape::tensor ? 4 : 3;
-}
-
-/// Counts the owned nodes where the cells around are not all joined over facets that hold the node.
-struct CountPinchedNodes {
-  static constexpr int most_cells = 64; // around a node; one with more counts
-
-  DeviceView<LO **> cells;   // (cells, nodes)            in
-  NodeToCells node_to_cells; //                           in
-  DeviceView<int **> facets; // (facets, their vertices)  in, nodes of a cell
-  int num_vertices;          // of a cell                 in
-
-  /// A number for the facet, 0 if the node is none of its vertices.
-  KOKKOS_FUNCTION std::uint64_t facet_at(const LO cell, const int facet, const LO node) const
-  {
-    std::uint64_t sum = 0;
-    bool holds = false;
-    for (std::size_t a = 0; a < facets.extent(1); ++a) {
-      const LO vertex = cells(cell, facets(facet, a));
-      holds = holds || vertex == node;
-      sum += splitmix64(static_cast<std::uint64_t>(vertex)); // the sum of several tells the numbers
-    }
-    return holds ? sum : 0;
-  }
-  KOKKOS_FUNCTION bool is_vertex(const LO cell, const LO node) const
-  {
-    for (int a = 0; a < num_vertices; ++a)
-      if (cells(cell, a) == node) return true;
-    return false;
-  }
-  KOKKOS_FUNCTION bool share_facet(const LO a, const LO b, const LO node) const
-  {
-    const int num_facets = static_cast<int>(facets.extent(0));
-    for (int f = 0; f < num_facets; ++f) {
-      const std::uint64_t of_a = facet_at(a, f, node);
-      for (int g = 0; of_a != 0 && g < num_facets; ++g)
-        if (facet_at(b, g, node) == of_a) return true;
-    }
-    return false;
-  }
-  /// Inside of the body each facet around the node belongs to two cells: these numbers cancel.
-  KOKKOS_FUNCTION bool is_inside(const LO node) const
-  {
-    std::uint64_t bits = 0;
-    for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k)
-      for (std::size_t f = 0; f < facets.extent(0); ++f)
-        bits ^= facet_at(node_to_cells.cell(k), static_cast<int>(f), node);
-    return bits == 0;
-  }
-  KOKKOS_FUNCTION void operator()(const LO node, LO &count) const
-  {
-    const std::size_t first = node_to_cells.row(node);
-    const int size = static_cast<int>(node_to_cells.row(node + 1) - first);
-    if (size < 2 || !is_vertex(node_to_cells.cell(first), node) || is_inside(node)) return;
-    if (size > most_cells) {
-      ++count;
-      return;
-    }
-    bool reached[most_cells] = {true}; // from the first cell
-    int num_reached = 1;
-    for (int before = 0; before < num_reached;) {
-      before = num_reached;
-      for (int a = 0; a < size; ++a)
-        for (int b = 0; reached[a] && b < size; ++b)
-          if (!reached[b] && share_facet(node_to_cells.cell(first + a), node_to_cells.cell(first + b), node)) {
-            reached[b] = true;
-            ++num_reached;
-          }
-    }
-    if (num_reached < size) ++count;
-  }
-};
-
-/// Whether there are such nodes on any rank; collective.
-bool has_pinched_nodes(const Discretization &d)
-{
-  const mesh::Element &element = d.mesh->element;
-  const auto &facets = element.facets();
-  const int width = num_facet_vertices(element);
-  const DeviceView<int **> facet_vertices("rpc::fem::facet_vertices", facets.size(), width);
-  const auto mirror = Kokkos::create_mirror_view(facet_vertices);
-  for (std::size_t f = 0; f < facets.size(); ++f)
-    for (int a = 0; a < width; ++a) mirror(f, a) = facets[f][a];
-  Kokkos::deep_copy(facet_vertices, mirror);
-  LO count = 0;
-  Kokkos::parallel_reduce("rpc::fem::pinched_nodes", device_range(d.mesh->num_owned_nodes()),
-                          CountPinchedNodes{d.mesh->cells, d.node_to_cells, facet_vertices, element.num_vertices()},
-                          count);
-  return max_all(d.mesh->comm(), count) > 0;
-}
-
-/// Sets that join.
-class Sets
-{
-public:
-  explicit Sets(const int count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  int find(int n)
-  {
-    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
-    return n;
-  }
-  void join(const int a, const int b) { parent_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
-  /// (items) the number of each one's set, from 0.
-  std::vector<int> numbers()
-  {
-    std::vector<int> number(parent_.size());
-    int count = 0;
-    for (int n = 0; n < static_cast<int>(parent_.size()); ++n) number[n] = find(n) == n ? count++ : number[find(n)];
-    return number;
-  }
-
-private:
-  std::vector<int> parent_; // of a root itself; others come after theirs
-};
-
-int count_of(const std::vector<int> &numbers)
-{
-  return numbers.empty() ? 0 : 1 + *std::max_element(numbers.begin(), numbers.end());
-}
-
-/// Where pieces are: a box that holds their nodes.
-struct Box {
-  std::array<double, 3> lower, upper; // [m]
-
-  Box()
-  {
-    lower.fill(std::numeric_limits<double>::infinity());
-    upper.fill(-std::numeric_limits<double>::infinity());
-  }
-  void add(const double *const from, const double *const to, const int dim)
-  {
-    for (int c = 0; c < dim; ++c) {
-      lower[c] = std::min(lower[c], from[c]);
-      upper[c] = std::max(upper[c], to[c]);
-    }
-  }
-  Part frame(const int dim) const
-  {
-    Part part;
-    double squares = 0;
-    for (int c = 0; c < dim; ++c) {
-      part.centre[c] = (lower[c] + upper[c]) / 2;
-      squares += std::pow((upper[c] - lower[c]) / 2, 2);
-    }
-    part.radius = std::sqrt(squares);
-    return part;
-  }
-};
-
-/// A force of size 1 at a place, along one piece's modes.
-RigidMotion row_at(const double *const x, const int direction, const Part &frame, const int dim)
-{
-  double arm[3] = {0, 0, 0}, unit[3] = {0, 0, 0};
-  for (int c = 0; c < dim; ++c) arm[c] = (x[c] - frame.centre[c]) / frame.radius;
-  unit[direction] = 1;
-  RigidMotion row{};
-  along_modes(dim, arm, unit, row.data());
-  return row;
-}
-
-/// The same force and moment along the modes of another frame.
-RigidMotion moved(const RigidMotion &row, const Part &from, const Part &to, const int dim)
-{
-  double arm[3] = {0, 0, 0}, force[3] = {0, 0, 0};
-  for (int c = 0; c < dim; ++c) {
-    arm[c] = (from.centre[c] - to.centre[c]) / to.radius;
-    force[c] = row[c];
-  }
-  RigidMotion result{};
-  along_modes(dim, arm, force, result.data());
-  for (int k = dim; k < 6; ++k) result[k] += row[k] * from.radius / to.radius;
-  return result;
-}
-
-/// What ranks know of their pieces; lists of all ranks, on rank 0 alone, name pieces over all ranks.
-struct Pieces {
-  std::vector<GO> num_cells;    // (pieces) owned
-  std::vector<double> box;      // (pieces, 2 dim) of the nodes of local cells [m]
-  std::vector<GO> shared;       // (cells that several ranks have, vertices + 1) gids ascending, piece
-  std::vector<GO> joined;       // (joints, 2) pieces
-  std::vector<double> joint;    // (joints, dim) [m]
-  std::vector<GO> held;         // (rows) piece
-  std::vector<double> held_row; // (rows, 6) along the modes of the piece's box on that rank
-};
-
-/// (local cells) the piece of each, by facets that they share on this rank.
-template <class Cells>
-std::vector<int> local_pieces(const mesh::Mesh &mesh, const Cells &cells)
-{
-  const mesh::Element &element = mesh.element;
-  const int width = num_facet_vertices(element);
-  Sets sets(mesh.num_cells());
-  std::map<std::vector<LO>, LO> first;
-  for (LO cell = 0; cell < mesh.num_cells(); ++cell)
-    for (const auto &facet : element.facets()) {
-      std::vector<LO> key;
-      for (int a = 0; a < width; ++a) key.push_back(cells(cell, facet[a]));
-      std::sort(key.begin(), key.end());
-      const auto [other, fresh] = first.emplace(key, cell);
-      if (!fresh) sets.join(other->second, cell);
-    }
-  return sets.numbers();
-}
-
-/// Collective.
-Pieces pieces_of(const Discretization &d, const DirichletDofs &dirichlet)
-{
-  const mesh::Mesh &mesh = *d.mesh;
-  const Comm &comm = mesh.comm();
-  const int dim = d.dim(), width = mesh.element.num_nodes(), vertices = mesh.element.num_vertices();
-  const auto cells = to_host(mesh.cells);
-  const auto coords = to_host(mesh.coords);
-  const auto fixed = to_host(dirichlet.fixed);
-  const auto row = to_host(d.node_to_cells.row);
-  const auto around = to_host(d.node_to_cells.cell);
-  const std::vector<int> piece = local_pieces(mesh, cells);
-  const int count = count_of(piece);
-  GO offset = 0;
-  const auto counts = gathered_by_all(comm, std::vector<GO>{count});
-  for (int rank = 0; rank < comm.getRank(); ++rank) offset += counts[rank];
-
-  Pieces mine;
-  mine.num_cells.assign(count, 0);
-  std::vector<Box> boxes(count);
-  for (LO cell = 0; cell < mesh.num_cells(); ++cell) {
-    mine.num_cells[piece[cell]] += cell < mesh.num_owned_cells;
-    bool shared = false;
-    std::vector<GO> key;
-    for (int a = 0; a < width; ++a) {
-      double x[3] = {0, 0, 0};
-      for (int c = 0; c < dim; ++c) x[c] = coords(cells(cell, a), c);
-      boxes[piece[cell]].add(x, x, dim);
-      if (a >= vertices) continue;
-      shared = shared || cells(cell, a) >= mesh.num_owned_nodes();
-      key.push_back(mesh.overlap_nodes->getGlobalElement(cells(cell, a)));
-    }
-    if (!shared) continue;
-    std::sort(key.begin(), key.end());
-    mine.shared.insert(mine.shared.end(), key.begin(), key.end());
-    mine.shared.push_back(offset + piece[cell]);
-  }
-  std::vector<Part> frames;
-  for (const Box &box : boxes) {
-    frames.push_back(box.frame(dim));
-    mine.box.insert(mine.box.end(), box.lower.begin(), box.lower.begin() + dim);
-    mine.box.insert(mine.box.end(), box.upper.begin(), box.upper.begin() + dim);
-  }
-  std::vector<std::vector<RigidMotion>> rows(count);
-  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) {
-    std::set<int> here;
-    for (std::size_t k = row(n); k < row(n + 1); ++k) here.insert(piece[around(k)]);
-    double x[3] = {0, 0, 0};
-    for (int c = 0; c < dim; ++c) x[c] = coords(n, c);
-    for (auto other = std::next(here.begin()); other != here.end(); ++other) {
-      mine.joined.insert(mine.joined.end(), {offset + *here.begin(), offset + *other});
-      mine.joint.insert(mine.joint.end(), x, x + dim);
-    }
-    for (int c = 0; c < dim; ++c)
-      for (const int p : here)
-        if (fixed(dim * n + c)) rows[p].push_back(row_at(x, c, frames[p], dim));
-  }
-  for (int p = 0; p < count; ++p)
-    for (const RigidMotion &held : independent_rows(rows[p], rigid_tolerance)) {
-      mine.held.push_back(offset + p);
-      mine.held_row.insert(mine.held_row.end(), held.begin(), held.end());
-    }
-  return {gathered_by_root(comm, mine.num_cells), gathered_by_root(comm, mine.box),
-          gathered_by_root(comm, mine.shared),    gathered_by_root(comm, mine.joined),
-          gathered_by_root(comm, mine.joint),     gathered_by_root(comm, mine.held),
-          gathered_by_root(comm, mine.held_row)};
-}
 
 double dot_of_rows(const std::vector<double> &a, const std::vector<double> &b)
 {
@@ -350,16 +67,12 @@ struct Assembly {
 };
 
 /// Rank 0 only.
-std::vector<Assembly> assemblies_of(const Pieces &all, const int dim, const int vertices)
+std::vector<Assembly> assemblies_of(const Pieces &all, const int dim)
 {
   const int count = static_cast<int>(all.num_cells.size());
   Sets sets(count);
-  std::map<std::vector<GO>, GO> first;
-  for (std::size_t k = 0; k < all.shared.size(); k += vertices + 1) {
-    const auto key = all.shared.begin() + static_cast<std::ptrdiff_t>(k);
-    const auto [other, fresh] = first.emplace(std::vector<GO>(key, key + vertices), key[vertices]);
-    if (!fresh) sets.join(static_cast<int>(other->second), static_cast<int>(key[vertices]));
-  }
+  for (std::size_t k = 0; k < all.same.size(); k += 2)
+    sets.join(static_cast<int>(all.same[k]), static_cast<int>(all.same[k + 1]));
   const std::vector<int> piece = sets.numbers();
   const int num_pieces = count_of(piece);
   Sets joined(num_pieces);
@@ -367,22 +80,22 @@ std::vector<Assembly> assemblies_of(const Pieces &all, const int dim, const int 
   const std::vector<int> assembly = joined.numbers();
 
   std::vector<Assembly> assemblies(count_of(assembly));
-  std::vector<Box> boxes(num_pieces), whole(assemblies.size());
+  std::vector<Bounds> boxes(num_pieces, Bounds::empty()), whole(assemblies.size(), Bounds::empty());
   std::vector<GO> num_cells(num_pieces, 0);
   for (int p = 0; p < count; ++p) {
-    const double *const box = &all.box[2 * dim * p];
-    boxes[piece[p]].add(box, box + dim, dim);
-    whole[assembly[piece[p]]].add(box, box + dim, dim);
+    const Bounds box = all.box_of(p);
+    boxes[piece[p]].add(box);
+    whole[assembly[piece[p]]].add(box);
     num_cells[piece[p]] += all.num_cells[p];
   }
   std::vector<int> place(num_pieces);
   for (int p = 0; p < num_pieces; ++p) {
     Assembly &to = assemblies[assembly[p]];
     place[p] = static_cast<int>(to.pieces.size());
-    to.pieces.push_back(boxes[p].frame(dim));
+    to.pieces.push_back(frame_of(boxes[p]));
     to.pieces.back().num_cells = num_cells[p];
     to.held.emplace_back();
-    to.whole = whole[assembly[p]].frame(dim);
+    to.whole = frame_of(whole[assembly[p]]);
   }
   for (std::size_t j = 0; 2 * j < all.joined.size(); ++j) {
     const int a = piece[all.joined[2 * j]], b = piece[all.joined[2 * j + 1]];
@@ -400,11 +113,9 @@ std::vector<Assembly> assemblies_of(const Pieces &all, const int dim, const int 
     const int p = static_cast<int>(all.held[k]);
     Assembly &to = assemblies[assembly[piece[p]]];
     const int at = place[piece[p]];
-    Box box;
-    box.add(&all.box[2 * dim * p], &all.box[2 * dim * p] + dim, dim);
     RigidMotion row;
     std::copy_n(&all.held_row[6 * k], 6, row.begin());
-    to.held[at].push_back(moved(row, box.frame(dim), to.pieces[at], dim));
+    to.held[at].push_back(moved(row, frame_of(all.box_of(p)), to.pieces[at], dim));
   }
   return assemblies;
 }
@@ -501,8 +212,7 @@ void require_stiff_joints(const Discretization &d, const DirichletDofs &dirichle
   if (is_box || d.axisymmetric() || !has_pinched_nodes(d)) return;
   const Pieces pieces = pieces_of(d, dirichlet);
   on_root(d.mesh->comm(), ExitCode::internal_error, [&] {
-    for (const Assembly &assembly : assemblies_of(pieces, d.dim(), d.mesh->element.num_vertices()))
-      check(assembly, d.dim());
+    for (const Assembly &assembly : assemblies_of(pieces, d.dim())) check(assembly, d.dim());
   });
 }
 

@@ -118,7 +118,7 @@ std::vector<GO> smallest_ids(const Discretization &d, const LocalSets &sets)
   return smallest;
 }
 
-/// All different values over all ranks, ascending; collective.
+/// All different values over all ranks, ascending; collective. Each rank sends the parts that it has nodes of: a few numbers.
 std::vector<GO> all_different(const Comm &comm, std::vector<GO> values)
 {
   const auto sort = [&values] {

@@ -12,8 +12,8 @@ namespace rpc::fem
 /// are stiff enough if prescribed displacements leave them no motions but those of the body as a whole. Whether contact
 /// alone would stop a joint is not looked into. Joints of an axisymmetric body are circles, and stiff.
 ///
-/// Costs a look at the cells around each node. Where there are such points, rank 0 gets the cells that several ranks
-/// know, the joints and up to six held directions of each piece; collective.
+/// Costs a look at the cells around each node. Where there are such points, rank 0 gets the pieces of each rank, the joints and up
+/// to six held directions of each piece; collective.
 /// @throws rpc::Error (no_solution) on every rank, naming the joint and its pieces
 void require_stiff_joints(const Discretization &d, const DirichletDofs &dirichlet);
 
