@@ -102,7 +102,8 @@ solver::MakeMeshLevels Problem::mesh_levels() const
   if (!mesh_->may_have_coarser()) return {};
   return [finest = mesh_, model = model_, prescribed = prescribed_] {
     const auto made = analysis::mesh_levels(*finest, model, prescribed);
-    if (finest->is_finest()) finest->forget_coarser(); // prediction has been before, and multigrid needs no more of them
+    if (finest->is_finest())
+      finest->forget_coarser(); // prediction has been before, and multigrid needs no more of them
     return made;
   };
 }

@@ -98,7 +98,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   first.time = resumed ? resumed->last.time : task.steps.times.front();
   const auto problem = make_problem(first, mesh, seconds);
   LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver,
-                                coarser_meshes(first, task.mesh, comm));
+                      coarser_meshes(first, task.mesh, comm));
   std::vector<StepRecord> records;
   int assemblies_before = 0;
   if (resumed) {
@@ -172,8 +172,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
       from.predict = [&] { // the coarser scenes go before the finest one is solved
         return Predictor(coarser, task.step, task.linear_solver).predict(*problem, step, nullptr);
       };
-    static_cast<StepSolution &>(s) =
-        solve_step(*problem, step, state, task.step, from, listener.step);
+    static_cast<StepSolution &>(s) = solve_step(*problem, step, state, task.step, from, listener.step);
   } else {
     LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver, coarser);
     if (earlier)

@@ -156,7 +156,8 @@ struct ContactTerms {
       const double p = state == FacetState::mixed ? contact::pressure(v, x.recovered, 1 / facet_compliance, foundation)
                                                   : contact::admissible(x.at[pressure], foundation);
       // By Fenchel and Young >= 0, but for rounding.
-      product += share * math::fmax(0., contact::foundation_energy(v, foundation) + contact::conjugate_energy(p, foundation) - p * v);
+      product += share * math::fmax(0., contact::foundation_energy(v, foundation) +
+                                            contact::conjugate_energy(p, foundation) - p * v);
       for (int i = 0; i < dim; ++i) {
         const double r = x.rest[i] + p * x.at[normal + i];
         out_of_balance += facet_compliance * share * r * r;
@@ -194,8 +195,7 @@ struct PeakDifference {
   KOKKOS_FUNCTION void operator()(const LO f, double &most) const
   {
     // The pressure is the yield stress, known at the nodes.
-    if (terms.state_of(f) == ContactTerms::FacetState::yielding &&
-        !contact::hardens(terms.law_at(f, 0))) {
+    if (terms.state_of(f) == ContactTerms::FacetState::yielding && !contact::hardens(terms.law_at(f, 0))) {
       double high = 0, low = highest;
       for (std::size_t a = 0; a < terms.facets.extent(1); ++a) {
         const double p = terms.field(terms.facets(f, a), int(pressure));

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "rpc/core/field.hpp"
 #include "rpc/core/bounds.hpp"
+#include "rpc/core/field.hpp"
 #include "rpc/fem/discretization.hpp"
 
 #include <optional>
