@@ -3,6 +3,7 @@
 #include "foundation_scene.hpp"
 #include "rpc/algebra/along_points.hpp"
 #include "rpc/algebra/bounded_update.hpp"
+#include "rpc/core/error.hpp"
 
 #include <cmath>
 #include <functional>

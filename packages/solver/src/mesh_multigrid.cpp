@@ -2,6 +2,7 @@
 
 #include "band_cholesky.hpp"
 #include "coarse_contact.hpp"
+#include "contact_supports.hpp"
 #include "node_interpolation.hpp"
 #include "node_smoother.hpp"
 #include "rpc/algebra/bounded_update.hpp"
@@ -108,23 +109,6 @@ private:
   std::optional<BandCholesky> factor_;
 };
 
-/// (nodes of all ranks, dim, dim) The blocks of all ranks.
-DeviceView<double ***> of_all(const Comm &comm, const DeviceView<double ***> &block)
-{
-  const auto from = to_host(block);
-  const int dim = static_cast<int>(block.extent(1));
-  std::vector<double> mine;
-  for (std::size_t n = 0; n < from.extent(0); ++n)
-    for (int k = 0; k < dim; ++k)
-      for (int l = 0; l < dim; ++l) mine.push_back(from(n, k, l));
-  const auto all = gathered_by_all(comm, std::move(mine));
-  const DeviceView<double ***> result("rpc::solver::contact_of_all", all.size() / dim / dim, dim, dim);
-  const auto to = Kokkos::create_mirror_view(result);
-  for (std::size_t e = 0; e < all.size(); ++e) to(e / dim / dim, e / dim % dim, e % dim) = all[e];
-  Kokkos::deep_copy(result, to);
-  return result;
-}
-
 /// Sum of the changes over the larger one of the sums, in [0, 2], by the norms of the blocks; collective.
 double changed_part(const Comm &comm, const DeviceView<double ***> &before, const DeviceView<double ***> &now)
 {
@@ -151,16 +135,16 @@ double changed_part(const Comm &comm, const DeviceView<double ***> &before, cons
   return whole > 0 ? all[0] / whole : 0;
 }
 
-/// v <- T v or T^T v at the points' nodes, T = H_ii^-1 K_ii with the own blocks of both: the move that is left of v where contact
+/// v <- T v or T^T v at the contact nodes, T = H_ii^-1 K_ii with the own blocks of both: the move that is left of v where contact
 /// resists it.                                                                                                    (4.7b)
-/// @param v  (owned dofs), at the points' nodes   @param kept  (points, dim) what T acts on is v less this; T v is added to it
+/// @param v  (owned dofs), at the contact nodes   @param kept  (nodes, dim) what T acts on is v less this; T v is added to it
 template <int Dim, class Values>
 struct Truncate {
-  DeviceView<LO *> node;          // (points)                      in
-  DeviceView<double ***> base;    // (points, Dim, Dim)            in
+  DeviceView<LO *> node;          // (nodes)                       in
+  DeviceView<double ***> base;    // (nodes, Dim, Dim)             in
   DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)       in
   bool transposed;                //
-  DeviceView<double **> kept;     // (points, Dim)                 in
+  DeviceView<double **> kept;     // (nodes, Dim)                  in
   Values v;                       //                               inout
 
   KOKKOS_FUNCTION void operator()(const LO i) const
@@ -195,7 +179,7 @@ void truncate(const DeviceView<LO *> &node, const DeviceView<double ***> &base, 
   Kokkos::fence();
 }
 
-/// (points, dim) What v is at the points' nodes.
+/// (nodes, dim) What v is at the contact nodes.
 void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView<double **> &kept)
 {
   const auto from = device_read(v);
@@ -243,7 +227,8 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     : H_(std::move(H)), contact_node_(H_->nodes()), contact_base_(H_->base_blocks())
 {
   const int dim = H_->dofs_per_node();
-  PointSupports points = point_supports(contact_node_, dim, *H_->getDomainMap());
+  RCP<const CrsMatrix> supports = contact_supports(contact_node_, levels.level[0].interpolation->getRangeMap());
+  contact_ = supports->getRowMap();
   for (std::size_t l = 0; l < levels.level.size(); ++l) {
     const MeshLevel &coarse = levels.level[l];
     auto level = std::make_unique<Level>();
@@ -252,8 +237,8 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     else
       level->A = levels_.back()->coarse;
     level->add_transfers(coarse, dim, l == 0 ? levels.prescribed : levels.level[l - 1].prescribed);
-    points = coarser(points, *coarse.interpolation);
-    level->coarse = rcp(new CoarseContact(points, coarse.stiffness, coarse.prescribed));
+    supports = coarser(*supports, *coarse.interpolation);
+    level->coarse = rcp(new CoarseContact(supports, dim, coarse.stiffness, coarse.prescribed));
     levels_.push_back(std::move(level));
   }
   for (std::size_t l = 0; l < levels_.size(); ++l) { // contact is not in the coarse matrices yet
@@ -274,8 +259,8 @@ MeshMultigrid::~MeshMultigrid() = default;
 DeviceView<double ***> MeshMultigrid::write_contact()
 {
   const auto update = bounded_update(*H_, most_on_coarse_meshes);
-  const auto all = of_all(*H_->getDomainMap()->getComm(), update);
-  for (const auto &level : levels_) level->coarse->write(all);
+  const MultiVector packed = packed_blocks(contact_, update);
+  for (const auto &level : levels_) level->coarse->write(packed);
   levels_[0]->smoother->set_blocks(contact_node_, H_->blocks());
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const CoarseContact &contact = *levels_[l - 1]->coarse;

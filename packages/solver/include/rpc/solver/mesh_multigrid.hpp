@@ -60,6 +60,7 @@ private:
 
   RCP<const UpdatedOperator> H_;
   DeviceView<LO *> contact_node_;              // (nodes) those of H
+  RCP<const Map> contact_;                     // map of these
   DeviceView<double ***> contact_base_;        // (nodes, dim, dim) K's own blocks there
   std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
   std::unique_ptr<CoarsestSolver> coarsest_;

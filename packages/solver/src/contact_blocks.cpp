@@ -1,0 +1,178 @@
+#include "contact_blocks.hpp"
+
+#include "rpc/core/device_values.hpp"
+#include "rpc/core/dofs.hpp"
+#include "rpc/core/graph.hpp"
+
+#include <Teuchos_OrdinalTraits.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+namespace rpc::solver
+{
+namespace
+{
+
+const LO invalid = Teuchos::OrdinalTraits<LO>::invalid();
+
+/// Some of a matrix's own rows, on the host.
+struct HostRows {
+  std::vector<std::size_t> begin{0}; // (rows + 1) where a row's entries begin here
+  HostView<std::size_t *> first;     // (rows)     and among all of the matrix
+  HostView<LO *> column;             // (entries)  local
+  HostView<double *> value;          // (entries)
+};
+
+/// Only these rows leave the device. @param rows  local
+HostRows on_host(const CrsMatrix &A, const std::vector<LO> &rows)
+{
+  const auto matrix = A.getLocalMatrixDevice();
+  const auto row = device_values(rows, "rpc::solver::picked_rows");
+  const LO n = static_cast<LO>(rows.size());
+  const DeviceView<std::size_t *> first("rpc::solver::picked_first", n);
+  const DeviceView<LO *> length("rpc::solver::picked_length", n);
+  Kokkos::parallel_for(
+      "rpc::solver::picked_lengths", device_range(n), KOKKOS_LAMBDA(const LO i) {
+        first(i) = matrix.graph.row_map(row(i));
+        length(i) = static_cast<LO>(matrix.graph.row_map(row(i) + 1) - first(i));
+      });
+  Kokkos::fence();
+  HostRows picked;
+  const auto lengths = to_host(length);
+  for (LO i = 0; i < n; ++i) picked.begin.push_back(picked.begin.back() + lengths(i));
+  const auto begin = device_values(picked.begin, "rpc::solver::picked_begin");
+  const DeviceView<LO *> column("rpc::solver::picked_column", picked.begin.back());
+  const DeviceView<double *> value("rpc::solver::picked_value", picked.begin.back());
+  Kokkos::parallel_for(
+      "rpc::solver::pick_rows", device_range(n), KOKKOS_LAMBDA(const LO i) {
+        for (LO e = 0; e < length(i); ++e) {
+          column(begin(i) + e) = matrix.graph.entries(first(i) + e);
+          value(begin(i) + e) = matrix.values(first(i) + e);
+        }
+      });
+  Kokkos::fence();
+  picked.first = to_host(first);
+  picked.column = to_host(column);
+  picked.value = to_host(value);
+  return picked;
+}
+
+/// What a contact node adds to a block of a node's rows.
+struct Part {
+  std::size_t place; // of the block in the rows
+  int contact;
+  double coefficient;
+};
+
+/// Local nodes of some gids, -1 for those that a map of unknowns does not have.
+std::vector<LO> local_nodes(const Map &dofs, const int dim, const std::vector<GO> &gids)
+{
+  std::vector<LO> nodes;
+  for (const GO gid : gids) {
+    const LO at = dofs.getLocalElement(dof(dim, gid, 0));
+    nodes.push_back(at == invalid ? -1 : node_of(dim, at));
+  }
+  return nodes;
+}
+
+/// The entries of supports that lie at each of some nodes.
+/// @param nodes  ascending   @param node  (entries) of them, or -1
+Lists entries_at(const std::vector<LO> &nodes, const std::vector<LO> &node)
+{
+  std::vector<std::size_t> number; // of an entry's node
+  Lists lists;
+  lists.begin.assign(nodes.size() + 1, 0);
+  for (const LO n : node) {
+    number.push_back(static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), n) - nodes.begin()));
+    if (n >= 0) ++lists.begin[number.back() + 1];
+  }
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.value.resize(lists.begin.back());
+  std::vector<std::size_t> next(lists.begin.begin(), lists.begin.end() - 1);
+  for (std::size_t k = 0; k < node.size(); ++k)
+    if (node[k] >= 0) lists.value[next[number[k]]++] = static_cast<int>(k);
+  return lists;
+}
+
+/// Appends the blocks of a node's rows, by their columns, with their parts in the order of the contact nodes.
+/// @param first  the node's first row among `around`
+void add_blocks(const HostRows &around, const std::size_t first, const int dim, const std::vector<Part> &parts,
+                ContactBlocks &blocks)
+{
+  const LO node = blocks.nodes[first / dim];
+  const std::size_t start = around.begin[first], length = around.begin[first + 1] - start;
+  std::vector<std::size_t> begin(length / dim + 1);
+  for (const Part &part : parts) ++begin[part.place + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  const std::size_t so_far = blocks.contact.size();
+  for (std::size_t place = 0; place + 1 < begin.size(); ++place) {
+    if (begin[place] == begin[place + 1]) continue;
+    const LO column = node_of(dim, around.column(start + dim * place));
+    if (column == node) blocks.own.push_back(blocks.row.size());
+    blocks.row.push_back(node);
+    blocks.column.push_back(column);
+    blocks.begin.push_back(so_far + begin[place + 1]);
+    for (int i = 0; i < dim; ++i) {
+      blocks.entry.push_back(around.first(first + i) + dim * place);
+      for (int j = 0; j < dim; ++j) blocks.base.push_back(around.value(around.begin[first + i] + dim * place + j));
+    }
+  }
+  blocks.contact.resize(so_far + parts.size());
+  blocks.coefficient.resize(so_far + parts.size());
+  for (const Part &part : parts) {
+    const std::size_t to = so_far + begin[part.place]++;
+    blocks.contact[to] = part.contact;
+    blocks.coefficient[to] = part.coefficient;
+  }
+}
+
+} // namespace
+
+ContactBlocks contact_blocks(const NearSupports &supports, const int dim, const CrsMatrix &A)
+{
+  const Map &rows = *A.getRowMap(), &columns = *A.getColMap();
+  const std::vector<LO> row_node = local_nodes(rows, dim, supports.node);
+  const std::vector<LO> column_node = local_nodes(columns, dim, supports.node);
+  ContactBlocks blocks;
+  auto &nodes = blocks.nodes;
+  std::copy_if(row_node.begin(), row_node.end(), std::back_inserter(nodes), [](const LO node) { return node >= 0; });
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  if (nodes.empty()) return blocks;
+  std::vector<LO> their_rows;
+  for (const LO node : nodes)
+    for (int k = 0; k < dim; ++k) their_rows.push_back(dof(dim, node, k));
+  const HostRows around = on_host(A, their_rows);
+  std::vector<int> contact_of; // (supports' entries)
+  for (int c = 0; c < supports.size(); ++c) contact_of.resize(supports.begin[c + 1], c);
+  const Lists entries = entries_at(nodes, row_node);
+
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> place_of(num_local(columns) / dim, none); // of columns' nodes in the rows of a node
+  std::vector<Part> parts;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const std::size_t first = dim * n, start = around.begin[first], places = (around.begin[first + 1] - start) / dim;
+    const auto column_at = [&](const std::size_t place) { return node_of(dim, around.column(start + dim * place)); };
+    for (std::size_t place = 0; place < places; ++place) place_of[column_at(place)] = place;
+    parts.clear();
+    for (std::size_t e = entries.begin[n]; e < entries.begin[n + 1]; ++e) {
+      const int k = entries.value[e], c = contact_of[k];
+      for (std::size_t l = supports.begin[c]; l < supports.begin[c + 1]; ++l) {
+        const double both = supports.weight[k] * supports.weight[l];
+        const std::size_t place = column_node[l] < 0 ? none : place_of[column_node[l]];
+        if (place == none)
+          parts.push_back({place_of[nodes[n]], c, std::abs(both)});
+        else
+          parts.push_back({place, c, both});
+      }
+    }
+    add_blocks(around, first, dim, parts, blocks);
+    for (std::size_t place = 0; place < places; ++place) place_of[column_at(place)] = none;
+  }
+  return blocks;
+}
+
+} // namespace rpc::solver

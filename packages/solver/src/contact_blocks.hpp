@@ -1,0 +1,25 @@
+#pragma once
+
+#include "contact_supports.hpp"
+
+namespace rpc::solver
+{
+
+/// Where contact adds to a coarse mesh's matrix: its blocks, by rows, and what each contact node contributes to them. Of this rank, on
+/// the host.
+struct ContactBlocks {
+  std::vector<LO> nodes;             ///< owned ones around the contact nodes, ascending
+  std::vector<LO> row, column;       ///< (blocks) owned node; column's node
+  std::vector<std::size_t> entry;    ///< (blocks * dim) where the block begins in each of its rows
+  std::vector<double> base;          ///< (blocks * dim * dim) the matrix as it is
+  std::vector<std::size_t> own;      ///< (nodes) their blocks on the diagonal
+  std::vector<std::size_t> begin{0}; ///< (blocks + 1) where a block's parts begin
+  std::vector<int> contact;          ///< (parts) near contact node, ascending in each block
+  std::vector<double> coefficient;   ///< (parts) product of the weights at both nodes
+};
+
+/// Couplings of nodes that share no cell of the mesh become their bound on the diagonal, 2 a b <= a^2 + b^2.
+/// @param A  each node's unknowns are consecutive rows with equal columns
+ContactBlocks contact_blocks(const NearSupports &supports, int dim, const CrsMatrix &A);
+
+} // namespace rpc::solver
