@@ -1,4 +1,4 @@
-"""Meshes that adaptive runs ended with: the beam's, its transition from sticking to yielding, and the half cylinder's contact.
+"""Meshes that adaptive runs ended with: the beam's, its transition from closed to yielding, and the half cylinder's contact.
 
     python3 adapted_meshes.py adapted_meshes.png beam_adaptive.e beam_adaptive.contact.csv hertz_adaptive.e hertz_adaptive.contact.csv
 
@@ -49,7 +49,7 @@ def main(picture, beam, beam_contact, hertz, hertz_contact):
     draw(whole, beam_mesh, (-0.1, 5.1, -0.35, 1.05), beam_pressure, 0.3)
     whole.set_title(r"beam, $\xi$ = 16 Pa: %d P2 triangles; below, the contact pressure" % len(beam_mesh[2]))
     draw(transition, beam_mesh, (0.6, 1.0, -0.06, 0.16), beam_pressure, 0.05)
-    transition.set_title("where sticking ends and yielding begins")
+    transition.set_title("between closed and yielding nodes")
     draw(cylinder, hertz_mesh, (-1.05, 1.05, -0.35, 0.8), hertz_pressure, 0.3)
     cylinder.set_title(r"half cylinder, $\xi = \infty$: %d P2 triangles" % len(hertz_mesh[2]))
     figure.savefig(picture, dpi=160)

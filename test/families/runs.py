@@ -10,7 +10,7 @@ import tempfile
 import time
 
 import families
-from scenes import CERTIFICATES, TOLERANCE, contact_rows, launch, run, write
+from scenes import RESIDUALS, TOLERANCE, contact_rows, launch, run, write
 from suite.program import without_contact
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -90,7 +90,7 @@ def solve(options, folder, deck, *settings):
 
 
 def worst_residual(summary):
-    values = [summary.get(key) for key in CERTIFICATES]
+    values = [summary.get(key) for key in RESIDUALS]
     return max(math.inf if value is None or not math.isfinite(value) else value for value in values)
 
 

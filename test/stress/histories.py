@@ -5,7 +5,7 @@
 History K comes from the seed and K alone: a scene of scenes.py that Dirichlet conditions hold, any law of the foundation, and for each of
 its loads, prescribed displacements and obstacles a path in time: up and back, reversed, in random order, in large steps, with two
 sides in turn. It is run as it is, with steps of a quarter, and up to a step in between. All must exit 0 with all steps converged in one
-part, certificates below 1e-8, finite numbers, pressures in [0, xi + H w] and forces that balance. Dents and the dissipated energy never
+part, optimality residuals below 1e-8, finite numbers, pressures in [0, xi + H w] and forces that balance. Dents and the dissipated energy never
 fall, as sums, and at each node from the run that stopped to the whole one, whose steps are the same. Energies balance to the order of the step:
 the sum over the steps of what they miss falls. Without memory nothing is dissipated, and the last step is that of a run of that step alone.
 Histories whose steps rounding keeps from their tolerance, as scenes.py has it, are counted. The exit code is 1 if a history failed.
@@ -117,7 +117,7 @@ def floor(scene, summary, rows):
 
 def at_rounding(scene, summary, folder):
     bound = floor(scene, summary, scenes.contact_rows(folder))
-    return bound > scenes.TOLERANCE and all(summary[key] is not None and summary[key] <= bound for key in scenes.CERTIFICATES)
+    return bound > scenes.TOLERANCE and all(summary[key] is not None and summary[key] <= bound for key in scenes.RESIDUALS)
 
 
 def run(options, scene, folder, complain):
@@ -157,7 +157,7 @@ def soften(scene, summary):
 
 def check_run(scene, summary, rows, complain):
     """One run by itself."""
-    worst = {key: summary[key] for key in scenes.CERTIFICATES}
+    worst = {key: summary[key] for key in scenes.RESIDUALS}
     if any(value is None or not value <= scenes.TOLERANCE for value in worst.values()):
         complain(", ".join(f"{k} {v}" for k, v in worst.items()))
     steps = summary["steps"]

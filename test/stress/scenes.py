@@ -2,7 +2,7 @@
 
     python3 scenes.py --rpc=build/rpc [--seed=1] [--scenes=510] [--first=0] [--only=K] [--family=NAME] [--jobs=2] [--np=1] [--keep=DIR]
 
-Scene K comes from the seed and K alone. A scene that has a solution must exit 0, converged, with all certificates below 1e-8 and
+Scene K comes from the seed and K alone. A scene that has a solution must exit 0, converged, with all optimality residuals below 1e-8 and
 at most 40 Newton steps (60 in the families of test/families), and its files must hold finite numbers, pressures in [0, xi] and
 forces that balance. One without must exit 5 with one message that gives the reason. Which is which is known from the data (scene.py). Where |K||u|, rounded, is above
 1e-8 of the load, no program in double precision can tell, and residuals up to that rounding pass: the column `rounding` counts
@@ -35,8 +35,8 @@ import space  # noqa: E402
 from scene import REASONS, applied_resultant, deck, radial_size  # noqa: E402
 
 TIME_LIMIT = 120  # [s]
-TOLERANCE = 1e-8  # on each certificate
-CERTIFICATES = ["kkt_residual", "equilibrium_residual", "energy_balance", "duality_gap"]
+TOLERANCE = 1e-8  # on each optimality residual
+RESIDUALS = ["kkt_residual", "equilibrium_residual", "energy_balance", "duality_gap"]
 MOST_NEWTON, MOST_IN_FAMILIES = 40, 60
 EACH = 20  # scenes from one line of progress to the next
 LARGER = 0.2  # of the scenes of test/families: meshes of their size "middle"
@@ -150,7 +150,7 @@ def check_solution(scene, folder, outcome, code, stdout, stderr):
     outcome.newton, outcome.uzawa = sum(summary["newton_iterations"]), summary["uzawa_iterations"]
     outcome.cg = max(summary["linear_iterations"], default=0)
     floor = rounding(scene, summary, rows)
-    worst = {key: summary[key] for key in CERTIFICATES if key in summary}
+    worst = {key: summary[key] for key in RESIDUALS if key in summary}
     at_most = lambda bound: all(value is not None and value <= bound for value in worst.values())
     outcome.at_rounding = not at_most(TOLERANCE) and at_most(10 * floor)
     if outcome.at_rounding:

@@ -58,7 +58,7 @@ struct Beam {
   }
 };
 
-/// All nodes stick but those between two places, which open.
+/// All nodes close but those between two places, which open.
 inline void open_between(Beam &beam, const double from, const double to)
 {
   const auto coordinates = fem::node_coordinates(beam.d);

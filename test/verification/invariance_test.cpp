@@ -328,7 +328,7 @@ Outcome beam_outcome_in(const Frame &frame, const Law &law, const std::string &e
   return outcome_in(frame, beam_in(frame, law, element, solver), element);
 }
 
-/// Tight: the same way to the same solution. Usual: what a certificate of 1e-8 leaves open.
+/// Tight: the same way to the same solution. Usual: what optimality residuals of 1e-8 leave open.
 void expect_same(const Outcome &found, const Outcome &reference, const Assignments &solver)
 {
   EXPECT_TRUE(found.converged) << found.reason;

@@ -46,7 +46,7 @@ void expect_multipliers(const Scene &scene, const double first, const double oth
     EXPECT_NEAR(lambda(i), coords(node(i), 0) == 0 ? first : others, 1e-14) << coords(node(i), 0);
 }
 
-/// A scene whose nodes all stick, by a first choice without any penetration.
+/// A scene whose nodes are all closed, by a first choice without any penetration.
 std::unique_ptr<Scene> all_closed()
 {
   auto scene = std::make_unique<Scene>(std::vector{foundation()});
@@ -65,7 +65,7 @@ TEST(ChooseStates, TakesThePressuresOfThePieceForMultipliersUpToTheLimits)
   expect_multipliers(*scene, 2.5, yield);
 }
 
-TEST(ChooseStates, AnOpenNodeSticksBeforeItYieldsHoweverDeepItIs)
+TEST(ChooseStates, AnOpenNodeClosesBeforeItYieldsHoweverDeepItIs)
 {
   for (const double depth : {1e-9, 0.1, 1e3}) {
     const auto scene = all_closed();
@@ -77,7 +77,7 @@ TEST(ChooseStates, AnOpenNodeSticksBeforeItYieldsHoweverDeepItIs)
   }
 }
 
-TEST(ChooseStates, AYieldedNodeSticksBeforeItOpensHoweverFarItIs)
+TEST(ChooseStates, AYieldingNodeClosesBeforeItOpensHoweverFarItIs)
 {
   for (const double height : {1e-9, 0.1, 1e3}) {
     const auto scene = all_closed();
@@ -176,12 +176,12 @@ struct OnRollers : Scene {
   }
 };
 
-TEST(HoldByContact, KeepsTheHessianPositiveDefiniteWhereNoNodeSticks)
+TEST(HoldByContact, KeepsTheHessianPositiveDefiniteWhereNoNodeIsClosed)
 {
   const OnRollers loose, held;
   held.iterate->hold_by_contact();
   for (const OnRollers *scene : {&loose, &held}) {
-    scene->iterate->update_hessian(*scene->down(0.2)); // yield or stick
+    scene->iterate->update_hessian(*scene->down(0.2)); // yielding or closed
     scene->iterate->update_hessian(*scene->down(0));
     EXPECT_EQ(scene->iterate->count_states(*scene->down(0)).open, num_nodes);
   }

@@ -256,7 +256,7 @@ TEST(OptimalityResiduals, GrowsLinearlyWithADisturbanceOfTheContactNodes)
   EXPECT_NEAR(order.equilibrium_residual, 1, 0.01);
   EXPECT_NEAR(order.kkt_residual, 1, 0.01);
   EXPECT_NEAR(order.energy_balance, 1, 0.01);
-  EXPECT_NEAR(order.duality_gap, 1, 0.01); // (xi - lambda) v+ where a node sticks
+  EXPECT_NEAR(order.duality_gap, 1, 0.01); // (xi - lambda) v+ where a node is closed
 }
 
 TEST(OptimalityResiduals, GapGrowsQuadraticallyWhereOnlyEquilibriumIsDisturbed)

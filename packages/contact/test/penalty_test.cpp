@@ -119,13 +119,13 @@ double stiffness_of_middle(const Scene &scene)
   return e->dot(He);
 }
 
-TEST(Penalty, RaisedIsInTheHessianOfStuckNodesAtOnce)
+TEST(Penalty, RaisedIsInTheHessianOfClosedNodesAtOnce)
 {
   const Scene scene(std::vector{touching(40)});
   auto &iterate = *scene.iterate;
   const double elastic = stiffness_of_middle(scene);
   EXPECT_NEAR(elastic, own_stiffness() * h, 1e-13 * elastic);
-  iterate.update_hessian(*scene.vector(0, 0)); // all stick
+  iterate.update_hessian(*scene.vector(0, 0)); // all closed
   EXPECT_NEAR(stiffness_of_middle(scene), elastic + 40 * h, 1e-12 * elastic);
   const int before = iterate.hessian()->revision();
   ASSERT_TRUE(iterate.raise_penalty());
