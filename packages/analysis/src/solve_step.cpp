@@ -45,7 +45,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
     const Timed timer("solve", s.solve_seconds);
     UzawaResult &uzawa = s.uzawa;
     bool over = false;
-    while (!over) { // paper (16), (17), (20): the gradient method for the dual problem
+    while (!over) { // paper (16), paper (17): the gradient method for the dual problem
       if (uzawa.iterations > 0) iterate.move_origin(*u); // the correction is small against u (5.13)
       const Minimization found = // paper (10), (4.1): choose states (5.8) and solve (5.7), (5.9),
           minimize(iterate, u, state, options, uzawa.iterations + 1, progress); // then Newton (4.2)
@@ -53,7 +53,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
                                                            : iterate.update_multipliers(*u); // paper (11), (5.1)
       s.state = iterate.state(*u);
       const double previous = uzawa.residuals.worst();
-      uzawa.residuals = judge(problem, step, iterate, s.state, state); // paper (7) - (9); (5.2) - (5.5)
+      uzawa.residuals = judge(problem, step, iterate, s.state, state); // paper (8); (5.2) - (5.5)
       uzawa.newton_iterations.push_back(found.steps);
       s.line_search_steps += found.line_search_steps;
       ++uzawa.iterations;
@@ -163,7 +163,7 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepS
 void read_results(const Problem &problem, StepSolution &s)
 {
   s.contact = contact::contact_result(problem.discretization(), problem.contact_sides(), s.step.contact, s.state);
-  s.energy = contact::energy(*problem.stiffness(), s.step.elastic, s.step.contact, s.state); // paper (5), (6); (5.14)
+  s.energy = contact::energy(*problem.stiffness(), s.step.elastic, s.step.contact, s.state); // paper (6); (5.14)
   s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
   s.reactions = reactions(problem, s);
 }

@@ -57,6 +57,7 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   const Vector contact = multiplier_forces(points, state.multiplier, u.getMap());
   Vector external(*elastic.applied_load, Teuchos::Copy), residual(internal, Teuchos::Copy);
   external.update(-1., contact, 1.);
+  // paper (5), a(u, v) = b(v) - (lambda, v_nu) for a lambda in the subdifferential of j
   residual.update(-1., external, 1.);
   fem::clear_prescribed(dirichlet, residual);
 

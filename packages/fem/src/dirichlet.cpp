@@ -300,7 +300,7 @@ EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> 
   const auto nodes = nodes_beside_prescribed(d, dirichlet.fixed); // few: the others' entries need not be read
   const RowsOfNodes rows{nodes, nodes, K->getLocalMatrixDevice()};
   EliminatedStiffness eliminated{std::move(K), listed_couplings(rows, d.dim(), dirichlet.fixed)};
-  clear_couplings(rows, d.dim(), dirichlet.fixed);
+  clear_couplings(rows, d.dim(), dirichlet.fixed); // paper (2), (2.9)
   return eliminated;
 }
 

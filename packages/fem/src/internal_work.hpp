@@ -8,7 +8,7 @@ namespace rpc::fem
 {
 
 /// What a displacement does in one cell: f(ai) += int sigma(u) : grad(N_a e_i) to the cell's nodes, and sums over the cells
-/// that this rank owns.
+/// that this rank owns.                                                                              paper (1), (2.10)
 template <int Dim, int Nodes, bool Axisymmetric>
 struct InternalWorkOfCell {
   using Body = ElasticCells<Dim, Nodes, Axisymmetric>;

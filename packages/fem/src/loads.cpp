@@ -172,7 +172,7 @@ void add_body_force(const Discretization &d, const VectorField &force, const std
   const BasisTable &table = d.reference.cell_load;
   const auto points = quadrature_points(mesh.coords, mesh.cells, table.value);
   const auto f = evaluate_vector(force, points, parameter, mesh.comm());
-  add_load(mesh.cells, d.node_to_cells, table.value, cell_measure(d, table), f, load);
+  add_load(mesh.cells, d.node_to_cells, table.value, cell_measure(d, table), f, load); // paper (1), (2.5)
 }
 
 DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &side,
@@ -205,7 +205,7 @@ void add_traction(const Discretization &d, const mesh::Side &side, const VectorF
   const auto points = quadrature_points(mesh.coords, side.facets, table.value);
   const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
   const NodeToCells node_to_facets = around_nodes(side.facets, mesh.num_owned_nodes());
-  add_load(side.facets, node_to_facets, table.value, facet_measure(d, side), t, load);
+  add_load(side.facets, node_to_facets, table.value, facet_measure(d, side), t, load); // paper (3), (2.5)
 }
 
 } // namespace rpc::fem

@@ -26,7 +26,7 @@ constexpr const char *passed_to_nox[] = {"Line Search", "Direction", "Printing",
 // body takes 75 steps instead of 53; twenty add nothing.
 constexpr int most_earlier_directions = 9;
 
-/// The paper's stopping test, |full Newton step| / |u| < tolerance. The full step, not the one that the line search
+/// The stopping test of the paper's section 4, |full Newton step| / |u| < tolerance. The full step, not the one that the line search
 /// shortened: a short step is no sign of convergence.
 class StepTest : public NOX::StatusTest::Generic
 {

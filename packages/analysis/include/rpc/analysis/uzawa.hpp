@@ -13,7 +13,7 @@ namespace rpc::analysis
 /// What ends the Uzawa iteration.
 enum class UzawaTest {
   optimality,       ///< contact law and equilibrium hold: no solve is spent on confirming it
-  multiplier_change ///< the paper's: relative change of the multipliers
+  multiplier_change ///< that of the paper's section 4: relative change of the multipliers
 };
 
 struct UzawaOptions {

@@ -20,12 +20,12 @@ struct ContactEnergy {
 
 /// Energy of the problem, J(u) = Pi(u) + sum_i w_i psi_i(v_i) [J], computed as Pi(u) + sum_i w_i (lambda_i v_i -
 /// psi_i*(lambda_i)): the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a closed
-/// node.                                                                                  paper (5), (6); (1.4), (5.14)
+/// node.                                                                                  paper (6); (1.4), (5.14)
 /// @param K  the body's stiffness, prescribed unknowns eliminated
 double energy(const Operator &K, const fem::ElasticProblem &elastic, const ContactNodes &points,
               const ContactState &state);
 
-/// Largest violation of the contact law by (u, lambda), dimensionless.                            paper (7) - (9); (5.3)
+/// Largest violation of the contact law by (u, lambda), dimensionless: of w = 0 in paper (7).                       (5.3)
 double contact_law_residual(const ContactNodes &points, const ContactState &state);
 
 ContactEnergy contact_energy(const ContactNodes &points, const ContactState &state);

@@ -8,7 +8,7 @@
 namespace rpc::contact
 {
 
-/// How well (u, lambda) solves the discrete problem, how far it is from the saddle point of paper (7) - (9): four numbers without
+/// How well (u, lambda) solves the discrete problem, how far it is from the saddle point of paper (8): four numbers without
 /// dimension, 0 at the solution.                                                              doc/theory.md (5.2) to (5.5)
 struct OptimalityResiduals {
   double equilibrium_residual = 0; ///< forces out of balance, over the forces at work                        (5.2)

@@ -14,7 +14,7 @@
 namespace rpc::fem
 {
 
-/// Prescribed displacement on one side; an absent component is free.
+/// Prescribed displacement on one side, paper (2) with values other than 0 too; an absent component is free.
 struct DirichletCondition {
   std::string name; ///< of the entry in the deck, for messages
   std::string side;
@@ -60,7 +60,7 @@ struct EliminatedStiffness {
   PrescribedCouplings couplings;
 };
 
-/// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays.               doc/theory.md (2.9)
+/// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays.    paper (2), doc/theory.md (2.9)
 /// @param K  becomes the matrix; collective
 EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DirichletDofs &dirichlet);
 

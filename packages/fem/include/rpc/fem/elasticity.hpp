@@ -77,7 +77,7 @@ Teuchos::ParameterList valid_body_force_parameters();
 std::vector<TractionLoad> traction_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse);
 VectorField body_force_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse); ///< [N/m^3]
 
-/// The stiffness matrix, without boundary conditions.
+/// The stiffness matrix, without boundary conditions: a(., .) of paper (1) for the shape functions.
 ///
 ///     K(ai,bj) = sum over cells, int lambda dN_ai dN_bj + mu (dN_aj dN_bi + delta_ij dN_a . dN_b) doc/theory.md (2.4)
 ///
@@ -87,7 +87,7 @@ VectorField body_force_options(const Teuchos::ParameterList &list, int dim, cons
 /// @throws rpc::Error (bad_mesh) on every rank if a cell has a Jacobian <= 0 at a quadrature point, naming the first
 RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &materials);
 
-/// What a displacement does inside the body, from one pass over the cells.
+/// What a displacement does inside the body, from one pass over the cells: the left side of paper (1), cell by cell.
 struct InternalWork {
   RCP<const Vector>
       forces; ///< f(ai) = int sigma(u) : grad(N_a e_i), the forces that hold the body in the state u (owned
@@ -102,7 +102,8 @@ struct InternalWork {
 /// @param u  (owned dofs) [m], prescribed ones included; collective
 InternalWork internal_work(const Discretization &d, const Materials &materials, const Vector &u);
 
-/// load(ai) += int N_a f_i, over the body, for a force per volume f [N/m^3] (owned dofs, [N], in 2D per m). (2.5)
+/// load(ai) += int N_a f_i, over the body, for a force per volume f [N/m^3] (owned dofs, [N], in 2D per m).
+/// paper (1), (2.5)
 /// @param parameter  deck path for messages; collective
 void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load);
 
@@ -111,7 +112,7 @@ void add_body_force(const Discretization &d, const VectorField &force, const std
 DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &side,
                                     const std::vector<TractionLoad> &loads);
 
-/// load(ai) += int N_a t_i, over a side, for a traction t [Pa].                                                  (2.5)
+/// load(ai) += int N_a t_i, over a side, for a traction t [Pa].                                       paper (3), (2.5)
 /// @param parameter  deck path for messages; collective
 void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,
                   const std::string &parameter, Vector &load);

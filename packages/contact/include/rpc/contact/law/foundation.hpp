@@ -9,7 +9,7 @@
 ///
 ///     p = clamp(k (v - w), 0, xi + H w),    w > 0 only where p = xi + H w                                     (3.8)
 ///
-/// Three laws are members of this family: perfectly plastic, the paper's (1.1), with k = inf and H = 0; linear hardening with
+/// Three laws are members of this family: perfectly plastic, paper (4), (1.1), with k = inf and H = 0; linear hardening with
 /// H > 0; an elastic foundation with k < inf.
 ///
 /// The multiplier is kept as a pressure, lambda = l + xi/2 with l the paper's: that shift alone makes xi = inf a value like any
@@ -37,7 +37,7 @@ KOKKOS_INLINE_FUNCTION double clamp(const double x, const double low, const doub
   return x < low ? low : (x > high ? high : x);
 }
 
-/// p, or the nearest pressure that the law admits [Pa].
+/// p, or the nearest pressure that the law admits [Pa]. Perfectly plastic: 0 <= p <= xi.                        paper (4)
 KOKKOS_INLINE_FUNCTION double admissible(const double p, const Foundation &f)
 {
   return p < 0 ? 0 : (p > f.yield && f.hardening == 0 ? f.yield : p);
@@ -75,13 +75,14 @@ KOKKOS_INLINE_FUNCTION double branch_pressure(const State s, const double v, con
 }
 
 /// Psi'(v): the smoothed pressure, and after a solve the next multiplier. Perfectly plastic: clamp(lambda + r v, 0, xi).
-/// (3.1), (3.9)
+/// paper, the derivative of Xi after theorem 5, plus xi/2; (3.1), (3.9)
 KOKKOS_INLINE_FUNCTION double pressure(const double v, const double lambda, const double r, const Foundation &f)
 {
   return branch_pressure(state(v, lambda, r, f), v, lambda, r, f);
 }
 
-/// Psi(v) with Psi(0) = 0 for c = 0 [J/m^2]; of the paper's law its Xi(v) + xi v / 2 up to a constant.        (3.2), (3.3)
+/// Psi(v) with Psi(0) = 0 for c = 0 [J/m^2]; of the paper's law Xi(v) + xi v / 2 up to a constant.
+/// paper, Xi after theorem 5; (3.2), (3.3)
 KOKKOS_INLINE_FUNCTION double smoothed_energy(const double v, const double lambda, const double r, const Foundation &f)
 {
   const double z = lambda + r * v, softer = softening(r, f), xi = f.yield;
@@ -117,7 +118,7 @@ KOKKOS_INLINE_FUNCTION double elastic_limit(const Foundation &f)
 }
 
 /// psi(v): what pressing the point in by v takes [J/m^2]; 0, not NaN, for a rigid one that is not pressed. Perfectly plastic: xi v+.
-/// (1.3), (3.11)
+/// paper, j before (5); (1.3), (3.11)
 KOKKOS_INLINE_FUNCTION double foundation_energy(const double v, const Foundation &f)
 {
   if (!(v > 0)) return 0;
@@ -134,7 +135,7 @@ KOKKOS_INLINE_FUNCTION double conjugate_energy(const double p, const Foundation 
   return 0.5 * f.compliance * p * p + (beyond > 0 ? 0.5 * beyond * (beyond / f.hardening) : 0);
 }
 
-/// The pressure at a penetration v that is given; at a kink of a rigid foundation, v = 0, it is 0 [Pa].
+/// The pressure at a penetration v that is given; at a kink of a rigid foundation, v = 0, it is 0 [Pa].         paper (4)
 KOKKOS_INLINE_FUNCTION double pressure_at(const double v, const Foundation &f)
 {
   if (!(v > 0)) return 0;

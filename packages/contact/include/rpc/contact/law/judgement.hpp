@@ -7,7 +7,8 @@
 namespace rpc::contact
 {
 
-/// How far a pair (v, p) is from the law, p - Psi'(v) with p for the multiplier and rho for r [Pa]: 0 exactly where the law holds. (5.3)
+/// How far a pair (v, p) is from the law, p - Psi'(v) with p for the multiplier and rho for r [Pa]: 0 exactly where the law holds. It is
+/// -rho w, and w = 0 the constraint of paper (7).                                                                  (5.3)
 /// @param scaling  E / diameter [Pa/m]
 KOKKOS_INLINE_FUNCTION double law_residual(const double v, const double p, const double scaling, const Foundation &f)
 {
@@ -15,7 +16,8 @@ KOKKOS_INLINE_FUNCTION double law_residual(const double v, const double p, const
   return p - pressure(v, p, rho, f);
 }
 
-/// psi(v) + psi*(p) - p v >= 0, 0 exactly where the law holds [J/m^2].                                              (5.5)
+/// psi(v) + psi*(p) - p v >= 0, 0 exactly where the law holds [J/m^2]. Of the paper's law: what paper (9) has on Gamma_c for w = 0,
+/// (xi - p) v where v > 0 and -p v where v < 0.                                                                    (5.5)
 /// @param most  takes the place of a yield stress above it: one that is infinite would make an infinite gap of rounding [Pa]
 KOKKOS_INLINE_FUNCTION double duality_gap(const double v, const double p, const double most, Foundation f)
 {
