@@ -144,23 +144,48 @@ TEST(SmoothedFunctional, StatesCountThePointsOfBothSides)
   EXPECT_EQ(scene.iterate->points().num_fixed, 1);
 }
 
-TEST(SmoothedFunctional, AcrossKinksTheGradientIsContinuousAndDifferencesConvergeAtFirstOrder)
+TEST(SmoothedFunctional, AcrossAKinkTheGradientIsContinuousAndATaylorStepMissesAtFirstOrder)
 {
-  // v crosses the kink of one node within the difference: the error of a one-sided Taylor step is O(h), not O(h^2).
-  const Scene scene;
-  auto &iterate = *scene.iterate;
-  const auto u = scene.vector(0.05, 0.4), d = scene.vector(1, 2);
-  Vector F(u->getMap()), G(u->getMap());
-  iterate.gradient(*u, F);
-  double previous = 0;
-  for (const double h : {0.02, 0.01, 0.005}) {
-    iterate.gradient(*plus(*u, h, *d), G);
-    G.update(-1., F, 1.);
-    const double jump = G.norm2();
-    if (previous > 0) {
-      EXPECT_LT(jump, 0.7 * previous); // goes to 0 with h
+  // The node at (1, 0) is closed and has the multiplier 1, half its yield limit: it opens at v = -1/40 and yields at v = 1/40. It is
+  // short of that, and d leads it across; the other contact nodes stay where they are.
+  constexpr double penalty = 40, weight = 1. / 3, distance = 1e-9;
+  for (const double upwards : {1., -1.}) { // opens, yields
+    SCOPED_TRACE(upwards);
+    const Scene scene(penalty);
+    auto &iterate = *scene.iterate;
+    const auto at_node = [](const Point &x, const double value, const double elsewhere) {
+      return Point{0, std::abs(x[0] - 1) < 1e-12 && x[1] == 0 ? value : elsewhere, 0};
+    };
+    const auto u = scene.vector([&](const Point &x) {
+      return at_node(x, upwards * (1 / penalty - distance), 0.05 * std::sin(2.4 + 5 * x[0] + 3 * x[1]));
+    });
+    const auto d = scene.vector([&](const Point &x) { return at_node(x, upwards, 0); });
+    iterate.update_hessian(*u);
+    Vector F(u->getMap()), Hd(u->getMap());
+    iterate.gradient(*u, F);
+    iterate.hessian()->apply(*d, Hd);
+    const auto change = [&](const double h) {
+      Vector G(u->getMap());
+      iterate.gradient(*plus(*u, h, *d), G);
+      G.update(-1., F, 1.);
+      return G;
+    };
+    const auto missed = [&](const double h) { // F(u + h d) - F(u) - h H d
+      Vector G = change(h);
+      G.update(-h, Hd, 1.);
+      return G.norm2();
+    };
+    EXPECT_LT(change(2 * distance).norm2(), 2.1 * distance * Hd.norm2()); // no jump
+    const auto before = iterate.count_states(*u);
+    for (const double h : {0.02, 0.01, 0.005}) {
+      const auto after = iterate.count_states(*plus(*u, h, *d));
+      EXPECT_EQ(after.closed, before.closed - 1) << h;
+      EXPECT_EQ(after.open, before.open + (upwards > 0 ? 1 : 0)) << h;
+      EXPECT_EQ(after.yielding, before.yielding + (upwards > 0 ? 0 : 1)) << h;
+      EXPECT_NEAR(missed(h) / h, penalty * weight, 1e-6 * penalty * weight) << h;
+      EXPECT_LT(missed(-h) / h, 1e-10 * penalty * weight)
+          << h; // back into the piece: the functional is quadratic there
     }
-    previous = jump;
   }
 }
 
