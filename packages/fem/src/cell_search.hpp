@@ -48,7 +48,7 @@ struct Bins {
   Kokkos::Array<int, Dim> count{};
   FilledLists cells;
 
-  /// The bin of a coordinate in one direction, the last one for what lies beyond it.
+  /// The bin of a coordinate in one direction, the last one for coordinates beyond it.
   KOKKOS_INLINE_FUNCTION int along(const int d, const double x) const
   {
     return static_cast<int>(mesh::within(0, (x - lower[d]) / width[d], count[d] - 0.5));

@@ -41,7 +41,7 @@ struct Prescribed {
 
 /// Holds the nodes on the axis of an axisymmetric body, by no condition of the deck.                             (2.4a)
 /// @param rounding  of the conditions' values of x [m]
-/// @return what is wrong with a condition that moves them
+/// @return the message about a condition that moves them; none if there is no such condition
 std::optional<std::string> hold_axis(const Discretization &d, const std::vector<DirichletCondition> &conditions,
                                      const std::vector<double> &rounding,
                                      std::unordered_map<LO, Prescribed> &prescribed)

@@ -90,7 +90,7 @@ struct ElasticCells {
     return dN[a][i];
   }
 
-  /// u_ai less what the first node's translates. Gradients sum to 0 over the nodes; differences let a translation vanish to the
+  /// u_ai less the translation of the first node. Gradients sum to 0 over the nodes; differences let a translation vanish to the
   /// last digit.
   /// @param u  (overlap dofs) [m]
   template <class U>

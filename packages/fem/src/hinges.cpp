@@ -31,7 +31,7 @@ void subtract(std::vector<double> &a, const std::vector<double> &unit)
   for (std::size_t k = 0; k < a.size(); ++k) a[k] -= part * unit[k];
 }
 
-/// Orthonormal basis of what rows of size 1 span, the largest remainder first.
+/// Orthonormal basis of the span of rows of size 1, the largest remainder first.
 DenseRows basis_of(const DenseRows &rows, const double tolerance)
 {
   DenseRows rest = rows, units;
@@ -152,7 +152,7 @@ std::size_t num_free_as_one(const Assembly &assembly, const int dim)
   return num_rigid_modes(dim) - independent_rows(rows, rigid_tolerance).size();
 }
 
-/// The joint about which pieces turn most, for a basis of what stops them.
+/// The joint about which pieces turn most, for a basis of the rows that stop motions.
 const Assembly::Joint &loosest(const Assembly &assembly, const DenseRows &units, const int dim)
 {
   const std::size_t modes = num_rigid_modes(dim), size = modes * assembly.pieces.size();

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-/// Rows of an interpolation's matrix, wherever they come from; private to interpolation().
+/// Rows of an interpolation's matrix; private to interpolation().
 namespace rpc::fem
 {
 

@@ -154,7 +154,7 @@ struct Answers {
   std::vector<GO> node;          ///< (points, Nodes) gids of the cell's nodes
 };
 
-/// Asks ranks about points, and keeps what is better than what is known; collective.
+/// Asks ranks about points, and keeps an answer that is better than the known one; collective.
 /// @param points       (points, Dim) [m]
 /// @param bound        (points) places farther off do not count [m^2]
 /// @param asked_ranks  (point, visit) calls visit(rank) for those that are asked

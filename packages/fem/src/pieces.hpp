@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-/// Pieces of a body: what cells join over facets. Private to require_stiff_joints().
+/// Pieces of a body: sets of cells that are joined over facets. Private to require_stiff_joints().
 namespace rpc::fem
 {
 

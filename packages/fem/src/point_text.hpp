@@ -9,7 +9,7 @@
 namespace rpc::fem
 {
 
-/// "(1, 0.5)" for messages; what is rounding against `scale` is 0.
+/// "(1, 0.5)" for messages; numbers at the rounding of `scale` are 0.
 inline std::string point_text(const Point &x, const int dim, const double scale)
 {
   std::ostringstream text;

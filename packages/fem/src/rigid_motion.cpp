@@ -361,7 +361,7 @@ MotionInWords in_words(const RigidMotion &q, const Part &part, const int dim)
     words.where = "along " + point_text(scaled(1 / words.size, t), dim, 1);
     return words;
   }
-  // r = 0 at centre + omega x t / |omega|^2, in 3D up to what advances along the axis
+  // r = 0 at centre + omega x t / |omega|^2, in 3D up to the advance along the axis
   const Point offset = scaled(1 / (words.size * words.size), cross(omega, t));
   const Point at{part.centre[0] + offset[0], part.centre[1] + offset[1], part.centre[2] + offset[2]};
   const std::string place = point_text(at, dim, part.radius);

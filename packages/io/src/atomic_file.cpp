@@ -56,11 +56,11 @@ const char *kind_of(const mode_t mode)
                           : "of another kind";
 }
 
-/// Owns a file descriptor; close() reports what the destructor would swallow.
+/// Owns a file descriptor; close() reports errors, which the destructor would swallow.
 class Descriptor
 {
 public:
-  /// @param path  what the user knows the file by
+  /// @param path  the name that the user gave
   Descriptor(const std::string &file, const std::string &path, const int flags)
       : path_(path), fd_(::open(file.c_str(), flags | O_CLOEXEC, 0666))
   {

@@ -40,7 +40,7 @@ std::string number_of_all(const Comm &comm, const std::uint64_t mine)
   return text.str();
 }
 
-/// A number that stands for nodes, cells and sides, whatever the ranks; collective.
+/// A fingerprint of nodes, cells and sides, the same on any number of ranks; collective.
 std::string number_of(const mesh::Mesh &mesh)
 {
   const auto coords = to_host(mesh.coords);
@@ -66,7 +66,7 @@ std::string number_of(const mesh::Mesh &mesh)
   return number_of_all(mesh.comm(), sum);
 }
 
-/// A number that stands for all values of fields at the owned nodes, whatever the ranks; collective.
+/// A fingerprint of all values of fields at the owned nodes, the same on any number of ranks; collective.
 std::string number_of(const mesh::Mesh &mesh, const std::vector<NodalField> &fields)
 {
   std::uint64_t sum = 0;

@@ -170,7 +170,7 @@ private:
   int nodes_per_cell_ = 0;
 };
 
-/// Length of the names, 32 unless the mesh has longer ones: what readers expect.
+/// Length of the names, 32, which readers expect, unless the mesh has longer ones.
 std::size_t longest_name(const mesh::Mesh &mesh)
 {
   std::size_t longest = MAX_NAME_LENGTH;

@@ -9,7 +9,7 @@
 namespace rpc::mesh
 {
 
-/// Who holds what of a whole mesh.
+/// The rank of each node and each cell of a whole mesh.
 struct Division {
   std::vector<int> node_owner; // (nodes) rank
   std::vector<int> gid;        // (nodes)

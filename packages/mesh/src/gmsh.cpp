@@ -53,7 +53,7 @@ std::string read_text(const std::string &where, const std::string &path)
   return text;
 }
 
-/// gmsh 4.8 drops, without a word, what follows the first statement of a last line without a line break.
+/// Of a last line without a line break gmsh 4.8 silently reads the first statement only.
 void check_last_line(const std::string &where, const std::string &geo)
 {
   const std::size_t statement = geo.find(';', geo.find_last_of('\n') + 1);

@@ -6,8 +6,8 @@
 namespace rpc::mesh
 {
 
-/// The mesh in what gmsh gave, checked: blocks, sides and nodes as read_gmsh() promises.
-/// @param where      what messages begin with
+/// The mesh that gmsh made, checked: blocks, sides and nodes as read_gmsh() promises.
+/// @param where      beginning of messages
 /// @param any_nodes  whether nodes that no cell uses are no fault: a .geo has points that only serve to construct
 /// @throws rpc::Error (bad_mesh)
 MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, bool any_nodes);

@@ -172,7 +172,7 @@ int curve_that_asked_for_no_size(const std::set<int> &asked)
   return 0;
 }
 
-/// @return what the .geo does that leaves no room for a field; "" if nothing
+/// @return why the .geo leaves no room for a size field; "" if there is room
 std::string mesh_by_field(const GmshRequest &request)
 {
   set_field_options(request);
@@ -201,7 +201,7 @@ std::string mesh_by_field(const GmshRequest &request)
   return "";
 }
 
-/// Makes the mesh. @return what is absurd about its sizes; "" if nothing is
+/// Makes the mesh. @return why its cell sizes make no sense; "" if they do
 std::string make_mesh(const GmshRequest &request, const int dim)
 {
   constexpr double greatest_factor = 1e9, greatest_body = 1e50;
@@ -308,7 +308,7 @@ void load(const GmshRequest &request, GmshContents &contents)
 
 void start_gmsh()
 {
-  // A first mesh, which is thrown away, has the system load what meshing needs; each later process would do that anew.
+  // A first mesh, which is thrown away, loads the libraries that meshing needs, once for all later processes.
   gmsh::initialize(0, nullptr, false);
   gmsh::option::setNumber("General.Terminal", 0);
   GmshContents unused;

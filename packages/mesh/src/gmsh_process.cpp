@@ -27,7 +27,7 @@ namespace
 
 constexpr const char *remedy = "; install gmsh's library (on Debian libgmsh4.8), or rpc anew";
 
-/// Where the program may lie: in an install tree, wherever that was moved, or where it was built.
+/// Places of the program: an install tree, which may have been moved, and the build tree.
 std::string find_program()
 {
   namespace fs = std::filesystem;

@@ -18,7 +18,7 @@ namespace rpc::mesh
 namespace
 {
 
-/// Gives back what rpc and its MPI have open: an end of a pipe kept here would hide from others that rpc has ended.
+/// Closes the files and pipes of rpc and its MPI: an end of a pipe kept open here would hide from others that rpc has ended.
 void close_inherited()
 {
   namespace fs = std::filesystem;
@@ -30,7 +30,7 @@ void close_inherited()
     if (descriptor > STDERR_FILENO && descriptor != gmsh_socket) ::close(descriptor);
 }
 
-/// In a process of its own, which starts with gmsh as it was loaded and leaves no trace of what gmsh did.
+/// In a process of its own: it starts with a fresh gmsh, and its memory goes with it.
 [[noreturn]] void answer(const std::string &bytes, const pid_t parent)
 {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -78,7 +78,7 @@ void serve()
 } // namespace
 } // namespace rpc::mesh
 
-/// rpc_gmsh: meshes what rpc asks for through gmsh_socket, until rpc ends. A program of its own, because
+/// rpc_gmsh: makes the meshes that rpc asks for through gmsh_socket, until rpc ends. A program of its own, because
 /// gmsh can break down, leave by exit() in the middle of a file and change the process for good; and its libraries take
 /// long to load.
 int main()

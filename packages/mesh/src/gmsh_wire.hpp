@@ -8,7 +8,7 @@ namespace rpc::mesh
 {
 
 // What passes between two programs of one machine, over a socket that keeps messages apart (SOCK_SEQPACKET): pieces of
-// bytes, then an end with a number. A sender that dies leaves whole pieces, and somebody else may send the end for it.
+// bytes, then an end with a number. A sender that dies leaves whole pieces, and its parent may send the end for it.
 
 /// rpc_gmsh's end of the socket: a file descriptor that nothing else of gmsh reads or writes.
 constexpr int gmsh_socket = 3;
@@ -20,7 +20,7 @@ std::string packed(const GmshContents &contents);
 GmshRequest unpacked_request(const std::string &bytes);
 GmshContents unpacked_contents(const std::string &bytes);
 
-/// @return whether somebody is at the other side
+/// @return whether the other side is open
 bool send_bytes(int socket, const std::string &bytes);
 bool send_end(int socket, int number);
 

@@ -10,7 +10,7 @@
 namespace rpc::mesh
 {
 
-/// A mesh in the making, with what messages about it need.
+/// A mesh before it is checked, with the names that messages need.
 struct TaggedMesh {
   std::string where; ///< what messages begin with
   MeshData mesh;

@@ -9,7 +9,7 @@ namespace rpc::mesh
 ///
 /// gmsh itself is not asked: it crashes on damaged files, and of a 2.2 it takes all elements with one elementary number to
 /// be in all of their physical groups, though converters put 0 or 1 there throughout.
-/// @param where  what messages begin with
+/// @param where  beginning of messages
 /// @param text   of the file
 /// @throws rpc::Error (bad_mesh)
 GmshContents read_msh(const std::string &where, const std::string &text);

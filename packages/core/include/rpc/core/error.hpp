@@ -42,7 +42,7 @@ std::string one_line(const std::string &what);
 
 } // namespace rpc
 
-/// Always-on O(1) host check of what a user handed in: RPC_REQUIRE(x > 0, "\"Material->x\" must be > 0 [Pa], got " <<
+/// Always-on O(1) host check of a user's input: RPC_REQUIRE(x > 0, "\"Material->x\" must be > 0 [Pa], got " <<
 /// x).
 #define RPC_REQUIRE(condition, stream) RPC_REQUIRE_CODE(condition, ::rpc::ExitCode::bad_input, stream)
 

@@ -23,7 +23,7 @@ public:
   /// @return (received, width), of rank 0 first; collective
   std::vector<double> forward(const std::vector<double> &rows, int width) const;
   /// @param rows  (received, width)
-  /// @return (sent, width), row n that to row n of what was sent; collective
+  /// @return (sent, width), row n answers row n that was sent; collective
   std::vector<double> back(const std::vector<double> &rows, int width) const;
 
 private:

@@ -11,7 +11,7 @@ namespace rpc
 
 /// A scalar function of position and time that a user gave as a number or as an expression of x, y, z, t, seen at one time.
 ///
-/// A constant is known as such, so that nobody evaluates it at a million points.
+/// A constant is known as such: kernels need not evaluate it at every point.
 struct ScalarField {
   std::string text;                                ///< as the user wrote it, for messages
   double constant = 0;                             ///< the value where at() is empty

@@ -3,7 +3,7 @@
 #include <Teuchos_Comm.hpp>
 #include <string>
 
-/// Interrupts end a run at its next safe point, with what it has found so far.
+/// Interrupts end a run at its next safe point; results found so far are written.
 namespace rpc
 {
 
@@ -18,7 +18,7 @@ bool interrupted(const Teuchos::Comm<int> &comm);
 std::string interruption();
 
 /// @throws rpc::Error (not_converged) on every rank if any of them has been asked to stop; collective on comm
-/// @param state  what there is to show for it, for the message: "before ..., no results are written"
+/// @param state  how far the run is, for the message: "before ..., no results are written"
 void throw_if_interrupted(const Teuchos::Comm<int> &comm, const std::string &state);
 
 } // namespace rpc

@@ -7,7 +7,7 @@ namespace rpc
 {
 
 /// A message as a terminal should get it, in one line of at most 900 bytes. What it quotes of a user's files may be
-/// anything: control characters become "?", tabs blanks, and what is too much is cut out of the middle.
+/// anything: control characters become "?", tabs blanks, and a text that is too long loses its middle.
 std::string for_terminal(std::string message);
 
 /// Whether an exception says that memory ran out; Kokkos has a runtime_error of its own for it.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-/// Arrays over all ranks: sums, and what all ranks hold on one or on each of them. T is a number that Teuchos can send.
+/// Arrays over all ranks: sums, and gathers on rank 0 or on all ranks. T is a number that Teuchos can send.
 namespace rpc
 {
 

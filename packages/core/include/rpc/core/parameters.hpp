@@ -10,7 +10,7 @@
 /// Deck handling that every package shares: validation with helpful refusals, fields, documentation.
 ///
 /// Each package owns its XOptions, a valid_parameters() with defaults, units, ranges and docs, and an x_options(list)
-/// that reads a validated list; past that line nobody sees a ParameterList.
+/// that reads a validated list; beyond it no code reads a ParameterList.
 namespace rpc
 {
 
@@ -52,7 +52,7 @@ void assign(Teuchos::ParameterList &list, const Teuchos::ParameterList &valid, c
 /// @param candidates  names that are valid there
 Error unknown_parameter(const std::string &path, const std::string &name, const std::vector<std::string> &candidates);
 
-/// Refuses what a library would pass over without a word.
+/// Refuses parameters that a library would ignore silently.
 /// @param known  names that are valid in the list
 /// @throws rpc::Error on the first other name, as unknown_parameter() says it
 void require_known(const Teuchos::ParameterList &given, const std::vector<std::string> &known, const std::string &path);

@@ -7,7 +7,7 @@
 namespace rpc::fem
 {
 
-/// Shape functions of an element at the points of a quadrature rule on its reference cell: what kernels read.
+/// Shape functions of an element at the points of a quadrature rule on its reference cell, as tables for kernels.
 struct BasisTable {
   DeviceView<double **> value;     ///< (points, nodes)
   DeviceView<double ***> gradient; ///< (points, nodes, dim of the element) by reference coordinates

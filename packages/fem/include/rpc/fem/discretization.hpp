@@ -62,7 +62,7 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, Kinematics kin
 RCP<const CrsGraph> dof_graph(const Discretization &d);
 
 /// Values with those of the neighbours' nodes, (overlap dofs), from those of the owned ones; collective. The same vector where
-/// there are no neighbours: for reading while the one given lives and stays as it is.
+/// there are no neighbours: for reading, as long as the given vector exists and does not change.
 RCP<const Vector> on_overlap(const Discretization &d, const Vector &owned);
 RCP<const Vector> on_overlap(const Discretization &d, const Vector &&owned) = delete;
 
@@ -70,7 +70,7 @@ RCP<const Vector> on_overlap(const Discretization &d, const Vector &&owned) = de
 /// neighbours; collective.
 RCP<const MultiVector> nodes_on_overlap(const Discretization &d, const RCP<const MultiVector> &owned);
 
-/// Coordinates of the owned nodes, (owned nodes; dim) [m]: what multigrid partitions by.
+/// Coordinates of the owned nodes, (owned nodes; dim) [m]: multigrid partitions by them.
 RCP<MultiVector> node_coordinates(const Discretization &d);
 
 /// Rigid body modes about the centroid, (owned dofs; 3 in 2D, 6 in 3D): the near-null space of elasticity.

@@ -93,8 +93,8 @@ struct InternalWork {
       forces; ///< f(ai) = int sigma(u) : grad(N_a e_i), the forces that hold the body in the state u (owned
               ///< dofs, [N]); no row is eliminated.                                             (2.10)
   double force_norm =
-      0; ///< 2-norm over all forces between cells and their nodes, each cell's by itself [N]: what is at
-         ///< work inside the body, where `forces` are what is left at the nodes. (2.12)
+      0; ///< 2-norm over all forces between cells and their nodes, each cell's by itself [N]: the size of
+         ///< the forces inside the body, of which `forces` are the sums at nodes. (2.12)
   double energy_norm_squared =
       0; ///< a(u, u), twice the elastic energy [J], in 2D per m: rigid motion cancels cell by cell. (1.2)
 };

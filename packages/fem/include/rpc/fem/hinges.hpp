@@ -8,7 +8,7 @@ namespace rpc::fem
 /// Refuses a body whose pieces are joined in single points only (in space also along edges), as on a hinge, where prescribed
 /// displacements let them move against each other: the stiffness matrix is singular then, though the body is one part.
 ///
-/// A piece is what cells join over facets. Pieces move as rigid bodies that agree at the nodes which they share; the joints
+/// A piece is a set of cells that are joined over facets. Pieces move as rigid bodies that agree at the nodes which they share; the joints
 /// are stiff enough if prescribed displacements leave them no motions but those of the body as a whole. Whether contact
 /// alone would stop a joint is not looked into. Joints of an axisymmetric body are circles, and stiff.
 ///

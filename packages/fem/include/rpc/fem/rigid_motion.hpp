@@ -29,7 +29,7 @@ inline double dot(const RigidMotion &a, const RigidMotion &b)
   return sum;
 }
 
-/// out_k = f . r_k(x): what a force f at x does along each mode.                                doc/theory.md (9.1)
+/// out_k = f . r_k(x): the component of a force f at x along each mode.                                doc/theory.md (9.1)
 /// @param arm  (dim) (x - centre)/radius of the part
 /// @param out  (6)
 KOKKOS_INLINE_FUNCTION void along_modes(const int dim, const double *arm, const double *f, double *out)
@@ -41,7 +41,7 @@ KOKKOS_INLINE_FUNCTION void along_modes(const int dim, const double *arm, const 
   for (; mode < 6; ++mode) out[mode] = 0;
 }
 
-/// Rows that span all the others: what is left of each after the ones before it is above `tolerance`. At most 6.
+/// Rows that span all the others: the remainder of each, orthogonal to the ones before it, is above `tolerance`. At most 6.
 /// Picks the largest remainder first, as QR with pivoting does.
 std::vector<RigidMotion> independent_rows(const std::vector<RigidMotion> &rows, double tolerance);
 /// The same over the rows of all ranks, in several lists at once; the result is the same on all ranks. Collective.

@@ -15,7 +15,7 @@ DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &si
 /// How far the facets of a side reach, (facets) [m]: in the plane their lengths, in space the roots of their areas.
 DeviceView<double *> facet_size(const Discretization &d, const mesh::Side &side);
 
-/// Owned nodes of a side with what nodal quadrature needs: int f ds ~ sum_i weight_i f(x_i). doc/theory.md (2.7)
+/// Owned nodes of a side with the weights of nodal quadrature: int f ds ~ sum_i weight_i f(x_i). doc/theory.md (2.7)
 ///
 /// The vertices of quadratic triangles have weight 0, see mesh::nodal_rule(), and so have, with order 2, nodes on the axis of an
 /// axisymmetric body (2.7a); all other weights are positive.

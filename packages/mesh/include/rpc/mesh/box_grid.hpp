@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-/// The lattices of a box, their division among ranks and the numbers of its nodes: what any rank knows of all others' parts.
+/// The lattices of a box, their division among ranks and the numbers of its nodes: closed formulas, by which each rank knows the parts of all others.
 namespace rpc::mesh
 {
 

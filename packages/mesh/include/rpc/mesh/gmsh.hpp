@@ -26,7 +26,7 @@ struct GmshOptions {
 void start_gmsh_early();
 
 /// Dimension of the body: 3 if a .geo has volumes, or a .msh names physical ones, else 2. Makes no mesh. One rank only.
-/// @throws rpc::Error as read_gmsh() does, for what shows that early
+/// @throws rpc::Error as read_gmsh() does, for the errors that can be seen this early
 int gmsh_dimension(const GmshOptions &options);
 
 /// Reads a mesh of triangles, quadrilaterals, tetrahedra or hexahedra, of order 1 or 2 (full: 9 and 27 nodes), curved where the

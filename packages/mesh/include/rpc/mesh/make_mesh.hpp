@@ -34,7 +34,7 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, double factor);
 
 /// The options with which gmsh meshes the same body, with the same elements, sides and blocks, by cell sizes of a field: an
 /// edge is about as long as the field says there. A size factor is 1 then, and sizes that the options had are replaced.
-/// None for what gmsh cannot mesh anew: a .msh, a box in 3D. A .geo with volumes is told by make_mesh() only.
+/// None where gmsh cannot make another mesh: for a .msh, for a box in 3D. A .geo with volumes is told by make_mesh() only.
 /// @param sizes  read on rank 0 only, may be null on others
 std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes);
 

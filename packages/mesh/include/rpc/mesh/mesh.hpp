@@ -27,7 +27,7 @@ struct Side {
 /// A rank holds every cell that touches a node which it owns, so that it fills its own matrix rows without
 /// communication; the cells that it owns itself (each cell has one owner) come first. Overlap node lids run over the
 /// owned nodes first, so that an owned node has one lid in both maps. Node gids are consecutive on each rank; `node_id`
-/// and `cell_id` number the mesh independently of the number of ranks, 0-based, and are what output goes by.
+/// and `cell_id` number the mesh independently of the number of ranks, 0-based; output is ordered by them.
 struct Mesh {
   Element element;
   RCP<const Map> owned_nodes;   ///< one-to-one

@@ -104,7 +104,7 @@ struct ShapeFunctions {
     for (int d = 0; d < Dim; ++d) X[d] = simplex ? 1. / (Dim + 1) : 0;
   }
 
-  /// X becomes the point of the reference cell next to it; whatever X is, it is a point of the cell then.
+  /// X becomes the point of the reference cell next to it.
   KOKKOS_INLINE_FUNCTION void clamp(double (&X)[Dim]) const
   {
     for (int d = 0; d < Dim; ++d) X[d] = within(simplex ? 0 : -1, X[d], simplex ? X[d] : 1);
