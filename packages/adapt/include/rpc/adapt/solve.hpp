@@ -36,9 +36,9 @@ Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &li
 /// Whether all that was asked for came out.
 bool succeeded(const Solution &solution);
 
-/// Whether an estimate tells that the strain energy is rounding: nothing is strained.
+/// Whether the strain energy is at rounding level by an estimate, which is meaningless then.
 bool only_rounding(const Solution &solution);
-/// The estimated error in the energy norm over that of the solution, where there is an estimate; 0 if nothing is strained.
+/// The estimated error in the energy norm over that of the solution, where there is an estimate; 0 where only_rounding().
 double relative_estimate(const Solution &solution);
 /// What it really is, sqrt(2 |J_h - J| / a(u_h, u_h)), where the deck tells the exact J; else NaN.
 double exact_error(const Task &task, const Solution &solution);
