@@ -13,6 +13,7 @@ namespace
 using namespace rpc;
 using rpc::test::Beam;
 using rpc::test::below;
+using rpc::test::contact_law_residual;
 using rpc::test::minimize;
 
 constexpr double inf = std::numeric_limits<double>::infinity();

@@ -447,15 +447,18 @@ TEST(LinearSolver, SolvesByGmresWhereContactIsNotSymmetric)
   const Block block({2, 1}, {16, 9});
   const auto own = to_host(own_stiffness(block.H->base(), block.points)), weight = to_host(block.points.weight);
   const auto direction = to_host(block.points.direction);
-  const HostView<double ***> update("update", block.points.size(), 2, 2);
+  const DeviceView<double ***> update("update", block.points.size(), 2, 2);
+  const auto host_update = Kokkos::create_mirror_view(update);
   constexpr double stiffness = 1, friction = 0.3;
   for (LO i = 0; i < block.points.size(); ++i) {
     const double m[2] = {direction(i, 0), direction(i, 1)}, t[2] = {m[1], -m[0]};
     for (int k = 0; k < 2; ++k)
-      for (int l = 0; l < 2; ++l) update(i, k, l) = stiffness * own(i) * weight(i) * (m[k] + friction * t[k]) * m[l];
+      for (int l = 0; l < 2; ++l)
+        host_update(i, k, l) = stiffness * own(i) * weight(i) * (m[k] + friction * t[k]) * m[l];
   }
   EXPECT_TRUE(block.H->is_symmetric());
-  block.H->set(block.points, to_device(update));
+  Kokkos::deep_copy(update, host_update);
+  block.H->set(block.points, update);
   EXPECT_FALSE(block.H->is_symmetric());
   const Vector b = block.vector(14);
   const Vector expected = solved_densely(*block.H, b);

@@ -1,6 +1,6 @@
 #include "rpc/analysis/nested_mesh.hpp"
 
-#include "rpc/analysis/problem.hpp"
+#include "rpc/analysis/solver_state.hpp"
 #include "rpc/fem/interpolation.hpp"
 #include "rpc/mesh/box.hpp"
 

@@ -166,7 +166,8 @@ DeviceView<double ***> added_blocks(const SmoothedPoints &points, const DeviceVi
       "rpc::contact::added_blocks", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
         const ContactNodes &c = s.points;
         if (c.fixed(i)) return;
-        Response response = s.respond_on_branch(i, active(i), {0}); // blocks do not depend on the place within a branch
+        Response response =
+            s.respond_on_branch(i, active(i), Motion{0}); // blocks do not depend on the place within a branch
         if (active(i) != State::closed)
           add_stiffness(c.weight(i), spring * c.scaling(i), DirectionAt{c, i}, dim, response);
         for (int k = 0; k < dim; ++k)

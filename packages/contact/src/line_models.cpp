@@ -77,7 +77,8 @@ std::pair<double, double> sums_along(const SmoothedPoints &s, const DeviceView<d
       "rpc::contact::line_model", device_range(s.size()),
       KOKKOS_LAMBDA(const LO i, double &change, double &bend) {
         const ContactNodes &c = s.points;
-        const Response here = s.respond(i, {v(i)}), there = s.respond(i, {v(i) + t * along(c, moves, i, 0)});
+        const Response here = s.respond(i, Motion{v(i)}),
+                       there = s.respond(i, Motion{v(i) + t * along(c, moves, i, 0)});
         for (int k = 0; k < c.dim; ++k) {
           change += (there.force[k] - here.force[k]) * moves(i, k);
           bend += moves(i, k) * inner_product(c, there.block[k], moves, i, 0);
@@ -117,7 +118,7 @@ struct SubspaceSums {
     const LO n = static_cast<LO>(coefficient.extent(0));
     double moved = v(i);
     for (LO k = 0; k < n; ++k) moved += along(c, moves, i, k) * coefficient(k);
-    const Response here = points.respond(i, {v(i)}), there = points.respond(i, {moved});
+    const Response here = points.respond(i, Motion{v(i)}), there = points.respond(i, Motion{moved});
     double change[3];
     for (int j = 0; j < c.dim; ++j) change[j] = there.force[j] - here.force[j];
     for (LO k = 0; k < n; ++k) {

@@ -1,6 +1,7 @@
 #include "rpc/solver/newton.hpp"
 
 #include "beam.hpp"
+#include "rpc/contact/line_models.hpp"
 #include "rpc/solver/exact_line_search.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -15,42 +16,53 @@ namespace
 {
 
 using namespace rpc;
-using contact::ContactNodes;
-using contact::LineModel;
 using rpc::test::Beam;
 using rpc::test::below;
 using rpc::test::minimize;
 using rpc::test::open_between;
 
-/// A line model of given kinks, all on rank 0; the elastic part is slope(0) and curvature.
+/// A line model of given kinks, all on rank 0, at points with one unknown each; the elastic part is slope(0) and curvature.
 struct Line {
-  ContactNodes nodes;
-  DeviceView<double *> v, dv, lambda;
+  contact::SmoothedPoints points;
+  RCP<Vector> u, d;
 
   explicit Line(const int n, const unsigned seed)
   {
-    const int mine = Tpetra::getDefaultComm()->getRank() == 0 ? n : 0;
-    nodes.node = DeviceView<LO *>("node", mine);
+    const auto comm = Tpetra::getDefaultComm();
+    const int mine = comm->getRank() == 0 ? n : 0;
     const auto fill = [mine](const std::string &label, auto &&value) {
       HostView<double *> host(label, mine);
-      for (int i = 0; i < mine; ++i) host(i) = value();
+      for (int i = 0; i < mine; ++i) host(i) = value(i);
       return to_device(host);
     };
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1), sign(-1, 1);
-    nodes.weight = fill("weight", [&] { return 0.1 + unit(random); });
-    nodes.yield =
-        fill("yield", [&] { return unit(random) < 0.1 ? std::numeric_limits<double>::infinity() : 1 + unit(random); });
-    nodes.hardening = fill("hardening", [] { return 0.; });
-    nodes.compliance = fill("compliance", [] { return 0.; });
-    nodes.penalty = fill("penalty", [&] { return std::pow(10, 8 * unit(random)); }); // kinks at all scales
-    v = fill("v", [&] { return sign(random); });
-    dv = fill("dv", [&] { return sign(random); });
-    lambda = fill("lambda", [&] { return unit(random); });
+    contact::ContactNodes &nodes = points.points;
+    nodes.dim = 1;
+    HostView<LO *> node("node", mine);
+    for (int i = 0; i < mine; ++i) node(i) = i;
+    nodes.node = to_device(node);
+    nodes.direction = DeviceView<double **>("direction", mine, 1);
+    Kokkos::deep_copy(nodes.direction, 1.);
+    nodes.free_gap = DeviceView<double *>("free_gap", mine);
+    nodes.fixed = DeviceView<char *>("fixed", mine);
+    nodes.weight = fill("weight", [&](int) { return 0.1 + unit(random); });
+    nodes.law.yield = fill(
+        "yield", [&](int) { return unit(random) < 0.1 ? std::numeric_limits<double>::infinity() : 1 + unit(random); });
+    nodes.law.hardening = fill("hardening", [](int) { return 0.; });
+    nodes.law.compliance = fill("compliance", [](int) { return 0.; });
+    points.penalty = fill("penalty", [&](int) { return std::pow(10, 8 * unit(random)); }); // kinks at all scales
+    u = rcp(new Vector(rcp(new Map(n, mine, 0, comm))));
+    d = rcp(new Vector(u->getMap()));
+    for (Vector *const x : {u.get(), d.get()}) {
+      const auto to = x->getLocalViewHost(Tpetra::Access::OverwriteAll);
+      for (int i = 0; i < mine; ++i) to(i, 0) = sign(random);
+    }
+    points.multiplier.normal = fill("lambda", [&](int) { return unit(random); });
   }
-  LineModel model(const double slope, const double curvature) const
+  std::unique_ptr<LineFunction> model(const double slope, const double curvature) const
   {
-    return LineModel(Tpetra::getDefaultComm(), slope, curvature, nodes, v, dv, lambda);
+    return contact::line_model(Tpetra::getDefaultComm(), slope, curvature, points, *u, *d);
   }
 };
 
@@ -59,27 +71,27 @@ TEST(ExactStep, FindsTheRootOfTheSlopeWhateverTheKinks)
   for (unsigned seed = 0; seed < 200; ++seed) {
     const Line line(1 + seed % 60, seed);
     const auto model = line.model(-0.01 * (seed + 1), seed % 3 == 0 ? 1e-3 : 2);
-    const double t = solver::exact_step(model);
+    const double t = solver::exact_step(*model);
     ASSERT_GT(t, 0);
     const double eps = 1e-10 * t; // the slope changes sign at t
-    EXPECT_LE(model.at(t - eps).slope, 1e-12 * 0.01 * (seed + 1)) << seed;
-    EXPECT_GE(model.at(t + eps).slope, -1e-12 * 0.01 * (seed + 1)) << seed;
+    EXPECT_LE(model->at(t - eps).slope, 1e-12 * 0.01 * (seed + 1)) << seed;
+    EXPECT_GE(model->at(t + eps).slope, -1e-12 * 0.01 * (seed + 1)) << seed;
   }
 }
 
 TEST(ExactStep, IsOneForAQuadraticAndItsNewtonStep)
 {
   const Line line(0, 0);
-  EXPECT_NEAR(solver::exact_step(line.model(-3, 3)), 1, 1e-12);
-  EXPECT_NEAR(solver::exact_step(line.model(-3e-20, 3e-20)), 1, 1e-12);
-  EXPECT_NEAR(solver::exact_step(line.model(-1, 1e-6)), 1e6, 1e-6);
+  EXPECT_NEAR(solver::exact_step(*line.model(-3, 3)), 1, 1e-12);
+  EXPECT_NEAR(solver::exact_step(*line.model(-3e-20, 3e-20)), 1, 1e-12);
+  EXPECT_NEAR(solver::exact_step(*line.model(-1, 1e-6)), 1e6, 1e-6);
 }
 
 TEST(ExactStep, IsZeroWithoutDescent)
 {
   const Line line(3, 7);
-  EXPECT_EQ(solver::exact_step(line.model(1, 2)), 0);
-  EXPECT_EQ(solver::exact_step(line.model(std::nan(""), 2)), 0);
+  EXPECT_EQ(solver::exact_step(*line.model(1, 2)), 0);
+  EXPECT_EQ(solver::exact_step(*line.model(std::nan(""), 2)), 0);
 }
 
 TEST(Newton, FullStepsCycleWhereExactStepsConverge)

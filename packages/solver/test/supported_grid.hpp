@@ -32,15 +32,17 @@ struct SupportedGrid {
   /// force turns aside, and H is not symmetric.
   void hold(const GO from, const GO to, const double stiffness, const double rotation = 0) const
   {
-    const HostView<double ***> block("block", points.size(), 2, 2);
+    const DeviceView<double ***> block("block", points.size(), 2, 2);
+    const auto host_block = Kokkos::create_mirror_view(block);
     for (LO i = 0; i < points.size(); ++i) {
       const GO number = grid.map->getGlobalElement(2 * i) / 2;
       if (number < from || number >= to) continue;
-      for (int k = 0; k < 2; ++k) block(i, k, k) = stiffness;
-      block(i, 0, 1) = rotation * stiffness;
-      block(i, 1, 0) = -rotation * stiffness;
+      for (int k = 0; k < 2; ++k) host_block(i, k, k) = stiffness;
+      host_block(i, 0, 1) = rotation * stiffness;
+      host_block(i, 1, 0) = -rotation * stiffness;
     }
-    H->set(points, to_device(block));
+    Kokkos::deep_copy(block, host_block);
+    H->set(points, block);
   }
 
   /// The same grid again as its own coarser one, where it is factored: multigrid on it needs few iterations.

@@ -24,14 +24,14 @@ struct SmoothedPoints {
   /// The response of one point at a motion, for kernels.
   KOKKOS_INLINE_FUNCTION Response respond(const LO i, const Motion &at) const
   {
-    return contact::respond(at, {multiplier.normal(i)}, penalty(i), points.law(i), DirectionAt{points, i},
+    return contact::respond(at, Multiplier{multiplier.normal(i)}, penalty(i), points.law(i), DirectionAt{points, i},
                             points.weight(i), points.dim);
   }
   /// The same on the branch of a state.
   KOKKOS_INLINE_FUNCTION Response respond_on_branch(const LO i, const State s, const Motion &at) const
   {
-    return contact::respond_on_branch(s, at, {multiplier.normal(i)}, penalty(i), points.law(i), DirectionAt{points, i},
-                                      points.weight(i), points.dim);
+    return contact::respond_on_branch(s, at, Multiplier{multiplier.normal(i)}, penalty(i), points.law(i),
+                                      DirectionAt{points, i}, points.weight(i), points.dim);
   }
 };
 
@@ -39,7 +39,7 @@ struct SmoothedPoints {
 template <class X>
 KOKKOS_INLINE_FUNCTION Motion motion(const ContactNodes &c, const LO i, const X &x)
 {
-  return {penetration(c, i, x)};
+  return Motion{penetration(c, i, x)};
 }
 
 } // namespace rpc::contact

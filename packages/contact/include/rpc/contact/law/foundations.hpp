@@ -12,7 +12,10 @@ struct Foundations {
   DeviceView<double *> hardening;  ///< (points) H [Pa/m]
   DeviceView<double *> compliance; ///< (points) c = 1/k [m/Pa]
 
-  KOKKOS_INLINE_FUNCTION Foundation operator()(const LO i) const { return {yield(i), hardening(i), compliance(i)}; }
+  KOKKOS_INLINE_FUNCTION Foundation operator()(const LO i) const
+  {
+    return Foundation{yield(i), hardening(i), compliance(i)};
+  }
 };
 
 } // namespace rpc::contact

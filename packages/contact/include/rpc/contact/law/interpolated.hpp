@@ -22,13 +22,13 @@ KOKKOS_INLINE_FUNCTION void to_columns(const Foundation &f, const double most, c
 template <class Column>
 KOKKOS_INLINE_FUNCTION void to_columns_of_rigid(const double most, const Column &column)
 {
-  to_columns({most, 0, 0}, most, column);
+  to_columns(Foundation{most, 0, 0}, most, column);
 }
 
 /// The law that interpolated columns stand for; interpolants may fall below the values that they come from.
 KOKKOS_INLINE_FUNCTION Foundation from_columns(const double *const column)
 {
-  return {math::fmax(0., column[0]), math::fmax(0., column[1]), math::fmax(0., column[2])};
+  return Foundation{math::fmax(0., column[0]), math::fmax(0., column[1]), math::fmax(0., column[2])};
 }
 
 /// The pressure at which the foundation begins to give way, at the dents that are there already [Pa].
