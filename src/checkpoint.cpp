@@ -158,11 +158,14 @@ std::optional<analysis::HistoryState> Checkpoints::resume(const fem::Discretizat
     state.last.pressure = reader.columns(sides);
     state.last.dent = reader.columns(sides);
     state.last.gap = reader.columns(sides);
+    const bool tangential = text.contains("tangential"); // multipliers along the sides, where the law has them
+    if (tangential) state.last.tangential = reader.columns(sides * d.dim());
     if (text.contains("before")) {
       state.before.emplace();
       state.before->time = text.at("before");
       state.before->displacement = reader.components();
       state.before->pressure = reader.columns(sides);
+      if (tangential) state.before->tangential = reader.columns(sides * d.dim());
     }
     state.matrix_assemblies = text.at("assemblies");
     for (const json &record : text.at("records")) state.records.push_back(record_from(record, scope));
@@ -190,10 +193,16 @@ void Checkpoints::write(const analysis::HistoryState &state, const fem::Discreti
   add_columns(fields, "pressure_", *state.last.pressure);
   add_columns(fields, "dent_", *state.last.dent);
   add_columns(fields, "gap_", *state.last.gap);
+  const bool tangential = !state.last.tangential.is_null();
+  if (tangential) {
+    text["tangential"] = true;
+    add_columns(fields, "tangential_", *state.last.tangential);
+  }
   if (state.before) {
     text["before"] = state.before->time;
     add_components(fields, "before_displacement_", *state.before->displacement, d.dim());
     add_columns(fields, "before_pressure_", *state.before->pressure);
+    if (tangential) add_columns(fields, "before_tangential_", *state.before->tangential);
   }
   std::ostringstream name;
   name << stem_of(scene_) << std::setw(6) << std::setfill('0') << state.records.size() << ".e";

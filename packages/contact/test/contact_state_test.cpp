@@ -53,6 +53,40 @@ TEST(StartFrom, CarriesAffineDisplacementsAndMultipliersSideBySide)
   }
 }
 
+TEST(ContactState, CarriesTangentialMultipliersWhereThereAreSomeAndNoneElsewhere)
+{
+  const std::vector<contact::ContactOptions> foundations{below(40), beside(40)};
+  const Scene coarse(foundations), fine(foundations, held("top"), 3);
+  const auto along = [](const Point &x, const int k) { return k == 0 ? 1 + x[0] : 3 - 2 * x[1]; };
+  const auto vectors_on = [&](const Scene &scene) {
+    const auto &c = scene.iterate->points();
+    const auto node = to_host(c.node);
+    const auto coords = to_host(scene.d.mesh->coords);
+    const DeviceView<double **> vectors("vectors", c.size(), 2);
+    const auto host = Kokkos::create_mirror_view(vectors);
+    for (LO i = 0; i < c.size(); ++i)
+      for (int k = 0; k < 2; ++k) host(i, k) = along({coords(node(i), 0), coords(node(i), 1), 0}, k);
+    Kokkos::deep_copy(vectors, host);
+    return vectors;
+  };
+  const auto &points = coarse.iterate->points();
+  const auto to_fine = fem::interpolation(coarse.d, fine.d);
+  contact::ContactState state{coarse.vector(0, 0), DeviceView<double *>("pressure", points.size()), {}};
+  const auto without = contact::interpolated(*to_fine, points, state, fine.iterate->points(), fine.d.owned_dofs);
+  EXPECT_FALSE(without.multiplier.has_tangential());
+  state.multiplier.tangential = vectors_on(coarse);
+  const auto with = contact::interpolated(*to_fine, points, state, fine.iterate->points(), fine.d.owned_dofs);
+  const contact::Multipliers copy = with.multiplier.copy();
+  Kokkos::deep_copy(with.multiplier.tangential, 0.); // the copy has numbers of its own
+  const DeviceView<double **> expected = vectors_on(fine);
+  const auto found = Kokkos::create_mirror_view(copy.tangential), right = Kokkos::create_mirror_view(expected);
+  Kokkos::deep_copy(found, copy.tangential);
+  Kokkos::deep_copy(right, expected);
+  ASSERT_EQ(found.extent(0), right.extent(0));
+  for (std::size_t i = 0; i < found.extent(0); ++i)
+    for (int k = 0; k < 2; ++k) EXPECT_NEAR(found(i, k), right(i, k), 1e-13) << i;
+}
+
 TEST(StartFrom, LeavesPrescribedDisplacementsAndStaysWithinTheYieldLimit)
 {
   const std::vector<contact::ContactOptions> foundations{below(40)};

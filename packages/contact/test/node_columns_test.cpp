@@ -44,6 +44,35 @@ TEST(NodeColumns, HoldTheValuesOfEachSideAndZeroElsewhere)
   for (LO i = 0; i < c.size(); ++i) EXPECT_EQ(back(i), host(i));
 }
 
+TEST(NodeColumns, OfVectorsHoldTheirComponentsSideAfterSide)
+{
+  const Scene scene(std::vector{below(40), beside(25)});
+  const auto &c = scene.iterate->points();
+  const auto coords = to_host(scene.d.mesh->coords);
+  const auto node = to_host(c.node);
+  const DeviceView<double **> vectors("vectors", c.size(), 2);
+  const auto host = Kokkos::create_mirror_view(vectors);
+  for (int side = 0; side < 2; ++side)
+    for (LO i = c.first(side); i < c.first(side + 1); ++i)
+      for (int k = 0; k < 2; ++k) host(i, k) = value_at(coords(node(i), 0), coords(node(i), 1), side) + 1000 * k;
+  Kokkos::deep_copy(vectors, host);
+  const auto columns = contact::node_columns(c, vectors, scene.d.mesh->owned_nodes);
+  ASSERT_EQ(columns->getNumVectors(), 4u);
+  const auto found = columns->getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (LO n = 0; n < scene.d.mesh->num_owned_nodes(); ++n) {
+    const double x = coords(n, 0), y = coords(n, 1);
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_EQ(found(n, k), y == 0 ? value_at(x, y, 0) + 1000 * k : 0);
+      EXPECT_EQ(found(n, 2 + k), x == 2 ? value_at(x, y, 1) + 1000 * k : 0);
+    }
+  }
+  const DeviceView<double **> at = contact::vectors_at_points(c, *columns);
+  const auto back = Kokkos::create_mirror_view(at);
+  Kokkos::deep_copy(back, at);
+  for (LO i = 0; i < c.size(); ++i)
+    for (int k = 0; k < 2; ++k) EXPECT_EQ(back(i, k), host(i, k));
+}
+
 TEST(NodeColumns, AreNoneWithoutSides)
 {
   const Scene scene(std::vector<contact::ContactOptions>{});
