@@ -16,7 +16,7 @@ using namespace rpc;
 constexpr double moved = 0.7;
 
 /// What contact nodes meet by where they are in the mesh, or stand along the foundation, on all ranks.
-std::map<double, double> dents_met(const Solution &s, const bool as_they_stand = false)
+std::map<double, double> dents_met(const analysis::Solution &s, const bool as_they_stand = false)
 {
   const contact::ContactNodes &points = s.step.contact;
   const auto node = to_host(points.node);
@@ -52,12 +52,12 @@ double reach(const std::map<double, double> &dents)
 }
 
 /// Solutions by their times.
-std::map<double, Solution> track(const std::vector<std::string> &assignments = {})
+std::map<double, analysis::Solution> track(const std::vector<std::string> &assignments = {})
 {
-  std::map<double, Solution> steps;
+  std::map<double, analysis::Solution> steps;
   std::ostream nowhere(nullptr);
   const auto scene = read_scene(std::string(RPC_TEST_DECKS) + "/../../../input/track.xml", assignments);
-  solve(scene, Tpetra::getDefaultComm(), nowhere, {}, [&](const Scene &, Solution &s) {
+  solve(scene, Tpetra::getDefaultComm(), nowhere, {}, [&](const Scene &, const analysis::Solution &s) {
     EXPECT_TRUE(s.uzawa.converged) << s.time << ": " << s.uzawa.reason;
     steps[s.time] = s;
   });
