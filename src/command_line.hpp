@@ -23,7 +23,7 @@ struct CommandLine {
 /// Both start with the program's name.
 struct Arguments {
   std::vector<char *> kokkos, own;
-  bool kokkos_help = false; ///< Kokkos has been asked to list its options, and nothing more is to be done
+  bool kokkos_help = false; ///< Kokkos lists its options, and the run ends
 };
 Arguments split_arguments(int argc, char *argv[]);
 

@@ -39,7 +39,7 @@ void keep_freed_memory()
 #endif
 }
 
-/// One process without mpirun talks to nobody: Open MPI need not start a daemon for it and look for network cards, which
+/// One process without mpirun has no partners: Open MPI need not start a daemon for it and look for network cards, which
 /// takes it 0.35 s; nor make a folder, which processes without a daemon would share and remove under each other. The user's
 /// own settings win; other MPIs know nothing of these.
 void start_mpi_alone()

@@ -13,7 +13,7 @@ namespace rpc
 /// @param cycle  from 1
 std::string cycle_name(const Scene &scene, int cycle);
 
-/// Where the results of a scene go; empty what is not asked for.
+/// Paths of the results; empty for files that are not asked for.
 struct ResultPaths {
   std::string exodus, csv, json, history;
 

@@ -10,15 +10,15 @@ namespace rpc::adapt
 namespace
 {
 
-// A new mesh is to come that much below the target: what is predicted is met to some ten percent.
+// A new mesh is planned for so much less than the target: predictions are right to some ten per cent.
 constexpr double aim = 0.95;
 // The estimate falls by no more from one mesh to the next: a coarse mesh knows little of where a fine one is to be fine.
 constexpr double greatest_reduction = 4;
-// Near the target, what came out above what was planned is allowed for in the next plan, up to a factor, and cells hardly
-// grow, lest the next mesh loses what this one has.
+// Near the target the next plan makes up for the excess of the last estimate over its plan, up to a factor. Cells hardly
+// grow there, so that no accuracy is lost.
 constexpr double near = 2, greatest_correction = 3, growth_near = 1.25, growth = 2.5;
-// A mesh has no more than so many times the cells that the order of the elements asks for: where a coarse one is to be
-// refined in many more, it has not seen what it estimates.
+// A mesh has no more than so many times the cells that the order of the elements asks for: where a coarse mesh asks for
+// many more, its estimate is not reliable.
 constexpr double greatest_excess = 1.5;
 // Meshes are planned that much smaller than allowed: gmsh makes more cells or fewer than it is asked for.
 constexpr double share_of_max_dofs = 0.75;

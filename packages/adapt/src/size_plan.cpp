@@ -154,8 +154,8 @@ double error_scale(const EstimatedMesh &mesh, const Geometry &geometry, const in
   return geometry.area[cell] * std::pow(geometry.length[cell], 2 * mesh.order);
 }
 
-/// @param negligible  a squared error of the whole mesh: what the same |u| everywhere would add up to it counts for no
-///                    singularity. Estimates of cells that hardly strain are rounding, and differ between ranks.
+/// @param negligible  a squared error of the whole mesh. Errors of cells that would add up to less, if they were the same
+///                    everywhere, tell no exponent: they are rounding, and differ between ranks.
 std::vector<double> local_exponents(const EstimatedMesh &mesh, const Geometry &geometry, const double negligible)
 {
   double scale = 0;
@@ -340,7 +340,7 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
     const double least = mesh.num_cells() / std::pow(request.max_growth, 2) * 1.0001;
     if (plan.cells <= request.max_cells || predict(mesh, at_singularity, level, request.max_growth).cells <= least)
       return plan;
-    level *= 1.5; // what grading adds was left out so far
+    level *= 1.5; // grading adds cells, which the prediction leaves out
   }
 }
 

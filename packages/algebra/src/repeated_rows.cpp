@@ -111,7 +111,7 @@ struct Stencil {
   LO size;
 };
 
-/// The rows of `Count` nodes of one kind that follow each other: they share what is read of the kind, and each has a sum for each
+/// The rows of `Count` nodes of one kind that follow each other: they share the loads of the kind's blocks, and each has a sum for each
 /// column of a block, so that no addition waits for another one.
 template <int Count>
 __attribute__((always_inline)) inline void multiply_some_3d(const Stencil &stencil, const double *const x,
@@ -201,7 +201,7 @@ __attribute__((target_clones("arch=x86-64-v3", "default"))) void multiply_run_3d
   for (; done < count; ++done, x += 3, y += 3) multiply_some_3d<1>(stencil, x, y);
 }
 
-/// Rows as they lie in the matrix: those of a node follow each other and have the same columns, so that one of them tells all.
+/// Rows as they lie in the matrix: those of a node follow each other and have the same columns, read from the first row.
 struct NodeRows {
   const LocalMatrix::row_map_type::non_const_value_type *begin; // (rows + 1)
   const LO *column;                                             // (entries)

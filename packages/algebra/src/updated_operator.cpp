@@ -12,7 +12,7 @@ namespace rpc
 namespace
 {
 
-// Of a block's largest entry: what the factors of a w m m^T leave of symmetry.
+// Asymmetry by rounding of a w m m^T, over the block's largest entry.
 constexpr double rounding_of_symmetry = 1e-14;
 
 /// The place of a node in an ascending list, or -1.

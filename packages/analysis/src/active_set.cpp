@@ -53,7 +53,7 @@ bool ActiveSetStage::resume(const NewtonGroup &from)
 ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
 {
   choice_ = iterate_.choose_active_set(u, negligible * pressure_tolerance_); // (5.8)
-  // Nothing touches, as far as is known: one solve, for CG in one go keeps the energy balance to rounding.
+  // The active set does not change at first: one accurate solve, which keeps the energy balance to rounding.
   if (choice_->changes == 0 && steps_ == 0) rough_ = false;
   if (choice_->confirmed) {
     const bool solved_well = norm_ <= target_;
@@ -68,7 +68,7 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
   } else if (!seen_.insert(choice_->fingerprint).second || ++changes_ > most_changes_) {
     return Verdict::over; // in circles, or too slow
   } else if (steps_ == 1) {
-    rough_ = true; // it touches after all
+    rough_ = true; // the active set changes after all
   }
   return Verdict::go_on;
 }

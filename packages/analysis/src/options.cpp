@@ -103,7 +103,7 @@ StepsOptions steps_options(const Teuchos::ParameterList &list)
 ActiveSetTolerances active_set_tolerances(const StepOptions &options)
 {
   ActiveSetTolerances tolerances;
-  // Newton's default is near what rounding leaves; who asks for more gets it.
+  // Newton's default is near the rounding; smaller tolerances of a deck are taken as they are.
   const double given = options.newton.residual_tolerance;
   tolerances.residual =
       given < solver::NewtonOptions().residual_tolerance ? given : std::max(given, tolerances.residual);

@@ -105,7 +105,7 @@ std::vector<LevelWork> work_of(const StepSolution &s, const double start)
 
 } // namespace
 
-/// The first step: one minimization there is enough, whatever becomes of it.                                    (5.11)
+/// The first step: one minimization there is enough, converged or not.                                    (5.11)
 Prediction Predictor::from_rest(const Problem &fine, const Step &step)
 {
   const double start = Teuchos::Time::wallTime();

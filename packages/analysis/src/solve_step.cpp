@@ -1,5 +1,5 @@
-/// The algorithm: solve_step() is the loop, with the number of each line's equation beside it, in the paper or in doc/theory.md; what it
-/// calls stands below.
+/// The algorithm: solve_step() is the loop, with the number of each line's equation beside it, in the paper or in doc/theory.md; the
+/// functions that it calls follow.
 #include "rpc/analysis/solve_step.hpp"
 
 #include "rpc/analysis/active_set.hpp"

@@ -148,7 +148,7 @@ Energies energies_after(const Problem &problem, const double t, const StepSoluti
   energies.strain = 0.5 * s.energy_norm_squared;
   energies.foundation = s.contact.total.foundation_energy;
   const auto &sides = problem.model().contact;
-  for (std::size_t k = 0; k < sides.size(); ++k) // what denting takes comes back where dents do not stay
+  for (std::size_t k = 0; k < sides.size(); ++k) // where dents do not stay, their energy is given back
     (sides[k].remembers ? energies.dissipated : energies.foundation) += s.contact.sides[k].dissipated;
   Vector mean(force, Teuchos::Copy), moved(*s.u, Teuchos::Copy);
   mean.scale(0.5);

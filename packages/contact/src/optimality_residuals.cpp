@@ -27,7 +27,7 @@ double work(const fem::DirichletDofs &dirichlet, const bool prescribed, const Ve
   return sum_all(*u.getMap()->getComm(), sum);
 }
 
-/// 0 over 0 is 0: nothing happens, and nothing is wrong.
+/// part/whole, 0 where both are 0.
 double ratio(const double part, const double whole)
 {
   return part == 0 ? 0 : part / whole;

@@ -19,7 +19,7 @@ class BandCholesky
 {
 public:
   /// @param size       of the matrix
-  /// @param most_work  refuses what takes more than so many multiplications: size x (width of the band)^2
+  /// @param most_work  multiplications that the factor may take: size x (width of the band)^2
   /// @return nothing where it would take more, or the matrix is not positive definite
   static std::optional<BandCholesky> factor(int size, const SymmetricEntries &entries, double most_work);
 

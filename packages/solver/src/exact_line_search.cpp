@@ -93,7 +93,7 @@ double exact_step(const LineFunction &line)
 
 std::vector<double> least_within(const SubspaceFunction &function, std::vector<double> a)
 {
-  constexpr int most_steps = 50; // what is left then the next step takes
+  constexpr int most_steps = 50; // the rest is left to the next step
   double first = 0;
   for (int step = 0; step < most_steps; ++step) {
     const auto value = function.at(a);

@@ -117,7 +117,7 @@ Krylov::Krylov(const LinearSolverOptions &options, const RCP<const Operator> &H)
 
 Krylov::~Krylov() = default;
 
-/// From what the preconditioner solves for exactly, else from 0.
+/// From the preconditioner's start, else from 0.
 KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Preconditioner &B, const Vector &b,
                              Vector &x, const double tolerance)
 {
@@ -153,8 +153,8 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
   return result;
 }
 
-// CG breaks down, too, where rounding is all that it has left to work on: of a small remainder on the patch, where its
-// preconditioner expects zeros. What is left then is solved for once more, from the residual as it is.          (4.9a)
+// CG breaks down, too, where the residual is at rounding level: of a small remainder on the patch, where its
+// preconditioner expects zeros. Then CG starts once more, from the residual as it is.                           (4.9a)
 KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, const Vector &b, Vector &x,
                            const double tolerance)
 {

@@ -29,7 +29,7 @@ public:
   Krylov(const LinearSolverOptions &options, const RCP<const Operator> &H);
   ~Krylov();
 
-  /// x <- approximately H^-1 b, from what the preconditioner solves for exactly, else 0. Where rounding ends the iteration with a good x,
+  /// x <- approximately H^-1 b, from the preconditioner's start, else from 0. Where rounding ends the iteration with a good x,
   /// it goes on from the residual, (4.9a). A breakdown is a result, with x as far as it came.
   /// @param B  prepared for H   @param b  not 0   @param tolerance  |r| / |b|
   /// @throws Interrupted on all ranks

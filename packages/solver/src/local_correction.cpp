@@ -23,7 +23,7 @@ constexpr int layers_2d = 2, layers_3d = 0;
 // takes.
 constexpr double work_per_row = 3e3;
 
-/// Nodes where two updates differ, and by what. Of this rank.
+/// Nodes where two updates differ, and the differences. Of this rank.
 struct Changes {
   DeviceView<LO *> node;        // (n) owned nodes, ascending
   DeviceView<double ***> block; // (n, dim, dim)

@@ -199,7 +199,7 @@ std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, const doub
   return solver->factor(most_work) ? std::move(solver) : nullptr;
 }
 
-/// A mesh with what leads from it to the next coarser one.
+/// A mesh, its smoother and its transfer to the next coarser one.
 struct MeshMultigrid::Level {
   RCP<const Operator> A;
   std::unique_ptr<NodeSmoother> smoother;

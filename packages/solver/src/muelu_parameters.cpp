@@ -47,8 +47,8 @@ ParameterList unread(ParameterList list)
   return list;
 }
 
-/// Names that MueLu and the smoother read, as far as they can be told: Relaxation declares its parameters, the others ask for
-/// what they know and set what is missing.
+/// Names that MueLu and the smoother read, as far as they are known: Relaxation declares its parameters, the others ask for
+/// their parameters and set those that are missing.
 std::vector<std::string> names_read(Smoother &smoother, const ParameterList &given)
 {
   std::vector<std::string> names = {"smoother: use blockcrsmatrix storage", "chebyshev: use rowsumabs diagonal scaling",
@@ -99,7 +99,7 @@ void check_smoother(const std::string &type, const ParameterList &given, const s
   }
 }
 
-/// The list of a coarse solver that is none of Ifpack2's, of which MueLu passes over all that it does not know.
+/// The list of a coarse solver that is none of Ifpack2's, of which MueLu ignores unknown names.
 void check_direct(const ParameterList &given, const std::string &path)
 {
   const MueLu::Amesos2Smoother<double, LO, GO, Node> direct("", {});

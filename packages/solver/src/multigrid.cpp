@@ -20,7 +20,7 @@ namespace
 
 using Translation = Teuchos::Array<LO>;
 
-/// Nodes of unknowns, as MueLu wants them told.
+/// Nodes of unknowns in MueLu's format.
 struct Nodes {
   RCP<const XpetraMap> map;
   RCP<Translation> of_unknown; // local node of a local unknown

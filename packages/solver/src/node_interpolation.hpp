@@ -24,7 +24,7 @@ private:
   int dim_;
   DeviceView<char *> prescribed_;
   RCP<const Map> to_;
-  RCP<const Import> importer_; // null: the columns are what a rank owns
+  RCP<const Import> importer_; // null: the columns are the owned nodes
   RCP<Vector> columns_;
 };
 

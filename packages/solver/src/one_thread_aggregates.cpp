@@ -57,7 +57,7 @@ public:
   }
 
 private:
-  /// Nodes whose rows have nothing beside the diagonal: no aggregate takes them.
+  /// Nodes without couplings: they belong to no aggregate.
   static Teuchos::ArrayRCP<const bool> prescribed_nodes(const XpetraMatrix &A, const LO size)
   {
     const auto rows = to_host(muelu::DeviceUtilities::DetectDirichletRows(A));

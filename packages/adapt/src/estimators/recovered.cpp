@@ -88,7 +88,7 @@ struct ContactTerms {
     return contact::from_columns(column);
   }
 
-  /// The state of the contact law at the nodes of a facet, or mixed: then what lies between them is not told.
+  /// The state of the contact law at the nodes of a facet, or mixed: then the state between the nodes is not known.
   enum class FacetState { open = 1, closed = 2, yielding = 4, mixed };
   KOKKOS_FUNCTION FacetState state_of(const LO f) const
   {
@@ -120,7 +120,7 @@ struct ContactTerms {
     return a == 2 ? middle : (at_end > 0 ? at_end : 0);
   }
 
-  /// Fields at a point of a facet, and what the recovered stress leaves for the foundation to bear there.
+  /// Fields at a point of a facet, and the pressure of the recovered stress there.
   struct Point {
     double at[normal + 3] = {}, rest[3] = {}, recovered = 0; // recovered: pressure
   };
@@ -172,7 +172,7 @@ struct ContactTerms {
   }
 };
 
-/// Adds what its facets have to each cell, which may have several: one after the other, for an order of the sums.
+/// Adds the parts of facets to their cells, in ascending order: a cell may have several facets, and sums have one order.
 void add_to_cells(const mesh::Side &side, const DeviceView<double *> &of_facet, const DeviceView<double *> &squared)
 {
   const auto cell = side.cell;

@@ -18,8 +18,8 @@ struct Cycle {
   double energy = 0;                 ///< J [J], in 2D per m
   contact::ContactSums contact;      ///< of all sides
   double pressure_change = 0;        ///< of the contact pressure since the mesh before, over its norm, both in L2
-  double recovered_pressure = 0;     ///< what that of the recovered stress differs by, over its norm, both in L2
-  double recovered_max_pressure = 0; ///< the same of the largest pressures [Pa]
+  double recovered_pressure = 0;     ///< |contact pressure - that of the recovered stress| / |contact pressure|, in L2
+  double recovered_max_pressure = 0; ///< largest difference of the two where the pressure is near its maximum [Pa]
   PressurePeak peak;
   double contact_ends = 0; ///< of facets that are partly open, half of them [m]
   int newton_iterations = 0;
@@ -67,7 +67,7 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles);
 /// What became of "Adapt".
 struct Adaptation {
   bool reached = false;      ///< the target
-  std::string reason;        ///< why not, or why the target counts as reached where nothing is strained; else empty
+  std::string reason;        ///< why not, or why the first mesh is the answer: energy at rounding level; else empty
   std::vector<Cycle> cycles; ///< from the first mesh
   ObservedErrors errors;     ///< of the one whose results these are
 };

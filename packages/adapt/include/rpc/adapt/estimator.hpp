@@ -54,7 +54,7 @@ struct EstimateInput {
   std::vector<const mesh::Side *> sides;       ///< the contact sides, in the order of the contact nodes
   const std::vector<fem::TractionLoad> &loads; ///< of the scene; those on contact sides count
   const contact::ContactNodes &contact;
-  const contact::ContactResult &result; ///< what the contact nodes came to
+  const contact::ContactResult &result; ///< results at the contact nodes
   const Vector &u;                      ///< displacement from 0 (owned dofs) [m]
 };
 

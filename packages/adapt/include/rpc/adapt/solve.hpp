@@ -20,7 +20,7 @@ struct Solution : analysis::Solution {
   std::optional<Adaptation> adaptation;  ///< where the mesh is adapted
 };
 
-/// What is told on the way; empty functions tell nothing. All are called on all ranks. `solved` is not called: the error is
+/// Reports during the run; empty functions are not called. All are called on all ranks. `solved` is not called: the error is
 /// estimated there.
 struct Listener : analysis::Listener {
   std::function<void(const Solution &)> estimate; ///< the error on one mesh of an adaptive run has been estimated
@@ -36,11 +36,11 @@ Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &li
 /// Whether all that was asked for came out.
 bool succeeded(const Solution &solution);
 
-/// Whether the strain energy is at rounding level by an estimate, which is meaningless then.
+/// Whether the strain energy is at rounding level: then the estimate is meaningless. False without an estimate.
 bool only_rounding(const Solution &solution);
 /// The estimated error in the energy norm over that of the solution, where there is an estimate; 0 where only_rounding().
 double relative_estimate(const Solution &solution);
-/// What it really is, sqrt(2 |J_h - J| / a(u_h, u_h)), where the deck tells the exact J; else NaN.
+/// The true relative error, sqrt(2 |J_h - J| / a(u_h, u_h)), where the deck has the exact J; else NaN.
 double exact_error(const Task &task, const Solution &solution);
 
 } // namespace rpc::adapt

@@ -6,8 +6,8 @@
 namespace rpc
 {
 
-/// (points) m . K_ii m / (w m . m) with the own block of the point's node: what it takes to move the node alone. 0 where the
-/// direction m is.
+/// (points) m . K_ii m / (w m . m) with the own block of the point's node: the stiffness of the node alone. 0 where the
+/// direction m is 0.
 DeviceView<double *> own_stiffness(const StiffnessOperator &K, const NodePoints &points);
 
 /// (points) kappa_i = sum_j |m_i . K_ij m_j| / |m_i|^2 over all points j, with |.| entry by entry: the energy of moves

@@ -56,9 +56,10 @@ public:
 
   /// Lowers the value by a nonlinear smoother, where there is one: Newton's directions start from there.
   virtual void sweep(Vector &u) const { (void)u; }
-  /// Told the length of each exact step along a Newton direction: one beyond 1 says that hessian() is too stiff.
+  /// Called with the length of each exact step along a Newton direction: a length beyond 1 says that hessian() is too stiff.
   virtual void step_taken(const double length) { (void)length; }
-  /// Tells pieces of the functional apart: differs where u lie on pieces that are not alike, as far as can be told for little.
+  /// A cheap fingerprint of the piece of the functional at u. Different values mean different pieces; different pieces may have equal
+  /// values.
   virtual std::uint64_t piece(const Vector &u) const
   {
     (void)u;

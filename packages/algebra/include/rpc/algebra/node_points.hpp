@@ -26,7 +26,7 @@ struct NodePoints {
 /// (n) The nodes of some lists, each once, ascending.
 DeviceView<LO *> distinct_nodes(const std::vector<DeviceView<LO *>> &lists);
 
-/// Runs work(i) for all points, group after group: what it does to the node of point i meets no other thread.
+/// Runs work(i) for all points, group after group: no other thread works on the node of point i meanwhile.
 template <class Work>
 void for_each_point_by_group(const char *label, const NodePoints &points, const Work &work)
 {

@@ -10,7 +10,7 @@ namespace rpc
 ///     (A x)_i ~ sum_{j != i} fl(A_ij) (x_j - x_i) + S_i x_i,    S_i = sum_j A_ij                    doc/theory.md (4.7d)
 ///
 /// with blocks A_ij of nodes, fl(.) of single and S_i of double precision. To a translation of an elastic body it gives S_i x_i as A
-/// does: what is rounded are stiffnesses between nodes, not the force that is left of them. On the host only.
+/// does: stiffnesses between nodes are rounded, not the force of a translation. On the host only.
 class RoundedRows
 {
 public:

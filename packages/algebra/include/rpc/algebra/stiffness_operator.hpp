@@ -10,7 +10,7 @@
 namespace rpc
 {
 
-/// A matrix whose rows are known, and which is assembled where somebody asks for it.
+/// A matrix whose rows are known, and which is assembled on demand.
 struct UnassembledMatrix {
   RepeatedRows rows;
   RCP<const Map> dofs, columns;

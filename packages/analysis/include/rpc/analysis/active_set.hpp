@@ -24,9 +24,9 @@ ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 /// The primal-dual active-set iteration as first steps of a NOX solver: the active set is chosen by the last pressures, and the
 /// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.7), (5.8), (5.9)
 ///
-/// Converges where a choice confirms the last active set, which is then the solution's up to what the penalty leaves to a
-/// multiplier update. It is over, unconfirmed, after some changes or when an active set comes back: nothing is lost then, for
-/// Newton's directions with their line search go on from wherever it ends.
+/// Converges where a choice confirms the last active set, which is then the solution's, up to the share k/r that the penalty leaves
+/// to a multiplier update. It ends unconfirmed after too many changes or when an active set comes back. Then Newton's directions with
+/// their line search go on from there.
 class ActiveSetStage : public solver::FirstStage
 {
 public:

@@ -40,7 +40,7 @@ struct StepRecord {
 };
 
 /// Steps one after another on one mesh: each starts from the one before, on the dents that it has left. One stiffness matrix and one
-/// multigrid serve all of them, whatever becomes of gaps and normals.
+/// multigrid serve all of them, also where gaps and normals change.
 ///
 /// All members are collective.
 class LoadHistory
@@ -52,7 +52,7 @@ public:
               const solver::LinearSolverOptions &linear, Predictor predictor);
   LoadHistory(std::shared_ptr<const Problem> problem, StepOptions options, int max_halvings,
               const solver::LinearSolverOptions &linear = {}, const CoarserProblem &coarser = {});
-  /// The same, going on from what is remembered: dents of other meshes interpolated, for example.
+  /// The next step starts from a given memory, such as one interpolated from another mesh.
   /// @param memory  on the problem's mesh
   /// @param before  of the step before it, displacement and pressure, if there was one
   void go_on_from(Memory memory, std::optional<Memory> before = std::nullopt);

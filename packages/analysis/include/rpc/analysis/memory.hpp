@@ -14,7 +14,7 @@ struct Energies {
   double dissipated = 0; ///< sum of w int (xi + H w) dw
   double work = 0; ///< of loads, prescribed displacements and the foundation's own motion, by the trapezoidal rule
 
-  /// What the trapezoidal rule, and nothing else, misses: work - strain - foundation - dissipated.
+  /// Error of the trapezoidal rule alone: work - strain - foundation - dissipated.
   double imbalance() const { return work - strain - foundation - dissipated; }
 };
 

@@ -24,7 +24,7 @@ public:
   std::shared_ptr<NestedMesh> coarser();
   /// The same, as long as it is kept; null if it was not made.
   const std::shared_ptr<NestedMesh> &made_coarser() const { return coarser_; }
-  /// Coarser meshes that nobody else holds go; they are made anew where they are asked for.
+  /// Drops the coarser meshes; they are made again on demand.
   void forget_coarser();
 
   bool is_finest() const { return to_finer_.is_null(); }

@@ -37,7 +37,7 @@ struct Step {
 };
 
 /// A body on its mesh: what stays from step to step, made once. Nothing of it changes while steps are solved: that is SolverState's.
-/// K belongs to the body, not to its contact: it serves whatever gaps and normals there are. doc/theory.md, section 2
+/// K belongs to the body, not to its contact: it stays the same where gaps and normals change. doc/theory.md, section 2
 class Problem
 {
 public:

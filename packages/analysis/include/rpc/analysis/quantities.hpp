@@ -44,7 +44,7 @@ inline constexpr std::array<Quantity<Energies>, 4> energy_quantities{{
 }};
 static_assert(sizeof(Energies) == energy_quantities.size() * sizeof(double), "an energy has no line in the table");
 
-/// Into what a step fell.
+/// In how many parts a step was solved, and by how many solves.
 inline constexpr std::array<Quantity<StepRecord, int>, 2> step_parts{{
     {&StepRecord::parts, "parts", unit::none, Combine::sum, {true, 3}},
     {&StepRecord::solves, "solves", unit::none, Combine::sum, {true}},

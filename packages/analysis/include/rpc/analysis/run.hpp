@@ -31,7 +31,7 @@ void set_obstacle_origins(Task &task);
 /// What a run on one mesh has found.
 struct Solution : StepSolution {
   fem::Discretization discretization;
-  std::vector<std::string> skipped; ///< what the scene allowed to leave out, and why
+  std::vector<std::string> skipped; ///< parts of the algorithm that this run skipped, with reasons, see doc/input.md
   double time = 1;                  ///< at which it is the solution
   std::optional<Memory> memory;     ///< what the next load step starts from, where there are several and it converged
   /// (contact points) Pressure that the solution on the previous mesh gave as a start [Pa]; none without a previous mesh.
@@ -50,11 +50,11 @@ struct HistoryState {
   int matrix_assemblies = 0;
 };
 
-/// What is told on the way; empty functions tell nothing. All are called on all ranks.
+/// Reports during the run; empty functions are not called. All are called on all ranks.
 struct Listener {
   std::function<void(const fem::Discretization &, const contact::ContactNodes &)> mesh; ///< one has been made
   Progress step;
-  /// A solution is found, and nothing is told of it yet: what else is to be known of it, such as its error, is computed here.
+  /// Called with each solution before it is reported: adds numbers such as its error.
   std::function<void(const Problem &, Solution &)> solved;
   std::function<void(Solution &)> load_step; ///< one of several load steps is solved; its record is the history's last
   /// The state to go on from, if it is not the first step.

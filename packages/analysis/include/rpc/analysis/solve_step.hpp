@@ -33,7 +33,7 @@ struct StepOptions {
   PredictionOptions prediction;
 };
 
-/// What is told while a step is solved; empty functions tell nothing.
+/// Reports while a step is solved; empty functions are not called.
 struct Progress {
   /// @param uzawa  number of the Uzawa iteration, from 1
   std::function<void(int uzawa, const solver::NewtonStep &, const contact::StateCounts &)> newton;

@@ -9,7 +9,7 @@ namespace rpc::analysis
 {
 
 /// What changes while steps of a problem are solved: the Hessian, K with an update at the contact nodes, and the linear solver with its
-/// preconditioner. It is the run's: one serves all steps, whatever becomes of gaps, normals and loads.
+/// preconditioner. It is the run's: one serves all steps, also where gaps, normals and loads change.
 class SolverState
 {
 public:

@@ -35,7 +35,7 @@ ActiveSetChoice next_choice(const SmoothedFunctional &functional, const ActiveSe
                             const DeviceView<double *> &own, double negligible);
 
 /// Takes the choice's states for the active set, its pressures for multipliers as far as the states allow. Nodes that close are
-/// moved onto the foundation: r v would be a large residual for what is a small step.                              (5.7)
+/// moved onto the foundation: r v would make a large residual of a small distance.                              (5.7)
 void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, ActiveSet &active, Vector &u);
 
 /// About the largest error of the pressures at nodes that are not open, over the largest pressure: the share k/r that the

@@ -26,7 +26,7 @@ struct ContactOptions {
   std::string path = "Contact"; ///< in the deck, for messages
   std::string side;
   ScalarField yield_stress;                ///< xi > 0 [Pa], may be inf
-  ScalarField hardening = ScalarField(0.); ///< H >= 0 [Pa/m], what the yield stress grows by with the dent
+  ScalarField hardening = ScalarField(0.); ///< H >= 0 [Pa/m], growth of the yield stress with the dent
   ScalarField stiffness = ScalarField(
       std::numeric_limits<double>::infinity()); ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
   ScalarField gap; ///< g [m], distance to the foundation along the normal; < 0 is initial penetration. Without obstacle

@@ -17,7 +17,7 @@ struct Multipliers {
   {
   }
   bool has_tangential() const { return tangential.extent(0) > 0; }
-  /// With numbers of its own.
+  /// A deep copy.
   Multipliers copy() const;
 };
 

@@ -30,7 +30,7 @@ double contact_law_residual(const ContactNodes &points, const ContactState &stat
 
 ContactEnergy contact_energy(const ContactNodes &points, const ContactState &state);
 
-/// sum_i w_i lambda_i m_i, what contact takes off the load (owned dofs, [N]).
+/// sum_i w_i lambda_i m_i, the force of the body on the foundation at the unknowns (owned dofs) [N].
 Vector multiplier_forces(const ContactNodes &points, const Multipliers &multiplier, const RCP<const Map> &dofs);
 
 } // namespace rpc::contact

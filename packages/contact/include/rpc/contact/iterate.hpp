@@ -39,8 +39,8 @@ public:
   const RCP<UpdatedOperator> &hessian() const override { return hessian_; }
   /// Takes the states at u for the active set, and brings hessian() to it: that is H(u).
   GO update_hessian(const Vector &u) override;
-  /// Weakens the springs of hold_by_contact(), if there are any, from the next update of hessian() on, where a step beyond 1 tells
-  /// that the body bends so easily that it feels them.
+  /// Weakens the springs of hold_by_contact(), if there are any, from the next update of hessian() on, after a step longer
+  /// than 1: the body is so soft in bending that the springs count.
   void step_taken(double length) override;
 
   const SmoothedFunctional &functional() const { return functional_; } ///< as seen from the present origin
@@ -81,9 +81,9 @@ public:
   /// Where the iterate is: displacement from 0, and copies of multipliers and states.
   ContactState state(const Vector &u) const;
 
-  /// |applied load|_2 on the free unknowns; without any, |contact force|_2; without that, what prescribed displacements do
-  /// to the free unknowns [N]; 1 if nothing acts. A rigid shift of the whole scene leaves it as it is where anything is
-  /// applied or touches.
+  /// |applied load|_2 on the free unknowns; without any, |contact force|_2; without that, the norm of the forces of
+  /// prescribed displacements on the free unknowns [N]; 1 if nothing acts. A rigid shift of the whole scene leaves it as it is
+  /// where anything is applied or touches.
   double force_scale() const;
   /// |Ku - b + sum_i w_i lambda_i m_i|_2 over the free unknowns [N]: how far u and the multipliers are from equilibrium.
   double out_of_balance(const Vector &u) const;

@@ -12,7 +12,7 @@ struct Furthest {
   std::vector<double> at;
   bool endless = false;
 };
-/// A closed convex polyhedron in R^k that holds the origin, known by what it answers to a direction.
+/// A closed convex polyhedron in R^k that holds the origin, given by its farthest point in any direction.
 using ConvexSet = std::function<Furthest(const std::vector<double> &q)>;
 
 struct Nearest {

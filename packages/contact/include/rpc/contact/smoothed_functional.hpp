@@ -58,7 +58,7 @@ public:
   void take_states(const Vector &u, const DeviceView<State *> &states) const;
   StateCounts count_states(const Vector &u) const;
 
-  /// The same functional of what is added to u: r v keeps digits that r eps |u| would take.                        (5.13)
+  /// The same functional of the correction to u: the rounding of r v is then relative to the correction.           (5.13)
   SmoothedFunctional from(const Vector &u) const;
 
   const SmoothedPoints &points() const { return points_; }

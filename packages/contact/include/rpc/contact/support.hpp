@@ -26,8 +26,8 @@ FreeParts free_parts(const fem::Discretization &d, const fem::DirichletDofs &dir
 
 /// Looks for rigid motions that neither prescribed displacements nor the foundation stop, before anything is solved.
 ///
-/// The discrete problem has a solution if and only if, part by part, what the load does along the free rigid motions lies
-/// in the set Z of what the foundation can do against it; it is determined only if it lies inside.
+/// The discrete problem has a solution if and only if, part by part, the resultant of the load along the free rigid motions
+/// lies in the set Z of resultants that the foundation can bear; it is determined only if the resultant lies inside Z.
 ///                                                                                         doc/theory.md (9.2) - (9.6)
 /// Costs nothing if prescribed displacements hold every part, else some hundred sums over the contact nodes.
 /// @param applied_load  (owned dofs) [N], before elimination; collective

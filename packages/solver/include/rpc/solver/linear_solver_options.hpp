@@ -12,10 +12,10 @@ struct LinearSolverOptions {
   double tolerance = 1e-11;              ///< |r| / |b|, dimensionless, > 0
   int max_iterations = 500;              ///< > 0
   std::string multigrid = "auto";        ///< from where the hierarchy comes: auto, mesh, algebraic
-  std::string reuse = "tP";     ///< what of an algebraic hierarchy outlives a change of the matrix: none, tP, RP
-  double damping = 4. / 3;      ///< of algebraic prolongators for the whole matrix, unless `muelu` says it
-  Teuchos::ParameterList belos; ///< on top of the defaults
-  Teuchos::ParameterList muelu; ///< on top of the defaults
+  std::string reuse = "tP";              ///< parts of an algebraic hierarchy kept when the matrix changes: none, tP, RP
+  double damping = 4. / 3;               ///< of algebraic prolongators for the whole matrix, unless `muelu` says it
+  Teuchos::ParameterList belos;          ///< on top of the defaults
+  Teuchos::ParameterList muelu;          ///< on top of the defaults
 };
 
 /// Parameters of the deck's `Linear Solver` sublist; `Belos` and `MueLu` pass through.

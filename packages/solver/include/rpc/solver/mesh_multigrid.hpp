@@ -24,7 +24,7 @@ public:
 };
 
 /// By a factor of the whole matrix on each rank; collective.
-/// @param most_work  refuses what takes more multiplications
+/// @param most_work  multiplications that the factor may take
 /// @return null where it would take more, or the matrix is not positive definite
 std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A,
                                               double most_work = std::numeric_limits<double>::infinity());

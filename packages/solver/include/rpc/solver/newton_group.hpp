@@ -17,7 +17,7 @@ struct NewtonContext {
   ConvexFunctional &functional;
   LinearSolver &linear_solver;
   double target_residual = 0;    ///< |F|_2 at which Newton stops; no linear solve need be better than this
-  FirstStage *stage = nullptr;   ///< proposes the steps, as long as it is there; then Newton's directions do
+  FirstStage *stage = nullptr;   ///< proposes the steps until it ends; null: Newton's directions do
   FirstStage *resting = nullptr; ///< the stage, once it is over
 
   int steps = 0;       ///< that took a linear solve

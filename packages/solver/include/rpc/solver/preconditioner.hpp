@@ -32,7 +32,7 @@ public:
   struct Start {
     RCP<Vector> x, rest;
   };
-  /// From what part of the unknowns can be solved for exactly, if any.
+  /// The exact solution on a part of the unknowns, where the preconditioner has one.
   virtual Start start(const Vector &) const { return {}; }
   /// y <- B r for the residuals r that follow from this start only, where that takes less work.
   virtual void apply_to_residual(const MultiVector &r, MultiVector &y) const { apply(r, y); }

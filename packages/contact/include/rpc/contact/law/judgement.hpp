@@ -39,13 +39,13 @@ KOKKOS_INLINE_FUNCTION double stored_energy(const double p, const Foundation &f)
   return 0.5 * f.compliance * p * p;
 }
 
-/// The state that an admissible pressure tells: open where 0, yielding at the yield limit and above.
+/// The state of an admissible pressure: open where 0, yielding at the yield limit and above.
 KOKKOS_INLINE_FUNCTION State state_of_pressure(const double p, const Foundation &f)
 {
   return p >= f.yield ? State::yielding : (p > 0 ? State::closed : State::open);
 }
 
-/// The new dent that a pressure beyond the yield limit tells by the hardening alone; 0 without hardening [m].
+/// The new dent that follows from a pressure beyond the yield limit by hardening; 0 without hardening [m].
 KOKKOS_INLINE_FUNCTION double dent_of_pressure(const double p, const Foundation &f)
 {
   const double dent = f.hardening > 0 ? (p - f.yield) / f.hardening : 0;
