@@ -1,0 +1,119 @@
+/// What the steps of a load history cost, and what becomes of those that fail.
+#include "load_scenes.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+using analysis::LoadHistory;
+using analysis::Problem;
+using analysis::StepSolution;
+
+TEST(LoadHistory, OneSetUpServesAllStepsAndABoxNeedsNoMatrix)
+{
+  solver::LinearSolverOptions linear;
+  linear.multigrid = "mesh"; // follows contact states in place
+  LoadHistory history(std::make_shared<Problem>(block(4), uneven(laws[1], to_and_fro), 0.5), {}, 0, linear);
+  advance(history, 0.5);
+  EXPECT_GT(history.last().linear_iterations, 0);
+  EXPECT_EQ(history.last().preconditioner_setups, 1);
+  for (const double t : {1., 1.5, 2., 3., 4.}) {
+    advance(history, t);
+    EXPECT_EQ(history.last().preconditioner_setups, 0) << t;
+    EXPECT_GT(history.last().linear_solves, 0) << t;
+    EXPECT_EQ(history.last().parts, 1) << t;
+  }
+  EXPECT_EQ(history.problem().stiffness()->assemblies(), 0);
+}
+
+/// Options that give up early.
+analysis::StepOptions impatient(const int newton)
+{
+  analysis::StepOptions options;
+  options.prediction.enabled = false;
+  options.newton.max_iterations = newton;
+  options.uzawa.max_iterations = 1;
+  return options;
+}
+
+/// Up to t = 1 in one stroke, where many points change their states.
+analysis::Model stroke()
+{
+  auto model = uneven(laws[0], ramp);
+  model.contact[0].gap = in_time([](const Point &x, double) { return 0.03 * x[0] * (2 - x[0]); });
+  return model;
+}
+
+/// The least number of iterations with which the stroke is solved at once.
+int iterations_needed()
+{
+  for (int newton = 1; newton < 30; ++newton) {
+    auto history = history_of(stroke(), impatient(newton), 0, 1, 2);
+    if (history.advance(1).uzawa.converged) return newton;
+  }
+  return 30;
+}
+
+TEST(LoadHistory, AStepThatDoesNotConvergeIsHalvedAsOftenAsAllowed)
+{
+  const int needed = iterations_needed();
+  ASSERT_GT(needed, 2);
+  ASSERT_LT(needed, 30);
+  auto patient = history_of(stroke(), impatient(needed), 6, 1, 2);
+  advance(patient, 1);
+  EXPECT_EQ(patient.last().parts, 1);
+
+  auto halved = history_of(stroke(), impatient(needed - 1), 8, 1, 2);
+  std::vector<double> parts;
+  const StepSolution s =
+      halved.advance(1, {}, [&](const Problem &, const analysis::Step &step) { parts.push_back(step.time); });
+  EXPECT_TRUE(s.uzawa.converged) << s.uzawa.reason;
+  EXPECT_EQ(halved.last().parts, static_cast<int>(parts.size()));
+  ASSERT_GE(parts.size(), 3u);
+  EXPECT_EQ(parts[0], 1);
+  EXPECT_EQ(parts[1], 0.5);
+  EXPECT_EQ(parts.back(), 1);
+  EXPECT_EQ(halved.memory()->time, 1);
+  EXPECT_EQ(halved.last().time, 1);
+  EXPECT_TRUE(halved.last().converged);
+  EXPECT_GT(halved.last().linear_solves, needed - 1); // those of all parts
+  EXPECT_NEAR(halved.last().contact.force[1], patient.last().contact.force[1], 1e-6 * patient.last().contact.force[1]);
+}
+
+TEST(LoadHistory, AStepThatFailsIsNotRemembered)
+{
+  const int needed = iterations_needed();
+  ASSERT_GT(needed, 2);
+  auto history = history_of(stroke(), impatient(needed - 1), 0, 1, 2);
+  EXPECT_FALSE(history.advance(1).uzawa.converged);
+  EXPECT_EQ(history.memory(), nullptr);
+  EXPECT_FALSE(history.last().converged);
+  EXPECT_EQ(history.last().parts, 1);
+  EXPECT_EQ(history.last().energies.work, 0);
+
+  // From a state in between it fails again at a stroke that is twice as long, and that state stays.
+  auto further = history_of(stroke(), impatient(needed - 1), 0, 1, 2);
+  double begun = 0;
+  for (double t = 0.5; t > 1e-3 && begun == 0; t /= 2)
+    if (further.advance(t).uzawa.converged) begun = t;
+  ASSERT_GT(begun, 0);
+  const auto dent = further.memory()->dent;
+  const auto energies = further.memory()->energies;
+  double failed = 2 * begun;
+  while (failed < 1e3 && further.advance(failed).uzawa.converged) failed *= 4;
+  if (failed < 1e3) {
+    EXPECT_LT(further.memory()->time, failed);
+    EXPECT_FALSE(further.last().converged);
+    if (further.memory()->time == begun) {
+      EXPECT_EQ(further.memory()->dent, dent);
+      EXPECT_EQ(further.memory()->energies.work, energies.work);
+      EXPECT_EQ(further.last().energies.work, energies.work);
+    }
+  }
+}
+
+} // namespace

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "foundation_scene.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+/// What holds of the smoothed functional for any foundation.
+namespace rpc::test
+{
+
+/// u + t d
+inline RCP<Vector> plus(const Vector &u, const double t, const Vector &d)
+{
+  const auto sum = rcp(new Vector(u, Teuchos::Copy));
+  sum->update(t, d, 1.);
+  return sum;
+}
+
+/// |H d - (F(u + h d) - F(u - h d)) / 2h|_2 / |H d|_2 for the Hessian that is in the matrix.
+inline double hessian_error(const contact::Iterate &iterate, const Vector &u, const Vector &d)
+{
+  Vector Hd(u.getMap()), up(u.getMap()), down(u.getMap());
+  iterate.hessian()->apply(d, Hd);
+  const double h = 1e-5; // keeps each node on its piece
+  iterate.gradient(*plus(u, h, d), up);
+  iterate.gradient(*plus(u, -h, d), down);
+  up.update(-1., down, 1.);
+  up.update(-1., Hd, 1 / (2 * h));
+  return up.norm2() / Hd.norm2();
+}
+
+/// The functional falls in each of so many sweeps, after which the gradient along all contact directions is below the bound [N].
+inline void expect_sweeps_to_balance(const Scene &scene, const int sweeps, const double bound)
+{
+  const auto u = scene.vector(0.02, 0.3);
+  double before = scene.iterate->value(*u);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    scene.iterate->sweep(*u);
+    const double now = scene.iterate->value(*u);
+    EXPECT_LE(now, before + 1e-13 * std::abs(before)) << sweep;
+    before = now;
+  }
+  Vector F(u->getMap());
+  scene.iterate->gradient(*u, F);
+  const auto f = F.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto &c = scene.iterate->points();
+  const auto node = to_host(c.node);
+  const auto m = to_host(c.direction);
+  for (LO i = 0; i < c.size(); ++i) {
+    const double along = m(i, 0) * f(2 * node(i), 0) + m(i, 1) * f(2 * node(i) + 1, 0);
+    EXPECT_LT(std::abs(along), bound) << i;
+  }
+}
+
+} // namespace rpc::test

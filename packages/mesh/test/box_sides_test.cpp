@@ -1,0 +1,129 @@
+#include "box_lattice.hpp"
+#include "expect_error.hpp"
+#include "rpc/mesh/box.hpp"
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using namespace rpc::test;
+using rpc::ExitCode;
+using rpc::GO;
+using rpc::LO;
+using rpc::mesh::Side;
+
+struct Direction {
+  std::string name;
+  int d;
+  bool upper;
+};
+const std::vector<Direction> &directions()
+{
+  static const std::vector<Direction> all = {{"left", 0, false}, {"right", 0, true}, {"bottom", 1, false},
+                                             {"top", 1, true},   {"back", 2, false}, {"front", 2, true}};
+  return all;
+}
+
+TEST(Box, SidesAreNamedLeftRightBottomTopBackFront)
+{
+  for_each_box([](const Made &made) {
+    std::vector<std::string> names, expected;
+    for (const Side &side : made.mesh.sides) names.push_back(side.name);
+    for (int k = 0; k < 2 * made.mesh.dim(); ++k) expected.push_back(directions()[k].name);
+    EXPECT_EQ(names, expected);
+  });
+}
+
+TEST(Box, SidesHoldEachFacetThatTouchesAnOwnedNodeOnce)
+{
+  for_each_box([](const Made &made) {
+    std::set<GO> owned;
+    for (LO n = 0; n < made.mesh.num_owned_nodes(); ++n) owned.insert(made.node_id(n));
+    for (int k = 0; k < 2 * made.mesh.dim(); ++k) {
+      const Direction &direction = directions()[k];
+      SCOPED_TRACE(direction.name);
+      const auto on_side = [&](const GO node) {
+        const GO end = direction.upper ? made.lattice.extent(direction.d, made.lattice.order) : 0;
+        return made.lattice.position(node, made.lattice.order, 1)[direction.d] == end;
+      };
+      std::set<std::set<GO>> expected, found; // a facet by its nodes
+      for (GO c = 0; c < made.lattice.num_cells(); ++c) {
+        std::set<GO> facet;
+        bool touches = false;
+        for (const GO node : made.lattice.nodes_of(made.lattice.cell(c))) {
+          if (!on_side(node)) continue;
+          facet.insert(node);
+          touches = touches || owned.count(node) > 0;
+        }
+        // a triangle may have a vertex on the side, and no edge
+        if (touches && static_cast<int>(facet.size()) == made.mesh.element.num_facet_nodes()) expected.insert(facet);
+      }
+      const auto facets = rpc::to_host(made.mesh.side(direction.name, "test").facets);
+      for (std::size_t f = 0; f < facets.extent(0); ++f) {
+        std::set<GO> nodes;
+        for (std::size_t a = 0; a < facets.extent(1); ++a) nodes.insert(made.node_id(facets(f, a)));
+        found.insert(nodes);
+      }
+      EXPECT_EQ(found, expected);
+      EXPECT_EQ(facets.extent(0), expected.size());
+    }
+  });
+}
+
+TEST(Box, EachFacetOfASideHasItsCellOwnedByOneRank)
+{
+  for_each_box([](const Made &made) {
+    for (int k = 0; k < 2 * made.mesh.dim(); ++k) {
+      const Side &side = made.mesh.side(directions()[k].name, "test");
+      const auto cell = rpc::to_host(side.cell);
+      GO mine = 0, all = 1;
+      for (std::size_t f = 0; f < cell.extent(0); ++f) mine += cell(f) < made.mesh.num_owned_cells ? 1 : 0;
+      for (int d = 0; d < made.mesh.dim(); ++d) all *= d == directions()[k].d ? 1 : made.box.cells[d];
+      if (made.lattice.simplex && made.mesh.dim() == 3) all *= 2; // triangles of a rectangle
+      EXPECT_EQ(rpc::sum_all(made.mesh.comm(), mine), all) << side.name;
+    }
+  });
+}
+
+TEST(Box, FacetsBelongToTheirCellsAndPointOutward)
+{
+  for_each_box([](const Made &made) {
+    for (int k = 0; k < 2 * made.mesh.dim(); ++k) {
+      const Direction &direction = directions()[k];
+      SCOPED_TRACE(direction.name);
+      const Side &side = made.mesh.side(direction.name, "test");
+      const auto facets = rpc::to_host(side.facets);
+      const auto cell = rpc::to_host(side.cell);
+      const auto ordinal = rpc::to_host(side.ordinal);
+      for (std::size_t f = 0; f < facets.extent(0); ++f) {
+        const auto &nodes = made.mesh.element.facets()[ordinal(f)];
+        for (std::size_t a = 0; a < nodes.size(); ++a) EXPECT_EQ(facets(f, a), made.cells(cell(f), nodes[a]));
+        const auto edge = [&](const int node, const int d) {
+          return d < made.mesh.dim() ? made.coords(facets(f, node), d) - made.coords(facets(f, 0), d) : 0.;
+        };
+        std::array<double, 3> normal{edge(1, 1), -edge(1, 0), 0};
+        const int last = made.lattice.simplex ? 2 : 3;
+        if (made.mesh.dim() == 3)
+          for (int d = 0; d < 3; ++d)
+            normal[d] = edge(1, (d + 1) % 3) * edge(last, (d + 2) % 3) - edge(1, (d + 2) % 3) * edge(last, (d + 1) % 3);
+        const double length = std::hypot(normal[0], normal[1], normal[2]);
+        ASSERT_GT(length, 0);
+        EXPECT_NEAR(normal[direction.d] / length, direction.upper ? 1 : -1, 1e-14);
+      }
+    }
+  });
+}
+
+TEST(Box, UnknownSideIsRefusedWithTheListOfSides)
+{
+  const Made made(boxes()[0]);
+  expect_error(ExitCode::bad_input, {"\"Contact->Side\"", "\"floor\"", "left, right, bottom, top"},
+               [&] { made.mesh.side("floor", "Contact->Side"); });
+}
+
+} // namespace
