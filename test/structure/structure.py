@@ -3,8 +3,8 @@
     python3 structure.py [<root of the sources>]
 
 Prints each arrow that is not allowed, each line of the program that launches a kernel or works on a matrix, each name that differs
-between Trilinos versions outside VERSION_HEADERS, and each parameter of a contact law that is read outside its folder; the exit code
-is 1 if there is one.
+between Trilinos versions outside VERSION_HEADERS, each parameter of a contact law that is read outside its folder, and each source
+file that is longer than MOST_LINES; the exit code is 1 if there is one.
 """
 
 import pathlib
@@ -55,6 +55,7 @@ LAW_PARAMETERS = re.compile(r"(?:\.|->)(?:yield|hardening|compliance)\b(?!_)")
 LAW_FOLDER = "packages/contact/include/rpc/contact/law"
 LAW_FILLERS = {"packages/contact/src/contact_nodes.cpp", "packages/contact/src/contact_options.cpp",
                "packages/analysis/src/problem.cpp"}  # options of the deck, and the points' views
+MOST_LINES = 450  # of a source file of a package or the program, tests included
 FOR_TESTS = {"mesh", "fem"}  # a package's tests may make their bodies with these
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
@@ -135,6 +136,14 @@ def check_law(root):
                     yield f"{file.relative_to(root)}:{number}: a parameter of the contact law is read outside {LAW_FOLDER}"
 
 
+def check_lengths(root):
+    for top in ("packages", "src"):
+        for file in code(root / top):
+            lines = len(file.read_text().splitlines())
+            if lines > MOST_LINES:
+                yield f"{file.relative_to(root)}: {lines} lines, more than {MOST_LINES}"
+
+
 def violations(root):
     folders = sorted(path.parent for path in root.glob("packages/*/CMakeLists.txt"))
     for folder in folders:
@@ -147,6 +156,7 @@ def violations(root):
     yield from check_program(root)
     yield from check_versions(root)
     yield from check_law(root)
+    yield from check_lengths(root)
 
 
 def main():

@@ -95,6 +95,12 @@ class Structure(unittest.TestCase):
         self.assertEqual(self.violations(**{"packages__contact__test__a_test.cpp": line}), [])
         self.assertEqual(self.violations(**{"packages__contact__src__result.cpp": "peak.yield_jump = sums.yielded_length > 0;"}), [])
 
+    def test_finds_a_source_file_that_is_too_long(self):
+        for where in ("packages__mesh__src__a.cpp", "packages__mesh__include__rpc__mesh__a.hpp", "packages__mesh__test__a_test.cpp", "src__a.cpp"):
+            found = self.violations(**{where: "\n" * 451})
+            self.assertEqual(found, [where.replace("__", "/") + ": 451 lines, more than 450"])
+            self.assertEqual(self.violations(**{where: "\n" * 450}), [])
+
 
 if __name__ == "__main__":
     unittest.main()
