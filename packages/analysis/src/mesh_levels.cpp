@@ -43,7 +43,7 @@ solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, con
 
 } // namespace
 
-solver::MeshLevels mesh_levels(NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed)
+solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed)
 {
   solver::MeshLevels levels;
   levels.prescribed = prescribed;
@@ -53,9 +53,9 @@ solver::MeshLevels mesh_levels(NestedMesh &finest, const Model &model, const Dev
   const auto num_unknowns = [](const NestedMesh &mesh) {
     return static_cast<GO>(mesh.discretization().owned_dofs->getGlobalNumElements());
   };
-  NestedMesh *mesh = &finest;
+  const NestedMesh *mesh = &finest;
   while (levels.level.empty() || num_unknowns(*mesh) > (dim == 2 ? few_2d : few_3d)) {
-    NestedMesh *const coarse = mesh->coarser().get();
+    const NestedMesh *const coarse = mesh->coarser().get();
     if (!coarse) break;
     mesh = coarse;
     const fem::Discretization &d = mesh->discretization();

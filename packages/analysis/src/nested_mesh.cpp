@@ -59,23 +59,25 @@ bool NestedMesh::may_have_coarser() const
   return mesh.element.order == 2 || (mesh.box && mesh::halved(*mesh.box));
 }
 
-std::shared_ptr<NestedMesh> NestedMesh::coarser()
+std::shared_ptr<const NestedMesh> NestedMesh::coarser() const
 {
   if (std::exchange(asked_, true)) return coarser_;
   const fem::Discretization &d = discretization_;
+  std::shared_ptr<NestedMesh> made;
   if (d.mesh->element.order == 2) {
     fem::OrderOne lower = fem::order_one(d);
-    coarser_ = std::make_shared<NestedMesh>(fem::discretize(std::move(lower.mesh), d.kinematics));
-    coarser_->to_finer_ = lower.interpolation;
-    coarser_->node_of_finer_ = lower.node;
+    made = std::make_shared<NestedMesh>(fem::discretize(std::move(lower.mesh), d.kinematics));
+    made->to_finer_ = lower.interpolation;
+    made->node_of_finer_ = lower.node;
   } else if (auto box = halved(d)) {
-    coarser_ = std::make_shared<NestedMesh>(std::move(*box));
-    coarser_->to_finer_ = fem::interpolation(coarser_->discretization(), d);
+    made = std::make_shared<NestedMesh>(std::move(*box));
+    made->to_finer_ = fem::interpolation(made->discretization(), d);
   }
+  coarser_ = std::move(made);
   return coarser_;
 }
 
-void NestedMesh::forget_coarser()
+void NestedMesh::forget_coarser() const
 {
   coarser_.reset();
   asked_ = false;

@@ -75,7 +75,7 @@ Problem::Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, con
 {
 }
 
-Problem::Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, const double t)
+Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, const double t)
     : model_(model.seen_at(t)), mesh_(std::move(mesh))
 {
   const fem::Discretization &d = discretization();

@@ -50,11 +50,7 @@ struct Block {
     points = contact::contact_nodes(d, model.contact, dirichlet, model.materials);
     H = updated(K, points);
   }
-  solver::MeshLevels levels() const
-  {
-    analysis::NestedMesh finest(d);
-    return analysis::mesh_levels(finest, model, dirichlet.fixed);
-  }
+  solver::MeshLevels levels() const { return analysis::mesh_levels(analysis::NestedMesh(d), model, dirichlet.fixed); }
 
   /// Contact nodes for which `is_closed` holds at their x are closed: 1e5 times as stiff as they are.
   void close(const std::function<bool(double)> &is_closed) const

@@ -50,7 +50,7 @@ std::size_t num_nodes(const fem::Discretization &d)
 
 TEST(NestedMesh, KeepsWhatItHasMadeUntilToldToForget)
 {
-  NestedMesh finest(fem::discretize(box_of({2, 1})));
+  const NestedMesh finest(fem::discretize(box_of({2, 1})));
   EXPECT_TRUE(finest.is_finest());
   EXPECT_TRUE(finest.may_have_coarser());
   EXPECT_EQ(finest.made_coarser(), nullptr);
@@ -69,7 +69,7 @@ TEST(NestedMesh, KeepsWhatItHasMadeUntilToldToForget)
 TEST(NestedMesh, InterpolatesStepByStep)
 {
   for (const mesh::Element &element : mesh::all_elements()) {
-    NestedMesh finest(fem::discretize(box_of(element, element.shape == mesh::Shape::tensor)));
+    const NestedMesh finest(fem::discretize(box_of(element, element.shape == mesh::Shape::tensor)));
     const auto coarse = finest.coarser()->coarser();
     ASSERT_NE(coarse, nullptr);
     const auto steps = analysis::interpolation(*coarse, finest);
@@ -131,11 +131,13 @@ TEST(NestedMesh, LeavesOtherMeshesAlone)
   for (const int order : {1, 2}) {
     auto mesh = std::make_shared<mesh::Mesh>(*box_of({2, order}));
     mesh->box = nullptr;
-    NestedMesh finest(fem::discretize(mesh));
+    const NestedMesh finest(fem::discretize(mesh));
     EXPECT_EQ(finest.may_have_coarser(), order == 2);
     const auto coarser = finest.coarser();
     EXPECT_EQ(coarser != nullptr, order == 2);
-    if (coarser) EXPECT_EQ(coarser->coarser(), nullptr);
+    if (coarser) {
+      EXPECT_EQ(coarser->coarser(), nullptr);
+    }
   }
 }
 

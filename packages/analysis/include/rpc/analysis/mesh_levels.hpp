@@ -9,6 +9,6 @@ namespace rpc::analysis
 
 /// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns. Collective.
 /// @param prescribed  (overlap dofs) 1 where the displacement of the finest mesh is prescribed
-solver::MeshLevels mesh_levels(NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed);
+solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed);
 
 } // namespace rpc::analysis

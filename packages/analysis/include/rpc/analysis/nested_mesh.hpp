@@ -9,8 +9,10 @@ namespace rpc::analysis
 {
 
 /// A mesh of a body that leads to coarser ones: of order 1 on the same cells, then boxes of half as many cells in each direction.
-/// Each is made when it is first asked for, and kept: multigrid and nested iteration share them. A body from gmsh has no others than
-/// the first.
+/// A body from gmsh has no coarser ones than the first.
+///
+/// Coarser meshes are made on demand, and kept until they are forgotten: multigrid and nested iteration share them. They follow from
+/// this mesh alone, so that making or forgetting them changes nothing of it: both are const. One thread of a rank at a time.
 class NestedMesh
 {
 public:
@@ -21,11 +23,11 @@ public:
   /// Whether there are to be coarser meshes; those of few cells may be too small for the ranks.
   bool may_have_coarser() const;
   /// The next coarser mesh; null where there is none. Collective.
-  std::shared_ptr<NestedMesh> coarser();
+  std::shared_ptr<const NestedMesh> coarser() const;
   /// The same, as long as it is kept; null if it was not made.
-  const std::shared_ptr<NestedMesh> &made_coarser() const { return coarser_; }
-  /// Drops the coarser meshes; they are made again on demand.
-  void forget_coarser();
+  const std::shared_ptr<const NestedMesh> &made_coarser() const { return coarser_; }
+  /// Drops the coarser meshes: those that nobody else holds are freed. They are made again on demand.
+  void forget_coarser() const;
 
   bool is_finest() const { return to_finer_.is_null(); }
   /// (owned nodes of the finer mesh x owned nodes) Null for the finest mesh.
@@ -37,8 +39,8 @@ private:
   fem::Discretization discretization_;
   RCP<const CrsMatrix> to_finer_;
   DeviceView<LO *> node_of_finer_;
-  bool asked_ = false; // for a coarser one
-  std::shared_ptr<NestedMesh> coarser_;
+  mutable bool asked_ = false; // for a coarser one
+  mutable std::shared_ptr<const NestedMesh> coarser_;
 };
 
 /// Interpolation of the values at the owned nodes of a coarse mesh to those of a finer one: step by step where the one leads to the

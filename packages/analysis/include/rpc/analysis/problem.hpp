@@ -46,7 +46,7 @@ public:
   /// @throws rpc::Error bad_input where the model does not fit the mesh or numbers overflow, naming what they belong to;
   ///         bad_mesh for a cell with a Jacobian <= 0; no_solution as contact::contact_nodes() and contact::free_parts()
   Problem(std::shared_ptr<const mesh::Mesh> mesh, const Model &model, double t = 1);
-  Problem(std::shared_ptr<NestedMesh> mesh, const Model &model, double t = 1);
+  Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, double t = 1);
 
   /// Loads, prescribed displacements and contact nodes at one time. Collective.
   /// @param dents  that earlier steps have left, (owned nodes; sides) [m]; null: none
@@ -70,7 +70,7 @@ public:
 
 private:
   Model model_;
-  std::shared_ptr<NestedMesh> mesh_;
+  std::shared_ptr<const NestedMesh> mesh_;
   DeviceView<char *> prescribed_; // (overlap dofs)
   contact::FreeParts free_parts_;
   fem::PrescribedCouplings couplings_;
