@@ -126,7 +126,7 @@ struct RowsInBox {
   template <class Each>
   KOKKOS_INLINE_FUNCTION void visit(const LO row, double (&weight)[Nodes], const Each &each) const
   {
-    double within[Dim], X[Dim];
+    double within[Dim], X[Dim] = {};
     const mesh::Index cell = boxes.cell_of(rows.at(row), within);
     const int part = elements.element_at(within, X);
     weights_at(shape, X, weight);

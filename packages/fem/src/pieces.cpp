@@ -131,14 +131,14 @@ Pieces pieces_of(const Discretization &d, const DirichletDofs &dirichlet)
   SharedCells shared_cells;
   for (LO cell = 0; cell < mesh.num_cells(); ++cell) {
     mine.num_cells[piece[cell]] += cell < mesh.num_owned_cells;
-    bool shared = false;
+    bool shared = cell >= mesh.num_owned_cells; // with a rank that owns it or one of its nodes
     std::vector<GO> key;
     for (int a = 0; a < width; ++a) {
       Point x{};
       for (int c = 0; c < dim; ++c) x[c] = coords(cells(cell, a), c);
       boxes[piece[cell]].add(x);
-      if (a >= vertices) continue;
       shared = shared || cells(cell, a) >= mesh.num_owned_nodes();
+      if (a >= vertices) continue;
       key.push_back(mesh.overlap_nodes->getGlobalElement(cells(cell, a)));
     }
     if (!shared) continue;
