@@ -75,11 +75,11 @@ MultiVector packed_blocks(const RCP<const Map> &contact, const DeviceView<double
   return packed;
 }
 
-CoarseContact::CoarseContact(const RCP<const CrsMatrix> &supports, const int dim, RCP<CrsMatrix> A,
+CoarseContact::CoarseContact(const ContactSupports &supports, const Map &nodes, const int dim, RCP<CrsMatrix> A,
                              const DeviceView<char *> &prescribed)
     : dim_(dim), A_(std::move(A)), rows_(RepeatedRows::of(A_, dim_)), prescribed_(prescribed)
 {
-  const NearSupports near = near_supports(supports);
+  const NearSupports near = near_supports(supports, nodes);
   near_ = near.importer;
   const ContactBlocks blocks = contact_blocks(near, dim_, *A_);
   const std::size_t n = blocks.row.size();

@@ -20,9 +20,11 @@ class CoarseContact : public Operator
 {
 public:
   /// Collective.
-  /// @param supports    S, see contact_supports.hpp   @param A  the coarse mesh's matrix without contact
+  /// @param supports    S, see contact_supports.hpp   @param nodes  map of the coarse mesh's nodes
+  /// @param A  the coarse mesh's matrix without contact
   /// @param prescribed  (columns of A) 1 where displacements are prescribed
-  CoarseContact(const RCP<const CrsMatrix> &supports, int dim, RCP<CrsMatrix> A, const DeviceView<char *> &prescribed);
+  CoarseContact(const ContactSupports &supports, const Map &nodes, int dim, RCP<CrsMatrix> A,
+                const DeviceView<char *> &prescribed);
 
   /// y <- (A with contact) x; collective.
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,

@@ -1,6 +1,6 @@
 #include "contact_blocks.hpp"
 
-#include "rpc/core/device_values.hpp"
+#include "host_rows.hpp"
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/graph.hpp"
 
@@ -17,48 +17,6 @@ namespace
 {
 
 const LO invalid = Teuchos::OrdinalTraits<LO>::invalid();
-
-/// Some of a matrix's own rows, on the host.
-struct HostRows {
-  std::vector<std::size_t> begin{0}; // (rows + 1) where a row's entries begin here
-  HostView<std::size_t *> first;     // (rows)     and among all of the matrix
-  HostView<LO *> column;             // (entries)  local
-  HostView<double *> value;          // (entries)
-};
-
-/// Only these rows leave the device. @param rows  local
-HostRows on_host(const CrsMatrix &A, const std::vector<LO> &rows)
-{
-  const auto matrix = A.getLocalMatrixDevice();
-  const auto row = device_values(rows, "rpc::solver::picked_rows");
-  const LO n = static_cast<LO>(rows.size());
-  const DeviceView<std::size_t *> first("rpc::solver::picked_first", n);
-  const DeviceView<LO *> length("rpc::solver::picked_length", n);
-  Kokkos::parallel_for(
-      "rpc::solver::picked_lengths", device_range(n), KOKKOS_LAMBDA(const LO i) {
-        first(i) = matrix.graph.row_map(row(i));
-        length(i) = static_cast<LO>(matrix.graph.row_map(row(i) + 1) - first(i));
-      });
-  Kokkos::fence();
-  HostRows picked;
-  const auto lengths = to_host(length);
-  for (LO i = 0; i < n; ++i) picked.begin.push_back(picked.begin.back() + lengths(i));
-  const auto begin = device_values(picked.begin, "rpc::solver::picked_begin");
-  const DeviceView<LO *> column("rpc::solver::picked_column", picked.begin.back());
-  const DeviceView<double *> value("rpc::solver::picked_value", picked.begin.back());
-  Kokkos::parallel_for(
-      "rpc::solver::pick_rows", device_range(n), KOKKOS_LAMBDA(const LO i) {
-        for (LO e = 0; e < length(i); ++e) {
-          column(begin(i) + e) = matrix.graph.entries(first(i) + e);
-          value(begin(i) + e) = matrix.values(first(i) + e);
-        }
-      });
-  Kokkos::fence();
-  picked.first = to_host(first);
-  picked.column = to_host(column);
-  picked.value = to_host(value);
-  return picked;
-}
 
 /// What a contact node adds to a block of a node's rows.
 struct Part {
@@ -145,7 +103,7 @@ ContactBlocks contact_blocks(const NearSupports &supports, const int dim, const 
   std::vector<LO> their_rows;
   for (const LO node : nodes)
     for (int k = 0; k < dim; ++k) their_rows.push_back(dof(dim, node, k));
-  const HostRows around = on_host(A, their_rows);
+  const HostRows around = host_rows(A, their_rows);
   std::vector<int> contact_of; // (supports' entries)
   for (int c = 0; c < supports.size(); ++c) contact_of.resize(supports.begin[c + 1], c);
   const Lists entries = entries_at(nodes, row_node);

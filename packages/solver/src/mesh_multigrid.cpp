@@ -227,8 +227,8 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     : H_(std::move(H)), contact_node_(H_->nodes()), contact_base_(H_->base_blocks())
 {
   const int dim = H_->dofs_per_node();
-  RCP<const CrsMatrix> supports = contact_supports(contact_node_, levels.level[0].interpolation->getRangeMap());
-  contact_ = supports->getRowMap();
+  ContactSupports supports = contact_supports(contact_node_, levels.level[0].interpolation->getRangeMap());
+  contact_ = supports.contact;
   for (std::size_t l = 0; l < levels.level.size(); ++l) {
     const MeshLevel &coarse = levels.level[l];
     auto level = std::make_unique<Level>();
@@ -237,8 +237,9 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     else
       level->A = levels_.back()->coarse;
     level->add_transfers(coarse, dim, l == 0 ? levels.prescribed : levels.level[l - 1].prescribed);
-    supports = coarser(*supports, *coarse.interpolation);
-    level->coarse = rcp(new CoarseContact(supports, dim, coarse.stiffness, coarse.prescribed));
+    supports = coarser(supports, *coarse.interpolation);
+    level->coarse = rcp(
+        new CoarseContact(supports, *coarse.interpolation->getDomainMap(), dim, coarse.stiffness, coarse.prescribed));
     levels_.push_back(std::move(level));
   }
   for (std::size_t l = 0; l < levels_.size(); ++l) { // contact is not in the coarse matrices yet

@@ -24,7 +24,7 @@ double added(const GO node, const int k, const int l)
 {
   if (node % 5 == 2) return 0;
   const double m[2] = {wave(node, 0.3), wave(node, 2)};
-  return (10 + static_cast<double>(node)) * m[k] * m[l] + (k == l ? 0.5 : 0);
+  return (10 + static_cast<double>(node)) * (m[k] * m[l]) + (k == l ? 0.5 : 0);
 }
 /// A coarse line's matrix: neighbours are coupled by full blocks.
 Dense dense_matrix(const int nodes)
@@ -41,8 +41,8 @@ Dense dense_matrix(const int nodes)
 /// Lines of ever fewer nodes, and contact at nodes of the first one.
 struct Lines {
   std::vector<int> num_nodes;
-  RCP<const CrsMatrix> supports; // of the contact nodes on the last line
-  RCP<CrsMatrix> A;              // of the last line
+  solver::ContactSupports supports; // of the contact nodes on the last line
+  RCP<CrsMatrix> A;                 // of the last line
   RCP<CoarseContact> contact;
   MultiVector update;
   Dense weights; // (nodes of the first line, nodes of the last one)
@@ -63,11 +63,11 @@ struct Lines {
       for (int k = 0; k < dim; ++k)
         for (int l = 0; l < dim; ++l) to(c, k, l) = added(line->getGlobalElement(touching[c]), k, l);
     Kokkos::deep_copy(block, to);
-    update = solver::packed_blocks(supports->getRowMap(), block);
+    update = solver::packed_blocks(supports.contact, block);
     for (std::size_t l = 1; l < num_nodes.size(); ++l) {
       const auto coarse = line_of(num_nodes[l]);
       const Dense P = dense_interpolation(num_nodes[l - 1], num_nodes[l]);
-      supports = solver::coarser(*supports, *distributed(P, line, coarse));
+      supports = solver::coarser(supports, *distributed(P, line, coarse));
       weights = product(weights, P);
       line = coarse;
     }
@@ -77,7 +77,7 @@ struct Lines {
     std::vector<char> held(num_local(columns));
     for (std::size_t i = 0; i < held.size(); ++i)
       held[i] = prescribed && columns.getGlobalElement(static_cast<LO>(i)) == 0;
-    contact = rcp(new CoarseContact(supports, dim, A, device_values(held, "prescribed")));
+    contact = rcp(new CoarseContact(supports, *line, dim, A, device_values(held, "prescribed")));
   }
 
   /// A + S^T U S, where couplings of nodes that are no neighbours are bounded on the diagonal.
@@ -193,7 +193,9 @@ TEST(CoarseContact, IsSymmetricToTheLastBit)
   };
   for (LO row = 0; row < matrix.numRows(); ++row)
     for (auto e = begin(row); e < begin(row + 1); ++e)
-      if (entries(e) < matrix.numRows()) EXPECT_EQ(values(e), entry(entries(e), row)) << row << " " << entries(e);
+      if (entries(e) < matrix.numRows()) { // of this rank
+        EXPECT_EQ(values(e), entry(entries(e), row)) << row << " " << entries(e);
+      }
 }
 
 TEST(CoarseContact, OfABodyThatTouchesNothingIsItsMatrix)
@@ -207,7 +209,7 @@ TEST(CoarseContact, OfABodyThatTouchesNothingIsItsMatrix)
 TEST(ContactSupports, OfARankAreThoseAroundItsNodes)
 {
   const Lines lines({33, 17, 9});
-  const solver::NearSupports near = solver::near_supports(lines.supports);
+  const solver::NearSupports near = solver::near_supports(lines.supports, *line_of(9));
   const Map &contact = *near.importer->getTargetMap();
   const auto line = line_of(9);
   std::vector<int> touching;
@@ -221,7 +223,9 @@ TEST(ContactSupports, OfARankAreThoseAroundItsNodes)
   }
   ASSERT_EQ(near.size(), expected);
   for (int c = 0; c < near.size(); ++c) {
-    if (c > 0) EXPECT_LT(contact.getGlobalElement(c - 1), contact.getGlobalElement(c));
+    if (c > 0) {
+      EXPECT_LT(contact.getGlobalElement(c - 1), contact.getGlobalElement(c));
+    }
     const int node = touching[contact.getGlobalElement(c)];
     double sum = 0;
     for (std::size_t e = near.begin[c]; e < near.begin[c + 1]; ++e) {
