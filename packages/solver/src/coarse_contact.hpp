@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contact_supports.hpp"
 #include "rpc/algebra/repeated_rows.hpp"
 #include "rpc/core/tpetra.hpp"
 
