@@ -20,7 +20,7 @@ template <class Run>
 Solution with_estimate(const Task &task, const Listener &listener, const Run &run)
 {
   Solution s;
-  analysis::Listener all = listener;
+  auto all = static_cast<const analysis::Listener &>(listener);
   all.solved = [&](const analysis::Problem &problem, analysis::Solution &found) {
     const contact::ContactNodes &points = found.step.contact;
     const Comm &comm = found.discretization.mesh->comm();

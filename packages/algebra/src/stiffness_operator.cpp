@@ -25,7 +25,7 @@ void multiply_vectors(const Rows &rows, const MultiVector &columns, MultiVector 
 
 StiffnessOperator::StiffnessOperator(RCP<const CrsMatrix> K, const int dim)
     : rows_(RepeatedRows::of(K, dim)), dofs_(K->getDomainMap()), columns_(K->getColMap()),
-      importer_(K->getGraph()->getImporter()), matrix_(K), assemblies_(1)
+      importer_(K->getGraph()->getImporter()), matrix_(std::move(K)), assemblies_(1)
 {
 }
 

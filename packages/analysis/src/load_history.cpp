@@ -64,7 +64,7 @@ LoadHistory::LoadHistory(std::shared_ptr<const Problem> problem, StepOptions opt
 {
 }
 
-LoadHistory::LoadHistory(std::shared_ptr<const Problem> problem, StepOptions options, const int max_halvings,
+LoadHistory::LoadHistory(std::shared_ptr<const Problem> problem, const StepOptions &options, const int max_halvings,
                          const solver::LinearSolverOptions &linear, const CoarserProblem &coarser)
     : LoadHistory(std::move(problem), options, max_halvings, linear, Predictor(coarser, options, linear))
 {

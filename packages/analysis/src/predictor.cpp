@@ -143,7 +143,8 @@ Prediction Predictor::from_last(const Problem &fine, const Step &step, const Mem
       fem::interpolated(*to_fine, *difference(*now.displacement, *before.displacement), d.dim(), d.owned_dofs);
   u->update(1., *last.displacement, 1.);
   predicted.displacement = u;
-  const auto changed = [&](const MultiVector &there_now, const MultiVector &there_before, const MultiVector &here) {
+  const auto changed = [&, &to_fine = to_fine](const MultiVector &there_now, const MultiVector &there_before,
+                                               const MultiVector &here) {
     const auto result = rcp(new MultiVector(here, Teuchos::Copy));
     to_fine->apply(*difference(there_now, there_before), *result, Teuchos::NO_TRANS, 1., 1.);
     return result;

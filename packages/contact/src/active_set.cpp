@@ -111,7 +111,7 @@ ActiveSetChoice next_choice(const SmoothedFunctional &functional, const ActiveSe
 
 void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, ActiveSet &active, Vector &u)
 {
-  const SmoothedPoints s = functional.points();
+  const SmoothedPoints &s = functional.points();
   const auto state = active.state, next = choice.state;
   const auto p = choice.pressure;
   active.chosen = true;
@@ -135,7 +135,7 @@ void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functi
 double pressure_error(const SmoothedFunctional &functional, const ActiveSet &active, const Vector &u,
                       const DeviceView<double *> &own)
 {
-  const SmoothedPoints s = functional.points();
+  const SmoothedPoints &s = functional.points();
   const auto state = active.state;
   const auto x = device_read(u);
   double error = 0, largest = 0;

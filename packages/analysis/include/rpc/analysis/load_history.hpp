@@ -50,7 +50,7 @@ public:
   /// @param predictor  of its steps; without coarser meshes there are no predictions
   LoadHistory(std::shared_ptr<const Problem> problem, StepOptions options, int max_halvings,
               const solver::LinearSolverOptions &linear, Predictor predictor);
-  LoadHistory(std::shared_ptr<const Problem> problem, StepOptions options, int max_halvings,
+  LoadHistory(std::shared_ptr<const Problem> problem, const StepOptions &options, int max_halvings,
               const solver::LinearSolverOptions &linear = {}, const CoarserProblem &coarser = {});
   /// The next step starts from a given memory, such as one interpolated from another mesh.
   /// @param memory  on the problem's mesh
