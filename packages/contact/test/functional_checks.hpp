@@ -53,4 +53,20 @@ inline void expect_sweeps_to_balance(const Scene &scene, const int sweeps, const
   }
 }
 
+/// The model of a line through u along d has the functional's slope, and the curvature that differences of its slope give.
+inline void expect_line_model(contact::Iterate &iterate, const Vector &u, const Vector &d)
+{
+  Vector F(u.getMap());
+  iterate.gradient(u, F);
+  const auto line = iterate.along(u, d, F);
+  for (const double t : {0., 0.3, 0.77, 1.9, -0.6}) {
+    Vector G(u.getMap());
+    iterate.gradient(*plus(u, t, d), G);
+    EXPECT_NEAR(line->at(t).slope, G.dot(d), 1e-12 * G.norm2() * d.norm2()) << t;
+    const double h = 1e-7;
+    const double bend = (line->at(t + h).slope - line->at(t - h).slope) / (2 * h);
+    EXPECT_NEAR(line->at(t).curvature, bend, 1e-5 * std::abs(bend)) << t;
+  }
+}
+
 } // namespace rpc::test

@@ -182,17 +182,7 @@ TEST(SmoothedFunctional, LineModelGivesTheSlopeOfTheFunctional)
   const Scene scene;
   auto &iterate = *scene.iterate;
   const auto u = scene.vector(0.05, 0.4), d = scene.vector(0.1, 2);
-  Vector F(u->getMap());
-  iterate.gradient(*u, F);
-  const auto line = iterate.along(*u, *d, F);
-  for (const double t : {0., 0.3, 0.77, 1.9, -0.6}) {
-    Vector G(u->getMap());
-    iterate.gradient(*plus(*u, t, *d), G);
-    EXPECT_NEAR(line->at(t).slope, G.dot(*d), 1e-12 * G.norm2() * d->norm2()) << t;
-    const double h = 1e-7;
-    const double bend = (line->at(t + h).slope - line->at(t - h).slope) / (2 * h);
-    EXPECT_NEAR(line->at(t).curvature, bend, 1e-5 * std::abs(bend)) << t;
-  }
+  expect_line_model(iterate, *u, *d);
 }
 
 TEST(SmoothedFunctional, SubspaceModelGivesTheGradientOfTheFunctional)
