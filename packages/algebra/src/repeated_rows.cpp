@@ -14,8 +14,6 @@ namespace rpc
 namespace
 {
 
-constexpr bool on_gpu = !Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
-
 using LocalMatrix = RepeatedRows::LocalMatrix;
 
 template <int Dim>

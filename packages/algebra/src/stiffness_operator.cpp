@@ -51,8 +51,7 @@ void StiffnessOperator::apply(const MultiVector &x, MultiVector &y, const Teucho
 
 std::shared_ptr<const RoundedRows> StiffnessOperator::rounded_rows() const
 {
-  constexpr bool on_host = Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
-  if (!on_host || !rows_.reads_matrix() || rows_.num_kinds() > 0 || rows_.dim() == 1) return nullptr;
+  if (on_gpu || !rows_.reads_matrix() || rows_.num_kinds() > 0 || rows_.dim() == 1) return nullptr;
   return std::make_shared<RoundedRows>(*matrix(), rows_.dim());
 }
 

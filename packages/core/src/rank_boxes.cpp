@@ -46,7 +46,7 @@ RankBoxes rank_boxes(const Comm &comm, const Bounds &mine)
 {
   std::vector<double> ends(mine.lower.begin(), mine.lower.end());
   ends.insert(ends.end(), mine.upper.begin(), mine.upper.end());
-  ends = gathered_by_all(comm, std::move(ends));
+  ends = gathered_by_all(comm, ends);
   std::vector<Bounds> boxes(comm.getSize());
   for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
     std::copy_n(&ends[6 * rank], 3, boxes[rank].lower.begin());

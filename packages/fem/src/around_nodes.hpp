@@ -7,9 +7,6 @@
 namespace rpc::fem
 {
 
-/// Whether kernels run beside the host, with memory of their own.
-constexpr bool on_gpu = !std::is_same_v<MemorySpace, Kokkos::HostSpace>;
-
 /// Place of a node in one of its cells or facets.
 KOKKOS_INLINE_FUNCTION int place_in(const DeviceView<LO **> &cells, const LO cell, const LO node)
 {

@@ -77,9 +77,8 @@ public:
         mine.column.push_back(j);
         mine.value.push_back(values(e));
       }
-    const SymmetricEntries all{gathered_by_all(comm, std::move(mine.row)),
-                               gathered_by_all(comm, std::move(mine.column)),
-                               gathered_by_all(comm, std::move(mine.value))};
+    const SymmetricEntries all{gathered_by_all(comm, mine.row), gathered_by_all(comm, mine.column),
+                               gathered_by_all(comm, mine.value)};
     factor_ = BandCholesky::factor(static_cast<int>(rows.getGlobalNumElements()), all, most_work);
     return factor_.has_value();
   }

@@ -14,6 +14,9 @@ using Node = Tpetra::Map<>::node_type;
 using ExecutionSpace = Node::execution_space; ///< where kernels run
 using HostSpace = Kokkos::HostSpace;
 
+/// Kernels run on a GPU, and cannot read the host's memory.
+inline constexpr bool on_gpu = !Kokkos::SpaceAccessibility<ExecutionSpace, HostSpace>::accessible;
+
 /// Where this project's views live: beside the kernels. Tpetra 13.2 takes managed memory with CUDA, which the host can read
 /// too, page by page and slowly; here that is a crash instead of a slow program. Tpetra's views can be assigned to these.
 #ifdef KOKKOS_ENABLE_CUDA

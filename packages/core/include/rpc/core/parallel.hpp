@@ -46,26 +46,6 @@ T sum_before(const Comm &comm, const T value)
   return sum - value;
 }
 
-/// What all ranks hold, rank after rank, on every rank: for a few numbers a rank. Collective.
-template <class T>
-std::vector<T> gathered_by_all(const Comm &comm, std::vector<T> mine)
-{
-  if (comm.getSize() == 1) return mine;
-  const int size = static_cast<int>(mine.size());
-  std::vector<int> sizes(comm.getSize());
-  Teuchos::gatherAll(comm, 1, &size, comm.getSize(), sizes.data());
-  const int longest = max_all(comm, size);
-  std::vector<T> padded(static_cast<std::size_t>(longest) * comm.getSize()), all;
-  if (longest == 0) return all;
-  mine.resize(longest);
-  Teuchos::gatherAll(comm, longest, mine.data(), static_cast<int>(padded.size()), padded.data());
-  for (int rank = 0; rank < comm.getSize(); ++rank) {
-    const auto from = padded.begin() + static_cast<std::ptrdiff_t>(rank) * longest;
-    all.insert(all.end(), from, from + sizes[rank]);
-  }
-  return all;
-}
-
 /// What all ranks hold, rank after rank, on rank 0; empty elsewhere. No rank's share is bounded by MPI's int counts;
 /// collective.
 template <class T>
@@ -95,6 +75,18 @@ template <class T>
 std::vector<T> gathered_by_root(const Comm &comm, const std::vector<T> &mine)
 {
   return gathered_by_root(comm, mine.data(), mine.size());
+}
+
+/// What all ranks hold, rank after rank, on every rank: for arrays that are small over all ranks. Collective.
+template <class T>
+std::vector<T> gathered_by_all(const Comm &comm, const std::vector<T> &mine)
+{
+  std::vector<T> all = gathered_by_root(comm, mine);
+  GO total = static_cast<GO>(all.size());
+  Teuchos::broadcast(comm, 0, &total);
+  all.resize(total);
+  in_pieces(total, [&](const std::size_t first, const int n) { Teuchos::broadcast(comm, 0, n, all.data() + first); });
+  return all;
 }
 
 /// The other way round: entries of an array of rank 0 that each rank asks for; collective.

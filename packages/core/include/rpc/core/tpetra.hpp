@@ -29,8 +29,9 @@ using CrsGraph = Tpetra::CrsGraph<LO, GO, Node>;
 using CrsMatrix = Tpetra::CrsMatrix<double, LO, GO, Node>;
 using Operator = Tpetra::Operator<double, LO, GO, Node>;
 
-/// Number of indices that this rank holds.
-inline LO num_local(const Map &map)
+/// Number of indices of a map of Tpetra or Xpetra that this rank holds.
+template <class AnyMap>
+LO num_local(const AnyMap &map)
 {
 #if TRILINOS_MAJOR_MINOR_VERSION >= 130400
   return static_cast<LO>(map.getLocalNumElements());

@@ -14,16 +14,6 @@ using XpetraMap = Xpetra::Map<LO, GO, Node>;
 using XpetraMatrix = Xpetra::Matrix<double, LO, GO, Node>;
 using XpetraVectors = Xpetra::MultiVector<double, LO, GO, Node>;
 
-/// Number of indices that this rank holds.
-inline LO num_local(const XpetraMap &map)
-{
-#if TRILINOS_MAJOR_MINOR_VERSION >= 130400
-  return static_cast<LO>(map.getLocalNumElements());
-#else
-  return static_cast<LO>(map.getNodeNumElements());
-#endif
-}
-
 /// (num_local) Global indices of this rank.
 inline Teuchos::ArrayView<const GO> local_gids(const XpetraMap &map)
 {
