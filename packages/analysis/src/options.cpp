@@ -18,9 +18,10 @@ Teuchos::ParameterList valid_uzawa_parameters()
       "active-set iteration accepts errors of the pressures up to 10 x Tolerance, relative to the largest "
       "pressure.");
   valid.set("Maximum Iterations", 50, "Multiplier updates at most, > 0.");
-  valid.set("Stopping Test", "optimality",
-            "`optimality`: stop as soon as contact law and equilibrium hold; `multiplier change`: the paper's test, "
-            "|change of l|/|l| < Tolerance.");
+  valid.set(
+      "Stopping Test", "optimality",
+      "`optimality`: stop as soon as contact law and equilibrium hold; `multiplier change`: the paper's test too, "
+      "|change of l|/|l| < Tolerance.");
   return valid;
 }
 

@@ -30,6 +30,7 @@ double work_of_motion(const Comm &comm, const contact::ContactNodes &contact, co
   Kokkos::parallel_reduce(
       "rpc::analysis::work_of_motion", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &part) {
+        // (11.3)
         part -= 0.5 * c.weight(i) * (p(i) + before_pressure(i)) * (gap(i) - before_gap(i));
       },
       sum);

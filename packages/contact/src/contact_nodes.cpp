@@ -46,7 +46,7 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
   const double rounding = 1e-12 * (std::max(0., max_all(comm, largest_gap)) + dirichlet.value->normInf());
   Kokkos::parallel_for(
       "rpc::contact::directions", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        double length = 0, free_gap = nodes.gap(i) + nodes.dent(i);
+        double length = 0, free_gap = nodes.gap(i) + nodes.dent(i); // (3.4), (11.1)
         for (int k = 0; k < nodes.dim; ++k) {
           const LO dof = nodes.dof(i, k);
           if (fixed(dof)) free_gap -= nodes.normal(i, k) * value(dof);
@@ -304,7 +304,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
       points.weight.push_back(side_weight(i));
       points.gap.push_back(values.gap(i));
       points.dent.push_back(dent);
-      points.yield.push_back(values.yield(i) + values.hardening(i) * dent);
+      points.yield.push_back(values.yield(i) + values.hardening(i) * dent); // (11.1)
       points.hardening.push_back(values.hardening(i));
       points.compliance.push_back(1 / values.stiffness(i));
       points.penalty.push_back(options[k].penalty);

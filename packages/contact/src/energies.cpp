@@ -33,6 +33,7 @@ double energy_at_points(const ContactNodes &c, const DeviceView<double *> &lambd
 
 } // namespace
 
+/// paper (6); (5.14)
 double energy(const Operator &K, const fem::ElasticProblem &elastic, const ContactNodes &points,
               const ContactState &state)
 {

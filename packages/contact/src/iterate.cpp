@@ -160,6 +160,7 @@ double Iterate::replace_multipliers(const DeviceView<double *> &p)
   return std::sqrt(all[0] / std::max(all[1], all[0])); // all multipliers gone to zero is a change of 1, not of infinity
 }
 
+/// paper (11); (5.1)
 double Iterate::update_multipliers(const Vector &u)
 {
   return replace_multipliers(functional_.pressures(u));

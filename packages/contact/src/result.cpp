@@ -57,6 +57,7 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
         const Foundation f = c.law(i);
         // Points without weight have the pressures of their neighbours, and the dents that go with them.
         const bool lent = !(c.weight(i) > 0) && hardens(f);
+        // (11.2)
         dent(i) = c.dent(i) + (lent ? dent_of_pressure(p(i), f) : new_dent(v(i) - c.dent(i), p(i), f));
         s(i) = static_cast<int>(state_of_pressure(p(i), f));
       });

@@ -122,6 +122,7 @@ SmoothedFunctional SmoothedFunctional::from(const Vector &u) const
   return {K_, load, offset_, std::move(points)};
 }
 
+/// The paper's M of v and l after theorem 5; (4.1)
 double SmoothedFunctional::value(const Vector &u) const
 {
   Vector Ku(u.getMap());

@@ -49,7 +49,7 @@ struct CellStiffness {
     return true;
   }
 
-  /// sigma = lambda tr eps I + 2 mu eps: the paper's law before (1).                                              (2.4)
+  /// sigma = lambda tr eps I + 2 mu eps: Hooke's law of paper (1).                                                  (2.4)
   /// @param products  may be k
   KOKKOS_FUNCTION void by_hookes_law(const LO cell, const int block, const int first, const Products &products,
                                      Rows &k) const

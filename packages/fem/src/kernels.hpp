@@ -57,7 +57,7 @@ struct CellCoords {
   }
 };
 
-/// Gradients dN(a, i) [1/m] of the shape functions at a point, and the Jacobian's determinant [m^Dim].
+/// Gradients dN(a, i) [1/m] of the shape functions at a point, and the Jacobian's determinant [m^Dim].           (2.1)
 /// @param[out] dN  its first Dim columns
 template <int Dim, int Nodes, int Columns>
 KOKKOS_INLINE_FUNCTION double physical_gradients(const CellCoords<Dim, Nodes> &cell,

@@ -111,6 +111,7 @@ DeviceView<double **> lame_table(const Discretization &d, const Materials &mater
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const Material &material = materials.of(mesh.blocks[b]);
     const double lambda = material.lambda(), mu = material.mu();
+    // (2.3), (2.3a)
     host(b, 0) = d.kinematics == Kinematics::plane_stress ? 2 * lambda * mu / (lambda + 2 * mu) : lambda;
     host(b, 1) = mu;
   }

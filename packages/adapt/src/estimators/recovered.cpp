@@ -36,8 +36,8 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
 {
   // A yield stress out of reach, maybe infinite, gives way to one that no pressure reaches either.
   const double highest_yield = 2 * std::max(result.total.max_pressure, 1e-300);
-  // Nodes that neither are open nor yield have v = c p. What a solve leaves there, up to 1e-8 of the largest pressure, would
-  // count with p |v|, which is of first order, and differ between numbers of ranks.
+  // Nodes that neither are open nor yield have v = c p. What a solve leaves there, some 1e-8 of the largest pressure,
+  // would count with p |v|, which is of first order, and differ between numbers of ranks.
   const double accuracy = 1e-7 * result.total.max_pressure;
   const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, normal + c.dim));
   const LO begin = c.first(side);

@@ -23,7 +23,7 @@ inline bool lies_in_round(const Point &from, const double radius, const bool enc
   return (encloses ? beyond : -beyond) > surface_rounding * radius;
 }
 
-/// |from + g way| = radius: the root g that crosses the surface from the body's part of space.
+/// |from + g way| = radius: the root g that crosses the surface from the body's part of space.        (3.7)
 /// @param way  of a cylinder, the direction across its axis
 inline std::optional<double> distance_along_round(const Point &from, const Point &way, const double radius,
                                                   const bool encloses)

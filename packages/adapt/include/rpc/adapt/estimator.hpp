@@ -35,7 +35,7 @@ struct ErrorEstimate {
   std::vector<ErrorPart> parts; ///< of eta^2, in the order of the summary
   double rounding =
       0; ///< an estimate, or a strain energy, that is no larger than this is rounding [J]; see rounding_energy()
-  // What the contact pressure and that of the recovered stress, held to [0, xi], disagree by.
+  // By how much the contact pressure differs from that of the recovered stress, made admissible.
   double pressure = 0; ///< in L2 over facets that are neither all open nor all yielded [Pa m^(1/2)], in 3D [Pa m]
   double max_pressure =
       0; ///< the most at points with 0.9 of the largest pressure, on facets that have not all yielded [Pa]

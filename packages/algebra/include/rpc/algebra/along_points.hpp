@@ -10,8 +10,8 @@ namespace rpc
 /// direction m is 0.
 DeviceView<double *> own_stiffness(const StiffnessOperator &K, const NodePoints &points);
 
-/// (points) kappa_i = sum_j |m_i . K_ij m_j| / |m_i|^2 over all points j, with |.| entry by entry: the energy of moves
-/// s_i m_i/|m_i|^2 of all points at once is at most sum_i kappa_i s_i^2/2. Collective.                            (4.6)
+/// (points) kappa_i = sum_j |m_i| . |K_ij| |m_j| / (|m_i|^3 |m_j|) over all points j, with absolute values entry by entry:
+/// the energy of moves s_i m_i/|m_i|^2 of all points at once is at most sum_i kappa_i s_i^2/2. Collective.        (4.6)
 DeviceView<double *> coupled_stiffness(const StiffnessOperator &K, const NodePoints &points);
 
 } // namespace rpc

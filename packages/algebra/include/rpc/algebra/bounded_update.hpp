@@ -9,7 +9,7 @@ namespace rpc
 
 /// What preconditioners take for the update: the symmetric part S of each block, bounded by the node's own stiffness.
 ///
-///     S = sum_k mu_k e_k e_k^T  ->  sum_k clamp(mu_k, 0, most e_k.K_ii e_k) e_k e_k^T               doc/theory.md (4.9)
+///     S = sum_k mu_k e_k e_k^T  ->  sum_k clamp(mu_k, 0, most e_k.K_ii e_k) e_k e_k^T               doc/theory.md (4.7b)
 ///
 /// For U = a w m m^T with a unit vector m it bounds a by `most` times own_stiffness(). Without a bound it is S.
 /// @return (nodes, dim, dim)

@@ -10,7 +10,7 @@ namespace rpc
 
 /// A stiffness with an update that changes often: a block at each of some nodes.
 ///
-///     H = K + sum_i e_i U_i e_i^T,    U_i dim x dim, symmetric or not                               doc/theory.md (4.2)
+///     H = K + sum_i e_i U_i e_i^T,    U_i dim x dim, symmetric or not                               doc/theory.md (4.2a)
 ///
 /// The update is kept as such and never mixed with K: it may be very much larger, and K's digits would be lost. All members are
 /// collective.

@@ -46,8 +46,8 @@ struct UzawaResult {
   contact::OptimalityResiduals residuals;
 };
 
-/// Whether an Uzawa iteration was the last one: it has converged, may not go on, or does not get any further. Writes `converged` and
-/// `reason` then.                                                                                       doc/theory.md (5.12)
+/// Whether an Uzawa iteration was the last one: it has converged, may not go on, or does not get any further even
+/// with higher penalties, doc/theory.md (5.12). Writes `converged` and `reason` then.
 /// @param result    with the residuals of this iteration   @param found  its minimization
 /// @param previous  largest residual of the iteration before; NaN: there was none
 /// @param raise_penalty  asked for where an iteration was slow; returns whether anything could be raised. Collective

@@ -44,7 +44,7 @@ double pressure_error(const SmoothedFunctional &functional, const ActiveSet &act
                       const DeviceView<double *> &own);
 
 /// (points, dim, dim) What an active set adds to K: the stiffness of the law's branch, and a weak spring where a point is not
-/// closed [N/m].                                                                                           (4.2), (9.8)
+/// closed [N/m].                                                                                           (4.2a), (9.8)
 /// @param spring  in units of the points' scaling, >= 0
 DeviceView<double ***> added_blocks(const SmoothedPoints &points, const DeviceView<State *> &active, double spring);
 

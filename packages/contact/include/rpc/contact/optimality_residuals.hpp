@@ -24,7 +24,7 @@ struct OptimalityResiduals {
 
 /// Judges (u, lambda) by sums over cells, not by the matrix that the solution came from; collective.
 /// @param force_scale      size of the forces at work, see Iterate::force_scale() [N]
-/// @param residual_energy  F -> about F . K^-1 F [J], for a residual F (owned dofs, 0 where prescribed) [N]
+/// @param residual_energy  F -> an estimate of F . K^-1 F [J], for a residual F (owned dofs, 0 where prescribed) [N]
 OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem::Materials &materials,
                                          const fem::ElasticProblem &elastic, const ContactNodes &points,
                                          const ContactState &state, double force_scale,

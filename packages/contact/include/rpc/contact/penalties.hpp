@@ -5,8 +5,8 @@
 namespace rpc::contact
 {
 
-/// (points) The penalties r of the modified Lagrangian [Pa/m]: those that are given, and where they are left open a multiple of the
-/// point's own stiffness over its weight; none exceeds what double precision bears. doc/theory.md (5.12)
+/// (points) The penalties r of the modified Lagrangian [Pa/m]: those that are given, and where they are left open a multiple of
+/// `own`; none exceeds what double precision bears. doc/theory.md (5.12)
 /// @param own  (points) see own_stiffness() [Pa/m]
 DeviceView<double *> chosen_penalties(const ContactNodes &points, const DeviceView<double *> &own);
 

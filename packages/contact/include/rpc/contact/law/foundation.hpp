@@ -49,7 +49,7 @@ KOKKOS_INLINE_FUNCTION double softening(const double r, const Foundation &f)
   return 1 + r * f.compliance;
 }
 
-/// State of lambda + r v. Both kinks count as closed, so that a start from rest sees a stiff foundation.
+/// State of lambda + r v. Both kinks count as closed, so that at v = 0, lambda = 0 a point is closed.
 KOKKOS_INLINE_FUNCTION State state(const double v, const double lambda, const double r, const Foundation &f)
 {
   const double z = lambda + r * v;
@@ -81,7 +81,7 @@ KOKKOS_INLINE_FUNCTION double pressure(const double v, const double lambda, cons
   return branch_pressure(state(v, lambda, r, f), v, lambda, r, f);
 }
 
-/// Psi(v) with Psi(0) = 0 for c = 0 [J/m^2]; of the paper's law Xi(v) + xi v / 2 up to a constant.
+/// Psi(v) with Psi(0) = 0 for c = 0 [J/m^2]; of the paper's law Xi(v) + xi v / 2.
 /// paper, Xi after theorem 5; (3.2), (3.3)
 KOKKOS_INLINE_FUNCTION double smoothed_energy(const double v, const double lambda, const double r, const Foundation &f)
 {
