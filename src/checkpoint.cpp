@@ -1,5 +1,6 @@
 #include "checkpoint.hpp"
 
+#include "continuation.hpp"
 #include "output/quantities.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
@@ -130,27 +131,63 @@ std::string stem_of(const Scene &scene)
 
 } // namespace
 
-Checkpoints::Checkpoints(const Scene &scene, std::string restart, const std::string &folder)
-    : scene_(scene), restart_(std::move(restart)), folder_(folder)
+Checkpoints::Checkpoints(const Scene &scene, const bool restarts, std::string restart, const std::string &folder)
+    : scene_(scene), restarts_(restarts), restart_(std::move(restart)), folder_(folder)
 {
 }
 
-std::optional<analysis::HistoryState> Checkpoints::resume(const fem::Discretization &d) const
+std::optional<analysis::HistoryState> Checkpoints::resume(const fem::Discretization &d)
 {
-  if (restart_.empty()) return std::nullopt;
-  const io::Checkpoint file(restart_, d.mesh->owned_nodes->getComm());
+  if (!restarts_) return std::nullopt;
+  if (!restart_.empty()) return resumed_from(restart_, d);
+  const Comm &comm = d.mesh->comm();
+  const std::string listed = text_of_root(comm, ExitCode::bad_input, [&] { return json(in_folder()).dump(); });
+  const std::vector<std::string> newest_first = json::parse(listed);
+  RPC_REQUIRE(!newest_first.empty(), "restart: there is no checkpoint of \""
+                                         << scene_.name << "\" in the folder \"" << folder_
+                                         << "\". Name one, --restart=FILE, or start from the first step.");
+  std::optional<Error> first;
+  for (const std::string &path : newest_first) {
+    try {
+      auto state = resumed_from(path, d);
+      restart_ = path;
+      return state;
+    } catch (const Error &error) { // on all ranks
+      if (!first) first = error;
+    }
+  }
+  throw *first;
+}
+
+/// Checkpoints of this deck's name, the newest first; rank 0 only.
+std::vector<std::string> Checkpoints::in_folder() const
+{
+  const std::string stem = stem_of(scene_);
+  std::vector<std::string> found;
+  std::error_code none;
+  for (const auto &entry : std::filesystem::directory_iterator(folder_, none)) {
+    const std::string name = entry.path().filename().string();
+    const bool checkpoint = name.size() == stem.size() + 8 && name.compare(0, stem.size(), stem) == 0 &&
+                            name.find_first_not_of("0123456789", stem.size()) == name.size() - 2 &&
+                            name.substr(name.size() - 2) == ".e";
+    if (checkpoint) found.push_back((std::filesystem::path(folder_) / name).string());
+  }
+  std::sort(found.rbegin(), found.rend());
+  return found;
+}
+
+analysis::HistoryState Checkpoints::resumed_from(const std::string &path, const fem::Discretization &d) const
+{
+  const io::Checkpoint file(path, d.mesh->owned_nodes->getComm());
   analysis::HistoryState state;
   const int sides = static_cast<int>(scene_.model.contact.size());
   const ResultScope scope = analysis::result_scope(scene_.model, d);
   try {
     const json text = json::parse(file.text());
-    for (const auto &[name, content] : scene_.identity)
-      RPC_REQUIRE(
-          text.at("deck").at(name) == content,
-          "restart: \""
-              << restart_ << "\" was written for another deck: \"" << name
-              << "\" is not the same. Restart with the deck that it was written with; \"Steps\", \"Output\" and the "
-                 "solvers' options may change.");
+    for (const json &record : text.at("records")) state.records.push_back(record_from(record, scope));
+    std::vector<std::pair<std::string, std::string>> before;
+    for (const auto &[name, content] : text.at("deck").items()) before.emplace_back(name, content);
+    require_continuation(scene_, d, before, state.records, path);
     FieldReader reader(file.fields(*d.mesh), d);
     state.last.time = file.time();
     state.last.energies = energies_from(text.at("energies"), scope);
@@ -168,14 +205,13 @@ std::optional<analysis::HistoryState> Checkpoints::resume(const fem::Discretizat
       if (tangential) state.before->tangential = reader.columns(sides * d.dim());
     }
     state.matrix_assemblies = text.at("assemblies");
-    for (const json &record : text.at("records")) state.records.push_back(record_from(record, scope));
   } catch (const json::exception &) { // on all ranks: they read the same text
-    throw Error(ExitCode::bad_input, "restart: \"" + restart_ +
+    throw Error(ExitCode::bad_input, "restart: \"" + path +
                                          "\" is damaged: its text is not what was written. Take an older one, "
                                          "or start from the first step.");
   }
   RPC_REQUIRE(scene_.steps.times.back() > state.last.time,
-              "restart: \"" << restart_ << "\" is of t = " << state.last.time
+              "restart: \"" << path << "\" is of t = " << state.last.time
                             << ", and none of \"Steps->Times\" is later: there is nothing to do");
   return state;
 }
@@ -220,17 +256,8 @@ void Checkpoints::remove_others(const std::string &newest)
         std::find(written_.end() - std::min(written_.size(), kept), written_.end(), path) != written_.end();
     return ours || (written_.size() < kept && std::filesystem::equivalent(path, restart_, none));
   };
-  std::vector<std::string> others;
-  for (const auto &entry : std::filesystem::directory_iterator(folder_)) {
-    const std::string name = entry.path().filename().string();
-    const std::string stem = stem_of(scene_);
-    const bool checkpoint = name.size() == stem.size() + 8 && name.compare(0, stem.size(), stem) == 0 &&
-                            name.find_first_not_of("0123456789", stem.size()) == name.size() - 2 &&
-                            name.substr(name.size() - 2) == ".e";
-    const std::string path = (std::filesystem::path(folder_) / name).string();
-    if (checkpoint && !keep(path)) others.push_back(path);
-  }
-  for (const std::string &path : others) io::remove_older(path);
+  for (const std::string &path : in_folder())
+    if (!keep(path)) io::remove_older(path);
 }
 
 } // namespace rpc

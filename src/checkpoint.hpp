@@ -14,20 +14,24 @@ namespace rpc
 class Checkpoints
 {
 public:
-  /// @param restart  checkpoint to go on from; empty: from the first step
-  /// @param folder   for new checkpoints
-  Checkpoints(const Scene &scene, std::string restart, const std::string &folder);
+  /// @param restarts  the run goes on from a checkpoint
+  /// @param restart   this one; empty: the newest in the folder that is whole
+  /// @param folder    for new checkpoints
+  Checkpoints(const Scene &scene, bool restarts, std::string restart, const std::string &folder);
 
   /// What the run goes on from; none from the first step. Collective.
   /// @throws rpc::Error (bad_input) on every rank if the file is damaged, or belongs to another mesh, deck or version
-  std::optional<analysis::HistoryState> resume(const fem::Discretization &d) const;
+  std::optional<analysis::HistoryState> resume(const fem::Discretization &d);
   /// Writes a checkpoint. Collective.
   void write(const analysis::HistoryState &state, const fem::Discretization &d);
 
 private:
+  analysis::HistoryState resumed_from(const std::string &path, const fem::Discretization &d) const;
+  std::vector<std::string> in_folder() const;
   void remove_others(const std::string &newest);
 
   const Scene &scene_;
+  bool restarts_;
   std::string restart_, folder_;
   std::vector<std::string> written_;
 };

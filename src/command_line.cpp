@@ -37,7 +37,8 @@ std::vector<std::string> joined(const std::vector<char *> &arguments)
     const auto equals = text.find('=');
     const std::string name = text.substr(0, equals);
     const bool has_value = equals != std::string::npos && equals + 1 < text.size();
-    RPC_REQUIRE(i == 0 || has_value || !is_one_of(name, valued),
+    const bool newest = text == "--restart"; // of the output folder
+    RPC_REQUIRE(i == 0 || has_value || newest || !is_one_of(name, valued),
                 "command line: " << name << " needs a value, as in " << name << "="
                                  << (name == "--set" ? "\"Sublist->Parameter=value\"" : "NAME") << ". See rpc --help.");
     RPC_REQUIRE(i == 0 || equals == std::string::npos || !is_one_of(name, plain),
@@ -108,6 +109,7 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   CommandLine line;
   line.assignments = take_assignments(arguments);
   line.help = take_flag(arguments, "--help") | take_flag(arguments, "-h");
+  const bool newest = take_flag(arguments, "--restart");
 
   CommandLineProcessor parser(false, true, false);
   parser.setOption("input", &line.input, "");
@@ -121,6 +123,9 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   std::ostringstream text;
   const auto status = parser.parse(static_cast<int>(pointers.size()), pointers.data(), &text);
   RPC_REQUIRE(status == CommandLineProcessor::PARSE_SUCCESSFUL, refusal(text.str()) << " See rpc --help.");
+  line.restarts = newest || !line.restart.empty();
+  RPC_REQUIRE(!newest || line.restart.empty(),
+              "command line: --restart stands twice, once with a file and once without. See rpc --help.");
   return line;
 }
 
@@ -165,14 +170,16 @@ Usage: rpc --input=DECK [options]
   --output=DIR         folder for the results, made if missing; default: the current one
   --set="A->B=VALUE"   sets a parameter of the deck, any number of times,
                        e.g. --set="Contact->Yield Stress=16" --set="Mesh->Cells={80, 16}"
-  --restart=FILE       goes on after the last step of a checkpoint, see "Steps->Checkpoint Every"
+  --restart            goes on after the newest checkpoint in the output folder
+  --restart=FILE       goes on after a checkpoint, see "Steps->Checkpoint Every"
   --check              only reads and checks the deck
   --print-parameters   prints every parameter of a deck: type, default, meaning, unit
   --version            prints the version
   --help, -h           prints this text
   --kokkos-...         goes to Kokkos, e.g. --kokkos-threads=4; --kokkos-help lists them
 
-Results: DECK.e (fields, for ParaView), DECK.contact.csv (contact surface), DECK.json (summary).
+Results: DECK.e (fields, for ParaView), DECK.contact.csv (contact surface), DECK.json (summary);
+         of load steps DECK.history.csv (a row for each).
 
 Exit codes: 0 converged
             1 internal error

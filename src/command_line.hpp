@@ -11,7 +11,8 @@ namespace rpc
 struct CommandLine {
   std::string input;                    ///< deck, as given
   std::string output = ".";             ///< folder
-  std::string restart;                  ///< checkpoint; empty: from the first step
+  bool restarts = false;                ///< a run goes on from a checkpoint
+  std::string restart;                  ///< the checkpoint; empty: the newest one in the output folder
   std::vector<std::string> assignments; ///< of --set, in order
   bool check = false;
   bool help = false;

@@ -8,7 +8,9 @@
 #include "rpc/core/message.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/io/atomic_file.hpp"
 #include "rpc/io/deck.hpp"
+#include "rpc/io/run_lock.hpp"
 #include "scene.hpp"
 #include "solve.hpp"
 
@@ -20,8 +22,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <malloc.h>
+#include <memory>
 
 namespace
 {
@@ -74,25 +78,36 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     return ExitCode::converged;
   }
   rpc::require_writable_results(scene, line.output, *comm);
+  std::unique_ptr<rpc::io::RunLock> lock; // rank 0 only
+  rpc::on_root(*comm, ExitCode::bad_input, [&] {
+    lock = std::make_unique<rpc::io::RunLock>(line.output, scene.name);
+    rpc::io::remove_abandoned((std::filesystem::path(line.output) / scene.name).string());
+  });
 
   const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
   int cycle = 0;
-  rpc::Film film;
-  RPC_REQUIRE(line.restart.empty() || scene.has_steps(),
+  rpc::StepFiles steps;
+  RPC_REQUIRE(!line.restarts || scene.has_steps(),
               "command line: --restart goes with load steps; the deck has none, see \"Steps->Times\"");
-  rpc::Checkpoints checkpoints(scene, line.restart, line.output);
+  rpc::Checkpoints checkpoints(scene, line.restarts, line.restart, line.output);
   const auto keep = [&](const rpc::Scene &of, rpc::Solution &solution) {
     rpc::Scene named = of;
     named.name = rpc::cycle_name(of, ++cycle);
-    rpc::Film of_mesh;
+    rpc::StepFiles of_mesh;
     if (scene.adapt.write_all) rpc::write_results(named, solution, line.output, start, of_mesh);
   };
   const auto keep_step = [&](const rpc::Scene &of, const rpc::analysis::Solution &solution) {
-    film.add(of, solution, line.output);
+    steps.add(of, solution, line.output);
   };
   rpc::Solution solution = rpc::solve(scene, comm, out, keep, keep_step, &checkpoints);
-  const auto files = rpc::write_results(scene, solution, line.output, start, film);
+  std::vector<std::string> files;
+  try {
+    files = rpc::write_results(scene, solution, line.output, start, steps);
+  } catch (const rpc::Error &) { // after a failure, such as a full disk, that is what the user must hear of
+    if (!solution.failure) throw;
+  }
+  if (!steps.film.note().empty()) out << "note: " << steps.film.note() << '\n';
   rpc::print_summary(out, scene, solution, files);
   if (scene.output.timers) {
     timers->stopBaseTimer();
@@ -100,6 +115,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     options.output_fraction = options.output_minmax = true;
     timers->report(out, comm, options);
   }
+  if (solution.failure) throw rpc::failure_of(solution);
   return rpc::adapt::succeeded(solution) ? ExitCode::converged : ExitCode::not_converged;
 }
 

@@ -89,6 +89,8 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   for (const char *const part : {"Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact"})
     scene.identity.emplace_back(part, text_of(deck.sublist(part)));
   scene.steps = analysis::steps_options(deck.sublist("Steps"));
+  RPC_REQUIRE(!scene.has_steps() || deck.getEntry("Time").isDefault(),
+              "deck: \"Time\" = " << scene.time << " does not go with \"Steps\", which have times of their own");
   analysis::set_obstacle_origins(scene);
   scene.adapt = adapt::adapt_options(deck.sublist("Adapt"));
   scene.step.uzawa = analysis::uzawa_options(deck.sublist("Uzawa"));

@@ -3,7 +3,9 @@
 #include "checkpoint.hpp"
 #include "report.hpp"
 
+#include <algorithm>
 #include <optional>
+#include <sstream>
 
 namespace rpc
 {
@@ -28,8 +30,8 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   listener.estimate = [&](const Solution &solution) { print_estimate(console, scene, solution); };
   listener.note = [&](const std::string &note) { console << "note: " << note << std::endl; };
   listener.load_step = [&](const analysis::Solution &solution) {
+    if (keep_step) keep_step(scene, solution); // what the table tells is on disk
     table->load_step(scene, solution);
-    if (keep_step) keep_step(scene, solution);
   };
   if (checkpoints) {
     listener.resume = [&](const fem::Discretization &d) { return checkpoints->resume(d); };
@@ -42,6 +44,19 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   if (!scene.output.exodus) solution.skipped.push_back("stress recovery and nodal fields: no Exodus file");
   if (!scene.output.csv && !scene.model.contact.empty()) solution.skipped.push_back("contact tables: no CSV file");
   return solution;
+}
+
+Error failure_of(const Solution &solution)
+{
+  const auto &failure = *solution.failure;
+  const auto converged =
+      std::count_if(solution.history.begin(), solution.history.end(), [](const auto &step) { return step.converged; });
+  std::string reason = failure.reason;
+  if (!reason.empty() && reason.back() == '.') reason.pop_back();
+  std::ostringstream text;
+  text << "at t = " << failure.time << ": " << reason << ". The results end with step " << converged
+       << ", t = " << solution.time;
+  return {failure.code, text.str()};
 }
 
 } // namespace rpc

@@ -23,4 +23,7 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
                const std::function<void(const Scene &, const analysis::Solution &)> &keep_step = {},
                Checkpoints *checkpoints = nullptr);
 
+/// What the user hears of a failure in a later load step: when, why, and what is left.
+Error failure_of(const Solution &solution);
+
 } // namespace rpc

@@ -66,6 +66,22 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const analysis::Sol
   return fields;
 }
 
+/// The number of the step whose solution this is; after a failure the history has one more.
+int number_of(const analysis::Solution &s)
+{
+  const bool one_more = s.failure && !s.history.empty() && !s.history.back().converged;
+  return static_cast<int>(s.history.size()) - (one_more ? 1 : 0);
+}
+
+/// Times before this one that a film of the whole run has: none but after a restart, which comes to the first of its own only now.
+std::vector<double> earlier_times(const Scene &scene, const analysis::Solution &s)
+{
+  std::vector<double> times;
+  const std::size_t every = scene.steps.write_every;
+  for (std::size_t step = every; step < s.history.size(); step += every) times.push_back(s.history[step - 1].time);
+  return times;
+}
+
 } // namespace
 
 void Film::write(const Scene &scene, const analysis::Solution &s, const std::string &folder)
@@ -79,9 +95,14 @@ void Film::write(const Scene &scene, const analysis::Solution &s, const std::str
     mesh_ = s.discretization.mesh;
     files_.push_back(film_part(ResultPaths(scene, folder).exodus, static_cast<int>(files_.size()) + 1));
     file_ = std::make_unique<io::ExodusFile>(files_.back(), scene.name, *mesh_, names);
+    const auto before = files_.size() == 1 ? earlier_times(scene, s) : std::vector<double>();
+    if (!before.empty() && file_->take_times(files_.back(), before) < static_cast<int>(before.size()))
+      note_ = "\"" + files_.back() +
+              "\" lacks times before the restart: no film of these fields on this mesh was there to go on with";
   }
   file_->write(s.time, fields);
-  written_ = static_cast<int>(s.history.size());
+  if (scene.has_steps()) file_->publish();
+  written_ = number_of(s);
 }
 
 void Film::add(const Scene &scene, const analysis::Solution &s, const std::string &folder)
@@ -91,7 +112,7 @@ void Film::add(const Scene &scene, const analysis::Solution &s, const std::strin
 
 void Film::finish(const Scene &scene, const analysis::Solution &s, const std::string &folder)
 {
-  if (!file_ || written_ < static_cast<int>(s.history.size())) write(scene, s, folder);
+  if (!file_ || written_ < number_of(s)) write(scene, s, folder);
   file_->commit();
 }
 

@@ -10,8 +10,9 @@
 namespace rpc
 {
 
-/// The Exodus file of a run with load steps, a time for each: it appears with the other results. Where the mesh changes from one step
-/// to the next, a new file begins, <deck>.e-s0002 and so on, as ParaView expects of one run.
+/// The Exodus file of a run with load steps, a time for each: it grows with each step. Where the mesh changes from one step to the
+/// next, a new file begins, <deck>.e-s0002 and so on, as ParaView expects of one run. After a restart it begins with the times that the
+/// file of the run before has.
 class Film
 {
 public:
@@ -21,6 +22,7 @@ public:
   void finish(const Scene &scene, const analysis::Solution &solution, const std::string &folder);
   const std::vector<std::string> &files() const { return files_; } ///< their paths
   double seconds() const { return seconds_; }                      ///< that writing took [s]
+  const std::string &note() const { return note_; }                ///< for the user; empty: none
 
 private:
   void write(const Scene &scene, const analysis::Solution &solution, const std::string &folder);
@@ -29,6 +31,7 @@ private:
   std::unique_ptr<io::ExodusFile> file_;
   int written_ = 0; // number of the last step that is in
   std::vector<std::string> files_;
+  std::string note_;
   double seconds_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "output/history.hpp"
 
 #include "output/quantities.hpp"
+#include "rpc/core/on_root.hpp"
 #include "rpc/io/contact_csv.hpp"
 
 #include <sstream>
@@ -18,40 +19,54 @@ auto count_columns(const ResultScope &scope)
   return history_columns(counts, scope);
 }
 
-} // namespace
-
-std::string history_text(const Scene &scene, const analysis::Solution &s)
+std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
 {
-  const int dim = s.discretization.dim();
   const std::string axes = "xyz";
-  const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
-  const auto energies = history_columns(analysis::energy_quantities, scope);
-  const auto contact = history_columns(contact::contact_quantities, scope);
-  const auto counts = count_columns(scope);
   std::ostringstream text;
-  text.precision(17);
   text << "time";
-  write_names(text, energies, scope);
-  write_names(text, contact, scope);
+  write_names(text, history_columns(analysis::energy_quantities, scope), scope);
+  write_names(text, history_columns(contact::contact_quantities, scope), scope);
   for (int c = 0; c < dim; ++c) text << ",contact_force_" << axes[c];
   for (const auto &condition : scene.model.dirichlet)
     for (const char *const what : {"_displacement_", "_reaction_"})
       for (int c = 0; c < dim; ++c) text << ',' << io::csv_quoted(condition.name + what + axes[c]);
-  write_names(text, counts, scope);
-  text << ",seconds\n";
-  for (const analysis::StepRecord &step : s.history) {
-    text << step.time;
-    write_values(text, energies, step.energies);
-    write_values(text, contact, step.contact);
-    for (int c = 0; c < dim; ++c) text << ',' << step.contact.force[c];
-    for (std::size_t k = 0; k < step.reactions.size(); ++k) {
-      for (int c = 0; c < dim; ++c) text << ',' << step.displacements[k][c];
-      for (int c = 0; c < dim; ++c) text << ',' << step.reactions[k][c];
-    }
-    write_values(text, counts, step);
-    text << ',' << step.seconds << '\n';
-  }
+  write_names(text, count_columns(scope), scope);
+  text << ",seconds,converged,reason\n";
   return text.str();
+}
+
+std::string row(const analysis::StepRecord &step, const int dim, const ResultScope &scope)
+{
+  std::ostringstream text;
+  text.precision(17);
+  text << step.time;
+  write_values(text, history_columns(analysis::energy_quantities, scope), step.energies);
+  write_values(text, history_columns(contact::contact_quantities, scope), step.contact);
+  for (int c = 0; c < dim; ++c) text << ',' << step.contact.force[c];
+  for (std::size_t k = 0; k < step.reactions.size(); ++k) {
+    for (int c = 0; c < dim; ++c) text << ',' << step.displacements[k][c];
+    for (int c = 0; c < dim; ++c) text << ',' << step.reactions[k][c];
+  }
+  write_values(text, count_columns(scope), step);
+  text << ',' << step.seconds << ',' << (step.converged ? 1 : 0) << ',' << io::csv_quoted(step.reason) << '\n';
+  return text.str();
+}
+
+} // namespace
+
+void HistoryFile::update(const std::string &path, const Scene &scene, const analysis::Solution &s)
+{
+  const int dim = s.discretization.dim();
+  const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
+  on_root(s.discretization.mesh->comm(), ExitCode::internal_error, [&] {
+    std::string rows;
+    for (std::size_t k = rows_; k < s.history.size(); ++k) rows += row(s.history[k], dim, scope);
+    if (!file_)
+      file_ = std::make_unique<io::GrowingFile>(path, heading(scene, dim, scope) + rows);
+    else
+      file_->append(rows);
+  });
+  rows_ = s.history.size();
 }
 
 } // namespace rpc

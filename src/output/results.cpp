@@ -1,27 +1,39 @@
 #include "output/results.hpp"
 
 #include "output/contact.hpp"
-#include "output/history.hpp"
 #include "output/paths.hpp"
 #include "output/summary.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/io/atomic_file.hpp"
 
 #include <Teuchos_Time.hpp>
+#include <utility>
 
 namespace rpc
 {
 
-std::vector<std::string> write_results(const Scene &scene, Solution &s, const std::string &folder, const double start,
-                                       Film &film)
+void StepFiles::add(const Scene &scene, const analysis::Solution &s, const std::string &folder)
 {
+  const ResultPaths paths(scene, folder);
+  if (!std::exchange(begun_, true))
+    on_root(s.discretization.mesh->comm(), ExitCode::internal_error, [&] {
+      for (const std::string &path : {paths.json, paths.csv})
+        if (!path.empty()) io::remove_older(path);
+    });
+  if (!paths.history.empty()) history.update(paths.history, scene, s);
+  film.add(scene, s, folder);
+}
+
+std::vector<std::string> write_results(const Scene &scene, Solution &s, const std::string &folder, const double start,
+                                       StepFiles &steps)
+{
+  Film &film = steps.film;
   const double begin = Teuchos::Time::wallTime() - film.seconds();
   const ResultPaths paths(scene, folder);
   const mesh::Mesh &mesh = *s.discretization.mesh;
   if (!paths.exodus.empty()) film.finish(scene, s, folder);
   if (!paths.csv.empty()) write_contact(paths.csv, scene, s);
-  if (!paths.history.empty())
-    on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.history, history_text(scene, s)); });
+  if (!paths.history.empty()) steps.history.update(paths.history, scene, s);
   on_root(mesh.comm(), ExitCode::internal_error, [&] {
     for (const std::string &file : older_files(scene, s, folder, static_cast<int>(film.files().size())))
       io::remove_older(file);

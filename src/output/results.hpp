@@ -1,6 +1,7 @@
 #pragma once
 
 #include "output/film.hpp"
+#include "output/history.hpp"
 #include "scene.hpp"
 #include "solve.hpp"
 
@@ -10,13 +11,26 @@
 namespace rpc
 {
 
+/// Those files of a run with load steps that grow with each step.
+struct StepFiles {
+  Film film;
+  HistoryFile history;
+
+  /// Adds the solution's last step. The first time a summary and a contact table of an earlier run go: they are not of this one.
+  /// Collective.
+  void add(const Scene &scene, const analysis::Solution &solution, const std::string &folder);
+
+private:
+  bool begun_ = false;
+};
+
 /// Writes what the scene asks for into a folder, each file whole or not at all; collective. Results of one name belong to
 /// one run: files of an earlier run that this one does not write are removed. Updates seconds.output and seconds.total.
-/// @param film   of load steps, to be finished
+/// @param steps  of load steps, to be finished
 /// @param start  wall-clock time at which the run began [s]
 /// @return the files' paths
 /// @throws rpc::Error on every rank if a file cannot be written, or an earlier one not removed
 std::vector<std::string> write_results(const Scene &scene, Solution &solution, const std::string &folder, double start,
-                                       Film &film);
+                                       StepFiles &steps);
 
 } // namespace rpc

@@ -26,6 +26,7 @@ void add_steps(nlohmann::ordered_json &json, const Solution &s, const ResultScop
   auto &steps = json["steps"] = nlohmann::ordered_json::array();
   for (const analysis::StepRecord &step : s.history) {
     nlohmann::ordered_json entry = {{"time", step.time}, {"converged", step.converged}};
+    if (!step.converged) entry["reason"] = step.reason;
     add_shown(entry, analysis::energy_quantities, step.energies, scope);
     add_sums(entry, step.contact, scope, s.discretization.dim());
     add_shown(entry, analysis::step_parts, step, scope);
@@ -86,8 +87,9 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   nlohmann::ordered_json json;
   json["rpc_version"] = RPC_VERSION;
   json["deck"] = scene.name;
-  json["converged"] = s.uzawa.converged;
-  json["reason"] = s.uzawa.reason;
+  json["converged"] = s.uzawa.converged && !s.failure;
+  json["reason"] = s.failure ? s.failure->reason : s.uzawa.reason;
+  if (s.failure || (!s.history.empty() && !s.uzawa.converged)) json["failed_at"] = s.failure ? s.failure->time : s.time;
   if (mesh.dim() == 2) json["kinematics"] = fem::name_of(s.discretization.kinematics);
   json["element"] = mesh.element.name();
   json["cells"] = sum_all(mesh.comm(), GO(mesh.num_owned_cells));

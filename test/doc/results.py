@@ -41,9 +41,15 @@ class Results(RpcTestCase):
             self.rpc(*arguments, "--output=out")
             yield name, json.loads((self.folder / "out" / f"{name}.json").read_text())
 
+    def run_that_fails(self):
+        """The summary of a run whose second step has no load."""
+        self.rpc("--input=beam.xml", SMALL, "--set=Traction->top->Y=-20*sqrt(1.5-t)", "--set=Steps->Times={1,2}", "--output=failed", code=2)
+        return json.loads((self.folder / "failed" / "beam.json").read_text())
+
     def test_every_key_of_the_summary_is_documented_and_every_documented_key_is_written(self):
         text = section("<deck>.json")
         written = set().union(*(keys(summary) for _, summary in self.run_models()))
+        written |= keys(self.run_that_fails())
         self.assertGreater(len(written), 60)
         self.assertEqual(written - code_words(text), set())
         listed = code_words("\n".join(line.split("|")[1] for line in text.splitlines() if line.startswith("|")))

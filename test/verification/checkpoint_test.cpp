@@ -52,9 +52,10 @@ TEST(Checkpoint, HoldsTangentialMultipliersWhereTheLawHasThemAndNoneElsewhere)
     }
     state.records.resize(1);
     state.records[0].time = 1;
-    Checkpoints(scene, "", folder).write(state, d);
+    Checkpoints(scene, false, "", folder).write(state, d);
     const auto found =
-        Checkpoints(scene, (std::filesystem::path(folder) / (scene.name + ".checkpoint-000001.e")).string(), folder)
+        Checkpoints(scene, true, (std::filesystem::path(folder) / (scene.name + ".checkpoint-000001.e")).string(),
+                    folder)
             .resume(d);
     ASSERT_TRUE(found && found->before);
     expect_equal(found->last.pressure, state.last.pressure);

@@ -149,11 +149,20 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
   for (const double t : task.steps.times) {
     Task step = task;
     step.time = t;
-    Solution s = solve_adaptively(step, earlier ? &*earlier : nullptr, comm, listener);
-    seconds += s.seconds;
-    s.seconds = seconds;
-    if (listener.load_step) listener.load_step(s);
-    earlier = std::move(s);
+    bool solved = false;
+    try {
+      Solution s = solve_adaptively(step, earlier ? &*earlier : nullptr, comm, listener);
+      seconds += s.seconds;
+      s.seconds = seconds;
+      earlier = std::move(s);
+      solved = true;
+      if (listener.load_step) listener.load_step(*earlier);
+    } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
+      if (!earlier) throw;
+      earlier->failure = analysis::Failure{t, one_line(error.what()), error.code()};
+      if (!solved) earlier->history.push_back(analysis::broken_off(task.model, {}, t, earlier->failure->reason));
+      break;
+    }
     if (!succeeded(*earlier)) break;
   }
   return std::move(*earlier);

@@ -1,5 +1,6 @@
 #include "rpc/analysis/load_history.hpp"
 
+#include "rpc/analysis/quantities.hpp"
 #include "rpc/contact/moving_dents.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -7,6 +8,7 @@
 #include "step_energies.hpp"
 
 #include <Teuchos_Time.hpp>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -45,6 +47,15 @@ int newton_steps(const StepSolution &s)
   return std::accumulate(s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end(), 0);
 }
 
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+Energies unknown_energies()
+{
+  Energies energies;
+  for (const auto &q : energy_quantities) energies.*q.value = unknown;
+  return energies;
+}
+
 /// Adds what solving a part of a step took.
 void add_work(const StepSolution &s, StepRecord &record)
 {
@@ -56,6 +67,22 @@ void add_work(const StepSolution &s, StepRecord &record)
 }
 
 } // namespace
+
+StepRecord broken_off(const Model &model, StepRecord until_then, const double t, const std::string &reason)
+{
+  StepRecord record = std::move(until_then);
+  record.time = t;
+  record.converged = false;
+  record.reason = reason;
+  record.energies = unknown_energies();
+  for (const auto &q : contact::contact_quantities) record.contact.*q.value = unknown;
+  record.contact.force.fill(unknown);
+  std::array<double, 3> vector{};
+  vector.fill(unknown);
+  record.displacements.assign(model.dirichlet.size(), vector);
+  record.reactions = record.displacements;
+  return record;
+}
 
 LoadHistory::LoadHistory(std::shared_ptr<const Problem> problem, StepOptions options, const int max_halvings,
                          const solver::LinearSolverOptions &linear, Predictor predictor)
@@ -93,13 +120,20 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   last_.time = t;
   last_.parts = 0; // counted as they are solved
   StepSolution s = advance_in_parts(t, max_halvings_, progress, now);
+  last_.time = s.uzawa.converged ? t : tried_;
   last_.converged = s.uzawa.converged;
+  if (!last_.converged) last_.reason = s.uzawa.reason;
   last_.contact = s.contact.total;
   last_.displacements = prescribed_means(*problem_, s);
   last_.reactions = s.reactions;
-  if (memory_) last_.energies = memory_->energies;
+  last_.energies = last_.converged ? memory_->energies : unknown_energies();
   last_.seconds = Teuchos::Time::wallTime() - start;
   return s;
+}
+
+StepRecord LoadHistory::broken_off(const std::string &reason) const
+{
+  return analysis::broken_off(problem_->model(), last_, tried_, reason);
 }
 
 StepSolution LoadHistory::advance_in_parts(const double t, const int halvings, const Progress &progress,
@@ -117,6 +151,7 @@ StepSolution LoadHistory::advance_in_parts(const double t, const int halvings, c
 StepSolution LoadHistory::solve(const double t, const StepOptions &options, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now)
 {
+  tried_ = t;
   const auto sides = problem_->model().seen_at(t).contact;
   const bool on_foundation = memory_ && contact::any_moves_with_foundation(sides);
   const auto met_at = [&](const Vector &u) {

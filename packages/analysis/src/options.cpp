@@ -5,9 +5,19 @@
 #include <Teuchos_Array.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 namespace rpc::analysis
 {
+namespace
+{
+
+constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+constexpr double most_times = 1e6;
+
+} // namespace
 
 Teuchos::ParameterList valid_uzawa_parameters()
 {
@@ -73,6 +83,9 @@ Teuchos::ParameterList valid_steps_parameters()
       "Times", Teuchos::Array<double>(),
       "Times t of the load steps, rising: the foundation keeps the dents of each for the next. Empty: one step, at "
       "`Time`.");
+  valid.set("From", unset, "First of times in equal distances, in place of `Times`, with `To` and `Step`.");
+  valid.set("To", unset, "Last of them, > `From`.");
+  valid.set("Step", unset, "Their distance, > 0. The last may be shorter.");
   valid.set("Write Every", 1, "Every N-th of the times goes into the Exodus file, and the last one; N > 0.");
   valid.set("Max Halvings", 6, "A step that does not converge is halved, and its halves, so many times at most, >= 0.");
   valid.set("Checkpoint Every", 0,
@@ -81,12 +94,39 @@ Teuchos::ParameterList valid_steps_parameters()
   return valid;
 }
 
+namespace
+{
+
+/// From, From + Step, ..., To.
+std::vector<double> equal_times(const Teuchos::ParameterList &list)
+{
+  const double from = list.get<double>("From"), to = list.get<double>("To"), step = list.get<double>("Step");
+  const auto given = [](const double value) { return !std::isnan(value); };
+  if (!given(from) && !given(to) && !given(step)) return {};
+  RPC_REQUIRE(given(from) && given(to) && given(step),
+              "deck: \"Steps->From\", \"To\" and \"Step\" belong together, got " << from << ", " << to << " and "
+                                                                                 << step);
+  RPC_REQUIRE(list.get<Teuchos::Array<double>>("Times").empty(),
+              "deck: \"Steps\" has \"Times\" and \"From\"; one of them gives the times");
+  RPC_REQUIRE(std::isfinite(from) && std::isfinite(to) && to > from,
+              "deck: \"Steps->To\" must be finite and > \"From\" = " << from << ", got " << to);
+  RPC_REQUIRE(step > 0 && (to - from) / step <= most_times,
+              "deck: \"Steps->Step\" must be > 0 and give at most " << most_times << " times, got " << step);
+  std::vector<double> times;
+  const double close = 1e-9 * step; // a multiple of the step, but for rounding
+  for (int k = 0; from + k * step < to - close; ++k) times.push_back(from + k * step);
+  times.push_back(to);
+  return times;
+}
+
+} // namespace
+
 StepsOptions steps_options(const Teuchos::ParameterList &list)
 {
-  const auto &times = list.get<Teuchos::Array<double>>("Times");
-  StepsOptions options{{times.begin(), times.end()},
-                       list.get<int>("Write Every"),
-                       list.get<int>("Max Halvings"),
+  const auto &listed = list.get<Teuchos::Array<double>>("Times");
+  std::vector<double> times = equal_times(list);
+  times.insert(times.end(), listed.begin(), listed.end());
+  StepsOptions options{std::move(times), list.get<int>("Write Every"), list.get<int>("Max Halvings"),
                        list.get<int>("Checkpoint Every")};
   for (std::size_t k = 0; k < options.times.size(); ++k) {
     RPC_REQUIRE(std::isfinite(options.times[k]), "deck: \"Steps->Times\" must be finite, got " << options.times[k]);

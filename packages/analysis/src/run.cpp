@@ -1,10 +1,13 @@
 #include "rpc/analysis/run.hpp"
 
+#include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
 #include "rpc/fem/interpolation.hpp"
 
 #include <optional>
+#include <sstream>
+#include <utility>
 
 namespace rpc::analysis
 {
@@ -87,6 +90,58 @@ Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &li
                           : solve_on(task, task.mesh, nullptr, nullptr, comm, listener);
 }
 
+namespace
+{
+
+std::string at_time(const double t)
+{
+  std::ostringstream text;
+  text << "at t = " << t << ": ";
+  return text.str();
+}
+
+/// One of several load steps; its record is added if it converges, and is the last of the solution's history in any case.
+Solution solve_one_of_steps(const Task &task, const double t, LoadHistory &history, const int assemblies_before,
+                            std::vector<StepRecord> &records, const PhaseSeconds &seconds, const Listener &listener)
+{
+  Solution s;
+  static_cast<StepSolution &>(s) = history.advance(t, listener.step);
+  s.discretization = history.problem().discretization();
+  s.mesh_options = task.mesh;
+  s.time = history.last().time;
+  s.matrix_assemblies = assemblies_before + history.problem().stiffness()->assemblies();
+  s.history = records;
+  s.history.push_back(history.last());
+  if (s.uzawa.converged) records.push_back(history.last());
+  s.seconds = seconds;
+  s.seconds.prediction += s.prediction_seconds;
+  s.seconds.setup += s.linear.setup_seconds;
+  s.seconds.solve += s.solve_seconds;
+  if (listener.solved) listener.solved(history.problem(), s);
+  note_skipped(task, s);
+  return s;
+}
+
+/// Has the last step that converged kept, if there is one. Collective.
+/// @return whether it was
+bool keep_checkpoint(const LoadHistory &history, const std::vector<StepRecord> &records, const int assemblies,
+                     const Listener &listener)
+{
+  if (!listener.checkpoint || !history.memory()) return false;
+  HistoryState state{*history.memory(), std::nullopt, records, assemblies};
+  if (history.before()) state.before = *history.before();
+  try {
+    listener.checkpoint(state, history.problem().discretization());
+    return true;
+  } catch (const Error &error) { // on all ranks
+    if (listener.note)
+      listener.note("no checkpoint " + at_time(state.last.time) + error.what() + "; the next step tries again");
+    return false;
+  }
+}
+
+} // namespace
+
 Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
   Solution s;
@@ -107,30 +162,31 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     history.go_on_from(resumed->last, resumed->before);
   }
   if (listener.mesh) listener.mesh(problem->discretization(), problem->step(first.time).contact);
+  bool checkpoint_due = false;
   for (const double t : task.steps.times) {
     if (resumed && t <= resumed->last.time) continue;
-    s = Solution{};
-    static_cast<StepSolution &>(s) = history.advance(t, listener.step);
-    s.discretization = history.problem().discretization();
-    s.mesh_options = task.mesh;
-    s.time = t;
-    s.matrix_assemblies = assemblies_before + history.problem().stiffness()->assemblies();
-    records.push_back(history.last());
-    s.history = records;
-    s.seconds = seconds;
-    s.seconds.prediction += s.prediction_seconds;
-    s.seconds.setup += s.linear.setup_seconds;
-    s.seconds.solve += s.solve_seconds;
-    if (listener.solved) listener.solved(history.problem(), s);
-    seconds = s.seconds;
-    note_skipped(task, s);
-    if (listener.load_step) listener.load_step(s);
-    if (!s.uzawa.converged) break;
+    bool solved = false;
+    try {
+      Solution next = solve_one_of_steps(task, t, history, assemblies_before, records, seconds, listener);
+      seconds = next.seconds;
+      s = std::move(next);
+      solved = true;
+      if (listener.load_step) listener.load_step(s);
+    } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
+      const StepRecord broken = history.broken_off(one_line(error.what()));
+      if (s.history.empty()) throw records.empty() ? error : Error(error.code(), at_time(broken.time) + error.what());
+      if (!solved) s.history.push_back(broken);
+      s.failure = Failure{solved ? s.time : broken.time, broken.reason, error.code()};
+      break;
+    }
     const int every = task.steps.checkpoint_every;
-    if (!listener.checkpoint || every == 0 || records.size() % every != 0) continue;
-    HistoryState state{*history.memory(), std::nullopt, records, s.matrix_assemblies};
-    if (history.before()) state.before = *history.before();
-    listener.checkpoint(state, s.discretization);
+    checkpoint_due |= every > 0 && records.size() % every == 0;
+    if (!s.uzawa.converged) {
+      if (interrupted(*comm)) keep_checkpoint(history, records, s.matrix_assemblies, listener);
+      break;
+    }
+    if (!checkpoint_due) continue;
+    checkpoint_due = !keep_checkpoint(history, records, s.matrix_assemblies, listener);
     if (t < task.steps.times.back()) history.start_anew();
   }
   return s;

@@ -151,6 +151,12 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
   // Read even where it names no side: a wrong value is wrong in any case.
   const ContactOptions first = side_options(list, "Contact", list.get<std::string>("Side"), dim, parse);
   if (!first.side.empty()) options.push_back(first);
+  if (list.getEntry("Side").isDefault()) // empty by hand: contact is switched off, whatever it was
+    for (auto it = list.begin(); it != list.end(); ++it)
+      RPC_REQUIRE(list.isSublist(list.name(it)) || list.entry(it).isDefault(),
+                  "deck: \"Contact->"
+                      << list.name(it)
+                      << "\" acts nowhere: \"Contact\" has no \"Side\". Name the side that may touch the foundation");
   const Teuchos::ParameterList &sides = list.sublist("Sides");
   for (auto it = sides.begin(); it != sides.end(); ++it) {
     const std::string name = sides.name(it);

@@ -93,12 +93,17 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
                           const FieldParser &parse)
 {
   const auto &type = list.get<std::string>("Type");
-  if (type == "none") return {}; // switches an obstacle off, whatever it was
   const std::vector<Choice> all = choices();
-  const auto choice = std::find_if(all.begin(), all.end(), [&](const Choice &c) { return c.is(type); });
   std::string types = "none";
   for (const Choice &c : all)
     for (const std::string &name : c.kind.types) types += ", " + name;
+  if (list.getEntry("Type").isDefault())
+    for (const std::string &name : parameters_of_types)
+      RPC_REQUIRE(list.getEntry(name).isDefault(),
+                  "deck: \"" << path << "\" has a \"" << name
+                             << "\" and no \"Type\", so that there is no obstacle. Types: " << types);
+  if (type == "none") return {}; // switches an obstacle off, whatever it was
+  const auto choice = std::find_if(all.begin(), all.end(), [&](const Choice &c) { return c.is(type); });
   RPC_REQUIRE(choice != all.end(),
               "deck: \"" << path << "->Type\" must be one of " << types << ", got \"" << type << "\"");
   RPC_REQUIRE(choice->kind.in_the_plane.empty() || dim == 3,

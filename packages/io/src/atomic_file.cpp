@@ -3,18 +3,21 @@
 #include "rpc/core/error.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <vector>
 
 namespace rpc::io
 {
 namespace
 {
 
+const std::string temporary_mark = ".tmp."; // with the process id after it
 constexpr const char *remedy = "; choose a folder that can be written to with --output=DIR";
 constexpr const char *remedy_in_the_way = "; remove it, or choose another folder with --output=DIR";
 constexpr const char *remedy_long = "; give the deck a shorter name, or choose another folder with --output=DIR";
@@ -56,6 +59,13 @@ const char *kind_of(const mode_t mode)
                           : "of another kind";
 }
 
+std::string temporary_name(const std::string &path)
+{
+  return path + temporary_mark + std::to_string(::getpid());
+}
+
+} // namespace
+
 /// Owns a file descriptor; close() reports errors, which the destructor would swallow.
 class Descriptor
 {
@@ -93,17 +103,22 @@ public:
     if (::close(fd) != 0) fail(errno, "write", path_);
   }
 
+  off_t length() const
+  {
+    struct stat found = {};
+    return ::fstat(fd_, &found) == 0 ? found.st_size : 0;
+  }
+  /// What lies beyond a length goes.
+  void cut(const off_t length)
+  {
+    while (::ftruncate(fd_, length) != 0 && errno == EINTR) {
+    }
+  }
+
 private:
   std::string path_;
   int fd_;
 };
-
-std::string temporary_name(const std::string &path)
-{
-  return path + ".tmp." + std::to_string(::getpid());
-}
-
-} // namespace
 
 AtomicFile::AtomicFile(const std::string &path) : path_(path), temporary_(temporary_name(path))
 {
@@ -113,16 +128,41 @@ AtomicFile::AtomicFile(const std::string &path) : path_(path), temporary_(tempor
 
 AtomicFile::~AtomicFile()
 {
-  if (!committed_) ::unlink(temporary_.c_str());
+  if (!published_) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::publish()
+{
+  if (published_) return;
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno, "replace", path_);
+  published_ = true;
 }
 
 void AtomicFile::commit()
 {
-  Descriptor file(temporary_, path_, O_RDWR);
+  Descriptor file(published_ ? path_ : temporary_, path_, O_RDWR);
   file.sync();
   file.close();
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno, "replace", path_);
-  committed_ = true;
+  publish();
+}
+
+GrowingFile::GrowingFile(const std::string &path, const std::string &beginning)
+{
+  write_text(path, beginning);
+  file_ = std::make_unique<Descriptor>(path, path, O_WRONLY | O_APPEND);
+}
+
+GrowingFile::~GrowingFile() = default;
+
+void GrowingFile::append(const std::string &text)
+{
+  const off_t length = file_->length();
+  try {
+    file_->write(text);
+  } catch (const Error &) {
+    file_->cut(length);
+    throw;
+  }
 }
 
 void write_text(const std::string &path, const std::string &text)
@@ -155,6 +195,23 @@ void remove_older(const std::string &path)
   if (::lstat(path.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return;
   if (::access(path.c_str(), W_OK) != 0) fail(errno, "remove", path); // a permission that unlink would not respect
   if (::unlink(path.c_str()) != 0 && errno != ENOENT) fail(errno, "remove", path);
+}
+
+void remove_abandoned(const std::string &stem)
+{
+  const std::filesystem::path prefix(stem);
+  std::error_code none;
+  std::vector<std::filesystem::path> abandoned;
+  for (const auto &entry :
+       std::filesystem::directory_iterator(prefix.has_parent_path() ? prefix.parent_path() : ".", none)) {
+    const std::string name = entry.path().filename().string();
+    const auto mark = name.rfind(temporary_mark);
+    if (mark == std::string::npos || name.rfind(prefix.filename().string() + ".", 0) != 0) continue;
+    const std::string digits = name.substr(mark + temporary_mark.size());
+    if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
+    if (::kill(std::stoi(digits), 0) != 0 && errno == ESRCH) abandoned.push_back(entry.path());
+  }
+  for (const auto &path : abandoned) std::filesystem::remove(path, none);
 }
 
 void require_writable_folder(const std::string &folder)

@@ -1,5 +1,6 @@
 #include "rpc/io/checkpoint.hpp"
 
+#include "exodus_reader.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/core/on_root.hpp"
@@ -9,11 +10,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <exodusII.h>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 namespace rpc::io
 {
@@ -84,25 +86,17 @@ std::vector<std::string> records_of(const std::string &text)
   return records;
 }
 
-/// An Exodus file that is read; rank 0 only.
+/// A checkpoint's file that is read; rank 0 only.
 class Reader
 {
 public:
   explicit Reader(const std::string &path) : path_(path)
   {
-    ex_opts(EX_DEFAULT); // errors come as return codes, not on the console
-    int word_size = sizeof(double), file_word_size = 0;
-    float version = 0;
     RPC_REQUIRE(std::filesystem::is_regular_file(path), "restart: there is no file \"" << path << "\"");
-    id_ = ex_open(path.c_str(), EX_READ, &word_size, &file_word_size, &version);
-    if (id_ < 0) damaged("it is no Exodus file");
+    auto file = ExodusReader::open(path);
+    if (!file) damaged("it is no Exodus file");
+    file_.emplace(std::move(*file));
   }
-  ~Reader()
-  {
-    if (id_ >= 0) ex_close(id_);
-  }
-  Reader(const Reader &) = delete;
-  Reader &operator=(const Reader &) = delete;
 
   [[noreturn]] void damaged(const std::string &what) const
   {
@@ -111,15 +105,10 @@ public:
   }
   std::string text() const
   {
-    const int count = static_cast<int>(ex_inquire_int(id_, EX_INQ_INFO));
-    if (count <= 0) damaged("it has no text");
-    std::vector<std::vector<char>> buffers(count, std::vector<char>(MAX_LINE_LENGTH + 1, '\0'));
-    std::vector<char *> lines;
-    for (auto &buffer : buffers) lines.push_back(buffer.data());
-    if (ex_get_info(id_, lines.data()) < 0) damaged("its text cannot be read");
+    const auto records = file_->info();
+    if (records.empty()) damaged("it has no text that can be read");
     std::string text;
-    for (const char *const line : lines) {
-      const std::string record = line;
+    for (const std::string &record : records) {
       if (record.empty() || record.back() != mark) damaged("its text is cut");
       text += record.substr(0, record.size() - 1);
     }
@@ -127,21 +116,21 @@ public:
   }
   double time() const
   {
-    double time = 0;
-    if (ex_inquire_int(id_, EX_INQ_TIME) != 1 || ex_get_time(id_, 1, &time) < 0) damaged("it has not one time");
-    return time;
+    const auto times = file_->times();
+    if (times.size() != 1) damaged("it has not one time");
+    return times.front();
   }
   std::vector<double> field(const int index, const GO num_nodes) const
   {
-    std::vector<double> values(num_nodes);
-    if (ex_inquire_int(id_, EX_INQ_NODES) != num_nodes) damaged("it has another number of nodes than it says");
-    if (ex_get_var(id_, 1, EX_NODAL, index + 1, 1, num_nodes, values.data()) < 0) damaged("a field cannot be read");
+    if (file_->num_nodes() != num_nodes) damaged("it has another number of nodes than it says");
+    auto values = file_->field(1, index);
+    if (values.empty()) damaged("a field cannot be read");
     return values;
   }
 
 private:
   std::string path_;
-  int id_ = -1;
+  std::optional<ExodusReader> file_;
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "rpc/io/exodus.hpp"
 
+#include "exodus_reader.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
@@ -9,10 +10,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <exodusII.h>
+#include <fcntl.h>
 #include <memory>
 #include <optional>
+#include <unistd.h>
 #include <utility>
 
 namespace rpc::io
@@ -50,7 +54,24 @@ std::vector<std::string> cut(std::vector<std::string> texts, const std::size_t l
   return texts;
 }
 
-/// An open Exodus file on rank 0, under its temporary name until commit(). `longest` is the length of its names.
+/// Makes a file end after some of its times. The NetCDF library counts a time as soon as anything of it is written; the number is a
+/// big-endian integer after the four letters of the format, of 4 bytes, in its version 5 of 8 (NetCDF's "classic format").
+void set_number_of_times(const std::string &path, const int number)
+{
+  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0) return;
+  std::array<char, 4> letters{};
+  std::array<unsigned char, 8> bytes{};
+  if (::pread(fd, letters.data(), letters.size(), 0) == 4 && std::memcmp(letters.data(), "CDF", 3) == 0) {
+    const std::size_t size = letters[3] == 5 ? 8 : 4;
+    for (std::size_t k = 0; k < 4; ++k) bytes[size - 1 - k] = static_cast<unsigned char>(number >> 8 * k);
+    while (::pwrite(fd, bytes.data(), size, 4) < 0 && errno == EINTR) {
+    }
+  }
+  ::close(fd);
+}
+
+/// An open Exodus file on rank 0, under its temporary name until commit() or publish(). `longest` is the length of its names.
 class Writer
 {
 public:
@@ -62,9 +83,12 @@ public:
     if (id_ < 0) fail("create");
     check(ex_set_max_name_length(id_, static_cast<int>(longest)), "define the names of");
   }
+  /// Of a published file a time that could not be written goes.
   ~Writer()
   {
-    if (id_ >= 0) ex_close(id_);
+    if (id_ < 0) return;
+    ex_close(id_);
+    if (published_ && begun_ > whole_) set_number_of_times(path_, whole_);
   }
   Writer(const Writer &) = delete;
   Writer &operator=(const Writer &) = delete;
@@ -90,7 +114,23 @@ public:
     }
   }
   /// @param step  from 1
-  void put_time(const int step, const double time) { check(ex_put_time(id_, step, &time), "write a time of"); }
+  void put_time(const int step, const double time)
+  {
+    begun_ = step;
+    check(ex_put_time(id_, step, &time), "write a time of");
+  }
+  /// All fields of the time are written.
+  void end_time()
+  {
+    if (published_) check(ex_update(id_), "write a time of");
+    whole_ = begun_;
+  }
+  void publish()
+  {
+    check(ex_update(id_), "write");
+    file_.publish();
+    published_ = true;
+  }
   void put_field(const int step, const int index, const std::vector<double> &values)
   {
     check(ex_put_nodal_var(id_, step, index + 1, static_cast<int64_t>(values.size()), values.data()),
@@ -166,6 +206,8 @@ private:
   std::string path_;
   AtomicFile file_;
   int id_ = -1;
+  int begun_ = 0, whole_ = 0; // times that are begun, and whole
+  bool published_ = false;
   std::vector<GO> blocks_; // cells in each
   int nodes_per_cell_ = 0;
 };
@@ -320,6 +362,39 @@ void ExodusFile::write(const double time, const std::vector<NodalField> &fields)
     const auto all = impl_->nodes.gather(fields[f].values.data());
     on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->put_field(step, static_cast<int>(f), all); });
   }
+  on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->end_time(); });
+}
+
+int ExodusFile::take_times(const std::string &older, const std::vector<double> &wanted)
+{
+  int taken = 0;
+  on_root(*impl_->comm, ExitCode::internal_error, [&] {
+    const auto file = ExodusReader::open(older);
+    if (!file || file->num_nodes() != impl_->nodes.size() || file->field_names() != impl_->names) return;
+    const std::vector<double> times = file->times();
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      if (!std::binary_search(wanted.begin(), wanted.end(), times[k])) continue;
+      const int step = impl_->steps + taken + 1;
+      impl_->writer->put_time(step, times[k]);
+      for (int f = 0; f < static_cast<int>(impl_->names.size()); ++f) {
+        const auto values = file->field(static_cast<int>(k) + 1, f);
+        RPC_REQUIRE(static_cast<GO>(values.size()) == impl_->nodes.size(),
+                    "restart: \"" << older
+                                  << "\" cannot be read. Remove it; the times before the restart are lost then.");
+        impl_->writer->put_field(step, f, values);
+      }
+      impl_->writer->end_time();
+      ++taken;
+    }
+  });
+  Teuchos::broadcast(*impl_->comm, 0, &taken);
+  impl_->steps += taken;
+  return taken;
+}
+
+void ExodusFile::publish()
+{
+  on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->publish(); });
 }
 
 void ExodusFile::commit()

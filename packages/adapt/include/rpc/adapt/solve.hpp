@@ -24,7 +24,6 @@ struct Solution : analysis::Solution {
 /// estimated there.
 struct Listener : analysis::Listener {
   std::function<void(const Solution &)> estimate; ///< the error on one mesh of an adaptive run has been estimated
-  std::function<void(const std::string &)> note;  ///< for the user
   std::function<void(Solution &)> cycle;          ///< one mesh of an adaptive run is solved
 };
 

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace rpc::analysis
@@ -24,11 +25,12 @@ Teuchos::ParameterList valid_steps_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
 StepsOptions steps_options(const Teuchos::ParameterList &list);
 
-/// A step in numbers.
+/// A step in numbers. Of one that does not converge the energies are unknown, NaN: they are those of steps that do.
 struct StepRecord {
   double time = 0;
   bool converged = false;
-  int parts = 1; ///< steps that it took: more than one where it was halved
+  std::string reason; ///< why it is not
+  int parts = 1;      ///< steps that it took: more than one where it was halved
   int solves =
       0; ///< of its parts: more than these where points met other dents at the places to which a solve had led them
   Energies energies;
@@ -38,6 +40,10 @@ struct StepRecord {
   int newton_iterations = 0, linear_solves = 0, linear_iterations = 0, preconditioner_setups = 0;
   double seconds = 0;
 };
+
+/// A step that an error has ended: what it took until then, and no other number.
+/// @param t  of the step, or of the part of it that failed
+StepRecord broken_off(const Model &model, StepRecord until_then, double t, const std::string &reason);
 
 /// Steps one after another on one mesh: each starts from the one before, on the dents that it has left. One stiffness matrix and one
 /// multigrid serve all of them, also where gaps and normals change.
@@ -63,7 +69,7 @@ public:
 
   /// The solution at t, later than all before it. A step that does not converge is halved.
   /// @param now       called with each (part of a) step that is about to be solved
-  /// @return the solution at t; one that has not converged is not remembered
+  /// @return the solution at t; one that has not converged is not remembered, and may be of a part of the step: last().time
   StepSolution advance(double t, const Progress &progress = {},
                        const std::function<void(const Problem &, const Step &)> &now = {});
   /// The same as one step, whether it converges or not.
@@ -74,6 +80,8 @@ public:
   const Memory *memory() const { return memory_ ? &*memory_ : nullptr; }
   const Memory *before() const { return before_ ? &*before_ : nullptr; } ///< of the step before
   const StepRecord &last() const { return last_; }                       ///< of advance()
+  /// The step that advance() has left with an error.
+  StepRecord broken_off(const std::string &reason) const;
 
 private:
   StepSolution advance_in_parts(double t, int halvings, const Progress &progress,
@@ -92,6 +100,7 @@ private:
       last_forces_; // on the body from all but the foundation, after the last step (owned dofs) [N]; null: not known
   std::vector<contact::ContactState> offered_;
   StepRecord last_;
+  double tried_ = 0; // t of the last (part of a) step that was begun
 };
 
 } // namespace rpc::analysis

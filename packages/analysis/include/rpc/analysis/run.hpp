@@ -2,6 +2,7 @@
 
 #include "rpc/analysis/load_history.hpp"
 #include "rpc/analysis/quantities.hpp"
+#include "rpc/core/error.hpp"
 #include "rpc/mesh/make_mesh.hpp"
 
 #include <functional>
@@ -28,6 +29,13 @@ struct Task {
 /// The motion of obstacles counts from the first load step, whatever mesh or checkpoint a run is on.
 void set_obstacle_origins(Task &task);
 
+/// What has ended a run with load steps before its last time.
+struct Failure {
+  double time; ///< of the step, or of the part of it, that failed
+  std::string reason;
+  ExitCode code;
+};
+
 /// What a run on one mesh has found.
 struct Solution : StepSolution {
   fem::Discretization discretization;
@@ -37,7 +45,9 @@ struct Solution : StepSolution {
   /// (contact points) Pressure that the solution on the previous mesh gave as a start [Pa]; none without a previous mesh.
   std::optional<DeviceView<double *>> start_pressure;
   mesh::MeshOptions mesh_options;  ///< of its mesh
-  std::vector<StepRecord> history; ///< of load steps, up to this one
+  std::vector<StepRecord> history; ///< of load steps, up to this one; after a failure that step too
+  /// An error in a later load step: the solution is that of the step before.
+  std::optional<Failure> failure;
   int matrix_assemblies = 0;
   PhaseSeconds seconds;
 };
@@ -57,9 +67,11 @@ struct Listener {
   /// Called with each solution before it is reported: adds numbers such as its error.
   std::function<void(const Problem &, Solution &)> solved;
   std::function<void(Solution &)> load_step; ///< one of several load steps is solved; its record is the history's last
+  std::function<void(const std::string &)> note; ///< for the user
   /// The state to go on from, if it is not the first step.
   std::function<std::optional<HistoryState>(const fem::Discretization &)> resume;
-  /// To be kept. The run itself goes on from here as from the checkpoint: with a new matrix and a new multigrid.
+  /// To be kept. The run itself goes on from here as from the checkpoint: with a new multigrid. Where it throws, the user is told
+  /// (`note`), and it is called again after the next step.
   std::function<void(const HistoryState &, const fem::Discretization &)> checkpoint;
 };
 
@@ -67,8 +79,8 @@ struct Listener {
 /// @throws rpc::Error on every rank if the model does not fit its mesh; failing to converge is in the result
 Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
 
-/// The load steps of a task on its mesh, each from the one before; the solution is the last one's, or the first one's that does not
-/// converge.
+/// The load steps of a task on its mesh, each from the one before; the solution is the last one's, the first one's that does not
+/// converge, or where an error ends a later step the one before it, with its `failure`. An interrupted run leaves a checkpoint.
 Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
 
 /// One step of a task on one mesh.

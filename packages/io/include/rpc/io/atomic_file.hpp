@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 namespace rpc::io
@@ -23,16 +24,41 @@ public:
   /// Where to write meanwhile: the path with the process id appended.
   const std::string &temporary() const { return temporary_; }
 
-  /// Flushes the temporary file to disk and gives it its name; an older file of that name is replaced.
-  /// The writer has closed the file before.
+  /// Gives the file its name while it is still being written; an older file of that name is replaced. From now on it stays.
+  /// @throws rpc::Error as the constructor does
+  void publish();
+  /// Flushes the file to disk and publishes it, if that has not been done. The writer has closed the file before.
   /// @throws rpc::Error as the constructor does
   void commit();
 
 private:
   std::string path_;
   std::string temporary_;
-  bool committed_ = false;
+  bool published_ = false;
 };
+
+class Descriptor;
+
+/// A text file that grows line by line, and can be read meanwhile. A process that is killed leaves all that was appended.
+///
+/// One rank only.
+class GrowingFile
+{
+public:
+  /// Replaces an older file by one with a first text, whole or not at all.
+  /// @throws rpc::Error as AtomicFile does
+  GrowingFile(const std::string &path, const std::string &beginning);
+  ~GrowingFile();
+  /// @throws rpc::Error (internal_error) if the text cannot be written; nothing of it stays
+  void append(const std::string &text);
+
+private:
+  std::unique_ptr<Descriptor> file_;
+};
+
+/// Removes temporary files that killed processes of this machine have left of a run's results.
+/// @param stem  folder and name that the results begin with
+void remove_abandoned(const std::string &stem);
 
 /// Writes a whole text file or none; one rank only.
 /// @throws rpc::Error: bad_input if the folder cannot be written to, internal_error otherwise (disk full)

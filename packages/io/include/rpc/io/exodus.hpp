@@ -16,7 +16,8 @@ struct NodalField {
   HostView<double *> values; ///< (owned nodes)
 };
 
-/// An Exodus file of a mesh with fields at several times, which appears whole or not at all; all members are collective.
+/// An Exodus file of a mesh with fields at several times; all members are collective. It appears whole or not at all, or, once it is
+/// published, grows from time to time: then it can be read meanwhile, and a process that is killed leaves all times but the last.
 ///
 /// Rank 0 writes, in the order of Mesh::node_id and Mesh::cell_id, so that the file does not depend on the number of
 /// ranks: the mesh's blocks and, as side sets, its sides with their names. Coordinates and fields are collected one at a time.
@@ -39,7 +40,13 @@ public:
   /// Adds a time, larger than those before it, with its fields.
   /// @throws rpc::Error (internal_error) on every rank for other fields, one of the wrong length or a failed write
   void write(double time, const std::vector<NodalField> &fields);
-  /// Closes the file and gives it its name.
+  /// Adds times of an older file of the same mesh and fields, in their order; nothing if it is not such a file.
+  /// @param wanted  rising; those that the older file has too are added
+  /// @return how many were
+  int take_times(const std::string &older, const std::vector<double> &wanted);
+  /// Gives the file its name; each time that is written is in it from now on.
+  void publish();
+  /// Closes the file and gives it its name, if it has none yet.
   void commit();
 
 private:

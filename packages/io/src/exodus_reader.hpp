@@ -1,0 +1,79 @@
+#pragma once
+
+#include "rpc/core/kokkos.hpp"
+
+#include <exodusII.h>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rpc::io
+{
+
+/// An Exodus file that is read; one rank only. What cannot be read is empty. Private to io.
+class ExodusReader
+{
+public:
+  /// None if there is no such file, or it is no Exodus file.
+  static std::optional<ExodusReader> open(const std::string &path)
+  {
+    ex_opts(EX_DEFAULT); // errors come as return codes, not on the console
+    int word_size = sizeof(double), file_word_size = 0;
+    float version = 0;
+    const int id = ex_open(path.c_str(), EX_READ, &word_size, &file_word_size, &version);
+    if (id < 0) return std::nullopt;
+    return ExodusReader(id);
+  }
+  ~ExodusReader()
+  {
+    if (id_ >= 0) ex_close(id_);
+  }
+  ExodusReader(ExodusReader &&other) noexcept : id_(std::exchange(other.id_, -1)) {}
+  ExodusReader(const ExodusReader &) = delete;
+  ExodusReader &operator=(const ExodusReader &) = delete;
+  ExodusReader &operator=(ExodusReader &&) = delete;
+
+  GO num_nodes() const { return ex_inquire_int(id_, EX_INQ_NODES); }
+  std::vector<double> times() const
+  {
+    const auto count = ex_inquire_int(id_, EX_INQ_TIME);
+    std::vector<double> times(count > 0 ? count : 0);
+    if (!times.empty() && ex_get_all_times(id_, times.data()) < 0) times.clear();
+    return times;
+  }
+  std::vector<std::string> field_names() const
+  {
+    int count = 0;
+    if (ex_get_variable_param(id_, EX_NODAL, &count) < 0) return {};
+    std::vector<std::vector<char>> buffers(count, std::vector<char>(MAX_STR_LENGTH + 1, '\0'));
+    std::vector<char *> pointers;
+    for (auto &buffer : buffers) pointers.push_back(buffer.data());
+    if (count > 0 && ex_get_variable_names(id_, EX_NODAL, count, pointers.data()) < 0) return {};
+    return {pointers.begin(), pointers.end()};
+  }
+  /// @param step  from 1   @param index  of the field
+  std::vector<double> field(const int step, const int index) const
+  {
+    std::vector<double> values(num_nodes());
+    if (ex_get_var(id_, step, EX_NODAL, index + 1, 1, num_nodes(), values.data()) < 0) values.clear();
+    return values;
+  }
+  /// The information records; none if one cannot be read.
+  std::vector<std::string> info() const
+  {
+    const auto count = ex_inquire_int(id_, EX_INQ_INFO);
+    std::vector<std::vector<char>> buffers(count > 0 ? count : 0, std::vector<char>(MAX_LINE_LENGTH + 1, '\0'));
+    std::vector<char *> pointers;
+    for (auto &buffer : buffers) pointers.push_back(buffer.data());
+    if (buffers.empty() || ex_get_info(id_, pointers.data()) < 0) return {};
+    return {pointers.begin(), pointers.end()};
+  }
+
+private:
+  explicit ExodusReader(const int id) : id_(id) {}
+
+  int id_;
+};
+
+} // namespace rpc::io

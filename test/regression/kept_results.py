@@ -1,0 +1,231 @@
+"""What a run with load steps has computed is on disk: after an error in a later step, a full disk, a signal and kill -9; and a restart
+goes on with the same files."""
+
+import csv
+import json
+import os
+import pathlib
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from film import Film
+from rpc_run import LAUNCH, PROGRAM, RANKS, SMALL, SOURCE, RpcTestCase, errors, files, ranks_below
+
+BLOCK = SOURCE / "test" / "verification" / "decks" / "block.xml"
+TO_AND_FRO = "-20*sin(pi*x/5)*(0.6 + 0.4*sin(t))"
+NOT_CONVERGED, NO_SOLUTION, BAD_INPUT = 4, 5, 2
+TWENTY = ["--set=Steps->From=0.25", "--set=Steps->To=5", "--set=Steps->Step=0.25"]
+
+
+def rows(path):
+    return list(csv.DictReader(path.read_text().splitlines()))
+
+
+class KeptResults(RpcTestCase):
+    def out(self, end, output="out", deck="beam"):
+        return self.folder / output / f"{deck}.{end}"
+
+    def summary(self, output="out", deck="beam"):
+        return json.loads(self.out("json", output, deck).read_text())
+
+    def expect_steps(self, times, failed_at, reason, deck="beam"):
+        """All files hold the steps at these times, and say what ended the run."""
+        summary = self.summary(deck=deck)
+        self.assertFalse(summary["converged"])
+        self.assertEqual(summary["failed_at"], failed_at)
+        self.assertIn(reason, summary["reason"])
+        self.assertEqual([step["time"] for step in summary["steps"]], [*times, failed_at])
+        self.assertEqual([step["converged"] for step in summary["steps"]], [True] * len(times) + [False])
+        table = rows(self.out("history.csv", deck=deck))
+        self.assertEqual([float(row["time"]) for row in table], [*times, failed_at])
+        self.assertEqual([row["converged"] for row in table], ["1"] * len(times) + ["0"])
+        self.assertIn(reason, table[-1]["reason"])
+        self.assertEqual(table[-1]["work"], "nan")
+        self.assertEqual(Film(self.out("e", deck=deck)).times, list(times))
+
+    def test_a_load_that_grows_beyond_the_limit_leaves_the_steps_before(self):
+        # The foundation carries 10 N/m: at t = 2.75, and not at 3.
+        result = self.rpc(f"--input={BLOCK}", "--output=out", "--set=Traction->top->Y=-3.6*t", "--set=Steps->From=0.5", "--set=Steps->To=4",
+                          "--set=Steps->Step=0.25", "--set=Uzawa->Tolerance=1e-8", code=NO_SOLUTION)
+        self.assertEqual(len(errors(result)), 1)
+        for part in ["at t = 3: ", "10.8 [N/m]", "at most 10 [N/m]", "step 10, t = 2.75"]:
+            self.assertIn(part, errors(result)[0])
+        self.assertIn("NOT CONVERGED: at t = 3", result.stdout)
+        self.expect_steps([0.5 + 0.25 * k for k in range(10)], 3, "at most 10 [N/m]", "block")
+        self.assertEqual(self.summary(deck="block")["time"], 2.75)
+
+    def test_an_expression_that_fails_later_leaves_the_steps_before(self):
+        result = self.rpc("--input=beam.xml", SMALL, "--output=out", "--set=Traction->top->Y=-20*sqrt(2.5-t)", "--set=Steps->Times={1,2,3}",
+                          code=BAD_INPUT)
+        self.assertEqual(len(errors(result)), 1)
+        self.assertIn("at t = 3: ", errors(result)[0])
+        self.expect_steps([1, 2], 3, "nan")
+
+    def test_an_expression_that_fails_in_the_first_step_leaves_nothing(self):
+        result = self.rpc("--input=beam.xml", SMALL, "--output=out", "--set=Traction->top->Y=-20*sqrt(0.5-t)", "--set=Steps->Times={1,2}",
+                          code=BAD_INPUT)
+        self.assertEqual(len(errors(result)), 1)
+        self.assertEqual(files(self.folder / "out"), [])
+
+    def test_a_step_that_does_not_converge_has_no_energies(self):
+        self.rpc("--input=beam.xml", SMALL, "--output=out", f"--set=Traction->top->Y={TO_AND_FRO}", "--set=Steps->Times={1,4}",
+                 "--set=Steps->Max Halvings=1", "--set=NOX->Maximum Iterations=1", "--set=Uzawa->Maximum Iterations=1",
+                 "--set=Nested Iteration->Enabled=false", "--set=Contact->Gap=0.004*sin(pi*x/5)", code=NOT_CONVERGED)
+        last = self.summary()["steps"][-1]
+        self.assertFalse(last["converged"])
+        self.assertIsNone(last["strain_energy"])
+        self.assertEqual(last["time"], self.summary()["failed_at"])
+        self.assertLess(last["time"], 1)  # that of the part that failed
+        self.assertTrue(last["reason"])
+
+    def start(self, *arguments, output="out"):
+        process = subprocess.Popen([*LAUNCH, PROGRAM, "--input=beam.xml", f"--output={output}", *arguments], cwd=self.folder, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        return process
+
+    def limited(self, size):
+        """A run whose files cannot grow beyond a size, from its third step on."""
+        process = self.start("--set=Mesh->Cells={40,8}", f"--set=Traction->top->Y={TO_AND_FRO}", *TWENTY)
+        for line in process.stdout:
+            if line.startswith("   3/"):
+                break
+        for rank in ranks_below(process.pid):
+            resource.prlimit(rank, resource.RLIMIT_FSIZE, (size, size))
+        out, err = process.communicate(timeout=600)
+        return subprocess.CompletedProcess(process.args, process.returncode, out, err)
+
+    def test_a_disk_that_is_full_leaves_the_steps_before(self):
+        self.rpc("--input=beam.xml", "--set=Mesh->Cells={40,8}", "--output=whole", f"--set=Traction->top->Y={TO_AND_FRO}", *TWENTY)
+        whole = Film(self.out("e", "whole"))
+        size = self.out("e", "whole").stat().st_size
+        for share in [0.6, 0.75, 0.9]:
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            result = self.limited(int(share * size))
+            with self.subTest(share):
+                self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+                self.assertEqual(len(errors(result)), 1)
+                for part in ["at t = ", "output: ", '"out/beam.e"', "File too large"]:
+                    self.assertIn(part, errors(result)[0])
+                film = Film(self.out("e"))
+                self.assertGreaterEqual(len(film.times), 3)
+                self.assertEqual(film.times, whole.times[:len(film.times)])
+                for name, values in film.nodal.items():
+                    self.assertEqual(values, whole.nodal[name][:len(values)], name)
+                self.assertGreaterEqual(len(rows(self.out("history.csv"))), len(film.times))
+                self.assertEqual([name for name in files(self.folder / "out") if ".tmp." in name or "lock" in name], [])
+
+    HISTORY = [f"--set=Traction->top->Y={TO_AND_FRO}", "--set=Steps->From=0.25", "--set=Steps->To=10", "--set=Steps->Step=0.25",
+               "--set=Steps->Checkpoint Every=3", SMALL]
+
+    def expect_equal_runs(self, a, b):
+        """Tables and films to the last bit, but for times."""
+        left, right = (rows(self.out("history.csv", output)) for output in (a, b))
+        self.assertEqual(len(left), len(right))
+        for x, y in zip(left, right):
+            self.assertEqual({k: v for k, v in x.items() if k != "seconds"}, {k: v for k, v in y.items() if k != "seconds"})
+        self.assertEqual(self.out("contact.csv", a).read_bytes(), self.out("contact.csv", b).read_bytes())
+        self.assertEqual(self.out("e", a).read_bytes(), self.out("e", b).read_bytes())
+
+    def test_after_kill_a_restart_ends_as_the_run_without_a_break(self):
+        self.rpc("--input=beam.xml", *self.HISTORY, "--output=whole")
+        random.seed(30)
+        for attempt in range(6 if RANKS == 1 else 2):
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            process = self.start(*self.HISTORY)
+            step = random.randrange(4, 36)
+            for line in process.stdout:
+                if line.startswith(f"{step:4}/"):
+                    break
+            time.sleep(random.random() * 0.02)
+            for rank in ranks_below(process.pid):
+                os.kill(rank, signal.SIGKILL)
+            process.communicate(timeout=600)
+            with self.subTest((attempt, step)):
+                film = Film(self.out("e"))  # readable, and whole
+                self.assertGreaterEqual(len(film.times), step)
+                self.assertGreaterEqual(len(rows(self.out("history.csv"))), step)
+                self.assertFalse(self.out("json").exists())
+                result = self.rpc("--input=beam.xml", *self.HISTORY, "--output=out", "--restart")
+                self.assertNotIn("note: \"", result.stdout)
+                self.expect_equal_runs("whole", "out")
+                self.assertEqual([name for name in files(self.folder / "out") if ".tmp." in name or "lock" in name], [])
+
+    def test_a_signal_leaves_a_checkpoint(self):
+        plain = [argument for argument in self.HISTORY if "Checkpoint" not in argument]
+        process = self.start(*plain)
+        for line in process.stdout:
+            if line.startswith("   5/"):
+                break
+        os.kill(max(ranks_below(process.pid)), signal.SIGTERM)
+        out, err = process.communicate(timeout=600)
+        self.assertEqual(process.returncode, NOT_CONVERGED, out + err)
+        done = len([row for row in rows(self.out("history.csv")) if row["converged"] == "1"])
+        self.assertGreaterEqual(done, 5)
+        self.assertEqual([path.name for path in (self.folder / "out").glob("*checkpoint*")], [f"beam.checkpoint-{done:06}.e"])
+        self.rpc("--input=beam.xml", *plain, "--output=out", "--restart")
+        self.assertEqual(len(rows(self.out("history.csv"))), 40)
+        self.assertEqual(Film(self.out("e")).times, [0.25 * k for k in range(1, 41)])
+
+    def test_a_checkpoint_that_cannot_be_written_is_told_and_the_run_goes_on(self):
+        (self.folder / "out" / "beam.checkpoint-000003.e").mkdir(parents=True)
+        result = self.rpc("--input=beam.xml", *self.HISTORY, "--output=out")
+        self.assertIn("note: no checkpoint at t = 0.75: ", result.stdout)
+        self.assertEqual(len(rows(self.out("history.csv"))), 40)
+        self.assertTrue((self.folder / "out" / "beam.checkpoint-000039.e").is_file())
+
+    def test_restart_takes_the_newest_whole_checkpoint(self):
+        result = self.rpc("--input=beam.xml", *self.HISTORY, "--output=out", "--restart", code=BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, ["there is no checkpoint", '"out"', "--restart=FILE"])
+        self.rpc("--input=beam.xml", *self.HISTORY, "--output=out")
+        newest = self.folder / "out" / "beam.checkpoint-000039.e"
+        newest.write_bytes(newest.read_bytes()[:-1000])
+        longer = [argument.replace("To=10", "To=11") for argument in self.HISTORY]
+        self.rpc("--input=beam.xml", *longer, "--output=out", "--restart")
+        self.rpc("--input=beam.xml", *longer, "--output=whole")
+        self.expect_equal_runs("whole", "out")
+
+    def test_fields_may_change_after_the_steps_that_are_done(self):
+        three = [argument.replace("To=10", "To=0.75") for argument in self.HISTORY]
+        self.rpc("--input=beam.xml", *three, "--output=out")
+        later = [argument.replace("To=10", "To=2") for argument in self.HISTORY]
+
+        def restarted(field, code):
+            return self.rpc("--input=beam.xml", *later, f"--set=Traction->top->Y={field}", "--output=other",
+                            "--restart=out/beam.checkpoint-000003.e", code=code)
+
+        spaced = TO_AND_FRO.replace("*", " * ").replace("0.4", "2/5")
+        restarted(spaced, 0)
+        restarted(f"(t <= 0.75 ? {TO_AND_FRO} : 0)", 0)
+        result = restarted(TO_AND_FRO.replace("0.4", "0.5"), BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, ["Traction->top->Y", "at t = 0.25 and (", "it is ", "and was "])
+        result = self.rpc("--input=beam.xml", *later, "--set=Steps->From=0.5", "--restart=out/beam.checkpoint-000003.e", code=BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, ["Steps->Times", "0.25, 0.5, 0.75", "later times"])
+        result = self.rpc("--input=beam.xml", *later, "--set=Material->Young's Modulus=2001", "--restart=out/beam.checkpoint-000003.e",
+                          code=BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, ["Material->Young's Modulus"])
+
+    def test_two_runs_of_one_name_in_one_folder(self):
+        process = self.start("--set=Mesh->Cells={640,128}", f"--set=Traction->top->Y={TO_AND_FRO}", *TWENTY)
+        for line in process.stdout:
+            if line.startswith("   1/"):
+                break
+        result = self.rpc("--input=beam.xml", SMALL, "--output=out", code=BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, ["another run", '"beam"', '"out"', "--output=DIR"])
+        self.rpc("--input=beam.xml", SMALL, "--output=elsewhere")
+        for rank in ranks_below(process.pid):
+            os.kill(rank, signal.SIGKILL)
+        process.communicate(timeout=600)
+        left = self.folder / "out" / "beam.e.tmp.999999999"
+        left.write_text("of a process that is gone")
+        self.rpc("--input=beam.xml", SMALL, "--output=out")
+        self.assertEqual(files(self.folder / "out"), ["beam.contact.csv", "beam.e", "beam.json"])
+
+
+if __name__ == "__main__":
+    unittest.main()
