@@ -14,6 +14,9 @@ namespace rpc
 namespace
 {
 
+// Of a step's energies.
+constexpr double notable_imbalance = 0.01;
+
 /// printf into a stream.
 [[gnu::format(printf, 2, 3)]] void print(std::ostream &out, const char *format, ...)
 {
@@ -118,6 +121,29 @@ void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, co
   out << '\n';
   for (const auto &[key, reason] : e.unknown)
     out << "    no error of " << adapt::error_bar_name(key, scope) << ": " << reason << '\n';
+}
+
+/// Steps whose work does not fit their energies.
+void print_balance(std::ostream &out, const std::vector<analysis::StepRecord> &history)
+{
+  int count = 0;
+  double most = 0, at = 0;
+  analysis::Energies before;
+  for (const auto &step : history) {
+    const double share = analysis::relative_imbalance(before, step.energies);
+    before = step.energies;
+    if (!(share > notable_imbalance)) continue;
+    ++count;
+    if (share <= most) continue;
+    most = share;
+    at = step.time;
+  }
+  if (count > 0)
+    print(out,
+          "    note              in %d of %zu steps work and energies differ by more than 1 %% (%.2g %% at t = %g): "
+          "contact opens or "
+          "closes\n                      within a step; \"Steps->Energy Tolerance\" divides such steps\n",
+          count, history.size(), 100 * most, at);
 }
 
 } // namespace
@@ -238,6 +264,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
     print(out, "    predicted by      %zu dofs: %d Newton, %d CG iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
   if (s.adaptation) print_adaptation(out, *s.adaptation, scope);
+  print_balance(out, s.history);
   for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
   print_lines(out, lines(analysis::phase_seconds, s.seconds, scope, "%.3f"));
   for (const auto &file : files) print(out, "  wrote %s\n", file.c_str());

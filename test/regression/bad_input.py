@@ -69,6 +69,8 @@ ASSIGNMENTS = [
     (["Contact->Obstacle->Centre={2.6,-3}", "Contact->Obstacle->Radius=0.05"],
      ['"Contact->Obstacle" has a "Centre" and no "Type"', "no obstacle", "none, plane, "]),
     (["Time=2", "Steps->Times={1, 2}"], ['"Time" = 2 does not go with "Steps"']),
+    (["Kinematics=axisymmetric", "Traction->left->Y=1"], ['"Traction->left" acts nowhere', '"left" lies on the axis']),
+    (["Steps->Times={1}", "Steps->Energy Tolerance=0"], ['"Steps->Energy Tolerance" must be > 0', "got 0"]),
     (["Steps->From=1", "Steps->To=2"], ['"Steps->From", "To" and "Step" belong together', "got 1, 2 and nan"]),
     (["Steps->From=1", "Steps->To=1", "Steps->Step=1"], ['"Steps->To" must be finite and > "From" = 1', "got 1"]),
     (["Steps->From=1", "Steps->To=2", "Steps->Step=-1"], ['"Steps->Step" must be > 0', "got -1"]),

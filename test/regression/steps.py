@@ -125,6 +125,23 @@ class Steps(RpcTestCase):
         self.assertEqual(rows(self.folder / "out" / "beam.history.csv")[0]["parts"], halved["steps"][0]["parts"])
         self.assertEqual(Film(self.folder / "out" / "beam.e").times, [1])
 
+    def test_an_energy_tolerance_divides_the_step_in_which_contact_opens(self):
+        # A floor presses the beam and goes far away: all work comes back.
+        lifted = ["--set=Traction->top->Y=0", "--set=Contact->Yield Stress=inf", "--set=Steps->Times={1, 2}",
+                  "--set=Contact->Gap=(t <= 1 ? -0.01*t*sin(pi*x/5) : 1.01*(t - 1) - 0.01*sin(pi*x/5))"]
+        coarse = self.solve(*lifted)["steps"]
+        fine = self.solve(*lifted, "--set=Steps->Energy Tolerance=1e-3")["steps"]
+        stored = coarse[0]["strain_energy"]
+        self.assertGreater(abs(coarse[1]["work"]), 10 * stored)
+        self.assertEqual(coarse[1]["parts"], 1)
+        self.assertLess(abs(fine[1]["work"]), 0.01 * stored)
+        self.assertGreater(fine[1]["parts"], 5)
+        for step in [*coarse, *fine]:
+            sums = step["strain_energy"] + step["foundation_energy"] + step["dissipated_energy"]
+            self.assertAlmostEqual(step["energy_imbalance"], step["work"] - sums, delta=1e-12 * abs(coarse[1]["work"]))
+        result = self.rpc("--input=beam.xml", SMALL, *lifted, "--output=out")
+        self.assertIn("in 1 of 2 steps work and energies differ by more than 1 %", result.stdout)
+
     def test_times_that_do_not_rise_are_refused(self):
         result = self.rpc("--input=beam.xml", SMALL, "--set=Steps->Times={1, 2, 2}", code=None)
         self.expect_refusal(result, 2, ['"Steps->Times"', "rise", "got 2 after 2"])

@@ -8,6 +8,8 @@
 #include "step_energies.hpp"
 
 #include <Teuchos_Time.hpp>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -47,6 +49,8 @@ int newton_steps(const StepSolution &s)
   return std::accumulate(s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end(), 0);
 }
 
+// Of a step for its energy balance: what remains is a millionth of it.
+constexpr int most_halvings_for_balance = 20;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Energies unknown_energies()
@@ -67,6 +71,12 @@ void add_work(const StepSolution &s, StepRecord &record)
 }
 
 } // namespace
+
+double relative_imbalance(const Energies &before, const Energies &after)
+{
+  const double change = std::abs(after.imbalance - before.imbalance);
+  return change == 0 ? 0 : change / std::max(before.largest(), after.largest());
+}
 
 StepRecord broken_off(const Model &model, StepRecord until_then, const double t, const std::string &reason)
 {
@@ -119,7 +129,7 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   last_ = {};
   last_.time = t;
   last_.parts = 0; // counted as they are solved
-  StepSolution s = advance_in_parts(t, max_halvings_, progress, now);
+  StepSolution s = advance_in_parts(t, {max_halvings_, most_halvings_for_balance}, progress, now);
   last_.time = s.uzawa.converged ? t : tried_;
   last_.converged = s.uzawa.converged;
   if (!last_.converged) last_.reason = s.uzawa.reason;
@@ -136,16 +146,34 @@ StepRecord LoadHistory::broken_off(const std::string &reason) const
   return analysis::broken_off(problem_->model(), last_, tried_, reason);
 }
 
-StepSolution LoadHistory::advance_in_parts(const double t, const int halvings, const Progress &progress,
+StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, const Progress &progress,
                                            const std::function<void(const Problem &, const Step &)> &now)
 {
+  const auto memory = memory_, before = before_;
+  const auto last_forces = last_forces_;
   StepSolution s = solve(t, options_, progress, now);
-  if (s.uzawa.converged || halvings == 0 || interrupted(problem_->discretization().mesh->comm())) return s;
-  const double from = memory_ ? memory_->time : 0; // the body is at rest at t = 0
+  const double from = memory ? memory->time : 0; // the body is at rest at t = 0
   const double half = 0.5 * (from + t);
+  Halvings then = left;
+  if (s.uzawa.converged) {
+    if (is_balanced(memory) || then.balance-- == 0) return s;
+  } else if (then.failures-- == 0 || interrupted(problem_->discretization().mesh->comm())) {
+    return s;
+  }
   if (!(half > from && half < t)) return s;
-  s = advance_in_parts(half, halvings - 1, progress, now);
-  return s.uzawa.converged ? advance_in_parts(t, halvings - 1, progress, now) : s;
+  if (s.uzawa.converged) { // as if the step had not been tried
+    --last_.parts;
+    memory_ = memory;
+    before_ = before;
+    last_forces_ = last_forces;
+  }
+  s = advance_in_parts(half, then, progress, now);
+  return s.uzawa.converged ? advance_in_parts(t, then, progress, now) : s;
+}
+
+bool LoadHistory::is_balanced(const std::optional<Memory> &before) const
+{
+  return relative_imbalance(before ? before->energies : Energies{}, memory_->energies) <= energy_tolerance_;
 }
 
 StepSolution LoadHistory::solve(const double t, const StepOptions &options, const Progress &progress,

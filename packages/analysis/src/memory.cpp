@@ -3,6 +3,9 @@
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/fem/interpolation.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace rpc::analysis
 {
 
@@ -61,6 +64,11 @@ contact::ContactState extrapolated(const contact::ContactNodes &points, const Me
   if (!last.tangential.is_null() && !before.tangential.is_null())
     later.tangential = led_on(*before.tangential, *last.tangential);
   return state_of(points, later);
+}
+
+double Energies::largest() const
+{
+  return std::max({std::abs(strain), std::abs(foundation), std::abs(dissipated), std::abs(work)});
 }
 
 } // namespace rpc::analysis

@@ -88,6 +88,10 @@ Teuchos::ParameterList valid_steps_parameters()
   valid.set("Step", unset, "Their distance, > 0. The last may be shorter.");
   valid.set("Write Every", 1, "Every N-th of the times goes into the Exodus file, and the last one; N > 0.");
   valid.set("Max Halvings", 6, "A step that does not converge is halved, and its halves, so many times at most, >= 0.");
+  valid.set("Energy Tolerance", unset,
+            "A step is halved where work less energies changes in it by more than this share of the largest energy, > "
+            "0: the work is "
+            "wrong where contact opens or closes within a step. nan, which is to leave it out: no step is.");
   valid.set("Checkpoint Every", 0,
             "After every N-th step a checkpoint is written, <deck>.checkpoint-NUMBER.e, from which --restart goes on; "
             "0: none.");
@@ -136,6 +140,10 @@ StepsOptions steps_options(const Teuchos::ParameterList &list)
   RPC_REQUIRE(options.write_every > 0, "deck: \"Steps->Write Every\" must be > 0, got " << options.write_every);
   RPC_REQUIRE(options.max_halvings >= 0 && options.max_halvings <= 30,
               "deck: \"Steps->Max Halvings\" must be in [0, 30], got " << options.max_halvings);
+  if (const double tolerance = list.get<double>("Energy Tolerance"); !std::isnan(tolerance)) {
+    RPC_REQUIRE(tolerance > 0, "deck: \"Steps->Energy Tolerance\" must be > 0, got " << tolerance);
+    options.energy_tolerance = tolerance;
+  }
   RPC_REQUIRE(options.checkpoint_every >= 0,
               "deck: \"Steps->Checkpoint Every\" must be >= 0, got " << options.checkpoint_every);
   return options;

@@ -154,6 +154,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   const auto problem = make_problem(first, mesh, seconds);
   LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver,
                       coarser_meshes(first, task.mesh, comm));
+  history.balance_energies_to(task.steps.energy_tolerance);
   std::vector<StepRecord> records;
   int assemblies_before = 0;
   if (resumed) {
@@ -231,6 +232,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
     static_cast<StepSolution &>(s) = solve_step(*problem, step, state, task.step, from, listener.step);
   } else {
     LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver, coarser);
+    history.balance_energies_to(task.steps.energy_tolerance);
     if (earlier)
       history.go_on_from(same_mesh ? *earlier->memory : interpolated(*earlier->memory, earlier->discretization, d));
     for (const auto &start : starts) history.offer(start);

@@ -170,6 +170,7 @@ Energies energies_after(const Problem &problem, const double t, const StepSoluti
   }
   energies.work += mean.dot(moved) + work_of_motion(comm, points, s.contact, moving_gap(problem, points, points.dent),
                                                     pressure, before_gap);
+  energies.imbalance = energies.work - energies.strain - energies.foundation - energies.dissipated;
   return energies;
 }
 

@@ -282,7 +282,7 @@ TEST(DentsOnTheFoundation, UnderABodyThatIsDraggedCostTheWorkThatMovesIt)
     }
     const analysis::Energies &e = history.last().energies;
     EXPECT_GT(e.dissipated, 1.1 * pressed_only);
-    imbalance[steps == 24] = std::abs(e.imbalance()) / e.dissipated;
+    imbalance[steps == 24] = std::abs(e.imbalance) / e.dissipated;
   }
   EXPECT_LT(imbalance[0], 0.05);
   EXPECT_LT(imbalance[1], 0.5 * imbalance[0]);

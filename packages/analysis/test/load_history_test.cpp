@@ -276,7 +276,7 @@ TEST(LoadHistory, GoesOnFromWhatIsRemembered)
   const analysis::Energies &a = second.last().energies, &b = whole.last().energies;
   EXPECT_NEAR(a.work, b.work, 1e-10 * b.work);
   EXPECT_NEAR(a.dissipated, b.dissipated, 1e-10 * b.work);
-  EXPECT_NEAR(a.imbalance(), b.imbalance(), 1e-10 * b.work);
+  EXPECT_NEAR(a.imbalance, b.imbalance, 1e-10 * b.work);
 }
 
 TEST(LoadHistory, WhatIsRememberedGoesToOtherMeshesByInterpolation)

@@ -26,7 +26,7 @@ TEST(LoadHistory, EnergiesBalanceToTheSquareOfTheStep)
       double sum = 0, before = 0;
       for (int k = 1; k <= steps; ++k) {
         advance(history, 2. * k / steps);
-        const double now = history.last().energies.imbalance();
+        const double now = history.last().energies.imbalance;
         sum += std::abs(now - before);
         before = now;
         work = std::max(work, history.last().energies.work);
@@ -35,6 +35,35 @@ TEST(LoadHistory, EnergiesBalanceToTheSquareOfTheStep)
     }
     EXPECT_GT(missed[1], 1e-9 * work); // what is measured is not rounding
     EXPECT_GT(std::log2(missed[0] / missed[1]) / 2, 1.7) << missed[0] << " " << missed[1];
+  }
+}
+
+TEST(LoadHistory, StepsAreDividedUntilTheirEnergiesBalance)
+{
+  const auto there_and_back = [](const double t) { return t <= 1 ? 2 * t : 4 - 2 * t; };
+  for (const Law &law : laws) {
+    SCOPED_TRACE(law.name);
+    std::vector<double> missed;
+    std::vector<int> parts;
+    for (const double tolerance : {std::numeric_limits<double>::infinity(), 1e-2, 1e-4}) {
+      auto history = history_of(uneven(law, there_and_back), {}, 0, 1);
+      history.balance_energies_to(tolerance);
+      Energies before;
+      missed.push_back(0);
+      parts.push_back(0);
+      for (const double t : {1., 2.}) {
+        advance(history, t);
+        const Energies now = history.last().energies;
+        missed.back() = std::max(missed.back(), relative_imbalance(before, now));
+        parts.back() += history.last().parts;
+        EXPECT_LE(relative_imbalance(before, now), history.last().parts * tolerance) << t;
+        before = now;
+      }
+    }
+    EXPECT_EQ(parts[0], 2);
+    EXPECT_GT(missed[0], 0.02); // points close and open within the steps
+    EXPECT_LT(missed[2], 0.1 * missed[0]);
+    EXPECT_GT(parts[2], parts[1]);
   }
 }
 
@@ -52,10 +81,10 @@ TEST(LoadHistory, EnergiesBalanceToTheSquareOfTheStepWhereNormalsTurn)
   for (const int steps : {4, 16}) {
     auto history = history_of(model, close(), 0, 1, 2);
     advance(history, 1);
-    double sum = 0, before = history.last().energies.imbalance();
+    double sum = 0, before = history.last().energies.imbalance;
     for (int k = 1; k <= steps; ++k) {
       advance(history, 1 + 1. * k / steps);
-      const double now = history.last().energies.imbalance();
+      const double now = history.last().energies.imbalance;
       sum += std::abs(now - before);
       before = now;
     }
@@ -78,7 +107,7 @@ TEST(LoadHistory, EnergiesBalanceExactlyOnProportionalElasticPaths)
     ASSERT_EQ(s.contact.total.contact_length, 2);
     const analysis::Energies &e = history.last().energies;
     EXPECT_GT(e.foundation, 0.01 * e.work);
-    EXPECT_NEAR(e.imbalance(), 0, 1e-10 * e.work) << t;
+    EXPECT_NEAR(e.imbalance, 0, 1e-10 * e.work) << t;
   }
 }
 

@@ -7,6 +7,8 @@
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/surface.hpp"
 
+#include <algorithm>
+
 namespace rpc::fem
 {
 namespace
@@ -196,6 +198,23 @@ DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &s
   return sum;
 }
 
+namespace
+{
+
+double largest_of(const DeviceView<double *> &values)
+{
+  double largest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::fem::largest_of", device_range(static_cast<LO>(values.extent(0))),
+      KOKKOS_LAMBDA(const LO i, double &most) {
+        if (values(i) > most) most = values(i);
+      },
+      Kokkos::Max<double>(largest));
+  return std::max(largest, 0.);
+}
+
+} // namespace
+
 void add_traction(const Discretization &d, const mesh::Side &side, const VectorField &traction,
                   const std::string &parameter, Vector &load)
 {
@@ -205,7 +224,11 @@ void add_traction(const Discretization &d, const mesh::Side &side, const VectorF
   const auto points = quadrature_points(mesh.coords, side.facets, table.value);
   const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
   const NodeToCells node_to_facets = around_nodes(side.facets, mesh.num_owned_nodes());
-  add_load(side.facets, node_to_facets, table.value, facet_measure(d, side), t, load); // paper (3), (2.5)
+  const auto measure = facet_measure(d, side);
+  RPC_REQUIRE(max_all(mesh.comm(), largest_of(measure)) > 0,
+              "deck: \"" << parameter << "\" acts nowhere: the side \"" << side.name
+                         << "\" lies on the axis, where it has no area. Name another side");
+  add_load(side.facets, node_to_facets, table.value, measure, t, load); // paper (3), (2.5)
 }
 
 } // namespace rpc::fem

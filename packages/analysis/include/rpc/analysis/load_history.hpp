@@ -5,6 +5,7 @@
 #include "rpc/analysis/solve_step.hpp"
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,12 +19,18 @@ struct StepsOptions {
   int write_every = 1;       ///< every so many of the times one goes into the results, and the last; > 0
   int max_halvings = 6;      ///< of a step that does not converge, >= 0
   int checkpoint_every = 0;  ///< a checkpoint after every so many steps; 0: none
+  /// A step whose energy balance is off by more than this share of the energies is halved, > 0.
+  double energy_tolerance = std::numeric_limits<double>::infinity();
 };
 
 /// Parameters of the deck's `Steps` sublist.
 Teuchos::ParameterList valid_steps_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
 StepsOptions steps_options(const Teuchos::ParameterList &list);
+
+/// By how much the energy balance of a step is off, over the largest energy before or after it: the trapezoidal rule for the work is
+/// wrong where contact opens or closes within a step. NaN if it is not known.                doc/theory.md (11.3a)
+double relative_imbalance(const Energies &before, const Energies &after);
 
 /// A step in numbers. Of one that does not converge the energies are unknown, NaN: they are those of steps that do.
 struct StepRecord {
@@ -64,6 +71,8 @@ public:
   void go_on_from(Memory memory, std::optional<Memory> before = std::nullopt);
   /// Another state from which the next step may start, beside those of the steps before.
   void offer(contact::ContactState start) { offered_.push_back(std::move(start)); }
+  /// Has steps halved whose relative_imbalance() is larger, and their halves, a million times finer at most.
+  void balance_energies_to(const double tolerance) { energy_tolerance_ = tolerance; }
   /// Makes multigrid anew, so that what follows depends on memory() and before() alone, bit for bit.
   void start_anew();
 
@@ -84,8 +93,13 @@ public:
   StepRecord broken_off(const std::string &reason) const;
 
 private:
-  StepSolution advance_in_parts(double t, int halvings, const Progress &progress,
+  /// How often a part may be halved: where it does not converge, and for its energy balance.
+  struct Halvings {
+    int failures, balance;
+  };
+  StepSolution advance_in_parts(double t, Halvings left, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
+  bool is_balanced(const std::optional<Memory> &before) const;
   Starts starts_of(const Step &step);
   void remember(double t, const std::vector<contact::ContactOptions> &sides, const Step &step, StepSolution &s);
 
@@ -100,6 +114,7 @@ private:
       last_forces_; // on the body from all but the foundation, after the last step (owned dofs) [N]; null: not known
   std::vector<contact::ContactState> offered_;
   StepRecord last_;
+  double energy_tolerance_ = std::numeric_limits<double>::infinity();
   double tried_ = 0; // t of the last (part of a) step that was begun
 };
 

@@ -12,10 +12,10 @@ struct Energies {
   double foundation =
       0; ///< in the foundation's springs, sum of w c p^2/2; where dents do not stay all that denting took
   double dissipated = 0; ///< sum of w int (xi + H w) dw
-  double work = 0; ///< of loads, prescribed displacements and the foundation's own motion, by the trapezoidal rule
+  double work = 0;      ///< of loads, prescribed displacements and the foundation's own motion, by the trapezoidal rule
+  double imbalance = 0; ///< work - strain - foundation - dissipated: error of the trapezoidal rule alone
 
-  /// Error of the trapezoidal rule alone: work - strain - foundation - dissipated.
-  double imbalance() const { return work - strain - foundation - dissipated; }
+  double largest() const; ///< of the four, in size
 };
 
 /// What a step leaves for the next one: plain data on its mesh. doc/theory.md, section 11
