@@ -166,6 +166,11 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   bool checkpoint_due = false;
   for (const double t : task.steps.times) {
     if (resumed && t <= resumed->last.time) continue;
+    if (!s.history.empty() && interrupted(*comm)) { // a step that converges without iterations does not ask
+      keep_checkpoint(history, records, s.matrix_assemblies, listener);
+      s.failure = Failure{t, interruption() + " before the step", ExitCode::not_converged};
+      break;
+    }
     bool solved = false;
     try {
       Solution next = solve_one_of_steps(task, t, history, assemblies_before, records, seconds, listener);

@@ -82,7 +82,11 @@ std::vector<std::string> records_of(const std::string &text)
 {
   std::vector<std::string> records;
   for (std::size_t first = 0; first < text.size(); first += record_length)
-    records.push_back(text.substr(first, record_length) + mark);
+    records.push_back(text.substr(first, record_length));
+  for (std::string &record : records) { // the library leaves what is behind a short record as it is
+    record.resize(record_length, ' ');
+    record += mark;
+  }
   return records;
 }
 

@@ -64,6 +64,22 @@ TEST(Checkpoint, ReadsBackWhatWasWritten)
   }
 }
 
+// A library that keeps its buffers writes what it had written before behind a text that ends within a record.
+TEST(Checkpoint, ReadsBackTextsOfAnyLengthAfterLongOnes)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  const mesh::Mesh mesh = box();
+  const auto fields = fields_of(mesh);
+  const std::string path = scratch.path("a.e");
+  for (std::size_t length = 0; length < 160; length += 3) {
+    write_checkpoint(path, mesh, 1, fields, std::string(5000, 'l'));
+    const std::string text(length, 's');
+    write_checkpoint(path, mesh, 1, fields, text);
+    EXPECT_EQ(Checkpoint(path, comm).text(), text);
+  }
+}
+
 TEST(Checkpoint, RefusesAnotherMesh)
 {
   const auto comm = Tpetra::getDefaultComm();
