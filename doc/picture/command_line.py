@@ -5,6 +5,8 @@ import os
 import re
 import sys
 
+import numpy as np
+
 import figure
 import history
 import surface
@@ -13,6 +15,7 @@ from scene import Scene
 
 EPILOG = """contact_pressure, gap, dent, penetration and contact_status are drawn on the contact side, in the plane as a diagram inside
 the foundation; the rest of the body has its von Mises stress. Default: contact_pressure if there is contact, else von_mises.
+RESULT.e stands for all files of the run, RESULT.e-s0002 and so on too: one for each mesh of its load steps.
 RESULT.history.csv, of load steps, gives force against displacement and the energies; several of them, each as LABEL=FILE, are compared."""
 
 
@@ -53,6 +56,15 @@ def vector(text):
     return x, y, z
 
 
+def window(text):
+    """Two corners (2, dim), the lower one first."""
+    numbers = [number(part) for part in text.split(",")]
+    corners = np.array(numbers).reshape(2, -1)
+    if corners.shape[1] not in (2, 3) or not (corners[0] < corners[1]).all():
+        raise ValueError
+    return corners
+
+
 def parsed(convert, name, text, rule):
     """An option's value, None if it is absent."""
     try:
@@ -71,11 +83,15 @@ def options(arguments):
     parser.add_argument("--scale", metavar="FACTOR",
                         help="of the displacements, and of the gaps if it is above 1; default: one that makes both visible")
     parser.add_argument("--time", metavar="T", help="time of the step to draw; default: the last one")
+    parser.add_argument("--window", metavar="X0,Y0,X1,Y1", help="enlarges this rectangle of the picture; in space X0,Y0,Z0,X1,Y1,Z1, "
+                        "a box of the undeformed body, and what lies outside is not drawn")
     parser.add_argument("--cut", metavar="x=0", help="in space: takes away what lies on this side of a plane across an axis")
     parser.add_argument("--view", metavar="X,Y,Z", help="in space: direction from the body to the viewer; default: chosen")
     found = parser.parse_args(arguments)
     found.scale = parsed(factor, "scale", found.scale, "a number >= 0")
     found.time = parsed(number, "time", found.time, "a number")
+    found.window = parsed(window, "window", found.window, "x0,y0,x1,y1, in space x0,y0,z0,x1,y1,z1 [m], "
+                          "with x0 < x1, y0 < y1 and z0 < z1")
     found.cut = parsed(plane, "cut", found.cut, "an axis and a number [m], such as x=0")
     found.view = parsed(vector, "view", found.view, "three numbers that are not all 0, such as 1,-1,0.5")
     found.histories = histories(found)
@@ -95,7 +111,7 @@ def histories(found):
         raise PictureError(f"several results must all end in {history.SUFFIX}; see --help")
     if len(tables) > len(history.COLOURS):
         raise PictureError(f"at most {len(history.COLOURS)} load histories go into one picture, got {len(tables)}")
-    for name in ("field", "scale", "time", "cut", "view"):
+    for name in ("field", "scale", "time", "window", "cut", "view"):
         if getattr(found, name) is not None:
             raise PictureError(f"--{name} does not go with {history.SUFFIX}")
     return [("", text) if "=" not in text or os.path.isfile(text) else tuple(text.rsplit("=", 1)) for text in tables]
@@ -121,7 +137,10 @@ def picture_of(found):
     result = Result(found.result, found.time)
     if result.dim == 2 and (found.cut or found.view):
         raise PictureError("--cut and --view are for bodies in space")
-    return figure.draw(Scene(result, found.field, found.scale, cut_of(result, found)), found.view)
+    if found.window is not None and found.window.shape[1] != result.dim:
+        where, wanted = ("the plane", "x0,y0,x1,y1") if result.dim == 2 else ("space", "x0,y0,z0,x1,y1,z1")
+        raise PictureError(f'"{found.result}": --window of a body in {where} must be {wanted} [m], got {found.window.size} numbers')
+    return figure.draw(Scene(result, found.field, found.scale, cut_of(result, found), found.window), found.view)
 
 
 def main(arguments):

@@ -1,5 +1,6 @@
 """Reads the Exodus files that rpc writes."""
 import os
+import re
 
 import netCDF4
 import numpy as np
@@ -7,15 +8,20 @@ import numpy as np
 import elements
 
 
+MOST_LISTED = 12  # times in a message
+
+
 class PictureError(Exception):
     """What the user has to mend, as one sentence."""
 
 
 class Result:
-    """Mesh and fields of one time step.
+    """Mesh and fields of one time step of a film: RESULT.e and, where the mesh changed between steps, RESULT.e-s0002 and so on.
 
+    path      the file that has the step
     positions (nodes, 3) [m] of the undeformed body; z = 0 in the plane
     blocks    [(element's name, (cells, nodes per cell))], nodes from 0
+    side_sets {name: (facets, 2)} cell and the facet's place in it, both from 0
     nodal     {name: (nodes,)}, cell {name: (cells of all blocks,)}
     """
 
@@ -23,16 +29,14 @@ class Result:
         """@param time [s] of the step; None: the last one."""
         if not os.path.isfile(path):
             raise PictureError(f'"{path}": no such file; rpc writes one unless Output->Exodus is false')
-        try:
-            with netCDF4.Dataset(path) as file:
-                file.set_auto_mask(False)
-                self._read(file, path, time)
-        except (OSError, RuntimeError):
-            raise PictureError(f'"{path}" is not an Exodus file') from None
+        self.parts = film(path)
+        times = [read(part, times_of) for part in self.parts]
+        self.num_times = sum(len(some) for some in times)
+        which, step = chosen(times, time, self.parts[0])
+        self.path, self.time = self.parts[which], times[which][step]
+        read(self.path, lambda file, path: self._read(file, path, step))
 
-    def _read(self, file, path, time):
-        if "qa_records" not in file.variables or texts(file["qa_records"][0])[0] != "rpc":
-            raise PictureError(f'"{path}" is not a file of rpc: its QA record names another program, or none')
+    def _read(self, file, path, step):
         self.title = getattr(file, "title", "")
         self.dim = len(file.dimensions["num_dim"])
         self.positions = np.zeros((len(file.dimensions["num_nodes"]), 3))
@@ -45,13 +49,7 @@ class Result:
             if name not in elements.CELLS:
                 raise PictureError(f'"{path}": cells must be {", ".join(elements.CELLS)}, got {name}')
             self.blocks.append((name, np.asarray(file[f"connect{k}"][:], dtype=np.int64) - 1))
-        times = np.asarray(file["time_whole"][:])
-        if not len(times):
-            raise PictureError(f'"{path}" has no time step')
-        step = len(times) - 1 if time is None else int(np.abs(times - time).argmin())
-        if time is not None and abs(times[step] - time) > 1e-6 * max(abs(time), 1e-6):
-            raise PictureError(f'"{path}": --time must be one of {listed(times)}, got {time:g}')
-        self.time, self.num_times = times[step], len(times)
+        self.side_sets = side_sets(file)
         self.nodal = {name: np.asarray(file[f"vals_nod_var{n}"][step], dtype=float)
                       for n, name in enumerate(names(file, "name_nod_var"), 1)}
         self.cell = {name: np.concatenate([cell_values(file, n, k, step) for k in numbers])
@@ -78,6 +76,10 @@ class Result:
         """(nodes,) whether the node is a contact node; None without contact."""
         return self.nodal["contact_status"] >= 0 if "contact_status" in self.nodal else None
 
+    def peak(self, name):
+        """Largest size of a field at all times; 0 where no file has it."""
+        return max(read(part, lambda file, _: largest_of(file, name)) for part in self.parts)
+
     def size(self):
         """Largest extent of the undeformed body [m]."""
         return np.ptp(self.positions, axis=0).max()
@@ -101,6 +103,71 @@ def cell_values(file, variable, block, step):
     return np.full(len(file.dimensions[f"num_el_in_blk{block}"]), np.nan)
 
 
-def listed(values):
-    """At most ten numbers as a text."""
-    return ", ".join(f"{value:g}" for value in values[:10]) + (", ..." if len(values) > 10 else "")
+def read(path, reader):
+    """What reader(file, path) returns of an Exodus file of rpc."""
+    try:
+        with netCDF4.Dataset(path) as file:
+            file.set_auto_mask(False)
+            if "qa_records" not in file.variables or texts(file["qa_records"][0])[0] != "rpc":
+                raise PictureError(f'"{path}" is not a file of rpc: its QA record names another program, or none')
+            return reader(file, path)
+    except (OSError, RuntimeError):
+        raise PictureError(f'"{path}" is not an Exodus file') from None
+
+
+def film(path):
+    """The files of a run, in the order of time, from any one of them."""
+    first = re.sub(r"\.e-s\d{4,}$", ".e", path)
+    if not os.path.isfile(first):
+        return [path]
+    parts = [first]
+    while os.path.isfile(following := f"{first}-s{len(parts) + 1:04d}"):
+        parts.append(following)
+    return parts if path in parts else [path]
+
+
+def times_of(file, path):
+    """(steps,) of a file."""
+    times = np.asarray(file["time_whole"][:])
+    if not len(times):
+        raise PictureError(f'"{path}" has no time step')
+    return times
+
+
+def chosen(times, time, path):
+    """(file, step) of a time, None: the last one. @param times  [(steps,)] of each file of the film that begins with `path`"""
+    if time is None:
+        return len(times) - 1, len(times[-1]) - 1
+    for which, some in reversed(list(enumerate(times))):
+        step = int(np.abs(some - time).argmin())
+        if abs(some[step] - time) <= 1e-6 * max(abs(time), 1e-6):
+            return which, step
+    raise PictureError(f'"{path}": --time must be {rule_of(np.concatenate(times), time)}, got {time:g}')
+
+
+def rule_of(times, time):
+    """What times there are, and which of many are nearest."""
+    if len(times) == 1:
+        return f"{times[0]:g}, the only time there is"
+    if len(times) <= MOST_LISTED:
+        return "one of " + ", ".join(f"{value:g}" for value in times)
+    nearest = np.sort(times[np.argsort(np.abs(times - time), kind="stable")[:2]])
+    return f"one of {len(times)} times from {times.min():g} to {times.max():g}, nearest {nearest[0]:g} and {nearest[1]:g}"
+
+
+def side_sets(file):
+    """{name: (facets, 2)} cell and place of the facets of each side, see Result."""
+    if "ss_names" not in file.variables:
+        return {}
+    found = {}
+    for n, name in enumerate(texts(file["ss_names"][:]), 1):
+        if f"elem_ss{n}" in file.variables:
+            columns = [np.asarray(file[f"{stem}_ss{n}"][:], dtype=np.int64) - 1 for stem in ("elem", "side")]
+            found[name or f"side {n}"] = np.stack(columns, axis=1)
+    return found
+
+
+def largest_of(file, name):
+    """Largest size of a field of nodes at all times of a file."""
+    fields = names(file, "name_nod_var")
+    return float(np.abs(file[f"vals_nod_var{1 + fields.index(name)}"][:]).max(initial=0)) if name in fields else 0.0

@@ -3,14 +3,15 @@ import dataclasses
 
 import numpy as np
 
+import sides
 import surface
 from result import PictureError
-from surface import PLACE
+from surface import LEVELS, PLACE
 
-CONTACT_FIELDS = ("contact_pressure", "gap", "dent", "penetration", "contact_status")
-THICKNESS = 0.08  # of the foundation as it is drawn, of the body's size
+CONTACT_FIELDS = sides.FIELDS
+THICKNESS = 0.08  # of the foundation as it is drawn, of the size of what is drawn of the body
 DIAGRAM = 0.85  # height of the largest value in the plane, of that thickness
-BEHIND = -1e-3  # z of the foundation in the plane, of the body's size
+BEHIND = -5e-3  # z of the foundation in the plane, of the body's size
 
 
 @dataclasses.dataclass
@@ -18,26 +19,30 @@ class Lines:
     """Lines on the surface, as dark as `opacity`; those that fade do so as they get short."""
 
     points: np.ndarray  # (lines, points, 3)
-    levels: np.ndarray  # (lines, points), see surface.Cut
+    levels: np.ndarray  # (lines, points, planes), see surface.Cut
     layer: str
     opacity: float
     fades: bool = False
+    normals: np.ndarray = None  # (lines, 3) of a surface that is drawn only where it looks away from the viewer
 
 
 class Scene:
-    """Triangles (n, 3, 8) of the layers "body", "contact" (the contact side; in the plane a diagram along it) and "foundation".
+    """Triangles (n, 3, 7 + planes) of the layers "body", "contact" (the contact sides; in the plane a diagram along each),
+    "foundation", and in space "ground": the foundation's surface, drawn only where it looks away from the viewer.
 
-    field, body_field, contact_field  what is asked for, what the body shows, what the contact side shows (None: the body's)
-    normal                            mean direction from the body into the foundation; 0 without contact
+    field, body_field, contact_field  what is asked for, what the body shows, what the contact sides show (None: the body's)
+    sides                             [sides.Side]
+    normal                            mean direction from the body into the foundation, at the side that bears most; 0 without contact
     rest                              in the plane the undeformed outline, (lines, points, 3)
     """
 
-    def __init__(self, result, field=None, scale=None, cut=None):
+    def __init__(self, result, field=None, scale=None, cut=None, window=None):
         """@param field  None: the contact pressure where there is contact, else the von Mises stress
         @param scale  factor of displacements and gaps; None: see automatic_scale
         @param cut    surface.Cut, in space only
+        @param window (2, dim) lowest and highest place [m]: in the plane of what is drawn, in space of the undeformed body
         """
-        self.result, self.cut = result, cut
+        self.result, self.cut, self.window = result, cut, window
         self.contact = result.contact_nodes()
         self.field = field or ("von_mises" if self.contact is None else "contact_pressure")
         known = {**result.nodal, **result.cell}
@@ -47,12 +52,24 @@ class Scene:
         self.body_field = "von_mises" if self.contact_field else self.field
         self.scale = automatic_scale(result) if scale is None else scale
         self.places = result.positions + self.scale * result.vector("disp_")
+        self.size = result.size() if window is None else np.ptp(window, axis=0).max()
+        boxed = window is not None and result.dim == 3
+        self.cuts = ([cut] if cut else []) + (surface.box(*window) if boxed else [])
+        self.levels = np.array([plane.levels(result.positions) for plane in self.cuts]).reshape(-1, len(result.positions)).T
         self.layers, self.lines, self.normal, self.rest = {}, [], np.zeros(3), None
-        faces = surface.visible_faces(result)
-        if result.dim == 2:
+        self._add_all(surface.visible_faces(result))
+
+    def _add_all(self, faces):
+        flat = self.result.dim == 2
+        self.sides = sides.contact_sides(self.result, surface.boundary_edges(faces) if flat else faces)
+        if self.sides:
+            self.normal = max(self.sides, key=lambda side: side.force(self.result.positions)).mean_normal()
+        if flat:
             self._add_plane(faces)
         else:
             self._add_space(faces)
+        if self.window is not None:
+            self._look_into_window()
 
     def _add_plane(self, faces):
         self._add_layer("body", self._body(faces))
@@ -60,94 +77,110 @@ class Scene:
         self._add_lines("body", surface.distinct(surface.all_edges(faces)), self.places, 0.4, fades=True)
         self._add_lines("body", outline, self.places, 0.8)
         self.rest = surface.lines(outline, self.result.positions)
-        edges = outline[self.contact[outline].all(axis=1)] if self.contact is not None else []
-        if not len(edges):
-            return
-        top, normals = self._foundation()
-        self.normal = normals[edges].mean(axis=(0, 1))
-        top[:, 2] = BEHIND * self.result.size()
-        sunk = self.scale * self._sunk()
-        depth = THICKNESS * self.result.size()
-        self._add_layer("foundation", [surface.band(edges, top, normals, depth + sunk.max() - sunk, np.zeros(len(top)))])
-        self._add_lines("foundation", edges, top, 0.9)
-        if self.contact_field:
-            values = self.result.nodal[self.contact_field]
-            heights = DIAGRAM * depth * np.maximum(values, 0) / max(values[self.contact].max(), 1e-300)
-            top[:, 2] /= 2
-            self._add_layer("contact", [surface.band(edges, top, normals, heights, values)])
+        largest, ground, diagrams = self._largest_contact_value(), [], []
+        for k, side in enumerate(self.sides):
+            edges, top, sunk = side.edges(), self._foundation(side), self.scale * sunk_of(side)
+            top[:, 2] = BEHIND * self.result.size() * (1 + k / len(self.sides))  # where sides meet, one covers the other
+            depth = THICKNESS * self.size
+            ground.append(surface.band(edges, top, side.normals, depth + sunk[side.nodes()].max() - sunk, np.zeros(len(top))))
+            self._add_lines("foundation", edges, top, 0.9)
+            if self.contact_field:
+                values = side.fields[self.contact_field]
+                top[:, 2] /= 2
+                heights = DIAGRAM * depth * np.maximum(values, 0) / largest
+                diagrams.append(surface.band(edges, top, side.normals, heights, values))
+        if self.sides:
+            self._add_layer("foundation", ground)
+            self._add_layer("contact", diagrams)
+
+    def _largest_contact_value(self):
+        """Of the field that the contact sides show; a number > 0."""
+        if not self.contact_field:
+            return 1.0
+        return max((side.fields[self.contact_field][side.nodes()].max() for side in self.sides), default=0) or 1e-300
 
     def _add_space(self, faces):
-        touching, others = [], faces
-        if self.contact is not None:
-            masks = [surface.on_contact_side(face, self.contact) for face in faces]
-            touching = [face.part(mask) for face, mask in zip(faces, masks)]
-            others = [face.part(~mask) for face, mask in zip(faces, masks)]
-        body = others if self.contact_field else faces
+        bearing = np.zeros((sum(len(cells) for _, cells in self.result.blocks), 6), dtype=bool)
+        for side in self.sides:
+            for face in side.faces:
+                bearing[face.cell, face.place] = True
+        body = [face.part(~bearing[face.cell, face.place]) for face in faces] if self.contact_field else faces
         layer = self._body(body)
-        if self.cut:
-            layer.append(surface.cells_section(self.result, self.cut, self.places, self._values(self.body_field)))
+        for plane in range(len(self.cuts)):
+            layer.append(surface.cells_section(self.result, plane, self.levels, self.places, self._values(self.body_field)))
         self._add_layer("body", layer)
         if self.contact_field:
-            values = surface.completed(self._values(self.contact_field), self.contact, touching)
-            self._add_layer("contact", self._body(touching, values))
+            self._add_layer("contact", [rows for side in self.sides for rows in self._body(side.faces, side.fields[self.contact_field])])
         self._add_lines("body", surface.distinct(surface.all_edges(faces)), self.places, 0.4, fades=True)
         self._add_lines("body", surface.sharp(faces, self.places), self.places, 0.8)
-        if touching:
-            self._add_slab(touching)
+        if self.sides:
+            self._add_slabs()
 
-    def _add_slab(self, faces):
-        """The foundation as a slab; its surface has the body's faces."""
-        top, normals = self._foundation()
-        top, normals = (surface.completed(values, self.contact, faces) for values in (top, normals))
-        levels, none = self._levels(top), np.zeros(len(top))
-        self.normal = np.concatenate([normals[face.nodes].reshape(-1, 3) for face in faces]).mean(axis=0)
-        direction = THICKNESS * self.result.size() * self.normal
-        sheet = [surface.triangles(face, top, levels, none[face.nodes]) for face in faces]
-        rim = surface.outline(faces)
-        segments = surface.segments(rim, top, levels)
-        cut_lines = self._add_layer("foundation", [*sheet, surface.walls(segments, direction)])
-        self.layers["foundation"] = np.concatenate([self.layers["foundation"], surface.walls(cut_lines, direction)])
-        self._add_lines("foundation", surface.distinct(surface.all_edges(faces)), top, 0.25, fades=True)
-        self._add_lines("foundation", rim, top, 0.5)
+    def _add_slabs(self):
+        """The foundation as a slab at each side; its surface has the body's faces, and goes as far as these are drawn."""
+        ground, walls = [], []
+        for side in self.sides:
+            top, rim, none = self._foundation(side), surface.outline(side.faces), np.zeros(len(self.places))
+            direction = THICKNESS * self.size * side.mean_normal()
+            rows = np.concatenate([surface.triangles(face, top, self.levels, none[face.nodes]) for face in side.faces])
+            rows, cut_lines = surface.clipped(rows)
+            ground.append(rows)
+            walls += [surface.walls(surface.segments(rim, top, self.levels), direction), surface.walls(cut_lines, direction)]
+            edges = surface.distinct(surface.all_edges(side.faces))
+            self._add_lines("foundation", edges, top, 0.25, fades=True, normals=side.normals[edges].mean(axis=1))
+            self._add_lines("foundation", rim, top, 0.5)
+        self.layers["ground"] = np.concatenate(ground)
+        self._add_layer("foundation", walls)
 
-    def _foundation(self):
-        """Where the foundation's surface is drawn, (nodes, 3), and its normals; of use at contact nodes."""
-        result = self.result
-        normals = result.vector("contact_normal_")
-        gap = max(self.scale, 1) * result.nodal["gap"] + self.scale * self._sunk()
-        return result.positions + gap[:, None] * normals, normals
-
-    def _sunk(self):
-        """(nodes,) how far the foundation's surface lies below the one that it had at first: pressed in, or dented [m]."""
-        return np.maximum(np.maximum(self.result.nodal["penetration"], self.result.nodal["dent"]), 0)
+    def _foundation(self, side):
+        """Where the foundation's surface is drawn, (nodes, 3); of use at the side's nodes."""
+        gap = max(self.scale, 1) * side.fields["gap"] + self.scale * sunk_of(side)
+        return self.result.positions + gap[:, None] * side.normals
 
     def _values(self, name):
         return self.result.nodal[name] if name in self.result.nodal else self.result.cell[name]
 
     def _body(self, faces, values=None):
         values = self._values(self.body_field) if values is None else values
-        levels = self._levels(self.result.positions)
-        nodal = len(values) == len(levels)
-        return [surface.triangles(face, self.places, levels, values[face.nodes] if nodal else
+        nodal = len(values) == len(self.levels)
+        return [surface.triangles(face, self.places, self.levels, values[face.nodes] if nodal else
                                   np.broadcast_to(values[face.cell][:, None], face.nodes.shape)) for face in faces]
 
-    def _levels(self, positions):
-        return self.cut.levels(positions) if self.cut else np.full(len(positions), -1.0)
-
     def _add_layer(self, name, rows):
-        """Returns the lines (k, 2, 8) along which the plane of the cut takes away a part."""
-        rows = np.concatenate([np.empty((0, 3, 8)), *rows])
-        self.layers[name] = rows
-        if not self.cut:
-            return np.empty((0, 2, 8))
-        self.layers[name], sides = self.cut.clip(rows)
-        self.lines.append(Lines(sides[..., PLACE], np.zeros((len(sides), 2)), name, 0.8))
-        return sides
+        """What the planes leave of triangles, and lines along which they cut."""
+        rows = np.concatenate([np.empty((0, 3, LEVELS + len(self.cuts))), *rows])
+        self.layers[name], cut_lines = surface.clipped(rows)
+        if self.cuts:
+            self.lines.append(Lines(cut_lines[..., PLACE], cut_lines[..., LEVELS:] * 0, name, 0.8))
 
-    def _add_lines(self, layer, edges, places, opacity, fades=False):
-        undeformed = self.result.positions if layer == "body" else places
-        levels = self._levels(undeformed)
-        self.lines.append(Lines(surface.lines(edges, places), surface.lines(edges, levels), layer, opacity, fades))
+    def _add_lines(self, layer, edges, places, opacity, fades=False, normals=None):
+        self.lines.append(Lines(surface.lines(edges, places), surface.lines(edges, self.levels), layer, opacity, fades, normals))
+
+    def _look_into_window(self):
+        """Leaves what the window shows, which must be something of the body."""
+        dim, body = self.result.dim, ("body",) if self.result.dim == 2 else ("body", "contact")
+        if dim == 2:
+            self.layers = {name: rows[overlapping(rows, self.window)] for name, rows in self.layers.items()}
+        if not sum(len(self.layers.get(name, ())) for name in body):
+            places = self.places if dim == 2 else self.result.positions
+            raise PictureError(f'"{self.result.path}": --window must show a part of the body, which is drawn in '
+                               f"{ranges(places, dim)}, got {ranges(self.window, dim)}; remedy: without --window the axes tell places")
+
+
+def sunk_of(side):
+    """(nodes,) how far the foundation's surface lies below the one that it had at first: pressed in, or dented [m]."""
+    return np.maximum(np.maximum(side.fields["penetration"], side.fields["dent"]), 0)
+
+
+def overlapping(rows, window):
+    """(n,) whether triangles in the plane may show in a window (2, 2)."""
+    low, high = rows[..., :2].min(axis=1), rows[..., :2].max(axis=1)
+    return ((low <= window[1]) & (high >= window[0])).all(axis=1)
+
+
+def ranges(places, dim):
+    """The extent of places as a text."""
+    return ", ".join(f"{places[:, d].min():g} <= {'xyz'[d]} <= {places[:, d].max():g}" for d in range(dim)) + " m"
 
 
 def automatic_scale(result):

@@ -1,7 +1,7 @@
 """Faces of a mesh as triangles to draw: boundary, contact side, foundation, cuts.
 
 Faces come as arrays of node numbers (faces, nodes per face) of one kind, see elements. A vertex of a triangle is a row: its place,
-the normal there, its level (see Cut) and the value of the field.
+the normal there, the value of the field, and a level for each plane that cuts (see Cut).
 """
 import dataclasses
 
@@ -9,24 +9,31 @@ import numpy as np
 
 import elements
 
-PLACE, NORMAL, LEVEL, VALUE = slice(0, 3), slice(3, 6), 6, 7
+PLACE, NORMAL, VALUE, LEVELS = slice(0, 3), slice(3, 6), 6, 7
+EDGES = "EDGES"
 MOST_TRIANGLES = 1_000_000
 
 
 @dataclasses.dataclass
 class Faces:
-    """Faces of one kind; `cell` is the number, in the file, of the cell that a face belongs to."""
+    """Faces of one kind, or in the plane EDGES of cells.
+
+    `cell` is the number, in the file, of the cell that a face belongs to, `place` the face's number in it.
+    """
 
     kind: str
     nodes: np.ndarray  # (faces, nodes per face)
     cell: np.ndarray  # (faces,)
+    place: np.ndarray  # (faces,)
 
     def part(self, chosen):
         """The faces chosen by a mask or by numbers."""
-        return Faces(self.kind, self.nodes[chosen], self.cell[chosen])
+        return Faces(self.kind, self.nodes[chosen], self.cell[chosen], self.place[chosen])
 
     def edges(self):
-        """Nodes (edges of all faces, 2 or 3): ends, then the middle."""
+        """Nodes (edges of all faces, 2 or 3): ends, then the middle. An edge is its own."""
+        if self.kind == EDGES:
+            return self.nodes
         return np.concatenate([self.nodes[:, edge] for edge in elements.face_edges(self.kind)])
 
 
@@ -36,13 +43,35 @@ def visible_faces(result):
     for name, cells in result.blocks:
         kind, faces = elements.CELLS[name]
         nodes = np.concatenate([cells[:, face] for face in faces])
-        blocks.append(Faces(kind, nodes, np.tile(np.arange(start, start + len(cells)), len(faces))))
+        cell = np.tile(np.arange(start, start + len(cells)), len(faces))
+        blocks.append(Faces(kind, nodes, cell, np.repeat(np.arange(len(faces)), len(cells))))
         start += len(cells)
     if result.dim == 2 or not blocks:
         return blocks
     counts = occurrences(np.concatenate([corners(faces) for faces in blocks]))
     ends = np.cumsum([len(faces.nodes) for faces in blocks])
     return [faces.part(counts[end - len(faces.nodes) : end] == 1) for faces, end in zip(blocks, ends)]
+
+
+def boundary_edges(faces):
+    """The edges of cells in the plane that belong to one cell only; [Faces], one a block."""
+    edges, number = [], [len(elements.face_edges(face.kind)) for face in faces]
+    for face, n in zip(faces, number):
+        edges.append(Faces(EDGES, face.edges(), np.tile(face.cell, n), np.repeat(np.arange(n), len(face.cell))))
+    counts = occurrences(np.concatenate([np.sort(edge.nodes[:, :2], axis=1) for edge in edges]))
+    ends = np.cumsum([len(edge.nodes) for edge in edges])
+    return [edge.part(counts[end - len(edge.nodes) : end] == 1) for edge, end in zip(edges, ends)]
+
+
+def outward(faces, places):
+    """(faces, 3) normal out of the body, as long as the face is large; in the plane that of edges."""
+    if faces.kind == EDGES:
+        along = places[faces.nodes[:, 1]] - places[faces.nodes[:, 0]]
+        return np.stack([along[:, 1], -along[:, 0], 0 * along[:, 0]], axis=1)
+    vertices = places[faces.nodes[:, : elements.VERTICES[faces.kind]]]
+    if elements.is_triangle(faces.kind):
+        return 0.5 * np.cross(vertices[:, 1] - vertices[:, 0], vertices[:, 2] - vertices[:, 0])
+    return 0.5 * np.cross(vertices[:, 2] - vertices[:, 0], vertices[:, 3] - vertices[:, 1])
 
 
 def corners(faces):
@@ -95,7 +124,7 @@ def sharp(faces, places):
 
 
 def on_contact_side(faces, contact):
-    """(faces,) whether a face lies on a contact side. The contact points of quadratic triangles are the middles of their edges."""
+    """(faces,) whether all nodes of a face are contact nodes; of quadratic triangles the middles of their edges count."""
     nodes = faces.nodes[:, 3:] if faces.kind == "TRI6" else faces.nodes
     return contact[nodes].all(axis=1)
 
@@ -125,25 +154,25 @@ def pieces(faces):
 
 
 def triangles(faces, places, levels, values):
-    """Divides faces: (triangles, 3, 8).
+    """Divides faces: (triangles, 3, 7 + planes).
 
     @param places  (nodes, 3) where the nodes are drawn
-    @param levels  (nodes,)
+    @param levels  (nodes, planes)
     @param values  (faces, nodes per face) of the field
     """
     points, corner = elements.division(faces.kind, pieces(faces))
     shape = elements.shape(faces.kind, points)
     at_nodes = places[faces.nodes]
-    rows = np.empty((len(faces.nodes), len(points), 8))
+    rows = np.empty((len(faces.nodes), len(points), LEVELS + levels.shape[1]))
     rows[..., PLACE] = shape @ at_nodes
     tangents = []
     for step in ((1e-3, 0), (0, 1e-3)):  # shape functions are at most quadratic: these differences are exact
         rise = elements.shape(faces.kind, points + step) - elements.shape(faces.kind, points - np.array(step))
         tangents.append(rise @ at_nodes)
     rows[..., NORMAL] = unit(np.cross(*tangents))
-    rows[..., LEVEL] = levels[faces.nodes] @ shape.T
+    rows[..., LEVELS:] = shape @ levels[faces.nodes]
     rows[..., VALUE] = values @ elements.hats(faces.kind, points).T
-    return rows[:, corner].reshape(-1, 3, 8)
+    return rows[:, corner].reshape(-1, 3, rows.shape[2])
 
 
 def unit(vectors):
@@ -159,27 +188,26 @@ def lines(edges, values, n=8):
 
 
 def segments(edges, places, levels):
-    """Pieces (k, 2, 8) of edges, without normals and values."""
+    """Pieces (k, 2, 7 + planes) of edges, without normals and values."""
     points, level = lines(edges, places), lines(edges, levels)
-    rows = np.zeros((*level.shape, 8))
-    rows[..., PLACE], rows[..., LEVEL] = points, level
-    return np.stack([rows[:, :-1], rows[:, 1:]], axis=2).reshape(-1, 2, 8)
+    rows = np.zeros((*level.shape[:2], LEVELS + level.shape[2]))
+    rows[..., PLACE], rows[..., LEVELS:] = points, level
+    return np.stack([rows[:, :-1], rows[:, 1:]], axis=2).reshape(-1, 2, rows.shape[2])
 
 
 def band(edges, places, directions, heights, values):
-    """Between edges in the plane and what lies `heights` (nodes,) from them in `directions` (nodes, 3): triangles (n, 3, 8).
+    """Between edges in the plane and what lies `heights` (nodes,) from them in `directions` (nodes, 3): triangles (n, 3, 7).
 
     Heights and values are linear from node to node.
     """
     x = np.linspace(0, 1, 9)
     shape, hats = (f(x, edges.shape[1] == 3) for f in (elements.shape_1d, elements.hat_1d))
-    rows = np.zeros((len(edges), 2, len(x), 8))
-    rows[..., LEVEL] = -1
+    rows = np.zeros((len(edges), 2, len(x), LEVELS))
     rows[:, 0, :, PLACE] = shape @ places[edges]
     rows[:, 1, :, PLACE] = rows[:, 0, :, PLACE] + (hats @ heights[edges].T).T[..., None] * (shape @ directions[edges])
     rows[..., VALUE] = (hats @ values[edges].T).T[:, None]
     a, b, c, d = rows[:, 0, :-1], rows[:, 0, 1:], rows[:, 1, 1:], rows[:, 1, :-1]
-    return np.concatenate([np.stack(corner, axis=2).reshape(-1, 3, 8) for corner in ((a, b, c), (a, c, d))])
+    return np.concatenate([np.stack(corner, axis=2).reshape(-1, 3, LEVELS) for corner in ((a, b, c), (a, c, d))])
 
 
 class Cut:
@@ -193,72 +221,102 @@ class Cut:
         """(n,) distances of undeformed positions beyond the plane."""
         return self.towards * (positions[:, self.axis] - self.value)
 
-    def clip(self, rows):
-        """The kept part of triangles, (n, 3, m), and the lines (k, 2, m) along which they were cut."""
-        inside = rows[..., LEVEL] <= 0
-        count = inside.sum(axis=1)
-        kept, sides = [rows[count == 3]], [np.empty((0, 2, rows.shape[2]))]
-        for number in (1, 2):
-            some = rows[count == number]
-            order = np.argsort(inside[count == number] != (number == 1), axis=1, kind="stable")
-            alone, left, right = (np.take_along_axis(some, order[:, k, None, None], axis=1)[:, 0] for k in range(3))
-            at_left, at_right = crossing(alone, left), crossing(alone, right)
-            if number == 1:
-                kept.append(np.stack([alone, at_left, at_right], axis=1))
-            else:
-                kept += [np.stack(corner, axis=1) for corner in ((left, right, at_right), (left, at_right, at_left))]
-            sides.append(np.stack([at_left, at_right], axis=1))
-        return np.concatenate(kept), np.concatenate(sides)
 
-    def section(self, rows):
-        """Where the plane crosses tetrahedra (n, 4, m): triangles."""
-        inside = rows[..., LEVEL] <= 0
-        count = inside.sum(axis=1)
-        order = np.argsort(~inside, axis=1, kind="stable")
-        rows = np.take_along_axis(rows, order[..., None], axis=1)  # those inside come first
-        found = []
-        for number in (1, 3):
-            some = rows[count == number]
-            alone, others = (0, (1, 2, 3)) if number == 1 else (3, (0, 1, 2))
-            found.append(np.stack([crossing(some[:, alone], some[:, other]) for other in others], axis=1))
-        some = rows[count == 2]
-        around = [crossing(some[:, i], some[:, o]) for i, o in ((0, 2), (0, 3), (1, 3), (1, 2))]
-        found += [np.stack([around[k] for k in corner], axis=1) for corner in ((0, 1, 2), (0, 2, 3))]
-        found = np.concatenate(found)
-        normal = np.cross(found[:, 1, PLACE] - found[:, 0, PLACE], found[:, 2, PLACE] - found[:, 0, PLACE])
-        found[..., NORMAL] = unit(normal)[:, None]
-        return found
+def box(low, high):
+    """The six planes that leave a box of the undeformed body."""
+    return [Cut(axis, value, towards) for axis in range(3) for value, towards in ((low[axis], -1), (high[axis], 1))]
 
 
-def crossing(a, b):
-    """Where the level is 0 between rows with levels of different signs."""
-    weight = a[:, LEVEL] / (a[:, LEVEL] - b[:, LEVEL])
-    found = a + weight[:, None] * (b - a)
-    found[:, LEVEL] = 0  # what is cut is kept when it is cut again
+def clip(rows, level):
+    """The part of triangles (n, 3, m) that a plane leaves, and the lines (k, 2, m) along which they were cut.
+
+    @param level  the plane's place in a row
+    """
+    inside = rows[..., level] <= 0
+    count = inside.sum(axis=1)
+    kept, sides = [rows[count == 3]], [np.empty((0, 2, rows.shape[2]))]
+    for number in (1, 2):
+        some = rows[count == number]
+        order = np.argsort(inside[count == number] != (number == 1), axis=1, kind="stable")
+        alone, left, right = (np.take_along_axis(some, order[:, k, None, None], axis=1)[:, 0] for k in range(3))
+        at_left, at_right = crossing(alone, left, level), crossing(alone, right, level)
+        if number == 1:
+            kept.append(np.stack([alone, at_left, at_right], axis=1))
+        else:
+            kept += [np.stack(corner, axis=1) for corner in ((left, right, at_right), (left, at_right, at_left))]
+        sides.append(np.stack([at_left, at_right], axis=1))
+    return np.concatenate(kept), np.concatenate(sides)
+
+
+def clip_lines(lines, level):
+    """The part of lines (k, 2, m) that a plane leaves."""
+    inside = lines[..., level] <= 0
+    lines, inside = lines[inside.any(axis=1)], inside[inside.any(axis=1)]
+    for end in (0, 1):
+        beyond = ~inside[:, end]
+        lines[beyond, end] = crossing(lines[beyond, 1 - end], lines[beyond, end], level)
+    return lines
+
+
+def clipped(rows):
+    """What all planes leave of triangles, and the lines on it along which they were cut."""
+    sides = np.empty((0, 2, rows.shape[2]))
+    for level in range(LEVELS, rows.shape[2]):
+        rows, added = clip(rows, level)
+        sides = np.concatenate([clip_lines(sides, level), added])
+    return rows, sides
+
+
+def section(rows, level):
+    """Where a plane crosses tetrahedra (n, 4, m): triangles."""
+    inside = rows[..., level] <= 0
+    count = inside.sum(axis=1)
+    order = np.argsort(~inside, axis=1, kind="stable")
+    rows = np.take_along_axis(rows, order[..., None], axis=1)  # those inside come first
+    found = []
+    for number in (1, 3):
+        some = rows[count == number]
+        alone, others = (0, (1, 2, 3)) if number == 1 else (3, (0, 1, 2))
+        found.append(np.stack([crossing(some[:, alone], some[:, other], level) for other in others], axis=1))
+    some = rows[count == 2]
+    around = [crossing(some[:, i], some[:, o], level) for i, o in ((0, 2), (0, 3), (1, 3), (1, 2))]
+    found += [np.stack([around[k] for k in corner], axis=1) for corner in ((0, 1, 2), (0, 2, 3))]
+    found = np.concatenate(found)
+    normal = np.cross(found[:, 1, PLACE] - found[:, 0, PLACE], found[:, 2, PLACE] - found[:, 0, PLACE])
+    found[..., NORMAL] = unit(normal)[:, None]
     return found
 
 
-def cells_section(result, cut, places, values):
-    """The section of a body in space: triangles (n, 3, 8).
+def crossing(a, b, level):
+    """Where a level is 0 between rows that have it with different signs."""
+    weight = a[:, level] / (a[:, level] - b[:, level])
+    found = a + weight[:, None] * (b - a)
+    found[:, level] = 0  # what is cut is kept when it is cut again
+    return found
 
+
+def cells_section(result, plane, levels, places, values):
+    """The section of a body in space by one of the planes, not yet clipped by the others: triangles (n, 3, 7 + planes).
+
+    @param levels  (nodes, planes)
     @param values  (nodes,), or (cells,) if the field belongs to cells
     """
-    levels, found, start = cut.levels(result.positions), [np.empty((0, 3, 8))], 0
+    found, start = [np.empty((0, 3, LEVELS + levels.shape[1]))], 0
     nodal = len(values) == len(levels)
     for name, cells in result.blocks:
-        at_nodes = levels[cells]
+        at_nodes = levels[cells, plane]
         crossed = np.flatnonzero((at_nodes.min(axis=1) <= 0) & (at_nodes.max(axis=1) > 0))
         nodes = cells[crossed][:, elements.tetrahedra(name)]
-        rows = np.zeros((*nodes.shape, 8))
-        rows[..., PLACE], rows[..., LEVEL] = places[nodes], levels[nodes]
+        rows = np.zeros((*nodes.shape, LEVELS + levels.shape[1]))
+        rows[..., PLACE], rows[..., LEVELS:] = places[nodes], levels[nodes]
         rows[..., VALUE] = values[nodes] if nodal else values[start + crossed][:, None, None]
-        found.append(cut.section(rows.reshape(-1, 4, 8)))
+        found.append(section(rows.reshape(-1, 4, rows.shape[3]), LEVELS + plane))
         start += len(cells)
     return np.concatenate(found)
 
 
 def walls(segments, direction):
-    """What segments (k, 2, 8) sweep when they move by a vector: triangles (2 k, 3, 8)."""
+    """What segments (k, 2, m) sweep when they move by a vector: triangles (2 k, 3, m)."""
     below = segments.copy()
     below[..., PLACE] += direction
     result = np.concatenate([np.stack([segments[:, 0], segments[:, 1], below[:, 1]], axis=1),

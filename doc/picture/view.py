@@ -9,6 +9,8 @@ from surface import NORMAL, PLACE, VALUE, unit
 SUPERSAMPLING = 3
 INK = np.array([0.1, 0.1, 0.12])
 GROUND = np.array([0.80, 0.78, 0.75])  # the foundation
+GROUND_LAYERS = ("foundation", "ground")
+BACK = 2  # pixels of the fine raster by which the foundation steps back, lest rounding decides where it touches the body
 
 
 @dataclasses.dataclass
@@ -32,15 +34,22 @@ def view_from(direction, up):
     return View(np.stack([right, np.cross(towards, right), towards]))
 
 
-def bounds(scene, views):
-    """Per view (left, right, bottom, top) of all layers [m]."""
-    points = np.concatenate([rows[..., PLACE].reshape(-1, 3) for rows in scene.layers.values()])
-    result = []
-    for view in views:
-        across = view.project(points)[:, :2]
+def points_of(scene, without=()):
+    """(n, 3) places of all that is drawn, but for some layers; of what is longer than a dot at least two."""
+    found = [rows[..., PLACE].reshape(-1, 3) for name, rows in scene.layers.items() if name not in without]
+    if scene.rest is not None:
+        found.append(scene.rest.reshape(-1, 3))
+    return np.concatenate(found)
+
+
+def bounds(scene, view, without=()):
+    """(left, right, bottom, top) of what is drawn [m]; in the plane the window if there is one."""
+    if scene.window is not None and scene.result.dim == 2:
+        (left, bottom), (right, top) = scene.window
+    else:
+        across = view.project(points_of(scene, without))[:, :2]
         (left, bottom), (right, top) = across.min(axis=0), across.max(axis=0)
-        result.append((left, right, bottom, top))
-    return result
+    return left, right, bottom, top
 
 
 def paint(scene, view, window, pixels, colors, without=()):
@@ -54,11 +63,13 @@ def paint(scene, view, window, pixels, colors, without=()):
     width, height = (int(round((high - low) * pixels)) * SUPERSAMPLING for low, high in ((left, right), (bottom, top)))
     corner = np.array([left, bottom, 0])
     canvas = raster.Raster(width, height)
-    layers = {name: rows for name, rows in scene.layers.items() if name not in without}
+    layers = {name: seen_from(view, name, rows) for name, rows in scene.layers.items() if name not in without}
     rows = np.concatenate(list(layers.values()))
-    canvas.draw((view.project(rows[..., PLACE]) - corner) * fine)
-    image = np.zeros((height * width, 4))
     layer_of = np.repeat(np.arange(len(layers)), [len(part) for part in layers.values()])
+    places = (view.project(rows[..., PLACE]) - corner) * fine
+    places[np.isin(layer_of, [k for k, name in enumerate(layers) if name in GROUND_LAYERS]), :, 2] += BACK
+    canvas.draw(places)
+    image = np.zeros((height * width, 4))
     data = rows[..., [VALUE, *range(6)[NORMAL]]].astype(np.float32)
     shown = np.flatnonzero(canvas.triangle >= 0)
     for pixels in np.array_split(shown, len(shown) // raster.CHUNK + 1):
@@ -74,6 +85,7 @@ def paint(scene, view, window, pixels, colors, without=()):
     ink = np.zeros(canvas.shape)
     for lines in scene.lines:
         if lines.layer not in without:
+            lines = lines if lines.normals is None else looking_away(view, lines)
             points, opacity = dots(lines, (view.project(lines.points) - corner) * fine)
             ink = np.maximum(ink, canvas.ink(points, opacity, 2 if lines.fades else 4, tolerance=5))
     image[..., :3] = image[..., :3] * (1 - ink[..., None]) + INK * ink[..., None]
@@ -82,6 +94,19 @@ def paint(scene, view, window, pixels, colors, without=()):
     image = raster.reduced(image, SUPERSAMPLING)
     image[..., :3] /= np.maximum(image[..., 3:], 1e-9)
     return np.clip(image, 0, 1)
+
+
+def seen_from(view, name, rows):
+    """The triangles of a layer that are drawn: the foundation's surface only where it is not between viewer and body."""
+    if name != "ground":
+        return rows
+    return rows[rows[..., NORMAL].mean(axis=1) @ view.axes[2] <= 0]
+
+
+def looking_away(view, lines):
+    """The lines whose surface looks away from the viewer."""
+    kept = lines.normals @ view.axes[2] <= 0
+    return dataclasses.replace(lines, points=lines.points[kept], levels=lines.levels[kept], normals=None)
 
 
 def brightness(normals, view):
@@ -102,8 +127,8 @@ def dots(lines, points):
     counts = np.ceil(across).astype(np.int64).ravel() + 1
     piece, step = raster.expanded(counts, np.zeros(len(counts), dtype=np.int64))
     t = step / counts[piece]
-    ends = np.concatenate([points, levels[..., None]], axis=2)
-    start, end = (part.reshape(-1, 4)[piece] for part in (ends[:, :-1], ends[:, 1:]))
+    ends = np.concatenate([points, levels], axis=2)
+    start, end = (part.reshape(-1, ends.shape[2])[piece] for part in (ends[:, :-1], ends[:, 1:]))
     found = start + t[:, None] * (end - start)
-    seen = found[:, 3] <= 0
+    seen = (found[:, 3:] <= 0).all(axis=1)
     return found[seen, :3], np.repeat(opacity, across.shape[1])[piece][seen]

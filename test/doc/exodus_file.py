@@ -50,11 +50,14 @@ def box(element, n):
     return np.array(list(number)) / (2 * n), np.array(cells)
 
 
-def write(path, element, positions, cells, nodal, cell=None, times=(1.0,), program="rpc", title="box"):
-    """@param nodal, cell  {name: (nodes,) or (cells,) values}, the same at all times but for the factor t"""
+def write(path, element, positions, cells, nodal, cell=None, times=(1.0,), program="rpc", title="box", sides=None):
+    """@param nodal, cell  {name: (nodes,) or (cells,) values}, the same at all times but for the factor t
+    @param sides        {name: (facets, 2)} cell and the facet's place in it, both from 0
+    """
     with netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
         file.title = title
-        for name, size in {"len_string": 33, "num_dim": positions.shape[1], "num_nodes": len(positions), "num_el_blk": 1,
+        put_sides(file, sides or {})
+        for name, size in {"num_dim": positions.shape[1], "num_nodes": len(positions), "num_el_blk": 1,
                            "four": 4, "num_qa_rec": 1, "time_step": None, "num_el_in_blk1": len(cells),
                            "num_nod_per_el1": cells.shape[1], "num_nod_var": len(nodal), "num_elem_var": len(cell or {})}.items():
             if size != 0:
@@ -75,6 +78,18 @@ def write(path, element, positions, cells, nodal, cell=None, times=(1.0,), progr
                 variable = file.createVariable(stem.format(n), "f8", ("time_step", size))
                 for step, time in enumerate(times):
                     variable[step] = time * values
+
+
+def put_sides(file, sides):
+    """The side sets of a file."""
+    file.createDimension("len_string", 33)
+    if sides:
+        file.createDimension("num_side_sets", len(sides))
+        put_texts(file.createVariable("ss_names", "S1", ("num_side_sets", "len_string")), list(sides))
+    for n, facets in enumerate(sides.values(), 1):
+        file.createDimension(f"num_side_ss{n}", len(facets))
+        for stem, column in (("elem", 0), ("side", 1)):
+            file.createVariable(f"{stem}_ss{n}", "i4", (f"num_side_ss{n}",))[:] = np.asarray(facets)[:, column] + 1
 
 
 def put_texts(variable, texts):

@@ -1,6 +1,7 @@
 """doc/picture.sh: pictures of results of the program, and of each element; what it refuses."""
 
 import contextlib
+import csv
 import io
 import pathlib
 import subprocess
@@ -24,11 +25,14 @@ import exodus_file
 import figure
 import history
 import raster
+import scene as scenes
+import sides
 import surface
-from result import Result
+import view
+from result import PictureError, Result
 from rpc_run import SOURCE, RpcTestCase, files
 from scene import Scene, automatic_scale
-from surface import NORMAL, PLACE, VALUE
+from surface import LEVELS, NORMAL, PLACE, VALUE
 
 BLOCK = """<ParameterList name="block">
   <ParameterList name="Mesh">
@@ -87,7 +91,7 @@ def history_file(path, top=(0.0, -0.1, -0.05), **more):
 
 
 def areas(triangles):
-    """(n, 3) area times normal of triangles (n, 3, 8)."""
+    """(n, 3) area times normal of triangles (n, 3, m)."""
     corner = triangles[..., PLACE]
     return 0.5 * np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
 
@@ -262,7 +266,8 @@ class Pictures(RpcTestCase):
     def expect_contact(self, result):
         """Where body and foundation touch they are drawn in one place; elsewhere the foundation lies beyond."""
         scene = Scene(result, scale=1)
-        top, normals = scene._foundation()
+        (side,) = scene.sides
+        top, normals = scene._foundation(side), side.normals
         touching = result.nodal["contact_status"] > 0
         self.assertGreater(touching.sum(), 3)
         between = ((top - scene.places) * normals).sum(axis=1)
@@ -322,7 +327,17 @@ class Pictures(RpcTestCase):
         self.expect_refusal_of(["box.e", "--field=heat"], "disp_x", "von_mises", 'got "heat"')
         for scale in ("-1", "nan", "inf", "big", ""):
             self.expect_refusal_of(["box.e", f"--scale={scale}"], "--scale must be a number >= 0", f'got "{scale}"')
-        self.expect_refusal_of(["box.e", "--time=0.7"], "0.5, 1", "got 0.7")
+        self.expect_refusal_of(["box.e", "--time=0.7"], '"box.e": --time must be one of 0.5, 1, got 0.7')
+        box_file(self.folder / "many.e", "TRI3", n=1, times=np.arange(1, 31) / 10)
+        self.expect_refusal_of(["many.e", "--time=0.72"], "one of 30 times from 0.1 to 3, nearest 0.7 and 0.8, got 0.72")
+        self.expect_refusal_of(["plane.e", "--time=2"], "1, the only time there is, got 2")
+        for window in ("0,0,1", "0,0,1,0", "1,0,0,1", "0,0,1,nan", "0,0,0,1,1,0", "a,b,c,d", ""):
+            self.expect_refusal_of(["box.e", f"--window={window}"], "--window must be x0,y0,x1,y1", "x0 < x1", f'got "{window}"')
+        self.expect_refusal_of(["box.e", "--window=0,0,1,1"], '"box.e": --window', "must be x0,y0,z0,x1,y1,z1 [m], got 4 numbers")
+        self.expect_refusal_of(["plane.e", "--window=0,0,0,1,1,1"], '"plane.e": --window', "must be x0,y0,x1,y1 [m], got 6 numbers")
+        part = "must show a part of the body"
+        self.expect_refusal_of(["plane.e", "--window=3,0,4,1"], part, "0 <= x <= 1.0", "got 3 <= x <= 4", "remedy")
+        self.expect_refusal_of(["box.e", "--window=0,0,3,1,1,4"], part, "0 <= z <= 1", "got 0 <= x <= 1", "remedy")
         self.expect_refusal_of(["box.e", "--cut=x"], "--cut", 'got "x"')
         self.expect_refusal_of(["box.e", "--cut=x=1"], "--cut", "0 < x < 1 m", "got 1")
         self.expect_refusal_of(["box.e", "--view=0,0,0"], "--view", "not all 0")
@@ -365,8 +380,9 @@ class Choices(RpcTestCase):
         result.nodal["dent"] = np.where(lowest, 0.03, 0)
         result.nodal["penetration"] = np.where(lowest, -0.01, 0)
         for scale in (1, 5):
-            top, normals = Scene(result, scale=scale)._foundation()
-            depth = ((top - result.positions) * normals).sum(axis=1)[lowest]
+            scene = Scene(result, scale=scale)
+            (side,) = scene.sides
+            depth = ((scene._foundation(side) - result.positions) * side.normals).sum(axis=1)[lowest]
             self.assertLess(abs(depth - 0.03 * scale).max(), 1e-12)
 
     def test_view_turns_the_foundation_downwards_and_looks_into_the_cut(self):
@@ -376,7 +392,8 @@ class Choices(RpcTestCase):
             scene = Scene(result, cut=surface.Cut(0, 0.5, towards))
             up = figure.upwards(scene)
             self.assertEqual(list(up), [0, 0, 1])
-            self.assertGreater(towards * figure.towards(scene, up)[0], 0)
+            for level in figure.level_directions(scene, up):
+                self.assertGreater(towards * level[0], 0)
 
     def test_cut_takes_away_the_viewers_side(self):
         for view, axis, expected in (("1,-1,1", "x", 1), ("1,-1,1", "y", -1), (None, "x", 1), (None, "z", 1)):
@@ -390,6 +407,293 @@ class Choices(RpcTestCase):
             variable[:] = -variable[:]
         found = command_line.options(["box.e", "--cut=z=-0.5"])
         self.assertEqual(command_line.cut_of(Result(str(self.folder / "box.e")), found).towards, -1)
+
+
+BEARING = {"bottom": (-1, 0.0, 5.0), "left": (0, 0.0, 2.0), "right": (0, 1.0, 3.0)}  # axis, place along it, pressure
+
+
+def bearing_file(path, element, n=2, bearing=BEARING):
+    """The unit square or cube at rest between foundations, pressure 5 below, 2 to the left and 3 to the right."""
+    positions, cells = exodus_file.box(element, n)
+    dim = positions.shape[1]
+    zero = 0 * positions[:, 0]
+    fields = {f"disp_{axis}": zero for axis in "xyz"[:dim]}
+    fields |= {name: zero.copy() for name in ("von_mises", "contact_pressure", "gap", "dent", "penetration")}
+    fields |= {"contact_status": zero - 1} | {f"contact_normal_{axis}": zero.copy() for axis in "xyz"[:dim]}
+    for axis, place, pressure in sorted(bearing.values(), key=lambda side: side[2]):  # where two meet the higher pressure is shown
+        on = positions[:, axis] == place
+        fields["contact_pressure"][on], fields["contact_status"][on] = pressure, 1
+        for d in range(dim):
+            fields[f"contact_normal_{'xyz'[d]}"][on] = (2 * place - 1) * (d == axis % dim)
+    exodus_file.write(path, element, positions, cells, fields)
+    faces = surface.visible_faces(Result(str(path)))
+    skin = surface.boundary_edges(faces) if dim == 2 else faces
+    named = {"bottom": (-1, 0.0), "left": (0, 0.0), "right": (0, 1.0), "top": (-1, 1.0)}
+    on_side = {name: [(face.cell[k], face.place[k]) for face in skin for k in range(len(face.cell))
+                      if (positions[face.nodes[k], axis] == place).all()] for name, (axis, place) in named.items()}
+    exodus_file.write(path, element, positions, cells, fields, sides=on_side)
+    return Result(str(path))
+
+
+class ContactSides(RpcTestCase):
+    """Bodies with several contact sides."""
+
+    def results(self, dim, **options):
+        for element in ("TRI3", "TRI6", "QUAD4", "QUAD9") if dim == 2 else ("TETRA4", "HEX8", "HEX27"):
+            yield bearing_file(self.folder / "box.e", element, **options)
+
+    def test_each_has_its_foundation_and_diagram_in_the_plane(self):
+        for result in self.results(2):
+            scene = Scene(result)
+            self.assertEqual({side.name for side in scene.sides}, set(BEARING))
+            depth = scenes.THICKNESS
+            for name, (axis, place, pressure) in BEARING.items():
+                for layer, height in (("foundation", depth), ("contact", scenes.DIAGRAM * depth * pressure / 5)):
+                    rows = scene.layers[layer]
+                    away = (2 * place - 1) * (rows[..., PLACE][..., :2].mean(axis=1)[:, axis] - place)
+                    self.assertAlmostEqual(abs(areas(rows[away > 0])[:, 2]).sum(), height, delta=1e-12, msg=(name, layer))
+            self.assertEqual(len(np.unique(scene.layers["foundation"][..., 2].round(9))), 3)  # where they meet one covers the other
+            self.assertLess(scene.layers["foundation"][..., 2].max(), scene.layers["contact"][..., 2].min())
+            self.assertLess(scene.layers["contact"][..., 2].max(), 0)
+
+    def test_each_shows_its_own_values_up_to_its_ends(self):
+        for dim in (2, 3):
+            for result in self.results(dim):
+                for side in sides.contact_sides(result, skin_of(result)):
+                    axis, place, pressure = BEARING[side.name]
+                    self.assertLess(abs(side.fields["contact_pressure"][side.nodes()] - pressure).max(), 1e-9)
+                    self.assertLess(abs(side.normals[side.nodes()][:, : result.dim][:, axis] - 2 * place + 1).max(), 1e-9)
+
+    def test_each_has_a_slab_in_space_and_is_seen(self):
+        for result in self.results(3):
+            scene = Scene(result)
+            self.assertAlmostEqual(np.linalg.norm(areas(scene.layers["ground"]), axis=1).sum(), 3, delta=1e-9)
+            self.assertAlmostEqual(np.linalg.norm(areas(scene.layers["foundation"]), axis=1).sum(), 3 * 4 * scenes.THICKNESS, delta=1e-9)
+            directions = [panel.view.axes[2] for panel in figure.panels(scene, None)]
+            for side in scene.sides:
+                self.assertTrue(any(figure.is_seen(scene, side, direction) for direction in directions), side.name)
+            self.assertEqual(list(figure.upwards(scene)), [0, 0, 1])  # away from the side that bears most
+
+    def test_a_side_between_contact_sides_is_none(self):
+        between = {name: BEARING[name] for name in ("left", "right")}
+        for dim in (2, 3):
+            for result in self.results(dim, n=1, bearing=between):
+                found = sides.contact_sides(result, skin_of(result))
+                self.assertEqual({side.name for side in found}, set(between))
+
+    def test_of_the_program(self):
+        deck = BLOCK.replace('<ParameterList name="Contact">', """<ParameterList name="Contact">
+          <ParameterList name="Sides"><ParameterList name="left"><Parameter name="Yield Stress" type="double" value="9"/>
+          <Parameter name="Gap" type="string" value="0.001*z"/></ParameterList></ParameterList>""")
+        (self.folder / "block.xml").write_text(deck)
+        self.rpc("--input=block.xml", "--output=out")
+        result = Result(str(self.folder / "out" / "block.e"))
+        found = {side.name: side for side in sides.contact_sides(result, skin_of(result))}
+        self.assertEqual(set(found), {"back", "left"})
+        with open(self.folder / "out" / "block.contact.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), sum(len(side.nodes()) for side in found.values()))
+        for row in rows:
+            place = np.array([float(row[axis]) for axis in "xyz"])
+            node = abs(result.positions - place).sum(axis=1).argmin()
+            side = found[row["side"]]
+            self.assertGreater(side.fields["contact_status"][node], -1)
+            if row["side"] == "left":
+                self.assertAlmostEqual(side.fields["gap"][node], 0.001 * place[2], delta=1e-9)
+            if place[0] > -1 or place[2] > 0:  # the edge belongs to both sides
+                self.assertAlmostEqual(side.fields["contact_pressure"][node], float(row["pressure"]), delta=1e-6 * 60)
+
+
+def skin_of(result):
+    """[Faces] of the boundary."""
+    faces = surface.visible_faces(result)
+    return surface.boundary_edges(faces) if result.dim == 2 else faces
+
+
+class Speckle(RpcTestCase):
+    """Body and foundation in one place."""
+
+    def painted(self, scene, eye, without=()):
+        window = figure.grown(view.bounds(scene, eye), 0.03)
+        return view.paint(scene, eye, window, 120, figure.colorings(scene), without)
+
+    def test_a_foundation_between_viewer_and_body_hides_nothing(self):
+        for element in ("HEX8", "HEX27", "TETRA4"):
+            box_file(self.folder / "box.e", element, n=3)
+            result = Result(str(self.folder / "box.e"))
+            result.nodal["gap"][:] = 0.02
+            scene = Scene(result, scale=0)
+            scene.lines = [lines for lines in scene.lines if lines.normals is not None]
+            self.assertEqual(len(scene.lines), 1)
+            from_below = view.view_from((0, 0, -1), (0, 1, 0))
+            both, alone = self.painted(scene, from_below), self.painted(scene, from_below, view.GROUND_LAYERS)
+            self.assertEqual(both.shape, alone.shape)
+            inner = (slice(10, -10), slice(10, -10))  # without the rim
+            self.assertLess(abs(both - alone)[inner].max(), 0.02)
+
+    def test_where_they_coincide_the_body_is_drawn(self):
+        box_file(self.folder / "box.e", "HEX27", n=3)
+        scene = Scene(Result(str(self.folder / "box.e")), scale=0)
+        scene.lines, rows = [], scene.layers["contact"]
+        middle = rows.mean(axis=1)
+        split = np.concatenate([np.stack([rows[:, k], rows[:, (k + 1) % 3], middle], axis=1) for k in range(3)])
+        split[..., NORMAL] *= -1  # as if it were seen from the foundation's side
+        scene.layers["ground"] = split
+        eye = view.view_from((0.3, 0.2, -1), (0, 1, 0))
+        with_walls = ("foundation",)
+        both, alone = self.painted(scene, eye, with_walls), self.painted(scene, eye, view.GROUND_LAYERS)
+        self.assertLess((abs(both - alone).max(axis=2) > 0.02).mean(), 1e-3)
+
+    def test_rounding_errors_of_an_unloaded_body_are_not_coloured(self):
+        box_file(self.folder / "box.e", "TRI3", times=(1.0, 1e-9))
+        for time, largest in ((1, 1), (1e-9, 1)):
+            scene = Scene(Result(str(self.folder / "box.e"), time), "von_mises")
+            self.assertAlmostEqual(figure.colorings(scene)["body"][0].vmax, largest, delta=1e-9)
+
+
+class Room(RpcTestCase):
+    """Titles, numbers and legends cover nothing."""
+
+    LONG = "a body with a title as long as the title of a deck can be, 60"
+
+    def test_for_bodies_of_all_shapes(self):
+        shapes = {"TRI3": ((1, 1), (1, 15), (40, 1), (3e-4, 2e-3), (7e4, 5e5)),
+                  "HEX8": ((1, 1, 1), (1, 1, 12), (20, 2, 0.5), (15, 15, 1), (3e-4, 5e-4, 2e-3), (1e-3, 1e-3, 1e-4))}
+        for element, sizes in shapes.items():
+            for size in sizes:
+                with self.subTest(f"{element} {size}"):
+                    box_file(self.folder / "box.e", element, shape=lambda x, size=size: x * size, title=self.LONG, times=(0.25, 1.0))
+                    self.expect_room(Scene(Result(str(self.folder / "box.e"))))
+
+    def test_for_several_sides_windows_and_cuts(self):
+        plane, space = (bearing_file(self.folder / f"{element}.e", element) for element in ("QUAD4", "HEX8"))
+        self.expect_room(Scene(plane))
+        self.expect_room(Scene(plane, window=np.array([(0.123, -0.02), (0.1234, 0.3)])))
+        self.expect_room(Scene(space))
+        self.expect_room(Scene(space, cut=surface.Cut(1, 0.5, -1), window=np.array([(0, 0, 0), (0.31, 1, 0.2)])))
+
+    def expect_room(self, scene):
+        drawn = figure.compose(scene)
+        self.addCleanup(figure.plt.close, drawn)
+        renderer = drawn.canvas.get_renderer()
+        drawn.draw(renderer)
+        texts = [(text.get_text(), text.get_window_extent(renderer)) for text in shown_texts(drawn)]
+        names = [text for text, _ in texts]
+        for axis in "xyz"[: scene.result.dim]:
+            self.assertEqual(names.count(f"{axis} [m]"), len(figure.panels(scene, None)))
+        width, height = drawn.get_size_inches() * drawn.dpi
+        for k, (text, box) in enumerate(texts):
+            self.assertTrue(0 <= box.x0 and box.x1 <= width and 0 <= box.y0 and box.y1 <= height, f'"{text}" leaves the picture')
+            for other, beside in texts[:k]:
+                self.assertFalse(overlap(box, beside), f'"{text}" covers "{other}"')
+            for axes in drawn.axes:
+                self.assertFalse(covers(box, axes, renderer), f'"{text}" covers a panel or a colour bar')
+
+
+def shown_texts(drawn):
+    """All texts that one sees."""
+    found = [*drawn.texts, *(text for legend in drawn.legends for text in legend.get_texts())]
+    for axes in drawn.axes:
+        found += [axes.title, *axes.texts]
+        for axis in (axes.xaxis, axes.yaxis) if axes.axison else ():
+            low, high = sorted(axis.get_view_interval())
+            rounding = 1e-9 * (high - low)
+            ticks = [tick for tick in axis.get_major_ticks() if low - rounding <= tick.get_loc() <= high + rounding]
+            found += [axis.label, axis.offsetText, *(label for tick in ticks for label in (tick.label1, tick.label2))]
+    return [text for text in found if text.get_visible() and text.get_text().strip()]
+
+
+def overlap(a, b):
+    """Whether two boxes have more than a line in common [pixels]."""
+    return min(a.x1, b.x1) - max(a.x0, b.x0) > 0.5 and min(a.y1, b.y1) - max(a.y0, b.y0) > 0.5
+
+
+def covers(box, axes, renderer):
+    """Whether a text lies on what is drawn into axes."""
+    frame = axes.get_window_extent(renderer)
+    if not overlap(box, frame):
+        return False
+    if not axes.images:
+        return True
+    image = np.asarray(axes.images[0].get_array())
+    rows, columns = image.shape[:2]
+    left, right = ((x - frame.x0) / frame.width * columns for x in (box.x0, box.x1))
+    bottom, top = ((y - frame.y0) / frame.height * rows for y in (box.y0, box.y1))
+    part = image[max(int(bottom), 0) : max(int(np.ceil(top)), 0), max(int(left), 0) : max(int(np.ceil(right)), 0), 3]
+    return part.size > 0 and part.max() > 0.05
+
+
+class Films(RpcTestCase):
+    """Load steps on several meshes."""
+
+    def test_the_files_of_a_run_are_one_film(self):
+        box_file(self.folder / "a.e", "TRI3", n=1, times=(0.5, 1.0))
+        box_file(self.folder / "a.e-s0002", "TRI3", n=2, times=(1.5,))
+        box_file(self.folder / "a.e-s0003", "TRI3", n=3, times=(2.0, 2.5))
+        box_file(self.folder / "a.e-s0005", "TRI3", n=4, times=(3.0,))  # of no film: the fourth is missing
+        for path in ("a.e", "a.e-s0002"):
+            for time, mesh in ((0.5, 1), (1, 1), (1.5, 2), (2, 3), (2.5, 3), (None, 3)):
+                result = Result(str(self.folder / path), time)
+                self.assertEqual((result.time, result.num_times), (time or 2.5, 5))
+                self.assertEqual(len(result.positions), (mesh + 1) ** 2)
+                self.assertAlmostEqual(result.nodal["contact_pressure"].max(), 3 * (time or 2.5), delta=1e-12)
+        self.assertEqual(Result(str(self.folder / "a.e-s0005")).num_times, 1)
+        self.assertEqual(Result(str(self.folder / "a.e")).peak("contact_pressure"), 7.5)
+        with self.assertRaisesRegex(PictureError, r'a.e": --time must be one of 0.5, 1, 1.5, 2, 2.5, got 3'):
+            Result(str(self.folder / "a.e-s0002"), 3)
+
+    def test_of_the_program(self):
+        deck = (SOURCE / "input" / "beam_adaptive.xml").read_text()
+        steps = '<ParameterList name="Steps"><Parameter name="Times" type="Array(double)" value="{0.01, 0.5, 1}"/></ParameterList>'
+        deck = deck.replace('value="0.002"', 'value="0.02"').replace("-20*sin", "-20*t*sin")
+        (self.folder / "beam.xml").write_text(deck.rsplit("</ParameterList>", 1)[0] + steps + "</ParameterList>")
+        self.rpc("--input=beam.xml", "--output=out")
+        self.assertTrue((self.folder / "out" / "beam.e-s0002").exists())
+        path = str(self.folder / "out" / "beam.e")
+        first, last = Result(path, 0.01), Result(path)
+        self.assertEqual((first.path, first.time, first.num_times), (path, 0.01, 3))
+        self.assertEqual(last.time, 1)
+        self.assertNotEqual(len(first.positions), len(last.positions))
+
+
+class Windows(RpcTestCase):
+    """A part, enlarged."""
+
+    def test_in_the_plane_it_bounds_the_axes(self):
+        result = bearing_file(self.folder / "box.e", "QUAD9", n=8)
+        window = np.array([(-0.01, -0.02), (0.11, 0.06)])
+        whole, part = Scene(result), Scene(result, window=window)
+        drawn = figure.compose(part)
+        self.addCleanup(figure.plt.close, drawn)
+        limits = np.array([drawn.axes[0].get_xlim(), drawn.axes[0].get_ylim()]).T
+        self.assertLess(abs(limits - window).max(), 1e-12)
+        self.assertLess(len(part.layers["body"]), 0.1 * len(whole.layers["body"]))
+        self.assertAlmostEqual(part.layers["foundation"][..., 1].min(), -0.12 * scenes.THICKNESS, delta=1e-12)
+
+    def test_in_space_it_leaves_a_closed_box_and_what_lies_below(self):
+        low, high = np.array([0.2, 0.3, 0]), np.array([0.7, 0.9, 0.45])
+        a, b, c = high - low
+        for element in ("TETRA4", "TETRA10", "HEX8", "HEX27"):
+            with self.subTest(element):
+                box_file(self.folder / "box.e", element, n=3, shape=lambda x: x)
+                result = Result(str(self.folder / "box.e"))
+                scene = Scene(result, scale=0, window=np.array([low, high]))
+                skin = np.concatenate([scene.layers["body"], scene.layers["contact"]])
+                self.assertLess((low - skin[..., PLACE]).max(), 1e-12)
+                self.assertLess((skin[..., PLACE] - high).max(), 1e-12)
+                self.assertEqual(skin.shape[2], LEVELS + 6)
+                self.assertAlmostEqual(np.linalg.norm(areas(skin), axis=1).sum(), 2 * (a * b + b * c + c * a), delta=1e-9)
+                self.assertAlmostEqual(np.linalg.norm(areas(scene.layers["ground"]), axis=1).sum(), a * b, delta=1e-9)
+                above = Scene(result, scale=0, window=np.array([low + [0, 0, 0.1], high]))
+                self.assertEqual((len(above.layers["ground"]), len(above.layers["foundation"])), (0, 0))
+
+    def test_lines_end_where_the_box_ends(self):
+        box_file(self.folder / "box.e", "HEX8", n=1, shape=lambda x: x)
+        scene = Scene(Result(str(self.folder / "box.e")), scale=0, window=np.array([(0, 0.1, 0.2), (0.6, 1, 0.4)]))
+        for lines in scene.lines:
+            if lines.layer == "body":  # an edge's ends may lie on either side of the box
+                found = view.dots(lines, 300 * lines.points)[0] / 300
+                self.assertTrue(((found > np.array([0, 0.1, 0.2]) - 1e-9) & (found < np.array([0.6, 1, 0.4]) + 1e-9)).all())
 
 
 if __name__ == "__main__":
