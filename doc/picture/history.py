@@ -23,8 +23,8 @@ class History:
     def __init__(self, path):
         try:
             with open(path, newline="") as file:
-                rows = list(csv.DictReader(file))
-            self.columns = {name: [float(row[name]) for row in rows] for name in rows[0]}
+                rows = [row for row in csv.DictReader(file) if row.get("converged") != "0"]  # of a step that failed there are no numbers
+            self.columns = {name: [float(row[name]) for row in rows] for name in rows[0] if name != "reason"}
         except OSError:
             raise PictureError(f'"{path}": no such file; rpc writes one for decks with Steps->Times') from None
         except (ValueError, TypeError, KeyError, IndexError, csv.Error, UnicodeDecodeError):
