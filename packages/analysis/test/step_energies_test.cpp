@@ -48,15 +48,15 @@ TEST(LoadHistory, StepsAreDividedUntilTheirEnergiesBalance)
     for (const double tolerance : {std::numeric_limits<double>::infinity(), 1e-2, 1e-4}) {
       auto history = history_of(uneven(law, there_and_back), {}, 0, 1);
       history.balance_energies_to(tolerance);
-      Energies before;
+      analysis::Energies before;
       missed.push_back(0);
       parts.push_back(0);
       for (const double t : {1., 2.}) {
         advance(history, t);
-        const Energies now = history.last().energies;
-        missed.back() = std::max(missed.back(), relative_imbalance(before, now));
+        const analysis::Energies now = history.last().energies;
+        missed.back() = std::max(missed.back(), analysis::relative_imbalance(before, now));
         parts.back() += history.last().parts;
-        EXPECT_LE(relative_imbalance(before, now), history.last().parts * tolerance) << t;
+        EXPECT_LE(analysis::relative_imbalance(before, now), history.last().parts * tolerance) << t;
         before = now;
       }
     }
