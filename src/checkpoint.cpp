@@ -149,12 +149,13 @@ std::optional<analysis::HistoryState> Checkpoints::resume(const fem::Discretizat
   std::optional<Error> first;
   for (const std::string &path : newest_first) {
     try {
-      auto state = resumed_from(path, d);
-      restart_ = path;
-      return state;
-    } catch (const Error &error) { // on all ranks
+      io::Checkpoint(path, d.mesh->owned_nodes->getComm()).fields(*d.mesh);
+    } catch (const Error &error) { // damaged; on all ranks
       if (!first) first = error;
+      continue;
     }
+    restart_ = path;
+    return resumed_from(path, d);
   }
   throw *first;
 }

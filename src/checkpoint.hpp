@@ -22,6 +22,8 @@ public:
   /// What the run goes on from; none from the first step. Collective.
   /// @throws rpc::Error (bad_input) on every rank if the file is damaged, or belongs to another mesh, deck or version
   std::optional<analysis::HistoryState> resume(const fem::Discretization &d);
+  /// The checkpoint that the run has gone on from; empty: none.
+  const std::string &source() const { return restart_; }
   /// Writes a checkpoint. Collective.
   void write(const analysis::HistoryState &state, const fem::Discretization &d);
 

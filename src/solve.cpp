@@ -34,7 +34,12 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     table->load_step(scene, solution);
   };
   if (checkpoints) {
-    listener.resume = [&](const fem::Discretization &d) { return checkpoints->resume(d); };
+    listener.resume = [&](const fem::Discretization &d) {
+      auto state = checkpoints->resume(d);
+      if (state)
+        console << "note: goes on after \"" << checkpoints->source() << "\", t = " << state->last.time << std::endl;
+      return state;
+    };
     listener.checkpoint = [&](const analysis::HistoryState &state, const fem::Discretization &d) {
       checkpoints->write(state, d);
     };

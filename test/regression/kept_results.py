@@ -152,7 +152,8 @@ class KeptResults(RpcTestCase):
                 self.assertGreaterEqual(len(rows(self.out("history.csv"))), step)
                 self.assertFalse(self.out("json").exists())
                 result = self.rpc("--input=beam.xml", *self.HISTORY, "--output=out", "--restart")
-                self.assertNotIn("note: \"", result.stdout)
+                self.assertIn("note: goes on after ", result.stdout)
+                self.assertNotIn("lacks times", result.stdout)
                 self.expect_equal_runs("whole", "out")
                 self.assertEqual([name for name in files(self.folder / "out") if ".tmp." in name or "lock" in name], [])
 
@@ -186,7 +187,8 @@ class KeptResults(RpcTestCase):
         newest = self.folder / "out" / "beam.checkpoint-000039.e"
         newest.write_bytes(newest.read_bytes()[:-1000])
         longer = [argument.replace("To=10", "To=11") for argument in self.HISTORY]
-        self.rpc("--input=beam.xml", *longer, "--output=out", "--restart")
+        result = self.rpc("--input=beam.xml", *longer, "--output=out", "--restart")
+        self.assertIn('note: goes on after "out/beam.checkpoint-000036.e", t = 9', result.stdout)
         self.rpc("--input=beam.xml", *longer, "--output=whole")
         self.expect_equal_runs("whole", "out")
 

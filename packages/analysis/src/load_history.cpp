@@ -51,6 +51,8 @@ int newton_steps(const StepSolution &s)
 
 // Of a step for its energy balance: what remains is a millionth of it.
 constexpr int most_halvings_for_balance = 20;
+// Of what a part misses in its energy balance: more than this in one of its halves does not come from the size of steps.
+constexpr double helpful = 0.9;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Energies unknown_energies()
@@ -156,7 +158,11 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
   const double half = 0.5 * (from + t);
   Halvings then = left;
   if (s.uzawa.converged) {
-    if (is_balanced(memory) || then.balance-- == 0) return s;
+    const Energies start = memory ? memory->energies : Energies{}, &end = memory_->energies;
+    then.missed = std::abs(end.imbalance - start.imbalance);
+    const bool out_of_balance = relative_imbalance(start, end) > energy_tolerance_;
+    const bool halving_helps = then.missed < helpful * left.missed; // rounding stays as it is
+    if (!out_of_balance || !halving_helps || then.balance-- == 0) return s;
   } else if (then.failures-- == 0 || interrupted(problem_->discretization().mesh->comm())) {
     return s;
   }
@@ -169,11 +175,6 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
   }
   s = advance_in_parts(half, then, progress, now);
   return s.uzawa.converged ? advance_in_parts(t, then, progress, now) : s;
-}
-
-bool LoadHistory::is_balanced(const std::optional<Memory> &before) const
-{
-  return relative_imbalance(before ? before->energies : Energies{}, memory_->energies) <= energy_tolerance_;
 }
 
 StepSolution LoadHistory::solve(const double t, const StepOptions &options, const Progress &progress,

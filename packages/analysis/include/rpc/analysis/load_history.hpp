@@ -96,10 +96,11 @@ private:
   /// How often a part may be halved: where it does not converge, and for its energy balance.
   struct Halvings {
     int failures, balance;
+    double missed =
+        std::numeric_limits<double>::infinity(); // by the part that it is a half of, in its energy balance [J]
   };
   StepSolution advance_in_parts(double t, Halvings left, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
-  bool is_balanced(const std::optional<Memory> &before) const;
   Starts starts_of(const Step &step);
   void remember(double t, const std::vector<contact::ContactOptions> &sides, const Step &step, StepSolution &s);
 
