@@ -22,7 +22,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <iostream>
 #include <malloc.h>
 #include <memory>
@@ -81,7 +80,8 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   std::unique_ptr<rpc::io::RunLock> lock; // rank 0 only
   rpc::on_root(*comm, ExitCode::bad_input, [&] {
     lock = std::make_unique<rpc::io::RunLock>(line.output, scene.name);
-    rpc::io::remove_abandoned((std::filesystem::path(line.output) / scene.name).string());
+    if (lock->held())
+      rpc::io::remove_abandoned(line.output, [&](const std::string &file) { return rpc::is_result(scene, file); });
   });
 
   const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iomanip>
+#include <regex>
 #include <sstream>
 
 namespace rpc
@@ -57,6 +58,14 @@ std::string film_part(const std::string &exodus, const int part)
   std::ostringstream name;
   name << exodus << "-s" << std::setw(4) << std::setfill('0') << part;
   return name.str();
+}
+
+bool is_result(const Scene &scene, const std::string &file)
+{
+  static const std::regex ends(
+      R"(\.(cycle[0-9]+\.)?(e(-s[0-9]+)?|contact\.csv|history\.csv|json|checkpoint-[0-9]+\.e))");
+  return file.compare(0, scene.name.size(), scene.name) == 0 &&
+         std::regex_match(file.substr(std::min(file.size(), scene.name.size())), ends);
 }
 
 void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm)

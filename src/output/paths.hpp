@@ -25,6 +25,9 @@ struct ResultPaths {
 /// @param part  from 1
 std::string film_part(const std::string &exodus, int part);
 
+/// Whether a file's name is that of a result or checkpoint of the scene.
+bool is_result(const Scene &scene, const std::string &file);
+
 /// Proves that the folder can be made and written to, and that nothing stands in the way of a scene's files, those of
 /// its cycles included: before the run, not after it. Collective.
 /// @throws rpc::Error (bad_input) on every rank

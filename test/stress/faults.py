@@ -10,6 +10,7 @@ kill -9 a restart must end as the whole run: after kill -9 to the last bit, afte
 import argparse
 import collections
 import concurrent.futures
+import contextlib
 import csv
 import json
 import os
@@ -36,6 +37,18 @@ KINDS = ["force", "reaction", "displacement", "penetration"]  # rounding of one 
 WORK = {"seconds", "parts", "newton_iterations", "linear_iterations", "reason"}
 
 
+def ranks(pid, program):
+    """Processes of the program from a launcher down, itself included."""
+    found, waiting = [], [pid]
+    while waiting:
+        one = waiting.pop()
+        with contextlib.suppress(OSError):
+            if os.path.realpath(f"/proc/{one}/exe") == os.path.realpath(program):
+                found.append(one)
+            waiting += map(int, pathlib.Path(f"/proc/{one}/task/{one}/children").read_text().split())
+    return sorted(found)
+
+
 class Run:
     """One run in a folder of its own, with a fault or none."""
 
@@ -59,7 +72,10 @@ class Run:
             try:
                 process.wait(wait)
             except subprocess.TimeoutExpired:
-                os.killpg(process.pid, number)
+                found = ranks(process.pid, self.launch[-1])
+                for rank in found if number == signal.SIGKILL else found[-1:]:
+                    with contextlib.suppress(ProcessLookupError):
+                        os.kill(rank, number)
         _, stderr = process.communicate(timeout=scenes.TIME_LIMIT)
         return process.returncode, stderr
 

@@ -3,7 +3,6 @@
 #include "rpc/core/error.hpp"
 
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
@@ -197,19 +196,17 @@ void remove_older(const std::string &path)
   if (::unlink(path.c_str()) != 0 && errno != ENOENT) fail(errno, "remove", path);
 }
 
-void remove_abandoned(const std::string &stem)
+void remove_abandoned(const std::string &folder, const std::function<bool(const std::string &)> &is_ours)
 {
-  const std::filesystem::path prefix(stem);
   std::error_code none;
   std::vector<std::filesystem::path> abandoned;
-  for (const auto &entry :
-       std::filesystem::directory_iterator(prefix.has_parent_path() ? prefix.parent_path() : ".", none)) {
+  for (const auto &entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, none)) {
     const std::string name = entry.path().filename().string();
     const auto mark = name.rfind(temporary_mark);
-    if (mark == std::string::npos || name.rfind(prefix.filename().string() + ".", 0) != 0) continue;
-    const std::string digits = name.substr(mark + temporary_mark.size());
-    if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
-    if (::kill(std::stoi(digits), 0) != 0 && errno == ESRCH) abandoned.push_back(entry.path());
+    if (mark == std::string::npos || !is_ours(name.substr(0, mark))) continue;
+    const std::string process = name.substr(mark + temporary_mark.size());
+    if (!process.empty() && process.find_first_not_of("0123456789") == std::string::npos)
+      abandoned.push_back(entry.path());
   }
   for (const auto &path : abandoned) std::filesystem::remove(path, none);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -56,9 +57,9 @@ private:
   std::unique_ptr<Descriptor> file_;
 };
 
-/// Removes temporary files that killed processes of this machine have left of a run's results.
-/// @param stem  folder and name that the results begin with
-void remove_abandoned(const std::string &stem);
+/// Removes temporary files that killed processes have left; for the owner of the RunLock alone.
+/// @param is_ours  of the name of the file that one was to become
+void remove_abandoned(const std::string &folder, const std::function<bool(const std::string &)> &is_ours);
 
 /// Writes a whole text file or none; one rank only.
 /// @throws rpc::Error: bad_input if the folder cannot be written to, internal_error otherwise (disk full)

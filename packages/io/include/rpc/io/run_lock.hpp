@@ -15,6 +15,7 @@ public:
   ~RunLock();
   RunLock(const RunLock &) = delete;
   RunLock &operator=(const RunLock &) = delete;
+  bool held() const { return fd_ >= 0; }
 
 private:
   std::string path_;
