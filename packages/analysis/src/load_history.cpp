@@ -51,8 +51,10 @@ int newton_steps(const StepSolution &s)
 
 // Of a step for its energy balance: what remains is a millionth of it.
 constexpr int most_halvings_for_balance = 20;
-// Of what a part misses in its energy balance: more than this in one of its halves does not come from the size of steps.
+// A half that misses less than this share of what the whole misses is nearer to balance. Errors of opposite sign can hide in a whole;
+// but what stays through so many halvings is rounding.
 constexpr double helpful = 0.9;
+constexpr int most_in_vain = 5;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Energies unknown_energies()
@@ -159,10 +161,11 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
   Halvings then = left;
   if (s.uzawa.converged) {
     const Energies start = memory ? memory->energies : Energies{}, &end = memory_->energies;
-    then.missed = std::abs(end.imbalance - start.imbalance);
+    const double missed = std::abs(end.imbalance - start.imbalance);
+    then.in_vain = missed < helpful * left.missed ? 0 : left.in_vain + 1;
+    then.missed = std::min(missed, left.missed);
     const bool out_of_balance = relative_imbalance(start, end) > energy_tolerance_;
-    const bool halving_helps = then.missed < helpful * left.missed; // rounding stays as it is
-    if (!out_of_balance || !halving_helps || then.balance-- == 0) return s;
+    if (!out_of_balance || then.in_vain > most_in_vain || then.balance-- == 0) return s;
   } else if (then.failures-- == 0 || interrupted(problem_->discretization().mesh->comm())) {
     return s;
   }

@@ -96,8 +96,9 @@ private:
   /// How often a part may be halved: where it does not converge, and for its energy balance.
   struct Halvings {
     int failures, balance;
-    double missed =
-        std::numeric_limits<double>::infinity(); // by the part that it is a half of, in its energy balance [J]
+    // The least that a part around this one misses in its energy balance [J], and how often it has been halved since.
+    double missed = std::numeric_limits<double>::infinity();
+    int in_vain = 0;
   };
   StepSolution advance_in_parts(double t, Halvings left, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
