@@ -1,6 +1,7 @@
 """Starts rpc as a user would, each run in a folder of its own. What to start comes from the environment, set by CTest."""
 
 import concurrent.futures
+import contextlib
 import json
 import os
 import pathlib
@@ -32,18 +33,21 @@ def run_all(jobs):
         return list(pool.map(lambda job: run(*job), jobs))
 
 
-def ranks_below(pid):
-    """Processes of the program below a launcher, or the process itself."""
-    if not LAUNCH:
-        return [pid]
+def processes_below(pid, program):
+    """Processes of a program from a launcher down, itself included; those that end meanwhile are left out."""
     found, waiting = [], [pid]
     while waiting:
-        parent = waiting.pop()
-        for child in pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text().split():
-            waiting.append(int(child))
-            if os.path.realpath(f"/proc/{child}/exe") == os.path.realpath(PROGRAM):
-                found.append(int(child))
-    return found
+        one = waiting.pop()
+        with contextlib.suppress(OSError):
+            if os.path.realpath(f"/proc/{one}/exe") == os.path.realpath(program):
+                found.append(one)
+            waiting += map(int, pathlib.Path(f"/proc/{one}/task/{one}/children").read_text().split())
+    return sorted(found)
+
+
+def ranks_below(pid):
+    """Processes of the program below a launcher, or the process itself."""
+    return processes_below(pid, PROGRAM) if LAUNCH else [pid]
 
 
 def errors(result):

@@ -29,6 +29,7 @@ import scenes
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "regression"))
 from film import Film  # noqa: E402
+from rpc_run import processes_below  # noqa: E402
 
 FAULTS = ["expression", "disk", "SIGTERM", "SIGINT", "kill"]
 SAME = 1e-5  # of two runs that differ by a restart, relative to the largest value of the column
@@ -36,18 +37,6 @@ ENERGIES = ["strain_energy", "foundation_energy", "dissipated_energy", "work", "
 KINDS = ["force", "reaction", "displacement", "penetration"]  # rounding of one component or number is to be seen against the others
 # Not compared: work, and penetration, which on a rigid foundation is rounding.
 WORK = {"seconds", "parts", "newton_iterations", "linear_iterations", "reason", "max_penetration"}
-
-
-def ranks(pid, program):
-    """Processes of the program from a launcher down, itself included."""
-    found, waiting = [], [pid]
-    while waiting:
-        one = waiting.pop()
-        with contextlib.suppress(OSError):
-            if os.path.realpath(f"/proc/{one}/exe") == os.path.realpath(program):
-                found.append(one)
-            waiting += map(int, pathlib.Path(f"/proc/{one}/task/{one}/children").read_text().split())
-    return sorted(found)
 
 
 class Run:
@@ -73,7 +62,7 @@ class Run:
             try:
                 process.wait(wait)
             except subprocess.TimeoutExpired:
-                found = ranks(process.pid, self.launch[-1])
+                found = processes_below(process.pid, self.launch[-1])
                 for rank in found if number == signal.SIGKILL else found[-1:]:
                     with contextlib.suppress(ProcessLookupError):
                         os.kill(rank, number)
