@@ -1,0 +1,211 @@
+#pragma once
+
+#include "rpc/core/error.hpp"
+#include "rpc/core/kokkos.hpp"
+#include "rpc/io/atomic_file.hpp"
+#include "rpc/mesh/element.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <exodusII.h>
+#include <fcntl.h>
+#include <string>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace rpc::io
+{
+
+/// Facets of the whole mesh, 1-based as Exodus counts, ordered by cell and ordinal; rank 0 only.
+struct SideSet {
+  std::string name;
+  std::vector<int> cell, ordinal;
+};
+
+/// What the file's header fixes. It comes before all data, which NetCDF would have to move if it grew later.
+struct ExodusHeader {
+  std::string title;
+  std::vector<std::string> info, field_names;
+  mesh::Element element;
+  std::vector<std::string> blocks;
+  std::vector<GO> block_sizes; // cells in each
+  GO num_nodes, num_cells;
+};
+
+/// The library takes arrays of pointers to non-const characters, which it only reads.
+inline std::vector<char *> pointers(std::vector<std::string> &texts)
+{
+  std::vector<char *> result;
+  for (auto &text : texts) result.push_back(text.data());
+  return result;
+}
+
+inline std::vector<std::string> cut(std::vector<std::string> texts, const std::size_t length)
+{
+  for (auto &text : texts) text.resize(std::min(text.size(), length));
+  return texts;
+}
+
+/// Makes a file end after some of its times. The NetCDF library counts a time as soon as anything of it is written; the number is a
+/// big-endian integer after the four letters of the format, of 4 bytes, in its version 5 of 8 (NetCDF's "classic format").
+inline void set_number_of_times(const std::string &path, const int number)
+{
+  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0) return;
+  std::array<char, 4> letters{};
+  std::array<unsigned char, 8> bytes{};
+  if (::pread(fd, letters.data(), letters.size(), 0) == 4 && std::memcmp(letters.data(), "CDF", 3) == 0) {
+    const std::size_t size = letters[3] == 5 ? 8 : 4;
+    for (std::size_t k = 0; k < 4; ++k) bytes[size - 1 - k] = static_cast<unsigned char>(number >> 8 * k);
+    while (::pwrite(fd, bytes.data(), size, 4) < 0 && errno == EINTR) {
+    }
+  }
+  ::close(fd);
+}
+
+/// An Exodus file that is written, on rank 0, under its temporary name until commit() or publish(). Private to io.
+class ExodusWriter
+{
+public:
+  /// @param longest  length of its names
+  ExodusWriter(const std::string &path, const std::size_t longest) : path_(path), file_(path)
+  {
+    ex_opts(EX_DEFAULT); // errors come as return codes, not on the console
+    int word_size = sizeof(double), file_word_size = sizeof(double);
+    id_ = ex_create(file_.temporary().c_str(), EX_CLOBBER | EX_LARGE_MODEL, &word_size, &file_word_size);
+    if (id_ < 0) fail("create");
+    check(ex_set_max_name_length(id_, static_cast<int>(longest)), "define the names of");
+  }
+  /// Of a published file a time that could not be written goes.
+  ~ExodusWriter()
+  {
+    if (id_ < 0) return;
+    ex_close(id_);
+    if (published_ && begun_ > whole_) set_number_of_times(path_, whole_);
+  }
+  ExodusWriter(const ExodusWriter &) = delete;
+  ExodusWriter &operator=(const ExodusWriter &) = delete;
+
+  void put_header(const ExodusHeader &header, const std::vector<SideSet> &sides)
+  {
+    define(header, sides);
+    put_names(header, sides);
+    put_sides(sides);
+  }
+  void put_coordinate(const int direction, const std::vector<double> &values)
+  {
+    std::array<const double *, 3> by_direction{};
+    by_direction[direction] = values.data();
+    check(ex_put_coord(id_, by_direction[0], by_direction[1], by_direction[2]), "write the coordinates of");
+  }
+  void put_cells(const std::vector<int> &nodes)
+  {
+    const int *first = nodes.data(); // cells run block by block
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      if (blocks_[b] > 0) check(ex_put_conn(id_, EX_ELEM_BLOCK, b + 1, first, nullptr, nullptr), "write the cells of");
+      first += blocks_[b] * nodes_per_cell_;
+    }
+  }
+  /// @param step  from 1
+  void put_time(const int step, const double time)
+  {
+    begun_ = step;
+    check(ex_put_time(id_, step, &time), "write a time of");
+  }
+  /// All fields of the time are written.
+  void end_time()
+  {
+    if (published_) check(ex_update(id_), "write a time of");
+    whole_ = begun_;
+  }
+  void publish()
+  {
+    check(ex_update(id_), "write");
+    file_.publish();
+    published_ = true;
+  }
+  void put_field(const int step, const int index, const std::vector<double> &values)
+  {
+    check(ex_put_nodal_var(id_, step, index + 1, static_cast<int64_t>(values.size()), values.data()),
+          "write a field of");
+  }
+  void commit()
+  {
+    check(ex_close(std::exchange(id_, -1)), "close");
+    file_.commit();
+  }
+
+private:
+  void define(const ExodusHeader &header, const std::vector<SideSet> &sides)
+  {
+    const auto &element = header.element;
+    check(ex_put_init(id_, header.title.substr(0, MAX_LINE_LENGTH).c_str(), element.dim, header.num_nodes,
+                      header.num_cells, static_cast<int64_t>(header.blocks.size()), 0,
+                      static_cast<int64_t>(sides.size())),
+          "define");
+    std::string program = "rpc", version = RPC_VERSION, date, time;
+    char *qa[1][4] = {{program.data(), version.data(), date.data(), time.data()}};
+    check(ex_put_qa(id_, 1, qa), "define");
+    auto info = cut(header.info, MAX_LINE_LENGTH);
+    if (!info.empty()) check(ex_put_info(id_, static_cast<int>(info.size()), pointers(info).data()), "define");
+    blocks_ = header.block_sizes;
+    nodes_per_cell_ = element.num_nodes();
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      check(
+          ex_put_block(id_, EX_ELEM_BLOCK, b + 1, element.exodus_name().c_str(), blocks_[b], nodes_per_cell_, 0, 0, 0),
+          "define");
+    for (std::size_t s = 0; s < sides.size(); ++s)
+      check(ex_put_set_param(id_, EX_SIDE_SET, s + 1, static_cast<int64_t>(sides[s].cell.size()), 0), "define");
+    if (!header.field_names.empty())
+      check(ex_put_variable_param(id_, EX_NODAL, static_cast<int>(header.field_names.size())), "define");
+  }
+
+  void put_names(const ExodusHeader &header, const std::vector<SideSet> &sides)
+  {
+    std::vector<std::string> coordinates = {"x", "y", "z"}, fields = header.field_names;
+    check(ex_put_coord_names(id_, pointers(coordinates).data()), "name the coordinates of");
+    for (std::size_t b = 0; b < header.blocks.size(); ++b)
+      check(ex_put_name(id_, EX_ELEM_BLOCK, b + 1, header.blocks[b].c_str()), "name the blocks of");
+    for (std::size_t s = 0; s < sides.size(); ++s)
+      check(ex_put_name(id_, EX_SIDE_SET, s + 1, sides[s].name.c_str()), "name the sides of");
+    if (!fields.empty())
+      check(ex_put_variable_names(id_, EX_NODAL, static_cast<int>(fields.size()), pointers(fields).data()),
+            "name the fields of");
+  }
+
+  void put_sides(const std::vector<SideSet> &sides)
+  {
+    for (std::size_t s = 0; s < sides.size(); ++s)
+      if (!sides[s].cell.empty())
+        check(ex_put_set(id_, EX_SIDE_SET, s + 1, sides[s].cell.data(), sides[s].ordinal.data()), "write the sides of");
+  }
+
+  void check(const int status, const char *action) const
+  {
+    if (status != 0) fail(action);
+  }
+
+  [[noreturn]] void fail(const char *action) const
+  {
+    const char *message = nullptr, *function = nullptr;
+    int code = 0;
+    ex_get_err(&message, &function, &code);
+    std::string text = "output: cannot " + std::string(action) + " \"" + path_ + "\"";
+    if (message && *message) text += ": " + std::string(message);
+    if (code > 0) text += std::string(" (") + std::strerror(code) + ")"; // NetCDF hands on errno; its own codes are < 0
+    throw Error(ExitCode::internal_error, text);
+  }
+
+  std::string path_;
+  AtomicFile file_;
+  int id_ = -1;
+  int begun_ = 0, whole_ = 0; // times that are begun, and whole
+  bool published_ = false;
+  std::vector<GO> blocks_; // cells in each
+  int nodes_per_cell_ = 0;
+};
+
+} // namespace rpc::io
