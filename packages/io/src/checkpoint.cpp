@@ -34,12 +34,23 @@ std::uint64_t bits_of(const double value)
   return bits;
 }
 
+std::string in_digits(const std::uint64_t number)
+{
+  std::ostringstream text;
+  text << std::hex << number;
+  return text.str();
+}
 /// sum_of_bits() in hexadecimal digits; collective.
 std::string number_of_all(const Comm &comm, const std::uint64_t mine)
 {
-  std::ostringstream text;
-  text << std::hex << sum_of_bits(comm, mine);
-  return text.str();
+  return in_digits(sum_of_bits(comm, mine));
+}
+/// A fingerprint of an array; one rank only.
+std::string number_of(const std::vector<double> &values)
+{
+  std::uint64_t sum = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) sum += scrambled(k + 1, bits_of(values[k]));
+  return in_digits(sum);
 }
 
 /// A fingerprint of nodes, cells and sides, the same on any number of ranks; collective.
@@ -131,6 +142,12 @@ public:
     if (values.empty()) damaged("a field cannot be read");
     return values;
   }
+  std::vector<double> array(const int index, const std::string &number) const
+  {
+    auto values = file_->array(index);
+    if (!values || number_of(*values) != number) damaged("an array is not what was written");
+    return std::move(*values);
+  }
 
 private:
   std::string path_;
@@ -140,17 +157,21 @@ private:
 } // namespace
 
 void write_checkpoint(const std::string &path, const mesh::Mesh &mesh, const double time,
-                      const std::vector<NodalField> &fields, const std::string &text)
+                      const std::vector<NodalField> &fields, const std::string &text,
+                      const std::vector<NamedArray> &arrays)
 {
   std::vector<std::string> names;
   for (const auto &field : fields) names.push_back(field.name);
+  auto of_arrays = nlohmann::json::array();
+  for (const auto &array : arrays) of_arrays.push_back({{"name", array.name}, {"values", number_of(array.values)}});
   const nlohmann::json header = {{"version", RPC_VERSION},
                                  {"mesh", number_of(mesh)},
                                  {"nodes", mesh.owned_nodes->getGlobalNumElements()},
                                  {"values", number_of(mesh, fields)},
                                  {"fields", names},
+                                 {"arrays", of_arrays},
                                  {"text", text}};
-  ExodusFile file(path, "rpc checkpoint", mesh, names, records_of(signature + header.dump()));
+  ExodusFile file(path, "rpc checkpoint", mesh, names, records_of(signature + header.dump()), arrays);
   file.write(time, fields);
   file.commit();
 }
@@ -171,6 +192,8 @@ Checkpoint::Checkpoint(const std::string &path, const RCP<const Comm> &comm) : p
       const GO nodes = header.at("nodes");
       for (std::size_t f = 0; f < header.at("fields").size(); ++f)
         values_.push_back(reader.field(static_cast<int>(f), nodes));
+      for (const auto &array : header.at("arrays"))
+        arrays_.push_back({array.at("name"), reader.array(static_cast<int>(arrays_.size()), array.at("values"))});
       header["time"] = reader.time();
     } catch (const nlohmann::json::exception &) {
       reader.damaged("its text cannot be read");
@@ -183,6 +206,8 @@ Checkpoint::Checkpoint(const std::string &path, const RCP<const Comm> &comm) : p
   mesh_number_ = header.at("mesh");
   fields_number_ = header.at("values");
   names_ = header.at("fields").get<std::vector<std::string>>();
+  if (comm->getRank() == 0) return;
+  for (const auto &array : header.at("arrays")) arrays_.push_back({array.at("name"), {}});
 }
 
 std::vector<NodalField> Checkpoint::fields(const mesh::Mesh &mesh) const

@@ -28,7 +28,8 @@ std::size_t longest_name(const mesh::Mesh &mesh)
 }
 
 /// Collective.
-void require_names(const mesh::Mesh &mesh, const std::vector<std::string> &fields)
+void require_names(const mesh::Mesh &mesh, const std::vector<std::string> &fields,
+                   const std::vector<NamedArray> &arrays)
 {
   std::optional<std::string> message;
   const auto check_name = [&](const std::string &name, const std::size_t longest) {
@@ -39,6 +40,7 @@ void require_names(const mesh::Mesh &mesh, const std::vector<std::string> &field
   for (const auto &side : mesh.sides) check_name(side.name, mesh::longest_name);
   for (const auto &block : mesh.blocks) check_name(block, mesh::longest_name);
   for (const auto &field : fields) check_name(field, MAX_NAME_LENGTH);
+  for (const auto &array : arrays) check_name(array.name, MAX_NAME_LENGTH);
   throw_if_any(mesh.comm(), ExitCode::internal_error, message);
 }
 
@@ -96,6 +98,15 @@ SideSet gather_side(const mesh::Mesh &mesh, const mesh::Side &side)
   return set;
 }
 
+/// Rank 0: one coordinate of all nodes in the order of their ids; empty elsewhere. Collective.
+std::vector<double> gathered_coordinate(const mesh::Mesh &mesh, const mesh::CanonicalOrder &nodes, const int direction)
+{
+  const auto coords = to_host(mesh.coords);
+  std::vector<double> owned(mesh.num_owned_nodes());
+  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) owned[n] = coords(n, direction);
+  return nodes.gather(owned.data());
+}
+
 /// Node numbers of owned cells, 1-based: (owned cells, nodes per cell), row by row.
 std::vector<int> owned_connectivity(const mesh::Mesh &mesh)
 {
@@ -127,10 +138,11 @@ struct ExodusFile::Impl {
 };
 
 ExodusFile::ExodusFile(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
-                       const std::vector<std::string> &fields, const std::vector<std::string> &info)
+                       const std::vector<std::string> &fields, const std::vector<std::string> &info,
+                       const std::vector<NamedArray> &arrays)
     : mesh_(mesh)
 {
-  require_names(mesh, fields);
+  require_names(mesh, fields, arrays);
   const Comm &comm = mesh.comm();
   const RCP<const Comm> shared_comm = mesh.owned_nodes->getComm();
   impl_.reset(new Impl{shared_comm, mesh::CanonicalOrder(shared_comm, mesh.node_id, "node"), fields, nullptr});
@@ -142,16 +154,11 @@ ExodusFile::ExodusFile(const std::string &path, const std::string &title, const 
   auto &writer = impl_->writer;
   on_root(comm, ExitCode::internal_error, [&] {
     writer = std::make_unique<ExodusWriter>(path, longest_name(mesh));
-    writer->put_header(header, sides);
+    writer->put_header(header, sides, arrays);
   });
-  {
-    const auto coords = to_host(mesh.coords);
-    std::vector<double> owned(mesh.num_owned_nodes());
-    for (int d = 0; d < mesh.dim(); ++d) {
-      for (LO n = 0; n < mesh.num_owned_nodes(); ++n) owned[n] = coords(n, d);
-      const auto all = impl_->nodes.gather(owned.data());
-      on_root(comm, ExitCode::internal_error, [&] { writer->put_coordinate(d, all); });
-    }
+  for (int d = 0; d < mesh.dim(); ++d) {
+    const auto all = gathered_coordinate(mesh, impl_->nodes, d);
+    on_root(comm, ExitCode::internal_error, [&] { writer->put_coordinate(d, all); });
   }
   const auto all = cells.gather(owned_connectivity(mesh).data(), mesh.element.num_nodes());
   on_root(comm, ExitCode::internal_error, [&] { writer->put_cells(all); });
@@ -174,9 +181,13 @@ void ExodusFile::write(const double time, const std::vector<NodalField> &fields)
 int ExodusFile::take_times(const std::string &older, const std::vector<double> &wanted)
 {
   int taken = 0;
+  std::vector<std::vector<double>> coords; // (dim; nodes)
+  for (int d = 0; d < mesh_.dim(); ++d) coords.push_back(gathered_coordinate(mesh_, impl_->nodes, d));
   on_root(*impl_->comm, ExitCode::internal_error, [&] {
     const auto file = ExodusReader::open(older);
     if (!file || file->num_nodes() != impl_->nodes.size() || file->field_names() != impl_->names) return;
+    for (int d = 0; d < mesh_.dim(); ++d)
+      if (file->coordinate(d) != coords[d]) return;
     const std::vector<double> times = file->times();
     for (std::size_t k = 0; k < times.size(); ++k) {
       if (!std::binary_search(wanted.begin(), wanted.end(), times[k])) continue;
@@ -206,6 +217,17 @@ void ExodusFile::publish()
 void ExodusFile::commit()
 {
   on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->commit(); });
+}
+
+std::vector<double> exodus_times(const std::string &path)
+{
+  const auto file = ExodusReader::open(path);
+  return file ? file->times() : std::vector<double>();
+}
+
+void end_exodus_after(const std::string &path, const int number)
+{
+  set_number_of_times(path, number);
 }
 
 void write_exodus(const std::string &path, const std::string &title, const mesh::Mesh &mesh, const double time,

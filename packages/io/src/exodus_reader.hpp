@@ -2,6 +2,7 @@
 
 #include "rpc/core/kokkos.hpp"
 
+#include <array>
 #include <exodusII.h>
 #include <optional>
 #include <string>
@@ -42,6 +43,14 @@ public:
     if (!times.empty() && ex_get_all_times(id_, times.data()) < 0) times.clear();
     return times;
   }
+  std::vector<double> coordinate(const int direction) const
+  {
+    std::vector<double> values(num_nodes());
+    std::array<double *, 3> by_direction{};
+    by_direction[direction] = values.data();
+    if (ex_get_coord(id_, by_direction[0], by_direction[1], by_direction[2]) < 0) values.clear();
+    return values;
+  }
   std::vector<std::string> field_names() const
   {
     int count = 0;
@@ -57,6 +66,15 @@ public:
   {
     std::vector<double> values(num_nodes());
     if (ex_get_var(id_, step, EX_NODAL, index + 1, 1, num_nodes(), values.data()) < 0) values.clear();
+    return values;
+  }
+  /// @param index  of the array among those that ExodusFile was given
+  std::optional<std::vector<double>> array(const int index) const
+  {
+    int entries = 0, factors = 0;
+    if (ex_get_set_param(id_, EX_NODE_SET, index + 1, &entries, &factors) != 0 || factors < 0) return std::nullopt;
+    std::vector<double> values(factors);
+    if (factors > 0 && ex_get_set_dist_fact(id_, EX_NODE_SET, index + 1, values.data()) < 0) return std::nullopt;
     return values;
   }
   /// The information records; none if one cannot be read.

@@ -3,6 +3,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/kokkos.hpp"
 #include "rpc/io/atomic_file.hpp"
+#include "rpc/io/exodus.hpp"
 #include "rpc/mesh/element.hpp"
 
 #include <algorithm>
@@ -89,11 +90,12 @@ public:
   ExodusWriter(const ExodusWriter &) = delete;
   ExodusWriter &operator=(const ExodusWriter &) = delete;
 
-  void put_header(const ExodusHeader &header, const std::vector<SideSet> &sides)
+  void put_header(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)
   {
-    define(header, sides);
-    put_names(header, sides);
+    define(header, sides, arrays);
+    put_names(header, sides, arrays);
     put_sides(sides);
+    put_arrays(arrays);
   }
   void put_coordinate(const int direction, const std::vector<double> &values)
   {
@@ -139,11 +141,11 @@ public:
   }
 
 private:
-  void define(const ExodusHeader &header, const std::vector<SideSet> &sides)
+  void define(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)
   {
     const auto &element = header.element;
     check(ex_put_init(id_, header.title.substr(0, MAX_LINE_LENGTH).c_str(), element.dim, header.num_nodes,
-                      header.num_cells, static_cast<int64_t>(header.blocks.size()), 0,
+                      header.num_cells, static_cast<int64_t>(header.blocks.size()), static_cast<int64_t>(arrays.size()),
                       static_cast<int64_t>(sides.size())),
           "define");
     std::string program = "rpc", version = RPC_VERSION, date, time;
@@ -159,11 +161,15 @@ private:
           "define");
     for (std::size_t s = 0; s < sides.size(); ++s)
       check(ex_put_set_param(id_, EX_SIDE_SET, s + 1, static_cast<int64_t>(sides[s].cell.size()), 0), "define");
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+      const auto size = static_cast<int64_t>(arrays[a].values.size());
+      check(ex_put_set_param(id_, EX_NODE_SET, a + 1, size, size), "define");
+    }
     if (!header.field_names.empty())
       check(ex_put_variable_param(id_, EX_NODAL, static_cast<int>(header.field_names.size())), "define");
   }
 
-  void put_names(const ExodusHeader &header, const std::vector<SideSet> &sides)
+  void put_names(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)
   {
     std::vector<std::string> coordinates = {"x", "y", "z"}, fields = header.field_names;
     check(ex_put_coord_names(id_, pointers(coordinates).data()), "name the coordinates of");
@@ -171,6 +177,8 @@ private:
       check(ex_put_name(id_, EX_ELEM_BLOCK, b + 1, header.blocks[b].c_str()), "name the blocks of");
     for (std::size_t s = 0; s < sides.size(); ++s)
       check(ex_put_name(id_, EX_SIDE_SET, s + 1, sides[s].name.c_str()), "name the sides of");
+    for (std::size_t a = 0; a < arrays.size(); ++a)
+      check(ex_put_name(id_, EX_NODE_SET, a + 1, arrays[a].name.c_str()), "name the arrays of");
     if (!fields.empty())
       check(ex_put_variable_names(id_, EX_NODAL, static_cast<int>(fields.size()), pointers(fields).data()),
             "name the fields of");
@@ -181,6 +189,19 @@ private:
     for (std::size_t s = 0; s < sides.size(); ++s)
       if (!sides[s].cell.empty())
         check(ex_put_set(id_, EX_SIDE_SET, s + 1, sides[s].cell.data(), sides[s].ordinal.data()), "write the sides of");
+  }
+
+  /// Exodus has no arrays of any size but those that go with sets: each is the distribution factors of a set that has the first
+  /// node as often as it takes.
+  void put_arrays(const std::vector<NamedArray> &arrays)
+  {
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+      const std::vector<double> &values = arrays[a].values;
+      if (values.empty()) continue;
+      const std::vector<int> nodes(values.size(), 1);
+      check(ex_put_set(id_, EX_NODE_SET, a + 1, nodes.data(), nullptr), "write the arrays of");
+      check(ex_put_set_dist_fact(id_, EX_NODE_SET, a + 1, values.data()), "write the arrays of");
+    }
   }
 
   void check(const int status, const char *action) const

@@ -4,7 +4,9 @@
 #include "scratch.hpp"
 
 #include <Tpetra_Core.hpp>
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -78,6 +80,46 @@ TEST(Checkpoint, ReadsBackTextsOfAnyLengthAfterLongOnes)
     write_checkpoint(path, mesh, 1, fields, text);
     EXPECT_EQ(Checkpoint(path, comm).text(), text);
   }
+}
+
+TEST(Checkpoint, HoldsArraysOfAnySize)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  const mesh::Mesh mesh = box();
+  std::vector<io::NamedArray> arrays = {{"none", {}}, {"one", {-0.0}}, {"many", std::vector<double>(1000)}};
+  for (std::size_t k = 0; k < 1000; ++k) arrays[2].values[k] = std::exp(static_cast<double>(k) - 700);
+  const std::string path = scratch.path("a.e");
+  write_checkpoint(path, mesh, 1, fields_of(mesh), "{}", arrays);
+  const auto found = Checkpoint(path, comm).arrays();
+  ASSERT_EQ(found.size(), arrays.size());
+  for (std::size_t a = 0; a < arrays.size(); ++a) {
+    EXPECT_EQ(found[a].name, arrays[a].name);
+    if (comm->getRank() == 0)
+      EXPECT_EQ(found[a].values, arrays[a].values);
+    else
+      EXPECT_TRUE(found[a].values.empty());
+  }
+}
+
+TEST(Checkpoint, RefusesAnArrayThatIsDamaged)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const Scratch scratch(*comm);
+  const double value = 0.123456789;
+  write_checkpoint(scratch.path("a.e"), box(), 1, fields_of(box()), "{}", {{"array", {value}}});
+  if (comm->getRank() == 0) {
+    std::string text = text_of(scratch.path("a.e")), bytes(sizeof value, '\0');
+    std::memcpy(bytes.data(), &value, sizeof value);
+    std::reverse(bytes.begin(), bytes.end()); // the file is big-endian
+    const auto at = text.find(bytes);
+    ASSERT_NE(at, std::string::npos);
+    text[at + 5] ^= 1;
+    scratch.write("flipped.e", text);
+  }
+  comm->barrier();
+  expect_error(ExitCode::bad_input, {"flipped.e", "damaged", "array"},
+               [&] { Checkpoint(scratch.path("flipped.e"), comm); });
 }
 
 TEST(Checkpoint, RefusesAnotherMesh)

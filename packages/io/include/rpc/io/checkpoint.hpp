@@ -8,12 +8,14 @@
 namespace rpc::io
 {
 
-/// Writes nodal fields and a text as an Exodus file, whole or not at all, so that a run can go on from it. The file also holds the
-/// version of the program, a number that stands for the mesh and one for the fields. Collective.
-/// @param text  in UTF-8
+/// Writes nodal fields, a text and arrays as an Exodus file, whole or not at all, so that a run can go on from it. The file also holds
+/// the version of the program, and numbers that stand for the mesh, the fields and each array. Collective.
+/// @param text    in UTF-8
+/// @param arrays  what belongs to no node; rank 0's are written
 /// @throws rpc::Error on every rank as ExodusFile does
 void write_checkpoint(const std::string &path, const mesh::Mesh &mesh, double time,
-                      const std::vector<NodalField> &fields, const std::string &text);
+                      const std::vector<NodalField> &fields, const std::string &text,
+                      const std::vector<NamedArray> &arrays = {});
 
 /// What write_checkpoint() was given. Rank 0 reads; any number of ranks may have written. Collective.
 class Checkpoint
@@ -24,6 +26,8 @@ public:
 
   double time() const { return time_; }
   const std::string &text() const { return text_; }
+  /// The names on all ranks, the values on rank 0 only.
+  const std::vector<NamedArray> &arrays() const { return arrays_; }
   /// The fields on a mesh, in the order in which they were written.
   /// @throws rpc::Error (bad_input) on every rank if the file belongs to another mesh, or its fields are damaged
   std::vector<NodalField> fields(const mesh::Mesh &mesh) const;
@@ -34,6 +38,7 @@ private:
   double time_ = 0;
   std::string text_, mesh_number_, fields_number_;
   std::vector<std::string> names_;
+  std::vector<NamedArray> arrays_;
   std::vector<std::vector<double>> values_; // (fields; nodes in the order of their ids), rank 0 only
 };
 

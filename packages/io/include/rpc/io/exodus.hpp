@@ -16,6 +16,12 @@ struct NodalField {
   HostView<double *> values; ///< (owned nodes)
 };
 
+/// Numbers of an output file that belong to no node, as many as there are.
+struct NamedArray {
+  std::string name;           ///< at most 32 characters; the same on all ranks
+  std::vector<double> values; ///< rank 0 only
+};
+
 /// An Exodus file of a mesh with fields at several times; all members are collective. It appears whole or not at all, or, once it is
 /// published, grows from time to time: then it can be read meanwhile, and a process that is killed leaves all times but the last.
 ///
@@ -30,10 +36,12 @@ public:
   /// @param mesh    is to live as long as this does
   /// @param fields  names, the same at all times
   /// @param info    information records, each cut at 80 characters
+  /// @param arrays  those of rank 0 are written; readers see node sets
   /// @throws rpc::Error on every rank: bad_input for a folder that cannot be written to, internal_error for a name that is too
   ///         long or a failed write
   ExodusFile(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
-             const std::vector<std::string> &fields, const std::vector<std::string> &info = {});
+             const std::vector<std::string> &fields, const std::vector<std::string> &info = {},
+             const std::vector<NamedArray> &arrays = {});
   /// Removes the file unless commit() has run.
   ~ExodusFile();
 
@@ -54,6 +62,11 @@ private:
   const mesh::Mesh &mesh_;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The times of an Exodus file; none if it cannot be read. One rank only.
+std::vector<double> exodus_times(const std::string &path);
+/// Makes an Exodus file that nobody writes end after some of its times, from the first. One rank only.
+void end_exodus_after(const std::string &path, int number);
 
 /// A file with one time.
 void write_exodus(const std::string &path, const std::string &title, const mesh::Mesh &mesh, double time,
