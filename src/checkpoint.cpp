@@ -10,9 +10,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <iomanip>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
+#include <variant>
 
 namespace rpc
 {
@@ -124,6 +127,39 @@ private:
   std::size_t next_ = 0;
 };
 
+/// A field of cell sizes as arrays of a file.
+std::vector<io::NamedArray> arrays_of(const mesh::SizeField &sizes)
+{
+  return {{"sizes_coords", sizes.coords},
+          {"sizes_triangles", {sizes.triangles.begin(), sizes.triangles.end()}},
+          {"sizes_size", sizes.size}};
+}
+/// The field of cell sizes that the mesh of a state was made by, rank 0 only; null: the deck's mesh, or another rank.
+std::shared_ptr<const mesh::SizeField> sizes_of(const analysis::HistoryState &state)
+{
+  const auto *const gmsh = std::get_if<mesh::GmshOptions>(&state.mesh_options);
+  return gmsh ? gmsh->sizes : nullptr;
+}
+/// The mesh that a checkpoint is on: the deck's, unless the file has a field of cell sizes.
+mesh::MeshOptions mesh_of(const io::Checkpoint &file, const std::string &path, const Scene &scene, const Comm &comm)
+{
+  std::map<std::string, std::vector<double>> arrays;
+  for (const auto &[name, values] : file.arrays()) arrays[name] = values;
+  if (arrays.count("sizes_size") == 0) return scene.mesh;
+  std::shared_ptr<mesh::SizeField> sizes;
+  if (comm.getRank() == 0) {
+    const auto &triangles = arrays.at("sizes_triangles");
+    sizes = std::make_shared<mesh::SizeField>(
+        mesh::SizeField{arrays.at("sizes_coords"), {triangles.begin(), triangles.end()}, arrays.at("sizes_size")});
+  }
+  const auto options = mesh::with_sizes(scene.mesh, sizes);
+  RPC_REQUIRE(options && scene.adapt.adapts(),
+              "restart: \"" << path
+                            << "\" is on a mesh that was adapted, and the deck adapts none. Give it "
+                               "\"Adapt->Target Relative Error\", or start from the first step.");
+  return *options;
+}
+
 std::string stem_of(const Scene &scene)
 {
   return scene.name + ".checkpoint-";
@@ -136,28 +172,50 @@ Checkpoints::Checkpoints(const Scene &scene, const bool restarts, std::string re
 {
 }
 
-std::optional<analysis::HistoryState> Checkpoints::resume(const fem::Discretization &d)
+/// A checkpoint that can be read to its end.
+struct Checkpoints::Whole {
+  std::string path;
+  io::Checkpoint file;
+  mesh::MeshOptions mesh_options;
+  fem::Discretization discretization;
+  std::optional<std::vector<io::NodalField>>
+      fields; // none on another mesh, which is told once the deck is found to be right
+};
+
+/// @throws rpc::Error on every rank if it is none
+Checkpoints::Whole Checkpoints::whole(const std::string &path, const RCP<const Comm> &comm) const
+{
+  io::Checkpoint file(path, comm);
+  auto options = mesh_of(file, path, scene_, *comm);
+  auto d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_mesh(options, comm)), scene_.model.kinematics);
+  Whole whole{path, std::move(file), std::move(options), std::move(d), std::nullopt};
+  const mesh::Mesh &mesh = *whole.discretization.mesh;
+  if (whole.file.is_of(mesh)) whole.fields = whole.file.fields(mesh);
+  return whole;
+}
+
+std::optional<analysis::HistoryState> Checkpoints::resume(const RCP<const Comm> &comm)
 {
   if (!restarts_) return std::nullopt;
-  if (!restart_.empty()) return resumed_from(restart_, d);
-  const Comm &comm = d.mesh->comm();
-  const std::string listed = text_of_root(comm, ExitCode::bad_input, [&] { return json(in_folder()).dump(); });
+  if (!restart_.empty()) return state_of(whole(restart_, comm));
+  const std::string listed = text_of_root(*comm, ExitCode::bad_input, [&] { return json(in_folder()).dump(); });
   const std::vector<std::string> newest_first = json::parse(listed);
   RPC_REQUIRE(!newest_first.empty(), "restart: there is no checkpoint of \""
                                          << scene_.name << "\" in the folder \"" << folder_
                                          << "\". Name one, --restart=FILE, or start from the first step.");
   std::optional<Error> first;
+  std::optional<Whole> newest;
   for (const std::string &path : newest_first) {
     try {
-      io::Checkpoint(path, d.mesh->owned_nodes->getComm()).fields(*d.mesh);
+      newest.emplace(whole(path, comm));
+      break;
     } catch (const Error &error) { // damaged; on all ranks
       if (!first) first = error;
-      continue;
     }
-    restart_ = path;
-    return resumed_from(path, d);
   }
-  throw *first;
+  if (!newest) throw *first;
+  restart_ = newest->path;
+  return state_of(std::move(*newest));
 }
 
 /// Checkpoints of this deck's name, the newest first; rank 0 only.
@@ -177,20 +235,23 @@ std::vector<std::string> Checkpoints::in_folder() const
   return found;
 }
 
-analysis::HistoryState Checkpoints::resumed_from(const std::string &path, const fem::Discretization &d) const
+analysis::HistoryState Checkpoints::state_of(Whole whole) const
 {
-  const io::Checkpoint file(path, d.mesh->owned_nodes->getComm());
+  const std::string &path = whole.path;
   analysis::HistoryState state;
+  state.discretization = std::move(whole.discretization);
+  state.mesh_options = std::move(whole.mesh_options);
+  const fem::Discretization &d = state.discretization;
   const int sides = static_cast<int>(scene_.model.contact.size());
   const ResultScope scope = analysis::result_scope(scene_.model, d);
   try {
-    const json text = json::parse(file.text());
+    const json text = json::parse(whole.file.text());
     for (const json &record : text.at("records")) state.records.push_back(record_from(record, scope));
     std::vector<std::pair<std::string, std::string>> before;
     for (const auto &[name, content] : text.at("deck").items()) before.emplace_back(name, content);
     require_continuation(scene_, d, before, state.records, path);
-    FieldReader reader(file.fields(*d.mesh), d);
-    state.last.time = file.time();
+    FieldReader reader(whole.fields ? std::move(*whole.fields) : whole.file.fields(*d.mesh), d);
+    state.last.time = whole.file.time();
     state.last.energies = energies_from(text.at("energies"), scope);
     state.last.displacement = reader.components();
     state.last.pressure = reader.columns(sides);
@@ -217,8 +278,9 @@ analysis::HistoryState Checkpoints::resumed_from(const std::string &path, const 
   return state;
 }
 
-void Checkpoints::write(const analysis::HistoryState &state, const fem::Discretization &d)
+void Checkpoints::write(const analysis::HistoryState &state)
 {
+  const fem::Discretization &d = state.discretization;
   const ResultScope scope = analysis::result_scope(scene_.model, d);
   json text = {{"energies", kept_numbers(analysis::energy_quantities, state.last.energies, scope)},
                {"assemblies", state.matrix_assemblies}};
@@ -244,7 +306,9 @@ void Checkpoints::write(const analysis::HistoryState &state, const fem::Discreti
   std::ostringstream name;
   name << stem_of(scene_) << std::setw(6) << std::setfill('0') << state.records.size() << ".e";
   const std::string path = (std::filesystem::path(folder_) / name.str()).string();
-  io::write_checkpoint(path, *d.mesh, state.last.time, fields, text.dump());
+  const auto sizes = sizes_of(state);
+  const auto arrays = sizes ? arrays_of(*sizes) : std::vector<io::NamedArray>();
+  io::write_checkpoint(path, *d.mesh, state.last.time, fields, text.dump(), arrays);
   on_root(d.mesh->comm(), ExitCode::internal_error, [&] { remove_others(path); });
 }
 

@@ -19,16 +19,18 @@ public:
   /// @param folder    for new checkpoints
   Checkpoints(const Scene &scene, bool restarts, std::string restart, const std::string &folder);
 
-  /// What the run goes on from; none from the first step. Collective.
+  /// What the run goes on from, on its mesh, which is made anew; none from the first step. Collective.
   /// @throws rpc::Error (bad_input) on every rank if the file is damaged, or belongs to another mesh, deck or version
-  std::optional<analysis::HistoryState> resume(const fem::Discretization &d);
+  std::optional<analysis::HistoryState> resume(const RCP<const Comm> &comm);
   /// The checkpoint that the run has gone on from; empty: none.
   const std::string &source() const { return restart_; }
   /// Writes a checkpoint. Collective.
-  void write(const analysis::HistoryState &state, const fem::Discretization &d);
+  void write(const analysis::HistoryState &state);
 
 private:
-  analysis::HistoryState resumed_from(const std::string &path, const fem::Discretization &d) const;
+  struct Whole;
+  Whole whole(const std::string &path, const RCP<const Comm> &comm) const;
+  analysis::HistoryState state_of(Whole whole) const;
   std::vector<std::string> in_folder() const;
   void remove_others(const std::string &newest);
 

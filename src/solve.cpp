@@ -34,15 +34,13 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     table->load_step(scene, solution);
   };
   if (checkpoints) {
-    listener.resume = [&](const fem::Discretization &d) {
-      auto state = checkpoints->resume(d);
+    listener.resume = [&] {
+      auto state = checkpoints->resume(comm);
       if (state)
         console << "note: goes on after \"" << checkpoints->source() << "\", t = " << state->last.time << std::endl;
       return state;
     };
-    listener.checkpoint = [&](const analysis::HistoryState &state, const fem::Discretization &d) {
-      checkpoints->write(state, d);
-    };
+    listener.checkpoint = [&](const analysis::HistoryState &state) { checkpoints->write(state); };
   }
   if (keep) listener.cycle = [&](Solution &solution) { keep(scene, solution); };
   Solution solution = adapt::solve(scene, comm, listener);

@@ -1,8 +1,17 @@
 #include "output/film.hpp"
 
 #include "output/paths.hpp"
+#include "rpc/core/on_root.hpp"
 #include "rpc/core/timed.hpp"
 #include "rpc/fem/stress.hpp"
+#include "rpc/io/atomic_file.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <sstream>
 
 namespace rpc
 {
@@ -82,7 +91,72 @@ std::vector<double> earlier_times(const Scene &scene, const analysis::Solution &
   return times;
 }
 
+/// How many of some times each part of a film on disk has, from the first part to the last that has any. Collective.
+std::vector<int> times_in_parts(const std::string &first, const std::vector<double> &wanted, const Comm &comm)
+{
+  const std::string text = text_of_root(comm, ExitCode::internal_error, [&] {
+    std::string counts, all;
+    for (int part = 1; std::filesystem::exists(film_part(first, part)); ++part) {
+      const auto times = io::exodus_times(film_part(first, part));
+      const auto count = std::count_if(times.begin(), times.end(), [&](const double t) {
+        return std::binary_search(wanted.begin(), wanted.end(), t);
+      });
+      all += std::to_string(count) + ' ';
+      if (count > 0) counts = all;
+    }
+    return counts;
+  });
+  std::istringstream counts(text);
+  return {std::istream_iterator<int>(counts), std::istream_iterator<int>()};
+}
+
+/// Removes the parts behind some, and of the last of these the times behind a last one; one rank only.
+void end_parts(const std::string &first, const int parts, const double last)
+{
+  for (int part = std::max(parts, 1) + 1; std::filesystem::exists(film_part(first, part)); ++part)
+    io::remove_older(film_part(first, part));
+  if (parts == 0) return;
+  const auto times = io::exodus_times(film_part(first, parts));
+  const auto kept = std::upper_bound(times.begin(), times.end(), last) - times.begin();
+  if (kept < static_cast<std::ptrdiff_t>(times.size()))
+    io::end_exodus_after(film_part(first, parts), static_cast<int>(kept));
+}
+
 } // namespace
+
+std::unique_ptr<io::ExodusFile> Film::opened(const Scene &scene, const std::string &path,
+                                             const std::vector<std::string> &fields) const
+{
+  return std::make_unique<io::ExodusFile>(path, scene.name, *mesh_, fields);
+}
+
+/// Takes over the parts that a run before has left, as far as it is gone on from, and removes the others. Opens the last one if it is of
+/// the present mesh. Collective.
+void Film::go_on(const Scene &scene, const analysis::Solution &s, const std::string &first,
+                 const std::vector<std::string> &fields)
+{
+  const auto before = earlier_times(scene, s);
+  const auto found = times_in_parts(first, before, mesh_->comm());
+  const int parts = static_cast<int>(found.size());
+  int taken = 0;
+  if (parts > 0) {
+    file_ = opened(scene, film_part(first, parts), fields);
+    taken = file_->take_times(film_part(first, parts), before);
+    if (taken == 0) file_.reset();
+  }
+  // A run on one mesh has no use for files on others.
+  const int others = taken > 0 ? parts - 1 : scene.adapt.adapts() ? parts : 0;
+  for (int part = 1; part <= others + (taken > 0); ++part) files_.push_back(film_part(first, part));
+  if (std::accumulate(found.begin(), found.begin() + others, taken) < static_cast<int>(before.size()))
+    note_ = "\"" + film_part(first, others + 1) +
+            "\" lacks times before the restart: no film of these fields on this mesh was there to go on with";
+  on_root(mesh_->comm(), ExitCode::internal_error, [&] {
+    if (taken > 0)
+      end_parts(first, parts, std::numeric_limits<double>::infinity());
+    else
+      end_parts(first, others, before.empty() ? 0 : before.back());
+  });
+}
 
 void Film::write(const Scene &scene, const analysis::Solution &s, const std::string &folder)
 {
@@ -90,15 +164,16 @@ void Film::write(const Scene &scene, const analysis::Solution &s, const std::str
   const auto fields = nodal_fields(scene, s);
   if (!file_ || mesh_ != s.discretization.mesh) {
     if (file_) file_->commit();
+    file_.reset();
     std::vector<std::string> names;
     for (const auto &field : fields) names.push_back(field.name);
     mesh_ = s.discretization.mesh;
-    files_.push_back(film_part(ResultPaths(scene, folder).exodus, static_cast<int>(files_.size()) + 1));
-    file_ = std::make_unique<io::ExodusFile>(files_.back(), scene.name, *mesh_, names);
-    const auto before = files_.size() == 1 ? earlier_times(scene, s) : std::vector<double>();
-    if (!before.empty() && file_->take_times(files_.back(), before) < static_cast<int>(before.size()))
-      note_ = "\"" + files_.back() +
-              "\" lacks times before the restart: no film of these fields on this mesh was there to go on with";
+    const std::string first = ResultPaths(scene, folder).exodus;
+    if (files_.empty() && scene.has_steps()) go_on(scene, s, first, names);
+    if (!file_) {
+      files_.push_back(film_part(first, static_cast<int>(files_.size()) + 1));
+      file_ = opened(scene, files_.back(), names);
+    }
   }
   file_->write(s.time, fields);
   if (scene.has_steps()) file_->publish();

@@ -11,8 +11,8 @@ namespace rpc
 {
 
 /// The Exodus file of a run with load steps, a time for each: it grows with each step. Where the mesh changes from one step to the
-/// next, a new file begins, <deck>.e-s0002 and so on, as ParaView expects of one run. After a restart it begins with the times that the
-/// file of the run before has.
+/// next, a new file begins, <deck>.e-s0002 and so on, as ParaView expects of one run. After a restart the files of the run before stay up
+/// to the checkpoint, and the last of them goes on where its mesh does.
 class Film
 {
 public:
@@ -26,6 +26,10 @@ public:
 
 private:
   void write(const Scene &scene, const analysis::Solution &solution, const std::string &folder);
+  std::unique_ptr<io::ExodusFile> opened(const Scene &scene, const std::string &path,
+                                         const std::vector<std::string> &fields) const;
+  void go_on(const Scene &scene, const analysis::Solution &solution, const std::string &first,
+             const std::vector<std::string> &fields);
 
   std::shared_ptr<const mesh::Mesh> mesh_; // which the file reads until its end
   std::unique_ptr<io::ExodusFile> file_;

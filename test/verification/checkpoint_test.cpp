@@ -40,6 +40,8 @@ TEST(Checkpoint, HoldsTangentialMultipliersWhereTheLawHasThemAndNoneElsewhere)
   const std::string folder = std::filesystem::path(file.path()).parent_path().string();
   for (const bool tangential : {true, false}) {
     analysis::HistoryState state;
+    state.discretization = d;
+    state.mesh_options = scene.mesh;
     state.before.emplace();
     for (analysis::Memory *const memory : {&state.last, &*state.before}) {
       const double first = memory == &state.last ? 1 : 100;
@@ -52,11 +54,11 @@ TEST(Checkpoint, HoldsTangentialMultipliersWhereTheLawHasThemAndNoneElsewhere)
     }
     state.records.resize(1);
     state.records[0].time = 1;
-    Checkpoints(scene, false, "", folder).write(state, d);
+    Checkpoints(scene, false, "", folder).write(state);
     const auto found =
         Checkpoints(scene, true, (std::filesystem::path(folder) / (scene.name + ".checkpoint-000001.e")).string(),
                     folder)
-            .resume(d);
+            .resume(comm);
     ASSERT_TRUE(found && found->before);
     expect_equal(found->last.pressure, state.last.pressure);
     expect_equal(found->last.dent, state.last.dent);

@@ -7,6 +7,7 @@
 #include <Teuchos_Time.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace rpc::adapt
@@ -141,29 +142,66 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
   return std::move(*best);
 }
 
-/// Load steps, each on meshes of its own.
+/// What a step leaves for the next one, which reads nothing else of it.
+analysis::HistoryState state_of(const Solution &s)
+{
+  return {s.discretization, s.mesh_options, *s.memory, std::nullopt, s.history, s.matrix_assemblies};
+}
+/// The step that left it, without its solution.
+Solution step_of(analysis::HistoryState state)
+{
+  Solution s;
+  s.time = state.last.time;
+  s.discretization = std::move(state.discretization);
+  s.mesh_options = std::move(state.mesh_options);
+  s.memory = std::move(state.last);
+  s.history = std::move(state.records);
+  s.matrix_assemblies = state.matrix_assemblies;
+  return s;
+}
+
+/// Load steps, each on meshes of its own. An interrupted run leaves a checkpoint of the last step that was solved before the signal
+/// came: a step that it meets may end in other bits, for predictions are cut short.
 Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
-  std::optional<Solution> earlier;
   analysis::PhaseSeconds seconds;
+  std::optional<Solution> earlier; // the last step
+  if (auto state = analysis::resumed(listener, seconds)) earlier = step_of(std::move(*state));
+  const auto done = earlier ? earlier->history.size() : 0; // steps before this run
+  const double from = earlier ? earlier->time : -std::numeric_limits<double>::infinity();
+  const auto none_yet = [&] { return !earlier || earlier->history.size() == done; };
+  const auto keep = [&] { return earlier && analysis::keep_checkpoint(state_of(*earlier), listener); };
+  bool checkpoint_due = false, met_by_signal = false;
   for (const double t : task.steps.times) {
+    if (t <= from) continue;
+    if (!none_yet() && interrupted(*comm)) {
+      if (!met_by_signal) keep();
+      earlier->failure = analysis::Failure{t, interruption() + " before the step", ExitCode::not_converged};
+      break;
+    }
     Task step = task;
     step.time = t;
     bool solved = false;
     try {
       Solution s = solve_adaptively(step, earlier ? &*earlier : nullptr, comm, listener);
+      met_by_signal = interrupted(*comm);
+      if (met_by_signal && !(succeeded(s) && t == task.steps.times.back())) keep();
       seconds += s.seconds;
       s.seconds = seconds;
       earlier = std::move(s);
       solved = true;
       if (listener.load_step) listener.load_step(*earlier);
     } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
-      if (!earlier) throw;
+      if (none_yet()) throw earlier ? Error(error.code(), analysis::at_time(t) + error.what()) : error;
+      if (!solved && interrupted(*comm)) keep();
       earlier->failure = analysis::Failure{t, one_line(error.what()), error.code()};
       if (!solved) earlier->history.push_back(analysis::broken_off(task.model, {}, t, earlier->failure->reason));
       break;
     }
     if (!succeeded(*earlier)) break;
+    const int every = task.steps.checkpoint_every;
+    checkpoint_due |= every > 0 && earlier->history.size() % every == 0;
+    if (checkpoint_due && !met_by_signal) checkpoint_due = !keep();
   }
   return std::move(*earlier);
 }

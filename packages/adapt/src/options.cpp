@@ -46,10 +46,6 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list)
 void require_adaptable(const Task &task, const int dim)
 {
   RPC_REQUIRE(
-      !task.adapt.adapts() || task.steps.checkpoint_every == 0,
-      "deck: \"Steps->Checkpoint Every\" does not go with \"Adapt->Target Relative Error\": a restart could not "
-      "make the adapted meshes again");
-  RPC_REQUIRE(
       !task.adapt.adapts() || dim == 2,
       "deck: \"Adapt->Target Relative Error\" goes with plane meshes: adaptive ones in space are not available yet. "
       "Leave it at 0; \"Adapt->Estimate Error\" tells the error.");

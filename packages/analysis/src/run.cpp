@@ -90,8 +90,25 @@ Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &li
                           : solve_on(task, task.mesh, nullptr, nullptr, comm, listener);
 }
 
-namespace
+std::optional<HistoryState> resumed(const Listener &listener, PhaseSeconds &seconds)
 {
+  if (!listener.resume) return std::nullopt;
+  const Timed phase("mesh", seconds.mesh);
+  return listener.resume();
+}
+
+bool keep_checkpoint(const HistoryState &state, const Listener &listener)
+{
+  if (!listener.checkpoint) return false;
+  try {
+    listener.checkpoint(state);
+    return true;
+  } catch (const Error &error) { // on all ranks
+    if (listener.note)
+      listener.note("no checkpoint " + at_time(state.last.time) + error.what() + "; the next step tries again");
+    return false;
+  }
+}
 
 std::string at_time(const double t)
 {
@@ -99,6 +116,9 @@ std::string at_time(const double t)
   text << "at t = " << t << ": ";
   return text.str();
 }
+
+namespace
+{
 
 /// One of several load steps; its record is added if it converges, and is the last of the solution's history in any case.
 Solution solve_one_of_steps(const Task &task, const double t, LoadHistory &history, const int assemblies_before,
@@ -124,20 +144,14 @@ Solution solve_one_of_steps(const Task &task, const double t, LoadHistory &histo
 
 /// Has the last step that converged kept, if there is one. Collective.
 /// @return whether it was
-bool keep_checkpoint(const LoadHistory &history, const std::vector<StepRecord> &records, const int assemblies,
-                     const Listener &listener)
+bool keep_last(const Task &task, const LoadHistory &history, const std::vector<StepRecord> &records,
+               const int assemblies, const Listener &listener)
 {
-  if (!listener.checkpoint || !history.memory()) return false;
-  HistoryState state{*history.memory(), std::nullopt, records, assemblies};
+  if (!history.memory()) return false;
+  HistoryState state{
+      history.problem().discretization(), task.mesh, *history.memory(), std::nullopt, records, assemblies};
   if (history.before()) state.before = *history.before();
-  try {
-    listener.checkpoint(state, history.problem().discretization());
-    return true;
-  } catch (const Error &error) { // on all ranks
-    if (listener.note)
-      listener.note("no checkpoint " + at_time(state.last.time) + error.what() + "; the next step tries again");
-    return false;
-  }
+  return keep_checkpoint(state, listener);
 }
 
 } // namespace
@@ -146,28 +160,27 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
 {
   Solution s;
   PhaseSeconds seconds;
-  const auto mesh = make_mesh(task.mesh, comm, seconds);
-  std::optional<HistoryState> resumed;
-  if (listener.resume) resumed = listener.resume(fem::discretize(mesh, task.model.kinematics));
+  const auto from = resumed(listener, seconds);
+  const auto mesh = from ? from->discretization.mesh : make_mesh(task.mesh, comm, seconds);
   Task first = task;
-  first.time = resumed ? resumed->last.time : task.steps.times.front();
+  first.time = from ? from->last.time : task.steps.times.front();
   const auto problem = make_problem(first, mesh, seconds);
   LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver,
                       coarser_meshes(first, task.mesh, comm));
   history.balance_energies_to(task.steps.energy_tolerance);
   std::vector<StepRecord> records;
   int assemblies_before = 0;
-  if (resumed) {
-    records = resumed->records;
-    assemblies_before = resumed->matrix_assemblies;
-    history.go_on_from(resumed->last, resumed->before);
+  if (from) {
+    records = from->records;
+    assemblies_before = from->matrix_assemblies;
+    history.go_on_from(from->last, from->before);
   }
   if (listener.mesh) listener.mesh(problem->discretization(), problem->step(first.time).contact);
   bool checkpoint_due = false;
   for (const double t : task.steps.times) {
-    if (resumed && t <= resumed->last.time) continue;
+    if (from && t <= from->last.time) continue;
     if (!s.history.empty() && interrupted(*comm)) { // a step that converges without iterations does not ask
-      keep_checkpoint(history, records, s.matrix_assemblies, listener);
+      keep_last(task, history, records, s.matrix_assemblies, listener);
       s.failure = Failure{t, interruption() + " before the step", ExitCode::not_converged};
       break;
     }
@@ -188,11 +201,11 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     const int every = task.steps.checkpoint_every;
     checkpoint_due |= every > 0 && records.size() % every == 0;
     if (!s.uzawa.converged) {
-      if (interrupted(*comm)) keep_checkpoint(history, records, s.matrix_assemblies, listener);
+      if (interrupted(*comm)) keep_last(task, history, records, s.matrix_assemblies, listener);
       break;
     }
     if (!checkpoint_due) continue;
-    checkpoint_due = !keep_checkpoint(history, records, s.matrix_assemblies, listener);
+    checkpoint_due = !keep_last(task, history, records, s.matrix_assemblies, listener);
     if (t < task.steps.times.back()) history.start_anew();
   }
   return s;

@@ -63,7 +63,7 @@ TEST(Run, GoesOnFromACheckpointAsIfItHadNotEnded)
   task.steps.checkpoint_every = 2;
   std::optional<analysis::HistoryState> kept;
   analysis::Listener listener;
-  listener.checkpoint = [&](const analysis::HistoryState &state, const fem::Discretization &) {
+  listener.checkpoint = [&](const analysis::HistoryState &state) {
     if (!kept) kept = state;
   };
   const auto whole = analysis::solve(task, comm, listener);
@@ -71,9 +71,9 @@ TEST(Run, GoesOnFromACheckpointAsIfItHadNotEnded)
   EXPECT_EQ(kept->last.time, 1);
   int steps = 0;
   analysis::Listener again;
-  again.resume = [&](const fem::Discretization &) { return kept; };
+  again.resume = [&] { return kept; };
   again.load_step = [&](analysis::Solution &) { ++steps; };
-  again.checkpoint = [](const analysis::HistoryState &, const fem::Discretization &) {};
+  again.checkpoint = [](const analysis::HistoryState &) {};
   const auto resumed = analysis::solve(task, comm, again);
   EXPECT_EQ(steps, 2);
   ASSERT_TRUE(whole.uzawa.converged && resumed.uzawa.converged);

@@ -210,9 +210,14 @@ Checkpoint::Checkpoint(const std::string &path, const RCP<const Comm> &comm) : p
   for (const auto &array : header.at("arrays")) arrays_.push_back({array.at("name"), {}});
 }
 
+bool Checkpoint::is_of(const mesh::Mesh &mesh) const
+{
+  return number_of(mesh) == mesh_number_;
+}
+
 std::vector<NodalField> Checkpoint::fields(const mesh::Mesh &mesh) const
 {
-  RPC_REQUIRE(number_of(mesh) == mesh_number_,
+  RPC_REQUIRE(is_of(mesh),
               "restart: \"" << path_ << "\" belongs to another mesh. Restart with the mesh that it was written with.");
   const LO n = mesh.num_owned_nodes();
   std::vector<GO> ids(n);

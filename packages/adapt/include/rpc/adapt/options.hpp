@@ -29,7 +29,7 @@ struct Task : analysis::Task {
 };
 
 /// @param dim  of the task's mesh
-/// @throws rpc::Error (bad_input) unless the task's mesh can be adapted where that is asked for, and its steps then
+/// @throws rpc::Error (bad_input) unless the task's mesh can be adapted where that is asked for
 void require_adaptable(const Task &task, int dim);
 
 } // namespace rpc::adapt

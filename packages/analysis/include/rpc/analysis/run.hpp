@@ -54,6 +54,8 @@ struct Solution : StepSolution {
 
 /// All that the next load step needs.
 struct HistoryState {
+  fem::Discretization discretization; ///< of the mesh that all this is on
+  mesh::MeshOptions mesh_options;     ///< by which it was made
   Memory last;
   std::optional<Memory> before; ///< displacement and pressure of the step before the last one
   std::vector<StepRecord> records;
@@ -69,11 +71,20 @@ struct Listener {
   std::function<void(Solution &)> load_step; ///< one of several load steps is solved; its record is the history's last
   std::function<void(const std::string &)> note; ///< for the user
   /// The state to go on from, if it is not the first step.
-  std::function<std::optional<HistoryState>(const fem::Discretization &)> resume;
+  std::function<std::optional<HistoryState>()> resume;
   /// To be kept. The run itself goes on from here as from the checkpoint: with a new multigrid. Where it throws, the user is told
   /// (`note`), and it is called again after the next step.
-  std::function<void(const HistoryState &, const fem::Discretization &)> checkpoint;
+  std::function<void(const HistoryState &)> checkpoint;
 };
+
+/// The state that a run with load steps goes on from, if it is not the first step. Collective.
+/// @param[inout] seconds  of phases: that of the mesh grows
+std::optional<HistoryState> resumed(const Listener &listener, PhaseSeconds &seconds);
+/// Has a state kept; where that fails the user is told. Collective.
+/// @return whether it was
+bool keep_checkpoint(const HistoryState &state, const Listener &listener);
+/// "at t = 2: ", as messages begin.
+std::string at_time(double t);
 
 /// Mesh, assembly and solve_step(), for each load step: from a task to its solution. Collective on comm.
 /// @throws rpc::Error on every rank if the model does not fit its mesh; failing to converge is in the result

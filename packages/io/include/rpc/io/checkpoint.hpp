@@ -28,6 +28,8 @@ public:
   const std::string &text() const { return text_; }
   /// The names on all ranks, the values on rank 0 only.
   const std::vector<NamedArray> &arrays() const { return arrays_; }
+  /// Whether the file belongs to a mesh. Collective.
+  bool is_of(const mesh::Mesh &mesh) const;
   /// The fields on a mesh, in the order in which they were written.
   /// @throws rpc::Error (bad_input) on every rank if the file belongs to another mesh, or its fields are damaged
   std::vector<NodalField> fields(const mesh::Mesh &mesh) const;
