@@ -7,7 +7,6 @@ on, a disk that is full, SIGTERM, SIGINT, or kill -9. Rows of the history and ti
 last bit; a message must tell the time of the step that failed; a run that was not killed leaves no temporary file. After a signal and after
 kill -9 a restart must end as the whole run: after kill -9 to the last bit, after a signal to the tolerance. The exit code is 1 if a history failed.
 """
-import argparse
 import collections
 import concurrent.futures
 import contextlib
@@ -188,17 +187,7 @@ def judge(options, number):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rpc", required=True)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--scenes", type=int, default=300)
-    parser.add_argument("--only", type=int)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--np", type=int, default=1)
-    parser.add_argument("--mpiexec", default="mpiexec --oversubscribe --bind-to none")
-    parser.add_argument("--keep", help="folder for the files of histories that failed")
-    options = parser.parse_args()
-    options.rpc = os.path.abspath(options.rpc)
+    options = scenes.arguments(__doc__, 300)
     numbers = [options.only] if options.only is not None else range(options.scenes)
     failed, faults, steps = 0, collections.Counter(), 0
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:

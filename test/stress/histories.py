@@ -10,12 +10,10 @@ fall, as sums, and at each node from the run that stopped to the whole one, whos
 the sum over the steps of what they miss falls. Without memory nothing is dissipated, and the last step is that of a run of that step alone.
 Histories whose steps rounding keeps from their tolerance, as scenes.py has it, are counted. The exit code is 1 if a history failed.
 """
-import argparse
 import concurrent.futures
 import dataclasses
 import json
 import math
-import os
 import pathlib
 import random
 import shutil
@@ -289,17 +287,7 @@ def judge(options, number):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rpc", required=True)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--scenes", type=int, default=500)
-    parser.add_argument("--only", type=int)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--np", type=int, default=1)
-    parser.add_argument("--mpiexec", default="mpiexec --oversubscribe --bind-to none")
-    parser.add_argument("--keep", help="folder for the files of failed histories")
-    options = parser.parse_args()
-    options.rpc = os.path.abspath(options.rpc)
+    options = scenes.arguments(__doc__, 500)
     numbers = [options.only] if options.only is not None else range(options.scenes)
     outcomes = []
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:

@@ -320,20 +320,30 @@ def judge_all(options, numbers_):
     return outcomes
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def arguments(description, count, *more):
+    """The options of a suite of scenes.
+
+    count: scenes unless told otherwise; more: (name, settings) of options that this suite alone has.
+    """
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rpc", required=True)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--scenes", type=int, default=510)
-    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--scenes", type=int, default=count)
     parser.add_argument("--only", type=int)
-    parser.add_argument("--family", help="only these of the scenes, separated by commas: " + ", ".join(FAMILIES))
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--np", type=int, default=1)
     parser.add_argument("--mpiexec", default="mpiexec --oversubscribe --bind-to none")
-    parser.add_argument("--keep", help="folder for the files of failed scenes")
+    parser.add_argument("--keep", help="folder for the files of those that failed")
+    for name, settings in more:
+        parser.add_argument(name, **settings)
     options = parser.parse_args()
     options.rpc = os.path.abspath(options.rpc)
+    return options
+
+
+def main():
+    families_ = {"help": "only these of the scenes, separated by commas: " + ", ".join(FAMILIES)}
+    options = arguments(__doc__, 510, ("--first", {"type": int, "default": 0}), ("--family", families_))
     print(f"seed {options.seed}", flush=True)
     numbers_ = chosen(options)
     return report(options, judge_all(options, numbers_), len(numbers_))
