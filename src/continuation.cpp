@@ -14,28 +14,46 @@ namespace rpc
 namespace
 {
 
-using Parameters = std::map<std::string, std::string>;
+/// A parameter with its name in the deck.
+struct Parameter {
+  std::string name, value;
+};
+/// By places: names, but numbers for the entries of lists whose names are the user's choice.
+using Parameters = std::map<std::string, Parameter>;
 
 // Nodes of a rank at which fields are compared.
 constexpr LO most_nodes = 2000;
 // Values that differ by less are one number, written in two ways.
 constexpr double rounding = 1e-12;
 
-/// "name=value;" and "name{...}" of a part of a deck as paths and values.
-void read_list(const std::string &text, std::size_t &at, const std::string &path, Parameters &found)
+/// Whether entries of a list are the same in their order, whatever their names: conditions, each with a `Side` that is its name by
+/// default.
+bool has_free_names(const std::string &place)
 {
+  return place == "Dirichlet" || place == "Traction" || place == "Contact->Sides";
+}
+
+/// "name=value;" and "name{...}" of a part of a deck.
+void read_list(const std::string &text, std::size_t &at, const std::string &place, const std::string &path,
+               Parameters &found)
+{
+  int entry = 0;
   while (at < text.size() && text[at] != '}') {
     const std::size_t mark = text.find_first_of("={", at);
     if (mark == std::string::npos) return;
-    const std::string name = path + "->" + text.substr(at, mark - at);
+    const std::string name = text.substr(at, mark - at);
     at = mark + 1;
     if (text[mark] == '{') {
-      read_list(text, at, name, found);
+      const bool free = has_free_names(place);
+      const std::string of_entry = place + "->" + (free ? std::to_string(++entry) : name);
+      read_list(text, at, of_entry, path + "->" + name, found);
       ++at; // the closing brace
+      if (free && found[of_entry + "->Side"].value.empty())
+        found[of_entry + "->Side"] = {path + "->" + name + "->Side", name};
       continue;
     }
     const std::size_t end = std::min(text.find(';', at), text.size());
-    found[name] = text.substr(at, end - at);
+    found[place + "->" + name] = {path + "->" + name, text.substr(at, end - at)};
     at = end + 1;
   }
 }
@@ -46,9 +64,9 @@ Parameters parameters_of(const std::vector<std::pair<std::string, std::string>> 
   for (const auto &[name, content] : parts) {
     std::size_t at = 0;
     if (content.find_first_of("={") == std::string::npos)
-      found[name] = content;
+      found[name] = {name, content};
     else
-      read_list(content, at, name, found);
+      read_list(content, at, name, name, found);
   }
   return found;
 }
@@ -149,16 +167,17 @@ void require_continuation(const Scene &scene, const fem::Discretization &d,
       message = "restart: \"" + path + "\" was written for another deck: \"" + name + "\", " + why +
                 ". Bodies, conditions and laws must stay; fields may change after the steps that are done.";
   };
-  for (const auto &[name, value] : now) {
-    const auto found = then.find(name);
+  for (const auto &[place, parameter] : now) {
+    const auto &[name, value] = parameter;
+    const auto found = then.find(place);
     if (found == then.end())
       refuse(name, "which it did not have");
-    else if (value != found->second)
-      if (const std::string why = difference(name, value, found->second, points, times); !why.empty())
+    else if (value != found->second.value)
+      if (const std::string why = difference(name, value, found->second.value, points, times); !why.empty())
         refuse(name, why);
   }
-  for (const auto &[name, value] : then)
-    if (now.find(name) == now.end()) refuse(name, "which is gone");
+  for (const auto &[place, parameter] : then)
+    if (now.find(place) == now.end()) refuse(parameter.name, "which is gone");
   throw_if_any(d.mesh->comm(), ExitCode::bad_input, message);
 }
 

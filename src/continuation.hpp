@@ -10,7 +10,8 @@ namespace rpc
 {
 
 /// Proves that a deck goes on with a run that a checkpoint has left: bodies, conditions and laws are the same parameter by parameter, and
-/// fields have the same values at the steps that are done, whatever their text and whatever they become later. Collective.
+/// fields have the same values at the steps that are done, whatever their text and whatever they become later. Conditions are compared in
+/// their order, whatever their names. Collective.
 /// @param before   the parts of the deck that the run had, see Scene::identity
 /// @param records  of the steps that are done
 /// @param path     of the checkpoint, for the message
