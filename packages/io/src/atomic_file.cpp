@@ -17,6 +17,7 @@ namespace
 {
 
 const std::string temporary_mark = ".tmp."; // with the process id after it
+const std::string probe = ".rpc";           // by whose temporary file folders are tried
 constexpr const char *remedy = "; choose a folder that can be written to with --output=DIR";
 constexpr const char *remedy_in_the_way = "; remove it, or choose another folder with --output=DIR";
 constexpr const char *remedy_long = "; give the deck a shorter name, or choose another folder with --output=DIR";
@@ -203,7 +204,9 @@ void remove_abandoned(const std::string &folder, const std::function<bool(const 
   for (const auto &entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, none)) {
     const std::string name = entry.path().filename().string();
     const auto mark = name.rfind(temporary_mark);
-    if (mark == std::string::npos || !is_ours(name.substr(0, mark))) continue;
+    if (mark == std::string::npos) continue;
+    const std::string of = name.substr(0, mark);
+    if (of != probe && !is_ours(of)) continue;
     const std::string process = name.substr(mark + temporary_mark.size());
     if (!process.empty() && process.find_first_not_of("0123456789") == std::string::npos)
       abandoned.push_back(entry.path());
@@ -219,12 +222,12 @@ void require_writable_folder(const std::string &folder)
   RPC_REQUIRE(!error, "output: cannot create the folder \"" << path.string() << "\": " << error.message() << remedy);
   RPC_REQUIRE(std::filesystem::is_directory(path, error),
               "output: \"" << path.string() << "\" is not a folder" << remedy);
-  const std::string probe = temporary_name((path / ".rpc").string());
-  const int fd = ::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  const std::string file = temporary_name((path / probe).string());
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   RPC_REQUIRE(fd >= 0,
               "output: cannot write to the folder \"" << path.string() << "\": " << std::strerror(errno) << remedy);
   ::close(fd);
-  ::unlink(probe.c_str());
+  ::unlink(file.c_str());
 }
 
 } // namespace rpc::io

@@ -57,7 +57,7 @@ private:
   std::unique_ptr<Descriptor> file_;
 };
 
-/// Removes temporary files that killed processes have left; for the owner of the RunLock alone.
+/// Removes temporary files that killed processes have left, those of require_writable_folder() too; for the owner of the RunLock alone.
 /// @param is_ours  of the name of the file that one was to become
 void remove_abandoned(const std::string &folder, const std::function<bool(const std::string &)> &is_ours);
 
