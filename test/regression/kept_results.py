@@ -14,7 +14,7 @@ import time
 import unittest
 
 from film import Film
-from rpc_run import LAUNCH, PROGRAM, RANKS, SMALL, SOURCE, RpcTestCase, errors, files, ranks_below
+from rpc_run import BEAM, LAUNCH, PROGRAM, RANKS, SMALL, SOURCE, RpcTestCase, errors, files, ranks_below
 
 BLOCK = SOURCE / "test" / "verification" / "decks" / "block.xml"
 TO_AND_FRO = "-20*sin(pi*x/5)*(0.6 + 0.4*sin(t))"
@@ -83,8 +83,8 @@ class KeptResults(RpcTestCase):
         self.assertLess(last["time"], 1)  # that of the part that failed
         self.assertTrue(last["reason"])
 
-    def start(self, *arguments, output="out"):
-        process = subprocess.Popen([*LAUNCH, PROGRAM, "--input=beam.xml", f"--output={output}", *arguments], cwd=self.folder, text=True,
+    def start(self, *arguments, deck="beam", output="out"):
+        process = subprocess.Popen([*LAUNCH, PROGRAM, f"--input={deck}.xml", f"--output={output}", *arguments], cwd=self.folder, text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL)
         self.addCleanup(process.kill)
         return process
@@ -123,49 +123,98 @@ class KeptResults(RpcTestCase):
     HISTORY = [f"--set=Traction->top->Y={TO_AND_FRO}", "--set=Steps->From=0.25", "--set=Steps->To=10", "--set=Steps->Step=0.25",
                "--set=Steps->Checkpoint Every=3", SMALL]
 
-    def expect_equal_runs(self, a, b):
+    def parts(self, output, deck):
+        """The files of a film."""
+        return sorted((self.folder / output).glob(f"{deck}.e*"))
+
+    def expect_equal_runs(self, a, b, deck="beam"):
         """Tables and films to the last bit, but for times."""
-        left, right = (rows(self.out("history.csv", output)) for output in (a, b))
+        left, right = (rows(self.out("history.csv", output, deck)) for output in (a, b))
         self.assertEqual(len(left), len(right))
         for x, y in zip(left, right):
             self.assertEqual({k: v for k, v in x.items() if k != "seconds"}, {k: v for k, v in y.items() if k != "seconds"})
-        self.assertEqual(self.out("contact.csv", a).read_bytes(), self.out("contact.csv", b).read_bytes())
-        self.assertEqual(self.out("e", a).read_bytes(), self.out("e", b).read_bytes())
+        self.assertEqual(self.out("contact.csv", a, deck).read_bytes(), self.out("contact.csv", b, deck).read_bytes())
+        self.assertEqual([path.name for path in self.parts(a, deck)], [path.name for path in self.parts(b, deck)])
+        for x, y in zip(self.parts(a, deck), self.parts(b, deck)):
+            self.assertEqual(x.read_bytes(), y.read_bytes(), x.name)
 
-    def test_after_kill_a_restart_ends_as_the_run_without_a_break(self):
-        self.rpc("--input=beam.xml", *self.HISTORY, "--output=whole")
+    # Meshes change in some of the steps.
+    ADAPTED = ["--set=Mesh->Cells={10,2}", "--set=Adapt->Target Relative Error=0.04", *HISTORY[:-1]]
+
+    def stopped(self, number, after, history, deck):
+        """A run that gets a signal soon after a step: exit code and output."""
+        process = self.start(*history, deck=deck)
+        for line in process.stdout:
+            if line.startswith(f"{after:4}/"):
+                break
+        time.sleep(random.random() * 0.02)
+        found = ranks_below(process.pid)
+        for rank in found if number == signal.SIGKILL else found[-1:]:
+            os.kill(rank, number)
+        out, err = process.communicate(timeout=600)
+        return process.returncode, out + err
+
+    def expect_same_end_after_kill(self, history, deck, attempts):
+        self.rpc(f"--input={deck}.xml", *history, "--output=whole")
         random.seed(30)
-        for attempt in range(6 if RANKS == 1 else 2):
+        for attempt in range(attempts):
             shutil.rmtree(self.folder / "out", ignore_errors=True)
-            process = self.start(*self.HISTORY)
             step = random.randrange(4, 36)
-            for line in process.stdout:
-                if line.startswith(f"{step:4}/"):
-                    break
-            time.sleep(random.random() * 0.02)
-            for rank in ranks_below(process.pid):
-                os.kill(rank, signal.SIGKILL)
-            process.communicate(timeout=600)
+            self.stopped(signal.SIGKILL, step, history, deck)
             with self.subTest((attempt, step)):
-                film = Film(self.out("e"))  # readable, and whole
-                self.assertGreaterEqual(len(film.times), step)
-                self.assertGreaterEqual(len(rows(self.out("history.csv"))), step)
-                self.assertFalse(self.out("json").exists())
-                result = self.rpc("--input=beam.xml", *self.HISTORY, "--output=out", "--restart")
+                films = [Film(path) for path in self.parts("out", deck)]  # readable, and whole
+                self.assertGreaterEqual(sum(len(film.times) for film in films), step)
+                self.assertGreaterEqual(len(rows(self.out("history.csv", deck=deck))), step)
+                self.assertFalse(self.out("json", deck=deck).exists())
+                result = self.rpc(f"--input={deck}.xml", *history, "--output=out", "--restart")
                 self.assertIn("note: goes on after ", result.stdout)
                 self.assertNotIn("lacks times", result.stdout)
-                self.expect_equal_runs("whole", "out")
+                self.expect_equal_runs("whole", "out", deck)
                 self.assertEqual([name for name in files(self.folder / "out") if ".tmp." in name or "lock" in name], [])
+
+    def test_after_kill_a_restart_ends_as_the_run_without_a_break(self):
+        self.expect_same_end_after_kill(self.HISTORY, "beam", 6 if RANKS == 1 else 2)
+
+    def test_after_kill_a_restart_on_adapted_meshes_ends_as_the_run_without_a_break(self):
+        self.expect_same_end_after_kill(self.ADAPTED, "beam_adaptive", 3 if RANKS == 1 else 1)
+        self.assertGreater(len(self.parts("whole", "beam_adaptive")), 3)
+
+    def test_after_a_signal_a_restart_on_adapted_meshes_ends_as_the_run_without_a_break(self):
+        plain = [argument for argument in self.ADAPTED if "Checkpoint" not in argument]
+        self.rpc("--input=beam_adaptive.xml", *plain, "--output=whole")
+        random.seed(31)
+        for number, after in [(signal.SIGTERM, 5), (signal.SIGINT, 21)]:
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            code, text = self.stopped(number, after, plain, "beam_adaptive")
+            with self.subTest(number.name):
+                self.assertEqual(code, NOT_CONVERGED, text)
+                kept = [int(path.name[-8:-2]) for path in (self.folder / "out").glob("*checkpoint*")]
+                self.assertEqual(len(kept), 1)
+                self.assertGreaterEqual(kept[0], after - 1)
+                self.rpc("--input=beam_adaptive.xml", *plain, "--output=out", "--restart")
+                self.expect_equal_runs("whole", "out", "beam_adaptive")
+
+    def test_an_older_checkpoint_on_an_adapted_mesh_takes_over_the_film_up_to_it(self):
+        self.rpc("--input=beam_adaptive.xml", *self.ADAPTED, "--output=whole")
+        shorter = [argument.replace("To=10", "To=2.5") for argument in self.ADAPTED]
+        self.rpc("--input=beam_adaptive.xml", *shorter, "--output=out")
+        result = self.rpc("--input=beam_adaptive.xml", *self.ADAPTED, "--output=out", "--restart=out/beam_adaptive.checkpoint-000006.e")
+        self.assertIn('note: goes on after "out/beam_adaptive.checkpoint-000006.e", t = 1.5', result.stdout)
+        self.expect_equal_runs("whole", "out", "beam_adaptive")
+        times = [t for path in self.parts("out", "beam_adaptive") for t in Film(path).times]
+        self.assertEqual(times, [0.25 * k for k in range(1, 41)])
+
+    def test_a_checkpoint_on_an_adapted_mesh_wants_a_deck_that_adapts(self):
+        shorter = [argument.replace("To=10", "To=1.5") for argument in self.ADAPTED]
+        self.rpc("--input=beam_adaptive.xml", *shorter, "--output=out")
+        result = self.rpc("--input=beam_adaptive.xml", *self.ADAPTED, "--set=Adapt->Target Relative Error=0",
+                          "--restart=out/beam_adaptive.checkpoint-000006.e", code=BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, ["beam_adaptive.checkpoint-000006.e", "was adapted", "Adapt->Target Relative Error"])
 
     def test_a_signal_leaves_a_checkpoint(self):
         plain = [argument for argument in self.HISTORY if "Checkpoint" not in argument]
-        process = self.start(*plain)
-        for line in process.stdout:
-            if line.startswith("   5/"):
-                break
-        os.kill(max(ranks_below(process.pid)), signal.SIGTERM)
-        out, err = process.communicate(timeout=600)
-        self.assertEqual(process.returncode, NOT_CONVERGED, out + err)
+        code, text = self.stopped(signal.SIGTERM, 5, plain, "beam")
+        self.assertEqual(code, NOT_CONVERGED, text)
         done = len([row for row in rows(self.out("history.csv")) if row["converged"] == "1"])
         self.assertGreaterEqual(done, 5)
         self.assertEqual([path.name for path in (self.folder / "out").glob("*checkpoint*")], [f"beam.checkpoint-{done:06}.e"])
@@ -212,6 +261,26 @@ class KeptResults(RpcTestCase):
                           code=BAD_INPUT)
         self.expect_refusal(result, BAD_INPUT, ["Material->Young's Modulus"])
 
+    def test_names_of_conditions_may_change_and_their_order_may_not(self):
+        three = [argument.replace("To=10", "To=0.75") for argument in self.HISTORY]
+        self.rpc("--input=beam.xml", *three, "--output=out")
+        later = [argument.replace("To=10", "To=1") for argument in self.HISTORY]
+        deck, end = BEAM.read_text(), "</ParameterList>"
+        left, right = (deck[deck.index(f'<ParameterList name="{name}"'):] for name in ("left", "right"))
+        left, right = (entry[:entry.index(end) + len(end)] for entry in (left, right))
+
+        def restarted(text, code):
+            (self.folder / "beam.xml").write_text(text)
+            return self.rpc("--input=./beam.xml", *later, "--output=other", "--restart=out/beam.checkpoint-000003.e", code=code)
+
+        side = '"clamp"><Parameter name="Side" type="string" value="left"/>'
+        restarted(deck.replace(left, left.replace('"left">', side)), 0)
+        self.assertIn("clamp_reaction_x", rows(self.out("history.csv", "other"))[0])
+        result = restarted(deck.replace(left, left.replace('"left">', side.replace('"left"/>', '"top"/>'))), BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, ['"Dirichlet->clamp->Side"', '"top"', '"left"'])
+        result = restarted(deck.replace(left, "@").replace(right, left).replace("@", right), BAD_INPUT)
+        self.expect_refusal(result, BAD_INPUT, ['"Dirichlet->right->Side"', '"right"', '"left"'])
+
     def test_two_runs_of_one_name_in_one_folder(self):
         process = self.start("--set=Mesh->Cells={640,128}", f"--set=Traction->top->Y={TO_AND_FRO}", *TWENTY)
         for line in process.stdout:
@@ -223,8 +292,8 @@ class KeptResults(RpcTestCase):
         for rank in ranks_below(process.pid):
             os.kill(rank, signal.SIGKILL)
         process.communicate(timeout=600)
-        left = self.folder / "out" / "beam.e.tmp.999999999"
-        left.write_text("of a process that is gone")
+        for name in ["beam.e.tmp.999999999", ".rpc.tmp.999999999"]:
+            (self.folder / "out" / name).write_text("of a process that is gone")
         self.rpc("--input=beam.xml", SMALL, "--output=out")
         self.assertEqual(files(self.folder / "out"), ["beam.contact.csv", "beam.e", "beam.json"])
 

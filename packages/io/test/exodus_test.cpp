@@ -266,6 +266,37 @@ TEST_F(Exodus, HoldsTheFieldsOfSeveralTimes)
   }
 }
 
+TEST_F(Exodus, TakesTimesOfAFileOfTheSameMeshOnly)
+{
+  const Mesh mesh = box({2, 1}, comm_);
+  rpc::io::ExodusFile older(scratch_.path("older.e"), "older", mesh, {"disp_x", "contact_pressure"});
+  for (const double time : {0.5, 1., 2.}) older.write(time, fields_of(mesh));
+  older.commit();
+  const std::vector<double> wanted = {0.5, 2., 3.};
+  rpc::io::ExodusFile same(scratch_.path("same.e"), "same", mesh, {"disp_x", "contact_pressure"});
+  EXPECT_EQ(same.take_times(scratch_.path("older.e"), wanted), 2);
+  same.commit();
+  // As many nodes, but one place differs.
+  const Mesh moved = rpc::mesh::make_box({{0, -1}, {6, 2.0000001}, {6, 3}, {2, 1}}, comm_);
+  rpc::io::ExodusFile other(scratch_.path("other.e"), "other", moved, {"disp_x", "contact_pressure"});
+  EXPECT_EQ(other.take_times(scratch_.path("older.e"), wanted), 0);
+  if (!root_) return;
+  EXPECT_EQ(rpc::io::exodus_times(scratch_.path("same.e")), (std::vector<double>{0.5, 2}));
+  EXPECT_TRUE(rpc::io::exodus_times(scratch_.path("none.e")).empty());
+}
+
+TEST_F(Exodus, EndsAfterSomeOfItsTimes)
+{
+  const Mesh mesh = box({2, 1}, comm_);
+  const std::string path = scratch_.path("a.e");
+  rpc::io::ExodusFile file(path, "a", mesh, {"disp_x", "contact_pressure"});
+  for (const double time : {0.5, 1., 2.}) file.write(time, fields_of(mesh));
+  file.commit();
+  if (!root_) return;
+  rpc::io::end_exodus_after(path, 2);
+  EXPECT_EQ(rpc::io::exodus_times(path), (std::vector<double>{0.5, 1}));
+}
+
 TEST_F(Exodus, AFileThatIsNotCommittedDoesNotAppear)
 {
   const auto mesh = box(Element{}, comm_);
