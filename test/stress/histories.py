@@ -118,11 +118,11 @@ def at_rounding(scene, summary, folder):
     return bound > scenes.TOLERANCE and all(summary[key] is not None and summary[key] <= bound for key in scenes.RESIDUALS)
 
 
-def run(options, scene, folder, complain):
-    """(summary, contact rows), or None. @raise AtRounding"""
+def run(options, scene, folder, complain, *settings):
+    """(summary, contact rows), or None; settings: further arguments. @raise AtRounding"""
     folder.mkdir()
     scenes.write(scene, folder)
-    code, stdout, stderr = scenes.run(scenes.launch(options) + ["--input=scene.xml"], folder)
+    code, stdout, stderr = scenes.run(scenes.launch(options) + ["--input=scene.xml", *settings], folder)
     (folder / "stdout.txt").write_text(stdout)
     (folder / "stderr.txt").write_text(stderr)
     results = folder / "scene.json"
