@@ -226,16 +226,17 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
 {
   const int dim = s.discretization.dim();
   const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
-  const auto unit_of = [&](const Unit &unit) { return scope.per_metre ? unit.per_metre : unit.whole; };
+  const auto unit_of = [&](const Unit &unit) { return scope.units.of(unit, scope.per_length); };
   const bool stopped = s.failure || !s.uzawa.converged;
   out << '\n' << (stopped ? "NOT CONVERGED: " : "");
   if (stopped && !s.history.empty()) print(out, "at t = %g: ", s.failure ? s.failure->time : s.time);
   out << (s.failure ? s.failure->reason : s.uzawa.reason) << '\n';
   if (s.failure) print(out, "  results             of the last step that converged, t = %g\n", s.time);
   print_lines(out, lines(analysis::residual_quantities, s.uzawa.residuals, scope, "%.1e"));
-  print(out, "  energy J            %.9g %s\n", s.energy, unit_of(unit::energy));
+  print(out, "  energy J            %.9g %s\n", s.energy, unit_of(unit::energy).c_str());
   if (!scene.model.contact.empty()) {
-    print(out, "  contact force       %s %s\n", vector_text(s.contact.total.force, dim).c_str(), unit_of(unit::force));
+    print(out, "  contact force       %s %s\n", vector_text(s.contact.total.force, dim).c_str(),
+          unit_of(unit::force).c_str());
     print_lines(out, lines(contact::contact_quantities, s.contact.total, scope, "%.6g"));
     const auto last =
         std::find_if(s.history.rbegin(), s.history.rend(), [](const auto &step) { return step.converged; });

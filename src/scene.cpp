@@ -49,6 +49,7 @@ Teuchos::ParameterList valid_deck()
             "What body a plane mesh is a section of: `plane strain`, a long one; `plane stress`, a thin sheet; "
             "`axisymmetric`, "
             "a body of revolution, where x is the radius and y runs along the axis. Bodies in space have no choice.");
+  valid.sublist("Units") = valid_units_parameters();
   valid.sublist("Mesh") = mesh::valid_parameters();
   valid.sublist("Material") = fem::valid_material_parameters();
   valid.sublist("Dirichlet") = fem::valid_dirichlet_parameters();
@@ -79,6 +80,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.time = deck.get<double>("Time");
   RPC_REQUIRE(std::isfinite(scene.time), "deck: \"Time\" must be finite, got " << scene.time);
   scene.model.kinematics = fem::kinematics_option(deck.get<std::string>("Kinematics"), dim);
+  scene.model.units = units_options(deck.sublist("Units"));
   scene.model.materials = fem::material_options(deck.sublist("Material"));
   scene.model.dirichlet = fem::dirichlet_options(deck.sublist("Dirichlet"), dim, io::parse_field);
   scene.model.tractions = fem::traction_options(deck.sublist("Traction"), dim, io::parse_field);

@@ -90,9 +90,9 @@ def options(arguments):
     found = parser.parse_args(arguments)
     found.scale = parsed(factor, "scale", found.scale, "a number >= 0")
     found.time = parsed(number, "time", found.time, "a number")
-    found.window = parsed(window, "window", found.window, "x0,y0,x1,y1, in space x0,y0,z0,x1,y1,z1 [m], "
+    found.window = parsed(window, "window", found.window, "x0,y0,x1,y1, in space x0,y0,z0,x1,y1,z1, "
                           "with x0 < x1, y0 < y1 and z0 < z1")
-    found.cut = parsed(plane, "cut", found.cut, "an axis and a number [m], such as x=0")
+    found.cut = parsed(plane, "cut", found.cut, "an axis and a number, such as x=0")
     found.view = parsed(vector, "view", found.view, "three numbers that are not all 0, such as 1,-1,0.5")
     found.histories = histories(found)
     found.result = found.results[0]
@@ -124,7 +124,7 @@ def cut_of(result, found):
     axis, value = found.cut
     low, high = result.positions[:, axis].min(), result.positions[:, axis].max()
     if not low < value < high:
-        raise PictureError(f'--cut must lie inside the body, {low:g} < {"xyz"[axis]} < {high:g} m, got {value:g}')
+        raise PictureError(f'--cut must lie inside the body, {low:g} < {"xyz"[axis]} < {high:g} {result.units["length"]}, got {value:g}')
     if found.view:
         return surface.Cut(axis, value, -1 if found.view[axis] < 0 else 1)
     contact = result.contact_nodes()
@@ -139,7 +139,7 @@ def picture_of(found):
         raise PictureError("--cut and --view are for bodies in space")
     if found.window is not None and found.window.shape[1] != result.dim:
         where, wanted = ("the plane", "x0,y0,x1,y1") if result.dim == 2 else ("space", "x0,y0,z0,x1,y1,z1")
-        raise PictureError(f'"{found.result}": --window of a body in {where} must be {wanted} [m], got {found.window.size} numbers')
+        raise PictureError(f'"{found.result}": --window of a body in {where} must be {wanted} [{result.units["length"]}], got {found.window.size} numbers')
     return figure.draw(Scene(result, found.field, found.scale, cut_of(result, found), found.window), found.view)
 
 

@@ -29,19 +29,19 @@ GAP = 0.15  # inches between texts and what is beside them
 NUMBER = 8  # points of the numbers along the axes in space
 
 
-def label(name):
-    """What a colour bar says of a field."""
+def label(name, units):
+    """What a colour bar says of a field. @param units  see Result"""
     axes = name.rsplit("_", 1)[-1]
-    known = {
-        "contact_pressure": "contact pressure [Pa]", "von_mises": "von Mises stress [Pa]", "gap": "gap [m]", "dent": "dent [m]",
-        "penetration": "penetration [m]", "contact_status": "contact status",
-    }
-    if name in known:
-        return known[name]
+    if name in ("gap", "dent", "penetration"):
+        return f"{name} [{units['length']}]"
     if name.startswith("disp_"):
-        return f"displacement in {axes} [m]"
+        return f"displacement in {axes} [{units['length']}]"
+    if name == "contact_pressure":
+        return f"contact pressure [{units['stress']}]"
+    if name == "von_mises":
+        return f"von Mises stress [{units['stress']}]"
     if name.startswith("stress_"):
-        return rf"stress $\sigma_{{{axes}}}$ [Pa]"
+        return rf"stress $\sigma_{{{axes}}}$ [{units['stress']}]"
     return name.replace("_", " ")
 
 
@@ -195,7 +195,7 @@ def compose(scene, direction=None):
     drawings = [AxesOfSpace(scene, panel, window, inches) for panel, window in zip(shown, windows)] if not flat else []
     handles, parts = legend_handles(scene), title_parts(scene)
     legend = sum(width_of(handle.get_label(), SMALL) + 0.7 for handle in handles)
-    pad = pad_of_plane(windows[0], size, inches) if flat else tuple(np.max([drawing.pad() for drawing in drawings], axis=0))
+    pad = pad_of_plane(scene, windows[0], size, inches) if flat else tuple(np.max([drawing.pad() for drawing in drawings], axis=0))
     fields, chosen = fields_of(scene), colorings(scene)
     panel_size = (size[0] * inches, size[1] * inches)
     content = len(shown) * (panel_size[0] + pad[0]) + BAR * len(fields)
@@ -212,7 +212,7 @@ def compose(scene, direction=None):
             drawings[k].draw(axes)
             axes.set_title(panel.caption, fontsize=10, color="0.3")
     for k, (name, field) in enumerate(fields.items()):
-        add_color_bar(layout.bar_axes(figure, k), field, *chosen[name])
+        add_color_bar(layout.bar_axes(figure, k), label(field, scene.result.units), field, *chosen[name])
     figure.text(0.5, 1 - GAP / layout.height, "\n".join(layout.title), ha="center", va="top", fontsize=TITLE)
     if handles:
         figure.legend(handles=handles, loc="lower center", ncols=len(handles), frameon=False, fontsize=SMALL)
@@ -242,11 +242,11 @@ def in_lines(parts, width):
     return found
 
 
-def pad_of_plane(window, size, inches):
+def pad_of_plane(scene, window, size, inches):
     """Inches that axes in the plane take to the left and below: measured."""
     figure = plt.figure(figsize=(size[0] * inches + 4, size[1] * inches + 4), dpi=DPI)
     axes = figure.add_axes([2 / (size[0] * inches + 4), 2 / (size[1] * inches + 4), *(s * inches / (s * inches + 4) for s in size)])
-    label_plane(axes, window, (size[0] * inches, size[1] * inches))
+    label_plane(axes, scene, window, (size[0] * inches, size[1] * inches))
     outside, inside = axes.get_tightbbox(), axes.get_window_extent()
     plt.close(figure)
     return max(0.85, (inside.x0 - outside.x0) / DPI + GAP), max(0.6, (inside.y0 - outside.y0) / DPI + GAP)
@@ -270,7 +270,7 @@ def draw_plane(axes, scene, resolution=1000):
 def add_axes_of_plane(axes, scene, window, size=None):
     """Axes with units, and the outline of the undeformed body. @param size  of the axes [inches], if known"""
     axes.add_collection(collections.LineCollection(scene.rest[..., :2], **REST, zorder=3))
-    label_plane(axes, window, size)
+    label_plane(axes, scene, window, size)
 
 
 def few_ticks(low, high, room):
@@ -282,14 +282,15 @@ def few_ticks(low, high, room):
     return ticker.FixedLocator(inside[:1])
 
 
-def label_plane(axes, window, size=None):
+def label_plane(axes, scene, window, size=None):
     """Ticks and names of the axes; numbers no closer than they are wide."""
     if size:
         decimals = int(np.clip(np.ceil(-np.log10(window[1] - window[0])) + 2, 0, 12))
         number = max((f"{value:.{decimals}f}" for value in window[:2]), key=len)
         axes.xaxis.set_major_locator(few_ticks(*window[:2], size[0] / max(0.8, width_of(number, 10) + 0.3)))
         axes.yaxis.set_major_locator(few_ticks(*window[2:], size[1] / 0.45))
-    axes.set(xlim=window[:2], ylim=window[2:], xlabel="x [m]", ylabel="y [m]")
+    unit_of_length = scene.result.units["length"]
+    axes.set(xlim=window[:2], ylim=window[2:], xlabel=f"x [{unit_of_length}]", ylabel=f"y [{unit_of_length}]")
     axes.spines[["top", "right"]].set_visible(False)
 
 
@@ -316,14 +317,14 @@ def title_parts(scene):
     if result.num_times > 1:
         parts.insert(1, f"t = {result.time:g}")
     if scene.cut:
-        parts.append(f"cut at {'xyz'[scene.cut.axis]} = {scene.cut.value:g} m")
+        parts.append(f"cut at {'xyz'[scene.cut.axis]} = {scene.cut.value:g} {result.units['length']}")
     return [part for part in parts if part]
 
 
-def add_color_bar(axes, field, norm, colors_of):
-    """A colour bar with its unit."""
+def add_color_bar(axes, text, field, norm, colors_of):
+    """A colour bar with its name and unit."""
     bar = axes.figure.colorbar(cm.ScalarMappable(norm, colors_of), cax=axes)
-    bar.set_label(label(field))
+    bar.set_label(text)
     bar.outline.set_linewidth(0.5)
     if field == "contact_status":
         bar.set_ticks([0, 1, 2], labels=STATES, rotation=90, va="center")
@@ -352,7 +353,7 @@ class AxesOfSpace:
     def __init__(self, scene, panel, window, inches):
         points = view.points_of(scene, panel.without)
         self.low, self.high = points.min(axis=0), points.max(axis=0)
-        self.view, self.inches = panel.view, inches
+        self.view, self.inches, self.unit = panel.view, inches, scene.result.units["length"]
         self.centre = np.array([0.5 * (window[0] + window[1]), 0.5 * (window[2] + window[3])])
         self.half = 0.5 * inches * np.array([window[1] - window[0], window[3] - window[2]])
         self.lines, self.texts, names = [], [], []
@@ -388,7 +389,7 @@ class AxesOfSpace:
                 aside = np.array([-0.5 * width_of(number, NUMBER), 0]) if upright else 0
                 self._add_text(number, NUMBER, lambda distance, tick=tick, aside=aside: place(tick, distance) + aside,
                                0.2 if upright else 0.27, most=0.3)
-        return f"{'xyz'[d]} [m]", place(0.5 * (low + high), 0), out
+        return f"{'xyz'[d]} [{self.unit}]", place(0.5 * (low + high), 0), out
 
     def _add_text(self, text, points, place, distance, most=2.0):
         """Adds a text at the least distance at which it covers no other; leaves it out beyond the largest one."""

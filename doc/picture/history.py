@@ -1,6 +1,7 @@
 """The load steps of one or several runs as a diagram: force against displacement, and the energies of a single run."""
 import csv
 import io
+import re
 
 import matplotlib
 
@@ -11,6 +12,7 @@ from result import PictureError  # noqa: E402
 
 DPI = 140
 SUFFIX = ".history.csv"
+HEADING = re.compile(r"(.*?)(?: \[([^\]]*)\])?", re.DOTALL)  # name and unit of a column
 STYLE = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3}
 COLOURS = ("#1b6ca8", "#d1495b", "#2e933c", "#8d6a9f", "#c77d0a", "0.3")
 ENERGIES = (("dissipated_energy", "dissipated", "#d1495b"), ("strain_energy", "elastic, in the body", "#1b6ca8"),
@@ -18,13 +20,15 @@ ENERGIES = (("dissipated_energy", "dissipated", "#d1495b"), ("strain_energy", "e
 
 
 class History:
-    """The columns of a file, {name: [number of each step]}."""
+    """The columns of a file, {name: [number of each step]}, and their units where these are not m and N, {name: unit}."""
 
     def __init__(self, path):
         try:
             with open(path, newline="") as file:
                 rows = [row for row in csv.DictReader(file) if row.get("converged") != "0"]  # of a step that failed there are no numbers
-            self.columns = {name: [float(row[name]) for row in rows] for name in rows[0] if name != "reason"}
+            headings = {heading: HEADING.fullmatch(heading).groups() for heading in rows[0] if heading != "reason"}
+            self.columns = {name: [float(row[heading]) for row in rows] for heading, (name, _) in headings.items()}
+            units = {name: unit for name, unit in headings.values() if unit}
         except OSError:
             raise PictureError(f'"{path}": no such file; rpc writes one for decks with Steps->Times') from None
         except (ValueError, TypeError, KeyError, IndexError, csv.Error, UnicodeDecodeError):
@@ -32,7 +36,10 @@ class History:
         missing = [name for name in ("time", "work", "contact_force_x", *(name for name, _, _ in ENERGIES)) if name not in self.columns]
         if missing:
             raise PictureError(f'"{path}" has no column {missing[0]}; remedy: run this version of rpc again')
-        self.unit = "/m" if "contact_length" in self.columns else ""
+        plane = "contact_length" in self.columns
+        self.force_unit = units.get("contact_force_x", "N/m" if plane else "N")
+        self.energy_unit = units.get("work", "J/m" if plane else "J")
+        self.length_unit = units.get("max_dent", "m")
         self.axis = max((axis for axis in "xyz" if f"contact_force_{axis}" in self.columns),
                         key=lambda axis: reach(self.columns[f"contact_force_{axis}"]))
         self.force = self.columns[f"contact_force_{self.axis}"]
@@ -45,6 +52,14 @@ class History:
         if most is None or spread(self.columns[most]) == 0:
             return None
         return [-self.sign * value for value in self.columns[most]]
+
+
+def require_same_units(first, other, path):
+    """@param path  of the other one"""
+    wanted, found = ((history.length_unit, history.force_unit) for history in (first, other))
+    if found != wanted:
+        raise PictureError(f'"{path}": results that are compared must have the same units, got {", ".join(found)} and '
+                           f'{", ".join(wanted)} of the first one')
 
 
 def reach(values):
@@ -60,6 +75,8 @@ def spread(values):
 def draw(files):
     """The diagram as the bytes of a PNG. @param files [(label, path)]; a label may be empty"""
     histories = [(label, History(path)) for label, path in files]
+    for (_, path), (_, other) in zip(files, histories):
+        require_same_units(histories[0][1], other, path)
     alone = len(histories) == 1
     with plt.rc_context(STYLE):
         figure, panels = plt.subplots(1, 2 if alone else 1, figsize=(10 if alone else 7.5, 4), layout="constrained", squeeze=False)
@@ -75,11 +92,13 @@ def draw(files):
 def add_forces(axes, histories):
     """Force against displacement, or against t where no displacement is prescribed along it."""
     by_time = any(history.moved() is None for _, history in histories)
+    first = histories[0][1]
     for (label, history), colour in zip(histories, COLOURS):
         along = history.columns["time"] if by_time else [0, *history.moved()]
         force = [history.sign * value for value in history.force]
         axes.plot(along, force if by_time else [0, *force], ".-", ms=5, lw=1.4, color=colour, label=label)
-    axes.set(xlabel="t" if by_time else "prescribed displacement [m]", ylabel=f"contact force [N{histories[0][1].unit}]", ylim=(0, None))
+    axes.set(xlabel="t" if by_time else f"prescribed displacement [{first.length_unit}]", ylabel=f"contact force [{first.force_unit}]",
+             ylim=(0, None))
     if any(label for label, _ in histories):
         axes.legend(frameon=False)
 
@@ -93,5 +112,5 @@ def add_energies(axes, history):
         axes.stackplot(time, [rest + history.columns[name] for name, _, _ in shown], labels=[label for _, label, _ in shown],
                        colors=[colour for _, _, colour in shown], alpha=0.75)
     axes.plot(time, rest + history.columns["work"], "k--", lw=1.2, label="work")
-    axes.set(xlabel="t", ylabel=f"energy since the start [J{history.unit}]", xlim=(min(time), max(time) if len(time) > 1 else None))
+    axes.set(xlabel="t", ylabel=f"energy since the start [{history.energy_unit}]", xlim=(min(time), max(time) if len(time) > 1 else None))
     axes.legend(frameon=False, loc="upper left")

@@ -9,6 +9,7 @@ import elements
 
 
 MOST_LISTED = 12  # times in a message
+UNITS = {"length": "m", "force": "N", "stress": "Pa"}  # of files that do not name theirs
 
 
 class PictureError(Exception):
@@ -23,6 +24,7 @@ class Result:
     blocks    [(element's name, (cells, nodes per cell))], nodes from 0
     side_sets {name: (facets, 2)} cell and the facet's place in it, both from 0
     nodal     {name: (nodes,)}, cell {name: (cells of all blocks,)}
+    units     {"length": name, "force": name, "stress": name}
     """
 
     def __init__(self, path, time=None):
@@ -38,6 +40,8 @@ class Result:
 
     def _read(self, file, path, step):
         self.title = getattr(file, "title", "")
+        records = [re.fullmatch(r"unit of (\w+): (\S+)", text) for text in names(file, "info_records")]
+        self.units = UNITS | {record[1]: record[2] for record in records if record}
         self.dim = len(file.dimensions["num_dim"])
         self.positions = np.zeros((len(file.dimensions["num_nodes"]), 3))
         for d, axis in enumerate("xyz"[: self.dim]):
@@ -91,7 +95,7 @@ def texts(characters):
 
 
 def names(file, variable):
-    """Names of the fields of a kind, none if the file has no such variable."""
+    """Names of the fields of a kind, or other texts; none if the file has no such variable."""
     return texts(file[variable][:]) if variable in file.variables else []
 
 

@@ -49,7 +49,7 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
     table.facets = mesh::owned_facets(mesh, mesh.side(table.side, scene.model.contact[k].path + "->Side"), node_ids);
     tables.push_back(table);
   }
-  io::write_contact_csv(path, mesh.owned_nodes->getComm(), tables);
+  io::write_contact_csv(path, mesh.owned_nodes->getComm(), tables, scene.model.units);
 }
 
 } // namespace rpc

@@ -75,6 +75,12 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const analysis::Sol
   return fields;
 }
 
+/// The units of the file's numbers as pictures read them.
+std::vector<std::string> unit_records(const UnitNames &units)
+{
+  return {"unit of length: " + units.length, "unit of force: " + units.force, "unit of stress: " + units.stress()};
+}
+
 /// The number of the step whose solution this is; after a failure the history has one more.
 int number_of(const analysis::Solution &s)
 {
@@ -127,7 +133,7 @@ void end_parts(const std::string &first, const int parts, const double last)
 std::unique_ptr<io::ExodusFile> Film::opened(const Scene &scene, const std::string &path,
                                              const std::vector<std::string> &fields) const
 {
-  return std::make_unique<io::ExodusFile>(path, scene.name, *mesh_, fields);
+  return std::make_unique<io::ExodusFile>(path, scene.name, *mesh_, fields, unit_records(scene.model.units));
 }
 
 /// Takes over the parts that a run before has left, as far as it is gone on from, and removes the others. Opens the last one if it is of

@@ -5,6 +5,7 @@
 #include "rpc/io/contact_csv.hpp"
 
 #include <sstream>
+#include <utility>
 
 namespace rpc
 {
@@ -26,10 +27,11 @@ std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
   text << "time";
   write_names(text, history_columns(analysis::energy_quantities, scope), scope);
   write_names(text, history_columns(contact::contact_quantities, scope), scope);
-  for (int c = 0; c < dim; ++c) text << ",contact_force_" << axes[c];
+  const auto in = [&](const Unit &unit) { return scope.units.heading(unit, scope.per_length); };
+  for (int c = 0; c < dim; ++c) text << ",contact_force_" << axes[c] << in(unit::force);
   for (const auto &condition : scene.model.dirichlet)
-    for (const char *const what : {"_displacement_", "_reaction_"})
-      for (int c = 0; c < dim; ++c) text << ',' << io::csv_quoted(condition.name + what + axes[c]);
+    for (const auto &[what, unit] : {std::pair("_displacement_", unit::length), std::pair("_reaction_", unit::force)})
+      for (int c = 0; c < dim; ++c) text << ',' << io::csv_quoted(condition.name + what + axes[c] + in(unit));
   write_names(text, count_columns(scope), scope);
   text << ",seconds,converged,reason\n";
   return text.str();

@@ -17,11 +17,11 @@ void add_shown(nlohmann::ordered_json &json, const Table &table, const Record &r
     if (q.shown.summary) json[q.name(scope)] = record.*q.value;
 }
 
-/// Names of numbers, each after a comma.
+/// Names of numbers as headings of columns, each after a comma.
 template <class Numbers>
 void write_names(std::ostream &out, const Numbers &numbers, const ResultScope &scope)
 {
-  for (const auto &q : numbers) out << ',' << q.name(scope);
+  for (const auto &q : numbers) out << ',' << q.name(scope) << scope.units.heading(q.unit, scope.per_length);
 }
 
 /// Their values.

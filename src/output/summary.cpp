@@ -21,6 +21,16 @@ void add_sums(nlohmann::ordered_json &json, const contact::ContactSums &sums, co
   add_shown(json, contact::contact_quantities, sums, scope);
 }
 
+/// Names of the units of this file's numbers.
+nlohmann::ordered_json units_json(const ResultScope &scope)
+{
+  const auto name = [&](const Unit &unit) { return scope.units.of(unit, scope.per_length); };
+  return {{"length", name(unit::length)},
+          {"force", name(unit::force)},
+          {"stress", name(unit::pressure)},
+          {"energy", name(unit::energy)}};
+}
+
 void add_steps(nlohmann::ordered_json &json, const Solution &s, const ResultScope &scope)
 {
   auto &steps = json["steps"] = nlohmann::ordered_json::array();
@@ -98,6 +108,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["ranks"] = mesh.comm().getSize();
   json["execution_space"] = ExecutionSpace::name();
   json["time"] = s.time;
+  json["units"] = units_json(scope);
   json["energy_J"] = s.energy;
   json["strain_energy"] = 0.5 * s.energy_norm_squared;
   json["energy_norm_squared"] = s.energy_norm_squared;

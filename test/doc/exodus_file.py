@@ -50,13 +50,18 @@ def box(element, n):
     return np.array(list(number)) / (2 * n), np.array(cells)
 
 
-def write(path, element, positions, cells, nodal, cell=None, times=(1.0,), program="rpc", title="box", sides=None):
+def write(path, element, positions, cells, nodal, cell=None, times=(1.0,), program="rpc", title="box", sides=None, units=None):
     """@param nodal, cell  {name: (nodes,) or (cells,) values}, the same at all times but for the factor t
+    @param units        {"length": name, ...} of its information records
     @param sides        {name: (facets, 2)} cell and the facet's place in it, both from 0
     """
     with netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
         file.title = title
         put_sides(file, sides or {})
+        if units:
+            file.createDimension("num_info", len(units))
+            put_texts(file.createVariable("info_records", "S1", ("num_info", "len_string")),
+                      [f"unit of {kind}: {name}" for kind, name in units.items()])
         for name, size in {"num_dim": positions.shape[1], "num_nodes": len(positions), "num_el_blk": 1,
                            "four": 4, "num_qa_rec": 1, "time_step": None, "num_el_in_blk1": len(cells),
                            "num_nod_per_el1": cells.shape[1], "num_nod_var": len(nodal), "num_elem_var": len(cell or {})}.items():

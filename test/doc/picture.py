@@ -304,6 +304,18 @@ class Pictures(RpcTestCase):
         self.expect_refusal_of(["a.history.csv"] * 7, "at most 6", "got 7")
         self.expect_refusal_of(["a.history.csv", "--field=gap"], "--field does not go with .history.csv")
 
+    def test_units_of_load_steps_are_those_of_the_columns(self):
+        history_file(self.folder / "plain.history.csv", max_dent=(0, 1, 1))
+        text = (self.folder / "plain.history.csv").read_text()
+        for name, unit in (("work", "mJ/mm"), ("contact_force_x", "N/mm"), ("max_dent", "mm")):
+            text = text.replace(name, f"{name} [{unit}]")
+        (self.folder / "mm.history.csv").write_text(text)
+        plain, named = (history.History(str(self.folder / f"{name}.history.csv")) for name in ("plain", "mm"))
+        self.assertEqual((plain.length_unit, plain.force_unit, plain.energy_unit), ("m", "N/m", "J/m"))
+        self.assertEqual((named.length_unit, named.force_unit, named.energy_unit), ("mm", "N/mm", "mJ/mm"))
+        self.assertEqual(named.columns, plain.columns)
+        self.expect_refusal_of(["plain.history.csv", "mm.history.csv"], '"mm.history.csv"', "same units, got mm, N/mm and m, N/m")
+
     def test_exit_code_of_the_process(self):
         command = [sys.executable, "-B", SOURCE / "doc" / "picture" / "command_line.py", "none.e"]
         self.assertEqual(subprocess.run(command, cwd=self.folder, capture_output=True, check=False).returncode, 2)
@@ -372,6 +384,16 @@ class Choices(RpcTestCase):
         self.assertEqual((downwards.axis, downwards.sign, downwards.moved()), ("y", 1, [0, 0.1, 0.05]))
         self.assertEqual((upwards.axis, upwards.sign, upwards.moved()), ("y", -1, [0, 0.1, 0.05]))
         self.assertIsNone(history_of(top=(0, 0, 0)).moved())
+
+    def test_units_are_those_of_the_file(self):
+        box_file(self.folder / "box.e", "QUAD4", units={"length": "mm", "force": "N", "stress": "MPa"})
+        scene = Scene(Result(str(self.folder / "box.e")))
+        drawn = figure.compose(scene)
+        self.addCleanup(figure.plt.close, drawn)
+        names = {axes.get_xlabel() for axes in drawn.axes} | {axes.get_ylabel() for axes in drawn.axes}
+        self.assertEqual(names - {""}, {"x [mm]", "y [mm]", "contact pressure [MPa]", "von Mises stress [MPa]"})
+        self.assertEqual(figure.label("gap", scene.result.units), "gap [mm]")
+        self.assertEqual(figure.label("disp_x", scene.result.units), "displacement in x [mm]")
 
     def test_dents_stay_where_nothing_touches(self):
         box_file(self.folder / "box.e", "QUAD4")

@@ -15,7 +15,7 @@ ASSIGNMENTS = [
     # names
     (["Material->Youngs Modulus=3"], ['"Material->Youngs Modulus"', 'Did you mean "Young\'s Modulus"?']),
     (["Materail->Poisson's Ratio=0.2"], ['"Materail"', 'Did you mean "Material"?']),
-    (["Yield Stress=3"], ['"Yield Stress"', "Valid here: Time, Kinematics, Mesh, Material"]),
+    (["Yield Stress=3"], ['"Yield Stress"', "Valid here: Time, Kinematics, Units, Mesh, Material"]),
     (["Dirichlet->left->W=0"], ['"Dirichlet->left->W"', "X, Y, Z"]),
     (["Output=3"], ['"Output" is a sublist']),
     (["Dirichlet->left=3"], ['"Dirichlet->left" is a sublist']),
@@ -36,6 +36,10 @@ ASSIGNMENTS = [
     (["Mesh->Cells={20000000000,4}"], ['"Mesh->Cells" must be an array of int']),
     (["Mesh->Lower={0,zero}"], ['"Mesh->Lower" must be an array of double', '"{0,zero}"']),
     (["Mesh->Upper={nan,1}"], ['"Mesh->Upper" must be an array of double', "all finite", '"{nan,1}"']),
+    # units
+    (["Units->Length=m m"], ['"Units->Length" must be a name of 1 to 12 characters without blanks', 'got "m m"', "such as mm"]),
+    (["Units->Force=k,N"], ['"Units->Force" must be a name', 'got "k,N"', "such as kN"]),
+    (["Units->Stress=MPa"], ['"Units->Stress"', "Length, Force"]),
     # mesh
     (["Mesh->Type=mesh"], ['"Mesh->Type" must be one of box, gmsh', '"mesh"']),
     (["Mesh->Type=gmsh"], ['"Mesh->Lower" does not go with "Mesh->Type" = gmsh']),

@@ -13,12 +13,12 @@ from rpc_run import BEAM, SMALL, SOURCE, RpcTestCase, errors, files, run_all
 
 YAML = SOURCE / "test" / "regression" / "decks" / "beam.yaml"
 OPTIONS = ["--input", "--output", "--restart", "--set", "--check", "--print-parameters", "--version", "--help", "--kokkos-"]
-SUBLISTS = ["Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact", "Steps", "Nested Iteration", "Adapt", "Uzawa", "NOX", "Linear Solver",
+SUBLISTS = ["Units", "Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact", "Steps", "Nested Iteration", "Adapt", "Uzawa", "NOX", "Linear Solver",
             "Linear Solver->Belos", "Linear Solver->MueLu", "Output"]
 
 NUMBER, INTEGERS, NUMBERS = (int, float), [int], [(int, float)]
 SUMMARY = {"converged": bool, "reason": str, "dofs": int, "contact_nodes": int, "ranks": int, "energy_J": NUMBER,
-           "strain_energy": NUMBER, "energy_norm_squared": NUMBER, "contact_force": NUMBERS, "max_pressure": NUMBER, "max_penetration": NUMBER,
+           "strain_energy": NUMBER, "energy_norm_squared": NUMBER, "units": dict, "contact_force": NUMBERS, "max_pressure": NUMBER, "max_penetration": NUMBER,
            "contact_length": NUMBER, "yielded_length": NUMBER, "max_dent": NUMBER, "dent_volume": NUMBER, "time": NUMBER, "kkt_residual": NUMBER, "uzawa_iterations": int,
            "newton_iterations": INTEGERS, "linear_solves": int, "linear_iterations": INTEGERS,
            "preconditioner_setups": int, "local_corrections": int, "solver_path": str, "matrix_assemblies": int,

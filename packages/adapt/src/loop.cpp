@@ -68,13 +68,14 @@ Cycle cycle_of(const Solution &s, const double seconds)
 }
 
 /// Why there is nothing to adapt a mesh to.
-std::string nothing_strained(const Solution &s)
+std::string nothing_strained(const Solution &s, const UnitNames &units)
 {
   std::ostringstream reason;
   reason << "nothing is strained";
   if (s.energy_norm_squared > 0)
-    reason << ": the strain energy " << s.energy_norm_squared << (s.discretization.per_metre() ? " J/m" : " J")
-           << " is rounding, which may reach " << s.estimate->rounding;
+    reason << ": the strain energy " << s.energy_norm_squared << " "
+           << units.of(unit::energy, s.discretization.per_length()) << " is rounding, which may reach "
+           << s.estimate->rounding;
   return reason.str();
 }
 
@@ -123,7 +124,7 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
     }
     if (listener.estimate) listener.estimate(*last);
     adaptation.reached = cycles.back().estimate <= task.adapt.target;
-    if (only_rounding(*last)) adaptation.reason = nothing_strained(*last);
+    if (only_rounding(*last)) adaptation.reason = nothing_strained(*last, task.model.units);
     if (adaptation.reached) break;
     if (last->estimate->total() <= last->estimate->rounding) {
       adaptation.reason = "the estimated error is rounding of the displacements, which finer meshes do not reduce";

@@ -117,7 +117,8 @@ Step Problem::step(const double t, const MultiVector *const dents) const
   step.elastic = fem::elastic_problem(d, couplings_, loads_of(d, now), std::move(dirichlet));
   require_finite(*step.elastic.load, "the forces of prescribed displacements",
                  [&d] { return fem::node_coordinates(d); });
-  step.support = contact::check_support(d, free_parts_, *step.elastic.applied_load, step.contact, now.contact);
+  step.support =
+      contact::check_support(d, free_parts_, *step.elastic.applied_load, step.contact, now.contact, model_.units);
   return step;
 }
 

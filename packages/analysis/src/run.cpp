@@ -81,7 +81,7 @@ PhaseSeconds &PhaseSeconds::operator+=(const PhaseSeconds &other)
 
 ResultScope result_scope(const Model &model, const fem::Discretization &d)
 {
-  return {d.per_metre(), contact::has_friction(model.contact)};
+  return {d.per_length(), contact::has_friction(model.contact), model.units};
 }
 
 Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener)

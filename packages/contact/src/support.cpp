@@ -25,6 +25,7 @@ struct Context {
   const fem::Parts &parts;
   const ContactNodes &contact;
   const std::vector<ContactOptions> &options;
+  const UnitNames &units;
 
   std::string name(const int part) const { return fem::name_of(*d.mesh, parts, part); }
   fem::MotionInWords words(const RigidMotion &r, const int part) const
@@ -35,7 +36,8 @@ struct Context {
   std::string amount(const double value, const fem::MotionInWords &words) const
   {
     std::ostringstream text;
-    text << value << (words.rotates ? " [N m" : " [N") << (d.per_metre() ? "/m]" : "]");
+    text << value << " [" << (words.rotates ? units.moment() : units.force)
+         << (d.per_length() ? "/" + units.length : "") << "]";
     return text.str();
   }
 };
@@ -199,7 +201,7 @@ FreeParts free_parts(const fem::Discretization &d, const fem::DirichletDofs &dir
 }
 
 Support check_support(const fem::Discretization &d, const FreeParts &body, const Vector &applied_load,
-                      const ContactNodes &contact, const std::vector<ContactOptions> &options)
+                      const ContactNodes &contact, const std::vector<ContactOptions> &options, const UnitNames &units)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::support"));
   const Comm &comm = d.mesh->comm();
@@ -209,7 +211,7 @@ Support check_support(const fem::Discretization &d, const FreeParts &body, const
   for (const Motions &free : motions) support.by_contact_only = support.by_contact_only || !free.empty();
   if (!support.by_contact_only) return support;
 
-  const Context context{d, parts, contact, options};
+  const Context context{d, parts, contact, options, units};
   const Reactions reactions = reactions_of(d, parts, contact);
   const auto loads = fem::resultants(d, parts, applied_load);
   const std::vector<Motions> sliding = sliding_motions(comm, reactions, motions);

@@ -46,6 +46,10 @@ TEST(Quantity, NamesAndUnitsFollowTheBody)
   EXPECT_EQ(table[2].unit_name(plane), "m");
   EXPECT_EQ(table[2].unit_name(space), "m^2");
   EXPECT_EQ(table[0].unit_name(plane), "J/m");
+  const ResultScope in_mm{true, false, {"mm", "N"}};
+  EXPECT_EQ(table[0].unit_name(in_mm), "mJ/mm");
+  EXPECT_EQ(table[1].unit_name(in_mm), "MPa");
+  EXPECT_EQ(table[0].name(in_mm), "work");
 }
 
 TEST(Quantity, NumbersOfFrictionAreThereOnlyWithFriction)

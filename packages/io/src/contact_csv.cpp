@@ -147,6 +147,16 @@ std::string csv(const std::vector<Row> &rows, const int dim, const std::string &
   return text;
 }
 
+std::string heading(const int dim, const UnitNames &units)
+{
+  const std::string length = units.heading(unit::length, false);
+  std::string text;
+  for (const char *const name : {"x", "y", dim == 2 ? "s" : "z"}) text += name + length + ',';
+  if (dim == 3) text += "area" + units.heading(unit::extent, false) + ',';
+  return text + "u_nu" + length + ",gap" + length + ",pressure" + units.heading(unit::pressure, false) +
+         ",state,side,dent" + length + '\n';
+}
+
 void require_equal_lengths(const Comm &comm, const ContactTable &table)
 {
   const std::size_t n = table.id.extent(0);
@@ -177,7 +187,8 @@ std::string csv_quoted(const std::string &text)
   return result + '"';
 }
 
-void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const std::vector<ContactTable> &tables)
+void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const std::vector<ContactTable> &tables,
+                       const UnitNames &units)
 {
   std::string text;
   for (const ContactTable &table : tables) {
@@ -189,7 +200,7 @@ void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, con
     on_root(*comm, ExitCode::internal_error, [&] {
       require_unique(rows);
       if (dim == 2) rows = along_the_surface(rows, edges_of(rows, facets, width));
-      if (text.empty()) text = std::string(dim == 2 ? "x,y,s" : "x,y,z,area") + ",u_nu,gap,pressure,state,side,dent\n";
+      if (text.empty()) text = heading(dim, units);
       text += csv(rows, dim, csv_quoted(table.side));
     });
   }

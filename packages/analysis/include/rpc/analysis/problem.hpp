@@ -4,6 +4,7 @@
 #include "rpc/analysis/nested_mesh.hpp"
 #include "rpc/contact/contact_nodes.hpp"
 #include "rpc/contact/support.hpp"
+#include "rpc/core/units.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/solver/mesh_levels.hpp"
@@ -23,6 +24,7 @@ struct Model {
   std::vector<fem::TractionLoad> tractions;
   fem::VectorField body_force;
   std::vector<contact::ContactOptions> contact; ///< one per contact side
+  UnitNames units;                              ///< of all its numbers
 
   /// The same, with all fields seen at one time.
   Model seen_at(double t) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/contact/contact_nodes.hpp"
+#include "rpc/core/units.hpp"
 #include "rpc/fem/parts.hpp"
 #include "rpc/fem/rigid_motion.hpp"
 
@@ -31,9 +32,11 @@ FreeParts free_parts(const fem::Discretization &d, const fem::DirichletDofs &dir
 ///                                                                                         doc/theory.md (9.2) - (9.6)
 /// Costs nothing if prescribed displacements hold every part, else some hundred sums over the contact nodes.
 /// @param applied_load  (owned dofs) [N], before elimination; collective
+/// @param units         for messages
 /// @throws rpc::Error (no_solution) on every rank, naming part, motion and forces: a motion that nothing stops; a load
 ///         beyond what the foundation carries, or away from it; a load that leaves the position open
 Support check_support(const fem::Discretization &d, const FreeParts &body, const Vector &applied_load,
-                      const ContactNodes &contact, const std::vector<ContactOptions> &options);
+                      const ContactNodes &contact, const std::vector<ContactOptions> &options,
+                      const UnitNames &units = {});
 
 } // namespace rpc::contact

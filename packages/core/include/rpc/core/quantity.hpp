@@ -1,5 +1,7 @@
 #pragma once
 
+#include "rpc/core/units.hpp"
+
 #include <algorithm>
 #include <string>
 #include <type_traits>
@@ -7,25 +9,6 @@
 
 namespace rpc
 {
-
-/// Unit of a number in the results. Forces and energies of a plane body are per metre of its depth; those of a body in space or
-/// of revolution belong to the whole body.
-struct Unit {
-  const char *whole;
-  const char *per_metre;
-};
-
-namespace unit
-{
-inline constexpr Unit none{"", ""};
-inline constexpr Unit second{"s", "s"};
-inline constexpr Unit pressure{"Pa", "Pa"};
-inline constexpr Unit length{"m", "m"};
-inline constexpr Unit extent{"m^2", "m"};   ///< of a part of the surface
-inline constexpr Unit volume{"m^3", "m^2"}; ///< of a part of the surface times a length
-inline constexpr Unit force{"N", "N/m"};
-inline constexpr Unit energy{"J", "J/m"};
-} // namespace unit
 
 /// How the numbers of several sides, or of several ranks, come together.
 enum class Combine { sum, maximum };
@@ -35,8 +18,9 @@ enum class Needs { nothing, friction };
 
 /// Which numbers a run has, and in which units.
 struct ResultScope {
-  bool per_metre = false; ///< the body is plane
-  bool friction = false;  ///< the law of a contact side has friction
+  bool per_length = false; ///< the body is plane: forces and energies are per length of its depth
+  bool friction = false;   ///< the law of a contact side has friction
+  UnitNames units;
 };
 
 /// Where a number is shown.
@@ -61,8 +45,8 @@ struct Quantity {
   const char *whole_key = nullptr; ///< key for a body that is not plane, where it differs
   Needs needs = Needs::nothing;
 
-  std::string name(const ResultScope &scope) const { return scope.per_metre || !whole_key ? key : whole_key; }
-  std::string unit_name(const ResultScope &scope) const { return scope.per_metre ? unit.per_metre : unit.whole; }
+  std::string name(const ResultScope &scope) const { return scope.per_length || !whole_key ? key : whole_key; }
+  std::string unit_name(const ResultScope &scope) const { return scope.units.of(unit, scope.per_length); }
   bool defined(const ResultScope &scope) const { return needs == Needs::nothing || scope.friction; }
   void add(Record &to, const Record &other) const
   {

@@ -49,8 +49,8 @@ struct Discretization {
 
   int dim() const { return mesh->dim(); }
   bool axisymmetric() const { return kinematics == Kinematics::axisymmetric; }
-  /// Whether forces, energies and areas are those of a slice of the body, per metre across the plane.
-  bool per_metre() const { return dim() == 2 && !axisymmetric(); }
+  /// Whether forces, energies and areas are those of a slice of the body, per length across the plane.
+  bool per_length() const { return dim() == 2 && !axisymmetric(); }
 };
 
 /// Collective.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/core/tpetra.hpp"
+#include "rpc/core/units.hpp"
 
 #include <string>
 #include <vector>
@@ -33,10 +34,11 @@ struct ContactTable {
 /// then y, and s is the length of the way from there, straight from node to node [m]. Several chains follow each other
 /// by their first point, each with its own s; a closed one starts at its point with the smallest x, then y. 3D: columns
 /// x, y, z, area, u_nu, gap, pressure, state, side, dent, with the weight of the node as area [m^2]; rows by id. Numbers read back as the same doubles; the file does not depend on
-/// the number of ranks.
+/// the number of ranks. Units other than m and N stand behind the names of columns, "gap [mm]".
 /// @throws rpc::Error on every rank: bad_input for a folder that cannot be written to, internal_error for a failed
 /// write, columns
 ///         of different lengths, an id that comes twice or a state that does not exist
-void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const std::vector<ContactTable> &tables);
+void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const std::vector<ContactTable> &tables,
+                       const UnitNames &units = {});
 
 } // namespace rpc::io

@@ -1,0 +1,62 @@
+"""The names of units in all that a run prints."""
+
+import csv
+import re
+import unittest
+
+from rpc_run import SMALL, SOURCE, RpcTestCase
+
+
+class Units(RpcTestCase):
+    """Names of units change what is printed, and no number."""
+
+    STEPS = "--set=Steps->Times={0.5, 1}"
+    IN_MM = ["--set=Units->Length=mm", "--set=Units->Force=N"]
+
+    def headings(self, folder, table):
+        return next(csv.reader((self.folder / folder / f"beam.{table}.csv").read_text().splitlines()))
+
+    def test_default_is_metre_and_newton(self):
+        summary = self.solve(self.STEPS)
+        self.assertEqual(summary["units"], {"length": "m", "force": "N/m", "stress": "Pa", "energy": "J/m"})
+        for table in ("contact", "history"):
+            self.assertNotIn("[", "".join(self.headings("out", table)))
+
+    def test_results_are_printed_in_the_decks_units(self):
+        plain = self.solve(self.STEPS, output="plain")
+        named = self.solve(self.STEPS, *self.IN_MM)
+        self.assertEqual(named.pop("units"), {"length": "mm", "force": "N/mm", "stress": "MPa", "energy": "mJ/mm"})
+        del plain["units"]
+        for summary in (plain, named):
+            del summary["seconds"]
+            for step in summary["steps"]:
+                del step["seconds"]
+            for level in summary["levels"]:
+                del level["seconds"]
+        self.assertEqual(named, plain)
+        self.assertEqual(self.headings("out", "contact"), ["x [mm]", "y [mm]", "s [mm]", "u_nu [mm]", "gap [mm]", "pressure [MPa]", "state",
+                                                           "side", "dent [mm]"])
+        history = self.headings("out", "history")
+        self.assertEqual([re.sub(r" \[.*\]", "", name) for name in history], self.headings("plain", "history"))
+        for name in ("time", "work [mJ/mm]", "max_pressure [MPa]", "max_dent [mm]", "dent_volume [mm^2]", "contact_length [mm]",
+                     "contact_force_y [N/mm]", "left_displacement_x [mm]", "left_reaction_x [N/mm]", "seconds"):
+            self.assertIn(name, history)
+
+    def test_console_and_messages_about_loads_use_them(self):
+        text = self.rpc("--input=beam.xml", SMALL, "--output=out", *self.IN_MM).stdout
+        for part in (" mJ/mm\n", " N/mm\n", "16 MPa\n", " mm^2\n"):
+            self.assertIn(part, text)
+        self.assertNotRegex(text, r"\b(Pa|J/m|N/m|m)\n")
+        block = SOURCE / "test" / "verification" / "decks" / "block.xml"
+        refused = self.rpc(f"--input={block}", "--set=Traction->top->Y=-10.1", "--output=out", *self.IN_MM, code=5)
+        self.assertIn("10.1 [N/mm]", refused.stderr)
+
+    def test_may_change_at_a_restart(self):
+        every = ["--set=Steps->Checkpoint Every=1"]
+        self.solve("--set=Steps->Times={0.5}", *every)
+        resumed = self.solve(self.STEPS, *every, *self.IN_MM, "--restart")
+        self.assertEqual(len(resumed["steps"]), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
