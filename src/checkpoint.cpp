@@ -55,6 +55,7 @@ json to_json(const StepRecord &r, const ResultScope &scope)
   json entry = {{"time", r.time},
                 {"energies", kept_numbers(analysis::energy_quantities, r.energies, scope)},
                 {"contact", to_json(r.contact, scope)},
+                {"body", kept_numbers(analysis::body_quantities, r.body, scope)},
                 {"displacements", r.displacements},
                 {"reactions", r.reactions},
                 {"work", kept_numbers(analysis::step_work, r, scope)},
@@ -69,6 +70,7 @@ StepRecord record_from(const json &j, const ResultScope &scope)
   r.converged = true; // no other step is gone on from
   r.energies = energies_from(j.at("energies"), scope);
   r.contact = sums_from(j.at("contact"), scope);
+  take_numbers(j.at("body"), analysis::body_quantities, r.body, scope);
   r.displacements = j.at("displacements").get<std::vector<std::array<double, 3>>>();
   r.reactions = j.at("reactions").get<std::vector<std::array<double, 3>>>();
   take_numbers(j.at("work"), analysis::step_work, r, scope);

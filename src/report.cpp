@@ -16,6 +16,8 @@ namespace
 
 // Of a step's energies.
 constexpr double notable_imbalance = 0.01;
+// Beyond it the terms that small strains leave out are a fifth of those that count.
+constexpr double notable_strain = 0.2;
 
 /// printf into a stream.
 [[gnu::format(printf, 2, 3)]] void print(std::ostream &out, const char *format, ...)
@@ -146,6 +148,23 @@ void print_balance(std::ostream &out, const std::vector<analysis::StepRecord> &h
           count, history.size(), 100 * most, at);
 }
 
+/// Strains that are not small, of all steps.
+void print_large_strains(std::ostream &out, const Solution &s)
+{
+  double most = s.body.strain;
+  std::string when;
+  for (const auto &step : s.history) {
+    if (!(step.body.strain >= most && step.body.strain > notable_strain)) continue;
+    most = step.body.strain;
+    when = " at t = " + number_text("%g", step.time);
+  }
+  if (most > notable_strain)
+    print(out,
+          "    note              strains reach %.2g%s: small strains are assumed, and results where strains exceed %g "
+          "are\n                      rough\n",
+          most, when.c_str(), notable_strain);
+}
+
 } // namespace
 
 ConsoleTable::ConsoleTable(std::ostream &out) : out_(out), start_(Teuchos::Time::wallTime()) {}
@@ -234,6 +253,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
   if (s.failure) print(out, "  results             of the last step that converged, t = %g\n", s.time);
   print_lines(out, lines(analysis::residual_quantities, s.uzawa.residuals, scope, "%.1e"));
   print(out, "  energy J            %.9g %s\n", s.energy, unit_of(unit::energy).c_str());
+  print_lines(out, lines(analysis::body_quantities, s.body, scope, "%.6g"));
   if (!scene.model.contact.empty()) {
     print(out, "  contact force       %s %s\n", vector_text(s.contact.total.force, dim).c_str(),
           unit_of(unit::force).c_str());
@@ -266,6 +286,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
   if (s.adaptation) print_adaptation(out, *s.adaptation, scope);
   print_balance(out, s.history);
+  print_large_strains(out, s);
   for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
   print_lines(out, lines(analysis::phase_seconds, s.seconds, scope, "%.3f"));
   for (const auto &file : files) print(out, "  wrote %s\n", file.c_str());

@@ -33,7 +33,9 @@ std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
     for (const auto &[what, unit] : {std::pair("_displacement_", unit::length), std::pair("_reaction_", unit::force)})
       for (int c = 0; c < dim; ++c) text << ',' << io::csv_quoted(condition.name + what + axes[c] + in(unit));
   write_names(text, count_columns(scope), scope);
-  text << ",seconds,converged,reason\n";
+  text << ",seconds,converged,reason";
+  write_names(text, history_columns(analysis::body_quantities, scope), scope);
+  text << '\n';
   return text.str();
 }
 
@@ -50,7 +52,9 @@ std::string row(const analysis::StepRecord &step, const int dim, const ResultSco
     for (int c = 0; c < dim; ++c) text << ',' << step.reactions[k][c];
   }
   write_values(text, count_columns(scope), step);
-  text << ',' << step.seconds << ',' << (step.converged ? 1 : 0) << ',' << io::csv_quoted(step.reason) << '\n';
+  text << ',' << step.seconds << ',' << (step.converged ? 1 : 0) << ',' << io::csv_quoted(step.reason);
+  write_values(text, history_columns(analysis::body_quantities, scope), step.body);
+  text << '\n';
   return text.str();
 }
 

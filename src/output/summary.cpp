@@ -38,6 +38,7 @@ void add_steps(nlohmann::ordered_json &json, const Solution &s, const ResultScop
     nlohmann::ordered_json entry = {{"time", step.time}, {"converged", step.converged}};
     if (!step.converged) entry["reason"] = step.reason;
     add_shown(entry, analysis::energy_quantities, step.energies, scope);
+    add_shown(entry, analysis::body_quantities, step.body, scope);
     add_sums(entry, step.contact, scope, s.discretization.dim());
     add_shown(entry, analysis::step_parts, step, scope);
     add_shown(entry, analysis::step_work, step, scope);
@@ -112,6 +113,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["energy_J"] = s.energy;
   json["strain_energy"] = 0.5 * s.energy_norm_squared;
   json["energy_norm_squared"] = s.energy_norm_squared;
+  add_shown(json, analysis::body_quantities, s.body, scope);
   add_sums(json, s.contact.total, scope, mesh.dim());
   json["contact_sides"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.contact.size(); ++k)

@@ -18,7 +18,8 @@ SUBLISTS = ["Units", "Mesh", "Material", "Dirichlet", "Traction", "Body Force", 
 
 NUMBER, INTEGERS, NUMBERS = (int, float), [int], [(int, float)]
 SUMMARY = {"converged": bool, "reason": str, "dofs": int, "contact_nodes": int, "ranks": int, "energy_J": NUMBER,
-           "strain_energy": NUMBER, "energy_norm_squared": NUMBER, "units": dict, "contact_force": NUMBERS, "max_pressure": NUMBER, "max_penetration": NUMBER,
+           "strain_energy": NUMBER, "energy_norm_squared": NUMBER, "units": dict, "max_displacement": NUMBER, "max_strain": NUMBER,
+           "max_von_mises": NUMBER, "contact_force": NUMBERS, "max_pressure": NUMBER, "max_penetration": NUMBER,
            "contact_length": NUMBER, "yielded_length": NUMBER, "max_dent": NUMBER, "dent_volume": NUMBER, "time": NUMBER, "kkt_residual": NUMBER, "uzawa_iterations": int,
            "newton_iterations": INTEGERS, "linear_solves": int, "linear_iterations": INTEGERS,
            "preconditioner_setups": int, "local_corrections": int, "solver_path": str, "matrix_assemblies": int,

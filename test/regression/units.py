@@ -1,4 +1,4 @@
-"""The names of units in all that a run prints."""
+"""The names of units in all that a run prints, and the body's largest numbers."""
 
 import csv
 import re
@@ -39,7 +39,8 @@ class Units(RpcTestCase):
         history = self.headings("out", "history")
         self.assertEqual([re.sub(r" \[.*\]", "", name) for name in history], self.headings("plain", "history"))
         for name in ("time", "work [mJ/mm]", "max_pressure [MPa]", "max_dent [mm]", "dent_volume [mm^2]", "contact_length [mm]",
-                     "contact_force_y [N/mm]", "left_displacement_x [mm]", "left_reaction_x [N/mm]", "seconds"):
+                     "contact_force_y [N/mm]", "left_displacement_x [mm]", "left_reaction_x [N/mm]", "seconds", "max_strain",
+                     "max_von_mises [MPa]"):
             self.assertIn(name, history)
 
     def test_console_and_messages_about_loads_use_them(self):
@@ -56,6 +57,25 @@ class Units(RpcTestCase):
         self.solve("--set=Steps->Times={0.5}", *every)
         resumed = self.solve(self.STEPS, *every, *self.IN_MM, "--restart")
         self.assertEqual(len(resumed["steps"]), 2)
+        self.assertGreater(resumed["steps"][0]["max_von_mises"], 0)
+
+
+class LargestNumbers(RpcTestCase):
+    def test_of_a_pressed_block_are_those_of_uniaxial_strain(self):
+        # No Poisson's ratio: strain and stress are those of one direction.
+        summary = self.solve("--set=Material->Poisson's Ratio=0", "--set=Dirichlet->left->Y=", "--set=Dirichlet->right->Y=",
+                             "--set=Traction->top->Y=-20", "--set=Contact->Yield Stress=inf")
+        self.assertAlmostEqual(summary["max_strain"], 0.01, delta=1e-9)
+        self.assertAlmostEqual(summary["max_von_mises"], 20, delta=1e-6)
+        self.assertAlmostEqual(summary["max_displacement"], 0.01, delta=1e-9)
+
+    def test_note_tells_where_strains_are_not_small(self):
+        quiet = self.rpc("--input=beam.xml", SMALL, "--output=out").stdout
+        self.assertNotIn("small strains are assumed", quiet)
+        self.assertRegex(quiet, r"body +displacement at most \S+ m, strain \S+, von Mises \S+ Pa\n")
+        loud = self.rpc("--input=beam.xml", SMALL, "--output=out", "--set=Material->Young's Modulus=100", "--set=Contact->Yield Stress=2",
+                        "--set=Steps->Times={0.5, 1}", "--set=Traction->top->Y=-20*t*sin(pi*x/5)").stdout
+        self.assertRegex(loud, r"note +strains reach [\d.]+ at t = 1: small strains are assumed")
 
 
 if __name__ == "__main__":

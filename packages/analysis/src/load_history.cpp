@@ -90,6 +90,7 @@ StepRecord broken_off(const Model &model, StepRecord until_then, const double t,
   record.reason = reason;
   record.energies = unknown_energies();
   for (const auto &q : contact::contact_quantities) record.contact.*q.value = unknown;
+  for (const auto &q : body_quantities) record.body.*q.value = unknown;
   record.contact.force.fill(unknown);
   std::array<double, 3> vector{};
   vector.fill(unknown);
@@ -138,6 +139,7 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   last_.converged = s.uzawa.converged;
   if (!last_.converged) last_.reason = s.uzawa.reason;
   last_.contact = s.contact.total;
+  last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
   last_.displacements = prescribed_means(*problem_, s);
   last_.reactions = s.reactions;
   last_.energies = last_.converged ? memory_->energies : unknown_energies();

@@ -129,6 +129,7 @@ Solution solve_one_of_steps(const Task &task, const double t, LoadHistory &histo
   s.discretization = history.problem().discretization();
   s.mesh_options = task.mesh;
   s.time = history.last().time;
+  s.body = history.last().body;
   s.matrix_assemblies = assemblies_before + history.problem().stiffness()->assemblies();
   s.history = records;
   s.history.push_back(history.last());
@@ -248,6 +249,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
         return Predictor(coarser, task.step, task.linear_solver).predict(*problem, step, nullptr);
       };
     static_cast<StepSolution &>(s) = solve_step(*problem, step, state, task.step, from, listener.step);
+    s.body = fem::body_peaks(d, task.model.materials, *s.u);
   } else {
     LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver, coarser);
     history.balance_energies_to(task.steps.energy_tolerance);
@@ -258,6 +260,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
     if (s.uzawa.converged) s.memory = *history.memory();
     if (earlier) s.history = earlier->history;
     s.history.push_back(history.last());
+    s.body = history.last().body;
   }
   s.matrix_assemblies = problem->stiffness()->assemblies();
   if (previous) s.start_pressure = starts.front().multiplier.normal;

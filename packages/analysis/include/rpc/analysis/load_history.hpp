@@ -3,6 +3,7 @@
 #include "rpc/analysis/memory.hpp"
 #include "rpc/analysis/predictor.hpp"
 #include "rpc/analysis/solve_step.hpp"
+#include "rpc/fem/peaks.hpp"
 
 #include <functional>
 #include <limits>
@@ -42,6 +43,7 @@ struct StepRecord {
       0; ///< of its parts: more than these where points met other dents at the places to which a solve had led them
   Energies energies;
   contact::ContactSums contact;
+  fem::BodyPeaks body;
   std::vector<std::array<double, 3>> displacements; ///< mean prescribed ones of each Dirichlet condition [m]
   std::vector<std::array<double, 3>> reactions;     ///< as in StepSolution
   int newton_iterations = 0, linear_solves = 0, linear_iterations = 0, preconditioner_setups = 0;

@@ -45,6 +45,18 @@ inline constexpr std::array<Quantity<Energies>, 5> energy_quantities{{
 }};
 static_assert(sizeof(Energies) == energy_quantities.size() * sizeof(double), "an energy has no line in the table");
 
+/// The body's largest numbers.
+inline constexpr std::array<Quantity<fem::BodyPeaks>, 3> body_quantities{{
+    {&fem::BodyPeaks::displacement,
+     "max_displacement",
+     unit::length,
+     Combine::maximum,
+     {true, 1, "body", "displacement at most "}},
+    {&fem::BodyPeaks::strain, "max_strain", unit::none, Combine::maximum, {true, 2, "body", "strain "}},
+    {&fem::BodyPeaks::von_mises, "max_von_mises", unit::pressure, Combine::maximum, {true, 3, "body", "von Mises "}},
+}};
+static_assert(sizeof(fem::BodyPeaks) == body_quantities.size() * sizeof(double), "a number has no line in the table");
+
 /// In how many parts a step was solved, and by how many solves.
 inline constexpr std::array<Quantity<StepRecord, int>, 2> step_parts{{
     {&StepRecord::parts, "parts", unit::none, Combine::sum, {true, 3}},

@@ -41,7 +41,8 @@ struct Solution : StepSolution {
   fem::Discretization discretization;
   std::vector<std::string> skipped; ///< parts of the algorithm that this run skipped, with reasons, see doc/input.md
   double time = 1;                  ///< at which it is the solution
-  std::optional<Memory> memory;     ///< what the next load step starts from, where there are several and it converged
+  fem::BodyPeaks body;
+  std::optional<Memory> memory; ///< what the next load step starts from, where there are several and it converged
   /// (contact points) Pressure that the solution on the previous mesh gave as a start [Pa]; none without a previous mesh.
   std::optional<DeviceView<double *>> start_pressure;
   mesh::MeshOptions mesh_options;  ///< of its mesh

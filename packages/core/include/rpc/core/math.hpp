@@ -7,10 +7,14 @@ namespace rpc::math
 {
 
 #if KOKKOS_VERSION >= 30700 // where they left the namespace Experimental
+using Kokkos::acos;
+using Kokkos::cos;
 using Kokkos::fmax;
 using Kokkos::fmin;
 using Kokkos::sqrt;
 #else
+using Kokkos::Experimental::acos;
+using Kokkos::Experimental::cos;
 using Kokkos::Experimental::fmax;
 using Kokkos::Experimental::fmin;
 using Kokkos::Experimental::sqrt;
