@@ -279,6 +279,14 @@ class BadInput(RpcTestCase):
         self.expect_refusals([("axis", ["--input=beam.xml", SMALL, "--set=Kinematics=axisymmetric", "--set=Mesh->Lower={-1,0}",
                                         "--output=out"], BAD_MESH, ["node at (-1, ", "beyond the axis", "x >= 0"])])
 
+    @unittest.skipIf(RANKS > 1, "needs one rank: every rank reads the deck")
+    def test_a_mesh_of_surfaces_in_space_is_no_body(self):
+        (self.folder / "skin.msh").write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 1\n$EndNodes\n"
+                                              "$Elements\n1\n1 2 2 1 0 1 2 3\n$EndElements\n")
+        (self.folder / "skin.yaml").write_text("skin:\n  Mesh: {Type: gmsh, File: skin.msh}\n  Dirichlet: {top: {Z: 0.0}}\n")
+        self.expect_refusals([("skin", [f"--input={self.folder / 'skin.yaml'}", "--output=out"], BAD_MESH,
+                               ['skin.msh": has no volumes', "node 3 at (0, 1, 1) is off the plane", 'Physical Volume("body")'])])
+
     def test_truncated_deck_is_never_an_internal_error(self):
         whole = BEAM.read_bytes()
         jobs = []

@@ -28,8 +28,11 @@ struct GmshRequest {
 /// Physical group of the body's parts, or of its sides: of surfaces or curves, in space of volumes or surfaces.
 struct GmshGroup {
   int dim = 0, tag = 0;
-  std::string name;
+  std::string name; ///< empty: none
 };
+
+/// Name of the only block where no group says what the body is.
+inline constexpr const char *whole_body = "body";
 
 /// The elements of one type on one curve, surface or volume.
 struct GmshElements {
@@ -48,7 +51,7 @@ struct GmshContents {
   std::vector<GmshElements> elements; ///< by group, then entity tag
   std::vector<std::size_t> node_tags;
   std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags
-  std::vector<std::size_t> ungrouped_nodes; ///< of a .msh: tags of the nodes of cells outside every physical group
+  std::vector<std::size_t> ungrouped_nodes; ///< of a .msh: tags of the nodes of cells that are not part of the body
 };
 
 } // namespace rpc::mesh

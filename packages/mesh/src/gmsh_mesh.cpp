@@ -24,16 +24,26 @@ bool is_control(const unsigned char c)
   return std::iscntrl(c) != 0;
 }
 
+/// A group without a name is named by its number.
+void name_groups(GmshContents &contents)
+{
+  for (GmshGroup &group : contents.groups)
+    if (group.name.empty()) group.name = std::to_string(group.tag);
+}
+
 void check_groups(const std::string &where, const GmshContents &contents)
 {
+  const bool body = std::any_of(contents.elements.begin(), contents.elements.end(), [&](const auto &elements) {
+    return contents.groups[elements.group].dim == contents.dim;
+  });
+  const char *const kind_of_body = kind_of_group[contents.dim];
+  RPC_REQUIRE_CODE(body, ExitCode::bad_mesh,
+                   where << "has no cells in a " << kind_of_body
+                         << "; where there are physical groups, gmsh writes those only: add Physical "
+                         << statement_for_group[contents.dim] << "(\"body\") = {...};");
   std::map<std::pair<int, std::string>, int> tags;
-  bool body = false;
   for (const auto &[dim, tag, name] : contents.groups) {
     const char *const kind = kind_of_group[dim];
-    RPC_REQUIRE_CODE(!name.empty(), ExitCode::bad_mesh,
-                     where << "physical " << kind << " " << tag << " has no name; give it one: Physical "
-                           << statement_for_group[dim] << "(\"" << (dim == contents.dim ? "body" : "contact") << "\", "
-                           << tag << ") = {...};");
     RPC_REQUIRE_CODE(name.size() <= longest_name && std::none_of(name.begin(), name.end(), is_control),
                      ExitCode::bad_mesh,
                      where << "physical " << kind << " " << tag << " must have a name of at most " << longest_name
@@ -42,12 +52,7 @@ void check_groups(const std::string &where, const GmshContents &contents)
     RPC_REQUIRE_CODE(fresh, ExitCode::bad_mesh,
                      where << "physical " << kind << "s " << same->second << " and " << tag << " share the name \""
                            << name << "\"");
-    body = body || dim == contents.dim;
   }
-  RPC_REQUIRE_CODE(body, ExitCode::bad_mesh,
-                   where << (contents.dim == 3 ? "has volumes, but " : "has ") << "no physical "
-                         << kind_of_group[contents.dim] << "; name what is the body: Physical "
-                         << statement_for_group[contents.dim] << "(\"body\") = {...};");
   std::set<int> filled;
   for (const auto &elements : contents.elements) filled.insert(elements.group);
   for (int g = 0; g < static_cast<int>(contents.groups.size()); ++g)
@@ -311,6 +316,7 @@ MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const boo
 {
   TaggedMesh draft;
   draft.where = where;
+  name_groups(contents);
   check_groups(draft.where, contents);
   draft.mesh.element = element_of(draft.where, contents);
   take_nodes(contents, draft);

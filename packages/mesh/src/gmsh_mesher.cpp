@@ -259,6 +259,19 @@ EntityElements elements_of(const int dim, const int entity)
   return elements;
 }
 
+/// Adds a group with the elements on some entities.
+void take_group(const GmshGroup &group, const std::vector<int> &entities, GmshContents &contents)
+{
+  contents.groups.push_back(group);
+  for (const int entity : entities) {
+    EntityElements elements = elements_of(group.dim, entity);
+    for (std::size_t t = 0; t < elements.types.size(); ++t)
+      contents.elements.push_back({static_cast<int>(contents.groups.size()) - 1, elements.types[t],
+                                   std::move(elements.tags[t]), std::move(elements.nodes[t])});
+  }
+}
+
+/// Without groups of the body's dimension all entities of that dimension are the body.
 void take_mesh(GmshContents &contents)
 {
   gmsh::vectorpair groups;
@@ -268,18 +281,19 @@ void take_mesh(GmshContents &contents)
     if (dim != contents.dim - 1 && dim != contents.dim) continue;
     GmshGroup group{dim, tag, ""};
     gmsh::model::getPhysicalName(dim, tag, group.name);
-    contents.groups.push_back(group);
     std::vector<int> entities;
     gmsh::model::getEntitiesForPhysicalGroup(dim, tag, entities);
     for (int &entity : entities) entity = std::abs(entity); // its sign is its direction
     std::sort(entities.begin(), entities.end());
     entities.erase(std::unique(entities.begin(), entities.end()), entities.end());
-    for (const int entity : entities) {
-      EntityElements elements = elements_of(dim, entity);
-      for (std::size_t t = 0; t < elements.types.size(); ++t)
-        contents.elements.push_back({static_cast<int>(contents.groups.size()) - 1, elements.types[t],
-                                     std::move(elements.tags[t]), std::move(elements.nodes[t])});
-    }
+    take_group(group, entities, contents);
+  }
+  if (contents.groups.empty() || contents.groups.back().dim < contents.dim) {
+    gmsh::vectorpair all;
+    gmsh::model::getEntities(all, contents.dim);
+    std::vector<int> entities;
+    for (const auto &[dim, entity] : all) entities.push_back(entity);
+    take_group({contents.dim, 0, whole_body}, entities, contents);
   }
   std::vector<double> parametric;
   gmsh::model::mesh::getNodes(contents.node_tags, contents.coords, parametric, -1, -1, false, false);

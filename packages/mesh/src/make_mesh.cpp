@@ -20,7 +20,8 @@ void add_gmsh_parameters(Teuchos::ParameterList &valid)
   valid.set(
       "File", "",
       "gmsh: a .geo to be meshed or a .msh (2.2 or 4.1), looked for in the deck's folder, then in the current one. "
-      "Its physical surfaces become blocks, its physical curves sides, by their names; with volumes in it, which makes "
+      "Its physical surfaces become blocks, its physical curves sides, by their names or numbers; with volumes in it, "
+      "which makes "
       "a "
       "mesh in space, physical volumes and surfaces.");
   valid.set("Size Factor", 1., "gmsh: factor on all cell sizes that a .geo asks for, > 0.");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -159,8 +160,7 @@ struct Draft {
   GmshContents contents;
   std::map<std::pair<int, int>, std::string> groups;                // dimension and tag -> name
   std::map<std::pair<int, int>, std::vector<int>> groups_of_entity; // dimension and entity -> tags; 4.1
-  std::map<Key, GmshElements> elements;
-  std::vector<std::size_t> ungrouped_nodes[4]; // by dimension
+  std::map<Key, GmshElements> elements;                             // the tag 0 stands for no group
 };
 
 /// Whether it is version 4.1.
@@ -260,12 +260,11 @@ public:
   {
     const int dim = gmsh_type(type)->dim;
     draft.contents.dim = std::max(draft.contents.dim, dim);
-    for (const int group : groups) {
+    for (const int group : groups.empty() ? std::vector<int>{0} : groups) {
       GmshElements &elements = draft.elements[{dim, group, entity, type}];
       elements.type = type;
       lists_.push_back(&elements);
     }
-    if (groups.empty()) ungrouped_nodes_ = &draft.ungrouped_nodes[dim];
   }
 
   void add(const std::size_t tag, const std::vector<std::size_t> &nodes)
@@ -274,12 +273,10 @@ public:
       list->tags.push_back(tag);
       list->nodes.insert(list->nodes.end(), nodes.begin(), nodes.end());
     }
-    if (ungrouped_nodes_) ungrouped_nodes_->insert(ungrouped_nodes_->end(), nodes.begin(), nodes.end());
   }
 
 private:
   std::vector<GmshElements *> lists_;
-  std::vector<std::size_t> *ungrouped_nodes_ = nullptr;
 };
 
 void read_elements_22(Reader &reader, Draft &draft)
@@ -340,6 +337,7 @@ void read_elements_41(Reader &reader, Draft &draft)
   }
 }
 
+/// Without groups of the body's dimension all cells of that dimension are the body.
 GmshContents finished(Draft draft)
 {
   const auto matters = [](const int of_group, const int of_body) {
@@ -347,37 +345,55 @@ GmshContents finished(Draft draft)
   };
   for (const auto &[key, name] : draft.groups) draft.contents.dim = std::max(draft.contents.dim, key.first);
   const int dim = draft.contents.dim;
+  auto &groups = draft.contents.groups;
   for (const auto &[key, name] : draft.groups)
-    if (matters(key.first, dim)) draft.contents.groups.push_back({key.first, key.second, name});
-  draft.contents.ungrouped_nodes = std::move(draft.ungrouped_nodes[dim]);
+    if (matters(key.first, dim)) groups.push_back({key.first, key.second, name});
+  const bool grouped = !groups.empty() && groups.back().dim == dim;
+  if (!grouped) groups.push_back({dim, 0, whole_body});
   for (auto &[key, elements] : draft.elements) {
-    if (!matters(std::get<0>(key), dim)) continue;
-    const auto &groups = draft.contents.groups;
-    const auto group = std::find_if(groups.begin(), groups.end(), [&key = key](const GmshGroup &g) {
-      return g.dim == std::get<0>(key) && g.tag == std::get<1>(key);
+    const auto [of_group, tag, entity, type] = key;
+    if (tag == 0 && of_group == dim && grouped)
+      draft.contents.ungrouped_nodes.insert(draft.contents.ungrouped_nodes.end(), elements.nodes.begin(),
+                                            elements.nodes.end());
+    const auto group = std::find_if(groups.begin(), groups.end(), [dim = of_group, tag = tag](const GmshGroup &g) {
+      return g.dim == dim && g.tag == tag;
     });
+    if (group == groups.end()) continue;
     elements.group = static_cast<int>(group - groups.begin());
     draft.contents.elements.push_back(std::move(elements));
   }
   return std::move(draft.contents);
 }
 
-} // namespace
-
-int dimension_of_msh(const std::string &where, const std::string &text)
+/// Whether there is a volume among the names, which come first: the rest need not be read to know.
+bool names_volume(const std::string &where, const std::string &text)
 {
   Reader reader(where, text);
   read_format(reader);
   Draft draft;
-  for (std::string name = reader.next_section(); !name.empty(); name = reader.next_section())
-    if (name == "PhysicalNames") {
-      read_names(reader, draft);
-      break;
-    } else
-      reader.skip_section();
-  const bool solid = !draft.groups.empty() && draft.groups.rbegin()->first.first == 3;
-  return solid ? 3 : 2;
+  if (reader.next_section() == "PhysicalNames") read_names(reader, draft);
+  return !draft.groups.empty() && draft.groups.rbegin()->first.first == 3;
 }
+
+/// Surfaces in space are no body.
+void check_plane(const std::string &where, const GmshContents &contents)
+{
+  std::set<std::size_t> used;
+  for (const auto &elements : contents.elements)
+    if (contents.groups[elements.group].dim == 2) used.insert(elements.nodes.begin(), elements.nodes.end());
+  double size = 0;
+  for (const double x : contents.coords) size = std::max(size, std::abs(x));
+  for (std::size_t n = 0; n < contents.node_tags.size(); ++n) {
+    const double *const x = &contents.coords[3 * n];
+    RPC_REQUIRE_CODE(
+        !(std::abs(x[2]) > 1e-10 * size) || !used.count(contents.node_tags[n]), ExitCode::bad_mesh,
+        where << "has no volumes, and node " << contents.node_tags[n] << " at (" << x[0] << ", " << x[1] << ", " << x[2]
+              << ") is off the plane; z must be 0. Of a body in space gmsh writes the volumes if there are "
+                 "no groups, or if one names them: Physical Volume(\"body\") = {...};");
+  }
+}
+
+} // namespace
 
 GmshContents read_msh(const std::string &where, const std::string &text)
 {
@@ -404,6 +420,14 @@ GmshContents read_msh(const std::string &where, const std::string &text)
   for (const char *const name : {"Nodes", "Elements"})
     if (!seen.count(name)) reader.refuse("there is no $" + std::string(name));
   return finished(std::move(draft));
+}
+
+int dimension_of_msh(const std::string &where, const std::string &text)
+{
+  if (names_volume(where, text)) return 3;
+  const GmshContents contents = read_msh(where, text);
+  if (contents.dim == 2) check_plane(where, contents);
+  return contents.dim;
 }
 
 } // namespace rpc::mesh

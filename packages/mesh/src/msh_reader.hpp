@@ -14,9 +14,8 @@ namespace rpc::mesh
 /// @throws rpc::Error (bad_mesh)
 GmshContents read_msh(const std::string &where, const std::string &text);
 
-/// Dimension of the body in the file: 3 if it names a physical volume. Looks no further: read_msh() tells what is wrong with a
-/// body that has no name.
-/// @throws rpc::Error (bad_mesh) if the file's form is wrong so far
+/// Dimension of the body in the file: 3 if there are volumes, in groups or not, with names or without.
+/// @throws rpc::Error (bad_mesh) if the file's form is wrong so far, or if there are only surfaces in space
 int dimension_of_msh(const std::string &where, const std::string &text);
 
 } // namespace rpc::mesh

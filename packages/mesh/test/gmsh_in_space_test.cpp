@@ -143,11 +143,6 @@ TEST(GmshInSpace, RefusalsNameFileRuleAndRemedy)
     expect_error(ExitCode::bad_mesh, parts, [&] { read_geo(text); });
   };
   const std::string solid = box(lift + "};\n"), volume_named = "Physical Volume(\"body\") = {out[1]};\n";
-  refused(solid + "Physical Surface(\"body\") = {1};\n",
-          {"has volumes, but no physical volume", "Physical Volume(\"body\")"});
-  refused(solid + "Physical Volume(3) = {out[1]};\n", {"physical volume 3", "no name", "Physical Volume(\"body\", 3)"});
-  refused(solid + volume_named + "Physical Surface(7) = {1};\n",
-          {"physical surface 7", "Physical Surface(\"contact\", 7)"});
   refused(box("out[] = Extrude {0, 0, 3} { Surface{1}; Layers{2}; Recombine; };\n") + volume_named,
           {"\"Prism 18\"", "without Recombine there are tetrahedra", "Mesh.SubdivisionAlgorithm = 2"});
   refused(solid + volume_named +
@@ -158,6 +153,18 @@ TEST(GmshInSpace, RefusalsNameFileRuleAndRemedy)
               "Point(90) = {9, 0, 0, 1}; Line(90) = {2, 90}; s[] = Extrude {0, 0, 1} { Curve{90}; };\n"
               "Physical Surface(\"away\") = {s[1]};\n",
           {"physical surface \"away\"", "is a face of no cell"});
+}
+
+TEST(GmshInSpace, GroupsWithoutNamesAreNumberedAndWithoutABlockAllIsTheBody)
+{
+  const std::string solid = box(lift + "};\n");
+  const MeshData whole = read_geo(solid + "Physical Surface(7) = {1};\n");
+  EXPECT_EQ(whole.element.dim, 3);
+  EXPECT_EQ(whole.blocks, std::vector<std::string>{"body"});
+  ASSERT_EQ(whole.sides.size(), 1u);
+  EXPECT_EQ(whole.sides[0].name, "7");
+  EXPECT_NEAR(volume(whole), 6, 1e-9);
+  EXPECT_EQ(read_geo(solid + "Physical Volume(3) = {out[1]};\n").blocks, std::vector<std::string>{"3"});
 }
 
 TEST(GmshInSpace, FieldsOfCellSizesAreForPlaneBodies)

@@ -131,11 +131,7 @@ TEST(Gmsh, RefusalsNameFileRuleAndRemedy)
   };
   refused("Point(1) = {0, 0", {"gmsh: line ", "syntax error"});
   refused(square() + "Foo(1) = {2};", {"gmsh: line 3: syntax error"});
-  refused("", {"no physical surface"});
-  refused(square(), {"no physical surface", "Physical Surface(\"body\")"});
-  refused(square() + "Physical Surface(3) = {1};", {"physical surface 3", "no name"});
-  refused(square() + body + "Physical Curve(7) = {1};",
-          {"physical curve 7", "no name", "Physical Curve(\"contact\", 7)"});
+  refused("", {"has no cells in a surface", "Physical Surface(\"body\")"});
   refused(square() + body + "Physical Surface(\"skin\") = {1};",
           {"\"body\" and \"skin\"", "each cell must belong to one"});
   refused(square("-4, -3, -2, -1") + body, {"inverted", "clockwise", "reverse the curve loop"});
@@ -146,6 +142,16 @@ TEST(Gmsh, RefusalsNameFileRuleAndRemedy)
           {"\"away\"", "edge of no cell"});
   refused(square() + body + "Point(8) = {5, 5, 0}; Physical Curve(\"last\") = {3};", {"last line", "line break"});
   refused(square() + square() + body, {"gmsh: "});
+}
+
+TEST(Gmsh, GroupsWithoutNamesAreNumberedAndWithoutABlockAllIsTheBody)
+{
+  const MeshData plain = read_geo(square() + "Physical Curve(7) = {1};\n");
+  EXPECT_EQ(plain.blocks, std::vector<std::string>{"body"});
+  ASSERT_EQ(plain.sides.size(), 1u);
+  EXPECT_EQ(plain.sides[0].name, "7");
+  EXPECT_NEAR(area(plain), 1, 1e-12);
+  EXPECT_EQ(read_geo(square() + "Physical Surface(3) = {1};\n").blocks, std::vector<std::string>{"3"});
 }
 
 TEST(Gmsh, AbsurdSizesAreRefusedInGoodTime)

@@ -230,20 +230,67 @@ TEST(MshInSpace, RanksTogetherHaveTheWholeMesh)
   }
 }
 
-TEST(MshInSpace, GroupsMustBeNamedAndVolumesToBeBlocks)
+TEST(MshInSpace, GroupsWithoutNamesAreNamedByTheirNumbers)
 {
-  expect_refused(changed(tetrahedra(), [](Msh &msh) { msh.names.pop_back(); }),
-                 {"physical volume 4", "no name", "Physical Volume(\"body\", 4)"});
-  expect_refused(changed(tetrahedra(), [](Msh &msh) { msh.names.erase(msh.names.begin()); }),
-                 {"physical surface 1", "no name", "Physical Surface(\"contact\", 1)"});
+  const MeshData mesh = read_text(changed(tetrahedra(), [](Msh &msh) { msh.names = {"3 3 \"lower\""}; }));
+  EXPECT_EQ(mesh.blocks, (std::vector<std::string>{"lower", "4"}));
+  ASSERT_EQ(mesh.sides.size(), 2u);
+  EXPECT_EQ(mesh.sides[0].name, "1");
+  EXPECT_EQ(mesh.sides[1].name, "2");
+  expect_refused(changed(tetrahedra(), [](Msh &msh) { msh.names = {"3 3 \"4\""}; }),
+                 {"physical volumes 3 and 4", "share the name \"4\""});
+}
+
+TEST(MshInSpace, WithoutAPhysicalVolumeAllCellsAreTheBody)
+{
+  const auto ungrouped = [](Msh &msh) {
+    msh.names.resize(2);
+    msh.elements[2] = "11 4 2 0 0 1 2 3 4";
+    msh.elements[3] = "12 4 2 0 0 2 3 4 5";
+  };
+  const MeshData mesh = read_text(changed(tetrahedra(), ungrouped));
+  EXPECT_EQ(mesh.num_cells(), 2);
+  EXPECT_EQ(mesh.blocks, std::vector<std::string>{"body"});
+  ASSERT_EQ(mesh.sides.size(), 2u);
+  EXPECT_EQ(mesh.sides[0].name, "bottom");
+  // In one of several groups: the others are not part of the body.
+  const MeshData part = read_text(changed(tetrahedra(), [](Msh &msh) {
+    msh.names = {"2 1 \"bottom\"", "3 3 \"lower\""};
+    msh.elements[3] = "12 4 2 0 0 2 3 4 5";
+    msh.elements.erase(msh.elements.begin() + 1);
+  }));
+  EXPECT_EQ(part.num_cells(), 1);
+}
+
+TEST(MshInSpace, IsInSpaceWithVolumesHoweverTheyAreGrouped)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const auto dimension_of = [&](const std::string &text) {
+    const ScratchFile file("mesh.msh", text);
+    return rpc::mesh::dimension(rpc::mesh::GmshOptions{file.path(), 1, 0}, *comm);
+  };
+  EXPECT_EQ(dimension_of(tetrahedra().text()), 3);
+  EXPECT_EQ(dimension_of(changed(tetrahedra(), [](Msh &msh) { msh.names.clear(); })), 3);
+  EXPECT_EQ(dimension_of(changed(tetrahedra(),
+                                 [](Msh &msh) {
+                                   msh.names.clear();
+                                   msh.elements = {"11 4 2 0 0 1 2 3 4", "12 4 2 0 0 2 3 4 5"};
+                                 })),
+            3);
+  const auto surfaces_alone = [](Msh &msh) {
+    msh.names.resize(2);
+    msh.elements.resize(2);
+  };
+  expect_error(ExitCode::bad_mesh, {"mesh.msh\": has no volumes", "off the plane", "Physical Volume(\"body\")"},
+               [&] { dimension_of(changed(tetrahedra(), surfaces_alone)); });
+}
+
+TEST(MshInSpace, GroupsMustBeFilledAndCellsInOneBlock)
+{
   expect_refused(changed(tetrahedra(), [](Msh &msh) { msh.names.push_back("3 5 \"air\""); }),
                  {"physical volume \"air\"", "no elements"});
-  expect_refused(changed(tetrahedra(),
-                         [](Msh &msh) {
-                           msh.names.resize(2);
-                           msh.elements = {msh.elements[0], "11 4 2 0 0 1 2 3 4"};
-                         }),
-                 {"has volumes, but no physical volume", "Physical Volume(\"body\")"});
+  expect_refused(changed(tetrahedra(), [](Msh &msh) { msh.elements.resize(2); }),
+                 {"has no cells in a volume", "Physical Volume(\"body\")"});
   expect_refused(with_element(tetrahedra(), 3, "11 4 2 4 0 2 3 4 5"),
                  {"cell 11", "physical volumes \"lower\" and \"upper\""});
 }

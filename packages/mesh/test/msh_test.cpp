@@ -169,12 +169,11 @@ TEST(Msh, TruncatedFilesAreRefusedWhereverTheyEnd)
   }
 }
 
-TEST(Msh, GroupsMustBeNamedOnceAndFilled)
+TEST(Msh, GroupsAreNamedOnceOrNumberedAndFilled)
 {
-  expect_refused(squares_with([](Msh &msh) { msh.names.erase(msh.names.begin()); }),
-                 {"physical curve 1", "no name", "Physical Curve(\"contact\", 1)"});
-  expect_refused(squares_with([](Msh &msh) { msh.names.pop_back(); }),
-                 {"physical surface 4", "no name", "Physical Surface(\"body\", 4)"});
+  const MeshData numbered = read_text(squares_with([](Msh &msh) { msh.names.clear(); }));
+  EXPECT_EQ(numbered.blocks, (std::vector<std::string>{"3", "4"}));
+  EXPECT_EQ(numbered.sides[1].name, "2");
   expect_refused(squares_with([](Msh &msh) { msh.names[1] = "1 2 \"left\""; }),
                  {"physical curves 1 and 2", "\"left\""});
   expect_refused(squares_with([](Msh &msh) { msh.names[1] = "1 2 \"" + std::string(256, 'n') + "\""; }),
@@ -188,13 +187,20 @@ TEST(Msh, GroupsMustBeNamedOnceAndFilled)
                    msh.names.resize(2);
                    msh.elements.resize(2);
                  }),
-                 {"no physical surface", "Physical Surface(\"body\")"});
+                 {"has no cells in a surface", "Physical Surface(\"body\")"});
+  const MeshData whole = read_text(squares_with([](Msh &msh) {
+    msh.names.resize(2);
+    msh.elements[2] = "3 3 2 0 0 1 2 5 4";
+    msh.elements[3] = "4 3 2 0 0 2 3 6 5";
+  }));
+  EXPECT_EQ(whole.num_cells(), 2);
+  EXPECT_EQ(whole.blocks, std::vector<std::string>{"body"});
 }
 
 TEST(Msh, CellsMustBeOfOneKindThatCanBeRead)
 {
   expect_refused(squares_with([](Msh &msh) { msh.elements.push_back("5 4 2 0 0 1 2 4 5"); }),
-                 {"has volumes, but no physical volume"});
+                 {"\"body\"", "its volume is 0"});
   expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 2 2 4 0 2 3 6"; }),
                  {"one kind", "1 of type \"Quadrilateral 4\" in \"steel\"", "1 of type \"Triangle 3\" in \"rubber\""});
   expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 16 2 4 0 2 3 6 5 1 1 1 1"; }),

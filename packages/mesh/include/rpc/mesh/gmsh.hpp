@@ -25,7 +25,7 @@ struct GmshOptions {
 /// Says nothing where that fails: the first mesh does. To be called in a thread that lives as long as meshes are made.
 void start_gmsh_early();
 
-/// Dimension of the body: 3 if a .geo has volumes, or a .msh names physical ones, else 2. Makes no mesh. One rank only.
+/// Dimension of the body: 3 if there are volumes, else 2. Makes no mesh. One rank only.
 /// @throws rpc::Error as read_gmsh() does, for the errors that can be seen this early
 int gmsh_dimension(const GmshOptions &options);
 
@@ -33,13 +33,13 @@ int gmsh_dimension(const GmshOptions &options);
 /// file's geometry is. One rank only.
 ///
 /// A mesh is in space if there are volumes. Physical surfaces, in space volumes, become blocks and physical curves, in space
-/// surfaces, sides, by their names, in the order of their tags; groups of lower dimension do not count, and cells outside
-/// every block are not part of the body. Nodes keep gmsh's order. A box has the block and sides of make_box().
+/// surfaces, sides, by their names, or where they have none by their numbers, in the order of their tags; groups of lower dimension
+/// do not count, and cells outside every block are not part of the body. Without a block all cells are the body, the block
+/// "body". Nodes keep gmsh's order. A box has the block and sides of make_box().
 ///
 /// With `sizes`, a .geo's own cell sizes are out of play, but for an explicit Mesh.MeshSizeFromCurvature. Quadrilaterals
 /// come from triangles, by recombination and division. Equal options give equal meshes, bit by bit.
-/// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no block, or a group
-///         without a name; cells of a plane mesh off the plane z = 0; cells of different or unsupported kinds, in two blocks,
+/// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no cells; cells of a plane mesh off the plane z = 0; cells of different or unsupported kinds, in two blocks,
 ///         degenerate, inverted or overlapping; a side with facets that belong to no cell or to two; nodes that no cell uses,
 ///         or two at one place; sizes that ask for too many cells (in space 2 million vertices); a field of sizes that are
 ///         not > 0 and finite, or that asks for more than 5 million cells, or comes with volumes or with a .geo that
