@@ -107,7 +107,9 @@ ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &directi
     if (verdict == Verdict::go_on) continue;
     decided_ = true;
     direction.putScalar(0);
-    return verdict == Verdict::converged ? Step::full : Step::none;
+    if (verdict != Verdict::converged) return Step::none;
+    ++steps_; // of length 0
+    return Step::full;
   }
   if (!rough_) { // the remaining correction is small against u: solving for it keeps its relative accuracy       (5.13)
     iterate_.move_origin(*u);

@@ -1,7 +1,6 @@
 #include "rpc/analysis/load_history.hpp"
 
 #include "rpc/analysis/quantities.hpp"
-#include "rpc/contact/moving_dents.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "step_dents.hpp"
@@ -189,7 +188,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   const auto sides = problem_->model().seen_at(t).contact;
   const bool on_foundation = memory_ && contact::any_moves_with_foundation(sides);
   const auto met_at = [&](const Vector &u) {
-    return contact::dents_met(problem_->discretization(), sides, memory_->dent, u);
+    return contact::dents_met(problem_->discretization(), sides, memory_->dent, memory_->foundations, u);
   };
   RCP<const MultiVector> met = memory_ ? memory_->dent : Teuchos::null;
   if (on_foundation) met = met_at(moved_along(*problem_, t, *memory_->displacement));
@@ -205,7 +204,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     if (!s.uzawa.converged) return s;
     if (!on_foundation || search == most_searches) break;
     const auto next = met_at(*s.u);
-    if (settled(*met, *next, *memory_->dent)) break;
+    if (settled(*met, *next, memory_->foundations)) break;
     met = next;
     step = problem_->step(t, met.get());
     starts = {{s.state}, {}};
@@ -232,21 +231,18 @@ Starts LoadHistory::starts_of(const Step &step)
 void LoadHistory::remember(const double t, const std::vector<contact::ContactOptions> &sides, const Step &step,
                            StepSolution &s)
 {
-  const auto dents = dents_after(*problem_, sides, step.contact, s, memory_ ? memory_->dent.get() : nullptr);
-  contact::take_dents_of_foundation(problem_->discretization(), sides, *dents, s.contact);
   const auto owned_nodes = problem_->discretization().mesh->owned_nodes;
   const auto forces = rcp(new Vector(other_forces(*problem_, s)));
-  before_ = std::exchange(memory_, std::nullopt);
-  memory_ =
-      Memory{t,
-             s.u,
-             contact::node_columns(step.contact, s.contact.pressure, owned_nodes),
-             dents,
-             contact::node_columns(step.contact, moving_gap(*problem_, step.contact, s.contact.dent), owned_nodes),
-             energies_after(*problem_, t, s, before_ ? &*before_ : nullptr, last_forces_.get(), *forces),
-             Teuchos::null};
+  Memory now;
+  remember_dents(*problem_, sides, step.contact, memory(), s, now);
+  now.time = t;
+  now.displacement = s.u;
+  now.pressure = contact::node_columns(step.contact, s.contact.pressure, owned_nodes);
+  now.gap = contact::node_columns(step.contact, moving_gap(*problem_, step.contact, s.contact.dent), owned_nodes);
+  now.energies = energies_after(*problem_, t, s, memory(), last_forces_.get(), *forces);
   if (max_all(problem_->discretization().mesh->comm(), static_cast<int>(s.state.multiplier.has_tangential())) > 0)
-    memory_->tangential = contact::node_columns(step.contact, s.state.multiplier.tangential, owned_nodes);
+    now.tangential = contact::node_columns(step.contact, s.state.multiplier.tangential, owned_nodes);
+  before_ = std::exchange(memory_, std::move(now));
   last_forces_ = forces;
 }
 

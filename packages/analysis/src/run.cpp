@@ -56,6 +56,10 @@ void note_skipped(const Task &task, Solution &s)
   skip(s.line_search_steps == 0 && s.uzawa.converged,
        "generalized Newton with line search: the active set was confirmed");
   skip(task.model.contact.empty(), "contact: no side may touch");
+  for (std::size_t k = 0; k < task.model.contact.size(); ++k)
+    skip(sum_all(mesh.comm(), GO(contact.first(k + 1) - contact.first(k))) == 0,
+         "contact of \"" + task.model.contact[k].path + "\": its obstacle faces no node of side \"" +
+             task.model.contact[k].side + "\"");
   skip(contact.num_total > contact.num_fixed && s.uzawa.iterations == 1,
        "multiplier updates: pressures of the chosen states obey the contact law");
   const int local = s.linear.local_corrections;

@@ -1,6 +1,5 @@
 #include "step_dents.hpp"
 
-#include "rpc/contact/moving_dents.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/parallel.hpp"
 
@@ -44,26 +43,24 @@ DeviceView<double *> added_dents(const contact::ContactNodes &contact, const con
 
 } // namespace
 
-RCP<const MultiVector> dents_after(const Problem &problem, const std::vector<contact::ContactOptions> &sides,
-                                   const contact::ContactNodes &points, const StepSolution &s,
-                                   const MultiVector *const before)
+void remember_dents(const Problem &problem, const std::vector<contact::ContactOptions> &sides,
+                    const contact::ContactNodes &points, const Memory *const before, StepSolution &s, Memory &memory)
 {
   const fem::Discretization &d = problem.discretization();
   const auto owned_nodes = d.mesh->owned_nodes;
-  const auto dents = contact::node_columns(points, s.contact.dent, owned_nodes);
+  const auto now = contact::node_columns(points, s.contact.dent, owned_nodes);
+  const auto with_body = rcp(new MultiVector(*now, Teuchos::Copy));
   for (std::size_t k = 0; k < sides.size(); ++k)
-    if (!sides[k].remembers) dents->getVectorNonConst(k)->putScalar(0);
-  if (before) keep_dents_elsewhere(points, *before, *dents);
-  if (!contact::any_moves_with_foundation(sides)) return dents;
-  for (std::size_t k = 0; k < sides.size(); ++k) {
-    if (sides[k].dents_move_with != contact::DentsMoveWith::foundation) continue;
-    const auto column = dents->getVectorNonConst(k);
-    column->putScalar(0);
-    if (before) column->update(1., *before->getVector(k), 0.);
-  }
-  const auto added = contact::node_columns(points, added_dents(points, s.contact), owned_nodes);
-  contact::add_where_they_lie(d, sides, *added, *s.u, *dents);
-  return dents;
+    if (!sides[k].remembers) with_body->getVectorNonConst(k)->putScalar(0);
+  if (before) keep_dents_elsewhere(points, *before->dent, *with_body);
+  for (std::size_t k = 0; k < sides.size(); ++k)
+    if (sides[k].dents_move_with == contact::DentsMoveWith::foundation) with_body->getVectorNonConst(k)->putScalar(0);
+  memory.dent = with_body;
+  if (before) memory.foundations = before->foundations;
+  if (contact::any_moves_with_foundation(sides))
+    contact::press_in(d, sides, *contact::node_columns(points, added_dents(points, s.contact), owned_nodes), *now, *s.u,
+                      memory.foundations);
+  contact::take_all_dents(d, sides, *with_body, memory.foundations, s.contact);
 }
 
 Vector moved_along(const Problem &problem, const double t, const Vector &u)
@@ -93,12 +90,12 @@ Vector moved_along(const Problem &problem, const double t, const Vector &u)
   return moved;
 }
 
-bool settled(const MultiVector &used, const MultiVector &met, const MultiVector &dents)
+bool settled(const MultiVector &used, const MultiVector &met, const std::vector<contact::FoundationDents> &foundations)
 {
   MultiVector change(met, Teuchos::Copy);
   change.update(-1., used, 1.);
-  for (std::size_t k = 0; k < dents.getNumVectors(); ++k)
-    if (change.getVector(k)->normInf() > dents_settled * dents.getVector(k)->normInf()) return false;
+  for (std::size_t k = 0; k < foundations.size(); ++k)
+    if (change.getVector(k)->normInf() > dents_settled * foundations[k].deepest) return false;
   return true;
 }
 

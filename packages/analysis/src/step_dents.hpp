@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/analysis/memory.hpp"
 #include "rpc/analysis/solve_step.hpp"
 
 #include <vector>
@@ -7,17 +8,17 @@
 namespace rpc::analysis
 {
 
-/// The dents that are to be remembered, (owned nodes; sides), from those before the step, null for none. Collective.
-/// @param sides  seen at the time of the step
-RCP<const MultiVector> dents_after(const Problem &problem, const std::vector<contact::ContactOptions> &sides,
-                                   const contact::ContactNodes &points, const StepSolution &s,
-                                   const MultiVector *before);
+/// Takes a step's dents into what is remembered, and those of all nodes and of whole foundations into its results. Collective.
+/// @param sides   seen at the time of the step
+/// @param before  what the step before has left; null: there was none
+void remember_dents(const Problem &problem, const std::vector<contact::ContactOptions> &sides,
+                    const contact::ContactNodes &points, const Memory *before, StepSolution &s, Memory &memory);
 
 /// Where a step is expected to lead from a displacement: along with the mean change of what is prescribed. Collective.
 /// @param u  (owned dofs) [m]
 Vector moved_along(const Problem &problem, double t, const Vector &u);
 
-/// Whether the dents met have converged: their changes since the last solve are below a part of the deepest dent. Collective.
-bool settled(const MultiVector &used, const MultiVector &met, const MultiVector &dents);
+/// Whether the dents met have converged: their changes since the last solve are below a part of the deepest dent of each side. Collective.
+bool settled(const MultiVector &used, const MultiVector &met, const std::vector<contact::FoundationDents> &foundations);
 
 } // namespace rpc::analysis

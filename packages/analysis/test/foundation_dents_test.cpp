@@ -94,9 +94,17 @@ std::vector<double> along_bottom(const fem::Discretization &d, const MultiVector
     if (coords(n, 1) == 0) values[std::lround(coords(n, 0) / cell)] = from(n, 0);
   return summed(d.mesh->comm(), values);
 }
+/// The dents under the body's place in the mesh, (owned nodes; sides).
+RCP<const MultiVector> dents_in_place(const LoadHistory &history)
+{
+  const fem::Discretization &d = history.problem().discretization();
+  const analysis::Memory &memory = *history.memory();
+  return contact::dents_met(d, history.problem().model().contact, memory.dent, memory.foundations,
+                            Vector(d.owned_dofs));
+}
 std::vector<double> dents(const LoadHistory &history)
 {
-  return along_bottom(history.problem().discretization(), *history.memory()->dent);
+  return along_bottom(history.problem().discretization(), *dents_in_place(history));
 }
 
 double relative(const double a, const double b)
@@ -119,24 +127,21 @@ TEST(DentsOnTheFoundation, OfABodyWhoseBottomIsMovedAreThoseOfItsWay)
   model.dirichlet.push_back({"top", "top", {std::nullopt, ScalarField(0.), std::nullopt}});
   LoadHistory history(problem(model), exact(), 0);
 
-  std::vector<double> expected(num_points, 0.);
-  double volume = 0, dissipated = 0;
+  constexpr int beyond = 2; // cells
+  std::vector<double> expected(num_points + beyond, 0.);
+  double dissipated = 0;
   for (int t = 1; t <= 5; ++t) {
     const StepSolution s = history.advance(t);
     ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
-    const int moved = t == 3 ? 2 : 0; // cells
+    const int moved = t == 3 ? beyond : 0;
     std::vector<double> met(num_points, 0.);
     for (int i = 0; i < num_points; ++i) {
       const double pressed_in = depth(i * cell, t), weight = i == 0 || i == num_points - 1 ? cell / 2 : cell;
-      const double before = i + moved < num_points ? expected[i + moved] : 0;
+      const double before = expected[i + moved];
       met[i] = std::max(pressed_in, before);
       dissipated += weight * xi * (met[i] - before);
     }
-    volume = 0;
-    for (int i = 0; i < num_points; ++i) {
-      if (i >= moved) expected[i] = met[i - moved];
-      volume += (i == 0 || i == num_points - 1 ? cell / 2 : cell) * expected[i];
-    }
+    for (int i = 0; i < num_points; ++i) expected[i + moved] = met[i];
     const auto found = dents(history);
     const auto points = along_bottom(
         history.problem().discretization(),
@@ -145,7 +150,7 @@ TEST(DentsOnTheFoundation, OfABodyWhoseBottomIsMovedAreThoseOfItsWay)
       EXPECT_NEAR(found[i], expected[i], 1e-14) << "t = " << t << ", point " << i;
       EXPECT_NEAR(points[i], met[i], 1e-14) << "t = " << t << ", point " << i;
     }
-    EXPECT_NEAR(s.contact.total.dent_volume, volume, 1e-13) << t;
+    EXPECT_NEAR(s.contact.total.dent_volume, dissipated / xi, 1e-13) << t;
     EXPECT_NEAR(history.last().contact.max_dent, *std::max_element(expected.begin(), expected.end()), 1e-14) << t;
     EXPECT_NEAR(history.last().energies.dissipated, dissipated, 1e-12) << t;
     EXPECT_EQ(history.last().parts, 1);
@@ -203,7 +208,7 @@ TEST(DentsOnTheFoundation, AreFoundAgainThereAndBackUnderAnyElement)
     const StepSolution first = history.advance(1);
     ASSERT_TRUE(first.uzawa.converged) << element.name() << ": " << first.uzawa.reason;
     EXPECT_EQ(history.last().solves, 1);
-    MultiVector added(*history.memory()->dent, Teuchos::Copy);
+    MultiVector added(*dents_in_place(history), Teuchos::Copy);
     const double deepest = added.getVector(0)->normInf(), dissipated = history.last().energies.dissipated;
     EXPECT_GT(dissipated, 0);
     StepSolution s;
@@ -216,8 +221,42 @@ TEST(DentsOnTheFoundation, AreFoundAgainThereAndBackUnderAnyElement)
     EXPECT_LT(relative(history.last().energies.dissipated, dissipated), 1e-8) << element.name();
     EXPECT_LT(relative(s.contact.total.force[1], first.contact.total.force[1]), 1e-8) << element.name();
     EXPECT_LT(relative(s.energy_norm_squared, first.energy_norm_squared), 1e-8) << element.name();
-    added.update(1., *history.memory()->dent, -1.);
+    added.update(1., *dents_in_place(history), -1.);
     EXPECT_LT(added.getVector(0)->normInf(), 1e-8 * deepest) << element.name();
+  }
+}
+
+TEST(DentsOnTheFoundation, ThatTheBodyHasLeftBehindAreMetAgain)
+{
+  // Pressed, in three steps; lifted and moved by more than the side's length; pressed as before; lifted and moved back; pressed as before.
+  const Course slide{{0, 20 * cell, 20 * cell, 0, 0}}, press{{0.1, -0.05, 0.1, -0.05, 0.1}};
+  for (const mesh::Element &element : mesh::all_elements()) {
+    Model model = pressed(slide, press, DentsMoveWith::foundation);
+    mesh::BoxOptions box{{0, 0}, {4, 1}, {16, 4}, element};
+    if (element.dim == 3) {
+      box = {{0, 0, 0}, {4, 0.5, 1}, {16, 2, 4}, element};
+      for (auto &condition : model.dirichlet) condition.displacement[2] = ScalarField(0.);
+    }
+    const auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+    LoadHistory history(std::make_shared<analysis::Problem>(mesh, model, 1.), exact(), 0);
+    double dissipated = 0, deepest = 0, volume = 0;
+    for (const double t : {0.4, 0.7, 1., 2., 2.6, 3., 4., 4.5, 5.}) {
+      const StepSolution s = history.advance(t);
+      ASSERT_TRUE(s.uzawa.converged) << element.name() << ": " << s.uzawa.reason;
+      if (t < 1 || (t > 2 && t < 3)) continue;
+      const contact::ContactSums &sums = s.contact.total;
+      EXPECT_GE(sums.max_dent, deepest) << "the deepest dent lies elsewhere now";
+      deepest = sums.max_dent;
+      if (t == 1) {
+        dissipated = history.last().energies.dissipated;
+        volume = sums.dent_volume;
+        EXPECT_GT(dissipated, 0);
+      }
+      const int places = t < 3 ? 1 : 2;
+      EXPECT_LT(relative(history.last().energies.dissipated, places * dissipated), 1e-10) << element.name() << " " << t;
+      EXPECT_LT(relative(sums.dent_volume, places * volume), 1e-10) << element.name() << " " << t;
+      EXPECT_LT(relative(sums.dent_volume * xi, history.last().energies.dissipated), 1e-12) << element.name();
+    }
   }
 }
 
@@ -228,7 +267,7 @@ TEST(DentsOnTheFoundation, AreMetWhereAStepLeadsPointsThatAreFree)
   model.dirichlet.erase(model.dirichlet.begin()); // the bottom slides as the top and the foundation's dents lead it
   LoadHistory history(problem(model), exact(), 0);
   ASSERT_TRUE(history.advance(1).uzawa.converged);
-  const RCP<const MultiVector> before = history.memory()->dent;
+  const analysis::Memory before = *history.memory();
   const StepSolution s = history.advance(2);
   ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
   EXPECT_GT(s.contact.total.contact_length, 0);
@@ -238,8 +277,9 @@ TEST(DentsOnTheFoundation, AreMetWhereAStepLeadsPointsThatAreFree)
   const fem::Discretization &d = history.problem().discretization();
   const contact::ContactNodes &points = s.step.contact;
   const auto met = along_bottom(d, *contact::node_columns(points, points.dent, d.mesh->owned_nodes));
-  const auto where_they_lie = along_bottom(d, *contact::dents_met(d, model.contact, before, *s.u));
-  for (int i = 0; i < num_points; ++i) EXPECT_NEAR(met[i], where_they_lie[i], 1e-6 * before->getVector(0)->normInf());
+  const auto where_they_lie =
+      along_bottom(d, *contact::dents_met(d, model.contact, before.dent, before.foundations, *s.u));
+  for (int i = 0; i < num_points; ++i) EXPECT_NEAR(met[i], where_they_lie[i], 1e-6 * before.foundations[0].deepest);
 }
 
 TEST(DentsOnTheFoundation, OfAnObstacleThatMovesAreThoseOfABodyThatSlidesTheOtherWay)

@@ -1,11 +1,13 @@
 #include "rpc/contact/moving_dents.hpp"
 
 #include "rpc/contact/surface/facets.hpp"
+#include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/fem/surface.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace rpc::contact
@@ -13,67 +15,165 @@ namespace rpc::contact
 namespace
 {
 
+// Sheets of one foundation before two of them become one, by interpolation: as many steps that dent it are remembered exactly.
+constexpr std::size_t most_sheets = 64;
+
 bool moves_with_foundation(const ContactOptions &side)
 {
   return side.dents_move_with == DentsMoveWith::foundation;
 }
 
-/// A side's owned nodes with the directions in which they are pressed in.
-struct Pressed {
+const mesh::Side &side_of(const fem::Discretization &d, const ContactOptions &options)
+{
+  return d.mesh->side(options.side, options.path + "->Side");
+}
+
+/// A side's owned nodes as they stand, seen from the foundation.
+struct Standing {
   HostView<LO *> node;
-  std::vector<Point> place, direction;
+  std::vector<Point> place, direction; // y, and where they are pressed in
+  double spread =
+      0; // by how much they have moved along the foundation beside each other: the largest distance from their mean [m]
 };
 
-/// @param obstacle  that of the options where it is, or was
-Pressed pressed_nodes(const fem::Discretization &d, const ContactOptions &options, const Obstacle &obstacle)
+double spread_of(const Comm &comm, const std::vector<Point> &u, const std::vector<Point> &direction)
 {
-  const auto surface = fem::surface_nodes(d, d.mesh->side(options.side, options.path + "->Side"));
+  std::vector<double> sums(4, 0.);
+  for (const Point &moved : u) {
+    for (int c = 0; c < 3; ++c) sums[c] += moved[c];
+    ++sums[3];
+  }
+  sums = summed(comm, sums);
+  double largest = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    Point from_mean{};
+    for (int c = 0; c < 3; ++c) from_mean[c] = u[i][c] - sums[c] / sums[3];
+    const double normal = inner(from_mean, direction[i]);
+    for (int c = 0; c < 3; ++c) from_mean[c] -= normal * direction[i][c];
+    largest = std::max(largest, length(from_mean));
+  }
+  return max_all(comm, largest);
+}
+
+/// Collective.
+Standing standing(const fem::Discretization &d, const ContactOptions &options, const Vector &u)
+{
+  const int dim = d.dim();
+  const auto surface = fem::surface_nodes(d, side_of(d, options));
   const auto place = fem::node_positions(*d.mesh, surface.node);
   const auto outward = to_host(surface.normal);
-  Pressed nodes;
+  const auto values = u.getLocalViewHost(Tpetra::Access::ReadOnly);
+  const Point motion = difference(options.obstacle.point, options.obstacle.origin);
+  Standing nodes;
   nodes.node = to_host(surface.node);
+  std::vector<Point> moved;
   for (std::size_t i = 0; i < nodes.node.extent(0); ++i) {
-    Point x{}, direction{};
-    for (int c = 0; c < d.dim(); ++c) {
+    Point x{}, direction{}, displacement{}, y{};
+    for (int c = 0; c < dim; ++c) {
       x[c] = place(i, c);
       direction[c] = options.normal == Normal::fixed ? options.direction[c] : outward(i, c);
+      displacement[c] = values(dof(dim, nodes.node(i), c), 0);
+      y[c] = x[c] + displacement[c] - motion[c]; // (11.4)
     }
     if (options.normal == Normal::foundation)
-      if (const auto into = direction_into(obstacle, x)) direction = *into;
-    nodes.place.push_back(x);
+      if (const auto into = direction_into(options.obstacle, x)) direction = *into;
+    nodes.place.push_back(y);
     nodes.direction.push_back(direction);
+    moved.push_back(displacement);
   }
+  nodes.spread = spread_of(d.mesh->comm(), moved, nodes.direction);
   return nodes;
 }
 
-/// By how much nodes move along the foundation beside each other: the largest distance, along it, from their mean [m]. Collective.
-double spread(const fem::Discretization &d, const Pressed &nodes, const Vector &u)
+/// The dented facets of a side that this rank owns, as their nodes stand. Collective.
+/// @param dents   (owned nodes; columns) [m]
+DentSheet sheet_of(const fem::Discretization &d, const ContactOptions &options, const Standing &nodes,
+                   const MultiVector &dents, const int column)
 {
-  const int dim = d.dim();
-  const auto values = u.getLocalViewHost(Tpetra::Access::ReadOnly);
-  std::vector<double> sums(4, 0.);
-  for (std::size_t i = 0; i < nodes.place.size(); ++i, ++sums[3])
-    for (int c = 0; c < dim; ++c) sums[c] += values(dof(dim, nodes.node(i), c), 0);
-  sums = summed(d.mesh->comm(), sums);
-  double largest = 0;
-  for (std::size_t i = 0; i < nodes.place.size(); ++i) {
-    Point from_mean{};
-    double normal = 0, square = 0;
-    for (int c = 0; c < dim; ++c) {
-      from_mean[c] = values(dof(dim, nodes.node(i), c), 0) - sums[c] / sums[3];
-      normal += from_mean[c] * nodes.direction[i][c];
+  const auto at_owned = rcp(new MultiVector(d.mesh->owned_nodes, 7)); // place, direction, dent
+  {
+    const auto to = at_owned->getLocalViewHost(Tpetra::Access::ReadWrite);
+    const auto from = dents.getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (std::size_t i = 0; i < nodes.place.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        to(nodes.node(i), c) = nodes.place[i][c];
+        to(nodes.node(i), 3 + c) = nodes.direction[i][c];
+      }
+      to(nodes.node(i), 6) = from(nodes.node(i), column);
     }
-    for (int c = 0; c < dim; ++c) square += std::pow(from_mean[c] - normal * nodes.direction[i][c], 2);
-    largest = std::max(largest, std::sqrt(square));
   }
-  return max_all(d.mesh->comm(), largest);
+  const auto overlap = fem::nodes_on_overlap(d, at_owned);
+  const auto at = overlap->getLocalViewHost(Tpetra::Access::ReadOnly);
+  const mesh::Side &side = side_of(d, options);
+  const auto facets = to_host(side.facets);
+  const auto cell = to_host(side.cell);
+  const int per_facet = static_cast<int>(facets.extent(1));
+  DentSheet sheet;
+  sheet.facet = d.mesh->element.facet();
+  sheet.spread = nodes.spread;
+  std::map<LO, LO> number;
+  for (std::size_t f = 0; f < facets.extent(0); ++f) {
+    bool dented = false;
+    for (int a = 0; a < per_facet; ++a) dented = dented || at(facets(f, a), 6) > 0;
+    for (int a = 0; a < per_facet && dented && cell(f) < d.mesh->num_owned_cells; ++a) {
+      const LO node = facets(f, a);
+      const auto [found, is_new] = number.emplace(node, static_cast<LO>(sheet.dent.size()));
+      if (is_new) {
+        sheet.place.push_back({at(node, 0), at(node, 1), at(node, 2)});
+        sheet.direction.push_back({at(node, 3), at(node, 4), at(node, 5)});
+        sheet.dent.push_back(at(node, 6));
+      }
+      sheet.facet_node.push_back(found->second);
+    }
+  }
+  return sheet;
 }
 
-Point motion(const Obstacle &obstacle)
+FacetSurface surface_of(const DentSheet &sheet, const double beyond)
 {
-  Point motion{};
-  for (int c = 0; c < 3; ++c) motion[c] = obstacle.point[c] - obstacle.origin[c];
-  return motion;
+  std::vector<Point> places;
+  std::vector<double> dents;
+  for (const LO n : sheet.facet_node) {
+    places.push_back(sheet.place[n]);
+    dents.push_back(sheet.dent[n]);
+  }
+  return FacetSurface(straight_facets(sheet.facet, places, dents), beyond);
+}
+
+/// Whether a sheet lies under all dents of another one. Collective.
+bool lies_under(const Comm &comm, const DentSheet &sheet, const DentSheet &other)
+{
+  std::vector<Point> place, direction;
+  for (std::size_t n = 0; n < other.dent.size(); ++n)
+    if (other.dent[n] > 0) {
+      place.push_back(other.place[n]);
+      direction.push_back(other.direction[n]);
+    }
+  const double spread = sheet.spread + other.spread;
+  const auto met = meetings_along(comm, surface_of(sheet, spread), place, direction);
+  const bool mine = std::all_of(met.begin(), met.end(), [&](const auto &m) { return m && m->off <= spread; });
+  return min_all(comm, static_cast<int>(mine)) == 1;
+}
+
+/// A sheet with the dents of another one added. Collective.
+std::shared_ptr<const DentSheet> sum_of(const Comm &comm, DentSheet sheet, const DentSheet &other)
+{
+  const auto found = meetings_along(comm, surface_of(other, sheet.spread + other.spread), sheet.place, sheet.direction);
+  for (std::size_t n = 0; n < found.size(); ++n)
+    if (found[n]) sheet.dent[n] += found[n]->value;
+  return std::make_shared<DentSheet>(std::move(sheet));
+}
+
+/// Adds the dents of the oldest sheet under which its neighbour in time lies to that neighbour, if there is one. Collective.
+void join_two(const Comm &comm, std::vector<std::shared_ptr<const DentSheet>> &sheets)
+{
+  for (std::size_t k = 0; k + 1 < sheets.size(); ++k)
+    for (const auto &[under, other] : {std::pair(k + 1, k), std::pair(k, k + 1)}) {
+      if (!lies_under(comm, *sheets[under], *sheets[other])) continue;
+      sheets[under] = sum_of(comm, *sheets[under], *sheets[other]);
+      sheets.erase(sheets.begin() + static_cast<std::ptrdiff_t>(other));
+      return;
+    }
 }
 
 bool all_zero(const MultiVector &columns, const std::size_t column)
@@ -89,61 +189,69 @@ bool any_moves_with_foundation(const std::vector<ContactOptions> &options)
 }
 
 RCP<const MultiVector> dents_met(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                                 const RCP<const MultiVector> &dents, const Vector &u)
+                                 const RCP<const MultiVector> &with_body,
+                                 const std::vector<FoundationDents> &foundations, const Vector &u)
 {
-  const int dim = d.dim();
+  const Comm &comm = d.mesh->comm();
   RCP<MultiVector> met;
-  for (std::size_t k = 0; k < options.size(); ++k) {
-    if (!moves_with_foundation(options[k]) || all_zero(*dents, k)) continue;
-    if (met.is_null()) met = rcp(new MultiVector(*dents, Teuchos::Copy));
-    const Pressed nodes = pressed_nodes(d, options[k], options[k].obstacle);
-    const FacetSurface foundation(straight_facets(d, d.mesh->side(options[k].side, options[k].path + "->Side"), nullptr,
-                                                  {}, *dents, static_cast<int>(k)),
-                                  spread(d, nodes, u));
-    const Point moved = motion(options[k].obstacle);
-    const auto values = u.getLocalViewHost(Tpetra::Access::ReadOnly);
-    std::vector<Point> standing = nodes.place;
-    for (std::size_t i = 0; i < standing.size(); ++i)
-      for (int c = 0; c < dim; ++c) standing[i][c] += values(dof(dim, nodes.node(i), c), 0) - moved[c];
-    const auto found = values_along(d.mesh->comm(), foundation, standing, nodes.direction);
-    const auto to = met->getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (std::size_t i = 0; i < found.size(); ++i) to(nodes.node(i), k) = found[i].value_or(0);
+  for (std::size_t k = 0; k < foundations.size(); ++k) {
+    if (foundations[k].sheets.empty()) continue;
+    if (met.is_null()) met = rcp(new MultiVector(*with_body, Teuchos::Copy));
+    const Standing nodes = standing(d, options[k], u);
+    for (const auto &sheet : foundations[k].sheets) {
+      const auto found =
+          meetings_along(comm, surface_of(*sheet, nodes.spread + sheet->spread), nodes.place, nodes.direction);
+      const auto to = met->getLocalViewHost(Tpetra::Access::ReadWrite);
+      for (std::size_t i = 0; i < found.size(); ++i)
+        if (found[i]) to(nodes.node(i), k) += found[i]->value;
+    }
   }
-  if (met.is_null()) return dents;
+  if (met.is_null()) return with_body;
   return met;
 }
 
-void add_where_they_lie(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                        const MultiVector &added, const Vector &u, MultiVector &dents)
+void press_in(const fem::Discretization &d, const std::vector<ContactOptions> &options, const MultiVector &added,
+              const MultiVector &after, const Vector &u, std::vector<FoundationDents> &foundations)
 {
+  const Comm &comm = d.mesh->comm();
+  foundations.resize(options.size());
   for (std::size_t k = 0; k < options.size(); ++k) {
     if (!moves_with_foundation(options[k]) || all_zero(added, k)) continue;
-    Obstacle at_first = options[k].obstacle;
-    at_first.point = at_first.origin;
-    const Pressed places = pressed_nodes(d, options[k], at_first);
-    Point back = motion(options[k].obstacle);
-    for (double &component : back) component = -component;
-    const FacetSurface body(straight_facets(d, d.mesh->side(options[k].side, options[k].path + "->Side"), &u, back,
-                                            added, static_cast<int>(k)));
-    const auto found = values_along(d.mesh->comm(), body, places.place, places.direction);
-    const auto to = dents.getLocalViewHost(Tpetra::Access::ReadWrite);
-    for (std::size_t i = 0; i < found.size(); ++i) to(places.node(i), k) += found[i].value_or(0);
+    FoundationDents &foundation = foundations[k];
+    foundation.sheets.push_back(
+        std::make_shared<DentSheet>(sheet_of(d, options[k], standing(d, options[k], u), added, static_cast<int>(k))));
+    if (foundation.sheets.size() > most_sheets) join_two(comm, foundation.sheets);
+    const auto surface = fem::surface_nodes(d, side_of(d, options[k]));
+    const auto node = to_host(surface.node);
+    const auto weight = to_host(surface.weight);
+    const auto more = added.getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto now = after.getLocalViewHost(Tpetra::Access::ReadOnly);
+    double deepest = 0, volume = 0;
+    for (std::size_t i = 0; i < node.extent(0); ++i) {
+      if (weight(i) > 0) deepest = std::max(deepest, now(node(i), k));
+      volume += weight(i) * more(node(i), k);
+    }
+    foundation.deepest = std::max(foundation.deepest, max_all(comm, deepest));
+    foundation.volume += sum_all(comm, volume);
   }
 }
 
-void take_dents_of_foundation(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                              const MultiVector &dents, ContactResult &result)
+void take_all_dents(const fem::Discretization &d, const std::vector<ContactOptions> &options,
+                    const MultiVector &with_body, const std::vector<FoundationDents> &foundations,
+                    ContactResult &result)
 {
-  if (!any_moves_with_foundation(options)) return;
   const Comm &comm = d.mesh->comm();
   result.total.max_dent = result.total.dent_volume = 0;
   for (std::size_t k = 0; k < options.size(); ++k) {
     ContactSums &sums = result.sides[k];
     if (moves_with_foundation(options[k])) {
-      const auto surface = fem::surface_nodes(d, d.mesh->side(options[k].side, options[k].path + "->Side"));
+      sums.max_dent = k < foundations.size() ? foundations[k].deepest : 0;
+      sums.dent_volume = k < foundations.size() ? foundations[k].volume : 0;
+    } else if (options[k].remembers) {
+      const auto surface = fem::surface_nodes(d, side_of(d, options[k]));
       const auto node = to_host(surface.node);
       const auto weight = to_host(surface.weight);
-      const auto from = dents.getLocalViewHost(Tpetra::Access::ReadOnly);
+      const auto from = with_body.getLocalViewHost(Tpetra::Access::ReadOnly);
       double deepest = 0, volume = 0;
       for (std::size_t i = 0; i < node.extent(0); ++i) {
         if (weight(i) > 0) deepest = std::max(deepest, from(node(i), k));

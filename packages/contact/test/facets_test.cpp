@@ -49,7 +49,29 @@ TEST(FacetSurface, WithoutFacetsIsMetNowhere)
 std::vector<std::optional<double>> values_of_all(const FacetSurface &mine, const std::vector<Point> &x,
                                                  const Point &direction)
 {
-  return contact::values_along(*Tpetra::getDefaultComm(), mine, x, std::vector<Point>(x.size(), direction));
+  std::vector<std::optional<double>> values;
+  for (const auto &met :
+       contact::meetings_along(*Tpetra::getDefaultComm(), mine, x, std::vector<Point>(x.size(), direction)))
+    values.push_back(met ? std::optional<double>(met->value) : std::nullopt);
+  return values;
+}
+
+/// This rank's facets of a side, each node where `place` says.
+StraightFacets facets_of(const fem::Discretization &d, const std::string &name, const PointFunction &place,
+                         const Function &values)
+{
+  const mesh::Side &side = d.mesh->side(name, "test");
+  const auto facets = to_host(side.facets);
+  const auto cell = to_host(side.cell);
+  std::vector<Point> places;
+  std::vector<double> at;
+  for (std::size_t f = 0; f < facets.extent(0); ++f)
+    for (std::size_t a = 0; a < facets.extent(1) && cell(f) < d.mesh->num_owned_cells; ++a) {
+      const Point x = place_of(d, facets(f, a));
+      places.push_back(place(x));
+      at.push_back(values(x));
+    }
+  return contact::straight_facets(d.mesh->element.facet(), places, at);
 }
 
 /// Each rank has a segment of [0, ranks], and a lower one of another value below it.
@@ -76,7 +98,7 @@ TEST(FacetSurface, OfARankWithoutFacetsIsMetOnOthers)
   const bool has = comm->getRank() + 1 == comm->getSize();
   const FacetSurface mine(has ? StraightFacets{2, {0, 0, 1, 0}, {1, 2}} : StraightFacets{2, {}, {}});
   EXPECT_NEAR(values_of_all(mine, {{0.5, 1, 0}}, {0, -1, 0})[0].value(), 1.5, 1e-14);
-  EXPECT_TRUE(contact::values_along(*comm, mine, {}, {}).empty());
+  EXPECT_TRUE(contact::meetings_along(*comm, mine, {}, {}).empty());
 }
 
 TEST(FacetSurface, OfASideMeetsLinearValuesToRounding)
@@ -84,14 +106,13 @@ TEST(FacetSurface, OfASideMeetsLinearValuesToRounding)
   const Function linear = [](const Point &x) { return 2 + 0.5 * x[0] - 0.75 * x[2]; };
   for (const mesh::Element &element : mesh::all_elements()) {
     const auto d = block(element);
-    const auto &side = d.mesh->side("bottom", "test");
     // Moved along itself, tilted and stretched, and then looked up as it lies.
     const PointFunction move = [](const Point &x) {
-      return Point{0.3 + 0.1 * x[0], 0.2 * x[0] - 0.1 * x[2], 0.2 * x[0]};
+      return Point{0.3 + 1.1 * x[0], 4 + x[1] + 0.2 * x[0] - 0.1 * x[2], x[2] + 0.2 * x[0]};
     };
-    const FacetSurface still(contact::straight_facets(d, side, nullptr, {}, *at_nodes(d, linear), 0));
-    const auto u = displacement(d, move);
-    const FacetSurface moved(contact::straight_facets(d, side, u.get(), {0, 4, 0}, *at_nodes(d, linear), 0));
+    const FacetSurface still(facets_of(
+        d, "bottom", [](const Point &x) { return x; }, linear));
+    const FacetSurface moved(facets_of(d, "bottom", move, linear));
     const Point down = {0, -1, 0}, aslant = {0.6, -0.8, 0};
     std::vector<Point> above, beside, at_moved;
     std::vector<double> expected;
@@ -99,9 +120,8 @@ TEST(FacetSurface, OfASideMeetsLinearValuesToRounding)
       const Point x = {1 + 0.1 * k, 0, element.dim == 3 ? -0.5 + 0.5 * std::sin(5. * k) : 0};
       above.push_back({x[0], 3, x[2]});
       beside.push_back({x[0] - 0.6, 0.8, x[2]});
-      Point y = x;
-      const Point by = move(x);
-      for (int c = 0; c < 3; ++c) y[c] += (c < element.dim ? by[c] : 0) + (c == 1 ? 4 : 0) - 0.1 * aslant[c];
+      Point y = move(x);
+      for (int c = 0; c < 3; ++c) y[c] = c < element.dim ? y[c] - 0.1 * aslant[c] : 0;
       at_moved.push_back(y);
       expected.push_back(linear(x));
     }
@@ -127,8 +147,8 @@ TEST(FacetSurface, OfABentSideIsOfSecondOrder)
     double worst[2] = {};
     for (const int refinement : {1, 2}) {
       const auto d = block(element, bend, refinement);
-      const FacetSurface surface(
-          contact::straight_facets(d, d.mesh->side("bottom", "test"), nullptr, {}, *at_nodes(d, values), 0));
+      const FacetSurface surface(facets_of(
+          d, "bottom", [](const Point &x) { return x; }, values));
       std::vector<Point> places, inside, inwards;
       for (int k = 0; k <= 97; ++k) {
         const double angle = -1 + 2 * k / 97.;
@@ -137,10 +157,10 @@ TEST(FacetSurface, OfABentSideIsOfSecondOrder)
         inside.push_back({0.9 * x[0], 0.9 * x[1], x[2]});
         inwards.push_back({-x[0] / 2, -x[1] / 2, 0});
       }
-      const auto met = contact::values_along(*Tpetra::getDefaultComm(), surface, inside, inwards);
+      const auto met = contact::meetings_along(*Tpetra::getDefaultComm(), surface, inside, inwards);
       for (std::size_t k = 0; k < met.size(); ++k) {
         ASSERT_TRUE(met[k]) << element.name();
-        worst[refinement - 1] = std::max(worst[refinement - 1], std::abs(*met[k] - values(places[k])));
+        worst[refinement - 1] = std::max(worst[refinement - 1], std::abs(met[k]->value - values(places[k])));
       }
     }
     EXPECT_LT(worst[0], 0.08) << element.name() << " in " << element.dim;

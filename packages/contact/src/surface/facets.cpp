@@ -1,9 +1,7 @@
 #include "rpc/contact/surface/facets.hpp"
 
-#include "rpc/core/device_values.hpp"
 #include "rpc/core/exchange.hpp"
 #include "rpc/core/rank_boxes.hpp"
-#include "rpc/fem/surface.hpp"
 
 #include <algorithm>
 #include <array>
@@ -55,42 +53,26 @@ std::vector<Part> straight_parts(const mesh::Element &facet)
 
 } // namespace
 
-StraightFacets straight_facets(const fem::Discretization &d, const mesh::Side &side, const Vector *const u,
-                               const Point &shift, const MultiVector &values, const int column)
+StraightFacets straight_facets(const mesh::Element &facet, const std::vector<Point> &places,
+                               const std::vector<double> &values)
 {
-  const mesh::Mesh &mesh = *d.mesh;
-  const int dim = mesh.dim();
-  const auto facets = to_host(side.facets);
-  const auto cell = to_host(side.cell);
-  const std::size_t per_facet = facets.extent(1);
-  std::vector<LO> nodes; // of facets that no other rank has, facet by facet
-  for (std::size_t f = 0; f < facets.extent(0); ++f)
-    for (std::size_t a = 0; a < per_facet && cell(f) < mesh.num_owned_cells; ++a) nodes.push_back(facets(f, a));
-  const auto places = fem::node_positions(mesh, device_values(nodes, "rpc::contact::facet_nodes"));
-  const auto overlap = fem::nodes_on_overlap(d, Teuchos::rcpFromRef(values));
-  const auto value = overlap->getLocalViewHost(Tpetra::Access::ReadOnly);
-  const RCP<const Vector> moved = u ? fem::on_overlap(d, *u) : Teuchos::null;
-  decltype(moved->getLocalViewHost(Tpetra::Access::ReadOnly)) displacement;
-  if (u) displacement = moved->getLocalViewHost(Tpetra::Access::ReadOnly);
-  const auto parts = straight_parts(mesh.element.facet());
-  StraightFacets mine;
-  mine.dim = dim;
-  for (std::size_t first = 0; first < nodes.size(); first += per_facet)
+  const std::size_t per_facet = facet.num_nodes();
+  const auto parts = straight_parts(facet);
+  StraightFacets straight;
+  straight.dim = facet.dim + 1;
+  for (std::size_t first = 0; first < values.size(); first += per_facet)
     for (const Part &part : parts)
       for (const auto &weights : part) {
-        Point x = shift;
+        Point x{};
         double here = 0;
         for (std::size_t a = 0; a < per_facet; ++a) {
-          if (weights[a] == 0) continue;
-          const LO node = nodes[first + a];
-          for (int c = 0; c < dim; ++c)
-            x[c] += weights[a] * (places(first + a, c) + (u ? displacement(dof(dim, node, c), 0) : 0));
-          here += weights[a] * value(node, column);
+          for (int c = 0; c < straight.dim; ++c) x[c] += weights[a] * places[first + a][c];
+          here += weights[a] * values[first + a];
         }
-        mine.corners.insert(mine.corners.end(), x.begin(), x.begin() + dim);
-        mine.values.push_back(here);
+        straight.corners.insert(straight.corners.end(), x.begin(), x.begin() + straight.dim);
+        straight.values.push_back(here);
       }
-  return mine;
+  return straight;
 }
 
 FacetSurface::FacetSurface(StraightFacets facets, const double beyond)
@@ -219,8 +201,9 @@ Bounds FacetSurface::bounds() const
   return boxes_.empty() ? Bounds::empty() : boxes_.front().bounds;
 }
 
-std::vector<std::optional<double>> values_along(const Comm &comm, const FacetSurface &mine, const std::vector<Point> &x,
-                                                const std::vector<Point> &direction)
+std::vector<std::optional<FacetSurface::Meeting>> meetings_along(const Comm &comm, const FacetSurface &mine,
+                                                                 const std::vector<Point> &x,
+                                                                 const std::vector<Point> &direction)
 {
   const RankBoxes boxes = rank_boxes(comm, mine.bounds());
   std::vector<std::pair<int, std::size_t>> sent; // rank, line
@@ -246,15 +229,13 @@ std::vector<std::optional<double>> values_along(const Comm &comm, const FacetSur
       replies.insert(replies.end(), {inf, inf, 0});
   }
   const std::vector<double> got = exchange.back(replies, 3);
-  std::vector<FacetSurface::Meeting> first(x.size(), {inf, inf, 0});
+  std::vector<std::optional<FacetSurface::Meeting>> first(x.size());
   for (std::size_t k = 0; k < sent.size(); ++k) {
     const FacetSurface::Meeting found{got[3 * k], got[3 * k + 1], got[3 * k + 2]};
-    if (found.before(first[sent[k].second])) first[sent[k].second] = found;
+    auto &best = first[sent[k].second];
+    if (found.off < inf && (!best || found.before(*best))) best = found;
   }
-  std::vector<std::optional<double>> values(x.size());
-  for (std::size_t n = 0; n < x.size(); ++n)
-    if (first[n].off < inf) values[n] = first[n].value;
-  return values;
+  return first;
 }
 
 } // namespace rpc::contact

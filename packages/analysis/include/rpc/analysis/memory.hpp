@@ -1,7 +1,10 @@
 #pragma once
 
 #include "rpc/contact/contact_state.hpp"
+#include "rpc/contact/moving_dents.hpp"
 #include "rpc/fem/discretization.hpp"
+
+#include <vector>
 
 namespace rpc::analysis
 {
@@ -23,14 +26,14 @@ struct Memory {
   double time = 0;
   RCP<const Vector> displacement;  ///< (owned dofs) from 0 [m]
   RCP<const MultiVector> pressure; ///< (owned nodes; sides) [Pa]
-  RCP<const MultiVector>
-      dent; ///< (owned nodes; sides) w, 0 where a side does not remember [m]; of a side whose dents move with
-            ///< the foundation, at the nodes' places in the mesh, see contact/moving_dents.hpp
-  RCP<const MultiVector> gap; ///< (owned nodes; sides) g, to the surface without dents; where points move along dents,
-                              ///< to the surface with those that they stand on [m]
+  RCP<const MultiVector> dent; ///< (owned nodes; sides) w, 0 where a side does not remember or its dents move with the
+                               ///< foundation [m]
+  RCP<const MultiVector> gap;  ///< (owned nodes; sides) g, to the surface without dents; where points move along dents,
+                               ///< to the surface with those that they stand on [m]
   Energies energies;
   RCP<const MultiVector>
       tangential; ///< (owned nodes; sides x dim) multipliers along the side [Pa]; null: the law has none
+  std::vector<contact::FoundationDents> foundations; ///< by side, of those whose dents move with the foundation
 };
 
 /// What is remembered, on another mesh of the same body: by interpolation; dents stay >= 0. Collective.

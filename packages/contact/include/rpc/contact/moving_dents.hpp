@@ -3,42 +3,64 @@
 #include "rpc/contact/contact_nodes.hpp"
 #include "rpc/contact/result.hpp"
 
+#include <memory>
 #include <vector>
 
 /// Dents of a foundation that the body's points move along.                               doc/theory.md (11.4)
 ///
-/// Where "Dents Move With" = foundation, the dents of a side lie on the foundation's surface: that of node j lies where the node is
-/// in the mesh, seen from the foundation, which is where it was at the first step. Point i stands at
+/// Where "Dents Move With" = foundation, the dents of a side lie where the body stood when it pressed them in, seen from the foundation,
+/// which is where it was at the first step: point i stands at
 ///
-///     y_i = x_i + u_i - (motion of the obstacle since the first step)
+///     y_i = x_i + u_i - (motion of the obstacle since the first step).
 ///
-/// and meets the dents where the line through y_i along its normal meets the side as it is in the mesh. What a step adds to the dents of
-/// points is carried back alone, so that older dents stay as they are. The foundation remembers dents under the side's place in the
-/// mesh; beyond it there are none.
+/// The foundation keeps the side as it stood in each step that has dented it, a sheet with what the step has added to the dents: it
+/// remembers what lies beyond the side's present place. A point meets the sum of what all sheets have where the line through y_i along
+/// its normal meets them. Of many sheets those that lie in one place become one.
 namespace rpc::contact
 {
 
+/// The dented facets of a side as it stood. Plain data: this rank's part, in which each facet of all ranks is once.
+struct DentSheet {
+  mesh::Element facet;          ///< of the side
+  double spread = 0;            ///< by how much nodes had moved along the foundation beside each other [m]
+  std::vector<Point> place;     ///< (nodes) y, seen from the foundation [m]
+  std::vector<Point> direction; ///< (nodes) unit, into the foundation
+  std::vector<double> dent;     ///< (nodes) what was pressed in there [m]
+  std::vector<LO> facet_node;   ///< (facets, nodes of a facet) numbers of the nodes above
+};
+
+/// What a side's foundation remembers. Plain data.
+struct FoundationDents {
+  std::vector<std::shared_ptr<const DentSheet>> sheets; ///< from the oldest
+  double deepest = 0;                                   ///< of the whole foundation [m]
+  double volume = 0; ///< that all steps have pressed in, sum of w times what is added [m^3], in the plane [m^2]
+};
+
 bool any_moves_with_foundation(const std::vector<ContactOptions> &options);
 
-/// The dents that nodes meet, (owned nodes; sides) [m]: of sides whose dents move with the body those given. Collective.
-/// @param options  seen at the time of the step
-/// @param dents    (owned nodes; sides) at the nodes' places in the mesh [m]
-/// @param u        (owned dofs) at which the nodes meet them [m]
+/// The dents that nodes meet, (owned nodes; sides) [m]. Collective.
+/// @param options     seen at the time of the step
+/// @param with_body   (owned nodes; sides) dents of sides whose dents move with the body [m]
+/// @param foundations by side; empty: none has a dent
+/// @param u           (owned dofs) at which the nodes meet them [m]
 RCP<const MultiVector> dents_met(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                                 const RCP<const MultiVector> &dents, const Vector &u);
+                                 const RCP<const MultiVector> &with_body,
+                                 const std::vector<FoundationDents> &foundations, const Vector &u);
 
-/// Adds to dents on the foundation what a step has added to those of points; those of other sides stay. Collective.
+/// Adds what a step has pressed into foundations that dents move with. Older dents stay as they are. Collective.
 /// @param options  seen at the time of the step
-/// @param added    (owned nodes; sides) >= 0, at nodes as they stand [m]
+/// @param added    (owned nodes; sides) >= 0 at nodes as they stand [m]
+/// @param after    (owned nodes; sides) the dents of contact points after the step [m]
 /// @param u        (owned dofs) after the step [m]
-/// @param[in,out] dents  (owned nodes; sides) at the nodes' places in the mesh [m]
-void add_where_they_lie(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                        const MultiVector &added, const Vector &u, MultiVector &dents);
+/// @param[in,out] foundations  by side
+void press_in(const fem::Discretization &d, const std::vector<ContactOptions> &options, const MultiVector &added,
+              const MultiVector &after, const Vector &u, std::vector<FoundationDents> &foundations);
 
-/// Makes `max_dent` and `dent_volume` those of the whole foundation where dents move with it; of other sides they are that already.
-/// Collective.
-/// @param dents  (owned nodes; sides) after the step, at the nodes' places in the mesh [m]
-void take_dents_of_foundation(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                              const MultiVector &dents, ContactResult &result);
+/// Makes `max_dent` and `dent_volume` those of all dents: of the whole foundation where they move with it, else of all nodes of the
+/// side, though some may be no contact points now. Sides that do not remember keep theirs. Collective.
+/// @param with_body  (owned nodes; sides) after the step [m]
+void take_all_dents(const fem::Discretization &d, const std::vector<ContactOptions> &options,
+                    const MultiVector &with_body, const std::vector<FoundationDents> &foundations,
+                    ContactResult &result);
 
 } // namespace rpc::contact

@@ -2,7 +2,9 @@
 
 #include "rpc/core/bounds.hpp"
 #include "rpc/core/field.hpp"
-#include "rpc/fem/discretization.hpp"
+#include "rpc/core/kokkos.hpp"
+#include "rpc/core/tpetra.hpp"
+#include "rpc/mesh/element.hpp"
 
 #include <optional>
 #include <vector>
@@ -20,13 +22,12 @@ struct StraightFacets {
   std::size_t size() const { return values.size() / dim; }
 };
 
-/// The facets of a side that this rank owns, at x + u + shift: those of order 2 as several straight ones, quadrilaterals as four
-/// triangles about their middle. Over all ranks each facet is there once. Collective.
-/// @param u       (owned dofs) [m]; null: 0
-/// @param values  (owned nodes; columns)
-/// @param column  of the values
-StraightFacets straight_facets(const fem::Discretization &d, const mesh::Side &side, const Vector *u,
-                               const Point &shift, const MultiVector &values, int column);
+/// Straight facets for those of an element: several for each of order 2, four triangles about the middle for quadrilaterals.
+/// @param facet   see mesh::Element::facet()
+/// @param places  (facets, nodes of a facet) [m]
+/// @param values  (facets, nodes of a facet)
+StraightFacets straight_facets(const mesh::Element &facet, const std::vector<Point> &places,
+                               const std::vector<double> &values);
 
 /// Looks up values of a surface along lines, in a tree of boxes about its facets.
 class FacetSurface
@@ -69,13 +70,14 @@ private:
   std::vector<Box> boxes_;         // each before its parts
 };
 
-/// The values where lines meet a surface of which each rank holds a part: lines go to the ranks whose boxes they meet, and the first
-/// meeting of all counts. Collective.
+/// Where lines meet a surface of which each rank holds a part: lines go to the ranks whose boxes they meet, and the first meeting of all
+/// counts. Collective.
 /// @param mine       this rank's part; `beyond` the same on all ranks
 /// @param x          (lines) [m]
 /// @param direction  (lines) unit
 /// @return (lines) nothing where a line misses the surface
-std::vector<std::optional<double>> values_along(const Comm &comm, const FacetSurface &mine, const std::vector<Point> &x,
-                                                const std::vector<Point> &direction);
+std::vector<std::optional<FacetSurface::Meeting>> meetings_along(const Comm &comm, const FacetSurface &mine,
+                                                                 const std::vector<Point> &x,
+                                                                 const std::vector<Point> &direction);
 
 } // namespace rpc::contact
