@@ -32,7 +32,7 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
   for (int k = 0; k < contact.num_sides(); ++k) {
     const LO begin = contact.first(k), end = contact.first(k + 1);
     io::ContactTable table;
-    table.side = scene.model.contact[k].side;
+    table.side = scene.model.contact[k].name;
     table.id = HostView<GO *>("rpc::output::id", end - begin);
     table.position = HostView<double **>("rpc::output::position", end - begin, mesh.dim());
     const auto node = part_of(contact.node, begin, end);
@@ -46,7 +46,8 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
     table.pressure = part_of(s.contact.pressure, begin, end);
     table.dent = part_of(s.contact.dent, begin, end);
     table.state = part_of(s.contact.state, begin, end);
-    table.facets = mesh::owned_facets(mesh, mesh.side(table.side, scene.model.contact[k].path + "->Side"), node_ids);
+    table.facets = mesh::owned_facets(
+        mesh, mesh.side(scene.model.contact[k].side, scene.model.contact[k].path + "->Side"), node_ids);
     tables.push_back(table);
   }
   io::write_contact_csv(path, mesh.owned_nodes->getComm(), tables, scene.model.units);

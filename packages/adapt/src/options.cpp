@@ -53,6 +53,13 @@ void require_adaptable(const Task &task, const int dim)
       !task.adapt.adapts() || mesh::with_sizes(task.mesh, nullptr),
       "deck: \"Adapt->Target Relative Error\" goes with a box or a .geo, which can be meshed anew; the mesh is a "
       ".msh");
+  const auto &contact = task.model.contact;
+  for (std::size_t a = 0; a < contact.size() && task.adapt.estimate; ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      RPC_REQUIRE(contact[a].side != contact[b].side,
+                  "deck: \"Adapt\" does not go with several foundations of one side, \""
+                      << contact[b].path << "\" and \"" << contact[a].path
+                      << "\": their errors are not estimated yet. Leave \"Adapt\" out.");
 }
 
 } // namespace rpc::adapt

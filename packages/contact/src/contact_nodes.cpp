@@ -4,6 +4,7 @@
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -18,6 +19,8 @@ namespace
 constexpr double largest_gap = 1e50; // [m], as that of meshes: squares must not overflow
 // Of the body's diameter, far below the rounding of places: the tail of an exponential is no gap, and no overlap to solve for.
 constexpr double no_gap = 1e-30;
+// Of the directions of a side, by area, that lead out of the body, against those that lead into it.
+constexpr double mostly = 0.5;
 
 std::string place(const HostPoints &points, const LO i)
 {
@@ -121,7 +124,8 @@ void face_obstacle(SideValues &values, const ContactOptions &options, const Host
   }
   throw_if_any(comm, ExitCode::bad_input, bad);
   const GO facing = std::count(values.misses.begin(), values.misses.end(), false);
-  if (sum_all(comm, facing) > 0) return;
+  if (options.obstacle.moves() || sum_all(comm, facing) > 0)
+    return; // what moves may come from beside the body, or leave it
   if (missing)
     *missing += ", nor from any other node of the side. Use \"Normal\" = foundation, move the obstacle, or make the "
                 "mesh finer.";
@@ -170,17 +174,21 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
   return values;
 }
 
-/// Refuses a direction that leads from the side into the body, seen over the whole side; collective.
+/// Refuses directions that lead from the side into the body. They may in part: on a ball that is a side as a whole, half of the nodes look
+/// away from each obstacle. Collective.
 void require_outward(const ContactOptions &options, const fem::SurfaceNodes &surface, const SideValues &values,
                      const Comm &comm)
 {
   const auto outward = to_host(surface.normal);
   const auto weight = to_host(surface.weight);
-  double facing = 0;
-  for (std::size_t i = 0; i < weight.extent(0); ++i)
-    for (std::size_t c = 0; c < outward.extent(1); ++c) facing += weight(i) * outward(i, c) * values.normal(i, c);
-  facing = sum_all(comm, facing);
-  RPC_REQUIRE(facing > 0 || sum_all(comm, GO(weight.extent(0))) == 0,
+  std::vector<double> areas(2, 0.); // seen along the directions, by nodes from which they lead out and in
+  for (std::size_t i = 0; i < weight.extent(0); ++i) {
+    double along = 0;
+    for (std::size_t c = 0; c < outward.extent(1); ++c) along += outward(i, c) * values.normal(i, c);
+    areas[along > 0 ? 0 : 1] += weight(i) * std::abs(along);
+  }
+  areas = summed(comm, areas);
+  RPC_REQUIRE(areas[0] > mostly * areas[1] || sum_all(comm, GO(weight.extent(0))) == 0,
               "deck: \"" << options.path << "->Normal\" must lead out of the body, from side \"" << options.side
                          << "\" into the foundation; it leads into the body. Turn it round"
                          << (options.obstacle.exists() ? ", or the obstacle's." : "."));

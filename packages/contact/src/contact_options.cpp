@@ -132,6 +132,33 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
   return options;
 }
 
+/// The last name of a path.
+std::string entry_of(const std::string &path)
+{
+  const std::size_t arrow = path.rfind("->");
+  return arrow == std::string::npos ? path : path.substr(arrow + 2);
+}
+
+/// Names each foundation after its side, several of one side after their entries, and proves that names differ.
+void name_for_results(std::vector<ContactOptions> &options)
+{
+  for (ContactOptions &own : options) {
+    own.name = own.side;
+    for (const ContactOptions &other : options) {
+      if (&other == &own || other.side != own.side) continue;
+      own.name = entry_of(own.path);
+      RPC_REQUIRE(own.obstacle.exists() || other.obstacle.exists(),
+                  "deck: \"" << own.path << "\" and \"" << other.path << "\" both name the side \"" << own.side
+                             << "\"; give it one contact law, or each an \"Obstacle\" of its own");
+    }
+  }
+  for (std::size_t a = 0; a < options.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      RPC_REQUIRE(options[a].name != options[b].name, "deck: \"" << options[b].path << "\" and \"" << options[a].path
+                                                                 << "\" both stand as \"" << options[a].name
+                                                                 << "\" in the results; give one of them another name");
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_contact_parameters()
@@ -139,7 +166,10 @@ Teuchos::ParameterList valid_contact_parameters()
   Teuchos::ParameterList valid("Contact"), entry;
   valid.set("Side", "", "Side of the body that may touch the foundation; empty: none but those of `Sides`.");
   add_side_parameters(valid);
-  entry.set("Side", "", "Side of the body; by default the side that the entry is named after.");
+  entry.set(
+      "Side", "",
+      "Side of the body; by default the side that the entry is named after. Several entries may name one side, each "
+      "with an `Obstacle` of its own, such as the flanks of a groove.");
   add_side_parameters(entry);
   set_named_entries(valid, "Sides", entry, "Further contact sides, any number of entries with names of your choice.");
   return valid;
@@ -164,11 +194,7 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
     const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
     options.push_back(side_options(entry, "Contact->Sides->" + name, side, dim, parse));
   }
-  for (std::size_t a = 0; a < options.size(); ++a)
-    for (std::size_t b = 0; b < a; ++b)
-      RPC_REQUIRE(options[a].side != options[b].side, "deck: \"" << options[b].path << "\" and \"" << options[a].path
-                                                                 << "\" both name the side \"" << options[a].side
-                                                                 << "\"; give it one contact law");
+  name_for_results(options);
   return options;
 }
 

@@ -120,6 +120,11 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
   return obstacle;
 }
 
+bool Obstacle::moves() const
+{
+  return std::any_of(path.begin(), path.end(), [](const ScalarField &coordinate) { return !coordinate.is_constant(); });
+}
+
 Obstacle Obstacle::seen_at(const double t) const
 {
   Obstacle seen = *this;

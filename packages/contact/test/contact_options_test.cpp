@@ -57,6 +57,36 @@ void add_floor(ParameterList &list)
   obstacle.set("Normal", Teuchos::Array<double>(Teuchos::tuple(0., 2.)));
 }
 
+TEST(ContactOptions, SeveralFoundationsOfOneSideAreNamedAfterTheirEntries)
+{
+  ParameterList list;
+  for (const std::string flank : {"left flank", "right flank"}) {
+    ParameterList &entry = list.sublist("Sides").sublist(flank);
+    entry.set("Side", "bottom");
+    add_floor(entry);
+  }
+  list.sublist("Sides").sublist("top");
+  const auto options = read(list);
+  ASSERT_EQ(options.size(), 3u);
+  const std::string names[] = {"left flank", "right flank", "top"}, sides[] = {"bottom", "bottom", "top"};
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(options[k].name, names[k]);
+    EXPECT_EQ(options[k].side, sides[k]);
+  }
+}
+
+TEST(ContactOptions, OneNameInTheResultsForTwoIsRefused)
+{
+  ParameterList unnamed;
+  for (const std::string flank : {"one", "other"}) {
+    ParameterList &entry = unnamed.sublist("Sides").sublist(flank);
+    entry.set("Side", "bottom");
+    add_floor(entry);
+  }
+  unnamed.sublist("Sides").sublist("third").set("Side", "one");
+  expect_refused(unnamed, {"\"one\"", "in the results", "another name"});
+}
+
 TEST(ContactOptions, NothingTouchesWithoutASide)
 {
   EXPECT_TRUE(read(ParameterList()).empty());

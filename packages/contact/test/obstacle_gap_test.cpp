@@ -147,6 +147,43 @@ TEST(ContactNodes, RefuseASideThatMissesTheObstacleAltogetherWithAPlace)
   EXPECT_EQ(nodes_of(d, {options}).num_total, 5);
 }
 
+TEST(ContactNodes, MayBeNoneWhileAnObstacleThatMovesIsBesideTheSide)
+{
+  const auto d = body();
+  auto options = touching("bottom");
+  options.obstacle = circle({9, -3, 0}, 0.7);
+  options.obstacle.path[0] = ScalarField("9 - t", [](const Point &, const double t) { return 9 - t; });
+  options.obstacle.path[1] = ScalarField(-3.);
+  for (const double t : {0., 8.}) {
+    options.obstacle = options.obstacle.seen_at(t);
+    const auto c = nodes_of(d, {touching("left"), options});
+    EXPECT_EQ(sum_all(d.mesh->comm(), GO(c.first(2) - c.first(1))), t == 0 ? 0 : 3) << t;
+    EXPECT_EQ(c.num_missing, t == 0 ? 5 : 2) << t;
+  }
+}
+
+TEST(ContactNodes, OfTwoFoundationsOfOneSideAreTwoAtANode)
+{
+  // A groove of two slopes below the bottom.
+  const auto d = body();
+  auto left = touching("bottom"), right = touching("bottom");
+  left.obstacle = slope();
+  right.obstacle = plane({2, -0.5, 0}, {-0.6, 0.8, 0});
+  left.normal = right.normal = Normal::foundation;
+  right.yield_stress = ScalarField(7.);
+  const auto c = nodes_of(d, {left, right});
+  EXPECT_EQ(c.num_total, 10);
+  const auto node = to_host(c.node);
+  const auto gap = to_host(c.gap), yield = to_host(c.law.yield);
+  const LO n = c.first(1);
+  ASSERT_EQ(c.first(2), 2 * n);
+  for (LO i = 0; i < n; ++i) {
+    EXPECT_EQ(node(i), node(n + i));
+    EXPECT_NEAR(gap(n + i) - gap(i), 1.2, 1e-14);
+    EXPECT_EQ(yield(n + i), 7);
+  }
+}
+
 TEST(ContactNodes, RefuseANormalThatLeadsAwayFromTheObstacle)
 {
   const auto d = body();

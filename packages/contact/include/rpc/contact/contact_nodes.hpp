@@ -44,7 +44,7 @@ struct ContactNodes : NodePoints {    // a group is a side; `direction` is the n
 /// @param materials  what the body is made of, for `scaling`
 /// @param dents      w >= 0 [m] that earlier steps have left, (owned nodes; sides); null: none
 /// @throws rpc::Error bad_input if a side does not exist, a number of the law is out of range, the gap is not finite somewhere,
-/// the normal leads to the obstacle from no node of a side, or a node lies in the foundation and its normal does not cross
+/// the normal leads from no node of a side to its obstacle, which does not move, or a node lies in the foundation and its normal does not cross
 /// the foundation's surface (the place is named); no_solution if a prescribed displacement presses a node into a rigid
 /// foundation
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,

@@ -21,11 +21,13 @@ enum class Normal {
 /// What dents stay with when the body slides or the obstacle moves along itself, see moving_dents.hpp.
 enum class DentsMoveWith { body, foundation };
 
-/// A side that may touch the foundation, and the foundation's law there.
+/// A side that may touch the foundation, and the foundation's law there. Several foundations may touch one side, as the two flanks of a
+/// groove do: each has options of its own, and a node of the side is a contact point of each of them.
 struct ContactOptions {
   std::string path = "Contact"; ///< in the deck, for messages
   std::string side;
-  ScalarField yield_stress;                ///< xi > 0 [Pa], may be inf
+  std::string name;         ///< in the results: that of the side; of several foundations of one side that of the entry
+  ScalarField yield_stress; ///< xi > 0 [Pa], may be inf
   ScalarField hardening = ScalarField(0.); ///< H >= 0 [Pa/m], growth of the yield stress with the dent
   ScalarField stiffness = ScalarField(
       std::numeric_limits<double>::infinity()); ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
@@ -40,8 +42,9 @@ struct ContactOptions {
 
 /// Parameters of the deck's `Contact` sublist.
 Teuchos::ParameterList valid_contact_parameters();
-/// One entry per contact side; none if nothing touches.
-/// @throws rpc::Error (bad_input) on anything out of range that needs no mesh to be seen
+/// One entry for each side and foundation that touches it; none if nothing touches.
+/// @throws rpc::Error (bad_input) on anything out of range that needs no mesh to be seen, and where two foundations of one side are not
+///         told apart by an obstacle, or results by a name
 std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse);
 
 /// A number of the foundation's law and the rule for it.

@@ -32,6 +32,7 @@ struct Obstacle {
   Point origin{}; ///< where `point` is at the first of several steps [m]
 
   bool exists() const { return surface.has_value(); }
+  bool moves() const; ///< with time
   /// The same, with `point` where it is at a time.
   Obstacle seen_at(double t) const;
 };
