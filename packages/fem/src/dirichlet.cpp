@@ -20,19 +20,6 @@ namespace rpc::fem
 namespace
 {
 
-/// Owned nodes of a side, each once, ascending.
-std::vector<LO> owned_nodes_of(const mesh::Mesh &mesh, const mesh::Side &side)
-{
-  const auto facets = to_host(side.facets);
-  std::vector<LO> nodes;
-  for (std::size_t f = 0; f < facets.extent(0); ++f)
-    for (std::size_t a = 0; a < facets.extent(1); ++a)
-      if (facets(f, a) < mesh.num_owned_nodes()) nodes.push_back(facets(f, a));
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
-}
-
 /// What is prescribed of an unknown, and by which condition.
 struct Prescribed {
   double value = 0; // [m]
@@ -75,7 +62,7 @@ std::unordered_map<LO, Prescribed> prescribed_dofs(const Discretization &d,
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     const DirichletCondition &condition = conditions[k];
     const std::string path = "Dirichlet->" + condition.name;
-    const auto nodes = owned_nodes_of(mesh, mesh.side(condition.side, path + "->Side"));
+    const auto nodes = mesh.nodes_of(condition.side, path + "->Side");
     const HostPoints points = node_positions(mesh, device_values(nodes, "rpc::fem::side_nodes"));
     for (int c = 0; c < dim; ++c) {
       if (!condition.displacement[c]) continue;
@@ -141,7 +128,11 @@ double add_prescribed_forces(const PrescribedCouplings &K, const DeviceView<char
 Teuchos::ParameterList valid_dirichlet_parameters()
 {
   Teuchos::ParameterList entry, valid("Dirichlet");
-  entry.set("Side", "", "Side of the mesh; by default the side that the entry is named after.");
+  entry.set(
+      "Side", "",
+      "Side of the mesh; by default the side that the entry is named after. A single point holds a body that would "
+      "float otherwise: a corner of a box, `left bottom` or in space `left bottom back`, or a physical point of "
+      "gmsh.");
   for (const char *name : component_name)
     set_field(entry, name, "",
               std::string("Displacement in ") + name +

@@ -76,6 +76,25 @@ std::vector<double> values_of(const Vector &v)
   return {view.data(), view.data() + view.extent(0)};
 }
 
+TEST(DirichletDofs, OfACornerAreThoseOfItsNodeAlone)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const auto box = small_box(element);
+    const auto d = body(box, Tpetra::getDefaultComm());
+    DirichletCondition foot{"foot", element.dim == 2 ? "right bottom" : "right bottom back", {}};
+    foot.displacement[0] = ScalarField(0.25);
+    const auto dirichlet = fem::dirichlet_dofs(d, {foot});
+    EXPECT_EQ(dirichlet.num_fixed, 1);
+    const auto value = dirichlet.value->getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto coords = to_host(d.mesh->coords);
+    for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n) {
+      bool there = coords(n, 0) == box.upper[0];
+      for (int c = 1; c < element.dim; ++c) there = there && coords(n, c) == box.lower[c];
+      EXPECT_EQ(value(rpc::dof(element.dim, n, 0), 0), there ? 0.25 : 0);
+    }
+  }
+}
+
 TEST(EliminateDirichlet, MatrixIsSymmetric)
 {
   for (const auto &element : elements()) {

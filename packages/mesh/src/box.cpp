@@ -196,6 +196,26 @@ Side side_of_box(const BoxSide &box_side, const BoxParts &parts, const Grid &gri
   return make_side(box_side.name, mesh, cell, ordinal);
 }
 
+/// The corners of a box, named after the sides that meet there.
+/// @param last  node of the lattice in each direction
+std::vector<PointSet> corners_of_box(const Numbering &numbering, const Index &last, const int dim)
+{
+  std::vector<PointSet> corners;
+  for (int corner = 0; corner < 1 << dim; ++corner) {
+    PointSet set;
+    Index at{};
+    for (const BoxSide &side : box_sides) {
+      const bool upper = (corner >> side.direction) % 2 == 1;
+      if (side.direction >= dim || side.upper != upper) continue;
+      set.name += (set.name.empty() ? "" : " ") + std::string(side.name);
+      at[side.direction] = upper ? last[side.direction] : 0;
+    }
+    if (numbering.owned_nodes.contains(at)) set.node = {static_cast<LO>(numbering.owned_nodes.index_of(at))};
+    corners.push_back(set);
+  }
+  return corners;
+}
+
 /// What a run takes for each of a rank's nodes at least [B]: mesh, fields and coarser meshes. There is no matrix of the finest mesh.
 /// Measured: P1, Q1, P2, Q2 in the plane 900 to 950, in space 1580, 1660, 1530, 1880.
 double bytes_per_node(const Element &element)
@@ -364,6 +384,7 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   for (const BoxSide &box_side : box_sides)
     if (box_side.direction < mesh.dim())
       mesh.sides.push_back(side_of_box(box_side, parts, grid, numbering, halo, local_cells, mesh));
+  mesh.points = corners_of_box(numbering, {nodes[0] - 1, nodes[1] - 1, nodes[2] - 1}, mesh.dim());
   Kokkos::fence();
   return mesh;
 }

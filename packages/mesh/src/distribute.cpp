@@ -33,6 +33,7 @@ void for_each_array(AnyPart &part, const Each &each)
     each(side.cell);
     each(side.ordinal);
   }
+  for (auto &set : part.mesh.points) each(set.node);
   each(part.node_id);
   each(part.cell_id);
   each(part.gid);
@@ -102,6 +103,13 @@ Part part_of(const MeshData &whole, const Division &division, const int rank)
     }
     part.mesh.sides.push_back(mine);
   }
+  for (const PointData &set : whole.points) {
+    PointData mine{set.name, {}};
+    for (const int node : set.node)
+      if (division.node_owner[node] == rank) mine.node.push_back(lid_of(node));
+    std::sort(mine.node.begin(), mine.node.end());
+    part.mesh.points.push_back(mine);
+  }
   return part;
 }
 
@@ -148,20 +156,23 @@ Part deal(const MeshData &whole, const Comm &comm)
   Division division;
   on_root(comm, ExitCode::internal_error, [&] { division = divide(whole, comm.getSize()); });
   Part part;
-  std::vector<std::string> sides;
+  std::vector<std::string> sides, points;
   if (comm.getRank() == 0) {
     part.mesh.element = whole.element;
     part.mesh.blocks = whole.blocks;
     for (const SideData &side : whole.sides) sides.push_back(side.name);
+    for (const PointData &set : whole.points) points.push_back(set.name);
   }
   broadcast(comm, part.mesh.element);
   broadcast(comm, part.mesh.blocks);
   broadcast(comm, sides);
+  broadcast(comm, points);
   if (comm.getRank() == 0) {
     for (int rank = 1; rank < comm.getSize(); ++rank) send_part(comm, part_of(whole, division, rank), rank);
     return part_of(whole, division, 0);
   }
   for (const std::string &name : sides) part.mesh.sides.push_back({name, {}, {}});
+  for (const std::string &name : points) part.mesh.points.push_back({name, {}});
   receive_part(comm, part);
   return part;
 }
@@ -206,6 +217,7 @@ Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm)
   for (const SideData &side : part.mesh.sides)
     mesh.sides.push_back(make_side(side.name, mesh, host_array<LO>("rpc::mesh::side_cell", side.cell),
                                    host_array<int>("rpc::mesh::side_ordinal", side.ordinal)));
+  for (const PointData &set : part.mesh.points) mesh.points.push_back({set.name, {set.node.begin(), set.node.end()}});
   Kokkos::fence();
   return mesh;
 }

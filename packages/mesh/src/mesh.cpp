@@ -3,20 +3,56 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rpc::mesh
 {
 
-const Side &Mesh::side(const std::string &name, const std::string &user) const
+namespace
+{
+
+/// The part of a mesh that has a name; null if there is none.
+template <class Part>
+const Part *find(const std::vector<Part> &parts, const std::string &name)
+{
+  const auto found = std::find_if(parts.begin(), parts.end(), [&](const Part &part) { return part.name == name; });
+  return found == parts.end() ? nullptr : &*found;
+}
+
+template <class Part>
+std::string names_of(const std::vector<Part> &parts)
 {
   std::vector<std::string> names;
-  for (const auto &candidate : sides) {
-    if (candidate.name == name) return candidate;
-    names.push_back(candidate.name);
+  for (const Part &part : parts) names.push_back(part.name);
+  return join(names);
+}
+
+} // namespace
+
+const Side &Mesh::side(const std::string &name, const std::string &user) const
+{
+  if (const Side *const found = find(sides, name)) return *found;
+  throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
+                                       "\", which the mesh does not have. Its sides: " + names_of(sides) + ".");
+}
+
+std::vector<LO> Mesh::nodes_of(const std::string &name, const std::string &user) const
+{
+  if (const PointSet *const set = find(points, name); set && !find(sides, name)) return set->node;
+  if (points.empty() || find(sides, name)) {
+    const auto facets = to_host(side(name, user).facets);
+    std::vector<LO> nodes;
+    for (std::size_t f = 0; f < facets.extent(0); ++f)
+      for (std::size_t a = 0; a < facets.extent(1); ++a)
+        if (facets(f, a) < num_owned_nodes()) nodes.push_back(facets(f, a));
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
   }
   throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
-                                       "\", which the mesh does not have. Its sides: " + join(names) + ".");
+                                       "\", which the mesh does not have. Its sides: " + names_of(sides) +
+                                       "; its points: " + names_of(points) + ".");
 }
 
 Side make_side(const std::string &name, const Mesh &mesh, const HostView<LO *> &cell, const HostView<int *> &ordinal)

@@ -1,5 +1,6 @@
 #include "box_lattice.hpp"
 #include "expect_error.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/mesh/box.hpp"
 
 #include <array>
@@ -36,6 +37,48 @@ TEST(Box, SidesAreNamedLeftRightBottomTopBackFront)
     for (const Side &side : made.mesh.sides) names.push_back(side.name);
     for (int k = 0; k < 2 * made.mesh.dim(); ++k) expected.push_back(directions()[k].name);
     EXPECT_EQ(names, expected);
+  });
+}
+
+TEST(Box, CornersAreNamedAfterTheSidesThatMeetThere)
+{
+  for_each_box([](const Made &made) {
+    const int dim = made.mesh.dim();
+    std::set<std::string> names;
+    for (const auto &corner : made.mesh.points) {
+      SCOPED_TRACE(corner.name);
+      names.insert(corner.name);
+      const auto coords = rpc::to_host(made.mesh.coords);
+      for (const LO node : corner.node)
+        for (int k = 0; k < 2 * dim; ++k) {
+          const Direction &side = directions()[k];
+          if (corner.name.find(side.name) == std::string::npos) continue;
+          const auto &end = side.upper ? made.lattice.box.upper : made.lattice.box.lower;
+          EXPECT_EQ(coords(node, side.d), end[side.d]);
+        }
+      const int here = static_cast<int>(corner.node.size());
+      EXPECT_EQ(rpc::sum_all(made.mesh.comm(), here), 1);
+      EXPECT_EQ(made.mesh.nodes_of(corner.name, "test"), corner.node);
+    }
+    EXPECT_EQ(names.size(), dim == 2 ? 4u : 8u);
+    EXPECT_EQ(names.count(dim == 2 ? "right bottom" : "right bottom front"), 1u);
+  });
+}
+
+TEST(Box, NodesOfASideAreThoseOfItsFacets)
+{
+  for_each_box([](const Made &made) {
+    const auto coords = rpc::to_host(made.mesh.coords);
+    for (int k = 0; k < 2 * made.mesh.dim(); ++k) {
+      const Direction &side = directions()[k];
+      const auto &end = side.upper ? made.lattice.box.upper : made.lattice.box.lower;
+      std::vector<LO> expected;
+      for (LO n = 0; n < made.mesh.num_owned_nodes(); ++n)
+        if (coords(n, side.d) == end[side.d]) expected.push_back(n);
+      EXPECT_EQ(made.mesh.nodes_of(side.name, "test"), expected) << side.name;
+    }
+    expect_error(ExitCode::bad_input, {"\"Dirichlet->x->Side\"", "\"nowhere\"", "left", "top", "left bottom"},
+                 [&] { made.mesh.nodes_of("nowhere", "Dirichlet->x->Side"); });
   });
 }
 

@@ -65,6 +65,7 @@ MeshData whole_box(const Element &element, const double left, const int columns,
     }
     whole.sides.push_back(data);
   }
+  whole.points = {{"ends", {0, whole.num_nodes() - 1}}, {"second", {1}}};
   return whole;
 }
 
@@ -162,6 +163,24 @@ TEST(Distribute, EachNodeAndCellIsOwnedOnceAndEachRankOwnsACell)
     EXPECT_EQ(static_cast<LO>(dealt.mesh.node_id.extent(0)), dealt.mesh.num_owned_nodes());
     EXPECT_EQ(static_cast<LO>(dealt.mesh.cell_id.extent(0)), dealt.mesh.num_owned_cells);
     EXPECT_GT(dealt.mesh.num_owned_cells, 0);
+  });
+}
+
+TEST(Distribute, PointsGoToTheRanksThatOwnTheirNodes)
+{
+  for_each_mesh([](const Dealt &dealt) {
+    ASSERT_EQ(dealt.mesh.points.size(), dealt.whole.points.size());
+    for (std::size_t k = 0; k < dealt.whole.points.size(); ++k) {
+      EXPECT_EQ(dealt.mesh.points[k].name, dealt.whole.points[k].name);
+      std::vector<int> ids;
+      for (const LO node : dealt.mesh.points[k].node) {
+        ASSERT_LT(node, dealt.mesh.num_owned_nodes());
+        ids.push_back(dealt.node_id[node]);
+      }
+      std::vector<int> expected(dealt.whole.num_nodes(), 0);
+      for (const int node : dealt.whole.points[k].node) expected[node] = 1;
+      EXPECT_EQ(occurrences(ids, dealt.whole.num_nodes()), expected);
+    }
   });
 }
 

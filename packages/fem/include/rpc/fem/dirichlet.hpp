@@ -14,10 +14,10 @@
 namespace rpc::fem
 {
 
-/// Prescribed displacement on one side, paper (2) with values other than 0 too; an absent component is free.
+/// Prescribed displacement on one side or at points, paper (2) with values other than 0 too; an absent component is free.
 struct DirichletCondition {
-  std::string name; ///< of the entry in the deck, for messages
-  std::string side;
+  std::string name;                                       ///< of the entry in the deck, for messages
+  std::string side;                                       ///< or a name of mesh::Mesh::points
   std::array<std::optional<ScalarField>, 3> displacement; ///< [m]
 };
 

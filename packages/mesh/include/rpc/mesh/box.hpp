@@ -40,7 +40,7 @@ std::optional<BoxOptions> halved(const BoxOptions &options);
 /// Makes this rank's part of a box; no communication of mesh data, and no rank holds the whole.
 ///
 /// P1 and P2 cut each cell of the grid into two triangles, or six tetrahedra. Ranks form a grid of blocks chosen for the least number of shared cell faces. Sides are named left, right (x),
-/// bottom, top (y), and in 3D back, front (z). Node ids run over the lattice, x fastest. Collective on comm.
+/// bottom, top (y), and in 3D back, front (z), corners after their sides, "left bottom" or "left bottom back". Node ids run over the lattice, x fastest. Collective on comm.
 /// @throws rpc::Error (bad_mesh) if there are fewer cells than ranks in every direction, (bad_input) if the mesh cannot fit in memory
 Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm);
 

@@ -22,6 +22,12 @@ struct Side {
   DeviceView<int *> ordinal; ///< (facets) which facet of that cell
 };
 
+/// Named nodes that are no side: a corner of a box, physical points of gmsh.
+struct PointSet {
+  std::string name;
+  std::vector<LO> node; ///< this rank's owned nodes among them, ascending
+};
+
 /// One rank's part of a mesh.
 ///
 /// A rank holds every cell that touches a node which it owns, so that it fills its own matrix rows without
@@ -40,6 +46,7 @@ struct Mesh {
   LO num_owned_cells = 0;
   std::vector<std::string> blocks;       ///< names of the parts of the body, the same on all ranks
   std::vector<Side> sides;               ///< the same on all ranks, though a rank may have no facets of one
+  std::vector<PointSet> points;          ///< the same on all ranks, though a rank may have no nodes of one
   std::shared_ptr<const BoxOptions> box; ///< of which the mesh was made; null if it is no evenly divided box
 
   int dim() const { return element.dim; }
@@ -50,6 +57,9 @@ struct Mesh {
 
   /// @throws rpc::Error (bad_input) naming `user` (a deck path) and listing the sides that exist
   const Side &side(const std::string &name, const std::string &user) const;
+  /// The owned nodes of a side, or of points, ascending.
+  /// @throws rpc::Error (bad_input) naming `user` and listing the sides and points that exist
+  std::vector<LO> nodes_of(const std::string &name, const std::string &user) const;
 };
 
 /// The side of some facets of a mesh's local cells.

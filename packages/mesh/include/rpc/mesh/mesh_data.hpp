@@ -22,6 +22,12 @@ struct SideData {
   std::vector<int> ordinal; ///< (facets) which facet of that cell, see Element::facets
 };
 
+/// Named nodes of a whole mesh that are no side: the corners of a box, physical points of gmsh.
+struct PointData {
+  std::string name;
+  std::vector<int> node; ///< 0-based, ascending
+};
+
 /// A whole mesh on one rank, as a generator or a file gives it: plain arrays, row by row. distribute() deals it out.
 ///
 /// All nodes are used by cells, none twice; every cell belongs to one block. Numbers are 0-based and become
@@ -33,6 +39,7 @@ struct MeshData {
   std::vector<std::string> blocks; ///< names of the parts of the body, at least one
   std::vector<int> block;          ///< (cells) index into blocks
   std::vector<SideData> sides;
+  std::vector<PointData> points;
 
   int num_nodes() const { return static_cast<int>(coords.size()) / element.dim; }
   int num_cells() const { return static_cast<int>(cells.size()) / element.num_nodes(); }
