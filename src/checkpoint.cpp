@@ -2,6 +2,7 @@
 
 #include "continuation.hpp"
 #include "output/quantities.hpp"
+#include "rpc/contact/stored_dents.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/io/atomic_file.hpp"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iomanip>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -129,6 +129,14 @@ private:
   std::size_t next_ = 0;
 };
 
+/// An array of a file, on rank 0; null: it has none of this name.
+const std::vector<double> *array_of(const io::Checkpoint &file, const std::string &name)
+{
+  for (const io::NamedArray &array : file.arrays())
+    if (array.name == name) return &array.values;
+  return nullptr;
+}
+
 /// A field of cell sizes as arrays of a file.
 std::vector<io::NamedArray> arrays_of(const mesh::SizeField &sizes)
 {
@@ -145,15 +153,12 @@ std::shared_ptr<const mesh::SizeField> sizes_of(const analysis::HistoryState &st
 /// The mesh that a checkpoint is on: the deck's, unless the file has a field of cell sizes.
 mesh::MeshOptions mesh_of(const io::Checkpoint &file, const std::string &path, const Scene &scene, const Comm &comm)
 {
-  std::map<std::string, std::vector<double>> arrays;
-  for (const auto &[name, values] : file.arrays()) arrays[name] = values;
-  if (arrays.count("sizes_size") == 0) return scene.mesh;
+  const auto *const coords = array_of(file, "sizes_coords"), *const triangles = array_of(file, "sizes_triangles"),
+                    *const size = array_of(file, "sizes_size");
+  if (!coords || !triangles || !size) return scene.mesh;
   std::shared_ptr<mesh::SizeField> sizes;
-  if (comm.getRank() == 0) {
-    const auto &triangles = arrays.at("sizes_triangles");
-    sizes = std::make_shared<mesh::SizeField>(
-        mesh::SizeField{arrays.at("sizes_coords"), {triangles.begin(), triangles.end()}, arrays.at("sizes_size")});
-  }
+  if (comm.getRank() == 0)
+    sizes = std::make_shared<mesh::SizeField>(mesh::SizeField{*coords, {triangles->begin(), triangles->end()}, *size});
   const auto options = mesh::with_sizes(scene.mesh, sizes);
   RPC_REQUIRE(options && scene.adapt.adapts(),
               "restart: \"" << path
@@ -268,6 +273,8 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
       state.before->pressure = reader.columns(sides);
       if (tangential) state.before->tangential = reader.columns(sides * d.dim());
     }
+    if (const auto *const dents = array_of(whole.file, "foundation_dents"))
+      state.last.foundations = contact::dents_from(d.mesh->comm(), *dents);
     state.matrix_assemblies = text.at("assemblies");
   } catch (const json::exception &) { // on all ranks: they read the same text
     throw Error(ExitCode::bad_input, "restart: \"" + path +
@@ -309,7 +316,9 @@ void Checkpoints::write(const analysis::HistoryState &state)
   name << stem_of(scene_) << std::setw(6) << std::setfill('0') << state.records.size() << ".e";
   const std::string path = (std::filesystem::path(folder_) / name.str()).string();
   const auto sizes = sizes_of(state);
-  const auto arrays = sizes ? arrays_of(*sizes) : std::vector<io::NamedArray>();
+  auto arrays = sizes ? arrays_of(*sizes) : std::vector<io::NamedArray>();
+  if (!state.last.foundations.empty())
+    arrays.push_back({"foundation_dents", contact::stored_dents(d.mesh->comm(), state.last.foundations)});
   io::write_checkpoint(path, *d.mesh, state.last.time, fields, text.dump(), arrays);
   on_root(d.mesh->comm(), ExitCode::internal_error, [&] { remove_others(path); });
 }

@@ -29,7 +29,7 @@ void expect_equal(const RCP<const MultiVector> &a, const RCP<const MultiVector> 
     for (std::size_t k = 0; k < x.extent(1); ++k) EXPECT_EQ(x(n, k), y(n, k));
 }
 
-TEST(Checkpoint, HoldsTangentialMultipliersWhereTheLawHasThemAndNoneElsewhere)
+TEST(Checkpoint, HoldsWhatTheLawHasAndDentsOfFoundations)
 {
   const Scene scene = read_scene(std::string(RPC_TEST_DECKS) + "/../../../input/beam.xml",
                                  {"Steps->Times={1, 2}", "Mesh->Cells={20, 4}"});
@@ -52,6 +52,12 @@ TEST(Checkpoint, HoldsTangentialMultipliersWhereTheLawHasThemAndNoneElsewhere)
       memory->gap = columns(d, 1, first + 2);
       if (tangential) memory->tangential = columns(d, 2, first + 3);
     }
+    auto sheet = std::make_shared<contact::DentSheet>(); // of this rank
+    sheet->facet = d.mesh->element.facet();
+    sheet->place = sheet->direction = {{1. + comm->getRank(), 2, 0}, {3, 0.1, 0}};
+    sheet->dent = {0.5, 0.25};
+    sheet->facet_node = {0, 1};
+    state.last.foundations = {{{sheet}, 0.5, 0.75}};
     state.records.resize(1);
     state.records[0].time = 1;
     Checkpoints(scene, false, "", folder).write(state);
@@ -64,6 +70,11 @@ TEST(Checkpoint, HoldsTangentialMultipliersWhereTheLawHasThemAndNoneElsewhere)
     expect_equal(found->last.dent, state.last.dent);
     expect_equal(found->last.gap, state.last.gap);
     expect_equal(found->before->pressure, state.before->pressure);
+    ASSERT_EQ(found->last.foundations.size(), 1u);
+    EXPECT_EQ(found->last.foundations[0].volume, 0.75);
+    ASSERT_EQ(found->last.foundations[0].sheets.size(), 1u);
+    EXPECT_EQ(found->last.foundations[0].sheets[0]->place, sheet->place);
+    EXPECT_EQ(found->last.foundations[0].sheets[0]->dent, sheet->dent);
     EXPECT_EQ(found->last.tangential.is_null(), !tangential);
     if (!tangential) continue;
     expect_equal(found->last.tangential, state.last.tangential);
