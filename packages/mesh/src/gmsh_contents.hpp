@@ -25,7 +25,7 @@ struct GmshRequest {
   bool dimension_only = false; ///< no mesh is wanted
 };
 
-/// Physical group of the body's parts, or of its sides: of surfaces or curves, in space of volumes or surfaces.
+/// Physical group of the body's parts, of its sides, or of points: of surfaces or curves, in space of volumes or surfaces.
 struct GmshGroup {
   int dim = 0, tag = 0;
   std::string name; ///< empty: none
@@ -44,10 +44,10 @@ struct GmshElements {
 
 /// All tags are gmsh's numbers.
 struct GmshContents {
-  std::string complaint;              ///< gmsh's; nothing else counts if there is one
-  bool again = false;                 ///< whether another attempt may do better
-  int dim = 2;                        ///< of the body: 3 if there are volumes
-  std::vector<GmshGroup> groups;      ///< of dimensions dim - 1 and dim, by dimension, then tag
+  std::string complaint;         ///< gmsh's; nothing else counts if there is one
+  bool again = false;            ///< whether another attempt may do better
+  int dim = 2;                   ///< of the body: 3 if there are volumes
+  std::vector<GmshGroup> groups; ///< of dimensions dim - 1 and dim, and of points with a name; by dimension, then tag
   std::vector<GmshElements> elements; ///< by group, then entity tag
   std::vector<std::size_t> node_tags;
   std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags

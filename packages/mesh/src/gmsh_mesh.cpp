@@ -56,7 +56,7 @@ void check_groups(const std::string &where, const GmshContents &contents)
   std::set<int> filled;
   for (const auto &elements : contents.elements) filled.insert(elements.group);
   for (int g = 0; g < static_cast<int>(contents.groups.size()); ++g)
-    RPC_REQUIRE_CODE(filled.count(g), ExitCode::bad_mesh,
+    RPC_REQUIRE_CODE(filled.count(g) || contents.groups[g].dim == 0, ExitCode::bad_mesh,
                      where << "physical " << kind_of_group[contents.groups[g].dim] << " \"" << contents.groups[g].name
                            << "\" has no elements");
 }
@@ -298,6 +298,23 @@ void take_sides(const GmshContents &contents, const Entities &facets, TaggedMesh
   }
 }
 
+/// Physical points, those that lie at nodes of cells: a circle's centre may lie at none.
+void take_points(const GmshContents &contents, TaggedMesh &draft)
+{
+  std::map<int, PointData> sets; // by group
+  for (const auto &elements : contents.elements) {
+    if (contents.groups[elements.group].dim != 0) continue;
+    for (const std::size_t tag : elements.nodes)
+      if (const int node = find_node(draft, tag); node >= 0) sets[elements.group].node.push_back(node);
+  }
+  for (auto &[group, set] : sets) {
+    set.name = contents.groups[group].name;
+    std::sort(set.node.begin(), set.node.end());
+    set.node.erase(std::unique(set.node.begin(), set.node.end()), set.node.end());
+    draft.mesh.points.push_back(set);
+  }
+}
+
 void check_unused_nodes(const GmshContents &contents, const TaggedMesh &draft)
 {
   const std::set<std::size_t> elsewhere(contents.ungrouped_nodes.begin(), contents.ungrouped_nodes.end());
@@ -327,6 +344,7 @@ MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const boo
   const Entities facets = facets_of(draft.mesh.element, draft.mesh.cells);
   check_facets(draft, facets);
   take_sides(contents, facets, draft);
+  take_points(contents, draft);
   if (!any_nodes) check_unused_nodes(contents, draft);
   return std::move(draft.mesh);
 }

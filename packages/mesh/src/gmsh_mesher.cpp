@@ -225,7 +225,7 @@ std::string make_mesh(const GmshRequest &request, const int dim)
   return complaint.str();
 }
 
-/// The box, its block and its sides, as make_box() names and orders them.
+/// The box, its block, its sides and corners, as make_box() names and orders them.
 void add_box(const GmshRequest &request)
 {
   namespace geo = gmsh::model::geo;
@@ -244,6 +244,10 @@ void add_box(const GmshRequest &request)
       {"left", 4}, {"right", 2}, {"bottom", 1}, {"top", 3}};
   for (const auto &[name, line] : sides)
     gmsh::model::setPhysicalName(1, gmsh::model::addPhysicalGroup(1, {line}), name);
+  const std::initializer_list<std::pair<const char *, int>> corners = {
+      {"left bottom", 1}, {"right bottom", 2}, {"left top", 4}, {"right top", 3}};
+  for (const auto &[name, point] : corners)
+    gmsh::model::setPhysicalName(0, gmsh::model::addPhysicalGroup(0, {point}), name);
   gmsh::model::setPhysicalName(2, gmsh::model::addPhysicalGroup(2, {1}), "body");
 }
 
@@ -278,9 +282,10 @@ void take_mesh(GmshContents &contents)
   gmsh::model::getPhysicalGroups(groups);
   std::sort(groups.begin(), groups.end());
   for (const auto &[dim, tag] : groups) {
-    if (dim != contents.dim - 1 && dim != contents.dim) continue;
+    if (dim != 0 && dim != contents.dim - 1 && dim != contents.dim) continue;
     GmshGroup group{dim, tag, ""};
     gmsh::model::getPhysicalName(dim, tag, group.name);
+    if (dim == 0 && group.name.empty()) continue; // nobody can name it
     std::vector<int> entities;
     gmsh::model::getEntitiesForPhysicalGroup(dim, tag, entities);
     for (int &entity : entities) entity = std::abs(entity); // its sign is its direction

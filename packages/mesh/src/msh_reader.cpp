@@ -340,14 +340,15 @@ void read_elements_41(Reader &reader, Draft &draft)
 /// Without groups of the body's dimension all cells of that dimension are the body.
 GmshContents finished(Draft draft)
 {
-  const auto matters = [](const int of_group, const int of_body) {
-    return of_group == of_body || of_group == of_body - 1;
+  const auto matters = [&draft](const std::pair<int, int> &group, const int of_body) {
+    if (group.first == 0) return !draft.groups.at(group).empty(); // a point without a name serves nobody
+    return group.first == of_body || group.first == of_body - 1;
   };
   for (const auto &[key, name] : draft.groups) draft.contents.dim = std::max(draft.contents.dim, key.first);
   const int dim = draft.contents.dim;
   auto &groups = draft.contents.groups;
   for (const auto &[key, name] : draft.groups)
-    if (matters(key.first, dim)) groups.push_back({key.first, key.second, name});
+    if (matters(key, dim)) groups.push_back({key.first, key.second, name});
   const bool grouped = !groups.empty() && groups.back().dim == dim;
   if (!grouped) groups.push_back({dim, 0, whole_body});
   for (auto &[key, elements] : draft.elements) {

@@ -116,10 +116,29 @@ TEST(Gmsh, BlocksAndSidesComeInTheOrderOfTheirTags)
   EXPECT_EQ(mesh.sides[0].cell.size(), 12u);
   EXPECT_EQ(mesh.sides[1].name, "top");
   EXPECT_EQ(mesh.sides[1].cell.size(), 4u);
+  ASSERT_EQ(mesh.points.size(), 1u);
   for (int c = 0; c < mesh.num_cells(); ++c) {
     double x = 0;
     for (int v = 0; v < 3; ++v) x += mesh.coords[2 * mesh.cells[c * 6 + v]] / 3;
     EXPECT_EQ(mesh.block[c], x < 1 ? 1 : 0);
+  }
+}
+
+TEST(Gmsh, PhysicalPointsAreNodesWithNames)
+{
+  for (const int order : {1, 2}) {
+    const MeshData mesh =
+        read_geo(square() + body +
+                     "Point(9) = {7, 7, 0}; Physical Point(\"away\") = {9}; Physical Point(77) = {1};\n"
+                     "Physical Point(\"ends\", 3) = {4, 2}; Physical Point(\"corner\", 5) = {3};\n",
+                 1, order);
+    ASSERT_EQ(mesh.points.size(), 2u); // one lies at no cell, one has no name
+    EXPECT_EQ(mesh.points[0].name, "ends");
+    EXPECT_EQ(mesh.points[1].name, "corner");
+    ASSERT_EQ(mesh.points[0].node.size(), 2u);
+    for (const int node : mesh.points[0].node) EXPECT_NEAR(mesh.coords[2 * node] + mesh.coords[2 * node + 1], 1, 1e-15);
+    ASSERT_EQ(mesh.points[1].node.size(), 1u);
+    for (int c = 0; c < 2; ++c) EXPECT_EQ(mesh.coords[2 * mesh.points[1].node[0] + c], 1);
   }
 }
 

@@ -103,6 +103,17 @@ TEST(Msh, NumbersWithGapsInAnyOrderBecomeCompact)
   expect_same_mesh(mesh, read_text(Msh().text()), "gaps");
 }
 
+TEST(Msh, PhysicalPointsAreNodesWithNames)
+{
+  const MeshData mesh = read_text(squares_with([](Msh &msh) {
+    msh.names.push_back("0 6 \"feet\"");
+    for (const char *const point : {"5 15 2 6 1 3", "6 15 2 6 2 1", "7 15 2 8 3 2"}) msh.elements.push_back(point);
+  }));
+  ASSERT_EQ(mesh.points.size(), 1u);
+  EXPECT_EQ(mesh.points[0].name, "feet");
+  EXPECT_EQ(mesh.points[0].node, (std::vector<int>{0, 2}));
+}
+
 TEST(Msh, FacetsListedTwiceCountOnce)
 {
   const MeshData mesh = read_text(squares_with([](Msh &msh) { msh.elements.push_back("5 1 2 1 7 4 1"); }));

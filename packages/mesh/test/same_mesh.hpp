@@ -23,6 +23,11 @@ inline void expect_same_mesh(const mesh::MeshData &a, const mesh::MeshData &b, c
     EXPECT_EQ(a.sides[s].cell, b.sides[s].cell);
     EXPECT_EQ(a.sides[s].ordinal, b.sides[s].ordinal);
   }
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t s = 0; s < a.points.size(); ++s) {
+    EXPECT_EQ(a.points[s].name, b.points[s].name);
+    EXPECT_EQ(a.points[s].node, b.points[s].node);
+  }
 }
 
 } // namespace rpc::test
