@@ -47,7 +47,7 @@ std::string power(const std::string &name, const int exponent)
 
 std::string checked_unit(const Teuchos::ParameterList &list, const std::string &parameter)
 {
-  const auto name = list.get<std::string>(parameter);
+  const auto &name = list.get<std::string>(parameter);
   const bool plain = std::all_of(name.begin(), name.end(), [](const unsigned char c) {
     return c > ' ' && c != 127 && std::string(",;\"'[]()\\").find(static_cast<char>(c)) == std::string::npos;
   });
