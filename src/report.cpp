@@ -173,7 +173,8 @@ void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const
 {
   const mesh::Mesh &mesh = *d.mesh;
   std::string sides;
-  for (const auto &side : scene.model.contact) sides += (sides.empty() ? " on \"" : ", \"") + side.name + "\"";
+  for (const auto &side : scene.model.contact)
+    sides += (sides.empty() ? " on \"" : ", \"") + side.name_in_results() + "\"";
   const std::string kinematics = mesh.dim() == 2 ? ", " + fem::name_of(d.kinematics) : "";
   print(out_, "%s: %lld %s cells%s, %lld dofs, %lld contact nodes%s, %d rank%s, %s\n", scene.name.c_str(),
         static_cast<long long>(sum_all(mesh.comm(), GO(mesh.num_owned_cells))), mesh.element.name().c_str(),
@@ -268,7 +269,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
   }
   for (std::size_t k = 0; k < scene.model.contact.size() && scene.model.contact.size() > 1; ++k) {
     const contact::ContactSums &side = s.contact.sides[k];
-    out << "    on \"" << scene.model.contact[k].name << "\": force " << vector_text(side.force, dim);
+    out << "    on \"" << scene.model.contact[k].name_in_results() << "\": force " << vector_text(side.force, dim);
     for (const Line &line : lines(contact::contact_quantities, side, scope, "%.6g"))
       out << ", " << line.heading << ' ' << line.numbers;
     out << '\n';

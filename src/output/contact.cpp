@@ -32,7 +32,7 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
   for (int k = 0; k < contact.num_sides(); ++k) {
     const LO begin = contact.first(k), end = contact.first(k + 1);
     io::ContactTable table;
-    table.side = scene.model.contact[k].name;
+    table.side = scene.model.contact[k].name_in_results();
     table.id = HostView<GO *>("rpc::output::id", end - begin);
     table.position = HostView<double **>("rpc::output::position", end - begin, mesh.dim());
     const auto node = part_of(contact.node, begin, end);

@@ -117,7 +117,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   add_sums(json, s.contact.total, scope, mesh.dim());
   json["contact_sides"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.contact.size(); ++k)
-    add_sums(json["contact_sides"][scene.model.contact[k].name], s.contact.sides[k], scope, mesh.dim());
+    add_sums(json["contact_sides"][scene.model.contact[k].name_in_results()], s.contact.sides[k], scope, mesh.dim());
   json["reaction_force"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.dirichlet.size(); ++k)
     json["reaction_force"][scene.model.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());

@@ -78,7 +78,7 @@ class Foundations(RpcTestCase):
         # Pressed at x = 0, moved by `shift` and pressed, moved back and pressed as before.
         for shift in [3, 4.5]:
             summary = self.summary_of(
-                TRACK, "--set=Mesh->Size Factor=6", f"--set=Dirichlet->top->X={shift} * (t < 3 ? max(0, t - 2) : t <= 5 ? 1 : 6 - t)",
+                TRACK, "--set=Mesh->Size Factor=6", f"--set=Dirichlet->top->X={shift} * max(0, min(1, min(t - 2, 6 - t)))",
                 "--set=Dirichlet->top->Y=-0.1 * max(0, max(max(1 - abs(t - 1), 1 - abs(t - 4)), 1 - abs(t - 7)))",
                 "--set=Steps->Times={0.5, 1, 2, 3, 3.5, 4, 5, 6, 6.5, 7, 8}")
             steps = {step["time"]: step for step in summary["steps"]}

@@ -139,11 +139,10 @@ std::string entry_of(const std::string &path)
   return arrow == std::string::npos ? path : path.substr(arrow + 2);
 }
 
-/// Names each foundation after its side, several of one side after their entries, and proves that names differ.
+/// Names several foundations of one side after their entries, and proves that all names in the results differ.
 void name_for_results(std::vector<ContactOptions> &options)
 {
   for (ContactOptions &own : options) {
-    own.name = own.side;
     for (const ContactOptions &other : options) {
       if (&other == &own || other.side != own.side) continue;
       own.name = entry_of(own.path);
@@ -154,9 +153,9 @@ void name_for_results(std::vector<ContactOptions> &options)
   }
   for (std::size_t a = 0; a < options.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
-      RPC_REQUIRE(options[a].name != options[b].name, "deck: \"" << options[b].path << "\" and \"" << options[a].path
-                                                                 << "\" both stand as \"" << options[a].name
-                                                                 << "\" in the results; give one of them another name");
+      RPC_REQUIRE(options[a].name_in_results() != options[b].name_in_results(),
+                  "deck: \"" << options[b].path << "\" and \"" << options[a].path << "\" both stand as \""
+                             << options[a].name_in_results() << "\" in the results; give one of them another name");
 }
 
 } // namespace

@@ -96,7 +96,7 @@ std::vector<int> carrying_sides(const Context &context, const HeldPart &held, co
   if (carried > 1e-6 * pushed) {
     std::vector<std::string> names;
     const auto sides = carrying_sides(context, held, motion);
-    for (const int k : sides) names.push_back(context.options[k].name);
+    for (const int k : sides) names.push_back(context.options[k].name_in_results());
     if (words.rotates)
       message << "the load turns " << name << " " << words.where << ", with a moment of " << resultant
               << "; against it ";

@@ -70,7 +70,7 @@ TEST(ContactOptions, SeveralFoundationsOfOneSideAreNamedAfterTheirEntries)
   ASSERT_EQ(options.size(), 3u);
   const std::string names[] = {"left flank", "right flank", "top"}, sides[] = {"bottom", "bottom", "top"};
   for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(options[k].name, names[k]);
+    EXPECT_EQ(options[k].name_in_results(), names[k]);
     EXPECT_EQ(options[k].side, sides[k]);
   }
 }

@@ -26,8 +26,8 @@ enum class DentsMoveWith { body, foundation };
 struct ContactOptions {
   std::string path = "Contact"; ///< in the deck, for messages
   std::string side;
-  std::string name;         ///< in the results: that of the side; of several foundations of one side that of the entry
-  ScalarField yield_stress; ///< xi > 0 [Pa], may be inf
+  std::string name; ///< of several foundations of one side, of its entry in the deck; empty: the side has this one only
+  ScalarField yield_stress;                ///< xi > 0 [Pa], may be inf
   ScalarField hardening = ScalarField(0.); ///< H >= 0 [Pa/m], growth of the yield stress with the dent
   ScalarField stiffness = ScalarField(
       std::numeric_limits<double>::infinity()); ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
@@ -38,6 +38,8 @@ struct ContactOptions {
   double penalty = 0;    ///< r > 0 [Pa/m]; 0: chosen at each node, see penalties.hpp
   bool remembers = true; ///< dents stay from step to step
   DentsMoveWith dents_move_with = DentsMoveWith::body;
+
+  const std::string &name_in_results() const { return name.empty() ? side : name; }
 };
 
 /// Parameters of the deck's `Contact` sublist.
