@@ -54,6 +54,7 @@ constexpr int most_halvings_for_balance = 20;
 // but what stays through so many halvings is rounding.
 constexpr double helpful = 0.9;
 constexpr int most_in_vain = 5;
+constexpr int most_attempts = 5; // at a step, each with a lower tolerance of its parts
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Energies unknown_energies()
@@ -132,8 +133,20 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   const double start = Teuchos::Time::wallTime();
   last_ = {};
   last_.time = t;
-  last_.parts = 0; // counted as they are solved
-  StepSolution s = advance_in_parts(t, {max_halvings_, most_halvings_for_balance}, progress, now);
+  const Remembered before = remembered();
+  const Energies energies_before = memory_ ? memory_->energies : Energies{};
+  StepSolution s;
+  double tolerance = energy_tolerance_, least = std::numeric_limits<double>::infinity();
+  for (int attempt = 1;; ++attempt) {
+    last_.parts = 0; // counted as they are solved
+    s = advance_in_parts(t, {max_halvings_, most_halvings_for_balance, tolerance}, progress, now);
+    const double off = s.uzawa.converged ? relative_imbalance(energies_before, memory_->energies) : 0;
+    const bool in_vain = attempt == most_attempts || last_.parts == 1 || off > helpful * least;
+    if (!(off > energy_tolerance_) || in_vain) break;
+    least = off;
+    tolerance *= 0.5 * energy_tolerance_ / off; // what parts miss adds up
+    go_back_to(before);
+  }
   last_.time = s.uzawa.converged ? t : tried_;
   last_.converged = s.uzawa.converged;
   if (!last_.converged) last_.reason = s.uzawa.reason;
@@ -146,6 +159,13 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   return s;
 }
 
+void LoadHistory::go_back_to(const Remembered &then)
+{
+  memory_ = then.memory;
+  before_ = then.before;
+  last_forces_ = then.last_forces;
+}
+
 StepRecord LoadHistory::broken_off(const std::string &reason) const
 {
   return analysis::broken_off(problem_->model(), last_, tried_, reason);
@@ -154,28 +174,25 @@ StepRecord LoadHistory::broken_off(const std::string &reason) const
 StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, const Progress &progress,
                                            const std::function<void(const Problem &, const Step &)> &now)
 {
-  const auto memory = memory_, before = before_;
-  const auto last_forces = last_forces_;
+  const Remembered before = remembered();
   StepSolution s = solve(t, options_, progress, now);
-  const double from = memory ? memory->time : 0; // the body is at rest at t = 0
+  const double from = before.memory ? before.memory->time : 0; // the body is at rest at t = 0
   const double half = 0.5 * (from + t);
   Halvings then = left;
   if (s.uzawa.converged) {
-    const Energies start = memory ? memory->energies : Energies{}, &end = memory_->energies;
+    const Energies start = before.memory ? before.memory->energies : Energies{}, &end = memory_->energies;
     const double missed = std::abs(end.imbalance - start.imbalance);
     then.in_vain = missed < helpful * left.missed ? 0 : left.in_vain + 1;
     then.missed = std::min(missed, left.missed);
-    const bool out_of_balance = relative_imbalance(start, end) > energy_tolerance_;
+    const bool out_of_balance = relative_imbalance(start, end) > left.tolerance;
     if (!out_of_balance || then.in_vain > most_in_vain || then.balance-- == 0) return s;
   } else if (then.failures-- == 0 || interrupted(problem_->discretization().mesh->comm())) {
     return s;
   }
   if (!(half > from && half < t)) return s;
-  if (s.uzawa.converged) { // as if the step had not been tried
+  if (s.uzawa.converged) {
     --last_.parts;
-    memory_ = memory;
-    before_ = before;
-    last_forces_ = last_forces;
+    go_back_to(before);
   }
   s = advance_in_parts(half, then, progress, now);
   return s.uzawa.converged ? advance_in_parts(t, then, progress, now) : s;

@@ -73,7 +73,8 @@ public:
   void go_on_from(Memory memory, std::optional<Memory> before = std::nullopt);
   /// Another state from which the next step may start, beside those of the steps before.
   void offer(contact::ContactState start) { offered_.push_back(std::move(start)); }
-  /// Has steps halved whose relative_imbalance() is larger, and their halves, a million times finer at most.
+  /// Has steps halved whose relative_imbalance() is larger, and their halves, a million times finer at most, until that of the whole step
+  /// is no larger either.
   void balance_energies_to(const double tolerance) { energy_tolerance_ = tolerance; }
   /// Makes multigrid anew, so that what follows depends on memory() and before() alone, bit for bit.
   void start_anew();
@@ -98,10 +99,20 @@ private:
   /// How often a part may be halved: where it does not converge, and for its energy balance.
   struct Halvings {
     int failures, balance;
+    double tolerance; // of a part's energy balance
     // The least that a part around this one misses in its energy balance [J], and how often it has been halved since.
     double missed = std::numeric_limits<double>::infinity();
     int in_vain = 0;
   };
+  /// What is remembered between steps.
+  struct Remembered {
+    std::optional<Memory> memory, before; // of the last step, and of the one before it
+    RCP<const Vector>
+        last_forces; // on the body from all but the foundation, after the last step (owned dofs) [N]; null: not known
+  };
+  Remembered remembered() const { return {memory_, before_, last_forces_}; }
+  /// As if what came after had not been tried.
+  void go_back_to(const Remembered &then);
   StepSolution advance_in_parts(double t, Halvings left, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
   Starts starts_of(const Step &step);
