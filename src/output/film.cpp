@@ -12,6 +12,7 @@
 #include <limits>
 #include <numeric>
 #include <sstream>
+#include <utility>
 
 namespace rpc
 {
@@ -26,16 +27,17 @@ HostView<double *> column(const MultiVector &v, const int stride, const int offs
   return values;
 }
 
-/// The contact point that a node's fields show, -1 for none: of a node of two sides the one with the higher pressure.
+/// The contact point that a node's fields show, -1 for none: of a node of two sides or foundations the one with the higher pressure,
+/// of two without pressure that which is nearer to its foundation.
 std::vector<LO> shown_points(const contact::ContactNodes &contact, const contact::ContactResult &result,
                              const LO num_nodes)
 {
   std::vector<LO> shown(num_nodes, -1);
   const auto node = to_host(contact.node);
-  const auto pressure = to_host(result.pressure);
+  const auto pressure = to_host(result.pressure), penetration = to_host(result.penetration);
   for (LO i = 0; i < contact.size(); ++i) {
     LO &point = shown[node(i)];
-    if (point < 0 || pressure(i) > pressure(point)) point = i;
+    if (point < 0 || std::pair(pressure(i), penetration(i)) > std::pair(pressure(point), penetration(point))) point = i;
   }
   return shown;
 }
