@@ -32,10 +32,10 @@ const mesh::Side &side_of(const fem::Discretization &d, const ContactOptions &op
 struct Standing {
   HostView<LO *> node;
   std::vector<Point> place, direction; // y, and where they are pressed in
-  double spread =
-      0; // by how much they have moved along the foundation beside each other: the largest distance from their mean [m]
+  double spread = 0;                   // see spread_of()
 };
 
+/// By how much nodes have moved along the foundation beside each other: the largest distance from their mean [m]. Collective.
 double spread_of(const Comm &comm, const std::vector<Point> &u, const std::vector<Point> &direction)
 {
   std::vector<double> sums(4, 0.);
