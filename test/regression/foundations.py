@@ -75,19 +75,19 @@ class Foundations(RpcTestCase):
         self.expect_refusal(result, BAD_INPUT, ['"Dirichlet->left->Side"', '"corner"', "left bottom", "right top"])
 
     def test_dents_that_the_body_has_left_behind_are_met_again(self):
-        # Pressed at x = 0, moved by `shift` and pressed, moved back and pressed as before.
-        for shift in [3, 4.5]:
+        # Pressed at x = 0, moved by `shift` and pressed, moved back and pressed as before. Meshes that adapt need not be the same again.
+        for shift, mesh, near in [(3, [], 1e-9), (4.5, [], 1e-9), (3, ["--set=Adapt->Target Relative Error=0.02"], 1e-3)]:
             summary = self.summary_of(
                 TRACK, "--set=Mesh->Size Factor=6", f"--set=Dirichlet->top->X={shift} * max(0, min(1, min(t - 2, 6 - t)))",
                 "--set=Dirichlet->top->Y=-0.1 * max(0, max(max(1 - abs(t - 1), 1 - abs(t - 4)), 1 - abs(t - 7)))",
-                "--set=Steps->Times={0.5, 1, 2, 3, 3.5, 4, 5, 6, 6.5, 7, 8}")
+                "--set=Steps->Times={0.5, 1, 2, 3, 3.5, 4, 5, 6, 6.5, 7, 8}", *mesh)
             steps = {step["time"]: step for step in summary["steps"]}
             one, both = steps[2], steps[8]
             self.assertGreater(one["dissipated_energy"], 0)
             for key in ["dissipated_energy", "dent_volume"]:
-                self.assertAlmostEqual(steps[5][key] / one[key], 2, delta=1e-9, msg=(shift, key))
-                self.assertAlmostEqual(both[key] / one[key], 2, delta=1e-9, msg=(shift, key))
-            self.assertAlmostEqual(both["max_dent"] / one["max_dent"], 1, delta=1e-9)
+                self.assertAlmostEqual(steps[5][key] / one[key], 2, delta=near, msg=(shift, key))
+                self.assertAlmostEqual(both[key] / one[key], 2, delta=near, msg=(shift, key))
+            self.assertAlmostEqual(both["max_dent"] / one["max_dent"], 1, delta=near)
 
     def test_a_restart_knows_the_dents_that_the_body_has_left_behind(self):
         arguments = [f"--input={TRACK}", "--set=Mesh->Size Factor=6", "--set=Dirichlet->top->X=3 * min(1, max(0, t - 2))"]
