@@ -67,7 +67,7 @@ std::map<double, analysis::Solution> track(const std::vector<std::string> &assig
 TEST(Track, OfTheFirstDentStaysWhereTheSecondDoesNotReach)
 {
   const auto steps = track();
-  const auto first = dents_met(steps.at(2)), both = dents_met(steps.at(5));
+  const auto first = dents_met(steps.at(2)), in_place = dents_met(steps.at(3)), both = dents_met(steps.at(5));
   const double width = reach(first);
   EXPECT_GT(width, 0.8);
   EXPECT_LT(width, 1.1);
@@ -76,7 +76,8 @@ TEST(Track, OfTheFirstDentStaysWhereTheSecondDoesNotReach)
   int beside = 0, under = 0;
   for (const auto &[x, w] : both) {
     if (x + moved > first.rbegin()->first) continue;
-    const double before = between(first, x + moved);
+    const double before = in_place.at(x);
+    EXPECT_NEAR(before, between(first, x + moved), 2e-4) << "points stand between those of the first dent";
     EXPECT_GE(w, before - 1e-12);
     if (x < -1.05 * width) {
       EXPECT_NEAR(w, before, 1e-12) << x;
