@@ -51,10 +51,9 @@ void remember_dents(const Problem &problem, const std::vector<contact::ContactOp
   const auto now = contact::node_columns(points, s.contact.dent, owned_nodes);
   const auto with_body = rcp(new MultiVector(*now, Teuchos::Copy));
   for (std::size_t k = 0; k < sides.size(); ++k)
-    if (!sides[k].remembers) with_body->getVectorNonConst(k)->putScalar(0);
+    if (!sides[k].remembers || sides[k].dents_move_with == contact::DentsMoveWith::foundation)
+      with_body->getVectorNonConst(k)->putScalar(0);
   if (before) keep_dents_elsewhere(points, *before->dent, *with_body);
-  for (std::size_t k = 0; k < sides.size(); ++k)
-    if (sides[k].dents_move_with == contact::DentsMoveWith::foundation) with_body->getVectorNonConst(k)->putScalar(0);
   memory.dent = with_body;
   if (before) memory.foundations = before->foundations;
   if (contact::any_moves_with_foundation(sides))

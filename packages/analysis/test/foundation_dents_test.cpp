@@ -69,9 +69,14 @@ Model pressed(const Course &slide, const Course &press, const DentsMoveWith carr
   return model;
 }
 
-std::shared_ptr<const analysis::Problem> problem(const Model &model)
+/// In space the block is a slice that does not move across.
+std::shared_ptr<const analysis::Problem> problem(Model model, const mesh::Element &element = {2, 1})
 {
-  const mesh::BoxOptions box{{0, 0}, {4, 1}, {16, 4}, {2, 1}};
+  mesh::BoxOptions box{{0, 0}, {4, 1}, {16, 4}, element};
+  if (element.dim == 3) {
+    box = {{0, 0, 0}, {4, 0.5, 1}, {16, 2, 4}, element};
+    for (auto &condition : model.dirichlet) condition.displacement[2] = ScalarField(0.);
+  }
   return std::make_shared<analysis::Problem>(
       std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())), model, 1.);
 }
@@ -197,14 +202,7 @@ TEST(DentsOnTheFoundation, AreFoundAgainThereAndBackUnderAnyElement)
 {
   const Course slide{{0, 0, 3 * cell, -1.37 * cell, 0}}, press{{0.1, -0.05, -0.05, -0.05, 0.1}};
   for (const mesh::Element &element : mesh::all_elements()) {
-    Model model = pressed(slide, press, DentsMoveWith::foundation);
-    mesh::BoxOptions box{{0, 0}, {4, 1}, {16, 4}, element};
-    if (element.dim == 3) {
-      box = {{0, 0, 0}, {4, 0.5, 1}, {16, 2, 4}, element};
-      for (auto &condition : model.dirichlet) condition.displacement[2] = ScalarField(0.);
-    }
-    const auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
-    LoadHistory history(std::make_shared<analysis::Problem>(mesh, model, 1.), exact(), 0);
+    LoadHistory history(problem(pressed(slide, press, DentsMoveWith::foundation), element), exact(), 0);
     const StepSolution first = history.advance(1);
     ASSERT_TRUE(first.uzawa.converged) << element.name() << ": " << first.uzawa.reason;
     EXPECT_EQ(history.last().solves, 1);
@@ -231,14 +229,7 @@ TEST(DentsOnTheFoundation, ThatTheBodyHasLeftBehindAreMetAgain)
   // Pressed, in three steps; lifted and moved by more than the side's length; pressed as before; lifted and moved back; pressed as before.
   const Course slide{{0, 20 * cell, 20 * cell, 0, 0}}, press{{0.1, -0.05, 0.1, -0.05, 0.1}};
   for (const mesh::Element &element : mesh::all_elements()) {
-    Model model = pressed(slide, press, DentsMoveWith::foundation);
-    mesh::BoxOptions box{{0, 0}, {4, 1}, {16, 4}, element};
-    if (element.dim == 3) {
-      box = {{0, 0, 0}, {4, 0.5, 1}, {16, 2, 4}, element};
-      for (auto &condition : model.dirichlet) condition.displacement[2] = ScalarField(0.);
-    }
-    const auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
-    LoadHistory history(std::make_shared<analysis::Problem>(mesh, model, 1.), exact(), 0);
+    LoadHistory history(problem(pressed(slide, press, DentsMoveWith::foundation), element), exact(), 0);
     double dissipated = 0, deepest = 0, volume = 0;
     for (const double t : {0.4, 0.7, 1., 2., 2.6, 3., 4., 4.5, 5.}) {
       const StepSolution s = history.advance(t);

@@ -28,9 +28,39 @@ const mesh::Side &side_of(const fem::Discretization &d, const ContactOptions &op
   return d.mesh->side(options.side, options.path + "->Side");
 }
 
-/// A side's owned nodes as they stand, seen from the foundation.
-struct Standing {
+/// A side's owned nodes with their weights.
+struct SideNodes {
   HostView<LO *> node;
+  HostView<double *> weight;
+};
+
+SideNodes nodes_of(const fem::SurfaceNodes &surface)
+{
+  return {to_host(surface.node), to_host(surface.weight)};
+}
+
+/// The largest of a side's nodal values, among nodes with a weight; collective.
+/// @param values  (owned nodes; sides) >= 0
+double largest_of(const Comm &comm, const SideNodes &nodes, const MultiVector &values, const std::size_t side)
+{
+  const auto from = values.getLocalViewHost(Tpetra::Access::ReadOnly);
+  double largest = 0;
+  for (std::size_t i = 0; i < nodes.node.extent(0); ++i)
+    if (nodes.weight(i) > 0) largest = std::max(largest, from(nodes.node(i), side));
+  return max_all(comm, largest);
+}
+
+/// Their weighted sum; collective.
+double integral_of(const Comm &comm, const SideNodes &nodes, const MultiVector &values, const std::size_t side)
+{
+  const auto from = values.getLocalViewHost(Tpetra::Access::ReadOnly);
+  double sum = 0;
+  for (std::size_t i = 0; i < nodes.node.extent(0); ++i) sum += nodes.weight(i) * from(nodes.node(i), side);
+  return sum_all(comm, sum);
+}
+
+/// A side's owned nodes as they stand, seen from the foundation.
+struct Standing : SideNodes {
   std::vector<Point> place, direction; // y, and where they are pressed in
   double spread = 0;                   // see spread_of()
 };
@@ -65,7 +95,7 @@ Standing standing(const fem::Discretization &d, const ContactOptions &options, c
   const auto values = u.getLocalViewHost(Tpetra::Access::ReadOnly);
   const Point motion = difference(options.obstacle.point, options.obstacle.origin);
   Standing nodes;
-  nodes.node = to_host(surface.node);
+  static_cast<SideNodes &>(nodes) = nodes_of(surface);
   std::vector<Point> moved;
   for (std::size_t i = 0; i < nodes.node.extent(0); ++i) {
     Point x{}, direction{}, displacement{}, y{};
@@ -218,21 +248,12 @@ void press_in(const fem::Discretization &d, const std::vector<ContactOptions> &o
   for (std::size_t k = 0; k < options.size(); ++k) {
     if (!moves_with_foundation(options[k]) || all_zero(added, k)) continue;
     FoundationDents &foundation = foundations[k];
+    const Standing nodes = standing(d, options[k], u);
     foundation.sheets.push_back(
-        std::make_shared<DentSheet>(sheet_of(d, options[k], standing(d, options[k], u), added, static_cast<int>(k))));
+        std::make_shared<DentSheet>(sheet_of(d, options[k], nodes, added, static_cast<int>(k))));
     if (foundation.sheets.size() > most_sheets) join_two(comm, foundation.sheets);
-    const auto surface = fem::surface_nodes(d, side_of(d, options[k]));
-    const auto node = to_host(surface.node);
-    const auto weight = to_host(surface.weight);
-    const auto more = added.getLocalViewHost(Tpetra::Access::ReadOnly);
-    const auto now = after.getLocalViewHost(Tpetra::Access::ReadOnly);
-    double deepest = 0, volume = 0;
-    for (std::size_t i = 0; i < node.extent(0); ++i) {
-      if (weight(i) > 0) deepest = std::max(deepest, now(node(i), k));
-      volume += weight(i) * more(node(i), k);
-    }
-    foundation.deepest = std::max(foundation.deepest, max_all(comm, deepest));
-    foundation.volume += sum_all(comm, volume);
+    foundation.deepest = std::max(foundation.deepest, largest_of(comm, nodes, after, k));
+    foundation.volume += integral_of(comm, nodes, added, k);
   }
 }
 
@@ -248,17 +269,9 @@ void take_all_dents(const fem::Discretization &d, const std::vector<ContactOptio
       sums.max_dent = k < foundations.size() ? foundations[k].deepest : 0;
       sums.dent_volume = k < foundations.size() ? foundations[k].volume : 0;
     } else if (options[k].remembers) {
-      const auto surface = fem::surface_nodes(d, side_of(d, options[k]));
-      const auto node = to_host(surface.node);
-      const auto weight = to_host(surface.weight);
-      const auto from = with_body.getLocalViewHost(Tpetra::Access::ReadOnly);
-      double deepest = 0, volume = 0;
-      for (std::size_t i = 0; i < node.extent(0); ++i) {
-        if (weight(i) > 0) deepest = std::max(deepest, from(node(i), k));
-        volume += weight(i) * from(node(i), k);
-      }
-      sums.max_dent = max_all(comm, deepest);
-      sums.dent_volume = sum_all(comm, volume);
+      const SideNodes nodes = nodes_of(fem::surface_nodes(d, side_of(d, options[k])));
+      sums.max_dent = largest_of(comm, nodes, with_body, k);
+      sums.dent_volume = integral_of(comm, nodes, with_body, k);
     }
     result.total.max_dent = std::max(result.total.max_dent, sums.max_dent);
     result.total.dent_volume += sums.dent_volume;

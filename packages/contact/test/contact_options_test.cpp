@@ -57,14 +57,21 @@ void add_floor(ParameterList &list)
   obstacle.set("Normal", Teuchos::Array<double>(Teuchos::tuple(0., 2.)));
 }
 
-TEST(ContactOptions, SeveralFoundationsOfOneSideAreNamedAfterTheirEntries)
+/// Two floors below the bottom, under these names.
+ParameterList two_floors(const std::string &one, const std::string &other)
 {
   ParameterList list;
-  for (const std::string flank : {"left flank", "right flank"}) {
-    ParameterList &entry = list.sublist("Sides").sublist(flank);
+  for (const std::string &name : {one, other}) {
+    ParameterList &entry = list.sublist("Sides").sublist(name);
     entry.set("Side", "bottom");
     add_floor(entry);
   }
+  return list;
+}
+
+TEST(ContactOptions, SeveralFoundationsOfOneSideAreNamedAfterTheirEntries)
+{
+  ParameterList list = two_floors("left flank", "right flank");
   list.sublist("Sides").sublist("top");
   const auto options = read(list);
   ASSERT_EQ(options.size(), 3u);
@@ -77,12 +84,7 @@ TEST(ContactOptions, SeveralFoundationsOfOneSideAreNamedAfterTheirEntries)
 
 TEST(ContactOptions, OneNameInTheResultsForTwoIsRefused)
 {
-  ParameterList unnamed;
-  for (const std::string flank : {"one", "other"}) {
-    ParameterList &entry = unnamed.sublist("Sides").sublist(flank);
-    entry.set("Side", "bottom");
-    add_floor(entry);
-  }
+  ParameterList unnamed = two_floors("one", "other");
   unnamed.sublist("Sides").sublist("third").set("Side", "one");
   expect_refused(unnamed, {"\"one\"", "in the results", "another name"});
 }

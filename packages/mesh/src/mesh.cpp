@@ -39,20 +39,21 @@ const Side &Mesh::side(const std::string &name, const std::string &user) const
 
 std::vector<LO> Mesh::nodes_of(const std::string &name, const std::string &user) const
 {
-  if (const PointSet *const set = find(points, name); set && !find(sides, name)) return set->node;
-  if (points.empty() || find(sides, name)) {
-    const auto facets = to_host(side(name, user).facets);
-    std::vector<LO> nodes;
-    for (std::size_t f = 0; f < facets.extent(0); ++f)
-      for (std::size_t a = 0; a < facets.extent(1); ++a)
-        if (facets(f, a) < num_owned_nodes()) nodes.push_back(facets(f, a));
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    return nodes;
+  if (!find(sides, name)) {
+    if (const PointSet *const set = find(points, name)) return set->node;
+    if (!points.empty())
+      throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
+                                           "\", which the mesh does not have. Its sides: " + names_of(sides) +
+                                           "; its points: " + names_of(points) + ".");
   }
-  throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
-                                       "\", which the mesh does not have. Its sides: " + names_of(sides) +
-                                       "; its points: " + names_of(points) + ".");
+  const auto facets = to_host(side(name, user).facets);
+  std::vector<LO> nodes;
+  for (std::size_t f = 0; f < facets.extent(0); ++f)
+    for (std::size_t a = 0; a < facets.extent(1); ++a)
+      if (facets(f, a) < num_owned_nodes()) nodes.push_back(facets(f, a));
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
 }
 
 Side make_side(const std::string &name, const Mesh &mesh, const HostView<LO *> &cell, const HostView<int *> &ordinal)
