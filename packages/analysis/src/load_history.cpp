@@ -114,14 +114,14 @@ LoadHistory::LoadHistory(std::shared_ptr<const Problem> problem, const StepOptio
 
 void LoadHistory::go_on_from(Memory memory, std::optional<Memory> before)
 {
-  memory_ = std::move(memory);
-  before_ = std::move(before);
-  last_forces_ = Teuchos::null;
+  kept_.memory = std::move(memory);
+  kept_.before = std::move(before);
+  kept_.last_forces = Teuchos::null;
 }
 
 void LoadHistory::start_anew()
 {
-  last_forces_ = Teuchos::null;
+  kept_.last_forces = Teuchos::null;
   state_.reset(); // two hierarchies would take twice the memory
   state_ = std::make_unique<SolverState>(*problem_, linear_);
   predictor_.forget();
@@ -133,19 +133,19 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   const double start = Teuchos::Time::wallTime();
   last_ = {};
   last_.time = t;
-  const Remembered before = remembered();
-  const Energies energies_before = memory_ ? memory_->energies : Energies{};
+  const Remembered before = kept_;
+  const Energies energies_before = kept_.memory ? kept_.memory->energies : Energies{};
   StepSolution s;
   double tolerance = energy_tolerance_, least = std::numeric_limits<double>::infinity();
   for (int attempt = 1;; ++attempt) {
     last_.parts = 0; // counted as they are solved
     s = advance_in_parts(t, {max_halvings_, most_halvings_for_balance, tolerance}, progress, now);
-    const double off = s.uzawa.converged ? relative_imbalance(energies_before, memory_->energies) : 0;
+    const double off = s.uzawa.converged ? relative_imbalance(energies_before, kept_.memory->energies) : 0;
     const bool in_vain = attempt == most_attempts || last_.parts == 1 || off > helpful * least;
     if (!(off > energy_tolerance_) || in_vain) break;
     least = off;
     tolerance *= 0.5 * energy_tolerance_ / off; // what parts miss adds up
-    go_back_to(before);
+    kept_ = before;                             // as if what came after had not been tried
   }
   last_.time = s.uzawa.converged ? t : tried_;
   last_.converged = s.uzawa.converged;
@@ -154,16 +154,9 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
   last_.displacements = prescribed_means(*problem_, s);
   last_.reactions = s.reactions;
-  last_.energies = last_.converged ? memory_->energies : unknown_energies();
+  last_.energies = last_.converged ? kept_.memory->energies : unknown_energies();
   last_.seconds = Teuchos::Time::wallTime() - start;
   return s;
-}
-
-void LoadHistory::go_back_to(const Remembered &then)
-{
-  memory_ = then.memory;
-  before_ = then.before;
-  last_forces_ = then.last_forces;
 }
 
 StepRecord LoadHistory::broken_off(const std::string &reason) const
@@ -174,13 +167,13 @@ StepRecord LoadHistory::broken_off(const std::string &reason) const
 StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, const Progress &progress,
                                            const std::function<void(const Problem &, const Step &)> &now)
 {
-  const Remembered before = remembered();
+  const Remembered before = kept_;
   StepSolution s = solve(t, options_, progress, now);
   const double from = before.memory ? before.memory->time : 0; // the body is at rest at t = 0
   const double half = 0.5 * (from + t);
   Halvings then = left;
   if (s.uzawa.converged) {
-    const Energies start = before.memory ? before.memory->energies : Energies{}, &end = memory_->energies;
+    const Energies start = before.memory ? before.memory->energies : Energies{}, &end = kept_.memory->energies;
     const double missed = std::abs(end.imbalance - start.imbalance);
     then.in_vain = missed < helpful * left.missed ? 0 : left.in_vain + 1;
     then.missed = std::min(missed, left.missed);
@@ -192,7 +185,7 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
   if (!(half > from && half < t)) return s;
   if (s.uzawa.converged) {
     --last_.parts;
-    go_back_to(before);
+    kept_ = before; // as if what came after had not been tried
   }
   s = advance_in_parts(half, then, progress, now);
   return s.uzawa.converged ? advance_in_parts(t, then, progress, now) : s;
@@ -203,12 +196,12 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
 {
   tried_ = t;
   const auto sides = problem_->model().seen_at(t).contact;
-  const bool on_foundation = memory_ && contact::any_moves_with_foundation(sides);
+  const bool on_foundation = kept_.memory && contact::any_moves_with_foundation(sides);
   const auto met_at = [&](const Vector &u) {
-    return contact::dents_met(problem_->discretization(), sides, memory_->dent, memory_->foundations, u);
+    return contact::dents_met(problem_->discretization(), sides, kept_.memory->dent, kept_.memory->foundations, u);
   };
-  RCP<const MultiVector> met = memory_ ? memory_->dent : Teuchos::null;
-  if (on_foundation) met = met_at(moved_along(*problem_, t, *memory_->displacement));
+  RCP<const MultiVector> met = kept_.memory ? kept_.memory->dent : Teuchos::null;
+  if (on_foundation) met = met_at(moved_along(*problem_, t, *kept_.memory->displacement));
   Step step = problem_->step(t, met.get());
   if (now) now(*problem_, step);
   Starts starts = starts_of(step);
@@ -221,7 +214,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     if (!s.uzawa.converged) return s;
     if (!on_foundation || search == most_searches) break;
     const auto next = met_at(*s.u);
-    if (settled(*met, *next, memory_->foundations)) break;
+    if (settled(*met, *next, kept_.memory->foundations)) break;
     met = next;
     step = problem_->step(t, met.get());
     starts = {{s.state}, {}};
@@ -234,13 +227,13 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
 Starts LoadHistory::starts_of(const Step &step)
 {
   Starts starts{std::exchange(offered_, {}), {}};
-  if (memory_) {
-    starts.states.push_back(state_of(step.contact, *memory_));
-    if (before_ && before_->time < memory_->time)
-      starts.states.push_back(extrapolated(step.contact, *before_, *memory_, step.time));
+  if (kept_.memory) {
+    starts.states.push_back(state_of(step.contact, *kept_.memory));
+    if (kept_.before && kept_.before->time < kept_.memory->time)
+      starts.states.push_back(extrapolated(step.contact, *kept_.before, *kept_.memory, step.time));
     starts.states.push_back(at_rest(step.contact, problem_->discretization()));
   }
-  if (memory_ || starts.states.empty())
+  if (kept_.memory || starts.states.empty())
     starts.predict = [this, &step] { return predictor_.predict(*problem_, step, memory()); };
   return starts;
 }
@@ -256,11 +249,11 @@ void LoadHistory::remember(const double t, const std::vector<contact::ContactOpt
   now.displacement = s.u;
   now.pressure = contact::node_columns(step.contact, s.contact.pressure, owned_nodes);
   now.gap = contact::node_columns(step.contact, moving_gap(*problem_, step.contact, s.contact.dent), owned_nodes);
-  now.energies = energies_after(*problem_, t, s, memory(), last_forces_.get(), *forces);
+  now.energies = energies_after(*problem_, t, s, memory(), kept_.last_forces.get(), *forces);
   if (max_all(problem_->discretization().mesh->comm(), static_cast<int>(s.state.multiplier.has_tangential())) > 0)
     now.tangential = contact::node_columns(step.contact, s.state.multiplier.tangential, owned_nodes);
-  before_ = std::exchange(memory_, std::move(now));
-  last_forces_ = forces;
+  kept_.before = std::exchange(kept_.memory, std::move(now));
+  kept_.last_forces = forces;
 }
 
 } // namespace rpc::analysis

@@ -89,9 +89,9 @@ public:
                      const std::function<void(const Problem &, const Step &)> &now);
 
   const Problem &problem() const { return *problem_; }
-  const Memory *memory() const { return memory_ ? &*memory_ : nullptr; }
-  const Memory *before() const { return before_ ? &*before_ : nullptr; } ///< of the step before
-  const StepRecord &last() const { return last_; }                       ///< of advance()
+  const Memory *memory() const { return kept_.memory ? &*kept_.memory : nullptr; }
+  const Memory *before() const { return kept_.before ? &*kept_.before : nullptr; } ///< of the step before
+  const StepRecord &last() const { return last_; }                                 ///< of advance()
   /// The step that advance() has left with an error.
   StepRecord broken_off(const std::string &reason) const;
 
@@ -110,9 +110,6 @@ private:
     RCP<const Vector>
         last_forces; // on the body from all but the foundation, after the last step (owned dofs) [N]; null: not known
   };
-  Remembered remembered() const { return {memory_, before_, last_forces_}; }
-  /// As if what came after had not been tried.
-  void go_back_to(const Remembered &then);
   StepSolution advance_in_parts(double t, Halvings left, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
   Starts starts_of(const Step &step);
@@ -124,9 +121,7 @@ private:
   solver::LinearSolverOptions linear_;
   std::unique_ptr<SolverState> state_;
   Predictor predictor_;
-  std::optional<Memory> memory_, before_; // of the last step, and of the one before it
-  RCP<const Vector>
-      last_forces_; // on the body from all but the foundation, after the last step (owned dofs) [N]; null: not known
+  Remembered kept_;
   std::vector<contact::ContactState> offered_;
   StepRecord last_;
   double energy_tolerance_ = std::numeric_limits<double>::infinity();
