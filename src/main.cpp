@@ -14,7 +14,6 @@
 #include "scene.hpp"
 #include "solve.hpp"
 
-#include <Teuchos_GlobalMPISession.hpp>
 #include <Teuchos_StackedTimer.hpp>
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
@@ -25,6 +24,10 @@
 #include <iostream>
 #include <malloc.h>
 #include <memory>
+
+#ifdef HAVE_TPETRACORE_MPI
+#include <mpi.h>
+#endif
 
 namespace
 {
@@ -52,6 +55,57 @@ void start_mpi_alone()
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);
+}
+
+/// MPI, where there is one, for several threads: a factor is made on one of its own while this one looks for signals.
+class MpiSession
+{
+public:
+#ifdef HAVE_TPETRACORE_MPI
+  MpiSession(int *const argc, char ***const argv)
+  {
+    int level = 0;
+    MPI_Init_thread(argc, argv, MPI_THREAD_MULTIPLE, &level);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &num_ranks_);
+  }
+  ~MpiSession()
+  {
+    MPI_Finalize();
+  }
+  void abort() const
+  {
+    MPI_Abort(MPI_COMM_WORLD, 1);
+  }
+#else
+  MpiSession(int *, char ***) {}
+  void abort() const {}
+#endif
+  MpiSession(const MpiSession &) = delete;
+  MpiSession &operator=(const MpiSession &) = delete;
+
+  int rank() const
+  {
+    return rank_;
+  }
+  int num_ranks() const
+  {
+    return num_ranks_;
+  }
+
+private:
+  int rank_ = 0, num_ranks_ = 1;
+};
+
+/// The process' exit status. Work that an interrupt has left behind must find all that it uses, and its MPI, to the end.
+int leave(const ExitCode code)
+{
+  if (rpc::work_goes_on()) {
+    std::cout.flush();
+    std::fflush(nullptr);
+    std::_Exit(static_cast<int>(code));
+  }
+  return static_cast<int>(code);
 }
 
 ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm, std::ostream &out)
@@ -127,15 +181,13 @@ int main(int argc, char *argv[])
   start_mpi_alone();
   rpc::install_interrupt_handlers();
   std::signal(SIGXFSZ, SIG_IGN); // a file beyond the shell's limit is a write that fails, not the end
-  const Teuchos::GlobalMPISession mpi(&argc, &argv, nullptr);
-  const bool root = Teuchos::GlobalMPISession::getRank() == 0;
+  const MpiSession mpi(&argc, &argv);
+  const bool root = mpi.rank() == 0;
   std::ostream out(root ? std::cout.rdbuf() : nullptr);
-  const auto stop = [](const char *what) { // maybe on this rank alone: nobody must wait for it
+  const auto stop = [&mpi](const char *what) { // maybe on this rank alone: nobody must wait for it
     std::cerr << "rpc: internal error: " << what << std::endl;
-#ifdef HAVE_TPETRACORE_MPI
-    if (Teuchos::GlobalMPISession::getNProc() > 1) MPI_Abort(MPI_COMM_WORLD, 1);
-#endif
-    return static_cast<int>(ExitCode::internal_error);
+    if (mpi.num_ranks() > 1) mpi.abort();
+    return leave(ExitCode::internal_error);
   };
   try {
     const rpc::Arguments arguments = rpc::split_arguments(argc, argv);
@@ -148,10 +200,10 @@ int main(int argc, char *argv[])
       RPC_REQUIRE_CODE(std::fflush(stdout) == 0 && !std::ferror(stdout), ExitCode::internal_error,
                        "output: cannot write to standard output");
     });
-    return static_cast<int>(code);
+    return leave(code);
   } catch (const rpc::Error &error) { // on all ranks
     if (root) std::cerr << "rpc: error: " << rpc::for_terminal(error.what()) << std::endl;
-    return static_cast<int>(error.code());
+    return leave(error.code());
   } catch (const std::exception &error) {
     return stop(rpc::is_out_of_memory(error) ? "out of memory; more ranks on more machines, or fewer cells, help"
                                              : rpc::for_terminal(rpc::one_line(error.what())).c_str());

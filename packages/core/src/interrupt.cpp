@@ -3,8 +3,17 @@
 #include "rpc/core/error.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <csignal>
 #include <initializer_list>
+#include <memory>
+#include <thread>
+
+#ifdef HAVE_MPI
+#include <mpi.h>
+#endif
 
 namespace rpc
 {
@@ -13,6 +22,7 @@ namespace
 
 volatile std::sig_atomic_t received = 0; // on this rank
 int agreed = 0;                          // on all ranks
+bool left_behind = false;                // work goes on
 
 struct sigaction action_of(void (*handler)(int))
 {
@@ -29,6 +39,18 @@ void remember(const int signal)
   received = signal;
   const struct sigaction by_default = action_of(SIG_DFL);
   for (const int other : {SIGINT, SIGTERM}) sigaction(other, &by_default, nullptr);
+}
+
+bool allows_threads(const Teuchos::Comm<int> &comm)
+{
+  if (comm.getSize() == 1) return true; // the other thread waits
+#ifdef HAVE_MPI
+  int level = 0;
+  MPI_Query_thread(&level);
+  return level >= MPI_THREAD_MULTIPLE;
+#else
+  return true;
+#endif
 }
 
 } // namespace
@@ -57,6 +79,41 @@ std::string interruption()
 void throw_if_interrupted(const Teuchos::Comm<int> &comm, const std::string &state)
 {
   if (interrupted(comm)) throw Error(ExitCode::not_converged, interruption() + " " + state);
+}
+
+bool ended_before_interrupt(const Teuchos::Comm<int> &comm, const std::function<void()> &work)
+{
+  if (!allows_threads(comm)) {
+    work();
+    return true;
+  }
+  constexpr std::chrono::milliseconds first_look(1), most_between_looks(200);
+  const auto ended = std::make_shared<std::atomic<bool>>(false);
+  std::thread thread([work, ended] {
+    work();
+    ended->store(true);
+  });
+  auto between_looks = first_look;
+  for (;;) {
+    const int mine = ended->load() ? 1 : 0;
+    int all = 0;
+    Teuchos::reduceAll(comm, Teuchos::REDUCE_MIN, mine, Teuchos::outArg(all));
+    if (all == 1) break;
+    if (interrupted(comm)) {
+      left_behind = true;
+      thread.detach();
+      return false;
+    }
+    std::this_thread::sleep_for(between_looks);
+    between_looks = std::min(2 * between_looks, most_between_looks);
+  }
+  thread.join();
+  return true;
+}
+
+bool work_goes_on()
+{
+  return left_behind;
 }
 
 } // namespace rpc

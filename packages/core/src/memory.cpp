@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <sstream>
+#include <string>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -19,15 +21,20 @@ double of_machine()
   return pages > 0 && page > 0 ? static_cast<double>(pages) * static_cast<double>(page) : unknown;
 }
 
+/// What a file of one number says; `otherwise` if there is none.
+double number_in(const std::string &path, const double otherwise)
+{
+  std::ifstream file(path);
+  double number = 0;
+  return file >> number ? number : otherwise;
+}
+
 /// Control groups of versions 2 and 1; "max" is no number.
 double of_container()
 {
   double least = unknown;
-  for (const char *const path : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-    std::ifstream file(path);
-    double bytes = 0;
-    if (file >> bytes && bytes > 0) least = std::min(least, bytes);
-  }
+  for (const char *const path : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"})
+    if (const double bytes = number_in(path, 0); bytes > 0) least = std::min(least, bytes);
   return least;
 }
 
@@ -38,11 +45,40 @@ double of_shell()
   return static_cast<double>(limit.rlim_cur);
 }
 
+/// "MemAvailable:  24000000 kB": what the system could give without swapping.
+double available()
+{
+  std::ifstream file("/proc/meminfo");
+  std::string key, line;
+  for (double kilobytes = 0; file >> key && std::getline(file, line);)
+    if (key == "MemAvailable:" && std::istringstream(line) >> kilobytes) return 1024 * kilobytes;
+  return unknown;
+}
+
+double left_in_container()
+{
+  const std::string folder = "/sys/fs/cgroup/";
+  const double left =
+      of_container() - number_in(folder + "memory.current", number_in(folder + "memory/memory.usage_in_bytes", 0));
+  return std::max(left, 0.);
+}
+
+double left_in_shell()
+{
+  const double pages = number_in("/proc/self/statm", 0);
+  return std::max(of_shell() - pages * static_cast<double>(sysconf(_SC_PAGESIZE)), 0.);
+}
+
 } // namespace
 
 double memory_limit()
 {
   return std::min({of_machine(), of_container(), of_shell()});
+}
+
+double memory_left()
+{
+  return std::min({available(), left_in_container(), left_in_shell()});
 }
 
 } // namespace rpc

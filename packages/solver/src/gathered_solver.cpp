@@ -5,7 +5,7 @@
 #include "rpc/core/parallel.hpp"
 
 #include <MueLu_Level.hpp>
-#include <Teuchos_LAPACK.hpp>
+#include <limits>
 #include <stdexcept>
 
 namespace rpc::solver
@@ -13,7 +13,7 @@ namespace rpc::solver
 namespace
 {
 
-constexpr std::size_t most_dense_rows = 5000; // 200 MB on each rank
+constexpr std::size_t most_rows = 5000; // on each rank
 
 } // namespace
 
@@ -33,24 +33,28 @@ void GatheredSolver::Setup(MueLu::Level &level)
 {
   const auto A = Get<RCP<XpetraMatrix>>(level, "A");
   const auto &rows = *A->getRowMap(), &columns = *A->getColMap();
-  RPC_REQUIRE(rows.getGlobalNumElements() <= most_dense_rows,
+  RPC_REQUIRE(rows.getGlobalNumElements() <= most_rows,
               "deck: multigrid ends with a level of "
                   << rows.getGlobalNumElements() << " rows; without Zoltan2 several ranks can solve at most "
-                  << most_dense_rows << " of them together. Lower \"Linear Solver->MueLu->coarse: max size\", raise "
+                  << most_rows << " of them together. Lower \"Linear Solver->MueLu->coarse: max size\", raise "
                   << "\"max levels\", or give a \"coarse: type\".");
   size_ = static_cast<int>(rows.getGlobalNumElements());
-  std::vector<double> mine(static_cast<std::size_t>(size_) * size_);
+  SymmetricEntries mine;
   for (int row = 0; row < num_local(rows); ++row) {
     Teuchos::ArrayView<const int> column;
     Teuchos::ArrayView<const double> value;
     A->getLocalRowView(row, column, value);
-    for (Teuchos_Ordinal k = 0; k < column.size(); ++k) // coarse levels number their unknowns from 0
-      mine[columns.getGlobalElement(column[k]) * size_ + rows.getGlobalElement(row)] += value[k];
+    for (Teuchos_Ordinal k = 0; k < column.size(); ++k) { // coarse levels number their unknowns from 0
+      mine.row.push_back(static_cast<int>(rows.getGlobalElement(row)));
+      mine.column.push_back(static_cast<int>(columns.getGlobalElement(column[k])));
+      mine.value.push_back(value[k]);
+    }
   }
-  factor_ = summed(*rows.getComm(), mine);
-  int info = 0;
-  Teuchos::LAPACK<int, double>().POTRF('L', size_, factor_.data(), size_, &info);
-  if (info != 0) throw std::runtime_error("the coarse matrix is not positive definite");
+  const auto &comm = *rows.getComm();
+  factor_ = factor_of(
+      size_, {gathered_by_all(comm, mine.row), gathered_by_all(comm, mine.column), gathered_by_all(comm, mine.value)},
+      std::numeric_limits<double>::infinity());
+  if (!factor_) throw std::runtime_error("the coarse matrix is not positive definite");
   IsSetup(true);
 }
 
@@ -67,8 +71,7 @@ void GatheredSolver::Apply(XpetraVectors &x, const XpetraVectors &b, bool) const
     std::vector<double> mine(size_, 0.);
     for (int i = 0; i < num_local; ++i) mine[map.getGlobalElement(i)] = right(i, k);
     std::vector<double> all = summed(*map.getComm(), mine);
-    int info = 0;
-    Teuchos::LAPACK<int, double>().POTRS('L', size_, 1, factor_.data(), size_, all.data(), size_, &info);
+    factor_->solve(all.data());
     for (int i = 0; i < num_local; ++i) left(i, k) = all[map.getGlobalElement(i)];
   }
 }

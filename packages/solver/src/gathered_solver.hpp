@@ -1,20 +1,21 @@
 #pragma once
 
 #include "rpc/core/xpetra.hpp"
+#include "sparse_factor.hpp"
 
 #include <MueLu_SmootherPrototype.hpp>
-#include <vector>
+#include <memory>
 
 namespace rpc::solver
 {
 
 using CoarseSolver = MueLu::SmootherPrototype<double, LO, GO, Node>;
 
-/// Rows to which multigrid coarsens then: their dense factor costs next to nothing.
+/// Rows to which multigrid coarsens then: their factor costs next to nothing.
 constexpr int most_gathered_rows = 300;
 
 /// MueLu's coarse solver on several ranks where there is no Zoltan2, which would bring the coarse level to one: each rank
-/// factors the whole coarse matrix, dense. (MueLu 13.2's direct solvers are wrong on a distributed matrix, and a polynomial
+/// factors the whole coarse matrix. (MueLu 13.2's direct solvers are wrong on a distributed matrix, and a polynomial
 /// leaves the smoothest modes to CG.)
 class GatheredSolver : public CoarseSolver
 {
@@ -26,11 +27,14 @@ public:
   void Setup(MueLu::Level &level) override;
   void Apply(XpetraVectors &x, const XpetraVectors &b, bool initial_guess_is_zero) const override;
   RCP<CoarseSolver> Copy() const override;
-  std::size_t getNodeSmootherComplexity() const override { return factor_.size(); }
+  std::size_t getNodeSmootherComplexity() const override
+  {
+    return factor_ ? static_cast<std::size_t>(factor_->cost().entries) : 0;
+  }
 
 private:
   int size_ = 0;
-  std::vector<double> factor_; // (size, size) Cholesky's, lower half, by columns
+  std::shared_ptr<const SparseFactor> factor_; // null: not set up
 };
 
 } // namespace rpc::solver

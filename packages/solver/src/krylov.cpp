@@ -24,6 +24,10 @@ constexpr int gmres_vectors = 50;
 
 constexpr const char *gmres = "Pseudoblock GMRES";
 
+/// Thrown through Belos where an iteration is given up.
+struct GivenUp {
+};
+
 using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
 using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
 using SolverFactory = Belos::SolverFactory<double, MultiVector, Operator>;
@@ -67,8 +71,13 @@ public:
   {
     constexpr int applications_between = 8; // a sum over all ranks each time
     if (++applications_ % applications_between == 0 && interrupted(*map_->getComm())) throw Interrupted();
-    // Belos' CG preconditions a residual before it looks whether the residual is small enough to stop.
-    if (enough > 0 && x.getNumVectors() == 1 && x.getVector(0)->norm2() <= enough) return y.assign(x);
+    if (x.getNumVectors() == 1 && (enough > 0 || gives_up)) {
+      const double norm = x.getVector(0)->norm2();
+      // Belos' CG preconditions a residual before it looks whether the residual is small enough to stop.
+      if (norm <= enough) return y.assign(x);
+      if (gives_up && gives_up(iterations, norm / norm_of_right_side)) throw GivenUp();
+    }
+    ++iterations;
     if (to_residuals)
       B->apply_to_residual(x, y);
     else
@@ -78,6 +87,9 @@ public:
   const Preconditioner *B = nullptr;
   bool to_residuals = false;
   double enough = 0; // CG stops at residuals of this norm, which need no preconditioner; 0: not known
+  GivesUp gives_up;  // null: never
+  double norm_of_right_side = 1;
+  mutable int iterations = 0;
 
 private:
   RCP<const Map> map_;
@@ -119,7 +131,7 @@ Krylov::~Krylov() = default;
 
 /// From the preconditioner's start, else from 0.
 KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Preconditioner &B, const Vector &b,
-                             Vector &x, const double tolerance)
+                             Vector &x, const double tolerance, const GivesUp &gives_up)
 {
   KrylovResult result;
   const Preconditioner::Start start = is_symmetric ? B.start(b) : Preconditioner::Start();
@@ -133,6 +145,9 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
   method.preconditioner->enough = method.stops_by_residual ? surely * least * rest->norm2() : 0;
   method.preconditioner->to_residuals = is_symmetric;
   method.preconditioner->B = &B;
+  method.preconditioner->gives_up = is_symmetric ? gives_up : GivesUp();
+  method.preconditioner->norm_of_right_side = b.norm2();
+  method.preconditioner->iterations = 0;
   x.putScalar(0);
   method.problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), RCP<const MultiVector>(rest));
   try {
@@ -142,6 +157,10 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
     if (!result.converged)
       result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(result.residual) + " after " +
                       std::to_string(result.iterations) + " iterations";
+  } catch (const GivenUp &) {
+    result.given_up = true;
+    result.iterations = method.preconditioner->iterations;
+    result.reason = "given up after " + std::to_string(result.iterations) + " CG iterations";
   } catch (const std::bad_alloc &) { // on this rank alone
     throw;
   } catch (const std::exception &failure) { // such as an indefinite or singular matrix; the same on all ranks
@@ -156,17 +175,17 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
 // CG breaks down, too, where the residual is at rounding level: of a small remainder on the patch, where its
 // preconditioner expects zeros. Then CG starts once more, from the residual as it is.                           (4.9a)
 KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, const Vector &b, Vector &x,
-                           const double tolerance)
+                           const double tolerance, const GivesUp &gives_up)
 {
   Method &method = is_symmetric ? *of_deck_ : for_any_matrix();
-  KrylovResult result = iterate(method, is_symmetric, B, b, x, std::max(tolerance, options_.tolerance));
+  KrylovResult result = iterate(method, is_symmetric, B, b, x, std::max(tolerance, options_.tolerance), gives_up);
   if (!result.broken || !std::isfinite(x.norm2())) return result;
   Vector residual(b, Teuchos::Copy);
   H_->apply(x, residual, Teuchos::NO_TRANS, -1., 1.);
   if (!(energy_error(B, b, residual) <= small_error)) return result;
   Vector move(b.getMap());
   const double rest = std::max(tolerance * b.norm2() / residual.norm2(), options_.tolerance);
-  KrylovResult more = iterate(method, is_symmetric, B, residual, move, rest);
+  KrylovResult more = iterate(method, is_symmetric, B, residual, move, rest, {});
   if (more.converged)
     x.update(1., move, 1.);
   else

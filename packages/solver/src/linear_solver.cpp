@@ -6,6 +6,7 @@
 #include "preconditioner/algebraic.hpp"
 #include "preconditioner/factor.hpp"
 #include "preconditioner/meshes.hpp"
+#include "preconditioner/sparse.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -28,10 +29,25 @@ namespace
 // multigrid that is nearly one.
 constexpr GO most_rows_set_up_anew = 2500;
 
+// A sparse factor is thought of after so many CG iterations of a solve, and iterations count as lost beyond so many.
+constexpr int first_iterations = 15, fair_iterations = 30;
+// Rows up to which it is thought of at all: in the plane they take gigabytes, in space more than most machines have.
+constexpr GO most_sparse_rows = 3000000;
+
+/// About what a CG iteration with multigrid takes [s], by constants of one machine: a choice by them is the same in every run.
+double seconds_of_iteration(const StiffnessOperator &K)
+{
+  const bool plane = K.dofs_per_node() == 2;
+  const double of_row = K.rows().pays() ? (plane ? 1e-7 : 3e-7) : (plane ? 3e-7 : 1.2e-6);
+  const Map &dofs = *K.getDomainMap();
+  return of_row * static_cast<double>(dofs.getGlobalNumElements()) / dofs.getComm()->getSize();
+}
+
 /// What is to be done about a result; nothing where it is good.
-std::optional<Outcome> outcome_of(const LinearSolver::Result &result)
+std::optional<Outcome> outcome_of(const LinearSolver::Result &result, const bool given_up)
 {
   if (result.interrupted) return std::nullopt;
+  if (given_up) return dear;
   if (result.broken) return broken;
   if (!result.converged) return failed;
   if (result.iterations > patience) return slow;
@@ -56,8 +72,13 @@ struct LinearSolver::Impl {
   std::optional<Meshes> meshes; // nothing: the deck or the mesh rules it out
   std::optional<Factor> factor; // nothing: there are many unknowns, the deck rules it out, or it was too weak
   Algebraic algebraic;
+  Sparse sparse;
   Krylov krylov;
-  bool on_meshes;                 // or on the factor or the algebraic hierarchy
+  bool on_meshes;                 // or on one of the others
+  bool on_sparse = false;         // from some solve on
+  bool may_be_sparse;             // the deck leaves the preconditioner open, and memory may do
+  double lost_iterations = 0;     // of CG, in all solves, beyond what is fair
+  bool given_up = false;          // the last solve, in favour of a sparse factor
   bool met_singular = false;      // a matrix that neither hierarchy can solve for
   bool stands_in = false;         // since the meshes failed in the present solve
   Preconditioner *used = nullptr; // in the last solve
@@ -68,6 +89,9 @@ struct LinearSolver::Impl {
   bool counted(Preconditioner &B, double tolerance);
   Result attempt(const Vector &b, Vector &x, double tolerance);
   Used used_for_policy() const;
+  const Sparse::Prospect *prospect();
+  double iterations_to_come(int iterations, double residual, double tolerance) const;
+  bool sparse_pays(int iterations, double residual, double tolerance);
   bool take(Next next, const std::string &reason);
   void record(const Preconditioner &B, const std::string &reason);
 };
@@ -77,7 +101,7 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
     : options(std::move(given)), H(of), coordinates(nodes),
       algebraic(H, {nodes, modes}, options,
                 static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew),
-      krylov(options, H)
+      sparse(H), krylov(options, H)
 {
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
   const bool automatic = options.multigrid == "auto" && options.muelu.numParams() == 0;
@@ -85,6 +109,38 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
     meshes.emplace(H, std::move(levels), options);
   if (automatic && unknowns <= most_rows_set_up_anew) factor.emplace(H);
   on_meshes = meshes.has_value();
+  may_be_sparse = automatic && unknowns <= most_sparse_rows;
+}
+
+/// What a sparse factor takes; null where it cannot be had. Collective.
+const Sparse::Prospect *LinearSolver::Impl::prospect()
+{
+  if (!may_be_sparse) return nullptr;
+  const auto &found = sparse.prospect();
+  if (found.obstacle.empty()) return &found;
+  may_be_sparse = false;
+  sparse.forget();
+  record(sparse, "not made: " + found.obstacle);
+  return nullptr;
+}
+
+/// CG iterations of a solve in all, at its present rate.
+double LinearSolver::Impl::iterations_to_come(const int iterations, const double residual, const double tolerance) const
+{
+  const double most = options.max_iterations;
+  return residual < 1 ? std::min(iterations * std::log(tolerance) / std::log(residual), most) : most;
+}
+
+/// Whether the iterations that CG has lost, and will lose in this solve at its present rate, take longer than a sparse factor.
+bool LinearSolver::Impl::sparse_pays(const int iterations, const double residual, const double tolerance)
+{
+  if (iterations < first_iterations || !may_be_sparse) return false;
+  const double all = iterations_to_come(iterations, residual, tolerance);
+  const double lost = seconds_of_iteration(H->base()) * (lost_iterations + std::max(all - fair_iterations, 0.));
+  constexpr double seconds_of_analysis = 5e-6; // a row; not worth it for less
+  if (lost < seconds_of_analysis * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
+  const auto *const found = prospect();
+  return found && found->cost.seconds < lost;
 }
 
 /// Brings a preconditioner to H, and counts what that took. @return whether it can be used
@@ -103,8 +159,8 @@ bool LinearSolver::Impl::counted(Preconditioner &B, const double tolerance)
 void LinearSolver::Impl::prepare(const double tolerance)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
-  if (on_meshes) {
-    counted(*meshes, tolerance);
+  if (on_sparse || on_meshes) {
+    counted(on_sparse ? static_cast<Preconditioner &>(sparse) : *meshes, tolerance);
     return;
   }
   if (factor && counted(*factor, tolerance)) return;
@@ -131,12 +187,20 @@ void LinearSolver::Impl::record(const Preconditioner &B, const std::string &reas
 LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, const double tolerance)
 {
   Result result;
+  given_up = false;
   try {
     if (interrupted(*H->getDomainMap()->getComm())) throw Interrupted();
     prepare(std::max(tolerance, options.tolerance));
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
-    const KrylovResult done = krylov.solve(*used, H->is_symmetric(), b, x, tolerance);
+    const double least = std::max(tolerance, options.tolerance);
+    const auto gives_up = [&](const int iterations, const double residual) {
+      return sparse_pays(iterations, residual, least);
+    };
+    const KrylovResult done = krylov.solve(*used, H->is_symmetric(), b, x, tolerance,
+                                           may_be_sparse && !on_sparse ? GivesUp(gives_up) : GivesUp());
+    given_up = done.given_up;
+    lost_iterations += std::max(0, done.iterations - fair_iterations);
     if (used == &algebraic) algebraic.learn(done.iterations, done.residual);
     result = {done.converged, done.broken, false, done.iterations, done.reason};
     counts.iterations.push_back(result.iterations);
@@ -165,6 +229,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
 
 Used LinearSolver::Impl::used_for_policy() const
 {
+  if (on_sparse) return sparse.is_from_scratch() ? Used::sparse_fresh : Used::sparse;
   if (on_meshes) return met_singular ? Used::meshes_again : Used::meshes;
   if (stands_in) return Used::stand_in;
   if (factor && used == &*factor) return Used::factor;
@@ -185,8 +250,24 @@ bool LinearSolver::Impl::take(const Next next, const std::string &reason)
     record(factor ? static_cast<const Preconditioner &>(*factor) : algebraic, reason);
     return true;
   case Next::anew:
+    if (on_sparse) {
+      sparse.renew();
+    } else {
+      algebraic.forget();
+      record(algebraic, "anew");
+    }
+    return true;
+  case Next::sparse:
+    if (!prospect()) return false;
+    if (on_meshes) {
+      meshes->forget();
+      counts.fallback = reason;
+    }
     algebraic.forget();
-    record(algebraic, "anew");
+    factor.reset();
+    on_meshes = false;
+    on_sparse = true;
+    record(sparse, reason);
     return true;
   case Next::stronger:
     if (!algebraic.strengthen()) return false;
@@ -235,11 +316,12 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const doubl
   for (;;) {
     const Result result = impl_->attempt(b, x, tolerance);
     if (impl_->counts.path.empty() && impl_->used) impl_->record(*impl_->used, "");
-    const auto outcome = outcome_of(result);
+    const auto outcome = outcome_of(result, impl_->given_up);
     if (!outcome) return result;
     const Rule &rule = rule_for(impl_->used_for_policy(), *outcome);
     const std::string reason = result.converged ? std::to_string(result.iterations) + " CG iterations" : result.reason;
-    if (!impl_->take(rule.next, reason) || *outcome == slow) return result;
+    const bool other = impl_->take(rule.next, reason) || impl_->take(rule.otherwise, reason);
+    if (!other || *outcome == slow) return result;
   }
 }
 

@@ -53,11 +53,12 @@ Teuchos::ParameterList valid_linear_solver_parameters()
             "What of an algebraic hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
             "tentative prolongator), `RP` (transfer operators).");
   set_pass_through(valid, "Belos", "Handed to Belos as it is.");
-  set_pass_through(
-      valid, "MueLu",
-      "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing. Where CG takes more "
-      "than 150 iterations, a factorization takes over on one rank up to 100000 unknowns, else a stronger "
-      "smoother, unless the coarse size or the smoother are given here.");
+  set_pass_through(valid, "MueLu",
+                   "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing. Without it, a "
+                   "sparse factor takes over "
+                   "where that takes less time than the CG iterations that are left. Where there is none, and CG takes "
+                   "more than 150 "
+                   "iterations, the smoother becomes stronger, unless the coarse size or the smoother are given here.");
   return valid;
 }
 

@@ -206,8 +206,8 @@ void add_changes(const Changes &changes, const int dim, const Vector &place, con
 }
 
 /// The factor of the patch's own block of H, from this rank's rows and all others'.
-std::optional<BandCholesky> factor_of_patch(const Comm &comm, const int size, const PatchColumns &list,
-                                            const Vector &place, const double most_work)
+std::unique_ptr<SparseFactor> factor_of_patch(const Comm &comm, const int size, const PatchColumns &list,
+                                              const Vector &place, const double most_work)
 {
   const auto rows = to_host(list.row);
   const auto begin = to_host(list.begin);
@@ -224,9 +224,9 @@ std::optional<BandCholesky> factor_of_patch(const Comm &comm, const int size, co
       mine.value.push_back(value(e));
     }
   }
-  const SymmetricEntries all{gathered_by_all(comm, mine.row), gathered_by_all(comm, mine.column),
-                             gathered_by_all(comm, mine.value)};
-  return BandCholesky::factor(size, all, most_work);
+  SymmetricEntries all{gathered_by_all(comm, mine.row), gathered_by_all(comm, mine.column),
+                       gathered_by_all(comm, mine.value)};
+  return factor_of(size, std::move(all), most_work);
 }
 
 /// This rank's part of x, R x.
@@ -331,11 +331,10 @@ std::optional<LocalCorrection> LocalCorrection::around(const UpdatedOperator &H,
   number_members(place, through - members, correction.member_row_, correction.member_);
   const PatchColumns list = patch_columns(A, place);
   add_changes(changes, H.dofs_per_node(), place, list);
-  const auto factor = factor_of_patch(comm, correction.size_, list, place, most_work);
-  if (!factor) return std::nullopt;
+  correction.factor_ = factor_of_patch(comm, correction.size_, list, place, most_work);
+  if (!correction.factor_) return std::nullopt;
   correction.columns_ = list;
   correction.entries_ = column_after_column(list, correction.size_);
-  correction.factor_ = std::make_shared<const BandCholesky>(*factor);
   return correction;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "band_cholesky.hpp"
 #include "rpc/algebra/updated_operator.hpp"
+#include "sparse_factor.hpp"
 
 #include <memory>
 #include <optional>
@@ -61,7 +61,7 @@ private:
   PatchEntries entries_;                       ///< of these columns
   DeviceView<LO *> member_row_;                ///< (own members) owned rows in the patch ...
   DeviceView<int *> member_;                   ///< (own members) ... and where
-  std::shared_ptr<const BandCholesky> factor_; ///< of R H R^T
+  std::shared_ptr<const SparseFactor> factor_; ///< of R H R^T
 };
 
 } // namespace rpc::solver

@@ -1,18 +1,14 @@
 #include "rpc/solver/mesh_multigrid.hpp"
 
-#include "band_cholesky.hpp"
 #include "coarse_contact.hpp"
 #include "contact_supports.hpp"
 #include "node_interpolation.hpp"
 #include "node_smoother.hpp"
 #include "rpc/algebra/bounded_update.hpp"
 #include "rpc/core/math.hpp"
-#include "rpc/core/parallel.hpp"
 
 #include <Tpetra_RowMatrixTransposer.hpp>
 #include <algorithm>
-#include <limits>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -51,61 +47,6 @@ public:
 private:
   RCP<const UpdatedOperator> H_;
   bool with_update_;
-};
-
-class DirectSolver : public CoarsestSolver
-{
-public:
-  explicit DirectSolver(RCP<const CrsMatrix> A) : A_(std::move(A)) {}
-
-  /// @return whether there is a factor; collective
-  bool factor(const double most_work)
-  {
-    const Comm &comm = *A_->getComm();
-    const Map &rows = *A_->getRowMap(), &columns = *A_->getColMap();
-    const auto matrix = A_->getLocalMatrixDevice();
-    const auto begin = to_host(matrix.graph.row_map);
-    const auto entries = to_host(matrix.graph.entries);
-    const auto values = to_host(matrix.values);
-    SymmetricEntries mine;
-    for (LO row = 0; row < num_local(rows); ++row)
-      for (auto e = begin(row); e < begin(row + 1); ++e) {
-        const int i = static_cast<int>(rows.getGlobalElement(row));
-        const int j = static_cast<int>(columns.getGlobalElement(entries(e)));
-        if (i < j) continue;
-        mine.row.push_back(i);
-        mine.column.push_back(j);
-        mine.value.push_back(values(e));
-      }
-    const SymmetricEntries all{gathered_by_all(comm, mine.row), gathered_by_all(comm, mine.column),
-                               gathered_by_all(comm, mine.value)};
-    factor_ = BandCholesky::factor(static_cast<int>(rows.getGlobalNumElements()), all, most_work);
-    return factor_.has_value();
-  }
-  void update() override
-  {
-    if (!factor(std::numeric_limits<double>::infinity())) throw std::runtime_error(not_definite);
-  }
-
-  void apply(const Vector &b, Vector &x) const override
-  {
-    if (!factor_) throw std::runtime_error(not_definite); // the last update failed
-    const Map &map = *b.getMap();
-    std::vector<double> all(map.getGlobalNumElements());
-    Kokkos::fence(); // the host reads and writes what kernels may still be at
-    {
-      const auto from = b.getLocalViewHost(Tpetra::Access::ReadOnly);
-      for (LO i = 0; i < num_local(map); ++i) all[map.getGlobalElement(i)] = from(i, 0);
-    }
-    if (map.getComm()->getSize() > 1) all = summed(*map.getComm(), all);
-    factor_->solve(all.data());
-    const auto to = x.getLocalViewHost(Tpetra::Access::OverwriteAll);
-    for (LO i = 0; i < num_local(map); ++i) to(i, 0) = all[map.getGlobalElement(i)];
-  }
-
-private:
-  RCP<const CrsMatrix> A_;
-  std::optional<BandCholesky> factor_;
 };
 
 /// Sum of the changes over the larger one of the sums, in [0, 2], by the norms of the blocks; collective.
@@ -191,12 +132,6 @@ void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView
 }
 
 } // namespace
-
-std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, const double most_work)
-{
-  auto solver = std::make_unique<DirectSolver>(std::move(A));
-  return solver->factor(most_work) ? std::move(solver) : nullptr;
-}
 
 /// A mesh, its smoother and its transfer to the next coarser one.
 struct MeshMultigrid::Level {

@@ -10,7 +10,8 @@ constexpr int patience = 150;
 enum Outcome : unsigned {
   slow = 1,   ///< it converged, in more than `patience` iterations
   failed = 2, ///< it stopped before it converged
-  broken = 4  ///< the set-up or the Krylov method broke down: the matrix may be singular
+  broken = 4, ///< the set-up or the Krylov method broke down: the matrix may be singular
+  dear = 8    ///< it was given up, for a sparse factor takes less time than the iterations that were left
 };
 
 /// What it was preconditioned with.
@@ -20,15 +21,18 @@ enum class Used {
   stand_in,     ///< factor or algebraic hierarchy, in the solve in which multigrid on meshes failed
   factor,       ///< of H, of few unknowns
   algebraic,    ///< a hierarchy that followed changes of states, or reused parts
-  from_scratch  ///< a hierarchy made from nothing for these states
+  from_scratch, ///< a hierarchy made from nothing for these states
+  sparse,       ///< a sparse factor that followed changes of states
+  sparse_fresh  ///< a sparse factor made for these states
 };
 
-/// What takes over: in the same solve where it failed or broke down, for the next one where it was slow.
+/// What takes over: in the same solve where it failed, broke down or was given up, for the next one where it was slow.
 enum class Next {
   nothing,    ///< the result stands
   stand_in,   ///< the factor or the algebraic hierarchy, instead of meshes
-  anew,       ///< the algebraic hierarchy, from nothing
-  stronger,   ///< the algebraic hierarchy with a factor or a stronger smoother; once, and not against the deck
+  anew,       ///< the same, from nothing
+  sparse,     ///< a sparse factor, where memory allows one
+  stronger,   ///< the algebraic hierarchy with a stronger smoother; once, and not against the deck
   meshes_back ///< multigrid on meshes, for the next solve; the result stands: the matrix is singular
 };
 
@@ -37,22 +41,31 @@ struct Rule {
   Used used;
   unsigned outcomes; ///< for which it holds
   Next next;
+  Next otherwise; ///< where that cannot be had
 };
 
 // clang-format off
 /// The whole policy of what is tried where a linear solve fails or is slow. There is one row for each case.
 constexpr Rule policy[] = {
-    // after               that was                next
-    {Used::meshes,         slow | failed | broken, Next::stand_in},    // coarse meshes miss what the matrix tells; it stays
-    {Used::meshes_again,   slow | failed,          Next::stand_in},    // the same
-    {Used::meshes_again,                   broken, Next::nothing},     // an active set leaves the body unheld, once more
-    {Used::stand_in,       slow | failed,          Next::stronger},    // aggregation misses slow modes
-    {Used::stand_in,                       broken, Next::meshes_back}, // not the hierarchy: an active set leaves the body unheld
-    {Used::factor,         slow | failed,          Next::stronger},    // its rounding is too large
-    {Used::factor,                         broken, Next::nothing},     // the matrix is singular
-    {Used::algebraic,      slow | failed | broken, Next::anew},        // corrections or reused parts may be to blame
-    {Used::from_scratch,   slow | failed,          Next::stronger},    // aggregation misses slow modes
-    {Used::from_scratch,                   broken, Next::nothing},     // the matrix is singular
+    // after               that was                next          otherwise
+    {Used::meshes,         dear | failed,          Next::sparse, Next::stand_in},     // coarse meshes miss what the matrix tells; it stays
+    {Used::meshes,         slow,                   Next::stand_in, Next::nothing},    // the same, and a factor would take longer
+    {Used::meshes,         broken,                 Next::stand_in, Next::nothing},    // the same
+    {Used::meshes_again,   dear | failed,          Next::sparse, Next::stand_in},     // the same
+    {Used::meshes_again,   slow,                   Next::stand_in, Next::nothing},    // the same
+    {Used::meshes_again,   broken,                 Next::nothing, Next::nothing},     // an active set leaves the body unheld, once more
+    {Used::stand_in,       dear | failed,          Next::sparse, Next::stronger},     // aggregation misses slow modes
+    {Used::stand_in,       slow,                   Next::stronger, Next::nothing},    // the same, and a factor would take longer
+    {Used::stand_in,       broken,                 Next::meshes_back, Next::nothing}, // not the hierarchy: an active set leaves the body unheld
+    {Used::factor,         dear | slow | failed,   Next::sparse, Next::stronger},     // its rounding is too large
+    {Used::factor,         broken,                 Next::nothing, Next::nothing},     // the matrix is singular
+    {Used::algebraic,      dear,                   Next::sparse, Next::anew},         // aggregation misses slow modes
+    {Used::algebraic,      slow | failed | broken, Next::anew, Next::nothing},        // corrections or reused parts may be to blame
+    {Used::from_scratch,   dear | failed,          Next::sparse, Next::stronger},     // aggregation misses slow modes
+    {Used::from_scratch,   slow,                   Next::stronger, Next::nothing},    // the same, and a factor would take longer
+    {Used::from_scratch,   broken,                 Next::nothing, Next::nothing},     // the matrix is singular
+    {Used::sparse,         ~0U,                    Next::anew, Next::nothing},        // corrections may be to blame
+    {Used::sparse_fresh,   ~0U,                    Next::nothing, Next::nothing},     // the matrix is singular, or nearly so
 };
 // clang-format on
 

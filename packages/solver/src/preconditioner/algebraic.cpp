@@ -11,8 +11,6 @@ namespace rpc::solver
 namespace
 {
 
-// Up to how many unknowns a stronger preconditioner is a factorization.
-constexpr GO most_direct_rows = 100000;
 // Multigrid is made for closed nodes of at most so many times their own stiffness: with all of the penalty, coarse functions
 // could not move near them, and CG would take a third more iterations. The rest is left to the correction.   (4.9)
 constexpr double most_stiffness = 5;
@@ -149,15 +147,9 @@ double Algebraic::excess(const double digits) const
 bool Algebraic::strengthen()
 {
   if (!may_strengthen_ || std::exchange(strengthened_, true)) return false;
-  const GO rows = static_cast<GO>(getDomainMap()->getGlobalNumElements());
-  if (getDomainMap()->getComm()->getSize() == 1 && rows <= most_direct_rows) {
-    muelu_.set("coarse: max size", static_cast<int>(rows) + 1);
-    muelu_.set("reuse: type", "none");
-  } else {
-    Teuchos::ParameterList &smoother = muelu_.sublist("smoother: params");
-    smoother.set("chebyshev: degree", 8);
-    smoother.set("chebyshev: ratio eigenvalue", 50.);
-  }
+  Teuchos::ParameterList &smoother = muelu_.sublist("smoother: params");
+  smoother.set("chebyshev: degree", 8);
+  smoother.set("chebyshev: ratio eigenvalue", 50.);
   forget();
   return true;
 }

@@ -41,8 +41,8 @@ public:
   bool is_from_scratch() const { return is_fresh_ && !is_renewed_; }
   /// CG's iterations to |r|/|b| = residual, from which it learns when it has worn out.
   void learn(int iterations, double residual);
-  /// For nearly incompressible or badly shaped cells, where aggregation misses slow modes: a factorization by MueLu on one rank, where
-  /// that is affordable, else a stronger smoother. At most once, and not against what the deck asks for.
+  /// A stronger smoother, for nearly incompressible or badly shaped cells, where aggregation misses slow modes and a factor would be too
+  /// large. At most once, and not against what the deck asks for.
   /// @return whether it is another preconditioner now, to be made from nothing
   bool strengthen();
 

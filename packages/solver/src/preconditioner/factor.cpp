@@ -1,5 +1,6 @@
 #include "preconditioner/factor.hpp"
 
+#include "direct_solver.hpp"
 #include "rpc/algebra/bounded_update.hpp"
 
 namespace rpc::solver
@@ -18,7 +19,7 @@ Preconditioner::Prepared Factor::prepare(double)
     factor_.reset();
     if (A_.is_null()) A_ = H_->base().copy();
     write_update(*A_, *H_, bounded_update(*H_));
-    factor_ = direct_solver(A_, most_work_of_factor);
+    factor_ = direct_solver(A_, H_->dofs_per_node(), most_work_of_factor);
     revision_ = H_->revision();
   }
   if (!factor_) return Prepared::refused;

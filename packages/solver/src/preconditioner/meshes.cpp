@@ -1,5 +1,6 @@
 #include "preconditioner/meshes.hpp"
 
+#include "direct_solver.hpp"
 #include "muelu_defaults.hpp"
 #include "multigrid.hpp"
 
@@ -57,7 +58,7 @@ private:
 
 std::unique_ptr<CoarsestSolver> Meshes::coarsest(const MeshLevel &level, const bool has_few_unknowns) const
 {
-  if (has_few_unknowns) return direct_solver(level.stiffness);
+  if (has_few_unknowns) return direct_solver(level.stiffness, H_->dofs_per_node());
   Teuchos::ParameterList list = muelu_defaults(*level.stiffness->getDomainMap(), H_->dofs_per_node());
   list.set("reuse: type", options_.reuse == "none" ? "tP" : options_.reuse);
   list.setParameters(options_.muelu);

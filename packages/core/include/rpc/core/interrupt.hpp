@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Teuchos_Comm.hpp>
+#include <functional>
 #include <string>
 
 /// Interrupts end a run at its next safe point; results found so far are written.
@@ -20,5 +21,14 @@ std::string interruption();
 /// @throws rpc::Error (not_converged) on every rank if any of them has been asked to stop; collective on comm
 /// @param state  how far the run is, for the message: "before ..., no results are written"
 void throw_if_interrupted(const Teuchos::Comm<int> &comm, const std::string &state);
+
+/// Does work that cannot look for a request to stop itself, such as a library's, and looks meanwhile: the work has a thread of its own.
+/// On several ranks that takes an MPI that allows calls from several threads; else the request is seen after the work. Collective on comm.
+/// @param work  owns all that it uses, and throws nothing; it may use MPI, but for comm
+/// @return whether the work has ended; if not, the run has been asked to stop, and the work goes on by itself
+bool ended_before_interrupt(const Teuchos::Comm<int> &comm, const std::function<void()> &work);
+
+/// Whether such work goes on. Then the process has to end without MPI_Finalize and destructors of static objects, by std::_Exit.
+bool work_goes_on();
 
 } // namespace rpc

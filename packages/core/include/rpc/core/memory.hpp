@@ -7,4 +7,8 @@ namespace rpc
 /// (ulimit -v); +inf where the system does not tell. What others use meanwhile is not taken off.
 double memory_limit();
 
+/// Memory that is free now on the machine, or within the container's or the shell's bound if that is less [B]; +inf where the system does
+/// not tell. All processes of the machine share it.
+double memory_left();
+
 } // namespace rpc

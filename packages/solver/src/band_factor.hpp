@@ -1,0 +1,27 @@
+#pragma once
+
+#include "sparse_factor.hpp"
+
+namespace rpc::solver
+{
+
+/// By LAPACK's band factorization in the reverse Cuthill-McKee order, of entries that are all this rank's.
+class BandFactor : public SparseFactor
+{
+public:
+  BandFactor(int size, SymmetricEntries entries);
+
+  FactorCost cost() const override;
+  bool make(const std::vector<double> &value) override;
+  bool exists() const override { return exists_; }
+  void solve(double *x, int columns) const override;
+
+private:
+  int size_, width_ = 0; // of the matrix; of the band below the diagonal
+  bool exists_ = false;
+  std::vector<std::size_t> entry_; // (entries) place of each in the factor, `above` for those that do not count
+  std::vector<int> place_;         // (size) of each row in the factor
+  std::vector<double> factor_;     // (width + 1, size) columns of the lower half
+};
+
+} // namespace rpc::solver

@@ -1,0 +1,151 @@
+#include "direct_solver.hpp"
+
+#include "rpc/core/memory.hpp"
+#include "rpc/core/parallel.hpp"
+
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace rpc::solver
+{
+namespace
+{
+
+constexpr const char *not_definite = "multigrid: the matrix of the coarsest mesh is not positive definite";
+// Rows up to which each rank factors the whole matrix: a solve then takes one sum over the ranks.
+constexpr std::size_t most_rows_on_each_rank = 5200;
+
+/// Calls work(row, column, value) with gids for the entries of this rank's rows on and below the diagonal.
+template <class Work>
+void for_lower_entries(const CrsMatrix &A, const Work &work)
+{
+  const Map &rows = *A.getRowMap(), &columns = *A.getColMap();
+  const auto matrix = A.getLocalMatrixDevice();
+  const auto begin = to_host(matrix.graph.row_map);
+  const auto entries = to_host(matrix.graph.entries);
+  const auto values = to_host(matrix.values);
+  for (LO row = 0; row < num_local(rows); ++row) {
+    const GO i = rows.getGlobalElement(row);
+    for (auto e = begin(row); e < begin(row + 1); ++e)
+      if (const GO j = columns.getGlobalElement(entries(e)); j <= i) work(i, j, values(e));
+  }
+}
+
+SymmetricEntries pattern_of(const CrsMatrix &A)
+{
+  SymmetricEntries mine;
+  for_lower_entries(A, [&](const GO row, const GO column, double) {
+    mine.row.push_back(static_cast<int>(row));
+    mine.column.push_back(static_cast<int>(column));
+  });
+  return mine;
+}
+
+/// All unknowns on rank 0, by their gids.
+RCP<const Map> on_root(const Map &rows)
+{
+  const std::size_t all = rows.getGlobalNumElements();
+  return rcp(new Map(all, rows.getComm()->getRank() == 0 ? all : 0, 0, rows.getComm()));
+}
+
+} // namespace
+
+DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node)
+    : A_(std::move(A)), shared_(SparseFactor::can_be_shared && A_->getGlobalNumRows() > most_rows_on_each_rank)
+{
+  const auto comm = A_->getComm();
+  const int size = static_cast<int>(A_->getGlobalNumRows());
+  SymmetricEntries pattern = pattern_of(*A_);
+  if (shared_) {
+    factor_ = SparseFactor::analyse(comm, size, std::move(pattern), dofs_per_node);
+    if (comm->getSize() > 1) to_root_ = rcp(new Import(A_->getRowMap(), on_root(*A_->getRowMap())));
+    return;
+  }
+  if (comm->getSize() > 1) pattern = {gathered_by_all(*comm, pattern.row), gathered_by_all(*comm, pattern.column), {}};
+  factor_ = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size, std::move(pattern), dofs_per_node);
+}
+
+std::string DirectSolver::lacks_memory() const
+{
+  const Comm &comm = *A_->getComm();
+  const double free = min_all(comm, memory_left()), needed = max_all(comm, cost().bytes * comm.getSize());
+  if (needed <= free) return {};
+  constexpr double gib = 1024. * 1024 * 1024;
+  std::ostringstream text;
+  text.precision(2);
+  text << "a factor takes " << needed / gib << " GiB of memory, " << free / gib << " GiB are free";
+  return text.str();
+}
+
+bool DirectSolver::make()
+{
+  std::vector<double> value;
+  for_lower_entries(*A_, [&](GO, GO, const double entry) { value.push_back(entry); });
+  const Comm &comm = *A_->getComm();
+  update_.forget();
+  return factor_->make(!shared_ && comm.getSize() > 1 ? gathered_by_all(comm, value) : value);
+}
+
+void DirectSolver::update()
+{
+  if (!make()) throw std::runtime_error(not_definite);
+}
+
+void DirectSolver::apply(const Vector &b, Vector &x) const
+{
+  if (!factor_->exists()) throw std::runtime_error(not_definite); // the last update failed
+  Kokkos::fence(); // the host reads and writes what kernels may still be at
+  if (!to_root_.is_null()) {
+    Vector all(to_root_->getTargetMap());
+    all.doImport(b, *to_root_, Tpetra::INSERT);
+    {
+      const auto values = all.getLocalViewHost(Tpetra::Access::ReadWrite);
+      update_.solve(*factor_, b.getMap()->getComm()->getRank() == 0 ? values.data() : nullptr);
+    }
+    x.doExport(all, *to_root_, Tpetra::INSERT);
+    return;
+  }
+  const Map &map = *b.getMap();
+  std::vector<double> all(map.getGlobalNumElements());
+  {
+    const auto from = b.getLocalViewHost(Tpetra::Access::ReadOnly);
+    for (LO i = 0; i < num_local(map); ++i) all[map.getGlobalElement(i)] = from(i, 0);
+  }
+  if (map.getComm()->getSize() > 1) all = summed(*map.getComm(), all);
+  update_.solve(*factor_, all.data());
+  const auto to = x.getLocalViewHost(Tpetra::Access::OverwriteAll);
+  for (LO i = 0; i < num_local(map); ++i) to(i, 0) = all[map.getGlobalElement(i)];
+}
+
+int DirectSolver::num_new(const std::vector<RankOneTerm> &terms) const
+{
+  return sum_all(*A_->getComm(), update_.num_new(terms));
+}
+
+void DirectSolver::add(const std::vector<RankOneTerm> &terms)
+{
+  constexpr int numbers = 5; // of a term
+  const Comm &comm = *A_->getComm();
+  std::vector<double> mine;
+  for (const RankOneTerm &term : terms)
+    mine.insert(mine.end(), {static_cast<double>(term.first_row), term.v[0], term.v[1], term.v[2], term.scale});
+  const std::vector<double> all = comm.getSize() > 1 ? gathered_by_all(comm, mine) : mine;
+  std::vector<RankOneTerm> of_all(all.size() / numbers);
+  for (std::size_t t = 0; t < of_all.size(); ++t) {
+    const double *const from = all.data() + numbers * t;
+    of_all[t] = {static_cast<long long>(from[0]), {from[1], from[2], from[3]}, from[4]};
+  }
+  const bool has_vectors = to_root_.is_null() || comm.getRank() == 0;
+  update_.set(*factor_, static_cast<int>(A_->getGlobalNumRows()), has_vectors, of_all);
+}
+
+std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, const int dofs_per_node, const double most_work)
+{
+  auto solver = std::make_unique<DirectSolver>(std::move(A), dofs_per_node);
+  if (solver->cost().operations > most_work || !solver->lacks_memory().empty() || !solver->make()) return nullptr;
+  return solver;
+}
+
+} // namespace rpc::solver

@@ -1,0 +1,120 @@
+#include "low_rank_update.hpp"
+
+#include <Teuchos_LAPACK.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rpc::solver
+{
+namespace
+{
+
+constexpr int columns_at_once = 64; // that are solved for together
+
+/// v . x, for x of one column.
+double product(const RankOneTerm &term, const double *const x)
+{
+  double sum = 0;
+  for (int k = 0; k < 3; ++k)
+    if (term.v[k] != 0) sum += term.v[k] * x[term.first_row + k];
+  return sum;
+}
+
+/// x += factor v.
+void add(const RankOneTerm &term, const double factor, double *const x)
+{
+  for (int k = 0; k < 3; ++k)
+    if (term.v[k] != 0) x[term.first_row + k] += factor * term.v[k];
+}
+
+/// Whether both are parallel, up to rounding.
+bool same_direction(const RankOneTerm &a, const RankOneTerm &b)
+{
+  constexpr double rounding = 1e-12;
+  double product = 0;
+  for (int k = 0; k < 3; ++k) product += a.v[k] * b.v[k];
+  return std::abs(std::abs(product) - 1) <= rounding;
+}
+
+} // namespace
+
+/// -1: none yet.
+int LowRankUpdate::column_of(const RankOneTerm &term) const
+{
+  const auto [first, last] = columns_at_.equal_range(term.first_row);
+  for (auto it = first; it != last; ++it)
+    if (same_direction(column_[it->second], term)) return it->second;
+  return -1;
+}
+
+int LowRankUpdate::num_new(const std::vector<RankOneTerm> &terms) const
+{
+  return static_cast<int>(
+      std::count_if(terms.begin(), terms.end(), [this](const RankOneTerm &term) { return column_of(term) < 0; }));
+}
+
+void LowRankUpdate::set(const SparseFactor &factor, const int size, const bool has_vectors,
+                        const std::vector<RankOneTerm> &terms)
+{
+  size_ = size;
+  std::vector<int> made;
+  present_.clear();
+  scale_.clear();
+  for (const RankOneTerm &term : terms) {
+    int column = column_of(term);
+    if (column < 0) {
+      column = static_cast<int>(column_.size());
+      made.push_back(column);
+      column_.push_back(term);
+      columns_at_.emplace(term.first_row, column);
+      flexibility_.emplace_back(column + 1);
+    }
+    present_.push_back(column);
+    scale_.push_back(term.scale);
+  }
+  std::vector<double> x;
+  for (std::size_t first = 0; first < made.size(); first += columns_at_once) {
+    const int count = static_cast<int>(std::min<std::size_t>(columns_at_once, made.size() - first));
+    if (!has_vectors) {
+      factor.solve(nullptr, count);
+      continue;
+    }
+    x.assign(static_cast<std::size_t>(size) * count, 0.);
+    for (int c = 0; c < count; ++c) add(column_[made[first + c]], 1, x.data() + static_cast<std::size_t>(c) * size);
+    factor.solve(x.data(), count);
+    for (int c = 0; c < count; ++c) // symmetric: with those of later columns, later ones bring them
+      for (int other = 0; other <= made[first + c]; ++other)
+        flexibility_[made[first + c]][other] = product(column_[other], x.data() + static_cast<std::size_t>(c) * size);
+  }
+  if (!has_vectors) return;
+  const int n = static_cast<int>(present_.size());
+  matrix_.assign(static_cast<std::size_t>(n) * n, 0.);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      matrix_[static_cast<std::size_t>(j) * n + i] =
+          (i == j) + scale_[i] * flexibility_[std::max(present_[i], present_[j])][std::min(present_[i], present_[j])];
+  pivot_.resize(n);
+  int info = 0;
+  if (n > 0) Teuchos::LAPACK<int, double>().GETRF(n, n, matrix_.data(), n, pivot_.data(), &info);
+  if (info != 0) matrix_.assign(matrix_.size(), std::numeric_limits<double>::quiet_NaN()); // singular: norms will tell
+}
+
+void LowRankUpdate::solve(const SparseFactor &factor, double *const x) const
+{
+  const int n = static_cast<int>(present_.size());
+  if (n == 0) return factor.solve(x);
+  if (!x) {
+    factor.solve(nullptr);
+    return factor.solve(nullptr);
+  }
+  std::vector<double> z(x, x + size_), forces(n);
+  factor.solve(z.data());
+  for (int i = 0; i < n; ++i) forces[i] = scale_[i] * product(column_[present_[i]], z.data());
+  int info = 0;
+  Teuchos::LAPACK<int, double>().GETRS('N', n, 1, matrix_.data(), n, pivot_.data(), forces.data(), n, &info);
+  for (int i = 0; i < n; ++i) add(column_[present_[i]], -forces[i], x);
+  factor.solve(x);
+}
+
+} // namespace rpc::solver

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "sparse_factor.hpp"
+
+#include <map>
+#include <vector>
+
+namespace rpc::solver
+{
+
+/// scale v v^T, where v has entries at up to three unknowns that follow each other.
+struct RankOneTerm {
+  long long first_row = 0; ///< of v
+  double v[3] = {0, 0, 0}; ///< of length 1; 0 beyond a node's unknowns
+  double scale = 0;        ///< of any sign
+};
+
+/// The inverse of a matrix A with a factor, after some terms of rank one have been added to it:
+///
+///     (A + V S V^T)^-1 = A^-1 - A^-1 V C V^T A^-1,    C = (I + S V^T A^-1 V)^-1 S                    doc/theory.md (4.11)
+///
+/// It is exact, and takes two solves with the factor. V^T A^-1 V is kept for all terms that there ever were, so that a change of states costs
+/// a column for each place where there was none before.
+class LowRankUpdate
+{
+public:
+  /// Of these terms, how many have no column yet.
+  int num_new(const std::vector<RankOneTerm> &terms) const;
+  /// Collective on the factor's ranks.
+  /// @param size  of A   @param has_vectors  this rank does: see SparseFactor::solve   @param terms  all of them, the same on each rank
+  void set(const SparseFactor &factor, int size, bool has_vectors, const std::vector<RankOneTerm> &terms);
+  /// x <- (A + V S V^T)^-1 x, like SparseFactor::solve; collective.
+  void solve(const SparseFactor &factor, double *x) const;
+  /// There are no terms, and A is another one.
+  void forget() { *this = {}; }
+
+private:
+  int column_of(const RankOneTerm &term) const;
+
+  int size_ = 0;
+  std::multimap<long long, int> columns_at_;     // by first row
+  std::vector<RankOneTerm> column_;              // (columns) without their scale
+  std::vector<std::vector<double>> flexibility_; // (columns, columns up to this one) V^T A^-1 V
+  std::vector<int> present_;                     // (terms) their columns
+  std::vector<double> scale_;                    // (terms)
+  std::vector<double> matrix_;                   // (terms, terms) LU factors of I + S V^T A^-1 V
+  std::vector<int> pivot_;                       // (terms)
+};
+
+} // namespace rpc::solver

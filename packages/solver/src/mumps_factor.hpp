@@ -1,0 +1,27 @@
+#pragma once
+
+#include "sparse_factor.hpp"
+
+namespace rpc::solver
+{
+
+/// By MUMPS, in METIS' order of nested dissection of the nodes.
+class MumpsFactor : public SparseFactor
+{
+public:
+  /// See SparseFactor::analyse.
+  MumpsFactor(RCP<const Comm> comm, int size, SymmetricEntries entries, int dofs_per_node);
+  ~MumpsFactor() override;
+
+  FactorCost cost() const override;
+  bool make(const std::vector<double> &value) override;
+  bool exists() const override;
+  void solve(double *x, int columns) const override;
+
+private:
+  struct Impl;
+  RCP<const Comm> comm_;
+  std::shared_ptr<Impl> impl_; // also of the thread that makes the factor
+};
+
+} // namespace rpc::solver

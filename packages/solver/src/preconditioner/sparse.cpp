@@ -1,0 +1,112 @@
+#include "preconditioner/sparse.hpp"
+
+#include "rpc/algebra/bounded_update.hpp"
+#include "rpc/algebra/jacobi.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace rpc::solver
+{
+namespace
+{
+
+// The factor takes closed nodes for at most so many times their own stiffness: all of it would cost digits where they open again. CG
+// takes the difference in an iteration.
+constexpr double most_stiffness = 1e4;
+// New terms are solved for as long as they take this part of a new factor's time at most.
+constexpr double worth_a_factor = 0.7;
+constexpr double negligible = 1e-13; // of a block, beside the node's own one
+
+/// The differences of two updates as terms of rank one, of this rank.
+template <int Dim>
+std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<double ***> &now,
+                                  const DeviceView<double ***> &before)
+{
+  const auto a = to_host(now), b = to_host(before), own = to_host(H.base_blocks());
+  const auto node = to_host(H.nodes());
+  const Map &dofs = *H.getDomainMap();
+  std::vector<RankOneTerm> terms;
+  for (std::size_t n = 0; n < node.extent(0); ++n) {
+    double difference[Dim][Dim], largest = 0, stiffness = 0;
+    for (int k = 0; k < Dim; ++k)
+      for (int l = 0; l < Dim; ++l) {
+        difference[k][l] = a(n, k, l) - b(n, k, l);
+        largest = std::max(largest, std::abs(difference[k][l]));
+        stiffness = std::max(stiffness, std::abs(own(n, k, l)));
+      }
+    if (!(largest > negligible * stiffness)) continue;
+    const EigenPairs<Dim> pairs = eigen_pairs(difference);
+    for (int k = 0; k < Dim; ++k) {
+      if (!(std::abs(pairs.value[k]) > negligible * (largest + stiffness))) continue;
+      RankOneTerm term;
+      term.first_row = dofs.getGlobalElement(dof(Dim, node(n), 0));
+      std::copy(pairs.vector[k], pairs.vector[k] + Dim, term.v);
+      term.scale = pairs.value[k];
+      terms.push_back(term);
+    }
+  }
+  return terms;
+}
+
+std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<double ***> &now,
+                                  const DeviceView<double ***> &before)
+{
+  if (H.dofs_per_node() == 1) return terms_of<1>(H, now, before);
+  return H.dofs_per_node() == 2 ? terms_of<2>(H, now, before) : terms_of<3>(H, now, before);
+}
+
+} // namespace
+
+const Sparse::Prospect &Sparse::prospect()
+{
+  if (solver_) return prospect_;
+  A_ = H_->base().copy();
+  solver_ = std::make_unique<DirectSolver>(A_, H_->dofs_per_node());
+  prospect_ = {solver_->cost(), solver_->lacks_memory()};
+  return prospect_;
+}
+
+/// By terms of rank one, if that takes less time than a new factor.
+bool Sparse::follow()
+{
+  const auto terms = terms_of(*H_, bounded_update(*H_, most_stiffness), written_);
+  const double seconds = prospect_.cost.seconds_of_column * solver_->num_new(terms);
+  if (seconds > worth_a_factor * prospect_.cost.seconds) return false;
+  solver_->add(terms);
+  is_fresh_ = false;
+  return true;
+}
+
+Preconditioner::Prepared Sparse::prepare(double)
+{
+  const int revision = H_->revision();
+  if (made_ && revision == revision_) return Prepared::unchanged;
+  if (made_ && follow()) {
+    revision_ = revision;
+    return Prepared::updated;
+  }
+  if (!prospect().obstacle.empty()) throw std::runtime_error(prospect_.obstacle);
+  made_ = false;
+  written_ = bounded_update(*H_, most_stiffness);
+  write_update(*A_, *H_, written_);
+  solver_->update();
+  made_ = is_fresh_ = true;
+  revision_ = revision;
+  return Prepared::made;
+}
+
+void Sparse::forget()
+{
+  made_ = false;
+  solver_.reset();
+  A_ = Teuchos::null;
+}
+
+void Sparse::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
+{
+  for (std::size_t k = 0; k < x.getNumVectors(); ++k) solver_->apply(*x.getVector(k), *y.getVectorNonConst(k));
+}
+
+} // namespace rpc::solver

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "direct_solver.hpp"
+#include "rpc/algebra/updated_operator.hpp"
+#include "rpc/solver/preconditioner.hpp"
+
+#include <memory>
+#include <string>
+
+namespace rpc::solver
+{
+
+/// A sparse factor of H, for what multigrid does badly. It follows changes of states by low-rank updates, (4.11), which are exact; where
+/// so many nodes have changed that these would take longer, it is made anew. Of an update that is not symmetric it takes the symmetric part.
+class Sparse : public Preconditioner
+{
+public:
+  explicit Sparse(RCP<const UpdatedOperator> H) : H_(std::move(H)) {}
+
+  /// What a factor takes, and why it cannot be had, if so.
+  struct Prospect {
+    FactorCost cost;
+    std::string obstacle; ///< empty: it can be had
+  };
+  /// Orders the unknowns and counts, once; collective.
+  const Prospect &prospect();
+
+  /// @throws std::runtime_error where H is not positive definite, or there is an obstacle
+  Prepared prepare(double tolerance) override;
+  void forget() override;
+  /// The next prepare() makes a new factor.
+  void renew() { made_ = false; }
+  std::string name() const override { return "sparse factor"; }
+  /// Whether the factor is that of the present H, without updates.
+  bool is_from_scratch() const { return is_fresh_; }
+
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
+             double beta = 0) const override;
+  RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
+
+private:
+  bool follow();
+
+  RCP<const UpdatedOperator> H_;
+  RCP<CrsMatrix> A_;                     // K with an update; null: it was not analysed
+  std::unique_ptr<DirectSolver> solver_; // of A
+  Prospect prospect_;
+  DeviceView<double ***> written_; // (nodes of H, dim, dim) the update in A
+  int revision_ = -1;              // of H when it was last brought to it
+  bool made_ = false, is_fresh_ = false;
+};
+
+} // namespace rpc::solver

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "rpc/core/tpetra.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace rpc::solver
+{
+
+/// Some entries of a symmetric matrix, in any order; equal places add up. Each pair of places is given once or twice, as
+/// (i, j) and (j, i): entries above the diagonal do not count.
+struct SymmetricEntries {
+  std::vector<int> row, column;
+  std::vector<double> value;
+};
+
+/// What a factor takes, as its symbolic factorization tells before it is made.
+struct FactorCost {
+  double operations = 0; ///< multiplications and additions
+  double entries = 0;    ///< of the factor
+  double bytes = 0;      ///< most that a rank needs while it is made [B]
+  /// About, by constants of one machine: a choice by them is the same in every run.
+  double seconds = 0, seconds_of_solve = 0; ///< [s]
+  double seconds_of_column = 0;             ///< of many that are solved for together [s]
+};
+
+/// Cholesky factor of a sparse symmetric positive definite matrix on the host.
+///
+/// MUMPS makes it, in METIS' order of nested dissection, on all ranks of a communicator together. Matrices of few unknowns in a narrow
+/// band, and all matrices where there is no MUMPS, go to LAPACK's band factorization, on each rank alike.
+class SparseFactor
+{
+public:
+  virtual ~SparseFactor() = default;
+
+  /// Whether ranks can make a factor together: not without MUMPS.
+  static const bool can_be_shared;
+
+  /// Orders the unknowns and counts what the factor takes; collective.
+  /// @param comm     of several ranks only where can_be_shared is true
+  /// @param size     of the matrix
+  /// @param entries  of this rank; their values are not read, and all ranks' entries add up
+  /// @param dofs_per_node  so many unknowns, from one divisible by it, have the same neighbours, so that nodes can be ordered; 1 where
+  ///                 nothing is known
+  static std::unique_ptr<SparseFactor> analyse(const RCP<const Comm> &comm, int size, SymmetricEntries entries,
+                                               int dofs_per_node);
+
+  virtual FactorCost cost() const = 0;
+
+  /// Makes the factor; collective.
+  /// @param value  (entries) of this rank, in the order of analyse()
+  /// @return whether the matrix is positive definite; if not, there is no factor
+  /// @throws std::bad_alloc on all ranks where memory runs out
+  /// @throws Interrupted on all ranks where the run has been asked to stop meanwhile; then it must not be used again
+  virtual bool make(const std::vector<double> &value) = 0;
+  virtual bool exists() const = 0;
+
+  /// X <- A^-1 X; collective.
+  /// @param x  (columns, size) on rank 0, one column after the other, where it is read and written; on other ranks it may be null. Many
+  ///           columns together take an eighth of the time of as many single ones.
+  virtual void solve(double *x, int columns = 1) const = 0;
+};
+
+/// A factor on this rank alone, of entries that are all its own; null where it would take more than so many operations, or the matrix
+/// is not positive definite.
+std::unique_ptr<SparseFactor> factor_of(int size, SymmetricEntries entries, double most_work);
+
+} // namespace rpc::solver

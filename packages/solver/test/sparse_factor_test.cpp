@@ -1,0 +1,146 @@
+#include "../src/band_factor.hpp"
+#include "../src/sparse_factor.hpp"
+#include "rpc/core/parallel.hpp"
+
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <Tpetra_Core.hpp>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using rpc::solver::BandFactor;
+using rpc::solver::factor_of;
+using rpc::solver::SparseFactor;
+using rpc::solver::SymmetricEntries;
+
+constexpr double any_work = 1e12;
+
+/// Five-point differences on n x n places, numbered by a step that scatters neighbours, with something added to the diagonal;
+/// the diagonal comes in two parts.
+SymmetricEntries scattered_grid(const int n, const double shift)
+{
+  const int size = n * n;
+  const auto number = [&](const int i, const int j) { return (7 * (i * n + j)) % size; };
+  SymmetricEntries entries;
+  const auto add = [&](const int row, const int column, const double value) {
+    entries.row.push_back(row);
+    entries.column.push_back(column);
+    entries.value.push_back(value);
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const int here = number(i, j);
+      add(here, here, 4);
+      add(here, here, shift);
+      for (const int other : {i > 0 ? number(i - 1, j) : -1, i + 1 < n ? number(i + 1, j) : -1,
+                              j > 0 ? number(i, j - 1) : -1, j + 1 < n ? number(i, j + 1) : -1})
+        if (other >= 0) add(here, other, -1);
+    }
+  return entries;
+}
+
+std::vector<double> product(const SymmetricEntries &A, const std::vector<double> &x)
+{
+  std::vector<double> y(x.size(), 0.);
+  for (std::size_t e = 0; e < A.row.size(); ++e) y[A.row[e]] += A.value[e] * x[A.column[e]];
+  return y;
+}
+
+/// This rank's share of the entries: every so many.
+SymmetricEntries share_of(const SymmetricEntries &all, const rpc::Comm &comm)
+{
+  SymmetricEntries mine;
+  for (std::size_t e = comm.getRank(); e < all.row.size(); e += comm.getSize()) {
+    mine.row.push_back(all.row[e]);
+    mine.column.push_back(all.column[e]);
+    mine.value.push_back(all.value[e]);
+  }
+  return mine;
+}
+
+std::vector<double> some_solution(const int size)
+{
+  std::vector<double> x(size);
+  for (int i = 0; i < size; ++i) x[i] = std::sin(1. + i);
+  return x;
+}
+
+/// What all ranks see of rank 0's vector.
+std::vector<double> from_root(const rpc::Comm &comm, std::vector<double> x)
+{
+  Teuchos::broadcast(comm, 0, static_cast<int>(x.size()), x.data());
+  return x;
+}
+
+TEST(SparseFactor, SolvesASystemInAnyOrder)
+{
+  for (const int n : {1, 2, 10, 90}) { // bands, and what is too wide for a band
+    const auto A = scattered_grid(n, 0.1);
+    const auto factor = factor_of(n * n, A, any_work);
+    ASSERT_TRUE(factor);
+    const auto x = some_solution(n * n);
+    auto solution = product(A, x);
+    factor->solve(solution.data());
+    for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(solution[i], x[i], 1e-12) << n << " " << i;
+  }
+}
+
+/// Ranks that each hold some of the entries factor the matrix together, and follow its values.
+TEST(SparseFactor, IsMadeByAllRanksTogether)
+{
+  if (!SparseFactor::can_be_shared) GTEST_SKIP() << "without MUMPS";
+  const auto comm = Tpetra::getDefaultComm();
+  const int n = 90, size = n * n;
+  const auto factor = SparseFactor::analyse(comm, size, share_of(scattered_grid(n, 0.1), *comm), 1);
+  EXPECT_FALSE(factor->exists());
+  const auto x = some_solution(size);
+  for (const double shift : {0.1, 2., -1., 0.5}) {
+    const auto A = scattered_grid(n, shift);
+    EXPECT_EQ(factor->make(share_of(A, *comm).value), shift > 0) << shift;
+    EXPECT_EQ(factor->exists(), shift > 0);
+    if (!factor->exists()) continue;
+    auto solution = product(A, x);
+    factor->solve(comm->getRank() == 0 ? solution.data() : nullptr);
+    solution = from_root(*comm, solution);
+    for (int i = 0; i < size; ++i) ASSERT_NEAR(solution[i], x[i], 1e-12) << shift << " " << i;
+  }
+}
+
+TEST(SparseFactor, ToldCostGrowsAsThatOfNestedDissection)
+{
+  if (!SparseFactor::can_be_shared) GTEST_SKIP() << "without MUMPS";
+  const auto comm = rpc::rcp(new Teuchos::SerialComm<int>);
+  std::vector<double> operations;
+  for (const int n : {100, 200}) {
+    const auto cost = SparseFactor::analyse(comm, n * n, scattered_grid(n, 0.1), 1)->cost();
+    operations.push_back(cost.operations);
+    EXPECT_GT(cost.entries, 2. * n * n);
+    EXPECT_GT(cost.bytes, 8 * cost.entries);
+    EXPECT_GT(cost.seconds, cost.seconds_of_solve);
+  }
+  EXPECT_GT(operations[1] / operations[0], 6) << "n^3 for n x n unknowns in the plane";
+  EXPECT_LT(operations[1] / operations[0], 12) << "a band would take n^4";
+}
+
+TEST(SparseFactor, RefusesWhatTakesTooMuchWork)
+{
+  // In the right order the band of a 10 x 10 grid is about 10 wide, in the given one 70.
+  EXPECT_TRUE(factor_of(100, scattered_grid(10, 0.1), 100 * 15. * 15));
+  EXPECT_FALSE(factor_of(100, scattered_grid(10, 0.1), 100 * 5. * 5));
+}
+
+TEST(SparseFactor, RefusesAMatrixThatIsNotPositiveDefinite)
+{
+  for (const int n : {10, 90}) EXPECT_FALSE(factor_of(n * n, scattered_grid(n, -1), any_work)) << n;
+}
+
+TEST(BandFactor, OfNothingIsNothing)
+{
+  BandFactor factor(0, {});
+  EXPECT_TRUE(factor.make({}));
+  factor.solve(nullptr, 1);
+}
+
+} // namespace
