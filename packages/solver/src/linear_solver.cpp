@@ -331,6 +331,8 @@ double LinearSolver::inverse_energy(const Vector &F)
   try {
     impl_->prepare(1);
     return solver::inverse_energy(*impl_->used, F);
+  } catch (const Interrupted &) { // the next solve tells
+    return std::numeric_limits<double>::quiet_NaN();
   } catch (const Error &) {
     throw;
   } catch (const std::bad_alloc &) { // on this rank alone

@@ -99,14 +99,23 @@ struct MumpsFactor::Impl {
   std::vector<double> nothing{0};
   bool exists = false;
 
-  /// @return MUMPS' answer, the same on all ranks; 0 is good
-  int run(const int job)
+  void call(const int job)
   {
     mumps.job = job;
     dmumps_c(&mumps);
+  }
+  /// MUMPS' globals belong to the work that an interrupt has left behind, if there is any.
+  /// @return MUMPS' answer, the same on all ranks; 0 is good
+  int run(const int job)
+  {
+    if (work_goes_on()) throw Interrupted();
+    call(job);
     return std::min(mumps.infog[status], 0);
   }
-  ~Impl() { run(end); }
+  ~Impl()
+  {
+    if (!work_goes_on()) call(end);
+  }
 };
 
 MumpsFactor::MumpsFactor(RCP<const Comm> comm, const int size, SymmetricEntries entries, const int dofs_per_node)
@@ -183,7 +192,8 @@ bool MumpsFactor::make(const std::vector<double> &value)
   int answer = 0;
   do {
     const auto impl = impl_;
-    const auto work = [impl] { impl->run(factorization); };
+    if (work_goes_on()) throw Interrupted();
+    const auto work = [impl] { impl->call(factorization); };
     if (cost().seconds < long_time)
       work();
     else if (!ended_before_interrupt(*comm_, work))
