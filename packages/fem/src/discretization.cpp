@@ -155,7 +155,7 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, const Kinemati
     d.on_axis = axis_rounding * mesh::diameter(*d.mesh);
     require_radii(*d.mesh, d.on_axis);
   }
-  d.reference = tabulate(d.mesh->element, kinematics);
+  if (!d.mesh->element.mixed()) d.reference = tabulate(d.mesh->element, kinematics);
   d.owned_dofs = dof_map(*d.mesh->owned_nodes, d.dim());
   d.overlap_dofs =
       d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());

@@ -85,11 +85,19 @@ template <int Dim, int Nodes>
 RCP<CrsMatrix> interpolate(const mesh::Mesh &from, const mesh::Mesh &to)
 {
   if (divide_one_box(from, to)) {
-    const auto [rows, columns] = rows_in_box<Dim, Nodes>(from, to);
+    const auto [rows, columns] = rows_in_box<Dim>(ElementsOfCell<Dim, Nodes>(), from, to);
     return matrix_of<Nodes>(rows, columns, from, to);
   }
   const auto [rows, columns] = searched_rows<Dim, Nodes>(from, to);
   return matrix_of<Nodes>(rows, columns, from, to);
+}
+
+template <int Dim>
+RCP<CrsMatrix> interpolate_mixed(const mesh::Mesh &from, const mesh::Mesh &to)
+{
+  const MixedElementOfCell<Dim> element(from.element);
+  const auto [rows, columns] = rows_in_box<Dim>(element, from, to);
+  return matrix_of<MixedElementOfCell<Dim>::nodes>(rows, columns, from, to);
 }
 
 } // namespace
@@ -98,6 +106,12 @@ RCP<CrsMatrix> interpolation(const Discretization &coarse, const Discretization 
 {
   RPC_REQUIRE(coarse.dim() == fine.dim(),
               "fem: a " << coarse.dim() << "D mesh cannot be interpolated to a " << fine.dim() << "D mesh");
+  if (coarse.mesh->element.mixed()) {
+    RPC_REQUIRE_CODE(divide_one_box(*coarse.mesh, *fine.mesh), ExitCode::internal_error,
+                     "fem: a mesh of mixed elements is interpolated to divisions of its box only");
+    return coarse.dim() == 2 ? interpolate_mixed<2>(*coarse.mesh, *fine.mesh)
+                             : interpolate_mixed<3>(*coarse.mesh, *fine.mesh);
+  }
   RCP<CrsMatrix> matrix;
   with_static_extents(coarse.mesh->element, [&](const auto dim, const auto nodes) {
     matrix = interpolate<dim, nodes>(*coarse.mesh, *fine.mesh);

@@ -43,8 +43,8 @@ struct BetweenBoxes {
   BetweenBoxes(const mesh::BoxOptions &from_box, const mesh::BoxOptions &to_box)
   {
     for (int d = 0; d < Dim; ++d) {
-      from[d] = {from_box.cells[d], double(from_box.element.order), from_box.last_in(d)};
-      to[d] = {to_box.cells[d], double(to_box.element.order), to_box.last_in(d)};
+      from[d] = {from_box.cells[d], double(from_box.element.order_along(d)), from_box.last_in(d)};
+      to[d] = {to_box.cells[d], double(to_box.element.order_along(d)), to_box.last_in(d)};
       ratio[d] = from[d].length() / to[d].length();
     }
   }
@@ -60,8 +60,10 @@ struct BetweenBoxes {
 /// The elements in one cell of a box' lattice.
 template <int Dim, int Nodes>
 struct ElementsOfCell {
+  static constexpr int nodes = Nodes;
   static constexpr bool simplex = ShapeFunctions<Dim, Nodes>::simplex;
   static constexpr int count = !simplex ? 1 : Dim == 2 ? 2 : 6;
+  ShapeFunctions<Dim, Nodes> shape;
   GO place[count][Nodes][Dim];          // of their nodes, on the lattice {0..order}^dim
   double first[count][Dim];             // of a simplex: its first vertex, from 0 to 1
   double to_reference[count][Dim][Dim]; // and the inverse of its edges from there
@@ -109,13 +111,45 @@ struct ElementsOfCell {
     }
     return best;
   }
+  /// The weights of its nodes there.
+  KOKKOS_INLINE_FUNCTION int weights_at(const double (&within)[Dim], double (&weight)[Nodes]) const
+  {
+    double X[Dim] = {};
+    const int part = element_at(within, X);
+    fem::weights_at(shape, X, weight);
+    return part;
+  }
+};
+
+/// The one mixed element in a cell of a box' lattice.
+template <int Dim>
+struct MixedElementOfCell {
+  static constexpr int nodes = mesh::MixedShapeFunctions<Dim>::most;
+  mesh::MixedShapeFunctions<Dim> shape;
+  GO place[1][nodes][Dim] = {};
+
+  explicit MixedElementOfCell(const mesh::Element &element) : shape(element)
+  {
+    for (int a = 0; a < shape.nodes; ++a)
+      for (int d = 0; d < Dim; ++d) place[0][a][d] = shape.place[a][d];
+  }
+  KOKKOS_INLINE_FUNCTION int weights_at(const double (&within)[Dim], double (&weight)[nodes]) const
+  {
+    double X[Dim];
+    for (int d = 0; d < Dim; ++d) X[d] = 2 * within[d] - 1;
+    shape.evaluate(X, weight);
+    for (double &N : weight)
+      if (!counts(N)) N = 0;
+    return 0;
+  }
 };
 
 /// Makes the rows of this rank's nodes of one box from the nodes of another division of it.
-template <int Dim, int Nodes>
+/// @tparam Elements  ElementsOfCell or MixedElementOfCell
+template <int Dim, class Elements>
 struct RowsInBox {
-  ShapeFunctions<Dim, Nodes> shape;
-  ElementsOfCell<Dim, Nodes> elements;
+  static constexpr int Nodes = Elements::nodes;
+  Elements elements;
   BetweenBoxes<Dim> boxes;
   mesh::Block rows;            // this rank's nodes
   mesh::Grid grid;             // of the box that is interpolated from
@@ -126,14 +160,13 @@ struct RowsInBox {
   template <class Each>
   KOKKOS_INLINE_FUNCTION void visit(const LO row, double (&weight)[Nodes], const Each &each) const
   {
-    double within[Dim], X[Dim] = {};
+    double within[Dim];
     const mesh::Index cell = boxes.cell_of(rows.at(row), within);
-    const int part = elements.element_at(within, X);
-    weights_at(shape, X, weight);
+    const int part = elements.weights_at(within, weight);
     for (int a = 0; a < Nodes; ++a) {
       if (weight[a] == 0) continue;
       mesh::Index node{};
-      for (int d = 0; d < Dim; ++d) node[d] = grid.order() * cell[d] + elements.place[part][a][d];
+      for (int d = 0; d < Dim; ++d) node[d] = grid.order(d) * cell[d] + elements.place[part][a][d];
       each(a, node);
     }
   }
@@ -148,16 +181,16 @@ struct RowsInBox {
 /// Columns of nodes that other ranks own, where this rank's rows have them; collective.
 /// @param[in,out] rows  `other` is filled
 /// @return the nodes' gids, ascending
-template <int Dim, int Nodes>
-std::vector<GO> find_others(RowsInBox<Dim, Nodes> &rows, const LO num_rows)
+template <int Dim, class Elements>
+std::vector<GO> find_others(RowsInBox<Dim, Elements> &rows, const LO num_rows)
 {
   const LO size = static_cast<LO>(rows.around.size());
   const DeviceView<LO *> used("rpc::fem::used_by_rows", size);
   {
-    const RowsInBox<Dim, Nodes> r = rows;
+    const RowsInBox<Dim, Elements> r = rows;
     Kokkos::parallel_for(
         "rpc::fem::mark_used_by_rows", device_range(num_rows), KOKKOS_LAMBDA(const LO row) {
-          double weight[Nodes];
+          double weight[Elements::nodes];
           r.visit(row, weight, [&](const int, const mesh::Index &node) {
             if (!r.own.contains(node)) Kokkos::atomic_assign(&used(r.around.index_of(node)), LO(1));
           });
@@ -203,13 +236,14 @@ inline bool divide_one_box(const mesh::Mesh &from, const mesh::Mesh &to)
 }
 
 /// @return the rows, and the matrix' columns; collective
-template <int Dim, int Nodes>
-std::pair<RowsInBox<Dim, Nodes>, RCP<const Map>> rows_in_box(const mesh::Mesh &from, const mesh::Mesh &to)
+template <int Dim, class Elements>
+std::pair<RowsInBox<Dim, Elements>, RCP<const Map>> rows_in_box(const Elements &elements, const mesh::Mesh &from,
+                                                                const mesh::Mesh &to)
 {
   const int ranks = from.comm().getSize(), rank = from.comm().getRank();
   const mesh::Grid grid(*from.box, ranks);
-  RowsInBox<Dim, Nodes> rows{
-      {}, {}, {*from.box, *to.box}, mesh::Grid(*to.box, ranks).owned_nodes(rank), grid, grid.owned_nodes(rank), {}};
+  RowsInBox<Dim, Elements> rows{elements, {*from.box, *to.box},   mesh::Grid(*to.box, ranks).owned_nodes(rank),
+                                grid,     grid.owned_nodes(rank), {}};
   RPC_REQUIRE(rows.own.size() == from.num_owned_nodes() && rows.rows.size() == to.num_owned_nodes(),
               "fem: the nodes of a box are not numbered as the box is");
   if (ranks == 1) return {rows, from.owned_nodes};

@@ -1,4 +1,5 @@
 #include "fill_entries.hpp"
+#include "mixed_stiffness.hpp"
 #include "offsets.hpp"
 #include "prescribed_couplings.hpp"
 #include "rpc/core/device_values.hpp"
@@ -254,6 +255,22 @@ std::optional<RepeatedStiffness> repeated_stiffness_of(const Discretization &d,
     return repeated_rows(d, CellStiffness<Dim, Nodes>{body}, fixed);
 }
 
+/// @param[out] bad  number of cells with a Jacobian <= 0
+MatrixValues stiffness_of_mixed(const Discretization &d, const Materials &materials, const std::size_t num_entries,
+                                LO &bad)
+{
+  const Discretization whole = with_order_two(d);
+  MatrixValues values;
+  const auto assemble = [&](const auto &body) { values = mixed_stiffness(d, whole, body, num_entries, bad); };
+  if (d.dim() == 3)
+    assemble(elastic_cells<3, 27>(whole, materials));
+  else if (d.axisymmetric())
+    assemble(elastic_cells<2, 9, true>(whole, materials));
+  else
+    assemble(elastic_cells<2, 9>(whole, materials));
+  return values;
+}
+
 } // namespace
 
 RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &materials)
@@ -263,7 +280,10 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
   const std::size_t num_entries = graph->getLocalGraphDevice().entries.extent(0);
   MatrixValues values;
   LO bad = 0;
-  with_elastic_cells(d, materials, [&](const auto &body) { values = stiffness_values(d, body, num_entries, bad); });
+  if (mesh.element.mixed())
+    values = stiffness_of_mixed(d, materials, num_entries, bad);
+  else
+    with_elastic_cells(d, materials, [&](const auto &body) { values = stiffness_values(d, body, num_entries, bad); });
   Kokkos::fence();
   if (sum_all(mesh.comm(), GO(bad)) > 0) throw_if_any(mesh.comm(), ExitCode::bad_mesh, describe_bad_cell(d));
   const auto matrix = rcp(new CrsMatrix(graph, values));

@@ -9,9 +9,12 @@
 namespace rpc::mesh
 {
 
-Grid::Grid(const BoxOptions &options, const int num_ranks) : dim_(options.element.dim), order_(options.element.order)
+Grid::Grid(const BoxOptions &options, const int num_ranks) : dim_(options.element.dim)
 {
-  for (int d = 0; d < dim_; ++d) cells_[d] = options.cells[d];
+  for (int d = 0; d < dim_; ++d) {
+    order_[d] = options.element.order_along(d);
+    cells_[d] = options.cells[d];
+  }
   // The shortest direction runs fastest: least bandwidth, and blocks along the longest one share short borders.
   std::sort(axes_.data(), axes_.data() + dim_, [&](const int a, const int b) { return cells_[a] < cells_[b]; });
   choose_blocks(num_ranks);

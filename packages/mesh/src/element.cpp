@@ -102,7 +102,38 @@ Entry make_entry(const Element &element, const char *const exodus_name, const in
   return entry;
 }
 
-/// All elements; cells from `first_cell` on.
+/// Q2's entry without the nodes in the middle of linear directions.
+Entry mixed_entry(const Element &mixed, const Entry &whole)
+{
+  Entry entry{mixed, "", 0, {}, {}, {}, {}};
+  std::vector<int> place(whole.lattice.size(), -1); // of Q2's nodes among those that stay
+  for (std::size_t a = 0; a < place.size(); ++a) {
+    std::vector<int> position = whole.lattice[a];
+    bool stays = true;
+    for (int d = 0; d < mixed.dim; ++d) {
+      if (!mixed.linear[d]) continue;
+      stays = stays && position[d] != 1;
+      position[d] /= 2;
+    }
+    if (!stays) continue;
+    place[a] = static_cast<int>(entry.lattice.size());
+    entry.lattice.push_back(position);
+  }
+  const auto without_others = [&place](const Table &table) {
+    Table left;
+    for (const auto &nodes : table) {
+      left.emplace_back();
+      for (const int a : nodes)
+        if (place[a] >= 0) left.back().push_back(place[a]);
+    }
+    return left;
+  };
+  entry.edges = without_others(whole.edges);
+  entry.facets = without_others(whole.facets);
+  return entry;
+}
+
+/// All elements but the mixed ones; cells from `first_cell` on.
 constexpr std::size_t first_cell = 2;
 const std::vector<Entry> &registry()
 {
@@ -122,10 +153,34 @@ const std::vector<Entry> &registry()
   return entries;
 }
 
+constexpr int quadrilateral_2 = 5, hexahedron_2 = 9; // Q2's places there
+
+/// Of a dimension, in the order of the number whose binary digits say which directions are linear, from 1 on.
+const std::vector<Entry> &mixed_registry(const int dim)
+{
+  static const auto all_of = [](const int of_dim) {
+    std::vector<Entry> entries;
+    for (int directions = 1; directions < (1 << of_dim) - 1; ++directions) {
+      Element mixed{of_dim, 2, Shape::tensor};
+      for (int d = 0; d < of_dim; ++d) mixed.linear[d] = (directions >> d) % 2 == 1;
+      entries.push_back(mixed_entry(mixed, registry()[of_dim == 2 ? quadrilateral_2 : hexahedron_2]));
+    }
+    return entries;
+  };
+  static const std::vector<Entry> in_plane = all_of(2), in_space = all_of(3);
+  return dim == 2 ? in_plane : in_space;
+}
+
 const Entry &entry_of(const Element &element)
 {
-  const auto [dim, order, shape] = element;
-  const bool simplex = shape == Shape::simplex;
+  const int dim = element.dim, order = element.order;
+  const bool simplex = element.shape == Shape::simplex;
+  if (element.mixed()) {
+    const int directions = element.linear[0] + 2 * element.linear[1] + 4 * element.linear[2];
+    RPC_REQUIRE_CODE(!simplex && order == 2 && (dim == 2 || dim == 3) && directions < (1 << dim) - 1,
+                     ExitCode::internal_error, "mesh: there is no such mixed element in " << dim << "D");
+    return mixed_registry(dim)[directions - 1];
+  }
   const bool known = dim >= 1 && dim <= 3 && (order == 1 || order == 2) && !(dim == 1 && simplex);
   RPC_REQUIRE_CODE(known, ExitCode::internal_error,
                    "mesh: there is no element of order " << order << " in " << dim << "D");
@@ -135,8 +190,25 @@ const Entry &entry_of(const Element &element)
 
 } // namespace
 
+Element Element::with_order_one_along(const std::array<bool, 3> &directions) const
+{
+  Element lower = *this;
+  if (order == 1) return lower;
+  int left = dim; // directions of order 2
+  for (int d = 0; d < dim; ++d) {
+    lower.linear[d] = linear[d] || directions[d];
+    left -= lower.linear[d];
+  }
+  if (left > 0) return lower;
+  return {dim, 1, shape};
+}
 std::string Element::name() const
 {
+  if (mixed()) {
+    std::string name = "Q";
+    for (int d = 0; d < dim; ++d) name += std::to_string(order_along(d));
+    return name;
+  }
   return (shape == Shape::simplex ? "P" : "Q") + std::to_string(order);
 }
 std::string Element::exodus_name() const
@@ -165,10 +237,12 @@ int Element::num_facet_nodes() const
 }
 Element Element::facet() const
 {
+  RPC_REQUIRE_CODE(!mixed(), ExitCode::internal_error, "mesh: the facets of a mixed element differ");
   return {dim - 1, order, dim == 2 ? Shape::tensor : shape};
 }
 Element Element::edge() const
 {
+  RPC_REQUIRE_CODE(!mixed(), ExitCode::internal_error, "mesh: the edges of a mixed element differ");
   return {1, order, Shape::tensor};
 }
 const Table &Element::lattice() const
@@ -196,6 +270,17 @@ const std::vector<Element> &all_elements()
     return cells;
   }();
   return elements;
+}
+
+const std::vector<Element> &mixed_elements(const int dim)
+{
+  static const auto all_of = [](const int of_dim) {
+    std::vector<Element> elements;
+    for (const Entry &entry : mixed_registry(of_dim)) elements.push_back(entry.element);
+    return elements;
+  };
+  static const std::vector<Element> in_plane = all_of(2), in_space = all_of(3);
+  return dim == 2 ? in_plane : in_space;
 }
 
 std::optional<Element> element_of_gmsh_type(const int type)

@@ -59,10 +59,13 @@ std::vector<LO> Mesh::nodes_of(const std::string &name, const std::string &user)
 Side make_side(const std::string &name, const Mesh &mesh, const HostView<LO *> &cell, const HostView<int *> &ordinal)
 {
   const Element &element = mesh.element;
-  const int num_nodes = element.num_facet_nodes();
+  // Facets of a mixed element differ: the side of a box has facets of one kind.
+  const std::size_t kind = cell.extent(0) > 0 ? ordinal(0) : 0;
+  const int num_nodes = static_cast<int>(element.facets()[kind].size());
   HostView<int **> host("rpc::mesh::facet_nodes", element.num_facets(), num_nodes);
   for (int f = 0; f < element.num_facets(); ++f)
-    for (int a = 0; a < num_nodes; ++a) host(f, a) = element.facets()[f][a];
+    for (int a = 0; a < num_nodes; ++a)
+      host(f, a) = a < static_cast<int>(element.facets()[f].size()) ? element.facets()[f][a] : -1;
   Side side{name, DeviceView<LO **>("rpc::mesh::side_facets", cell.extent(0), num_nodes), to_device(cell),
             to_device(ordinal)};
   const auto local = to_device(host);

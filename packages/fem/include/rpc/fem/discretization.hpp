@@ -37,11 +37,11 @@ struct CongruentCells {
 struct Discretization {
   std::shared_ptr<const mesh::Mesh> mesh;
   Kinematics kinematics = Kinematics::plane_strain;
-  double on_axis = 0; ///< of an axisymmetric body: nodes with r up to this lie on the axis, where u_r = 0 [m]
-  ReferenceElement reference;
-  RCP<const Map> owned_dofs;     ///< rows
-  RCP<const Map> overlap_dofs;   ///< columns
-  RCP<const Import> dof_import;  ///< owned -> overlap; null in one process, where these are the same
+  double on_axis = 0;           ///< of an axisymmetric body: nodes with r up to this lie on the axis, where u_r = 0 [m]
+  ReferenceElement reference;   ///< of mixed elements none: their stiffness is that of Q2
+  RCP<const Map> owned_dofs;    ///< rows
+  RCP<const Map> overlap_dofs;  ///< columns
+  RCP<const Import> dof_import; ///< owned -> overlap; null in one process, where these are the same
   RCP<const Import> node_import; ///< the same of the mesh's nodes
   CongruentCells congruent;
   NodeToCells node_to_cells;

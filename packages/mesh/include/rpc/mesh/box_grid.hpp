@@ -90,8 +90,8 @@ public:
   Block nodes_of(Block block) const
   {
     for (int d = 0; d < dim_; ++d) {
-      block.begin[d] = order_ * block.begin[d];
-      block.end[d] = order_ * block.end[d] + 1;
+      block.begin[d] = order_[d] * block.begin[d];
+      block.end[d] = order_[d] * block.end[d] + 1;
     }
     return block;
   }
@@ -106,7 +106,7 @@ public:
   {
     int b[3] = {0, 0, 0};
     for (int d = 0; d < dim_; ++d) {
-      const GO cell = node[d] == 0 ? 0 : (node[d] - 1) / order_; // the lower one of the two that share the node
+      const GO cell = node[d] == 0 ? 0 : (node[d] - 1) / order_[d]; // the lower one of the two that share the node
       b[d] = static_cast<int>(((cell + 1) * blocks_[d] - 1) / cells_[d]); // first_cell(b) <= cell < first_cell(b + 1)
     }
     const int rank = b[0] + blocks_[0] * (b[1] + blocks_[1] * b[2]);
@@ -115,7 +115,7 @@ public:
   GO num_nodes_total() const { return num_nodes(0) * num_nodes(1) * num_nodes(2); }
   GO num_cells_total() const { return GO(cells_[0]) * cells_[1] * cells_[2]; }
   KOKKOS_INLINE_FUNCTION int num_cells(const int direction) const { return cells_[direction]; }
-  KOKKOS_INLINE_FUNCTION int order() const { return order_; }
+  KOKKOS_INLINE_FUNCTION int order(const int direction) const { return order_[direction]; }
 
 private:
   KOKKOS_INLINE_FUNCTION Block empty_block() const
@@ -131,15 +131,15 @@ private:
   KOKKOS_INLINE_FUNCTION GO first_cell(const int d, const int b) const { return GO(cells_[d]) * b / blocks_[d]; }
   KOKKOS_INLINE_FUNCTION GO first_node(const int d, const int b) const
   {
-    return b == 0 ? 0 : (d < dim_ ? order_ * first_cell(d, b) + 1 : 1);
+    return b == 0 ? 0 : (d < dim_ ? order_[d] * first_cell(d, b) + 1 : 1);
   }
   KOKKOS_INLINE_FUNCTION GO width(const int d, const int b) const { return first_node(d, b + 1) - first_node(d, b); }
   KOKKOS_INLINE_FUNCTION GO num_nodes(const int d) const { return first_node(d, blocks_[d]); }
 
   void choose_blocks(int num_ranks);
 
-  int dim_, order_;
-  Kokkos::Array<int, 3> cells_{{1, 1, 1}}, axes_{{0, 1, 2}}, blocks_{{1, 1, 1}};
+  int dim_;
+  Kokkos::Array<int, 3> order_{{1, 1, 1}}, cells_{{1, 1, 1}}, axes_{{0, 1, 2}}, blocks_{{1, 1, 1}};
 };
 
 /// Positions of `outer` that `inner` does not contain, in outer's order.

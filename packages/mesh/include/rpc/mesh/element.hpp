@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,10 @@ enum class Shape { tensor, simplex };
 /// Lagrange element of order 1 or 2: P1 and P2 (simplices), Q1 and Q2 (tensor products) in 2D and 3D, and the tensor products
 /// in 1D as edges. Cells are isoparametric: with order 2 their edges and faces are curved.
 ///
+/// A mixed element is a tensor product of order 2 in some directions and of order 1 in others. Coarser meshes of boxes have such cells, for
+/// multigrid; decks cannot ask for them, and kernels with a fixed number of nodes do not know them. Its nodes are those of Q2 without the
+/// ones in the middle of a linear direction, in their order.
+///
 /// Dimension, order and shape tell an element, never its number of nodes: a face of a P1 tetrahedron has as many nodes as an
 /// edge of a P2 triangle. What depends on the element is asked for here (src/element.cpp holds it as data), in
 /// shape_functions.hpp and in quadrature.hpp.
@@ -25,20 +30,26 @@ struct Element {
   int dim = 2;
   int order = 1;
   Shape shape = Shape::tensor;
+  std::array<bool, 3> linear{}; ///< directions of order 1 in a mixed element, whose order is 2
 
-  std::string name() const;        ///< "Q1", "P2"
-  std::string exodus_name() const; ///< "QUAD4", "HEX27", "TRI6", "TETRA10"
-  int gmsh_type() const;           ///< gmsh's number of the element type
+  bool mixed() const { return linear[0] || linear[1] || linear[2]; }
+  int order_along(const int direction) const { return linear[direction] ? 1 : order; }
+  /// The tensor product that is of order 1 in these directions too.
+  Element with_order_one_along(const std::array<bool, 3> &directions) const;
+
+  std::string name() const;        ///< "Q1", "P2"; of mixed ones the order in each direction: "Q212"
+  std::string exodus_name() const; ///< "QUAD4", "HEX27", "TRI6", "TETRA10"; of mixed ones ""
+  int gmsh_type() const;           ///< gmsh's number of the element type; of mixed ones 0
   int num_nodes() const;           ///< per cell
   int num_vertices() const;        ///< per cell; they are its first nodes
   int num_facets() const;          ///< per cell: edges in 2D, faces in 3D
-  int num_facet_nodes() const;     ///< per facet
+  int num_facet_nodes() const;     ///< per facet; of no mixed one
 
-  Element facet() const; ///< what its facets are; in 2D and 3D
-  Element edge() const;  ///< what its edges are
+  Element facet() const; ///< what its facets are; in 2D and 3D; of no mixed one, whose facets differ
+  Element edge() const;  ///< what its edges are; of no mixed one
 
-  /// Position of each node on the reference lattice {0..order}^dim, for simplices the part of it where the coordinates'
-  /// sum is <= order: (nodes, dim), vertices first.
+  /// Position of each node on the reference lattice {0..order}^dim, of mixed elements up to the order of each direction, for simplices
+  /// the part of it where the coordinates' sum is <= order: (nodes, dim), vertices first.
   const Table &lattice() const;
 
   /// Local nodes of each facet, (facets, facet nodes), in the order of the facet's own element. The outward normal is the
@@ -54,11 +65,14 @@ struct Element {
 
 inline bool operator==(const Element &a, const Element &b)
 {
-  return a.dim == b.dim && a.order == b.order && a.shape == b.shape;
+  return a.dim == b.dim && a.order == b.order && a.shape == b.shape && a.linear == b.linear;
 }
 
-/// Those that cells can be of: P1, P2, Q1, Q2 in 2D, then in 3D.
+/// Those that the cells of a body can be of: P1, P2, Q1, Q2 in 2D, then in 3D.
 const std::vector<Element> &all_elements();
+
+/// The mixed elements of a dimension, 2 or 3.
+const std::vector<Element> &mixed_elements(int dim);
 
 /// The element that a cell of gmsh's type is of, if there is one.
 std::optional<Element> element_of_gmsh_type(int type);

@@ -154,8 +154,35 @@ private:
   }
 };
 
+/// Values of a mixed element's shape functions.
+template <int Dim>
+struct MixedShapeFunctions {
+  static constexpr int most = Dim == 2 ? 6 : 18; ///< nodes
+  int nodes = 0;
+  int order[Dim];       // in each direction
+  int place[most][Dim]; // (nodes) as Element::lattice has them
+
+  explicit MixedShapeFunctions(const Element &element) : nodes(element.num_nodes())
+  {
+    for (int d = 0; d < Dim; ++d) order[d] = element.order_along(d);
+    for (int a = 0; a < nodes; ++a)
+      for (int d = 0; d < Dim; ++d) place[a][d] = element.lattice()[a][d];
+  }
+  /// N(a) at a point X of the reference cell, 0 beyond the last node.
+  KOKKOS_INLINE_FUNCTION void evaluate(const double (&X)[Dim], double (&N)[most]) const
+  {
+    Lagrange along[Dim];
+    for (int d = 0; d < Dim; ++d) along[d] = lagrange(order[d], X[d]);
+    for (int a = 0; a < most; ++a) {
+      N[a] = a < nodes ? 1 : 0;
+      for (int d = 0; d < Dim && a < nodes; ++d) N[a] *= along[d].value[place[a][d]];
+    }
+  }
+};
+
 /// Calls work(Dim, Nodes) with both as compile-time constants, for elements of cells. A new element is a new line here, or in
 /// with_facet_extents() for elements of facets alone.
+/// @throws rpc::Error (internal_error) for mixed elements
 template <class Work>
 void with_static_extents(const Element &element, Work &&work)
 {
@@ -163,6 +190,8 @@ void with_static_extents(const Element &element, Work &&work)
   using Two = integral_constant<int, 2>;
   using Three = integral_constant<int, 3>;
   const bool simplex = element.shape == Shape::simplex;
+  if (element.mixed())
+    throw Error(ExitCode::internal_error, "mesh: kernels do not know the mixed element " + element.name());
   if (element.dim == 2 && element.order == 1)
     return simplex ? work(Two(), integral_constant<int, 3>()) : work(Two(), integral_constant<int, 4>());
   if (element.dim == 2 && element.order == 2)
