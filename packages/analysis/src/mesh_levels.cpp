@@ -1,5 +1,10 @@
 #include "rpc/analysis/mesh_levels.hpp"
 
+#include "rpc/fem/interpolation.hpp"
+#include "rpc/mesh/box.hpp"
+
+#include <optional>
+#include <string>
 #include <utility>
 
 namespace rpc::analysis
@@ -38,7 +43,26 @@ solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, con
                            RCP<const CrsMatrix> interpolation)
 {
   auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), dirichlet).matrix;
-  return {std::move(K), std::move(interpolation), dirichlet.fixed, fem::node_coordinates(d), fem::rigid_body_modes(d)};
+  return {std::move(K),
+          std::move(interpolation),
+          dirichlet.fixed,
+          fem::node_coordinates(d),
+          fem::rigid_body_modes(d),
+          d.mesh->element.order};
+}
+
+std::optional<int> thin_direction(const NestedMesh &mesh)
+{
+  const auto &box = mesh.discretization().mesh->box;
+  return box ? mesh::thin_direction(*box) : std::nullopt;
+}
+
+/// "thin in z: factored at 48 x 48 x 1 cells"
+std::string thin_text(const mesh::BoxOptions &box, const int direction)
+{
+  std::string text = std::string("thin in ") + "xyz"[direction] + ": factored at ";
+  for (std::size_t d = 0; d < box.cells.size(); ++d) text += (d == 0 ? "" : " x ") + std::to_string(box.cells[d]);
+  return text + " cells";
 }
 
 } // namespace
@@ -54,7 +78,14 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
     return static_cast<GO>(mesh.discretization().owned_dofs->getGlobalNumElements());
   };
   const NestedMesh *mesh = &finest;
-  while (levels.level.empty() || num_unknowns(*mesh) > (dim == 2 ? few_2d : few_3d)) {
+  std::optional<int> thin = thin_direction(finest);
+  if (thin) { // no coarser mesh will do: the mesh is its own coarser one, where it is factored
+    const fem::Discretization &d = finest.discretization();
+    fem::DirichletDofs dirichlet;
+    dirichlet.fixed = prescribed;
+    levels.level.push_back(level_on(d, model, dirichlet, fem::interpolation(d, d)));
+  }
+  while (!thin && (levels.level.empty() || num_unknowns(*mesh) > (dim == 2 ? few_2d : few_3d))) {
     const NestedMesh *const coarse = mesh->coarser().get();
     if (!coarse) break;
     mesh = coarse;
@@ -65,8 +96,10 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
     else
       dirichlet = fem::dirichlet_dofs(d, held);
     levels.level.push_back(level_on(d, model, dirichlet, mesh->to_finer()));
+    thin = thin_direction(*mesh);
   }
-  levels.down_to_few = num_unknowns(*mesh) <= (dim == 2 ? most_factored_2d : most_factored_3d);
+  if (thin) levels.end = thin_text(*mesh->discretization().mesh->box, *thin);
+  levels.down_to_few = thin || num_unknowns(*mesh) <= (dim == 2 ? most_factored_2d : most_factored_3d);
   return levels;
 }
 

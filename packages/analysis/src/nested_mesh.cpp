@@ -14,11 +14,11 @@ namespace rpc::analysis
 namespace
 {
 
-/// The box with half as many cells; none where it would be too small for the ranks.
-std::optional<fem::Discretization> halved(const fem::Discretization &d)
+/// The next coarser box; none where it would be too small for the ranks.
+std::optional<fem::Discretization> coarser_box(const fem::Discretization &d)
 {
   if (!d.mesh->box) return std::nullopt;
-  const auto options = mesh::halved(*d.mesh->box);
+  const auto options = mesh::coarsened(*d.mesh->box);
   if (!options) return std::nullopt;
   try {
     return fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(*options, d.mesh->owned_nodes->getComm())),
@@ -51,12 +51,19 @@ private:
   std::vector<RCP<const CrsMatrix>> steps_;
 };
 
+/// Whether the next coarser mesh is that of order 1 on the same cells.
+bool goes_to_order_one(const mesh::Mesh &mesh)
+{
+  if (mesh.element.order == 1 || mesh.element.mixed()) return false;
+  return !mesh.box || mesh::coarsened(*mesh.box)->element.order == 1;
+}
+
 } // namespace
 
 bool NestedMesh::may_have_coarser() const
 {
   const mesh::Mesh &mesh = *discretization_.mesh;
-  return mesh.element.order == 2 || (mesh.box && mesh::halved(*mesh.box));
+  return mesh.element.order == 2 || (mesh.box && mesh::coarsened(*mesh.box));
 }
 
 std::shared_ptr<const NestedMesh> NestedMesh::coarser() const
@@ -64,12 +71,12 @@ std::shared_ptr<const NestedMesh> NestedMesh::coarser() const
   if (std::exchange(asked_, true)) return coarser_;
   const fem::Discretization &d = discretization_;
   std::shared_ptr<NestedMesh> made;
-  if (d.mesh->element.order == 2) {
+  if (goes_to_order_one(*d.mesh)) {
     fem::OrderOne lower = fem::order_one(d);
     made = std::make_shared<NestedMesh>(fem::discretize(std::move(lower.mesh), d.kinematics));
     made->to_finer_ = lower.interpolation;
     made->node_of_finer_ = lower.node;
-  } else if (auto box = halved(d)) {
+  } else if (auto box = coarser_box(d)) {
     made = std::make_shared<NestedMesh>(std::move(*box));
     made->to_finer_ = fem::interpolation(made->discretization(), d);
   }

@@ -45,7 +45,7 @@ struct PartFacet {
 /// Those on one side of the lattice cell.
 std::vector<PartFacet> facets_on(const Element &element, const BoxParts &parts, const BoxSide &side)
 {
-  const int end = side.upper ? element.order : 0;
+  const int end = side.upper ? element.order_along(side.direction) : 0;
   std::vector<PartFacet> found;
   for (int part = 0; part < static_cast<int>(parts.size()); ++part)
     for (int ordinal = 0; ordinal < element.num_facets(); ++ordinal) {
@@ -94,10 +94,10 @@ void number_nodes(Numbering &numbering, const LO num_nodes)
 
 void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView<double **> &coords)
 {
-  Kokkos::Array<double, 3> lower{}, upper{}, last_cell{}, last_length{};
+  Kokkos::Array<double, 3> lower{}, upper{}, last_cell{}, last_length{}, orders{};
   const int dim = options.element.dim;
-  const double order = options.element.order;
   for (int d = 0; d < dim; ++d) {
+    orders[d] = options.element.order_along(d);
     lower[d] = options.lower[d];
     upper[d] = options.upper[d];
     last_cell[d] = options.cells[d] - 1;
@@ -106,7 +106,8 @@ void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView
   Kokkos::parallel_for(
       "rpc::mesh::box_coords", device_range(static_cast<LO>(coords.extent(0))), KOKKOS_LAMBDA(const LO lid) {
         const Index at = n.node_at(lid);
-        for (int d = 0; d < dim; ++d) {                       // both ends exact
+        for (int d = 0; d < dim; ++d) { // both ends exact
+          const double order = orders[d];
           const double beyond = at[d] - order * last_cell[d]; // nodes in the last cell
           const double along = beyond > 0 ? order * last_cell[d] + last_length[d] * beyond : at[d];
           const double t = along / (order * (last_cell[d] + last_length[d]));
@@ -117,7 +118,9 @@ void fill_coords(const Numbering &n, const BoxOptions &options, const DeviceView
 
 void fill_cells(const Numbering &n, const Element &element, const BoxParts &parts, const DeviceView<LO **> &cells)
 {
-  const int nodes = element.num_nodes(), dim = element.dim, order = element.order;
+  const int nodes = element.num_nodes(), dim = element.dim;
+  Kokkos::Array<int, 3> order{};
+  for (int d = 0; d < dim; ++d) order[d] = element.order_along(d);
   const int num_parts = static_cast<int>(parts.size());
   HostView<int ***> place_host("rpc::mesh::place_in_lattice_cell", num_parts, nodes, dim);
   for (int part = 0; part < num_parts; ++part)
@@ -129,7 +132,7 @@ void fill_cells(const Numbering &n, const Element &element, const BoxParts &part
         const Index corner = n.cell_at(cell / num_parts);
         for (int a = 0; a < nodes; ++a) {
           Index node{};
-          for (int d = 0; d < dim; ++d) node[d] = order * corner[d] + place(cell % num_parts, a, d);
+          for (int d = 0; d < dim; ++d) node[d] = order[d] * corner[d] + place(cell % num_parts, a, d);
           cells(cell, a) = n.lid_of(node);
         }
       });
@@ -159,7 +162,8 @@ Side side_of_box(const BoxSide &box_side, const BoxParts &parts, const Grid &gri
   Block layer = local_cells;
   const int d = box_side.direction;
   const GO at_end = box_side.upper ? grid.num_cells(d) - 1 : 0;
-  const GO plane = box_side.upper ? mesh.element.order * (at_end + 1) : 0; // of nodes: a halo cell may reach it alone
+  const GO plane =
+      box_side.upper ? mesh.element.order_along(d) * (at_end + 1) : 0; // of nodes: a halo cell may reach it alone
   const bool present = numbering.owned_nodes.begin[d] <= plane && plane < numbering.owned_nodes.end[d];
   layer.begin[d] = at_end;
   layer.end[d] = present ? at_end + 1 : at_end;
@@ -180,7 +184,7 @@ Side side_of_box(const BoxSide &box_side, const BoxParts &parts, const Grid &gri
     for (const auto &[part, facet] : in_cell) {
       const auto owns_node = [&, &place = parts[part]](const int a) {
         Index node{};
-        for (int k = 0; k < element.dim; ++k) node[k] = element.order * at[k] + place[a][k];
+        for (int k = 0; k < element.dim; ++k) node[k] = element.order_along(k) * at[k] + place[a][k];
         return numbering.owned_nodes.contains(node);
       };
       const auto &nodes = element.facets()[facet];
@@ -294,23 +298,55 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-std::optional<BoxOptions> halved(const BoxOptions &options)
+namespace
 {
-  constexpr double stretched = 1.7;
+
+/// Node distances up to this many times the shortest one count as equally short.
+constexpr double stretched = 1.7;
+
+/// The least node distance of the directions with more than one interval between nodes; infinite where there is none.
+double shortest_distance(const BoxOptions &options)
+{
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int d = 0; d < options.element.dim; ++d)
+    if (options.intervals(d) > 1) shortest = std::min(shortest, options.node_distance(d));
+  return shortest;
+}
+
+} // namespace
+
+std::optional<BoxOptions> coarsened(const BoxOptions &options)
+{
   const int dim = options.element.dim;
-  double shortest = std::numeric_limits<double>::infinity(); // of those that can be made longer
-  for (int d = 0; d < dim; ++d)
-    if (options.cells[d] > 1) shortest = std::min(shortest, options.cell_length(d));
+  const double shortest = shortest_distance(options);
   if (!std::isfinite(shortest)) return std::nullopt;
   BoxOptions coarse = options;
-  coarse.element.order = 1;
   coarse.last.resize(dim, 1.);
+  if (options.element.shape == Shape::simplex && options.element.order == 2) {
+    coarse.element.order = 1;
+    return coarse;
+  }
+  std::array<bool, 3> lower{};
   for (int d = 0; d < dim; ++d) {
-    if (options.cells[d] == 1 || options.cell_length(d) > stretched * shortest) continue;
+    if (options.intervals(d) == 1 || options.node_distance(d) > stretched * shortest) continue;
+    lower[d] = options.element.order_along(d) == 2;
+    if (lower[d]) continue;
     coarse.cells[d] = options.cells[d] / 2;
     coarse.last[d] = (options.cells[d] % 2 + 1 + options.last_in(d)) / 2; // of the last two or three
   }
+  coarse.element = options.element.with_order_one_along(lower);
   return coarse;
+}
+
+std::optional<int> thin_direction(const BoxOptions &options)
+{
+  const double shortest = shortest_distance(options);
+  std::optional<int> thinnest;
+  const auto thickness = [&options](const int d) { return options.upper[d] - options.lower[d]; };
+  for (int d = 0; d < options.element.dim; ++d)
+    if (options.intervals(d) == 1 && (!thinnest || thickness(d) < thickness(*thinnest))) thinnest = d;
+  const bool is_thin = thinnest && std::isfinite(shortest) && thickness(*thinnest) < stretched * shortest;
+  return is_thin ? thinnest : std::nullopt;
 }
 
 Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
@@ -376,7 +412,7 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   Index nodes{1, 1, 1}, cells{1, 1, 1};
   for (int d = 0; d < mesh.dim(); ++d) {
     cells[d] = options.cells[d];
-    nodes[d] = GO(options.cells[d]) * options.element.order + 1;
+    nodes[d] = GO(options.cells[d]) * options.element.order_along(d) + 1;
   }
   mesh.node_id = lattice_ids(numbering.owned_nodes, nodes, 1);
   mesh.cell_id = lattice_ids(numbering.owned_cells, cells, num_parts);

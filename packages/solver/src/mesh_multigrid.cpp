@@ -180,8 +180,9 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     const auto block = l == 0 ? H_->base().diagonal_blocks() : levels_[l - 1]->coarse->base_blocks();
     const double largest =
         l == 0 ? largest_eigenvalue(Rounded(H_, false), block) : largest_eigenvalue(*levels_[l]->A, block);
-    levels_[l]->smoother = std::make_unique<NodeSmoother>(levels_[l]->A, block, std::max(largest, largest_of_contact),
-                                                          l == 0 && levels.order == 2 ? order_two : order_one);
+    levels_[l]->smoother = std::make_unique<NodeSmoother>(
+        levels_[l]->A, block, std::max(largest, largest_of_contact),
+        (l == 0 ? levels.order : levels.level[l - 1].order) == 2 ? order_two : order_one);
   }
   contact_of_coarsest_ = write_contact();
   coarsest_ = make_coarsest(levels.level.back());

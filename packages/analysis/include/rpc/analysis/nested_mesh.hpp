@@ -8,8 +8,9 @@
 namespace rpc::analysis
 {
 
-/// A mesh of a body that leads to coarser ones: of order 1 on the same cells, then boxes of half as many cells in each direction.
-/// A body from gmsh has no coarser ones than the first.
+/// A mesh of a body that leads to coarser ones: of order 1 on the same cells, then boxes of half as many cells in each direction. Boxes of
+/// stretched cells take both steps in the directions first in which nodes are closest, see mesh::coarsened(). A body from gmsh has no
+/// coarser ones than the first.
 ///
 /// Coarser meshes are made on demand, and kept until they are forgotten: multigrid and nested iteration share them. They follow from
 /// this mesh alone, so that making or forgetting them changes nothing of it: both are const. One thread of a rank at a time.

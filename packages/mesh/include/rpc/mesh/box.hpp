@@ -24,6 +24,10 @@ struct BoxOptions {
   {
     return (upper[direction] - lower[direction]) / (cells[direction] - 1 + last_in(direction));
   }
+  /// Between neighbouring nodes, but for those of the last cell [m].
+  double node_distance(const int direction) const { return cell_length(direction) / element.order_along(direction); }
+  /// Number of intervals between nodes.
+  int intervals(const int direction) const { return cells[direction] * element.order_along(direction); }
 };
 
 /// Adds the box's parameters to a valid list.
@@ -32,10 +36,15 @@ void add_box_parameters(Teuchos::ParameterList &valid);
 /// @throws rpc::Error (bad_input) on anything out of range
 BoxOptions box_options(const Teuchos::ParameterList &list);
 
-/// The next coarser box for multigrid, of order 1: in the directions in which cells are shortest, each two cells are one, and of an odd
-/// number the last three, so that its functions are among those of the finer box; directions in which cells are more than 1.7 times as
-/// long keep theirs, so that stretched cells become square ones first. None where no direction has more than one cell.
-std::optional<BoxOptions> halved(const BoxOptions &options);
+/// The next coarser box for multigrid, whose functions are among those of the finer one. In the directions in which nodes are closest, up to
+/// 1.7 times the shortest distance, order 2 becomes order 1 on the same cells; where it is 1 already, each two cells become one, and
+/// of an odd number the last three. Other directions keep what they have, so that stretched cells become square ones first. P2 becomes P1 in
+/// all directions at once. None where no direction has more than one interval between nodes.
+std::optional<BoxOptions> coarsened(const BoxOptions &options);
+
+/// The direction in which a box is one cell of order 1 and thinner than 1.7 times the shortest distance of nodes in the others; the
+/// thinnest of several. Coarser boxes would bend like bodies that are as thick as their cells are long, so that multigrid has to end here.
+std::optional<int> thin_direction(const BoxOptions &options);
 
 /// Makes this rank's part of a box; no communication of mesh data, and no rank holds the whole.
 ///

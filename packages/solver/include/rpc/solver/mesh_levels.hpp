@@ -3,6 +3,7 @@
 #include "rpc/core/tpetra.hpp"
 
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace rpc::solver
@@ -15,16 +16,19 @@ struct MeshLevel {
   DeviceView<char *> prescribed;      ///< (columns of `stiffness`) 1 where the displacement is prescribed
   RCP<MultiVector> coordinates;       ///< (owned nodes; dim) [m]
   RCP<MultiVector> null_space;        ///< (owned dofs; rigid body modes)
+  int order = 1;                      ///< of its elements; 2 too where that is so in some directions alone
 };
 
 /// From the finest of them to the coarsest one; nodes have consecutive gids from 0, a node's unknowns follow each other.
 struct MeshLevels {
   std::vector<MeshLevel> level;
-  int order = 1; ///< of the finest mesh, which is none of the levels; all levels have order 1
+  int order = 1; ///< of the finest mesh, which is none of the levels
   /// (owned dofs, at least) of the finest mesh: 1 where the displacement is prescribed
   DeviceView<char *> prescribed;
-  /// The coarsest has few unknowns: it is solved directly. Otherwise algebraic multigrid follows.
+  /// The coarsest is solved directly: it has few unknowns, or multigrid has to end there. Otherwise algebraic multigrid follows.
   bool down_to_few = false;
+  std::string
+      end; ///< why multigrid ends where it does, "thin in z: factored at 48 x 48 x 1 cells"; empty where unknowns are few
 };
 
 /// Makes them when they are needed; none if there is no coarser mesh. Collective.
