@@ -80,7 +80,7 @@ struct Body {
       coarse_dofs = fem::discretize(lower.mesh).owned_dofs;
       nodes = lower.interpolation;
     } else {
-      const auto half = mesh::make_box(*mesh::halved(*d.mesh->box), Tpetra::getDefaultComm());
+      const auto half = mesh::make_box(*mesh::coarsened(*d.mesh->box), Tpetra::getDefaultComm());
       const auto coarse = fem::discretize(std::make_shared<mesh::Mesh>(half));
       coarse_dofs = coarse.owned_dofs;
       nodes = fem::interpolation(coarse, d);

@@ -73,6 +73,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   levels.prescribed = prescribed;
   const int dim = finest.discretization().dim();
   levels.order = finest.discretization().mesh->element.order;
+  const GO few = dim == 2 ? few_2d : few_3d;
   const auto held = held_sides(model.dirichlet);
   const auto num_unknowns = [](const NestedMesh &mesh) {
     return static_cast<GO>(mesh.discretization().owned_dofs->getGlobalNumElements());
@@ -85,7 +86,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
     dirichlet.fixed = prescribed;
     levels.level.push_back(level_on(d, model, dirichlet, fem::interpolation(d, d)));
   }
-  while (!thin && (levels.level.empty() || num_unknowns(*mesh) > (dim == 2 ? few_2d : few_3d))) {
+  while (!thin && (levels.level.empty() || num_unknowns(*mesh) > few)) {
     const NestedMesh *const coarse = mesh->coarser().get();
     if (!coarse) break;
     mesh = coarse;
@@ -98,7 +99,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
     levels.level.push_back(level_on(d, model, dirichlet, mesh->to_finer()));
     thin = thin_direction(*mesh);
   }
-  if (thin) levels.end = thin_text(*mesh->discretization().mesh->box, *thin);
+  if (thin && num_unknowns(*mesh) > few) levels.end = thin_text(*mesh->discretization().mesh->box, *thin);
   levels.down_to_few = thin || num_unknowns(*mesh) <= (dim == 2 ? most_factored_2d : most_factored_3d);
   return levels;
 }

@@ -55,7 +55,9 @@ private:
 bool goes_to_order_one(const mesh::Mesh &mesh)
 {
   if (mesh.element.order == 1 || mesh.element.mixed()) return false;
-  return !mesh.box || mesh::coarsened(*mesh.box)->element.order == 1;
+  if (!mesh.box) return true;
+  const mesh::Element coarser = mesh::coarsened(*mesh.box)->element;
+  return coarser.order == 1 && coarser.shape == mesh.element.shape;
 }
 
 } // namespace

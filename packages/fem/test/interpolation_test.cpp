@@ -156,7 +156,7 @@ TEST(Interpolation, BetweenHalvedBoxesIsThatOfTheSearch)
     const auto finest = body(box, world());
     auto fine = finest;
     int levels = 0;
-    for (auto coarse = mesh::halved(box); coarse && coarse->cells[0] >= 3; coarse = mesh::halved(*coarse), ++levels) {
+    for (auto coarse = mesh::coarsened(box); coarse && coarse->cells[0] >= 3; coarse = mesh::coarsened(*coarse), ++levels) {
       const auto next = body(*coarse, world());
       expect_rows_of_search(next, fine);
       fine = next;
@@ -177,7 +177,7 @@ TEST(Interpolation, OfHalvedCellsHasExactWeights)
     for (double &end : box.lower) end += 1e3;
     for (double &end : box.upper) end += 1e3;
     for (int &cells : box.cells) cells = 8;
-    const auto fine = body(box, world()), coarse = body(*mesh::halved(*mesh::halved(box)), world());
+    const auto fine = body(box, world()), coarse = body(*mesh::coarsened(*mesh::coarsened(box)), world());
     for (const auto &row : rows_of(*fem::interpolation(coarse, fine)))
       for (const auto &[gid, weight] : row) EXPECT_EQ(64 * weight, std::round(64 * weight));
     for (const auto &row : rows_of(*fem::interpolation(fine, coarse))) {
@@ -194,7 +194,7 @@ TEST(Interpolation, IsToldTheBoxOfTheVerticesOfOrderTwo)
     SCOPED_TRACE(text_of(element));
     const auto quadratic = body(finer_box(element), world());
     const auto vertices = fem::discretize(fem::order_one(quadratic).mesh);
-    const auto coarse = body(*mesh::halved(*vertices.mesh->box), world());
+    const auto coarse = body(*mesh::coarsened(*vertices.mesh->box), world());
     expect_rows_of_search(coarse, vertices);
     expect_rows_of_search(vertices, coarse);
   }

@@ -298,57 +298,6 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-namespace
-{
-
-/// Node distances up to this many times the shortest one count as equally short.
-constexpr double stretched = 1.7;
-
-/// The least node distance of the directions with more than one interval between nodes; infinite where there is none.
-double shortest_distance(const BoxOptions &options)
-{
-  double shortest = std::numeric_limits<double>::infinity();
-  for (int d = 0; d < options.element.dim; ++d)
-    if (options.intervals(d) > 1) shortest = std::min(shortest, options.node_distance(d));
-  return shortest;
-}
-
-} // namespace
-
-std::optional<BoxOptions> coarsened(const BoxOptions &options)
-{
-  const int dim = options.element.dim;
-  const double shortest = shortest_distance(options);
-  if (!std::isfinite(shortest)) return std::nullopt;
-  BoxOptions coarse = options;
-  coarse.last.resize(dim, 1.);
-  if (options.element.shape == Shape::simplex && options.element.order == 2) {
-    coarse.element.order = 1;
-    return coarse;
-  }
-  std::array<bool, 3> lower{};
-  for (int d = 0; d < dim; ++d) {
-    if (options.intervals(d) == 1 || options.node_distance(d) > stretched * shortest) continue;
-    lower[d] = options.element.order_along(d) == 2;
-    if (lower[d]) continue;
-    coarse.cells[d] = options.cells[d] / 2;
-    coarse.last[d] = (options.cells[d] % 2 + 1 + options.last_in(d)) / 2; // of the last two or three
-  }
-  coarse.element = options.element.with_order_one_along(lower);
-  return coarse;
-}
-
-std::optional<int> thin_direction(const BoxOptions &options)
-{
-  const double shortest = shortest_distance(options);
-  std::optional<int> thinnest;
-  const auto thickness = [&options](const int d) { return options.upper[d] - options.lower[d]; };
-  for (int d = 0; d < options.element.dim; ++d)
-    if (options.intervals(d) == 1 && (!thinnest || thickness(d) < thickness(*thinnest))) thinnest = d;
-  const bool is_thin = thinnest && std::isfinite(shortest) && thickness(*thinnest) < stretched * shortest;
-  return is_thin ? thinnest : std::nullopt;
-}
-
 Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
 {
   const std::size_t dim = options.element.dim;

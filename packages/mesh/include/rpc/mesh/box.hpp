@@ -36,14 +36,16 @@ void add_box_parameters(Teuchos::ParameterList &valid);
 /// @throws rpc::Error (bad_input) on anything out of range
 BoxOptions box_options(const Teuchos::ParameterList &list);
 
-/// The next coarser box for multigrid, whose functions are among those of the finer one. In the directions in which nodes are closest, up to
-/// 1.7 times the shortest distance, order 2 becomes order 1 on the same cells; where it is 1 already, each two cells become one, and
-/// of an odd number the last three. Other directions keep what they have, so that stretched cells become square ones first. P2 becomes P1 in
-/// all directions at once. None where no direction has more than one interval between nodes.
+/// The next coarser box for multigrid. In the directions in which nodes are closest, up to 1.7 times the shortest distance, order 2 becomes
+/// order 1 on the same cells; where it is 1 already, each two cells become one, and of an odd number the last three. Other directions
+/// keep what they have, so that stretched cells become square ones first. Where that makes a box thin (thin_direction()), but so it is too with only the
+/// directions coarsened that come down to one interval between nodes, only they are. Functions of Q1 and Q2 boxes are among those of the finer one.
+/// P2 becomes P1 where node distances are alike, else Q2 with the same nodes takes its place. None where no direction has more
+/// than one interval.
 std::optional<BoxOptions> coarsened(const BoxOptions &options);
 
 /// The direction in which a box is one cell of order 1 and thinner than 1.7 times the shortest distance of nodes in the others; the
-/// thinnest of several. Coarser boxes would bend like bodies that are as thick as their cells are long, so that multigrid has to end here.
+/// thinnest of several. A coarser box would be too stiff when it bends, so multigrid ends here.
 std::optional<int> thin_direction(const BoxOptions &options);
 
 /// Makes this rank's part of a box; no communication of mesh data, and no rank holds the whole.

@@ -1,0 +1,82 @@
+#include "rpc/mesh/box.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+using Directions = std::array<bool, 3>;
+
+/// Node distances up to this many times the shortest one count as equally short.
+constexpr double stretched = 1.7;
+
+/// The least node distance of the directions with more than one interval between nodes; infinite where there is none.
+double shortest_distance(const BoxOptions &options)
+{
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int d = 0; d < options.element.dim; ++d)
+    if (options.intervals(d) > 1) shortest = std::min(shortest, options.node_distance(d));
+  return shortest;
+}
+
+/// Order 1 in these directions; where it is that already, half as many cells.
+BoxOptions coarsened_along(const Directions &directions, const BoxOptions &options)
+{
+  BoxOptions coarse = options;
+  coarse.last.resize(options.element.dim, 1.);
+  Directions lower{};
+  for (int d = 0; d < options.element.dim; ++d) {
+    lower[d] = directions[d] && options.element.order_along(d) == 2;
+    if (!directions[d] || lower[d]) continue;
+    coarse.cells[d] = options.cells[d] / 2;
+    coarse.last[d] = (options.cells[d] % 2 + 1 + options.last_in(d)) / 2; // of the last two or three
+  }
+  coarse.element = options.element.with_order_one_along(lower);
+  return coarse;
+}
+
+} // namespace
+
+std::optional<BoxOptions> coarsened(const BoxOptions &options)
+{
+  const int dim = options.element.dim;
+  const double shortest = shortest_distance(options);
+  if (!std::isfinite(shortest)) return std::nullopt;
+  BoxOptions fine = options;
+  Directions closest{}, to_one{};
+  bool all = true;
+  for (int d = 0; d < dim; ++d) {
+    closest[d] = options.intervals(d) > 1 && options.node_distance(d) <= stretched * shortest;
+    all = all && (closest[d] || options.intervals(d) == 1);
+  }
+  if (options.element.shape == Shape::simplex && options.element.order == 2) {
+    if (all) {
+      fine.element.order = 1;
+      return fine;
+    }
+    fine.element.shape = Shape::tensor; // of the same nodes
+  }
+  const BoxOptions coarse = coarsened_along(closest, fine);
+  if (!thin_direction(coarse) || thin_direction(options)) return coarse;
+  for (int d = 0; d < dim; ++d) to_one[d] = closest[d] && coarse.intervals(d) == 1;
+  const BoxOptions across = coarsened_along(to_one, fine);
+  return thin_direction(across) ? across : coarse;
+}
+
+std::optional<int> thin_direction(const BoxOptions &options)
+{
+  const double shortest = shortest_distance(options);
+  std::optional<int> thinnest;
+  const auto thickness = [&options](const int d) { return options.upper[d] - options.lower[d]; };
+  for (int d = 0; d < options.element.dim; ++d)
+    if (options.intervals(d) == 1 && (!thinnest || thickness(d) < thickness(*thinnest))) thinnest = d;
+  const bool is_thin = thinnest && std::isfinite(shortest) && thickness(*thinnest) < stretched * shortest;
+  return is_thin ? thinnest : std::nullopt;
+}
+
+} // namespace rpc::mesh
