@@ -156,7 +156,8 @@ TEST(Interpolation, BetweenHalvedBoxesIsThatOfTheSearch)
     const auto finest = body(box, world());
     auto fine = finest;
     int levels = 0;
-    for (auto coarse = mesh::coarsened(box); coarse && coarse->cells[0] >= 3; coarse = mesh::coarsened(*coarse), ++levels) {
+    for (auto coarse = mesh::coarsened(box); coarse && coarse->cells[0] >= 3;
+         coarse = mesh::coarsened(*coarse), ++levels) {
       const auto next = body(*coarse, world());
       expect_rows_of_search(next, fine);
       fine = next;
