@@ -34,13 +34,23 @@ constexpr int first_iterations = 15, fair_iterations = 30;
 // Rows up to which it is thought of at all: in the plane they take gigabytes, in space more than most machines have.
 constexpr GO most_sparse_rows = 3000000;
 
+/// Entries of K's rows on all ranks; collective.
+double num_entries(const StiffnessOperator &K)
+{
+  const auto blocks = K.rows().blocks();
+  double mine = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::num_entries", device_range(num_local(*K.getDomainMap()) / K.dofs_per_node()),
+      KOKKOS_LAMBDA(const LO node, double &sum) { sum += blocks.size(node); }, mine);
+  return K.dofs_per_node() * K.dofs_per_node() * sum_all(*K.getDomainMap()->getComm(), mine);
+}
+
 /// About what a CG iteration with multigrid takes [s], by constants of one machine: a choice by them is the same in every run.
+/// Collective.
 double seconds_of_iteration(const StiffnessOperator &K)
 {
-  const bool plane = K.dofs_per_node() == 2;
-  const double of_row = K.rows().pays() ? (plane ? 1e-7 : 3e-7) : (plane ? 3e-7 : 1.2e-6);
-  const Map &dofs = *K.getDomainMap();
-  return of_row * static_cast<double>(dofs.getGlobalNumElements()) / dofs.getComm()->getSize();
+  const double of_entry = K.rows().pays() ? 3.5e-9 : 1.2e-8;
+  return of_entry * num_entries(K) / K.getDomainMap()->getComm()->getSize();
 }
 
 /// What is to be done about a result; nothing where it is good.
@@ -78,6 +88,7 @@ struct LinearSolver::Impl {
   bool on_sparse = false;         // from some solve on
   bool may_be_sparse;             // the deck leaves the preconditioner open, and memory may do
   double lost_iterations = 0;     // of CG, in all solves, beyond what is fair
+  double iteration_seconds = -1;  // -1: not asked for yet
   bool given_up = false;          // the last solve, in favour of a sparse factor
   bool met_singular = false;      // a matrix that neither hierarchy can solve for
   bool stands_in = false;         // since the meshes failed in the present solve
@@ -136,7 +147,8 @@ bool LinearSolver::Impl::sparse_pays(const int iterations, const double residual
 {
   if (iterations < first_iterations || !may_be_sparse) return false;
   const double all = iterations_to_come(iterations, residual, tolerance);
-  const double lost = seconds_of_iteration(H->base()) * (lost_iterations + std::max(all - fair_iterations, 0.));
+  if (iteration_seconds < 0) iteration_seconds = seconds_of_iteration(H->base());
+  const double lost = iteration_seconds * (lost_iterations + std::max(all - fair_iterations, 0.));
   constexpr double seconds_of_analysis = 5e-6; // a row; not worth it for less
   if (lost < seconds_of_analysis * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
   const auto *const found = prospect();
