@@ -278,7 +278,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
         "  work                %d Uzawa, %d Newton, %zu linear solves, %d CG iterations, %d preconditioner set-ups\n",
         s.uzawa.iterations, sum(s.uzawa.newton_iterations), s.linear.iterations.size(), sum(s.linear.iterations),
         s.linear.preconditioner_setups);
-  out << "    linear solver     " << solver::solver_path(s.linear) << '\n';
+  out << "    linear solver     " << solver::chosen_solver(s.linear) << '\n';
   if (s.line_search_steps > 0)
     print(out, "    %d of the Newton steps with sweep and line search: the active-set iteration did not settle\n",
           s.line_search_steps);

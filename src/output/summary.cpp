@@ -130,6 +130,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["linear_iterations"] = s.linear.iterations;
   json["preconditioner_setups"] = s.linear.preconditioner_setups;
   json["local_corrections"] = s.linear.local_corrections;
+  json["solver"] = s.linear.description;
   json["solver_path"] = solver::solver_path(s.linear);
   json["matrix_assemblies"] = s.matrix_assemblies;
   if (!s.history.empty()) add_steps(json, s, scope);

@@ -65,7 +65,7 @@ void note_skipped(const Task &task, Solution &s)
   const int local = s.linear.local_corrections;
   skip(local > 0, "multigrid set-ups: " + std::to_string(local) + (local == 1 ? " change" : " changes") +
                       " of the active set reused the hierarchy with local updates");
-  skip(!s.linear.fallback.empty(), "multigrid on coarser meshes, for the algebraic one: " + s.linear.fallback);
+  skip(!s.linear.fallback.empty(), "multigrid on coarser meshes: " + s.linear.fallback);
   skip(min_all(mesh.comm(), shapes) > 0, "cell matrices: cells are alike, one for each shape is enough");
 }
 

@@ -73,6 +73,11 @@ std::string solver_path(const LinearSolverCounts &counts)
   return text;
 }
 
+std::string chosen_solver(const LinearSolverCounts &counts)
+{
+  return counts.description + (counts.path.size() > 1 ? " (" + solver_path(counts) + ")" : "");
+}
+
 /// The preconditioners, each with its own state, and which of them is in use.
 struct LinearSolver::Impl {
   LinearSolverOptions options;
@@ -217,6 +222,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     result = {done.converged, done.broken, false, done.iterations, done.reason};
     counts.iterations.push_back(result.iterations);
     counts.solve_seconds += Teuchos::Time::wallTime() - start;
+    counts.description = used->description();
     if (!result.broken && !std::isfinite(x.norm2())) {
       result.converged = false;
       result.broken = true;

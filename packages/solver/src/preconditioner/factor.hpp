@@ -20,6 +20,7 @@ public:
   Prepared prepare(double tolerance) override;
   void forget() override;
   std::string name() const override { return "factor"; }
+  std::string description() const override { return "factor for each choice of states: few unknowns"; }
 
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
              double beta = 0) const override;

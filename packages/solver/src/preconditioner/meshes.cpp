@@ -75,12 +75,19 @@ Preconditioner::Prepared Meshes::prepare(double)
   } else {
     const MeshLevels levels = make_levels_();
     if (levels.level.empty()) throw std::runtime_error("multigrid: a coarser mesh would be too small for the ranks");
+    num_levels_ = levels.level.size() + 1;
+    end_ = levels.down_to_few ? levels.end : "algebraic below";
     H_->allow_rounding(true);
     multigrid_ =
         rcp(new MeshMultigrid(H_, levels, [&](const MeshLevel &level) { return coarsest(level, levels.down_to_few); }));
   }
   revision_ = revision;
   return exists ? Prepared::updated : Prepared::made;
+}
+
+std::string Meshes::description() const
+{
+  return name() + ", " + std::to_string(num_levels_) + " levels" + (end_.empty() ? "" : ", " + end_);
 }
 
 void Meshes::forget()

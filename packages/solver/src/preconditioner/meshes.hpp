@@ -24,6 +24,7 @@ public:
   Prepared prepare(double tolerance) override;
   void forget() override;
   std::string name() const override { return "meshes"; }
+  std::string description() const override;
 
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp = Teuchos::NO_TRANS, double = 1,
              double = 0) const override
@@ -40,6 +41,8 @@ private:
   MakeMeshLevels make_levels_;
   LinearSolverOptions options_;
   RCP<MeshMultigrid> multigrid_; // null: to be made
+  std::size_t num_levels_ = 0;   // with the finest one
+  std::string end_;              // of MeshLevels
   int revision_ = -1;            // of H when it was last brought to it
 };
 

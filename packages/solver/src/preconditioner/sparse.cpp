@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 namespace rpc::solver
@@ -95,6 +96,15 @@ Preconditioner::Prepared Sparse::prepare(double)
   made_ = is_fresh_ = true;
   revision_ = revision;
   return Prepared::made;
+}
+
+std::string Sparse::description() const
+{
+  std::ostringstream text;
+  text.precision(2);
+  text << name() << " of " << H_->getDomainMap()->getGlobalNumElements() << " unknowns, "
+       << prospect_.cost.entries / 1e6 << " million entries";
+  return text.str();
 }
 
 void Sparse::forget()

@@ -31,6 +31,7 @@ public:
   /// The next prepare() makes a new factor.
   void renew() { made_ = false; }
   std::string name() const override { return "sparse factor"; }
+  std::string description() const override;
   /// Whether the factor is that of the present H, without updates.
   bool is_from_scratch() const { return is_fresh_; }
 

@@ -19,9 +19,13 @@ struct LinearSolverCounts {
   std::string fallback;          ///< why multigrid on coarser meshes was given up; empty if it was not
   /// Preconditioners in the order in which they took over, each with what made it necessary; each entry once.
   std::vector<std::string> path;
+  std::string description; ///< what the last solve was preconditioned with, and why; empty before the first one
   double setup_seconds = 0;
   double solve_seconds = 0;
 };
+
+/// What was chosen and why, as one line: the description, and the path where it has led past others.
+std::string chosen_solver(const LinearSolverCounts &counts);
 
 /// The path as one line, such as "meshes -> algebraic: 163 CG iterations"; empty before the first solve.
 std::string solver_path(const LinearSolverCounts &counts);
