@@ -1,6 +1,7 @@
 #include "rpc/analysis/active_set.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace rpc::analysis
@@ -21,6 +22,20 @@ constexpr int most_updates = 2;     // of multipliers at the end, even if pressu
 constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 
+// The interior-point method takes over where twice on end a choice with much overshoot changes more than this part of the points of
+// the one before. With
+// 1 the worst of thin bodies take three steps more.
+constexpr double headway = 0.7;
+constexpr GO few_changes = 3; // edges that move on by a point
+constexpr double much =
+    0.3; // of forces that the law does not admit, over those that it does: bodies of equal sides stay below
+constexpr int most_path_steps = 50;
+constexpr double path_forcing = 1e-3; // of its linear solves; 1e-6 saves no step
+// The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and
+// below the last gap in any case. A trial may change states so often.
+constexpr double first_trial = 1e-2, next_trial = 1e-2, last_gap = 1e-8;
+constexpr int trial_changes = 2;
+
 } // namespace
 
 // The active set: chosen by the last pressures, until a choice confirms itself --------------------------------------------
@@ -29,24 +44,38 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
       pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
-      most_changes_(most_changes)
+      most_changes_(most_changes), trial_gap_(first_trial)
 {
 }
 
 bool ActiveSetStage::resume(const NewtonGroup &from)
 {
-  if (std::exchange(resumed_, true)) return false;
   const Vector &u = solver::tpetra(from.getX());
+  if (path_ == Path::ahead) {
+    iterate_.start_interior_path(u);
+    path_ = Path::on_it;
+    decided_ = false;
+    return true;
+  }
+  if (std::exchange(resumed_, true)) return false;
   iterate_.update_hessian(u); // the states there
   start_.assign(u);
-  seen_.clear();
-  choice_.reset();
-  norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
-  changes_ = updates_ = 0;
-  most_changes_ = most_changes_resumed;
-  rough_ = false; // a small residual may be all of the bending
+  start_over({}, most_changes_resumed);
+  updates_ = 0;
   decided_ = false;
   return true;
+}
+
+/// Choices start anew.
+void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, const int most)
+{
+  choice_ = std::move(choice);
+  seen_.clear();
+  changes_ = idle_changes_ = 0;
+  last_changes_ = 0;
+  most_changes_ = most;
+  norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
+  rough_ = false; // a small residual may be all of the bending
 }
 
 /// What becomes of the iteration at a point, after the step that led there.
@@ -65,17 +94,70 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     if (confirmed_) return Verdict::converged;
     if (stalled) return Verdict::over;
     rough_ = false;
-  } else if (!seen_.insert(choice_->fingerprint).second || ++changes_ > most_changes_) {
-    return Verdict::over; // in circles, or too slow
+  } else if (!seen_.insert(choice_->fingerprint).second || ++changes_ > most_changes_ || !makes_headway()) {
+    return give_up(u); // in circles, or too slow
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
   }
   return Verdict::go_on;
 }
 
+/// Whether the choices come to an end.
+bool ActiveSetStage::makes_headway()
+{
+  const bool idle = last_changes_ > 0 && choice_->overshoot > much && choice_->changes > few_changes &&
+                    choice_->changes > headway * last_changes_;
+  idle_changes_ = idle ? idle_changes_ + 1 : 0;
+  last_changes_ = choice_->changes;
+  return idle_changes_ < 2;
+}
+
+/// The interior-point method goes on where choices overshoot; else, or where that has been, Newton's.
+ActiveSetStage::Verdict ActiveSetStage::give_up(const Vector &u)
+{
+  if (path_ == Path::behind || (path_ == Path::ahead && choice_->overshoot <= much)) return Verdict::over;
+  if (path_ == Path::ahead) iterate_.start_interior_path(u);
+  path_ = Path::on_it;
+  return Verdict::go_on;
+}
+
+/// Whether the states that the path leads to are to be tried, or taken; then they are the next choice.
+bool ActiveSetStage::leaves_path()
+{
+  const auto &path = iterate_.interior_path();
+  const bool ends = path.gap() <= last_gap || path_steps_ >= most_path_steps;
+  if (!ends && !(path.settled() && path.gap() <= trial_gap_)) return false;
+  path_ = ends ? Path::behind : Path::tried;
+  trial_gap_ = next_trial * path.gap();
+  start_over(iterate_.end_of_interior_path(), ends ? most_changes : trial_changes); // (5.20)
+  return true;
+}
+
+ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector &direction)
+{
+  const Vector &u = solver::tpetra(group.getX());
+  Vector F(u.getMap());
+  iterate_.linearize_interior(u, F); // (5.18)
+  const auto solved = solver::solve_for_direction(group.context(), F, direction, path_forcing);
+  const bool usable = !solved.broken && std::isfinite(group.context().direction_norm);
+  if (!usable || solved.interrupted) {
+    path_ = Path::behind;
+    return Step::none;
+  }
+  direction.scale(-1.);
+  const double t = iterate_.advance_interior(u, direction); // (5.19)
+  if (!(t > 0)) return Step::none;
+  direction.scale(t);
+  ++path_steps_;
+  ++group.context().steps;
+  ++steps_;
+  return Step::full;
+}
+
 ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
 {
   if (decided_) return confirmed_ ? Verdict::converged : Verdict::over;
+  if (path_ == Path::on_it) return Verdict::go_on;
   const Vector &u = solver::tpetra(at.getX());
   if (steps_ == 0) {
     start_.assign(u);
@@ -89,6 +171,7 @@ ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
 
 ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &direction)
 {
+  if (path_ == Path::on_it && !leaves_path()) return propose_interior(group, direction);
   if (!choice_ && judge(group) != Verdict::go_on) return Step::none; // a user's status tests do not ask for the verdict
   auto u = rcp(new Vector(solver::tpetra(group.getX()), Teuchos::Copy));
   const auto move_to = [&] {
@@ -104,6 +187,7 @@ ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &directi
     before_ = norm_ = F.norm2();
     if (norm_ > target_) break;
     const Verdict verdict = choose(*u); // nothing to solve for: the next choice
+    if (path_ == Path::on_it) return propose_interior(group, direction);
     if (verdict == Verdict::go_on) continue;
     decided_ = true;
     direction.putScalar(0);

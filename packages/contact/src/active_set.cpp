@@ -52,6 +52,26 @@ void choose_next(const ContactNodes &c, const Vector &u, const DeviceView<State 
   Kokkos::fence();
 }
 
+/// Forces of closed points beyond 0 and xi, over those between.
+double overshoot(const Comm &comm, const ContactNodes &c, const DeviceView<State *> &active,
+                 const DeviceView<double *> &p)
+{
+  double beyond = 0, within = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::overshoot", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &out, double &in) {
+        if (c.fixed(i)) return;
+        const double borne = active(i) == State::closed ? multiplier_of(State::closed, p(i), c.law(i)) : p(i);
+        in += c.weight(i) * borne;
+        out += c.weight(i) * math::magnitude(p(i) - borne);
+      },
+      beyond, within);
+  const double mine[2] = {beyond, within};
+  double all[2];
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 2, mine, all);
+  return all[0] > 0 ? all[0] / std::max(all[1], 1e-300) : 0;
+}
+
 LO count_differences(const DeviceView<State *> &a, const DeviceView<State *> &b)
 {
   LO count = 0;
@@ -106,6 +126,7 @@ ActiveSetChoice next_choice(const SmoothedFunctional &functional, const ActiveSe
                          functional.active_set_pressures(present.state, u)};
   const double bound = negligible * max_all(comm, largest_pressure(c, choice.pressure));
   choose_next(c, u, present.state, choice.pressure, own, bound, choice.state);
+  choice.overshoot = overshoot(comm, c, present.state, choice.pressure);
   return counted(comm, std::move(choice), present);
 }
 

@@ -150,6 +150,17 @@ void Iterate::take_active_set(const ActiveSetChoice &choice, Vector &u)
   update_stiffness();
 }
 
+void Iterate::start_interior_path(const Vector &u)
+{
+  interior_.emplace(functional_, u, pressure_bound_ / beyond_reach);
+}
+
+void Iterate::linearize_interior(const Vector &u, Vector &F)
+{
+  hessian_->set(points_, interior_->blocks(functional_.points()));
+  interior_->gradient(functional_, u, F);
+}
+
 double Iterate::replace_multipliers(const DeviceView<double *> &p)
 {
   const auto [change, size] = replace(points_, p, multipliers().normal);

@@ -25,8 +25,9 @@ ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 /// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.7), (5.8), (5.9)
 ///
 /// Converges where a choice confirms the last active set, which is then the solution's, up to the share k/r that the penalty leaves
-/// to a multiplier update. It ends unconfirmed after too many changes or when an active set comes back. Then Newton's directions with
-/// their line search go on from there.
+/// to a multiplier update. After too many changes, when an active set comes back or where choices make no headway, as on thin bodies,
+/// an interior-point method finds the states, (5.15) to (5.20). Where even these are not confirmed, Newton's directions with their
+/// line search go on.
 class ActiveSetStage : public solver::FirstStage
 {
 public:
@@ -42,6 +43,11 @@ public:
 
 private:
   Verdict choose(const Vector &u);
+  bool makes_headway();
+  Verdict give_up(const Vector &u);
+  void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
+  bool leaves_path();
+  Step propose_interior(solver::NewtonGroup &group, Vector &direction);
 
   contact::Iterate &iterate_;
   double scale_, target_;                          // of forces, and |F|_2 that is small enough [N]
@@ -57,8 +63,13 @@ private:
          before_ = norm_,      // |F|_2 for the active set, after and before the step
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set
   int steps_ = 0;
-  int changes_ = 0; // of the active set
-  int updates_ = 0; // of the multipliers alone, the active set being confirmed
+  int changes_ = 0;      // of the active set
+  int updates_ = 0;      // of the multipliers alone, the active set being confirmed
+  GO last_changes_ = 0;  // points that the last choice changed
+  int idle_changes_ = 0; // choices, one after the other, that changed hardly fewer points than the one before
+  enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
+  int path_steps_ = 0;
+  double trial_gap_; // of the path, at which the states that it leads to are tried
 };
 
 /// After a multiplier update: one step to the minimum for the active set that the last minimization ended on, as far as the

@@ -12,6 +12,7 @@ struct ActiveSetChoice {
   DeviceView<State *> state;     ///< (contact nodes)
   DeviceView<double *> pressure; ///< (contact nodes) [Pa]
   GO changes = 0;                ///< points on all ranks whose state is to change
+  double overshoot = 0;          ///< forces of closed points that the law does not admit, over those that it admits
   bool confirmed = false; ///< no changes: u and the pressures obey the contact law, up to what the penalty leaves
   std::uint64_t fingerprint = 0; ///< of all states on all ranks: equal for equal ones
 };

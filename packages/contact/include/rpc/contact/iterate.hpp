@@ -2,7 +2,9 @@
 
 #include "rpc/algebra/updated_operator.hpp"
 #include "rpc/contact/active_set.hpp"
+#include "rpc/contact/interior_path.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace rpc::contact
@@ -61,6 +63,16 @@ public:
   /// multipliers were given. The functional and its gradients do not change. (9.8)
   void hold_by_contact();
 
+  // The interior-point method: see interior_path.hpp.
+  void start_interior_path(const Vector &u);
+  /// Brings hessian() to the linearized law, and sets what it is to be solved for.                            (5.18)
+  void linearize_interior(const Vector &u, Vector &F);
+  /// @return the length of the step that was taken along d                                                    (5.19)
+  double advance_interior(const Vector &u, const Vector &d) { return interior_->advance(functional_, u, d); }
+  const InteriorPath &interior_path() const { return *interior_; }
+  /// The active set that the path leads to.                                                                    (5.20)
+  ActiveSetChoice end_of_interior_path() const { return interior_->choice(functional_, active_); }
+
   // Multipliers and penalties.
   /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   paper (11), (5.1)
   double update_multipliers(const Vector &u);
@@ -109,6 +121,7 @@ private:
   ActiveSet active_;               // that hessian() belongs to
   double spring_ = 0;              // weak springs at nodes that are not closed, in units of the points' scaling
   bool multipliers_given_ = false; // by a start
+  std::optional<InteriorPath> interior_;
 };
 
 } // namespace rpc::contact

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "rpc/contact/active_set.hpp"
+#include "rpc/contact/law/interior.hpp"
+
+namespace rpc::contact
+{
+
+/// An interior-point method for the contact law: points and their pressures follow the rounded law (5.15) while mu falls to 0. Its
+/// steps are as many on thin bodies as on others, for no point changes its state at once.  doc/theory.md (5.15) to (5.20)
+///
+/// A step is linear: (K + sum_i w_i m_i m_i^T/(D_i + 1/r_i)) d = -F, blocks() and gradient(); advance() takes as much of it as
+/// keeps all points inside. All members are collective.
+class InteriorPath
+{
+public:
+  /// Starts at a displacement, on the path.                                                                       (5.16)
+  /// @param load  over the contact area [Pa]; 0: nothing presses the body but where it has penetrated
+  InteriorPath(const SmoothedFunctional &functional, const Vector &u, double load);
+
+  /// (points, dim, dim) What the linearized law adds to K [N/m].
+  DeviceView<double ***> blocks(const SmoothedPoints &points) const;
+  /// F <- Ku - b + sum_i w_i m_i (p_i + e_i/(D_i + 1/r_i))                                                        (5.18)
+  void gradient(const SmoothedFunctional &functional, const Vector &u, Vector &F) const;
+  /// Takes a step of the points along a displacement, as long as they stay inside, at most 1. @return its length    (5.19)
+  double advance(const SmoothedFunctional &functional, const Vector &u, const Vector &d);
+
+  /// sum_i w_i (p_i s_i + q_i d_i) / sum_i w_i p_i over the size of displacements: 0 where the law holds.
+  double gap() const { return gap_; }
+  /// The last two steps lead to the same states.
+  bool settled() const { return settled_; }
+  /// The states that the points tend to, and their pressures.                                                    (5.20)
+  ActiveSetChoice choice(const SmoothedFunctional &functional, const ActiveSet &present) const;
+
+private:
+  void measure(const Comm &comm, const ContactNodes &points);
+
+  DeviceView<InteriorPoint *> at_; // (points)
+  DeviceView<State *> state_;      // (points) that they tend to
+  double length_ = 0;              // size of displacements [m]
+  double target_ = 0;              // mu that the next step is for [J/m^2]
+  double mu_ = 0;                  // mean of p s and q d [J/m^2]
+  double gap_ = 1;
+  bool settled_ = false;
+};
+
+} // namespace rpc::contact

@@ -1,0 +1,204 @@
+#include "rpc/contact/interior_path.hpp"
+
+#include "rpc/core/math.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace rpc::contact
+{
+namespace
+{
+
+// The path is joined where pairs multiply to this part of pressure times displacement. Less is no gain: a point that has to change
+// its state starts too near to its corner.
+constexpr double first_mu = 0.1;
+constexpr double start_slope = 10; // of p against v from the given point to the path, in pressure over displacement
+constexpr double nearly = 0.995;   // of the way to the next point's corner
+// mu falls to this part by a step; after one cut short to t by twice (1 - t)^2.
+constexpr double first_part = 0.3, most_part = 0.5, least_part = 0.01;
+
+double largest_penetration(const ContactNodes &c, const Vector &u)
+{
+  const auto x = device_read(u);
+  double largest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::largest_penetration", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &most) {
+        if (!c.fixed(i)) most = math::larger(most, math::magnitude(penetration(c, i, x)));
+      },
+      Kokkos::Max<double>(largest));
+  return max_all(*u.getMap()->getComm(), std::max(0., largest));
+}
+
+/// The least E/diameter of the points.
+double softest(const Comm &comm, const ContactNodes &c)
+{
+  double least = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::softest", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &low) { low = math::fmin(low, c.scaling(i)); }, Kokkos::Min<double>(least));
+  return min_all(comm, least);
+}
+
+void join_all(const ContactNodes &c, const Vector &u, const double pressure, const double mu, const double slope,
+              const DeviceView<InteriorPoint *> &at)
+{
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::join_path", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        at(i) = c.fixed(i) ? InteriorPoint{0, 0, 0} : join_path(pressure, penetration(c, i, x), mu, slope, c.law(i));
+      });
+  Kokkos::fence();
+}
+
+/// The longest step of this rank's points that keeps them inside.
+double longest_step(const SmoothedPoints &s, const DeviceView<InteriorPoint *> &change,
+                    const DeviceView<InteriorPoint *> &at)
+{
+  double longest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::longest_step", device_range(s.size()),
+      KOKKOS_LAMBDA(const LO i, double &least) {
+        if (!s.points.fixed(i)) least = math::fmin(least, longest_step(at(i), change(i), s.points.law(i)));
+      },
+      Kokkos::Min<double>(longest));
+  return longest;
+}
+
+} // namespace
+
+InteriorPath::InteriorPath(const SmoothedFunctional &functional, const Vector &u, const double load)
+    : at_("rpc::contact::interior", functional.points().size()),
+      state_("rpc::contact::interior_state", functional.points().size())
+{
+  const ContactNodes &c = functional.points().points;
+  const double soft = softest(*u.getMap()->getComm(), c), largest = largest_penetration(c, u);
+  const double pressure = load > 0 ? load : soft * largest;
+  length_ = std::max(largest, pressure / soft);
+  mu_ = first_mu * pressure * length_;
+  join_all(c, u, pressure, mu_, start_slope * pressure / length_, at_);
+  target_ = first_part * mu_;
+}
+
+DeviceView<double ***> InteriorPath::blocks(const SmoothedPoints &points) const
+{
+  const SmoothedPoints s = points;
+  const auto at = at_;
+  const int dim = s.points.dim;
+  const DeviceView<double ***> block("rpc::contact::interior_blocks", s.size(), dim, dim);
+  Kokkos::parallel_for(
+      "rpc::contact::interior_blocks", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
+        const ContactNodes &c = s.points;
+        if (c.fixed(i)) return;
+        Response response;
+        add_stiffness(c.weight(i), 1 / (linear_compliance(at(i), c.law(i)) + 1 / s.penalty(i)), DirectionAt{c, i}, dim,
+                      response);
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) block(i, k, l) = response.block[k][l];
+      });
+  Kokkos::fence();
+  return block;
+}
+
+void InteriorPath::gradient(const SmoothedFunctional &functional, const Vector &u, Vector &F) const
+{
+  functional.elastic_gradient(u, F);
+  const SmoothedPoints s = functional.points();
+  const auto at = at_;
+  const double mu = target_;
+  const DeviceView<double *> p("rpc::contact::interior_pressure", s.size());
+  {
+    const auto x = device_read(u);
+    Kokkos::parallel_for(
+        "rpc::contact::interior_pressure", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
+          const ContactNodes &c = s.points;
+          if (c.fixed(i)) return;
+          const Foundation f = c.law(i);
+          p(i) = at(i).pressure +
+                 linear_excess(at(i), penetration(c, i, x), mu, f) / (linear_compliance(at(i), f) + 1 / s.penalty(i));
+        });
+    Kokkos::fence();
+  }
+  add_contact_force(s.points, p, F);
+}
+
+double InteriorPath::advance(const SmoothedFunctional &functional, const Vector &u, const Vector &d)
+{
+  const SmoothedPoints s = functional.points();
+  const auto at = at_;
+  const double mu = target_;
+  const DeviceView<InteriorPoint *> change("rpc::contact::interior_change", s.size());
+  {
+    const auto x = device_read(u), move = device_read(d);
+    Kokkos::parallel_for(
+        "rpc::contact::interior_change", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
+          const ContactNodes &c = s.points;
+          if (c.fixed(i)) return;
+          const Foundation f = c.law(i);
+          const double dp = (along_direction(c, i, move) + linear_excess(at(i), penetration(c, i, x), mu, f)) /
+                            (linear_compliance(at(i), f) + 1 / s.penalty(i));
+          change(i) = linear_change(at(i), dp, mu, f);
+        });
+    Kokkos::fence();
+  }
+  const double t = std::min(1., nearly * min_all(*u.getMap()->getComm(), longest_step(s, change, at)));
+  const auto state = state_;
+  LO changes = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::interior_step", device_range(s.size()),
+      KOKKOS_LAMBDA(const LO i, LO &count) {
+        if (s.points.fixed(i)) return;
+        const InteriorPoint before = at(i), by = change(i);
+        at(i) = {before.pressure + t * by.pressure, before.opening + t * by.opening, before.dent + t * by.dent};
+        const State next = tends_to(before, at(i), s.points.law(i));
+        count += next != state(i);
+        state(i) = next;
+      },
+      changes);
+  settled_ = sum_all(*u.getMap()->getComm(), GO(changes)) == 0;
+  measure(*u.getMap()->getComm(), s.points);
+  target_ = std::clamp(2 * (1 - t) * (1 - t), least_part, most_part) * mu_;
+  return t;
+}
+
+void InteriorPath::measure(const Comm &comm, const ContactNodes &points)
+{
+  const ContactNodes c = points;
+  const auto at = at_;
+  double products = 0, force = 0, pairs = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::complementarity", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &product, double &load, double &weight) {
+        if (c.fixed(i)) return;
+        const Foundation f = c.law(i);
+        product += c.weight(i) * complementarity(at(i), f);
+        load += c.weight(i) * at(i).pressure;
+        weight += (can_yield(f) ? 2 : 1) * c.weight(i);
+      },
+      products, force, pairs);
+  const double mine[3] = {products, force, pairs};
+  double all[3];
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 3, mine, all);
+  mu_ = all[0] / all[2];
+  gap_ = all[0] / (all[1] * length_);
+}
+
+ActiveSetChoice InteriorPath::choice(const SmoothedFunctional &functional, const ActiveSet &present) const
+{
+  const ContactNodes c = functional.points().points;
+  ActiveSetChoice choice{DeviceView<State *>("rpc::contact::next_state", c.size()),
+                         DeviceView<double *>("rpc::contact::interior_pressure", c.size())};
+  const auto at = at_;
+  const auto state = state_, now = present.state, next = choice.state;
+  const auto p = choice.pressure;
+  Kokkos::parallel_for(
+      "rpc::contact::interior_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        next(i) = c.fixed(i) ? now(i) : state(i);
+        p(i) = at(i).pressure;
+      });
+  Kokkos::fence();
+  return choice;
+}
+
+} // namespace rpc::contact
