@@ -1,0 +1,71 @@
+"""Newton steps on thin bodies, where bending turns choices of states by pressures over: bounded scene by scene."""
+
+import json
+import unittest
+
+from rpc_run import RpcTestCase
+
+DECK = """<ParameterList name="thin">
+  <ParameterList name="Mesh">
+    <Parameter name="Type" type="string" value="box"/>
+    <Parameter name="Lower" type="Array(double)" value="{%(lower)s}"/>
+    <Parameter name="Upper" type="Array(double)" value="{%(upper)s}"/>
+    <Parameter name="Cells" type="Array(int)" value="{%(cells)s}"/>
+    <Parameter name="Element" type="string" value="%(element)s"/>
+  </ParameterList>
+  <ParameterList name="Material">
+    <Parameter name="Young's Modulus" type="double" value="1000"/>
+    <Parameter name="Poisson's Ratio" type="double" value="0.3"/>
+  </ParameterList>
+  <ParameterList name="Dirichlet">%(held)s</ParameterList>
+  <ParameterList name="Traction">
+    <ParameterList name="top"><Parameter name="Y" type="string" value="%(load)s"/></ParameterList>
+  </ParameterList>
+  <ParameterList name="Contact">
+    <Parameter name="Side" type="string" value="bottom"/>
+    <Parameter name="Yield Stress" type="string" value="%(yield)s"/>
+    <Parameter name="Gap" type="string" value="%(gap)s"/>
+  </ParameterList>
+  <ParameterList name="Output"><Parameter name="Exodus" type="bool" value="false"/></ParameterList>
+</ParameterList>
+"""
+ROUGH = "{0} + {1}*(43758.5453*sin(11*x + 78.233*z) - rint(43758.5453*sin(11*x + 78.233*z)))"
+
+
+def deck(upper, cells, element, load, gap, xi="inf", sides=("left",)):
+    axes = "XYZ"[:len(cells)]
+    zeros = "".join(f'<Parameter name="{axis}" type="double" value="0"/>' for axis in axes)
+    held = "".join(f'<ParameterList name="{side}">{zeros}</ParameterList>' for side in sides)
+    text = lambda values: ", ".join(map(str, values))
+    return DECK % {"lower": text([0.0] * len(cells)), "upper": text(upper), "cells": text(cells), "element": element, "held": held,
+                   "load": -load, "gap": gap.replace("<", "&lt;"), "yield": xi}
+
+
+BOTH, ALL = ("left", "right"), ("left", "right", "front", "back")
+SCENES = {  # deck, most steps
+    "strip over a flat foundation": (deck((1, 0.01), (160, 1), "P1", 1e-3, "2e-3", "0.02"), 21),
+    "strip over waves": (deck((1, 0.02), (50, 1), "Q2", 1e-3, "2e-3*(0.5 + 0.5*sin(15*x))"), 21),
+    "strip over a rough foundation": (deck((1, 0.02), (60, 1), "P2", 1e-3, ROUGH.format("2e-3", "1e-3").replace(" + 78.233*z", ""), "0.01", BOTH), 20),
+    "beam in space": (deck((1, 0.02, 0.02), (100, 2, 1), "Q1", 1e-2, "1e-2"), 21),
+    "beam in space over a bump": (deck((1, 0.02, 0.02), (60, 1, 1), "Q2", 1e-2, "5e-3*(1 - exp(-(x - 0.6)^2/0.02))", "inf", BOTH), 9),
+    "plate over a bump": (deck((1, 0.02, 1), (16, 1, 16), "Q1", 1e-2, "2e-3*(1 - exp(-((x - 0.6)^2 + (z - 0.4)^2)/0.05))", "0.2", BOTH), 23),
+    "plate over a rough foundation": (deck((1, 0.05, 1), (16, 2, 16), "Q1", 1e-1, ROUGH.format("2e-3", "2e-3"), "0.5"), 18),
+    "plate held all around": (deck((1, 0.02, 1), (8, 1, 8), "P2", 1e-2, "5e-4*((x - 0.4)^2 + (z - 0.5)^2)", "inf", ALL), 11),
+}
+
+
+class ThinBodies(RpcTestCase):
+    def test_steps(self):
+        for name, (text, most) in SCENES.items():
+            with self.subTest(name):
+                (self.folder / "thin.xml").write_text(text)
+                self.rpc("--input=thin.xml")
+                summary = json.loads((self.folder / "thin.json").read_text())
+                self.assertTrue(summary["converged"])
+                steps = sum(summary["newton_iterations"])
+                self.assertGreaterEqual(steps, 4)
+                self.assertLessEqual(steps, most)
+
+
+if __name__ == "__main__":
+    unittest.main()
