@@ -32,7 +32,7 @@ std::vector<int> some_cells(const mesh::Element &element)
 /// The solver for the coarsest level that these meshes lead to.
 std::unique_ptr<solver::CoarsestSolver> directly(const solver::MeshLevel &level)
 {
-  return solver::direct_solver(level.stiffness);
+  return solver::direct_solver(level.stiffness, static_cast<int>(level.coordinates->getNumVectors()));
 }
 
 TEST(MeshMultigrid, IsSymmetricAndPositive)

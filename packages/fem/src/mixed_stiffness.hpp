@@ -30,14 +30,16 @@ DeviceView<double **> weights_of_mixed(const mesh::Element &mixed)
 {
   const mesh::MixedShapeFunctions<Dim> shape(mixed);
   const ShapeFunctions<Dim, Nodes> whole;
-  HostView<double **> weight("rpc::fem::weights_of_mixed", Nodes, shape.nodes);
+  const DeviceView<double **> weights("rpc::fem::weights_of_mixed", Nodes, shape.nodes);
+  const auto weight = Kokkos::create_mirror_view(weights);
   for (int a = 0; a < Nodes; ++a) {
     double X[Dim], N[mesh::MixedShapeFunctions<Dim>::most];
     whole.node(a, X);
     shape.evaluate(X, N);
     for (int b = 0; b < shape.nodes; ++b) weight(a, b) = N[b];
   }
-  return to_device(weight);
+  Kokkos::deep_copy(weights, weight);
+  return weights;
 }
 
 /// k = P^T K P for the stiffness K of some cells of Q2, an entry a thread.
@@ -79,7 +81,7 @@ struct AddRestricted {
   DeviceView<double ***> restricted; // (kinds * blocks or cells from `first` on, mixed dofs, mixed dofs)  [N/m]  in
   NodeToCells node_to_cells;         //                                                  in
   NodeGraph nodes;                   //                                                  in
-  DeviceView<double *> values;       // (matrix entries)                          [N/m]  inout
+  MatrixValues values;               // (matrix entries)                          [N/m]  inout
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
@@ -107,9 +109,8 @@ struct AddRestricted {
 /// @param whole  with_order_two() of the same mesh   @param body  its cells
 /// @param[out] bad  number of cells, or kinds, with a Jacobian <= 0
 template <int Dim, int Nodes, bool Axisymmetric>
-DeviceView<double *> mixed_stiffness(const Discretization &d, const Discretization &whole,
-                                     const ElasticCells<Dim, Nodes, Axisymmetric> &body, const std::size_t num_entries,
-                                     LO &bad)
+MatrixValues mixed_stiffness(const Discretization &d, const Discretization &whole,
+                             const ElasticCells<Dim, Nodes, Axisymmetric> &body, const std::size_t num_entries, LO &bad)
 {
   constexpr int dofs = Dim * Nodes;
   const CellStiffness<Dim, Nodes, Axisymmetric> stiffness{body};
@@ -119,7 +120,7 @@ DeviceView<double *> mixed_stiffness(const Discretization &d, const Discretizati
   const bool alike = whole.congruent.size() > 0;
   constexpr LO at_once = (1 << 28) / static_cast<LO>(sizeof(double[dofs][dofs])); // cells in 256 MB
   const LO step = alike ? num_cells : at_once;
-  const DeviceView<double *> values("rpc::fem::mixed_stiffness", num_entries);
+  const MatrixValues values("rpc::fem::mixed_stiffness", num_entries);
   bad = 0;
   for (LO first = 0; first < num_cells; first += step) {
     const LO last = step < num_cells - first ? first + step : num_cells;

@@ -16,8 +16,6 @@ namespace rpc::fem
 namespace
 {
 
-using MatrixValues = CrsMatrix::local_matrix_device_type::values_type::non_const_type; // in Tpetra's memory
-
 /// Names the first owned cell whose Jacobian determinant is not positive at a quadrature point; nothing if there is none
 /// on this rank.
 template <int Dim, int Nodes>

@@ -7,6 +7,8 @@
 namespace rpc::fem
 {
 
+using MatrixValues = CrsMatrix::local_matrix_device_type::values_type::non_const_type; // in Tpetra's memory
+
 /// Place of a node in its row of the node graph, sorted; it is there, for the graph was made of these cells.
 KOKKOS_INLINE_FUNCTION LO place_in_row(const DeviceView<LO *> &col, const std::size_t begin, const LO length,
                                        const LO node)

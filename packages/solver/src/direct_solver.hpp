@@ -4,7 +4,9 @@
 #include "rpc/solver/mesh_multigrid.hpp"
 #include "sparse_factor.hpp"
 
-#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace rpc::solver
 {
@@ -39,11 +41,5 @@ private:
   LowRankUpdate update_;      // of the factor
   RCP<const Import> to_root_; // of a shared factor on several ranks
 };
-
-/// A factor of the matrix as it is now; collective.
-/// @param most_work  operations that it may take
-/// @return null where it would take more, or more memory than there is, or the matrix is not positive definite
-std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, int dofs_per_node,
-                                              double most_work = std::numeric_limits<double>::infinity());
 
 } // namespace rpc::solver

@@ -4,6 +4,7 @@
 #include "rpc/solver/mesh_levels.hpp"
 
 #include <functional>
+#include <limits>
 #include <memory>
 
 namespace rpc::solver
@@ -21,6 +22,12 @@ public:
   /// x <- about A^-1 b, by a symmetric positive definite operator; collective.
   virtual void apply(const Vector &b, Vector &x) const = 0;
 };
+
+/// A factor of the matrix as it is now; collective.
+/// @param most_work  operations that it may take
+/// @return null where it would take more, or more memory than there is, or the matrix is not positive definite
+std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, int dofs_per_node,
+                                              double most_work = std::numeric_limits<double>::infinity());
 
 /// One V cycle of multigrid on given meshes, for H = K + contact. The interpolation between meshes does not depend on the contact
 /// states. It brings contact to each coarse matrix in place, and coarse functions are truncated at the contact points of the finest
