@@ -18,6 +18,12 @@ constexpr double nearly = 0.995;   // of the way to the next point's corner
 // mu falls to this part by a step; after one cut short to t by twice (1 - t)^2.
 constexpr double first_part = 0.3, most_part = 0.5, least_part = 0.01;
 
+/// 1/(D + 1/r) of a point [Pa/m].                                                                              (5.18)
+KOKKOS_INLINE_FUNCTION double linear_stiffness(const SmoothedPoints &s, const LO i, const InteriorPoint &at)
+{
+  return 1 / (linear_compliance(at, s.points.law(i)) + 1 / s.penalty(i));
+}
+
 double largest_penetration(const ContactNodes &c, const Vector &u)
 {
   const auto x = device_read(u);
@@ -92,8 +98,7 @@ DeviceView<double ***> InteriorPath::blocks(const SmoothedPoints &points) const
         const ContactNodes &c = s.points;
         if (c.fixed(i)) return;
         Response response;
-        add_stiffness(c.weight(i), 1 / (linear_compliance(at(i), c.law(i)) + 1 / s.penalty(i)), DirectionAt{c, i}, dim,
-                      response);
+        add_stiffness(c.weight(i), linear_stiffness(s, i, at(i)), DirectionAt{c, i}, dim, response);
         for (int k = 0; k < dim; ++k)
           for (int l = 0; l < dim; ++l) block(i, k, l) = response.block[k][l];
       });
@@ -115,8 +120,7 @@ void InteriorPath::gradient(const SmoothedFunctional &functional, const Vector &
           const ContactNodes &c = s.points;
           if (c.fixed(i)) return;
           const Foundation f = c.law(i);
-          p(i) = at(i).pressure +
-                 linear_excess(at(i), penetration(c, i, x), mu, f) / (linear_compliance(at(i), f) + 1 / s.penalty(i));
+          p(i) = at(i).pressure + linear_stiffness(s, i, at(i)) * linear_excess(at(i), penetration(c, i, x), mu, f);
         });
     Kokkos::fence();
   }
@@ -136,8 +140,8 @@ double InteriorPath::advance(const SmoothedFunctional &functional, const Vector 
           const ContactNodes &c = s.points;
           if (c.fixed(i)) return;
           const Foundation f = c.law(i);
-          const double dp = (along_direction(c, i, move) + linear_excess(at(i), penetration(c, i, x), mu, f)) /
-                            (linear_compliance(at(i), f) + 1 / s.penalty(i));
+          const double dp = linear_stiffness(s, i, at(i)) *
+                            (along_direction(c, i, move) + linear_excess(at(i), penetration(c, i, x), mu, f));
           change(i) = linear_change(at(i), dp, mu, f);
         });
     Kokkos::fence();

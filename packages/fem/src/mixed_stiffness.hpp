@@ -93,14 +93,7 @@ struct AddRestricted {
       const LO cell = node_to_cells.cell(k);
       if (cell < first || cell >= last) continue;
       const LO m = kind.extent(0) > 0 ? kind(cell) * num_blocks + block(cell) : cell - first;
-      int a = 0;
-      while (cells(cell, a) != node) ++a;
-      for (int b = 0; b < n; ++b) {
-        const LO at = place_in_row(nodes.col, begin, length, cells(cell, b));
-        for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j)
-            rows[Dim * (i * length + at) + j] += restricted(m, dof(Dim, a, i), dof(Dim, b, j));
-      }
+      add_cell_to_rows<Dim>(cells, cell, place_in(cells, cell, node), n, restricted, m, nodes.col, begin, length, rows);
     }
   }
 };

@@ -22,6 +22,23 @@ KOKKOS_INLINE_FUNCTION LO place_in_row(const DeviceView<LO *> &col, const std::s
   return low;
 }
 
+/// The rows of a node += those of one cell's stiffness.
+/// @param a       the node's place in the cell, which has `num_nodes` nodes
+/// @param matrix  (matrices, dofs, dofs), of which the cell has number m  [N/m]
+/// @param begin, length  of the node's row of the node graph   @param rows  (Dim, length * Dim)  [N/m]  inout
+template <int Dim, class Count, class Matrix>
+KOKKOS_INLINE_FUNCTION void add_cell_to_rows(const DeviceView<LO **> &cells, const LO cell, const int a,
+                                             const Count num_nodes, const Matrix &matrix, const LO m,
+                                             const DeviceView<LO *> &col, const std::size_t begin, const LO length,
+                                             double *const rows)
+{
+  for (int b = 0; b < num_nodes; ++b) {
+    const LO at = place_in_row(col, begin, length, cells(cell, b));
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) rows[Dim * (i * length + at) + j] += matrix(m, dof(Dim, a, i), dof(Dim, b, j));
+  }
+}
+
 /// K += stiffness of one cell, by one thread. Entries are found once per pair of nodes, whose rows share their columns.
 template <int Dim, int Nodes, bool Axisymmetric>
 struct AddStiffness {
@@ -88,13 +105,8 @@ struct AddTabulated {
     double *const rows = &values(Dim * Dim * begin);
     for (; k < node_to_cells.row(node + 1) && node_to_cells.cell(k) < last; ++k) {
       const LO other = node_to_cells.cell(k);
-      const int a = place_in(cells, other, node);
-      for (int b = 0; b < Nodes; ++b) {
-        const LO at = place_in_row(nodes.col, begin, length, cells(other, b));
-        for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j)
-            rows[Dim * (i * length + at) + j] += matrix(other - first, dof(Dim, a, i), dof(Dim, b, j));
-      }
+      add_cell_to_rows<Dim>(cells, other, place_in(cells, other, node), std::integral_constant<int, Nodes>(), matrix,
+                            other - first, nodes.col, begin, length, rows);
     }
   }
 };
@@ -146,14 +158,8 @@ struct NodeStiffness {
     for (LO k = 0; k < Dim * Dim * length; ++k) rows[k] = 0;
     for (std::size_t k = node_to_cells.row(node); k < node_to_cells.row(node + 1); ++k) {
       const LO cell = node_to_cells.cell(k);
-      const int m = kind(cell) * num_blocks + block(cell);
-      int a = 0;
-      while (cells(cell, a) != node) ++a;
-      for (int b = 0; b < Nodes; ++b) {
-        const LO at = place_in_row(nodes.col, begin, length, cells(cell, b));
-        for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j) rows[Dim * (i * length + at) + j] += matrix(m, dof(Dim, a, i), dof(Dim, b, j));
-      }
+      add_cell_to_rows<Dim>(cells, cell, place_in(cells, cell, node), std::integral_constant<int, Nodes>(), matrix,
+                            kind(cell) * num_blocks + block(cell), nodes.col, begin, length, rows);
     }
   }
 

@@ -81,8 +81,8 @@ std::vector<RigidMotion> readable_basis(std::vector<RigidMotion> motions, int di
 /// A rigid motion in words.
 struct MotionInWords {
   bool rotates = false;
-  std::string
-      where;       ///< "along (1, 0)"; "about (2, 0), counterclockwise"; in 3D "about the axis through (..) along (..)"
+  /// "along (1, 0)"; "about (2, 0), counterclockwise"; in 3D "about the axis through (..) along (..)".
+  std::string where;
   double size = 0; ///< |t|, or the angle |omega| [1/m]: b.q/size is a force [N] or a moment [N m]
 
   std::string text() const { return (rotates ? "rotation " : "translation ") + where; }
