@@ -45,22 +45,30 @@ double of_shell()
   return static_cast<double>(limit.rlim_cur);
 }
 
+/// What a file of lines "key number" says; `otherwise` if it has no such key.
+double number_of(const std::string &key, const std::string &path, const double otherwise)
+{
+  std::ifstream file(path);
+  std::string name, line;
+  for (double number = 0; file >> name && std::getline(file, line);)
+    if (name == key && std::istringstream(line) >> number) return number;
+  return otherwise;
+}
+
 /// "MemAvailable:  24000000 kB": what the system could give without swapping.
 double available()
 {
-  std::ifstream file("/proc/meminfo");
-  std::string key, line;
-  for (double kilobytes = 0; file >> key && std::getline(file, line);)
-    if (key == "MemAvailable:" && std::istringstream(line) >> kilobytes) return 1024 * kilobytes;
-  return unknown;
+  return 1024 * number_of("MemAvailable:", "/proc/meminfo", unknown);
 }
 
+/// The copies of files that the system would drop first are not in use.
 double left_in_container()
 {
-  const std::string folder = "/sys/fs/cgroup/";
-  const double left =
-      of_container() - number_in(folder + "memory.current", number_in(folder + "memory/memory.usage_in_bytes", 0));
-  return std::max(left, 0.);
+  const std::string folder = "/sys/fs/cgroup/", older = folder + "memory/";
+  const double used = number_in(folder + "memory.current", number_in(older + "memory.usage_in_bytes", 0));
+  const double files =
+      number_of("inactive_file", folder + "memory.stat", number_of("total_inactive_file", older + "memory.stat", 0));
+  return std::max(of_container() - std::max(used - files, 0.), 0.);
 }
 
 double left_in_shell()
