@@ -28,26 +28,25 @@ inline contact::ContactOptions below(const ScalarField &xi, const double penalty
   return contact;
 }
 
-/// The paper's beam at 1/h = 16, by default with xi = 16, where the states are many.
-struct Beam {
+/// A box in the plane, pressed from above on a foundation, with all that a minimization takes.
+struct PressedBox {
   fem::Discretization d;
   fem::ElasticProblem elastic;
   std::shared_ptr<contact::Iterate> iterate;
   std::shared_ptr<solver::LinearSolver> linear;
   RCP<Vector> u;
 
-  explicit Beam(const solver::LinearSolverOptions &options = {},
-                const contact::ContactOptions &foundation = below(ScalarField(16.), 1e8))
+  /// @param held  its sides without displacement   @param push  upwards, at the top [Pa]
+  PressedBox(const mesh::BoxOptions &box, const fem::Material &material, const std::vector<const char *> &held,
+             const ScalarField &push, const contact::ContactOptions &foundation,
+             const solver::LinearSolverOptions &options = {})
   {
-    const fem::Material material{2000, 0.3};
-    mesh::BoxOptions box{{0, 0}, {5, 1}, {80, 16}, {2, 1}};
     d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
-    std::vector<fem::DirichletCondition> held;
-    for (const char *side : {"left", "right"}) held.push_back({side, side, {ScalarField(0.), ScalarField(0.)}});
+    std::vector<fem::DirichletCondition> conditions;
+    for (const char *side : held) conditions.push_back({side, side, {ScalarField(0.), ScalarField(0.)}});
     const auto load = rcp(new Vector(d.owned_dofs));
-    const ScalarField push("push", [](const Point &x) { return -20 * std::sin(std::acos(-1.) * x[0] / 5); });
     fem::add_traction(d, d.mesh->side("top", ""), {ScalarField(0.), push, ScalarField(0.)}, "Traction", *load);
-    const auto dirichlet = fem::dirichlet_dofs(d, held);
+    const auto dirichlet = fem::dirichlet_dofs(d, conditions);
     const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
     const auto nodes = contact::contact_nodes(d, {foundation}, dirichlet, material);
     elastic = fem::elastic_problem(d, K.couplings, load, dirichlet);
@@ -55,6 +54,17 @@ struct Beam {
     linear = std::make_shared<solver::LinearSolver>(options, iterate->hessian(), fem::node_coordinates(d),
                                                     fem::rigid_body_modes(d));
     u = rcp(new Vector(d.owned_dofs));
+  }
+};
+
+/// The paper's beam at 1/h = 16, by default with xi = 16, where the states are many.
+struct Beam : PressedBox {
+  explicit Beam(const solver::LinearSolverOptions &options = {},
+                const contact::ContactOptions &foundation = below(ScalarField(16.), 1e8))
+      : PressedBox({{0, 0}, {5, 1}, {80, 16}, {2, 1}}, {2000, 0.3}, {"left", "right"},
+                   ScalarField("push", [](const Point &x) { return -20 * std::sin(std::acos(-1.) * x[0] / 5); }),
+                   foundation, options)
+  {
   }
 };
 
@@ -73,10 +83,10 @@ inline void open_between(Beam &beam, const double from, const double to)
 inline void ignore(const solver::NewtonStep &, const Vector &) {}
 
 /// Newton's steps alone, or after those of a first stage.
-inline solver::MinimizeResult minimize(Beam &beam, const solver::NewtonOptions &options = {},
+inline solver::MinimizeResult minimize(PressedBox &body, const solver::NewtonOptions &options = {},
                                        solver::FirstStage *stage = nullptr, const solver::NewtonReport &report = ignore)
 {
-  return solver::minimize(*beam.iterate, *beam.linear, beam.u, beam.iterate->force_scale(), options, stage, report);
+  return solver::minimize(*body.iterate, *body.linear, body.u, body.iterate->force_scale(), options, stage, report);
 }
 
 } // namespace rpc::test

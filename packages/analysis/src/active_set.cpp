@@ -23,12 +23,11 @@ constexpr double enough = 0.3;      // of the tolerance: recomputed residuals ar
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 
 // The interior-point method takes over where twice on end a choice with much overshoot changes more than this part of the points of
-// the one before. With
-// 1 the worst of thin bodies take three steps more.
+// the one before. With 1 the worst of thin bodies take three steps more.
 constexpr double headway = 0.7;
 constexpr GO few_changes = 3; // edges that move on by a point
-constexpr double much =
-    0.3; // of forces that the law does not admit, over those that it does: bodies of equal sides stay below
+// Forces that the law does not admit over those that it does: bodies of equal sides stay below.
+constexpr double much = 0.3;
 constexpr int most_path_steps = 50;
 constexpr double path_forcing = 1e-3; // of its linear solves; 1e-6 saves no step
 // The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and

@@ -136,42 +136,16 @@ TEST(ActiveSet, ThatDoesNotSettleIsFoundOnTheInteriorPathWhereItOvershootsElseBy
   }
 }
 
-/// A thin strip over a flat foundation at some distance: bending turns choices of states by pressures over.
-struct Strip {
-  fem::Discretization d;
-  fem::ElasticProblem elastic;
-  std::shared_ptr<contact::Iterate> iterate;
-  std::shared_ptr<solver::LinearSolver> linear;
-  RCP<Vector> u;
-
-  Strip(const double thickness, const contact::ContactOptions &foundation, const double load)
-  {
-    const fem::Material material{1000, 0.3};
-    mesh::BoxOptions box{{0, 0}, {1, thickness}, {100, 1}, {2, 1}};
-    d = fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm())));
-    const auto f = rcp(new Vector(d.owned_dofs));
-    fem::add_traction(d, d.mesh->side("top", ""), {ScalarField(0.), ScalarField(-load), ScalarField(0.)}, "Traction",
-                      *f);
-    const auto dirichlet = fem::dirichlet_dofs(d, {{"left", "left", {ScalarField(0.), ScalarField(0.)}}});
-    const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
-    const auto nodes = contact::contact_nodes(d, {foundation}, dirichlet, material);
-    elastic = fem::elastic_problem(d, K.couplings, f, dirichlet);
-    iterate = std::make_shared<contact::Iterate>(elastic, nodes, rpc::test::updated(K.matrix, nodes));
-    linear = std::make_shared<solver::LinearSolver>(solver::LinearSolverOptions{}, iterate->hessian(),
-                                                    fem::node_coordinates(d), fem::rigid_body_modes(d));
-    u = rcp(new Vector(d.owned_dofs));
-  }
-};
-
+/// Bending of a thin strip turns choices of states by pressures over.
 TEST(ActiveSet, OfThinStripsIsFoundByTheInteriorPath)
 {
   for (const double xi : {3e-3, inf}) {
     for (const double gap : {1e-3, 1e-2}) {
       SCOPED_TRACE(testing::Message() << "xi " << xi << ", gap " << gap);
-      Strip strip(0.02, flat(xi, gap), 1e-3);
+      rpc::test::PressedBox strip({{0, 0}, {1, 0.02}, {100, 1}, {2, 1}}, {1000, 0.3}, {"left"}, ScalarField(-1e-3),
+                                  flat(xi, gap));
       analysis::ActiveSetStage stage(*strip.iterate, {});
-      const auto all = solver::minimize(*strip.iterate, *strip.linear, strip.u, strip.iterate->force_scale(), {},
-                                        &stage, rpc::test::ignore);
+      const auto all = rpc::test::minimize(strip, {}, &stage);
       EXPECT_TRUE(all.converged) << all.reason;
       EXPECT_TRUE(stage.confirmed());
       EXPECT_EQ(all.steps, stage.steps());
