@@ -46,7 +46,7 @@ constexpr double seconds_of_operation = 3e-10, seconds_of_entry = 1e-9;
 
 } // namespace
 
-BandFactor::BandFactor(const int size, SymmetricEntries entries) : size_(size), place_(size)
+BandFactor::BandFactor(const int size, const SymmetricEntries &entries) : size_(size), place_(size)
 {
   const std::vector<int> order = reverse_cuthill_mckee(graph_of(size, entries));
   for (int at = 0; at < size; ++at) place_[order[at]] = at;

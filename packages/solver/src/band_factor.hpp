@@ -9,7 +9,7 @@ namespace rpc::solver
 class BandFactor : public SparseFactor
 {
 public:
-  BandFactor(int size, SymmetricEntries entries);
+  BandFactor(int size, const SymmetricEntries &entries);
 
   FactorCost cost() const override;
   bool make(const std::vector<double> &value) override;

@@ -13,7 +13,7 @@ namespace rpc::solver
 namespace
 {
 
-constexpr const char *not_definite = "multigrid: the matrix of the coarsest mesh is not positive definite";
+constexpr const char *no_factor = "a sparse factor: the matrix is not positive definite";
 // Rows up to which each rank factors the whole matrix: a solve then takes one sum over the ranks.
 constexpr std::size_t most_rows_on_each_rank = 5200;
 
@@ -52,19 +52,18 @@ RCP<const Map> on_root(const Map &rows)
 
 } // namespace
 
-DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node)
-    : A_(std::move(A)), shared_(SparseFactor::can_be_shared && A_->getGlobalNumRows() > most_rows_on_each_rank)
+DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node) : A_(std::move(A))
 {
   const auto comm = A_->getComm();
   const int size = static_cast<int>(A_->getGlobalNumRows());
-  SymmetricEntries pattern = pattern_of(*A_);
-  if (shared_) {
-    factor_ = SparseFactor::analyse(comm, size, std::move(pattern), dofs_per_node);
-    if (comm->getSize() > 1) to_root_ = rcp(new Import(A_->getRowMap(), on_root(*A_->getRowMap())));
+  const SymmetricEntries mine = pattern_of(*A_);
+  if (comm->getSize() == 1 || !SparseFactor::can_be_shared || A_->getGlobalNumRows() <= most_rows_on_each_rank) {
+    factor_ = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size,
+                                    comm->getSize() > 1 ? entries_of_all(*comm, mine) : mine, dofs_per_node);
     return;
   }
-  if (comm->getSize() > 1) pattern = {gathered_by_all(*comm, pattern.row), gathered_by_all(*comm, pattern.column), {}};
-  factor_ = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size, std::move(pattern), dofs_per_node);
+  factor_ = SparseFactor::analyse(comm, size, mine, dofs_per_node);
+  to_root_ = rcp(new Import(A_->getRowMap(), on_root(*A_->getRowMap())));
 }
 
 std::string DirectSolver::lacks_memory() const
@@ -85,18 +84,18 @@ bool DirectSolver::make()
   for_lower_entries(*A_, [&](GO, GO, const double entry) { value.push_back(entry); });
   const Comm &comm = *A_->getComm();
   update_.forget();
-  return factor_->make(!shared_ && comm.getSize() > 1 ? gathered_by_all(comm, value) : value);
+  return factor_->make(to_root_.is_null() && comm.getSize() > 1 ? gathered_by_all(comm, value) : value);
 }
 
 void DirectSolver::update()
 {
-  if (!make()) throw std::runtime_error(not_definite);
+  if (!make()) throw std::runtime_error(no_factor);
 }
 
 void DirectSolver::apply(const Vector &b, Vector &x) const
 {
-  if (!factor_->exists()) throw std::runtime_error(not_definite); // the last update failed
-  Kokkos::fence(); // the host reads and writes what kernels may still be at
+  if (!factor_->exists()) throw std::runtime_error(no_factor); // the last update failed
+  Kokkos::fence();                                             // the host reads and writes what kernels may still be at
   if (!to_root_.is_null()) {
     Vector all(to_root_->getTargetMap());
     all.doImport(b, *to_root_, Tpetra::INSERT);

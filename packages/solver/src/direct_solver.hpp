@@ -36,10 +36,9 @@ public:
 
 private:
   RCP<const CrsMatrix> A_;
-  bool shared_; // by all ranks
   std::unique_ptr<SparseFactor> factor_;
   LowRankUpdate update_;      // of the factor
-  RCP<const Import> to_root_; // of a shared factor on several ranks
+  RCP<const Import> to_root_; // null: each rank has a factor of its own
 };
 
 } // namespace rpc::solver

@@ -50,10 +50,7 @@ void GatheredSolver::Setup(MueLu::Level &level)
       mine.value.push_back(value[k]);
     }
   }
-  const auto &comm = *rows.getComm();
-  factor_ = factor_of(
-      size_, {gathered_by_all(comm, mine.row), gathered_by_all(comm, mine.column), gathered_by_all(comm, mine.value)},
-      std::numeric_limits<double>::infinity());
+  factor_ = factor_of(size_, entries_of_all(*rows.getComm(), mine), std::numeric_limits<double>::infinity());
   if (!factor_) throw std::runtime_error("the coarse matrix is not positive definite");
   IsSetup(true);
 }

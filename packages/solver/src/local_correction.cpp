@@ -224,9 +224,7 @@ std::unique_ptr<SparseFactor> factor_of_patch(const Comm &comm, const int size, 
       mine.value.push_back(value(e));
     }
   }
-  SymmetricEntries all{gathered_by_all(comm, mine.row), gathered_by_all(comm, mine.column),
-                       gathered_by_all(comm, mine.value)};
-  return factor_of(size, std::move(all), most_work);
+  return factor_of(size, entries_of_all(comm, mine), most_work);
 }
 
 /// This rank's part of x, R x.

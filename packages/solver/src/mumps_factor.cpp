@@ -31,7 +31,7 @@ enum Control {
   more_memory = 13,
   input = 17
 };
-enum Info { status = 0, num_entries = 2, num_negative = 11, megabytes = 15 };
+enum Info { status = 0, entries_of_factor = 2, num_negative = 11, megabytes = 15 };
 enum Job : int { begin = -1, end = -2, analysis = 1, factorization = 2, solution = 3 };
 constexpr int by_hand = 1, on_all_ranks = 3, is_definite = 1;
 constexpr int first_more_memory = 20; // per cent of what the analysis has found
@@ -39,8 +39,8 @@ constexpr int first_more_memory = 20; // per cent of what the analysis has found
 constexpr int too_little_memory[] = {-8, -9, -14, -15, -17, -19, -20}, out_of_memory = -13, singular = -10,
               not_definite_root = -40;
 
-// By measurement on one core, of factors of 1e7 to 1e11 operations in the plane and in space: 10 % about the measured times.
-constexpr double seconds_of_operation = 3.5e-11, seconds_of_entry = 3.1e-8, seconds_of_entry_in_solve = 3e-9;
+// By measurement on one core, of factors of 1e7 to 1e11 operations in the plane and in space: within 15 % of the measured times.
+constexpr double dense_seconds = 3.5e-11, entry_seconds = 3.1e-8, entry_seconds_in_solve = 3e-9;
 constexpr double columns_for_one = 6; // of many in the time of a single one
 // P ranks make a factor, and solve with it, so many times as fast as one: P to this power. By measurement on two.
 constexpr double gain = 0.6;
@@ -91,12 +91,11 @@ std::vector<idx_t> nested_dissection(const Comm &comm, const int num_nodes, cons
 
 struct MumpsFactor::Impl {
   DMUMPS_STRUC_C mumps{};
-  int size = 0, num_ranks = 1;
+  int size = 0;
   std::vector<std::size_t> from; // (own entries on and below the diagonal) which of the given ones
   std::vector<int> row, column;  // (the same) from 1
   std::vector<double> value;     // (the same)
   std::vector<int> place;        // (size) on rank 0, from 1
-  std::vector<double> nothing{0};
   bool exists = false;
 
   void call(const int job)
@@ -104,13 +103,14 @@ struct MumpsFactor::Impl {
     mumps.job = job;
     dmumps_c(&mumps);
   }
-  /// MUMPS' globals belong to the work that an interrupt has left behind, if there is any.
-  /// @return MUMPS' answer, the same on all ranks; 0 is good
+  /// MUMPS' last answer, the same on all ranks; 0 is good.
+  int answer() const { return std::min(mumps.infog[status], 0); }
+  /// The same, of a job. MUMPS' globals belong to the work that an interrupt has left behind, if there is any.
   int run(const int job)
   {
     if (work_goes_on()) throw Interrupted();
     call(job);
-    return std::min(mumps.infog[status], 0);
+    return answer();
   }
   ~Impl()
   {
@@ -118,12 +118,11 @@ struct MumpsFactor::Impl {
   }
 };
 
-MumpsFactor::MumpsFactor(RCP<const Comm> comm, const int size, SymmetricEntries entries, const int dofs_per_node)
+MumpsFactor::MumpsFactor(RCP<const Comm> comm, const int size, const SymmetricEntries &entries, const int dofs_per_node)
     : comm_(std::move(comm)), impl_(std::make_shared<Impl>())
 {
   Impl &impl = *impl_;
   impl.size = size;
-  impl.num_ranks = comm_->getSize();
   auto &mumps = impl.mumps;
   mumps.comm_fortran = static_cast<MUMPS_INT>(MPI_Comm_c2f(raw(*comm_)));
   mumps.par = 1;
@@ -146,7 +145,7 @@ MumpsFactor::MumpsFactor(RCP<const Comm> comm, const int size, SymmetricEntries 
     for (int k = 0; k < dofs_per_node; ++k) impl.place.push_back(static_cast<int>(node) * dofs_per_node + k + 1);
   mumps.n = size;
   mumps.perm_in = impl.place.data();
-  if (impl.num_ranks > 1) {
+  if (comm_->getSize() > 1) {
     mumps.icntl[input] = on_all_ranks;
     mumps.nnz_loc = static_cast<MUMPS_INT8>(impl.row.size());
     mumps.irn_loc = impl.row.data();
@@ -168,14 +167,14 @@ MumpsFactor::~MumpsFactor() = default;
 FactorCost MumpsFactor::cost() const
 {
   const auto &mumps = impl_->mumps;
-  const double faster = std::pow(impl_->num_ranks, gain);
+  const double faster = std::pow(comm_->getSize(), gain);
   FactorCost cost;
   cost.operations = mumps.rinfog[0];
-  const double entries = mumps.infog[num_entries];
+  const double entries = mumps.infog[entries_of_factor];
   cost.entries = entries < 0 ? -1e6 * entries : entries;
   cost.bytes = 1e6 * mumps.infog[megabytes];
-  cost.seconds = (seconds_of_operation * cost.operations + seconds_of_entry * cost.entries) / faster;
-  cost.seconds_of_solve = seconds_of_entry_in_solve * cost.entries / faster;
+  cost.seconds = (dense_seconds * cost.operations + entry_seconds * cost.entries) / faster;
+  cost.seconds_of_solve = entry_seconds_in_solve * cost.entries / faster;
   cost.seconds_of_column = cost.seconds_of_solve / columns_for_one;
   return cost;
 }
@@ -198,7 +197,7 @@ bool MumpsFactor::make(const std::vector<double> &value)
       work();
     else if (!ended_before_interrupt(*comm_, work))
       throw Interrupted();
-    answer = std::min(impl_->mumps.infog[status], 0);
+    answer = impl_->answer();
     impl_->mumps.icntl[more_memory] *= 2;
   } while (std::count(std::begin(too_little_memory), std::end(too_little_memory), answer) > 0 &&
            impl_->mumps.icntl[more_memory] < 1000);

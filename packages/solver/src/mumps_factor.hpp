@@ -10,7 +10,7 @@ class MumpsFactor : public SparseFactor
 {
 public:
   /// See SparseFactor::analyse.
-  MumpsFactor(RCP<const Comm> comm, int size, SymmetricEntries entries, int dofs_per_node);
+  MumpsFactor(RCP<const Comm> comm, int size, const SymmetricEntries &entries, int dofs_per_node);
   ~MumpsFactor() override;
 
   FactorCost cost() const override;

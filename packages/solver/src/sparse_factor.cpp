@@ -5,8 +5,9 @@
 #include "mumps_factor.hpp"
 #endif
 
+#include "rpc/core/parallel.hpp"
+
 #include <Teuchos_DefaultSerialComm.hpp>
-#include <utility>
 
 namespace rpc::solver
 {
@@ -17,8 +18,13 @@ const bool SparseFactor::can_be_shared = true;
 const bool SparseFactor::can_be_shared = false;
 #endif
 
+SymmetricEntries entries_of_all(const Comm &comm, const SymmetricEntries &mine)
+{
+  return {gathered_by_all(comm, mine.row), gathered_by_all(comm, mine.column), gathered_by_all(comm, mine.value)};
+}
+
 std::unique_ptr<SparseFactor> SparseFactor::analyse(const RCP<const Comm> &comm, const int size,
-                                                    SymmetricEntries entries, const int dofs_per_node)
+                                                    const SymmetricEntries &entries, const int dofs_per_node)
 {
 #ifdef RPC_HAVE_MUMPS
   // A band has no indices and no tree: it is faster where it is narrow. By measurement.
@@ -28,19 +34,18 @@ std::unique_ptr<SparseFactor> SparseFactor::analyse(const RCP<const Comm> &comm,
     auto band = std::make_unique<BandFactor>(size, entries);
     if (band->cost().operations <= most_work_of_band) return band;
   }
-  return std::make_unique<MumpsFactor>(comm, size, std::move(entries), dofs_per_node);
+  return std::make_unique<MumpsFactor>(comm, size, entries, dofs_per_node);
 #else
   static_cast<void>(comm);
   static_cast<void>(dofs_per_node);
-  return std::make_unique<BandFactor>(size, std::move(entries));
+  return std::make_unique<BandFactor>(size, entries);
 #endif
 }
 
-std::unique_ptr<SparseFactor> factor_of(const int size, SymmetricEntries entries, const double most_work)
+std::unique_ptr<SparseFactor> factor_of(const int size, const SymmetricEntries &entries, const double most_work)
 {
-  const std::vector<double> value = std::move(entries.value);
-  auto factor = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size, std::move(entries), 1);
-  if (factor->cost().operations > most_work || !factor->make(value)) return nullptr;
+  auto factor = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size, entries, 1);
+  if (factor->cost().operations > most_work || !factor->make(entries.value)) return nullptr;
   return factor;
 }
 

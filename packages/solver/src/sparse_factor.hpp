@@ -15,6 +15,9 @@ struct SymmetricEntries {
   std::vector<double> value;
 };
 
+/// The entries of all ranks on every rank; collective.
+SymmetricEntries entries_of_all(const Comm &comm, const SymmetricEntries &mine);
+
 /// What a factor takes, as its symbolic factorization tells before it is made.
 struct FactorCost {
   double operations = 0; ///< multiplications and additions
@@ -43,7 +46,7 @@ public:
   /// @param entries  of this rank; their values are not read, and all ranks' entries add up
   /// @param dofs_per_node  so many unknowns, from one divisible by it, have the same neighbours, so that nodes can be ordered; 1 where
   ///                 nothing is known
-  static std::unique_ptr<SparseFactor> analyse(const RCP<const Comm> &comm, int size, SymmetricEntries entries,
+  static std::unique_ptr<SparseFactor> analyse(const RCP<const Comm> &comm, int size, const SymmetricEntries &entries,
                                                int dofs_per_node);
 
   virtual FactorCost cost() const = 0;
@@ -64,6 +67,6 @@ public:
 
 /// A factor on this rank alone, of entries that are all its own; null where it would take more than so many operations, or the matrix
 /// is not positive definite.
-std::unique_ptr<SparseFactor> factor_of(int size, SymmetricEntries entries, double most_work);
+std::unique_ptr<SparseFactor> factor_of(int size, const SymmetricEntries &entries, double most_work);
 
 } // namespace rpc::solver

@@ -15,7 +15,7 @@ namespace
 
 // The factor takes closed nodes for at most so many times their own stiffness: all of it would cost digits where they open again. CG
 // takes the difference in an iteration.
-constexpr double most_stiffness = 1e4;
+constexpr double most_closed_stiffness = 1e4;
 // New terms are solved for as long as they take this part of a new factor's time at most.
 constexpr double worth_a_factor = 0.7;
 constexpr double negligible = 1e-13; // of a block, beside the node's own one
@@ -70,9 +70,9 @@ const Sparse::Prospect &Sparse::prospect()
 }
 
 /// By terms of rank one, if that takes less time than a new factor.
-bool Sparse::follow()
+bool Sparse::follow(const DeviceView<double ***> &update)
 {
-  const auto terms = terms_of(*H_, bounded_update(*H_, most_stiffness), written_);
+  const auto terms = terms_of(*H_, update, written_);
   const double seconds = prospect_.cost.seconds_of_column * solver_->num_new(terms);
   if (seconds > worth_a_factor * prospect_.cost.seconds) return false;
   solver_->add(terms);
@@ -84,13 +84,14 @@ Preconditioner::Prepared Sparse::prepare(double)
 {
   const int revision = H_->revision();
   if (made_ && revision == revision_) return Prepared::unchanged;
-  if (made_ && follow()) {
+  const auto update = bounded_update(*H_, most_closed_stiffness);
+  if (made_ && follow(update)) {
     revision_ = revision;
     return Prepared::updated;
   }
   if (!prospect().obstacle.empty()) throw std::runtime_error(prospect_.obstacle);
   made_ = false;
-  written_ = bounded_update(*H_, most_stiffness);
+  written_ = update;
   write_update(*A_, *H_, written_);
   solver_->update();
   made_ = is_fresh_ = true;
@@ -101,8 +102,8 @@ Preconditioner::Prepared Sparse::prepare(double)
 std::string Sparse::description() const
 {
   std::ostringstream text;
-  text.precision(2);
-  text << name() << " of " << H_->getDomainMap()->getGlobalNumElements() << " unknowns, "
+  text.precision(1);
+  text << std::fixed << name() << " of " << H_->getDomainMap()->getGlobalNumElements() << " unknowns, "
        << prospect_.cost.entries / 1e6 << " million entries";
   return text.str();
 }

@@ -41,7 +41,7 @@ public:
   RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
 
 private:
-  bool follow();
+  bool follow(const DeviceView<double ***> &update);
 
   RCP<const UpdatedOperator> H_;
   RCP<CrsMatrix> A_;                     // K with an update; null: it was not analysed

@@ -27,8 +27,8 @@ struct MeshLevels {
   DeviceView<char *> prescribed;
   /// The coarsest is solved directly: it has few unknowns, or multigrid has to end there. Otherwise algebraic multigrid follows.
   bool down_to_few = false;
-  std::string
-      end; ///< why multigrid ends where it does, "thin in z: factored at 48 x 48 x 1 cells"; empty where unknowns are few
+  /// Why multigrid ends where it does, "thin in z: factored at 48 x 48 x 1 cells"; empty where unknowns are few.
+  std::string end;
 };
 
 /// Makes them when they are needed; none if there is no coarser mesh. Collective.

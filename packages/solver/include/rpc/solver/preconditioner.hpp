@@ -28,7 +28,7 @@ public:
   /// For the summary, such as "algebraic".
   virtual std::string name() const = 0;
   /// The same with what was chosen and why, such as "meshes, 6 levels, thin in z: factored at 48 x 48 x 1 cells".
-  virtual std::string description() const { return name(); }
+  std::string description() const override { return name(); }
 
   /// Where a Krylov method starts for a symmetric H: an x with its rest = b - H x. Null, null: from 0, with b.
   struct Start {
