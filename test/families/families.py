@@ -17,6 +17,7 @@ import fields as f  # noqa: E402, after the folders of what scenes and tables ar
 from generate import CLAMPED, ELEMENTS, LAYERS, ZERO, log_uniform  # noqa: E402
 from plane import Body, Grid  # noqa: E402
 from scene import ContactSide, Scene  # noqa: E402
+import hard  # noqa: E402
 
 # Dofs, and contact points, of a scene.
 SIZES = {"small": ((3e3, 1e4), (50, 300)), "middle": ((1e4, 4e4), (100, 1500)), "full": ((2e4, 4e5), (150, 4000))}
@@ -333,21 +334,24 @@ PLANE = {"cantilever": cantilever, "clamped_beam": clamped_beam, "footing": foot
          "two_sides": two_sides, "half_cylinder": half_cylinder, "shapes": shapes, "bodies": bodies}
 SPACE = {"block": block, "plate": plate, "pressed_block": pressed_block}
 FAMILIES = {**PLANE, **SPACE}
+KINDS = {"three states": (FAMILIES, Sizes), "hard": (hard.FAMILIES, hard.Meshes)}
 
 
-def scene(family, rng, size):
+def scene(family, rng, size, kind="three states"):
     """A scene of a family, its numbers from rng; those of its mesh are apart."""
+    families, meshes = KINDS[kind]
     physics, mesh, stress = random.Random(rng.random()), random.Random(rng.random()), log_uniform(rng, 3, 9)
-    made = FAMILIES[family](physics, Sizes(mesh, size))
+    made = families[family](physics, meshes(mesh, size))
     made.units, made.expect = (1.0, stress), "solution"
     return made
 
 
-def family_of(number):
-    return list(FAMILIES)[number % len(FAMILIES)]
+def family_of(number, kind="three states"):
+    names = list(KINDS[kind][0])
+    return names[number % len(names)]
 
 
-def make(seed, number, size):
+def make(seed, number, size, kind="three states"):
     """(family, scene): families take turns."""
-    family = family_of(number)
-    return family, scene(family, random.Random(f"{seed}/{number}"), size)
+    family = family_of(number, kind)
+    return family, scene(family, random.Random(f"{seed}/{number}"), size, kind)

@@ -1,11 +1,13 @@
 """Random scenes by family: contact over the elastic solve of the same mesh, steps, CG iterations, set-ups, residuals.
 
-    python3 measure.py --rpc=build/rpc [--seed=1] [--scenes=200] [--size=full] [--only=K] [--family=NAME,...] [--csv=FILE] [--keep=DIR]
+    python3 measure.py --rpc=build/rpc [--seed=1] [--scenes=200] [--size=full] [--only=K] [--family=NAME,...] [--kind=hard] [--csv=FILE]
+                       [--keep=DIR]
 
 Scene K comes from the seed and K alone (families.py). Each is run with contact, without its Contact list, and with contact but
 without coarser meshes; times are of whole processes. A table by family, the bars, and each failed scene with its command. The exit
 code is 1 if a scene failed or a bar does not hold. --size=small has meshes of a few thousand dofs of the same scenes; times mean
-nothing there, and their bars are left out. --steps-only leaves out the runs without contact.
+nothing there, and their bars are left out. --steps-only leaves out the runs without contact. --kind=hard has the families of hard.py,
+without the cold runs.
 """
 import argparse
 import concurrent.futures
@@ -23,7 +25,8 @@ def arguments(parser):
     parser.add_argument("--scenes", type=int, default=200)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", type=int)
-    parser.add_argument("--family", help="only these of the scenes, separated by commas: " + ", ".join(families.FAMILIES))
+    parser.add_argument("--family", help="only these of the scenes, separated by commas")
+    parser.add_argument("--kind", choices=list(families.KINDS), default="three states", help="%(default)s")
     parser.add_argument("--size", choices=list(families.SIZES), default="full")
     parser.add_argument("--steps-only", dest="elastic", action="store_false")
     parser.add_argument("--time-limit", type=float, default=300.0, help="of a run [s] (%(default)s)")
@@ -38,7 +41,7 @@ def chosen(options):
     if options.only is not None:
         return [options.only]
     numbers = range(options.first, options.first + options.scenes)
-    return [k for k in numbers if not options.family or families.family_of(k) in options.family.split(",")]
+    return [k for k in numbers if not options.family or families.family_of(k, options.kind) in options.family.split(",")]
 
 
 def measured(options):
@@ -47,23 +50,30 @@ def measured(options):
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
         for row in pool.map(lambda number: runs.measure(options, number), chosen(options)):
             rows.append(row)
-            print("  %d %s %s: %d dofs, %d points (%d open, %d closed, %d yielding), ratio %s, steps %s, cold %s%s"
-                  % (row.number, row.family, row.element, row.dofs, row.points, row.open, row.closed, row.yielding, report.short(row.ratio),
-                     report.short(row.steps, "%.0f"), report.short(row.cold_steps, "%.0f"), row.failure and "; FAILED: " + row.failure),
+            print("  %d %s %s: %d dofs, %d points (%d open, %d closed, %d yielding), %s s, ratio %s, steps %s, cold %s, CG %s%s%s"
+                  % (row.number, row.family, row.element, row.dofs, row.points, row.open, row.closed, row.yielding, report.short(row.seconds),
+                     report.short(row.ratio), report.short(row.steps, "%.0f"), report.short(row.cold_steps, "%.0f"),
+                     report.short(row.most_cg, "%.0f"), row.at_rounding and "; at rounding", row.failure and "; FAILED: " + row.failure),
                   file=sys.stderr, flush=True)
     return rows
 
 
 def note(options):
     return ("Seed %d, size %s, %d rank(s). Ratio: time of the whole process over that of the same deck without its Contact list%s. Steps: "
-            "active-set and Newton steps on the finest mesh, from a coarser mesh's solution; cold: without coarser meshes. CG "
-            "iterations and set-ups on the finest mesh." % (options.seed, options.size, options.np,
-                                                            ", best of 2 where short" if options.elastic else ""))
+            "active-set and Newton steps on the finest mesh, from a coarser mesh's solution%s. CG "
+            "iterations and set-ups on the finest mesh." % (options.seed, options.size, options.np, ", best of 2 where short" if options.elastic else "",
+                                                            "" if options.kind == "hard" else "; cold: without coarser meshes"))
 
 
 def tables(options, rows):
-    bars = report.STEP_BARS + (report.TIME_BARS if options.elastic and options.size == "full" else [])
-    return [report.family_table(rows, note(options), options.elastic), report.bar_table(rows, bars)]
+    timed = options.elastic and options.size == "full"
+    if options.kind == "hard":
+        bars = report.HARD_BARS + (report.HARD_TIME_BARS if timed else [])
+    else:
+        bars = report.STEP_BARS + (report.TIME_BARS if timed else [])
+    names = list(families.KINDS[options.kind][0])
+    least = 0 if options.kind == "hard" else report.LEAST_THREE_STATES
+    return [report.family_table(rows, note(options), options.elastic, names), report.bar_table(rows, bars, least)]
 
 
 def failures(options, rows):
