@@ -206,7 +206,22 @@ void Iterate::start_from(const ContactState &state, Vector &u)
 
 void Iterate::move_origin(Vector &u)
 {
-  functional_ = functional_.from(u);
+  Vector G(u.getMap());
+  functional_.elastic_gradient(u, G);
+  take_origin(u, G);
+}
+
+void Iterate::move_origin(Vector &u, const Vector &internal, const Vector &applied)
+{
+  Vector G(internal, Teuchos::Copy);
+  G.update(-1., applied, 1.);
+  fem::clear_prescribed(dirichlet_, G);
+  take_origin(u, G);
+}
+
+void Iterate::take_origin(Vector &u, const Vector &out_of_balance)
+{
+  functional_ = functional_.from(u, out_of_balance);
   if (origin_.is_null())
     origin_ = rcp(new Vector(u, Teuchos::Copy));
   else

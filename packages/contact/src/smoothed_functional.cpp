@@ -111,12 +111,10 @@ SmoothedFunctional::SmoothedFunctional(RCP<const Operator> K, RCP<const Vector> 
 {
 }
 
-SmoothedFunctional SmoothedFunctional::from(const Vector &u) const
+SmoothedFunctional SmoothedFunctional::from(const Vector &u, const Vector &out_of_balance) const
 {
-  const auto load = rcp(new Vector(*load_, Teuchos::Copy));
-  Vector Ku(u.getMap());
-  K_->apply(u, Ku);
-  load->update(-1., Ku, 1.);
+  const auto load = rcp(new Vector(u.getMap()));
+  load->update(-1., out_of_balance, 0.);
   SmoothedPoints points = points_;
   points.points.free_gap = left_of_gap(points.points, u);
   return {K_, load, offset_, std::move(points)};

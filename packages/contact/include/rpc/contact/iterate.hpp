@@ -90,6 +90,9 @@ public:
   void start_from(const ContactState &state, Vector &u);
   /// Moves the origin to where u is, and sets u to 0.                                                            (5.13)
   void move_origin(Vector &u);
+  /// The same with the forces of the body there as the cells tell them, which K tells with a larger rounding.
+  /// @param internal  (owned dofs) fem::internal_work() [N]   @param applied  load without prescribed displacements [N]
+  void move_origin(Vector &u, const Vector &internal, const Vector &applied);
   /// Where the iterate is: displacement from 0, and copies of multipliers and states.
   ContactState state(const Vector &u) const;
 
@@ -106,6 +109,7 @@ public:
   const DeviceView<double *> &own_stiffness() const { return own_; }                   ///< (points) [Pa/m]
 
 private:
+  void take_origin(Vector &u, const Vector &out_of_balance);
   GO update_stiffness(); // brings hessian() to the active set; number of nodes whose stiffness changed
   double replace_multipliers(const DeviceView<double *> &p);
 

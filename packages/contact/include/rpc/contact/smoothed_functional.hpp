@@ -59,13 +59,14 @@ public:
   StateCounts count_states(const Vector &u) const;
 
   /// The same functional of the correction to u: the rounding of r v is then relative to the correction.           (5.13)
-  SmoothedFunctional from(const Vector &u) const;
+  /// @param out_of_balance  elastic gradient at u [N], 0 at prescribed unknowns
+  SmoothedFunctional from(const Vector &u, const Vector &out_of_balance) const;
 
   const SmoothedPoints &points() const { return points_; }
 
 private:
   RCP<const Operator> K_;
-  RCP<const Vector> load_; // less K origin
+  RCP<const Vector> load_; // less the elastic forces at the origin
   double offset_;
   SmoothedPoints points_; // with the gap that is left from the origin
 };
