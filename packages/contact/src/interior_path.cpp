@@ -15,6 +15,10 @@ namespace
 constexpr double first_mu = 0.1;
 constexpr double start_slope = 10; // of p against v from the given point to the path, in pressure over displacement
 constexpr double nearly = 0.995;   // of the way to the next point's corner
+// So many steps on end that are shorter than this tell that points start with a pressure far below what they will bear, as where the
+// foundation bends the body and not the load. A few steps are short on any path.
+constexpr double short_step = 0.1, more_pressure = 100;
+constexpr int many_short_steps = 3;
 // mu falls to this part by a step; after one cut short to t by twice (1 - t)^2.
 constexpr double first_part = 0.3, most_part = 0.5, least_part = 0.01;
 
@@ -80,11 +84,24 @@ InteriorPath::InteriorPath(const SmoothedFunctional &functional, const Vector &u
 {
   const ContactNodes &c = functional.points().points;
   const double soft = softest(*u.getMap()->getComm(), c), largest = largest_penetration(c, u);
-  const double pressure = load > 0 ? load : soft * largest;
-  length_ = std::max(largest, pressure / soft);
-  mu_ = first_mu * pressure * length_;
-  join_all(c, u, pressure, mu_, start_slope * pressure / length_, at_);
+  pressure_ = load > 0 ? load : soft * largest;
+  length_ = std::max(largest, pressure_ / soft);
+  join(functional, u);
+}
+
+void InteriorPath::join(const SmoothedFunctional &functional, const Vector &u)
+{
+  mu_ = first_mu * pressure_ * length_;
+  join_all(functional.points().points, u, pressure_, mu_, start_slope * pressure_ / length_, at_);
   target_ = first_part * mu_;
+}
+
+void InteriorPath::rejoin_where_it_creeps(const SmoothedFunctional &functional, const Vector &u)
+{
+  if (short_steps_ < many_short_steps) return;
+  short_steps_ = 0;
+  pressure_ *= more_pressure;
+  join(functional, u);
 }
 
 DeviceView<double ***> InteriorPath::blocks(const SmoothedPoints &points) const
@@ -162,6 +179,7 @@ double InteriorPath::advance(const SmoothedFunctional &functional, const Vector 
       changes);
   settled_ = sum_all(*u.getMap()->getComm(), GO(changes)) == 0;
   measure(*u.getMap()->getComm(), s.points);
+  short_steps_ = t < short_step ? short_steps_ + 1 : 0;
   target_ = std::clamp(2 * (1 - t) * (1 - t), least_part, most_part) * mu_;
   return t;
 }

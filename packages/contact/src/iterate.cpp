@@ -157,6 +157,7 @@ void Iterate::start_interior_path(const Vector &u)
 
 void Iterate::linearize_interior(const Vector &u, Vector &F)
 {
+  interior_->rejoin_where_it_creeps(functional_, u);
   hessian_->set(points_, interior_->blocks(functional_.points()));
   interior_->gradient(functional_, u, F);
 }

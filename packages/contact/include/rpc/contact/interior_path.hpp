@@ -18,6 +18,9 @@ public:
   /// @param load  over the contact area [Pa]; 0: nothing presses the body but where it has penetrated
   InteriorPath(const SmoothedFunctional &functional, const Vector &u, double load);
 
+  /// Joins the path anew where steps stay short: with a hundred times the pressure.                                 (5.16)
+  void rejoin_where_it_creeps(const SmoothedFunctional &functional, const Vector &u);
+
   /// (points, dim, dim) What the linearized law adds to K [N/m].
   DeviceView<double ***> blocks(const SmoothedPoints &points) const;
   /// F <- Ku - b + sum_i w_i m_i (p_i + e_i/(D_i + 1/r_i))                                                        (5.18)
@@ -33,15 +36,18 @@ public:
   ActiveSetChoice choice(const SmoothedFunctional &functional, const ActiveSet &present) const;
 
 private:
+  void join(const SmoothedFunctional &functional, const Vector &u);
   void measure(const Comm &comm, const ContactNodes &points);
 
   DeviceView<InteriorPoint *> at_; // (points)
   DeviceView<State *> state_;      // (points) that they tend to
+  double pressure_ = 0;            // that points start with [Pa]
   double length_ = 0;              // size of displacements [m]
   double target_ = 0;              // mu that the next step is for [J/m^2]
   double mu_ = 0;                  // mean of p s and q d [J/m^2]
   double gap_ = 1;
   bool settled_ = false;
+  int short_steps_ = 0; // on end
 };
 
 } // namespace rpc::contact

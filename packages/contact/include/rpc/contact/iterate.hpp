@@ -65,7 +65,7 @@ public:
 
   // The interior-point method: see interior_path.hpp.
   void start_interior_path(const Vector &u);
-  /// Brings hessian() to the linearized law, and sets what it is to be solved for.                            (5.18)
+  /// Brings hessian() to the linearized law, from a new start where steps are short, and sets what it is to be solved for.                            (5.18)
   void linearize_interior(const Vector &u, Vector &F);
   /// @return the length of the step that was taken along d                                                    (5.19)
   double advance_interior(const Vector &u, const Vector &d) { return interior_->advance(functional_, u, d); }
