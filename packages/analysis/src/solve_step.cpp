@@ -45,7 +45,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
     const Timed timer("solve", s.solve_seconds);
     UzawaResult &uzawa = s.uzawa;
     bool over = false;
-    while (!over) { // paper (16), paper (17): the gradient method for the dual problem
+    while (!over) {             // paper (16), paper (17): the gradient method for the dual problem
       if (uzawa.iterations > 0) // the correction is small against u (5.13)
         iterate.move_origin(*u, *uzawa.residuals.internal.forces, *step.elastic.applied_load);
       const Minimization found = // paper (10), (4.1): choose states (5.8) and solve (5.7), (5.9),

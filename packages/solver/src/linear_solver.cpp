@@ -29,8 +29,15 @@ namespace
 // multigrid that is nearly one.
 constexpr GO most_rows_set_up_anew = 2500;
 
-// A sparse factor is thought of after so many CG iterations of a solve, and iterations count as lost beyond so many.
-constexpr int first_iterations = 15, fair_iterations = 30;
+// A sparse factor is thought of after so many CG iterations of a solve, and iterations count as lost beyond so many of a solve to 1e-8, of
+// rough solves beyond a part. With contact so many solves are to come, by measurement of steps.
+constexpr int first_iterations = 15, fair_iterations = 30, solves_with_contact = 4;
+
+double fair(const double tolerance)
+{
+  return fair_iterations * std::min(1., std::log(tolerance) / std::log(1e-8));
+}
+
 // Rows up to which it is thought of at all: in the plane they take gigabytes, in space more than most machines have.
 constexpr GO most_sparse_rows = 3000000;
 
@@ -91,6 +98,7 @@ struct LinearSolver::Impl {
   Krylov krylov;
   bool on_meshes;                 // or on one of the others
   bool on_sparse = false;         // from some solve on
+  int solves_to_come = 1;         // about
   bool may_be_sparse;             // the deck leaves the preconditioner open, and memory may do
   double lost_iterations = 0;     // of CG, in all solves, beyond what is fair
   double iteration_seconds = -1;  // -1: not asked for yet
@@ -126,6 +134,8 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
   if (automatic && unknowns <= most_rows_set_up_anew) factor.emplace(H);
   on_meshes = meshes.has_value();
   may_be_sparse = automatic && unknowns <= most_sparse_rows;
+  if (sum_all(*H->getDomainMap()->getComm(), static_cast<GO>(H->nodes().extent(0))) > 0)
+    solves_to_come = solves_with_contact;
 }
 
 /// What a sparse factor takes; null where it cannot be had. Collective.
@@ -147,13 +157,14 @@ double LinearSolver::Impl::iterations_to_come(const int iterations, const double
   return residual < 1 ? std::min(iterations * std::log(tolerance) / std::log(residual), most) : most;
 }
 
-/// Whether the iterations that CG has lost, and will lose in this solve at its present rate, take longer than a sparse factor.
+/// Whether the iterations that CG has lost, and will lose in this solve and those to come at its present rate, take longer than a sparse
+/// factor.                                                                                                        (4.10)
 bool LinearSolver::Impl::sparse_pays(const int iterations, const double residual, const double tolerance)
 {
   if (iterations < first_iterations || !may_be_sparse) return false;
   const double all = iterations_to_come(iterations, residual, tolerance);
   if (iteration_seconds < 0) iteration_seconds = seconds_of_iteration(H->base());
-  const double lost = iteration_seconds * (lost_iterations + std::max(all - fair_iterations, 0.));
+  const double lost = iteration_seconds * (lost_iterations + solves_to_come * std::max(all - fair(tolerance), 0.));
   constexpr double seconds_of_analysis = 5e-6; // a row; not worth it for less
   if (lost < seconds_of_analysis * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
   const auto *const found = prospect();
@@ -217,7 +228,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     const KrylovResult done = krylov.solve(*used, H->is_symmetric(), b, x, tolerance,
                                            may_be_sparse && !on_sparse ? GivesUp(gives_up) : GivesUp());
     given_up = done.given_up;
-    lost_iterations += std::max(0, done.iterations - fair_iterations);
+    lost_iterations += std::max(0., done.iterations - fair(least));
     if (used == &algebraic) algebraic.learn(done.iterations, done.residual);
     result = {done.converged, done.broken, false, done.iterations, done.reason};
     counts.iterations.push_back(result.iterations);
