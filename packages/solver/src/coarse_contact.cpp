@@ -11,7 +11,7 @@ namespace rpc::solver
 namespace
 {
 
-/// values <- base + sum over parts of coefficient times the contact node's update.
+/// added <- sum over parts of coefficient times the contact node's update, 0 at prescribed unknowns; values <- base + added.
 template <class Update, class Values>
 struct WriteBlocks {
   int dim;
@@ -23,6 +23,7 @@ struct WriteBlocks {
   DeviceView<double *> coefficient; // (parts)
   DeviceView<char *> prescribed;    // (columns)
   Update update;                    // (near contact nodes, dim * dim)
+  DeviceView<double ***> added;     // (blocks, dim, dim)  out
   Values values;                    // (matrix entries)  out
 
   KOKKOS_FUNCTION void operator()(const LO b) const
@@ -35,28 +36,21 @@ struct WriteBlocks {
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) {
         const bool held = prescribed(dof(dim, row(b), i)) || prescribed(dof(dim, column(b), j));
-        values(entry(b, i) + j) = base(b, i, j) + (held ? 0 : block[i][j]);
+        added(b, i, j) = held ? 0 : block[i][j];
+        values(entry(b, i) + j) = base(b, i, j) + added(b, i, j);
       }
   }
 };
 
-/// y at some nodes <- their rows of A times x.
-/// @param x  (columns)  @param y  (rows)
-void multiply_rows(const CrsMatrix &A, const int dim, const DeviceView<LO *> &nodes, const Vector &x, Vector &y)
+/// (nodes + 1) Where each node's blocks begin; every node has some.
+/// @param row  (blocks) of the nodes, in their order
+std::vector<std::size_t> first_blocks(const std::vector<LO> &row)
 {
-  const auto matrix = A.getLocalMatrixDevice();
-  const auto from = device_read(x);
-  const auto to = device_write(y);
-  Kokkos::parallel_for(
-      "rpc::solver::multiply_rows", device_range(num_dofs(dim, static_cast<LO>(nodes.extent(0)))),
-      KOKKOS_LAMBDA(const LO i) {
-        const LO row = dof(dim, nodes(node_of(dim, i)), component_of(dim, i));
-        double sum = 0;
-        for (auto e = matrix.graph.row_map(row); e < matrix.graph.row_map(row + 1); ++e)
-          sum += matrix.values(e) * from(matrix.graph.entries(e));
-        to(row) = sum;
-      });
-  Kokkos::fence();
+  std::vector<std::size_t> first;
+  for (std::size_t b = 0; b < row.size(); ++b)
+    if (b == 0 || row[b] != row[b - 1]) first.push_back(b);
+  first.push_back(row.size());
+  return first;
 }
 
 } // namespace
@@ -99,6 +93,8 @@ CoarseContact::CoarseContact(const ContactSupports &supports, const Map &nodes, 
   row_ = device_values(blocks.row, "rpc::solver::coarse_row");
   column_ = device_values(blocks.column, "rpc::solver::coarse_column");
   nodes_ = device_values(blocks.nodes, "rpc::solver::coarse_nodes");
+  first_ = device_values(first_blocks(blocks.row), "rpc::solver::coarse_first");
+  added_ = DeviceView<double ***>("rpc::solver::coarse_added", n, dim_, dim_);
   begin_ = device_values(blocks.begin, "rpc::solver::coarse_begin");
   contact_ = device_values(blocks.contact, "rpc::solver::coarse_contact");
   coefficient_ = device_values(blocks.coefficient, "rpc::solver::coarse_coefficient");
@@ -120,8 +116,31 @@ void CoarseContact::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp
     }
     const auto to = y.getVectorNonConst(k);
     rows_.apply(*columns, *to);
-    multiply_rows(*A_, dim_, nodes_, *columns, *to);
+    add_product(*columns, *to);
   }
+}
+
+void CoarseContact::add_product(const Vector &x, Vector &y) const
+{
+  const auto from = device_read(x);
+  const auto to = device_write(y);
+  const auto nodes = nodes_, column = column_;
+  const auto first = first_;
+  const auto added = added_;
+  const auto kind = rows_.blocks().kind;
+  const int dim = dim_;
+  Kokkos::parallel_for(
+      "rpc::solver::add_contact", device_range(num_dofs(dim, static_cast<LO>(nodes.extent(0)))),
+      KOKKOS_LAMBDA(const LO r) {
+        const LO n = node_of(dim, r);
+        const int i = component_of(dim, r);
+        if (kind(nodes(n)) < 0) return; // of the rows that do not repeat the matrix itself has been read
+        double sum = 0;
+        for (std::size_t b = first(n); b < first(n + 1); ++b)
+          for (int j = 0; j < dim; ++j) sum += added(b, i, j) * from(dof(dim, column(b), j));
+        to(dof(dim, nodes(n), i)) += sum;
+      });
+  Kokkos::fence();
 }
 
 void CoarseContact::write(const MultiVector &update)
@@ -133,7 +152,7 @@ void CoarseContact::write(const MultiVector &update)
   Kokkos::parallel_for(
       "rpc::solver::write_contact", device_range(static_cast<LO>(row_.extent(0))),
       WriteBlocks<std::decay_t<decltype(from)>, std::decay_t<decltype(values)>>{
-          dim_, row_, column_, entry_, base_, begin_, contact_, coefficient_, prescribed_, from, values});
+          dim_, row_, column_, entry_, base_, begin_, contact_, coefficient_, prescribed_, from, added_, values});
   Kokkos::fence();
 }
 

@@ -44,6 +44,9 @@ public:
   DeviceView<double ***> blocks() const;
 
 private:
+  /// y += (S^T U S) x in the rows that repeat in A.  @param x  (columns of A)
+  void add_product(const Vector &x, Vector &y) const;
+
   int dim_;
   RCP<CrsMatrix> A_;
   RepeatedRows rows_;                    // of the matrix without contact
@@ -56,6 +59,8 @@ private:
   DeviceView<double *> coefficient_;     // (parts) product of the weights at both nodes
   DeviceView<char *> prescribed_;        // (columns of A)
   DeviceView<LO *> nodes_;               // (n)
+  DeviceView<std::size_t *> first_;      // (n + 1) where a node's blocks begin
+  DeviceView<double ***> added_;         // (blocks, dim, dim) what contact adds
   DeviceView<std::size_t **> own_entry_; // (n, dim) where the node's own block begins
 };
 

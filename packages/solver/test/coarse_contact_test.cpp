@@ -27,14 +27,16 @@ double added(const GO node, const int k, const int l)
   return (10 + static_cast<double>(node)) * (m[k] * m[l]) + (k == l ? 0.5 : 0);
 }
 /// A coarse line's matrix: neighbours are coupled by full blocks.
-Dense dense_matrix(const int nodes)
+/// @param even  all rows but the first and the last repeat
+Dense dense_matrix(const int nodes, const bool even = false)
 {
   Dense A(dim * nodes, dim * nodes);
   for (int n = 0; n < nodes; ++n)
     for (int m = std::max(0, n - 1); m <= std::min(nodes - 1, n + 1); ++m)
       for (int k = 0; k < dim; ++k)
         for (int l = 0; l < dim; ++l)
-          A(dof(dim, n, k), dof(dim, m, l)) = (n == m && k == l ? 4 : -0.2) + 0.0071 * (n + m) * (k + l); // never 0
+          A(dof(dim, n, k), dof(dim, m, l)) =
+              (n == m && k == l ? 4 : -0.2) + 0.0071 * (even ? 3 : n + m) * (k + l); // never 0
   return A;
 }
 
@@ -46,11 +48,12 @@ struct Lines {
   RCP<CoarseContact> contact;
   MultiVector update;
   Dense weights; // (nodes of the first line, nodes of the last one)
-  bool first_is_prescribed;
+  bool first_is_prescribed, even;
 
-  explicit Lines(std::vector<int> nodes, const bool with_contact = true, const bool prescribed = false)
+  explicit Lines(std::vector<int> nodes, const bool with_contact = true, const bool prescribed = false,
+                 const bool rows_repeat = false)
       : num_nodes(std::move(nodes)), update(line_of(1), 1), weights(dense_interpolation(num_nodes[0], num_nodes[0])),
-        first_is_prescribed(prescribed)
+        first_is_prescribed(prescribed), even(rows_repeat)
   {
     auto line = line_of(num_nodes[0]);
     std::vector<LO> touching;
@@ -72,7 +75,7 @@ struct Lines {
       line = coarse;
     }
     const auto unknowns = unknowns_of(*line);
-    A = distributed(dense_matrix(num_nodes.back()), unknowns, unknowns);
+    A = distributed(dense_matrix(num_nodes.back(), even), unknowns, unknowns);
     const Map &columns = *A->getColMap();
     std::vector<char> held(num_local(columns));
     for (std::size_t i = 0; i < held.size(); ++i)
@@ -84,7 +87,7 @@ struct Lines {
   Dense expected() const
   {
     const int n = num_nodes.back();
-    Dense sum = dense_matrix(n);
+    Dense sum = dense_matrix(n, even);
     for (int c = 0; c < num_nodes[0]; ++c) {
       if (!in_contact(c)) continue;
       for (int a = 0; a < n; ++a)
@@ -176,6 +179,14 @@ TEST(CoarseContact, IsWrittenInPlaceOfWhatWasThere)
   other.putScalar(0);
   lines.contact->write(other);
   lines.expect_products_of(dense_matrix(9));
+}
+
+TEST(CoarseContact, IsAddedToRowsThatRepeat)
+{
+  const Lines lines({129, 65}, true, true, true);
+  EXPECT_GT(RepeatedRows::of(lines.A, dim).num_kinds(), 0);
+  lines.contact->write(lines.update);
+  lines.expect_products_of(lines.expected());
 }
 
 TEST(CoarseContact, IsSymmetricToTheLastBit)
