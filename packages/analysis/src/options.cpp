@@ -59,8 +59,8 @@ Teuchos::ParameterList valid_prediction_parameters()
             "boxes and "
             ".geo files of 500 nodes and more.");
   valid.set("Coarsening", 4.,
-            "Ratio of cell lengths from one mesh to the next, in [1.5, 100]. Boxes of order 1 are halved until about "
-            "so few nodes are left.");
+            "Ratio of cell lengths from one mesh to the next, in [1.5, 100]. Boxes of order 1 are halved until the "
+            "direction with most cells has so few.");
   valid.set("Tolerance", 1e-4, "Bound on |F|_2/|load|_2 on the coarser meshes, in (0, 1).");
   return valid;
 }

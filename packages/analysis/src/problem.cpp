@@ -3,7 +3,9 @@
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/fem/surface.hpp"
+#include "rpc/mesh/box.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -126,14 +128,14 @@ std::shared_ptr<const Problem> Problem::coarser(const double factor, const doubl
 {
   const mesh::Mesh &own = *discretization().mesh;
   if (!own.box || own.element.order == 2) return nullptr;
-  constexpr double about = 2; // few cells in a direction have relatively many nodes
-  const auto nodes = [](const NestedMesh &mesh) {
-    return static_cast<double>(mesh.discretization().mesh->owned_nodes->getGlobalNumElements());
+  const auto most_cells = [](const NestedMesh &mesh) {
+    const auto &cells = mesh.discretization().mesh->box->cells;
+    return *std::max_element(cells.begin(), cells.end());
   };
-  const double most = about * nodes(*mesh_) / std::pow(factor, discretization().dim());
+  const int most = static_cast<int>(std::lround(most_cells(*mesh_) / factor));
   auto mesh = mesh_;
   do mesh = mesh->coarser();
-  while (mesh && nodes(*mesh) > most);
+  while (mesh && most_cells(*mesh) > most);
   return mesh ? std::make_shared<Problem>(mesh, model_, t) : nullptr;
 }
 

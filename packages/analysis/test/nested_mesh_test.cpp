@@ -8,6 +8,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
+#include <utility>
 
 namespace
 {
@@ -28,7 +29,7 @@ std::shared_ptr<const mesh::Mesh> box_of(const mesh::Element &element, const boo
 }
 
 /// A block held at its top that may touch with its bottom.
-Problem problem_on(const mesh::Element &element)
+Problem problem_on(const mesh::Element &element, std::shared_ptr<const mesh::Mesh> mesh = nullptr)
 {
   analysis::Model model;
   fem::DirichletCondition held{"held", element.dim == 2 ? "top" : "front", {ScalarField(0.), ScalarField(-0.01)}};
@@ -40,7 +41,7 @@ Problem problem_on(const mesh::Element &element)
   foundation.yield_stress = ScalarField(1.);
   foundation.gap = ScalarField(0.);
   model.contact = {foundation};
-  return Problem(box_of(element), model);
+  return Problem(mesh ? std::move(mesh) : box_of(element), model);
 }
 
 std::size_t num_nodes(const fem::Discretization &d)
@@ -102,6 +103,20 @@ TEST(NestedMesh, ServesAProblemOnACoarserMesh)
     EXPECT_GT(ratio, 0.5 * std::pow(4, element.dim)) << element.name();
     EXPECT_LT(ratio, 1.5 * std::pow(4, element.dim)) << element.name();
     EXPECT_GT(coarser->step(1).contact.num_total, 0);
+  }
+}
+
+/// Across a beam there are soon no cells to halve: its length counts, not the number of nodes.
+TEST(NestedMesh, KeepsCellsAlongASlenderBody)
+{
+  for (const mesh::Shape shape : {mesh::Shape::simplex, mesh::Shape::tensor}) {
+    const mesh::Element element{3, 1, shape};
+    const mesh::BoxOptions beam{{0, 0, 0}, {32, 2, 1}, {64, 4, 2}, element};
+    const Problem problem =
+        problem_on(element, std::make_shared<mesh::Mesh>(mesh::make_box(beam, Tpetra::getDefaultComm())));
+    const auto coarser = problem.coarser(4, 1);
+    ASSERT_NE(coarser, nullptr);
+    EXPECT_EQ(coarser->discretization().mesh->box->cells[0], 16);
   }
 }
 

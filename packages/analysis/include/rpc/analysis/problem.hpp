@@ -54,8 +54,8 @@ public:
   /// @param dents  that earlier steps have left, (owned nodes; sides) [m]; null: none
   /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()
   Step step(double t, const MultiVector *dents = nullptr) const;
-  /// The same scene on one of the boxes that this one leads to: the first whose cells are about `factor` times as long, by the number of
-  /// nodes. Null where there is none, and for order 2: linear elements, too stiff in bending, predict worse. Collective.
+  /// The same scene on one of the boxes that this one leads to: the first that has at most a `factor`-th of its cells along the direction
+  /// with most. Null where there is none, and for order 2: linear elements, too stiff in bending, predict worse. Collective.
   std::shared_ptr<const Problem> coarser(double factor, double t) const;
 
   const fem::Discretization &discretization() const { return mesh_->discretization(); }
