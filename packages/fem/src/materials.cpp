@@ -2,9 +2,11 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/fem/elasticity.hpp"
+#include "rpc/mesh/box.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 namespace rpc::fem
@@ -168,6 +170,39 @@ std::string locking_note(const Discretization &d, const Materials &materials)
     return note.str();
   }
   return "";
+}
+
+std::string bending_note(const Discretization &d, const Materials &materials)
+{
+  const mesh::Mesh &mesh = *d.mesh;
+  if (!mesh.box || mesh.element.order != 1) return "";
+  const mesh::BoxOptions &box = *mesh.box;
+  const auto thickness = [&box](const int k) { return box.upper[k] - box.lower[k]; };
+  int across = 0;
+  for (int k = 1; k < mesh.dim(); ++k)
+    if (thickness(k) < thickness(across)) across = k;
+  double length = 0;
+  for (int k = 0; k < mesh.dim(); ++k)
+    if (k != across) length = std::max(length, box.cell_length(k));
+  const double slenderness = length / thickness(across), layer = box.cell_length(across) / thickness(across);
+  double shear = 0, excess = 0; // (2.6a)
+  for (const std::string &block : mesh.blocks) {
+    const Material &material = materials.of(block);
+    const double nu = material.poissons_ratio;
+    const bool stress = d.kinematics == Kinematics::plane_stress;
+    shear = std::max(shear, (stress ? 0.5 / (1 + nu) : 0.5 * (1 - nu)) * slenderness * slenderness);
+    const double lateral = projects(d, material) ? 0 : nu * nu / (stress ? 1 - nu * nu : 1 - 2 * nu);
+    excess = std::max(excess, shear + lateral * layer * layer);
+  }
+  constexpr double notable = 0.25, fair = 0.05;
+  if (shear < notable) return "";
+  std::ostringstream note;
+  note << std::setprecision(2) << mesh.element.name() << " cells " << slenderness
+       << " times as long as the body is thick make it "
+       << (mesh.element.shape == mesh::Shape::simplex ? "more than " : "up to ") << 1 + excess
+       << " times too stiff where it bends; take order 2, or cells at most " << slenderness * std::sqrt(fair / shear)
+       << " times its thickness long for 5 %";
+  return note.str();
 }
 
 std::string order_note(const Discretization &d, const Materials &materials)

@@ -284,6 +284,22 @@ TEST(LockingNote, WarnsOfP1InNearlyIncompressibleMaterialsOnly)
   EXPECT_EQ(note(q1, 0.4999), "");
 }
 
+TEST(BendingNote, TellsByWhatFactorLongCellsOfOrderOneAreTooStiff)
+{
+  const auto note = [](const mesh::Element &element, const double thickness, const double nu) {
+    const mesh::BoxOptions box{{0, 0}, {8, thickness}, {4, 2}, element};
+    return fem::bending_note(body(box, world()), fem::Material{1, nu});
+  };
+  const mesh::Element q1{2, 1}, p1{2, 1, mesh::Shape::simplex};
+  EXPECT_EQ(note(q1, 4, 0), "");
+  // (1 - nu)/2 (h/t)^2 = 0.5 * 16: cells of length 2 in a body of thickness 0.5
+  EXPECT_NE(note(q1, 0.5, 0).find("Q1 cells 4 times as long"), std::string::npos);
+  EXPECT_NE(note(q1, 0.5, 0).find("make it up to 9 times too stiff"), std::string::npos);
+  EXPECT_NE(note(q1, 0.5, 0).find("at most 0.32 times"), std::string::npos);
+  EXPECT_NE(note(p1, 0.5, 0).find("more than 9 times"), std::string::npos);
+  EXPECT_EQ(note({2, 2}, 0.5, 0), "");
+}
+
 TEST(OrderNote, TellsOfP2WhereItsDilatationIsProjected)
 {
   const auto note = [](const mesh::Element &element, const double nu,
