@@ -3,8 +3,8 @@
     python3 structure.py [<root of the sources>]
 
 Prints each arrow that is not allowed, each line of the program that launches a kernel or works on a matrix, each name that differs
-between Trilinos versions outside VERSION_HEADERS, each parameter of a contact law that is read outside its folder, and each source
-file that is longer than MOST_LINES; the exit code is 1 if there is one.
+between Trilinos versions outside VERSION_HEADERS, each parameter of a contact law that is read outside its folder, each kernel in a
+private member function, which nvcc refuses, and each source file that is longer than MOST_LINES; the exit code is 1 if there is one.
 """
 
 import pathlib
@@ -57,6 +57,11 @@ LAW_FILLERS = {"packages/contact/src/contact_nodes.cpp", "packages/contact/src/c
                "packages/analysis/src/problem.cpp"}  # options of the deck, and the points' views
 MOST_LINES = 450  # of a source file of a package or the program, tests included
 FOR_TESTS = {"mesh", "fem"}  # a package's tests may make their bodies with these
+
+CLASS = re.compile(r"^(?:class|struct) (\w+)[^;\n]*\n\{\n(.*?)^\};", re.MULTILINE | re.DOTALL)
+HIDDEN_PART = re.compile(r"^(?:private|protected):\n(.*?)(?=^public:|\Z)", re.MULTILINE | re.DOTALL)
+NAME_OF_FUNCTION = re.compile(r"\b(\w+)\(")
+MEMBER = re.compile(r"^\S[^\n]*?\b(\w+)::(~?\w+)\((?:[^\n]*\n)+?\{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 PACKAGE = re.compile(r"rpc_add_package\(\s*(\w+)(.*?)\)", re.DOTALL)
@@ -136,6 +141,21 @@ def check_law(root):
                     yield f"{file.relative_to(root)}:{number}: a parameter of the contact law is read outside {LAW_FOLDER}"
 
 
+def check_kernels(root):
+    """nvcc wants the function around an extended lambda to be public."""
+    hidden = set()  # (class, function)
+    for file in code(root / "packages"):
+        for name, body in CLASS.findall(file.read_text()):
+            for part in HIDDEN_PART.findall(body):
+                hidden |= {(name, function) for line in part.splitlines() for function in NAME_OF_FUNCTION.findall(line.split("//")[0])}
+    for file in code(root / "packages"):
+        text = file.read_text()
+        for member in MEMBER.finditer(text):
+            if member.group(1, 2) in hidden and "KOKKOS_LAMBDA" in member.group(3):
+                line = text.count("\n", 0, member.start()) + 1
+                yield f"{file.relative_to(root)}:{line}: nvcc refuses the kernel of a private {member.group(1)}::{member.group(2)}"
+
+
 def check_lengths(root):
     for top in ("packages", "src"):
         for file in code(root / top):
@@ -156,6 +176,7 @@ def violations(root):
     yield from check_program(root)
     yield from check_versions(root)
     yield from check_law(root)
+    yield from check_kernels(root)
     yield from check_lengths(root)
 
 

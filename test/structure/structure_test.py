@@ -95,6 +95,14 @@ class Structure(unittest.TestCase):
         self.assertEqual(self.violations(**{"packages__contact__test__a_test.cpp": line}), [])
         self.assertEqual(self.violations(**{"packages__contact__src__result.cpp": "peak.yield_jump = sums.yielded_length > 0;"}), [])
 
+    def test_finds_a_kernel_in_a_private_member(self):
+        header = "class Path : public Way\n{\npublic:\n  void walk();\n\n%s  void measure(int x) const;\n};\n"
+        source = "\nvoid Path::measure(const int x) const\n{\n  Kokkos::parallel_for(KOKKOS_LAMBDA(int i) { f(i); });\n}\n"
+        files = {"packages__solver__include__rpc__solver__path.hpp": header % "private:\n", "packages__solver__src__path.cpp": source}
+        self.assertEqual(self.violations(**files), ["packages/solver/src/path.cpp:2: nvcc refuses the kernel of a private Path::measure"])
+        files["packages__solver__include__rpc__solver__path.hpp"] = header % ""
+        self.assertEqual(self.violations(**files), [])
+
     def test_finds_a_source_file_that_is_too_long(self):
         for where in ("packages__mesh__src__a.cpp", "packages__mesh__include__rpc__mesh__a.hpp", "packages__mesh__test__a_test.cpp", "src__a.cpp"):
             found = self.violations(**{where: "\n" * 451})

@@ -3,6 +3,7 @@
 #include "rpc/core/math.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace rpc::contact
@@ -74,6 +75,27 @@ double longest_step(const SmoothedPoints &s, const DeviceView<InteriorPoint *> &
       },
       Kokkos::Min<double>(longest));
   return longest;
+}
+
+/// Over all ranks: sum_i w_i (p_i s_i + q_i d_i) [J], sum_i w_i p_i [N], and the sum of w_i times a point's number of pairs.
+std::array<double, 3> sums(const Comm &comm, const ContactNodes &points, const DeviceView<InteriorPoint *> &at)
+{
+  const ContactNodes c = points;
+  double products = 0, force = 0, pairs = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::complementarity", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &product, double &load, double &weight) {
+        if (c.fixed(i)) return;
+        const Foundation f = c.law(i);
+        product += c.weight(i) * complementarity(at(i), f);
+        load += c.weight(i) * at(i).pressure;
+        weight += (can_yield(f) ? 2 : 1) * c.weight(i);
+      },
+      products, force, pairs);
+  const double mine[3] = {products, force, pairs};
+  std::array<double, 3> all;
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 3, mine, all.data());
+  return all;
 }
 
 } // namespace
@@ -178,32 +200,12 @@ double InteriorPath::advance(const SmoothedFunctional &functional, const Vector 
       },
       changes);
   settled_ = sum_all(*u.getMap()->getComm(), GO(changes)) == 0;
-  measure(*u.getMap()->getComm(), s.points);
+  const auto [products, force, pairs] = sums(*u.getMap()->getComm(), s.points, at_);
+  mu_ = products / pairs;
+  gap_ = products / (force * length_);
   short_steps_ = t < short_step ? short_steps_ + 1 : 0;
   target_ = std::clamp(2 * (1 - t) * (1 - t), least_part, most_part) * mu_;
   return t;
-}
-
-void InteriorPath::measure(const Comm &comm, const ContactNodes &points)
-{
-  const ContactNodes c = points;
-  const auto at = at_;
-  double products = 0, force = 0, pairs = 0;
-  Kokkos::parallel_reduce(
-      "rpc::contact::complementarity", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &product, double &load, double &weight) {
-        if (c.fixed(i)) return;
-        const Foundation f = c.law(i);
-        product += c.weight(i) * complementarity(at(i), f);
-        load += c.weight(i) * at(i).pressure;
-        weight += (can_yield(f) ? 2 : 1) * c.weight(i);
-      },
-      products, force, pairs);
-  const double mine[3] = {products, force, pairs};
-  double all[3];
-  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 3, mine, all);
-  mu_ = all[0] / all[2];
-  gap_ = all[0] / (all[1] * length_);
 }
 
 ActiveSetChoice InteriorPath::choice(const SmoothedFunctional &functional, const ActiveSet &present) const

@@ -33,6 +33,8 @@ public:
   RCP<const Map> getDomainMap() const override { return A_->getDomainMap(); }
   RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
 
+  /// y += (S^T U S) x in the rows that repeat in A.  @param x  (columns of A)
+  void add_product(const Vector &x, Vector &y) const;
   /// Collective. @param update  U, packed_blocks() [N/m]
   void write(const MultiVector &update);
 
@@ -44,9 +46,6 @@ public:
   DeviceView<double ***> blocks() const;
 
 private:
-  /// y += (S^T U S) x in the rows that repeat in A.  @param x  (columns of A)
-  void add_product(const Vector &x, Vector &y) const;
-
   int dim_;
   RCP<CrsMatrix> A_;
   RepeatedRows rows_;                    // of the matrix without contact

@@ -37,7 +37,6 @@ public:
 
 private:
   void join(const SmoothedFunctional &functional, const Vector &u);
-  void measure(const Comm &comm, const ContactNodes &points);
 
   DeviceView<InteriorPoint *> at_; // (points)
   DeviceView<State *> state_;      // (points) that they tend to
