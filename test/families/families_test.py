@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ElementTree
 
 import families
 import growth
+import hard
 import report
 from runs import Row
 from scene import deck, verdict
@@ -23,6 +24,23 @@ def points(scene):
     """Some of the coordinates that a body may have."""
     rng = random.Random(1)
     return [[rng.uniform(-8, 8) for _ in range(3)] for _ in range(200)]
+
+
+class HardGenerator(unittest.TestCase):
+    def test_scenes_come_from_seed_and_number_and_keep_their_law_and_loads_in_every_size(self):
+        def without_mesh(scene):
+            root = ElementTree.fromstring(deck(scene, "scene.geo" if scene.file else None))
+            root.remove(root.find("ParameterList[@name='Mesh']"))
+            return ElementTree.tostring(root)
+        for k in range(4 * len(hard.FAMILIES)):
+            small, full, again = (families.make(7, k, size, "hard")[1] for size in ("small", "full", "full"))
+            self.assertEqual(text(full), text(again))
+            self.assertEqual(without_mesh(small), without_mesh(full))
+            self.assertEqual(verdict(full), "solution")
+
+    def test_numbers_reach_every_family(self):
+        drawn = {families.make(7, k, "small", "hard")[0] for k in range(len(hard.FAMILIES))}
+        self.assertEqual(len(drawn), len(hard.FAMILIES))
 
 
 class Generator(unittest.TestCase):
