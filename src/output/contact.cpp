@@ -20,6 +20,16 @@ HostView<Data *> part_of(const DeviceView<Data *> &values, const LO begin, const
   return part;
 }
 
+/// Rows [begin, end) of a view, on the host.
+HostView<double **> rows_of(const DeviceView<double **> &values, const LO begin, const LO end)
+{
+  const auto all = to_host(values);
+  HostView<double **> part(values.label(), end - begin, values.extent(1));
+  for (LO i = begin; i < end; ++i)
+    for (std::size_t k = 0; k < values.extent(1); ++k) part(i - begin, k) = all(i, k);
+  return part;
+}
+
 } // namespace
 
 void write_contact(const std::string &path, const Scene &scene, const analysis::Solution &s)
@@ -46,6 +56,13 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
     table.pressure = part_of(s.contact.pressure, begin, end);
     table.dent = part_of(s.contact.dent, begin, end);
     table.state = part_of(s.contact.state, begin, end);
+    table.friction = contact.friction.anywhere;
+    if (end > begin && table.friction) {
+      table.traction = rows_of(s.contact.traction, begin, end);
+      table.slip = rows_of(s.contact.slip, begin, end);
+      table.used = part_of(s.contact.used, begin, end);
+      table.slip_state = part_of(s.contact.slip_state, begin, end);
+    }
     table.facets = mesh::owned_facets(
         mesh, mesh.side(scene.model.contact[k].side, scene.model.contact[k].path + "->Side"), node_ids);
     tables.push_back(table);

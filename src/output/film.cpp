@@ -71,9 +71,17 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const analysis::Sol
   fields.push_back({"penetration", scatter(shown, to_host(s.contact.penetration), 0)});
   fields.push_back({"contact_status", scatter(shown, to_host(s.contact.state), -1)});
   const auto normal = to_host(contact.normal);
-  const char *const component[] = {"contact_normal_x", "contact_normal_y", "contact_normal_z"};
-  for (int c = 0; c < dim; ++c)
-    fields.push_back({component[c], scatter(shown, Kokkos::subview(normal, Kokkos::ALL, c), 0)});
+  const auto add_vector = [&](const std::string &name, const auto &vectors) {
+    const std::string axes = "xyz";
+    for (int c = 0; c < dim; ++c)
+      fields.push_back({name + axes[c], scatter(shown, Kokkos::subview(vectors, Kokkos::ALL, c), 0)});
+  };
+  add_vector("contact_normal_", normal);
+  if (!contact.friction.anywhere) return fields;
+  add_vector("friction_", to_host(s.contact.traction));
+  add_vector("slip_", to_host(s.contact.slip));
+  fields.push_back({"friction_used", scatter(shown, to_host(s.contact.used), 0)});
+  fields.push_back({"friction_status", scatter(shown, to_host(s.contact.slip_state), 0)});
   return fields;
 }
 

@@ -13,7 +13,9 @@ from rpc_run import SMALL, SOURCE, RpcTestCase  # noqa: E402
 NAMED = {"contact_sides", "reaction_force"}  # their keys are names of the deck
 MODELS = {"beam": ["--input=beam.xml", SMALL, "--set=Steps->Times={0.5, 1}", "--set=Adapt->Estimate Error=true"],
           "beam_adaptive": ["--input=beam_adaptive.xml", "--set=Adapt->Target Relative Error=0.02"],
-          "block": ["--input=block.xml", "--set=Mesh->Cells={4, 4, 2}"]}
+          "shear": ["--input=shear.xml", "--set=Mesh->Cells={12, 6}", "--set=Steps->Times={1, 1.5}"],
+          "block": ["--input=block.xml", "--set=Mesh->Cells={4, 4, 2}", "--set=Contact->Friction Coefficient=0.2"]}
+STEPPED = {"beam", "shear"}  # their runs write a history
 
 
 def section(title):
@@ -56,15 +58,19 @@ class Results(RpcTestCase):
         self.assertGreater(len(listed), 40)
         self.assertEqual(listed - written, set())
 
+    def header(self, file):
+        return next(csv.reader((self.folder / "out" / file).read_text().splitlines()))
+
     def test_every_column_is_documented(self):
-        self.rpc(*MODELS["beam"], "--output=out")
-        documented = code_words(section("<deck>.history.csv"))
-        header = next(csv.reader((self.folder / "out" / "beam.history.csv").read_text().splitlines()))
-        own = [name for name in header if not re.search(r"_(displacement|reaction)_[xyz]$", name)]
-        self.assertLess(len(own), len(header))
-        self.assertEqual(set(own) - documented, set())
-        header = next(csv.reader((self.folder / "out" / "beam.contact.csv").read_text().splitlines()))
-        self.assertEqual(set(header) - code_words(section("<deck>.contact.csv")), set())
+        history = code_words(section("<deck>.history.csv"))
+        contact = code_words(section("<deck>.contact.csv"))
+        for name, _ in self.run_models():
+            self.assertEqual(set(self.header(f"{name}.contact.csv")) - contact, set())
+            if name in STEPPED:
+                header = self.header(f"{name}.history.csv")
+                own = [column for column in header if not re.search(r"_(displacement|reaction)_[xyz]$", column)]
+                self.assertLess(len(own), len(header))
+                self.assertEqual(set(own) - history, set())
 
 
 if __name__ == "__main__":

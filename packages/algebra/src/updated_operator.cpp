@@ -72,6 +72,15 @@ LO count_differences(const DeviceView<double ***> &a, const DeviceView<double **
   return count;
 }
 
+/// The same of blocks that may be empty, which stands for 0.
+LO count_changes(const DeviceView<double ***> &a, const DeviceView<double ***> &b)
+{
+  if (a.extent(0) == 0 && b.extent(0) == 0) return 0;
+  const auto &some = a.extent(0) > 0 ? a : b;
+  const DeviceView<double ***> zero("rpc::algebra::no_coupling", some.extent(0), some.extent(1), some.extent(2));
+  return count_differences(a.extent(0) > 0 ? a : zero, b.extent(0) > 0 ? b : zero);
+}
+
 /// This rank's number of blocks that are not symmetric.
 LO count_unsymmetric(const DeviceView<double ***> &block)
 {
@@ -144,6 +153,7 @@ void UpdatedOperator::apply(const MultiVector &x, MultiVector &y, const Teuchos:
 {
   K_->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
   add_update(nodes_, update_, alpha, x, y);
+  if (coupling_.extent(0) > 0) add_update(nodes_, coupling_, alpha, x, y);
 }
 
 void UpdatedOperator::apply_rounded(const MultiVector &x, MultiVector &y) const
@@ -168,16 +178,24 @@ void UpdatedOperator::allow_rounding(const bool allowed)
     rounded_ = K_->rounded_rows();
 }
 
-GO UpdatedOperator::set(const NodePoints &points, const DeviceView<double ***> &block)
+GO UpdatedOperator::set(const NodePoints &points, const DeviceView<double ***> &block,
+                        const DeviceView<double ***> &coupling)
 {
   const auto next = summed_at_nodes(points, block, nodes_);
-  const GO mine[3] = {count_differences(next, update_), count_unsymmetric(next), count_elsewhere(points, nodes_)};
+  GO mine[3] = {count_differences(next, update_), count_unsymmetric(next), count_elsewhere(points, nodes_)};
+  DeviceView<double ***> next_coupling;
+  if (coupling.extent(0) > 0) {
+    next_coupling = summed_at_nodes(points, coupling, nodes_);
+    mine[1] += count_unsymmetric(next_coupling);
+  }
+  mine[0] += count_changes(next_coupling, coupling_);
   GO all[3];
   Teuchos::reduceAll(*getDomainMap()->getComm(), Teuchos::REDUCE_SUM, 3, mine, all);
   RPC_REQUIRE_CODE(all[2] == 0, ExitCode::internal_error,
                    "operator: " << all[2] << " points lie at nodes without an update");
   if (all[0] == 0) return 0;
   update_ = next;
+  coupling_ = next_coupling;
   symmetric_ = all[1] == 0;
   ++revision_;
   return all[0];

@@ -12,8 +12,9 @@ using solver::NewtonGroup;
 namespace
 {
 
-constexpr int most_changes = 10;         // of the active set; then Newton with its sweep needs fewer steps
-constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
+constexpr int most_changes = 10;               // of the active set; then Newton with its sweep needs fewer steps
+constexpr int most_changes_with_friction = 30; // Newton knows no coupling, and so does not do better
+constexpr int most_changes_resumed = 30;       // where it creeps: on slender bodies the choices get there in the end
 // While the active set changes, solves bring the residual below this part of what it was, and of the load: three to five CG
 // iterations. With 1e-1 pressures are too rough to choose by, 1e-4 saves no step. What the multipliers of the last rough
 // solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
@@ -45,6 +46,9 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
       most_changes_(most_changes), trial_gap_(first_trial)
 {
+  if (!iterate.points().friction.anywhere) return;
+  path_ = Path::behind; // it knows no friction
+  most_changes_ = most_changes_with_friction;
 }
 
 bool ActiveSetStage::resume(const NewtonGroup &from)
@@ -93,12 +97,24 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     if (confirmed_) return Verdict::converged;
     if (stalled) return Verdict::over;
     rough_ = false;
-  } else if (!seen_.insert(choice_->fingerprint).second || ++changes_ > most_changes_ || !makes_headway()) {
+  } else if (!is_new_choice() || ++changes_ > most_changes_ || !makes_headway()) {
     return give_up(u); // in circles, or too slow
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
   }
   return Verdict::go_on;
+}
+
+/// Whether the choice has not been taken before. With friction a part of the changes may be new where all of them are not.
+bool ActiveSetStage::is_new_choice()
+{
+  if (seen_.insert(choice_->fingerprint).second) return true;
+  if (!iterate_.points().friction.anywhere) return false;
+  for (const double part : {0.5, 1.}) {
+    choice_ = iterate_.largest_changes(*choice_, part);
+    if (choice_->changes > 0 && seen_.insert(choice_->fingerprint).second) return true;
+  }
+  return false;
 }
 
 /// Whether the choices come to an end.

@@ -202,7 +202,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   };
   RCP<const MultiVector> met = kept_.memory ? kept_.memory->dent : Teuchos::null;
   if (on_foundation) met = met_at(moved_along(*problem_, t, *kept_.memory->displacement));
-  Step step = problem_->step(t, met.get());
+  Step step = problem_->step(t, met.get(), memory());
   if (now) now(*problem_, step);
   Starts starts = starts_of(step);
   ++last_.parts;
@@ -216,7 +216,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     const auto next = met_at(*s.u);
     if (settled(*met, *next, kept_.memory->foundations)) break;
     met = next;
-    step = problem_->step(t, met.get());
+    step = problem_->step(t, met.get(), memory());
     starts = {{s.state}, {}};
   }
   remember(t, sides, step, s);

@@ -68,7 +68,7 @@ contact::ContactState extrapolated(const contact::ContactNodes &points, const Me
 
 double Energies::largest() const
 {
-  return std::max({std::abs(strain), std::abs(foundation), std::abs(dissipated), std::abs(work)});
+  return std::max({std::abs(strain), std::abs(foundation), std::abs(dissipated), std::abs(work), std::abs(friction)});
 }
 
 } // namespace rpc::analysis

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace rpc::analysis
@@ -54,6 +55,16 @@ DeviceView<LO *> nodes_of(const fem::Discretization &d, const std::vector<const 
 
 } // namespace
 
+std::vector<Point> foundations_moved(const Model &model, const double from, const double to)
+{
+  const auto before = model.seen_at(from).contact, now = model.seen_at(to).contact;
+  std::vector<Point> motion(now.size(), Point{});
+  for (std::size_t k = 0; k < now.size(); ++k)
+    for (int c = 0; c < 3 && now[k].obstacle.exists(); ++c)
+      motion[k][c] = now[k].obstacle.point[c] - before[k].obstacle.point[c];
+  return motion;
+}
+
 Model Model::seen_at(const double t) const
 {
   Model model = *this;
@@ -66,6 +77,9 @@ Model Model::seen_at(const double t) const
     side.yield_stress = side.yield_stress.seen_at(t);
     side.hardening = side.hardening.seen_at(t);
     side.stiffness = side.stiffness.seen_at(t);
+    side.friction_coefficient = side.friction_coefficient.seen_at(t);
+    side.friction_bound = side.friction_bound.seen_at(t);
+    side.friction_limit = side.friction_limit.seen_at(t);
     side.gap = side.gap.seen_at(t);
     side.obstacle = side.obstacle.seen_at(t);
   }
@@ -110,12 +124,19 @@ solver::MakeMeshLevels Problem::mesh_levels() const
   };
 }
 
-Step Problem::step(const double t, const MultiVector *const dents) const
+Step Problem::step(const double t, const MultiVector *const dents, const Memory *const before) const
 {
   const fem::Discretization &d = discretization();
   const Model now = model_.seen_at(t);
   auto dirichlet = prescribed_of(d, now);
-  Step step{t, {}, contact::contact_nodes(d, now.contact, dirichlet, now.materials, dents), {}};
+  std::optional<contact::SlipStart> slip_start;
+  if (before && has_friction(now.contact))
+    slip_start.emplace(contact::SlipStart{*before->displacement, foundations_moved(model_, before->time, t)});
+  Step step{
+      t,
+      {},
+      contact::contact_nodes(d, now.contact, dirichlet, now.materials, dents, slip_start ? &*slip_start : nullptr),
+      {}};
   step.elastic = fem::elastic_problem(d, couplings_, loads_of(d, now), std::move(dirichlet));
   require_finite(*step.elastic.load, "the forces of prescribed displacements",
                  [&d] { return fem::node_coordinates(d); });

@@ -19,7 +19,7 @@ namespace
 
 std::string predict(Iterate &iterate, Vector &u, const Starts &starts, std::vector<LevelWork> &work);
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      int iteration, const Progress &progress);
+                      int iteration, bool previous_confirmed, const Progress &progress);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state);
 void read_results(const Problem &problem, StepSolution &s);
@@ -44,23 +44,26 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
   {
     const Timed timer("solve", s.solve_seconds);
     UzawaResult &uzawa = s.uzawa;
-    bool over = false;
+    bool over = false, confirmed = false;
+    double older = 0;           // largest residual, of two iterations ago where it is read
     while (!over) {             // paper (16), paper (17): the gradient method for the dual problem
       if (uzawa.iterations > 0) // the correction is small against u (5.13)
         iterate.move_origin(*u, *uzawa.residuals.internal.forces, *step.elastic.applied_load);
       const Minimization found = // paper (10), (4.1): choose states (5.8) and solve (5.7), (5.9),
-          minimize(iterate, u, state, options, uzawa.iterations + 1, progress); // then Newton (4.2)
+          minimize(iterate, u, state, options, uzawa.iterations + 1, confirmed, progress); // then Newton (4.2)
+      confirmed = found.active_set_confirmed;
       uzawa.multiplier_change = found.active_set_confirmed ? iterate.take_active_set_pressures(*u)
                                                            : iterate.update_multipliers(*u); // paper (11), (5.1)
       s.state = iterate.state(*u);
-      const double previous = uzawa.residuals.worst();
+      const double previous = found.bounds_follow ? older : uzawa.residuals.worst();
+      older = uzawa.residuals.worst();
       uzawa.residuals = judge(problem, step, iterate, s.state, state); // paper (8); (5.2) - (5.5)
       uzawa.newton_iterations.push_back(found.steps);
       s.line_search_steps += found.line_search_steps;
       ++uzawa.iterations;
       if (progress.uzawa) progress.uzawa(uzawa);
       over = is_over(uzawa, found, previous, options.uzawa, problem.discretization().mesh->comm(),
-                     [&] { return iterate.raise_penalty(); }); // (5.12)
+                     [&] { return iterate.raise_penalty(*u); }); // (5.12)
     }
     s.u = s.state.displacement;
     read_results(problem, s);
@@ -136,7 +139,7 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
 }
 
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      const int iteration, const Progress &progress)
+                      const int iteration, const bool previous_confirmed, const Progress &progress)
 {
   const auto run = [&](solver::FirstStage &stage) {
     return solver::minimize(iterate, state.linear(), u, iterate.force_scale(), options.newton, &stage,
@@ -144,7 +147,9 @@ Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state
                               if (progress.newton) progress.newton(iteration, newton, iterate.count_states(at));
                             });
   };
-  if (iteration > 1) {
+  // Newton's steps have no bound of friction follow the pressure: the active set does once more, from where they lead.
+  const bool anew = iterate.points().friction.anywhere && !previous_confirmed;
+  if (iteration > 1 && !anew) {
     SameActiveSet stage(iterate);
     const auto result = run(stage);
     const int steps = result.steps == 0 && result.converged ? refine(iterate, *u, state) : result.steps;
@@ -152,7 +157,12 @@ Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state
   }
   ActiveSetStage stage(iterate, active_set_tolerances(options));
   const auto result = run(stage);
-  return {result.converged, result.steps, result.reason, stage.confirmed(), result.steps - stage.steps()};
+  return {result.converged,
+          result.steps,
+          result.reason,
+          stage.confirmed(),
+          result.steps - stage.steps(),
+          iterate.points().friction.anywhere && !stage.confirmed()};
 }
 
 // Judge ----------------------------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ Vector other_forces_before(const Problem &problem, const contact::ContactNodes &
   Vector force(*fem::internal_work(d, problem.model().materials, *memory.displacement).forces, Teuchos::Copy);
   contact::ContactResult before;
   before.pressure = contact::at_points(points, *memory.pressure);
+  if (!memory.tangential.is_null()) before.traction = contact::vectors_at_points(points, *memory.tangential);
   force.update(-1., contact::contact_forces(d, points, before), 1.);
   return force;
 }
@@ -104,6 +105,41 @@ double work_of_turning(const Comm &comm, const contact::ContactNodes &contact, c
   return sum_all(comm, sum);
 }
 
+/// What friction dissipates in a step, sum of w (q + q before)/2 . e, and the work of the foundation's motion along itself, sum of
+/// -w (q + q before)/2 . motion [J].                                                                             (12.9)
+struct FrictionEnergy {
+  double dissipated, work_of_motion;
+};
+FrictionEnergy friction_energy(const Comm &comm, const contact::ContactNodes &contact,
+                               const contact::ContactResult &result, const Vector &now, const Memory *const before)
+{
+  if (!contact.friction.anywhere) return {0, 0};
+  const contact::ContactNodes c = contact;
+  const auto q = result.traction;
+  DeviceView<double **> q_before("rpc::analysis::no_traction", c.size(), c.dim);
+  if (before && !before->tangential.is_null()) q_before = contact::vectors_at_points(c, *before->tangential);
+  double dissipated = 0, motion = 0;
+  if (c.size() > 0) {
+    const auto e = result.slip;
+    const bool has_before = before != nullptr;
+    const auto x = device_read(before ? *before->displacement : now);
+    Kokkos::parallel_reduce(
+        "rpc::analysis::friction_energy", device_range(c.size()),
+        KOKKOS_LAMBDA(const LO i, double &lost, double &done) {
+          double normal = 0;
+          for (int k = 0; has_before && k < c.dim; ++k) normal += c.normal(i, k) * x(c.dof(i, k));
+          for (int k = 0; k < c.dim; ++k) {
+            const double mean = 0.5 * c.weight(i) * (q(i, k) + q_before(i, k));
+            const double was = has_before ? x(c.dof(i, k)) - normal * c.normal(i, k) : 0;
+            lost += mean * e(i, k);
+            done -= mean * (c.friction.from(i, k) - was);
+          }
+        },
+        dissipated, motion);
+  }
+  return {sum_all(comm, dissipated), sum_all(comm, motion)};
+}
+
 /// Before the first step the body is at rest, and a foundation that overlaps it has moved in. Larger gaps did no work.
 DeviceView<double *> gaps_at_rest(const contact::ContactNodes &contact)
 {
@@ -170,7 +206,10 @@ Energies energies_after(const Problem &problem, const double t, const StepSoluti
   }
   energies.work += mean.dot(moved) + work_of_motion(comm, points, s.contact, moving_gap(problem, points, points.dent),
                                                     pressure, before_gap);
-  energies.imbalance = energies.work - energies.strain - energies.foundation - energies.dissipated;
+  const FrictionEnergy friction = friction_energy(comm, points, s.contact, *s.u, before);
+  energies.friction += friction.dissipated;
+  energies.work += friction.work_of_motion;
+  energies.imbalance = energies.work - energies.strain - energies.foundation - energies.dissipated - energies.friction;
   return energies;
 }
 

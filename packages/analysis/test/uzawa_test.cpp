@@ -45,7 +45,7 @@ struct Stubbed {
       result.newton_iterations.push_back(inner.steps);
       ++result.iterations;
       over = analysis::is_over(result, inner, previous, options, scene.d.mesh->comm(),
-                               [&] { return iterate.raise_penalty(); });
+                               [&] { return iterate.raise_penalty(*u); });
     }
     return result;
   }

@@ -40,6 +40,30 @@ void choose_first(const SmoothedPoints &s, const Vector &u, const bool all_close
   Kokkos::fence();
 }
 
+/// Whether points stick, from multipliers and slips, once their states of contact are chosen.                     (12.8)
+void choose_first_slip(const SmoothedPoints &s, const Vector &u, const ActiveSetChoice &choice)
+{
+  const auto x = device_read(u);
+  const auto state = choice.state;
+  const auto slips = choice.slip;
+  const auto direction = choice.direction, traction = choice.traction;
+  Kokkos::parallel_for(
+      "rpc::contact::first_slip", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
+        const ContactNodes &c = s.points;
+        const double rho = first_weight * c.scaling(i);
+        const Friction f = c.friction(i);
+        const Motion at = motion(c, i, x);
+        const Along a = row(s.multiplier.tangential, i).plus(rho, at.slip);
+        const double p = state(i) == State::open ? 0 : pressure(at.penetration, s.multiplier.normal(i), rho, c.law(i));
+        const bool held = acts(f) && (state(i) != State::open || f.bound > 0);
+        const SlipBranch branch = held ? branch_of(a, friction_bound(p, f)) : SlipBranch{Slip::slip, {}};
+        slips(i) = branch.state;
+        set_row(direction, i, branch.direction);
+        set_row(traction, i, a);
+      });
+  Kokkos::fence();
+}
+
 void choose_next(const ContactNodes &c, const Vector &u, const DeviceView<State *> &active,
                  const DeviceView<double *> &p, const DeviceView<double *> &own, const double bound,
                  const DeviceView<State *> &next)
@@ -48,6 +72,46 @@ void choose_next(const ContactNodes &c, const Vector &u, const DeviceView<State 
   Kokkos::parallel_for(
       "rpc::contact::next_states", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         next(i) = c.fixed(i) ? active(i) : next_state(active(i), penetration(c, i, x), p(i), own(i), bound, c.law(i));
+      });
+  Kokkos::fence();
+}
+
+/// What tells two friction states apart: 0 sticks, 1 and 2 slips, in the plane by its direction.
+KOKKOS_INLINE_FUNCTION int kind_of_slip(const Slip slip, const Along &h, const int dim)
+{
+  if (slip == Slip::stick) return 0;
+  return dim == 2 && (h(0) != 0 ? h(0) : h(1)) < 0 ? 2 : 1;
+}
+
+/// (12.8)
+void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet &active,
+                      const DeviceView<double *> &own, const double bound, const ActiveSetChoice &choice)
+{
+  const ActiveSet now = active;
+  const auto x = device_read(u);
+  const auto next = choice.state;
+  const auto p = choice.pressure;
+  const auto slips = choice.slip;
+  const auto direction = choice.direction, traction = choice.traction;
+  const auto violated = choice.violation;
+  Kokkos::parallel_for(
+      "rpc::contact::next_slip", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
+        const ContactNodes &c = s.points;
+        const Motion at = motion(c, i, x);
+        const Friction f = c.friction(i);
+        const SlipBranch branch = next_slip(now.branch(i), now.state(i), next(i), at.slip, row(traction, i),
+                                            at.penetration, admissible(p(i), c.law(i)), own(i), bound, f, c.dim);
+        slips(i) = branch.state;
+        set_row(direction, i, branch.direction);
+        if (c.fixed(i)) return;
+        const double by_friction =
+            kind_of_slip(branch.state, branch.direction, c.dim) !=
+                    kind_of_slip(now.slip(i), row(now.direction, i), c.dim)
+                ? violation(now.branch(i), at.slip, row(traction, i), admissible(p(i), c.law(i)), own(i), f)
+                : 0;
+        const double by_contact =
+            next(i) != now.state(i) ? violation(now.state(i), at.penetration, p(i), own(i), c.law(i)) : 0;
+        violated(i) = math::larger(by_contact, by_friction);
       });
   Kokkos::fence();
 }
@@ -81,6 +145,42 @@ LO count_differences(const DeviceView<State *> &a, const DeviceView<State *> &b)
   return count;
 }
 
+/// The same of states of contact and of friction.
+LO count_differences(const ActiveSetChoice &a, const ActiveSet &b)
+{
+  const auto state = a.state, other = b.state;
+  const auto slip = a.slip, other_slip = b.slip;
+  const auto direction = a.direction, other_direction = b.direction;
+  const int dim = static_cast<int>(direction.extent(1));
+  LO count = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::count_differences", device_range(static_cast<LO>(state.extent(0))),
+      KOKKOS_LAMBDA(const LO i, LO &part) {
+        part += state(i) != other(i) || kind_of_slip(slip(i), row(direction, i), dim) !=
+                                            kind_of_slip(other_slip(i), row(other_direction, i), dim);
+      },
+      count);
+  return count;
+}
+
+/// Sum over all ranks of a number for each point that slips and how.
+std::uint64_t fingerprint_of_slip(const Comm &comm, const ActiveSetChoice &choice)
+{
+  const std::uint64_t rank = comm.getRank();
+  const auto slip = choice.slip;
+  const auto direction = choice.direction;
+  const int dim = static_cast<int>(direction.extent(1));
+  std::uint64_t sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::fingerprint_of_slip", device_range(static_cast<LO>(slip.extent(0))),
+      KOKKOS_LAMBDA(const LO i, std::uint64_t &part) {
+        const int kind = kind_of_slip(slip(i), row(direction, i), dim);
+        if (kind > 0) part += scrambled((rank << 44) + 16 * static_cast<std::uint64_t>(i) + 8 + kind);
+      },
+      sum);
+  return sum_of_bits(comm, sum);
+}
+
 /// Sum over all ranks of a number for each point and its state.
 std::uint64_t fingerprint_of(const Comm &comm, const DeviceView<State *> &state)
 {
@@ -98,12 +198,53 @@ std::uint64_t fingerprint_of(const Comm &comm, const DeviceView<State *> &state)
 }
 
 /// The choice with its number of changes and its fingerprint; collective.
-ActiveSetChoice counted(const Comm &comm, ActiveSetChoice choice, const ActiveSet &present)
+ActiveSetChoice counted(const Comm &comm, ActiveSetChoice choice, const ActiveSet &present, const bool with_friction)
 {
-  choice.changes = sum_all(comm, GO(count_differences(choice.state, present.state)));
+  const bool friction = choice.slip.extent(0) > 0;
+  const LO differences = friction ? count_differences(choice, present) : count_differences(choice.state, present.state);
+  choice.changes = sum_all(comm, GO(differences));
   choice.confirmed = choice.changes == 0 && present.chosen;
   choice.fingerprint = fingerprint_of(comm, choice.state);
+  if (with_friction) choice.fingerprint += fingerprint_of_slip(comm, choice);
   return choice;
+}
+
+/// States of points that violate the law less than `bound` become those that they have.
+void keep_states(const ActiveSet &present, const ActiveSetChoice &choice, const double bound)
+{
+  const ActiveSet now = present;
+  const auto state = choice.state;
+  const auto slip = choice.slip;
+  const auto direction = choice.direction;
+  const auto violated = choice.violation;
+  Kokkos::parallel_for(
+      "rpc::contact::keep_states", device_range(static_cast<LO>(state.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        if (!(violated(i) < bound)) return;
+        state(i) = now.state(i);
+        if (slip(i) == now.slip(i)) return; // directions in space follow the slip
+        slip(i) = now.slip(i);
+        set_row(direction, i, row(now.direction, i));
+      });
+  Kokkos::fence();
+}
+
+double largest_violation(const DeviceView<double *> &violation)
+{
+  double most = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::largest_violation", device_range(static_cast<LO>(violation.extent(0))),
+      KOKKOS_LAMBDA(const LO i, double &largest) { largest = math::larger(largest, violation(i)); },
+      Kokkos::Max<double>(most));
+  return std::max(0., most);
+}
+
+void make_room_for_slip(const ContactNodes &c, ActiveSetChoice &choice)
+{
+  choice.slip = DeviceView<Slip *>("rpc::contact::next_slip", c.size());
+  choice.direction = DeviceView<double **>("rpc::contact::next_slip_direction", c.size(), c.dim);
+  choice.violation = DeviceView<double *>("rpc::contact::violation", c.size());
+  if (choice.traction.extent(0) == 0)
+    choice.traction = DeviceView<double **>("rpc::contact::chosen_by_traction", c.size(), c.dim);
 }
 
 } // namespace
@@ -114,7 +255,11 @@ ActiveSetChoice first_choice(const SmoothedFunctional &functional, const ActiveS
   const SmoothedPoints &s = functional.points();
   ActiveSetChoice choice{DeviceView<State *>("rpc::contact::next_state", s.size()), s.multiplier.normal};
   choose_first(s, u, all_close, choice.state);
-  return counted(*u.getMap()->getComm(), std::move(choice), present);
+  if (s.has_friction()) {
+    make_room_for_slip(s.points, choice);
+    choose_first_slip(s, u, choice);
+  }
+  return counted(*u.getMap()->getComm(), std::move(choice), present, s.points.friction.anywhere);
 }
 
 ActiveSetChoice next_choice(const SmoothedFunctional &functional, const ActiveSet &present, const Vector &u,
@@ -123,15 +268,64 @@ ActiveSetChoice next_choice(const SmoothedFunctional &functional, const ActiveSe
   const Comm &comm = *u.getMap()->getComm();
   const ContactNodes &c = functional.points().points;
   ActiveSetChoice choice{DeviceView<State *>("rpc::contact::next_state", c.size()),
-                         functional.active_set_pressures(present.state, u)};
+                         functional.active_set_pressures(present, u)};
   const double bound = negligible * max_all(comm, largest_pressure(c, choice.pressure));
   choose_next(c, u, present.state, choice.pressure, own, bound, choice.state);
   choice.overshoot = overshoot(comm, c, present.state, choice.pressure);
-  return counted(comm, std::move(choice), present);
+  if (functional.points().has_friction()) {
+    choice.traction = active_set_tractions(functional.points(), present, u);
+    make_room_for_slip(c, choice);
+    choose_next_slip(functional.points(), u, present, own, bound, choice);
+  }
+  return counted(comm, std::move(choice), present, c.friction.anywhere);
 }
+
+ActiveSetChoice largest_changes(const SmoothedFunctional &functional, const ActiveSet &present,
+                                const ActiveSetChoice &choice, const double part)
+{
+  const ContactNodes &c = functional.points().points;
+  const Comm &comm = functional.comm();
+  keep_states(present, choice, part * max_all(comm, largest_violation(choice.violation)));
+  return counted(comm, choice, present, c.friction.anywhere);
+}
+
+namespace
+{
+
+/// Takes the choice's friction states; points that come to stick are moved back to where their slip is 0.
+void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, const ActiveSet &active, Vector &u)
+{
+  const SmoothedPoints s = points;
+  const ActiveSet to = active;
+  const auto state = choice.state;
+  const auto p = choice.pressure;
+  const auto slips = choice.slip;
+  const auto direction = choice.direction, traction = choice.traction;
+  const auto x = device_write(u);
+  for_each_point_by_group(
+      "rpc::contact::take_slip", s.points, KOKKOS_LAMBDA(const LO i) {
+        const ContactNodes &c = s.points;
+        const Friction f = c.friction(i);
+        const SlipBranch branch{slips(i), row(direction, i)};
+        const bool sticks = branch.state == Slip::stick && to.slip(i) != Slip::stick;
+        const double pressure = state(i) == State::open ? 0 : multiplier_of(state(i), p(i), c.law(i));
+        to.slip(i) = branch.state;
+        set_row(to.direction, i, branch.direction);
+        set_row(s.multiplier.tangential, i, multiplier_of(branch, row(traction, i), pressure, f));
+        s.bound(i) = friction_bound(pressure, f);
+        if (!sticks) return;
+        const Along e = slip(c, i, x);
+        for (int k = 0; k < c.dim; ++k)
+          if (c.friction.free(i, k)) x(c.dof(i, k)) -= e(k);
+      });
+  Kokkos::fence();
+}
+
+} // namespace
 
 void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, ActiveSet &active, Vector &u)
 {
+  if (choice.slip.extent(0) > 0) take_slip(choice, functional.points(), active, u);
   const SmoothedPoints &s = functional.points();
   const auto state = active.state, next = choice.state;
   const auto p = choice.pressure;
@@ -158,6 +352,7 @@ double pressure_error(const SmoothedFunctional &functional, const ActiveSet &act
 {
   const SmoothedPoints &s = functional.points();
   const auto state = active.state;
+  const auto slips = active.slip;
   const auto x = device_read(u);
   double error = 0, largest = 0;
   Kokkos::parallel_reduce(
@@ -169,33 +364,13 @@ double pressure_error(const SmoothedFunctional &functional, const ActiveSet &act
         scale = math::larger(scale, lambda);
         const double stretch = penalty_stretch(state(i), penetration(c, i, x), lambda, s.penalty(i), c.law(i));
         worst = math::larger(worst, own(i) * math::magnitude(stretch));
+        if (s.has_friction() && slips(i) == Slip::stick) worst = math::larger(worst, own(i) * slip(c, i, x).length());
       },
       Kokkos::Max<double>(error), Kokkos::Max<double>(largest));
   const double mine[2] = {error, largest};
   double all[2];
   Teuchos::reduceAll(*u.getMap()->getComm(), Teuchos::REDUCE_MAX, 2, mine, all);
   return all[0] > 0 && all[1] > 0 ? all[0] / all[1] : 0;
-}
-
-DeviceView<double ***> added_blocks(const SmoothedPoints &points, const DeviceView<State *> &active,
-                                    const double spring)
-{
-  const SmoothedPoints s = points;
-  const int dim = s.points.dim;
-  const DeviceView<double ***> block("rpc::contact::added_blocks", s.size(), dim, dim);
-  Kokkos::parallel_for(
-      "rpc::contact::added_blocks", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
-        const ContactNodes &c = s.points;
-        if (c.fixed(i)) return;
-        Response response =
-            s.respond_on_branch(i, active(i), Motion{0}); // blocks do not depend on the place within a branch
-        if (active(i) != State::closed)
-          add_stiffness(c.weight(i), spring * c.scaling(i), DirectionAt{c, i}, dim, response);
-        for (int k = 0; k < dim; ++k)
-          for (int l = 0; l < dim; ++l) block(i, k, l) = response.block[k][l];
-      });
-  Kokkos::fence();
-  return block;
 }
 
 } // namespace rpc::contact

@@ -69,7 +69,7 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
 
 /// Values at this rank's nodes of one side, on the host.
 struct SideValues {
-  HostView<double *> yield, hardening, stiffness, gap;
+  HostView<double *> yield, hardening, stiffness, friction_coefficient, friction_bound, friction_limit, gap;
   HostView<double **> normal;
   std::vector<bool> misses; // whether the normal misses the obstacle
 };
@@ -139,7 +139,9 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
   const LO n = static_cast<LO>(points.extent(0));
   SideValues values;
   values.misses.assign(n, false);
-  HostView<double *> *const of_law[] = {&values.yield, &values.hardening, &values.stiffness};
+  HostView<double *> *const of_law[] = {&values.yield,          &values.hardening,
+                                        &values.stiffness,      &values.friction_coefficient,
+                                        &values.friction_bound, &values.friction_limit};
   for (std::size_t k = 0; k < std::size(law_parameters); ++k)
     *of_law[k] =
         evaluate(options.*law_parameters[k].field, points, options.path + "->" + law_parameters[k].name, comm, true);
@@ -239,7 +241,49 @@ void count_points(ContactNodes &c, const Comm &comm)
 struct PointValues {
   std::vector<LO> node;
   std::vector<double> weight, normal, gap, dent, yield, hardening, compliance, penalty;
+  std::vector<double> friction_coefficient, friction_bound, friction_limit;
 };
+
+/// What slip counts from, and where there is none.
+void start_friction(ContactNodes &c, const fem::DirichletDofs &dirichlet, const SlipStart *const before)
+{
+  const Vector at_rest(dirichlet.value->getMap());
+  const auto u = device_read(before ? before->displacement : at_rest);
+  const auto fixed = dirichlet.fixed;
+  c.friction.from = DeviceView<double **>("rpc::contact::slip_from", c.size(), c.dim);
+  c.friction.free = DeviceView<char **>("rpc::contact::free_along", c.size(), c.dim);
+  const ContactNodes points = c;
+  Kokkos::parallel_for(
+      "rpc::contact::start_friction", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        double room = 0; // for slip
+        for (int k = 0; k < points.dim; ++k) {
+          const bool free = !fixed(points.dof(i, k));
+          points.friction.free(i, k) = free;
+          if (free) room += 1 - points.normal(i, k) * points.normal(i, k);
+        }
+        const Along along = slip(points, i, u);
+        for (int k = 0; k < points.dim; ++k) points.friction.from(i, k) = along(k);
+        if (room > 1e-12 && !points.fixed(i)) return;
+        points.friction.coefficient(i) = 0;
+        points.friction.bound(i) = 0;
+      });
+  Kokkos::fence();
+}
+
+/// A foundation's motion along itself counts as the body's slip the other way.
+void add_motion(const ContactNodes &points, const int side, const Point &motion)
+{
+  const ContactNodes c = points;
+  const Along moved{{motion[0], motion[1], motion[2]}};
+  Kokkos::parallel_for(
+      "rpc::contact::add_motion", Kokkos::RangePolicy<ExecutionSpace, LO>(c.first(side), c.first(side + 1)),
+      KOKKOS_LAMBDA(const LO i) {
+        double normal = 0;
+        for (int k = 0; k < c.dim; ++k) normal += c.normal(i, k) * moved(k);
+        for (int k = 0; k < c.dim; ++k) c.friction.from(i, k) += moved(k) - normal * c.normal(i, k);
+      });
+  Kokkos::fence();
+}
 
 /// (points) 1 where nothing can press a point in.
 DeviceView<char *> rigid_points(const ContactNodes &points)
@@ -284,7 +328,7 @@ std::vector<const mesh::Side *> contact_sides(const mesh::Mesh &mesh, const std:
 
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
                            const fem::DirichletDofs &dirichlet, const fem::Materials &materials,
-                           const MultiVector *const dents)
+                           const MultiVector *const dents, const SlipStart *const slip_start)
 {
   const mesh::Mesh &mesh = *d.mesh;
   const Comm &comm = mesh.comm();
@@ -293,6 +337,7 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   c.first = HostView<LO *>("rpc::contact::first", options.size() + 1);
   PointValues points;
   const std::vector<const mesh::Side *> sides = contact_sides(mesh, options);
+  const bool with_friction = has_friction(options);
   decltype(dents->getLocalViewHost(Tpetra::Access::ReadOnly)) host_dents;
   if (dents) host_dents = dents->getLocalViewHost(Tpetra::Access::ReadOnly);
   for (std::size_t k = 0; k < options.size(); ++k) {
@@ -316,6 +361,11 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
       points.hardening.push_back(values.hardening(i));
       points.compliance.push_back(1 / values.stiffness(i));
       points.penalty.push_back(options[k].penalty);
+      if (with_friction) {
+        points.friction_coefficient.push_back(values.friction_coefficient(i));
+        points.friction_bound.push_back(values.friction_bound(i));
+        points.friction_limit.push_back(values.friction_limit(i));
+      }
       for (int component = 0; component < c.dim; ++component) points.normal.push_back(values.normal(i, component));
     }
     c.first(k + 1) = static_cast<LO>(points.node.size());
@@ -335,6 +385,18 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   c.fixed = DeviceView<char *>("rpc::contact::fixed", points.node.size());
   c.num_missing = sum_all(comm, c.num_missing);
   take_over_dirichlet(c, dirichlet, comm);
+  const auto above_0 = [](const std::vector<double> &values) {
+    return std::any_of(values.begin(), values.end(), [](const double value) { return value > 0; });
+  };
+  const bool acts = above_0(points.friction_coefficient) || above_0(points.friction_bound);
+  if (max_all(comm, static_cast<int>(acts)) > 0) {
+    c.friction.anywhere = true;
+    c.friction.coefficient = device_values(points.friction_coefficient, "rpc::contact::friction_coefficient");
+    c.friction.bound = device_values(points.friction_bound, "rpc::contact::friction_bound");
+    c.friction.limit = device_values(points.friction_limit, "rpc::contact::friction_limit");
+    start_friction(c, dirichlet, slip_start);
+    for (int side = 0; slip_start && side < c.num_sides(); ++side) add_motion(c, side, slip_start->motion[side]);
+  }
   count_points(c, comm);
   require_room(c, options, mesh);
   return c;

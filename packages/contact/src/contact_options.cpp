@@ -3,6 +3,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -10,11 +11,14 @@
 namespace rpc::contact
 {
 
-const std::array<LawParameter, 3> law_parameters{
+const std::array<LawParameter, 6> law_parameters{
     {{&ContactOptions::yield_stress, "Yield Stress", "> 0 [Pa] (inf for a rigid foundation)", false, true},
      {&ContactOptions::hardening, "Hardening", "finite and >= 0 [Pa/m]", true, false},
      {&ContactOptions::stiffness, "Stiffness", "> 0 [Pa/m] (inf for a foundation that is rigid until it yields)", false,
-      true}}};
+      true},
+     {&ContactOptions::friction_coefficient, "Friction Coefficient", "finite and >= 0 (0: no friction)", true, false},
+     {&ContactOptions::friction_bound, "Friction Bound", "finite and >= 0 [Pa]", true, false},
+     {&ContactOptions::friction_limit, "Friction Limit", "> 0 [Pa] (inf: none)", false, true}}};
 
 bool LawParameter::allows(const double value) const
 {
@@ -24,6 +28,11 @@ bool LawParameter::allows(const double value) const
 std::string LawParameter::rule(const std::string &path) const
 {
   return "deck: \"" + path + "->" + name + "\" must be " + bound + ", got ";
+}
+
+bool has_friction(const std::vector<ContactOptions> &options)
+{
+  return std::any_of(options.begin(), options.end(), [](const ContactOptions &side) { return side.has_friction(); });
 }
 
 namespace
@@ -38,6 +47,16 @@ void add_side_parameters(Teuchos::ParameterList &valid)
             "H >= 0 [Pa/m]: what the yield stress grows by with the depth of the dent. Number or expression.");
   set_field(valid, "Stiffness", "inf",
             "k > 0 [Pa/m]: the foundation is a spring before it yields, p = k v; `inf`: rigid. Number or expression.");
+  set_field(
+      valid, "Friction Coefficient", "0",
+      "mu >= 0: a point sticks up to the traction mu p along the side, p the pressure, and slips at it. Number or "
+      "expression.");
+  set_field(
+      valid, "Friction Bound", "0",
+      "s_0 >= 0 [Pa]: what friction bears whatever the pressure, where the body does not touch too (Tresca); adds "
+      "to mu p. Number or expression.");
+  set_field(valid, "Friction Limit", "inf",
+            "s_max > 0 [Pa]: the most that friction bears; `inf`: no limit. Number or expression.");
   set_field(valid, "Gap", "0",
             "g [m]: distance to the foundation along the normal, where there is no obstacle; < 0: initial penetration. "
             "Number or expression.");
@@ -94,6 +113,9 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
   options.yield_stress = parse(field_text(list, "Yield Stress"), path + "->Yield Stress");
   options.hardening = parse(field_text(list, "Hardening"), path + "->Hardening");
   options.stiffness = parse(field_text(list, "Stiffness"), path + "->Stiffness");
+  options.friction_coefficient = parse(field_text(list, "Friction Coefficient"), path + "->Friction Coefficient");
+  options.friction_bound = parse(field_text(list, "Friction Bound"), path + "->Friction Bound");
+  options.friction_limit = parse(field_text(list, "Friction Limit"), path + "->Friction Limit");
   options.gap = parse(field_text(list, "Gap"), path + "->Gap");
   options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle", parse);
   const auto &remembers = list.get<std::string>("Remembers");

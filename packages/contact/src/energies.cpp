@@ -31,6 +31,26 @@ double energy_at_points(const ContactNodes &c, const DeviceView<double *> &lambd
   return sum;
 }
 
+/// This rank's largest violation of friction's law [Pa].                                                    (12.6)
+double largest_friction_residual(const ContactNodes &points, const ContactState &state)
+{
+  const ContactNodes c = points;
+  const auto lambda = state.multiplier.normal;
+  const auto q = state.multiplier.tangential;
+  const auto x = device_read(*state.displacement);
+  double violation = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::friction_residual", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &worst) {
+        if (c.fixed(i)) return;
+        const Friction f = c.friction(i);
+        worst = math::larger(worst,
+                             friction_residual(slip(c, i, x), row(q, i), friction_bound(lambda(i), f), c.scaling(i)));
+      },
+      Kokkos::Max<double>(violation));
+  return violation;
+}
+
 } // namespace
 
 /// paper (6); (5.14)
@@ -60,6 +80,7 @@ double contact_law_residual(const ContactNodes &points, const ContactState &stat
         distance_scale = math::larger(distance_scale, math::magnitude(c.scaling(i) * v));
       },
       Kokkos::Max<double>(violation), Kokkos::Max<double>(largest), Kokkos::Max<double>(deepest));
+  if (points.friction.exists()) violation = std::max(violation, largest_friction_residual(points, state));
   const double mine[3] = {violation, largest, deepest};
   double all[3];
   Teuchos::reduceAll(comm_of(state), Teuchos::REDUCE_MAX, 3, mine, all);
@@ -71,6 +92,7 @@ ContactEnergy contact_energy(const ContactNodes &points, const ContactState &sta
 {
   const ContactNodes c = points;
   const auto lambda = state.multiplier.normal;
+  const auto q = state.multiplier.tangential;
   const auto x = device_read(*state.displacement);
   double largest = 0;
   Kokkos::parallel_reduce(
@@ -85,6 +107,8 @@ ContactEnergy contact_energy(const ContactNodes &points, const ContactState &sta
         const double v = penetration(c, i, x);
         dissipated += c.weight(i) * taken_up(v, lambda(i), c.law(i));
         gap += c.weight(i) * duality_gap(v, lambda(i), bound, c.law(i));
+        if (c.friction.exists())
+          gap += c.weight(i) * friction_gap(slip(c, i, x), row(q, i), friction_bound(lambda(i), c.friction(i)));
       },
       sums[0], sums[1]);
   double all[2];
@@ -92,11 +116,47 @@ ContactEnergy contact_energy(const ContactNodes &points, const ContactState &sta
   return {all[0], all[1]};
 }
 
+namespace
+{
+
+/// F += sum_i w_i q_i, as far as displacements are free.
+void add_friction_force(const ContactNodes &points, const DeviceView<double **> &q, Vector &F)
+{
+  const ContactNodes c = points;
+  const auto to = device_write(F);
+  for_each_point_by_group(
+      "rpc::contact::friction_force", c, KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k)
+          if (c.friction.free(i, k)) to(c.dof(i, k)) += c.weight(i) * q(i, k);
+      });
+  Kokkos::fence();
+}
+
+} // namespace
+
 Vector multiplier_forces(const ContactNodes &points, const Multipliers &multiplier, const RCP<const Map> &dofs)
 {
   Vector force(dofs);
   add_contact_force(points, multiplier.normal, force);
+  if (points.friction.exists() && multiplier.has_tangential()) add_friction_force(points, multiplier.tangential, force);
   return force;
+}
+
+double friction_work(const ContactNodes &points, const ContactState &state)
+{
+  double sum = 0;
+  if (points.friction.exists()) {
+    const ContactNodes c = points;
+    const auto lambda = state.multiplier.normal;
+    const auto x = device_read(*state.displacement);
+    Kokkos::parallel_reduce(
+        "rpc::contact::friction_work", device_range(c.size()),
+        KOKKOS_LAMBDA(const LO i, double &part) {
+          part += c.weight(i) * friction_bound(lambda(i), c.friction(i)) * slip(c, i, x).length();
+        },
+        sum);
+  }
+  return sum_all(comm_of(state), sum);
 }
 
 } // namespace rpc::contact

@@ -32,6 +32,104 @@ KOKKOS_INLINE_FUNCTION double speed(const Along &along, const LO i, const Coeffi
   return sum;
 }
 
+/// What a point does most against a motion: the pressure and the tangential force, times its weight, which is along the slip.  (12.10)
+struct Answer {
+  double pressure = 0;  // w p
+  double friction = 0;  // w s
+  bool endless = false; // both grow without end: a rigid point; then they are the ray's parts
+};
+/// @param speed, slip  m . r and |T r|   @param limit  w xi
+KOKKOS_INLINE_FUNCTION Answer most_against(const double speed, const double slip, const double limit,
+                                           const double weight, const Friction &f)
+{
+  if (!acts(f)) return {speed > 0 && !is_rigid(limit) ? limit : 0, 0, speed > 0 && is_rigid(limit)};
+  const double start = math::fmin(f.bound, f.limit);
+  if (speed + f.coefficient * slip <= 0) return {0, weight * start};
+  const double bend =
+      is_rigid(f.limit) || f.coefficient == 0 ? math::infinity<double> : (f.limit - start) / f.coefficient;
+  if (speed <= 0 && bend < limit / weight)
+    return {weight * bend, weight * f.limit}; // friction grows up to its limit only
+  if (is_rigid(limit)) return {1, is_rigid(f.limit) ? f.coefficient : 0, true};
+  return {limit, weight * friction_bound(limit / weight, f)};
+}
+
+/// T r at point i and its length.
+struct Slide {
+  double along[3] = {0, 0, 0}, length = 0;
+};
+KOKKOS_INLINE_FUNCTION Slide slide_of(const DeviceView<double *[3][6]> &slide, const LO i, const Coefficients &r)
+{
+  Slide s;
+  double square = 0;
+  for (int c = 0; c < 3; ++c) {
+    for (int k = 0; k < 6; ++k) s.along[c] += slide(i, c, k) * r[k];
+    square += s.along[c] * s.along[c];
+  }
+  s.length = math::sqrt(square);
+  return s;
+}
+
+/// out_k += p m . r_k + q h . T r_k.
+KOKKOS_INLINE_FUNCTION void add_answer(const Reactions &reactions, const LO i, const double pressure,
+                                       const double friction, const Slide &slide, double *const out)
+{
+  for (int k = 0; k < 6; ++k) {
+    out[k] += pressure * reactions.along(i, k);
+    for (int c = 0; c < 3 && slide.length > 0 && friction > 0; ++c)
+      out[k] += friction * slide.along[c] / slide.length * reactions.slide(i, c, k);
+  }
+}
+
+/// The same as steepest() with friction: the ray of a rigid point.
+RigidMotion steepest_with_friction(const Comm &comm, const Reactions &reactions, const int mine,
+                                   const RigidMotion &motion)
+{
+  using Location = Kokkos::MaxLoc<double, LO>;
+  const Coefficients r = coefficients_of(motion);
+  const Reactions all_reactions = reactions;
+  const auto part = reactions.part;
+  Location::value_type worst;
+  Kokkos::parallel_reduce(
+      "rpc::contact::steepest_with_friction", device_range(static_cast<LO>(part.extent(0))),
+      KOKKOS_LAMBDA(const LO i, Location::value_type &most) {
+        if (part(i) != mine) return;
+        const Slide slide = slide_of(all_reactions.slide, i, r);
+        const Answer answer = most_against(speed(all_reactions.along, i, r), slide.length, all_reactions.limit(i),
+                                           all_reactions.weight(i), all_reactions.friction(i));
+        if (!answer.endless) return;
+        double row[6] = {}, squares = 0, along = 0;
+        add_answer(all_reactions, i, answer.pressure > 0 ? answer.pressure : 1, answer.friction, slide, row);
+        for (int k = 0; k < 6; ++k) {
+          squares += row[k] * row[k];
+          along += row[k] * r[k];
+        }
+        const double relative = along / math::sqrt(squares);
+        if (!(relative > most.val)) return;
+        most.val = relative;
+        most.loc = i;
+      },
+      Location(worst));
+  const double most = max_all(comm, std::max(0., worst.val)); // a maximum over no nodes is -DBL_MAX
+  RigidMotion local{}, all{};
+  if (!(most > 1e-10 * std::sqrt(dot(motion, motion)))) return all;
+  const int owner = min_all(comm, worst.val == most ? comm.getRank() : comm.getSize());
+  if (owner == comm.getRank()) {
+    const DeviceView<double[6]> row("rpc::contact::ray");
+    const LO i = worst.loc;
+    Kokkos::parallel_for(
+        "rpc::contact::ray", device_range(1), KOKKOS_LAMBDA(const LO) {
+          const Slide slide = slide_of(all_reactions.slide, i, r);
+          const Answer answer = most_against(speed(all_reactions.along, i, r), slide.length, all_reactions.limit(i),
+                                             all_reactions.weight(i), all_reactions.friction(i));
+          add_answer(all_reactions, i, answer.pressure > 0 ? answer.pressure : 1, answer.friction, slide, row.data());
+        });
+    const auto values = to_host(row);
+    for (int k = 0; k < 6; ++k) local[k] = values(k);
+  }
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_SUM, 6, local.data(), all.data());
+  return all;
+}
+
 /// m . r_k of the rigid node that the motion presses in most for the size of its row; 0 if it presses in none.
 RigidMotion steepest(const Comm &comm, const Reactions &reactions, const int mine, const RigidMotion &motion)
 {
@@ -71,7 +169,14 @@ Reactions reactions_of(const fem::Discretization &d, const fem::Parts &parts, co
 {
   Reactions reactions{DeviceView<double *[6]>("rpc::contact::along_modes", contact.size()),
                       DeviceView<double *>("rpc::contact::limit", contact.size()),
-                      DeviceView<int *>("rpc::contact::part", contact.size()), std::vector<double>(parts.size())};
+                      {},
+                      contact.friction,
+                      contact.weight,
+                      DeviceView<int *>("rpc::contact::part", contact.size()),
+                      std::vector<double>(parts.size())};
+  if (contact.friction.anywhere)
+    reactions.slide = DeviceView<double *[3][6]>("rpc::contact::slide_modes", contact.size());
+  const auto slide = reactions.slide;
   const DeviceView<double *> strength("rpc::contact::strength", parts.size());
   const ContactNodes c = contact;
   const auto along = reactions.along;
@@ -93,6 +198,13 @@ Reactions reactions_of(const fem::Discretization &d, const fem::Parts &parts, co
         }
         fem::along_modes(c.dim, arm, m, row);
         for (int k = 0; k < 6; ++k) along(i, k) = row[k];
+        for (int component = 0; component < c.dim && slide.extent(0) > 0 && acts(c.friction(i)); ++component) {
+          double t[3] = {0, 0, 0};
+          for (int k = 0; k < c.dim; ++k) // prescribed motions are none
+            if (c.friction.free(i, k)) t[k] = (k == component ? 1 : 0) - c.normal(i, k) * c.normal(i, component);
+          fem::along_modes(c.dim, arm, t, row);
+          for (int k = 0; k < 6; ++k) slide(i, component, k) = row[k];
+        }
         limit(i) = c.weight(i) * largest_bearable(c.law(i));
         if (!is_rigid(limit(i))) add_shared(strength(p), limit(i));
       });
@@ -124,7 +236,10 @@ std::vector<double> HeldPart::coordinates(const RigidMotion &force) const
 Furthest HeldPart::furthest(const std::vector<double> &q) const
 {
   const RigidMotion r = motion(q);
-  Furthest endless{coordinates(steepest(comm_, reactions_, part_, r)), true};
+  const bool friction = reactions_.friction.anywhere;
+  Furthest endless{coordinates(friction ? steepest_with_friction(comm_, reactions_, part_, r)
+                                        : steepest(comm_, reactions_, part_, r)),
+                   true};
   double squares = 0;
   for (const double entry : endless.at) squares += entry * entry;
   if (squares == 0) return {coordinates(carried(r)), false};
@@ -134,6 +249,7 @@ Furthest HeldPart::furthest(const std::vector<double> &q) const
 
 RigidMotion HeldPart::carried(const RigidMotion &motion, const LO begin, const LO end) const
 {
+  if (reactions_.friction.anywhere) return carried_with_friction(motion, begin, end);
   const DeviceView<double[6]> sum("rpc::contact::carried");
   const Coefficients r = coefficients_of(motion);
   const auto along = reactions_.along;
@@ -145,6 +261,39 @@ RigidMotion HeldPart::carried(const RigidMotion &motion, const LO begin, const L
       "rpc::contact::carried", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end), KOKKOS_LAMBDA(const LO i) {
         if (part(i) != mine || is_rigid(limit(i)) || !(speed(along, i, r) > rounding)) return;
         for (int k = 0; k < 6; ++k) add_shared(sum(k), limit(i) * along(i, k));
+      });
+  const auto local = to_host(sum);
+  RigidMotion all;
+  Teuchos::reduceAll(comm_, Teuchos::REDUCE_SUM, 6, local.data(), all.data());
+  return all;
+}
+
+RigidMotion HeldPart::carried_with_friction(const RigidMotion &motion, const LO begin, const LO end) const
+{
+  const DeviceView<double[6]> sum("rpc::contact::carried");
+  const Coefficients r = coefficients_of(motion);
+  const Reactions reactions = reactions_;
+  const int mine = part_;
+  const double rounding = 1e-14 * std::sqrt(dot(motion, motion));
+  Kokkos::parallel_for(
+      "rpc::contact::carried_with_friction", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end),
+      KOKKOS_LAMBDA(const LO i) {
+        if (reactions.part(i) != mine) return;
+        const double towards = speed(reactions.along, i, r);
+        Slide slide = slide_of(reactions.slide, i, r);
+        if (!(slide.length > rounding)) slide.length = 0;
+        const Answer answer = most_against(math::magnitude(towards) > rounding ? towards : 0, slide.length,
+                                           reactions.limit(i), reactions.weight(i), reactions.friction(i));
+        double row[6] = {};
+        if (answer
+                .endless) { // by rounding, or steepest() had found its ray: what is left is the bound without pressure
+          const Friction f = reactions.friction(i);
+          add_answer(reactions, i, 0, reactions.weight(i) * math::fmin(f.bound, f.limit), slide, row);
+        } else {
+          add_answer(reactions, i, answer.pressure, answer.friction, slide, row);
+        }
+        for (int k = 0; k < 6; ++k)
+          if (row[k] != 0) add_shared(sum(k), row[k]);
       });
   const auto local = to_host(sum);
   RigidMotion all;

@@ -13,8 +13,12 @@ namespace rpc::contact
 struct Reactions {
   DeviceView<double *[6]> along; ///< (n) m_i . r_k(x_i), of the node's own part; 0 where it takes no part in contact
   DeviceView<double *> limit;    ///< (n) w_i xi_i [N], inf where rigid or hardening
-  DeviceView<int *> part;        ///< (n) -1 where the node takes no part in contact
-  std::vector<double> strength;  ///< (parts) sum of the finite limits [N]
+  /// (n) (I - nu nu^T) r_k(x_i), row by component, where friction acts; empty where there is none.                  (12.10)
+  DeviceView<double *[3][6]> slide;
+  FrictionPoints friction;      ///< (n)
+  DeviceView<double *> weight;  ///< (n)
+  DeviceView<int *> part;       ///< (n) -1 where the node takes no part in contact
+  std::vector<double> strength; ///< (parts) sum of the finite limits [N]
 };
 /// Collective.
 Reactions reactions_of(const fem::Discretization &d, const fem::Parts &parts, const ContactNodes &contact);
@@ -32,11 +36,12 @@ public:
   std::vector<double> coordinates(const fem::RigidMotion &force) const;
   /// How far Z goes along q. (9.5); collective
   Furthest furthest(const std::vector<double> &q) const;
-  /// sum of w xi m along the modes over the nodes from `begin` to `end` with a finite yield stress that the motion
-  /// presses into the foundation [N]; collective
+  /// sum of w (p m + q) along the modes over the nodes from `begin` to `end`, with the p and q that do most against the motion; nodes
+  /// with a finite yield stress that it presses into the foundation, and friction [N]; collective
   fem::RigidMotion carried(const fem::RigidMotion &motion, LO begin, LO end) const;
   /// The same over all nodes.
   fem::RigidMotion carried(const fem::RigidMotion &motion) const;
+  fem::RigidMotion carried_with_friction(const fem::RigidMotion &motion, LO begin, LO end) const;
   int part() const { return part_; }
 
 private:

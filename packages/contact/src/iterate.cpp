@@ -51,6 +51,50 @@ void take_admissible(const ContactNodes &c, const DeviceView<double *> &from, co
   Kokkos::fence();
 }
 
+/// Tangential multipliers <- the nearest to q that friction admits at the pressures p; the bounds of the functional's friction follow p.
+/// @return this rank's (|change|^2, |multipliers|^2)
+std::pair<double, double> replace_tangential(const SmoothedPoints &points, const DeviceView<double *> &p,
+                                             const DeviceView<double **> &q)
+{
+  const SmoothedPoints s = points;
+  const auto lambda = s.multiplier.tangential;
+  double changed = 0, whole = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::replace_tangential", device_range(s.size()),
+      KOKKOS_LAMBDA(const LO i, double &change, double &size) {
+        if (s.points.fixed(i)) return;
+        const double bound = friction_bound(admissible(p(i), s.points.law(i)), s.points.friction(i));
+        const Along next = admissible_friction(row(q, i), bound), difference = next.plus(-1, row(lambda, i));
+        change += difference.dot(difference);
+        size += next.dot(next);
+        set_row(lambda, i, next);
+        s.bound(i) = bound;
+      },
+      changed, whole);
+  return {changed, whole};
+}
+
+/// Room for friction's multipliers and bounds; none where there is no friction.
+SmoothedPoints smoothed_points(const ContactNodes &points, const DeviceView<double *> &own)
+{
+  const LO n = points.size();
+  SmoothedPoints s{points, chosen_penalties(points, own),
+                   Multipliers(DeviceView<double *>("rpc::contact::multiplier", n))};
+  if (!points.friction.exists()) return s;
+  s.multiplier.tangential = DeviceView<double **>("rpc::contact::tangential_multiplier", n, points.dim);
+  s.bound = DeviceView<double *>("rpc::contact::friction_bound", n);
+  return s;
+}
+
+ActiveSet no_active_set(const ContactNodes &points)
+{
+  ActiveSet active{DeviceView<State *>("rpc::contact::active_set", points.size())};
+  if (!points.friction.exists()) return active;
+  active.slip = DeviceView<Slip *>("rpc::contact::active_slip", points.size());
+  active.direction = DeviceView<double **>("rpc::contact::active_slip_direction", points.size(), points.dim);
+  return active;
+}
+
 /// u <- from at free unknowns.
 void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &u)
 {
@@ -87,10 +131,8 @@ std::pair<double, double> replace(const ContactNodes &c, const DeviceView<double
 Iterate::Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<UpdatedOperator> hessian)
     : dirichlet_(elastic.dirichlet), points_(std::move(points)), hessian_(std::move(hessian)),
       own_(rpc::own_stiffness(hessian_->base(), points_)), coupled_(coupled_stiffness(hessian_->base(), points_)),
-      functional_(hessian_->shared_base(), elastic.load, elastic.energy_offset,
-                  {points_, chosen_penalties(points_, own_),
-                   Multipliers(DeviceView<double *>("rpc::contact::multiplier", points_.size()))}),
-      active_{DeviceView<State *>("rpc::contact::active_set", points_.size())}
+      functional_(hessian_->shared_base(), elastic.load, elastic.energy_offset, smoothed_points(points_, own_)),
+      active_(no_active_set(points_))
 {
   Vector applied(*elastic.applied_load, Teuchos::Copy), lifted(*elastic.load, Teuchos::Copy);
   fem::clear_prescribed(dirichlet_, applied);
@@ -118,14 +160,17 @@ double Iterate::size(const Vector &u) const
 
 GO Iterate::update_hessian(const Vector &u)
 {
-  functional_.take_states(u, active_.state);
+  functional_.take_states(u, active_);
   active_.chosen = true;
-  return update_stiffness();
+  if (points_.friction.anywhere) // which follows no pressure in the functional
+    return hessian_->set(points_, functional_blocks(functional_.points(), u, spring_).block);
+  return update_stiffness(u);
 }
 
-GO Iterate::update_stiffness()
+GO Iterate::update_stiffness(const Vector &u)
 {
-  return hessian_->set(points_, added_blocks(functional_.points(), active_.state, spring_));
+  const AddedBlocks added = added_blocks(functional_.points(), active_, u, spring_);
+  return hessian_->set(points_, added.block, added.coupling);
 }
 
 void Iterate::hold_by_contact()
@@ -147,7 +192,7 @@ ActiveSetChoice Iterate::choose_active_set(const Vector &u, const double negligi
 void Iterate::take_active_set(const ActiveSetChoice &choice, Vector &u)
 {
   take_choice(choice, functional_, active_, u);
-  update_stiffness();
+  update_stiffness(u);
 }
 
 void Iterate::start_interior_path(const Vector &u)
@@ -162,9 +207,14 @@ void Iterate::linearize_interior(const Vector &u, Vector &F)
   interior_->gradient(functional_, u, F);
 }
 
-double Iterate::replace_multipliers(const DeviceView<double *> &p)
+double Iterate::replace_multipliers(const DeviceView<double *> &p, const DeviceView<double **> &q)
 {
-  const auto [change, size] = replace(points_, p, multipliers().normal);
+  auto [change, size] = replace(points_, p, multipliers().normal);
+  if (functional_.points().has_friction()) {
+    const auto [tangential_change, tangential_size] = replace_tangential(functional_.points(), p, q);
+    change += tangential_change;
+    size += tangential_size;
+  }
   const double sums[2] = {change, size};
   double all[2];
   Teuchos::reduceAll(*hessian_->getDomainMap()->getComm(), Teuchos::REDUCE_SUM, 2, sums, all);
@@ -175,12 +225,15 @@ double Iterate::replace_multipliers(const DeviceView<double *> &p)
 /// paper (11); (5.1)
 double Iterate::update_multipliers(const Vector &u)
 {
-  return replace_multipliers(functional_.pressures(u));
+  const bool friction = functional_.points().has_friction();
+  return replace_multipliers(functional_.pressures(u), friction ? functional_.tractions(u) : DeviceView<double **>());
 }
 
 double Iterate::take_active_set_pressures(const Vector &u)
 {
-  return replace_multipliers(functional_.active_set_pressures(active_.state, u));
+  const SmoothedPoints &s = functional_.points();
+  return replace_multipliers(functional_.active_set_pressures(active_, u),
+                             s.has_friction() ? active_set_tractions(s, active_, u) : DeviceView<double **>());
 }
 
 void Iterate::reset_multipliers()
@@ -188,12 +241,15 @@ void Iterate::reset_multipliers()
   if (prescribed_force_ > 0) // else nothing acts, and lambda = 0 is the solution
     start_multipliers(points_, pressure_bound_, multipliers().normal);
   multipliers_given_ = false;
+  if (!functional_.points().has_friction()) return;
+  Kokkos::deep_copy(multipliers().tangential, 0.);
+  replace_tangential(functional_.points(), multipliers().normal, multipliers().tangential);
 }
 
-bool Iterate::raise_penalty()
+bool Iterate::raise_penalty(const Vector &u)
 {
   const bool raised = raise_penalties(*hessian_->getDomainMap()->getComm(), own_, penalty());
-  update_stiffness();
+  update_stiffness(u);
   return raised;
 }
 
@@ -203,6 +259,10 @@ void Iterate::start_from(const ContactState &state, Vector &u)
   take_free(dirichlet_, *state.displacement, u);
   if (state.multiplier.normal.extent(0) == 0) return; // no contact node on this rank
   take_admissible(points_, state.multiplier.normal, multipliers().normal);
+  if (!functional_.points().has_friction()) return;
+  const DeviceView<double **> none("rpc::contact::no_traction", points_.size(), points_.dim);
+  replace_tangential(functional_.points(), multipliers().normal,
+                     state.multiplier.has_tangential() ? state.multiplier.tangential : none);
 }
 
 void Iterate::move_origin(Vector &u)

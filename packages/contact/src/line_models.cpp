@@ -32,6 +32,30 @@ void take_moves(const ContactNodes &c, const Vector &d, const LO k, const Device
   Kokkos::fence();
 }
 
+/// (points, dim) Slips at u; empty without friction.
+DeviceView<double **> slips(const ContactNodes &c, const Vector &u)
+{
+  if (!c.friction.exists()) return {};
+  const DeviceView<double **> e("rpc::contact::e", c.size(), c.dim);
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::slips", device_range(c.size()), KOKKOS_LAMBDA(const LO i) { set_row(e, i, slip(c, i, x)); });
+  Kokkos::fence();
+  return e;
+}
+
+/// Where the points are at some displacement.
+struct Places {
+  DeviceView<double *> v;  // (points)
+  DeviceView<double **> e; // (points, dim), empty without friction
+
+  Places(const ContactNodes &c, const Vector &u) : v(penetrations(c, u)), e(slips(c, u)) {}
+  KOKKOS_INLINE_FUNCTION Motion operator()(const LO i) const
+  {
+    return e.extent(0) > 0 ? Motion{v(i), row(e, i)} : Motion{v(i)};
+  }
+};
+
 /// m . d_k at point i, for kernels.
 KOKKOS_INLINE_FUNCTION double along(const ContactNodes &c, const DeviceView<double **> &moves, const LO i, const LO k)
 {
@@ -49,13 +73,24 @@ KOKKOS_INLINE_FUNCTION double inner_product(const ContactNodes &c, const double 
   return sum;
 }
 
+/// `at`, moved by t d_k, for kernels.
+KOKKOS_INLINE_FUNCTION void move(const ContactNodes &c, const DeviceView<double **> &moves, const LO i, const LO k,
+                                 const double t, Motion &at)
+{
+  at.penetration += t * along(c, moves, i, k);
+  if (!c.friction.exists()) return;
+  double normal = 0;
+  for (int j = 0; j < c.dim; ++j) normal += c.normal(i, j) * moves(i, c.dim * k + j);
+  for (int j = 0; j < c.dim; ++j) at.slip.x[j] += t * (moves(i, c.dim * k + j) - normal * c.normal(i, j));
+}
+
 class LineModel : public LineFunction
 {
 public:
   LineModel(RCP<const Comm> comm, const double slope_at_0, const double elastic_curvature, SmoothedPoints points,
-            DeviceView<double *> v, DeviceView<double **> moves)
+            Places from, DeviceView<double **> moves)
       : comm_(std::move(comm)), slope_at_0_(slope_at_0), elastic_curvature_(elastic_curvature),
-        points_(std::move(points)), v_(std::move(v)), moves_(std::move(moves))
+        points_(std::move(points)), from_(std::move(from)), moves_(std::move(moves))
   {
   }
   Value at(double t) const override;
@@ -64,21 +99,23 @@ private:
   RCP<const Comm> comm_;
   double slope_at_0_, elastic_curvature_;
   SmoothedPoints points_;
-  DeviceView<double *> v_;
+  Places from_;
   DeviceView<double **> moves_; // (points, dim)
 };
 
 /// This rank's (sum of the changes of the points' forces times the direction, of their stiffness along it) at t.
-std::pair<double, double> sums_along(const SmoothedPoints &s, const DeviceView<double *> &v,
-                                     const DeviceView<double **> &moves, const double t)
+std::pair<double, double> sums_along(const SmoothedPoints &s, const Places &from, const DeviceView<double **> &moves,
+                                     const double t)
 {
   double slope = 0, curvature = 0;
   Kokkos::parallel_reduce(
       "rpc::contact::line_model", device_range(s.size()),
       KOKKOS_LAMBDA(const LO i, double &change, double &bend) {
         const ContactNodes &c = s.points;
-        const Response here = s.respond(i, Motion{v(i)}),
-                       there = s.respond(i, Motion{v(i) + t * along(c, moves, i, 0)});
+        Motion at = from(i);
+        const Response here = s.respond(i, at);
+        move(c, moves, i, 0, t, at);
+        const Response there = s.respond(i, at);
         for (int k = 0; k < c.dim; ++k) {
           change += (there.force[k] - here.force[k]) * moves(i, k);
           bend += moves(i, k) * inner_product(c, there.block[k], moves, i, 0);
@@ -90,7 +127,7 @@ std::pair<double, double> sums_along(const SmoothedPoints &s, const DeviceView<d
 
 LineFunction::Value LineModel::at(const double t) const
 {
-  const auto [slope, curvature] = sums_along(points_, v_, moves_, t);
+  const auto [slope, curvature] = sums_along(points_, from_, moves_, t);
   const double sums[2] = {slope, curvature};
   double all[2];
   Teuchos::reduceAll(*comm_, Teuchos::REDUCE_SUM, 2, sums, all);
@@ -103,22 +140,23 @@ struct SubspaceSums {
   using size_type = LO;
   const size_type value_count; // n + n n, for n directions
   SmoothedPoints points;
-  DeviceView<double *> v;
+  Places from;
   DeviceView<double **> moves; // (points, n dim)
   DeviceView<double *> coefficient;
 
-  SubspaceSums(const SmoothedPoints &s, const DeviceView<double *> &at, const DeviceView<double **> &d,
-               const DeviceView<double *> &a)
-      : value_count(static_cast<size_type>(a.extent(0) * (a.extent(0) + 1))), points(s), v(at), moves(d), coefficient(a)
+  SubspaceSums(const SmoothedPoints &s, const Places &at, const DeviceView<double **> &d, const DeviceView<double *> &a)
+      : value_count(static_cast<size_type>(a.extent(0) * (a.extent(0) + 1))), points(s), from(at), moves(d),
+        coefficient(a)
   {
   }
   KOKKOS_INLINE_FUNCTION void operator()(const LO i, double sum[]) const
   {
     const ContactNodes &c = points.points;
     const LO n = static_cast<LO>(coefficient.extent(0));
-    double moved = v(i);
-    for (LO k = 0; k < n; ++k) moved += along(c, moves, i, k) * coefficient(k);
-    const Response here = points.respond(i, Motion{v(i)}), there = points.respond(i, Motion{moved});
+    Motion at = from(i);
+    const Response here = points.respond(i, at);
+    for (LO k = 0; k < n; ++k) move(c, moves, i, k, coefficient(k), at);
+    const Response there = points.respond(i, at);
     double change[3];
     for (int j = 0; j < c.dim; ++j) change[j] = there.force[j] - here.force[j];
     for (LO k = 0; k < n; ++k) {
@@ -142,9 +180,9 @@ class SubspaceModel : public SubspaceFunction
 {
 public:
   SubspaceModel(RCP<const Comm> comm, std::vector<double> at_0, std::vector<double> elastic, SmoothedPoints points,
-                DeviceView<double *> v, DeviceView<double **> moves)
+                Places from, DeviceView<double **> moves)
       : comm_(std::move(comm)), at_0_(std::move(at_0)), elastic_(std::move(elastic)), points_(std::move(points)),
-        v_(std::move(v)), moves_(std::move(moves))
+        from_(std::move(from)), moves_(std::move(moves))
   {
   }
   Value at(const std::vector<double> &a) const override
@@ -152,7 +190,7 @@ public:
     const std::size_t n = a.size();
     HostView<double *> given("rpc::contact::coefficients", n);
     std::copy(a.begin(), a.end(), given.data());
-    const SubspaceSums sums(points_, v_, moves_, to_device(given));
+    const SubspaceSums sums(points_, from_, moves_, to_device(given));
     std::vector<double> mine(n * (n + 1));
     Kokkos::parallel_reduce("rpc::contact::subspace_model", device_range(points_.size()), sums, mine.data());
     Kokkos::fence();
@@ -170,7 +208,7 @@ private:
   RCP<const Comm> comm_;
   std::vector<double> at_0_, elastic_;
   SmoothedPoints points_;
-  DeviceView<double *> v_;
+  Places from_;
   DeviceView<double **> moves_; // (points, directions dim)
 };
 
@@ -181,8 +219,8 @@ std::unique_ptr<LineFunction> line_model(RCP<const Comm> comm, const double slop
 {
   const DeviceView<double **> moves("rpc::contact::moves", points.size(), points.points.dim);
   take_moves(points.points, d, 0, moves);
-  return std::make_unique<LineModel>(std::move(comm), slope_at_0, elastic_curvature, points,
-                                     penetrations(points.points, u), moves);
+  return std::make_unique<LineModel>(std::move(comm), slope_at_0, elastic_curvature, points, Places(points.points, u),
+                                     moves);
 }
 
 std::unique_ptr<SubspaceFunction> subspace_model(RCP<const Comm> comm, std::vector<double> at_0,
@@ -193,7 +231,7 @@ std::unique_ptr<SubspaceFunction> subspace_model(RCP<const Comm> comm, std::vect
   const DeviceView<double **> moves("rpc::contact::moves", points.size(), n * points.points.dim);
   for (LO k = 0; k < n; ++k) take_moves(points.points, *directions[k], k, moves);
   return std::make_unique<SubspaceModel>(std::move(comm), std::move(at_0), std::move(elastic), points,
-                                         penetrations(points.points, u), moves);
+                                         Places(points.points, u), moves);
 }
 
 } // namespace rpc::contact

@@ -1,6 +1,7 @@
 #include "rpc/contact/result.hpp"
 
 #include "rpc/contact/law/judgement.hpp"
+#include "rpc/core/math.hpp"
 #include "rpc/core/parallel.hpp"
 
 #include <algorithm>
@@ -64,6 +65,38 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
   Kokkos::fence();
 }
 
+/// A point slips where its traction misses the bound by rounding alone.
+constexpr double slips_from = 1 - 1e-9;
+
+/// Traction, slip and friction state of each node.
+void fill_friction(const ContactNodes &c, const ContactState &state, ContactResult &result)
+{
+  result.traction = DeviceView<double **>("rpc::contact::result_traction", c.size(), c.dim);
+  result.slip = DeviceView<double **>("rpc::contact::result_slip", c.size(), c.dim);
+  result.used = DeviceView<double *>("rpc::contact::used_friction", c.size());
+  result.slip_state = DeviceView<int *>("rpc::contact::slip_state", c.size());
+  const auto lambda = state.multiplier.tangential, traction = result.traction, slipped = result.slip;
+  const auto used = result.used;
+  const auto p = result.pressure;
+  const auto state_of = result.slip_state;
+  const auto x = device_read(*state.displacement);
+  Kokkos::parallel_for(
+      "rpc::contact::friction_fields", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        const double s = friction_bound(p(i), c.friction(i));
+        if (c.fixed(i) || !(s > 0)) return;
+        double square = 0;
+        const Along e = slip(c, i, x);
+        for (int k = 0; k < c.dim; ++k) {
+          traction(i, k) = lambda(i, k);
+          slipped(i, k) = e(k);
+          square += lambda(i, k) * lambda(i, k);
+        }
+        used(i) = math::sqrt(square) / s;
+        state_of(i) = used(i) >= slips_from ? 2 : 1;
+      });
+  Kokkos::fence();
+}
+
 /// What the ranks' shares come to; collective.
 ContactSums over_all_ranks(const Comm &comm, ContactSums s)
 {
@@ -76,6 +109,44 @@ ContactSums over_all_ranks(const Comm &comm, ContactSums s)
   auto sum = sums.begin() + 4, maximum = maxima.begin();
   for (const auto &q : contact_quantities) s.*q.value = q.combine == Combine::sum ? *sum++ : *maximum++;
   return s;
+}
+
+/// This rank's sums and maxima of friction over the points [begin, end), and what it adds to the force.
+void add_friction_sums(const ContactNodes &c, const ContactResult &result, const LO begin, const LO end, ContactSums &s)
+{
+  const auto q = result.traction, e = result.slip;
+  const auto p = result.pressure;
+  const auto state = result.slip_state;
+  const Kokkos::RangePolicy<ExecutionSpace, LO> points(begin, end);
+  std::array<double, 3> force{};
+  Kokkos::parallel_reduce(
+      "rpc::contact::friction_sums", points,
+      KOKKOS_LAMBDA(const LO i, double &fx, double &fy, double &fz, double &stick, double &slips, double &work) {
+        const double w = c.weight(i);
+        fx -= w * q(i, 0);
+        fy -= w * q(i, 1);
+        if (c.dim == 3) fz -= w * q(i, 2);
+        if (state(i) == 1) stick += w;
+        if (state(i) == 2) slips += w;
+        double square = 0;
+        for (int k = 0; k < c.dim; ++k) square += e(i, k) * e(i, k);
+        work += w * friction_bound(p(i), c.friction(i)) * math::sqrt(square);
+      },
+      force[0], force[1], force[2], s.stick_length, s.slip_length, s.friction_work);
+  Kokkos::parallel_reduce(
+      "rpc::contact::friction_maxima", points,
+      KOKKOS_LAMBDA(const LO i, double &shear, double &slipped) {
+        if (!(c.weight(i) > 0)) return;
+        double traction = 0, moved = 0;
+        for (int k = 0; k < c.dim; ++k) {
+          traction += q(i, k) * q(i, k);
+          moved += e(i, k) * e(i, k);
+        }
+        shear = math::larger(shear, math::sqrt(traction));
+        if (p(i) > 0) slipped = math::larger(slipped, math::sqrt(moved));
+      },
+      Kokkos::Max<double>(s.max_shear), Kokkos::Max<double>(s.max_slip));
+  for (int k = 0; k < 3; ++k) s.force[k] += force[k];
 }
 
 /// Over the points [begin, end) of all ranks.
@@ -119,6 +190,7 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
         kept += c.weight(i) * stored_energy(p(i), f);
       },
       s.dent_volume, s.dissipated, s.foundation_energy);
+  if (result.traction.extent(0) > 0) add_friction_sums(c, result, begin, end, s);
   for (const auto &q : contact_quantities) // Kokkos' maximum over no nodes is -DBL_MAX
     if (q.combine == Combine::maximum) s.*q.value = std::max(0., s.*q.value);
   return over_all_ranks(comm, s);
@@ -156,6 +228,7 @@ ContactResult contact_result(const fem::Discretization &d, const std::vector<con
   result.state = DeviceView<int *>("rpc::contact::state", n);
   result.pressure = completed_pressure(d, sides, c, state.multiplier.normal);
   fill_fields(c, *state.displacement, result);
+  if (c.friction.exists() && state.multiplier.has_tangential()) fill_friction(c, state, result);
   for (int k = 0; k < c.num_sides(); ++k) {
     result.sides.push_back(sums_of(d.mesh->comm(), c, result, c.first(k), c.first(k + 1)));
     if (d.axisymmetric()) result.sides.back().force[0] = 0; // around the axis radial forces cancel
@@ -184,10 +257,13 @@ Vector contact_forces(const fem::Discretization &d, const ContactNodes &contact,
   Vector force(d.owned_dofs);
   const ContactNodes c = contact;
   const auto p = result.pressure;
+  const auto q = result.traction;
+  const bool friction = q.extent(0) > 0;
   const auto to = device_write(force);
   for_each_point_by_group(
       "rpc::contact::forces", c, KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k) to(c.dof(i, k)) -= c.weight(i) * p(i) * c.normal(i, k);
+        for (int k = 0; k < c.dim; ++k)
+          to(c.dof(i, k)) -= c.weight(i) * (p(i) * c.normal(i, k) + (friction ? q(i, k) : 0));
       });
   Kokkos::fence();
   return force;

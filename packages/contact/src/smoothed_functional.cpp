@@ -41,14 +41,14 @@ void add_forces(const SmoothedPoints &s, const Vector &u, Vector &F)
 }
 
 /// F += the forces on the branches of an active set, less those of the law.
-void add_differences(const SmoothedPoints &s, const DeviceView<State *> &active, const Vector &u, Vector &F)
+void add_differences(const SmoothedPoints &s, const ActiveSet &active, const Vector &u, Vector &F)
 {
   const auto x = device_read(u);
   const auto to = device_write(F);
   for_each_point_by_group(
       "rpc::contact::add_differences", s.points, KOKKOS_LAMBDA(const LO i) {
         const Motion at = motion(s.points, i, x);
-        const Response law = s.respond(i, at), branch = s.respond_on_branch(i, active(i), at);
+        const Response law = s.respond(i, at), branch = s.respond_on_branch(i, active, at);
         for (int k = 0; k < s.points.dim; ++k) to(s.points.dof(i, k)) += branch.force[k] - law.force[k];
       });
   Kokkos::fence();
@@ -66,6 +66,7 @@ void move_points(const SmoothedPoints &s, const DeviceView<double *> &stiffness,
         "rpc::contact::best_moves", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
           if (c.fixed(i)) return;
           const double length = squared_length(c, i);
+          if (c.friction.exists() && length < 1 - 1e-12) return; // its move is slip too
           move(i) = best_move(along_direction(c, i, slope) / length, stiffness(i), c.weight(i), penetration(c, i, x),
                               s.multiplier.normal(i), s.penalty(i), c.law(i)) /
                     length;
@@ -90,6 +91,19 @@ DeviceView<double *> left_of_gap(const ContactNodes &points, const Vector &u)
       "rpc::contact::gap_left", device_range(c.size()), KOKKOS_LAMBDA(const LO i) { gap(i) = -penetration(c, i, x); });
   Kokkos::fence();
   return gap;
+}
+
+/// (points, dim) -e_i(u): what slip counts from once u is the origin.
+DeviceView<double **> left_of_slip(const ContactNodes &points, const Vector &u)
+{
+  const ContactNodes c = points;
+  DeviceView<double **> from("rpc::contact::slip_from", c.size(), c.dim);
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::slip_left", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { set_row(from, i, slip(c, i, x).scaled(-1)); });
+  Kokkos::fence();
+  return from;
 }
 
 } // namespace
@@ -117,6 +131,7 @@ SmoothedFunctional SmoothedFunctional::from(const Vector &u, const Vector &out_o
   load->update(-1., out_of_balance, 0.);
   SmoothedPoints points = points_;
   points.points.free_gap = left_of_gap(points.points, u);
+  if (points.has_friction()) points.points.friction.from = left_of_slip(points.points, u);
   return {K_, load, offset_, std::move(points)};
 }
 
@@ -140,7 +155,7 @@ void SmoothedFunctional::elastic_gradient(const Vector &u, Vector &G) const
   G.update(-1., *load_, 1.);
 }
 
-void SmoothedFunctional::active_set_gradient(const DeviceView<State *> &active, const Vector &u, const Vector &gradient,
+void SmoothedFunctional::active_set_gradient(const ActiveSet &active, const Vector &u, const Vector &gradient,
                                              Vector &F) const
 {
   F.update(1., gradient, 0.);
@@ -189,29 +204,50 @@ DeviceView<double *> SmoothedFunctional::pressures(const Vector &u) const
   return p;
 }
 
-DeviceView<double *> SmoothedFunctional::active_set_pressures(const DeviceView<State *> &active, const Vector &u) const
+DeviceView<double *> SmoothedFunctional::active_set_pressures(const ActiveSet &active, const Vector &u) const
 {
   const SmoothedPoints s = points_;
   DeviceView<double *> p("rpc::contact::active_set_pressure", s.size());
+  const auto state = active.state;
   const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::active_set_pressure", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
-        p(i) = branch_pressure(active(i), penetration(s.points, i, x), s.multiplier.normal(i), s.penalty(i),
+        p(i) = branch_pressure(state(i), penetration(s.points, i, x), s.multiplier.normal(i), s.penalty(i),
                                s.points.law(i));
       });
   Kokkos::fence();
   return p;
 }
 
-void SmoothedFunctional::take_states(const Vector &u, const DeviceView<State *> &states) const
+void SmoothedFunctional::take_states(const Vector &u, const ActiveSet &active) const
 {
   const SmoothedPoints s = points_;
+  const ActiveSet to = active;
   const auto x = device_read(u);
   Kokkos::parallel_for(
       "rpc::contact::take_states", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
-        if (!s.points.fixed(i)) states(i) = s.respond(i, motion(s.points, i, x)).state;
+        if (s.points.fixed(i)) return;
+        const Motion at = motion(s.points, i, x);
+        to.state(i) = s.respond(i, at).state;
+        if (!s.has_friction()) return;
+        const Along a = s.trial_traction(i, at);
+        to.slip(i) = slip_state(a, s.bound(i));
+        set_row(to.direction, i, a.unit());
       });
   Kokkos::fence();
+}
+
+DeviceView<double **> SmoothedFunctional::tractions(const Vector &u) const
+{
+  const SmoothedPoints s = points_;
+  DeviceView<double **> q("rpc::contact::traction", s.size(), s.points.dim);
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::traction", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
+        set_row(q, i, admissible_friction(s.trial_traction(i, motion(s.points, i, x)), s.bound(i)));
+      });
+  Kokkos::fence();
+  return q;
 }
 
 StateCounts SmoothedFunctional::count_states(const Vector &u) const

@@ -141,8 +141,51 @@ std::vector<int> carrying_sides(const Context &context, const HeldPart &held, co
   refuse(message.str());
 }
 
+/// Refuses a load that friction does not hold, with the most that it holds along the same motion; collective. Returns where the load
+/// does not push that way.                                                                                       (12.10)
+void refuse_slide(const Context &context, const HeldPart &held, const ConvexSet &set, const Numbers &b,
+                  const RigidMotion &away, const Motions &slides)
+{
+  RigidMotion slide{};
+  for (const RigidMotion &along : slides)
+    for (int k = 0; k < 6; ++k) slide[k] += dot(away, along) * along[k];
+  const Numbers d = held.coordinates(slide);
+  double pushed = 0, square = 0;
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    pushed += b[j] * d[j];
+    square += d[j] * d[j];
+  }
+  if (!(pushed > 0) || !(square > 1e-12 * dot(away, away))) return;
+  double low = 0, high = 1; // of the load along the slide, what the foundation bears
+  const auto borne = [&](const double part) {
+    Numbers less = b;
+    double size = 0;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      less[j] -= (1 - part) * pushed / square * d[j];
+      size += b[j] * b[j];
+    }
+    return !(nearest_point(set, less, 1e-9 * std::sqrt(size)).distance > 0);
+  };
+  if (!borne(0)) return; // something else is wrong
+  for (int halving = 0; halving < 40; ++halving) (borne((low + high) / 2) ? low : high) = (low + high) / 2;
+  const auto words = context.words(slide, held.part());
+  const std::string load = context.amount(pushed / words.size, words), name = context.name(held.part());
+  std::ostringstream message;
+  if (borne(1))
+    message << "the load along a " << words.text() << " of " << name << " is all that friction holds, " << load
+            << ": the position is not determined";
+  else
+    message << "the load pushes " << name << " over the foundation with a resultant of " << load << ' ' << words.where
+            << "; friction holds at most " << context.amount(low * pushed / words.size, words);
+  message
+      << ". Lower the load, raise the friction, or prescribe a displacement in \"Dirichlet\" that stops this motion.";
+  refuse(message.str());
+}
+
 /// Whether the load lies inside of Z; collective.                                                          (9.4)
-void check_part(const Context &context, const HeldPart &held, const fem::Resultant &load, const double strength)
+/// @param slides  motions that friction alone holds
+void check_part(const Context &context, const HeldPart &held, const fem::Resultant &load, const double strength,
+                const Motions &slides)
 {
   const auto size_of = [](const Numbers &q) {
     double squares = 0;
@@ -155,7 +198,10 @@ void check_part(const Context &context, const HeldPart &held, const fem::Resulta
   const double size = size_of(b);
   const double scale = size > 0 ? size : strength > 0 ? strength : 1;
   const Nearest nearest = nearest_point(set, b, 1e-9 * scale);
-  if (nearest.distance > 0) refuse_load(context, held, held.motion(nearest.away), load);
+  if (nearest.distance > 0) {
+    if (!slides.empty()) refuse_slide(context, held, set, b, held.motion(nearest.away), slides);
+    refuse_load(context, held, held.motion(nearest.away), load);
+  }
 
   const double shift = 1e-6 * scale;
   Nearest worst;
@@ -167,13 +213,18 @@ void check_part(const Context &context, const HeldPart &held, const fem::Resulta
       if (outside.distance > worst.distance * (1 + 1e-6)) worst = outside;
     }
   }
-  if (worst.distance > 0) refuse_edge(context, held, held.motion(worst.away), scale);
+  if (!(worst.distance > 0)) return;
+  if (!slides.empty()) refuse_slide(context, held, set, b, held.motion(worst.away), slides);
+  refuse_edge(context, held, held.motion(worst.away), scale);
 }
 
 /// Motions that change no gap: neither prescribed displacements nor contact stop them; collective.            (9.2)
-std::vector<Motions> sliding_motions(const Comm &comm, const Reactions &reactions, const std::vector<Motions> &motions)
+/// @param friction  whether those that slide over friction are stopped too
+std::vector<Motions> sliding_motions(const Comm &comm, const Reactions &reactions, const std::vector<Motions> &motions,
+                                     const bool friction)
 {
   const auto along = to_host(reactions.along);
+  const auto slide = to_host(reactions.slide);
   const auto part = to_host(reactions.part);
   std::vector<Motions> rows(motions.size());
   for (std::size_t i = 0; i < part.extent(0); ++i) {
@@ -181,6 +232,10 @@ std::vector<Motions> sliding_motions(const Comm &comm, const Reactions &reaction
     RigidMotion row;
     for (int k = 0; k < 6; ++k) row[k] = along(i, k);
     rows[part(i)].push_back(row);
+    for (int c = 0; c < 3 && friction && slide.extent(0) > 0; ++c) {
+      for (int k = 0; k < 6; ++k) row[k] = slide(i, c, k);
+      if (dot(row, row) > 0) rows[part(i)].push_back(row);
+    }
   }
   rows = fem::independent_rows_of_all(comm, rows, fem::rigid_tolerance);
   std::vector<Motions> sliding;
@@ -214,11 +269,13 @@ Support check_support(const fem::Discretization &d, const FreeParts &body, const
   const Context context{d, parts, contact, options, units};
   const Reactions reactions = reactions_of(d, parts, contact);
   const auto loads = fem::resultants(d, parts, applied_load);
-  const std::vector<Motions> sliding = sliding_motions(comm, reactions, motions);
+  const std::vector<Motions> sliding = sliding_motions(comm, reactions, motions, true);
+  const std::vector<Motions> slides = // what friction alone holds
+      contact.friction.anywhere ? sliding_motions(comm, reactions, motions, false) : sliding;
   for (int p = 0; p < parts.size(); ++p) {
     if (!sliding[p].empty()) refuse_free(context, p, sliding[p], loads[p]);
     if (!motions[p].empty())
-      check_part(context, HeldPart(comm, reactions, p, motions[p]), loads[p], reactions.strength[p]);
+      check_part(context, HeldPart(comm, reactions, p, motions[p]), loads[p], reactions.strength[p], slides[p]);
   }
   return support;
 }

@@ -73,7 +73,7 @@ TEST(Penalty, IsBoundedByWhatDoublePrecisionBears)
   for (const double much : {1e15, 1.7e308}) {
     const Scene scene(std::vector{touching(much)});
     expect_penalties(scene, [](int, const Point &) { return 1e8 * own_stiffness(); });
-    EXPECT_FALSE(scene.iterate->raise_penalty());
+    EXPECT_FALSE(scene.iterate->raise_penalty(*scene.vector(0, 0)));
     expect_penalties(scene, [](int, const Point &) { return 1e8 * own_stiffness(); });
   }
 }
@@ -84,10 +84,10 @@ TEST(Penalty, RisesToTheOneOfItsOwnChoiceAtLeastAndUpToTheBound)
   const auto rises = [](const double given, const std::vector<double> &expected) {
     const Scene scene(std::vector{touching(given)});
     for (const double penalty : expected) {
-      EXPECT_TRUE(scene.iterate->raise_penalty());
+      EXPECT_TRUE(scene.iterate->raise_penalty(*scene.vector(0, 0)));
       expect_penalties(scene, [&](int, const Point &) { return penalty; });
     }
-    EXPECT_FALSE(scene.iterate->raise_penalty());
+    EXPECT_FALSE(scene.iterate->raise_penalty(*scene.vector(0, 0)));
     expect_penalties(scene, [&](int, const Point &) { return expected.back(); });
   };
   rises(0, {1e7 * own, 1e8 * own});
@@ -100,7 +100,7 @@ TEST(Penalty, RaisedAtOneNodeIsARaiseOnAllRanks)
 {
   // Given at the bound below, left open beside.
   const Scene scene(std::vector{touching(1e300), beside(0)});
-  EXPECT_TRUE(scene.iterate->raise_penalty());
+  EXPECT_TRUE(scene.iterate->raise_penalty(*scene.vector(0, 0)));
   expect_penalties(scene, [](const int side, const Point &x) {
     if (side == 0) return 1e8 * own_stiffness();
     if (x[1] == 0) return 1e5 * slanted_corner_stiffness();
@@ -128,12 +128,12 @@ TEST(Penalty, RaisedIsInTheHessianOfClosedNodesAtOnce)
   iterate.update_hessian(*scene.vector(0, 0)); // all closed
   EXPECT_NEAR(stiffness_of_middle(scene), elastic + 40 * h, 1e-12 * elastic);
   const int before = iterate.hessian()->revision();
-  ASSERT_TRUE(iterate.raise_penalty());
+  ASSERT_TRUE(iterate.raise_penalty(*scene.vector(0, 0)));
   EXPECT_GT(iterate.hessian()->revision(), before);
   EXPECT_NEAR(stiffness_of_middle(scene), elastic * (1 + 1e5), 1e-12 * 1e5 * elastic);
   iterate.update_hessian(*scene.vector([](const Point &) { return Point{0, 1, 0}; })); // all open
   EXPECT_NEAR(stiffness_of_middle(scene), elastic, 1e-12 * elastic);
-  ASSERT_TRUE(iterate.raise_penalty());
+  ASSERT_TRUE(iterate.raise_penalty(*scene.vector(0, 0)));
   EXPECT_NEAR(stiffness_of_middle(scene), elastic, 1e-12 * elastic);
 }
 
@@ -143,7 +143,7 @@ TEST(Penalty, RaisedIsInTheGradientEvenAfterTheOriginHasMoved)
   auto &iterate = *scene.iterate;
   auto u = scene.vector([](const Point &) { return Point{}; });
   iterate.move_origin(*u);
-  ASSERT_TRUE(iterate.raise_penalty());
+  ASSERT_TRUE(iterate.raise_penalty(*scene.vector(0, 0)));
   const double r = 1e5 * own_stiffness();
   u = scene.vector([&](const Point &) { return Point{0, -1 / r, 0}; }); // presses lambda + r v from 1.5 to 2.5
   iterate.update_multipliers(*u);

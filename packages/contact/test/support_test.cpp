@@ -94,6 +94,57 @@ TEST(Support, OfAClampedBodyNeedsNoContact)
   }
 }
 
+ContactOptions rough(const std::string &side, const double yield, const double mu, const double bound = 0)
+{
+  ContactOptions options = on(side, yield);
+  options.friction_coefficient = ScalarField(mu);
+  options.friction_bound = ScalarField(bound);
+  return options;
+}
+
+TEST(SupportByFriction, HoldsWhatThePressureTimesItsCoefficientIs)
+{
+  // 4 m long, 1 m high: pressed by 4 * 10 N/m, friction holds 0.3 of it; one more for each of 4 m.
+  for (const double bound : {0., 1.}) {
+    const double limit = 0.3 * 40 + 4 * bound;
+    const auto pushed = [&](const double by, const double yield) {
+      return Scene{plate(), {}, {rough("bottom", yield, 0.3, bound)}, {pull("top", 0, -10), pull("left", by, 0)}};
+    };
+    for (const double yield : {inf, 60.}) {
+      EXPECT_TRUE(pushed((1 - 1e-4) * limit, yield).check().by_contact_only);
+      EXPECT_TRUE(pushed(-(1 - 1e-4) * limit, yield).check().by_contact_only);
+      std::ostringstream holds;
+      holds << "friction holds at most " << limit << " [N/m]";
+      pushed((1 + 1e-4) * limit, yield)
+          .refuses({"support: the load pushes the body over the foundation", holds.str(),
+                    "Lower the load, raise the friction"});
+      pushed((1 + 1e-10) * limit, yield).refuses({"translation along (1, 0)", "is all that friction holds"});
+    }
+  }
+}
+
+TEST(SupportByFriction, HoldsInEveryDirectionOfAPlane)
+{
+  const auto pushed = [&](const double x, const double z) {
+    return Scene{
+        brick(), {}, {rough("bottom", inf, 0.5)}, {pull("top", 0, -10), pull("left", x, 0), pull("back", 0, 0, z)}};
+  };
+  // 2 m^2 times 10 Pa times 0.5 = 10 N; sides of 1 m^2 and 2 m^2. The load tilts the body, too: small against its weight.
+  EXPECT_TRUE(pushed(3, 0).check().by_contact_only);
+  EXPECT_TRUE(pushed(2, 1).check().by_contact_only);
+  pushed(11, 0).refuses({"support: the load"});
+}
+
+TEST(SupportByFriction, OfTrescaHoldsABodyThatDoesNotTouch)
+{
+  const auto pulled = [&](const double by) {
+    return Scene{plate(), {hold("left", {1})}, {rough("bottom", inf, 0, 2)}, {pull("right", by, 0)}};
+  };
+  // 2 Pa on 4 m, but for the corner whose normal displacement is prescribed: a quarter of a metre.
+  EXPECT_TRUE(pulled(7.49).check().by_contact_only);
+  pulled(7.51).refuses({"friction holds at most 7.5 [N/m]"});
+}
+
 TEST(Support, OfARolledBodyIsTheFoundationUpToItsLimit)
 {
   // 4 m that carry 25 N/m^2 each, at any size of the body.

@@ -27,10 +27,29 @@ struct Row {
   int state;
   double area;  ///< weight in 3D [m^2]
   double s = 0; ///< arc length [m]
+  std::array<double, 3> traction{}, slip{};
+  double used = 0;
+  int slip_state = 0;
 };
 
 using Edge = std::array<int, 2>; // rows at its ends
 using Chain = std::vector<int>;  // rows in the order of the walk
+
+/// What friction adds to all ranks' rows; rank 0 only.
+void gather_friction(const Comm &comm, const ContactTable &table, const int dim, std::vector<Row> &rows)
+{
+  const std::size_t n = table.id.extent(0);
+  const auto traction = gathered_by_root(comm, table.traction.data(), n * dim);
+  const auto slip = gathered_by_root(comm, table.slip.data(), n * dim);
+  const auto used = gathered_by_root(comm, table.used.data(), n);
+  const auto state = gathered_by_root(comm, table.slip_state.data(), n);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    std::copy_n(traction.begin() + k * dim, dim, rows[k].traction.begin());
+    std::copy_n(slip.begin() + k * dim, dim, rows[k].slip.begin());
+    rows[k].used = used[k];
+    rows[k].slip_state = state[k];
+  }
+}
 
 /// All ranks' rows ordered by id; rank 0 only.
 std::vector<Row> gather_rows(const Comm &comm, const ContactTable &table, const int dim)
@@ -50,6 +69,7 @@ std::vector<Row> gather_rows(const Comm &comm, const ContactTable &table, const 
     std::copy_n(x.begin() + k * dim, dim, row.x.begin());
     rows.push_back(row);
   }
+  if (table.friction) gather_friction(comm, table, dim, rows);
   std::sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) { return a.id < b.id; });
   return rows;
 }
@@ -129,8 +149,9 @@ void append(std::string &text, const double value)
   text += ',';
 }
 
-std::string csv(const std::vector<Row> &rows, const int dim, const std::string &side)
+std::string csv(const std::vector<Row> &rows, const int dim, const std::string &side, const bool friction)
 {
+  static const std::array<const char *, 3> slip_states = {"none", "sticks", "slips"};
   static const std::array<const char *, 3> states = {"open", "closed", "yielding"};
   std::string text;
   for (const Row &row : rows) {
@@ -142,19 +163,29 @@ std::string csv(const std::vector<Row> &rows, const int dim, const std::string &
     text += states[row.state];
     text += ',' + side + ',';
     append(text, row.dent);
+    if (friction) {
+      for (const auto &vector : {row.traction, row.slip})
+        for (int k = 0; k < dim; ++k) append(text, vector[k]);
+      append(text, row.used);
+      text += std::string(slip_states.at(row.slip_state)) + ',';
+    }
     text.back() = '\n';
   }
   return text;
 }
 
-std::string heading(const int dim, const UnitNames &units)
+std::string heading(const int dim, const UnitNames &units, const bool friction)
 {
   const std::string length = units.heading(unit::length, false);
   std::string text;
   for (const char *const name : {"x", "y", dim == 2 ? "s" : "z"}) text += name + length + ',';
   if (dim == 3) text += "area" + units.heading(unit::extent, false) + ',';
-  return text + "u_nu" + length + ",gap" + length + ",pressure" + units.heading(unit::pressure, false) +
-         ",state,side,dent" + length + '\n';
+  text += "u_nu" + length + ",gap" + length + ",pressure" + units.heading(unit::pressure, false) + ",state,side,dent" +
+          length;
+  const std::string axes = "xyz";
+  for (int k = 0; k < dim && friction; ++k) text += std::string(",q_") + axes[k] + units.heading(unit::pressure, false);
+  for (int k = 0; k < dim && friction; ++k) text += std::string(",slip_") + axes[k] + length;
+  return text + (friction ? ",friction_used,friction_state\n" : "\n");
 }
 
 void require_equal_lengths(const Comm &comm, const ContactTable &table)
@@ -167,6 +198,12 @@ void require_equal_lengths(const Comm &comm, const ContactTable &table)
     if (length != n)
       message = "output: the contact table's columns must have a value for each of " + std::to_string(n) +
                 " nodes, got " + std::to_string(length);
+  if (table.friction)
+    for (const std::size_t length :
+         {table.traction.extent(0), table.slip.extent(0), table.used.extent(0), table.slip_state.extent(0)})
+      if (length != n)
+        message = "output: the contact table's columns of friction must have a value for each of " + std::to_string(n) +
+                  " nodes, got " + std::to_string(length);
   throw_if_any(comm, ExitCode::internal_error, message);
 }
 
@@ -191,6 +228,8 @@ void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, con
                        const UnitNames &units)
 {
   std::string text;
+  const bool friction =
+      std::any_of(tables.begin(), tables.end(), [](const ContactTable &table) { return table.friction; });
   for (const ContactTable &table : tables) {
     require_equal_lengths(*comm, table);
     const int dim = max_all(*comm, static_cast<int>(table.position.extent(1)));
@@ -200,8 +239,8 @@ void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, con
     on_root(*comm, ExitCode::internal_error, [&] {
       require_unique(rows);
       if (dim == 2) rows = along_the_surface(rows, edges_of(rows, facets, width));
-      if (text.empty()) text = heading(dim, units);
-      text += csv(rows, dim, csv_quoted(table.side));
+      if (text.empty()) text = heading(dim, units, friction);
+      text += csv(rows, dim, csv_quoted(table.side), friction);
     });
   }
   on_root(*comm, ExitCode::internal_error, [&] { write_text(path, text); });

@@ -10,7 +10,9 @@ namespace rpc
 
 /// A stiffness with an update that changes often: a block at each of some nodes.
 ///
-///     H = K + sum_i e_i U_i e_i^T,    U_i dim x dim, symmetric or not                               doc/theory.md (4.2a)
+///     H = K + sum_i e_i (U_i + C_i) e_i^T,    U_i, C_i dim x dim                                    doc/theory.md (4.2a)
+///
+/// U is symmetric positive semidefinite, and what preconditioners see; C, as a rule 0, need not be symmetric (12.5).
 ///
 /// The update is kept as such and never mixed with K: it may be very much larger, and K's digits would be lost. All members are
 /// collective.
@@ -29,27 +31,28 @@ public:
 
   /// Ku <- K u.
   void apply_base(const Vector &u, Vector &Ku) const { K_->apply(u, Ku); }
-  /// y <- H x and y <- K x, up to single precision where that saves time: for preconditioners. See allow_rounding().
+  /// y <- (H - C) x and y <- K x, up to single precision where that saves time: for preconditioners. See allow_rounding().
   void apply_rounded(const MultiVector &x, MultiVector &y) const;
   void apply_base_rounded(const MultiVector &x, MultiVector &y) const;
   /// Keeps K's rows in single precision too, where that saves time, or no longer.
   void allow_rounding(bool allowed);
 
   /// The update at each node becomes the sum of the blocks of its points; it is 0 at nodes without a point.
-  /// @param points  at some of nodes()   @param block  (points, dim, dim)
+  /// @param points  at some of nodes()   @param block  (points, dim, dim) U
+  /// @param coupling  (points, dim, dim) C; empty: 0
   /// @return number of nodes where it changed, over all ranks
   /// @throws rpc::Error (internal_error) on all ranks if a point lies at another node
-  GO set(const NodePoints &points, const DeviceView<double ***> &block);
+  GO set(const NodePoints &points, const DeviceView<double ***> &block, const DeviceView<double ***> &coupling = {});
   /// Grows with each change of H.
   int revision() const { return revision_; }
-  /// Whether all blocks of the update are symmetric, up to rounding.
+  /// Whether H is symmetric, up to rounding.
   bool is_symmetric() const { return symmetric_; }
 
   const StiffnessOperator &base() const { return *K_; }
   const RCP<const StiffnessOperator> &shared_base() const { return K_; }
   int dofs_per_node() const { return K_->dofs_per_node(); }
   const DeviceView<LO *> &nodes() const { return nodes_; }
-  /// (nodes, dim, dim) U, those of K, and those of H.
+  /// (nodes, dim, dim) U, the blocks of K, and those of H without C.
   const DeviceView<double ***> &update() const { return update_; }
   const DeviceView<double ***> &base_blocks() const { return base_blocks_; }
   DeviceView<double ***> blocks() const;
@@ -59,6 +62,7 @@ private:
   std::shared_ptr<const RoundedRows> rounded_; // or null
   DeviceView<LO *> nodes_;
   DeviceView<double ***> base_blocks_, update_;
+  DeviceView<double ***> coupling_; // empty: 0
   bool symmetric_ = true;
   int revision_ = 0;
 };

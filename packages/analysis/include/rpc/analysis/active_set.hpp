@@ -43,6 +43,7 @@ public:
 
 private:
   Verdict choose(const Vector &u);
+  bool is_new_choice();
   bool makes_headway();
   Verdict give_up(const Vector &u);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);

@@ -16,9 +16,10 @@ struct Energies {
       0; ///< in the foundation's springs, sum of w c p^2/2; where dents do not stay all that denting took
   double dissipated = 0; ///< sum of w int (xi + H w) dw
   double work = 0;      ///< of loads, prescribed displacements and the foundation's own motion, by the trapezoidal rule
-  double imbalance = 0; ///< work - strain - foundation - dissipated: error of the trapezoidal rule alone
+  double imbalance = 0; ///< work - strain - foundation - dissipated - friction: error of the trapezoidal rule alone
+  double friction = 0;  ///< dissipated by slip, by the trapezoidal rule                                       (12.9)
 
-  double largest() const; ///< of the four, in size
+  double largest() const; ///< of all but the imbalance, in size
 };
 
 /// What a step leaves for the next one: plain data on its mesh. doc/theory.md, section 11

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/algebra/stiffness_operator.hpp"
+#include "rpc/analysis/memory.hpp"
 #include "rpc/analysis/nested_mesh.hpp"
 #include "rpc/contact/contact_nodes.hpp"
 #include "rpc/contact/support.hpp"
@@ -30,6 +31,9 @@ struct Model {
   Model seen_at(double t) const;
 };
 
+/// How far each side's foundation moves from one time to another [m].
+std::vector<Point> foundations_moved(const Model &model, double from, double to);
+
 /// What acts on a body at one time: cheap to make again. Plain data.
 struct Step {
   double time = 1;
@@ -51,9 +55,10 @@ public:
   Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, double t = 1);
 
   /// Loads, prescribed displacements and contact nodes at one time. Collective.
-  /// @param dents  that earlier steps have left, (owned nodes; sides) [m]; null: none
+  /// @param dents   that earlier steps have left, (owned nodes; sides) [m]; null: none
+  /// @param before  what the step before has left, from which slip counts; null: the body was at rest
   /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()
-  Step step(double t, const MultiVector *dents = nullptr) const;
+  Step step(double t, const MultiVector *dents = nullptr, const Memory *before = nullptr) const;
   /// The same scene on one of the boxes that this one leads to: the first that has at most a `factor`-th of its cells along the direction
   /// with most. Null where there is none, and for order 2: linear elements, too stiff in bending, predict worse. Collective.
   std::shared_ptr<const Problem> coarser(double factor, double t) const;

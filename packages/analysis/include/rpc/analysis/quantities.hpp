@@ -28,7 +28,7 @@ inline constexpr std::array<Quantity<PhaseSeconds>, 8> phase_seconds{{
 }};
 static_assert(sizeof(PhaseSeconds) == phase_seconds.size() * sizeof(double), "a phase has no line in the table");
 
-inline constexpr std::array<Quantity<Energies>, 5> energy_quantities{{
+inline constexpr std::array<Quantity<Energies>, 6> energy_quantities{{
     {&Energies::strain, "strain_energy", unit::energy, Combine::sum, {true, 1, "since the start", "strain "}},
     {&Energies::foundation,
      "foundation_energy",
@@ -42,6 +42,13 @@ inline constexpr std::array<Quantity<Energies>, 5> energy_quantities{{
      {true, 3, "since the start", "dissipated "}},
     {&Energies::work, "work", unit::energy, Combine::sum, {true, 4, "since the start", "work "}},
     {&Energies::imbalance, "energy_imbalance", unit::energy, Combine::sum, {true, 5, "since the start", "imbalance "}},
+    {&Energies::friction,
+     "dissipated_by_friction",
+     unit::energy,
+     Combine::sum,
+     {true, 6, "since the start", "friction "},
+     nullptr,
+     Needs::friction},
 }};
 static_assert(sizeof(Energies) == energy_quantities.size() * sizeof(double), "an energy has no line in the table");
 

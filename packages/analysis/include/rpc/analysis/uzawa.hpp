@@ -34,6 +34,8 @@ struct Minimization {
   std::string reason;                ///< why not, if not
   bool active_set_confirmed = false; ///< u is the minimum for the iterate's active set, whose pressures obey the law
   int line_search_steps = 0;         ///< of the steps, those of Newton's with its line search
+  bool bounds_follow =
+      false; ///< friction's bounds were given: they follow the pressures from one iteration to the next
 };
 
 /// How the Uzawa iteration went, so far or to its end.

@@ -9,18 +9,16 @@ namespace rpc::contact
 
 /// The next active set of the primal-dual active-set iteration, and the pressures that it was chosen by.
 struct ActiveSetChoice {
-  DeviceView<State *> state;     ///< (contact nodes)
-  DeviceView<double *> pressure; ///< (contact nodes) [Pa]
-  GO changes = 0;                ///< points on all ranks whose state is to change
-  double overshoot = 0;          ///< forces of closed points that the law does not admit, over those that it admits
+  DeviceView<State *> state;            ///< (contact nodes)
+  DeviceView<double *> pressure;        ///< (contact nodes) [Pa]
+  DeviceView<Slip *> slip = {};         ///< (contact nodes) of friction; empty: there is none
+  DeviceView<double **> direction = {}; ///< (contact nodes, dim) h where a point slips
+  DeviceView<double *> violation = {};  ///< (contact nodes) of the law by points whose state is to change, else 0 [Pa]
+  DeviceView<double **> traction = {};  ///< (contact nodes, dim) along the side that slip was chosen by [Pa]
+  GO changes = 0;                       ///< points on all ranks whose state is to change
+  double overshoot = 0;   ///< forces of closed points that the law does not admit, over those that it admits
   bool confirmed = false; ///< no changes: u and the pressures obey the contact law, up to what the penalty leaves
   std::uint64_t fingerprint = 0; ///< of all states on all ranks: equal for equal ones
-};
-
-/// The states that the Hessian belongs to. Plain data.
-struct ActiveSet {
-  DeviceView<State *> state; ///< (points)
-  bool chosen = false;       ///< else the states are those of K itself, all open, and say nothing about pressures
 };
 
 /// The first choice, from multipliers and penetrations, before there is an active set.                            (5.8)
@@ -35,6 +33,11 @@ ActiveSetChoice first_choice(const SmoothedFunctional &functional, const ActiveS
 ActiveSetChoice next_choice(const SmoothedFunctional &functional, const ActiveSet &present, const Vector &u,
                             const DeviceView<double *> &own, double negligible);
 
+/// The choice without the changes of points that violate the law less than `part` of the one that does so most: for choices that
+/// go in circles. With friction only.
+ActiveSetChoice largest_changes(const SmoothedFunctional &functional, const ActiveSet &present,
+                                const ActiveSetChoice &choice, double part);
+
 /// Takes the choice's states for the active set, its pressures for multipliers as far as the states allow. Nodes that close are
 /// moved onto the foundation: r v would make a large residual of a small distance.                              (5.7)
 void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, ActiveSet &active, Vector &u);
@@ -44,9 +47,19 @@ void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functi
 double pressure_error(const SmoothedFunctional &functional, const ActiveSet &active, const Vector &u,
                       const DeviceView<double *> &own);
 
-/// (points, dim, dim) What an active set adds to K: the stiffness of the law's branch, and a weak spring where a point is not
-/// closed [N/m].                                                                                           (4.2a), (9.8)
+/// (points, dim, dim) What points add to K, see UpdatedOperator [N/m].
+struct AddedBlocks {
+  DeviceView<double ***> block;
+  DeviceView<double ***> coupling = {}; ///< empty: there is no friction
+};
+
+/// The stiffness of an active set's branches at u, and a weak spring where a point is not closed, and along the side where it slips. (4.2a), (9.8)
 /// @param spring  in units of the points' scaling, >= 0
-DeviceView<double ***> added_blocks(const SmoothedPoints &points, const DeviceView<State *> &active, double spring);
+AddedBlocks added_blocks(const SmoothedPoints &points, const ActiveSet &active, const Vector &u, double spring);
+/// The same of the functional itself at u, whose friction does not follow the pressure: symmetric.          (4.2a), (12.4)
+AddedBlocks functional_blocks(const SmoothedPoints &points, const Vector &u, double spring);
+
+/// (points, dim) The tractions of an active set along the side, whether the law admits them or not [Pa].            (12.5)
+DeviceView<double **> active_set_tractions(const SmoothedPoints &points, const ActiveSet &active, const Vector &u);
 
 } // namespace rpc::contact

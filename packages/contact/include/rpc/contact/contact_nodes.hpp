@@ -2,6 +2,7 @@
 
 #include "rpc/algebra/node_points.hpp"
 #include "rpc/contact/contact_options.hpp"
+#include "rpc/contact/friction_points.hpp"
 #include "rpc/contact/law/foundations.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/elasticity.hpp"
@@ -29,6 +30,7 @@ struct ContactNodes : NodePoints {    // a group is a side; `direction` is the n
   DeviceView<double *> dent;          ///< (n) w >= 0 [m], what earlier steps have left of dents
   DeviceView<double *> free_gap;      ///< (n) g + w - normal . u_prescribed [m]
   Foundations law;                    ///< (n) the foundation at the dents of earlier steps
+  FrictionPoints friction;            ///< (n) friction along the side; empty where no side has any
   DeviceView<double *> scaling;       ///< (n) rho = E / diameter, with the largest E around the node [Pa/m]
   DeviceView<double *> given_penalty; ///< (n) r of the deck [Pa/m], 0 where it is to be chosen
   DeviceView<char *> fixed;           ///< (n) 1 where direction = 0
@@ -40,16 +42,23 @@ struct ContactNodes : NodePoints {    // a group is a side; `direction` is the n
   int num_sides() const { return num_groups(); }
 };
 
+/// What slip counts from: the step before.
+struct SlipStart {
+  const Vector &displacement; ///< (owned dofs) from 0 [m]
+  std::vector<Point> motion;  ///< of each side's foundation since then [m]
+};
+
 /// Collective.
 /// @param materials  what the body is made of, for `scaling`
 /// @param dents      w >= 0 [m] that earlier steps have left, (owned nodes; sides); null: none
+/// @param slip_start  null: slip counts from 0, and from foundations that have not moved
 /// @throws rpc::Error bad_input if a side does not exist, a number of the law is out of range, the gap is not finite somewhere,
 /// the normal leads from no node of a side to its obstacle, which does not move, or a node lies in the foundation and its normal does not cross
 /// the foundation's surface (the place is named); no_solution if a prescribed displacement presses a node into a rigid
 /// foundation
 ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<ContactOptions> &options,
                            const fem::DirichletDofs &dirichlet, const fem::Materials &materials = {},
-                           const MultiVector *dents = nullptr);
+                           const MultiVector *dents = nullptr, const SlipStart *slip_start = nullptr);
 
 /// The sides of a mesh that the options name.
 /// @throws rpc::Error (bad_input) if one does not exist
@@ -60,6 +69,18 @@ template <class U>
 KOKKOS_INLINE_FUNCTION double penetration(const ContactNodes &c, const LO i, const U &u)
 {
   return along_direction(c, i, u) - c.free_gap(i);
+}
+
+/// e_i = (I - nu_i nu_i^T) u_i - from_i at one node with friction, for kernels [m].                              (12.2)
+template <class U>
+KOKKOS_INLINE_FUNCTION Along slip(const ContactNodes &c, const LO i, const U &u)
+{
+  Along moved;
+  for (int k = 0; k < c.dim; ++k) moved.x[k] = u(c.dof(i, k));
+  double normal = 0;
+  for (int k = 0; k < c.dim; ++k) normal += c.normal(i, k) * moved.x[k];
+  for (int k = 0; k < c.dim; ++k) moved.x[k] -= normal * c.normal(i, k) + c.friction.from(i, k);
+  return moved;
 }
 
 } // namespace rpc::contact

@@ -30,7 +30,11 @@ struct ContactOptions {
   ScalarField yield_stress;                ///< xi > 0 [Pa], may be inf
   ScalarField hardening = ScalarField(0.); ///< H >= 0 [Pa/m], growth of the yield stress with the dent
   ScalarField stiffness = ScalarField(
-      std::numeric_limits<double>::infinity()); ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
+      std::numeric_limits<double>::infinity());       ///< k > 0 [Pa/m] of the foundation before it yields, inf: rigid
+  ScalarField friction_coefficient = ScalarField(0.); ///< mu >= 0
+  ScalarField friction_bound = ScalarField(0.);       ///< s_0 >= 0 [Pa], whatever the pressure
+  ScalarField friction_limit = ScalarField(
+      std::numeric_limits<double>::infinity()); ///< s_max > 0 [Pa], which friction does not exceed; may be inf
   ScalarField gap; ///< g [m], distance to the foundation along the normal; < 0 is initial penetration. Without obstacle
   Obstacle obstacle; ///< the foundation's surface, from which the gap follows
   Normal normal = Normal::surface;
@@ -39,6 +43,11 @@ struct ContactOptions {
   bool remembers = true; ///< dents stay from step to step
   DentsMoveWith dents_move_with = DentsMoveWith::body;
 
+  bool has_friction() const
+  {
+    const auto is_0 = [](const ScalarField &field) { return field.is_constant() && field.constant == 0; };
+    return !is_0(friction_coefficient) || !is_0(friction_bound);
+  }
   const std::string &name_in_results() const { return name.empty() ? side : name; }
 };
 
@@ -59,7 +68,10 @@ struct LawParameter {
   /// "deck: "Contact->Yield Stress" must be > 0 [Pa] ..., got "
   std::string rule(const std::string &path) const;
 };
-/// Yield stress, hardening, stiffness.
-extern const std::array<LawParameter, 3> law_parameters;
+/// Yield stress, hardening, stiffness; friction's coefficient, bound and limit.
+extern const std::array<LawParameter, 6> law_parameters;
+
+/// Whether the law of a side has friction.
+bool has_friction(const std::vector<ContactOptions> &options);
 
 } // namespace rpc::contact

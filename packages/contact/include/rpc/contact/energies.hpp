@@ -14,7 +14,7 @@ struct ContactEnergy {
       0; ///< sum_i w_i (lambda_i - H_i d_i / 2) d_i, d = (v - c lambda)+ [J]; where the law holds the work that new dents
          ///< have taken up; perfectly plastic: lambda_i v_i+                                                     (3.14)
   double duality_gap =
-      0; ///< sum_i w_i (psi_i(v_i) + psi_i*(lambda_i) - lambda_i v_i) [J], each term >= 0: what the contact
+      0; ///< sum_i w_i (psi_i(v_i) + psi_i*(lambda_i) - lambda_i v_i) [J], friction's s |e| - q . e included, each term >= 0: what the contact
          ///< law misses, with twice the largest multiplier in place of any higher xi               (5.5)
 };
 
@@ -25,12 +25,15 @@ struct ContactEnergy {
 double energy(const Operator &K, const fem::ElasticProblem &elastic, const ContactNodes &points,
               const ContactState &state);
 
-/// Largest violation of the contact law by (u, lambda), dimensionless: of w = 0 in paper (7).                       (5.3)
+/// Largest violation of the laws of contact and friction by (u, lambda), dimensionless: of w = 0 in paper (7).  (5.3), (12.6)
 double contact_law_residual(const ContactNodes &points, const ContactState &state);
 
 ContactEnergy contact_energy(const ContactNodes &points, const ContactState &state);
 
-/// sum_i w_i lambda_i m_i, the force of the body on the foundation at the unknowns (owned dofs) [N].
+/// sum_i w_i s_i |e_i| of this step [J]: what Tresca's functional has beside energy().                             (12.2)
+double friction_work(const ContactNodes &points, const ContactState &state);
+
+/// sum_i w_i (lambda_i m_i + lambda_tau,i), the force of the body on the foundation at the unknowns (owned dofs) [N].
 Vector multiplier_forces(const ContactNodes &points, const Multipliers &multiplier, const RCP<const Map> &dofs);
 
 } // namespace rpc::contact

@@ -49,12 +49,16 @@ public:
 
   // The active set: see active_set.hpp.
   ActiveSetChoice choose_active_set(const Vector &u, double negligible) const;
+  ActiveSetChoice largest_changes(const ActiveSetChoice &choice, const double part) const
+  {
+    return contact::largest_changes(functional_, active_, choice, part);
+  }
   /// Takes a choice, and brings hessian() to it.
   void take_active_set(const ActiveSetChoice &choice, Vector &u);
   /// @param gradient  of the functional itself at u   (5.6)
   void active_set_gradient(const Vector &u, const Vector &gradient, Vector &F) const
   {
-    functional_.active_set_gradient(active_.state, u, gradient, F);
+    functional_.active_set_gradient(active_, u, gradient, F);
   }
   double pressure_error(const Vector &u) const { return contact::pressure_error(functional_, active_, u, own_); }
   StateCounts count_states(const Vector &u) const { return functional_.count_states(u); }
@@ -82,7 +86,8 @@ public:
   /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
   void reset_multipliers();
   /// Raises the penalties, as far as double precision bears it. @return whether any rose, on any rank             (5.12)
-  bool raise_penalty();
+  /// @param u  where the active set was taken
+  bool raise_penalty(const Vector &u);
 
   // Origin and state.
   /// Starts from a state, such as that of the step before or another mesh's: takes its multipliers, as near as the law admits them.
@@ -110,8 +115,8 @@ public:
 
 private:
   void take_origin(Vector &u, const Vector &out_of_balance);
-  GO update_stiffness(); // brings hessian() to the active set; number of nodes whose stiffness changed
-  double replace_multipliers(const DeviceView<double *> &p);
+  GO update_stiffness(const Vector &u); // brings hessian() to the active set; number of nodes whose stiffness changed
+  double replace_multipliers(const DeviceView<double *> &p, const DeviceView<double **> &q);
 
   fem::DirichletDofs dirichlet_;
   ContactNodes points_;

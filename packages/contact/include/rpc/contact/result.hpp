@@ -13,7 +13,7 @@ namespace rpc::contact
 struct ContactSums {
   GO num_nodes = 0; ///< that have a weight
   std::array<double, 3>
-      force{}; ///< of the foundation on the body, sum of -w p normal [N], in the plane per m; of an axisymmetric body along its axis
+      force{}; ///< of the foundation on the body, sum of -w (p normal + q) [N], in the plane per m; of an axisymmetric body along its axis
   // Numbers: units and how they combine stand in contact_quantities.
   double max_pressure = 0;
   double max_penetration = 0;         ///< largest u_nu - g where > 0
@@ -24,12 +24,17 @@ struct ContactSums {
   double dent_volume = 0; ///< sum of w dent
   double dissipated = 0;  ///< sum of w int (xi + H w) dw over what this step adds to the dents               (3.14)
   double foundation_energy = 0; ///< sum of w c p^2/2, stored in the foundation's springs
+  double max_shear = 0;         ///< largest |q|
+  double max_slip = 0;          ///< largest |e| of this step where p > 0
+  double stick_length = 0;      ///< sum of weights where friction acts, |q| < s
+  double slip_length = 0;       ///< the same with |q| = s
+  double friction_work = 0;     ///< sum of w s |e| of this step
 
   ContactSums &operator+=(const ContactSums &other);
 };
 
 /// The numbers of ContactSums, in the order of the summary. Energies are shown as sums over the steps, by analysis.
-inline constexpr std::array<Quantity<ContactSums>, 9> contact_quantities{{
+inline constexpr std::array<Quantity<ContactSums>, 14> contact_quantities{{
     {&ContactSums::max_pressure,
      "max_pressure",
      unit::pressure,
@@ -57,15 +62,38 @@ inline constexpr std::array<Quantity<ContactSums>, 9> contact_quantities{{
     {&ContactSums::dent_volume, "dent_volume", unit::volume, Combine::sum, {true, 4, "dents", "volume ", true}},
     {&ContactSums::dissipated, "dissipated_energy", unit::energy},
     {&ContactSums::foundation_energy, "foundation_energy", unit::energy},
+    {&ContactSums::max_shear,
+     "max_shear",
+     unit::pressure,
+     Combine::maximum,
+     {true, 7, "friction", "at most "},
+     nullptr,
+     Needs::friction},
+    {&ContactSums::max_slip,
+     "max_slip",
+     unit::length,
+     Combine::maximum,
+     {true, 8, "friction", "slip of the step at most "},
+     nullptr,
+     Needs::friction},
+    {&ContactSums::stick_length,
+     "stick_length",
+     unit::extent,
+     Combine::sum,
+     {true, 9, "friction", "sticks on "},
+     "stick_area",
+     Needs::friction},
+    {&ContactSums::slip_length,
+     "slip_length",
+     unit::extent,
+     Combine::sum,
+     {true, 10, "friction", "slips on "},
+     "slip_area",
+     Needs::friction},
+    {&ContactSums::friction_work, "friction_work", unit::energy, Combine::sum, {true}, nullptr, Needs::friction},
 }};
 static_assert(sizeof(ContactSums) == sizeof(GO) + (3 + contact_quantities.size()) * sizeof(double),
               "a number of ContactSums has no line in the table");
-
-/// Whether a side's law has friction: none of contact/law/ has yet. Tangential numbers appear where this holds.
-inline bool has_friction(const std::vector<ContactOptions> &)
-{
-  return false;
-}
 
 /// What a user reads off the contact sides: values at this rank's contact nodes, and sums over all ranks.
 struct ContactResult {
@@ -74,6 +102,11 @@ struct ContactResult {
   DeviceView<double *> dent;                ///< (n) w >= 0 [m], that of this step included                       (3.13)
   DeviceView<double *> pressure;            ///< (n) [Pa] >= 0
   DeviceView<int *> state;                  ///< (n) State: open where p = 0, yielded where p >= xi, else closed
+  // Friction; empty where there is none:
+  DeviceView<double **> traction; ///< (n, dim) q, of the body on the foundation [Pa]
+  DeviceView<double **> slip;     ///< (n, dim) e of this step [m], 0 where no friction acts
+  DeviceView<double *> used;      ///< (n) |q|/s, 0 where s = 0
+  DeviceView<int *> slip_state;   ///< (n) 0 no friction acts, 1 sticks, 2 slips
 
   std::vector<ContactSums> sides; ///< in the order of the contact sides
   ContactSums total;
@@ -97,7 +130,7 @@ DeviceView<double *> completed_pressure(const fem::Discretization &d, const std:
 double pressure_distance(const Comm &comm, const ContactNodes &c, const DeviceView<double *> &p,
                          const DeviceView<double *> &q);
 
-/// Nodal forces of the foundation on the body, -w p normal (owned dofs, [N]), prescribed components included.
+/// Nodal forces of the foundation on the body, -w (p normal + q) (owned dofs, [N]), prescribed components included.
 Vector contact_forces(const fem::Discretization &d, const ContactNodes &contact, const ContactResult &result);
 
 } // namespace rpc::contact

@@ -17,10 +17,10 @@ struct StateCounts {
 
 /// What the generalized Newton iteration minimizes for given multipliers, and its gradient: formulas alone.
 ///
-///     M(u) = u.Ku/2 - b.u + sum_i w_i Psi_i(v_i(u))            paper, M~(v, l) after theorem 5; doc/theory.md (4.1)
-///     F(u) = Ku - b + sum_i w_i Psi_i'(v_i) m_i                                                                 (4.2)
+///     M(u) = u.Ku/2 - b.u + sum_i w_i (Psi_i(v_i(u)) + Theta_i(e_i(u)))            paper, M~(v, l) after theorem 5; doc/theory.md (4.1)
+///     F(u) = Ku - b + sum_i w_i (Psi_i'(v_i) m_i + Theta_i'(e_i))                                                                 (4.2)
 ///
-/// with m_i the node's direction. Contact terms touch only contact rows. All vectors are on owned dofs; all members are const and
+/// with m_i the node's direction. Friction's Theta has bounds s_i that are given, SmoothedPoints::bound: M is convex (12.3). Contact terms touch only contact rows. All vectors are on owned dofs; all members are const and
 /// collective. Multipliers and penalties are views of the iterate's: their changes are seen.
 ///
 /// u is the displacement from where the functional's origin is: see from().
@@ -39,7 +39,7 @@ public:
   /// The gradient at u of the quadratic functional that an active set stands for: each point carries what the branch of its
   /// state says, whether the law admits it or not; perfectly plastic: lambda + r v, 0 or xi. (5.6)
   /// @param gradient  of the functional itself at u
-  void active_set_gradient(const DeviceView<State *> &active, const Vector &u, const Vector &gradient, Vector &F) const;
+  void active_set_gradient(const ActiveSet &active, const Vector &u, const Vector &gradient, Vector &F) const;
   /// One nonlinear sweep: each contact node moves along its direction to the minimum of a bound of M, in which nodes do not
   /// feel each other; M does not grow. All points at once: the result does not depend on an order. (4.6)
   /// @param coupled  (points) see coupled_stiffness()
@@ -53,9 +53,11 @@ public:
   /// (points) Psi_i'(v_i) [Pa].
   DeviceView<double *> pressures(const Vector &u) const;
   /// (points) The pressures of an active set, whether the law admits them or not [Pa].
-  DeviceView<double *> active_set_pressures(const DeviceView<State *> &active, const Vector &u) const;
-  /// The states of lambda + r v, but for points that take no part.
-  void take_states(const Vector &u, const DeviceView<State *> &states) const;
+  DeviceView<double *> active_set_pressures(const ActiveSet &active, const Vector &u) const;
+  /// The states of lambda + r v and lambda_tau + r e, but for points that take no part.
+  void take_states(const Vector &u, const ActiveSet &active) const;
+  /// (points, dim) Theta_i'(e_i) [Pa].                                                                          (12.3)
+  DeviceView<double **> tractions(const Vector &u) const;
   StateCounts count_states(const Vector &u) const;
 
   /// The same functional of the correction to u: the rounding of r v is then relative to the correction.           (5.13)
@@ -63,6 +65,7 @@ public:
   SmoothedFunctional from(const Vector &u, const Vector &out_of_balance) const;
 
   const SmoothedPoints &points() const { return points_; }
+  const Comm &comm() const { return *load_->getMap()->getComm(); }
 
 private:
   RCP<const Operator> K_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/contact/law/foundation.hpp"
+#include "rpc/contact/law/friction.hpp"
 
 /// What a contact point answers to its motion: a force vector, its derivative, a state and an energy. Assembly, line searches and
 /// solvers see the law through these alone.                                                        doc/theory.md, section 3
@@ -10,19 +11,29 @@ namespace rpc::contact
 /// Where a point is, relative to its foundation.
 struct Motion {
   double penetration; ///< v = u_nu - g [m]
+  Along slip = {};    ///< e [m]; not looked at where the law has no friction
 };
 
 /// A point's multipliers.
 struct Multiplier {
-  double normal; ///< lambda >= 0 [Pa]
+  double normal;         ///< lambda >= 0 [Pa]
+  Along tangential = {}; ///< lambda_tau, |lambda_tau| <= s [Pa]
 };
 
 /// The answer of a point whose weight is w and whose direction is m, in the directions of the mesh.
 struct Response {
-  double force[3] = {};    ///< w p m, of the body on the foundation: what the point adds to the gradient [N]
-  double block[3][3] = {}; ///< d force/du: what it adds to the Hessian [N/m]; symmetric where the law has a potential
+  double force[3] = {};    ///< w (p m + q), of the body on the foundation: what the point adds to the gradient [N]
+  double block[3][3] = {}; ///< d force/du, as far as it is symmetric: what it adds to the Hessian [N/m]
+  /// The rest of d force/du: friction's force follows the pressure [N/m].                                         (12.5)
+  double coupling[3][3] = {};
   State state = State::open;
-  double energy = 0; ///< w Psi [J]
+  double energy = 0; ///< w (Psi + Theta) [J]
+};
+
+/// The friction state of a point, and the unit vector h that its traction points along where it slips.
+struct SlipBranch {
+  Slip state = Slip::stick;
+  Along direction = {};
 };
 
 /// w a m m^T, the block of a stiffness a along m [Pa/m].
@@ -61,6 +72,66 @@ KOKKOS_INLINE_FUNCTION Response respond(const Motion &at, const Multiplier &mult
   Response response = respond_on_branch(s, at, multiplier, r, f, m, w, dim);
   response.energy = w * smoothed_energy(at.penetration, multiplier.normal, r, f);
   return response;
+}
+
+/// Adds the traction q and across (I - nu nu^T) + (along - across) h h^T, as far as the displacement is free.
+/// @param normal  (dim) nu   @param free  (dim) 0 where the displacement is prescribed
+template <class Normal, class Free>
+KOKKOS_INLINE_FUNCTION void add_traction(const double w, const Along &q, const FrictionStiffness &stiffness,
+                                         const Along &h, const Normal &normal, const Free &free, const int dim,
+                                         Response &response)
+{
+  for (int k = 0; k < dim; ++k) {
+    if (!free(k)) continue;
+    response.force[k] += w * q(k);
+    for (int l = 0; l < dim; ++l) {
+      if (!free(l)) continue;
+      const double across = (k == l ? 1 : 0) - normal(k) * normal(l);
+      response.block[k][l] += w * (stiffness.across * across + (stiffness.along - stiffness.across) * h(k) * h(l));
+    }
+  }
+}
+
+/// Adds the response of friction with a bound s that is given: w Theta'(e), w Theta''(e), w Theta(e).      (12.3), (12.4)
+template <class Normal, class Free>
+KOKKOS_INLINE_FUNCTION void add_friction(const Motion &at, const Multiplier &multiplier, const double r, const double s,
+                                         const Normal &normal, const Free &free, const double w, const int dim,
+                                         Response &response)
+{
+  const Along a = multiplier.tangential.plus(r, at.slip);
+  add_traction(w, admissible_friction(a, s), friction_stiffness(a, s, r), a.unit(), normal, free, dim, response);
+  response.energy += w * smoothed_friction_energy(a, multiplier.tangential, s, r);
+}
+
+/// Traction on the branch of a friction state, whether the law admits it or not: lambda_tau + r e, or s h with s at the pressure p. In the
+/// plane h is the branch's; in space it follows lambda_tau + r e.                                              (12.5)
+KOKKOS_INLINE_FUNCTION Along traction_on_branch(const SlipBranch &branch, const Along &a, const double p,
+                                                const Friction &f, const int dim)
+{
+  if (branch.state == Slip::stick) return a;
+  return (dim == 2 ? branch.direction : a.unit()).scaled(friction_bound(p, f));
+}
+
+/// Adds the response on the branches of contact's state and friction's, coupled: where a point slips, its traction follows the pressure.
+/// (12.5)
+/// @param m  (dim) direction of contact
+template <class Direction, class Normal, class Free>
+KOKKOS_INLINE_FUNCTION void
+add_friction_on_branch(const State state, const SlipBranch &branch, const Motion &at, const Multiplier &multiplier,
+                       const double r, const Foundation &foundation, const Friction &f, const Direction &m,
+                       const Normal &normal, const Free &free, const double w, const int dim, Response &response)
+{
+  const double p = branch_pressure(state, at.penetration, multiplier.normal, r, foundation);
+  const Along a = multiplier.tangential.plus(r, at.slip), q = traction_on_branch(branch, a, p, f, dim);
+  if (branch.state == Slip::stick) return add_traction(w, q, {r, r}, {}, normal, free, dim, response);
+  const Along h = dim == 2 ? branch.direction : a.unit();
+  const double size = a.length(), s = friction_bound(p, f);
+  const double across = dim == 2 || !(s > 0) ? 0 : (s < size ? r * s / size : r);
+  add_traction(w, q, {across, 0}, h, normal, free, dim, response);
+  const double slope = friction_slope(p, f) * branch_stiffness(state, r, foundation);
+  if (slope == 0) return;
+  for (int k = 0; k < dim; ++k)
+    for (int l = 0; l < dim && free(k); ++l) response.coupling[k][l] = w * slope * h(k) * m(l);
 }
 
 } // namespace rpc::contact

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/contact/law/foundation.hpp"
+#include "rpc/contact/law/response.hpp"
 #include "rpc/core/math.hpp"
 
 /// The states of a contact point: how they are chosen, and what a chosen state says of multiplier and place.  doc/theory.md (5.7),
@@ -33,6 +34,14 @@ KOKKOS_INLINE_FUNCTION State next_state(const State now, const double v, const d
   return (now == State::open ? kv : -kv) > bound ? State::closed : now;
 }
 
+/// By how much a point violates the law on the branch of its state, as a pressure: what next_state() compares with its bound [Pa].
+KOKKOS_INLINE_FUNCTION double violation(const State now, const double v, const double p, const double own,
+                                        const Foundation &f)
+{
+  if (now == State::closed) return math::larger(-p, p - f.yield);
+  return now == State::open ? own * v : own * (f.compliance * p - v);
+}
+
 /// The multiplier of a point that takes a state, from the pressure that the state was chosen by: as near as the state allows. (5.7)
 KOKKOS_INLINE_FUNCTION double multiplier_of(const State s, const double p, const Foundation &f)
 {
@@ -55,6 +64,43 @@ KOKKOS_INLINE_FUNCTION double penalty_stretch(const State s, const double v, con
   if (s == State::closed) return (v - f.compliance * lambda) / softening(r, f);
   if (s == State::yielding && f.hardening > 0) return (branch_pressure(s, v, lambda, r, f) - lambda) / r;
   return 0;
+}
+
+/// Friction's state and direction for a traction a that is to be admitted: it slips along a where |a| > s.
+KOKKOS_INLINE_FUNCTION SlipBranch branch_of(const Along &a, const double s)
+{
+  return a.length() > s ? SlipBranch{Slip::slip, a.unit()} : SlipBranch{};
+}
+
+/// The next friction state of a point: it slips from sticking where |q| > s, and sticks from slipping where e points against h. One that
+/// comes to touch slips if its slip, times the point's own stiffness, is more than friction bears. (12.8)
+/// @param now     branch that q belongs to   @param before, next  states of contact
+/// @param e, q    slip [m], traction on the branch [Pa]   @param v  penetration [m]   @param p  pressure, admissible [Pa]
+/// @param own     stiffness of the point alone [Pa/m]     @param bound  violations that change no state [Pa]
+KOKKOS_INLINE_FUNCTION SlipBranch next_slip(const SlipBranch &now, const State before, const State next, const Along &e,
+                                            const Along &q, const double v, const double p, const double own,
+                                            const double bound, const Friction &f, const int dim)
+{
+  if (!acts(f) || (next == State::open && f.bound == 0)) return {Slip::slip, {}}; // nothing holds it
+  if (before == State::open && next != State::open && f.bound == 0)
+    return branch_of(e.scaled(own), friction_bound(math::larger(own * v, 0), f));
+  if (now.state == Slip::stick) return branch_of(q, friction_bound(p, f) + bound);
+  const Along along = dim == 2 || !(q.length() > 0) ? now.direction : q.unit();
+  return own * e.dot(now.direction) < -bound ? SlipBranch{} : SlipBranch{Slip::slip, along};
+}
+
+/// The same of friction on its branch.
+KOKKOS_INLINE_FUNCTION double violation(const SlipBranch &now, const Along &e, const Along &q, const double p,
+                                        const double own, const Friction &f)
+{
+  return now.state == Slip::stick ? q.length() - friction_bound(p, f) : -own * e.dot(now.direction);
+}
+
+/// The multiplier of a point that takes a friction state: as near as the state allows to the traction that it was chosen by.   (12.8)
+KOKKOS_INLINE_FUNCTION Along multiplier_of(const SlipBranch &branch, const Along &q, const double p, const Friction &f)
+{
+  const double s = math::larger(friction_bound(p, f), 0);
+  return branch.state == Slip::slip ? branch.direction.scaled(s) : admissible_friction(q, s);
 }
 
 } // namespace rpc::contact

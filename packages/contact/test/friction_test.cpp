@@ -1,0 +1,206 @@
+#include "rpc/contact/law/friction.hpp"
+
+#include "rpc/contact/law/response.hpp"
+#include "rpc/contact/law/states.hpp"
+
+#include <array>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <vector>
+
+namespace
+{
+
+using namespace rpc::contact;
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double r = 40, weight = 0.25;
+
+/// A slanted normal of length 1.
+struct Normal {
+  double operator()(const int k) const { return std::array<double, 3>{0.48, -0.6, 0.64}[k]; }
+};
+/// That of contact: the second component of the displacement is prescribed.
+struct Direction {
+  double operator()(const int k) const { return k == 1 ? 0 : Normal{}(k); }
+};
+struct Free {
+  bool operator()(const int k) const { return k != 1; }
+};
+
+/// u less its part along the normal.
+Along along_side(const Along &u)
+{
+  double normal = 0;
+  for (int k = 0; k < 3; ++k) normal += Normal{}(k)*u(k);
+  return u.plus(-normal, {{Normal{}(0), Normal{}(1), Normal{}(2)}});
+}
+
+/// Where a displacement leads to.
+Motion at(const Along &u)
+{
+  double v = -0.01;
+  for (int k = 0; k < 3; ++k) v += Normal{}(k)*u(k);
+  return {v, along_side(u)};
+}
+
+TEST(Friction, BoundFollowsThePressureUpToItsLimit)
+{
+  const Friction coulomb{0.3, 0, inf}, tresca{0, 2, inf}, both{0.5, 1, 3};
+  EXPECT_EQ(friction_bound(10, coulomb), 3);
+  EXPECT_EQ(friction_bound(0, coulomb), 0);
+  EXPECT_EQ(friction_bound(10, tresca), 2);
+  EXPECT_EQ(friction_bound(2, both), 2);
+  EXPECT_EQ(friction_bound(10, both), 3);
+  EXPECT_EQ(friction_slope(2, both), 0.5);
+  EXPECT_EQ(friction_slope(10, both), 0);
+}
+
+TEST(Friction, NearestTractionIsTheTrialOrTheBoundAlongIt)
+{
+  const Along a{{3, 0, 4}};
+  EXPECT_EQ(admissible_friction(a, 6)(2), 4);
+  EXPECT_NEAR(admissible_friction(a, 2)(0), 1.2, 1e-15);
+  EXPECT_NEAR(admissible_friction(a, 2)(2), 1.6, 1e-15);
+  EXPECT_EQ(admissible_friction(a, 0).length(), 0);
+  EXPECT_EQ(slip_state(a, 5), Slip::stick);
+  EXPECT_EQ(slip_state(a, 4.9), Slip::slip);
+}
+
+TEST(Friction, LawHoldsWhereResidualAndGapAre0)
+{
+  const double s = 2;
+  const Along along{{0.6, 0, 0.8}};
+  EXPECT_LT(friction_residual(along.scaled(0.1), along.scaled(s), s, 7), 1e-15);
+  EXPECT_LT(friction_gap(along.scaled(0.1), along.scaled(s), s), 1e-16);
+  EXPECT_EQ(friction_residual({}, along, s, 7), 0);
+  EXPECT_NEAR(friction_residual(along.scaled(0.1), along, s, 7), 0.7, 1e-15);            // slips below the bound
+  EXPECT_NEAR(friction_residual(along.scaled(-0.1), along.scaled(s), s, 7), 0.7, 1e-15); // against the traction
+  EXPECT_NEAR(friction_gap(along.scaled(-0.1), along.scaled(s), s), 0.4, 1e-15);
+  EXPECT_NEAR(friction_residual({}, along.scaled(3), s, 7), 1, 1e-15); // above the bound
+}
+
+/// Error of central differences of the step h.
+struct Errors {
+  double force = 0, block = 0;
+};
+template <class Respond>
+Errors errors_of_differences(const Respond &respond, const Along &u, const double h)
+{
+  Errors errors;
+  const Response here = respond(u);
+  for (int l = 0; l < 3; ++l) {
+    if (!Free{}(l)) continue;
+    Along step;
+    step.x[l] = h;
+    const Response up = respond(u.plus(1, step)), down = respond(u.plus(-1, step));
+    errors.force = std::max(errors.force, std::abs((up.energy - down.energy) / (2 * h) - here.force[l]));
+    for (int k = 0; k < 3; ++k)
+      errors.block = std::max(
+          errors.block, std::abs((up.force[k] - down.force[k]) / (2 * h) - here.block[k][l] - here.coupling[k][l]));
+  }
+  return errors;
+}
+
+const Multiplier lambda{1.5, along_side({{0.3, 0.1, -0.2}})};
+
+/// Friction alone with a given bound.
+Response of_bound(const Along &u, const double s)
+{
+  Response response;
+  add_friction(at(u), lambda, r, s, Normal{}, Free{}, weight, 3, response);
+  return response;
+}
+
+TEST(Friction, SmoothedForceAndBlockAreDerivativesOfSecondOrder)
+{
+  for (const double s : {0.5, 1e3}) {
+    const auto respond = [s](const Along &u) { return of_bound(u, s); };
+    const Along u{{0.05, 0, -0.08}};
+    const Errors coarse = errors_of_differences(respond, u, 4e-3), fine = errors_of_differences(respond, u, 2e-3);
+    if (s > 1) { // sticks: quadratic, differences are exact
+      EXPECT_LT(coarse.force, 1e-13);
+      EXPECT_LT(coarse.block, 1e-11);
+    } else {
+      EXPECT_NEAR(std::log2(coarse.force / fine.force), 2, 0.1);
+      EXPECT_NEAR(std::log2(coarse.block / fine.block), 2, 0.1);
+    }
+    EXPECT_EQ(of_bound(u, s).force[1], 0); // where the displacement is prescribed
+  }
+}
+
+TEST(Friction, EnergyIsConvexAndHasNoJumpWhereSlipBegins)
+{
+  const double s = 0.5;
+  const auto energy = [s](const double t) { return of_bound(Along{{t, 0, -0.3 * t}}, s).energy; };
+  for (double t = -0.1; t < 0.1; t += 1e-3) EXPECT_GE(energy(t - 1e-3) - 2 * energy(t) + energy(t + 1e-3), -1e-15) << t;
+  EXPECT_NEAR(of_bound({}, s).energy, 0, 1e-17); // Theta(0) = 0
+}
+
+/// Contact and friction on branches.
+Response on_branch(const Along &u, const State state, const SlipBranch &branch, const Foundation &f, const Friction &g)
+{
+  Response response = respond_on_branch(state, at(u), lambda, r, f, Direction{}, weight, 3);
+  add_friction_on_branch(state, branch, at(u), lambda, r, f, g, Direction{}, Normal{}, Free{}, weight, 3, response);
+  return response;
+}
+
+TEST(Friction, CoupledBlockIsTheDerivativeOnEachBranch)
+{
+  const Foundation rigid{inf}, plastic{3}, hardening{3, 9, 1. / 80};
+  const Friction coulomb{0.4, 0.1, inf}, limited{0.4, 0.1, 0.2};
+  const Along u{{0.05, 0, -0.08}};
+  for (const Foundation &f : {rigid, plastic, hardening})
+    for (const Friction &g : {coulomb, limited})
+      for (const State state : {State::closed, State::yielding}) {
+        if (state == State::yielding && f.yield == inf) continue;
+        for (const Slip slip : {Slip::stick, Slip::slip}) {
+          const auto respond = [&](const Along &x) { return on_branch(x, state, {slip, {}}, f, g); };
+          const double coarse = errors_of_differences(respond, u, 2e-3).block,
+                       fine = errors_of_differences(respond, u, 1e-3).block;
+          if (slip == Slip::stick)
+            EXPECT_LT(coarse, 1e-11);
+          else
+            EXPECT_NEAR(std::log2(coarse / fine), 2, 0.2) << f.yield << ' ' << g.limit;
+        }
+      }
+}
+
+TEST(Friction, TractionOfAClosedPointThatSlipsFollowsThePressureAlone)
+{
+  const Response closed = on_branch({{0.05, 0, -0.08}}, State::closed, {Slip::slip, {}}, {inf}, {0.4, 0, inf});
+  const Response yields = on_branch({{0.05, 0, -0.08}}, State::yielding, {Slip::slip, {}}, {3}, {0.4, 0, inf});
+  double closed_coupling = 0, yielding_coupling = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l) {
+      closed_coupling = std::max(closed_coupling, std::abs(closed.coupling[k][l]));
+      yielding_coupling = std::max(yielding_coupling, std::abs(yields.coupling[k][l]));
+      EXPECT_NEAR(closed.block[k][l], closed.block[l][k], 1e-14);
+    }
+  EXPECT_GT(closed_coupling, 0.1 * weight * r * 0.4);
+  EXPECT_EQ(yielding_coupling, 0); // s = mu xi there
+}
+
+TEST(Friction, StatesChangeByTheNeighbourRule)
+{
+  const Friction coulomb{0.5, 0, inf}, tresca{0, 1, inf};
+  const Along x{{1, 0, 0}};
+  const SlipBranch sticks{}, slips{Slip::slip, x};
+  const auto next = [](const SlipBranch &now, const State before, const State then, const Along &e, const Along &q,
+                       const double p,
+                       const Friction &f) { return next_slip(now, before, then, e, q, 1e-3, p, 100, 1e-9, f, 2); };
+  using S = State;
+  EXPECT_EQ(next(sticks, S::closed, S::closed, {}, x.scaled(0.9), 2, coulomb).state, Slip::stick);
+  const SlipBranch begins = next(sticks, S::closed, S::closed, {}, x.scaled(-1.1), 2, coulomb);
+  EXPECT_EQ(begins.state, Slip::slip);
+  EXPECT_EQ(begins.direction(0), -1);
+  EXPECT_EQ(next(slips, S::closed, S::closed, x.scaled(0.1), x, 2, coulomb).state, Slip::slip);
+  EXPECT_EQ(next(slips, S::closed, S::closed, x.scaled(-0.1), x, 2, coulomb).state, Slip::stick);
+  EXPECT_EQ(next(sticks, S::closed, S::open, x, x, 0, coulomb).state, Slip::slip); // nothing holds it
+  EXPECT_EQ(next(sticks, S::closed, S::open, {}, x.scaled(0.9), 0, tresca).state, Slip::stick);
+  EXPECT_EQ(next(slips, S::open, S::closed, x.scaled(1e-4), {}, 0, coulomb).state, Slip::stick); // 0.01 < 0.05
+  EXPECT_EQ(next(slips, S::open, S::closed, x.scaled(1e-3), {}, 0, coulomb).state, Slip::slip);  // 0.1 > 0.05
+}
+
+} // namespace
