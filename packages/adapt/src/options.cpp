@@ -53,9 +53,6 @@ void require_adaptable(const Task &task, const int dim)
       !task.adapt.adapts() || mesh::with_sizes(task.mesh, nullptr),
       "deck: \"Adapt->Target Relative Error\" goes with a box or a .geo, which can be meshed anew; the mesh is a "
       ".msh");
-  RPC_REQUIRE(!(task.adapt.adapts() || task.adapt.estimate) || !contact::has_friction(task.model.contact),
-              "deck: \"Adapt\" does not go with friction: the error of tractions along a side is not estimated yet. "
-              "Leave \"Adapt\" out, or \"Friction Coefficient\" and \"Friction Bound\" at 0.");
   const auto &contact = task.model.contact;
   for (std::size_t a = 0; a < contact.size() && task.adapt.estimate; ++a)
     for (std::size_t b = 0; b < a; ++b)

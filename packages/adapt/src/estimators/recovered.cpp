@@ -1,5 +1,6 @@
 #include "rpc/adapt/estimators/recovered.hpp"
 
+#include "rpc/contact/law/friction.hpp"
 #include "rpc/contact/law/interpolated.hpp"
 #include "rpc/contact/law/judgement.hpp"
 #include "rpc/contact/law/states.hpp"
@@ -19,8 +20,17 @@ namespace
 
 using ReadColumns = decltype(std::declval<const MultiVector &>().getLocalViewDevice(Tpetra::Access::ReadOnly));
 
-// Columns of what a side's facets read at their nodes.
-enum Column { pressure, penetration, law, normal = law + contact::law_columns };
+// Columns of what a side's facets read at their nodes; those from the traction along the side on only where there is friction.
+enum Column {
+  pressure,
+  penetration,
+  law,
+  normal = law + contact::law_columns,
+  traction = normal + 3,
+  slip = traction + 3,
+  bound = slip + 3,
+  num_columns
+};
 
 /// The columns of a node's law, for kernels.
 template <class Columns>
@@ -29,6 +39,31 @@ struct LawAt {
   LO node;
   KOKKOS_INLINE_FUNCTION double &operator()(const int k) const { return columns(node, law + k); }
 };
+
+/// The columns of friction at the owned nodes of one side.
+/// @param accuracy  slip of a node that sticks, times its scaling, that is left by a solve [Pa]
+template <class Columns>
+void add_friction_fields(const contact::ContactNodes &c, const contact::ContactResult &result, const int side,
+                         const double accuracy, const Columns &to)
+{
+  const LO begin = c.first(side);
+  const auto p = result.pressure;
+  const auto q = result.traction, e = result.slip;
+  const auto state = result.slip_state;
+  Kokkos::parallel_for(
+      "rpc::adapt::friction_fields", device_range(c.first(side + 1) - begin), KOKKOS_LAMBDA(const LO k) {
+        const LO i = begin + k, node = c.node(i);
+        double size = 0;
+        for (int j = 0; j < c.dim; ++j) size += e(i, j) * e(i, j);
+        const bool sticks = state(i) == 1 + int(contact::Slip::stick) && c.scaling(i) * math::sqrt(size) <= accuracy;
+        for (int j = 0; j < c.dim; ++j) {
+          to(node, traction + j) = q(i, j);
+          to(node, slip + j) = sticks ? 0 : e(i, j);
+        }
+        to(node, int(bound)) = contact::friction_bound(p(i), c.friction(i));
+      });
+  Kokkos::fence();
+}
 
 /// What the contact nodes of one side know, at the nodes of its facets (overlap nodes; columns).
 RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const contact::ContactNodes &c,
@@ -39,7 +74,7 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
   // Nodes that neither are open nor yield have v = c p. What a solve leaves there, some 1e-8 of the largest pressure,
   // would count with p |v|, which is of first order, and differ between numbers of ranks.
   const double accuracy = 1e-7 * result.total.max_pressure;
-  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, normal + c.dim));
+  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, c.friction.anywhere ? int(num_columns) : normal + c.dim));
   const LO begin = c.first(side);
   const auto p = result.pressure, v = result.penetration;
   {
@@ -61,23 +96,25 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
           for (int j = 0; j < c.dim; ++j) to(node, normal + j) = c.normal(i, j);
         });
     Kokkos::fence();
+    if (c.friction.anywhere) add_friction_fields(c, result, side, accuracy, to);
   }
   return fem::nodes_on_overlap(d, owned);
 }
 
 /// The contact terms of one side.
 struct ContactTerms {
-  DeviceView<LO **> facets;        // (facets, facet nodes)                    in
-  DeviceView<LO *> cell;           // (facets)                                 in
-  DeviceView<double **> value;     // (points, facet nodes)                    in
-  DeviceView<double *> measure;    // (facets * points)           [m^(dim-1)]  in, axisymmetric: m^2
-  DeviceView<double *> size;       // (facets)                           [m]  in
-  DeviceView<double ***> traction; // (facets, points, dim), recovered   [Pa]  in
-  DeviceView<double ***> applied;  // (facets, points, dim)              [Pa]  in
-  DeviceView<int *> block;         // (cells)                                  in
-  DeviceView<double **> lame;      // (blocks; lambda, mu)               [Pa]  in
-  ReadColumns field;               // (overlap nodes; Column)                  in
+  DeviceView<LO **> facets;         // (facets, facet nodes)                    in
+  DeviceView<LO *> cell;            // (facets)                                 in
+  DeviceView<double **> value;      // (points, facet nodes)                    in
+  DeviceView<double *> measure;     // (facets * points)           [m^(dim-1)]  in, axisymmetric: m^2
+  DeviceView<double *> size;        // (facets)                           [m]  in
+  DeviceView<double ***> recovered; // (facets, points, dim), tractions  [Pa]  in
+  DeviceView<double ***> applied;   // (facets, points, dim)              [Pa]  in
+  DeviceView<int *> block;          // (cells)                                  in
+  DeviceView<double **> lame;       // (blocks; lambda, mu)               [Pa]  in
+  ReadColumns field;                // (overlap nodes; Column)                  in
   LO num_owned_cells;
+  bool friction;                // in
   DeviceView<double *> squared; // (facets), of owned cells    [J]       out
 
   /// The law at a node of a facet.
@@ -109,6 +146,24 @@ struct ContactTerms {
     return state == 1 || state == 2 || state == 4 ? FacetState(state) : FacetState::mixed;
   }
 
+  /// Whether nodes of a facet stick where others slip, or slip to opposite sides: then q is not known between them.
+  KOKKOS_FUNCTION bool friction_is_mixed(const LO f) const
+  {
+    if (!friction) return false;
+    for (std::size_t a = 0; a < facets.extent(1); ++a)
+      for (std::size_t b = 0; b < a; ++b) {
+        double aa = 0, bb = 0, ab = 0;
+        for (int k = slip; k < slip + 3; ++k) {
+          const double at_a = field(facets(f, a), k), at_b = field(facets(f, b), k);
+          aa += at_a * at_a;
+          bb += at_b * at_b;
+          ab += at_a * at_b;
+        }
+        if ((aa > 0) != (bb > 0) || ab < 0) return true;
+      }
+    return false;
+  }
+
   /// The shape function of a facet's node at a point, or the one that is linear between neighbouring nodes: quadratic ones
   /// dip to the wrong side of 0 between the nodes where a state ends, which nodal quadrature does not see.
   KOKKOS_FUNCTION double shape(const int q, const std::size_t a, const bool linear) const
@@ -122,34 +177,48 @@ struct ContactTerms {
 
   /// Fields at a point of a facet, and the pressure of the recovered stress there.
   struct Point {
-    double at[normal + 3] = {}, rest[3] = {}, recovered = 0; // recovered: pressure
+    double at[num_columns] = {}, rest[3] = {}, recovered = 0; // recovered: pressure
+    KOKKOS_INLINE_FUNCTION contact::Along vector(const int column) const
+    {
+      return {{at[column], at[column + 1], at[column + 2]}};
+    }
   };
   /// @param linear  for all fields, not for the penetration only
   KOKKOS_FUNCTION Point point(const LO f, const int q, const bool linear) const
   {
-    const int dim = static_cast<int>(traction.extent(2));
+    const int dim = static_cast<int>(recovered.extent(2)), columns = friction ? int(num_columns) : normal + dim;
     Point x;
     for (std::size_t a = 0; a < facets.extent(1); ++a)
-      for (int k = 0; k < normal + dim; ++k)
-        x.at[k] += shape(q, a, linear || k == penetration) * field(facets(f, a), k);
+      for (int k = 0; k < columns; ++k) x.at[k] += shape(q, a, linear || k == penetration) * field(facets(f, a), k);
     for (int i = 0; i < dim; ++i) {
-      x.rest[i] = traction(f, q, i) - applied(f, q, i);
+      x.rest[i] = recovered(f, q, i) - applied(f, q, i);
       x.recovered -= x.rest[i] * x.at[normal + i];
     }
     return x;
   }
 
+  /// q at a point: that of the nodes, or where their states are mixed the admissible one that minimizes (10.3) + (12.11).
+  KOKKOS_FUNCTION contact::Along along_side(const Point &x, const bool mixed, const double compliance) const
+  {
+    const double s = math::larger(x.at[bound], 0);
+    if (!mixed) return contact::admissible_friction(x.vector(traction), s);
+    contact::Along rest; // the recovered traction along the side, of the body on the foundation
+    for (int k = 0; k < 3; ++k) rest.x[k] = -x.rest[k] - x.recovered * x.at[normal + k];
+    return contact::admissible_friction(rest.plus(1 / compliance, x.vector(slip)), s);
+  }
+
   KOKKOS_FUNCTION void operator()(const LO f, double &equilibrium, double &complementarity, double &difference) const
   {
     if (cell(f) >= num_owned_cells) return;
-    const int dim = static_cast<int>(traction.extent(2)), points = static_cast<int>(value.extent(0));
+    const int dim = static_cast<int>(recovered.extent(2)), points = static_cast<int>(value.extent(0));
     const int of = block(cell(f));
     // Stresses that balance r and fall to 0 over the depth h have the energy h/3 r^2 / (lambda + 2 mu).
     const double facet_compliance = size(f) / (3 * (lame(of, 0) + 2 * lame(of, 1)));
     const FacetState state = state_of(f);
+    const bool slip_mixed = friction_is_mixed(f);
     double out_of_balance = 0, product = 0;
     for (int q = 0; q < points; ++q) {
-      const Point x = point(f, q, state == FacetState::mixed);
+      const Point x = point(f, q, state == FacetState::mixed || slip_mixed);
       const contact::Foundation foundation = contact::from_columns(x.at + law);
       const double v = x.at[penetration], share = measure(f * points + q);
       // On facets with several states: the admissible p that minimizes (10.3) + (10.4).
@@ -158,8 +227,10 @@ struct ContactTerms {
       // By Fenchel and Young >= 0, but for rounding.
       product += share * math::fmax(0., contact::foundation_energy(v, foundation) +
                                             contact::conjugate_energy(p, foundation) - p * v);
+      const contact::Along t = friction ? along_side(x, slip_mixed, facet_compliance) : contact::Along{};
+      if (friction) product += share * contact::friction_gap(x.vector(slip), t, x.at[bound]);
       for (int i = 0; i < dim; ++i) {
-        const double r = x.rest[i] + p * x.at[normal + i];
+        const double r = x.rest[i] + p * x.at[normal + i] + t(i);
         out_of_balance += facet_compliance * share * r * r;
       }
       const double other = x.at[pressure] - contact::admissible(x.recovered, foundation);
@@ -297,6 +368,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
                              fem::lame_table(d, materials),
                              fields->getLocalViewDevice(Tpetra::Access::ReadOnly),
                              mesh.num_owned_cells,
+                             of.contact.friction.anywhere,
                              DeviceView<double *>("rpc::adapt::contact_terms", side.facets.extent(0))};
     double of_side[6] = {}, peak_of_side = 0, drop_of_side = 0;
     const auto facets = device_range(static_cast<LO>(side.facets.extent(0)));
