@@ -14,7 +14,8 @@ namespace
 
 constexpr int most_changes = 10;               // of the active set; then Newton with its sweep needs fewer steps
 constexpr int most_changes_with_friction = 30; // Newton knows no coupling, and so does not do better
-constexpr int most_changes_resumed = 30;       // where it creeps: on slender bodies the choices get there in the end
+constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
+constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
 // While the active set changes, solves bring the residual below this part of what it was, and of the load: three to five CG
 // iterations. With 1e-1 pressures are too rough to choose by, 1e-4 saves no step. What the multipliers of the last rough
 // solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
@@ -92,7 +93,7 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     confirmed_ =
         solved_well && (iterate_.pressure_error(u) <= pressure_tolerance_ || ++updates_ > most_updates); // (5.10)
     // Rounding may end progress below: where the foundation's forces are many times the load, F grows and falls with each step.
-    const bool stalled = !rough_ && !solved_well && !(norm_ < 0.5 * std::min(before_, confirmed_norm_));
+    const bool stalled = steps_ > 0 && !rough_ && !solved_well && !(norm_ < 0.5 * std::min(before_, confirmed_norm_));
     if (!rough_) confirmed_norm_ = norm_;
     if (confirmed_) return Verdict::converged;
     if (stalled) return Verdict::over;
@@ -108,11 +109,14 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
 /// Whether the choice has not been taken before. With friction a part of the changes may be new where all of them are not.
 bool ActiveSetStage::is_new_choice()
 {
-  if (seen_.insert(choice_->fingerprint).second) return true;
-  if (!iterate_.points().friction.anywhere) return false;
+  const int visits = seen_[choice_->fingerprint]++;
+  if (visits == 0) return true;
+  const contact::ContactNodes &points = iterate_.points();
+  if (!points.friction.anywhere) return false;
+  if (points.dim == 3 && visits < most_visits) return true;
   for (const double part : {0.5, 1.}) {
     choice_ = iterate_.largest_changes(*choice_, part);
-    if (choice_->changes > 0 && seen_.insert(choice_->fingerprint).second) return true;
+    if (choice_->changes > 0 && seen_[choice_->fingerprint]++ == 0) return true;
   }
   return false;
 }

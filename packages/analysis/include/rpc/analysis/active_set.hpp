@@ -6,8 +6,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
-#include <set>
 
 namespace rpc::analysis
 {
@@ -53,7 +53,7 @@ private:
   contact::Iterate &iterate_;
   double scale_, target_;                          // of forces, and |F|_2 that is small enough [N]
   double pressure_tolerance_;                      // over the largest pressure
-  std::set<std::uint64_t> seen_;                   // fingerprints of active sets
+  std::map<std::uint64_t, int> seen_;              // fingerprints of active sets
   std::optional<contact::ActiveSetChoice> choice_; // at the present point
   Vector start_;                                   // to go back to
   bool rough_;                                     // solves are, while the active set changes
