@@ -14,6 +14,7 @@ namespace
 
 constexpr int most_changes = 10;               // of the active set; then Newton with its sweep needs fewer steps
 constexpr int most_changes_with_friction = 30; // Newton knows no coupling, and so does not do better
+constexpr int most_changes_tried = 6;          // where a Tresca problem has just been solved
 constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
 constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
 // While the active set changes, solves bring the residual below this part of what it was, and of the load: three to five CG
@@ -41,15 +42,15 @@ constexpr int trial_changes = 2;
 
 // The active set: chosen by the last pressures, until a choice confirms itself --------------------------------------------
 
-ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances)
+ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, const Then then)
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
       pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
-      most_changes_(most_changes), trial_gap_(first_trial)
+      most_changes_(most_changes), then_(then), trial_gap_(first_trial)
 {
   if (!iterate.points().friction.anywhere) return;
   path_ = Path::behind; // it knows no friction
-  most_changes_ = most_changes_with_friction;
+  most_changes_ = then == Then::newton ? most_changes_with_friction : most_changes_tried;
 }
 
 bool ActiveSetStage::resume(const NewtonGroup &from)
@@ -175,6 +176,21 @@ ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector
 
 ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
 {
+  const Verdict verdict = judged(at);
+  return verdict == Verdict::over && then_ == Then::nothing ? Verdict::converged : verdict;
+}
+
+ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &direction)
+{
+  const Step step = proposed(group, direction);
+  if (step != Step::none || then_ == Then::newton) return step;
+  decided_ = true;
+  direction.putScalar(0);
+  return Step::full;
+}
+
+ActiveSetStage::Verdict ActiveSetStage::judged(const NewtonGroup &at)
+{
   if (decided_) return confirmed_ ? Verdict::converged : Verdict::over;
   if (path_ == Path::on_it) return Verdict::go_on;
   const Vector &u = solver::tpetra(at.getX());
@@ -188,10 +204,11 @@ ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
   return choose(u);
 }
 
-ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &direction)
+ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direction)
 {
   if (path_ == Path::on_it && !leaves_path()) return propose_interior(group, direction);
-  if (!choice_ && judge(group) != Verdict::go_on) return Step::none; // a user's status tests do not ask for the verdict
+  if (!choice_ && judged(group) != Verdict::go_on)
+    return Step::none; // a user's status tests do not ask for the verdict
   auto u = rcp(new Vector(solver::tpetra(group.getX()), Teuchos::Copy));
   const auto move_to = [&] {
     group.setX(solver::NoxVector(u));

@@ -7,7 +7,9 @@
 #include "rpc/core/timed.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <vector>
 
 namespace rpc::analysis
 {
@@ -20,6 +22,7 @@ namespace
 std::string predict(Iterate &iterate, Vector &u, const Starts &starts, std::vector<LevelWork> &work);
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
                       int iteration, bool previous_confirmed, const Progress &progress);
+double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state);
 void read_results(const Problem &problem, StepSolution &s);
@@ -45,7 +48,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
     const Timed timer("solve", s.solve_seconds);
     UzawaResult &uzawa = s.uzawa;
     bool over = false, confirmed = false;
-    double older = 0;           // largest residual, of two iterations ago where it is read
+    std::vector<double> worst;  // largest residual of each iteration
     while (!over) {             // paper (16), paper (17): the gradient method for the dual problem
       if (uzawa.iterations > 0) // the correction is small against u (5.13)
         iterate.move_origin(*u, *uzawa.residuals.internal.forces, *step.elastic.applied_load);
@@ -55,13 +58,13 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       uzawa.multiplier_change = found.active_set_confirmed ? iterate.take_active_set_pressures(*u)
                                                            : iterate.update_multipliers(*u); // paper (11), (5.1)
       s.state = iterate.state(*u);
-      const double previous = found.bounds_follow ? older : uzawa.residuals.worst();
-      older = uzawa.residuals.worst();
       uzawa.residuals = judge(problem, step, iterate, s.state, state); // paper (8); (5.2) - (5.5)
       uzawa.newton_iterations.push_back(found.steps);
       s.line_search_steps += found.line_search_steps;
       ++uzawa.iterations;
       if (progress.uzawa) progress.uzawa(uzawa);
+      const double previous = residual_before(worst, found.bounds_follow);
+      worst.push_back(uzawa.residuals.worst());
       over = is_over(uzawa, found, previous, options.uzawa, problem.discretization().mesh->comm(),
                      [&] { return iterate.raise_penalty(*u); }); // (5.12)
     }
@@ -138,31 +141,61 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
   return 1;
 }
 
+/// Where friction's states were not confirmed: the coupled choices once more from where the last Tresca problem led; if these do not
+/// settle soon, the Tresca problem with the next bounds. (12.12)
+Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options,
+                                      const std::function<solver::MinimizeResult(solver::FirstStage *)> &run)
+{
+  int steps = 0;
+  if (solver::takes_first_stage(options.newton)) {
+    const Vector start(u, Teuchos::Copy);
+    const Iterate::Dual dual = iterate.dual();
+    ActiveSetStage stage(iterate, active_set_tolerances(options), ActiveSetStage::Then::nothing);
+    const auto tried = run(&stage);
+    if (stage.confirmed()) return {tried.converged, tried.steps, tried.reason, true, 0};
+    steps = tried.steps;
+    u.assign(start);
+    iterate.take_dual(dual);
+  }
+  iterate.follow_bounds();
+  const auto result = run(nullptr);
+  return {result.converged, steps + result.steps, result.reason, false, result.steps, true};
+}
+
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
                       const int iteration, const bool previous_confirmed, const Progress &progress)
 {
-  const auto run = [&](solver::FirstStage &stage) {
-    return solver::minimize(iterate, state.linear(), u, iterate.force_scale(), options.newton, &stage,
+  const auto run = [&](solver::FirstStage *const stage) {
+    return solver::minimize(iterate, state.linear(), u, iterate.force_scale(), options.newton, stage,
                             [&](const solver::NewtonStep &newton, const Vector &at) {
                               if (progress.newton) progress.newton(iteration, newton, iterate.count_states(at));
                             });
   };
-  // Newton's steps have no bound of friction follow the pressure: the active set does once more, from where they lead.
-  const bool anew = iterate.points().friction.anywhere && !previous_confirmed;
-  if (iteration > 1 && !anew) {
+  const bool friction = iterate.points().friction.anywhere;
+  if (iteration > 1 && (!friction || previous_confirmed)) {
     SameActiveSet stage(iterate);
-    const auto result = run(stage);
+    const auto result = run(&stage);
     const int steps = result.steps == 0 && result.converged ? refine(iterate, *u, state) : result.steps;
     return {result.converged, steps, result.reason, false, result.steps};
   }
+  if (iteration > 1) return minimize_for_next_bounds(iterate, *u, options, run);
   ActiveSetStage stage(iterate, active_set_tolerances(options));
-  const auto result = run(stage);
+  const auto result = run(&stage);
   return {result.converged,
           result.steps,
           result.reason,
           stage.confirmed(),
           result.steps - stage.steps(),
-          iterate.points().friction.anywhere && !stage.confirmed()};
+          friction && !stage.confirmed()};
+}
+
+/// The residual that an iteration's is compared with: the last one, or one of some iterations ago where bounds follow the pressures, for
+/// accelerated sequences do not fall at each step.
+double residual_before(const std::vector<double> &worst, const bool bounds_follow)
+{
+  constexpr std::size_t patience = 6;
+  const std::size_t back = bounds_follow ? patience : 1;
+  return worst.size() < back ? std::numeric_limits<double>::infinity() : worst[worst.size() - back];
 }
 
 // Judge ----------------------------------------------------------------------------------------------------------------

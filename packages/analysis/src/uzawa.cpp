@@ -11,8 +11,7 @@ namespace
 {
 
 constexpr double fast = 0.1; // an update that leaves more of the largest residual calls for a higher penalty
-// What two updates of friction's bounds must leave less of. They may alternate: the residual falls in every second one.
-constexpr double fast_with_bounds = 0.8;
+constexpr double fast_with_bounds = 0.8; // the same of some updates of friction's bounds
 
 std::string verdict(const UzawaResult &result, const UzawaOptions &options)
 {
@@ -43,8 +42,7 @@ bool is_over(UzawaResult &result, const Minimization &found, const double previo
   if (interrupted(comm))
     return ends(false, interruption() + " in Uzawa iteration " + std::to_string(result.iterations));
   const double worst = result.residuals.worst();
-  const bool slow = found.bounds_follow ? result.iterations > 2 && !(worst <= fast_with_bounds * previous)
-                                        : result.iterations > 1 && !(worst <= fast * previous);
+  const bool slow = result.iterations > 1 && !(worst <= (found.bounds_follow ? fast_with_bounds : fast) * previous);
   const bool raised = slow && !found.bounds_follow && raise_penalty(); // (5.12)
   // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from, while that helps.
   if ((slow && !raised) || std::isnan(worst))

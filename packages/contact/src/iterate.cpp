@@ -74,6 +74,13 @@ std::pair<double, double> replace_tangential(const SmoothedPoints &points, const
   return {changed, whole};
 }
 
+DeviceView<double *> copied(const DeviceView<double *> &values)
+{
+  const DeviceView<double *> copy("rpc::contact::copy_of_bounds", values.extent(0));
+  Kokkos::deep_copy(copy, values);
+  return copy;
+}
+
 /// Room for friction's multipliers and bounds; none where there is no friction.
 SmoothedPoints smoothed_points(const ContactNodes &points, const DeviceView<double *> &own)
 {
@@ -226,7 +233,35 @@ double Iterate::replace_multipliers(const DeviceView<double *> &p, const DeviceV
 double Iterate::update_multipliers(const Vector &u)
 {
   const bool friction = functional_.points().has_friction();
+  if (friction) bounds_before_ = copied(functional_.points().bound);
   return replace_multipliers(functional_.pressures(u), friction ? functional_.tractions(u) : DeviceView<double **>());
+}
+
+Iterate::Dual Iterate::dual() const
+{
+  return {multipliers().copy(), copied(functional_.points().bound)};
+}
+
+void Iterate::take_dual(const Dual &dual)
+{
+  const SmoothedPoints &s = functional_.points();
+  Kokkos::deep_copy(s.multiplier.normal, dual.multiplier.normal);
+  if (!s.has_friction()) return;
+  Kokkos::deep_copy(s.multiplier.tangential, dual.multiplier.tangential);
+  Kokkos::deep_copy(s.bound, dual.bound);
+}
+
+void Iterate::follow_bounds()
+{
+  const SmoothedPoints s = functional_.points();
+  if (!points_.friction.anywhere) return;
+  const auto next = lagged_.next(*hessian_->getDomainMap()->getComm(), bounds_before_, s.bound, points_.weight);
+  Kokkos::parallel_for(
+      "rpc::contact::follow_bounds", device_range(static_cast<LO>(next.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        s.bound(i) = next(i);
+        set_row(s.multiplier.tangential, i, admissible_friction(row(s.multiplier.tangential, i), next(i)));
+      });
+  Kokkos::fence();
 }
 
 double Iterate::take_active_set_pressures(const Vector &u)

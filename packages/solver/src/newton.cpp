@@ -279,6 +279,11 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
   return options;
 }
 
+bool takes_first_stage(const NewtonOptions &options)
+{
+  return direction_method(options.nox) == "Active Set";
+}
+
 void check_nox_parameters(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
                           const NewtonOptions &options)
 {
@@ -294,7 +299,7 @@ MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solve
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::newton"));
   const auto context = rcp(new NewtonContext{functional, linear_solver, options.residual_tolerance * scale});
-  if (direction_method(options.nox) == "Active Set") context->stage = stage;
+  if (takes_first_stage(options)) context->stage = stage;
   const auto reporter = rcp(new Reporter(context, scale, report));
   const auto list = nox_list(options.nox, reporter);
   const auto group = rcp(new NewtonGroup(context, u));

@@ -31,7 +31,12 @@ ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 class ActiveSetStage : public solver::FirstStage
 {
 public:
-  ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances);
+  /// What follows where no choice is confirmed.
+  enum class Then {
+    newton, ///< Newton's directions with their line search
+    nothing ///< the minimization ends, as if converged; few changes are tried
+  };
+  ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, Then then = Then::newton);
 
   Verdict judge(const solver::NewtonGroup &at) override;
   Step propose(solver::NewtonGroup &group, Vector &direction) override;
@@ -42,6 +47,8 @@ public:
   int steps() const { return steps_; }
 
 private:
+  Verdict judged(const solver::NewtonGroup &at);
+  Step proposed(solver::NewtonGroup &group, Vector &direction);
   Verdict choose(const Vector &u);
   bool is_new_choice();
   bool makes_headway();
@@ -60,6 +67,7 @@ private:
   int most_changes_;                               // of the active set
   bool confirmed_ = false, decided_ = false;
   bool resumed_ = false;
+  Then then_;
   double norm_ = std::numeric_limits<double>::infinity(),
          before_ = norm_,      // |F|_2 for the active set, after and before the step
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set

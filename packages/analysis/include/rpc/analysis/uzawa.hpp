@@ -51,7 +51,8 @@ struct UzawaResult {
 /// Whether an Uzawa iteration was the last one: it has converged, may not go on, or does not get any further even
 /// with higher penalties, doc/theory.md (5.12). Writes `converged` and `reason` then.
 /// @param result    with the residuals of this iteration   @param found  its minimization
-/// @param previous  largest residual of the iteration before; NaN: there was none
+/// @param previous  largest residual of the iteration before, or of some iterations before where friction's bounds follow; infinite: there
+///                  was none
 /// @param raise_penalty  asked for where an iteration was slow; returns whether anything could be raised. Collective
 bool is_over(UzawaResult &result, const Minimization &found, double previous, const UzawaOptions &options,
              const Comm &comm, const std::function<bool()> &raise_penalty);

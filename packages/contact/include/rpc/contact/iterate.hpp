@@ -3,6 +3,7 @@
 #include "rpc/algebra/updated_operator.hpp"
 #include "rpc/contact/active_set.hpp"
 #include "rpc/contact/interior_path.hpp"
+#include "rpc/contact/lagged_bounds.hpp"
 
 #include <optional>
 #include <vector>
@@ -89,6 +90,17 @@ public:
   /// @param u  where the active set was taken
   bool raise_penalty(const Vector &u);
 
+  // Friction's bounds, where no choice of states is confirmed: Tresca problems, one after another.             (12.12)
+  /// Multipliers and bounds of the functional that is minimized.
+  struct Dual {
+    Multipliers multiplier;
+    DeviceView<double *> bound; ///< (points) [Pa]
+  };
+  Dual dual() const;
+  void take_dual(const Dual &dual);
+  /// Takes the bounds of the next Tresca problem, from those of the last ones and what their pressures gave. Collective.
+  void follow_bounds();
+
   // Origin and state.
   /// Starts from a state, such as that of the step before or another mesh's: takes its multipliers, as near as the law admits them.
   /// @param[in,out] u  takes its displacement, but for what is prescribed
@@ -131,6 +143,8 @@ private:
   double spring_ = 0;              // weak springs at nodes that are not closed, in units of the points' scaling
   bool multipliers_given_ = false; // by a start
   std::optional<InteriorPath> interior_;
+  LaggedBounds lagged_;
+  DeviceView<double *> bounds_before_; // (points) of the last minimization [Pa]; empty: no problem had them given
 };
 
 } // namespace rpc::contact

@@ -43,6 +43,9 @@ struct MinimizeResult {
 void check_nox_parameters(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
                           const NewtonOptions &options);
 
+/// Whether the deck's "Direction" -> "Method" leaves the first steps to a stage.
+bool takes_first_stage(const NewtonOptions &options);
+
 /// Minimizes a functional over u, in place, by NOX; collective. Failure is a result, not an exception.
 /// @param scale   of forces, to which residuals are relative
 /// @param stage   proposes the first steps, where "Direction" -> "Method" is "Active Set"; null: there is none
