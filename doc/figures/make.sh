@@ -44,4 +44,10 @@ bash "$root/doc/picture.sh" --output="$here/indent_force.png" "perfectly plastic
 /usr/bin/python3 "$here/indent.py" "$here/indent.png" "$work"/{Yield,Hardening,Stiffness}/indent.e
 "$rpc" --input="$root/input/track.xml" --output="$work" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 /usr/bin/python3 "$here/track.py" "$here/track.png" "$work/track.e"
+for deck in shear ball_friction; do
+  "$rpc" --input="$root/input/$deck.xml" --output="$work" >"$work/log" || { cat "$work/log" >&2; exit 1; }
+done
+bash "$root/doc/picture.sh" "$work/shear.e" --time=1.5 --output="$here/shear.png"
+bash "$root/doc/picture.sh" "$work/shear.history.csv" --output="$here/shear_force.png"
+bash "$root/doc/picture.sh" "$work/ball_friction.e" --window=-0.25,0,-0.01,0.25,0.25,0.15 --output="$here/ball_friction.png"
 ls -l "$here"/*.png

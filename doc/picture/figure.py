@@ -341,7 +341,23 @@ def legend_handles(scene):
         handles.append(lines.Line2D([], [], **REST, label="undeformed body"))
     if any(len(scene.layers.get(name, ())) for name in view.GROUND_LAYERS):
         handles.append(patches.Patch(facecolor=view.GROUND, edgecolor=view.INK, linewidth=0.6, label="foundation"))
+    handles += [zone_handle(scene, zone, color) for zone, color in view.ZONES.items() if shows(scene, zone)]
+    if len(scene.layers.get("arrows", ())):
+        text = f"friction, of the body on the foundation: at most {scene.shear:.3g} {scene.result.units['stress']}"
+        handles.append(lines.Line2D([], [], color=view.INK, linestyle="", marker=r"$\rightarrow$", markersize=15, label=text))
     return handles
+
+
+def shows(scene, zone):
+    """Whether a zone of friction is drawn."""
+    return len(scene.layers.get(zone, ())) > 0 or any(lines.zone == zone for lines in scene.lines)
+
+
+def zone_handle(scene, zone, color):
+    """A zone in the legend: an area in the plane, its border in space."""
+    if scene.result.dim == 2:
+        return patches.Patch(facecolor=color, label=zone)
+    return lines.Line2D([], [], color=color, linewidth=2.5, label=zone)
 
 
 class AxesOfSpace:

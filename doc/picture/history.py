@@ -1,4 +1,4 @@
-"""The load steps of one or several runs as a diagram: force against displacement, and the energies of a single run."""
+"""The load steps of one or several runs as a diagram: force against displacement, of friction too, and the energies of a single run."""
 import csv
 import io
 import re
@@ -17,6 +17,9 @@ STYLE = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, 
 COLOURS = ("#1b6ca8", "#d1495b", "#2e933c", "#8d6a9f", "#c77d0a", "0.3")
 ENERGIES = (("dissipated_energy", "dissipated", "#d1495b"), ("strain_energy", "elastic, in the body", "#1b6ca8"),
             ("foundation_energy", "elastic, in the foundation", "#8fbfdc"))
+WITH_FRICTION = (("dissipated_by_friction", "dissipated by friction", "#e9a03b"), ("dissipated_energy", "dissipated by yielding", "#d1495b"),
+                 *ENERGIES[1:])
+ROUNDING = 1e-6  # of the contact force: less is no friction
 
 
 class History:
@@ -45,13 +48,23 @@ class History:
         self.force = self.columns[f"contact_force_{self.axis}"]
         self.sign = 1 if sum(self.force) >= 0 else -1
 
-    def moved(self):
-        """The prescribed displacement along the force that changes most, positive towards the foundation; None if none does."""
-        found = [name for name in self.columns if name.endswith(f"_displacement_{self.axis}")]
+    def moved(self, axis=None):
+        """The prescribed displacement along the contact force, or along another axis, that changes most; None if none does. Positive
+        where it goes against the foundation's force on the body."""
+        axis, sign = (axis, -1) if axis else (self.axis, self.sign)
+        found = [name for name in self.columns if name.endswith(f"_displacement_{axis}")]
         most = max(found, key=lambda name: spread(self.columns[name]), default=None)
         if most is None or spread(self.columns[most]) == 0:
             return None
-        return [-self.sign * value for value in self.columns[most]]
+        return [-sign * value for value in self.columns[most]]
+
+    def shear(self):
+        """The axis along the foundation with the largest force of friction; None if there is none."""
+        if "dissipated_by_friction" not in self.columns:
+            return None
+        others = [axis for axis in "xyz" if axis != self.axis and f"contact_force_{axis}" in self.columns]
+        most = max(others, key=lambda axis: reach(self.columns[f"contact_force_{axis}"]))
+        return most if reach(self.columns[f"contact_force_{most}"]) > ROUNDING * reach(self.force) else None
 
 
 def require_same_units(first, other, path):
@@ -77,16 +90,26 @@ def draw(files):
     histories = [(label, History(path)) for label, path in files]
     for (_, path), (_, other) in zip(files, histories):
         require_same_units(histories[0][1], other, path)
-    alone = len(histories) == 1
     with plt.rc_context(STYLE):
-        figure, panels = plt.subplots(1, 2 if alone else 1, figsize=(10 if alone else 7.5, 4), layout="constrained", squeeze=False)
-        add_forces(panels[0][0], histories)
-        if alone:
-            add_energies(panels[0][1], histories[0][1])
+        figure = compose(histories)
         file = io.BytesIO()
         figure.savefig(file, format="png", dpi=DPI)
         plt.close(figure)
     return file.getvalue()
+
+
+def compose(histories):
+    """The diagram as a figure. @param histories  [(label, History)]"""
+    alone = len(histories) == 1
+    sheared = len({history.shear() for _, history in histories} - {None}) == 1
+    number = 1 + sheared + alone
+    figure, panels = plt.subplots(1, number, figsize=((7.5, 10, 14)[number - 1], 4), layout="constrained", squeeze=False)
+    add_forces(panels[0][0], histories)
+    if sheared:
+        add_loop(panels[0][1], histories)
+    if alone:
+        add_energies(panels[0][-1], histories[0][1])
+    return figure
 
 
 def add_forces(axes, histories):
@@ -103,11 +126,28 @@ def add_forces(axes, histories):
         axes.legend(frameon=False)
 
 
+def add_loop(axes, histories):
+    """Force of friction, of the body on the foundation, against the displacement along it, or against t where none is prescribed."""
+    axis = next(history.shear() for _, history in histories if history.shear())
+    by_time = any(history.moved(axis) is None for _, history in histories)
+    first = histories[0][1]
+    for (label, history), colour in zip(histories, COLOURS):
+        along = history.columns["time"] if by_time else history.moved(axis)
+        force = [-value for value in history.columns[f"contact_force_{axis}"]]
+        axes.plot([0, *along], [0, *force], ".-", ms=5, lw=1.4, color=colour, label=label)
+    axes.axhline(0, color="0.3", lw=0.8)
+    axes.set(xlabel="t" if by_time else f"prescribed displacement in {axis} [{first.length_unit}]",
+             ylabel=f"friction in {axis}, on the foundation [{first.force_unit}]")
+    if any(label for label, _ in histories):
+        axes.legend(frameon=False)
+
+
 def add_energies(axes, history):
     """What has become of the work, one energy upon the other."""
     rest = [0.0] * (history.columns["time"][0] > 0)  # the body is at rest at t = 0
     time = rest + history.columns["time"]
-    shown = [entry for entry in ENERGIES if reach(history.columns[entry[0]]) > 0]
+    known = WITH_FRICTION if "dissipated_by_friction" in history.columns else ENERGIES
+    shown = [entry for entry in known if reach(history.columns[entry[0]]) > 0]
     if shown:
         axes.stackplot(time, [rest + history.columns[name] for name, _, _ in shown], labels=[label for _, label, _ in shown],
                        colors=[colour for _, _, colour in shown], alpha=0.75)

@@ -3,6 +3,7 @@ import dataclasses
 
 import numpy as np
 
+import friction
 import sides
 import surface
 from result import PictureError
@@ -23,17 +24,20 @@ class Lines:
     layer: str
     opacity: float
     fades: bool = False
-    normals: np.ndarray = None  # (lines, 3) of a surface that is drawn only where it looks away from the viewer
+    normals: np.ndarray = None  # (lines, 3) of lines that are drawn only where these look away from the viewer
+    zone: str = None  # of friction, whose colour they have
 
 
 class Scene:
     """Triangles (n, 3, 7 + planes) of the layers "body", "contact" (the contact sides; in the plane a diagram along each),
-    "foundation", and in space "ground": the foundation's surface, drawn only where it looks away from the viewer.
+    "foundation", and in space "ground": the foundation's surface, drawn only where it looks away from the viewer. With friction also
+    "arrows" of its traction, if contact sides show a field, and in the plane "sticks" and "slips": zones along each side.
 
     field, body_field, contact_field  what is asked for, what the body shows, what the contact sides show (None: the body's)
     sides                             [sides.Side]
     normal                            mean direction from the body into the foundation, at the side that bears most; 0 without contact
     rest                              in the plane the undeformed outline, (lines, points, 3)
+    shear                             largest traction of friction, if it is drawn; else 0
     """
 
     def __init__(self, result, field=None, scale=None, cut=None, window=None):
@@ -64,6 +68,7 @@ class Scene:
         self.sides = sides.contact_sides(self.result, surface.boundary_edges(faces) if flat else faces)
         if self.sides:
             self.normal = max(self.sides, key=lambda side: side.force(self.result.positions)).mean_normal()
+        self.shear = friction.peak(self.sides) if self.contact_field else 0.0
         if flat:
             self._add_plane(faces)
         else:
@@ -77,21 +82,41 @@ class Scene:
         self._add_lines("body", surface.distinct(surface.all_edges(faces)), self.places, 0.4, fades=True)
         self._add_lines("body", outline, self.places, 0.8)
         self.rest = surface.lines(outline, self.result.positions)
-        largest, ground, diagrams = self._largest_contact_value(), [], []
+        largest, ground, diagrams, zones, arrows = self._largest_contact_value(), [], [], {name: [] for name in friction.ZONES}, []
         for k, side in enumerate(self.sides):
             edges, top, sunk = side.edges(), self._foundation(side), self.scale * sunk_of(side)
             top[:, 2] = BEHIND * self.result.size() * (1 + k / len(self.sides))  # where sides meet, one covers the other
-            depth = THICKNESS * self.size
-            ground.append(surface.band(edges, top, side.normals, depth + sunk[side.nodes()].max() - sunk, np.zeros(len(top))))
+            depth, ribbon = THICKNESS * self.size, friction.RIBBON * self.size * (self.shear > 0)
+            below = depth + sunk[side.nodes()].max() - sunk
+            ground.append(surface.band(edges, top, side.normals, below + ribbon, np.zeros(len(top))))
             self._add_lines("foundation", edges, top, 0.9)
             if self.contact_field:
                 values = side.fields[self.contact_field]
                 top[:, 2] /= 2
                 heights = DIAGRAM * depth * np.maximum(values, 0) / largest
                 diagrams.append(surface.band(edges, top, side.normals, heights, values))
+            if self.shear and "traction" in side.fields:
+                top += below[:, None] * side.normals
+                for name, parts in zones.items():
+                    parts.append(friction.ribbon(edges, top, side.normals, ribbon, side.fields[name]))
+                top[:, 2] /= 2
+                arrows.append(self._arrows(side, top + 0.5 * ribbon * side.normals, np.eye(3)[[2]]))
         if self.sides:
             self._add_layer("foundation", ground)
             self._add_layer("contact", diagrams)
+        if self.shear:
+            for name, parts in [*zones.items(), ("arrows", arrows)]:
+                self._add_layer(name, parts)
+
+    def _arrows(self, side, places, normals):
+        """Of the traction on a side, where it is drawn. @param normals  (1 or nodes, 3) of the surface that arrows lie on"""
+        nodes = side.nodes()
+        if self.result.dim == 3:
+            nodes = nodes[(self.levels[nodes] <= 0).all(axis=1)]
+        elif self.window is not None:
+            nodes = nodes[((places[nodes, :2] >= self.window[0]) & (places[nodes, :2] <= self.window[1])).all(axis=1)]
+        normals = np.broadcast_to(normals, places.shape)[nodes]
+        return friction.arrows(places[nodes], side.fields["traction"][nodes], normals, self.size, self.result.dim, self.shear)
 
     def _largest_contact_value(self):
         """Of the field that the contact sides show; a number > 0."""
@@ -113,8 +138,24 @@ class Scene:
             self._add_layer("contact", [rows for side in self.sides for rows in self._body(side.faces, side.fields[self.contact_field])])
         self._add_lines("body", surface.distinct(surface.all_edges(faces)), self.places, 0.4, fades=True)
         self._add_lines("body", surface.sharp(faces, self.places), self.places, 0.8)
+        if self.shear:
+            self._add_friction()
         if self.sides:
             self._add_slabs()
+
+    def _add_friction(self):
+        """In space: the zones' borders, and arrows."""
+        arrows, rubbing = [], [side for side in self.sides if "traction" in side.fields]
+        for side in rubbing:
+            arrows.append(self._arrows(side, self.places + friction.LIFT * self.size * side.normals, side.normals))
+        self.layers["arrows"] = np.concatenate([np.pad(rows, ((0, 0), (0, 0), (0, len(self.cuts)))) for rows in arrows])
+        for zone in reversed(friction.ZONES):  # where they meet the border is that of what sticks
+            for side in rubbing:
+                rows, _ = surface.clipped(np.concatenate(self._body(side.faces, side.fields[zone])))
+                ends = friction.border(rows)
+                if len(ends):
+                    inwards = -ends[..., surface.NORMAL].mean(axis=1)
+                    self.lines.append(Lines(ends[..., PLACE], 0 * ends[..., LEVELS:], "contact", 1.0, normals=inwards, zone=zone))
 
     def _add_slabs(self):
         """The foundation as a slab at each side; its surface has the body's faces, and goes as far as these are drawn."""

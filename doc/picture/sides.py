@@ -11,6 +11,7 @@ import surface
 from surface import unit
 
 FIELDS = ("contact_pressure", "gap", "dent", "penetration", "contact_status")
+FRICTION = ("traction", "sticks", "slips")
 SAME_DIRECTION = 1e-3  # 1 - cosine up to which two normals are those of one side
 NEIGHBOURS = {2: 2, 3: 9}  # nodes from which values are continued, by the dimension of space
 
@@ -21,7 +22,7 @@ class Side:
 
     name: str
     faces: list
-    fields: dict  # {name: (nodes,)}
+    fields: dict  # {name: (nodes,)}; with friction too "traction" (nodes, 3), "sticks" and "slips", 1 where a node does, else 0
     normals: np.ndarray  # (nodes, 3), into the foundation
 
     def nodes(self):
@@ -92,6 +93,9 @@ def side_of(result, name, faces, shared):
     """A side with its own values at nodes that belong to others too. @param shared  (nodes,) of several contact sides"""
     contact = result.contact_nodes()
     fields = {name: result.nodal[name].copy() for name in FIELDS if name in result.nodal}
+    if "friction_status" in result.nodal:
+        status = result.nodal["friction_status"]
+        fields |= {"traction": result.vector("friction_"), "sticks": (status == 1).astype(float), "slips": (status == 2).astype(float)}
     side = Side(name, faces, fields, result.vector("contact_normal_"))
     nodes = side.nodes()
     known = nodes[contact[nodes] & ~shared[nodes]]
@@ -100,8 +104,19 @@ def side_of(result, name, faces, shared):
         continue_values(result, side, known, wanted)
     if result.dim == 3:
         side.normals = surface.completed(side.normals, contact, faces)
-        side.fields = {name: surface.completed(values, contact, faces) for name, values in fields.items()}
+        bare = vertices_of_quadratic_triangles(faces, len(contact))
+        side.fields = {name: surface.completed(values, contact & ~bare if name in FRICTION else contact, faces)
+                       for name, values in fields.items()}
     return side
+
+
+def vertices_of_quadratic_triangles(faces, num_nodes):
+    """(nodes,) which ones of a side carry no traction by themselves."""
+    found = np.zeros(num_nodes, dtype=bool)
+    for face in faces:
+        if face.kind == "TRI6":
+            found[face.nodes[:, :3]] = True
+    return found
 
 
 def continue_values(result, side, known, wanted):
@@ -116,7 +131,8 @@ def continue_values(result, side, known, wanted):
     side.fields["dent"][wanted] = np.maximum(dent, 0)
     side.fields["penetration"][wanted] = (result.vector("disp_")[wanted] * normals).sum(axis=1) - gap
     side.fields["contact_pressure"][wanted] = np.clip(pressure, 0, side.fields["contact_pressure"][wanted])  # the higher one is shown
-    side.fields["contact_status"][wanted] = side.fields["contact_status"][around[:, 0]]
+    for name in {"contact_status", *FRICTION} & set(side.fields):
+        side.fields[name][wanted] = side.fields[name][around[:, 0]]
 
 
 def weighted(values, weights):

@@ -9,7 +9,10 @@ from surface import NORMAL, PLACE, VALUE, unit
 SUPERSAMPLING = 3
 INK = np.array([0.1, 0.1, 0.12])
 GROUND = np.array([0.80, 0.78, 0.75])  # the foundation
+ZONES = {"sticks": np.array([0.42, 0.68, 0.90]), "slips": np.array([0.93, 0.55, 0.75])}  # of friction
+PLAIN = {**ZONES, "arrows": INK}  # layers of one colour; others without a field have the foundation's
 GROUND_LAYERS = ("foundation", "ground")
+ZONE_LINE = 10  # pixels of the fine raster
 BACK = 2  # pixels of the fine raster by which the foundation steps back, lest rounding decides where it touches the body
 
 
@@ -77,19 +80,20 @@ def paint(scene, view, window, pixels, colors, without=()):
         color = np.empty((len(pixels), 3))
         for k, name in enumerate(layers):
             norm, color_map = colors.get(name, (None, None))
-            color[layer == k] = color_map(norm(found[layer == k, 0]))[:, :3] if norm else GROUND
+            color[layer == k] = color_map(norm(found[layer == k, 0]))[:, :3] if norm else PLAIN.get(name, GROUND)
         if scene.result.dim == 3:
             color *= brightness(found[:, 1:], view)[:, None]
         image[pixels, :3], image[pixels, 3] = color, 1
     image = image.reshape(height, width, 4)
-    ink = np.zeros(canvas.shape)
-    for lines in scene.lines:
-        if lines.layer not in without:
-            lines = lines if lines.normals is None else looking_away(view, lines)
-            points, opacity = dots(lines, (view.project(lines.points) - corner) * fine)
-            ink = np.maximum(ink, canvas.ink(points, opacity, 2 if lines.fades else 4, tolerance=5))
-    image[..., :3] = image[..., :3] * (1 - ink[..., None]) + INK * ink[..., None]
-    image[..., 3] = np.maximum(image[..., 3], ink)
+    for zone in (None, *reversed(ZONES)):
+        ink = np.zeros(canvas.shape)
+        for lines in scene.lines:
+            if lines.layer not in without and lines.zone == zone:
+                lines = lines if lines.normals is None else looking_away(view, lines)
+                points, opacity = dots(lines, (view.project(lines.points) - corner) * fine)
+                ink = np.maximum(ink, canvas.ink(points, opacity, ZONE_LINE if zone else 2 if lines.fades else 4, tolerance=5))
+        image[..., :3] = image[..., :3] * (1 - ink[..., None]) + ZONES.get(zone, INK) * ink[..., None]
+        image[..., 3] = np.maximum(image[..., 3], ink)
     image[..., :3] *= image[..., 3:]  # so that the mean of pixels is that of their colours
     image = raster.reduced(image, SUPERSAMPLING)
     image[..., :3] /= np.maximum(image[..., 3:], 1e-9)
@@ -97,14 +101,14 @@ def paint(scene, view, window, pixels, colors, without=()):
 
 
 def seen_from(view, name, rows):
-    """The triangles of a layer that are drawn: the foundation's surface only where it is not between viewer and body."""
-    if name != "ground":
-        return rows
-    return rows[rows[..., NORMAL].mean(axis=1) @ view.axes[2] <= 0]
+    """The triangles of a layer that are drawn: the foundation's surface only where it is not between viewer and body, arrows where the
+    side on which they lie looks towards the viewer."""
+    towards = rows[..., NORMAL].mean(axis=1) @ view.axes[2]
+    return rows[towards <= 0] if name == "ground" else rows[towards > 0] if name == "arrows" else rows
 
 
 def looking_away(view, lines):
-    """The lines whose surface looks away from the viewer."""
+    """The lines whose normals look away from the viewer."""
     kept = lines.normals @ view.axes[2] <= 0
     return dataclasses.replace(lines, points=lines.points[kept], levels=lines.levels[kept], normals=None)
 
