@@ -13,7 +13,7 @@ namespace
 {
 
 constexpr int most_changes = 10;               // of the active set; then Newton with its sweep needs fewer steps
-constexpr int most_changes_with_friction = 30; // Newton knows no coupling, and so does not do better
+constexpr int most_changes_with_friction = 15; // Newton knows no coupling, and so does not do better
 constexpr int most_changes_tried = 6;          // where a Tresca problem has just been solved
 constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
 constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
