@@ -56,7 +56,7 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
     table.pressure = part_of(s.contact.pressure, begin, end);
     table.dent = part_of(s.contact.dent, begin, end);
     table.state = part_of(s.contact.state, begin, end);
-    table.friction = contact.friction.anywhere;
+    table.friction = contact::has_friction(scene.model.contact);
     if (end > begin && table.friction) {
       table.traction = rows_of(s.contact.traction, begin, end);
       table.slip = rows_of(s.contact.slip, begin, end);

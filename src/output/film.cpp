@@ -77,7 +77,7 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const analysis::Sol
       fields.push_back({name + axes[c], scatter(shown, Kokkos::subview(vectors, Kokkos::ALL, c), 0)});
   };
   add_vector("contact_normal_", normal);
-  if (!contact.friction.anywhere) return fields;
+  if (!contact::has_friction(scene.model.contact)) return fields;
   add_vector("friction_", to_host(s.contact.traction));
   add_vector("slip_", to_host(s.contact.slip));
   fields.push_back({"friction_used", scatter(shown, to_host(s.contact.used), 0)});

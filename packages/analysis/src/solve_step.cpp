@@ -220,7 +220,8 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepS
 
 void read_results(const Problem &problem, StepSolution &s)
 {
-  s.contact = contact::contact_result(problem.discretization(), problem.contact_sides(), s.step.contact, s.state);
+  s.contact = contact::contact_result(problem.discretization(), problem.contact_sides(), s.step.contact, s.state,
+                                      contact::has_friction(problem.model().contact));
   s.energy = contact::energy(*problem.stiffness(), s.step.elastic, s.step.contact, s.state); // paper (6); (5.14)
   s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
   s.reactions = reactions(problem, s);

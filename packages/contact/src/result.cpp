@@ -68,13 +68,24 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
 /// A point slips where its traction misses the bound by rounding alone.
 constexpr double slips_from = 1 - 1e-9;
 
-/// Traction, slip and friction state of each node.
-void fill_friction(const ContactNodes &c, const ContactState &state, ContactResult &result)
+/// 0 none acts, 1 sticks, 2 slips.
+KOKKOS_INLINE_FUNCTION int shown_slip(const double used)
+{
+  return used >= slips_from ? 2 : used > 0 ? 1 : 0;
+}
+
+/// No traction, no slip.
+void make_room_for_friction(const ContactNodes &c, ContactResult &result)
 {
   result.traction = DeviceView<double **>("rpc::contact::result_traction", c.size(), c.dim);
   result.slip = DeviceView<double **>("rpc::contact::result_slip", c.size(), c.dim);
   result.used = DeviceView<double *>("rpc::contact::used_friction", c.size());
   result.slip_state = DeviceView<int *>("rpc::contact::slip_state", c.size());
+}
+
+/// Traction, slip and friction state of each node that takes part in the solution.
+void fill_friction(const ContactNodes &c, const ContactState &state, const ContactResult &result)
+{
   const auto lambda = state.multiplier.tangential, traction = result.traction, slipped = result.slip;
   const auto used = result.used;
   const auto p = result.pressure;
@@ -95,6 +106,54 @@ void fill_friction(const ContactNodes &c, const ContactState &state, ContactResu
         state_of(i) = used(i) >= slips_from ? 2 : 1;
       });
   Kokkos::fence();
+}
+
+/// A column of one side's points; those without weight take their neighbours' mean. Collective.
+template <class Get, class Set>
+void lend_to_weightless(const fem::Discretization &d, const mesh::Side &side, const ContactNodes &c, const LO begin,
+                        const LO end, const Get &get, const Set &set)
+{
+  Vector value(d.mesh->owned_nodes), known(d.mesh->owned_nodes);
+  known.putScalar(1);
+  const Kokkos::RangePolicy<ExecutionSpace, LO> points(begin, end);
+  {
+    const auto to = device_write(value);
+    const auto flag = device_write(known);
+    Kokkos::parallel_for(
+        "rpc::contact::known_friction", points, KOKKOS_LAMBDA(const LO i) {
+          if (c.weight(i) > 0)
+            to(c.node(i)) = get(i);
+          else
+            flag(c.node(i)) = 0;
+        });
+    Kokkos::fence();
+  }
+  fem::extend_to_unknown(d, side, value, known);
+  const auto from = device_read(value);
+  Kokkos::parallel_for(
+      "rpc::contact::lent_friction", points, KOKKOS_LAMBDA(const LO i) {
+        if (!(c.weight(i) > 0)) set(i, from(c.node(i)));
+      });
+  Kokkos::fence();
+}
+
+/// Friction at points without weight, as their pressures; collective.
+void complete_friction(const fem::Discretization &d, const mesh::Side &side, const ContactNodes &c, const LO begin,
+                       const LO end, const ContactResult &result)
+{
+  const auto used = result.used;
+  const auto state = result.slip_state;
+  for (const auto &vectors : {result.traction, result.slip})
+    for (int k = 0; k < c.dim; ++k)
+      lend_to_weightless(
+          d, side, c, begin, end, KOKKOS_LAMBDA(const LO i) { return vectors(i, k); },
+          KOKKOS_LAMBDA(const LO i, const double value) { vectors(i, k) = value; });
+  lend_to_weightless(
+      d, side, c, begin, end, KOKKOS_LAMBDA(const LO i) { return used(i); },
+      KOKKOS_LAMBDA(const LO i, const double value) {
+        used(i) = value < 1 ? math::larger(value, 0) : 1;
+        state(i) = shown_slip(used(i));
+      });
 }
 
 /// What the ranks' shares come to; collective.
@@ -190,7 +249,7 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
         kept += c.weight(i) * stored_energy(p(i), f);
       },
       s.dent_volume, s.dissipated, s.foundation_energy);
-  if (result.traction.extent(0) > 0) add_friction_sums(c, result, begin, end, s);
+  if (c.friction.exists()) add_friction_sums(c, result, begin, end, s);
   for (const auto &q : contact_quantities) // Kokkos' maximum over no nodes is -DBL_MAX
     if (q.combine == Combine::maximum) s.*q.value = std::max(0., s.*q.value);
   return over_all_ranks(comm, s);
@@ -217,7 +276,7 @@ DeviceView<double *> completed_pressure(const fem::Discretization &d, const std:
 }
 
 ContactResult contact_result(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
-                             const ContactNodes &points, const ContactState &state)
+                             const ContactNodes &points, const ContactState &state, const bool with_friction)
 {
   const ContactNodes c = points;
   const LO n = c.size();
@@ -228,7 +287,10 @@ ContactResult contact_result(const fem::Discretization &d, const std::vector<con
   result.state = DeviceView<int *>("rpc::contact::state", n);
   result.pressure = completed_pressure(d, sides, c, state.multiplier.normal);
   fill_fields(c, *state.displacement, result);
+  if (with_friction || c.friction.anywhere) make_room_for_friction(c, result);
   if (c.friction.exists() && state.multiplier.has_tangential()) fill_friction(c, state, result);
+  for (int k = 0; k < c.num_sides() && c.friction.anywhere && c.num_weightless > 0; ++k)
+    complete_friction(d, *sides[k], c, c.first(k), c.first(k + 1), result);
   for (int k = 0; k < c.num_sides(); ++k) {
     result.sides.push_back(sums_of(d.mesh->comm(), c, result, c.first(k), c.first(k + 1)));
     if (d.axisymmetric()) result.sides.back().force[0] = 0; // around the axis radial forces cancel

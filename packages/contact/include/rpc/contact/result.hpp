@@ -114,8 +114,9 @@ struct ContactResult {
 
 /// Reads a state's displacement and multipliers, see completed_pressure(); collective.
 /// @param sides  that the contact nodes were made from
+/// @param with_friction  has the fields of friction also where none acts at this time
 ContactResult contact_result(const fem::Discretization &d, const std::vector<const mesh::Side *> &sides,
-                             const ContactNodes &points, const ContactState &state);
+                             const ContactNodes &points, const ContactState &state, bool with_friction = false);
 
 /// Pressures at all points from those of the points that take part in the solution: the others get theirs as told at
 /// ContactNodes, and where the law leaves it open from their neighbours. doc/theory.md (3.5); collective
