@@ -83,7 +83,7 @@ TEST(FrictionInvariance, WithoutPoissonsRatioSpaceIsThePlaneTimesItsDepth)
   EXPECT_NEAR(other.force[2], 0, 1e-9 * one.force[1]);
   EXPECT_NEAR(other.friction_work, depth * one.friction_work, 1e-9 * one.friction_work);
   const FrictionCounts n = friction_counts(contact_points(plane)), m = friction_counts(contact_points(space));
-  EXPECT_GT(n.stick, 5);
+  EXPECT_GT(n.stick, 2);
   EXPECT_GT(n.forward, 5);
   EXPECT_GT(n.backward, 1);
   EXPECT_EQ(m.stick, 3 * n.stick);
@@ -146,7 +146,7 @@ TEST(FrictionInvariance, TopMovedOneWayIsTheFoundationMovedTheOther)
       joined(free_sides, {"Contact->Obstacle->Type=plane", "Contact->Obstacle->Normal={0, 1}", "Steps->Times={1, 2, 3}",
                           "Contact->Yield Stress=12", "Contact->Friction Coefficient=0.3"});
   // To and fro, and part of the way down.
-  const std::string x = "(t < 2.5 ? 0.004*(t-1) : 0.002)", y = "0.001*(t-1)";
+  const std::string x = "(t < 2.5 ? 0.01*(t-1) : 0.0015)", y = "0.001*(t-1)";
   expect_same(moved(joined(scene, {"Dirichlet->top->X=" + x, "Dirichlet->top->Y=-0.01-" + y,
                                    "Contact->Obstacle->Point={0, 0}"})),
               moved(joined(scene, {"Dirichlet->top->X=0", "Dirichlet->top->Y=-0.01",
