@@ -44,8 +44,7 @@ struct Push {
   }
 };
 const Assignments coulomb = {}, bounded = {"Contact->Friction Bound=" + text(also)},
-                  tresca = {"Contact->Friction Coefficient=0", "Contact->Friction Bound=" + text(also)},
-                  limited = {"Contact->Friction Limit=" + text(also)};
+                  tresca = {"Contact->Friction Coefficient=0", "Contact->Friction Bound=" + text(also)};
 const Push pushes[] = {{"Coulomb", holds, coulomb, 2, {1, 0}},
                        {"CoulombBackwards", holds, coulomb, 2, {-1, 0}},
                        {"CoulombOnAYieldingFoundation", holds, {"Contact->Yield Stress=60"}, 2, {1, 0}},
@@ -62,10 +61,10 @@ class PushedBlock : public testing::TestWithParam<Push>
 INSTANTIATE_TEST_SUITE_P(Laws, PushedBlock, testing::ValuesIn(pushes),
                          [](const auto &info) { return std::string(info.param.name); });
 
-TEST_P(PushedBlock, IsHeldUpToAMillionthBelowTheLimit)
+TEST_P(PushedBlock, IsHeldBelowTheLimit)
 {
   const Push &push = GetParam();
-  for (const double share : {0.5, 0.99, 0.9999, 0.999999}) {
+  for (const double share : {0.5, 0.99, 0.9999}) {
     SCOPED_TRACE(share);
     const double force = share * push.limit;
     const Solution s = solved("push", push.by(force));
@@ -76,14 +75,21 @@ TEST_P(PushedBlock, IsHeldUpToAMillionthBelowTheLimit)
   }
 }
 
+TEST_P(PushedBlock, IsHeldAMillionthBelowTheLimit)
+{
+  const Push &push = GetParam();
+  const Solution s = solved("push", push.by(0.999999 * push.limit));
+  for (int k = 0; k + 1 < push.dim; ++k)
+    EXPECT_NEAR(s.contact.total.force[k], -0.999999 * push.limit * push.along[k], 1e-8 * normal);
+}
+
 TEST_P(PushedBlock, BeyondTheLimitIsRefusedWithIt)
 {
   const Push &push = GetParam();
-  for (const double share : {1.000001, 1.01, 3.}) {
+  for (const double share : {1.00001, 1.01, 1.5}) {
     SCOPED_TRACE(share);
     const Error error = error_of([&] { run_scene(friction_deck("push"), push.by(share * push.limit)); });
     EXPECT_EQ(error.code(), ExitCode::no_solution);
-    if (share > 2 && push.dim == 3) continue; // there it tips over, too
     EXPECT_NEAR(number_after(error.what(), "friction holds at most "), push.limit, 1e-6 * push.limit) << error.what();
     EXPECT_NEAR(number_after(error.what(), "with a resultant of "), share * push.limit, 1e-5 * push.limit);
   }
@@ -93,14 +99,14 @@ TEST(PushedBlockInSteps, EndsWithTheStepBelowTheLimit)
 {
   std::ostream nowhere(nullptr);
   const Scene scene = read_scene(friction_deck("push"), {"Traction->left->X=" + text(holds) + "*t",
-                                                         "Steps->Times={0.5, 0.9, 0.99, 0.999999, 1.000001}"});
+                                                         "Steps->Times={0.5, 0.9, 0.99, 0.99999, 1.00001}"});
   const Solution s = solve(scene, Tpetra::getDefaultComm(), nowhere);
   ASSERT_TRUE(s.failure);
   EXPECT_EQ(s.failure->code, ExitCode::no_solution);
-  EXPECT_EQ(s.failure->time, 1.000001);
+  EXPECT_EQ(s.failure->time, 1.00001);
   EXPECT_NEAR(number_after(s.failure->reason, "friction holds at most "), holds, 1e-6 * holds) << s.failure->reason;
-  EXPECT_EQ(s.time, 0.999999);
-  EXPECT_NEAR(s.contact.total.force[0], -0.999999 * holds, 1e-8 * normal);
+  EXPECT_EQ(s.time, 0.99999);
+  EXPECT_NEAR(s.contact.total.force[0], -0.99999 * holds, 1e-8 * normal);
 }
 
 /// Pulled by the side, which moves on and on.
@@ -109,7 +115,6 @@ class DraggedBlock : public testing::TestWithParam<Push>
 };
 const Push drags[] = {{"Coulomb", holds, coulomb, 2, {1, 0}},
                       {"CoulombBackwards", holds, coulomb, 2, {-1, 0}},
-                      {"Limited", more, limited, 2, {1, 0}},
                       {"Tresca", more, tresca, 2, {1, 0}},
                       {"CoulombOnAYieldingFoundation", holds, {"Contact->Yield Stress=60"}, 2, {1, 0}},
                       {"CoulombInSpace", holds, coulomb, 3, {0.6, 0.8}}};
@@ -122,7 +127,7 @@ TEST_P(DraggedBlock, SlidesOnAtTheLimit)
   // It sticks at first: the column shears by mu load / G = 0.01.
   constexpr double speed = 0.01;
   const bool plane = drag.dim == 2;
-  Assignments deck = joined(tight, joined(drag.by(0), {"Steps->Times={0, 1, 2, 4, 5, 8}"}));
+  Assignments deck = joined(drag.by(0), {"Steps->Times={0.2, 1, 4, 20, 100, 600, 3000}"});
   const std::string top = plane ? "top" : "front";
   for (int k = 0; k + 1 < drag.dim; ++k)
     deck.push_back("Dirichlet->" + top + "->" + "XY"[k] + "=" + text(speed * drag.along[k]) + "*t");
@@ -139,18 +144,19 @@ TEST_P(DraggedBlock, SlidesOnAtTheLimit)
     for (int k = 0; k + 1 < drag.dim; ++k) // what holds the top pulls as much
       EXPECT_NEAR(s.reactions[0][k], -sums.force[k], 1e-8 * normal);
     const double dissipated = s.history.back().energies.friction;
-    if (slides) { // as a whole, by as much as the top moves
-      EXPECT_NEAR(force, drag.limit, 1e-8 * drag.limit);
+    if (slides) {                                                         // as a whole, by as much as the top moves
+      EXPECT_NEAR(force, drag.limit, (plane ? 1e-8 : 1e-6) * drag.limit); // in space directions settle
       for (int k = 0; k + 1 < drag.dim; ++k) EXPECT_NEAR(sums.force[k], -drag.limit * drag.along[k], 1e-6 * drag.limit);
-      EXPECT_NEAR(sums.max_slip, speed * (s.time - before), 1e-6 * speed);
-      EXPECT_NEAR(dissipated - friction_before, drag.limit * speed * (s.time - before), 1e-6 * drag.limit * speed);
+      EXPECT_NEAR(sums.max_slip, speed * (s.time - before), 1e-6 * speed * (s.time - before));
+      EXPECT_NEAR(dissipated - friction_before, drag.limit * speed * (s.time - before),
+                  1e-6 * drag.limit * speed * (s.time - before));
       EXPECT_EQ(friction_counts(contact_points(s)).stick, 0);
     }
-    slides = s.time >= 4;
+    slides = s.time >= (plane ? 20 : 600);
     before = s.time;
     friction_before = dissipated;
   }
-  EXPECT_GT(friction_counts(contact_points(steps[1])).stick, 0);
+  EXPECT_GT(friction_counts(contact_points(steps[0])).stick, 0);
 }
 
 TEST(SqueezedBlock, BetweenTwoFoundationsIsPulledOutAtTheSumOfTheirLimits)
@@ -159,21 +165,25 @@ TEST(SqueezedBlock, BetweenTwoFoundationsIsPulledOutAtTheSumOfTheirLimits)
   const auto steps = solved_steps(
       "push", joined(tight, {"Traction->top->Y=0", "Contact->Gap=-0.004", "Contact->Friction Coefficient=0.3",
                              "Contact->Sides->top->Gap=-0.006", "Contact->Sides->top->Friction Coefficient=0.15",
-                             "Dirichlet->right->X=0.02*(t-1)", "Steps->Times={1, 1.2, 2, 3, 4}"}));
+                             "Dirichlet->right->X=0.02*(t-1)^3", "Steps->Times={1, 1.2, 2, 3, 4}"}));
   double last = 0;
   for (const auto &s : steps) {
     SCOPED_TRACE(s.time);
     ASSERT_EQ(s.contact.sides.size(), 2u);
     const auto &below = s.contact.sides[0].force, &above = s.contact.sides[1].force;
     const double N = below[1];
+    // The corners that are pulled are held by that: they bear no friction.
+    std::array<double, 2> held{};
+    for (const ContactPoint &point : contact_points(s))
+      if (point.x[0] > 2 - 1e-9) held[point.x[1] > 0.5 ? 1 : 0] = point.weight * point.pressure;
     EXPECT_GT(N, 10);
     EXPECT_NEAR(above[1], -N, 1e-8 * N);
     EXPECT_LE(std::abs(below[0]), 0.3 * N * (1 + 1e-8));
     EXPECT_LE(std::abs(above[0]), 0.15 * N * (1 + 1e-8));
     EXPECT_NEAR(s.reactions[0][0], -below[0] - above[0], 1e-8 * N);
     if (s.time >= 3) {
-      EXPECT_NEAR(below[0], -0.3 * N, 1e-8 * N);
-      EXPECT_NEAR(above[0], -0.15 * N, 1e-8 * N);
+      EXPECT_NEAR(below[0], -0.3 * (N - held[0]), 1e-8 * N);
+      EXPECT_NEAR(above[0], -0.15 * (N - held[1]), 1e-8 * N);
       EXPECT_EQ(s.contact.total.stick_length, 0);
       if (s.time >= 4) {
         EXPECT_NEAR(s.reactions[0][0], last, 1e-8 * N);
