@@ -67,7 +67,7 @@ TEST_P(FrictionOrder, OfTractionsAndSlip)
   EXPECT_GT(order(&Errors::q), 1.3) << found[0].q << " " << found[1].q << " " << found[2].q;
   EXPECT_GT(order(&Errors::p), 1.3) << found[0].p << " " << found[1].p << " " << found[2].p;
   EXPECT_GT(order(&Errors::slip), 1.6) << found[0].slip << " " << found[1].slip << " " << found[2].slip;
-  EXPECT_LT(found.back().q, 0.01);
+  EXPECT_LT(found.back().q, element == "P1" ? 0.015 : 0.003);
 }
 
 } // namespace

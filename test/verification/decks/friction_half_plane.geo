@@ -1,9 +1,8 @@
 // A body like a half plane, (-L, L) x (0, L), in graded rows of quadrilaterals: n of equal length where it may touch, |x| < b, and as
 // many rows as long as they are high there. Units: m.
-DefineConstant[ L = 1, b = 0.06, n = 48 ];
+DefineConstant[ L = 20, b = 0.06, n = 48 ];
 h = 2*b/n;
-// Lengths grow from h by 1 + (L - b)/..., such that m of them fill the rest.
-ratio = 1.3;
+ratio = 1.4;
 m = Round(Log(1 + (L - b)*(ratio - 1)/h)/Log(ratio));
 rows = Round(Log(1 + (L - b)*(ratio - 1)/h)/Log(ratio));
 Point(1) = {-L, 0, 0}; Point(2) = {-b, 0, 0}; Point(3) = {b, 0, 0}; Point(4) = {L, 0, 0};
