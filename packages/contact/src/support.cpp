@@ -141,6 +141,14 @@ std::vector<int> carrying_sides(const Context &context, const HeldPart &held, co
   refuse(message.str());
 }
 
+/// A rotation about an axis a thousand times the part's radius away is a translation to whoever reads of it.
+void drop_slight_turn(RigidMotion &motion, const int dim)
+{
+  double moved = 0, turned = 0;
+  for (int k = 0; k < 6; ++k) (k < dim ? moved : turned) += motion[k] * motion[k];
+  if (turned < 1e-6 * moved) std::fill(motion.begin() + dim, motion.end(), 0.);
+}
+
 /// Refuses a load that friction does not hold, with the most that it holds along the same motion; collective. Returns where the load
 /// does not push that way.                                                                                       (12.10)
 void refuse_slide(const Context &context, const HeldPart &held, const ConvexSet &set, const Numbers &b,
@@ -149,6 +157,7 @@ void refuse_slide(const Context &context, const HeldPart &held, const ConvexSet 
   RigidMotion slide{};
   for (const RigidMotion &along : slides)
     for (int k = 0; k < 6; ++k) slide[k] += dot(away, along) * along[k];
+  drop_slight_turn(slide, context.d.dim());
   const Numbers d = held.coordinates(slide);
   double pushed = 0, square = 0;
   for (std::size_t j = 0; j < b.size(); ++j) {
@@ -203,7 +212,8 @@ void check_part(const Context &context, const HeldPart &held, const fem::Resulta
     refuse_load(context, held, held.motion(nearest.away), load);
   }
 
-  const double shift = 1e-6 * scale;
+  // With friction b has the weight too, beside a push that may be small: the limit of the push is to be met to a millionth.
+  const double shift = (slides.empty() ? 1e-6 : 1e-8) * scale;
   Nearest worst;
   for (std::size_t j = 0; j < b.size(); ++j) {
     for (const double sign : {1., -1.}) {
