@@ -243,14 +243,8 @@ Furthest HeldPart::furthest(const std::vector<double> &q) const
   double squares = 0;
   for (const double entry : endless.at) squares += entry * entry;
   if (squares == 0) return {coordinates(carried(r)), false};
-  double gain = 0, size = 0;
-  for (std::size_t j = 0; j < q.size(); ++j) {
-    endless.at[j] /= std::sqrt(squares);
-    gain += q[j] * endless.at[j];
-    size += q[j] * q[j];
-  }
-  // A ray across the direction would hide what the other points do.
-  if (friction && !(gain > 1e-8 * std::sqrt(size))) return {coordinates(carried(r)), false};
+  for (double &entry : endless.at) entry /= std::sqrt(squares);
+  if (friction) endless.bounded = coordinates(carried(r));
   return endless;
 }
 

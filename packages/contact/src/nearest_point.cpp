@@ -125,6 +125,15 @@ private:
   bool origin_ = true;
 };
 
+/// Of an endless direction and a bounded point the one that leads further along q for its length.
+Furthest more_useful(Furthest furthest, const Numbers &q, const Numbers &x, const double size)
+{
+  if (furthest.bounded.empty()) return furthest;
+  const double gain = dot(q, furthest.bounded) - dot(q, x), length = norm(furthest.bounded) + size;
+  if (gain > dot(q, furthest.at) * length) return {furthest.bounded, false};
+  return furthest;
+}
+
 } // namespace
 
 Nearest nearest_point(const ConvexSet &set, const std::vector<double> &b, const double tolerance)
@@ -137,7 +146,7 @@ Nearest nearest_point(const ConvexSet &set, const std::vector<double> &b, const 
   nearest.distance = norm(b);
   while (nearest.distance > tolerance && nearest.steps < enough) {
     const Numbers q = nearest.away, x = face.point();
-    const Furthest furthest = set(q);
+    const Furthest furthest = more_useful(set(q), q, x, norm(b));
     ++nearest.steps;
     const double size = norm(furthest.at), gain = dot(q, furthest.at) - (furthest.endless ? 0 : dot(q, x));
     if (!(gain > rounding * norm(q) * (furthest.endless ? 1 : size + norm(b)))) return nearest;

@@ -11,8 +11,11 @@ namespace rpc::contact
 struct Furthest {
   std::vector<double> at;
   bool endless = false;
+  /// A point of the set that goes far along q too, where the set is endless: without it a ray nearly across q hides what the rest of
+  /// the set does. Empty: none is known.
+  std::vector<double> bounded = {};
 };
-/// A closed convex polyhedron in R^k that holds the origin, given by its farthest point in any direction.
+/// A closed convex set in R^k that holds the origin, given by its farthest point in any direction.
 using ConvexSet = std::function<Furthest(const std::vector<double> &q)>;
 
 struct Nearest {
