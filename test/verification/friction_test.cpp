@@ -113,6 +113,17 @@ TEST(Wedge, IsHeldByItsClosedForm)
   EXPECT_LE(s.uzawa.newton_iterations.front(), 5);
 }
 
+// The plain iteration over the bounds moves away by the factor 0.3/0.2.
+TEST(Wedge, FollowsFromTrescaProblemsWithAcceleratedBounds)
+{
+  const Solution s = solved("wedge", {"NOX->Direction->Method=Newton"});
+  EXPECT_GT(s.uzawa.iterations, 3);
+  EXPECT_LE(s.uzawa.iterations, 25);
+  const double slope = std::atan(0.2), normal = 10 / (std::sin(slope) + 0.3 * std::cos(slope));
+  const auto &force = s.contact.total.force;
+  EXPECT_NEAR(-force[0] * std::sin(slope) + force[1] * std::cos(slope), normal, 1e-6 * normal);
+}
+
 TEST(Greco, ProbesAreThePublishedOnes)
 {
   const Solution s = solved("greco");
