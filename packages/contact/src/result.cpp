@@ -1,6 +1,7 @@
 #include "rpc/contact/result.hpp"
 
 #include "rpc/contact/law/judgement.hpp"
+#include "rpc/contact/smoothed_points.hpp"
 #include "rpc/core/math.hpp"
 #include "rpc/core/parallel.hpp"
 
@@ -68,12 +69,6 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
 /// A point slips where its traction misses the bound by rounding alone.
 constexpr double slips_from = 1 - 1e-9;
 
-/// 0 none acts, 1 sticks, 2 slips.
-KOKKOS_INLINE_FUNCTION int shown_slip(const double used)
-{
-  return used >= slips_from ? 2 : used > 0 ? 1 : 0;
-}
-
 /// No traction, no slip.
 void make_room_for_friction(const ContactNodes &c, ContactResult &result)
 {
@@ -137,23 +132,32 @@ void lend_to_weightless(const fem::Discretization &d, const mesh::Side &side, co
   Kokkos::fence();
 }
 
-/// Friction at points without weight, as their pressures; collective.
+/// Friction at points without weight, as their pressures, but no more than what they bear; collective.
 void complete_friction(const fem::Discretization &d, const mesh::Side &side, const ContactNodes &c, const LO begin,
                        const LO end, const ContactResult &result)
 {
-  const auto used = result.used;
+  const auto p = result.pressure, used = result.used;
+  const auto q = result.traction;
   const auto state = result.slip_state;
+  const DeviceView<double *> bound("rpc::contact::lent_bound", c.size());
   for (const auto &vectors : {result.traction, result.slip})
     for (int k = 0; k < c.dim; ++k)
       lend_to_weightless(
           d, side, c, begin, end, KOKKOS_LAMBDA(const LO i) { return vectors(i, k); },
           KOKKOS_LAMBDA(const LO i, const double value) { vectors(i, k) = value; });
   lend_to_weightless(
-      d, side, c, begin, end, KOKKOS_LAMBDA(const LO i) { return used(i); },
-      KOKKOS_LAMBDA(const LO i, const double value) {
-        used(i) = value < 1 ? math::larger(value, 0) : 1;
-        state(i) = shown_slip(used(i));
+      d, side, c, begin, end, KOKKOS_LAMBDA(const LO i) { return friction_bound(p(i), c.friction(i)); },
+      KOKKOS_LAMBDA(const LO i, const double value) { bound(i) = math::larger(value, 0); });
+  Kokkos::parallel_for(
+      "rpc::contact::lent_friction_state", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end),
+      KOKKOS_LAMBDA(const LO i) {
+        if (c.weight(i) > 0 || !c.friction.exists()) return;
+        const Along borne = admissible_friction(row(q, i), bound(i));
+        set_row(q, i, borne);
+        used(i) = bound(i) > 0 ? borne.length() / bound(i) : 0;
+        state(i) = !(bound(i) > 0) ? 0 : used(i) >= slips_from ? 2 : 1;
       });
+  Kokkos::fence();
 }
 
 /// What the ranks' shares come to; collective.
