@@ -17,6 +17,7 @@ import fields as f  # noqa: E402, after the folders of what scenes and tables ar
 from generate import CLAMPED, ELEMENTS, LAYERS, ZERO, log_uniform  # noqa: E402
 from plane import Body, Grid  # noqa: E402
 from scene import ContactSide, Scene  # noqa: E402
+import friction  # noqa: E402
 import hard  # noqa: E402
 
 # Dofs, and contact points, of a scene.
@@ -334,7 +335,7 @@ PLANE = {"cantilever": cantilever, "clamped_beam": clamped_beam, "footing": foot
          "two_sides": two_sides, "half_cylinder": half_cylinder, "shapes": shapes, "bodies": bodies}
 SPACE = {"block": block, "plate": plate, "pressed_block": pressed_block}
 FAMILIES = {**PLANE, **SPACE}
-KINDS = {"three states": (FAMILIES, Sizes), "hard": (hard.FAMILIES, hard.Meshes)}
+KINDS = {"three states": (FAMILIES, Sizes), "hard": (hard.FAMILIES, hard.Meshes), "friction": (friction.families_of(FAMILIES), Sizes)}
 
 
 def scene(family, rng, size, kind="three states"):

@@ -7,17 +7,24 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 
 import families
+import fields  # of test/stress, whose folder families.py has put on the path
 import growth
 import hard
 import report
 from runs import Row
-from scene import deck, verdict
+from scene import Friction, deck, verdict
 
 SCENES = 5 * len(families.FAMILIES)
 
 
 def text(scene):
     return deck(scene, "scene.geo" if scene.file else None) + (scene.file(scene.units[0]) if scene.file else "")
+
+
+def without_mesh(scene):
+    root = ElementTree.fromstring(deck(scene, "scene.geo" if scene.file else None))
+    root.remove(root.find("ParameterList[@name='Mesh']"))
+    return ElementTree.tostring(root)
 
 
 def points(scene):
@@ -28,10 +35,6 @@ def points(scene):
 
 class HardGenerator(unittest.TestCase):
     def test_scenes_come_from_seed_and_number_and_keep_their_law_and_loads_in_every_size(self):
-        def without_mesh(scene):
-            root = ElementTree.fromstring(deck(scene, "scene.geo" if scene.file else None))
-            root.remove(root.find("ParameterList[@name='Mesh']"))
-            return ElementTree.tostring(root)
         for k in range(4 * len(hard.FAMILIES)):
             small, full, again = (families.make(7, k, size, "hard")[1] for size in ("small", "full", "full"))
             self.assertEqual(text(full), text(again))
@@ -43,6 +46,37 @@ class HardGenerator(unittest.TestCase):
         self.assertEqual(len(drawn), len(hard.FAMILIES))
 
 
+class FrictionGenerator(unittest.TestCase):
+    def test_scenes_come_from_seed_and_number_and_keep_their_law_and_loads_in_every_size(self):
+        for k in range(SCENES):
+            small, full, again = (families.make(7, k, size, "friction")[1] for size in ("small", "full", "full"))
+            self.assertEqual(text(full), text(again))
+            self.assertEqual(without_mesh(small), without_mesh(full))
+            self.assertEqual(verdict(full), "solution")
+
+    def test_laws_are_those_of_coulomb_and_tresca_and_both_constant_and_varying_with_a_limit_and_without(self):
+        laws = [contact.friction for k in range(200) for contact in families.make(7, k, "small", "friction")[1].contact if contact.friction]
+        bears = [(law.coefficient(1.0), law.bound(1.0), law.limit(1.0)) for law in laws]
+        self.assertEqual({(mu > 0, bound > 0) for mu, bound, _ in bears}, {(True, False), (False, True), (True, True)})
+        self.assertEqual({math.isinf(limit) for _, _, limit in bears}, {True, False})
+        self.assertEqual({isinstance(law.coefficient, fields.Constant) for law in laws}, {True, False})
+        coefficients = [mu for mu, _, _ in bears if mu]
+        self.assertTrue(0.05 <= min(coefficients) < 0.07 and 1.2 < max(coefficients) <= 1.5)
+
+    def test_every_scene_has_friction_and_a_drag_along_the_foundation(self):
+        for k in range(SCENES):
+            family, scene = families.make(7, k, "small", "friction")
+            root = ElementTree.fromstring(deck(scene, "scene.geo" if scene.file else None))
+            names = {entry.get("name") for entry in root.find("ParameterList[@name='Contact']")}
+            self.assertTrue(names & {"Friction Coefficient", "Friction Bound"}, family)
+            drags = [f[0] for f in scene.traction.values()] + [held["X"] for held in scene.dirichlet.values()]
+            self.assertTrue(any(drag(0.7) for drag in drags) or scene.body_force[0], family)
+
+    def test_a_point_bears_what_its_law_says(self):
+        law = Friction(fields.Constant(0.5), fields.linear(1.0, 2.0), fields.Constant(6.0))
+        self.assertEqual([law.bears(p, x) for p, x in ((0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (10.0, 1.0))], [1.0, 3.0, 5.0, 6.0])
+
+
 class Generator(unittest.TestCase):
     def test_a_scene_comes_from_its_seed_and_number_alone(self):
         for k in range(SCENES):
@@ -51,10 +85,6 @@ class Generator(unittest.TestCase):
         self.assertNotEqual(text(families.make(7, 0, "full")[1]), text(families.make(7, len(families.FAMILIES), "full")[1]))
 
     def test_sizes_are_meshes_of_one_scene(self):
-        def without_mesh(scene):
-            root = ElementTree.fromstring(deck(scene, "scene.geo" if scene.file else None))
-            root.remove(root.find("ParameterList[@name='Mesh']"))
-            return ElementTree.tostring(root)
         for k in range(SCENES):
             small, full = (families.make(7, k, size)[1] for size in ("small", "full"))
             self.assertEqual(without_mesh(small), without_mesh(full))
@@ -96,6 +126,14 @@ class Bars(unittest.TestCase):
         self.assertFalse(self.judged(*[{"seconds": 2.6}] * 3))
         self.assertFalse(self.judged(*[{"seconds": 1.6}] * 21))
         self.assertFalse(self.judged(*[{"closed": 0}] * 25))
+
+    def test_stick_and_slip_are_wanted_in_most_scenes_with_friction(self):
+        def judged(both):
+            rows = [self.row(k, sticks=3 * (k < both), slips=3) for k in range(20)]
+            return report.bar_table(rows, report.FRICTION_BARS + report.FRICTION_TIME_BARS, [report.STICK_AND_SLIP])
+        self.assertTrue(judged(12).good)
+        self.assertFalse(judged(11).good)
+        self.assertFalse(report.bar_table([self.row(k, steps=7) for k in range(20)], report.FRICTION_BARS, []).good)
 
     def test_quantiles_are_nearest_ranks(self):
         self.assertEqual([report.quantile(range(1, 21), share) for share in (0.5, 0.9, 0.95, 1.0)], [10, 18, 19, 20])

@@ -7,7 +7,7 @@ Scene K comes from the seed and K alone (families.py). Each is run with contact,
 without coarser meshes; times are of whole processes. A table by family, the bars, and each failed scene with its command. The exit
 code is 1 if a scene failed or a bar does not hold. --size=small has meshes of a few thousand dofs of the same scenes; times mean
 nothing there, and their bars are left out. --steps-only leaves out the runs without contact. --kind=hard has the families of hard.py,
-without the cold runs.
+--kind=friction those of friction.py, both without the cold runs.
 """
 import argparse
 import concurrent.futures
@@ -17,6 +17,13 @@ import sys
 import families
 import report
 import runs
+
+
+BARS = {  # of steps, of times, and what scenes must have
+    "three states": (report.STEP_BARS, report.TIME_BARS, [report.THREE_STATES]),
+    "hard": (report.HARD_BARS, report.HARD_TIME_BARS, []),
+    "friction": (report.FRICTION_BARS, report.FRICTION_TIME_BARS, [report.STICK_AND_SLIP]),
+}
 
 
 def arguments(parser):
@@ -44,15 +51,19 @@ def chosen(options):
     return [k for k in numbers if not options.family or families.family_of(k, options.kind) in options.family.split(",")]
 
 
+def rubbing(row):
+    return f", {row.sticks} sticking, {row.slips} slipping" if row.sticks or row.slips else ""
+
+
 def measured(options):
     """The Rows of the scenes, in order; a line each on standard error."""
     rows = []
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
         for row in pool.map(lambda number: runs.measure(options, number), chosen(options)):
             rows.append(row)
-            print("  %d %s %s: %d dofs, %d points (%d open, %d closed, %d yielding), %s s, ratio %s, steps %s, cold %s, CG %s%s%s"
-                  % (row.number, row.family, row.element, row.dofs, row.points, row.open, row.closed, row.yielding, report.short(row.seconds),
-                     report.short(row.ratio), report.short(row.steps, "%.0f"), report.short(row.cold_steps, "%.0f"),
+            print("  %d %s %s: %d dofs, %d points (%d open, %d closed, %d yielding%s), %s s, ratio %s, steps %s, cold %s, CG %s%s%s"
+                  % (row.number, row.family, row.element, row.dofs, row.points, row.open, row.closed, row.yielding, rubbing(row),
+                     report.short(row.seconds), report.short(row.ratio), report.short(row.steps, "%.0f"), report.short(row.cold_steps, "%.0f"),
                      report.short(row.most_cg, "%.0f"), row.at_rounding and "; at rounding", row.failure and "; FAILED: " + row.failure),
                   file=sys.stderr, flush=True)
     return rows
@@ -62,18 +73,15 @@ def note(options):
     return ("Seed %d, size %s, %d rank(s). Ratio: time of the whole process over that of the same deck without its Contact list%s. Steps: "
             "active-set and Newton steps on the finest mesh, from a coarser mesh's solution%s. CG "
             "iterations and set-ups on the finest mesh." % (options.seed, options.size, options.np, ", best of 2 where short" if options.elastic else "",
-                                                            "" if options.kind == "hard" else "; cold: without coarser meshes"))
+                                                            "" if options.kind in runs.WITHOUT_COLD else "; cold: without coarser meshes"))
 
 
 def tables(options, rows):
     timed = options.elastic and options.size == "full"
-    if options.kind == "hard":
-        bars = report.HARD_BARS + (report.HARD_TIME_BARS if timed else [])
-    else:
-        bars = report.STEP_BARS + (report.TIME_BARS if timed else [])
+    bars, time_bars, wanted = BARS[options.kind]
     names = list(families.KINDS[options.kind][0])
-    least = 0 if options.kind == "hard" else report.LEAST_THREE_STATES
-    return [report.family_table(rows, note(options), options.elastic, names), report.bar_table(rows, bars, least)]
+    return [report.family_table(rows, note(options), options.elastic, names, options.kind == "friction"),
+            report.bar_table(rows, bars + (time_bars if timed else []), wanted)]
 
 
 def failures(options, rows):

@@ -17,6 +17,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 COLD = "--set=Nested Iteration->Enabled=false"
 SHORT = 5.0  # [s]: runs below are measured twice, and the best counts
 STATES = ("open", "closed", "yielding")
+WITHOUT_COLD = ("hard", "friction")  # kinds
 
 
 @dataclasses.dataclass
@@ -32,6 +33,8 @@ class Row:
     open: int = 0
     closed: int = 0
     yielding: int = 0
+    sticks: int = 0
+    slips: int = 0
     seconds: float = math.inf  # of the whole process
     elastic_seconds: float = math.inf
     steps: float = None  # from a coarser mesh
@@ -57,6 +60,10 @@ class Row:
     @property
     def states(self):
         return sum(getattr(self, state) > 0 for state in STATES)
+
+    @property
+    def sticks_and_slips(self):
+        return self.sticks > 0 and self.slips > 0
 
 
 @dataclasses.dataclass
@@ -109,6 +116,8 @@ def measure_scene(options, number, family, scene, folder):
         points = contact_rows(folder)
         states = collections.Counter(point["state"] for point in points)
         row.open, row.closed, row.yielding = (states[state] for state in STATES)
+        rubbing = collections.Counter(point.get("friction_state") for point in points)
+        row.sticks, row.slips = rubbing["sticks"], rubbing["slips"]
         row.cg, row.most_cg = sum(contact.summary["linear_iterations"]), max(contact.summary["linear_iterations"], default=0)
         row.setups = contact.summary["preconditioner_setups"]
         row.residual, row.levels = worst_residual(contact.summary), len(contact.summary["levels"])
@@ -116,7 +125,7 @@ def measure_scene(options, number, family, scene, folder):
     complain(complaints, "", contact)
     if options.elastic:
         elastic(options, folder, row, complaints, contact)
-    if options.kind == "hard":
+    if options.kind in WITHOUT_COLD:
         row.steps, row.cold_steps, row.failure = contact.steps, None, "; ".join(complaints)
         keep(options, row, folder)
         return row

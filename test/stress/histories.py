@@ -7,8 +7,8 @@ its loads, prescribed displacements and obstacles a path in time: up and back, r
 sides in turn. It is run as it is, with steps of a quarter, and up to a step in between. All must exit 0 with all steps converged in one
 part, optimality residuals below 1e-8, finite numbers, pressures in [0, xi + H w] and forces that balance. Dents and the dissipated energy never
 fall, as sums, and at each node from the run that stopped to the whole one, whose steps are the same. Energies balance to the order of the step:
-the sum over the steps of what they miss falls. Without memory nothing is dissipated, and the last step is that of a run of that step alone.
-Histories whose steps rounding keeps from their tolerance, as scenes.py has it, are counted. The exit code is 1 if a history failed.
+the sum over the steps of what they miss falls, and so does, with friction (friction_histories.py), the sum of what it gives back. Without
+memory nothing is dissipated by denting, and without friction, too, the last step is that of a run of that step alone. Histories whose steps rounding keeps from their tolerance, as scenes.py has it, are counted. The exit code is 1 if a history failed.
 """
 import concurrent.futures
 import dataclasses
@@ -34,6 +34,8 @@ SAME = 1e-6  # of two runs over the same steps, relative
 FALLS = 0.6  # of the sum of what steps miss of the energy, from steps to their quarters: order two makes it 1/16, one 1/4
 SOFTER = 0.8  # of the histories without dents
 SOLVED = 1e-9  # of the forces between cells: what may be left of equilibrium
+MEMORY = ("strain_energy", "dissipated_energy", "work", "max_pressure", "max_dent", "dent_volume")
+BY_FRICTION = ("dissipated_by_friction", "max_shear", "max_slip")
 ROUNDING = 1e-5  # of the work done to and fro: less is left of solves
 
 
@@ -103,6 +105,10 @@ def solvable(scene):
 # --- judgement -------------------------------------------------------------------------------------------------------------
 
 
+def rubs(scene):
+    return any(contact.friction for contact in scene.contact)
+
+
 class AtRounding(Exception):
     """Where |K||u|, rounded, is above 1e-8 of the load, no program in double precision can tell whether a step is solved."""
 
@@ -136,9 +142,13 @@ def run(options, scene, folder, complain, *settings):
     return json.loads(results.read_text()), scenes.contact_rows(folder)
 
 
+def by_friction(step):
+    return step.get("dissipated_by_friction", 0.0)
+
+
 def missed(steps):
     """What each step misses of the energy [J]."""
-    rest = [s["work"] - s["strain_energy"] - s["foundation_energy"] - s["dissipated_energy"] for s in steps]
+    rest = [s["work"] - s["strain_energy"] - s["foundation_energy"] - s["dissipated_energy"] - by_friction(s) for s in steps]
     return [b - a for a, b in zip([0.0] + rest, rest)]
 
 
@@ -187,11 +197,17 @@ def misses(result, start):
     return sum(abs(m) for m, s in zip(missed(steps), steps) if s["time"] > start)
 
 
+def falls(result, start):
+    """By how much dissipation by friction falls in steps after a time: the trapezoidal rule may where traction turns and the pressure falls."""
+    steps = result[0]["steps"]
+    return sum(max(0.0, by_friction(a) - by_friction(b)) for a, b in zip(steps, steps[1:]) if b["time"] > start)
+
+
 def at_work(result):
     """Work to and fro, and energies."""
     steps = result[0]["steps"]
     works = [s["work"] for s in steps]
-    return sum(abs(b - a) for a, b in zip(works, works[1:])) + max(s["strain_energy"] + s["dissipated_energy"] for s in steps)
+    return sum(abs(b - a) for a, b in zip(works, works[1:])) + max(s["strain_energy"] + s["dissipated_energy"] + by_friction(s) for s in steps)
 
 
 def solver_rest(scene, rows):
@@ -201,14 +217,17 @@ def solver_rest(scene, rows):
     return rest ** 2 / (scene.stiffest() * stress) * length ** scene.dim
 
 
-def balances(scene, coarse, fine, start):
+def shrinks(what, scene, coarse, fine, start):
     rest = ROUNDING * at_work(fine) + len(fine[0]["steps"]) * solver_rest(scene, fine[1])
-    return misses(fine, start) <= FALLS * misses(coarse, start) + rest
+    return what(fine, start) <= FALLS * what(coarse, start) + rest
+
+
+WHAT = {misses: "energy missed", falls: "given back by friction"}
 
 
 def check_memory(scene, whole, part, number, complain):
     """The run up to a step in between is the beginning of the whole one."""
-    for key in ("strain_energy", "dissipated_energy", "work", "max_pressure", "max_dent", "dent_volume"):
+    for key in MEMORY + (BY_FRICTION if rubs(scene) else ()):
         largest = max(abs(s[key]) for s in whole[0]["steps"])
         for a, b in zip(whole[0]["steps"], part[0]["steps"]):
             if abs(a[key] - b[key]) > SAME * largest:
@@ -222,6 +241,10 @@ def check_memory(scene, whole, part, number, complain):
             return
 
 
+def extent(step, what):
+    return step.get(f"{what}_length", step.get(f"{what}_area", 0.0))
+
+
 @dataclasses.dataclass
 class Outcome:
     number: int
@@ -229,15 +252,17 @@ class Outcome:
     steps: int
     seconds: float
     dented: bool
+    sticks_and_slips: bool
     at_rounding: bool
     complaints: list
 
 
-def judge(options, number):
-    rng = random.Random(f"{options.seed}/history/{number}")
-    family, scene = make(rng)
+def judge(options, number, name, make_one):
+    """make_one: (family, scene) from random numbers of the suite's name."""
+    rng = random.Random(f"{options.seed}/{name}/{number}")
+    family, scene = make_one(rng)
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_history_{number}_"))
-    complaints, start, dented, rounding = [], time.monotonic(), False, False
+    complaints, start, dented, rubbed, rounding = [], time.monotonic(), False, False, False
     complain = complaints.append
     try:
         steps = scene.times
@@ -249,30 +274,33 @@ def judge(options, number):
         if whole:
             check_run(scene, *whole, complain)
             dented = any(s["max_dent"] > 0 for s in whole[0]["steps"])
+            rubbed = any(extent(s, "stick") > 0 and extent(s, "slip") > 0 for s in whole[0]["steps"])
             finer = dataclasses.replace(scene, times=[k / 4 for k in range(1, 4 * len(steps) + 1)])
             quarters = run(options, finer, folder / "quarters", complain)
             if quarters:
                 check_run(finer, *quarters, complain)
-                if not balances(scene, whole, quarters, steps[0]):  # steps too large to show an order, which their parts must
+                large = [what for what in (misses, falls) if not shrinks(what, scene, whole, quarters, steps[0])]
+                if large:  # steps too large to show an order, which their parts must
                     finest = dataclasses.replace(scene, times=[k / 16 for k in range(1, 16 * len(steps) + 1)])
                     sixteenths = run(options, finest, folder / "sixteenths", complain)
-                    if sixteenths and not balances(scene, quarters, sixteenths, steps[0]):
-                        complain("energy missed: " + ", ".join(f"{misses(r, steps[0]):.3g}" for r in (whole, quarters, sixteenths))
-                                 + f" of {at_work(sixteenths):.3g}")
+                    for what in large if sixteenths else []:
+                        if not shrinks(what, scene, quarters, sixteenths, steps[0]):
+                            complain(WHAT[what] + ": " + ", ".join(f"{what(r, steps[0]):.3g}" for r in (whole, quarters, sixteenths))
+                                     + f" of {at_work(sixteenths):.3g}")
             if len(steps) > 1:
                 until = rng.randint(1, len(steps) - 1)
                 part = run(options, dataclasses.replace(scene, times=steps[:until]), folder / "part", complain)
                 if part:
                     check_memory(scene, whole, part, until, complain)
-            if not any(contact.remembers for contact in scene.contact):
+            if not any(contact.remembers for contact in scene.contact) and not rubs(scene):
                 alone = run(options, dataclasses.replace(scene, times=steps[-1:]), folder / "alone", complain)
                 a, b = whole[0]["steps"][-1], alone[0]["steps"][-1] if alone else {}
                 rest = solver_rest(scene, alone[1]) if alone else 0
                 for key in ("strain_energy", "foundation_energy", "max_pressure") if alone else ():
                     if abs(a[key] - b[key]) > SAME * max(s[key] for s in whole[0]["steps"]) + (rest if "energy" in key else 0):
                         complain(f"without memory {key} is {a[key]!r}, and {b[key]!r} alone")
-                if a["dissipated_energy"] != 0:
-                    complain(f"dissipates {a['dissipated_energy']!r} without memory")
+            if not any(contact.remembers for contact in scene.contact) and whole[0]["steps"][-1]["dissipated_energy"] != 0:
+                complain(f"dissipates {whole[0]['steps'][-1]['dissipated_energy']!r} without memory")
     except AtRounding:
         rounding = True
     try:
@@ -283,23 +311,25 @@ def judge(options, number):
             (kept / "complaints.txt").write_text("\n".join(complaints) + "\n")
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    return Outcome(number, family, len(steps), time.monotonic() - start, dented, rounding, complaints)
+    return Outcome(number, family, len(steps), time.monotonic() - start, dented, rubbed, rounding, complaints)
 
 
-def main():
-    options = scenes.arguments(__doc__, 500)
+def suite(description, count, name, make_one):
+    """Judges histories as the command line asks. @return exit code"""
+    options = scenes.arguments(description, count)
     numbers = [options.only] if options.only is not None else range(options.scenes)
     outcomes = []
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for o in pool.map(lambda number: judge(options, number), numbers):
+        for o in pool.map(lambda number: judge(options, number, name, make_one), numbers):
             outcomes.append(o)
             if o.complaints:
                 print(f"FAILED {o.number} {o.family}: {'; '.join(o.complaints)}", flush=True)
     failed = sum(1 for o in outcomes if o.complaints)
     print(f"seed {options.seed}: {failed} of {len(outcomes)} histories failed, {sum(o.steps for o in outcomes)} steps, "
-          f"{sum(o.dented for o in outcomes)} with dents, {sum(o.at_rounding for o in outcomes)} at rounding, most seconds {max(o.seconds for o in outcomes):.1f}")
+          f"{sum(o.dented for o in outcomes)} with dents, {sum(o.sticks_and_slips for o in outcomes)} with stick and slip, "
+          f"{sum(o.at_rounding for o in outcomes)} at rounding, most seconds {max(o.seconds for o in outcomes):.1f}")
     return 1 if failed else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(suite(__doc__, 500, "history", make))

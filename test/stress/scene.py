@@ -3,7 +3,7 @@ import dataclasses
 import math
 from xml.sax.saxutils import quoteattr
 
-from fields import Constant, InTime, factor_at, ramp
+from fields import INFINITE, Constant, InTime, factor_at, ramp
 
 COMPONENTS = "XYZ"
 AXISYMMETRIC = "axisymmetric"
@@ -33,6 +33,32 @@ def unit(a):
     return tuple(v / size for v in a)
 
 
+def seen(field, time):
+    return field.at(time) if isinstance(field, InTime) else field
+
+
+@dataclasses.dataclass
+class Friction:
+    """A point sticks up to the traction min(bound + coefficient p, limit) along its side, and slips at it."""
+
+    coefficient: object = Constant(0.0)  # Field [1]
+    bound: object = Constant(0.0)  # Field [stress]
+    limit: object = INFINITE  # Field [stress]
+
+    def seen_at(self, time):
+        return Friction(*(seen(field, time) for field in (self.coefficient, self.bound, self.limit)))
+
+    def bears(self, pressure, *point):
+        """The traction along the side that a point bears."""
+        return min(self.bound(*point) + self.coefficient(*point) * pressure, self.limit(*point))
+
+    def deck(self, length, stress):
+        given = {"Friction Coefficient": (self.coefficient, 1.0), "Friction Bound": (self.bound, stress), "Friction Limit": (self.limit, stress)}
+        left_out = (0.0, math.inf)
+        return {name: _field(field, length, unit) for name, (field, unit) in given.items()
+                if not (isinstance(field, Constant) and field.value in left_out)}
+
+
 @dataclasses.dataclass
 class ContactSide:
     side: str
@@ -44,6 +70,7 @@ class ContactSide:
     remembers: bool = True
     obstacle: dict = None  # Type, and Point, Normal or Centre, Radius, Encloses Body or Point, Axis, Radius, Encloses Body
     motion: tuple = None  # (direction, factors of time) in which its point or centre moves [length]
+    friction: object = None  # Friction
 
     def at(self, point, outward):
         """Normal and gap of a node; None if the normal misses the obstacle."""
@@ -68,6 +95,11 @@ class ContactSide:
         return nu, (sign * math.sqrt(within) - along) / square
 
     def seen_at(self, time):
+        if self.friction:
+            return dataclasses.replace(self, friction=self.friction.seen_at(time)).moved_to(time)
+        return self.moved_to(time)
+
+    def moved_to(self, time):
         if not self.motion:
             return self
         name = "Centre" if "Centre" in self.obstacle else "Point"
@@ -102,11 +134,10 @@ class Scene:
 
     def at(self, time):
         """The scene as it is at one time."""
-        seen = lambda field: field.at(time) if isinstance(field, InTime) else field
         return dataclasses.replace(
             self, times=None, contact=[contact.seen_at(time) for contact in self.contact],
-            dirichlet={side: {c: seen(f) for c, f in fields.items()} for side, fields in self.dirichlet.items()},
-            traction={side: [seen(f) for f in fields] for side, fields in self.traction.items()})
+            dirichlet={side: {c: seen(f, time) for c, f in fields.items()} for side, fields in self.dirichlet.items()},
+            traction={side: [seen(f, time) for f in fields] for side, fields in self.traction.items()})
 
     def load_power(self):
         """Forces are stresses times this power of the length."""
@@ -157,6 +188,8 @@ def _contact(side, length, stress):
         entries["Stiffness"] = side.stiffness * stress / length
     if not side.remembers:
         entries["Remembers"] = "false"
+    if side.friction:
+        entries.update(side.friction.deck(length, stress))
     if isinstance(side.normal, str):
         entries["Normal"] = side.normal
     elif side.normal:

@@ -113,7 +113,7 @@ def numbers(value, path=""):
 
 def contact_rows(folder):
     with open(folder / "scene.contact.csv", newline="") as file:
-        return [{k: v if k in ("state", "side") else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+        return [{k: v if k in ("state", "side", "friction_state") else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
 
 
 def stress_of_cell(scene, rows):
@@ -177,6 +177,11 @@ def check_numbers(scene, summary, rows, floor, complain):
         if not 0 <= row["pressure"] <= xi * (1 + 1e-7) or any(not math.isfinite(v) for v in row.values() if isinstance(v, float)):
             complain(f"contact node at ({row['x']}, {row['y']}): pressure {row['pressure']}, xi {xi}")
             break
+        q, bears = traction_along(row), friction_bound(scene, row)
+        lent = row.get("area") == 0  # by the nodes around: p, q and mu of one such point need not go together
+        if q > bears * (1 + 1e-7) and not lent:
+            complain(f"contact node at ({row['x']}, {row['y']}): traction {q} along the side, which bears {bears}")
+            break
     applied = None if unknown_load(scene) else applied_resultant(scene)
     if applied is None:
         return
@@ -190,6 +195,17 @@ def check_numbers(scene, summary, rows, floor, complain):
     scale = max(scale, NO_STRAIN * scene.stiffest() * unit)
     if not rest <= max(BALANCE, 100 * floor) * scale:
         complain(f"forces do not balance: {rest:.3g} is left of {scale:.3g}")
+
+
+def traction_along(row):
+    return math.hypot(*(row.get("q_" + c, 0.0) for c in "xyz"))
+
+
+def friction_bound(scene, row):
+    """The traction along the side that the point of a row bears [Pa]."""
+    length, stress = scene.units
+    friction = next(contact.friction for contact in scene.contact if contact.side == row["side"])
+    return friction.bears(row["pressure"] / stress, *(row[c] / length for c in "xyz"[:scene.dim])) * stress if friction else 0.0
 
 
 def unknown_load(scene):
