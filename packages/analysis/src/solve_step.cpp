@@ -144,29 +144,34 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
 /// Where friction's states were not confirmed: the coupled choices once more from where the last Tresca problem led; if these do not
 /// settle soon, the Tresca problem with the next bounds. (12.12)
 Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options,
-                                      const std::function<solver::MinimizeResult(solver::FirstStage *)> &run)
+                                      const std::function<solver::MinimizeResult(solver::FirstStage *, int)> &run)
 {
-  int steps = 0;
+  constexpr int most_steps = 20; // short ones, where all points slip: the coupled choices get further from there
+  int steps = 0, most = options.newton.max_iterations;
   if (solver::takes_first_stage(options.newton)) {
     const Vector start(u, Teuchos::Copy);
     const Iterate::Dual dual = iterate.dual();
     ActiveSetStage stage(iterate, active_set_tolerances(options), ActiveSetStage::Then::nothing);
-    const auto tried = run(&stage);
+    const auto tried = run(&stage, most);
     if (stage.confirmed()) return {tried.converged, tried.steps, tried.reason, true, 0};
     steps = tried.steps;
     u.assign(start);
     iterate.take_dual(dual);
+    most = std::min(most, most_steps);
   }
   iterate.follow_bounds();
-  const auto result = run(nullptr);
+  const auto result = run(nullptr, most);
   return {result.converged, steps + result.steps, result.reason, false, result.steps, true};
 }
 
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
                       const int iteration, const bool previous_confirmed, const Progress &progress)
 {
-  const auto run = [&](solver::FirstStage *const stage) {
-    return solver::minimize(iterate, state.linear(), u, iterate.force_scale(), options.newton, stage,
+  const int all = options.newton.max_iterations;
+  const auto run = [&](solver::FirstStage *const stage, const int most_steps) {
+    solver::NewtonOptions newton = options.newton;
+    newton.max_iterations = most_steps;
+    return solver::minimize(iterate, state.linear(), u, iterate.force_scale(), newton, stage,
                             [&](const solver::NewtonStep &newton, const Vector &at) {
                               if (progress.newton) progress.newton(iteration, newton, iterate.count_states(at));
                             });
@@ -174,13 +179,13 @@ Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state
   const bool friction = iterate.points().friction.anywhere;
   if (iteration > 1 && (!friction || previous_confirmed)) {
     SameActiveSet stage(iterate);
-    const auto result = run(&stage);
+    const auto result = run(&stage, all);
     const int steps = result.steps == 0 && result.converged ? refine(iterate, *u, state) : result.steps;
     return {result.converged, steps, result.reason, false, result.steps};
   }
   if (iteration > 1) return minimize_for_next_bounds(iterate, *u, options, run);
   ActiveSetStage stage(iterate, active_set_tolerances(options));
-  const auto result = run(&stage);
+  const auto result = run(&stage, all);
   return {result.converged,
           result.steps,
           result.reason,
