@@ -12,10 +12,10 @@ namespace rpc::contact
 namespace
 {
 
-constexpr int depth = 4;              // of the acceleration
-constexpr double independent = 1e-10; // of singular values: differences below are rounding
+constexpr int mixing_depth = 4;       // of the acceleration
+constexpr double mixing_rank = 1e-10; // of singular values: differences below are rounding
 
-DeviceView<double *> difference(const DeviceView<double *> &a, const DeviceView<double *> &b)
+DeviceView<double *> bound_difference(const DeviceView<double *> &a, const DeviceView<double *> &b)
 {
   const DeviceView<double *> result("rpc::contact::bound_difference", a.extent(0));
   Kokkos::parallel_for(
@@ -26,7 +26,7 @@ DeviceView<double *> difference(const DeviceView<double *> &a, const DeviceView<
 }
 
 /// This rank's part of sum_i w_i a_i b_i.
-double product(const DeviceView<double *> &weight, const DeviceView<double *> &a, const DeviceView<double *> &b)
+double bound_product(const DeviceView<double *> &weight, const DeviceView<double *> &a, const DeviceView<double *> &b)
 {
   double sum = 0;
   Kokkos::parallel_reduce(
@@ -36,13 +36,13 @@ double product(const DeviceView<double *> &weight, const DeviceView<double *> &a
 }
 
 /// x with the least |x| among those that minimize |A x - b|. @param A  (m, m) by columns
-std::vector<double> least_squares(std::vector<double> A, std::vector<double> b)
+std::vector<double> mixing_coefficients(std::vector<double> A, std::vector<double> b)
 {
   const int m = static_cast<int>(b.size());
   if (m == 0) return b;
   std::vector<double> singular(m), work(10 * m + 10);
   int rank = 0, info = 0;
-  Teuchos::LAPACK<int, double>().GELSS(m, m, 1, A.data(), m, b.data(), m, singular.data(), independent, &rank,
+  Teuchos::LAPACK<int, double>().GELSS(m, m, 1, A.data(), m, b.data(), m, singular.data(), mixing_rank, &rank,
                                        work.data(), static_cast<int>(work.size()), nullptr, &info);
   if (info != 0) std::fill(b.begin(), b.end(), 0.);
   return b;
@@ -53,9 +53,10 @@ std::vector<double> least_squares(std::vector<double> A, std::vector<double> b)
 DeviceView<double *> LaggedBounds::next(const Comm &comm, const DeviceView<double *> &used,
                                         const DeviceView<double *> &found, const DeviceView<double *> &weight)
 {
-  const auto residual = difference(found, used);
-  if (std::exchange(started_, true)) changes_.push_back({difference(residual, residual_), difference(found, found_)});
-  if (static_cast<int>(changes_.size()) > depth) changes_.erase(changes_.begin());
+  const auto residual = bound_difference(found, used);
+  if (std::exchange(started_, true))
+    changes_.push_back({bound_difference(residual, residual_), bound_difference(found, found_)});
+  if (static_cast<int>(changes_.size()) > mixing_depth) changes_.erase(changes_.begin());
   residual_ = residual;
   found_ = DeviceView<double *>("rpc::contact::found_bounds", found.extent(0));
   Kokkos::deep_copy(found_, found);
@@ -63,10 +64,10 @@ DeviceView<double *> LaggedBounds::next(const Comm &comm, const DeviceView<doubl
   const int m = static_cast<int>(changes_.size());
   std::vector<double> sums; // the normal equations of |residual - sum_j x_j change_j| -> min
   for (int j = 0; j < m; ++j)
-    for (int k = 0; k < m; ++k) sums.push_back(product(weight, changes_[j].residual, changes_[k].residual));
-  for (int j = 0; j < m; ++j) sums.push_back(product(weight, changes_[j].residual, residual));
+    for (int k = 0; k < m; ++k) sums.push_back(bound_product(weight, changes_[j].residual, changes_[k].residual));
+  for (int j = 0; j < m; ++j) sums.push_back(bound_product(weight, changes_[j].residual, residual));
   sums = summed(comm, sums);
-  const auto x = least_squares({sums.begin(), sums.begin() + m * m}, {sums.begin() + m * m, sums.end()});
+  const auto x = mixing_coefficients({sums.begin(), sums.begin() + m * m}, {sums.begin() + m * m, sums.end()});
 
   const DeviceView<double *> mixed("rpc::contact::mixed_bounds", found.extent(0));
   Kokkos::deep_copy(mixed, found);

@@ -23,7 +23,7 @@ private:
   struct Change {
     DeviceView<double *> residual, found; // (points) of G(s) - s, and of G(s), from one problem to the next
   };
-  std::vector<Change> changes_;           // the last ones, at most `depth`
+  std::vector<Change> changes_;           // the last ones, at most four
   DeviceView<double *> residual_, found_; // of the last problem
   bool started_ = false;
 };
