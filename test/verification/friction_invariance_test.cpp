@@ -155,20 +155,9 @@ TEST(FrictionInvariance, TopMovedOneWayIsTheFoundationMovedTheOther)
 
 TEST(FrictionInvariance, TopMovedOneWayIsASlantedFoundationMovedTheOtherInSpace)
 {
-  const Assignments scene = {"Mesh->Lower={0, 0, 0}",
-                             "Mesh->Upper={2, 1, 1}",
-                             "Mesh->Cells={8, 4, 4}",
-                             "Traction->left->X=0",
-                             "Traction->left->Y=0",
-                             "Traction->right->X=0",
-                             "Traction->right->Y=0",
-                             "Dirichlet->top->Side=front",
-                             "Contact->Side=back",
-                             "Contact->Obstacle->Type=plane",
-                             "Contact->Obstacle->Normal={-0.003, 0.002, 1}",
-                             "Steps->Times={1, 2, 3}",
-                             "Contact->Yield Stress=14",
-                             "Contact->Friction Coefficient=0.3"};
+  const Assignments scene =
+      joined(block_in_space, {"Contact->Obstacle->Type=plane", "Contact->Obstacle->Normal={-0.003, 0.002, 1}",
+                              "Contact->Friction Coefficient=0.3"});
   const std::string x = "(t < 2.5 ? 0.004*(t-1) : 0.002)", y = "0.002*(t-1)^2", z = "0.0005*(t-1)";
   expect_same(moved(joined(scene, {"Dirichlet->top->X=" + x, "Dirichlet->top->Y=" + y, "Dirichlet->top->Z=-0.01-" + z,
                                    "Contact->Obstacle->Point={0, 0, 0}"})),

@@ -14,21 +14,9 @@ struct Case {
   const char *name, *deck;
   Assignments assignments;
 };
-const Assignments sheared_block = {"Mesh->Lower={0, 0, 0}",
-                                   "Mesh->Upper={2, 1, 1}",
-                                   "Mesh->Cells={8, 4, 4}",
-                                   "Traction->left->X=0",
-                                   "Traction->left->Y=0",
-                                   "Traction->right->X=0",
-                                   "Traction->right->Y=0",
-                                   "Dirichlet->top->Side=front",
-                                   "Dirichlet->top->Z=-0.01",
-                                   "Contact->Side=back",
-                                   "Steps->Times={1, 2, 3}",
-                                   "Contact->Yield Stress=14",
-                                   "Dirichlet->top->Y=0.01*(t-1)^2",
-                                   "Contact->Friction Coefficient=0.3",
-                                   "Dirichlet->top->X=(t < 2.5 ? 0.01*(t-1) : 0.005)"};
+const Assignments sheared_block =
+    joined(block_in_space, {"Dirichlet->top->Z=-0.01", "Dirichlet->top->Y=0.01*(t-1)^2",
+                            "Contact->Friction Coefficient=0.3", "Dirichlet->top->X=(t < 2.5 ? 0.01*(t-1) : 0.005)"});
 const Case cases[] = {{"PlaneInAllStates", "cantilever_coulomb", {"Mesh->Cells={48, 16}"}},
                       {"PlaneOfP2", "cantilever_coulomb", {"Mesh->Cells={24, 8}", "Mesh->Element=P2"}},
                       {"PlateHeldByContact", "greco", {}},

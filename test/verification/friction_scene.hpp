@@ -39,6 +39,12 @@ inline Assignments joined(Assignments a, const Assignments &b)
 /// The solvers' tolerances where two runs are compared.
 inline const Assignments tight = {"Uzawa->Tolerance=1e-12", "NOX->Residual Tolerance=1e-13"};
 
+/// Makes the column of friction_loop.xml a block in space, pressed on its back from the front.
+inline const Assignments block_in_space = {
+    "Mesh->Lower={0, 0, 0}", "Mesh->Upper={2, 1, 1}",  "Mesh->Cells={8, 4, 4}",   "Traction->left->X=0",
+    "Traction->left->Y=0",   "Traction->right->X=0",   "Traction->right->Y=0",    "Dirichlet->top->Side=front",
+    "Contact->Side=back",    "Steps->Times={1, 2, 3}", "Contact->Yield Stress=14"};
+
 /// One of the decks friction_*.xml; it must converge.
 inline Solution solved(const std::string &name, const Assignments &assignments = {})
 {
