@@ -21,7 +21,9 @@ constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies t
 // iterations. With 1e-1 pressures are too rough to choose by, 1e-4 saves no step. What the multipliers of the last rough
 // solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
 constexpr double forcing = 5e-3;
-constexpr int most_updates = 2;     // of multipliers at the end, even if pressures miss their tolerance then
+constexpr int most_updates = 2; // of multipliers at the end, even if pressures miss their tolerance then
+// Steps of a confirmed active set that leave more than half of F, one after the other, while slip in space turns.
+constexpr int most_idle_turns = 4;
 constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 
@@ -46,10 +48,11 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
       pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
-      most_changes_(most_changes), then_(then), trial_gap_(first_trial)
+      most_changes_(most_changes), rubs_(iterate_.points().friction.anywhere), then_(then), trial_gap_(first_trial)
 {
-  if (!iterate.points().friction.anywhere) return;
+  if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
+  turns_ = iterate_.points().dim == 3;
   most_changes_ = then == Then::newton ? most_changes_with_friction : most_changes_tried;
 }
 
@@ -94,12 +97,13 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     confirmed_ =
         solved_well && (iterate_.pressure_error(u) <= pressure_tolerance_ || ++updates_ > most_updates); // (5.10)
     // Rounding may end progress below: where the foundation's forces are many times the load, F grows and falls with each step.
-    const bool stalled = steps_ > 0 && !rough_ && !solved_well && !(norm_ < 0.5 * std::min(before_, confirmed_norm_));
+    const bool idle = steps_ > 0 && !rough_ && !solved_well && !(norm_ < 0.5 * std::min(before_, confirmed_norm_));
+    idle_steps_ = idle ? idle_steps_ + 1 : 0;
     if (!rough_) confirmed_norm_ = norm_;
     if (confirmed_) return Verdict::converged;
-    if (stalled) return Verdict::over;
+    if (idle_steps_ > (turns_ ? most_idle_turns : 0)) return Verdict::over;
     rough_ = false;
-  } else if (!is_new_choice() || ++changes_ > most_changes_ || !makes_headway()) {
+  } else if (!is_new_choice() || ++changes_ > most_changes_ || (!rubs_ && !makes_headway())) {
     return give_up(u); // in circles, or too slow
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
@@ -112,9 +116,8 @@ bool ActiveSetStage::is_new_choice()
 {
   const int visits = seen_[choice_->fingerprint]++;
   if (visits == 0) return true;
-  const contact::ContactNodes &points = iterate_.points();
-  if (!points.friction.anywhere) return false;
-  if (points.dim == 3 && visits < most_visits) return true;
+  if (!rubs_) return false;
+  if (turns_ && visits < most_visits) return true;
   for (const double part : {0.5, 1.}) {
     choice_ = iterate_.largest_changes(*choice_, part);
     if (choice_->changes > 0 && seen_[choice_->fingerprint]++ == 0) return true;
@@ -172,6 +175,17 @@ ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector
   ++group.context().steps;
   ++steps_;
   return Step::full;
+}
+
+/// |F|_2 that the next solve is to leave: roughly while states change; while slip turns the better the shorter the step is.
+double ActiveSetStage::needed_norm() const
+{
+  double rough = 0;
+  if (rough_)
+    rough = forcing * std::min(scale_, norm_);
+  else if (turns_)
+    rough = std::min(forcing, norm_ / scale_) * norm_;
+  return std::max(enough * target_, rough);
 }
 
 ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
@@ -237,8 +251,7 @@ ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direct
     move_to();
   }
   u = Teuchos::null; // a solve needs the memory
-  const double needed = std::max(enough * target_, rough_ ? forcing * std::min(scale_, norm_) : 0.);
-  const auto solved = solver::solve_for_direction(group.context(), F, direction, needed / norm_); // (5.9)
+  const auto solved = solver::solve_for_direction(group.context(), F, direction, needed_norm() / norm_); // (5.9)
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {
       u = rcp(new Vector(start_, Teuchos::Copy));

@@ -99,8 +99,12 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
         const ContactNodes &c = s.points;
         const Motion at = motion(c, i, x);
         const Friction f = c.friction(i);
-        const SlipBranch branch = next_slip(now.branch(i), now.state(i), next(i), at.slip, row(traction, i),
-                                            at.penetration, admissible(p(i), c.law(i)), own(i), bound, f, c.dim);
+        const Along direction_now = row(now.direction, i);
+        const Along turned = c.dim == 2
+                                 ? direction_now
+                                 : turned_direction(direction_now, row(now.linearized_at, i), s.trial_traction(i, at));
+        const SlipBranch branch = next_slip(now.branch(i), turned, now.state(i), next(i), at.slip, row(traction, i),
+                                            at.penetration, admissible(p(i), c.law(i)), own(i), bound, f);
         slips(i) = branch.state;
         set_row(direction, i, branch.direction);
         if (c.fixed(i)) return;

@@ -37,9 +37,11 @@ AddedBlocks added_blocks(const SmoothedPoints &points, const ActiveSet &active, 
   Kokkos::parallel_for(
       "rpc::contact::added_blocks", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
         const ContactNodes &c = s.points;
+        const Motion at = motion(c, i, x);
+        if (s.has_friction()) set_row(states.linearized_at, i, s.trial_traction(i, at));
         if (!c.fixed(i))
           write_blocks(c, i, states.state(i), s.has_friction() && states.slip(i) == Slip::slip, spring,
-                       s.respond_on_branch(i, states, motion(c, i, x)), blocks);
+                       s.respond_on_branch(i, states, at), blocks);
       });
   Kokkos::fence();
   return blocks;

@@ -11,6 +11,18 @@ namespace rpc::contact
 namespace
 {
 
+// Where forces and energies are this small against those of prescribed displacements on a body that stays behind, the body moves as a
+// whole, and what is left is rounding.
+constexpr double lifted_part = 1e-7;
+
+/// |f|_2 over the unknowns that are not prescribed [N].
+double free_norm(const fem::DirichletDofs &dirichlet, const Vector &load)
+{
+  Vector free(load, Teuchos::Copy);
+  fem::clear_prescribed(dirichlet, free);
+  return free.norm2();
+}
+
 /// u . f over the unknowns that are prescribed, or over the others; collective.
 double work(const fem::DirichletDofs &dirichlet, const bool prescribed, const Vector &u, const Vector &f)
 {
@@ -63,18 +75,17 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
 
   residuals.kkt_residual = contact_law_residual(points, state);
   residuals.equilibrium_residual =
-      residual.norm2() / std::max({force_scale, contact.norm2(), residuals.internal.force_norm});
+      residual.norm2() / std::max({force_scale, contact.norm2(), residuals.internal.force_norm,
+                                   lifted_part * free_norm(dirichlet, *elastic.load)});
 
   const bool at_rest = dirichlet.value->normInf() == 0; // the supports
   const Vector moved = at_rest ? Vector(u, Teuchos::View) : fem::without_rigid_motion(d, dirichlet, u);
   const double of_load = work(dirichlet, false, moved, *elastic.applied_load),
                of_contact = work(dirichlet, false, moved, contact),
                of_supports = work(dirichlet, true, moved, internal);
-  // Where the strain energy is this small against the work of prescribed displacements on a body that stays behind, the
-  // body moves as a whole, and what is left is rounding.
   const double lifted = std::abs(elastic.load->dot(u));
   const double at_work =
-      std::max({strain, std::abs(of_load), std::abs(of_contact), std::abs(of_supports), 1e-7 * lifted});
+      std::max({strain, std::abs(of_load), std::abs(of_contact), std::abs(of_supports), lifted_part * lifted});
   residuals.energy_balance = ratio(std::abs(strain - of_load + of_contact - of_supports), at_work);
 
   const ContactEnergy energy = contact_energy(points, state);

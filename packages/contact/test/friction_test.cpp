@@ -146,6 +146,12 @@ Response on_branch(const Along &u, const State state, const SlipBranch &branch, 
   return response;
 }
 
+/// lambda_tau + r e at a displacement: a.
+Along trial(const Along &u)
+{
+  return lambda.tangential.plus(r, at(u).slip);
+}
+
 TEST(Friction, CoupledBlockIsTheDerivativeOnEachBranch)
 {
   const Foundation rigid{inf}, plastic{3}, hardening{3, 9, 1. / 80};
@@ -156,7 +162,7 @@ TEST(Friction, CoupledBlockIsTheDerivativeOnEachBranch)
       for (const State state : {State::closed, State::yielding}) {
         if (state == State::yielding && f.yield == inf) continue;
         for (const Slip slip : {Slip::stick, Slip::slip}) {
-          const auto respond = [&](const Along &x) { return on_branch(x, state, {slip, {}}, f, g); };
+          const auto respond = [&](const Along &x) { return on_branch(x, state, {slip, trial(x).unit()}, f, g); };
           const double coarse = errors_of_differences(respond, u, 2e-3).block,
                        fine = errors_of_differences(respond, u, 1e-3).block;
           if (slip == Slip::stick)
@@ -169,8 +175,10 @@ TEST(Friction, CoupledBlockIsTheDerivativeOnEachBranch)
 
 TEST(Friction, TractionOfAClosedPointThatSlipsFollowsThePressureAlone)
 {
-  const Response closed = on_branch({{0.05, 0, -0.08}}, State::closed, {Slip::slip, {}}, {inf}, {0.4, 0, inf});
-  const Response yields = on_branch({{0.05, 0, -0.08}}, State::yielding, {Slip::slip, {}}, {3}, {0.4, 0, inf});
+  const Along u{{0.05, 0, -0.08}};
+  const SlipBranch slips{Slip::slip, trial(u).unit()};
+  const Response closed = on_branch(u, State::closed, slips, {inf}, {0.4, 0, inf});
+  const Response yields = on_branch(u, State::yielding, slips, {3}, {0.4, 0, inf});
   double closed_coupling = 0, yielding_coupling = 0;
   for (int k = 0; k < 3; ++k)
     for (int l = 0; l < 3; ++l) {
@@ -182,14 +190,64 @@ TEST(Friction, TractionOfAClosedPointThatSlipsFollowsThePressureAlone)
   EXPECT_EQ(yielding_coupling, 0); // s = mu xi there
 }
 
+/// The stiffness that friction adds where a yielding point slips: the block without and with the coupling.
+std::array<std::array<double, 3>, 3> stiffness_of_slip(const Along &u, const Along &g, const bool with_coupling)
+{
+  const Response response = on_branch(u, State::yielding, {Slip::slip, g}, {3}, {0.4, 0, inf});
+  std::array<std::array<double, 3>, 3> sum;
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l) sum[k][l] = response.block[k][l] + (with_coupling ? response.coupling[k][l] : 0);
+  return sum;
+}
+
+TEST(Friction, DirectionOfSlipObeysTheLinearizedLaw) // (12.13): K (now - u) = s (turned - h), as the solver sees them
+{
+  const Along u{{0.05, 0, -0.08}}, to{{0.02, 0, 0.01}}, g = along_side({{0.3, 0, 0.6}}), h = trial(u).unit();
+  const double s = 0.4 * 3;
+  const auto stiffness = stiffness_of_slip(u, g, true);
+  const double longer = h.dot(trial(to).plus(-1, trial(u)));
+  const Along unbounded = trial(to).plus(-longer, g).scaled(1 / trial(u).length());
+  for (int k = 0; k < 3; ++k) {
+    if (!Free{}(k)) continue;
+    double change = 0;
+    for (int l = 0; l < 3; ++l) change += stiffness[k][l] * (to(l) - u(l));
+    EXPECT_NEAR(change, weight * s * (unbounded(k) - h(k)), 1e-12) << k;
+  }
+  ASSERT_LT(unbounded.length(), 1);
+  EXPECT_LT(turned_direction(g, trial(u), trial(to)).plus(-1, unbounded).length(), 1e-15);
+  EXPECT_NEAR(turned_direction(g, trial(u), trial(to.scaled(100))).length(), 1, 1e-15); // no longer than that
+  const Along near = u.plus(1e-3, to);
+  const double
+      first = turned_direction(h, trial(u), trial(near)).plus(-1, trial(near).unit()).length(),
+      half = turned_direction(h, trial(u), trial(u.plus(5e-4, to))).plus(-1, trial(u.plus(5e-4, to)).unit()).length();
+  EXPECT_NEAR(std::log2(first / half), 2, 0.1); // from g = h on it is Newton's
+}
+
+TEST(Friction, SymmetricPartOfTheLaggingDirectionIsNotNegative)
+{
+  const Along u{{0.05, 0, -0.08}}, h = trial(u).unit();
+  for (const double length : {0., 0.5, 1.})
+    for (double angle = 0; angle < 6.3; angle += 0.3) {
+      const Along g = along_side({{std::cos(angle), 0, std::sin(angle)}}).unit().scaled(length);
+      const auto block = stiffness_of_slip(u, g, false);
+      const double trace = block[0][0] + block[2][2],
+                   determinant = block[0][0] * block[2][2] - block[0][2] * block[2][0];
+      EXPECT_EQ(block[0][2], block[2][0]);
+      EXPECT_GE(trace, 0) << length << ' ' << angle;
+      EXPECT_GE(determinant, -1e-12 * trace * trace) << length << ' ' << angle;
+    }
+  EXPECT_EQ(turned_direction(h, {}, trial(u)).plus(-1, h).length(), 0);
+}
+
 TEST(Friction, StatesChangeByTheNeighbourRule)
 {
   const Friction coulomb{0.5, 0, inf}, tresca{0, 1, inf};
   const Along x{{1, 0, 0}};
   const SlipBranch sticks{}, slips{Slip::slip, x};
   const auto next = [](const SlipBranch &now, const State before, const State then, const Along &e, const Along &q,
-                       const double p,
-                       const Friction &f) { return next_slip(now, before, then, e, q, 1e-3, p, 100, 1e-9, f, 2); };
+                       const double p, const Friction &f) {
+    return next_slip(now, now.direction, before, then, e, q, 1e-3, p, 100, 1e-9, f);
+  };
   using S = State;
   EXPECT_EQ(next(sticks, S::closed, S::closed, {}, x.scaled(0.9), 2, coulomb).state, Slip::stick);
   const SlipBranch begins = next(sticks, S::closed, S::closed, {}, x.scaled(-1.1), 2, coulomb);

@@ -338,4 +338,26 @@ TEST(OptimalityResiduals, DoesNotSeeARigidMotionOfBodyAndFoundation)
   }
 }
 
+TEST(OptimalityResiduals, OfABodyThatItsSupportsLiftOffAreRounding)
+{
+  const Judged scene({below(40)}, {0.3, 0.7, 0});
+  fem::ElasticProblem weightless = scene.elastic; // nothing acts on it, so that all forces are rounding
+  const auto load = rcp(new Vector(*weightless.load, Teuchos::Copy));
+  load->update(-1., *weightless.applied_load, 1.);
+  fem::clear_prescribed(weightless.dirichlet, *load);
+  weightless.load = load;
+  weightless.applied_load = rcp(new Vector(load->getMap()));
+  const auto lifted = scene.vector([](const Point &) { return Point{0.3, 0.7, 0}; });
+  lifted->update(1., *weightless.dirichlet.value, 1.);
+  scene.iterate->update_multipliers(*lifted);
+  const auto judged = [&](const double disturbance) {
+    return contact::optimality_residuals(scene.d, scene.material, weightless, scene.iterate->points(),
+                                         judged_at(*scene.iterate, *plus(*lifted, disturbance, *scene.vector(1, 0.5))),
+                                         0, [&](const Vector &F) { return F.dot(scene.inverse.times(F)); });
+  };
+  EXPECT_GT(judged(1e-15).internal.force_norm, 0);
+  EXPECT_TRUE(judged(1e-15).holds(1e-7)) << judged(1e-15).worst();
+  EXPECT_GT(judged(1e-6).equilibrium_residual, 0.1); // no rounding
+}
+
 } // namespace

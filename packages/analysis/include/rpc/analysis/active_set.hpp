@@ -52,6 +52,7 @@ private:
   Verdict choose(const Vector &u);
   bool is_new_choice();
   bool makes_headway();
+  double needed_norm() const;
   Verdict give_up(const Vector &u);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
   bool leaves_path();
@@ -65,6 +66,8 @@ private:
   Vector start_;                                   // to go back to
   bool rough_;                                     // solves are, while the active set changes
   int most_changes_;                               // of the active set
+  bool rubs_;                                      // there is friction
+  bool turns_ = false;                             // and in space: the branches of an active set are not linear
   bool confirmed_ = false, decided_ = false;
   bool resumed_ = false;
   Then then_;
@@ -75,6 +78,7 @@ private:
   int changes_ = 0;      // of the active set
   int updates_ = 0;      // of the multipliers alone, the active set being confirmed
   GO last_changes_ = 0;  // points that the last choice changed
+  int idle_steps_ = 0;   // of a confirmed active set, one after the other, that left more than half of F
   int idle_changes_ = 0; // choices, one after the other, that changed hardly fewer points than the one before
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;

@@ -12,7 +12,7 @@ struct ActiveSetChoice {
   DeviceView<State *> state;            ///< (contact nodes)
   DeviceView<double *> pressure;        ///< (contact nodes) [Pa]
   DeviceView<Slip *> slip = {};         ///< (contact nodes) of friction; empty: there is none
-  DeviceView<double **> direction = {}; ///< (contact nodes, dim) h where a point slips
+  DeviceView<double **> direction = {}; ///< (contact nodes, dim) where a point slips: h in the plane, g in space
   DeviceView<double *> violation = {};  ///< (contact nodes) of the law by points whose state is to change, else 0 [Pa]
   DeviceView<double **> traction = {};  ///< (contact nodes, dim) along the side that slip was chosen by [Pa]
   GO changes = 0;                       ///< points on all ranks whose state is to change
@@ -53,7 +53,8 @@ struct AddedBlocks {
   DeviceView<double ***> coupling = {}; ///< empty: there is no friction
 };
 
-/// The stiffness of an active set's branches at u, and a weak spring where a point is not closed, and along the side where it slips. (4.2a), (9.8)
+/// The stiffness of an active set's branches at u, and a weak spring where a point is not closed, and along the side where it slips; notes
+/// where friction was linearized. (4.2a), (9.8), (12.13)
 /// @param spring  in units of the points' scaling, >= 0
 AddedBlocks added_blocks(const SmoothedPoints &points, const ActiveSet &active, const Vector &u, double spring);
 /// The same of the functional itself at u, whose friction does not follow the pressure: symmetric.          (4.2a), (12.4)

@@ -45,7 +45,8 @@ struct ActiveSet {
   DeviceView<State *> state;    ///< (points)
   bool chosen = false;          ///< else the states are those of K itself, all open, and say nothing about pressures
   DeviceView<Slip *> slip = {}; ///< (points) of friction; empty: there is none
-  DeviceView<double **> direction = {}; ///< (points, dim) h where a point slips
+  DeviceView<double **> direction = {};     ///< (points, dim) where a point slips: h in the plane, g in space
+  DeviceView<double **> linearized_at = {}; ///< (points, dim) lambda_tau + r e where the branches were linearized [Pa]
 
   KOKKOS_INLINE_FUNCTION SlipBranch branch(const LO i) const { return {slip(i), row(direction, i)}; }
 };

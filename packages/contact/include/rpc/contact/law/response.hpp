@@ -24,13 +24,14 @@ struct Multiplier {
 struct Response {
   double force[3] = {};    ///< w (p m + q), of the body on the foundation: what the point adds to the gradient [N]
   double block[3][3] = {}; ///< d force/du, as far as it is symmetric: what it adds to the Hessian [N/m]
-  /// The rest of d force/du: friction's force follows the pressure [N/m].                                         (12.5)
+  /// The rest of d force/du: friction's force follows the pressure, and its direction the slip [N/m].      (12.5), (12.13)
   double coupling[3][3] = {};
   State state = State::open;
   double energy = 0; ///< w (Psi + Theta) [J]
 };
 
-/// The friction state of a point, and the unit vector h that its traction points along where it slips.
+/// The friction state of a point, and where it slips the direction of its traction: in the plane h, of length 1; in space the direction g
+/// that the linear equations gave, |g| <= 1, which lags behind h = a/|a|. (12.13)
 struct SlipBranch {
   Slip state = Slip::stick;
   Along direction = {};
@@ -112,8 +113,23 @@ KOKKOS_INLINE_FUNCTION Along traction_on_branch(const SlipBranch &branch, const 
   return (dim == 2 ? branch.direction : a.unit()).scaled(friction_bound(p, f));
 }
 
-/// Adds the response on the branches of contact's state and friction's, coupled: where a point slips, its traction follows the pressure.
-/// (12.5)
+/// Adds across (h - g) h^T, the part of the stiffness of a slipping point that vanishes where g has become h: its symmetric part to the
+/// block, the rest to the coupling. (12.13)
+template <class Free>
+KOKKOS_INLINE_FUNCTION void add_lag(const double w, const double across, const Along &h, const Along &g,
+                                    const Free &free, const int dim, Response &response)
+{
+  const Along lag = h.plus(-1, g);
+  for (int k = 0; k < dim; ++k)
+    for (int l = 0; l < dim && free(k); ++l) {
+      if (!free(l)) continue;
+      response.block[k][l] += 0.5 * w * across * (lag(k) * h(l) + lag(l) * h(k));
+      response.coupling[k][l] += 0.5 * w * across * (lag(k) * h(l) - lag(l) * h(k));
+    }
+}
+
+/// Adds the response on the branches of contact's state and friction's, coupled: where a point slips, its traction follows the pressure,
+/// and in space its direction the slip. (12.5), (12.13)
 /// @param m  (dim) direction of contact
 template <class Direction, class Normal, class Free>
 KOKKOS_INLINE_FUNCTION void
@@ -128,10 +144,11 @@ add_friction_on_branch(const State state, const SlipBranch &branch, const Motion
   const double size = a.length(), s = friction_bound(p, f);
   const double across = dim == 2 || !(s > 0) ? 0 : (s < size ? r * s / size : r);
   add_traction(w, q, {across, 0}, h, normal, free, dim, response);
+  if (dim == 3) add_lag(w, across, h, branch.direction, free, dim, response);
   const double slope = friction_slope(p, f) * branch_stiffness(state, r, foundation);
   if (slope == 0) return;
   for (int k = 0; k < dim; ++k)
-    for (int l = 0; l < dim && free(k); ++l) response.coupling[k][l] = w * slope * h(k) * m(l);
+    for (int l = 0; l < dim && free(k); ++l) response.coupling[k][l] += w * slope * h(k) * m(l);
 }
 
 } // namespace rpc::contact

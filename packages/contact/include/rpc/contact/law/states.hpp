@@ -72,21 +72,31 @@ KOKKOS_INLINE_FUNCTION SlipBranch branch_of(const Along &a, const double s)
   return a.length() > s ? SlipBranch{Slip::slip, a.unit()} : SlipBranch{};
 }
 
+/// The direction of slip in space after a solve: what |a| g = a says to first order, at most of length 1. (12.13)
+/// @param g  the direction before   @param before, now  a where the branch was linearized, and after the solve [Pa]
+KOKKOS_INLINE_FUNCTION Along turned_direction(const Along &g, const Along &before, const Along &now)
+{
+  const double size = before.length();
+  if (!(size > 0)) return g;
+  const double longer = before.dot(now.plus(-1, before)) / size;
+  const Along turned = now.plus(-longer, g).scaled(1 / size);
+  return turned.length() > 1 ? turned.unit() : turned;
+}
+
 /// The next friction state of a point: it slips from sticking where |q| > s, and sticks from slipping where e points against h. One that
 /// comes to touch slips if its slip, times the point's own stiffness, is more than friction bears. (12.8)
-/// @param now     branch that q belongs to   @param before, next  states of contact
+/// @param now     branch that q belongs to   @param turned  its direction if it slips on   @param before, next  states of contact
 /// @param e, q    slip [m], traction on the branch [Pa]   @param v  penetration [m]   @param p  pressure, admissible [Pa]
 /// @param own     stiffness of the point alone [Pa/m]     @param bound  violations that change no state [Pa]
-KOKKOS_INLINE_FUNCTION SlipBranch next_slip(const SlipBranch &now, const State before, const State next, const Along &e,
-                                            const Along &q, const double v, const double p, const double own,
-                                            const double bound, const Friction &f, const int dim)
+KOKKOS_INLINE_FUNCTION SlipBranch next_slip(const SlipBranch &now, const Along &turned, const State before,
+                                            const State next, const Along &e, const Along &q, const double v,
+                                            const double p, const double own, const double bound, const Friction &f)
 {
   if (!acts(f) || (next == State::open && f.bound == 0)) return {Slip::slip, {}}; // nothing holds it
   if (before == State::open && next != State::open && f.bound == 0)
     return branch_of(e.scaled(own), friction_bound(math::larger(own * v, 0), f));
   if (now.state == Slip::stick) return branch_of(q, friction_bound(p, f) + bound);
-  const Along along = dim == 2 || !(q.length() > 0) ? now.direction : q.unit();
-  return own * e.dot(now.direction) < -bound ? SlipBranch{} : SlipBranch{Slip::slip, along};
+  return own * e.dot(now.direction) < -bound ? SlipBranch{} : SlipBranch{Slip::slip, turned};
 }
 
 /// The same of friction on its branch.
