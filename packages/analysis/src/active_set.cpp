@@ -12,9 +12,8 @@ using solver::NewtonGroup;
 namespace
 {
 
-constexpr int most_changes = 10;               // of the active set; then Newton with its sweep needs fewer steps
-constexpr int most_changes_with_friction = 15; // Newton knows no coupling, and so does not do better
-constexpr int most_changes_tried = 6;          // where a Tresca problem has just been solved
+constexpr int most_changes = 10;      // of the active set; then Newton with its sweep needs fewer steps
+constexpr int most_changes_tried = 3; // where a Tresca problem has just been solved
 constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
 constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
 // While the active set changes, solves bring the residual below this part of what it was, and of the load: three to five CG
@@ -53,7 +52,7 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
-  most_changes_ = then == Then::newton ? most_changes_with_friction : most_changes_tried;
+  if (then == Then::nothing) most_changes_ = most_changes_tried;
 }
 
 bool ActiveSetStage::resume(const NewtonGroup &from)
