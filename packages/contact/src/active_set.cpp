@@ -103,8 +103,11 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
         const Along turned = c.dim == 2
                                  ? direction_now
                                  : turned_direction(direction_now, row(now.linearized_at, i), s.trial_traction(i, at));
-        const SlipBranch branch = next_slip(now.branch(i), turned, now.state(i), next(i), at.slip, row(traction, i),
-                                            at.penetration, admissible(p(i), c.law(i)), own(i), bound, f);
+        SlipBranch branch = next_slip(now.branch(i), turned, now.state(i), next(i), at.slip, row(traction, i),
+                                      at.penetration, admissible(p(i), c.law(i)), own(i), bound, f);
+        if (branch.state == Slip::stick &&
+            own(i) * prescribed_slip(at.slip, NormalAt{c, i}, FreeAt{c.friction, i}, c.dim).length() > bound)
+          branch = {Slip::slip, at.slip.unit()};
         slips(i) = branch.state;
         set_row(direction, i, branch.direction);
         if (c.fixed(i)) return;

@@ -155,7 +155,10 @@ Iterate::Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<Up
 std::uint64_t Iterate::piece(const Vector &u) const
 {
   const StateCounts counts = count_states(u);
-  return scrambled(scrambled(static_cast<std::uint64_t>(counts.open)) + static_cast<std::uint64_t>(counts.closed));
+  const std::uint64_t piece =
+      scrambled(scrambled(static_cast<std::uint64_t>(counts.open)) + static_cast<std::uint64_t>(counts.closed));
+  return points_.friction.anywhere ? scrambled(piece + static_cast<std::uint64_t>(functional_.count_sticking(u)))
+                                   : piece;
 }
 
 double Iterate::size(const Vector &u) const

@@ -54,11 +54,25 @@ void add_differences(const SmoothedPoints &s, const ActiveSet &active, const Vec
   Kokkos::fence();
 }
 
-/// The moves of a sweep, from the elastic gradient at u; those of two points of one node add up.
+/// (owned nodes) How many points each node has; empty without friction, and where no node can have two.
+DeviceView<int *> points_of_nodes(const ContactNodes &points, const LO num_nodes)
+{
+  const ContactNodes c = points;
+  if (!c.friction.exists() || c.num_groups() < 2) return {};
+  const DeviceView<int *> count("rpc::contact::points_of_nodes", num_nodes);
+  for_each_point_by_group(
+      "rpc::contact::points_of_nodes", c, KOKKOS_LAMBDA(const LO i) { ++count(c.node(i)); });
+  Kokkos::fence();
+  return count;
+}
+
+/// The moves of a sweep, from the elastic gradient at u; those of two points of one node add up. With friction only moves along the
+/// normals are made, of nodes with one point: any other is slip too, whose energy the move does not weigh.
 void move_points(const SmoothedPoints &s, const DeviceView<double *> &stiffness, const Vector &G, Vector &u)
 {
   const ContactNodes &c = s.points;
   const DeviceView<double *> move("rpc::contact::move", s.size());
+  const auto count = points_of_nodes(c, static_cast<LO>(u.getLocalLength()) / c.dim);
   {
     const auto slope = device_read(G);
     const auto x = device_read(u);
@@ -66,7 +80,7 @@ void move_points(const SmoothedPoints &s, const DeviceView<double *> &stiffness,
         "rpc::contact::best_moves", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
           if (c.fixed(i)) return;
           const double length = squared_length(c, i);
-          if (c.friction.exists() && length < 1 - 1e-12) return; // its move is slip too
+          if (c.friction.exists() && (length < 1 - 1e-12 || (count.extent(0) > 0 && count(c.node(i)) > 1))) return;
           move(i) = best_move(along_direction(c, i, slope) / length, stiffness(i), c.weight(i), penetration(c, i, x),
                               s.multiplier.normal(i), s.penalty(i), c.law(i)) /
                     length;
@@ -269,6 +283,21 @@ StateCounts SmoothedFunctional::count_states(const Vector &u) const
   GO all[3];
   Teuchos::reduceAll(*u.getMap()->getComm(), Teuchos::REDUCE_SUM, 3, counts, all);
   return {all[0], all[1], all[2]};
+}
+
+GO SmoothedFunctional::count_sticking(const Vector &u) const
+{
+  const SmoothedPoints s = points_;
+  const auto x = device_read(u);
+  LO count = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::count_sticking", device_range(s.size()),
+      KOKKOS_LAMBDA(const LO i, LO &sticking) {
+        if (!s.points.fixed(i) && s.has_friction())
+          sticking += slip_state(s.trial_traction(i, motion(s.points, i, x)), s.bound(i)) == Slip::stick;
+      },
+      count);
+  return sum_all(*u.getMap()->getComm(), GO(count));
 }
 
 } // namespace rpc::contact

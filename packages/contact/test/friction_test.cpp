@@ -239,6 +239,19 @@ TEST(Friction, SymmetricPartOfTheLaggingDirectionIsNotNegative)
   EXPECT_EQ(turned_direction(h, {}, trial(u)).plus(-1, h).length(), 0);
 }
 
+TEST(Friction, PrescribedSlipIsWhatNoFreeMoveAlongTheSideChanges)
+{
+  const auto prescribed = [](const Along &e) { return prescribed_slip(e, Normal{}, Free{}, 3); };
+  const Along e = along_side({{0.3, 0.2, -0.5}});
+  const Along move = Along{{0.64, 0, -0.48}}.unit(); // of the free unknowns, along the side
+  ASSERT_GT(prescribed(e).length(), 0.01);
+  EXPECT_NEAR(prescribed(e).dot(move), 0, 1e-16);
+  EXPECT_NEAR(prescribed(e.plus(0.7, move)).plus(-1, prescribed(e)).length(), 0, 1e-16);
+  EXPECT_NEAR(prescribed(e).plus(e.dot(move), move).plus(-1, e).length(), 0, 1e-16);
+  const auto all = [](const int) { return true; };
+  EXPECT_EQ(prescribed_slip(e, Normal{}, all, 3).length(), 0);
+}
+
 TEST(Friction, StatesChangeByTheNeighbourRule)
 {
   const Friction coulomb{0.5, 0, inf}, tresca{0, 1, inf};

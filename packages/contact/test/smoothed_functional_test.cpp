@@ -310,4 +310,43 @@ TEST(SmoothedFunctional, SweepsWhereOneNodeAloneMayTouch)
   EXPECT_LT(scene.iterate->value(*u), before);
 }
 
+TEST(SmoothedFunctional, WithFrictionSweepsLeaveTheCornerOfTwoSidesWhereItIs)
+{
+  auto bottom = below(1e4), right = beside(1e4);
+  right.normal = contact::Normal::surface; // a move along one normal slips along the other side
+  bottom.friction_bound = right.friction_bound = ScalarField(1.);
+  const Scene scene(std::vector{bottom, right});
+  const auto u = scene.vector(0.02, 0.3);
+  double before = scene.iterate->value(*u);
+  for (int sweep = 0; sweep < 20; ++sweep) {
+    const Vector last(*u, Teuchos::Copy);
+    scene.iterate->sweep(*u);
+    const double now = scene.iterate->value(*u);
+    EXPECT_LE(now, before + 1e-13 * std::abs(before)) << sweep;
+    if (sweep == 0) EXPECT_LT(now, before);
+    before = now;
+    const auto is = u->getLocalViewHost(Tpetra::Access::ReadOnly),
+               was = last.getLocalViewHost(Tpetra::Access::ReadOnly);
+    const auto at = to_host(scene.d.mesh->coords);
+    for (LO n = 0; n < scene.d.mesh->num_owned_nodes(); ++n)
+      if (at(n, 0) == 2 && at(n, 1) == 0)
+        for (int k = 0; k < 2; ++k) EXPECT_EQ(is(2 * n + k, 0), was(2 * n + k, 0));
+  }
+}
+
+TEST(SmoothedFunctional, PiecesOfFrictionDifferByWhatSticks)
+{
+  auto foundation = below(40);
+  foundation.friction_bound = ScalarField(0.1);
+  const Scene scene(std::vector{foundation});
+  const auto still = scene.vector([](const Point &) { return Point{}; }), moved = scene.vector([](const Point &x) {
+    return Point{x[1] == 0 && x[0] > 1 ? 1. : 0., 0, 0};
+  });
+  EXPECT_EQ(scene.iterate->functional().count_sticking(*still), scene.iterate->points().num_total);
+  EXPECT_LT(scene.iterate->functional().count_sticking(*moved), scene.iterate->points().num_total);
+  EXPECT_GT(scene.iterate->functional().count_sticking(*moved), 0);
+  EXPECT_EQ(scene.iterate->count_states(*still).open, scene.iterate->count_states(*moved).open);
+  EXPECT_NE(scene.iterate->piece(*still), scene.iterate->piece(*moved));
+}
+
 } // namespace

@@ -59,6 +59,8 @@ public:
   /// (points, dim) Theta_i'(e_i) [Pa].                                                                          (12.3)
   DeviceView<double **> tractions(const Vector &u) const;
   StateCounts count_states(const Vector &u) const;
+  /// Points on all ranks that stick. With friction only.
+  GO count_sticking(const Vector &u) const;
 
   /// The same functional of the correction to u: the rounding of r v is then relative to the correction.           (5.13)
   /// @param out_of_balance  elastic gradient at u [N], 0 at prescribed unknowns

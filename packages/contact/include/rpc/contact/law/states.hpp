@@ -99,6 +99,26 @@ KOKKOS_INLINE_FUNCTION SlipBranch next_slip(const SlipBranch &now, const Along &
   return own * e.dot(now.direction) < -bound ? SlipBranch{} : SlipBranch{Slip::slip, turned};
 }
 
+/// The part of a closed point's slip that its free unknowns cannot change, since others are prescribed [m]. Where it is not 0, the point
+/// cannot stick.
+/// @param normal  (dim) nu   @param free  (dim) 0 where the displacement is prescribed
+template <class Normal, class Free>
+KOKKOS_INLINE_FUNCTION Along prescribed_slip(const Along &e, const Normal &normal, const Free &free, const int dim)
+{
+  double across = 0, size = 0; // of the free unknowns, those along the normal are held by contact
+  int num_free = 0;
+  for (int k = 0; k < dim; ++k) {
+    if (!free(k)) continue;
+    ++num_free;
+    across += normal(k) * e(k);
+    size += normal(k) * normal(k);
+  }
+  Along prescribed;
+  if (num_free == dim) return prescribed;
+  for (int k = 0; k < dim; ++k) prescribed.x[k] = !free(k) ? e(k) : size > 0 ? across / size * normal(k) : 0;
+  return prescribed;
+}
+
 /// The same of friction on its branch.
 KOKKOS_INLINE_FUNCTION double violation(const SlipBranch &now, const Along &e, const Along &q, const double p,
                                         const double own, const Friction &f)
