@@ -120,6 +120,7 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
   GmshRequest request = request_for(options);
   request.size_factor = options.size_factor;
   request.order = options.order == 0 ? 2 : options.order;
+  request.geometry = options.refinements > 0;
   if (options.box) {
     std::copy_n(options.box->lower.begin(), 2, request.lower.begin());
     std::copy_n(options.box->upper.begin(), 2, request.upper.begin());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/mesh/geometry.hpp"
 #include "rpc/mesh/size_field.hpp"
 
 #include <array>
@@ -23,6 +24,7 @@ struct GmshRequest {
   int attempt = 0;             ///< by a field of sizes: each breaks ties in another way
   SizeField sizes;             ///< of a plane body; without triangles: those that the .geo asks for
   bool dimension_only = false; ///< no mesh is wanted
+  bool geometry = false;       ///< of the boundary, besides the mesh
 };
 
 /// Physical group of the body's parts, of its sides, or of points: of surfaces or curves, in space of volumes or surfaces.
@@ -42,6 +44,13 @@ struct GmshElements {
   std::vector<std::size_t> nodes; ///< (elements, nodes per element) tags
 };
 
+/// The elements of one type on a curve of a plane body, or on a surface of one in space.
+struct GmshBoundary {
+  BoundaryShape shape;
+  int type = 0;                   ///< gmsh's number, see gmsh_type()
+  std::vector<std::size_t> nodes; ///< (elements, nodes per element) tags
+};
+
 /// All tags are gmsh's numbers.
 struct GmshContents {
   std::string complaint;         ///< gmsh's; nothing else counts if there is one
@@ -51,6 +60,7 @@ struct GmshContents {
   std::vector<GmshElements> elements; ///< by group, then entity tag
   std::vector<std::size_t> node_tags;
   std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags
+  std::vector<GmshBoundary> boundary;       ///< by tag, where it was asked for
   std::vector<std::size_t> ungrouped_nodes; ///< of a .msh: tags of the nodes of cells that are not part of the body
 };
 

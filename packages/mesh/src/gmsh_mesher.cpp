@@ -1,5 +1,6 @@
 #include "gmsh_mesher.hpp"
 
+#include "gmsh_boundary.hpp"
 #include "size_tree.hpp"
 
 #include <algorithm>
@@ -320,7 +321,9 @@ void load(const GmshRequest &request, GmshContents &contents)
   contents.complaint = first_error();
   contents.again = !contents.complaint.empty();
   if (contents.complaint.empty()) contents.complaint = absurdity;
-  if (contents.complaint.empty()) take_mesh(contents);
+  if (!contents.complaint.empty()) return;
+  take_mesh(contents);
+  if (request.geometry) take_boundary(contents);
 }
 
 } // namespace
