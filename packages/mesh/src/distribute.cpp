@@ -52,6 +52,7 @@ Part part_of(const MeshData &whole, const Division &division, const int rank)
   Part part;
   part.mesh.element = whole.element;
   part.mesh.blocks = whole.blocks;
+  part.mesh.geometry_file = whole.geometry_file;
   part.node_id.assign(nodes.first(rank), nodes.last(rank));
 
   const int num_owned = nodes.size_of(rank), first_gid = static_cast<int>(nodes.begin[rank]);

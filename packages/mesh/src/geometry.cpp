@@ -39,7 +39,7 @@ Distance distance_to(const BoundaryShape &shape, const Point &x)
   return {};
 }
 
-/// One step towards all shapes.                                                                       doc/theory.md (2.21)
+/// One step towards all shapes.                                                                       doc/theory.md (2.17)
 Point step_towards(const std::vector<BoundaryShape> &shapes, Point x)
 {
   constexpr double parallel = 1e-4; // sin^2 of the angle between two of them that are taken one after the other

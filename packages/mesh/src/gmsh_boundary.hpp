@@ -10,4 +10,7 @@ namespace rpc::mesh
 /// Points of each, at even parameters, tell whether it lies on a line, circle, plane, sphere or cylinder, to 1e-9 of its size.
 void take_boundary(GmshContents &contents);
 
+/// The points that are asked for, instead of a mesh.
+void take_nearest_points(const GmshRequest &request, GmshContents &contents);
+
 } // namespace rpc::mesh

@@ -25,6 +25,10 @@ struct GmshRequest {
   SizeField sizes;             ///< of a plane body; without triangles: those that the .geo asks for
   bool dimension_only = false; ///< no mesh is wanted
   bool geometry = false;       ///< of the boundary, besides the mesh
+  /// Points that are wanted on the .geo's boundary instead of a mesh: near each of some, on a curve, in space on a surface, or on the
+  /// curves that two surfaces share.
+  std::vector<int> near_tags;      ///< (points, 2) the second is 0 where there is one
+  std::vector<double> near_coords; ///< (points, 3)
 };
 
 /// Physical group of the body's parts, of its sides, or of points: of surfaces or curves, in space of volumes or surfaces.
@@ -59,7 +63,7 @@ struct GmshContents {
   std::vector<GmshGroup> groups; ///< of dimensions dim - 1 and dim, and of points with a name; by dimension, then tag
   std::vector<GmshElements> elements; ///< by group, then entity tag
   std::vector<std::size_t> node_tags;
-  std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags
+  std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags; or the points that were asked for
   std::vector<GmshBoundary> boundary;       ///< by tag, where it was asked for
   std::vector<std::size_t> ungrouped_nodes; ///< of a .msh: tags of the nodes of cells that are not part of the body
 };

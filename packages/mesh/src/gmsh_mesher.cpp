@@ -315,6 +315,7 @@ void load(const GmshRequest &request, GmshContents &contents)
   contents.complaint = first_error();
   if (!contents.complaint.empty()) return;
   contents.dim = std::max(2, gmsh::model::getDimension());
+  if (!request.near_tags.empty()) return take_nearest_points(request, contents);
   const bool flat_sizes_in_space = contents.dim == 3 && !request.sizes.triangles.empty();
   if (request.dimension_only || flat_sizes_in_space) return;
   const std::string absurdity = make_mesh(request, contents.dim);

@@ -138,6 +138,8 @@ void each_part(Request &request, Each &each)
   each_part(request.sizes, each);
   each(request.dimension_only);
   each(request.geometry);
+  each(request.near_tags);
+  each(request.near_coords);
 }
 
 template <class Group, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Group>, GmshGroup>, int> = 0>

@@ -39,7 +39,7 @@ void require_room(const Mesh &coarse)
   throw_if_any(coarse.comm(), ExitCode::bad_input, message);
 }
 
-/// Where the map of the parent has the nodes of its children.                                       doc/theory.md (2.20)
+/// Where the map of the parent has the nodes of its children.                                       doc/theory.md (2.16)
 class PlacesInParent
 {
 public:

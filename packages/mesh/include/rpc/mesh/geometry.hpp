@@ -31,7 +31,7 @@ struct BoundaryPart {
 /// The point nearest to x that lies on all of some shapes: Newton's method with the least move for two of them, projections one after
 /// another for those that touch. Shapes of kind `other` do not count.
 /// @param shapes  at least one
-/// @return none if it does not converge, as where they have no point in common   doc/theory.md (2.21)
+/// @return none if it does not converge, as where they have no point in common   doc/theory.md (2.17)
 std::optional<std::array<double, 3>> nearest_point(const std::vector<BoundaryShape> &shapes, std::array<double, 3> x);
 
 } // namespace rpc::mesh

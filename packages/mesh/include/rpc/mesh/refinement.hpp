@@ -15,7 +15,7 @@ namespace rpc::mesh
 /// Each rank divides the cells that it has; cells belong to the rank of their parent. A new node belongs to the rank of the vertex with the
 /// lowest id among those of the edge, face or cell in whose middle it lies: that rank has all cells around it. Ids do not depend on
 /// the number of ranks: nodes of the coarse mesh keep theirs, children of a cell follow each other. New nodes lie in the
-/// middle, of curved cells by their map (2.20); those of the boundary on its shape, where the mesh knows it (Mesh::geometry).
+/// middle, of curved cells by their map (2.16); those of the boundary on its shape, where the mesh knows it (Mesh::geometry).
 /// Sides, blocks, points and geometry go along. The result's Mesh::parents leads to the coarse mesh. Collective.
 /// @throws rpc::Error on every rank: bad_input where the mesh cannot fit in memory or in a rank's numbers, bad_mesh where a cell would be inverted
 Mesh refined(const std::shared_ptr<const Mesh> &coarse);
