@@ -1,3 +1,4 @@
+#include "expect_error.hpp"
 #include "run_scene.hpp"
 
 #include <algorithm>
@@ -72,6 +73,29 @@ TEST(Refinement, BallMeetsGmshsMesh)
   EXPECT_NEAR(refined.contact.total.force[2], made.contact.total.force[2], 0.002 * made.contact.total.force[2]);
   EXPECT_NEAR(refined.energy, made.energy, 0.002 * std::abs(made.energy));
   EXPECT_LE(most_iterations(refined), 15);
+}
+
+/// gmsh makes the same mesh for each size factor: nested iteration sees that, and has parents where the mesh is refined.
+TEST(Refinement, NestedIterationLeavesMeshesThatAreNotSmaller)
+{
+  const Solution same = solved(decks + "transfinite.xml", 0, {});
+  EXPECT_EQ(same.not_predicted, "there is no coarser mesh of this body");
+  EXPECT_TRUE(same.levels.empty());
+  const Solution refined = solved(decks + "transfinite.xml", 1, {});
+  EXPECT_EQ(refined.not_predicted, "");
+  ASSERT_EQ(refined.levels.size(), 1u);
+  EXPECT_EQ(refined.levels[0].dofs, same.discretization.owned_dofs->getGlobalNumElements());
+}
+
+TEST(Refinement, IsRefusedWhereItMakesNoSense)
+{
+  const auto refuse = [](const std::string &deck, const std::vector<std::string> &more, const std::string &part) {
+    test::expect_error(ExitCode::bad_input, part, [&] { run_scene(deck, more); });
+  };
+  refuse(input + "beam.xml", {"Mesh->Refinements=1"}, "\"Mesh->Refinements\" does not go with \"Mesh->Type\" = box");
+  refuse(input + "hertz.xml", {"Mesh->Refinements=-1"}, "\"Mesh->Refinements\" must be 0 to 12, got -1");
+  refuse(input + "hertz.xml", {"Mesh->Refinements=1", "Adapt->Target Relative Error=0.1"},
+         "does not go with \"Mesh->Refinements\"");
 }
 
 } // namespace
