@@ -149,8 +149,9 @@ std::shared_ptr<const Problem> Problem::coarser(const double factor, const doubl
 {
   const mesh::Mesh &own = *discretization().mesh;
   if (own.parents) {
+    const double wanted = own.dim() == 3 ? factor / 2 : factor; // a mesh of half as long cells costs an eighth in space
     auto mesh = mesh_->parent();
-    for (double halved = 2; halved < factor && mesh->discretization().mesh->parents; halved *= 2) mesh = mesh->parent();
+    for (double halved = 2; halved < wanted && mesh->discretization().mesh->parents; halved *= 2) mesh = mesh->parent();
     return std::make_shared<Problem>(mesh, model_, t);
   }
   if (!own.box || own.element.order == 2) return nullptr;
