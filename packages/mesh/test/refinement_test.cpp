@@ -4,6 +4,7 @@
 #include "expect_error.hpp"
 #include "parts_measures.hpp"
 #include "rpc/mesh/distribute.hpp"
+#include "rpc/mesh/make_mesh.hpp"
 #include "rpc/mesh/topology.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -316,6 +317,26 @@ TEST(Refinement, PutsNewNodesOnTheBoundarysShape)
       }
       last = error;
     }
+  }
+}
+
+/// A .msh has no geometry but its own cells: the body keeps its size to rounding, curved or not.
+TEST(Refinement, KeepsTheBodyOfAMshFile)
+{
+  for (const char *const name : {"sector_41.msh", "octant_41.msh"}) {
+    SCOPED_TRACE(name);
+    mesh::GmshOptions options{std::string(RPC_TEST_DATA_DIR) + "/" + name, 1, 0};
+    const Mesh coarse = mesh::make_mesh(options, alone());
+    options.refinements = 2;
+    const Mesh fine = mesh::make_mesh(options, world());
+    EXPECT_NEAR(test::body_measure(fine), test::body_measure(coarse), 1e-12 * test::body_measure(coarse));
+    ASSERT_EQ(fine.sides.size(), coarse.sides.size());
+    for (const mesh::Side &side : coarse.sides) {
+      const double before = test::side_measure(coarse, side.name), after = test::side_measure(fine, side.name);
+      EXPECT_NEAR(after, before, 1e-4 * before) << side.name; // by quadrature, of roots on curved sides
+    }
+    EXPECT_EQ(mesh::ancestor(std::make_shared<Mesh>(fine), 2)->element.name(), coarse.element.name());
+    EXPECT_EQ(sum_all(fine.comm(), GO(fine.num_owned_cells)), power(4, coarse.dim()) * coarse.num_owned_cells);
   }
 }
 
