@@ -18,7 +18,8 @@ using Kind = BoundaryShape::Kind;
 
 /// Points of a curve or surface, about their mean and in units of their size.
 struct Samples {
-  std::vector<Point> point, normal; // normals of surfaces only
+  std::vector<double> parameters;
+  std::vector<Point> point;
   Point mean{};
   double size = 0;
 };
@@ -30,13 +31,13 @@ double inner(const Point &a, const Point &b)
 
 constexpr double tolerance = 1e-9; // of the size of the samples
 
-/// At even parameters, away from the ends of surfaces, where some have poles.
+/// At even parameters, away from the ends of surfaces, where some have poles. Few: gmsh takes milliseconds for a point of a sphere.
 std::vector<double> parameters(const int dim, const int tag)
 {
   std::vector<double> low, high, list;
   gmsh::model::getParametrizationBounds(dim, tag, low, high);
   const auto at = [&](const int d, const double share) { return low[d] + share * (high[d] - low[d]); };
-  constexpr int along = 9;
+  const int along = dim == 1 ? 9 : 5;
   for (int i = 0; i < along; ++i) {
     if (dim == 1) {
       list.push_back(at(0, double(i) / (along - 1)));
@@ -50,17 +51,20 @@ std::vector<double> parameters(const int dim, const int tag)
   return list;
 }
 
+std::vector<Point> points_of(const std::vector<double> &coords)
+{
+  std::vector<Point> points;
+  for (std::size_t k = 0; k + 2 < coords.size(); k += 3) points.push_back({coords[k], coords[k + 1], coords[k + 2]});
+  return points;
+}
+
 Samples samples_of(const int dim, const int tag)
 {
-  std::vector<double> coords, normals;
-  const std::vector<double> where = parameters(dim, tag);
-  gmsh::model::getValue(dim, tag, where, coords);
-  if (dim == 2) gmsh::model::getNormal(tag, where, normals);
   Samples samples;
-  for (std::size_t k = 0; k + 2 < coords.size(); k += 3) {
-    samples.point.push_back({coords[k], coords[k + 1], coords[k + 2]});
-    if (k + 2 < normals.size()) samples.normal.push_back({normals[k], normals[k + 1], normals[k + 2]});
-  }
+  samples.parameters = parameters(dim, tag);
+  std::vector<double> coords;
+  gmsh::model::getValue(dim, tag, samples.parameters, coords);
+  samples.point = points_of(coords);
   for (const Point &x : samples.point)
     for (int i = 0; i < 3; ++i) samples.mean[i] += x[i] / static_cast<double>(samples.point.size());
   for (Point &x : samples.point)
@@ -164,7 +168,7 @@ std::vector<Point> across(std::vector<Point> points, const Point &direction)
 }
 
 /// In the units of the samples, about their mean.
-BoundaryShape shape_through(const Samples &samples, const int dim)
+BoundaryShape shape_through(const Samples &samples, const int dim, const int tag)
 {
   BoundaryShape shape;
   const auto &points = samples.point;
@@ -182,8 +186,10 @@ BoundaryShape shape_through(const Samples &samples, const int dim)
     return shape;
   }
   if (const Round round = round_through(points); all_near(points, round)) return make_round(Kind::sphere, round);
-  if (dim == 2 && samples.normal.size() == points.size()) {
-    shape.direction = eigenvectors(second_moments(samples.normal))[0];
+  if (dim == 2) {
+    std::vector<double> normals;
+    gmsh::model::getNormal(tag, samples.parameters, normals);
+    shape.direction = eigenvectors(second_moments(points_of(normals)))[0];
     const auto section = across(points, shape.direction);
     if (const Round round = round_through(section); all_near(section, round)) return make_round(Kind::cylinder, round);
   }
@@ -200,7 +206,7 @@ BoundaryShape shape_of(const int dim, const int tag)
     const bool finite = std::all_of(samples.point.begin(), samples.point.end(),
                                     [](const Point &x) { return std::isfinite(inner(x, x)); });
     if (finite && samples.point.size() > 6) {
-      shape = shape_through(samples, dim);
+      shape = shape_through(samples, dim, tag);
       for (int i = 0; i < 3; ++i) shape.point[i] = samples.mean[i] + samples.size * shape.point[i];
       shape.radius *= samples.size;
     }
