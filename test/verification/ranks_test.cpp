@@ -52,7 +52,13 @@ const Case cases[] = {
      tight_and({"Mesh->Element=P2", "Mesh->Cells={6,6,3}", "Nested Iteration->Enabled=false"})},
     {"BlockOfQ2", input + "block.xml",
      tight_and({"Mesh->Element=Q2", "Mesh->Cells={6,6,3}", "Nested Iteration->Enabled=false"})},
-    {"Ball", input + "ball.xml", tight_and({"Mesh->Size Factor=2", "Contact->Yield Stress=100"})}};
+    {"Ball", input + "ball.xml", tight_and({"Mesh->Size Factor=2", "Contact->Yield Stress=100"})},
+    {"RefinedHalfCylinder", input + "hertz.xml",
+     tight_and({"Mesh->Size Factor=8", "Mesh->Refinements=2", "Contact->Yield Stress=50"})},
+    {"RefinedBall", input + "ball.xml",
+     tight_and({"Mesh->Size Factor=4", "Mesh->Refinements=1", "Contact->Yield Stress=100"})},
+    {"RefinedBallOfOrderOne", input + "ball.xml",
+     tight_and({"Mesh->Order=1", "Mesh->Size Factor=4", "Mesh->Refinements=2", "Contact->Yield Stress=100"})}};
 
 /// Of all ranks, by the ids of nodes: those of the solution are its components, those of contact (side, pressure).
 struct Fields {

@@ -3,6 +3,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/fem/interpolation.hpp"
 #include "rpc/fem/order_one.hpp"
+#include "rpc/fem/parent_interpolation.hpp"
 #include "rpc/mesh/box.hpp"
 
 #include <optional>
@@ -62,27 +63,65 @@ bool goes_to_order_one(const mesh::Mesh &mesh)
 
 } // namespace
 
+NestedMesh::NestedMesh(fem::Discretization d) : discretization_(std::move(d))
+{
+  if (const auto &parents = discretization_.mesh->parents) family_ = std::make_shared<Family>(Family{parents, nullptr});
+}
+
 bool NestedMesh::may_have_coarser() const
 {
   const mesh::Mesh &mesh = *discretization_.mesh;
-  return mesh.element.order == 2 || (mesh.box && mesh::coarsened(*mesh.box));
+  return mesh.element.order == 2 || family_ || (mesh.box && mesh::coarsened(*mesh.box));
+}
+
+std::shared_ptr<const NestedMesh> NestedMesh::parent() const
+{
+  if (!family_) return nullptr;
+  auto &made = family_->made;
+  const mesh::Parents &parents = *family_->parents;
+  if (!made) made = std::make_shared<NestedMesh>(fem::discretize(parents.mesh, discretization_.kinematics));
+  if (made->to_finer_.is_null() && discretization_.mesh->parents)
+    made->to_finer_ = fem::interpolation_from_parents(*parents.mesh, *discretization_.mesh, parents);
+  return made;
+}
+
+/// For a mesh of order 1 on the cells of a refined one of order 2: the same of the parents.
+std::shared_ptr<NestedMesh> NestedMesh::order_one_of_parent() const
+{
+  const auto lower = parent()->coarser();
+  auto made = std::make_shared<NestedMesh>(lower->discretization());
+  made->to_finer_ =
+      fem::interpolation_from_parents(*lower->discretization().mesh, *discretization_.mesh, *family_->parents);
+  made->family_ = lower->family_;
+  return made;
+}
+
+std::shared_ptr<NestedMesh> NestedMesh::make_coarser() const
+{
+  const fem::Discretization &d = discretization_;
+  if (goes_to_order_one(*d.mesh)) {
+    fem::OrderOne lower = fem::order_one(d);
+    auto made = std::make_shared<NestedMesh>(fem::discretize(std::move(lower.mesh), d.kinematics));
+    made->to_finer_ = lower.interpolation;
+    made->node_of_finer_ = lower.node;
+    made->family_ = family_;
+    return made;
+  }
+  if (family_ && !d.mesh->parents) return order_one_of_parent();
+  auto box = coarser_box(d);
+  if (!box) return nullptr;
+  auto made = std::make_shared<NestedMesh>(std::move(*box));
+  made->to_finer_ = fem::interpolation(made->discretization(), d);
+  return made;
 }
 
 std::shared_ptr<const NestedMesh> NestedMesh::coarser() const
 {
   if (std::exchange(asked_, true)) return coarser_;
-  const fem::Discretization &d = discretization_;
-  std::shared_ptr<NestedMesh> made;
-  if (goes_to_order_one(*d.mesh)) {
-    fem::OrderOne lower = fem::order_one(d);
-    made = std::make_shared<NestedMesh>(fem::discretize(std::move(lower.mesh), d.kinematics));
-    made->to_finer_ = lower.interpolation;
-    made->node_of_finer_ = lower.node;
-  } else if (auto box = coarser_box(d)) {
-    made = std::make_shared<NestedMesh>(std::move(*box));
-    made->to_finer_ = fem::interpolation(made->discretization(), d);
-  }
-  coarser_ = std::move(made);
+  if (discretization_.mesh->element.order == 1 && discretization_.mesh->parents)
+    coarser_ = parent();
+  else
+    coarser_ = make_coarser();
   return coarser_;
 }
 
@@ -90,12 +129,18 @@ void NestedMesh::forget_coarser() const
 {
   coarser_.reset();
   asked_ = false;
+  if (family_) family_->made.reset();
 }
 
 RCP<const Operator> interpolation(const NestedMesh &coarse, const NestedMesh &fine)
 {
   std::vector<RCP<const CrsMatrix>> steps;
   for (const NestedMesh *mesh = fine.made_coarser().get(); mesh; mesh = mesh->made_coarser().get()) {
+    steps.insert(steps.begin(), mesh->to_finer());
+    if (mesh == &coarse) return rcp(new Steps(std::move(steps)));
+  }
+  steps.clear();
+  for (auto finer = &fine, mesh = fine.made_parent().get(); mesh; finer = mesh, mesh = finer->made_parent().get()) {
     steps.insert(steps.begin(), mesh->to_finer());
     if (mesh == &coarse) return rcp(new Steps(std::move(steps)));
   }

@@ -75,7 +75,8 @@ Prediction Predictor::predict(const Problem &fine, const Step &step, const Memor
     if (!coarser_) {
       const auto problem = coarser_problem_ ? coarser_problem_(fine, level_) : nullptr;
       if (!problem) {
-        prediction.reason = "a mesh from a file cannot be made coarser";
+        coarser_problem_ = {}; // nor will there be one
+        prediction.reason = "there is no coarser mesh of this body";
         return prediction;
       }
       coarser_ = std::make_unique<Coarser>(

@@ -148,6 +148,12 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
 std::shared_ptr<const Problem> Problem::coarser(const double factor, const double t) const
 {
   const mesh::Mesh &own = *discretization().mesh;
+  if (own.parents) {
+    const double wanted = own.dim() == 3 ? factor / 2 : factor; // a mesh of half as long cells costs an eighth in space
+    auto mesh = mesh_->parent();
+    for (double halved = 2; halved < wanted && mesh->discretization().mesh->parents; halved *= 2) mesh = mesh->parent();
+    return std::make_shared<Problem>(mesh, model_, t);
+  }
   if (!own.box || own.element.order == 2) return nullptr;
   const auto most_cells = [](const NestedMesh &mesh) {
     const auto &cells = mesh.discretization().mesh->box->cells;

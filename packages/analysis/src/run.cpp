@@ -30,17 +30,23 @@ std::shared_ptr<const Problem> make_problem(const Task &task, std::shared_ptr<co
   return std::make_shared<Problem>(std::move(mesh), task.model, task.time);
 }
 
-/// The scene on coarser and coarser meshes: those that multigrid needs too where they are boxes, else made by the options.
+/// The scene on coarser and coarser meshes: those that multigrid needs too where they are boxes or parents, else made by the
+/// options. None that is not smaller.
 CoarserProblem coarser_meshes(Task task, const mesh::MeshOptions &options, const RCP<const Comm> &comm)
 {
-  return
-      [task = std::move(task), options, comm](const Problem &finer, const int level) -> std::shared_ptr<const Problem> {
-        if (const auto nested = finer.coarser(task.step.prediction.coarsening, task.time)) return nested;
-        std::optional<mesh::MeshOptions> coarse = options;
-        for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, task.step.prediction.coarsening);
-        PhaseSeconds seconds;
-        return coarse ? make_problem(task, make_mesh(*coarse, comm, seconds), seconds) : nullptr;
-      };
+  return [task = std::move(task), options, comm](const Problem &finer,
+                                                 const int level) -> std::shared_ptr<const Problem> {
+    if (const auto nested = finer.coarser(task.step.prediction.coarsening, task.time)) return nested;
+    std::optional<mesh::MeshOptions> coarse = options;
+    for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, task.step.prediction.coarsening);
+    PhaseSeconds seconds;
+    if (!coarse) return nullptr;
+    auto mesh = make_mesh(*coarse, comm, seconds);
+    // A .geo with Transfinite curves has as many cells whatever the size factor is.
+    if (mesh->owned_nodes->getGlobalNumElements() >= finer.discretization().mesh->owned_nodes->getGlobalNumElements())
+      return nullptr;
+    return make_problem(task, std::move(mesh), seconds);
+  };
 }
 
 /// Lists the parts of the algorithm that this run skipped, with reasons; collective.

@@ -3,6 +3,7 @@
 #include "rpc/analysis/solver_state.hpp"
 #include "rpc/fem/interpolation.hpp"
 #include "rpc/mesh/box.hpp"
+#include "rpc/mesh/refinement.hpp"
 
 #include <Tpetra_Core.hpp>
 #include <cmath>
@@ -140,7 +141,111 @@ TEST(NestedMesh, IsForgottenByTheFinestMultigridOnly)
   EXPECT_EQ(problem.mesh().made_coarser(), nullptr);
 }
 
-/// A mesh that is no box has none that could predict.
+/// A body that knows nothing of its box, refined.
+std::shared_ptr<const mesh::Mesh> refined_body(const mesh::Element &element, const int times)
+{
+  const mesh::BoxOptions box = element.dim == 2 ? mesh::BoxOptions{{0, 0}, {2, 1}, {4, 3}, element}
+                                                : mesh::BoxOptions{{0, 0, 0}, {2, 1, 1}, {3, 2, 2}, element};
+  auto coarse = mesh::make_box(box, Tpetra::getDefaultComm());
+  coarse.box = nullptr;
+  auto mesh = std::make_shared<const mesh::Mesh>(std::move(coarse));
+  for (int k = 0; k < times; ++k) mesh = std::make_shared<mesh::Mesh>(mesh::refined(mesh));
+  return mesh;
+}
+
+/// Of order 2 first the vertices of the same cells, then the vertices of the parents.
+TEST(NestedMesh, LeadsToTheParentsOfARefinedMesh)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const auto mesh = refined_body(element, 2);
+    const NestedMesh finest(fem::discretize(mesh));
+    EXPECT_TRUE(finest.may_have_coarser());
+    std::vector<std::size_t> sizes;
+    for (auto coarse = finest.coarser(); coarse; coarse = coarse->coarser()) {
+      const auto &d = coarse->discretization();
+      EXPECT_EQ(d.mesh->element.order, 1);
+      EXPECT_EQ(coarse->to_finer()->getDomainMap()->getGlobalNumElements(), num_nodes(d));
+      EXPECT_EQ(d.mesh->sides.size(), mesh->sides.size());
+      sizes.push_back(num_nodes(d));
+    }
+    // Nodes of order 2 are the vertices of a refinement.
+    std::vector<std::size_t> expected;
+    const mesh::Element linear{element.dim, 1, element.shape};
+    for (int times = element.order == 2 ? 2 : 1; times >= 0; --times)
+      expected.push_back(refined_body(linear, times)->owned_nodes->getGlobalNumElements());
+    EXPECT_EQ(sizes, expected) << element.name();
+  }
+}
+
+TEST(NestedMesh, SharesParentsBetweenPredictionAndMultigrid)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const NestedMesh finest(fem::discretize(refined_body(element, 2)));
+    EXPECT_EQ(finest.made_parent(), nullptr);
+    const auto parent = finest.parent(), first = parent->parent();
+    ASSERT_NE(first, nullptr);
+    EXPECT_EQ(first->parent(), nullptr);
+    EXPECT_EQ(parent->discretization().mesh->element.order, element.order);
+    const auto steps = analysis::interpolation(*first, finest);
+    const auto search = fem::interpolation(first->discretization(), finest.discretization());
+    Vector values(steps->getDomainMap()), by_steps(steps->getRangeMap()), by_search(steps->getRangeMap());
+    const auto id = first->discretization().mesh->node_id;
+    for (LO n = 0; n < num_local(*steps->getDomainMap()); ++n)
+      values.replaceLocalValue(n, std::sin(0.7 * static_cast<double>(id(n))));
+    steps->apply(values, by_steps);
+    search->apply(values, by_search);
+    by_search.update(-1., by_steps, 1.);
+    EXPECT_LT(by_search.normInf(), 1e-12) << element.name();
+    if (element.order == 1) {
+      EXPECT_EQ(finest.coarser(), parent);
+    } else {
+      const auto low = finest.coarser()->coarser();
+      EXPECT_EQ(low->discretization().mesh, parent->coarser()->discretization().mesh) << element.name();
+    }
+    finest.forget_coarser();
+    EXPECT_EQ(finest.made_parent(), nullptr);
+  }
+}
+
+/// CG's iterations do not grow with the number of refinements.
+TEST(NestedMesh, MakesMultigridOfRefinedMeshesFast)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    std::vector<int> iterations;
+    const int most = element.dim == 2 ? 4 : element.order == 1 ? 3 : 2;
+    for (int times = 1; times <= most; ++times) {
+      const Problem problem = problem_on(element, refined_body(element, times));
+      Vector b(problem.discretization().owned_dofs), x(problem.discretization().owned_dofs);
+      b.putScalar(1);
+      solver::LinearSolverOptions options;
+      options.multigrid = "mesh";
+      analysis::SolverState state(problem, options);
+      state.linear().solve(b, x, 1e-8);
+      EXPECT_EQ(state.linear().counts().fallback, "");
+      iterations.push_back(state.linear().counts().iterations.back());
+    }
+    EXPECT_LE(iterations.back(), 20) << element.name() << " in " << element.dim << "D";
+    EXPECT_LE(iterations.back(), iterations[most - 2] + 3) << element.name() << " in " << element.dim << "D";
+  }
+}
+
+/// Nested iteration's mesh is of the same order, and has cells at least four times as long if there are such parents, in space twice.
+TEST(NestedMesh, ServesAProblemOnAParent)
+{
+  for (const mesh::Element &element : mesh::all_elements()) {
+    const auto mesh = refined_body(element, 3);
+    const Problem problem = problem_on(element, mesh);
+    const auto coarser = problem.coarser(4, 1);
+    ASSERT_NE(coarser, nullptr);
+    EXPECT_EQ(coarser->discretization().mesh, mesh::ancestor(mesh, element.dim == 2 ? 2 : 1));
+    const auto coarsest = problem.coarser(100, 1);
+    ASSERT_NE(coarsest, nullptr);
+    EXPECT_EQ(coarsest->discretization().mesh, mesh::ancestor(mesh, 3));
+    EXPECT_EQ(coarsest->coarser(4, 1), nullptr);
+  }
+}
+
+/// A mesh that is no box, and was not refined, has none that could predict.
 TEST(NestedMesh, LeavesOtherMeshesAlone)
 {
   for (const int order : {1, 2}) {

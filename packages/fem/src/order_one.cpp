@@ -1,5 +1,6 @@
 #include "rpc/fem/order_one.hpp"
 
+#include "interpolation_matrix.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/mesh/box.hpp"
@@ -128,6 +129,14 @@ OrderOne order_one(const Discretization &d)
   mesh->node_id = HostView<GO *>("rpc::fem::vertex_id", vertices.num_owned);
   for (LO v = 0; v < vertices.num_owned; ++v) mesh->node_id(v) = from.node_id(vertices.node[v]);
 
+  for (const mesh::Side &side : from.sides)
+    mesh->sides.push_back(mesh::make_side(side.name, *mesh, to_host(side.cell), to_host(side.ordinal)));
+  for (const mesh::PointSet &set : from.points) {
+    mesh->points.push_back({set.name, {}});
+    for (const LO node : set.node)
+      if (vertices.place[node] >= 0) mesh->points.back().node.push_back(vertices.place[node]);
+  }
+
   // Each node's weights are those of any cell that has it.
   const auto weights = weights_of_vertices(from.element);
   const LO num_owned = from.num_owned_nodes();
@@ -135,38 +144,16 @@ OrderOne order_one(const Discretization &d)
   for (std::size_t c = 0; c < cells.extent(0); ++c)
     for (int a = 0; a < num_nodes; ++a)
       if (cells(c, a) < num_owned && seen[cells(c, a)].first < 0) seen[cells(c, a)] = {static_cast<LO>(c), a};
-  using LocalMatrix = CrsMatrix::local_matrix_device_type;
-  std::vector<LocalMatrix::row_map_type::non_const_value_type> begin{0};
-  std::vector<LO> column;
-  std::vector<double> value;
+  InterpolationRows rows;
   for (LO n = 0; n < num_owned; ++n) {
     const auto [cell, a] = seen[n];
-    std::vector<std::pair<LO, double>> row;
-    for (int v = 0; v < num_vertices && cell >= 0; ++v)
-      if (weights[a][v] != 0) row.emplace_back(vertices.place[cells(cell, v)], weights[a][v]);
-    std::sort(row.begin(), row.end());
-    for (const auto &[vertex, weight] : row) {
-      column.push_back(vertex);
-      value.push_back(weight);
-    }
-    begin.push_back(column.size());
+    for (int v = 0; v < num_vertices && cell >= 0; ++v) rows.add(vertices.place[cells(cell, v)], weights[a][v]);
+    rows.end_row();
   }
-  LocalMatrix::row_map_type::non_const_type begins("rpc::fem::order_begin", begin.size());
-  LocalMatrix::index_type::non_const_type columns("rpc::fem::order_column", column.size());
-  LocalMatrix::values_type::non_const_type values("rpc::fem::order_weight", value.size());
-  const auto fill = [](const auto &view, const auto &list) {
-    const auto host = Kokkos::create_mirror_view(view);
-    std::copy(list.begin(), list.end(), host.data());
-    Kokkos::deep_copy(view, host);
-  };
-  fill(begins, begin);
-  fill(columns, column);
-  fill(values, value);
   OrderOne result;
   result.mesh = mesh;
   result.node = device_values(vertices.node, "rpc::fem::node_of_vertex");
-  result.interpolation = rcp(new CrsMatrix(from.owned_nodes, mesh->overlap_nodes, begins, columns, values));
-  result.interpolation->fillComplete(mesh->owned_nodes, from.owned_nodes);
+  result.interpolation = rows.matrix(from.owned_nodes, mesh->overlap_nodes, mesh->owned_nodes);
   return result;
 }
 

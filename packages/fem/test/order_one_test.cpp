@@ -73,6 +73,27 @@ TEST(OrderOne, InterpolatesLinearFunctionsExactly)
   }
 }
 
+TEST(OrderOne, KeepsSidesAndCorners)
+{
+  for (const mesh::Element &element : quadratic()) {
+    const fem::Discretization d = box_of(element);
+    const auto lower = fem::order_one(d).mesh;
+    ASSERT_EQ(lower->sides.size(), d.mesh->sides.size()) << text_of(element);
+    ASSERT_EQ(lower->points.size(), d.mesh->points.size()) << text_of(element);
+    const auto coords = to_host(lower->coords), all = to_host(d.mesh->coords);
+    for (std::size_t s = 0; s < lower->sides.size(); ++s) {
+      const std::string &name = lower->sides[s].name;
+      EXPECT_EQ(name, d.mesh->sides[s].name);
+      const auto here = lower->nodes_of(name, "test"), there = d.mesh->nodes_of(name, "test");
+      const int normal = (name == "left" || name == "right") ? 0 : (name == "bottom" || name == "top") ? 1 : 2;
+      for (const LO n : here) EXPECT_EQ(coords(n, normal), all(there.front(), normal)) << name;
+      EXPECT_EQ(here.empty(), there.empty());
+    }
+    for (std::size_t s = 0; s < lower->points.size(); ++s)
+      EXPECT_EQ(lower->points[s].node.size(), d.mesh->points[s].node.size());
+  }
+}
+
 TEST(OrderOne, IsOfOrderTwoOnly)
 {
   EXPECT_THROW(fem::order_one(box_of({2, 1})), Error);

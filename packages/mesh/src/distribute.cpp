@@ -1,5 +1,6 @@
 #include "rpc/mesh/distribute.hpp"
 
+#include "device_tables.hpp"
 #include "division.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
@@ -34,6 +35,10 @@ void for_each_array(AnyPart &part, const Each &each)
     each(side.ordinal);
   }
   for (auto &set : part.mesh.points) each(set.node);
+  for (auto &of_shape : part.mesh.geometry) {
+    each(of_shape.cell);
+    each(of_shape.ordinal);
+  }
   each(part.node_id);
   each(part.cell_id);
   each(part.gid);
@@ -47,6 +52,7 @@ Part part_of(const MeshData &whole, const Division &division, const int rank)
   Part part;
   part.mesh.element = whole.element;
   part.mesh.blocks = whole.blocks;
+  part.mesh.geometry_file = whole.geometry_file;
   part.node_id.assign(nodes.first(rank), nodes.last(rank));
 
   const int num_owned = nodes.size_of(rank), first_gid = static_cast<int>(nodes.begin[rank]);
@@ -88,21 +94,22 @@ Part part_of(const MeshData &whole, const Division &division, const int rank)
     }
   }
 
-  for (const SideData &side : whole.sides) {
-    SideData mine{side.name, {}, {}};
-    for (std::size_t f = 0; f < side.cell.size(); ++f) {
-      const int cell = side.cell[f], lid = cell_lid[cell];
+  const auto take_facets = [&](const auto &from, auto &mine) {
+    for (std::size_t f = 0; f < from.cell.size(); ++f) {
+      const int cell = from.cell[f], lid = cell_lid[cell];
       if (lid < 0) continue;
-      const auto &facet = whole.element.facets()[side.ordinal[f]];
+      const auto &facet = whole.element.facets()[from.ordinal[f]];
       const bool here = lid < static_cast<int>(part.cell_id.size()) ||
                         std::any_of(facet.begin(), facet.end(),
                                     [&](const int a) { return division.node_owner[nodes_of(cell)[a]] == rank; });
       if (!here) continue;
       mine.cell.push_back(lid);
-      mine.ordinal.push_back(side.ordinal[f]);
+      mine.ordinal.push_back(from.ordinal[f]);
     }
-    part.mesh.sides.push_back(mine);
-  }
+  };
+  for (const SideData &side : whole.sides) take_facets(side, part.mesh.sides.emplace_back(SideData{side.name, {}, {}}));
+  for (const BoundaryPart &of_shape : whole.geometry)
+    take_facets(of_shape, part.mesh.geometry.emplace_back(BoundaryPart{of_shape.shape, {}, {}}));
   for (const PointData &set : whole.points) {
     PointData mine{set.name, {}};
     for (const int node : set.node)
@@ -128,6 +135,24 @@ void broadcast(const Comm &comm, Element &element)
   int values[] = {element.dim, element.order, static_cast<int>(element.shape)};
   Teuchos::broadcast(comm, 0, 3, values);
   element = {values[0], values[1], static_cast<Shape>(values[2])};
+}
+
+/// Without facets on other ranks.
+void broadcast(const Comm &comm, std::vector<BoundaryPart> &geometry)
+{
+  GO count = static_cast<GO>(geometry.size());
+  Teuchos::broadcast(comm, 0, &count);
+  geometry.resize(count);
+  for (BoundaryPart &part : geometry) {
+    BoundaryShape &shape = part.shape;
+    int kind[] = {static_cast<int>(shape.kind), shape.tag};
+    Teuchos::broadcast(comm, 0, 2, kind);
+    shape.kind = static_cast<BoundaryShape::Kind>(kind[0]);
+    shape.tag = kind[1];
+    Teuchos::broadcast(comm, 0, 3, shape.point.data());
+    Teuchos::broadcast(comm, 0, 3, shape.direction.data());
+    Teuchos::broadcast(comm, 0, &shape.radius);
+  }
 }
 
 void send_part(const Comm &comm, const Part &part, const int rank)
@@ -162,11 +187,14 @@ Part deal(const MeshData &whole, const Comm &comm)
     part.mesh.blocks = whole.blocks;
     for (const SideData &side : whole.sides) sides.push_back(side.name);
     for (const PointData &set : whole.points) points.push_back(set.name);
+    for (const BoundaryPart &of_shape : whole.geometry) part.mesh.geometry.push_back({of_shape.shape, {}, {}});
   }
   broadcast(comm, part.mesh.element);
   broadcast(comm, part.mesh.blocks);
   broadcast(comm, sides);
   broadcast(comm, points);
+  broadcast(comm, part.mesh.geometry);
+  part.mesh.geometry_file = text_of_rank(comm, 0, whole.geometry_file);
   if (comm.getRank() == 0) {
     for (int rank = 1; rank < comm.getSize(); ++rank) send_part(comm, part_of(whole, division, rank), rank);
     return part_of(whole, division, 0);
@@ -175,24 +203,6 @@ Part deal(const MeshData &whole, const Comm &comm)
   for (const std::string &name : points) part.mesh.points.push_back({name, {}});
   receive_part(comm, part);
   return part;
-}
-
-template <class T>
-HostView<T *> host_array(const std::string &label, const std::vector<int> &values)
-{
-  HostView<T *> view(label, values.size());
-  std::copy(values.begin(), values.end(), view.data());
-  return view;
-}
-
-template <class T>
-DeviceView<T **> device_table(const std::string &label, const std::vector<T> &values, const int width)
-{
-  DeviceView<T **> table(label, values.size() / width, width);
-  const auto host = Kokkos::create_mirror_view(table);
-  for (std::size_t k = 0; k < values.size(); ++k) host(k / width, k % width) = values[k];
-  Kokkos::deep_copy(table, host);
-  return table;
 }
 
 } // namespace
@@ -218,6 +228,8 @@ Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm)
     mesh.sides.push_back(make_side(side.name, mesh, host_array<LO>("rpc::mesh::side_cell", side.cell),
                                    host_array<int>("rpc::mesh::side_ordinal", side.ordinal)));
   for (const PointData &set : part.mesh.points) mesh.points.push_back({set.name, {set.node.begin(), set.node.end()}});
+  mesh.geometry = part.mesh.geometry;
+  mesh.geometry_file = part.mesh.geometry_file;
   Kokkos::fence();
   return mesh;
 }

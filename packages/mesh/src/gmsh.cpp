@@ -1,6 +1,7 @@
 #include "rpc/mesh/gmsh.hpp"
 
 #include "gmsh_mesh.hpp"
+#include "gmsh_nearest.hpp"
 #include "gmsh_process.hpp"
 #include "middle_nodes.hpp"
 #include "msh_reader.hpp"
@@ -120,6 +121,7 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
   GmshRequest request = request_for(options);
   request.size_factor = options.size_factor;
   request.order = options.order == 0 ? 2 : options.order;
+  request.geometry = options.refinements > 0;
   if (options.box) {
     std::copy_n(options.box->lower.begin(), 2, request.lower.begin());
     std::copy_n(options.box->upper.begin(), 2, request.upper.begin());
@@ -176,6 +178,18 @@ int gmsh_dimension(const GmshOptions &options)
   return answer_of_gmsh(where, options, request, unused).dim;
 }
 
+std::vector<double> nearest_of_geo(const std::string &file, const std::vector<int> &tags,
+                                   const std::vector<double> &coords)
+{
+  GmshOptions options;
+  options.file = file;
+  GmshRequest request = request_for(options);
+  request.near_tags = tags;
+  request.near_coords = coords;
+  bool unused = false;
+  return answer_of_gmsh(where_of(options), options, request, unused).coords;
+}
+
 MeshData read_gmsh(const GmshOptions &options)
 {
   if (options.box) return read_box(options);
@@ -185,6 +199,7 @@ MeshData read_gmsh(const GmshOptions &options)
               where << "a size factor only goes with a .geo, got " << options.size_factor);
   RPC_REQUIRE(make || !options.sizes, where << "cell sizes only go with a .geo");
   MeshData mesh = make ? meshed_geo(where, options) : mesh_of_gmsh(where, contents_of_msh(where, options), false);
+  if (make && options.refinements > 0) mesh.geometry_file = options.file;
   RPC_REQUIRE(options.order == 0 || options.order == mesh.element.order,
               where << "its cells are of order " << mesh.element.order << ", which \"Order\" = " << options.order
                     << " does not change; that only goes with a .geo");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/mesh/geometry.hpp"
 #include "rpc/mesh/size_field.hpp"
 
 #include <array>
@@ -23,6 +24,11 @@ struct GmshRequest {
   int attempt = 0;             ///< by a field of sizes: each breaks ties in another way
   SizeField sizes;             ///< of a plane body; without triangles: those that the .geo asks for
   bool dimension_only = false; ///< no mesh is wanted
+  bool geometry = false;       ///< of the boundary, besides the mesh
+  /// Points that are wanted on the .geo's boundary instead of a mesh: near each of some, on a curve, in space on a surface, or on the
+  /// curves that two surfaces share.
+  std::vector<int> near_tags;      ///< (points, 2) the second is 0 where there is one
+  std::vector<double> near_coords; ///< (points, 3)
 };
 
 /// Physical group of the body's parts, of its sides, or of points: of surfaces or curves, in space of volumes or surfaces.
@@ -42,6 +48,13 @@ struct GmshElements {
   std::vector<std::size_t> nodes; ///< (elements, nodes per element) tags
 };
 
+/// The elements of one type on a curve of a plane body, or on a surface of one in space.
+struct GmshBoundary {
+  BoundaryShape shape;
+  int type = 0;                   ///< gmsh's number, see gmsh_type()
+  std::vector<std::size_t> nodes; ///< (elements, nodes per element) tags
+};
+
 /// All tags are gmsh's numbers.
 struct GmshContents {
   std::string complaint;         ///< gmsh's; nothing else counts if there is one
@@ -50,7 +63,8 @@ struct GmshContents {
   std::vector<GmshGroup> groups; ///< of dimensions dim - 1 and dim, and of points with a name; by dimension, then tag
   std::vector<GmshElements> elements; ///< by group, then entity tag
   std::vector<std::size_t> node_tags;
-  std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags
+  std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags; or the points that were asked for
+  std::vector<GmshBoundary> boundary;       ///< by tag, where it was asked for
   std::vector<std::size_t> ungrouped_nodes; ///< of a .msh: tags of the nodes of cells that are not part of the body
 };
 

@@ -298,6 +298,26 @@ void take_sides(const GmshContents &contents, const Entities &facets, TaggedMesh
   }
 }
 
+/// What the facets of the boundary lie on; elements inside the body, between two cells, do not count.
+void take_geometry(const GmshContents &contents, const Entities &facets, TaggedMesh &draft)
+{
+  const Element element = draft.mesh.element.facet();
+  const std::ptrdiff_t width = element.num_nodes();
+  for (const GmshBoundary &boundary : contents.boundary) {
+    if (boundary.type != element.gmsh_type()) continue;
+    BoundaryPart part{boundary.shape, {}, {}};
+    for (auto nodes = boundary.nodes.begin(); nodes != boundary.nodes.end(); nodes += width) {
+      std::vector<int> vertices;
+      for (auto tag = nodes; tag != nodes + element.num_vertices(); ++tag) vertices.push_back(find_node(draft, *tag));
+      const std::optional<int> facet = facets.find(vertices);
+      if (!facet || facets.num_cells_at(*facet) != 1) continue;
+      part.cell.push_back(facets.cell(*facet, 0));
+      part.ordinal.push_back(facets.ordinal(*facet, 0));
+    }
+    if (!part.cell.empty()) draft.mesh.geometry.push_back(std::move(part));
+  }
+}
+
 /// Physical points, those that lie at nodes of cells: a circle's centre may lie at none.
 void take_points(const GmshContents &contents, TaggedMesh &draft)
 {
@@ -345,6 +365,7 @@ MeshData mesh_of_gmsh(const std::string &where, GmshContents contents, const boo
   check_facets(draft, facets);
   take_sides(contents, facets, draft);
   take_points(contents, draft);
+  take_geometry(contents, facets, draft);
   if (!any_nodes) check_unused_nodes(contents, draft);
   return std::move(draft.mesh);
 }

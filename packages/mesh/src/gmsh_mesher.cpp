@@ -1,5 +1,6 @@
 #include "gmsh_mesher.hpp"
 
+#include "gmsh_boundary.hpp"
 #include "size_tree.hpp"
 
 #include <algorithm>
@@ -314,13 +315,16 @@ void load(const GmshRequest &request, GmshContents &contents)
   contents.complaint = first_error();
   if (!contents.complaint.empty()) return;
   contents.dim = std::max(2, gmsh::model::getDimension());
+  if (!request.near_tags.empty()) return take_nearest_points(request, contents);
   const bool flat_sizes_in_space = contents.dim == 3 && !request.sizes.triangles.empty();
   if (request.dimension_only || flat_sizes_in_space) return;
   const std::string absurdity = make_mesh(request, contents.dim);
   contents.complaint = first_error();
   contents.again = !contents.complaint.empty();
   if (contents.complaint.empty()) contents.complaint = absurdity;
-  if (contents.complaint.empty()) take_mesh(contents);
+  if (!contents.complaint.empty()) return;
+  take_mesh(contents);
+  if (request.geometry) take_boundary(contents);
 }
 
 } // namespace

@@ -137,6 +137,9 @@ void each_part(Request &request, Each &each)
   each(request.attempt);
   each_part(request.sizes, each);
   each(request.dimension_only);
+  each(request.geometry);
+  each(request.near_tags);
+  each(request.near_coords);
 }
 
 template <class Group, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Group>, GmshGroup>, int> = 0>
@@ -156,6 +159,20 @@ void each_part(Elements &elements, Each &each)
   each(elements.nodes);
 }
 
+template <class Boundary, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Boundary>, GmshBoundary>, int> = 0>
+void each_part(Boundary &boundary, Each &each)
+{
+  auto kind = static_cast<int>(boundary.shape.kind);
+  each(kind);
+  if constexpr (!std::is_const_v<Boundary>) boundary.shape.kind = static_cast<BoundaryShape::Kind>(kind);
+  each(boundary.shape.tag);
+  for (auto *const vector : {&boundary.shape.point, &boundary.shape.direction})
+    for (auto &x : *vector) each(x);
+  each(boundary.shape.radius);
+  each(boundary.type);
+  each(boundary.nodes);
+}
+
 template <class Contents, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Contents>, GmshContents>, int> = 0>
 void each_part(Contents &contents, Each &each)
 {
@@ -166,6 +183,7 @@ void each_part(Contents &contents, Each &each)
   each(contents.elements);
   each(contents.node_tags);
   each(contents.coords);
+  each(contents.boundary);
 }
 
 template <class T>

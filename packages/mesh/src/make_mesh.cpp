@@ -4,6 +4,7 @@
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/mesh/distribute.hpp"
+#include "rpc/mesh/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,9 @@ void add_gmsh_parameters(Teuchos::ParameterList &valid)
       "Order", 0,
       "gmsh: order of the elements that a .geo is meshed with, 1 or 2 (curved); 0: 2 for a .geo, for a .msh what it "
       "has.");
+  valid.set("Refinements", 0,
+            "gmsh: how often each cell of gmsh's mesh is halved in all directions, >= 0. The meshes on the way are "
+            "those of multigrid and nested iteration.");
 }
 
 /// The file beside the deck, or in the current folder.
@@ -42,6 +46,9 @@ std::string found_file(const std::string &name, const std::string &folder)
                                                           << "\" or in the current folder");
   return name;
 }
+
+/// Each makes four or eight times as many cells.
+constexpr int most_refinements = 12;
 
 GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &folder, const Comm &comm)
 {
@@ -57,6 +64,9 @@ GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &
               "deck: \"Mesh->Size Factor\" must be > 0 and finite, got " << options.size_factor);
   RPC_REQUIRE(options.order >= 0 && options.order <= 2,
               "deck: \"Mesh->Order\" must be 1 or 2, or 0 for the default, got " << options.order);
+  options.refinements = list.get<int>("Refinements");
+  RPC_REQUIRE(options.refinements >= 0 && options.refinements <= most_refinements,
+              "deck: \"Mesh->Refinements\" must be 0 to " << most_refinements << ", got " << options.refinements);
   options.file = text_of_root(comm, ExitCode::bad_input, [&] { return found_file(options.file, folder); });
   return options;
 }
@@ -115,7 +125,7 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, const double fact
     return result;
   }
   auto &gmsh = std::get<GmshOptions>(result);
-  if (!can_be_meshed(gmsh)) return std::nullopt;
+  if (!can_be_meshed(gmsh) || gmsh.refinements > 0) return std::nullopt;
   gmsh.size_factor *= factor;
   return result;
 }
@@ -128,7 +138,7 @@ std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_pt
     result.box = *box;
   } else {
     result = std::get<GmshOptions>(options);
-    if (!can_be_meshed(result)) return std::nullopt;
+    if (!can_be_meshed(result) || result.refinements > 0) return std::nullopt;
   }
   result.size_factor = 1;
   result.sizes = std::move(sizes);
@@ -139,8 +149,12 @@ Mesh make_mesh(const MeshOptions &options, const RCP<const Comm> &comm)
 {
   if (const auto *box = std::get_if<BoxOptions>(&options)) return make_box(*box, comm);
   MeshData whole;
-  on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(std::get<GmshOptions>(options)); });
-  return distribute(whole, comm);
+  const auto &gmsh = std::get<GmshOptions>(options);
+  on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(gmsh); });
+  auto mesh = std::make_shared<Mesh>(distribute(whole, comm));
+  whole = {};
+  for (int k = 0; k < gmsh.refinements; ++k) mesh = std::make_shared<Mesh>(refined(mesh));
+  return *mesh;
 }
 
 } // namespace rpc::mesh

@@ -292,6 +292,28 @@ void check_cells(const TaggedMesh &draft)
   });
 }
 
+std::vector<int> inverted_cells(const Element &element, const std::vector<double> &coords,
+                                const std::vector<int> &cells, const std::vector<int> &which)
+{
+  std::vector<int> bad;
+  with_static_extents(element, [&](const auto static_dim, const auto static_nodes) {
+    constexpr int dim = static_dim, num_nodes = static_nodes;
+    const auto where = gradients_where_checked(ShapeFunctions<dim, num_nodes>());
+    for (const int c : which) {
+      double x[num_nodes][dim], size = 0;
+      for (int a = 0; a < num_nodes; ++a) {
+        std::copy_n(&coords[std::size_t(dim) * cells[std::size_t(num_nodes) * c + a]], dim, x[a]);
+        for (int d = 0; d < dim; ++d) size = std::max(size, std::abs(x[a][d] - x[0][d]));
+      }
+      const double least = 1e-14 * std::pow(size, dim);
+      if (!std::all_of(where.begin(), where.end(),
+                       [&](const auto &gradient) { return jacobian<dim, num_nodes>(x, gradient) > least; }))
+        bad.push_back(c);
+    }
+  });
+  return bad;
+}
+
 std::vector<int> nodes_of_facet(const MeshData &mesh, const int cell, const int ordinal)
 {
   std::vector<int> nodes;

@@ -27,6 +27,11 @@ void check_nodes(const TaggedMesh &draft);
 /// @throws rpc::Error (bad_mesh) if a cell names a node twice, is degenerate, or inverted anywhere
 void check_cells(const TaggedMesh &draft);
 
+/// Those of some cells that are degenerate or inverted somewhere.
+/// @param coords  (nodes, dim)   @param cells  (cells, nodes per cell)   @param which  cells to look at
+std::vector<int> inverted_cells(const Element &element, const std::vector<double> &coords,
+                                const std::vector<int> &cells, const std::vector<int> &which);
+
 /// For cells that passed check_cells().
 /// @param facets  of the draft's cells
 /// @throws rpc::Error (bad_mesh) if cells overlap at a facet, or share the vertices of an edge or face but not its middle

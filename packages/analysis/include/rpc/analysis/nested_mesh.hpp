@@ -8,9 +8,12 @@
 namespace rpc::analysis
 {
 
-/// A mesh of a body that leads to coarser ones: of order 1 on the same cells, then boxes of half as many cells in each direction. Boxes of
-/// stretched cells take both steps in the directions first in which nodes are closest, see mesh::coarsened(). A body from gmsh has no
-/// coarser ones than the first.
+/// A mesh of a body that leads to coarser ones: of order 1 on the same cells, then of half as many cells in each direction. Those are
+/// boxes, or the meshes that a refined one comes from (Mesh::parents). Boxes of stretched cells take both steps in the directions
+/// first in which nodes are closest, see mesh::coarsened(). A body from gmsh that was not refined has no coarser ones than the first.
+///
+/// A refined mesh of order 2 also has parents of order 2, for nested iteration. What they have made is shared: their meshes of order 1 are
+/// multigrid's.
 ///
 /// Coarser meshes are made on demand, and kept until they are forgotten: multigrid and nested iteration share them. They follow from
 /// this mesh alone, so that making or forgetting them changes nothing of it: both are const. One thread of a rank at a time.
@@ -18,7 +21,7 @@ class NestedMesh
 {
 public:
   /// The finest mesh.
-  explicit NestedMesh(fem::Discretization d) : discretization_(std::move(d)) {}
+  explicit NestedMesh(fem::Discretization d);
 
   const fem::Discretization &discretization() const { return discretization_; }
   /// Whether there are to be coarser meshes; those of few cells may be too small for the ranks.
@@ -27,6 +30,10 @@ public:
   std::shared_ptr<const NestedMesh> coarser() const;
   /// The same, as long as it is kept; null if it was not made.
   const std::shared_ptr<const NestedMesh> &made_coarser() const { return coarser_; }
+  /// The mesh that this one was refined from, of the same order; null if it was not. Collective.
+  std::shared_ptr<const NestedMesh> parent() const;
+  /// The same, as long as it is kept; null if it was not made.
+  std::shared_ptr<const NestedMesh> made_parent() const { return family_ ? family_->made : nullptr; }
   /// Drops the coarser meshes: those that nobody else holds are freed. They are made again on demand.
   void forget_coarser() const;
 
@@ -37,10 +44,19 @@ public:
   const DeviceView<LO *> &node_of_finer() const { return node_of_finer_; }
 
 private:
+  /// The parents of a refined mesh, which the mesh of order 1 on its cells shares.
+  struct Family {
+    std::shared_ptr<const mesh::Parents> parents;
+    std::shared_ptr<NestedMesh> made; // null until it is asked for
+  };
+  std::shared_ptr<NestedMesh> make_coarser() const;
+  std::shared_ptr<NestedMesh> order_one_of_parent() const;
+
   fem::Discretization discretization_;
   RCP<const CrsMatrix> to_finer_;
   DeviceView<LO *> node_of_finer_;
-  mutable bool asked_ = false; // for a coarser one
+  std::shared_ptr<Family> family_; // null if the mesh was not refined
+  mutable bool asked_ = false;     // for a coarser one
   mutable std::shared_ptr<const NestedMesh> coarser_;
 };
 

@@ -19,6 +19,7 @@ struct GmshOptions {
   std::optional<BoxOptions> box =
       std::nullopt; ///< a plane one, meshed by `sizes`; no file then, its cells and `order` do not count
   std::shared_ptr<const SizeField> sizes = nullptr; ///< of cells, instead of those that a .geo asks for
+  int refinements = 0; ///< how often make_mesh() halves each cell, >= 0; with it a .geo's mesh has its geometry
 };
 
 /// Begins to load gmsh, which takes a tenth of a second, while this process does other things; the first mesh would do it.

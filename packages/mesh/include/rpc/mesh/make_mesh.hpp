@@ -26,7 +26,8 @@ MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &
 int dimension(const MeshOptions &options, const Comm &comm);
 
 /// A mesh of the same body and elements with cells about `factor` times as long: a box has that many cells fewer in each
-/// direction, at least one; a .geo, or a field of sizes, has that many times the size factor. A .msh cannot be coarsened: none.
+/// direction, at least one; a .geo, or a field of sizes, has that many times the size factor. A .msh cannot be coarsened: none. Nor
+/// is a mesh with refinements, whose coarser meshes are its parents.
 ///
 /// It may have too few cells for the ranks, which make_mesh() tells.
 /// @throws rpc::Error (bad_input) unless factor >= 1 and finite
@@ -34,7 +35,7 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, double factor);
 
 /// The options with which gmsh meshes the same body, with the same elements, sides and blocks, by cell sizes of a field: an
 /// edge is about as long as the field says there. A size factor is 1 then, and sizes that the options had are replaced.
-/// None where gmsh cannot make another mesh: for a .msh, for a box in 3D. A .geo with volumes is told by make_mesh() only.
+/// None where gmsh cannot make another mesh: for a .msh, for a box in 3D, with refinements. A .geo with volumes is told by make_mesh() only.
 /// @param sizes  read on rank 0 only, may be null on others
 std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes);
 

@@ -2,6 +2,7 @@
 
 #include "rpc/core/tpetra.hpp"
 #include "rpc/mesh/element.hpp"
+#include "rpc/mesh/geometry.hpp"
 
 #include <memory>
 #include <string>
@@ -28,6 +29,15 @@ struct PointSet {
   std::vector<LO> node; ///< this rank's owned nodes among them, ascending
 };
 
+struct Mesh;
+
+/// The mesh that another one was refined from, see refined().
+struct Parents {
+  std::shared_ptr<const Mesh> mesh;
+  std::vector<LO> cell;  ///< (local cells) the parent's local cell
+  std::vector<int> kind; ///< (local cells) which child of it this is, see child_weights()
+};
+
 /// One rank's part of a mesh.
 ///
 /// A rank holds every cell that touches a node which it owns, so that it fills its own matrix rows without
@@ -48,6 +58,9 @@ struct Mesh {
   std::vector<Side> sides;               ///< the same on all ranks, though a rank may have no facets of one
   std::vector<PointSet> points;          ///< the same on all ranks, though a rank may have no nodes of one
   std::shared_ptr<const BoxOptions> box; ///< of which the mesh was made; null if it is no evenly divided box
+  std::vector<BoundaryPart> geometry;    ///< what facets lie on, as far as it is known: those of a side would be listed
+  std::string geometry_file;             ///< the .geo by which gmsh tells points of shapes without closed formulas
+  std::shared_ptr<const Parents> parents; ///< null if the mesh was not refined
 
   int dim() const { return element.dim; }
   LO num_owned_nodes() const { return num_local(*owned_nodes); }

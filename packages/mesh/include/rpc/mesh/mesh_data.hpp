@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/mesh/element.hpp"
+#include "rpc/mesh/geometry.hpp"
 
 #include <cstddef>
 #include <string>
@@ -40,6 +41,8 @@ struct MeshData {
   std::vector<int> block;          ///< (cells) index into blocks
   std::vector<SideData> sides;
   std::vector<PointData> points;
+  std::vector<BoundaryPart> geometry; ///< what facets lie on, where it was asked for
+  std::string geometry_file;          ///< the .geo by which gmsh tells points of shapes without closed formulas
 
   int num_nodes() const { return static_cast<int>(coords.size()) / element.dim; }
   int num_cells() const { return static_cast<int>(cells.size()) / element.num_nodes(); }

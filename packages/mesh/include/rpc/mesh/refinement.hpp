@@ -1,0 +1,32 @@
+#pragma once
+
+#include "rpc/mesh/mesh.hpp"
+
+#include <memory>
+#include <vector>
+
+/// Nested refinement: each cell is halved in all directions. doc/theory.md, section 2
+namespace rpc::mesh
+{
+
+/// A mesh with each cell of another one divided: triangles and quadrilaterals into 4, tetrahedra and hexahedra into 8. In a tetrahedron
+/// the inner four share the shortest of three possible diagonals.
+///
+/// Each rank divides the cells that it has; cells belong to the rank of their parent. A new node belongs to the rank of the vertex with the
+/// lowest id among those of the edge, face or cell in whose middle it lies: that rank has all cells around it. Ids do not depend on
+/// the number of ranks: nodes of the coarse mesh keep theirs, children of a cell follow each other. New nodes lie in the
+/// middle, of curved cells by their map (2.16); those of the boundary on its shape, where the mesh knows it (Mesh::geometry).
+/// Sides, blocks, points and geometry go along. The result's Mesh::parents leads to the coarse mesh. Collective.
+/// @throws rpc::Error on every rank: bad_input where the mesh cannot fit in memory or in a rank's numbers, bad_mesh where a cell would be inverted
+Mesh refined(const std::shared_ptr<const Mesh> &coarse);
+
+/// Values of a parent's shape functions at the nodes of its children: (kinds of children, see Parents::kind; nodes of the child; nodes of the
+/// parent). Rounding is 0.
+using ChildWeights = std::vector<std::vector<std::vector<double>>>;
+/// @param coarse, fine  of one shape and dimension; orders may differ
+ChildWeights child_weights(const Element &coarse, const Element &fine);
+
+/// The mesh that is reached by going `levels` times to the parents; null where there are not as many.
+std::shared_ptr<const Mesh> ancestor(const std::shared_ptr<const Mesh> &mesh, int levels);
+
+} // namespace rpc::mesh

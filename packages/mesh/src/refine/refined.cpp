@@ -1,0 +1,135 @@
+#include "rpc/mesh/refinement.hpp"
+
+#include "../mesh_checks.hpp"
+#include "add_middle_nodes.hpp"
+#include "children.hpp"
+#include "divide_cells.hpp"
+#include "rpc/core/error.hpp"
+#include "rpc/core/memory.hpp"
+#include "rpc/mesh/shape_functions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+/// Refuses what could only run out of memory or of local numbers later; collective.
+void require_room(const Mesh &coarse)
+{
+  constexpr double gib = 1 << 30;
+  const double per_node = coarse.dim() == 2 ? 800 : 1400; // [B] as of boxes
+  const double nodes = std::pow(2, coarse.dim()) * coarse.num_owned_nodes();
+  const double entries = std::pow(2, coarse.dim()) * coarse.num_cells() * coarse.element.num_nodes();
+  std::optional<std::string> message;
+  if (const double limit = memory_limit();
+      per_node * nodes > limit || entries > static_cast<double>(std::numeric_limits<int>::max())) {
+    std::ostringstream text;
+    text << std::setprecision(3) << "deck: \"Mesh->Refinements\" give a rank about " << nodes
+         << " nodes, which take at least " << per_node * nodes / gib << " GiB of memory; a rank can have at most "
+         << limit / gib << " GiB here. Use fewer, or more ranks on more machines.";
+    message = text.str();
+  }
+  throw_if_any(coarse.comm(), ExitCode::bad_input, message);
+}
+
+/// Where the map of the parent has the nodes of its children.                                       doc/theory.md (2.16)
+class PlacesInParent
+{
+public:
+  /// @param parents  of order 2   @param children  of order 1, with the same nodes, but for those that it dropped
+  PlacesInParent(const LocalMesh &parents, const LocalMesh &children)
+      : parents_(parents), children_(children), weights_(child_weights(parents.element, parents.element))
+  {
+  }
+  void operator()(const int cell, const int node, double *const x) const
+  {
+    const int dim = parents_.dim();
+    const int *const nodes = parents_.nodes_of(children_.parent[cell]);
+    const std::vector<double> &weight = weights_[children_.kind[cell]][node];
+    for (int d = 0; d < dim; ++d) x[d] = 0;
+    for (std::size_t a = 0; a < weight.size(); ++a)
+      for (int d = 0; d < dim && weight[a] != 0; ++d)
+        x[d] += weight[a] * parents_.coords[std::size_t(dim) * nodes[a] + d];
+  }
+
+private:
+  const LocalMesh &parents_, &children_;
+  ChildWeights weights_;
+};
+
+/// Refuses inverted cells; only those with a node that was moved can be. Collective.
+void require_good_cells(const LocalMesh &mesh)
+{
+  std::vector<int> cells;
+  for (int c = 0; c < mesh.num_owned_cells(); ++c)
+    if (std::any_of(mesh.nodes_of(c), mesh.nodes_of(c) + mesh.element.num_nodes(),
+                    [&](const int node) { return mesh.moved[node] != 0; }))
+      cells.push_back(c);
+  const std::vector<int> bad = inverted_cells(mesh.element, mesh.coords, mesh.cells, cells);
+  std::optional<std::string> message;
+  if (!bad.empty()) {
+    const double *const x = &mesh.coords[std::size_t(mesh.dim()) * *mesh.nodes_of(bad.front())];
+    std::ostringstream text;
+    text << "mesh: refinement inverts a cell, with a vertex at (" << x[0] << ", " << x[1];
+    if (mesh.dim() == 3) text << ", " << x[2];
+    text << "): the coarse cells are too large for the curved boundary. Use a smaller \"Mesh->Size Factor\" and fewer "
+            "\"Mesh->Refinements\".";
+    message = text.str();
+  }
+  throw_if_any(*mesh.owned_nodes->getComm(), ExitCode::bad_mesh, message);
+}
+
+} // namespace
+
+ChildWeights child_weights(const Element &coarse, const Element &fine)
+{
+  constexpr double rounding = 1e-12;
+  ChildWeights weights;
+  with_shape_functions(coarse, [&](const auto &shape) {
+    constexpr int dim = std::decay_t<decltype(shape)>::dim, nodes = std::decay_t<decltype(shape)>::nodes;
+    for (const auto &points : child_points(fine)) {
+      weights.emplace_back();
+      for (const auto &point : points) {
+        double X[dim], N[nodes], dN[nodes][dim];
+        std::copy_n(point.begin(), dim, X);
+        shape.evaluate(X, N, dN);
+        for (double &weight : N)
+          if (std::abs(weight) < rounding) weight = 0;
+        weights.back().emplace_back(N, N + nodes);
+      }
+    }
+  });
+  return weights;
+}
+
+Mesh refined(const std::shared_ptr<const Mesh> &coarse)
+{
+  RPC_REQUIRE_CODE(!coarse->element.mixed(), ExitCode::internal_error, "mesh: mixed elements are not refined");
+  require_room(*coarse);
+  const LocalMesh whole = local_mesh(*coarse);
+  LocalMesh fine;
+  if (whole.element.order == 1) {
+    fine = divided(with_middle_nodes(whole, {}, coarse->geometry_file));
+  } else {
+    const LocalMesh children = divided(whole);
+    fine = with_middle_nodes(children, PlacesInParent(whole, children), coarse->geometry_file);
+  }
+  require_good_cells(fine);
+  return mesh_of(fine, coarse);
+}
+
+std::shared_ptr<const Mesh> ancestor(const std::shared_ptr<const Mesh> &mesh, const int levels)
+{
+  std::shared_ptr<const Mesh> result = mesh;
+  for (int k = 0; k < levels && result; ++k) result = result->parents ? result->parents->mesh : nullptr;
+  return result;
+}
+
+} // namespace rpc::mesh
