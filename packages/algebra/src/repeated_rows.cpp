@@ -293,7 +293,6 @@ void multiply(const MultiplyNode<Dim, In, Out> &one)
 #else
   Kokkos::parallel_for("rpc::repeated_rows::multiply", device_range(num_nodes), one);
 #endif
-  Kokkos::fence();
 }
 
 /// Nodes of no kind find their rows in a matrix of all nodes.

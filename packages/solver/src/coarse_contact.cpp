@@ -71,7 +71,8 @@ MultiVector packed_blocks(const RCP<const Map> &contact, const DeviceView<double
 
 CoarseContact::CoarseContact(const ContactSupports &supports, const Map &nodes, const int dim, RCP<CrsMatrix> A,
                              const DeviceView<char *> &prescribed)
-    : dim_(dim), A_(std::move(A)), rows_(RepeatedRows::of(A_, dim_)), prescribed_(prescribed)
+    : dim_(dim), A_(std::move(A)), rows_(RepeatedRows::of(A_, dim_)), halo_(A_->getGraph()->getImporter()),
+      prescribed_(prescribed)
 {
   const NearSupports near = near_supports(supports, nodes);
   near_ = near.importer;
@@ -105,18 +106,16 @@ CoarseContact::CoarseContact(const ContactSupports &supports, const Map &nodes, 
 
 void CoarseContact::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
-  if (!rows_.pays()) return A_->apply(x, y);
-  const auto importer = A_->getGraph()->getImporter();
   for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
-    RCP<const Vector> columns = x.getVector(k);
-    if (!importer.is_null()) {
-      const auto imported = rcp(new Vector(A_->getColMap()));
-      imported->doImport(*columns, *importer, Tpetra::INSERT);
-      columns = imported;
-    }
+    const auto from = x.getVector(k);
     const auto to = y.getVectorNonConst(k);
-    rows_.apply(*columns, *to);
-    add_product(*columns, *to);
+    const Vector &columns = halo_.at_columns(*from);
+    if (rows_.pays()) {
+      rows_.apply(columns, *to);
+      add_product(columns, *to);
+    } else {
+      A_->localApply(columns, *to);
+    }
   }
 }
 
@@ -140,7 +139,6 @@ void CoarseContact::add_product(const Vector &x, Vector &y) const
           for (int j = 0; j < dim; ++j) sum += added(b, i, j) * from(dof(dim, column(b), j));
         to(dof(dim, nodes(n), i)) += sum;
       });
-  Kokkos::fence();
 }
 
 void CoarseContact::write(const MultiVector &update)

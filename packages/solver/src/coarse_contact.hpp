@@ -2,7 +2,7 @@
 
 #include "contact_supports.hpp"
 #include "rpc/algebra/repeated_rows.hpp"
-#include "rpc/core/tpetra.hpp"
+#include "rpc/core/halo.hpp"
 
 namespace rpc::solver
 {
@@ -49,6 +49,7 @@ private:
   int dim_;
   RCP<CrsMatrix> A_;
   RepeatedRows rows_;                    // of the matrix without contact
+  Halo halo_;                            // of its columns
   RCP<const Import> near_;               // from the contact nodes to those near this rank's nodes
   DeviceView<LO *> row_, column_;        // (blocks) owned node; column's node
   DeviceView<std::size_t **> entry_;     // (blocks, dim) where the block begins in each of its rows

@@ -7,7 +7,6 @@
 #include "rpc/algebra/bounded_update.hpp"
 #include "rpc/core/math.hpp"
 
-#include <Tpetra_RowMatrixTransposer.hpp>
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -116,7 +115,6 @@ void truncate(const DeviceView<LO *> &node, const DeviceView<double ***> &base, 
   else
     Kokkos::parallel_for("rpc::solver::truncate", range,
                          Truncate<3, Values>{node, base, inverse, transposed, kept, values});
-  Kokkos::fence();
 }
 
 /// (nodes, dim) What v is at the contact nodes.
@@ -128,7 +126,6 @@ void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView
       "rpc::solver::take_values", device_range(static_cast<LO>(node.extent(0))), KOKKOS_LAMBDA(const LO i) {
         for (int k = 0; k < dim; ++k) kept(i, k) = from(dof(dim, node(i), k));
       });
-  Kokkos::fence();
 }
 
 } // namespace
@@ -137,20 +134,16 @@ void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView
 struct MeshMultigrid::Level {
   RCP<const Operator> A;
   std::unique_ptr<NodeSmoother> smoother;
-  std::unique_ptr<NodeInterpolation> prolongation, restriction; // from the next coarser mesh, and to it
-  RCP<CoarseContact> coarse;                                    // the matrix of the next coarser mesh
+  std::unique_ptr<NodeInterpolation> interpolation; // from the next coarser mesh
+  RCP<CoarseContact> coarse;                        // the matrix of the next coarser mesh
   RCP<Vector> residual, coarse_residual, correction;
 
   /// @param fine_prescribed  (owned dofs, at least) of this mesh
   void add_transfers(const MeshLevel &coarse, const int dim, const DeviceView<char *> &fine_prescribed)
   {
-    const auto fine_dofs = A->getDomainMap(), coarse_dofs = coarse.stiffness->getDomainMap();
-    using Transposer = Tpetra::RowMatrixTransposer<double, LO, GO, Node>;
-    const RCP<const CrsMatrix> transpose = Transposer(coarse.interpolation).createTranspose();
-    prolongation =
-        std::make_unique<NodeInterpolation>(coarse.interpolation, dim, fine_prescribed, coarse_dofs, fine_dofs);
-    restriction = std::make_unique<NodeInterpolation>(transpose, dim, coarse.prescribed, fine_dofs, coarse_dofs);
-    residual = rcp(new Vector(fine_dofs));
+    const auto coarse_dofs = coarse.stiffness->getDomainMap();
+    interpolation = std::make_unique<NodeInterpolation>(coarse.interpolation, dim, fine_prescribed, coarse.prescribed);
+    residual = rcp(new Vector(A->getDomainMap()));
     coarse_residual = rcp(new Vector(coarse_dofs));
     correction = rcp(new Vector(coarse_dofs));
   }
@@ -158,7 +151,9 @@ struct MeshMultigrid::Level {
 
 MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &levels,
                              const MakeCoarsestSolver &make_coarsest)
-    : H_(std::move(H)), contact_node_(H_->nodes()), contact_base_(H_->base_blocks())
+    : H_(std::move(H)), contact_node_(H_->nodes()), contact_base_(H_->base_blocks()),
+      at_rest_("rpc::solver::at_rest", contact_node_.extent(0), H_->dofs_per_node()),
+      kept_("rpc::solver::kept", contact_node_.extent(0), H_->dofs_per_node())
 {
   const int dim = H_->dofs_per_node();
   ContactSupports supports = contact_supports(contact_node_, levels.level[0].interpolation->getRangeMap());
@@ -220,22 +215,22 @@ void MeshMultigrid::cycle(const std::size_t l, const Vector &b, Vector &x) const
   const Level &level = *levels_[l];
   const bool finest =
       l == 0; // where coarse functions are truncated at contact points                             (4.7b)
-  const DeviceView<double **> kept("rpc::solver::kept", finest ? contact_node_.extent(0) : 0, H_->dofs_per_node());
   level.smoother->start(b, x);
   level.A->apply(x, *level.residual);
   level.residual->update(1., b, -1.);
-  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), true, kept, *level.residual);
-  level.restriction->apply(*level.residual, *level.coarse_residual, NodeInterpolation::Write::replace);
+  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), true, at_rest_, *level.residual);
+  level.interpolation->restrict_to(*level.residual, *level.coarse_residual);
   cycle(l + 1, *level.coarse_residual, *level.correction);
-  if (finest) take_values(contact_node_, x, kept);
-  level.prolongation->apply(*level.correction, x, NodeInterpolation::Write::add);
-  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), false, kept, x);
+  if (finest) take_values(contact_node_, x, kept_);
+  level.interpolation->prolong(*level.correction, x, NodeInterpolation::Write::add);
+  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), false, kept_, x);
   level.smoother->improve(b, x);
 }
 
 void MeshMultigrid::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
   for (std::size_t k = 0; k < x.getNumVectors(); ++k) cycle(0, *x.getVector(k), *y.getVectorNonConst(k));
+  Kokkos::fence();
 }
 
 } // namespace rpc::solver

@@ -2,6 +2,7 @@
 
 #include "rpc/algebra/repeated_rows.hpp"
 #include "rpc/algebra/rounded_rows.hpp"
+#include "rpc/core/halo.hpp"
 #include "rpc/core/tpetra.hpp"
 
 #include <functional>
@@ -52,7 +53,8 @@ public:
   DeviceView<double ***> diagonal_blocks(const DeviceView<LO *> &nodes) const;
   const RepeatedRows &rows() const { return rows_; }
   const RCP<const Map> &columns() const { return columns_; }
-  const RCP<const Import> &importer() const { return importer_; } ///< null where the columns are the rows
+  /// What x is at the columns, see Halo.
+  const Vector &at_columns(const Vector &x) const { return halo_.at_columns(x); }
 
   /// Assembled now if it was not before.
   const RCP<const CrsMatrix> &matrix() const;
@@ -64,7 +66,7 @@ public:
 private:
   RepeatedRows rows_;
   RCP<const Map> dofs_, columns_;
-  RCP<const Import> importer_;
+  Halo halo_;
   std::function<RCP<CrsMatrix>()> assemble_;
   mutable RCP<const CrsMatrix> matrix_; // null: not kept
   mutable int assemblies_ = 0;
