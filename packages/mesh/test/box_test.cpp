@@ -155,6 +155,25 @@ TEST(Box, CellsHaveEqualPositiveMeasuresThatSumToTheBox)
   });
 }
 
+TEST(Box, GoesToFewerRanksWhereItHasFewNodes)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const int ranks = comm->getSize();
+  const BoxOptions box{{0, 0}, {2, 1}, {9, 4}, Element{2, 1}}; // 50 nodes
+  EXPECT_EQ(rpc::mesh::divided(box, ranks, 1).blocks, ranks);
+  EXPECT_EQ(rpc::mesh::divided(box, ranks, 25).blocks, std::min(ranks, 2));
+  EXPECT_EQ(rpc::mesh::divided(box, ranks, 26).blocks, 1);
+  EXPECT_EQ(rpc::mesh::divided(box, ranks, 1000).blocks, 1);
+  EXPECT_EQ(rpc::mesh::divided(box, 11, 1).blocks, 10); // no direction has 11 cells
+  const auto mesh = make_box(rpc::mesh::divided(box, ranks, 1000), comm);
+  EXPECT_EQ(mesh.num_owned_nodes(), comm->getRank() == 0 ? 50 : 0);
+  EXPECT_EQ(mesh.num_local_nodes(), mesh.num_owned_nodes());
+  EXPECT_EQ(mesh.num_cells(), comm->getRank() == 0 ? 36 : 0);
+  auto too_many = box;
+  too_many.blocks = ranks + 1;
+  expect_error(ExitCode::internal_error, {"blocks"}, [&] { make_box(too_many, comm); });
+}
+
 TEST(Box, TetrahedraOfACellShareItsDiagonalAndNothingElse)
 {
   // Each point of the cell lies in the tetrahedron of the order of its coordinates.
