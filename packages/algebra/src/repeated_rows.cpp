@@ -381,7 +381,7 @@ void RepeatedRows::list_kinds(const RowsOfNodes &examples)
 
 bool RepeatedRows::pays() const
 {
-  return dim_ > 1 && (!on_gpu || num_kinds() > 0);
+  return dim_ > 1 && (!on_gpu || num_kinds() > 0 || num_nodes() == 0);
 }
 
 RepeatedRows::Blocks RepeatedRows::blocks() const

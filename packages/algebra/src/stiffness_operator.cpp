@@ -16,14 +16,13 @@ void multiply_vectors(const Rows &rows, const StiffnessOperator &K, const MultiV
 } // namespace
 
 StiffnessOperator::StiffnessOperator(RCP<const CrsMatrix> K, const int dim)
-    : rows_(RepeatedRows::of(K, dim)), dofs_(K->getDomainMap()), columns_(K->getColMap()),
-      halo_(K->getGraph()->getImporter()), matrix_(std::move(K)), assemblies_(1)
+    : rows_(RepeatedRows::of(K, dim)), dofs_(K->getDomainMap()),
+      halo_(std::make_shared<const Halo>(K->getGraph()->getImporter())), matrix_(std::move(K)), assemblies_(1)
 {
 }
 
 StiffnessOperator::StiffnessOperator(UnassembledMatrix K)
-    : rows_(std::move(K.rows)), dofs_(std::move(K.dofs)), columns_(std::move(K.columns)), halo_(K.importer),
-      assemble_(std::move(K.assemble))
+    : rows_(std::move(K.rows)), dofs_(std::move(K.dofs)), halo_(std::move(K.halo)), assemble_(std::move(K.assemble))
 {
 }
 

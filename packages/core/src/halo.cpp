@@ -2,6 +2,7 @@
 
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/dofs.hpp"
+#include "rpc/core/exchange.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_Distributor.hpp>
@@ -114,44 +115,108 @@ bool mpi_reads_gpu()
   return reads;
 }
 
-Halo::Halo(const RCP<const Import> &importer, const int width) : importer_(importer), width_(width)
+Halo::Halo(const RCP<const Import> &importer, const int width) : width_(width)
 {
-  if (importer_.is_null()) return;
-  num_same_ = static_cast<LO>(importer_->getNumSameIDs());
-  moved_ = listed(importer_->getPermuteFromLIDs());
-  moved_to_ = listed(importer_->getPermuteToLIDs());
-  const auto node = importer_->getExportLIDs();
-  const auto rank = importer_->getExportPIDs();
+  if (importer.is_null()) return;
+  comm_ = importer->getSourceMap()->getComm();
+  num_owned_ = num_local(*importer->getSourceMap());
+  num_columns_ = num_local(*importer->getTargetMap());
+  num_same_ = static_cast<LO>(importer->getNumSameIDs());
+  if (!on_any(num_same_ < num_owned_ || num_same_ < num_columns_)) return;
+  moved_ = listed(importer->getPermuteFromLIDs());
+  moved_to_ = listed(importer->getPermuteToLIDs());
+  const auto node = importer->getExportLIDs();
+  const auto rank = importer->getExportPIDs();
   std::vector<int> order(node.size()); // the receiver has the nodes in this one
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](const int a, const int b) { return rank[a] < rank[b]; });
   std::vector<LO> sent;
   for (const int k : order) {
-    if (to_.empty() || to_.back().rank != rank[k]) to_.push_back({rank[k], static_cast<LO>(sent.size()), 0});
-    ++to_.back().count;
+    add_to(to_, rank[k]);
     sent.push_back(node[k]);
   }
   sent_ = device_values(sent, "rpc::core::halo");
-  received_ = listed(importer_->getRemoteLIDs());
-  const auto sources = importer_->getDistributor().getProcsFrom();
-  const auto counts = importer_->getDistributor().getLengthsFrom();
-  LO first = 0;
-  for (Teuchos_Ordinal k = 0; k < sources.size(); ++k) {
-    if (counts[k] == 0) continue;
-    from_.push_back({sources[k], first, static_cast<LO>(counts[k])});
-    first += from_.back().count;
+  received_ = listed(importer->getRemoteLIDs());
+  const auto sources = importer->getDistributor().getProcsFrom();
+  const auto counts = importer->getDistributor().getLengthsFrom();
+  for (Teuchos_Ordinal k = 0; k < sources.size(); ++k)
+    if (counts[k] > 0) from_.push_back({sources[k], total(from_), static_cast<LO>(counts[k])});
+  allocate();
+}
+
+Halo::Halo(const RCP<const Map> &owned, const std::vector<GO> &ghosts)
+{
+  const Comm &comm = *owned->getComm();
+  if (comm.getSize() == 1) return;
+  comm_ = owned->getComm();
+  num_owned_ = num_same_ = num_local(*owned);
+  num_columns_ = num_owned_ + static_cast<LO>(ghosts.size());
+  if (!on_any(!ghosts.empty())) return;
+  std::vector<int> rank(ghosts.size()), lid(ghosts.size());
+  const auto size = static_cast<Teuchos_Ordinal>(ghosts.size());
+  owned->getRemoteIndexList(Teuchos::ArrayView<const GO>(ghosts.data(), size),
+                            Teuchos::ArrayView<int>(rank.data(), size), Teuchos::ArrayView<int>(lid.data(), size));
+  std::vector<int> order(ghosts.size()), counts(comm.getSize());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](const int a, const int b) { return rank[a] < rank[b]; });
+  std::vector<LO> received;
+  std::vector<double> wanted; // nodes of their owners
+  for (const int k : order) {
+    add_to(from_, rank[k]);
+    ++counts[rank[k]];
+    received.push_back(num_owned_ + k);
+    wanted.push_back(lid[k]);
   }
+  const Exchange exchange(comm, counts);
+  std::vector<LO> sent;
+  for (const double node : exchange.forward(wanted, 1)) sent.push_back(static_cast<LO>(node));
+  for (const auto &[sender, count] : exchange.senders()) to_.push_back({sender, total(to_), count});
+  sent_ = device_values(sent, "rpc::core::halo");
+  received_ = device_values(received, "rpc::core::halo");
+  allocate();
+}
+
+Halo::Halo(const Halo &nodes, const int width) : Halo(nodes)
+{
+  width_ = width;
+  columns_ = Teuchos::null;
+  allocate();
+}
+
+/// Whether columns differ from the owned nodes on any rank; if not, the halo is empty. Collective.
+bool Halo::on_any(const bool here)
+{
+  const bool any = max_all(*comm_, here ? 1 : 0) == 1;
+  if (!any) comm_ = Teuchos::null;
+  return any;
+}
+
+void Halo::add_to(Shares &shares, const int rank)
+{
+  if (shares.empty() || shares.back().rank != rank) shares.push_back({rank, total(shares), 0});
+  ++shares.back().count;
+}
+
+void Halo::allocate()
+{
   at_owners_ = message_buffer(static_cast<std::size_t>(width_) * total(to_));
   at_others_ = message_buffer(static_cast<std::size_t>(width_) * total(from_));
-  const LO size = num_dofs(width_, num_local(*importer_->getTargetMap()));
-  columns_ = rcp(new Vector(rcp(new Map(size, 0, rcp(new Teuchos::SerialComm<int>)))));
+}
+
+Vector &Halo::columns() const
+{
+  if (columns_.is_null()) {
+    const LO size = num_dofs(width_, num_columns_);
+    columns_ = rcp(new Vector(rcp(new Map(size, 0, rcp(new Teuchos::SerialComm<int>)))));
+  }
+  return *columns_;
 }
 
 /// Starts to send and to receive; kernels that write what is sent, and those that read what came before, end first.
 Halo::Requests Halo::start(const Shares &to, const double *const sent, const Shares &from, double *const received) const
 {
   Kokkos::fence();
-  const Comm &comm = *importer_->getSourceMap()->getComm();
+  const Comm &comm = *comm_;
   const auto at = [this](const Share &share) { return static_cast<std::ptrdiff_t>(width_) * share.first; };
   Requests requests;
   for (const Share &share : from)
@@ -165,7 +230,7 @@ Halo::Requests Halo::start(const Shares &to, const double *const sent, const Sha
 
 void Halo::wait(Requests requests) const
 {
-  Teuchos::waitAll(*importer_->getSourceMap()->getComm(), Teuchos::ArrayView<Requests::value_type>(requests));
+  Teuchos::waitAll(*comm_, Teuchos::ArrayView<Requests::value_type>(requests));
 }
 
 const Vector &Halo::at_columns(const Vector &x) const
@@ -173,20 +238,22 @@ const Vector &Halo::at_columns(const Vector &x) const
   if (is_empty()) return x;
   pack(sent_, width_, x, at_owners_.get());
   const Requests requests = start(to_, at_owners_.get(), from_, at_others_.get());
-  copy_first(num_dofs(width_, num_same_), x, *columns_);
-  move(moved_, moved_to_, width_, x, *columns_);
+  Vector &to = columns();
+  copy_first(num_dofs(width_, num_same_), x, to);
+  move(moved_, moved_to_, width_, x, to);
   wait(requests);
-  unpack(at_others_.get(), received_, width_, *columns_);
-  return *columns_;
+  unpack(at_others_.get(), received_, width_, to);
+  return to;
 }
 
 void Halo::sum_at_owners(Vector &y) const
 {
-  pack(received_, width_, *columns_, at_others_.get());
+  const Vector &from = columns();
+  pack(received_, width_, from, at_others_.get());
   const Requests requests = start(from_, at_others_.get(), to_, at_owners_.get());
-  if (num_same_ + static_cast<LO>(moved_.extent(0)) < num_local(*importer_->getSourceMap())) y.putScalar(0);
-  copy_first(num_dofs(width_, num_same_), *columns_, y);
-  move(moved_to_, moved_, width_, *columns_, y);
+  if (num_same_ + static_cast<LO>(moved_.extent(0)) < num_owned_) y.putScalar(0);
+  copy_first(num_dofs(width_, num_same_), from, y);
+  move(moved_to_, moved_, width_, from, y);
   wait(requests);
   for (const Share &share : to_) add(at_owners_.get(), sent_, share.first, share.count, width_, y);
 }

@@ -41,12 +41,13 @@ HostView<GO *> overlap_node_ids(const Mesh &mesh)
 {
   if (mesh.comm().getSize() == 1) return mesh.node_id;
   using IdVector = Tpetra::Vector<GO, LO, GO, Node>;
-  IdVector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes);
+  const auto overlap_nodes = mesh.overlap_nodes();
+  IdVector owned(mesh.owned_nodes), overlap(overlap_nodes);
   {
     const auto view = owned.getLocalViewHost(Tpetra::Access::OverwriteAll);
     for (LO n = 0; n < mesh.num_owned_nodes(); ++n) view(n, 0) = mesh.node_id(n);
   }
-  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+  overlap.doImport(owned, Import(mesh.owned_nodes, overlap_nodes), Tpetra::INSERT);
   HostView<GO *> ids("rpc::mesh::overlap_node_ids", mesh.num_local_nodes());
   const auto view = overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
   for (LO n = 0; n < mesh.num_local_nodes(); ++n) ids(n) = view(n, 0);

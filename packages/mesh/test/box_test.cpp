@@ -83,20 +83,20 @@ TEST(Box, GlobalIndicesAreConsecutiveAndOwnedNodesComeFirstInTheOverlap)
     ASSERT_LE(num_owned, made.mesh.num_local_nodes());
     for (LO n = 0; n < num_owned; ++n) {
       EXPECT_EQ(made.mesh.owned_nodes->getGlobalElement(n), end - num_owned + n);
-      EXPECT_EQ(made.mesh.overlap_nodes->getGlobalElement(n), end - num_owned + n);
+      EXPECT_EQ(made.mesh.node_gid(n), end - num_owned + n);
     }
     for (LO n = num_owned; n < made.mesh.num_local_nodes(); ++n)
-      EXPECT_FALSE(made.mesh.owned_nodes->isNodeGlobalElement(made.mesh.overlap_nodes->getGlobalElement(n)));
+      EXPECT_FALSE(made.mesh.owned_nodes->isNodeGlobalElement(made.mesh.node_gid(n)));
   });
 }
 
 TEST(Box, GhostNodesLieWhereTheirOwnersHaveThem)
 {
   for_each_box([](const Made &made) {
-    rpc::Vector id(made.mesh.owned_nodes), id_overlap(made.mesh.overlap_nodes);
+    rpc::Vector id(made.mesh.owned_nodes), id_overlap(made.mesh.overlap_nodes());
     for (LO n = 0; n < made.mesh.num_owned_nodes(); ++n)
       id.replaceLocalValue(n, static_cast<double>(made.mesh.node_id(n)));
-    id_overlap.doImport(id, rpc::Import(made.mesh.owned_nodes, made.mesh.overlap_nodes), Tpetra::INSERT);
+    id_overlap.doImport(id, rpc::Import(made.mesh.owned_nodes, made.mesh.overlap_nodes()), Tpetra::INSERT);
     const auto ids = id_overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
     for (LO n = 0; n < made.mesh.num_local_nodes(); ++n) EXPECT_EQ(ids(n, 0), made.node_id(n)) << "node " << n;
   });

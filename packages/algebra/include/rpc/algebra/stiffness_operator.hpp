@@ -14,8 +14,8 @@ namespace rpc
 /// A matrix whose rows are known, and which is assembled on demand.
 struct UnassembledMatrix {
   RepeatedRows rows;
-  RCP<const Map> dofs, columns;
-  RCP<const Import> importer;               ///< of a vector to the columns; null where these are the dofs
+  RCP<const Map> dofs;
+  std::shared_ptr<const Halo> halo;         ///< of the columns
   std::function<RCP<CrsMatrix>()> assemble; ///< collective
 };
 
@@ -52,9 +52,8 @@ public:
   /// (n, dim, dim) Those of some owned nodes.
   DeviceView<double ***> diagonal_blocks(const DeviceView<LO *> &nodes) const;
   const RepeatedRows &rows() const { return rows_; }
-  const RCP<const Map> &columns() const { return columns_; }
   /// What x is at the columns, see Halo.
-  const Vector &at_columns(const Vector &x) const { return halo_.at_columns(x); }
+  const Vector &at_columns(const Vector &x) const { return halo_->at_columns(x); }
 
   /// Assembled now if it was not before.
   const RCP<const CrsMatrix> &matrix() const;
@@ -65,8 +64,8 @@ public:
 
 private:
   RepeatedRows rows_;
-  RCP<const Map> dofs_, columns_;
-  Halo halo_;
+  RCP<const Map> dofs_;
+  std::shared_ptr<const Halo> halo_; // of the columns
   std::function<RCP<CrsMatrix>()> assemble_;
   mutable RCP<const CrsMatrix> matrix_; // null: not kept
   mutable int assemblies_ = 0;
