@@ -136,6 +136,8 @@ struct MeshMultigrid::Level {
   std::unique_ptr<NodeSmoother> smoother;
   std::unique_ptr<NodeInterpolation> interpolation; // from the next coarser mesh
   RCP<CoarseContact> coarse;                        // the matrix of the next coarser mesh
+  RCP<const Map>
+      blocks; // this mesh's blocks of contact, of which the coarser one's are made; null: of contact nodes' own
   RCP<Vector> residual, coarse_residual, correction;
 
   /// @param fine_prescribed  (owned dofs, at least) of this mesh
@@ -157,6 +159,7 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
 {
   const int dim = H_->dofs_per_node();
   ContactSupports supports = contact_supports(contact_node_, levels.level[0].interpolation->getRangeMap());
+  std::size_t direct_to = 0; // the level that they are on, 0 for this mesh
   contact_ = supports.contact;
   for (std::size_t l = 0; l < levels.level.size(); ++l) {
     const MeshLevel &coarse = levels.level[l];
@@ -166,9 +169,20 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     else
       level->A = levels_.back()->coarse;
     level->add_transfers(coarse, dim, l == 0 ? levels.prescribed : levels.level[l - 1].prescribed);
-    supports = coarser(supports, *coarse.interpolation);
-    level->coarse = rcp(
-        new CoarseContact(supports, *coarse.interpolation->getDomainMap(), dim, coarse.stiffness, coarse.prescribed));
+    const auto contact_of = [&](const ContactSupports &of) {
+      return rcp(
+          new CoarseContact(of, *coarse.interpolation->getDomainMap(), dim, coarse.stiffness, coarse.prescribed));
+    };
+    if (l > 0 && !levels_.back()->coarse->is_bounded()) {
+      const ContactSupports of_blocks = levels_.back()->coarse->coarser_supports(*coarse.interpolation);
+      level->blocks = of_blocks.contact;
+      level->coarse = contact_of(of_blocks);
+    }
+    if (l == 0 || level->coarse.is_null() || level->coarse->is_bounded()) { // bounds are of contact nodes' own blocks
+      for (; direct_to <= l; ++direct_to) supports = coarser(supports, *levels.level[direct_to].interpolation);
+      level->blocks = Teuchos::null;
+      level->coarse = contact_of(supports);
+    }
     levels_.push_back(std::move(level));
   }
   for (std::size_t l = 0; l < levels_.size(); ++l) { // contact is not in the coarse matrices yet
@@ -191,7 +205,10 @@ DeviceView<double ***> MeshMultigrid::write_contact()
 {
   const auto update = bounded_update(*H_, most_on_coarse_meshes);
   const MultiVector packed = packed_blocks(contact_, update);
-  for (const auto &level : levels_) level->coarse->write(packed);
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    const auto &blocks = levels_[l]->blocks;
+    levels_[l]->coarse->write(blocks.is_null() ? packed : levels_[l - 1]->coarse->packed_sums(blocks));
+  }
   levels_[0]->smoother->set_blocks(contact_node_, H_->blocks());
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const CoarseContact &contact = *levels_[l - 1]->coarse;
