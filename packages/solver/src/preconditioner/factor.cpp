@@ -8,7 +8,8 @@ namespace rpc::solver
 namespace
 {
 
-constexpr double most_work_of_factor = 1e7; // multiplications
+// Multiplications. On several ranks the hierarchy that would take its place is set up over all of them, and is not exact.
+constexpr double most_work_of_factor = 1e7, most_work_on_ranks = 1e8;
 
 } // namespace
 
@@ -19,7 +20,8 @@ Preconditioner::Prepared Factor::prepare(double)
     factor_.reset();
     if (A_.is_null()) A_ = H_->base().copy();
     write_update(*A_, *H_, bounded_update(*H_));
-    factor_ = direct_solver(A_, H_->dofs_per_node(), most_work_of_factor);
+    const bool alone = A_->getComm()->getSize() == 1;
+    factor_ = direct_solver(A_, H_->dofs_per_node(), alone ? most_work_of_factor : most_work_on_ranks);
     revision_ = H_->revision();
   }
   if (!factor_) return Prepared::refused;
