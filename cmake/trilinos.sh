@@ -9,23 +9,25 @@ source "$root/cmake/common.sh"
 usage() {
   cat <<'END'
 bash cmake/trilinos.sh --backend=openmp|cuda --prefix=DIR [--source=DIR] [--build=DIR] [--jobs=N] [--arch=NAME]
+                       [--without-mpi]
 
 Builds Trilinos 13.2, static and with only what rpc needs, and installs it. The folder may be moved or copied afterwards.
   --backend=openmp  Kokkos OpenMP, with MPI
-  --backend=cuda    Kokkos CUDA (Serial on the host), without MPI
+  --backend=cuda    Kokkos CUDA (Serial on the host), with MPI: a rank a GPU
   --prefix=DIR      where to install: a new folder, or what an earlier run left
   --source=DIR      a tree of Trilinos 13.2, which is copied; default: Debian's source package is downloaded
   --build=DIR       where to build; default: build-trilinos in the repository. Run the same command again to continue there.
   --jobs=N          default: one for each core that has 1.5 GB of memory
   --arch=NAME       cuda: sm_60, sm_61, sm_70, sm_72, sm_75, sm_80, sm_86, sm_90 or Kokkos' name (HOPPER90); default: sm_90.
                     openmp: a processor for -march; default: x86-64-v3 where this machine's is one, else the compiler's default
+  --without-mpi     cuda: for one process on one GPU
 END
 }
 stop() { say "$*"; exit 1; }
 misused() { say "$*"; exit 2; }
 
 # ------------------------------------------------------------------------------------------------------------------- options
-backend='' prefix='' source='' build=$root/build-trilinos jobs=$(build_jobs) arch=''
+backend='' prefix='' source='' build=$root/build-trilinos jobs=$(build_jobs) arch='' mpi=ON
 for argument in "$@"; do
   value=${argument#*=}
   case $argument in
@@ -36,11 +38,13 @@ for argument in "$@"; do
     --jobs=*[!0-9]* | --jobs=0* | --jobs=) misused "--jobs must be a number from 1 on, got \"$value\"" ;;
     --jobs=*) jobs=$value ;;
     --arch=?*) arch=$value ;;
+    --without-mpi) mpi=OFF ;;
     --help | -h) usage; exit ;;
     *) misused "unknown option \"$argument\"; bash cmake/trilinos.sh --help lists them" ;;
   esac
 done
 [ -n "$backend" ] || misused "which backend? --backend=openmp or --backend=cuda"
+[ $mpi = ON ] || [ "$backend" = cuda ] || misused "--without-mpi goes with --backend=cuda"
 [ -n "$prefix" ] || misused "where to install? --prefix=DIR"
 case $prefix$build$source in
   *[!A-Za-z0-9_./+-]*) misused "folders must be named with letters, digits and _ . + - only: Trilinos' scripts split others" ;;
@@ -68,13 +72,18 @@ if [ "$backend" = cuda ]; then
     case ${arch:-sm_90} in "$name" | "${name,,}" | "sm_${name: -2}") gpu=$name ;; esac
   done
   [ -n "$gpu" ] || misused "--arch=$arch is none of sm_60, sm_61, sm_70, sm_72, sm_75, sm_80, sm_86, sm_90 or ${known// /, }"
-  title="Kokkos CUDA for sm_${gpu: -2}, without MPI" variable=RPC_TRILINOS_CUDA
+  title="Kokkos CUDA for sm_${gpu: -2}, with$([ $mpi = ON ] || echo out) MPI" variable=RPC_TRILINOS_CUDA
   job_seconds=10600 build_mb=1500 install_mb=600
 else
   title="Kokkos OpenMP with MPI" variable=RPC_TRILINOS_OPENMP
   job_seconds=5700 build_mb=800 install_mb=400
 fi
+# mpi_flags compile|link: what MPI's own compiler would add, Open MPI's or MPICH's
+mpi_flags() {
+  { mpicxx --showme:"$1" 2>/dev/null || mpicxx -"$1"-info 2>/dev/null | cut -d ' ' -f 2-; } | tr ' ' '\n' | grep -E '^-[ILl]|^-Wl,' | tr '\n' ' '
+}
 flags="-w $(march)" # 13.2 has warnings by the thousand; -march belongs to all build types
+if [ "$backend$mpi" = cudaON ] && command -v mpicxx >/dev/null; then flags+=" $(mpi_flags compile)"; fi
 note="$prefix/rpc_trilinos.txt"
 if [ -n "$(ls -A "$prefix" 2>/dev/null)" ] && [ "$(head -n 1 "$note" 2>/dev/null)" != "Trilinos 13.2, $title" ]; then
   misused "$prefix holds something else than Trilinos for $title: remove it or name a new folder"
@@ -94,7 +103,7 @@ if [ -z "$source" ]; then
   need dpkg-source dpkg-dev
   [ -e /usr/share/keyrings/debian-archive-keyring.gpg ] || missing+=(debian-archive-keyring)
 fi
-if [ "$backend" = openmp ]; then need mpicxx libopenmpi-dev; fi
+if [ $mpi = ON ]; then need mpicxx libopenmpi-dev; fi
 for library in blas lapack; do
   echo 'int main() {}' | g++ -x c++ - -l$library -o /dev/null 2>/dev/null || missing+=(lib$library-dev)
 done
@@ -204,18 +213,24 @@ options=(-DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$prefix" -DBUILD_SHA
   -DBelos_ENABLE_{Tpetra,Xpetra}=ON -DXpetra_ENABLE_{Tpetra,KokkosKernels}=ON -DAmesos2_ENABLE_KLU2=ON -DIfpack2_ENABLE_{Xpetra,Amesos2}=ON
   -DMueLu_ENABLE_{Tpetra,Belos,Ifpack2,Amesos2,Kokkos_Refactor}=ON -DNOX_ENABLE_{LOCA,ABSTRACT_IMPLEMENTATION_LAPACK}=OFF
   -DTPL_ENABLE_{BLAS,LAPACK}=ON)
+if [ $mpi = ON ]; then # Zoltan2 lets MueLu gather coarse levels on fewer ranks; one rank has no use for it
+  options+=(-DTPL_ENABLE_MPI=ON -DTrilinos_ENABLE_{Zoltan,Zoltan2,Zoltan2Core}=ON -DMueLu_ENABLE_{Zoltan,Zoltan2Core}=ON)
+else
+  options+=(-DTPL_ENABLE_MPI=OFF)
+fi
 if [ "$backend" = openmp ]; then
-  # Zoltan2 lets MueLu gather coarse levels on fewer ranks; one rank has no use for it, so the CUDA build does without.
-  options+=(-DCMAKE_C_COMPILER="$(command -v mpicc)" -DCMAKE_CXX_COMPILER="$(command -v mpicxx)" -DTPL_ENABLE_MPI=ON
-    -DTrilinos_ENABLE_OpenMP=ON -DKokkos_ENABLE_OPENMP=ON -DKokkos_ENABLE_SERIAL=OFF -DTpetra_INST_OPENMP=ON -DTpetra_INST_SERIAL=OFF
-    -DTrilinos_ENABLE_{Zoltan,Zoltan2,Zoltan2Core}=ON -DMueLu_ENABLE_{Zoltan,Zoltan2Core}=ON)
+  options+=(-DCMAKE_C_COMPILER="$(command -v mpicc)" -DCMAKE_CXX_COMPILER="$(command -v mpicxx)"
+    -DTrilinos_ENABLE_OpenMP=ON -DKokkos_ENABLE_OPENMP=ON -DKokkos_ENABLE_SERIAL=OFF -DTpetra_INST_OPENMP=ON -DTpetra_INST_SERIAL=OFF)
 else
   CUDA_ROOT=$(dirname "$(dirname "$nvcc")")
   export CUDA_ROOT PATH="$CUDA_ROOT/bin:$PATH" # for nvcc_wrapper
-  options+=(-DCMAKE_C_COMPILER="$(command -v gcc)" -DCMAKE_CXX_COMPILER="$tree/packages/kokkos/bin/nvcc_wrapper" -DTPL_ENABLE_MPI=OFF
+  options+=(-DCMAKE_C_COMPILER="$(command -v gcc)" -DCMAKE_CXX_COMPILER="$tree/packages/kokkos/bin/nvcc_wrapper"
     -DTPL_ENABLE_CUDA=ON -DCUDA_TOOLKIT_ROOT_DIR="$CUDA_ROOT" -DTPL_ENABLE_{CUBLAS,CUSPARSE,CUSOLVER}=OFF
     -DKokkos_ENABLE_{CUDA,CUDA_LAMBDA,CUDA_UVM,SERIAL}=ON -DKokkos_ENABLE_CUDA_RELOCATABLE_DEVICE_CODE=OFF
     -DKokkosKernels_INST_MEMSPACE_CUDASPACE=OFF -DTpetra_INST_CUDA=ON -DTpetra_INST_{SERIAL,OPENMP}=OFF)
+  if [ $mpi = ON ]; then # nvcc_wrapper itself compiles: programs need no settings of MPI's wrappers
+    options+=(-DMPI_USE_COMPILER_WRAPPERS=OFF -DMPI_EXEC="$(command -v mpirun)" -DTrilinos_EXTRA_LINK_FLAGS="$(mpi_flags link)")
+  fi
   for name in $known; do # another --arch than last time
     options+=(-DKokkos_ARCH_"$name"="$([ "$name" = "$gpu" ] && echo ON || echo OFF)")
   done

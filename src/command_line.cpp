@@ -1,5 +1,6 @@
 #include "command_line.hpp"
 
+#include "gpu.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/kokkos.hpp"
 #include "rpc/core/parameters.hpp"
@@ -135,6 +136,8 @@ std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, 
   for (std::size_t i = 1; i < arguments.size(); ++i) given += std::string(" ") + arguments[i];
   if (!root) // Kokkos prints it on every rank
     arguments.erase(std::remove(arguments.begin(), arguments.end(), std::string("--kokkos-help")), arguments.end());
+  std::string gpu = gpu_option(arguments);
+  if (!gpu.empty()) arguments.push_back(gpu.data());
   int argc = static_cast<int>(arguments.size());
   arguments.push_back(nullptr);
   char **argv = arguments.data();

@@ -1,5 +1,6 @@
 #include "checkpoint.hpp"
 #include "command_line.hpp"
+#include "gpu.hpp"
 #include "output/paths.hpp"
 #include "output/results.hpp"
 #include "report.hpp"
@@ -55,6 +56,14 @@ void start_mpi_alone()
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);
+}
+
+/// Ranks of one host that copy straight from each other's memory do not see what of managed memory is on a GPU.
+void keep_mpi_from_managed_memory()
+{
+#ifdef KOKKOS_ENABLE_CUDA
+  setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 0); // Open MPI's; the user's own setting wins
+#endif
 }
 
 /// MPI, where there is one, for several threads: a factor is made on one of its own while this one looks for signals.
@@ -138,6 +147,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
       rpc::io::remove_abandoned(line.output, [&](const std::string &file) { return rpc::is_result(scene, file); });
   });
 
+  if (const std::string gpus = rpc::gpu_report(*comm); !gpus.empty()) out << "GPU: " << gpus << '\n';
   const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
   int cycle = 0;
@@ -179,6 +189,7 @@ int main(int argc, char *argv[])
 {
   keep_freed_memory();
   start_mpi_alone();
+  keep_mpi_from_managed_memory();
   rpc::install_interrupt_handlers();
   std::signal(SIGXFSZ, SIG_IGN); // a file beyond the shell's limit is a write that fails, not the end
   const MpiSession mpi(&argc, &argv);

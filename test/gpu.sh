@@ -2,7 +2,8 @@
 # The everyday tests on an NVIDIA GPU, built in build-cuda/ with the Trilinos that RPC_TRILINOS_CUDA names (cmake/trilinos.sh
 # --backend=cuda makes one):
 #
-#   bash test/gpu.sh [options of ctest]                       on a machine with a GPU: builds and tests
+#   bash test/gpu.sh [options of ctest]                       on a machine with GPUs: builds, and tests on one and two ranks. Where
+#                                                             there are two GPUs, a rank has one of its own
 #   bash test/gpu.sh --pack=FILE.tar.xz                       elsewhere: builds, and packs the programs and the libraries they need
 #   bash test/gpu.sh --unpack=FILE.tar.xz [options of ctest]  with a GPU, but without compilers and libraries: tests what was packed,
 #                                                             from a checkout of the same sources
@@ -13,7 +14,7 @@ set -euo pipefail
 RPC_PRESET=cuda
 source "$(dirname "${BASH_SOURCE[0]}")/../cmake/setup.sh"
 
-pack= unpack= sanitizer= options=()
+pack= unpack= sanitizer= skipped= options=()
 for argument in "$@"; do
   case $argument in
   --pack=*) pack=${argument#*=} ;;
@@ -76,7 +77,7 @@ unpack_tests() {
   done
   export LD_LIBRARY_PATH=$PWD/libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
   say "install and configure tests SKIPPED: they take compilers and libraries"
-  options+=(-E '^(install|configure)\.')
+  skipped='^(install|configure)\.|'
 }
 
 if [ -n "$pack" ]; then
@@ -88,14 +89,16 @@ if ! nvidia-smi -L >/dev/null 2>&1; then
   say "GPU tests SKIPPED: nvidia-smi finds no GPU here"
   exit 77
 fi
-export CUDA_VISIBLE_DEVICES=${CUDA_VISIBLE_DEVICES:-0}
+# Each rank takes the GPU of its number among these; Kokkos does that for the tests, rpc itself for its runs.
+export KOKKOS_NUM_DEVICES=${KOKKOS_NUM_DEVICES:-$(nvidia-smi -L | wc -l)}
 if [ -n "$unpack" ]; then
   unpack_tests
 else
   build_cuda
   cd "$build"
 fi
-say "testing on $(nvidia-smi --query-gpu=name --format=csv,noheader | head -1)"
+say "testing on $KOKKOS_NUM_DEVICES x $(nvidia-smi --query-gpu=name --format=csv,noheader | head -1)"
+options+=(-E "$skipped"'\.np([3-9]|[1-9][0-9])$')
 jobs=$(($(nproc) < 8 ? $(nproc) : 8)) # each takes half a gigabyte of the GPU
 if [ -z "$sanitizer" ]; then
   exec ctest --output-on-failure --no-tests=error --parallel "$jobs" -LE 'performance|stress' "${options[@]}"

@@ -37,7 +37,8 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
   const mesh::Mesh &mesh = *s.discretization.mesh;
   const auto &contact = s.step.contact;
   const HostPoints position = fem::node_positions(mesh, contact.node);
-  const auto node_ids = mesh::overlap_node_ids(mesh);
+  const bool in_order = mesh.dim() == 2; // along the side, for which its facets are needed
+  const auto node_ids = in_order ? mesh::overlap_node_ids(mesh) : HostView<GO *>();
   std::vector<io::ContactTable> tables;
   for (int k = 0; k < contact.num_sides(); ++k) {
     const LO begin = contact.first(k), end = contact.first(k + 1);
@@ -63,8 +64,9 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
       table.used = part_of(s.contact.used, begin, end);
       table.slip_state = part_of(s.contact.slip_state, begin, end);
     }
-    table.facets = mesh::owned_facets(
-        mesh, mesh.side(scene.model.contact[k].side, scene.model.contact[k].path + "->Side"), node_ids);
+    if (in_order)
+      table.facets = mesh::owned_facets(
+          mesh, mesh.side(scene.model.contact[k].side, scene.model.contact[k].path + "->Side"), node_ids);
     tables.push_back(table);
   }
   io::write_contact_csv(path, mesh.owned_nodes->getComm(), tables, scene.model.units);

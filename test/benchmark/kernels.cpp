@@ -86,8 +86,9 @@ struct Body {
       nodes = fem::interpolation(coarse, d);
     }
     entries = static_cast<double>(nodes->getLocalMatrixDevice().nnz());
-    const DeviceView<char *> free("rpc::benchmark::free", num_local(*d.owned_dofs));
-    return {nodes, d.dim(), free, coarse_dofs, d.owned_dofs};
+    const DeviceView<char *> free("rpc::benchmark::free", num_local(*d.owned_dofs)),
+        coarse_free("rpc::benchmark::free", num_local(*coarse_dofs));
+    return {nodes, d.dim(), free, coarse_free};
   }
   double cells() const { return d.mesh->num_cells(); }
   double rows() const { return num_local(*d.owned_dofs); }
@@ -194,7 +195,7 @@ void prolongation(benchmark::State &state, const double stream, const Body &body
   const double bytes = (8 + sizeof(LO)) * entries + sizeof(std::size_t) * body.rows() / body.d.dim() +
                        17 * body.rows() + 8 * num_local(*coarse_dofs);
   measure(state, stream, bytes, 2 * body.d.dim() * entries, body.rows(),
-          [&] { interpolation.apply(coarse, x, solver::NodeInterpolation::Write::add); });
+          [&] { interpolation.prolong(coarse, x, solver::NodeInterpolation::Write::add); });
 }
 
 using Kernel = void (*)(benchmark::State &, double, const Body &);

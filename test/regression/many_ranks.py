@@ -69,7 +69,8 @@ class ManyRanks(RpcTestCase):
         self.assertEqual(len(many), RANKS)
         share = (one - least) / RANKS
         self.assertLess(max(many), 1.5 * share, many)
-        self.assertLess(max(many), 1.5 * sum(many) / RANKS, many)
+        on_one = 10_000  # coarse meshes of up to 4000 nodes, which one rank has, and their factor
+        self.assertLess(max(many), 1.5 * sum(many) / RANKS + on_one, many)
 
 
 if __name__ == "__main__":

@@ -75,14 +75,14 @@ mesh::Mesh box_mesh(const Scene &scene, const bool distorts)
 template <class Values>
 HostView<const double *> at_local_nodes(const mesh::Mesh &mesh, const contact::ContactNodes &c, const Values &values)
 {
-  Vector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes);
+  Vector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes());
   {
     const auto node = to_host(c.node);
     const auto from = to_host(values);
     const auto to = owned.getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 0; i < node.extent(0); ++i) to(node(i), 0) = from(i);
   }
-  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes()), Tpetra::INSERT);
   return to_host(device_read(overlap));
 }
 

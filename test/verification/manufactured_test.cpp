@@ -45,14 +45,14 @@ std::array<double, 2> pressure_errors(const Solution &s)
 {
   const fem::Discretization &d = s.discretization;
   const mesh::Mesh &mesh = *d.mesh;
-  Vector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes);
+  Vector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes());
   {
     const auto node = to_host(s.step.contact.node);
     const auto p = to_host(s.contact.pressure);
     const auto to = owned.getLocalViewHost(Tpetra::Access::ReadWrite);
     for (std::size_t i = 0; i < node.extent(0); ++i) to(node(i), 0) = p(i);
   }
-  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes()), Tpetra::INSERT);
   const auto p = to_host(device_read(overlap));
   const auto coords = to_host(mesh.coords);
   const mesh::Side &side = mesh.side("bottom", "test");

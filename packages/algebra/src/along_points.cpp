@@ -44,8 +44,7 @@ DeviceView<double *> coupled_stiffness(const StiffnessOperator &K, const NodePoi
   const NodePoints p = points;
   Vector directions(K.getDomainMap());
   add_directions(p, directions);
-  const Vector columns = at_columns(K.columns(), K.importer(), directions);
-  const auto at = device_read(columns);
+  const auto at = device_read(K.at_columns(directions));
   const auto rows = K.rows().blocks();
   const DeviceView<double *> stiffness("rpc::algebra::coupled_stiffness", p.size());
   Kokkos::parallel_for(

@@ -293,7 +293,6 @@ void multiply(const MultiplyNode<Dim, In, Out> &one)
 #else
   Kokkos::parallel_for("rpc::repeated_rows::multiply", device_range(num_nodes), one);
 #endif
-  Kokkos::fence();
 }
 
 /// Nodes of no kind find their rows in a matrix of all nodes.
@@ -382,7 +381,7 @@ void RepeatedRows::list_kinds(const RowsOfNodes &examples)
 
 bool RepeatedRows::pays() const
 {
-  return dim_ > 1 && (!on_gpu || num_kinds() > 0);
+  return dim_ > 1 && (!on_gpu || num_kinds() > 0 || num_nodes() == 0);
 }
 
 RepeatedRows::Blocks RepeatedRows::blocks() const

@@ -5,33 +5,24 @@ namespace rpc
 namespace
 {
 
-/// What x is at the columns; x itself where these are the rows.
-RCP<const MultiVector> at_columns_of(const StiffnessOperator &K, const MultiVector &x)
-{
-  if (K.importer().is_null()) return Teuchos::rcpFromRef(x);
-  const auto imported = rcp(new MultiVector(K.columns(), x.getNumVectors(), false));
-  imported->doImport(x, *K.importer(), Tpetra::INSERT);
-  return imported;
-}
-
 /// y <- A x for rows of any kind, vector by vector.
 template <class Rows>
-void multiply_vectors(const Rows &rows, const MultiVector &columns, MultiVector &y)
+void multiply_vectors(const Rows &rows, const StiffnessOperator &K, const MultiVector &x, MultiVector &y)
 {
-  for (std::size_t v = 0; v < y.getNumVectors(); ++v) rows.apply(*columns.getVector(v), *y.getVectorNonConst(v));
+  for (std::size_t v = 0; v < y.getNumVectors(); ++v)
+    rows.apply(K.at_columns(*x.getVector(v)), *y.getVectorNonConst(v));
 }
 
 } // namespace
 
 StiffnessOperator::StiffnessOperator(RCP<const CrsMatrix> K, const int dim)
-    : rows_(RepeatedRows::of(K, dim)), dofs_(K->getDomainMap()), columns_(K->getColMap()),
-      importer_(K->getGraph()->getImporter()), matrix_(std::move(K)), assemblies_(1)
+    : rows_(RepeatedRows::of(K, dim)), dofs_(K->getDomainMap()),
+      halo_(std::make_shared<const Halo>(K->getGraph()->getImporter())), matrix_(std::move(K)), assemblies_(1)
 {
 }
 
 StiffnessOperator::StiffnessOperator(UnassembledMatrix K)
-    : rows_(std::move(K.rows)), dofs_(std::move(K.dofs)), columns_(std::move(K.columns)),
-      importer_(std::move(K.importer)), assemble_(std::move(K.assemble))
+    : rows_(std::move(K.rows)), dofs_(std::move(K.dofs)), halo_(std::move(K.halo)), assemble_(std::move(K.assemble))
 {
 }
 
@@ -41,10 +32,10 @@ void StiffnessOperator::apply(const MultiVector &x, MultiVector &y, const Teucho
   if (!rows_.pays()) {
     matrix()->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
   } else if (alpha == 1 && beta == 0) {
-    multiply_vectors(rows_, *at_columns_of(*this, x), y);
+    multiply_vectors(rows_, *this, x, y);
   } else {
     MultiVector product(y.getMap(), y.getNumVectors(), false);
-    multiply_vectors(rows_, *at_columns_of(*this, x), product);
+    multiply_vectors(rows_, *this, x, product);
     y.update(alpha, product, beta);
   }
 }
@@ -57,7 +48,7 @@ std::shared_ptr<const RoundedRows> StiffnessOperator::rounded_rows() const
 
 void StiffnessOperator::apply_rounded(const RoundedRows &rounded, const MultiVector &x, MultiVector &y) const
 {
-  multiply_vectors(rounded, *at_columns_of(*this, x), y);
+  multiply_vectors(rounded, *this, x, y);
 }
 
 DeviceView<double ***> StiffnessOperator::diagonal_blocks(const DeviceView<LO *> &nodes) const

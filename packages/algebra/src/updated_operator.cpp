@@ -118,7 +118,6 @@ void add_update(const DeviceView<LO *> &nodes, const DeviceView<double ***> &upd
           to(dof(dim, nodes(n), k)) += alpha * sum;
         }
       });
-  Kokkos::fence();
 }
 void add_update(const DeviceView<LO *> &nodes, const DeviceView<double ***> &update, const double alpha,
                 const MultiVector &x, MultiVector &y)

@@ -107,8 +107,8 @@ Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, con
   const auto repeated = fem::repeated_stiffness(d, model_.materials, dirichlet);
   const fem::EliminatedStiffness K = repeated ? fem::EliminatedStiffness{} : assembled();
   couplings_ = repeated ? repeated->couplings : K.couplings;
-  stiffness_ = repeated ? rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.overlap_dofs, d.dof_import,
-                                                     [assembled] { return assembled().matrix; }}))
+  stiffness_ = repeated ? rcp(new StiffnessOperator(
+                              {repeated->rows, d.owned_dofs, d.halo, [assembled] { return assembled().matrix; }}))
                         : rcp(new StiffnessOperator(K.matrix, d.dim()));
   candidates_ = nodes_of(d, contact_sides());
 }

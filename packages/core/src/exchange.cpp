@@ -65,6 +65,13 @@ int Exchange::num_received() const
   return total(from_);
 }
 
+std::vector<std::pair<int, int>> Exchange::senders() const
+{
+  std::vector<std::pair<int, int>> senders;
+  for (const Share &share : from_) senders.emplace_back(share.rank, share.count);
+  return senders;
+}
+
 std::vector<double> Exchange::forward(const std::vector<double> &rows, const int width) const
 {
   return exchange(to_, from_, rows, width);

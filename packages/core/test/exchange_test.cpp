@@ -21,6 +21,11 @@ TEST(Exchange, RowsArriveInOrderAndAnswersReturnToThem)
   EXPECT_EQ(3 * exchange.num_sent(), static_cast<int>(rows.size()));
   const auto got = exchange.forward(rows, 3);
   ASSERT_EQ(static_cast<int>(got.size()), 3 * exchange.num_received());
+  std::vector<std::pair<int, int>> senders;
+  for (int from = 0; from < ranks; ++from)
+    if (const int count = rank + 1 == ranks && ranks > 1 ? 0 : from + rank; count > 0)
+      senders.emplace_back(from, count);
+  EXPECT_EQ(exchange.senders(), senders);
   std::size_t at = 0;
   for (int from = 0; from < ranks; ++from)
     for (int n = 0; n < (rank + 1 == ranks && ranks > 1 ? 0 : from + rank); ++n, at += 3) {

@@ -184,7 +184,7 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
   dirichlet.value = rcp(new Vector(d.owned_dofs));
   dirichlet.condition = DeviceView<int *>(
       Kokkos::view_alloc("rpc::fem::dirichlet_condition", Kokkos::WithoutInitializing), num_local(*d.owned_dofs));
-  dirichlet.fixed = DeviceView<char *>("rpc::fem::dirichlet_fixed", num_local(*d.overlap_dofs));
+  dirichlet.fixed = DeviceView<char *>("rpc::fem::dirichlet_fixed", d.num_overlap_dofs());
   Kokkos::deep_copy(dirichlet.condition, -1);
   Vector mark(d.owned_dofs);
   const auto dof = device_values(dofs, "rpc::fem::prescribed_dofs");
@@ -207,7 +207,7 @@ DirichletDofs dirichlet_dofs(const Discretization &d, const std::vector<Dirichle
   const auto flag = dirichlet.fixed;
   const auto from = device_read(*mark_overlap);
   Kokkos::parallel_for(
-      "rpc::fem::dirichlet_flags", device_range(num_local(*d.overlap_dofs)),
+      "rpc::fem::dirichlet_flags", device_range(d.num_overlap_dofs()),
       KOKKOS_LAMBDA(const LO i) { flag(i) = from(i) != 0; });
   Kokkos::fence();
   return dirichlet;

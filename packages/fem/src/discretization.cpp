@@ -5,6 +5,7 @@
 #include "fill_entries.hpp"
 #include "rpc/core/error.hpp"
 
+#include <Teuchos_DefaultSerialComm.hpp>
 #include <array>
 #include <optional>
 #include <sstream>
@@ -157,12 +158,8 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, const Kinemati
   }
   if (!d.mesh->element.mixed()) d.reference = tabulate(d.mesh->element, kinematics);
   d.owned_dofs = dof_map(*d.mesh->owned_nodes, d.dim());
-  d.overlap_dofs =
-      d.mesh->overlap_nodes == d.mesh->owned_nodes ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes, d.dim());
-  if (d.overlap_dofs != d.owned_dofs) {
-    d.dof_import = rcp(new Import(d.owned_dofs, d.overlap_dofs));
-    d.node_import = rcp(new Import(d.mesh->owned_nodes, d.mesh->overlap_nodes));
-  }
+  d.node_halo = std::make_shared<const Halo>(d.mesh->owned_nodes, d.mesh->ghosts);
+  d.halo = std::make_shared<const Halo>(*d.node_halo, d.dim());
   if (!d.axisymmetric()) d.congruent = congruent_cells(*d.mesh); // where cells are alike, radii are not
   d.node_to_cells = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
   d.nodes = node_graph(*d.mesh, d.node_to_cells);
@@ -181,24 +178,37 @@ RCP<const CrsGraph> dof_graph(const Discretization &d)
     fill_dof_graph(FillDofGraph<2>{d.nodes, row, col});
   else
     fill_dof_graph(FillDofGraph<3>{d.nodes, row, col});
-  const RCP<CrsGraph> graph = rcp(new CrsGraph(d.owned_dofs, d.overlap_dofs, row, col));
-  graph->expertStaticFillComplete(d.owned_dofs, d.owned_dofs, d.dof_import);
+  const RCP<const Map> columns = overlap_dofs(d);
+  const RCP<const Import> ghosts = columns == d.owned_dofs ? Teuchos::null : rcp(new Import(d.owned_dofs, columns));
+  const RCP<CrsGraph> graph = rcp(new CrsGraph(d.owned_dofs, columns, row, col));
+  graph->expertStaticFillComplete(d.owned_dofs, d.owned_dofs, ghosts);
   return graph;
+}
+
+RCP<const Map> overlap_dofs(const Discretization &d)
+{
+  return d.mesh->comm().getSize() == 1 ? d.owned_dofs : dof_map(*d.mesh->overlap_nodes(), d.dim());
 }
 
 RCP<const Vector> on_overlap(const Discretization &d, const Vector &owned)
 {
-  if (d.dof_import.is_null()) return Teuchos::rcpFromRef(owned);
-  const auto overlap = rcp(new Vector(d.overlap_dofs));
-  overlap->doImport(owned, *d.dof_import, Tpetra::INSERT);
+  if (d.halo->is_empty()) return Teuchos::rcpFromRef(owned);
+  const Vector &columns = d.halo->at_columns(owned);
+  const auto overlap = rcp(new Vector(columns.getMap(), false));
+  Kokkos::deep_copy(device_write(*overlap), device_read(columns)); // Tpetra's copy goes by way of the host
   return overlap;
 }
 
 RCP<const MultiVector> nodes_on_overlap(const Discretization &d, const RCP<const MultiVector> &owned)
 {
-  if (d.node_import.is_null()) return owned;
-  const auto overlap = rcp(new MultiVector(d.mesh->overlap_nodes, owned->getNumVectors()));
-  overlap->doImport(*owned, *d.node_import, Tpetra::INSERT);
+  if (d.node_halo->is_empty()) return owned;
+  const auto nodes = rcp(new Map(d.mesh->num_local_nodes(), 0, rcp(new Teuchos::SerialComm<int>))); // no list
+  const auto overlap = rcp(new MultiVector(nodes, owned->getNumVectors()));
+  for (std::size_t v = 0; v < owned->getNumVectors(); ++v) {
+    const auto column = owned->getVector(v);
+    const auto to = overlap->getVectorNonConst(v);
+    Kokkos::deep_copy(device_write(*to), device_read(d.node_halo->at_columns(*column)));
+  }
   return overlap;
 }
 

@@ -212,7 +212,7 @@ std::vector<GO> find_others(RowsInBox<Dim, Elements> &rows, const LO num_rows)
   const auto host_position = to_host(position);
   std::vector<std::pair<GO, LO>> sorted;
   for (LO k = 0; k < count; ++k) sorted.emplace_back(host_gid(k), host_position(k));
-  std::sort(sorted.begin(), sorted.end());
+  if (!std::is_sorted(sorted.begin(), sorted.end())) std::sort(sorted.begin(), sorted.end());
   std::vector<GO> gids;
   const auto sorted_position = Kokkos::create_mirror_view(position);
   for (LO k = 0; k < count; ++k) {
@@ -248,8 +248,9 @@ std::pair<RowsInBox<Dim, Elements>, RCP<const Map>> rows_in_box(const Elements &
               "fem: the nodes of a box are not numbered as the box is");
   if (ranks == 1) return {rows, from.owned_nodes};
 
-  mesh::Block cells = grid.owned_cells(rank);
-  for (int d = 0; d < Dim; ++d) { // one more at both ends, whatever the rounding
+  mesh::Block cells = grid.cells();
+  if (rows.rows.size() == 0) cells.end = {};
+  for (int d = 0; d < Dim && cells.size() > 0; ++d) { // one more at both ends, whatever the rounding
     double within = 0;
     const BoxAxis &axis = rows.boxes.from[d];
     const auto cell_of = [&](const GO node) {

@@ -201,8 +201,7 @@ void ask(const mesh::Mesh &from, const Search<Dim, Nodes> &search, const std::ve
     reply[0] = away(n);
     reply[1] = static_cast<double>(from.cell_id(cell(n)));
     for (int d = 0; d < Dim; ++d) reply[2 + d] = reference(n, d);
-    for (int a = 0; a < Nodes; ++a)
-      reply[2 + Dim + a] = static_cast<double>(from.overlap_nodes->getGlobalElement(cells(cell(n), a)));
+    for (int a = 0; a < Nodes; ++a) reply[2 + Dim + a] = static_cast<double>(from.node_gid(cells(cell(n), a)));
   }
   const std::vector<double> got = exchange.back(replies, width);
   for (std::size_t k = 0; k < sent.size(); ++k) {

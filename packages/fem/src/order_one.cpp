@@ -69,8 +69,8 @@ Vertices vertices_of(const mesh::Mesh &mesh, const Cells &cells)
   return vertices;
 }
 
-/// (overlap vertices) Their gids, consecutive on each rank; collective.
-Teuchos::Array<GO> vertex_gids(const Discretization &d, const Vertices &vertices, const Map &owned)
+/// The gids of those that other ranks own; collective.
+std::vector<GO> ghosts_among(const Discretization &d, const Vertices &vertices, const Map &owned)
 {
   const auto gid = rcp(new MultiVector(d.mesh->owned_nodes, 1)); // doubles hold them exactly
   {
@@ -80,8 +80,9 @@ Teuchos::Array<GO> vertex_gids(const Discretization &d, const Vertices &vertices
   }
   const auto all = nodes_on_overlap(d, gid);
   const auto from = all->getLocalViewHost(Tpetra::Access::ReadOnly);
-  Teuchos::Array<GO> gids;
-  for (const LO node : vertices.node) gids.push_back(std::llround(from(node, 0)));
+  std::vector<GO> gids;
+  for (std::size_t v = vertices.num_owned; v < vertices.node.size(); ++v)
+    gids.push_back(std::llround(from(vertices.node[v], 0)));
   return gids;
 }
 
@@ -108,10 +109,7 @@ OrderOne order_one(const Discretization &d)
   const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   mesh->owned_nodes =
       rcp(new Map(unknown, static_cast<std::size_t>(vertices.num_owned), 0, from.owned_nodes->getComm()));
-  mesh->overlap_nodes = mesh->owned_nodes;
-  if (from.comm().getSize() > 1)
-    mesh->overlap_nodes =
-        rcp(new Map(unknown, vertex_gids(d, vertices, *mesh->owned_nodes)(), 0, from.owned_nodes->getComm()));
+  mesh->ghosts = ghosts_among(d, vertices, *mesh->owned_nodes);
   mesh->coords = DeviceView<double **>("rpc::fem::vertex_coords", num_local_vertices, from.dim());
   mesh->cells = DeviceView<LO **>("rpc::fem::vertex_cells", cells.extent(0), num_vertices);
   const auto to_coords = Kokkos::create_mirror_view(mesh->coords);
@@ -153,7 +151,7 @@ OrderOne order_one(const Discretization &d)
   OrderOne result;
   result.mesh = mesh;
   result.node = device_values(vertices.node, "rpc::fem::node_of_vertex");
-  result.interpolation = rows.matrix(from.owned_nodes, mesh->overlap_nodes, mesh->owned_nodes);
+  result.interpolation = rows.matrix(from.owned_nodes, mesh->overlap_nodes(), mesh->owned_nodes);
   return result;
 }
 

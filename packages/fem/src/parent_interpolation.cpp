@@ -29,7 +29,7 @@ RCP<CrsMatrix> interpolation_from_parents(const mesh::Mesh &coarse, const mesh::
     for (std::size_t b = 0; b < weight.size(); ++b) rows.add(coarse_cells(parent, b), weight[b]);
     rows.end_row();
   }
-  return rows.matrix(fine.owned_nodes, coarse.overlap_nodes, coarse.owned_nodes);
+  return rows.matrix(fine.owned_nodes, coarse.overlap_nodes(), coarse.owned_nodes);
 }
 
 } // namespace rpc::fem

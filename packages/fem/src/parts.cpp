@@ -89,32 +89,54 @@ LocalSets local_sets(const mesh::Mesh &mesh)
   return sets;
 }
 
+/// Takes what other ranks know of the sets that reach this rank's ghost nodes.
+/// @return whether there was something new
+bool hear(const LO first, const LO end, const DeviceView<int *> &set, const Vector &heard,
+          const DeviceView<double *> &smallest)
+{
+  const auto from = device_read(heard);
+  LO changes = 0;
+  Kokkos::parallel_reduce(
+      "rpc::fem::hear_of_sets", Kokkos::RangePolicy<ExecutionSpace, LO>(first, end),
+      KOKKOS_LAMBDA(const LO n, LO &count) {
+        if (from(n) < Kokkos::atomic_fetch_min(&smallest(set(n)), from(n))) ++count;
+      },
+      changes);
+  return changes > 0;
+}
+
+/// nodes <- the numbers of their sets.
+void tell(const DeviceView<int *> &set, const DeviceView<double *> &of_set, Vector &nodes)
+{
+  const auto to = device_write(nodes);
+  Kokkos::parallel_for(
+      "rpc::fem::tell_of_sets", device_range(static_cast<LO>(to.extent(0))),
+      KOKKOS_LAMBDA(const LO n) { to(n) = of_set(set(n)); });
+}
+
 /// The smallest node id of the part that each local set of nodes belongs to; collective.
 std::vector<GO> smallest_ids(const Discretization &d, const LocalSets &sets)
 {
   const mesh::Mesh &mesh = *d.mesh;
-  const int dim = d.dim();
-  const auto set = to_host(sets.of_node);
   std::vector<GO> smallest(sets.count, std::numeric_limits<GO>::max());
-  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) smallest[set(n)] = std::min(smallest[set(n)], mesh.node_id(n));
-  if (mesh.comm().getSize() == 1) return smallest;
-  Vector owned(d.owned_dofs); // doubles hold node ids exactly
-  for (int changed = 1; changed; changed = max_all(mesh.comm(), changed)) {
-    changed = 0;
-    {
-      const auto to = owned.getLocalViewHost(Tpetra::Access::OverwriteAll);
-      for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
-        for (int c = 0; c < dim; ++c) to(dof(dim, n, c), 0) = static_cast<double>(smallest[set(n)]);
-    }
-    const auto overlap = on_overlap(d, owned);
-    const auto from = overlap->getLocalViewHost(Tpetra::Access::ReadOnly);
-    for (LO n = mesh.num_owned_nodes(); n < mesh.num_local_nodes(); ++n) {
-      const GO heard = static_cast<GO>(from(dof(dim, n, 0), 0));
-      if (heard >= smallest[set(n)]) continue;
-      smallest[set(n)] = heard;
-      changed = 1;
-    }
+  if (sets.count == 1) {
+    for (LO n = 0; n < mesh.num_owned_nodes(); ++n) smallest[0] = std::min(smallest[0], mesh.node_id(n));
+  } else {
+    const auto set = to_host(sets.of_node);
+    for (LO n = 0; n < mesh.num_owned_nodes(); ++n) smallest[set(n)] = std::min(smallest[set(n)], mesh.node_id(n));
   }
+  if (mesh.comm().getSize() == 1) return smallest;
+  const std::vector<double> mine(smallest.begin(), smallest.end()); // doubles hold node ids exactly
+  const auto known = device_values(mine, "rpc::fem::smallest_ids");
+  Vector owned(mesh.owned_nodes);
+  for (int changed = 1; changed;) {
+    tell(sets.of_node, known, owned);
+    const auto first = mesh.num_owned_nodes(), end = mesh.num_local_nodes();
+    const bool heard = hear(first, end, sets.of_node, d.node_halo->at_columns(owned), known);
+    changed = max_all(mesh.comm(), heard ? 1 : 0);
+  }
+  const auto now = to_host(known);
+  for (int s = 0; s < sets.count; ++s) smallest[s] = static_cast<GO>(now(s));
   return smallest;
 }
 
@@ -220,16 +242,18 @@ Parts connected_parts(const Discretization &d)
   } else {
     const std::vector<GO> smallest = smallest_ids(d, sets);
     const std::vector<GO> ids = all_different(mesh.comm(), smallest);
-    const auto set = to_host(sets.of_node);
-    std::vector<int> part_of_node(set.extent(0));
-    for (std::size_t n = 0; n < part_of_node.size(); ++n)
-      part_of_node[n] = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), smallest[set(n)]) - ids.begin());
     parts.part.resize(ids.size());
-    if (ids.size() == 1)
+    if (ids.size() == 1) {
+      Kokkos::deep_copy(parts.of_node, 0);
       parts.part[0] = whole_body(mesh);
-    else
+    } else {
+      const auto set = to_host(sets.of_node);
+      std::vector<int> part_of_node(set.extent(0));
+      for (std::size_t n = 0; n < part_of_node.size(); ++n)
+        part_of_node[n] = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), smallest[set(n)]) - ids.begin());
       describe_parts(mesh, part_of_node, parts.part);
-    parts.of_node = device_values(part_of_node, "rpc::fem::part_of_node");
+      parts.of_node = device_values(part_of_node, "rpc::fem::part_of_node");
+    }
   }
   const int num_parts = parts.size();
   parts.centre = DeviceView<double **>("rpc::fem::part_centre", num_parts, mesh.dim());

@@ -139,7 +139,7 @@ Pieces pieces_of(const Discretization &d, const DirichletDofs &dirichlet)
       boxes[piece[cell]].add(x);
       shared = shared || cells(cell, a) >= mesh.num_owned_nodes();
       if (a >= vertices) continue;
-      key.push_back(mesh.overlap_nodes->getGlobalElement(cells(cell, a)));
+      key.push_back(mesh.node_gid(cells(cell, a)));
     }
     if (!shared) continue;
     std::sort(key.begin(), key.end());

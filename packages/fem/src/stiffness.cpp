@@ -228,7 +228,7 @@ std::optional<RepeatedStiffness> repeated_rows(const Discretization &d, const Ce
   LO bad = 0;
   const auto stiffness = node_stiffness(d, cells, bad);
   if (!on_all(bad == 0)) return std::nullopt;
-  const LO num_owned = d.mesh->num_owned_nodes(), num_columns = num_local(*d.overlap_dofs);
+  const LO num_owned = d.mesh->num_owned_nodes(), num_columns = d.num_overlap_dofs();
   const auto beside = nodes_beside_prescribed(d, fixed);
   const auto kinds =
       alike_nodes_of(num_owned, SameEliminatedRows<Dim, Nodes>{stiffness, fixed, flagged(beside, num_owned)});
@@ -292,7 +292,7 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
 std::optional<RepeatedStiffness> repeated_stiffness(const Discretization &d, const Materials &materials,
                                                     const DirichletDofs &dirichlet)
 {
-  const bool has_kinds = d.congruent.size() > 0; // on this rank
+  const bool has_kinds = d.congruent.size() > 0 || d.mesh->num_cells() == 0; // on this rank
   if (min_all(d.mesh->comm(), has_kinds ? 1 : 0) == 0) return std::nullopt;
   std::optional<RepeatedStiffness> result;
   with_elastic_cells(d, materials, [&](const auto &body) { result = repeated_stiffness_of(d, body, dirichlet.fixed); });

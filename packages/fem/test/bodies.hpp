@@ -153,9 +153,9 @@ inline std::vector<double> by_node_id(const fem::Discretization &d, const Vector
 /// Ids of all nodes of local cells.
 inline std::vector<GO> overlap_node_ids(const mesh::Mesh &mesh)
 {
-  Vector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes);
+  Vector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes());
   for (LO n = 0; n < mesh.num_owned_nodes(); ++n) owned.replaceLocalValue(n, static_cast<double>(mesh.node_id(n)));
-  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes()), Tpetra::INSERT);
   const auto values = overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
   std::vector<GO> ids;
   for (LO n = 0; n < mesh.num_local_nodes(); ++n) ids.push_back(static_cast<GO>(values(n, 0)));

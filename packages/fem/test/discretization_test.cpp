@@ -118,9 +118,9 @@ TEST(Discretization, UnknownsAreNumberedByNodeInEveryMap)
         EXPECT_EQ(dofs.getGlobalElement(dof), d.dim() * nodes.getGlobalElement(dof / d.dim()) + dof % d.dim());
     };
     expect_numbered(*d.mesh->owned_nodes, *d.owned_dofs);
-    expect_numbered(*d.mesh->overlap_nodes, *d.overlap_dofs);
+    expect_numbered(*d.mesh->overlap_nodes(), *fem::overlap_dofs(d));
     const auto graph = fem::dof_graph(d);
-    EXPECT_TRUE(graph->getColMap()->isSameAs(*d.overlap_dofs));
+    EXPECT_TRUE(graph->getColMap()->isSameAs(*fem::overlap_dofs(d)));
     EXPECT_TRUE(graph->getRowMap()->isSameAs(*d.owned_dofs));
   }
 }

@@ -135,7 +135,7 @@ TEST(RepeatedStiffness, MakesAnOperatorThatIsAssembledWhenSomebodyAsks)
     };
     const auto points = some_points(d);
     const auto nodes = distinct_nodes({points.node});
-    const auto K = rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.overlap_dofs, d.dof_import, assemble}));
+    const auto K = rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.halo, assemble}));
     const auto assembled = rcp(new StiffnessOperator(assemble(), d.dim()));
     UpdatedOperator H(K, nodes), expected(assembled, nodes);
     const auto u = interpolate(d, wild);

@@ -324,29 +324,22 @@ Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
   for (const Index &at : shell(numbering.local_nodes, numbering.owned_nodes)) ghosts.push_back({grid.node_gid(at), at});
   std::sort(ghosts.begin(), ghosts.end(), [](const Ghost &a, const Ghost &b) { return a.gid < b.gid; });
 
-  const GO first = grid.node_offset(rank);
   const LO num_owned = static_cast<LO>(numbering.owned_nodes.size());
   const LO num_nodes = num_owned + static_cast<LO>(ghosts.size());
+  Mesh mesh;
   std::vector<Index> ghost_positions;
-  Teuchos::Array<GO> gids;
-  if (comm->getSize() > 1)
-    for (LO n = 0; n < num_owned; ++n) gids.push_back(first + n);
   for (const Ghost &ghost : ghosts) {
-    gids.push_back(ghost.gid);
+    mesh.ghosts.push_back(ghost.gid);
     ghost_positions.push_back(ghost.at);
   }
   numbering.ghost = device_positions(ghost_positions, "rpc::mesh::ghost_nodes");
   numbering.halo = device_positions(halo, "rpc::mesh::halo_cells");
   number_nodes(numbering, num_nodes);
 
-  Mesh mesh;
   mesh.element = options.element;
   mesh.box = std::make_shared<const BoxOptions>(options);
   const GO total = grid.num_nodes_total();
-  const GO invalid = Teuchos::OrdinalTraits<GO>::invalid();
   mesh.owned_nodes = rcp(new Map(total, num_owned, 0, comm));
-  mesh.overlap_nodes = mesh.owned_nodes;
-  if (comm->getSize() > 1) mesh.overlap_nodes = rcp(new Map(invalid, gids(), 0, comm));
   const BoxParts parts = box_parts(options.element);
   const LO num_parts = static_cast<LO>(parts.size());
   mesh.num_owned_cells = num_parts * numbering.num_owned_cells;

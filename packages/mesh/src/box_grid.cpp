@@ -9,7 +9,23 @@
 namespace rpc::mesh
 {
 
-Grid::Grid(const BoxOptions &options, const int num_ranks) : dim_(options.element.dim)
+Grid::Grid(const BoxOptions &options, const int num_ranks) : Grid(num_ranks, options)
+{
+  RPC_REQUIRE_CODE(num_blocks_ <= num_ranks_, ExitCode::internal_error,
+                   "box mesh: " << num_blocks_ << " blocks on " << num_ranks_ << " ranks");
+  RPC_REQUIRE_CODE(
+      divided_, ExitCode::bad_mesh,
+      "box mesh: " << cells_[0] << " x " << cells_[1] << (dim_ == 3 ? " x " + std::to_string(cells_[2]) : "")
+                   << " cells cannot be divided among " << num_blocks_ << " ranks. Use fewer ranks or more cells.");
+}
+
+bool Grid::can_divide(const BoxOptions &options)
+{
+  return Grid(options.blocks, options).divided_;
+}
+
+Grid::Grid(const int num_ranks, const BoxOptions &options)
+    : dim_(options.element.dim), num_ranks_(num_ranks), num_blocks_(options.blocks > 0 ? options.blocks : num_ranks)
 {
   for (int d = 0; d < dim_; ++d) {
     order_[d] = options.element.order_along(d);
@@ -17,16 +33,17 @@ Grid::Grid(const BoxOptions &options, const int num_ranks) : dim_(options.elemen
   }
   // The shortest direction runs fastest: least bandwidth, and blocks along the longest one share short borders.
   std::sort(axes_.data(), axes_.data() + dim_, [&](const int a, const int b) { return cells_[a] < cells_[b]; });
-  choose_blocks(num_ranks);
+  divided_ = choose_blocks();
 }
 
-void Grid::choose_blocks(const int num_ranks)
+/// @return whether there are any
+bool Grid::choose_blocks()
 {
   double least = std::numeric_limits<double>::max();
-  for (int x = 1; x <= num_ranks; ++x) {
-    for (int y = 1; num_ranks % x == 0 && y <= num_ranks / x; ++y) {
-      const int z = num_ranks / x / y;
-      if (x * y * z != num_ranks || x > cells_[0] || y > cells_[1] || z > cells_[2]) continue;
+  for (int x = 1; x <= num_blocks_; ++x) {
+    for (int y = 1; num_blocks_ % x == 0 && y <= num_blocks_ / x; ++y) {
+      const int z = num_blocks_ / x / y;
+      if (x * y * z != num_blocks_ || x > cells_[0] || y > cells_[1] || z > cells_[2]) continue;
       const std::array<int, 3> blocks{x, y, z};
       double shared = 0; // faces between blocks
       for (int d = 0; d < 3; ++d) shared += (blocks[d] - 1) * (double(num_cells_total()) / cells_[d]);
@@ -35,10 +52,16 @@ void Grid::choose_blocks(const int num_ranks)
       for (int d = 0; d < 3; ++d) blocks_[d] = blocks[d];
     }
   }
-  RPC_REQUIRE_CODE(
-      least < std::numeric_limits<double>::max(), ExitCode::bad_mesh,
-      "box mesh: " << cells_[0] << " x " << cells_[1] << (dim_ == 3 ? " x " + std::to_string(cells_[2]) : "")
-                   << " cells cannot be divided among " << num_ranks << " ranks. Use fewer ranks or more cells.");
+  return least < std::numeric_limits<double>::max();
+}
+
+BoxOptions divided(BoxOptions options, const int num_ranks, const GO least_nodes)
+{
+  GO nodes = 1;
+  for (int d = 0; d < options.element.dim; ++d) nodes *= options.intervals(d) + 1;
+  options.blocks = static_cast<int>(std::clamp<GO>(nodes / least_nodes, 1, num_ranks));
+  while (options.blocks > 1 && !Grid::can_divide(options)) --options.blocks;
+  return options;
 }
 
 } // namespace rpc::mesh

@@ -1,9 +1,11 @@
 #include "rpc/mesh/canonical_order.hpp"
 
+#include "rpc/core/exchange.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace rpc::mesh
 {
@@ -37,19 +39,30 @@ template std::vector<double> CanonicalOrder::gather(const double *, int) const;
 template std::vector<int> CanonicalOrder::gather(const int *, int) const;
 template std::vector<GO> CanonicalOrder::gather(const GO *, int) const;
 
+/// The owners of the ghosts are asked.
 HostView<GO *> overlap_node_ids(const Mesh &mesh)
 {
   if (mesh.comm().getSize() == 1) return mesh.node_id;
-  using IdVector = Tpetra::Vector<GO, LO, GO, Node>;
-  IdVector owned(mesh.owned_nodes), overlap(mesh.overlap_nodes);
-  {
-    const auto view = owned.getLocalViewHost(Tpetra::Access::OverwriteAll);
-    for (LO n = 0; n < mesh.num_owned_nodes(); ++n) view(n, 0) = mesh.node_id(n);
-  }
-  overlap.doImport(owned, Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+  const LO num_owned = mesh.num_owned_nodes();
   HostView<GO *> ids("rpc::mesh::overlap_node_ids", mesh.num_local_nodes());
-  const auto view = overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
-  for (LO n = 0; n < mesh.num_local_nodes(); ++n) ids(n) = view(n, 0);
+  for (LO n = 0; n < num_owned; ++n) ids(n) = mesh.node_id(n);
+  const auto size = static_cast<Teuchos_Ordinal>(mesh.ghosts.size());
+  std::vector<int> rank(size), node(size), order(size), counts(mesh.comm().getSize());
+  mesh.owned_nodes->getRemoteIndexList(Teuchos::ArrayView<const GO>(mesh.ghosts.data(), size),
+                                       Teuchos::ArrayView<int>(rank.data(), size),
+                                       Teuchos::ArrayView<int>(node.data(), size));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](const int a, const int b) { return rank[a] < rank[b]; });
+  std::vector<double> questions, answers; // doubles hold ids exactly
+  for (const int ghost : order) {
+    ++counts[rank[ghost]];
+    questions.push_back(node[ghost]);
+  }
+  const Exchange exchange(mesh.comm(), counts);
+  for (const double lid : exchange.forward(questions, 1))
+    answers.push_back(static_cast<double>(mesh.node_id(static_cast<LO>(lid))));
+  const std::vector<double> got = exchange.back(answers, 1);
+  for (std::size_t k = 0; k < order.size(); ++k) ids(num_owned + order[k]) = static_cast<GO>(got[k]);
   return ids;
 }
 

@@ -212,11 +212,9 @@ Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm)
   const Part part = deal(whole, *comm);
   Mesh mesh;
   mesh.element = part.mesh.element;
-  const Teuchos::Array<GO> gids(part.gid.begin(), part.gid.end());
   const GO invalid = Teuchos::OrdinalTraits<GO>::invalid();
   mesh.owned_nodes = rcp(new Map(invalid, part.node_id.size(), 0, comm));
-  mesh.overlap_nodes = mesh.owned_nodes;
-  if (comm->getSize() > 1) mesh.overlap_nodes = rcp(new Map(invalid, gids(), 0, comm));
+  mesh.ghosts.assign(part.gid.begin() + static_cast<std::ptrdiff_t>(part.node_id.size()), part.gid.end());
   mesh.coords = device_table("rpc::mesh::coords", part.mesh.coords, mesh.dim());
   mesh.cells = device_table("rpc::mesh::cells", part.mesh.cells, mesh.element.num_nodes());
   mesh.block = to_device(host_array<int>("rpc::mesh::block", part.mesh.block));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace rpc::mesh
 {
@@ -35,6 +36,16 @@ const Side &Mesh::side(const std::string &name, const std::string &user) const
   if (const Side *const found = find(sides, name)) return *found;
   throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
                                        "\", which the mesh does not have. Its sides: " + names_of(sides) + ".");
+}
+
+RCP<const Map> Mesh::overlap_nodes() const
+{
+  if (comm().getSize() == 1) return owned_nodes;
+  std::vector<GO> gids(num_owned_nodes());
+  if (!gids.empty()) std::iota(gids.begin(), gids.end(), owned_nodes->getMinGlobalIndex());
+  gids.insert(gids.end(), ghosts.begin(), ghosts.end());
+  return rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), Teuchos::ArrayView<const GO>(gids), 0,
+                     owned_nodes->getComm()));
 }
 
 std::vector<LO> Mesh::nodes_of(const std::string &name, const std::string &user) const

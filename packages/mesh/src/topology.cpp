@@ -77,9 +77,8 @@ std::vector<char> owned(const Entities &entities, const Mesh &mesh)
   std::vector<char> owns;
   for (int e = 0; e < entities.size(); ++e) {
     const int *const vertex = &entities.vertices[std::size_t(entities.num_vertices) * e];
-    const int lowest = *std::min_element(vertex, vertex + entities.num_vertices, [&](const int a, const int b) {
-      return mesh.overlap_nodes->getGlobalElement(a) < mesh.overlap_nodes->getGlobalElement(b);
-    });
+    const int lowest = *std::min_element(vertex, vertex + entities.num_vertices,
+                                         [&](const int a, const int b) { return mesh.node_gid(a) < mesh.node_gid(b); });
     owns.push_back(lowest < mesh.num_owned_nodes() ? 1 : 0);
   }
   return owns;

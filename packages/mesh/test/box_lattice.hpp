@@ -170,14 +170,17 @@ struct Made {
   GO node_id(const LO lid) const { return lattice.node_id(node[lid]); }
 };
 
-/// check(Made) for each of the boxes.
+/// check(Made) for each of the boxes: divided among all ranks, and on one or two of them.
 template <class Check>
 void for_each_box(const Check &check)
 {
-  for (const mesh::BoxOptions &box : boxes()) {
-    SCOPED_TRACE(text_of(box));
-    check(Made(box));
-  }
+  const int ranks = Tpetra::getDefaultComm()->getSize();
+  for (mesh::BoxOptions &box : boxes())
+    for (int blocks = 0; blocks < std::min(ranks, 3); ++blocks) {
+      box.blocks = blocks;
+      SCOPED_TRACE(text_of(box) + ", blocks: " + std::to_string(blocks));
+      check(Made(box));
+    }
 }
 
 } // namespace rpc::test

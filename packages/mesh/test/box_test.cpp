@@ -83,20 +83,20 @@ TEST(Box, GlobalIndicesAreConsecutiveAndOwnedNodesComeFirstInTheOverlap)
     ASSERT_LE(num_owned, made.mesh.num_local_nodes());
     for (LO n = 0; n < num_owned; ++n) {
       EXPECT_EQ(made.mesh.owned_nodes->getGlobalElement(n), end - num_owned + n);
-      EXPECT_EQ(made.mesh.overlap_nodes->getGlobalElement(n), end - num_owned + n);
+      EXPECT_EQ(made.mesh.node_gid(n), end - num_owned + n);
     }
     for (LO n = num_owned; n < made.mesh.num_local_nodes(); ++n)
-      EXPECT_FALSE(made.mesh.owned_nodes->isNodeGlobalElement(made.mesh.overlap_nodes->getGlobalElement(n)));
+      EXPECT_FALSE(made.mesh.owned_nodes->isNodeGlobalElement(made.mesh.node_gid(n)));
   });
 }
 
 TEST(Box, GhostNodesLieWhereTheirOwnersHaveThem)
 {
   for_each_box([](const Made &made) {
-    rpc::Vector id(made.mesh.owned_nodes), id_overlap(made.mesh.overlap_nodes);
+    rpc::Vector id(made.mesh.owned_nodes), id_overlap(made.mesh.overlap_nodes());
     for (LO n = 0; n < made.mesh.num_owned_nodes(); ++n)
       id.replaceLocalValue(n, static_cast<double>(made.mesh.node_id(n)));
-    id_overlap.doImport(id, rpc::Import(made.mesh.owned_nodes, made.mesh.overlap_nodes), Tpetra::INSERT);
+    id_overlap.doImport(id, rpc::Import(made.mesh.owned_nodes, made.mesh.overlap_nodes()), Tpetra::INSERT);
     const auto ids = id_overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
     for (LO n = 0; n < made.mesh.num_local_nodes(); ++n) EXPECT_EQ(ids(n, 0), made.node_id(n)) << "node " << n;
   });
@@ -153,6 +153,25 @@ TEST(Box, CellsHaveEqualPositiveMeasuresThatSumToTheBox)
     }
     EXPECT_NEAR(rpc::sum_all(made.mesh.comm(), mine), whole, 1e-13 * whole);
   });
+}
+
+TEST(Box, GoesToFewerRanksWhereItHasFewNodes)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const int ranks = comm->getSize();
+  const BoxOptions box{{0, 0}, {2, 1}, {9, 4}, Element{2, 1}}; // 50 nodes
+  EXPECT_EQ(rpc::mesh::divided(box, ranks, 1).blocks, ranks);
+  EXPECT_EQ(rpc::mesh::divided(box, ranks, 25).blocks, std::min(ranks, 2));
+  EXPECT_EQ(rpc::mesh::divided(box, ranks, 26).blocks, 1);
+  EXPECT_EQ(rpc::mesh::divided(box, ranks, 1000).blocks, 1);
+  EXPECT_EQ(rpc::mesh::divided(box, 11, 1).blocks, 10); // no direction has 11 cells
+  const auto mesh = make_box(rpc::mesh::divided(box, ranks, 1000), comm);
+  EXPECT_EQ(mesh.num_owned_nodes(), comm->getRank() == 0 ? 50 : 0);
+  EXPECT_EQ(mesh.num_local_nodes(), mesh.num_owned_nodes());
+  EXPECT_EQ(mesh.num_cells(), comm->getRank() == 0 ? 36 : 0);
+  auto too_many = box;
+  too_many.blocks = ranks + 1;
+  expect_error(ExitCode::internal_error, {"blocks"}, [&] { make_box(too_many, comm); });
 }
 
 TEST(Box, TetrahedraOfACellShareItsDiagonalAndNothingElse)

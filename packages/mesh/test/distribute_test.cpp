@@ -98,9 +98,9 @@ struct Dealt {
         cells("cells", mesh.cells.extent(0), mesh.cells.extent(1))
   {
     Kokkos::deep_copy(cells, rpc::to_host(mesh.cells));
-    rpc::Vector id(mesh.owned_nodes), id_overlap(mesh.overlap_nodes);
+    rpc::Vector id(mesh.owned_nodes), id_overlap(mesh.overlap_nodes());
     for (LO n = 0; n < mesh.num_owned_nodes(); ++n) id.replaceLocalValue(n, static_cast<double>(mesh.node_id(n)));
-    id_overlap.doImport(id, rpc::Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+    id_overlap.doImport(id, rpc::Import(mesh.owned_nodes, mesh.overlap_nodes()), Tpetra::INSERT);
     const auto ids = id_overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
     for (LO n = 0; n < mesh.num_local_nodes(); ++n) node_id.push_back(static_cast<int>(ids(n, 0)));
     for (int c = 0; c < whole.num_cells(); ++c) known[nodes_of(c)] = c;
@@ -208,7 +208,8 @@ TEST(Distribute, NodeBelongsToTheLowestRankAroundIt)
 TEST(Distribute, GlobalIndicesAreConsecutiveAndGhostsAscend)
 {
   for_each_mesh([](const Dealt &dealt) {
-    const rpc::Map &owned = *dealt.mesh.owned_nodes, &overlap = *dealt.mesh.overlap_nodes;
+    const auto overlap_nodes = dealt.mesh.overlap_nodes();
+    const rpc::Map &owned = *dealt.mesh.owned_nodes, &overlap = *overlap_nodes;
     const LO num_owned = dealt.mesh.num_owned_nodes();
     GO end = 0;
     Teuchos::scan(*world(), Teuchos::REDUCE_SUM, GO(num_owned), Teuchos::outArg(end));
@@ -224,7 +225,7 @@ TEST(Distribute, GlobalIndicesAreConsecutiveAndGhostsAscend)
       }
     }
     if (world()->getSize() == 1) {
-      EXPECT_EQ(dealt.mesh.overlap_nodes, dealt.mesh.owned_nodes);
+      EXPECT_EQ(overlap_nodes, dealt.mesh.owned_nodes);
     }
   });
 }

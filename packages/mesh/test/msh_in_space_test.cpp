@@ -206,9 +206,9 @@ TEST(MshInSpace, RanksTogetherHaveTheWholeMesh)
   const auto comm = Tpetra::getDefaultComm();
   const auto mesh = rpc::mesh::make_mesh(rpc::mesh::GmshOptions{path_of_data("octant_22.msh"), 1, 0}, comm);
   EXPECT_EQ(mesh.dim(), 3);
-  rpc::Vector id(mesh.owned_nodes), id_overlap(mesh.overlap_nodes);
+  rpc::Vector id(mesh.owned_nodes), id_overlap(mesh.overlap_nodes());
   for (rpc::LO n = 0; n < mesh.num_owned_nodes(); ++n) id.replaceLocalValue(n, static_cast<double>(mesh.node_id(n)));
-  id_overlap.doImport(id, rpc::Import(mesh.owned_nodes, mesh.overlap_nodes), Tpetra::INSERT);
+  id_overlap.doImport(id, rpc::Import(mesh.owned_nodes, mesh.overlap_nodes()), Tpetra::INSERT);
   const auto node_id = id_overlap.getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto cells = rpc::to_host(mesh.cells);
   const auto coords = rpc::to_host(mesh.coords);

@@ -15,16 +15,16 @@ namespace
 template <class Update, class Values>
 struct WriteBlocks {
   int dim;
-  DeviceView<LO *> row, column;     // (blocks)
-  DeviceView<std::size_t **> entry; // (blocks, dim)
-  DeviceView<double ***> base;      // (blocks, dim, dim)
-  DeviceView<std::size_t *> begin;  // (blocks + 1)
-  DeviceView<int *> contact;        // (parts)
-  DeviceView<double *> coefficient; // (parts)
-  DeviceView<char *> prescribed;    // (columns)
-  Update update;                    // (near contact nodes, dim * dim)
-  DeviceView<double ***> added;     // (blocks, dim, dim)  out
-  Values values;                    // (matrix entries)  out
+  DeviceView<LO *> row, column;      // (blocks)
+  DeviceView<std::size_t **> entry;  // (blocks, dim)
+  DeviceView<double ***> base;       // (blocks, dim, dim)
+  DeviceView<std::size_t *> begin;   // (blocks + 1)
+  DeviceView<int *> contact;         // (parts)
+  DeviceView<double *> coefficient;  // (parts)
+  DeviceView<char *> prescribed;     // (columns)
+  Update update;                     // (near contact nodes, dim * dim)
+  DeviceView<double ***> sum, added; // (blocks, dim, dim)  out
+  Values values;                     // (matrix entries)  out
 
   KOKKOS_FUNCTION void operator()(const LO b) const
   {
@@ -36,6 +36,7 @@ struct WriteBlocks {
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) {
         const bool held = prescribed(dof(dim, row(b), i)) || prescribed(dof(dim, column(b), j));
+        sum(b, i, j) = block[i][j];
         added(b, i, j) = held ? 0 : block[i][j];
         values(entry(b, i) + j) = base(b, i, j) + added(b, i, j);
       }
@@ -71,7 +72,8 @@ MultiVector packed_blocks(const RCP<const Map> &contact, const DeviceView<double
 
 CoarseContact::CoarseContact(const ContactSupports &supports, const Map &nodes, const int dim, RCP<CrsMatrix> A,
                              const DeviceView<char *> &prescribed)
-    : dim_(dim), A_(std::move(A)), rows_(RepeatedRows::of(A_, dim_)), prescribed_(prescribed)
+    : dim_(dim), A_(std::move(A)), rows_(RepeatedRows::of(A_, dim_)), halo_(A_->getGraph()->getImporter()),
+      prescribed_(prescribed)
 {
   const NearSupports near = near_supports(supports, nodes);
   near_ = near.importer;
@@ -94,7 +96,9 @@ CoarseContact::CoarseContact(const ContactSupports &supports, const Map &nodes, 
   column_ = device_values(blocks.column, "rpc::solver::coarse_column");
   nodes_ = device_values(blocks.nodes, "rpc::solver::coarse_nodes");
   first_ = device_values(first_blocks(blocks.row), "rpc::solver::coarse_first");
+  sum_ = DeviceView<double ***>("rpc::solver::coarse_sum", n, dim_, dim_);
   added_ = DeviceView<double ***>("rpc::solver::coarse_added", n, dim_, dim_);
+  bounded_ = max_all(*A_->getComm(), blocks.bounded > 0 ? 1 : 0) == 1;
   begin_ = device_values(blocks.begin, "rpc::solver::coarse_begin");
   contact_ = device_values(blocks.contact, "rpc::solver::coarse_contact");
   coefficient_ = device_values(blocks.coefficient, "rpc::solver::coarse_coefficient");
@@ -103,20 +107,30 @@ CoarseContact::CoarseContact(const ContactSupports &supports, const Map &nodes, 
   Kokkos::deep_copy(own_entry_, own_entry);
 }
 
+ContactSupports CoarseContact::coarser_supports(const CrsMatrix &interpolation) const
+{
+  const auto gids = [this](const Map &dofs, const DeviceView<LO *> &nodes) {
+    const auto node = to_host(nodes);
+    std::vector<GO> gid;
+    for (std::size_t b = 0; b < node.extent(0); ++b)
+      gid.push_back(node_of<GO>(dim_, dofs.getGlobalElement(dof(dim_, node(b), 0))));
+    return gid;
+  };
+  return supports_of_blocks(gids(*A_->getRowMap(), row_), gids(*A_->getColMap(), column_), interpolation);
+}
+
 void CoarseContact::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
-  if (!rows_.pays()) return A_->apply(x, y);
-  const auto importer = A_->getGraph()->getImporter();
   for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
-    RCP<const Vector> columns = x.getVector(k);
-    if (!importer.is_null()) {
-      const auto imported = rcp(new Vector(A_->getColMap()));
-      imported->doImport(*columns, *importer, Tpetra::INSERT);
-      columns = imported;
-    }
+    const auto from = x.getVector(k);
     const auto to = y.getVectorNonConst(k);
-    rows_.apply(*columns, *to);
-    add_product(*columns, *to);
+    const Vector &columns = halo_.at_columns(*from);
+    if (rows_.pays()) {
+      rows_.apply(columns, *to);
+      add_product(columns, *to);
+    } else {
+      A_->localApply(columns, *to);
+    }
   }
 }
 
@@ -140,7 +154,6 @@ void CoarseContact::add_product(const Vector &x, Vector &y) const
           for (int j = 0; j < dim; ++j) sum += added(b, i, j) * from(dof(dim, column(b), j));
         to(dof(dim, nodes(n), i)) += sum;
       });
-  Kokkos::fence();
 }
 
 void CoarseContact::write(const MultiVector &update)
@@ -152,7 +165,7 @@ void CoarseContact::write(const MultiVector &update)
   Kokkos::parallel_for(
       "rpc::solver::write_contact", device_range(static_cast<LO>(row_.extent(0))),
       WriteBlocks<std::decay_t<decltype(from)>, std::decay_t<decltype(values)>>{
-          dim_, row_, column_, entry_, base_, begin_, contact_, coefficient_, prescribed_, from, added_, values});
+          dim_, row_, column_, entry_, base_, begin_, contact_, coefficient_, prescribed_, from, sum_, added_, values});
   Kokkos::fence();
 }
 

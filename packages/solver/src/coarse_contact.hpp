@@ -2,7 +2,7 @@
 
 #include "contact_supports.hpp"
 #include "rpc/algebra/repeated_rows.hpp"
-#include "rpc/core/tpetra.hpp"
+#include "rpc/core/halo.hpp"
 
 namespace rpc::solver
 {
@@ -35,6 +35,14 @@ public:
 
   /// y += (S^T U S) x in the rows that repeat in A.  @param x  (columns of A)
   void add_product(const Vector &x, Vector &y) const;
+  /// Whether couplings had to be bounded on any rank.
+  bool is_bounded() const { return bounded_; }
+  /// That of the next coarser mesh from the sums of this one, which is not bounded: each of them is a block that the coarser mesh's nodes
+  /// share by P. Collective.  @param interpolation  P
+  ContactSupports coarser_supports(const CrsMatrix &interpolation) const;
+  /// (blocks; dim * dim) These sums, as they were written last, for its write().
+  MultiVector packed_sums(const RCP<const Map> &blocks) const { return packed_blocks(blocks, sum_); }
+
   /// Collective. @param update  U, packed_blocks() [N/m]
   void write(const MultiVector &update);
 
@@ -49,6 +57,7 @@ private:
   int dim_;
   RCP<CrsMatrix> A_;
   RepeatedRows rows_;                    // of the matrix without contact
+  Halo halo_;                            // of its columns
   RCP<const Import> near_;               // from the contact nodes to those near this rank's nodes
   DeviceView<LO *> row_, column_;        // (blocks) owned node; column's node
   DeviceView<std::size_t **> entry_;     // (blocks, dim) where the block begins in each of its rows
@@ -59,7 +68,8 @@ private:
   DeviceView<char *> prescribed_;        // (columns of A)
   DeviceView<LO *> nodes_;               // (n)
   DeviceView<std::size_t *> first_;      // (n + 1) where a node's blocks begin
-  DeviceView<double ***> added_;         // (blocks, dim, dim) what contact adds
+  DeviceView<double ***> sum_, added_;   // (blocks, dim, dim) S^T U S, and with 0 at prescribed unknowns
+  bool bounded_ = false;                 // some couplings of it
   DeviceView<std::size_t **> own_entry_; // (n, dim) where the node's own block begins
 };
 

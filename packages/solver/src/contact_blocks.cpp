@@ -37,14 +37,15 @@ std::vector<LO> local_nodes(const Map &dofs, const int dim, const std::vector<GO
 }
 
 /// The entries of supports that lie at each of some nodes.
-/// @param nodes  ascending   @param node  (entries) of them, or -1
+/// @param nodes  ascending, some   @param node  (entries) of them, or -1
 Lists entries_at(const std::vector<LO> &nodes, const std::vector<LO> &node)
 {
-  std::vector<std::size_t> number; // of an entry's node
+  std::vector<std::size_t> number_of(nodes.back() + 1), number; // of a node, of an entry's node
+  for (std::size_t n = 0; n < nodes.size(); ++n) number_of[nodes[n]] = n;
   Lists lists;
   lists.begin.assign(nodes.size() + 1, 0);
   for (const LO n : node) {
-    number.push_back(static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), n) - nodes.begin()));
+    number.push_back(n >= 0 ? number_of[n] : 0);
     if (n >= 0) ++lists.begin[number.back() + 1];
   }
   std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
@@ -92,8 +93,9 @@ void add_blocks(const HostRows &around, const std::size_t first, const int dim, 
 ContactBlocks contact_blocks(const NearSupports &supports, const int dim, const CrsMatrix &A)
 {
   const Map &rows = *A.getRowMap(), &columns = *A.getColMap();
+  const SupportRows &right = supports.column.size() > 0 ? supports.column : supports;
   const std::vector<LO> row_node = local_nodes(rows, dim, supports.node);
-  const std::vector<LO> column_node = local_nodes(columns, dim, supports.node);
+  const std::vector<LO> column_node = local_nodes(columns, dim, right.node);
   ContactBlocks blocks;
   auto &nodes = blocks.nodes;
   std::copy_if(row_node.begin(), row_node.end(), std::back_inserter(nodes), [](const LO node) { return node >= 0; });
@@ -118,9 +120,10 @@ ContactBlocks contact_blocks(const NearSupports &supports, const int dim, const 
     parts.clear();
     for (std::size_t e = entries.begin[n]; e < entries.begin[n + 1]; ++e) {
       const int k = entries.value[e], c = contact_of[k];
-      for (std::size_t l = supports.begin[c]; l < supports.begin[c + 1]; ++l) {
-        const double both = supports.weight[k] * supports.weight[l];
+      for (std::size_t l = right.begin[c]; l < right.begin[c + 1]; ++l) {
+        const double both = supports.weight[k] * right.weight[l];
         const std::size_t place = column_node[l] < 0 ? none : place_of[column_node[l]];
+        blocks.bounded += place == none;
         if (place == none)
           parts.push_back({place_of[nodes[n]], c, std::abs(both)});
         else

@@ -16,6 +16,7 @@ struct ContactBlocks {
   std::vector<std::size_t> begin{0}; ///< (blocks + 1) where a block's parts begin
   std::vector<int> contact;          ///< (parts) near contact node, ascending in each block
   std::vector<double> coefficient;   ///< (parts) product of the weights at both nodes
+  std::size_t bounded = 0;           ///< couplings that the matrix has no room for
 };
 
 /// Couplings of nodes that share no cell of the mesh become their bound on the diagonal, 2 a b <= a^2 + b^2.

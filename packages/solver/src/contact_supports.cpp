@@ -88,6 +88,15 @@ std::vector<Row> rows_of(const CrsMatrix &P, const std::vector<GO> &gids)
   return rows;
 }
 
+void append_row(const Row &row, SupportRows &rows)
+{
+  for (const auto &[node, weight] : row) {
+    rows.node.push_back(node);
+    rows.weight.push_back(weight);
+  }
+  rows.begin.push_back(rows.node.size());
+}
+
 } // namespace
 
 ContactSupports contact_supports(const DeviceView<LO *> &nodes, const RCP<const Map> &mesh)
@@ -124,52 +133,120 @@ ContactSupports coarser(const ContactSupports &supports, const CrsMatrix &interp
   return coarse;
 }
 
+ContactSupports supports_of_blocks(const std::vector<GO> &row, const std::vector<GO> &column,
+                                   const CrsMatrix &interpolation)
+{
+  std::vector<GO> wanted = row; // ascending
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  const Map &nodes = *interpolation.getRowMap();
+  std::vector<GO> others;
+  for (const GO gid : column)
+    if (!nodes.isNodeGlobalElement(gid)) others.push_back(gid);
+  others = distinct(std::move(others));
+  const auto own = static_cast<std::ptrdiff_t>(wanted.size());
+  wanted.insert(wanted.end(), others.begin(), others.end());
+  std::inplace_merge(wanted.begin(), wanted.begin() + own, wanted.end());
+  const std::vector<Row> rows = rows_of(interpolation, wanted);
+  ContactSupports supports;
+  supports.contact = rcp(new Map(to_be_counted, row.size(), 0, nodes.getComm()));
+  for (std::size_t b = 0; b < row.size(); ++b) {
+    append_row(rows[place_in(wanted, row[b])], supports);
+    append_row(rows[place_in(wanted, column[b])], supports.column);
+  }
+  return supports;
+}
+
+namespace
+{
+
+/// Numbers of a message: those of a support's entries, and the entries.
+void write_row(const SupportRows &rows, const int c, double *&to)
+{
+  if (rows.size() == 0) return;
+  for (std::size_t e = rows.begin[c]; e < rows.begin[c + 1]; ++e) {
+    *to++ = static_cast<double>(rows.node[e]);
+    *to++ = rows.weight[e];
+  }
+}
+int row_length(const SupportRows &rows, const int c)
+{
+  return rows.size() == 0 ? 0 : static_cast<int>(rows.begin[c + 1] - rows.begin[c]);
+}
+const double *read_row(const double *from, const int length, SupportRows &rows)
+{
+  for (int e = 0; e < length; ++e, from += 2) {
+    rows.node.push_back(static_cast<GO>(from[0]));
+    rows.weight.push_back(from[1]);
+  }
+  rows.begin.push_back(rows.node.size());
+  return from;
+}
+
+/// (entries) The ranks that own the nodes; collective.
+std::vector<int> owners_of_entries(const SupportRows &supports, const Map &mesh)
+{
+  std::vector<GO> others;
+  for (const GO gid : supports.node)
+    if (!mesh.isNodeGlobalElement(gid)) others.push_back(gid);
+  others = distinct(std::move(others));
+  const std::vector<int> owner = owners(mesh, others);
+  const int here = mesh.getComm()->getRank();
+  std::vector<int> ranks;
+  ranks.reserve(supports.node.size());
+  for (const GO gid : supports.node)
+    ranks.push_back(mesh.isNodeGlobalElement(gid) ? here : owner[place_in(others, gid)]);
+  return ranks;
+}
+
+} // namespace
+
 NearSupports near_supports(const ContactSupports &supports, const Map &mesh)
 {
   const Comm &comm = *mesh.getComm();
-  const std::vector<GO> nodes = distinct(supports.node);
-  const std::vector<int> owner = owners(mesh, nodes);
+  const std::vector<int> owner = owners_of_entries(supports, mesh);
   int longest = 0;
   std::vector<std::vector<int>> to_rank(comm.getSize()); // contact nodes
   for (int c = 0; c < supports.size(); ++c) {
-    longest = std::max(longest, static_cast<int>(supports.begin[c + 1] - supports.begin[c]));
+    longest = std::max(longest, row_length(supports, c) + row_length(supports.column, c));
     for (std::size_t e = supports.begin[c]; e < supports.begin[c + 1]; ++e) {
-      auto &list = to_rank[owner[place_in(nodes, supports.node[e])]];
+      auto &list = to_rank[owner[e]];
       if (list.empty() || list.back() != c) list.push_back(c);
     }
   }
-  const int width = 2 + 2 * max_all(comm, longest); // gid of the contact node, number of entries, entries
+  constexpr int head = 3; // gid of the contact node, numbers of entries
+  const int width = head + 2 * max_all(comm, longest);
   std::vector<int> counts;
-  std::vector<double> sent;
+  std::size_t num_sent = 0;
   for (const auto &list : to_rank) {
     counts.push_back(static_cast<int>(list.size()));
-    for (const int c : list) {
-      const std::size_t first = sent.size();
-      sent.push_back(static_cast<double>(supports.contact->getGlobalElement(c)));
-      sent.push_back(static_cast<double>(supports.begin[c + 1] - supports.begin[c]));
-      for (std::size_t e = supports.begin[c]; e < supports.begin[c + 1]; ++e) {
-        sent.push_back(static_cast<double>(supports.node[e]));
-        sent.push_back(supports.weight[e]);
-      }
-      sent.resize(first + width);
-    }
+    num_sent += list.size();
   }
+  std::vector<double> sent(width * num_sent);
+  double *next = sent.data();
+  for (const auto &list : to_rank)
+    for (const int c : list) {
+      double *to = next;
+      *to++ = static_cast<double>(supports.contact->getGlobalElement(c));
+      *to++ = row_length(supports, c);
+      *to++ = row_length(supports.column, c);
+      write_row(supports, c, to);
+      write_row(supports.column, c, to);
+      next += width;
+    }
   const Exchange exchange(comm, counts);
   const auto got = exchange.forward(sent, width);
   std::vector<std::pair<GO, std::size_t>> order; // (gid of the contact node, row)
   for (int k = 0; k < exchange.num_received(); ++k)
     order.emplace_back(static_cast<GO>(got[static_cast<std::size_t>(width) * k]), k);
-  std::sort(order.begin(), order.end());
+  if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
+  const bool two_sided = max_all(comm, supports.column.size()) > 0;
   NearSupports near;
   Teuchos::Array<GO> gids;
   for (const auto &[gid, k] : order) {
     gids.push_back(gid);
     const double *const row = &got[width * k];
-    for (int e = 0; e < static_cast<int>(row[1]); ++e) {
-      near.node.push_back(static_cast<GO>(row[2 + 2 * e]));
-      near.weight.push_back(row[3 + 2 * e]);
-    }
-    near.begin.push_back(near.node.size());
+    const double *const columns = read_row(row + head, static_cast<int>(row[1]), near);
+    if (two_sided) read_row(columns, static_cast<int>(row[2]), near.column);
   }
   near.importer = rcp(new Import(supports.contact, rcp(new Map(to_be_counted, gids(), 0, mesh.getComm()))));
   return near;

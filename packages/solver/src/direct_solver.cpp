@@ -55,6 +55,7 @@ RCP<const Map> on_root(const Map &rows)
 DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node) : A_(std::move(A))
 {
   const auto comm = A_->getComm();
+  on_one_rank_ = max_all(*comm, static_cast<std::size_t>(num_local(*A_->getRowMap()))) == A_->getGlobalNumRows();
   const int size = static_cast<int>(A_->getGlobalNumRows());
   const SymmetricEntries mine = pattern_of(*A_);
   if (comm->getSize() == 1 || !SparseFactor::can_be_shared || A_->getGlobalNumRows() <= most_rows_on_each_rank) {
@@ -95,8 +96,8 @@ void DirectSolver::update()
 void DirectSolver::apply(const Vector &b, Vector &x) const
 {
   if (!factor_->exists()) throw std::runtime_error(no_factor); // the last update failed
-  Kokkos::fence();                                             // the host reads and writes what kernels may still be at
   if (!to_root_.is_null()) {
+    Kokkos::fence(); // the host reads and writes what kernels may still be at
     Vector all(to_root_->getTargetMap());
     all.doImport(b, *to_root_, Tpetra::INSERT);
     {
@@ -107,15 +108,17 @@ void DirectSolver::apply(const Vector &b, Vector &x) const
     return;
   }
   const Map &map = *b.getMap();
+  const LO num_rows = num_local(map);
+  if (on_one_rank_ && num_rows == 0) return;
   std::vector<double> all(map.getGlobalNumElements());
-  {
-    const auto from = b.getLocalViewHost(Tpetra::Access::ReadOnly);
-    for (LO i = 0; i < num_local(map); ++i) all[map.getGlobalElement(i)] = from(i, 0);
-  }
-  if (map.getComm()->getSize() > 1) all = summed(*map.getComm(), all);
+  const HostView<double *> mine("rpc::solver::coarsest",
+                                num_rows); // a copy: Tpetra's host views would move managed pages
+  Kokkos::deep_copy(mine, DeviceView<const double *>(device_read(b)));
+  for (LO i = 0; i < num_rows; ++i) all[map.getGlobalElement(i)] = mine(i);
+  if (!on_one_rank_) all = summed(*map.getComm(), all);
   update_.solve(*factor_, all.data());
-  const auto to = x.getLocalViewHost(Tpetra::Access::OverwriteAll);
-  for (LO i = 0; i < num_local(map); ++i) to(i, 0) = all[map.getGlobalElement(i)];
+  for (LO i = 0; i < num_rows; ++i) mine(i) = all[map.getGlobalElement(i)];
+  Kokkos::deep_copy(DeviceView<double *>(device_write(x)), mine);
 }
 
 int DirectSolver::num_new(const std::vector<RankOneTerm> &terms) const

@@ -39,6 +39,7 @@ private:
   std::unique_ptr<SparseFactor> factor_;
   LowRankUpdate update_;      // of the factor
   RCP<const Import> to_root_; // null: each rank has a factor of its own
+  bool on_one_rank_ = false;  // all rows are, which then solves alone
 };
 
 } // namespace rpc::solver

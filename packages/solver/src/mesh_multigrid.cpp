@@ -7,7 +7,6 @@
 #include "rpc/algebra/bounded_update.hpp"
 #include "rpc/core/math.hpp"
 
-#include <Tpetra_RowMatrixTransposer.hpp>
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -116,7 +115,6 @@ void truncate(const DeviceView<LO *> &node, const DeviceView<double ***> &base, 
   else
     Kokkos::parallel_for("rpc::solver::truncate", range,
                          Truncate<3, Values>{node, base, inverse, transposed, kept, values});
-  Kokkos::fence();
 }
 
 /// (nodes, dim) What v is at the contact nodes.
@@ -128,7 +126,6 @@ void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView
       "rpc::solver::take_values", device_range(static_cast<LO>(node.extent(0))), KOKKOS_LAMBDA(const LO i) {
         for (int k = 0; k < dim; ++k) kept(i, k) = from(dof(dim, node(i), k));
       });
-  Kokkos::fence();
 }
 
 } // namespace
@@ -137,20 +134,18 @@ void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView
 struct MeshMultigrid::Level {
   RCP<const Operator> A;
   std::unique_ptr<NodeSmoother> smoother;
-  std::unique_ptr<NodeInterpolation> prolongation, restriction; // from the next coarser mesh, and to it
-  RCP<CoarseContact> coarse;                                    // the matrix of the next coarser mesh
+  std::unique_ptr<NodeInterpolation> interpolation; // from the next coarser mesh
+  RCP<CoarseContact> coarse;                        // the matrix of the next coarser mesh
+  RCP<const Map>
+      blocks; // this mesh's blocks of contact, of which the coarser one's are made; null: of contact nodes' own
   RCP<Vector> residual, coarse_residual, correction;
 
   /// @param fine_prescribed  (owned dofs, at least) of this mesh
   void add_transfers(const MeshLevel &coarse, const int dim, const DeviceView<char *> &fine_prescribed)
   {
-    const auto fine_dofs = A->getDomainMap(), coarse_dofs = coarse.stiffness->getDomainMap();
-    using Transposer = Tpetra::RowMatrixTransposer<double, LO, GO, Node>;
-    const RCP<const CrsMatrix> transpose = Transposer(coarse.interpolation).createTranspose();
-    prolongation =
-        std::make_unique<NodeInterpolation>(coarse.interpolation, dim, fine_prescribed, coarse_dofs, fine_dofs);
-    restriction = std::make_unique<NodeInterpolation>(transpose, dim, coarse.prescribed, fine_dofs, coarse_dofs);
-    residual = rcp(new Vector(fine_dofs));
+    const auto coarse_dofs = coarse.stiffness->getDomainMap();
+    interpolation = std::make_unique<NodeInterpolation>(coarse.interpolation, dim, fine_prescribed, coarse.prescribed);
+    residual = rcp(new Vector(A->getDomainMap()));
     coarse_residual = rcp(new Vector(coarse_dofs));
     correction = rcp(new Vector(coarse_dofs));
   }
@@ -158,10 +153,13 @@ struct MeshMultigrid::Level {
 
 MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &levels,
                              const MakeCoarsestSolver &make_coarsest)
-    : H_(std::move(H)), contact_node_(H_->nodes()), contact_base_(H_->base_blocks())
+    : H_(std::move(H)), contact_node_(H_->nodes()), contact_base_(H_->base_blocks()),
+      at_rest_("rpc::solver::at_rest", contact_node_.extent(0), H_->dofs_per_node()),
+      kept_("rpc::solver::kept", contact_node_.extent(0), H_->dofs_per_node())
 {
   const int dim = H_->dofs_per_node();
   ContactSupports supports = contact_supports(contact_node_, levels.level[0].interpolation->getRangeMap());
+  std::size_t direct_to = 0; // the level that they are on, 0 for this mesh
   contact_ = supports.contact;
   for (std::size_t l = 0; l < levels.level.size(); ++l) {
     const MeshLevel &coarse = levels.level[l];
@@ -171,9 +169,20 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     else
       level->A = levels_.back()->coarse;
     level->add_transfers(coarse, dim, l == 0 ? levels.prescribed : levels.level[l - 1].prescribed);
-    supports = coarser(supports, *coarse.interpolation);
-    level->coarse = rcp(
-        new CoarseContact(supports, *coarse.interpolation->getDomainMap(), dim, coarse.stiffness, coarse.prescribed));
+    const auto contact_of = [&](const ContactSupports &of) {
+      return rcp(
+          new CoarseContact(of, *coarse.interpolation->getDomainMap(), dim, coarse.stiffness, coarse.prescribed));
+    };
+    if (l > 0 && !levels_.back()->coarse->is_bounded()) {
+      const ContactSupports of_blocks = levels_.back()->coarse->coarser_supports(*coarse.interpolation);
+      level->blocks = of_blocks.contact;
+      level->coarse = contact_of(of_blocks);
+    }
+    if (l == 0 || level->coarse.is_null() || level->coarse->is_bounded()) { // bounds are of contact nodes' own blocks
+      for (; direct_to <= l; ++direct_to) supports = coarser(supports, *levels.level[direct_to].interpolation);
+      level->blocks = Teuchos::null;
+      level->coarse = contact_of(supports);
+    }
     levels_.push_back(std::move(level));
   }
   for (std::size_t l = 0; l < levels_.size(); ++l) { // contact is not in the coarse matrices yet
@@ -196,7 +205,10 @@ DeviceView<double ***> MeshMultigrid::write_contact()
 {
   const auto update = bounded_update(*H_, most_on_coarse_meshes);
   const MultiVector packed = packed_blocks(contact_, update);
-  for (const auto &level : levels_) level->coarse->write(packed);
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    const auto &blocks = levels_[l]->blocks;
+    levels_[l]->coarse->write(blocks.is_null() ? packed : levels_[l - 1]->coarse->packed_sums(blocks));
+  }
   levels_[0]->smoother->set_blocks(contact_node_, H_->blocks());
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const CoarseContact &contact = *levels_[l - 1]->coarse;
@@ -220,22 +232,22 @@ void MeshMultigrid::cycle(const std::size_t l, const Vector &b, Vector &x) const
   const Level &level = *levels_[l];
   const bool finest =
       l == 0; // where coarse functions are truncated at contact points                             (4.7b)
-  const DeviceView<double **> kept("rpc::solver::kept", finest ? contact_node_.extent(0) : 0, H_->dofs_per_node());
   level.smoother->start(b, x);
   level.A->apply(x, *level.residual);
   level.residual->update(1., b, -1.);
-  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), true, kept, *level.residual);
-  level.restriction->apply(*level.residual, *level.coarse_residual, NodeInterpolation::Write::replace);
+  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), true, at_rest_, *level.residual);
+  level.interpolation->restrict_to(*level.residual, *level.coarse_residual);
   cycle(l + 1, *level.coarse_residual, *level.correction);
-  if (finest) take_values(contact_node_, x, kept);
-  level.prolongation->apply(*level.correction, x, NodeInterpolation::Write::add);
-  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), false, kept, x);
+  if (finest) take_values(contact_node_, x, kept_);
+  level.interpolation->prolong(*level.correction, x, NodeInterpolation::Write::add);
+  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), false, kept_, x);
   level.smoother->improve(b, x);
 }
 
 void MeshMultigrid::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
   for (std::size_t k = 0; k < x.getNumVectors(); ++k) cycle(0, *x.getVector(k), *y.getVectorNonConst(k));
+  Kokkos::fence();
 }
 
 } // namespace rpc::solver

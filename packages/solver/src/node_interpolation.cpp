@@ -2,7 +2,7 @@
 
 #include "rpc/core/dofs.hpp"
 
-#include <Teuchos_Array.hpp>
+#include <Tpetra_RowMatrixTransposer.hpp>
 #include <utility>
 
 namespace rpc::solver
@@ -10,13 +10,15 @@ namespace rpc::solver
 namespace
 {
 
-template <int Dim, class Matrix, class In, class Out>
+using LocalMatrix = NodeInterpolation::LocalMatrix;
+
+template <int Dim, class In, class Out>
 struct Interpolate {
-  Matrix nodes;                  // (owned nodes, columns)    in
-  DeviceView<char *> prescribed; // (owned dofs, at least)    in
+  LocalMatrix nodes;             // (nodes, columns)          in
+  DeviceView<char *> prescribed; // (dofs, at least) or none  in
   In x;                          // (Dim * columns)           in
   bool add;                      //
-  Out y;                         // (owned dofs)              inout
+  Out y;                         // (dofs)                    inout
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
@@ -28,53 +30,60 @@ struct Interpolate {
     }
     for (int k = 0; k < Dim; ++k) {
       const LO i = dof(Dim, node, k);
-      if (prescribed(i)) sum[k] = 0;
+      if (prescribed.extent(0) > 0 && prescribed(i)) sum[k] = 0;
       y(i) = add ? y(i) + sum[k] : sum[k];
     }
   }
 };
 
-/// The map of the unknowns at the nodes of a map.
-RCP<const Map> dofs_of(const Map &nodes, const int dim)
+/// @param prescribed  none: results are 0 nowhere
+void interpolate(const LocalMatrix &nodes, const int dim, const DeviceView<char *> &prescribed, const Vector &x,
+                 const bool add, Vector &y)
 {
-  Teuchos::Array<GO> gids;
-  gids.reserve(static_cast<Teuchos_Ordinal>(dim) * num_local(nodes));
-  for (LO n = 0; n < num_local(nodes); ++n)
-    for (int k = 0; k < dim; ++k) gids.push_back(dof(dim, nodes.getGlobalElement(n), k));
-  return rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), gids(), 0, nodes.getComm()));
+  const auto from = device_read(x);
+  const auto to = device_write(y);
+  using In = std::decay_t<decltype(from)>;
+  using Out = std::decay_t<decltype(to)>;
+  const auto range = device_range(nodes.numRows());
+  if (dim == 2)
+    Kokkos::parallel_for("rpc::solver::interpolate", range, Interpolate<2, In, Out>{nodes, prescribed, from, add, to});
+  else
+    Kokkos::parallel_for("rpc::solver::interpolate", range, Interpolate<3, In, Out>{nodes, prescribed, from, add, to});
+}
+
+/// x <- 0 where displacements are prescribed.
+void clear_prescribed(const DeviceView<char *> &prescribed, Vector &x)
+{
+  const auto to = device_write(x);
+  Kokkos::parallel_for(
+      "rpc::solver::clear_prescribed", device_range(static_cast<LO>(to.extent(0))), KOKKOS_LAMBDA(const LO i) {
+        if (prescribed(i)) to(i) = 0;
+      });
 }
 
 } // namespace
 
-NodeInterpolation::NodeInterpolation(RCP<const CrsMatrix> nodes, const int dim, DeviceView<char *> prescribed,
-                                     const RCP<const Map> &from, RCP<const Map> to)
-    : nodes_(std::move(nodes)), dim_(dim), prescribed_(std::move(prescribed)), to_(std::move(to))
+NodeInterpolation::NodeInterpolation(const RCP<const CrsMatrix> &nodes, const int dim,
+                                     DeviceView<char *> fine_prescribed, DeviceView<char *> coarse_prescribed)
+    : nodes_(nodes->getLocalMatrixDevice()),
+      transposed_(
+          Tpetra::RowMatrixTransposer<double, LO, GO, Node>(nodes).createTransposeLocal()->getLocalMatrixDevice()),
+      dim_(dim), fine_prescribed_(std::move(fine_prescribed)), coarse_prescribed_(std::move(coarse_prescribed)),
+      halo_(nodes->getGraph()->getImporter(), dim)
 {
-  if (nodes_->getColMap()->isSameAs(*nodes_->getDomainMap())) return;
-  const auto columns = dofs_of(*nodes_->getColMap(), dim);
-  importer_ = rcp(new Import(from, columns));
-  columns_ = rcp(new Vector(columns));
 }
 
-void NodeInterpolation::apply(const Vector &x, Vector &y, const Write how) const
+void NodeInterpolation::prolong(const Vector &coarse, Vector &fine, const Write how) const
 {
-  if (!importer_.is_null()) columns_->doImport(x, *importer_, Tpetra::INSERT);
-  const Vector &source = importer_.is_null() ? x : *columns_;
-  const auto from = device_read(source);
-  const auto to = device_write(y);
-  const auto matrix = nodes_->getLocalMatrixDevice();
-  using Matrix = std::decay_t<decltype(matrix)>;
-  using In = std::decay_t<decltype(from)>;
-  using Out = std::decay_t<decltype(to)>;
-  const auto range = device_range(matrix.numRows());
-  const bool add = how == Write::add;
-  if (dim_ == 2)
-    Kokkos::parallel_for("rpc::solver::interpolate", range,
-                         Interpolate<2, Matrix, In, Out>{matrix, prescribed_, from, add, to});
-  else
-    Kokkos::parallel_for("rpc::solver::interpolate", range,
-                         Interpolate<3, Matrix, In, Out>{matrix, prescribed_, from, add, to});
-  Kokkos::fence();
+  interpolate(nodes_, dim_, fine_prescribed_, halo_.at_columns(coarse), how == Write::add, fine);
+}
+
+void NodeInterpolation::restrict_to(const Vector &fine, Vector &coarse) const
+{
+  if (halo_.is_empty()) return interpolate(transposed_, dim_, coarse_prescribed_, fine, false, coarse);
+  interpolate(transposed_, dim_, {}, fine, false, halo_.columns());
+  halo_.sum_at_owners(coarse);
+  clear_prescribed(coarse_prescribed_, coarse);
 }
 
 } // namespace rpc::solver

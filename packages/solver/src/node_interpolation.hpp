@@ -1,31 +1,34 @@
 #pragma once
 
-#include "rpc/core/tpetra.hpp"
+#include "rpc/core/halo.hpp"
 
 namespace rpc::solver
 {
 
-/// A matrix of nodes that acts on each component of the displacement alike: interpolation between meshes, or its transpose.
+/// Interpolation P from a coarse mesh to a fine one that acts on each component of the displacement alike, and its transpose. The transpose
+/// needs no rows of other ranks: each rank sums over its own fine nodes, and the sums meet at the owners of the coarse nodes.
 class NodeInterpolation
 {
 public:
-  /// @param nodes       (owned nodes to x owned nodes from), fill-complete
-  /// @param prescribed  (owned dofs to, at least) 1 where the result is to be 0
-  /// @param from, to    maps of the unknowns; collective
-  NodeInterpolation(RCP<const CrsMatrix> nodes, int dim, DeviceView<char *> prescribed, const RCP<const Map> &from,
-                    RCP<const Map> to);
+  using LocalMatrix = CrsMatrix::local_matrix_device_type;
+
+  /// @param nodes  P (owned fine nodes x owned coarse nodes), fill-complete
+  /// @param dim    unknowns of a node
+  /// @param fine_prescribed, coarse_prescribed  (owned dofs, at least) 1 where results are to be 0; collective
+  NodeInterpolation(const RCP<const CrsMatrix> &nodes, int dim, DeviceView<char *> fine_prescribed,
+                    DeviceView<char *> coarse_prescribed);
 
   enum class Write { replace, add };
-  /// y <- P x, or y + P x, but where displacements are prescribed, there y is 0 or what it was; collective.
-  void apply(const Vector &x, Vector &y, Write how) const;
+  /// fine <- P coarse, or fine + P coarse, but where displacements are prescribed, there it is 0 or what it was; collective.
+  void prolong(const Vector &coarse, Vector &fine, Write how) const;
+  /// coarse <- P^T fine, 0 where displacements are prescribed; collective.
+  void restrict_to(const Vector &fine, Vector &coarse) const;
 
 private:
-  RCP<const CrsMatrix> nodes_;
+  LocalMatrix nodes_, transposed_; // rows and columns of this rank
   int dim_;
-  DeviceView<char *> prescribed_;
-  RCP<const Map> to_;
-  RCP<const Import> importer_; // null: the columns are the owned nodes
-  RCP<Vector> columns_;
+  DeviceView<char *> fine_prescribed_, coarse_prescribed_;
+  Halo halo_; // of the coarse nodes
 };
 
 } // namespace rpc::solver

@@ -120,7 +120,6 @@ void apply_inverse(const DeviceView<double ***> &inverse, const Vector &r, Vecto
   else
     Kokkos::parallel_for("rpc::solver::apply_inverse", range,
                          ApplyInverse<3, decltype(from), decltype(to)>{inverse, from, to});
-  Kokkos::fence();
 }
 
 /// Values in [-1, 1] without order that depend on the unknowns' gids alone: the same on any number of ranks.
@@ -226,7 +225,6 @@ void NodeSmoother::step(const Vector &b, const double keep, const double add, co
   else
     Kokkos::parallel_for("rpc::solver::chebyshev_step", range,
                          ChebyshevStep<3, In, Out>{inverse_, from, product, keep, add, at_zero, move, to});
-  Kokkos::fence();
 }
 
 void NodeSmoother::polynomial(const Vector &b, const bool at_zero, Vector &x) const

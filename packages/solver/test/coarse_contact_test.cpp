@@ -148,10 +148,44 @@ TEST(CoarseContact, IsTheProductWithTheInterpolations)
   }
 }
 
+/// On nested meshes the blocks of the finer one will do in the contact nodes' stead, from one to the next.
+TEST(CoarseContact, IsThatOfTheFinerMeshInterpolated)
+{
+  const std::vector<int> num_nodes{33, 17, 9, 5};
+  const Lines lines(num_nodes, true, true); // from the contact nodes
+  const Lines finer({33, 17}, true, true);
+  ASSERT_FALSE(finer.contact->is_bounded());
+  RCP<CoarseContact> contact = finer.contact;
+  contact->write(finer.update);
+  RCP<CrsMatrix> A;
+  for (std::size_t l = 2; l < num_nodes.size(); ++l) {
+    const auto line = line_of(num_nodes[l]);
+    const auto P = distributed(dense_interpolation(num_nodes[l - 1], num_nodes[l]), line_of(num_nodes[l - 1]), line);
+    const auto supports = contact->coarser_supports(*P);
+    const auto unknowns = unknowns_of(*line);
+    A = distributed(dense_matrix(num_nodes[l]), unknowns, unknowns);
+    std::vector<char> held;
+    for (LO i = 0; i < num_local(*A->getColMap()); ++i) held.push_back(A->getColMap()->getGlobalElement(i) == 0);
+    const auto coarse = rcp(new CoarseContact(supports, *line, dim, A, device_values(held, "prescribed")));
+    EXPECT_FALSE(coarse->is_bounded());
+    coarse->write(contact->packed_sums(supports.contact));
+    contact = coarse;
+  }
+  Vector x(contact->getDomainMap()), y(x.getMap()), expected(x.getMap());
+  x.randomize();
+  lines.contact->write(lines.update);
+  lines.contact->apply(x, expected);
+  contact->apply(x, y);
+  y.update(-1., expected, 1.);
+  EXPECT_GT(expected.normInf(), 0.1);
+  EXPECT_LT(y.normInf(), 1e-13 * expected.normInf());
+}
+
 /// Where meshes are not nested, supports reach beyond the cells of the coarse one.
 TEST(CoarseContact, BoundsCouplingsThatTheMatrixHasNoRoomFor)
 {
   const Lines lines({31, 19, 12, 8});
+  EXPECT_TRUE(lines.contact->is_bounded());
   int far = 0;
   for (int c = 0; c < 31; ++c)
     for (int a = 0; a + 2 < 8; ++a) far += lines.weights(c, a) != 0 && lines.weights(c, a + 2) != 0;

@@ -3,8 +3,6 @@
 #include "../device_tables.hpp"
 #include "rpc/mesh/canonical_order.hpp"
 
-#include <Teuchos_Array.hpp>
-#include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
 
 namespace rpc::mesh
@@ -37,8 +35,7 @@ LocalMesh local_mesh(const Mesh &mesh)
   LocalMesh local;
   local.element = mesh.element;
   local.owned_nodes = mesh.owned_nodes;
-  const auto gids = mesh.overlap_nodes->getMyGlobalIndices();
-  for (LO n = 0; n < mesh.num_local_nodes(); ++n) local.gid.push_back(gids(n));
+  for (LO n = 0; n < mesh.num_local_nodes(); ++n) local.gid.push_back(mesh.node_gid(n));
   const auto ids = overlap_node_ids(mesh);
   local.id.assign(ids.data(), ids.data() + ids.extent(0));
   local.coords = rows_of(mesh.coords);
@@ -56,12 +53,8 @@ Mesh mesh_of(const LocalMesh &local, const std::shared_ptr<const Mesh> &coarse)
 {
   Mesh mesh;
   mesh.element = local.element;
-  mesh.owned_nodes = mesh.overlap_nodes = local.owned_nodes;
-  const auto &comm = local.owned_nodes->getComm();
-  if (comm->getSize() > 1) {
-    const Teuchos::Array<GO> gids(local.gid.begin(), local.gid.end());
-    mesh.overlap_nodes = rcp(new Map(Teuchos::OrdinalTraits<GO>::invalid(), gids(), 0, comm));
-  }
+  mesh.owned_nodes = local.owned_nodes;
+  mesh.ghosts.assign(local.gid.begin() + local.num_owned_nodes(), local.gid.end());
   mesh.coords = device_table("rpc::mesh::coords", local.coords, mesh.dim());
   mesh.cells = device_table("rpc::mesh::cells", local.cells, mesh.element.num_nodes());
   mesh.block = to_device(host_array<int>("rpc::mesh::block", local.block));

@@ -8,7 +8,15 @@ namespace rpc::solver
 namespace
 {
 
-constexpr double most_work_of_factor = 1e7; // multiplications
+// Multiplications. Of a mesh that one of several ranks has, the hierarchy would be set up over all of them.
+constexpr double most_work_of_factor = 1e7, most_work_on_one_of_several = 1e8;
+
+double most_work(const CrsMatrix &A)
+{
+  const Comm &comm = *A.getComm();
+  const bool on_one = max_all(comm, GO(num_local(*A.getRowMap()))) == static_cast<GO>(A.getGlobalNumRows());
+  return comm.getSize() > 1 && on_one ? most_work_on_one_of_several : most_work_of_factor;
+}
 
 } // namespace
 
@@ -19,7 +27,7 @@ Preconditioner::Prepared Factor::prepare(double)
     factor_.reset();
     if (A_.is_null()) A_ = H_->base().copy();
     write_update(*A_, *H_, bounded_update(*H_));
-    factor_ = direct_solver(A_, H_->dofs_per_node(), most_work_of_factor);
+    factor_ = direct_solver(A_, H_->dofs_per_node(), most_work(*A_));
     revision_ = H_->revision();
   }
   if (!factor_) return Prepared::refused;

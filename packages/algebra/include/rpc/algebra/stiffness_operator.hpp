@@ -2,6 +2,7 @@
 
 #include "rpc/algebra/repeated_rows.hpp"
 #include "rpc/algebra/rounded_rows.hpp"
+#include "rpc/core/halo.hpp"
 #include "rpc/core/tpetra.hpp"
 
 #include <functional>
@@ -13,8 +14,8 @@ namespace rpc
 /// A matrix whose rows are known, and which is assembled on demand.
 struct UnassembledMatrix {
   RepeatedRows rows;
-  RCP<const Map> dofs, columns;
-  RCP<const Import> importer;               ///< of a vector to the columns; null where these are the dofs
+  RCP<const Map> dofs;
+  std::shared_ptr<const Halo> halo;         ///< of the columns
   std::function<RCP<CrsMatrix>()> assemble; ///< collective
 };
 
@@ -51,8 +52,8 @@ public:
   /// (n, dim, dim) Those of some owned nodes.
   DeviceView<double ***> diagonal_blocks(const DeviceView<LO *> &nodes) const;
   const RepeatedRows &rows() const { return rows_; }
-  const RCP<const Map> &columns() const { return columns_; }
-  const RCP<const Import> &importer() const { return importer_; } ///< null where the columns are the rows
+  /// What x is at the columns, see Halo.
+  const Vector &at_columns(const Vector &x) const { return halo_->at_columns(x); }
 
   /// Assembled now if it was not before.
   const RCP<const CrsMatrix> &matrix() const;
@@ -63,8 +64,8 @@ public:
 
 private:
   RepeatedRows rows_;
-  RCP<const Map> dofs_, columns_;
-  RCP<const Import> importer_;
+  RCP<const Map> dofs_;
+  std::shared_ptr<const Halo> halo_; // of the columns
   std::function<RCP<CrsMatrix>()> assemble_;
   mutable RCP<const CrsMatrix> matrix_; // null: not kept
   mutable int assemblies_ = 0;

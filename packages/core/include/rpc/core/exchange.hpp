@@ -2,6 +2,7 @@
 
 #include "rpc/core/tpetra.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace rpc
@@ -18,6 +19,8 @@ public:
 
   int num_sent() const;     ///< rows that this rank sends
   int num_received() const; ///< rows that it gets
+  /// Ranks that it gets rows from, ascending, and how many.
+  std::vector<std::pair<int, int>> senders() const;
 
   /// @param rows  (sent, width), for rank 0 first
   /// @return (received, width), of rank 0 first; collective

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "rpc/core/dofs.hpp"
-#include "rpc/core/tpetra.hpp"
+#include "rpc/core/halo.hpp"
 #include "rpc/fem/kinematics.hpp"
 #include "rpc/fem/reference_element.hpp"
 #include "rpc/mesh/mesh.hpp"
@@ -37,17 +37,16 @@ struct CongruentCells {
 struct Discretization {
   std::shared_ptr<const mesh::Mesh> mesh;
   Kinematics kinematics = Kinematics::plane_strain;
-  double on_axis = 0;           ///< of an axisymmetric body: nodes with r up to this lie on the axis, where u_r = 0 [m]
-  ReferenceElement reference;   ///< of mixed elements none: their stiffness is that of Q2
-  RCP<const Map> owned_dofs;    ///< rows
-  RCP<const Map> overlap_dofs;  ///< columns
-  RCP<const Import> dof_import; ///< owned -> overlap; null in one process, where these are the same
-  RCP<const Import> node_import; ///< the same of the mesh's nodes
+  double on_axis = 0;         ///< of an axisymmetric body: nodes with r up to this lie on the axis, where u_r = 0 [m]
+  ReferenceElement reference; ///< of mixed elements none: their stiffness is that of Q2
+  RCP<const Map> owned_dofs;  ///< rows; columns are the unknowns of the overlap nodes
+  std::shared_ptr<const Halo> halo, node_halo; ///< of unknowns and of nodes; empty in one process
   CongruentCells congruent;
   NodeToCells node_to_cells;
   NodeGraph nodes;
 
   int dim() const { return mesh->dim(); }
+  LO num_overlap_dofs() const { return num_dofs(dim(), mesh->num_local_nodes()); }
   bool axisymmetric() const { return kinematics == Kinematics::axisymmetric; }
   /// Whether forces, energies and areas are those of a slice of the body, per length across the plane.
   bool per_length() const { return dim() == 2 && !axisymmetric(); }
@@ -60,6 +59,9 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, Kinematics kin
 
 /// The pattern of every matrix: fill-complete, columns ascending. Collective.
 RCP<const CrsGraph> dof_graph(const Discretization &d);
+
+/// The columns of every matrix. It lists all of this rank's unknowns: only matrices ask for it. Collective.
+RCP<const Map> overlap_dofs(const Discretization &d);
 
 /// Values with those of the neighbours' nodes, (overlap dofs), from those of the owned ones; collective. The same vector where
 /// there are no neighbours: for reading, as long as the given vector exists and does not change.

@@ -17,6 +17,8 @@ struct BoxOptions {
   Element element;
   /// Length of the last cell in each direction over that of all others, > 0. Empty: 1, as decks have it.
   std::vector<double> last = {};
+  /// Blocks that it is divided into, on as many of the ranks; the other ranks have none of it. 0: a block on each rank.
+  int blocks = 0;
 
   double last_in(const int direction) const { return last.empty() ? 1 : last[direction]; }
   /// Of all cells but the last one [m].
@@ -43,6 +45,10 @@ BoxOptions box_options(const Teuchos::ParameterList &list);
 /// P2 becomes P1 where node distances are alike, else Q2 with the same nodes takes its place. None where no direction has more
 /// than one interval.
 std::optional<BoxOptions> coarsened(const BoxOptions &options);
+
+/// The same box in as many blocks as there are ranks, or in fewer, so that each has at least so many nodes on average; in one where it has
+/// not that many.
+BoxOptions divided(BoxOptions options, int num_ranks, GO least_nodes);
 
 /// The direction in which a box is one cell of order 1 and thinner than 1.7 times the shortest distance of nodes in the others; the
 /// thinnest of several. A coarser box would be too stiff when it bends, so multigrid ends here.

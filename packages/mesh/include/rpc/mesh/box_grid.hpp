@@ -50,22 +50,27 @@ struct Block {
   }
 };
 
-/// The whole box and its division into blocks of cells, one per rank. Every rank can compute every other rank's block, in kernels too.
+/// The whole box and its division into blocks of cells, at most one on a rank. Every rank can compute every other rank's block, in kernels
+/// too.
 ///
-/// A node on the border of two blocks belongs to the lower one. Gids run rank by rank, blocks along x first, in the order of each
-/// block.
+/// A node on the border of two blocks belongs to the lower one. Gids run block by block, along x first, in the order of each
+/// block; ranks with higher blocks are higher.
 class Grid
 {
 public:
-  /// @throws rpc::Error (bad_mesh) if there are fewer cells than ranks in every direction
+  /// @throws rpc::Error (bad_mesh) if there are fewer cells than blocks in every direction
   Grid(const BoxOptions &options, int num_ranks);
+  /// Whether there are cells enough for options.blocks blocks.
+  static bool can_divide(const BoxOptions &options);
 
   KOKKOS_INLINE_FUNCTION Block owned_cells(const int rank) const
   {
     Block block = empty_block();
+    const int number = block_from(rank);
+    if (rank_of(number) != rank) return block;
     for (int d = 0; d < 3; ++d) {
-      block.begin[d] = first_cell(d, block_of(rank, d));
-      block.end[d] = first_cell(d, block_of(rank, d) + 1);
+      block.begin[d] = first_cell(d, along(number, d));
+      block.end[d] = first_cell(d, along(number, d) + 1);
     }
     return block;
   }
@@ -73,35 +78,33 @@ public:
   Block local_cells(const int rank) const
   {
     Block block = owned_cells(rank);
-    for (int d = 0; d < dim_; ++d) block.end[d] = std::min<GO>(block.end[d] + 1, cells_[d]);
+    for (int d = 0; d < dim_ && block.end[d] > 0; ++d) block.end[d] = std::min<GO>(block.end[d] + 1, cells_[d]);
     return block;
   }
   KOKKOS_INLINE_FUNCTION Block owned_nodes(const int rank) const
   {
-    Block block = empty_block();
-    for (int d = 0; d < 3; ++d) {
-      block.begin[d] = first_node(d, block_of(rank, d));
-      block.end[d] = first_node(d, block_of(rank, d) + 1);
-    }
-    return block;
+    const int number = block_from(rank);
+    return rank_of(number) == rank ? nodes_of_block(number) : empty_block();
   }
   Block local_nodes(const int rank) const { return nodes_of(local_cells(rank)); }
   /// All nodes of a block of cells.
   Block nodes_of(Block block) const
   {
-    for (int d = 0; d < dim_; ++d) {
+    for (int d = 0; d < dim_ && block.end[d] > 0; ++d) {
       block.begin[d] = order_[d] * block.begin[d];
       block.end[d] = order_[d] * block.end[d] + 1;
     }
     return block;
   }
-  /// The first gid of a rank.
-  KOKKOS_INLINE_FUNCTION GO node_offset(const int rank) const
+  /// All cells of the box.
+  Block cells() const
   {
-    const int x = block_of(rank, 0), y = block_of(rank, 1), z = block_of(rank, 2);
-    return first_node(0, x) * width(1, y) * width(2, z) +
-           num_nodes(0) * (first_node(1, y) * width(2, z) + num_nodes(1) * first_node(2, z));
+    Block block = empty_block();
+    for (int d = 0; d < 3; ++d) block.end[d] = cells_[d];
+    return block;
   }
+  /// The first gid of a rank, or of the ranks above one that has none.
+  KOKKOS_INLINE_FUNCTION GO node_offset(const int rank) const { return offset_of_block(block_from(rank)); }
   KOKKOS_INLINE_FUNCTION GO node_gid(const Index &node) const
   {
     int b[3] = {0, 0, 0};
@@ -109,9 +112,10 @@ public:
       const GO cell = node[d] == 0 ? 0 : (node[d] - 1) / order_[d]; // the lower one of the two that share the node
       b[d] = static_cast<int>(((cell + 1) * blocks_[d] - 1) / cells_[d]); // first_cell(b) <= cell < first_cell(b + 1)
     }
-    const int rank = b[0] + blocks_[0] * (b[1] + blocks_[1] * b[2]);
-    return node_offset(rank) + owned_nodes(rank).index_of(node);
+    const int number = b[0] + blocks_[0] * (b[1] + blocks_[1] * b[2]);
+    return offset_of_block(number) + nodes_of_block(number).index_of(node);
   }
+  int num_blocks() const { return num_blocks_; }
   GO num_nodes_total() const { return num_nodes(0) * num_nodes(1) * num_nodes(2); }
   GO num_cells_total() const { return GO(cells_[0]) * cells_[1] * cells_[2]; }
   KOKKOS_INLINE_FUNCTION int num_cells(const int direction) const { return cells_[direction]; }
@@ -124,9 +128,35 @@ private:
     block.axes = axes_;
     return block;
   }
-  KOKKOS_INLINE_FUNCTION int block_of(const int rank, const int d) const
+  /// The block of this rank, or where it has none, of the next rank that has one; num_blocks_ where none has.
+  KOKKOS_INLINE_FUNCTION int block_from(const int rank) const
   {
-    return d == 0 ? rank % blocks_[0] : d == 1 ? rank / blocks_[0] % blocks_[1] : rank / (blocks_[0] * blocks_[1]);
+    return static_cast<int>((GO(rank) * num_blocks_ + num_ranks_ - 1) / num_ranks_);
+  }
+  /// Ranks with a block are spread over all of them.
+  KOKKOS_INLINE_FUNCTION int rank_of(const int block) const
+  {
+    return static_cast<int>(GO(block) * num_ranks_ / num_blocks_);
+  }
+  /// A block's place along a direction.
+  KOKKOS_INLINE_FUNCTION int along(const int block, const int d) const
+  {
+    return d == 0 ? block % blocks_[0] : d == 1 ? block / blocks_[0] % blocks_[1] : block / (blocks_[0] * blocks_[1]);
+  }
+  KOKKOS_INLINE_FUNCTION Block nodes_of_block(const int number) const
+  {
+    Block block = empty_block();
+    for (int d = 0; d < 3; ++d) {
+      block.begin[d] = first_node(d, along(number, d));
+      block.end[d] = first_node(d, along(number, d) + 1);
+    }
+    return block;
+  }
+  KOKKOS_INLINE_FUNCTION GO offset_of_block(const int number) const
+  {
+    const int x = along(number, 0), y = along(number, 1), z = along(number, 2);
+    return first_node(0, x) * width(1, y) * width(2, z) +
+           num_nodes(0) * (first_node(1, y) * width(2, z) + num_nodes(1) * first_node(2, z));
   }
   KOKKOS_INLINE_FUNCTION GO first_cell(const int d, const int b) const { return GO(cells_[d]) * b / blocks_[d]; }
   KOKKOS_INLINE_FUNCTION GO first_node(const int d, const int b) const
@@ -136,9 +166,11 @@ private:
   KOKKOS_INLINE_FUNCTION GO width(const int d, const int b) const { return first_node(d, b + 1) - first_node(d, b); }
   KOKKOS_INLINE_FUNCTION GO num_nodes(const int d) const { return first_node(d, blocks_[d]); }
 
-  void choose_blocks(int num_ranks);
+  Grid(int num_ranks, const BoxOptions &options); // divided or not
+  bool choose_blocks();
 
-  int dim_;
+  int dim_, num_ranks_, num_blocks_;
+  bool divided_ = false;
   Kokkos::Array<int, 3> order_{{1, 1, 1}}, cells_{{1, 1, 1}}, axes_{{0, 1, 2}}, blocks_{{1, 1, 1}};
 };
 

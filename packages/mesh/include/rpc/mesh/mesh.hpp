@@ -47,7 +47,7 @@ struct Parents {
 struct Mesh {
   Element element;
   RCP<const Map> owned_nodes;   ///< one-to-one
-  RCP<const Map> overlap_nodes; ///< all nodes of local cells, owned first
+  std::vector<GO> ghosts;       ///< gids of the overlap nodes that other ranks own, in the order of their lids
   DeviceView<double **> coords; ///< (overlap nodes, dim) [m]
   DeviceView<LO **> cells;      ///< (local cells, nodes per cell) overlap node lids
   DeviceView<int *> block;      ///< (local cells) index into blocks
@@ -64,7 +64,16 @@ struct Mesh {
 
   int dim() const { return element.dim; }
   LO num_owned_nodes() const { return num_local(*owned_nodes); }
-  LO num_local_nodes() const { return num_local(*overlap_nodes); }
+  LO num_local_nodes() const { return num_owned_nodes() + static_cast<LO>(ghosts.size()); }
+  /// Of an overlap node. Owned ones have consecutive gids.
+  GO node_gid(const LO lid) const
+  {
+    const LO num_owned = num_owned_nodes();
+    return lid < num_owned ? owned_nodes->getMinGlobalIndex() + lid : ghosts[lid - num_owned];
+  }
+  /// The map of all nodes of local cells, owned first; in one process that of the owned ones. It lists them all: only matrices and
+  /// Tpetra's imports ask for it. Collective.
+  RCP<const Map> overlap_nodes() const;
   LO num_cells() const { return static_cast<LO>(cells.extent(0)); }
   const Comm &comm() const { return *owned_nodes->getComm(); }
 

@@ -62,6 +62,7 @@ private:
   DeviceView<LO *> contact_node_;              // (nodes) those of H
   RCP<const Map> contact_;                     // map of these
   DeviceView<double ***> contact_base_;        // (nodes, dim, dim) K's own blocks there
+  DeviceView<double **> at_rest_, kept_;       // (nodes, dim) zeros; what truncation leaves as it is
   std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
   std::unique_ptr<CoarsestSolver> coarsest_;
   DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) update that it is made for
