@@ -83,6 +83,15 @@ KOKKOS_INLINE_FUNCTION int kind_of_slip(const Slip slip, const Along &h, const i
   return dim == 2 && (h(0) != 0 ? h(0) : h(1)) < 0 ? 2 : 1;
 }
 
+/// What a point that cannot stick does: it slips on, or begins with the direction of the traction that it bore.
+/// @param q, s  traction on the branch of its present state, and what friction bears [Pa]
+KOKKOS_INLINE_FUNCTION SlipBranch slip_instead(const SlipBranch &now, const Along &turned, const Along &q,
+                                               const double s)
+{
+  if (now.state == Slip::slip) return {Slip::slip, turned};
+  return {Slip::slip, s > 0 ? admissible_friction(q, s).scaled(1 / s) : q.unit()};
+}
+
 /// (12.8)
 void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet &active,
                       const DeviceView<double *> &own, const double bound, const ActiveSetChoice &choice)
@@ -107,7 +116,7 @@ void choose_next_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet 
                                       at.penetration, admissible(p(i), c.law(i)), own(i), bound, f);
         if (branch.state == Slip::stick &&
             own(i) * prescribed_slip(at.slip, NormalAt{c, i}, FreeAt{c.friction, i}, c.dim).length() > bound)
-          branch = {Slip::slip, at.slip.unit()};
+          branch = slip_instead(now.branch(i), turned, row(traction, i), friction_bound(admissible(p(i), c.law(i)), f));
         slips(i) = branch.state;
         set_row(direction, i, branch.direction);
         if (c.fixed(i)) return;
