@@ -14,7 +14,7 @@ namespace
 
 using Point = std::array<double, 3>;
 using Matrix = std::array<Point, 3>;
-using Kind = BoundaryShape::Kind;
+using ShapeKind = BoundaryShape::Kind;
 
 /// Points of a curve or surface, about their mean and in units of their size.
 struct Samples {
@@ -172,7 +172,7 @@ BoundaryShape shape_through(const Samples &samples, const int dim, const int tag
 {
   BoundaryShape shape;
   const auto &points = samples.point;
-  const auto make_round = [&](const Kind kind, const Round &round) {
+  const auto make_round = [&](const ShapeKind kind, const Round &round) {
     shape.kind = kind;
     shape.point = round.centre;
     shape.radius = round.radius;
@@ -185,22 +185,23 @@ BoundaryShape shape_through(const Samples &samples, const int dim, const int tag
     shape.direction = normal;
     return shape;
   }
-  if (const Round round = round_through(points); all_near(points, round)) return make_round(Kind::sphere, round);
+  if (const Round round = round_through(points); all_near(points, round)) return make_round(ShapeKind::sphere, round);
   if (dim == 2) {
     std::vector<double> normals;
     gmsh::model::getNormal(tag, samples.parameters, normals);
     shape.direction = eigenvectors(second_moments(points_of(normals)))[0];
     const auto section = across(points, shape.direction);
-    if (const Round round = round_through(section); all_near(section, round)) return make_round(Kind::cylinder, round);
+    if (const Round round = round_through(section); all_near(section, round))
+      return make_round(ShapeKind::cylinder, round);
   }
-  shape.kind = Kind::other;
+  shape.kind = ShapeKind::other;
   return shape;
 }
 
 BoundaryShape shape_of(const int dim, const int tag)
 {
   BoundaryShape shape;
-  shape.kind = Kind::other;
+  shape.kind = ShapeKind::other;
   try {
     const Samples samples = samples_of(dim, tag);
     const bool finite = std::all_of(samples.point.begin(), samples.point.end(),
