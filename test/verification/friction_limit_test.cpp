@@ -159,6 +159,27 @@ TEST_P(DraggedBlock, SlidesOnAtTheLimit)
   EXPECT_GT(friction_counts(contact_points(steps[0])).stick, 0);
 }
 
+TEST(PressFit, HoldsWhatItsOwnPressureBearsAndSaysSoWhereThatIsTooLittle)
+{
+  // Between two rigid walls 0.004 m nearer than it is long: E/(1 - nu^2) 0.002 = 2.2 Pa on 1 m each, and 0.3 of it along each wall.
+  const auto pressed = [](const double weight) {
+    return Assignments{"Contact->Side=left",
+                       "Contact->Gap=-0.002",
+                       "Contact->Sides->right->Side=right",
+                       "Contact->Sides->right->Gap=-0.002",
+                       "Contact->Sides->right->Friction Coefficient=0.3",
+                       "Traction->top->Y=" + text(-0.5 * weight)};
+  };
+  const Solution held = solved("push", pressed(0.5));
+  EXPECT_NEAR(held.contact.total.force[1], 0.5, 1e-8);
+  EXPECT_TRUE(held.step.support.by_coulomb_only);
+  const Solution slips = run_scene(friction_deck("push"), pressed(5));
+  EXPECT_FALSE(slips.uzawa.converged);
+  EXPECT_NE(slips.uzawa.reason.find("no pressures were found that hold it: raise the friction"), std::string::npos)
+      << slips.uzawa.reason;
+  EXPECT_EQ(slips.uzawa.reason.find("rounding"), std::string::npos);
+}
+
 TEST(SqueezedBlock, BetweenTwoFoundationsIsPulledOutAtTheSumOfTheirLimits)
 {
   // Two plates 0.01 nearer than the block is high; it is pulled out by its right side.

@@ -19,6 +19,10 @@ using contact::Iterate;
 namespace
 {
 
+constexpr const char *in_want_of_friction =
+    "; without friction that follows the pressures the load moves the body, and no pressures were found that hold it: "
+    "raise the friction or what presses the body on the foundation, lower the load, or prescribe a displacement";
+
 std::string predict(Iterate &iterate, Vector &u, const Starts &starts, std::vector<LevelWork> &work);
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
                       int iteration, bool previous_confirmed, const Progress &progress);
@@ -68,6 +72,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       over = is_over(uzawa, found, previous, options.uzawa, problem.discretization().mesh->comm(),
                      [&] { return iterate.raise_penalty(*u); }); // (5.12)
     }
+    if (!uzawa.converged && step.support.by_coulomb_only) uzawa.reason += in_want_of_friction; // (12.10)
     s.u = s.state.displacement;
     read_results(problem, s);
   }

@@ -10,7 +10,8 @@ namespace rpc::analysis
 namespace
 {
 
-constexpr double fast = 0.1; // an update that leaves more of the largest residual calls for a higher penalty
+constexpr double fast = 0.1;           // an update that leaves more of the largest residual calls for a higher penalty
+constexpr double near_solution = 1e-3; // residuals below it can be rounding
 constexpr double fast_with_bounds = 0.8; // the same of some updates of friction's bounds
 
 std::string verdict(const UzawaResult &result, const UzawaOptions &options)
@@ -46,9 +47,9 @@ bool is_over(UzawaResult &result, const Minimization &found, const double previo
   const bool raised = slow && !found.bounds_follow && raise_penalty(); // (5.12)
   // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from, while that helps.
   if ((slow && !raised) || std::isnan(worst))
-    return ends(false, found.converged
-                           ? verdict(result, options) + ": more iterations do not help, what remains is rounding"
-                           : found.reason);
+    return ends(false, found.converged ? verdict(result, options) + ": more iterations do not help" +
+                                             (worst < near_solution ? ", what remains is rounding" : "")
+                                       : found.reason);
   return last && ends(false, "");
 }
 

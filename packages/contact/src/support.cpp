@@ -191,29 +191,24 @@ void refuse_slide(const Context &context, const HeldPart &held, const ConvexSet 
   refuse(message.str());
 }
 
-/// Whether the load lies inside of Z; collective.                                                          (9.4)
-/// @param slides  motions that friction alone holds
-void check_part(const Context &context, const HeldPart &held, const fem::Resultant &load, const double strength,
-                const Motions &slides)
+double size_of(const Numbers &q)
 {
-  const auto size_of = [](const Numbers &q) {
-    double squares = 0;
-    for (const double entry : q) squares += entry * entry;
-    return std::sqrt(squares);
-  };
-  const ConvexSet set = [&](const Numbers &q) { return held.furthest(q); };
+  double squares = 0;
+  for (const double entry : q) squares += entry * entry;
+  return std::sqrt(squares);
+}
+
+/// The load in the coordinates of a part.
+Numbers pushes(const HeldPart &held, const fem::Resultant &load)
+{
   Numbers b = held.coordinates(load.force);
   if (size_of(b) <= 1e-11 * load.magnitude) std::fill(b.begin(), b.end(), 0.); // rounding of loads that cancel
-  const double size = size_of(b);
-  const double scale = size > 0 ? size : strength > 0 ? strength : 1;
-  const Nearest nearest = nearest_point(set, b, 1e-9 * scale);
-  if (nearest.distance > 0) {
-    if (!slides.empty()) refuse_slide(context, held, set, b, held.motion(nearest.away), slides);
-    refuse_load(context, held, held.motion(nearest.away), load);
-  }
+  return b;
+}
 
-  // With friction b has the weight too, beside a push that may be small: the limit of the push is to be met to a millionth.
-  const double shift = (slides.empty() ? 1e-6 : 1e-7) * scale;
+/// The nearest point of the set to b moved a little, whichever way leads furthest out of it; of distance 0: b is inside. Collective.
+Nearest furthest_nearby(const ConvexSet &set, const Numbers &b, const double shift)
+{
   Nearest worst;
   for (std::size_t j = 0; j < b.size(); ++j) {
     for (const double sign : {1., -1.}) {
@@ -223,9 +218,59 @@ void check_part(const Context &context, const HeldPart &held, const fem::Resulta
       if (outside.distance > worst.distance * (1 + 1e-6)) worst = outside;
     }
   }
+  return worst;
+}
+
+/// Whether the load lies inside of Z, by more than a millionth of it; collective.
+bool holds(const HeldPart &held, const fem::Resultant &load)
+{
+  const ConvexSet set = [&](const Numbers &q) { return held.furthest(q); };
+  const Numbers b = pushes(held, load);
+  const double size = size_of(b);
+  return size > 0 && !(nearest_point(set, b, 1e-9 * size).distance > 0) &&
+         !(furthest_nearby(set, b, 1e-6 * size).distance > 0);
+}
+
+/// Whether the load lies inside of Z; collective.                                                          (9.4)
+/// @param slides  motions that friction alone holds
+void check_part(const Context &context, const HeldPart &held, const fem::Resultant &load, const double strength,
+                const Motions &slides)
+{
+  const ConvexSet set = [&](const Numbers &q) { return held.furthest(q); };
+  const Numbers b = pushes(held, load);
+  const double size = size_of(b);
+  const double scale = size > 0 ? size : strength > 0 ? strength : 1;
+  const Nearest nearest = nearest_point(set, b, 1e-9 * scale);
+  if (nearest.distance > 0) {
+    if (!slides.empty()) refuse_slide(context, held, set, b, held.motion(nearest.away), slides);
+    refuse_load(context, held, held.motion(nearest.away), load);
+  }
+
+  // With friction b has the weight too, beside a push that may be small: the limit of the push is to be met to a millionth.
+  const Nearest worst = furthest_nearby(set, b, (slides.empty() ? 1e-6 : 1e-7) * scale);
   if (!(worst.distance > 0)) return;
   if (!slides.empty()) refuse_slide(context, held, set, b, held.motion(worst.away), slides);
   refuse_edge(context, held, held.motion(worst.away), scale);
+}
+
+/// What the foundation can do without friction that follows the pressure.
+Reactions without_coefficient(Reactions reactions)
+{
+  reactions.friction.coefficient =
+      DeviceView<double *>("rpc::contact::no_coefficient", reactions.friction.coefficient.extent(0)); // 0
+  return reactions;
+}
+
+/// Whether any point's friction follows the pressure; collective.
+bool follows_pressure(const Comm &comm, const FrictionPoints &friction)
+{
+  const auto mu = friction.coefficient;
+  double most = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::follows_pressure", device_range(static_cast<LO>(mu.extent(0))),
+      KOKKOS_LAMBDA(const LO i, double &largest) { largest = math::larger(largest, mu(i)); },
+      Kokkos::Max<double>(most));
+  return max_all(comm, std::max(0., most)) > 0;
 }
 
 /// Motions that change no gap: neither prescribed displacements nor contact stop them; collective.            (9.2)
@@ -287,6 +332,10 @@ Support check_support(const fem::Discretization &d, const FreeParts &body, const
     if (!motions[p].empty())
       check_part(context, HeldPart(comm, reactions, p, motions[p]), loads[p], reactions.strength[p], slides[p]);
   }
+  if (!contact.friction.anywhere || !follows_pressure(comm, contact.friction)) return support;
+  const Reactions others = without_coefficient(reactions);
+  for (int p = 0; p < parts.size(); ++p)
+    if (!motions[p].empty() && !holds(HeldPart(comm, others, p, motions[p]), loads[p])) support.by_coulomb_only = true;
   return support;
 }
 

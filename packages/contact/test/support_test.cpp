@@ -123,6 +123,21 @@ TEST(SupportByFriction, HoldsWhatThePressureTimesItsCoefficientIs)
   }
 }
 
+TEST(SupportByFriction, DependsOnThePressuresWhereTheRestDoesNotHoldTheLoad)
+{
+  const auto depends = [](const double by, const double mu, const double bound) {
+    return Scene{plate(), {}, {rough("bottom", inf, mu, bound)}, {pull("top", 0, -10), pull("left", by, 0)}}
+        .check()
+        .by_coulomb_only;
+  };
+  EXPECT_TRUE(depends(3, 0.3, 0)); // of 12 N/m
+  EXPECT_TRUE(depends(5, 0.3, 1)); // 4 N/m whatever the pressure is
+  EXPECT_FALSE(depends(3.9, 0.3, 1));
+  EXPECT_FALSE(depends(3.9, 0, 1));
+  Scene held{plate(), {hold("left", {0, 1})}, {rough("bottom", inf, 0.3)}, {pull("top", 0, -10)}};
+  EXPECT_FALSE(held.check().by_coulomb_only);
+}
+
 TEST(SupportByFriction, HoldsInEveryDirectionOfAPlane)
 {
   const auto pushed = [&](const double x, const double z) {

@@ -14,6 +14,9 @@ namespace rpc::contact
 struct Support {
   int num_parts = 1;            ///< of the body that share no node
   bool by_contact_only = false; ///< some part has rigid motions that nothing but contact stops
+  /// Without the friction that follows the pressure, mu p, the load would move some part: whether there is a solution depends on the
+  /// pressures. (12.10)
+  bool by_coulomb_only = false;
 };
 
 /// The parts of a body with the rigid motions that prescribed displacements leave to each.
