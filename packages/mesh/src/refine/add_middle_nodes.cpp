@@ -28,12 +28,29 @@ struct NewMesh {
   int size() const { return static_cast<int>(owned.size()); }
 };
 
-void add_places(const LocalMesh &mesh, const Middles &middles, const NewPlaces &place, std::vector<double> &coords)
+/// Cells in an order that does not depend on the number of ranks: by the ids of their vertices.
+std::vector<int> cells_by_ids(const LocalMesh &mesh)
+{
+  const int width = mesh.element.num_vertices();
+  std::vector<std::vector<GO>> ids(mesh.num_cells());
+  for (int c = 0; c < mesh.num_cells(); ++c) {
+    for (int a = 0; a < width; ++a) ids[c].push_back(mesh.id[mesh.nodes_of(c)[a]]);
+    std::sort(ids[c].begin(), ids[c].end());
+  }
+  std::vector<int> order(mesh.num_cells());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](const int a, const int b) { return ids[a] < ids[b]; });
+  return order;
+}
+
+/// Where cells have places of their own for what they share, the first by cells_by_ids() tells: last digits may differ between them.
+void add_places(const LocalMesh &mesh, const Middles &middles, const NewPlaces &place, const std::vector<int> &cells,
+                std::vector<double> &coords)
 {
   const int dim = mesh.dim();
   coords.assign(std::size_t(dim) * middles.size(), 0);
   std::vector<char> done(middles.size(), 0);
-  for (int c = 0; c < mesh.num_cells(); ++c)
+  for (const int c : cells)
     for (int e = 0; e < middles.per_cell; ++e) {
       const int m = middles.of_cell[std::size_t(middles.per_cell) * c + e];
       if (done[m] || middles.owner_vertex(m) >= mesh.num_owned_nodes()) continue;
@@ -55,7 +72,8 @@ NewMesh new_mesh(const LocalMesh &mesh, const std::vector<Middles> &kinds, const
 {
   std::vector<std::vector<double>> coords(kinds.size());
   std::vector<std::vector<char>> moved(kinds.size());
-  for (std::size_t k = 0; k < kinds.size(); ++k) add_places(mesh, kinds[k], place, coords[k]);
+  const std::vector<int> cells = cells_by_ids(mesh);
+  for (std::size_t k = 0; k < kinds.size(); ++k) add_places(mesh, kinds[k], place, cells, coords[k]);
   move_to_boundary(mesh, kinds, file, coords, moved);
 
   NewMesh made;
