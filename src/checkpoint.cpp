@@ -8,6 +8,7 @@
 #include "rpc/io/atomic_file.hpp"
 #include "rpc/io/checkpoint.hpp"
 
+#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <iomanip>
@@ -137,29 +138,37 @@ const std::vector<double> *array_of(const io::Checkpoint &file, const std::strin
   return nullptr;
 }
 
-/// A field of cell sizes as arrays of a file.
-std::vector<io::NamedArray> arrays_of(const mesh::SizeField &sizes)
-{
-  return {{"sizes_coords", sizes.coords},
-          {"sizes_triangles", {sizes.triangles.begin(), sizes.triangles.end()}},
-          {"sizes_size", sizes.size}};
-}
-/// The field of cell sizes that the mesh of a state was made by, rank 0 only; null: the deck's mesh, or another rank.
-std::shared_ptr<const mesh::SizeField> sizes_of(const analysis::HistoryState &state)
+/// The options of a mesh that was made by a field of cell sizes, rank 0 only; null: the deck's mesh, or another rank.
+const mesh::GmshOptions *sized_mesh(const analysis::HistoryState &state)
 {
   const auto *const gmsh = std::get_if<mesh::GmshOptions>(&state.mesh_options);
-  return gmsh ? gmsh->sizes : nullptr;
+  return gmsh && gmsh->sizes ? gmsh : nullptr;
+}
+/// A field of cell sizes, and how often the mesh by it was refined, as arrays of a file.
+std::vector<io::NamedArray> arrays_of(const mesh::GmshOptions &mesh)
+{
+  const mesh::SizeField &sizes = *mesh.sizes;
+  return {{"sizes_coords", sizes.coords},
+          {"sizes_simplices", {sizes.simplices.begin(), sizes.simplices.end()}},
+          {"sizes_size", sizes.size},
+          {"sizes_dimension_refinements", {double(sizes.dim), double(mesh.refinements)}}};
 }
 /// The mesh that a checkpoint is on: the deck's, unless the file has a field of cell sizes.
 mesh::MeshOptions mesh_of(const io::Checkpoint &file, const std::string &path, const Scene &scene, const Comm &comm)
 {
-  const auto *const coords = array_of(file, "sizes_coords"), *const triangles = array_of(file, "sizes_triangles"),
-                    *const size = array_of(file, "sizes_size");
-  if (!coords || !triangles || !size) return scene.mesh;
+  const auto *const coords = array_of(file, "sizes_coords"), *const simplices = array_of(file, "sizes_simplices"),
+                    *const size = array_of(file, "sizes_size"),
+                    *const kind = array_of(file, "sizes_dimension_refinements");
+  if (!coords || !simplices || !size || !kind) return scene.mesh;
   std::shared_ptr<mesh::SizeField> sizes;
-  if (comm.getRank() == 0)
-    sizes = std::make_shared<mesh::SizeField>(mesh::SizeField{*coords, {triangles->begin(), triangles->end()}, *size});
-  const auto options = mesh::with_sizes(scene.mesh, sizes);
+  int refinements = 0;
+  if (comm.getRank() == 0) { // which has the arrays' values
+    sizes = std::make_shared<mesh::SizeField>(
+        mesh::SizeField{*coords, {simplices->begin(), simplices->end()}, *size, static_cast<int>(kind->at(0))});
+    refinements = static_cast<int>(kind->at(1));
+  }
+  Teuchos::broadcast(comm, 0, Teuchos::outArg(refinements));
+  const auto options = mesh::with_sizes(scene.mesh, sizes, refinements);
   RPC_REQUIRE(options && scene.adapt.adapts(),
               "restart: \"" << path
                             << "\" is on a mesh that was adapted, and the deck adapts none. Give it "
@@ -315,8 +324,8 @@ void Checkpoints::write(const analysis::HistoryState &state)
   std::ostringstream name;
   name << stem_of(scene_) << std::setw(6) << std::setfill('0') << state.records.size() << ".e";
   const std::string path = (std::filesystem::path(folder_) / name.str()).string();
-  const auto sizes = sizes_of(state);
-  auto arrays = sizes ? arrays_of(*sizes) : std::vector<io::NamedArray>();
+  const auto *const sized = sized_mesh(state);
+  auto arrays = sized ? arrays_of(*sized) : std::vector<io::NamedArray>();
   if (!state.last.foundations.empty())
     arrays.push_back({"foundation_dents", contact::stored_dents(d.mesh->comm(), state.last.foundations)});
   io::write_checkpoint(path, *d.mesh, state.last.time, fields, text.dump(), arrays);

@@ -101,7 +101,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   const Teuchos::ParameterList &output = deck.sublist("Output");
   scene.output = {output.get<bool>("Exodus"), output.get<bool>("CSV"), output.get<bool>("JSON"),
                   output.get<bool>("Timers")};
-  adapt::require_adaptable(scene, dim);
+  adapt::require_adaptable(scene);
   return scene;
 }
 

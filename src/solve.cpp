@@ -4,6 +4,7 @@
 #include "report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <sstream>
 
@@ -28,6 +29,10 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     };
   if (!several_steps) listener.step.uzawa = [&](const analysis::UzawaResult &result) { table->uzawa(result); };
   listener.estimate = [&](const Solution &solution) { print_estimate(console, scene, solution); };
+  listener.forecast = [&](const adapt::Forecast &forecast) {
+    console << "next mesh: about " << std::llround(forecast.dofs) << " dofs; the target in about "
+            << std::max(1LL, std::llround(forecast.seconds)) << " s" << std::endl;
+  };
   listener.note = [&](const std::string &note) { console << "note: " << note << std::endl; };
   listener.load_step = [&](const analysis::Solution &solution) {
     if (keep_step) keep_step(scene, solution); // what the table tells is on disk

@@ -88,8 +88,6 @@ ASSIGNMENTS = [
     (["Adapt->Max Dofs=0"], ['"Adapt->Max Dofs" must be > 0', "got 0"]),
     (["Adapt->Max Cycles=-2"], ['"Adapt->Max Cycles" must be > 0', "got -2"]),
     (["Adapt->Exact Energy=inf"], ['"Adapt->Exact Energy" must be a double, and finite', '"inf"']),
-    (["Adapt->Target Relative Error=0.1", "Mesh->Lower={0,0,0}", "Mesh->Upper={5,1,1}", "Mesh->Cells={4,2,2}"],
-     ['"Adapt->Target Relative Error"', "plane meshes", "in space are not available yet", "Leave it at 0"]),
     # solvers
     (["Uzawa->Tolerance=-1"], ['"Uzawa->Tolerance" must be in (0, 1)', "got -1"]),
     (["Uzawa->Maximum Iterations=0"], ['"Uzawa->Maximum Iterations" must be > 0', "got 0"]),

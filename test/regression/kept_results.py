@@ -204,6 +204,15 @@ class KeptResults(RpcTestCase):
         times = [t for path in self.parts("out", "beam_adaptive") for t in Film(path).times]
         self.assertEqual(times, [0.25 * k for k in range(1, 41)])
 
+    def test_a_checkpoint_on_an_adapted_mesh_in_space_goes_on_as_the_run_without_a_break(self):
+        deck = "block_adaptive"
+        steps = ["--set=Traction->front->Z=-20*t", "--set=Adapt->Target Relative Error=0.08", "--set=Steps->Checkpoint Every=1"]
+        self.rpc(f"--input={deck}.xml", *steps, "--set=Steps->Times={0.4,0.8,1.2}", "--output=whole")
+        self.rpc(f"--input={deck}.xml", *steps, "--set=Steps->Times={0.4,0.8}", "--output=out")
+        result = self.rpc(f"--input={deck}.xml", *steps, "--set=Steps->Times={0.4,0.8,1.2}", "--output=out", "--restart")
+        self.assertIn("t = 0.8", result.stdout)
+        self.expect_equal_runs("whole", "out", deck)
+
     def test_a_checkpoint_on_an_adapted_mesh_wants_a_deck_that_adapts(self):
         shorter = [argument.replace("To=10", "To=1.5") for argument in self.ADAPTED]
         self.rpc("--input=beam_adaptive.xml", *shorter, "--output=out")

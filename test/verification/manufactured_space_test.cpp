@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <map>
 
 // A contact problem in space with a known solution (doc/theory.md, (7.3)), on straight and on curved, distorted cells.
 
@@ -157,6 +158,40 @@ TEST_P(ManufacturedInSpace, ErrorsFallAtTheElementsRates)
     // On uniform Q2 meshes the pressures, whose error falls by h^1.5 at most, count for more than the strains.
     EXPECT_GE(found[k].effectivity, 0.9);
     EXPECT_LE(found[k].effectivity, element == "Q2" ? 5.5 : 2);
+  }
+}
+
+TEST(AdaptiveInSpace, EstimateIsTrueAndErrorsFallAtTheRateOfTheOrder)
+{
+  constexpr fem::Material material{2.6, 0.3};
+  for (const auto &[element, targets] :
+       std::map<std::string, std::vector<double>>{{"P2", {0.012, 0.006, 0.003}}, {"P1", {0.2, 0.1}}}) {
+    SCOPED_TRACE(element);
+    std::vector<double> dofs, error;
+    for (const double target : targets) {
+      std::size_t cycle = 0;
+      double relative = 0;
+      const auto judge = [&](const Scene &, Solution &s) {
+        const fem::Discretization &d = s.discretization;
+        const double squared = test::energy_of_difference(d, material, *s.u, exact_gradient),
+                     norm = test::energy_of_difference(d, material, Vector(d.owned_dofs), exact_gradient);
+        relative = std::sqrt(squared / norm);
+        if (++cycle < 3 && !s.adaptation) return;
+        EXPECT_GT(relative_estimate(s) / relative, 0.8) << "mesh " << cycle;
+        EXPECT_LT(relative_estimate(s) / relative, 1.5) << "mesh " << cycle;
+      };
+      std::ostream nowhere(nullptr);
+      const Scene scene = read_scene(deck, {"Mesh->Element=" + element, "Mesh->Cells={6,2,2}",
+                                            "Adapt->Target Relative Error=" + std::to_string(target)});
+      const Solution last = solve(scene, Tpetra::getDefaultComm(), nowhere, judge);
+      ASSERT_TRUE(last.adaptation->reached) << last.adaptation->reason;
+      EXPECT_LT(relative, target);
+      dofs.push_back(static_cast<double>(last.adaptation->cycles.back().dofs));
+      error.push_back(relative);
+    }
+    const double order = std::log(error.front() / error.back()) / std::log(dofs.back() / dofs.front());
+    RecordProperty("order_" + element, std::to_string(order));
+    EXPECT_GT(order, 0.95 * (element == "P2" ? 2. : 1.) / 3);
   }
 }
 

@@ -94,8 +94,6 @@ TEST(Refinement, IsRefusedWhereItMakesNoSense)
   };
   refuse(input + "beam.xml", {"Mesh->Refinements=1"}, "\"Mesh->Refinements\" does not go with \"Mesh->Type\" = box");
   refuse(input + "hertz.xml", {"Mesh->Refinements=-1"}, "\"Mesh->Refinements\" must be 0 to 12, got -1");
-  refuse(input + "hertz.xml", {"Mesh->Refinements=1", "Adapt->Target Relative Error=0.1"},
-         "does not go with \"Mesh->Refinements\"");
 }
 
 } // namespace

@@ -61,6 +61,8 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
     return std::abs(b.contact.contact_length - a.contact.contact_length);
   };
   errors.contact_length = error(length);
+  errors.max_penetration = error(
+      [](const Cycle &a, const Cycle &b) { return std::abs(b.contact.max_penetration - a.contact.max_penetration); });
   if (cycles.size() < 2) {
     for (const auto &q : error_bars) errors.unknown[q.key] = "one mesh shows no change";
     return errors;

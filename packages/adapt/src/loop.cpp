@@ -86,6 +86,15 @@ std::size_t best_of(const std::vector<Cycle> &cycles)
   return std::min_element(cycles.begin(), cycles.end(), less) - cycles.begin();
 }
 
+/// Of meshes that grow alike.
+double seconds_for(const Forecast &forecast, const Cycle &last)
+{
+  const double growth = forecast.dofs / static_cast<double>(last.dofs);
+  double seconds = 0, of_mesh = last.seconds;
+  for (int k = 0; k < forecast.meshes; ++k) seconds += of_mesh *= growth;
+  return seconds;
+}
+
 /// @param earlier  the load step before, if there are several; its mesh is the first one
 Solution solve_adaptively(const Task &task, const Solution *const earlier, const RCP<const Comm> &comm,
                           const Listener &listener)
@@ -134,7 +143,12 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
       adaptation.reason = "there were \"Adapt->Max Cycles\" = " + std::to_string(task.adapt.max_cycles) + " meshes";
       break;
     }
-    options = planner.next(last->discretization, *last->estimate, last->energy_norm_squared, adaptation.reason);
+    Forecast forecast;
+    options =
+        planner.next(last->discretization, *last->estimate, last->energy_norm_squared, forecast, adaptation.reason);
+    if (!options || !listener.forecast) continue;
+    forecast.seconds = seconds_for(forecast, cycles.back());
+    listener.forecast(forecast);
   }
   if (!adaptation.reached && !hint.empty() && !interrupted(*comm)) adaptation.reason += ". " + hint;
   adaptation.errors = observed_errors({cycles.begin(), cycles.begin() + best_of(cycles) + 1});

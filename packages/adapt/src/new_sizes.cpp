@@ -22,14 +22,15 @@ EstimatedMesh gathered(const fem::Discretization &d, const ErrorEstimate &estima
   const auto ids = mesh::overlap_node_ids(mesh);
   EstimatedMesh all;
   all.order = mesh.element.order;
+  all.dim = mesh.dim();
   all.vertices = mesh.element.num_vertices();
   std::vector<double> x;
   for (LO n = 0; n < mesh.num_owned_nodes(); ++n)
-    for (int i = 0; i < 2; ++i) x.push_back(coords(n, i));
+    for (int i = 0; i < all.dim; ++i) x.push_back(coords(n, i));
   std::vector<int> vertices;
   for (LO cell = 0; cell < mesh.num_owned_cells; ++cell)
     for (int a = 0; a < all.vertices; ++a) vertices.push_back(static_cast<int>(ids(vertices_of(cell, a))));
-  all.coords = nodes.gather(x.data(), 2);
+  all.coords = nodes.gather(x.data(), all.dim);
   all.cells = cells.gather(vertices.data(), all.vertices);
   all.squared = cells.gather(squared.data(), 1);
   return all;
@@ -39,7 +40,6 @@ EstimatedMesh gathered(const fem::Discretization &d, const ErrorEstimate &estima
 
 Sizes new_sizes(const fem::Discretization &d, const ErrorEstimate &estimate, const SizeRequest &request)
 {
-  RPC_REQUIRE(d.dim() == 2, "deck: \"Adapt\" works in 2D only, got a mesh in " << d.dim() << "D");
   const EstimatedMesh mesh = gathered(d, estimate);
   Sizes sizes;
   on_root(d.mesh->comm(), ExitCode::internal_error, [&] {

@@ -22,11 +22,17 @@ constexpr double near = 2, greatest_correction = 3, growth_near = 1.25, growth =
 constexpr double greatest_excess = 1.5;
 // Meshes are planned that much smaller than allowed: gmsh makes more cells or fewer than it is asked for.
 constexpr double share_of_max_dofs = 0.75;
+// A mesh in space has up to so many times the cells that are expected: coarse ones cannot be as coarse as they may, for the body's edges.
+constexpr double excess_in_space = 2;
+// In space gmsh makes cells of twice the size, which are halved: that takes an eighth of gmsh's time, and multigrid has a mesh more. In the
+// plane gmsh is fast enough, and finer gradings pay. doc/design.md
+constexpr int refinements_in_space = 1;
 
 } // namespace
 
 std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d, const ErrorEstimate &estimate,
-                                                   const double energy_norm_squared, std::string &reason)
+                                                   const double energy_norm_squared, Forecast &forecast,
+                                                   std::string &reason)
 {
   const double eta = std::sqrt(estimate.total());
   const double wanted = aim * task_.adapt.target * std::sqrt(energy_norm_squared);
@@ -38,17 +44,27 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
 
   const double dofs = static_cast<double>(d.owned_dofs->getGlobalNumElements());
   const mesh::Mesh &mesh = *d.mesh;
-  const double cells = static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
+  // In space meshes by a field of sizes have tetrahedra, six for each hexahedron.
+  const int parts = mesh.dim() == 3 && mesh.element.shape == mesh::Shape::tensor ? 6 : 1;
+  const double cells = parts * static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
   const double most_dofs = share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
-  const double allowed = most_dofs * cells / dofs;
-  const double sensible = greatest_excess * cells * std::pow(eta / bound, 2. / mesh.element.order);
+  const double excess = mesh.dim() == 2        ? 1
+                        : predicted_cells_ > 0 ? std::max(1., cells / predicted_cells_)
+                                               : excess_in_space;
+  const double allowed = most_dofs * cells / dofs / excess;
+  const double sensible = greatest_excess * cells * std::pow(eta / bound, double(mesh.dim()) / mesh.element.order);
   const auto sizes =
       new_sizes(d, estimate, {bound * bound, std::min(allowed, sensible), is_near ? growth_near : growth});
-  if (dofs > 0.9 * most_dofs && sizes.predicted_cells > 0.9 * allowed) {
+  const bool no_better = eta >= eta_before_;
+  eta_before_ = eta;
+  if ((dofs > 0.9 * most_dofs || no_better) && sizes.predicted_cells > 0.9 * allowed) {
     reason = "a mesh for the target would exceed \"Adapt->Max Dofs\" = " + std::to_string(task_.adapt.max_dofs);
     return std::nullopt;
   }
-  return mesh::with_sizes(task_.mesh, sizes.field);
+  forecast.meshes = std::max(1, static_cast<int>(meshes));
+  forecast.dofs = dofs * sizes.predicted_cells / cells * excess;
+  predicted_cells_ = sizes.predicted_cells;
+  return mesh::with_sizes(task_.mesh, sizes.field, mesh.dim() == 3 ? refinements_in_space : 0);
 }
 
 } // namespace rpc::adapt

@@ -43,17 +43,8 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-void require_adaptable(const Task &task, const int dim)
+void require_adaptable(const Task &task)
 {
-  RPC_REQUIRE(
-      !task.adapt.adapts() || dim == 2,
-      "deck: \"Adapt->Target Relative Error\" goes with plane meshes: adaptive ones in space are not available yet. "
-      "Leave it at 0; \"Adapt->Estimate Error\" tells the error.");
-  const auto *const gmsh = std::get_if<mesh::GmshOptions>(&task.mesh);
-  RPC_REQUIRE(
-      !task.adapt.adapts() || !gmsh || gmsh->refinements == 0,
-      "deck: \"Adapt->Target Relative Error\" does not go with \"Mesh->Refinements\": adapted meshes are gmsh's. "
-      "Leave one of them at 0.");
   RPC_REQUIRE(
       !task.adapt.adapts() || mesh::with_sizes(task.mesh, nullptr),
       "deck: \"Adapt->Target Relative Error\" goes with a box or a .geo, which can be meshed anew; the mesh is a "

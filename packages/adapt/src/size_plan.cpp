@@ -1,5 +1,7 @@
 #include "size_plan.hpp"
 
+#include "rpc/mesh/topology.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,12 +17,13 @@ namespace
 
 // From one mesh to the next a cell of a smooth solution shrinks by no more: the estimate knows no better.
 constexpr double least_ratio = 0.1;
-// The same at a singular vertex, where cells shrink towards a point and cost little.
+// The same at a singular vertex in the plane, where cells shrink towards a point and cost little.
 constexpr double least_vertex_ratio = 1e-4;
 // Growth of sizes with the distance: neighbours differ by about half.
 constexpr double gradation = 0.4;
 // Rings of cells about a vertex that tell its exponent.
 constexpr int rings = 4;
+constexpr int rings_in_space = 3; // they have many more cells
 // A vertex is singular if its exponent falls that much short of the order of the elements.
 constexpr double margin = 0.25;
 // The lowest exponents of elastic bodies: cracks.
@@ -32,35 +35,67 @@ constexpr double negligible_share = 1e-6;
 // Sizes are rounded to steps of this factor, lest the last digits of an estimate change a mesh.
 constexpr double steps_per_octave = 64;
 
+/// The simplices that a cell is cut into, by its vertices.
+const std::vector<std::vector<int>> &parts_of(const EstimatedMesh &mesh)
+{
+  static const std::vector<std::vector<int>> triangle{{0, 1, 2}}, quadrilateral{{0, 1, 2}, {0, 2, 3}},
+      tetrahedron{{0, 1, 2, 3}},
+      hexahedron{{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+  if (mesh.dim == 2) return mesh.simplices() ? triangle : quadrilateral;
+  return mesh.simplices() ? tetrahedron : hexahedron;
+}
+
+/// Area or volume of a simplex of a cell, with its sign. Far from the origin that needs differences.
+double signed_measure(const EstimatedMesh &mesh, const int cell, const std::vector<int> &part)
+{
+  const int *const v = mesh.vertices_of(cell);
+  const double *const first = mesh.at(v[part[0]]);
+  double arm[3][3] = {};
+  for (int a = 0; a < mesh.dim; ++a)
+    for (int i = 0; i < mesh.dim; ++i) arm[a][i] = mesh.at(v[part[a + 1]])[i] - first[i];
+  if (mesh.dim == 2) return (arm[0][0] * arm[1][1] - arm[0][1] * arm[1][0]) / 2;
+  double six_volumes = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    six_volumes += arm[0][i] * (arm[1][j] * arm[2][k] - arm[1][k] * arm[2][j]);
+  }
+  return six_volumes / 6;
+}
+
 struct Geometry {
-  std::vector<double> area, length;          // (cells) [m^2], [m]: edge of the equilateral cell of the same area
-  std::vector<std::array<double, 2>> centre; // (cells) [m]
+  std::vector<double> measure, length;       // (cells) area or volume [m^dim]; edge of gmsh's cell of the same size [m]
+  std::vector<std::array<double, 3>> centre; // (cells) [m]
   std::vector<std::vector<int>> around;      // (nodes) cells
   std::vector<char> boundary;                // (nodes) vertices on it
 
   explicit Geometry(const EstimatedMesh &mesh)
-      : area(mesh.num_cells()), length(mesh.num_cells()), centre(mesh.num_cells()), around(mesh.num_nodes()),
+      : measure(mesh.num_cells()), length(mesh.num_cells()), centre(mesh.num_cells()), around(mesh.num_nodes()),
         boundary(mesh.num_nodes())
   {
-    const int nv = mesh.vertices;
-    std::map<std::pair<int, int>, int> edges;
     for (int cell = 0; cell < mesh.num_cells(); ++cell) {
-      const double *const first = &mesh.coords[2 * mesh.cells[nv * cell]]; // far from the origin areas need differences
-      for (int a = 0; a < nv; ++a) {
-        const int n = mesh.cells[nv * cell + a], m = mesh.cells[nv * cell + (a + 1) % nv];
-        const double *x = &mesh.coords[2 * n], *y = &mesh.coords[2 * m];
-        area[cell] += ((x[0] - first[0]) * (y[1] - first[1]) - (x[1] - first[1]) * (y[0] - first[0])) / 2;
-        for (int i = 0; i < 2; ++i) centre[cell][i] += x[i] / nv;
+      for (int a = 0; a < mesh.vertices; ++a) {
+        const int n = mesh.vertices_of(cell)[a];
+        for (int i = 0; i < mesh.dim; ++i) centre[cell][i] += mesh.at(n)[i] / mesh.vertices;
         around[n].push_back(cell);
-        ++edges[std::minmax(n, m)];
       }
-      area[cell] = std::abs(area[cell]);
-      length[cell] = std::sqrt(area[cell] * (nv == 3 ? 4 / std::sqrt(3.) : 1));
+      for (const auto &part : parts_of(mesh)) measure[cell] += signed_measure(mesh, cell, part);
+      measure[cell] = std::abs(measure[cell]);
+      length[cell] = mesh.dim == 2 ? std::sqrt(measure[cell] * (mesh.vertices == 3 ? 4 / std::sqrt(3.) : 1))
+                                   : std::cbrt(measure[cell] / mesh.cells_per_cell() * mesh::tetrahedra_per_cube);
     }
-    for (const auto &[edge, count] : edges)
-      if (count == 1) boundary[edge.first] = boundary[edge.second] = 1;
+    const mesh::Element element{mesh.dim, 1, mesh.simplices() ? mesh::Shape::simplex : mesh::Shape::tensor};
+    const mesh::Entities facets = mesh::facets_of(element, mesh.cells);
+    for (int f = 0; f < facets.size(); ++f)
+      for (int a = 0; a < facets.num_vertices && facets.num_cells_at(f) == 1; ++a)
+        boundary[facets.vertices[facets.num_vertices * std::size_t(f) + a]] = 1;
   }
 };
+
+/// Cells that come of one whose size changes by this ratio.
+double cells_at(const double ratio, const int dim)
+{
+  return 1 / (dim == 2 ? ratio * ratio : ratio * ratio * ratio);
+}
 
 /// What ratios of sizes to those at hand come to.
 struct Prediction {
@@ -68,9 +103,11 @@ struct Prediction {
 };
 
 /// Ratio of the new size of a smooth cell to its size, for a level c that is common to all.
-double ratio_of(const double squared, const double level, const int order, const double most)
+double ratio_of(const EstimatedMesh &mesh, const int cell, const double level, const double most)
 {
-  return squared > 0 ? std::clamp(std::pow(level / squared, 1. / (2 * order + 2)), least_ratio, most) : most;
+  const double squared = mesh.squared[cell];
+  return squared > 0 ? std::clamp(std::pow(level / squared, 1. / (2 * mesh.order + mesh.dim)), least_ratio, most)
+                     : most;
 }
 
 /// Cells at singular vertices count by their number only: grading leaves little of their error.
@@ -79,9 +116,9 @@ Prediction predict(const EstimatedMesh &mesh, const std::vector<char> &at_singul
 {
   Prediction p;
   for (int cell = 0; cell < mesh.num_cells(); ++cell) {
-    const double squared = mesh.squared[cell], ratio = ratio_of(squared, level, mesh.order, max_growth);
-    if (!at_singularity[cell]) p.squared += squared * std::pow(ratio, 2 * mesh.order);
-    p.cells += 1 / (ratio * ratio);
+    const double ratio = ratio_of(mesh, cell, level, max_growth);
+    if (mesh.dim == 3 || !at_singularity[cell]) p.squared += mesh.squared[cell] * std::pow(ratio, 2 * mesh.order);
+    p.cells += mesh.cells_per_cell() * cells_at(ratio, mesh.dim);
   }
   return p;
 }
@@ -102,7 +139,9 @@ double level_for(const EstimatedMesh &mesh, const std::vector<char> &at_singular
 
 double distance(const EstimatedMesh &mesh, const int n, const double *x)
 {
-  return std::hypot(mesh.coords[2 * n] - x[0], mesh.coords[2 * n + 1] - x[1]);
+  const double *const at = mesh.at(n);
+  if (mesh.dim == 2) return std::hypot(at[0] - x[0], at[1] - x[1]);
+  return std::hypot(at[0] - x[0], at[1] - x[1], at[2] - x[2]);
 }
 
 /// Sizes that grow from any vertex by no more than the gradation allows.
@@ -118,8 +157,8 @@ void limit_growth(const EstimatedMesh &mesh, const Geometry &geometry, std::vect
     if (least > size[n]) continue;
     for (const int cell : geometry.around[n])
       for (int a = 0; a < mesh.vertices; ++a) {
-        const int m = mesh.cells[mesh.vertices * cell + a];
-        const double bound = least + gradation * distance(mesh, m, &mesh.coords[2 * n]);
+        const int m = mesh.vertices_of(cell)[a];
+        const double bound = least + gradation * distance(mesh, m, mesh.at(n));
         if (bound < size[m]) queue.emplace(size[m] = bound, m);
       }
   }
@@ -148,10 +187,10 @@ private:
   double sum_[5] = {};
 };
 
-/// What errors are divided by to tell of |u| alone: eta_T^2 / (|T| h_T^2p).
+/// What errors are divided by to tell of |u| alone: |T| h_T^2p.
 double error_scale(const EstimatedMesh &mesh, const Geometry &geometry, const int cell)
 {
-  return geometry.area[cell] * std::pow(geometry.length[cell], 2 * mesh.order);
+  return geometry.measure[cell] * std::pow(geometry.length[cell], 2 * mesh.order);
 }
 
 /// @param negligible  a squared error of the whole mesh. Errors of cells that would add up to less, if they were the same
@@ -168,13 +207,13 @@ std::vector<double> local_exponents(const EstimatedMesh &mesh, const Geometry &g
     Fit fit;
     std::vector<int> ring = geometry.around[n];
     for (const int cell : ring) seen[cell] = n;
-    for (int k = 0; k < rings; ++k) {
+    for (int k = 0; k < (mesh.dim == 2 ? rings : rings_in_space); ++k) {
       std::vector<int> next;
       for (const int cell : ring) {
         const double density = mesh.squared[cell] / error_scale(mesh, geometry, cell) + least;
         if (density > 0) fit.add(std::log(distance(mesh, n, geometry.centre[cell].data())), std::log(density) / 2);
         for (int a = 0; a < mesh.vertices; ++a)
-          for (const int other : geometry.around[mesh.cells[mesh.vertices * cell + a]])
+          for (const int other : geometry.around[mesh.vertices_of(cell)[a]])
             if (seen[other] != n) {
               seen[other] = n;
               next.push_back(other);
@@ -195,29 +234,32 @@ public:
       : mesh_(mesh), size_(size), exponent_(exponent), index_(mesh.num_nodes(), -1)
   {
     for (const int n : mesh.cells)
-      if (index_[n] < 0) index_[n] = add(&mesh.coords[2 * n], size[n]);
+      if (index_[n] < 0) index_[n] = add(mesh.at(n), size[n]);
+    field_.dim = mesh.dim;
   }
 
+  /// Of simplices, in the plane with strips towards singular vertices. In space sizes are linear there: along a line of them strips would
+  /// be many, and the next mesh shows more.
   mesh::SizeField make(const std::vector<char> &singular)
   {
-    for (int cell = 0; cell < mesh_.num_cells(); ++cell) {
-      const int *const v = &mesh_.cells[mesh_.vertices * cell];
-      for (int a = 2; a < mesh_.vertices; ++a) {
-        int corner[3] = {v[0], v[a - 1], v[a]};
-        for (int k = 0; k < 3 && !singular[corner[0]]; ++k) std::rotate(corner, corner + 1, corner + 3);
-        if (singular[corner[0]])
+    for (int cell = 0; cell < mesh_.num_cells(); ++cell)
+      for (const auto &part : parts_of(mesh_)) {
+        std::vector<int> corner;
+        for (const int a : part) corner.push_back(mesh_.vertices_of(cell)[a]);
+        for (int k = 0; mesh_.dim == 2 && k < 3 && !singular[corner[0]]; ++k)
+          std::rotate(corner.begin(), corner.begin() + 1, corner.end());
+        if (mesh_.dim == 2 && singular[corner[0]])
           add_graded(corner[0], corner[1], corner[2]);
         else
-          field_.triangles.insert(field_.triangles.end(), {index_[corner[0]], index_[corner[1]], index_[corner[2]]});
+          for (const int n : corner) field_.simplices.push_back(index_[n]);
       }
-    }
     return std::move(field_);
   }
 
 private:
   int add(const double *x, const double size)
   {
-    field_.coords.insert(field_.coords.end(), {x[0], x[1]});
+    field_.coords.insert(field_.coords.end(), x, x + mesh_.dim);
     field_.size.push_back(std::exp2(std::round(std::log2(size) * steps_per_octave) / steps_per_octave));
     return static_cast<int>(field_.size.size()) - 1;
   }
@@ -225,7 +267,7 @@ private:
   /// A point that lies at a share t of the way from a singular vertex to another one.
   int add_between(const int vertex, const int other, const double t)
   {
-    const double *const x = &mesh_.coords[2 * vertex], *const y = &mesh_.coords[2 * other];
+    const double *const x = mesh_.at(vertex), *const y = mesh_.at(other);
     const double at[2] = {x[0] + t * (y[0] - x[0]), x[1] + t * (y[1] - x[1])};
     const double beta = 1 - exponent_[vertex] / (mesh_.order + 1);
     const double grown = size_[vertex] + gradation * t * distance(mesh_, vertex, y);
@@ -235,15 +277,15 @@ private:
   /// Strips that halve in width towards a singular vertex.
   void add_graded(const int vertex, const int a, const int b)
   {
-    const double least = size_[vertex] / std::max(distance(mesh_, vertex, &mesh_.coords[2 * a]),
-                                                  distance(mesh_, vertex, &mesh_.coords[2 * b]));
+    const double least =
+        size_[vertex] / std::max(distance(mesh_, vertex, mesh_.at(a)), distance(mesh_, vertex, mesh_.at(b)));
     int outer[2] = {index_[a], index_[b]};
     for (double t = 0.5; t > least / 2; t /= 2) {
       const int inner[2] = {add_between(vertex, a, t), add_between(vertex, b, t)};
-      field_.triangles.insert(field_.triangles.end(), {inner[0], outer[0], outer[1], inner[0], outer[1], inner[1]});
+      field_.simplices.insert(field_.simplices.end(), {inner[0], outer[0], outer[1], inner[0], outer[1], inner[1]});
       std::copy(inner, inner + 2, outer);
     }
-    field_.triangles.insert(field_.triangles.end(), {index_[vertex], outer[0], outer[1]});
+    field_.simplices.insert(field_.simplices.end(), {index_[vertex], outer[0], outer[1]});
   }
 
   const EstimatedMesh &mesh_;
@@ -260,8 +302,7 @@ std::vector<double> smooth_sizes(const EstimatedMesh &mesh, const Geometry &geom
   for (int n = 0; n < mesh.num_nodes(); ++n) {
     double sum[2] = {}, count[2] = {};
     for (const int cell : geometry.around[n]) {
-      sum[int(at_singularity[cell])] +=
-          std::log(geometry.length[cell] * ratio_of(mesh.squared[cell], level, mesh.order, max_growth));
+      sum[int(at_singularity[cell])] += std::log(geometry.length[cell] * ratio_of(mesh, cell, level, max_growth));
       ++count[int(at_singularity[cell])];
     }
     const int kind = count[0] > 0 ? 0 : 1;
@@ -270,8 +311,8 @@ std::vector<double> smooth_sizes(const EstimatedMesh &mesh, const Geometry &geom
   return size;
 }
 
-/// Size at a singular vertex: where sizes that fall like r^(1 - lambda / (p + 1)) from those around it come down to the
-/// distance r itself, or less if the cells there err by more than those elsewhere are to.
+/// Size at a singular vertex: where sizes that fall like r^(2 (p + 1 - lambda) / (2p + dim)) from those around it come down to the
+/// distance r itself, or less if the cells there err by more than those elsewhere are to.                     (10.6)
 double vertex_size(const EstimatedMesh &mesh, const Geometry &geometry, const int vertex, const double exponent,
                    const std::vector<char> &singular, const std::vector<double> &size, const double level)
 {
@@ -280,33 +321,38 @@ double vertex_size(const EstimatedMesh &mesh, const Geometry &geometry, const in
   for (const int cell : geometry.around[vertex]) {
     squared += mesh.squared[cell];
     for (int a = 0; a < mesh.vertices; ++a) {
-      const int n = mesh.cells[mesh.vertices * cell + a];
+      const int n = mesh.vertices_of(cell)[a];
       if (singular[n]) continue;
-      const double r = distance(mesh, vertex, &mesh.coords[2 * n]);
+      const double r = distance(mesh, vertex, mesh.at(n));
       ratio += std::log(size[n] / r);
       reach += std::log(r);
       ++count;
     }
   }
   if (count == 0) return size[vertex];
-  const double graded = std::exp(std::min(0., ratio / count) * (mesh.order + 1) / exponent);
+  const double decay = 2 * exponent + mesh.dim - 2; // of the squared error of a cell at the vertex with its size
+  const double graded = std::exp(std::min(0., ratio / count) * (2 * mesh.order + mesh.dim) / decay);
   const double allowed = level * geometry.around[vertex].size();
-  const double equal = squared > allowed ? std::pow(allowed / squared, 1 / (2 * exponent)) : 1;
-  return std::exp(reach / count) * std::max(std::min(graded, equal), least_vertex_ratio);
+  const double equal = squared > allowed ? std::pow(allowed / squared, 1 / decay) : 1;
+  return std::exp(reach / count) * std::max(std::min(graded, equal), mesh.dim == 2 ? least_vertex_ratio : least_ratio);
 }
 
-/// Where the exponent is that of a singularity, and no vertex nearby has a lower one, or the same and a lower number.
+/// Where the exponent is that of a singularity, and no vertex nearby has a lower one, or the same and a lower number. In space, where
+/// singular vertices make lines, exponents that differ by a little count as the same, and all of them are singular.
 std::vector<char> singular_vertices(const EstimatedMesh &mesh, const Geometry &geometry,
                                     const std::vector<double> &exponent)
 {
+  constexpr double same_in_space = 0.2;
   std::vector<char> singular(mesh.num_nodes(), 0);
   for (int n = 0; n < mesh.num_nodes(); ++n) {
     singular[n] = exponent[n] < mesh.order - margin;
     for (const int cell : geometry.around[n])
-      for (int a = 0; a < mesh.vertices; ++a)
-        if (const int m = mesh.cells[mesh.vertices * cell + a];
-            exponent[m] < exponent[n] || (exponent[m] == exponent[n] && m < n))
-          singular[n] = 0;
+      for (int a = 0; a < mesh.vertices && singular[n]; ++a) {
+        const int m = mesh.vertices_of(cell)[a];
+        const bool stronger = mesh.dim == 2 ? exponent[m] < exponent[n] || (exponent[m] == exponent[n] && m < n)
+                                            : exponent[m] < exponent[n] - same_in_space;
+        if (stronger) singular[n] = 0;
+      }
   }
   return singular;
 }
@@ -336,8 +382,8 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
       if (singular[n]) size[n] = vertex_size(mesh, geometry, n, exponent[n], singular, size, level);
     limit_growth(mesh, geometry, size);
     SizePlan plan{FieldMaker(mesh, size, exponent).make(singular), 0};
-    plan.cells = mesh::expected_cells(plan.field) / (mesh.vertices == 3 ? 1 : 4 / std::sqrt(3.));
-    const double least = mesh.num_cells() / std::pow(request.max_growth, 2) * 1.0001;
+    plan.cells = mesh::expected_cells(plan.field) / (mesh.dim == 3 || mesh.simplices() ? 1 : 4 / std::sqrt(3.));
+    const double least = mesh.num_cells() * mesh.cells_per_cell() / std::pow(request.max_growth, mesh.dim) * 1.0001;
     if (plan.cells <= request.max_cells || predict(mesh, at_singularity, level, request.max_growth).cells <= least)
       return plan;
     level *= 1.5; // grading adds cells, which the prediction leaves out

@@ -7,16 +7,22 @@
 namespace rpc::adapt
 {
 
-/// A plane mesh with the error of each cell, whole and on the host, rows by id.
+/// A mesh with the error of each cell, whole and on the host, rows by id.
 struct EstimatedMesh {
   int order = 1;               ///< of the elements
-  int vertices = 3;            ///< per cell, 3 or 4
-  std::vector<double> coords;  ///< (nodes, 2) [m]; only vertices matter
-  std::vector<int> cells;      ///< (cells, vertices) nodes, counter-clockwise
+  int vertices = 3;            ///< per cell: 3 or 4, in space 4 or 8
+  std::vector<double> coords;  ///< (nodes, dim) [m]; only vertices matter
+  std::vector<int> cells;      ///< (cells, vertices) nodes, in the plane counter-clockwise
   std::vector<double> squared; ///< (cells) eta_T^2 [J]
+  int dim = 2;                 ///< 2 or 3
 
   int num_cells() const { return static_cast<int>(squared.size()); }
-  int num_nodes() const { return static_cast<int>(coords.size()) / 2; }
+  int num_nodes() const { return static_cast<int>(coords.size()) / dim; }
+  const double *at(const int node) const { return &coords[std::size_t(dim) * node]; }
+  const int *vertices_of(const int cell) const { return &cells[std::size_t(vertices) * cell]; }
+  bool simplices() const { return vertices == dim + 1; }
+  /// Cells of a mesh by a field of sizes that stand for one of these: hexahedra give way to tetrahedra.
+  int cells_per_cell() const { return dim == 3 && !simplices() ? 6 : 1; }
 };
 
 /// New cell sizes.

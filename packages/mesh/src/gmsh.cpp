@@ -66,12 +66,14 @@ void check_last_line(const std::string &where, const std::string &geo)
 void check_sizes(const std::string &where, const SizeField &field, const double factor)
 {
   const std::size_t nodes = field.size.size();
-  RPC_REQUIRE_CODE(field.coords.size() == 2 * nodes && !field.triangles.empty() && field.triangles.size() % 3 == 0 &&
-                       std::all_of(field.triangles.begin(), field.triangles.end(),
+  const std::size_t vertices = field.dim + 1;
+  RPC_REQUIRE_CODE(field.coords.size() == field.dim * nodes && !field.simplices.empty() &&
+                       field.simplices.size() % vertices == 0 &&
+                       std::all_of(field.simplices.begin(), field.simplices.end(),
                                    [&](const int n) { return n >= 0 && std::size_t(n) < nodes; }),
                    ExitCode::bad_mesh,
-                   where << "a size field must have one triangle or more, of its nodes, got "
-                         << field.triangles.size() / 3 << " triangles of " << nodes << " nodes");
+                   where << "a size field must have one triangle or tetrahedron or more, of its nodes, got "
+                         << field.simplices.size() / vertices << " of " << nodes << " nodes");
   const auto bad = std::find_if(field.size.begin(), field.size.end(),
                                 [](const double size) { return !(size > 0 && std::isfinite(size)); });
   RPC_REQUIRE_CODE(bad == field.size.end(), ExitCode::bad_mesh,
@@ -80,7 +82,7 @@ void check_sizes(const std::string &where, const SizeField &field, const double 
       std::all_of(field.coords.begin(), field.coords.end(), [](const double x) { return std::isfinite(x); }),
       ExitCode::bad_mesh, where << "the nodes of a size field must have finite coordinates");
   constexpr double most_cells = 5e6;
-  const double cells = expected_cells(field) / (factor * factor);
+  const double cells = expected_cells(field) / std::pow(factor, field.dim);
   RPC_REQUIRE_CODE(cells <= most_cells, ExitCode::bad_mesh,
                    where << "cell sizes are too small: they ask for about " << cells << " cells; at most " << most_cells
                          << " are made");
@@ -102,8 +104,9 @@ GmshContents answer_of_gmsh(const std::string &where, const GmshOptions &options
 MeshData attempt(const std::string &where, const GmshOptions &options, const GmshRequest &request, bool &again)
 {
   GmshContents contents = answer_of_gmsh(where, options, request, again);
-  RPC_REQUIRE_CODE(!options.sizes || contents.dim == 2, ExitCode::bad_mesh,
-                   where << "has volumes; only plane bodies can be meshed by a field of cell sizes");
+  RPC_REQUIRE_CODE(!options.sizes || contents.dim == options.sizes->dim, ExitCode::bad_mesh,
+                   where << "a body in " << contents.dim << "D cannot be meshed by a field of cell sizes in "
+                         << options.sizes->dim << "D");
   return mesh_of_gmsh(where, std::move(contents), true);
 }
 
@@ -123,9 +126,11 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
   request.order = options.order == 0 ? 2 : options.order;
   request.geometry = options.refinements > 0;
   if (options.box) {
-    std::copy_n(options.box->lower.begin(), 2, request.lower.begin());
-    std::copy_n(options.box->upper.begin(), 2, request.upper.begin());
-    request.quadrilaterals = options.box->element.shape == Shape::tensor;
+    const mesh::Element &element = options.box->element;
+    request.box_dim = element.dim;
+    std::copy_n(options.box->lower.begin(), element.dim, request.lower.begin());
+    std::copy_n(options.box->upper.begin(), element.dim, request.upper.begin());
+    request.quadrilaterals = element.dim == 2 && element.shape == Shape::tensor;
     request.order = 1; // middle nodes of straight edges are made faster than gmsh does it
   }
   if (options.sizes) {
@@ -158,8 +163,8 @@ GmshContents contents_of_msh(const std::string &where, const GmshOptions &option
 MeshData read_box(const GmshOptions &options)
 {
   const std::string where = "mesh: box: ";
-  RPC_REQUIRE(options.file.empty() && options.box->element.dim == 2 && options.sizes,
-              where << "gmsh meshes a plane one by a field of sizes only, and not along with a file");
+  RPC_REQUIRE(options.file.empty() && options.sizes,
+              where << "gmsh meshes one by a field of sizes only, and not along with a file");
   MeshData mesh = made_by_gmsh(where, options);
   return options.box->element.order == 2 ? with_middle_nodes(std::move(mesh)) : mesh;
 }

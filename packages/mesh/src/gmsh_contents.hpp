@@ -17,12 +17,13 @@ namespace rpc::mesh
 struct GmshRequest {
   std::string folder; ///< in which relative paths begin
   std::string file;
-  std::array<double, 2> lower{}, upper{}; ///< of the box
-  bool quadrilaterals = false;            ///< in the box; a .geo has its own kind
+  int box_dim = 2;                        ///< of the box, 2 or 3
+  std::array<double, 3> lower{}, upper{}; ///< of the box
+  bool quadrilaterals = false;            ///< in a plane box; a .geo has its own kind
   double size_factor = 1;                 ///< of all cell sizes
   int order = 2;
   int attempt = 0;             ///< by a field of sizes: each breaks ties in another way
-  SizeField sizes;             ///< of a plane body; without triangles: those that the .geo asks for
+  SizeField sizes;             ///< without simplices: those that the .geo asks for
   bool dimension_only = false; ///< no mesh is wanted
   bool geometry = false;       ///< of the boundary, besides the mesh
   /// Points that are wanted on the .geo's boundary instead of a mesh: near each of some, on a curve, in space on a surface, or on the

@@ -120,8 +120,9 @@ template <class Sizes, class Each, std::enable_if_t<std::is_same_v<std::decay_t<
 void each_part(Sizes &sizes, Each &each)
 {
   each(sizes.coords);
-  each(sizes.triangles);
+  each(sizes.simplices);
   each(sizes.size);
+  each(sizes.dim);
 }
 
 template <class Request, class Each, std::enable_if_t<std::is_same_v<std::decay_t<Request>, GmshRequest>, int> = 0>
@@ -129,6 +130,7 @@ void each_part(Request &request, Each &each)
 {
   each(request.folder);
   each(request.file);
+  each(request.box_dim);
   for (auto *const corner : {&request.lower, &request.upper})
     for (auto &x : *corner) each(x);
   each(request.quadrilaterals);

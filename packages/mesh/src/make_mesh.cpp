@@ -130,17 +130,19 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, const double fact
   return result;
 }
 
-std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes)
+std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes,
+                                      const int refinements)
 {
   GmshOptions result;
   if (const auto *const box = std::get_if<BoxOptions>(&options)) {
-    if (box->element.dim != 2) return std::nullopt;
     result.box = *box;
+    if (box->element.dim == 3) result.box->element.shape = Shape::simplex;
   } else {
     result = std::get<GmshOptions>(options);
-    if (!can_be_meshed(result) || result.refinements > 0) return std::nullopt;
+    if (!can_be_meshed(result)) return std::nullopt;
   }
-  result.size_factor = 1;
+  result.size_factor = std::ldexp(1., refinements);
+  result.refinements = refinements;
   result.sizes = std::move(sizes);
   return result;
 }

@@ -11,15 +11,16 @@ namespace rpc::mesh
 
 MeshData with_middle_nodes(MeshData mesh)
 {
-  const Element linear = mesh.element, element{2, 2, linear.shape};
+  const Element linear = mesh.element, element{linear.dim, 2, linear.shape};
+  const int dim = linear.dim;
   const int num_cells = mesh.num_cells(), width = linear.num_nodes(), new_width = element.num_nodes();
   const Entities edges = edges_of(linear, mesh.cells);
   const int first_middle = mesh.num_nodes();
   for (int e = 0; e < edges.size(); ++e) {
     const int *const ends = &edges.vertices[2 * std::size_t(e)];
-    for (int d = 0; d < 2; ++d)
-      mesh.coords.push_back(mesh.coords[2 * std::size_t(ends[0]) + d] / 2 +
-                            mesh.coords[2 * std::size_t(ends[1]) + d] / 2);
+    for (int d = 0; d < dim; ++d)
+      mesh.coords.push_back(mesh.coords[dim * std::size_t(ends[0]) + d] / 2 +
+                            mesh.coords[dim * std::size_t(ends[1]) + d] / 2);
   }
   std::vector<int> cells(std::size_t(new_width) * num_cells);
   for (int c = 0; c < num_cells; ++c) {
@@ -32,9 +33,9 @@ MeshData with_middle_nodes(MeshData mesh)
   if (element.shape == Shape::tensor)
     for (int c = 0; c < num_cells; ++c) {
       const int *const nodes = &mesh.cells[std::size_t(width) * c];
-      for (int d = 0; d < 2; ++d) {
+      for (int d = 0; d < dim; ++d) {
         double sum = 0;
-        for (int v = 0; v < width; ++v) sum += mesh.coords[2 * std::size_t(nodes[v]) + d] / width;
+        for (int v = 0; v < width; ++v) sum += mesh.coords[dim * std::size_t(nodes[v]) + d] / width;
         mesh.coords.push_back(sum);
       }
       cells[std::size_t(new_width) * (c + 1) - 1] = ++next;

@@ -8,41 +8,42 @@
 namespace rpc::mesh
 {
 
-/// Values of a size field at points, by a tree of boxes around its triangles: as fast where these are a millionth of
+/// Values of a size field at points, by a tree of boxes around its simplices: as fast where these are a millionth of
 /// the body as where they are a tenth.
+/// @tparam dim  of the field, 2 or 3
+template <int dim>
 class SizeTree
 {
 public:
-  /// @param field  of one triangle or more; degenerate ones count as their edges
+  using Point = std::array<double, dim>;
+
+  /// @param field  of one simplex or more; degenerate ones count as their faces
   explicit SizeTree(const SizeField &field);
 
-  double operator()(double x, double y) const;
+  double operator()(const Point &at) const;
 
 private:
-  using Point = std::array<double, 2>;
-  struct Triangle {
-    std::array<Point, 3> vertex;
-    std::array<double, 3> size;
+  static constexpr int vertices = dim + 1;
+  struct Simplex {
+    std::array<Point, vertices> vertex;
+    std::array<double, vertices> size;
   };
   struct Box {
     Point low, high;
-    int first = 0; // of its triangles, or of its two boxes
-    int count = 0; // of its triangles, 0 for a box of two boxes
+    int first = 0; // of its simplices, or of its two boxes
+    int count = 0; // of its simplices, 0 for a box of two boxes
   };
   struct Place {
-    Point centre{}; // times three
-    int triangle = 0;
+    Point centre{}; // times the number of vertices
+    int simplex = 0;
   };
-  struct Nearest {
-    double square; // of the distance; 0 inside
-    double size;
-  };
-
-  void divide(int box, const std::vector<Triangle> &triangles, std::vector<Place> &order, int first, int last);
-  static Nearest nearest(const Triangle &triangle, const Point &at);
+  void divide(int box, const std::vector<Simplex> &simplices, std::vector<Place> &order, int first, int last);
 
   std::vector<Box> boxes_;
-  std::vector<Triangle> triangles_;
+  std::vector<Simplex> simplices_;
 };
+
+extern template class SizeTree<2>;
+extern template class SizeTree<3>;
 
 } // namespace rpc::mesh

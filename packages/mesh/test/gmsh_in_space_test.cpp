@@ -167,13 +167,4 @@ TEST(GmshInSpace, GroupsWithoutNamesAreNumberedAndWithoutABlockAllIsTheBody)
   EXPECT_EQ(read_geo(solid + "Physical Volume(3) = {out[1]};\n").blocks, std::vector<std::string>{"3"});
 }
 
-TEST(GmshInSpace, FieldsOfCellSizesAreForPlaneBodies)
-{
-  const ScratchFile file("mesh.geo", tetrahedra);
-  GmshOptions options{file.path(), 1, 0};
-  options.sizes =
-      std::make_shared<rpc::mesh::SizeField>(rpc::mesh::SizeField{{0, 0, 9, 0, 0, 9}, {0, 1, 2}, {1, 1, 1}});
-  expect_error(ExitCode::bad_mesh, {"mesh.geo\": has volumes", "only plane bodies"}, [&] { read_gmsh(options); });
-}
-
 } // namespace

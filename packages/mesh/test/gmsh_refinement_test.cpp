@@ -174,7 +174,6 @@ TEST(GmshRefinement, HasNoCoarserMeshByGmsh)
   GmshOptions options{"body.geo", 1, 0};
   options.refinements = 1;
   EXPECT_FALSE(mesh::coarser(options, 2));
-  EXPECT_FALSE(mesh::with_sizes(options, nullptr));
 }
 
 } // namespace

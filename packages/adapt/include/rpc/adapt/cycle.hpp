@@ -35,10 +35,11 @@ struct ObservedErrors {
   double max_pressure = 0;
   double contact_pressure = 0; ///< L2 norm over the contact sides, over that of the pressure
   double contact_length = 0;
+  double max_penetration = 0;
   std::map<std::string, std::string> unknown; ///< why, by the key in the table below, for those that are NaN
 };
 
-inline constexpr std::array<Quantity<ObservedErrors>, 5> error_bars{{
+inline constexpr std::array<Quantity<ObservedErrors>, 6> error_bars{{
     {&ObservedErrors::energy, "energy_J", unit::energy, Combine::maximum, {true, 0, "", "J "}},
     {&ObservedErrors::contact_force, "contact_force", unit::force, Combine::maximum, {true, 0, "", "contact force "}},
     {&ObservedErrors::max_pressure, "max_pressure", unit::pressure, Combine::maximum, {true, 0, "", "max. pressure "}},
@@ -53,6 +54,11 @@ inline constexpr std::array<Quantity<ObservedErrors>, 5> error_bars{{
      Combine::maximum,
      {true, 0, "", "in contact "},
      "contact_area"},
+    {&ObservedErrors::max_penetration,
+     "max_penetration",
+     unit::length,
+     Combine::maximum,
+     {true, 0, "", "max. penetration "}},
 }};
 static_assert(sizeof(ObservedErrors) == error_bars.size() * sizeof(double) + sizeof(std::map<std::string, std::string>),
               "an error bar has no line in the table");

@@ -38,7 +38,7 @@ struct ErrorEstimate {
   // By how much the contact pressure differs from that of the recovered stress, made admissible.
   double pressure = 0; ///< in L2 over facets that are neither all open nor all yielded [Pa m^(1/2)], in 3D [Pa m]
   double max_pressure =
-      0; ///< the most at points with 0.9 of the largest pressure, on facets that have not all yielded [Pa]
+      0; ///< at points with 0.9 of the largest pressure, on facets that have not all yielded: the most, in space the root mean square [Pa]
   PressurePeak peak;
   double contact_ends =
       0; ///< half of the facets that are partly open: the mesh does not tell where contact ends [m^(dim-1)]

@@ -28,8 +28,7 @@ struct Task : analysis::Task {
   AdaptOptions adapt;
 };
 
-/// @param dim  of the task's mesh
 /// @throws rpc::Error (bad_input) unless the task's mesh can be adapted where that is asked for
-void require_adaptable(const Task &task, int dim);
+void require_adaptable(const Task &task);
 
 } // namespace rpc::adapt

@@ -20,10 +20,18 @@ struct Solution : analysis::Solution {
   std::optional<Adaptation> adaptation;  ///< where the mesh is adapted
 };
 
+/// What is still to be done for the target, as the last mesh tells.
+struct Forecast {
+  int meshes = 0;     ///< > 0
+  double dofs = 0;    ///< of the next one
+  double seconds = 0; ///< for all of them, if each unknown takes as long as on the last mesh
+};
+
 /// Reports during the run; empty functions are not called. All are called on all ranks. `solved` is not called: the error is
 /// estimated there.
 struct Listener : analysis::Listener {
   std::function<void(const Solution &)> estimate; ///< the error on one mesh of an adaptive run has been estimated
+  std::function<void(const Forecast &)> forecast; ///< there will be another mesh
   std::function<void(Solution &)> cycle;          ///< one mesh of an adaptive run is solved
 };
 

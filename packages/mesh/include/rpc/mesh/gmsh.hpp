@@ -13,11 +13,10 @@ namespace rpc::mesh
 
 /// A mesh that gmsh makes or made.
 struct GmshOptions {
-  std::string file;       ///< .geo, meshed by gmsh, or .msh (2.2 or 4.1, ASCII or binary)
-  double size_factor = 1; ///< of all cell sizes that a .geo or `sizes` ask for, > 0
-  int order = 0;          ///< 1 or 2; 0: 2 for a .geo, for a .msh what it has
-  std::optional<BoxOptions> box =
-      std::nullopt; ///< a plane one, meshed by `sizes`; no file then, its cells and `order` do not count
+  std::string file;                             ///< .geo, meshed by gmsh, or .msh (2.2 or 4.1, ASCII or binary)
+  double size_factor = 1;                       ///< of all cell sizes that a .geo or `sizes` ask for, > 0
+  int order = 0;                                ///< 1 or 2; 0: 2 for a .geo, for a .msh what it has
+  std::optional<BoxOptions> box = std::nullopt; ///< meshed by `sizes`; no file then, its cells and `order` do not count
   std::shared_ptr<const SizeField> sizes = nullptr; ///< of cells, instead of those that a .geo asks for
   int refinements = 0; ///< how often make_mesh() halves each cell, >= 0; with it a .geo's mesh has its geometry
 };
@@ -43,7 +42,7 @@ int gmsh_dimension(const GmshOptions &options);
 /// @throws rpc::Error (bad_mesh) with file, group, cell or node concerned: gmsh's own complaint or end; no cells; cells of a plane mesh off the plane z = 0; cells of different or unsupported kinds, in two blocks,
 ///         degenerate, inverted or overlapping; a side with facets that belong to no cell or to two; nodes that no cell uses,
 ///         or two at one place; sizes that ask for too many cells (in space 2 million vertices); a field of sizes that are
-///         not > 0 and finite, or that asks for more than 5 million cells, or comes with volumes or with a .geo that
+///         not > 0 and finite, or that asks for more than 5 million cells, or is of another dimension than the body, or comes with a .geo that
 ///         divides curves by Transfinite or Layers.
 ///         (bad_input) if the file cannot be opened, a .msh comes with a size factor or another order, or a .geo with an
 ///         rpc that was built without gmsh: that only meshes, .msh files are read without it

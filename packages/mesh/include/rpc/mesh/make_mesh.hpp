@@ -33,11 +33,13 @@ int dimension(const MeshOptions &options, const Comm &comm);
 /// @throws rpc::Error (bad_input) unless factor >= 1 and finite
 std::optional<MeshOptions> coarser(const MeshOptions &options, double factor);
 
-/// The options with which gmsh meshes the same body, with the same elements, sides and blocks, by cell sizes of a field: an
-/// edge is about as long as the field says there. A size factor is 1 then, and sizes that the options had are replaced.
-/// None where gmsh cannot make another mesh: for a .msh, for a box in 3D, with refinements. A .geo with volumes is told by make_mesh() only.
-/// @param sizes  read on rank 0 only, may be null on others
-std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes);
+/// The options with which gmsh meshes the same body, with elements of the same order, sides and blocks, by cell sizes of a field: an edge is
+/// about as long as the field says there. A size factor is 1 then, and sizes and refinements that the options had are replaced. A box in
+/// space gets tetrahedra; all else keeps its kind of cells. None where gmsh cannot make another mesh: for a .msh.
+/// @param sizes        read on rank 0 only, may be null on others
+/// @param refinements  gmsh makes cells 2^refinements times as long as the field says, and refined() halves them as often
+std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes,
+                                      int refinements = 0);
 
 /// This rank's part of the mesh; collective.
 /// @throws rpc::Error on every rank, as make_box() and read_gmsh() do
