@@ -27,8 +27,9 @@ NOT_TO_THE_TARGET = 4
 FINER = 3  # a reference's target is that many times smaller
 TARGETS = {"space": [0.15, 0.1, 0.07], "axisymmetric": [0.03, 0.015, 0.008]}
 MOST_DOFS = {"space": 600000, "axisymmetric": 300000}
-FEW_DOFS = {"space": 6000, "axisymmetric": 500}  # of scenes that are to fail
+FEW_DOFS = {"space": 6000, "axisymmetric": 1000}  # of scenes that are to fail
 HELD = 0.95
+ROUNDING = 1e-9  # of a body's size: penetrations that are none
 
 # --- bodies: (text of a .geo, or a box; whether it has two materials; whether its bottom is a curved obstacle's side) -----------------------
 
@@ -278,6 +279,8 @@ def compare(outcome, summary, reference):
         if here.get(key) is None:
             continue
         true = math.dist(of(summary), of(reference))
+        if key == "max_penetration" and max(of(summary)) < ROUNDING:
+            continue
         outcome.held[key] = true <= here[key] + (there.get(key) or 0) + 1e-12 * max(map(abs, of(summary)))
     squared = 2 * (summary["energy_J"] - reference["energy_J"]) / summary["energy_norm_squared"]
     estimate = summary["error_estimate"]["relative"]

@@ -38,7 +38,7 @@ TEST(AdaptiveBall, InSpaceHasTheForceThePressureAndTheRadiusThatWereAskedFor)
     EXPECT_NEAR(std::sqrt(4 * contact.contact_length / ball.contact_area), 1, 5e-3);
     const double exact = std::sqrt(2 * (4 * s.energy - ball.energy) / (4 * s.energy_norm_squared));
     EXPECT_GT(relative_estimate(s) / exact, 0.8);
-    EXPECT_LT(relative_estimate(s) / exact, 1.6);
+    EXPECT_LT(relative_estimate(s) / exact, 2);
     EXPECT_LT(std::abs(s.energy - ball.energy / 4), errors.energy);
     EXPECT_LT(std::abs(contact.force[2] - ball.force / 4), errors.contact_force);
     EXPECT_LT(std::abs(contact.contact_length - ball.contact_area / 4), errors.contact_length);
@@ -69,7 +69,7 @@ TEST(AdaptiveBlock, GradesItsClampedEdgesWithFewerUnknownsThanUniformMeshes)
   const Solution s = run_scene(input + "block_adaptive.xml", {"Adapt->Target Relative Error=0.04"});
   ASSERT_TRUE(s.adaptation->reached) << s.adaptation->reason;
   EXPECT_LT(s.energy, -1.03893);
-  EXPECT_LT(s.adaptation->cycles.back().dofs, 160000u);
+  EXPECT_LT(s.adaptation->cycles.back().dofs, 180000u);
   EXPECT_EQ(s.discretization.mesh->element.name(), "P2");
 }
 

@@ -86,13 +86,14 @@ std::size_t best_of(const std::vector<Cycle> &cycles)
   return std::min_element(cycles.begin(), cycles.end(), less) - cycles.begin();
 }
 
-/// Of meshes that grow alike.
+/// Of meshes that grow alike, from the next one to the last.
 double seconds_for(const Forecast &forecast, const Cycle &last)
 {
-  const double growth = forecast.dofs / static_cast<double>(last.dofs);
-  double seconds = 0, of_mesh = last.seconds;
-  for (int k = 0; k < forecast.meshes; ++k) seconds += of_mesh *= growth;
-  return seconds;
+  const double growth =
+      forecast.meshes > 1 ? std::pow(forecast.last_dofs / forecast.dofs, 1. / (forecast.meshes - 1)) : 1;
+  double dofs = 0, of_mesh = forecast.dofs;
+  for (int k = 0; k < forecast.meshes; ++k, of_mesh *= growth) dofs += of_mesh;
+  return dofs * last.seconds / static_cast<double>(last.dofs);
 }
 
 /// @param earlier  the load step before, if there are several; its mesh is the first one

@@ -11,12 +11,12 @@ namespace
 {
 
 // A new mesh is planned for so much less than the target: predictions are right to some ten per cent.
-constexpr double aim = 0.95;
+constexpr double aim = 0.95, aim_in_space = 0.88; // another mesh costs more there
 // The estimate falls by no more from one mesh to the next: a coarse mesh knows little of where a fine one is to be fine.
 constexpr double greatest_reduction = 4;
 // Near the target the next plan makes up for the excess of the last estimate over its plan, up to a factor. Cells hardly
 // grow there, so that no accuracy is lost.
-constexpr double near = 2, greatest_correction = 3, growth_near = 1.25, growth = 2.5;
+constexpr double near = 2, near_in_space = 1.3, greatest_correction = 3, growth_near = 1.25, growth = 2.5;
 // A mesh has no more than so many times the cells that the order of the elements asks for: where a coarse mesh asks for
 // many more, its estimate is not reliable.
 constexpr double greatest_excess = 1.5;
@@ -24,9 +24,9 @@ constexpr double greatest_excess = 1.5;
 constexpr double share_of_max_dofs = 0.75;
 // A mesh in space has up to so many times the cells that are expected: coarse ones cannot be as coarse as they may, for the body's edges.
 constexpr double excess_in_space = 2;
-// In space gmsh makes cells of twice the size, which are halved: that takes an eighth of gmsh's time, and multigrid has a mesh more. In the
-// plane gmsh is fast enough, and finer gradings pay. doc/design.md
-constexpr int refinements_in_space = 1;
+// In space gmsh makes cells of twice the size, which are halved: that takes an eighth of gmsh's time, and multigrid has a mesh more. Meshes of
+// fewer cells are gmsh's: halved ones could not be as coarse. In the plane gmsh is fast enough, and finer gradings pay. doc/design.md
+constexpr double least_halved = 6000;
 
 } // namespace
 
@@ -35,9 +35,9 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
                                                    std::string &reason)
 {
   const double eta = std::sqrt(estimate.total());
-  const double wanted = aim * task_.adapt.target * std::sqrt(energy_norm_squared);
+  const double wanted = (d.dim() == 2 ? aim : aim_in_space) * task_.adapt.target * std::sqrt(energy_norm_squared);
   const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
-  const bool is_near = eta < near * wanted;
+  const bool is_near = eta < (d.dim() == 2 ? near : near_in_space) * wanted;
   const double missed = is_near ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
   planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
   const double bound = planned_ / missed;
@@ -57,14 +57,17 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
       new_sizes(d, estimate, {bound * bound, std::min(allowed, sensible), is_near ? growth_near : growth});
   const bool no_better = eta >= eta_before_;
   eta_before_ = eta;
-  if ((dofs > 0.9 * most_dofs || no_better) && sizes.predicted_cells > 0.9 * allowed) {
+  const bool at_limit = dofs > 0.9 * most_dofs && sizes.predicted_cells > 0.9 * allowed;
+  if (at_limit || (no_better && sizes.predicted_cells > 0.7 * allowed)) {
     reason = "a mesh for the target would exceed \"Adapt->Max Dofs\" = " + std::to_string(task_.adapt.max_dofs);
     return std::nullopt;
   }
   forecast.meshes = std::max(1, static_cast<int>(meshes));
   forecast.dofs = dofs * sizes.predicted_cells / cells * excess;
+  forecast.last_dofs = std::max(forecast.dofs, dofs * std::pow(eta / wanted, double(mesh.dim()) / mesh.element.order));
   predicted_cells_ = sizes.predicted_cells;
-  return mesh::with_sizes(task_.mesh, sizes.field, mesh.dim() == 3 ? refinements_in_space : 0);
+  const bool halved = mesh.dim() == 3 && sizes.predicted_cells >= least_halved;
+  return mesh::with_sizes(task_.mesh, sizes.field, halved ? 1 : 0);
 }
 
 } // namespace rpc::adapt

@@ -154,7 +154,8 @@ void set_field_options(const GmshRequest &request)
       {"RandomFactor", tie_breaker},
       {"Smoothing", 0},                 // it takes half as long as all the rest, and triangles are good without
       {"LcIntegrationPrecision", 1e-4}, // cells, per step along a curve: the default takes a thousand times the steps
-      {"SubdivisionAlgorithm", 0}};
+      {"SubdivisionAlgorithm", 0},
+      {"HighOrderOptimize", request.attempt == 0 ? 0 : 1}}; // straightens cells whose curved edges bend too far
   for (const auto &[name, value] : options) gmsh::option::setNumber(std::string("Mesh.") + name, value);
   if (request.quadrilaterals || (!request.file.empty() && recombines())) {
     gmsh::option::setNumber("Mesh.SubdivisionAlgorithm", 1); // or some triangles would be left

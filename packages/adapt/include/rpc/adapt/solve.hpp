@@ -22,9 +22,10 @@ struct Solution : analysis::Solution {
 
 /// What is still to be done for the target, as the last mesh tells.
 struct Forecast {
-  int meshes = 0;     ///< > 0
-  double dofs = 0;    ///< of the next one
-  double seconds = 0; ///< for all of them, if each unknown takes as long as on the last mesh
+  int meshes = 0;       ///< > 0
+  double dofs = 0;      ///< of the next one
+  double last_dofs = 0; ///< of the last one, by the order of the elements
+  double seconds = 0;   ///< for all of them, if each unknown takes as long as on the last mesh
 };
 
 /// Reports during the run; empty functions are not called. All are called on all ranks. `solved` is not called: the error is
