@@ -154,7 +154,7 @@ void throw_on_all_ranks([[maybe_unused]] const std::optional<Error> &mine)
     char host[MPI_MAX_PROCESSOR_NAME + 1] = {};
     int length = 0;
     MPI_Get_processor_name(host, &length);
-    text += " So it is on rank " + std::to_string(rank) + " of " + std::to_string(size) + ", on " + host + ".";
+    text += " This happened on rank " + std::to_string(rank) + " of " + std::to_string(size) + ", host " + host + ".";
   }
   int numbers[2] = {mine ? static_cast<int>(mine->code()) : 0, static_cast<int>(text.size())};
   MPI_Bcast(numbers, 2, MPI_INT, first, MPI_COMM_WORLD);
@@ -187,15 +187,16 @@ std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, 
   try {
     guard = std::make_unique<Tpetra::ScopeGuard>(&argc, &argv);
   } catch (const std::exception &error) {
+    static const std::regex place(R"(\s*\S+\.[ch]pp:\d+)"); // in Kokkos' sources
+    const std::string reason = std::regex_replace(one_line(error.what()), place, "");
     if (given.empty())
       failure.emplace(ExitCode::internal_error,
-                      std::string("start: Kokkos cannot run on ") + ExecutionSpace::name() + " here (" +
-                          one_line(error.what()) +
+                      std::string("start: Kokkos cannot run on ") + ExecutionSpace::name() + " here (" + reason +
                           "). A program built for CUDA takes an NVIDIA GPU that nvidia-smi lists; " +
                           "elsewhere build for the host, see doc/portability.md.");
     else
-      failure.emplace(ExitCode::bad_input, "command line: Kokkos refuses its options" + given + " (" +
-                                               one_line(error.what()) + "). See rpc --kokkos-help.");
+      failure.emplace(ExitCode::bad_input,
+                      "command line: Kokkos refuses its options" + given + " (" + reason + "). See rpc --kokkos-help.");
   }
   if (!failure && argc > 1)
     failure.emplace(ExitCode::bad_input, std::string("command line: Kokkos does not know the option \"") + argv[1] +

@@ -64,7 +64,7 @@ class RankFaults(RpcTestCase):
         self.assertEqual(result.returncode, BAD_INPUT, result.stderr)
         self.assertEqual(len(errors(result)), 1, result.stderr)
         self.assertIn("Kokkos refuses its options --kokkos-threads=none", errors(result)[0])
-        self.assertIn(f"So it is on rank {RANKS - 1} of {RANKS}", errors(result)[0])
+        self.assertIn(f"This happened on rank {RANKS - 1} of {RANKS}, host ", errors(result)[0])
 
 
 if __name__ == "__main__":
