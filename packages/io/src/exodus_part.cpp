@@ -53,11 +53,15 @@ std::vector<GO> ExodusPart::block_sizes() const
 
 ExodusShare ExodusPart::share() const
 {
-  ExodusShare share{mesh_.comm().getSize(),
-                    static_cast<GO>(mesh_.owned_nodes->getGlobalNumElements()),
-                    sum_all(mesh_.comm(), static_cast<GO>(cell_.size())),
-                    {},
-                    {}};
+  std::vector<int> blocks, facets;
+  for (const GO size : block_sizes()) blocks.push_back(static_cast<int>(size));
+  for (const SideSet &side : sides()) facets.push_back(static_cast<int>(side.cell.size()));
+  ExodusShare share;
+  share.num_parts = mesh_.comm().getSize();
+  share.num_nodes = static_cast<GO>(mesh_.owned_nodes->getGlobalNumElements());
+  share.num_cells = sum_all(mesh_.comm(), static_cast<GO>(cell_.size()));
+  share.block_sizes = summed(mesh_.comm(), blocks);
+  share.side_sizes = summed(mesh_.comm(), facets);
   for (const GO id : id_) share.node_number.push_back(static_cast<int>(id) + 1);
   for (const LO c : cell_) share.cell_number.push_back(static_cast<int>(mesh_.cell_id(c)) + 1);
   return share;

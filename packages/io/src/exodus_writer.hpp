@@ -12,6 +12,7 @@
 #include <cstring>
 #include <exodusII.h>
 #include <fcntl.h>
+#include <numeric>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -38,8 +39,9 @@ struct ExodusHeader {
 
 /// What a file that has a rank's part of a mesh says of the whole.
 struct ExodusShare {
-  int num_parts;
-  GO num_nodes, num_cells;                   // of the whole mesh
+  int num_parts = 0;
+  GO num_nodes = 0, num_cells = 0;           // of the whole mesh
+  std::vector<int> block_sizes, side_sizes;  // cells in each block, facets of each side
   std::vector<int> node_number, cell_number; // (nodes), (cells) in the whole mesh, 1-based
 };
 
@@ -113,6 +115,7 @@ public:
     put_sides(sides);
     put_arrays(arrays);
     if (!share) return;
+    put_whole(*share);
     if (header.num_nodes > 0)
       check(ex_put_id_map(id_, EX_NODE_MAP, share->node_number.data()), "write the numbers of the nodes of");
     if (header.num_cells > 0)
@@ -205,6 +208,18 @@ private:
     }
     if (!header.field_names.empty())
       check(ex_put_variable_param(id_, EX_NODAL, static_cast<int>(header.field_names.size())), "define");
+  }
+
+  /// Blocks and sides of the whole mesh.
+  void put_whole(const ExodusShare &share)
+  {
+    std::vector<int> blocks(share.block_sizes.size()), sides(share.side_sizes.size()), none(share.side_sizes.size());
+    std::iota(blocks.begin(), blocks.end(), 1);
+    std::iota(sides.begin(), sides.end(), 1);
+    std::vector<int> cells = share.block_sizes, facets = share.side_sizes; // the library only reads them
+    check(ex_put_eb_info_global(id_, blocks.data(), cells.data()), "write the blocks of");
+    if (!sides.empty())
+      check(ex_put_ss_param_global(id_, sides.data(), facets.data(), none.data()), "write the sides of");
   }
 
   void put_names(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace
 {
@@ -48,9 +49,15 @@ struct Share {
     EXPECT_EQ(ex_get_init_info(id, &parts, &here, kind), 0);
     EXPECT_EQ(ex_get_init_global(id, &nodes, &cells, &blocks, &node_sets, &side_sets), 0);
     EXPECT_EQ(kind[0], 'p');
+    std::vector<int> ids(std::max(blocks, side_sets)), none(side_sets);
+    cells_of_block.resize(blocks);
+    facets_of_side.resize(side_sets);
+    EXPECT_EQ(ex_get_eb_info_global(id, ids.data(), cells_of_block.data()), 0);
+    EXPECT_EQ(ex_get_ss_param_global(id, ids.data(), facets_of_side.data(), none.data()), 0);
     ex_close(id);
   }
   int parts = 0, here = 0, nodes = 0, cells = 0, blocks = 0, node_sets = 0, side_sets = 0;
+  std::vector<int> cells_of_block, facets_of_side;
 };
 
 TEST_F(ExodusSplit, SplitFilesHaveWhatTheJoinedOneHas)
@@ -94,6 +101,9 @@ TEST_F(ExodusSplit, SplitFilesHaveWhatTheJoinedOneHas)
       EXPECT_EQ(std::pair(share.parts, share.here), std::pair(ranks, 1));
       EXPECT_EQ(std::pair(share.nodes, share.cells), std::pair(joined.nodes, joined.cells));
       EXPECT_EQ(std::pair(share.blocks, share.side_sets), std::pair(joined.blocks, joined.side_sets));
+      EXPECT_EQ(share.cells_of_block, std::vector<int>{joined.cells});
+      for (std::size_t s = 0; s < facets.size(); ++s)
+        EXPECT_EQ(share.facets_of_side[s], static_cast<int>(joined.side_cells[s].size()));
     }
     EXPECT_EQ(std::count(node_seen.begin(), node_seen.end(), 0), 0);
     EXPECT_EQ(cell_seen, std::vector<int>(joined.cells, 1));
