@@ -9,8 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <optional>
 #include <regex>
 #include <sstream>
+#include <string>
+
+#ifdef HAVE_TPETRACORE_MPI
+#include <mpi.h>
+#endif
 
 namespace rpc
 {
@@ -130,6 +136,38 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   return line;
 }
 
+namespace
+{
+
+/// Throws on every rank what one of them met with, for all are to end; before there is a Comm, collective.
+void throw_on_all_ranks([[maybe_unused]] const std::optional<Error> &mine)
+{
+#ifdef HAVE_TPETRACORE_MPI
+  int rank = 0, size = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  int first = mine ? rank : size;
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (first == size) return;
+  std::string text = mine ? mine->what() : "";
+  if (size > 1 && rank == first) {
+    char host[MPI_MAX_PROCESSOR_NAME + 1] = {};
+    int length = 0;
+    MPI_Get_processor_name(host, &length);
+    text += " This happened on rank " + std::to_string(rank) + " of " + std::to_string(size) + ", host " + host + ".";
+  }
+  int numbers[2] = {mine ? static_cast<int>(mine->code()) : 0, static_cast<int>(text.size())};
+  MPI_Bcast(numbers, 2, MPI_INT, first, MPI_COMM_WORLD);
+  text.resize(numbers[1]);
+  MPI_Bcast(text.data(), numbers[1], MPI_CHAR, first, MPI_COMM_WORLD);
+  throw Error(static_cast<ExitCode>(numbers[0]), text);
+#else
+  if (mine) throw *mine;
+#endif
+}
+
+} // namespace
+
 std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, const bool root)
 {
   std::string given; // Kokkos takes its options out
@@ -145,19 +183,25 @@ std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, 
 #ifdef KOKKOS_ENABLE_CUDA
   setenv("KOKKOS_DISABLE_WARNINGS", "ON", 0); // it warns of managed memory, which Tpetra 13.2 cannot do without
 #endif
+  std::optional<Error> failure; // maybe on this rank alone, such as one without a GPU
   try {
     guard = std::make_unique<Tpetra::ScopeGuard>(&argc, &argv);
   } catch (const std::exception &error) {
+    static const std::regex place(R"(\s*\S+\.[ch]pp:\d+)"); // in Kokkos' sources
+    const std::string reason = std::regex_replace(one_line(error.what()), place, "");
     if (given.empty())
-      throw Error(ExitCode::internal_error,
-                  std::string("start: Kokkos cannot run on ") + ExecutionSpace::name() + " here (" +
-                      one_line(error.what()) +
-                      "). A program built for CUDA takes an NVIDIA GPU that nvidia-smi lists; " +
-                      "elsewhere build for the host, see doc/portability.md.");
-    throw Error(ExitCode::bad_input, "command line: Kokkos refuses its options" + given + " (" +
-                                         one_line(error.what()) + "). See rpc --kokkos-help.");
+      failure.emplace(ExitCode::internal_error,
+                      std::string("start: Kokkos cannot run on ") + ExecutionSpace::name() + " here (" + reason +
+                          "). A program built for CUDA takes an NVIDIA GPU that nvidia-smi lists; " +
+                          "elsewhere build for the host, see doc/portability.md.");
+    else
+      failure.emplace(ExitCode::bad_input,
+                      "command line: Kokkos refuses its options" + given + " (" + reason + "). See rpc --kokkos-help.");
   }
-  RPC_REQUIRE(argc == 1, "command line: Kokkos does not know the option \"" << argv[1] << "\". See rpc --kokkos-help.");
+  if (!failure && argc > 1)
+    failure.emplace(ExitCode::bad_input, std::string("command line: Kokkos does not know the option \"") + argv[1] +
+                                             "\". See rpc --kokkos-help.");
+  throw_on_all_ranks(failure);
   return guard;
 }
 

@@ -17,7 +17,10 @@ namespace
 Teuchos::ParameterList valid_output_parameters()
 {
   Teuchos::ParameterList valid("Output");
-  valid.set("Exodus", true, "Write <deck>.e: displacement, stresses, contact fields.");
+  set_choice(valid, "Exodus", {"joined", "split", "none"},
+             "Displacement, stresses, contact fields: `joined` writes <deck>.e (`true` means the same), `split` a file "
+             "a rank of its own "
+             "cells, <deck>.e.N.k for rank k of N, as `epu` and ParaView take them, `none` nothing (`false` too).");
   valid.set("CSV", true, "Write <deck>.contact.csv: the contact nodes along the surface.");
   valid.set("JSON", true, "Write <deck>.json: the summary.");
   valid.set("Timers", false, "Print the timer tree at the end.");
@@ -99,8 +102,9 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.step.newton = solver::newton_options(deck.sublist("NOX"));
   scene.linear_solver = solver::linear_solver_options(deck.sublist("Linear Solver"));
   const Teuchos::ParameterList &output = deck.sublist("Output");
-  scene.output = {output.get<bool>("Exodus"), output.get<bool>("CSV"), output.get<bool>("JSON"),
-                  output.get<bool>("Timers")};
+  const auto exodus = output.get<std::string>("Exodus");
+  scene.output = {exodus != "none", output.get<bool>("CSV"), output.get<bool>("JSON"),
+                  exodus == "split" ? io::ExodusFiles::split : io::ExodusFiles::joined, output.get<bool>("Timers")};
   adapt::require_adaptable(scene);
   return scene;
 }

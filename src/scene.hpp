@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/adapt/solve.hpp"
+#include "rpc/io/exodus.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Teuchos_ParameterList.hpp>
@@ -13,6 +14,7 @@ namespace rpc
 
 struct OutputOptions {
   bool exodus = true, csv = true, json = true;
+  io::ExodusFiles exodus_files = io::ExodusFiles::joined;
   bool timers = false;
 };
 

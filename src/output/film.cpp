@@ -8,10 +8,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <limits>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 namespace rpc
@@ -107,35 +105,54 @@ std::vector<double> earlier_times(const Scene &scene, const analysis::Solution &
   return times;
 }
 
+/// A film on disk, joined or split as a scene wants it.
+struct FilmOnDisk {
+  std::string first;
+  io::ExodusFiles files;
+  const Comm &comm;
+
+  /// Collective: rank 0 looks.
+  bool has(const int part) const
+  {
+    const std::string path = exodus_on_disk(film_part(first, part), files, comm.getSize()).front();
+    return text_of_root(comm, ExitCode::internal_error,
+                        [&] { return std::string(std::filesystem::exists(path) ? "yes" : ""); }) == "yes";
+  }
+  std::vector<double> times(const int part) const { return io::exodus_times(film_part(first, part), comm, files); }
+  void remove(const int part) const
+  {
+    on_root(comm, ExitCode::internal_error, [&] {
+      for (const std::string &path : exodus_on_disk(film_part(first, part), files, comm.getSize()))
+        io::remove_older(path);
+    });
+  }
+};
+
 /// How many of some times each part of a film on disk has, from the first part to the last that has any. Collective.
-std::vector<int> times_in_parts(const std::string &first, const std::vector<double> &wanted, const Comm &comm)
+std::vector<int> times_in_parts(const FilmOnDisk &film, const std::vector<double> &wanted)
 {
-  const std::string text = text_of_root(comm, ExitCode::internal_error, [&] {
-    std::string counts, all;
-    for (int part = 1; std::filesystem::exists(film_part(first, part)); ++part) {
-      const auto times = io::exodus_times(film_part(first, part));
-      const auto count = std::count_if(times.begin(), times.end(), [&](const double t) {
-        return std::binary_search(wanted.begin(), wanted.end(), t);
-      });
-      all += std::to_string(count) + ' ';
-      if (count > 0) counts = all;
-    }
-    return counts;
-  });
-  std::istringstream counts(text);
-  return {std::istream_iterator<int>(counts), std::istream_iterator<int>()};
+  std::vector<int> all;
+  std::size_t last = 0;
+  for (int part = 1; film.has(part); ++part) {
+    const auto times = film.times(part);
+    all.push_back(static_cast<int>(std::count_if(times.begin(), times.end(), [&](const double t) {
+      return std::binary_search(wanted.begin(), wanted.end(), t);
+    })));
+    if (all.back() > 0) last = all.size();
+  }
+  all.resize(last);
+  return all;
 }
 
-/// Removes the parts behind some, and of the last of these the times behind a last one; one rank only.
-void end_parts(const std::string &first, const int parts, const double last)
+/// Removes the parts behind some, and of the last of these the times behind a last one. Collective.
+void end_parts(const FilmOnDisk &film, const int parts, const double last)
 {
-  for (int part = std::max(parts, 1) + 1; std::filesystem::exists(film_part(first, part)); ++part)
-    io::remove_older(film_part(first, part));
+  for (int part = std::max(parts, 1) + 1; film.has(part); ++part) film.remove(part);
   if (parts == 0) return;
-  const auto times = io::exodus_times(film_part(first, parts));
+  const auto times = film.times(parts);
   const auto kept = std::upper_bound(times.begin(), times.end(), last) - times.begin();
   if (kept < static_cast<std::ptrdiff_t>(times.size()))
-    io::end_exodus_after(film_part(first, parts), static_cast<int>(kept));
+    io::end_exodus_after(film_part(film.first, parts), static_cast<int>(kept), film.comm, film.files);
 }
 
 } // namespace
@@ -143,7 +160,8 @@ void end_parts(const std::string &first, const int parts, const double last)
 std::unique_ptr<io::ExodusFile> Film::opened(const Scene &scene, const std::string &path,
                                              const std::vector<std::string> &fields) const
 {
-  return std::make_unique<io::ExodusFile>(path, scene.name, *mesh_, fields, unit_records(scene.model.units));
+  return std::make_unique<io::ExodusFile>(path, scene.name, *mesh_, fields, unit_records(scene.model.units),
+                                          std::vector<io::NamedArray>(), scene.output.exodus_files);
 }
 
 /// Takes over the parts that a run before has left, as far as it is gone on from, and removes the others. Opens the last one if it is of
@@ -152,7 +170,8 @@ void Film::go_on(const Scene &scene, const analysis::Solution &s, const std::str
                  const std::vector<std::string> &fields)
 {
   const auto before = earlier_times(scene, s);
-  const auto found = times_in_parts(first, before, mesh_->comm());
+  const FilmOnDisk film{first, scene.output.exodus_files, mesh_->comm()};
+  const auto found = times_in_parts(film, before);
   const int parts = static_cast<int>(found.size());
   int taken = 0;
   if (parts > 0) {
@@ -166,12 +185,10 @@ void Film::go_on(const Scene &scene, const analysis::Solution &s, const std::str
   if (std::accumulate(found.begin(), found.begin() + others, taken) < static_cast<int>(before.size()))
     note_ = "\"" + film_part(first, others + 1) +
             "\" lacks times before the restart: no film of these fields on this mesh was there to go on with";
-  on_root(mesh_->comm(), ExitCode::internal_error, [&] {
-    if (taken > 0)
-      end_parts(first, parts, std::numeric_limits<double>::infinity());
-    else
-      end_parts(first, others, before.empty() ? 0 : before.back());
-  });
+  if (taken > 0)
+    end_parts(film, parts, std::numeric_limits<double>::infinity());
+  else
+    end_parts(film, others, before.empty() ? 0 : before.back());
 }
 
 void Film::write(const Scene &scene, const analysis::Solution &s, const std::string &folder)

@@ -17,11 +17,27 @@ namespace
 /// An adaptive run comes to far fewer meshes.
 constexpr int most_cycles = 1000;
 
-/// All files that results of one name can have.
+/// The files that results of one name can have, of an Exodus file the first part, joined.
 std::vector<std::string> all_files(const std::string &name, const std::string &folder)
 {
   const std::string stem = (std::filesystem::path(folder) / name).string();
   return {stem + ".e", stem + ".contact.csv", stem + ".json", stem + ".history.csv"};
+}
+
+/// Those that there are, joined and split Exodus files of all parts included.
+std::vector<std::string> existing_files(const std::string &name, const std::string &folder)
+{
+  static const std::regex ends(R"(\.(e(-s[0-9]+)?(\.[0-9]+\.[0-9]+)?|contact\.csv|history\.csv|json))");
+  std::vector<std::string> found;
+  std::error_code none;
+  for (const auto &entry : std::filesystem::directory_iterator(folder, none)) {
+    const std::string file = entry.path().filename().string();
+    if (file.compare(0, name.size(), name) == 0 &&
+        std::regex_match(file.substr(std::min(file.size(), name.size())), ends))
+      found.push_back((std::filesystem::path(folder) / file).string());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 Scene of_cycle(Scene scene, const int cycle)
@@ -30,10 +46,16 @@ Scene of_cycle(Scene scene, const int cycle)
   return scene;
 }
 
-void require_replaceable(const ResultPaths &paths)
+void require_replaceable(const Scene &scene, const std::string &folder, const int num_ranks)
 {
-  for (const std::string &path : paths.all())
-    if (!path.empty()) io::require_replaceable(path);
+  const ResultPaths paths(scene, folder);
+  for (const std::string &path : paths.all()) {
+    if (path.empty()) continue;
+    const bool exodus = path == paths.exodus;
+    for (const std::string &file :
+         exodus ? exodus_on_disk(path, scene.output.exodus_files, num_ranks) : std::vector<std::string>{path})
+      io::require_replaceable(file);
+  }
 }
 
 } // namespace
@@ -60,50 +82,58 @@ std::string film_part(const std::string &exodus, const int part)
   return name.str();
 }
 
+std::vector<std::string> exodus_on_disk(const std::string &exodus, const io::ExodusFiles files, const int num_ranks)
+{
+  if (files == io::ExodusFiles::joined) return {exodus};
+  std::vector<std::string> paths;
+  for (int rank = 0; rank < num_ranks; ++rank) paths.push_back(io::exodus_file_of(exodus, num_ranks, rank));
+  return paths;
+}
+
 bool is_result(const Scene &scene, const std::string &file)
 {
   static const std::regex ends(
-      R"(\.(cycle[0-9]+\.)?(e(-s[0-9]+)?|contact\.csv|history\.csv|json|checkpoint-[0-9]+\.e))");
+      R"(\.(cycle[0-9]+\.)?(e(-s[0-9]+)?(\.[0-9]+\.[0-9]+)?|contact\.csv|history\.csv|json|checkpoint-[0-9]+\.e))");
   return file.compare(0, scene.name.size(), scene.name) == 0 &&
          std::regex_match(file.substr(std::min(file.size(), scene.name.size())), ends);
 }
 
 void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm)
 {
+  const int num_ranks = comm.getSize();
   on_root(comm, ExitCode::bad_input, [&] {
     io::require_writable_folder(folder);
-    require_replaceable(ResultPaths(scene, folder));
+    require_replaceable(scene, folder, num_ranks);
     std::error_code none;
-    for (const std::string &file : all_files(scene.name, folder)) // those that are not written are removed
+    for (const std::string &file : existing_files(scene.name, folder)) // those that are not written are removed
       if (std::filesystem::is_regular_file(file, none)) io::require_replaceable(file);
     if (!scene.adapt.adapts() || !scene.adapt.write_all) return;
     for (int cycle = 1; cycle <= std::min(scene.adapt.max_cycles, most_cycles); ++cycle)
-      require_replaceable(ResultPaths(of_cycle(scene, cycle), folder));
+      require_replaceable(of_cycle(scene, cycle), folder, num_ranks);
   });
+  if (scene.output.exodus && scene.output.exodus_files == io::ExodusFiles::split) // maybe on disks of the ranks' own
+    on_each(comm, ExitCode::bad_input, [&] { io::require_writable_folder(folder); });
 }
 
-std::vector<std::string> older_files(const Scene &scene, const Solution &s, const std::string &folder, const int parts)
+std::vector<std::string> older_files(const Scene &scene, const Solution &s, const std::string &folder,
+                                     const std::vector<std::string> &film)
 {
-  const auto ours = ResultPaths(scene, folder).all();
+  const int num_ranks = s.discretization.mesh->comm().getSize();
+  std::vector<std::string> ours = ResultPaths(scene, folder).all();
+  ours.erase(ours.begin()); // the Exodus file is the film's
+  for (const std::string &part : film)
+    for (const std::string &file : exodus_on_disk(part, scene.output.exodus_files, num_ranks)) ours.push_back(file);
   std::vector<std::string> older;
   const auto add_existing = [&](const std::string &name) {
     bool found = false;
-    for (const std::string &file : all_files(name, folder)) {
-      std::error_code none;
+    for (const std::string &file : existing_files(name, folder)) {
       if (std::find(ours.begin(), ours.end(), file) != ours.end()) continue;
-      if (!std::filesystem::exists(file, none)) continue;
       older.push_back(file);
       found = true;
     }
     return found;
   };
   add_existing(scene.name);
-  for (int part = parts + 1;; ++part) {
-    const std::string file = film_part(all_files(scene.name, folder)[0], std::max(part, 2));
-    std::error_code none;
-    if (!std::filesystem::exists(file, none)) break;
-    older.push_back(file);
-  }
   int cycle = scene.adapt.write_all && s.adaptation ? static_cast<int>(s.adaptation->cycles.size()) : 0;
   while (add_existing(cycle_name(scene, ++cycle))) {
   }

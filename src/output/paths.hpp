@@ -25,6 +25,9 @@ struct ResultPaths {
 /// @param part  from 1
 std::string film_part(const std::string &exodus, int part);
 
+/// The files of an Exodus path on disk: itself, or those of all ranks.
+std::vector<std::string> exodus_on_disk(const std::string &exodus, io::ExodusFiles files, int num_ranks);
+
 /// Whether a file's name is that of a result or checkpoint of the scene.
 bool is_result(const Scene &scene, const std::string &file);
 
@@ -33,9 +36,9 @@ bool is_result(const Scene &scene, const std::string &file);
 /// @throws rpc::Error (bad_input) on every rank
 void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm);
 
-/// Files of the same name that an earlier run has left and this run does not write, those of its meshes included.
-/// @param parts  of the film that this run has written
+/// Files of the same name that an earlier run has left and this run does not write, those of its meshes included. One rank only.
+/// @param film  that this run has written
 std::vector<std::string> older_files(const Scene &scene, const Solution &solution, const std::string &folder,
-                                     int parts);
+                                     const std::vector<std::string> &film);
 
 } // namespace rpc

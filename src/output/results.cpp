@@ -7,6 +7,7 @@
 #include "rpc/io/atomic_file.hpp"
 
 #include <Teuchos_Time.hpp>
+#include <Teuchos_TimeMonitor.hpp>
 #include <utility>
 
 namespace rpc
@@ -32,11 +33,13 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
   const ResultPaths paths(scene, folder);
   const mesh::Mesh &mesh = *s.discretization.mesh;
   if (!paths.exodus.empty()) film.finish(scene, s, folder);
-  if (!paths.csv.empty()) write_contact(paths.csv, scene, s);
+  if (!paths.csv.empty()) {
+    const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::contact table"));
+    write_contact(paths.csv, scene, s);
+  }
   if (!paths.history.empty()) steps.history.update(paths.history, scene, s);
   on_root(mesh.comm(), ExitCode::internal_error, [&] {
-    for (const std::string &file : older_files(scene, s, folder, static_cast<int>(film.files().size())))
-      io::remove_older(file);
+    for (const std::string &file : older_files(scene, s, folder, film.files())) io::remove_older(file);
   });
   const double now = Teuchos::Time::wallTime();
   s.seconds.output = now - begin;
@@ -47,7 +50,11 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
     const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     on_root(mesh.comm(), ExitCode::internal_error, [&] { io::write_text(paths.json, text); });
   }
-  std::vector<std::string> files = film.files();
+  std::vector<std::string> files;
+  for (const std::string &file : film.files()) {
+    const bool split = scene.output.exodus_files == io::ExodusFiles::split;
+    files.push_back(split ? file + '.' + std::to_string(mesh.comm().getSize()) + ".*" : file);
+  }
   for (const std::string &path : paths.all())
     if (!path.empty() && path != paths.exodus) files.push_back(path);
   return files;

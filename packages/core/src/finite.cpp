@@ -1,5 +1,6 @@
 #include "rpc/core/finite.hpp"
 
+#include "rpc/core/math.hpp"
 #include "rpc/core/on_root.hpp"
 
 #include <array>
@@ -12,11 +13,13 @@ namespace rpc
 namespace
 {
 
+constexpr double largest_double = std::numeric_limits<double>::max(); // kernels must not call the function
+
 /// |x|, infinite for a NaN too.
 KOKKOS_INLINE_FUNCTION double size_of(const double x)
 {
   const double size = x < 0 ? -x : x;
-  return size <= std::numeric_limits<double>::max() ? size : std::numeric_limits<double>::infinity();
+  return size <= largest_double ? size : math::infinity<double>;
 }
 
 /// This rank's largest entry; value < 0 if it has none.

@@ -9,25 +9,48 @@
 namespace rpc
 {
 
+namespace
+{
+
+/// What work has thrown.
+struct Failure {
+  std::optional<std::string> message; // none: nothing
+  ExitCode code;
+};
+
+Failure failure_of(const ExitCode default_code, const std::function<void()> &work)
+{
+  try {
+    work();
+  } catch (const Error &error) {
+    return {error.what(), error.code()};
+  } catch (const std::exception &error) {
+    if (is_out_of_memory(error)) return {"out of memory", ExitCode::internal_error};
+    return {error.what(), default_code};
+  }
+  return {std::nullopt, default_code};
+}
+
+} // namespace
+
 void on_root(const Teuchos::Comm<int> &comm, const ExitCode default_code, const std::function<void()> &work)
 {
-  std::optional<std::string> message;
-  ExitCode code = default_code;
-  if (comm.getRank() == 0) {
-    try {
-      work();
-    } catch (const Error &error) {
-      message = error.what();
-      code = error.code();
-    } catch (const std::exception &error) {
-      const bool full = is_out_of_memory(error);
-      message = full ? "out of memory" : error.what();
-      if (full) code = ExitCode::internal_error;
-    }
-  }
-  int shared_code = message ? static_cast<int>(code) : -1; // -1: no error
+  const Failure failure = comm.getRank() == 0 ? failure_of(default_code, work) : Failure{std::nullopt, default_code};
+  int shared_code = failure.message ? static_cast<int>(failure.code) : -1; // -1: no error
   Teuchos::broadcast(comm, 0, Teuchos::outArg(shared_code));
-  if (shared_code >= 0) throw_if_any(comm, static_cast<ExitCode>(shared_code), message);
+  if (shared_code >= 0) throw_if_any(comm, static_cast<ExitCode>(shared_code), failure.message);
+}
+
+void on_each(const Teuchos::Comm<int> &comm, const ExitCode default_code, const std::function<void()> &work)
+{
+  const Failure failure = failure_of(default_code, work);
+  const int mine = failure.message ? comm.getRank() : comm.getSize();
+  int first = 0;
+  Teuchos::reduceAll(comm, Teuchos::REDUCE_MIN, mine, Teuchos::outArg(first));
+  if (first == comm.getSize()) return;
+  int code = static_cast<int>(failure.code);
+  Teuchos::broadcast(comm, first, Teuchos::outArg(code));
+  throw Error(static_cast<ExitCode>(code), text_of_rank(comm, first, failure.message.value_or("")));
 }
 
 std::string text_of_root(const Teuchos::Comm<int> &comm, const ExitCode default_code,

@@ -3,9 +3,7 @@
 #include <Teuchos_Array.hpp>
 #include <Teuchos_ParameterEntryValidator.hpp>
 #include <algorithm>
-#include <cctype>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <ostream>
 
@@ -30,6 +28,35 @@ public:
   ValidStringsList validStringValues() const override { return Teuchos::null; }
   void validate(const ParameterEntry &, const std::string &, const std::string &) const override {}
 };
+
+/// Marks a parameter as a choice among words; true and false stand for the first and the last.
+class ChoiceValidator : public Teuchos::ParameterEntryValidator
+{
+public:
+  explicit ChoiceValidator(std::vector<std::string> words) : words_(std::move(words)) {}
+  const std::string getXMLTypeName() const override { return "choice"; }
+  void printDoc(const std::string &doc, std::ostream &out) const override { out << doc; }
+  ValidStringsList validStringValues() const override { return Teuchos::null; }
+  void validate(const ParameterEntry &, const std::string &, const std::string &) const override {}
+
+  const std::vector<std::string> &words() const { return words_; }
+  /// The word that is meant; none if it is not among them.
+  std::optional<std::string> word_of(const std::string &text) const
+  {
+    if (text == "true") return words_.front();
+    if (text == "false") return words_.back();
+    if (std::find(words_.begin(), words_.end(), text) == words_.end()) return std::nullopt;
+    return text;
+  }
+
+private:
+  std::vector<std::string> words_;
+};
+
+const ChoiceValidator *choice_of(const ParameterEntry &entry)
+{
+  return dynamic_cast<const ChoiceValidator *>(entry.validator().get());
+}
 
 bool has_field_validator(const ParameterEntry &entry)
 {
@@ -70,6 +97,14 @@ std::optional<ParameterEntry> converted(const ParameterEntry &value, const Param
   if (is_field(model)) {
     if (value.isType<int>() || value.isType<double>() || value.isType<std::string>()) return value;
     return std::nullopt;
+  }
+  if (const ChoiceValidator *const choice = choice_of(model)) {
+    const bool is_bool = value.isType<bool>();
+    if (!is_bool && !value.isType<std::string>()) return std::nullopt;
+    const auto word = choice->word_of(is_bool ? (Teuchos::getValue<bool>(value) ? "true" : "false")
+                                              : Teuchos::getValue<std::string>(value));
+    if (!word) return std::nullopt;
+    return ParameterEntry(*word);
   }
   if (is_fields(model) && (value.isType<Array<int>>() || value.isType<Array<double>>())) return value;
   if (value.getAny(false).type() == model.getAny(false).type()) return value;
@@ -157,6 +192,7 @@ std::optional<ParameterEntry> read_entry(const std::string &text, const Paramete
     if (const auto value = entry_of(read_as<bool>(text))) return value;
     return ParameterEntry(text);
   }
+  if (const ChoiceValidator *const choice = choice_of(*model)) return entry_of(choice->word_of(text));
   if (is_field(*model) || model->isType<std::string>()) return ParameterEntry(text);
   if (is_fields(*model)) return entry_of(read_fields(text));
   if (model->isType<int>()) return entry_of(read_as<int>(text));
@@ -173,6 +209,7 @@ std::string rule_of(const ParameterEntry &model)
 {
   if (is_fields(model))
     return "an array of numbers, such as {0, 0.5}, or of strings with expressions, such as {0, 0.1*t}";
+  if (const ChoiceValidator *const choice = choice_of(model)) return "one of " + join(choice->words());
   if (model.isType<double>()) return "a double, and finite";
   if (model.isType<bool>()) return "a bool: true or false";
   if (model.isType<int>()) return "an int";
@@ -256,6 +293,12 @@ std::vector<std::string> field_texts(const ParameterList &list, const std::strin
   else
     add(Teuchos::getValue<Array<double>>(entry));
   return texts;
+}
+
+void set_choice(ParameterList &valid, const std::string &name, const std::vector<std::string> &words,
+                const std::string &doc)
+{
+  valid.set(name, words.front(), doc, Teuchos::rcp(new ChoiceValidator(words)));
 }
 
 void set_pass_through(ParameterList &valid, const std::string &name, const std::string &doc)
@@ -353,38 +396,6 @@ void require_known(const ParameterList &given, const std::vector<std::string> &k
 {
   for (const std::string &name : names_of(given))
     if (std::find(known.begin(), known.end(), name) == known.end()) throw unknown_parameter(path, name, known);
-}
-
-std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates)
-{
-  const auto distance = [](const std::string &a, const std::string &b) { // Levenshtein, case ignored
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j <= b.size(); ++j) {
-        const bool same =
-            std::tolower(static_cast<unsigned char>(a[i - 1])) == std::tolower(static_cast<unsigned char>(b[j - 1]));
-        const std::size_t replaced = diagonal + (same ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-      }
-    }
-    return row.back();
-  };
-  std::string best;
-  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
-  for (const auto &candidate : candidates) {
-    const std::size_t d = distance(name, candidate);
-    const bool abbreviated = !name.empty() && d == candidate.size() - name.size();
-    if (!abbreviated && 2 * d > std::max(name.size(), candidate.size())) continue; // no likeness at all
-    if (d < best_distance) {
-      best = candidate;
-      best_distance = d;
-    }
-  }
-  return best;
 }
 
 std::string join(const std::vector<std::string> &names)

@@ -57,4 +57,27 @@ TEST(OnRoot, MemoryThatRunsOutIsAnInternalErrorOnEveryRank)
                [&] { on_root(*comm, ExitCode::bad_mesh, [] { throw std::bad_alloc(); }); });
 }
 
+TEST(OnEach, WorkRunsOnEveryRank)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  int runs = 0;
+  rpc::on_each(*comm, ExitCode::internal_error, [&] { ++runs; });
+  EXPECT_EQ(runs, 1);
+}
+
+TEST(OnEach, WhatTheLowestRankMeetsWithIsThrownOnEveryRank)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const int last = comm->getSize() - 1;
+  expect_error(ExitCode::bad_input, "no folder on rank " + std::to_string(last), [&] {
+    rpc::on_each(*comm, ExitCode::internal_error, [&] {
+      if (comm->getRank() == last) throw Error(ExitCode::bad_input, "no folder on rank " + std::to_string(last));
+    });
+  });
+  expect_error(ExitCode::bad_mesh, "rank 0", [&] {
+    rpc::on_each(*comm, ExitCode::bad_mesh,
+                 [&] { throw std::runtime_error("rank " + std::to_string(comm->getRank())); });
+  });
+}
+
 } // namespace

@@ -163,6 +163,34 @@ TEST(Validate, FieldIsAnIntADoubleOrAText)
   }
 }
 
+TEST(Validate, AChoiceIsOneOfItsWordsOrABool)
+{
+  ParameterList valid("rpc");
+  rpc::set_choice(valid, "Exodus", {"joined", "split", "none"}, "Files.");
+  const auto chosen = [&](const auto &...given) {
+    ParameterList list("deck");
+    (list.set("Exodus", given), ...);
+    rpc::validate(list, valid);
+    return list.get<std::string>("Exodus");
+  };
+  EXPECT_EQ(chosen(), "joined");
+  EXPECT_EQ(chosen(std::string("split")), "split");
+  EXPECT_EQ(chosen(true), "joined");
+  EXPECT_EQ(chosen(false), "none");
+  EXPECT_EQ(chosen(std::string("false")), "none");
+  expect_error(ExitCode::bad_input, {"\"Exodus\"", "one of joined, split, none", "both"},
+               [&] { chosen(std::string("both")); });
+  expect_error(ExitCode::bad_input, {"one of joined, split, none"}, [&] { chosen(2.); });
+  for (const auto &[text, word] : {std::pair("Exodus=split", "split"), std::pair("Exodus=false", "none")}) {
+    ParameterList list("deck");
+    assign(list, valid, text);
+    EXPECT_EQ(list.get<std::string>("Exodus"), word);
+  }
+  ParameterList list("deck");
+  expect_error(ExitCode::bad_input, {"--set", "one of joined, split, none"},
+               [&] { assign(list, valid, "Exodus=all"); });
+}
+
 TEST(Validate, PassThroughSublistStaysAsItIs)
 {
   ParameterList list;

@@ -108,7 +108,7 @@ struct Search {
 template <int Dim, int Nodes>
 Search<Dim, Nodes> search_in(const mesh::Mesh &mesh)
 {
-  Search<Dim, Nodes> search{{}, {mesh.coords, mesh.cells, to_device(mesh.cell_id), mesh.num_owned_cells}};
+  Search<Dim, Nodes> search{{}, {mesh.coords, mesh.cells, to_device(mesh.cell_id.list()), mesh.num_owned_cells}};
   search.box = boxes(search.shape, search.cells);
   Bounds mine = Bounds::empty();
   if (search.cells.count > 0) {

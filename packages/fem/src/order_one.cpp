@@ -124,8 +124,9 @@ OrderOne order_one(const Discretization &d)
   mesh->blocks = from.blocks;
   mesh->cell_id = from.cell_id;
   mesh->num_owned_cells = from.num_owned_cells;
-  mesh->node_id = HostView<GO *>("rpc::fem::vertex_id", vertices.num_owned);
-  for (LO v = 0; v < vertices.num_owned; ++v) mesh->node_id(v) = from.node_id(vertices.node[v]);
+  const HostView<GO *> vertex_id("rpc::fem::vertex_id", vertices.num_owned);
+  for (LO v = 0; v < vertices.num_owned; ++v) vertex_id(v) = from.node_id(vertices.node[v]);
+  mesh->node_id = vertex_id;
 
   for (const mesh::Side &side : from.sides)
     mesh->sides.push_back(mesh::make_side(side.name, *mesh, to_host(side.cell), to_host(side.ordinal)));

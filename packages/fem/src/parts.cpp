@@ -120,7 +120,7 @@ std::vector<GO> smallest_ids(const Discretization &d, const LocalSets &sets)
   const mesh::Mesh &mesh = *d.mesh;
   std::vector<GO> smallest(sets.count, std::numeric_limits<GO>::max());
   if (sets.count == 1) {
-    for (LO n = 0; n < mesh.num_owned_nodes(); ++n) smallest[0] = std::min(smallest[0], mesh.node_id(n));
+    smallest[0] = mesh.node_id.smallest();
   } else {
     const auto set = to_host(sets.of_node);
     for (LO n = 0; n < mesh.num_owned_nodes(); ++n) smallest[set(n)] = std::min(smallest[set(n)], mesh.node_id(n));

@@ -331,8 +331,8 @@ fem::Discretization all_on(const int rank, const mesh::Mesh &whole)
   all->owned_nodes = rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), nodes, 0, world()));
   all->coords = here ? whole.coords : DeviceView<double **>("coords", 0, whole.dim());
   all->cells = here ? whole.cells : DeviceView<LO **>("cells", 0, whole.element.num_nodes());
-  all->node_id = here ? whole.node_id : HostView<GO *>("node_id", 0);
-  all->cell_id = here ? whole.cell_id : HostView<GO *>("cell_id", 0);
+  all->node_id = here ? whole.node_id : mesh::Ids();
+  all->cell_id = here ? whole.cell_id : mesh::Ids();
   all->num_owned_cells = cells;
   fem::Discretization d;
   d.mesh = all;

@@ -138,11 +138,16 @@ void AtomicFile::publish()
   published_ = true;
 }
 
-void AtomicFile::commit()
+void AtomicFile::sync() const
 {
   Descriptor file(published_ ? path_ : temporary_, path_, O_RDWR);
   file.sync();
   file.close();
+}
+
+void AtomicFile::commit()
+{
+  sync();
   publish();
 }
 

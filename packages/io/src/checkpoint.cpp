@@ -4,7 +4,6 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/core/on_root.hpp"
-#include "rpc/core/parallel.hpp"
 #include "rpc/mesh/canonical_order.hpp"
 
 #include <algorithm>
@@ -135,10 +134,14 @@ public:
     if (times.size() != 1) damaged("it has not one time");
     return times.front();
   }
-  std::vector<double> field(const int index, const GO num_nodes) const
+  void require_nodes(const GO num_nodes) const
   {
     if (file_->num_nodes() != num_nodes) damaged("it has another number of nodes than it says");
-    auto values = file_->field(1, index);
+  }
+  /// @param first  node, from 0
+  std::vector<double> field(const int index, const GO first, const GO count) const
+  {
+    auto values = file_->field(1, index, first, count);
     if (values.empty()) damaged("a field cannot be read");
     return values;
   }
@@ -190,8 +193,9 @@ Checkpoint::Checkpoint(const std::string &path, const RCP<const Comm> &comm) : p
                                                         << ", this is " << RPC_VERSION
                                                         << ". Start from the first step.");
       const GO nodes = header.at("nodes");
-      for (std::size_t f = 0; f < header.at("fields").size(); ++f)
-        values_.push_back(reader.field(static_cast<int>(f), nodes));
+      reader.require_nodes(nodes);
+      for (std::size_t f = 0; f < header.at("fields").size(); ++f) // a file that is cut is told before a mesh is made
+        if (nodes > 0) reader.field(static_cast<int>(f), nodes - 1, 1);
       for (const auto &array : header.at("arrays"))
         arrays_.push_back({array.at("name"), reader.array(static_cast<int>(arrays_.size()), array.at("values"))});
       header["time"] = reader.time();
@@ -219,15 +223,14 @@ std::vector<NodalField> Checkpoint::fields(const mesh::Mesh &mesh) const
 {
   RPC_REQUIRE(is_of(mesh),
               "restart: \"" << path_ << "\" belongs to another mesh. Restart with the mesh that it was written with.");
-  const LO n = mesh.num_owned_nodes();
-  std::vector<GO> ids(n);
-  for (LO i = 0; i < n; ++i) ids[i] = mesh.node_id(i);
+  const mesh::CanonicalOrder nodes(mesh.owned_nodes->getComm(), mesh.node_id, "node");
+  std::unique_ptr<Reader> reader; // rank 0 only
+  on_root(*comm_, ExitCode::bad_input, [&] { reader = std::make_unique<Reader>(path_); });
   std::vector<NodalField> fields;
   for (std::size_t f = 0; f < names_.size(); ++f) {
-    NodalField field{names_[f], HostView<double *>("rpc::io::restart", n)};
-    const std::vector<double> none;
-    const auto mine = scattered_from_root(*comm_, values_.empty() ? none : values_[f], ids);
-    std::copy(mine.begin(), mine.end(), field.values.data());
+    NodalField field{names_[f], HostView<double *>("rpc::io::restart", mesh.num_owned_nodes())};
+    nodes.from_pieces([&](const GO first, const GO count) { return reader->field(static_cast<int>(f), first, count); },
+                      field.values.data());
     fields.push_back(field);
   }
   RPC_REQUIRE(number_of(mesh, fields) == fields_number_,

@@ -9,9 +9,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 namespace rpc::io
@@ -35,41 +38,36 @@ struct Row {
 using Edge = std::array<int, 2>; // rows at its ends
 using Chain = std::vector<int>;  // rows in the order of the walk
 
-/// What friction adds to all ranks' rows; rank 0 only.
-void gather_friction(const Comm &comm, const ContactTable &table, const int dim, std::vector<Row> &rows)
+/// This rank's rows.
+std::vector<Row> rows_of(const ContactTable &table, const int dim)
 {
-  const std::size_t n = table.id.extent(0);
-  const auto traction = gathered_by_root(comm, table.traction.data(), n * dim);
-  const auto slip = gathered_by_root(comm, table.slip.data(), n * dim);
-  const auto used = gathered_by_root(comm, table.used.data(), n);
-  const auto state = gathered_by_root(comm, table.slip_state.data(), n);
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    std::copy_n(traction.begin() + k * dim, dim, rows[k].traction.begin());
-    std::copy_n(slip.begin() + k * dim, dim, rows[k].slip.begin());
-    rows[k].used = used[k];
-    rows[k].slip_state = state[k];
+  std::vector<Row> rows;
+  rows.reserve(table.id.extent(0));
+  for (std::size_t k = 0; k < table.id.extent(0); ++k) {
+    Row row{table.id(k),    {}, table.u_nu(k), table.gap(k), table.pressure(k), table.dent(k), table.state(k),
+            table.weight(k)};
+    for (int c = 0; c < dim; ++c) row.x[c] = table.position(k, c);
+    if (table.friction) {
+      for (int c = 0; c < dim; ++c) {
+        row.traction[c] = table.traction(k, c);
+        row.slip[c] = table.slip(k, c);
+      }
+      row.used = table.used(k);
+      row.slip_state = table.slip_state(k);
+    }
+    rows.push_back(row);
   }
+  return rows;
 }
 
 /// All ranks' rows ordered by id; rank 0 only.
-std::vector<Row> gather_rows(const Comm &comm, const ContactTable &table, const int dim)
+std::vector<Row> gather_rows(const Comm &comm, const std::vector<Row> &mine)
 {
-  const std::size_t n = table.id.extent(0);
-  const auto id = gathered_by_root(comm, table.id.data(), n);
-  const auto u_nu = gathered_by_root(comm, table.u_nu.data(), n);
-  const auto gap = gathered_by_root(comm, table.gap.data(), n);
-  const auto pressure = gathered_by_root(comm, table.pressure.data(), n);
-  const auto dent = gathered_by_root(comm, table.dent.data(), n);
-  const auto state = gathered_by_root(comm, table.state.data(), n);
-  const auto weight = gathered_by_root(comm, table.weight.data(), n);
-  const auto x = gathered_by_root(comm, table.position.data(), n * dim);
-  std::vector<Row> rows;
-  for (std::size_t k = 0; k < id.size(); ++k) {
-    Row row{id[k], {}, u_nu[k], gap[k], pressure[k], dent[k], state[k], weight[k]};
-    std::copy_n(x.begin() + k * dim, dim, row.x.begin());
-    rows.push_back(row);
-  }
-  if (table.friction) gather_friction(comm, table, dim, rows);
+  static_assert(std::is_trivially_copyable<Row>::value, "rows travel as bytes");
+  const auto *const bytes = reinterpret_cast<const char *>(mine.data());
+  const std::vector<char> all = gathered_by_root(comm, bytes, mine.size() * sizeof(Row));
+  std::vector<Row> rows(all.size() / sizeof(Row));
+  if (!rows.empty()) std::memcpy(rows.data(), all.data(), all.size());
   std::sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) { return a.id < b.id; });
   return rows;
 }
@@ -149,28 +147,31 @@ void append(std::string &text, const double value)
   text += ',';
 }
 
-std::string csv(const std::vector<Row> &rows, const int dim, const std::string &side, const bool friction)
+void append(std::string &text, const Row &row, const int dim, const std::string &side, const bool friction)
 {
   static const std::array<const char *, 3> slip_states = {"none", "sticks", "slips"};
   static const std::array<const char *, 3> states = {"open", "closed", "yielding"};
-  std::string text;
-  for (const Row &row : rows) {
-    RPC_REQUIRE_CODE(row.state >= 0 && row.state < 3, ExitCode::internal_error,
-                     "output: the contact state of node " << row.id << " must be 0, 1 or 2, got " << row.state);
-    for (const double value : {row.x[0], row.x[1], dim == 2 ? row.s : row.x[2]}) append(text, value);
-    if (dim == 3) append(text, row.area);
-    for (const double value : {row.u_nu, row.gap, row.pressure}) append(text, value);
-    text += states[row.state];
-    text += ',' + side + ',';
-    append(text, row.dent);
-    if (friction) {
-      for (const auto &vector : {row.traction, row.slip})
-        for (int k = 0; k < dim; ++k) append(text, vector[k]);
-      append(text, row.used);
-      text += std::string(slip_states.at(row.slip_state)) + ',';
-    }
-    text.back() = '\n';
+  RPC_REQUIRE_CODE(row.state >= 0 && row.state < 3, ExitCode::internal_error,
+                   "output: the contact state of node " << row.id << " must be 0, 1 or 2, got " << row.state);
+  for (const double value : {row.x[0], row.x[1], dim == 2 ? row.s : row.x[2]}) append(text, value);
+  if (dim == 3) append(text, row.area);
+  for (const double value : {row.u_nu, row.gap, row.pressure}) append(text, value);
+  text += states[row.state];
+  text += ',' + side + ',';
+  append(text, row.dent);
+  if (friction) {
+    for (const auto &vector : {row.traction, row.slip})
+      for (int k = 0; k < dim; ++k) append(text, vector[k]);
+    append(text, row.used);
+    text += std::string(slip_states.at(row.slip_state)) + ',';
   }
+  text.back() = '\n';
+}
+
+std::string csv(const std::vector<Row> &rows, const int dim, const std::string &side, const bool friction)
+{
+  std::string text;
+  for (const Row &row : rows) append(text, row, dim, side, friction);
   return text;
 }
 
@@ -207,11 +208,52 @@ void require_equal_lengths(const Comm &comm, const ContactTable &table)
   throw_if_any(comm, ExitCode::internal_error, message);
 }
 
-void require_unique(const std::vector<Row> &rows)
+/// @param id_of  that of the k-th row, in their order
+template <class IdOf>
+void require_unique(const std::size_t num_rows, const IdOf &id_of)
 {
-  for (std::size_t k = 1; k < rows.size(); ++k)
-    RPC_REQUIRE_CODE(rows[k].id != rows[k - 1].id, ExitCode::internal_error,
-                     "output: the contact node " << rows[k].id << " is on several ranks or comes twice on one");
+  for (std::size_t k = 1; k < num_rows; ++k)
+    RPC_REQUIRE_CODE(id_of(k) != id_of(k - 1), ExitCode::internal_error,
+                     "output: the contact node " << id_of(k) << " is on several ranks or comes twice on one");
+}
+
+/// The lines of a side in space by the rows' ids, on rank 0: each rank writes those of its own rows. Collective.
+std::string lines_by_id(const Comm &comm, const ContactTable &table, const int dim, const bool friction)
+{
+  std::vector<GO> id;
+  std::vector<int> length;
+  std::string text;
+  const std::string side = csv_quoted(table.side);
+  on_each(comm, ExitCode::internal_error, [&] {
+    for (const Row &row : rows_of(table, dim)) {
+      const std::size_t before = text.size();
+      append(text, row, dim, side, friction);
+      id.push_back(row.id);
+      length.push_back(static_cast<int>(text.size() - before));
+    }
+  });
+  const auto ids = gathered_by_root(comm, id);
+  const auto lengths = gathered_by_root(comm, length);
+  const auto texts = gathered_by_root(comm, text.data(), text.size());
+  std::string sorted;
+  on_root(comm, ExitCode::internal_error, [&] {
+    struct Line {
+      GO id;
+      std::size_t begin;
+      int length;
+    };
+    std::vector<Line> lines;
+    std::size_t begin = 0;
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      lines.push_back({ids[k], begin, lengths[k]});
+      begin += lengths[k];
+    }
+    std::sort(lines.begin(), lines.end(), [](const Line &a, const Line &b) { return a.id < b.id; });
+    require_unique(lines.size(), [&](const std::size_t k) { return lines[k].id; });
+    sorted.reserve(texts.size());
+    for (const Line &line : lines) sorted.append(texts.data() + line.begin, line.length);
+  });
+  return sorted;
 }
 
 } // namespace
@@ -234,11 +276,16 @@ void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, con
     require_equal_lengths(*comm, table);
     const int dim = max_all(*comm, static_cast<int>(table.position.extent(1)));
     const int width = max_all(*comm, static_cast<int>(table.facets.extent(1)));
-    std::vector<Row> rows = gather_rows(*comm, table, dim);
+    if (dim == 3) {
+      if (text.empty()) text = heading(dim, units, friction);
+      text += lines_by_id(*comm, table, dim, friction);
+      continue;
+    }
+    std::vector<Row> rows = gather_rows(*comm, rows_of(table, dim));
     const std::vector<GO> facets = gathered_by_root(*comm, table.facets.data(), table.facets.size());
     on_root(*comm, ExitCode::internal_error, [&] {
-      require_unique(rows);
-      if (dim == 2) rows = along_the_surface(rows, edges_of(rows, facets, width));
+      require_unique(rows.size(), [&](const std::size_t k) { return rows[k].id; });
+      rows = along_the_surface(rows, edges_of(rows, facets, width));
       if (text.empty()) text = heading(dim, units, friction);
       text += csv(rows, dim, csv_quoted(table.side), friction);
     });

@@ -1,5 +1,6 @@
 #include "rpc/io/exodus.hpp"
 
+#include "exodus_part.hpp"
 #include "exodus_reader.hpp"
 #include "exodus_writer.hpp"
 #include "rpc/core/error.hpp"
@@ -98,13 +99,13 @@ SideSet gather_side(const mesh::Mesh &mesh, const mesh::Side &side)
   return set;
 }
 
-/// Rank 0: one coordinate of all nodes in the order of their ids; empty elsewhere. Collective.
-std::vector<double> gathered_coordinate(const mesh::Mesh &mesh, const mesh::CanonicalOrder &nodes, const int direction)
+/// (owned nodes) One coordinate [m].
+std::vector<double> owned_coordinate(const mesh::Mesh &mesh, const int direction)
 {
   const auto coords = to_host(mesh.coords);
   std::vector<double> owned(mesh.num_owned_nodes());
   for (LO n = 0; n < mesh.num_owned_nodes(); ++n) owned[n] = coords(n, direction);
-  return nodes.gather(owned.data());
+  return owned;
 }
 
 /// Node numbers of owned cells, 1-based: (owned cells, nodes per cell), row by row.
@@ -131,110 +132,208 @@ std::vector<std::string> names_of(const std::vector<NodalField> &fields)
 
 struct ExodusFile::Impl {
   RCP<const Comm> comm;
-  mesh::CanonicalOrder nodes;
-  std::vector<std::string> names;       // of the fields
-  std::unique_ptr<ExodusWriter> writer; // rank 0 only
+  std::vector<std::string> names;            // of the fields
+  std::unique_ptr<ExodusWriter> writer;      // on ranks that write
+  std::optional<mesh::CanonicalOrder> nodes; // joined
+  std::unique_ptr<const ExodusPart> part;    // split
   int steps = 0;
 };
 
+std::string exodus_file_of(const std::string &path, const int num_ranks, const int rank)
+{
+  const std::string ranks = std::to_string(num_ranks), number = std::to_string(rank);
+  return path + '.' + ranks + '.' + std::string(ranks.size() - number.size(), '0') + number;
+}
+
 ExodusFile::ExodusFile(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
                        const std::vector<std::string> &fields, const std::vector<std::string> &info,
-                       const std::vector<NamedArray> &arrays)
+                       const std::vector<NamedArray> &arrays, const ExodusFiles files)
     : mesh_(mesh)
 {
   require_names(mesh, fields, arrays);
-  const Comm &comm = mesh.comm();
-  const RCP<const Comm> shared_comm = mesh.owned_nodes->getComm();
-  impl_.reset(new Impl{shared_comm, mesh::CanonicalOrder(shared_comm, mesh.node_id, "node"), fields, nullptr});
-  const mesh::CanonicalOrder cells(shared_comm, mesh.cell_id, "cell");
-  std::vector<SideSet> sides;
-  for (const auto &side : mesh.sides) sides.push_back(gather_side(mesh, side));
-  const ExodusHeader header{
-      title, info, fields, mesh.element, mesh.blocks, block_sizes(mesh), impl_->nodes.size(), cells.size()};
-  auto &writer = impl_->writer;
-  on_root(comm, ExitCode::internal_error, [&] {
-    writer = std::make_unique<ExodusWriter>(path, longest_name(mesh));
-    writer->put_header(header, sides, arrays);
-  });
-  for (int d = 0; d < mesh.dim(); ++d) {
-    const auto all = gathered_coordinate(mesh, impl_->nodes, d);
-    on_root(comm, ExitCode::internal_error, [&] { writer->put_coordinate(d, all); });
-  }
-  const auto all = cells.gather(owned_connectivity(mesh).data(), mesh.element.num_nodes());
-  on_root(comm, ExitCode::internal_error, [&] { writer->put_cells(all); });
+  impl_.reset(new Impl{mesh.owned_nodes->getComm(), fields, nullptr, std::nullopt, nullptr});
+  const ExodusHeader header{title, info, fields, mesh.element, mesh.blocks, {}, 0, 0};
+  if (files == ExodusFiles::joined)
+    begin_joined(path, header, arrays);
+  else
+    begin_split(path, header);
 }
 
 ExodusFile::~ExodusFile() = default;
+
+void ExodusFile::begin_joined(const std::string &path, const ExodusHeader &common,
+                              const std::vector<NamedArray> &arrays)
+{
+  const Comm &comm = *impl_->comm;
+  impl_->nodes.emplace(impl_->comm, mesh_.node_id, "node");
+  const mesh::CanonicalOrder cells(impl_->comm, mesh_.cell_id, "cell");
+  ExodusHeader header = common;
+  header.block_sizes = block_sizes(mesh_);
+  header.num_nodes = impl_->nodes->size();
+  header.num_cells = cells.size();
+  std::vector<SideSet> sides;
+  for (const auto &side : mesh_.sides) sides.push_back(gather_side(mesh_, side));
+  auto &writer = impl_->writer;
+  on_root(comm, ExitCode::internal_error, [&] {
+    writer = std::make_unique<ExodusWriter>(path, longest_name(mesh_));
+    writer->put_header(header, sides, arrays);
+  });
+  for (int d = 0; d < mesh_.dim(); ++d)
+    impl_->nodes->in_pieces<double>(
+        owned_coordinate(mesh_, d).data(), 1,
+        [&](const GO first, const std::vector<double> &piece) { writer->put_coordinate(d, first, piece); });
+  cells.in_pieces<int>(owned_connectivity(mesh_).data(), mesh_.element.num_nodes(),
+                       [&](const GO first, const std::vector<int> &piece) { writer->put_cells(first, piece); });
+}
+
+void ExodusFile::begin_split(const std::string &path, const ExodusHeader &common)
+{
+  const Comm &comm = *impl_->comm;
+  impl_->part = std::make_unique<const ExodusPart>(mesh_);
+  const ExodusPart &part = *impl_->part;
+  const ExodusShare share = part.share();
+  ExodusHeader header = common;
+  header.block_sizes = part.block_sizes();
+  header.num_nodes = static_cast<GO>(share.node_number.size());
+  header.num_cells = static_cast<GO>(share.cell_number.size());
+  on_each(comm, ExitCode::internal_error, [&] {
+    auto &writer = impl_->writer;
+    writer = std::make_unique<ExodusWriter>(exodus_file_of(path, comm.getSize(), comm.getRank()), longest_name(mesh_));
+    writer->put_header(header, part.sides(), {}, &share);
+    for (int d = 0; d < mesh_.dim(); ++d) writer->put_coordinate(d, 0, part.coordinate(d));
+    writer->put_cells(0, part.connectivity());
+  });
+}
+
+/// Where files are split all ranks write.
+void ExodusFile::on_writers(const std::function<void()> &work)
+{
+  if (impl_->part)
+    on_each(*impl_->comm, ExitCode::internal_error, work);
+  else
+    on_root(*impl_->comm, ExitCode::internal_error, work);
+}
 
 void ExodusFile::write(const double time, const std::vector<NodalField> &fields)
 {
   require_fields(mesh_, impl_->names, fields);
   const int step = ++impl_->steps;
-  on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->put_time(step, time); });
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    const auto all = impl_->nodes.gather(fields[f].values.data());
-    on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->put_field(step, static_cast<int>(f), all); });
+  auto &writer = impl_->writer;
+  on_writers([&] { writer->put_time(step, time); });
+  for (int f = 0; f < static_cast<int>(fields.size()); ++f) {
+    const HostView<double *> &values = fields[f].values;
+    if (impl_->part) {
+      const auto mine = impl_->part->at_nodes(values);
+      on_writers([&] { writer->put_field(step, f, 0, mine); });
+    } else {
+      impl_->nodes->in_pieces<double>(values.data(), 1, [&](const GO first, const std::vector<double> &piece) {
+        writer->put_field(step, f, first, piece);
+      });
+    }
   }
-  on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->end_time(); });
+  on_writers([&] { writer->flush_time(); });
+  if (writer) writer->keep_time();
+}
+
+/// Collective. @param file  null: there is none, or on ranks that do not write
+bool ExodusFile::is_of_this_mesh(const ExodusReader *const file)
+{
+  const GO num_nodes = impl_->part ? impl_->part->num_nodes() : impl_->nodes->size();
+  bool same = file && file->num_nodes() == num_nodes && file->field_names() == impl_->names;
+  for (int d = 0; d < mesh_.dim(); ++d) {
+    if (impl_->part)
+      same = same && file->coordinate(d, 0, num_nodes) == impl_->part->coordinate(d);
+    else
+      impl_->nodes->in_pieces<double>(
+          owned_coordinate(mesh_, d).data(), 1, [&](const GO first, const std::vector<double> &piece) {
+            same = same && file->coordinate(d, first, static_cast<GO>(piece.size())) == piece;
+          });
+  }
+  const bool writes = impl_->part || impl_->comm->getRank() == 0;
+  return min_all(*impl_->comm, same || !writes ? 1 : 0) == 1;
 }
 
 int ExodusFile::take_times(const std::string &older, const std::vector<double> &wanted)
 {
+  const Comm &comm = *impl_->comm;
+  const bool split = impl_->part != nullptr;
+  const bool writes = split || comm.getRank() == 0;
+  const std::string path = split ? exodus_file_of(older, comm.getSize(), comm.getRank()) : older;
+  const auto file = writes ? ExodusReader::open(path) : std::nullopt;
+  if (!is_of_this_mesh(file ? &*file : nullptr)) return 0;
+  const std::vector<double> all = exodus_times(older, comm, split ? ExodusFiles::split : ExodusFiles::joined);
+  const std::vector<double> times = file ? file->times() : std::vector<double>();
+  constexpr GO at_once = GO(1) << 18; // nodes
   int taken = 0;
-  std::vector<std::vector<double>> coords; // (dim; nodes)
-  for (int d = 0; d < mesh_.dim(); ++d) coords.push_back(gathered_coordinate(mesh_, impl_->nodes, d));
-  on_root(*impl_->comm, ExitCode::internal_error, [&] {
-    const auto file = ExodusReader::open(older);
-    if (!file || file->num_nodes() != impl_->nodes.size() || file->field_names() != impl_->names) return;
-    for (int d = 0; d < mesh_.dim(); ++d)
-      if (file->coordinate(d) != coords[d]) return;
-    const std::vector<double> times = file->times();
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      if (!std::binary_search(wanted.begin(), wanted.end(), times[k])) continue;
-      const int step = impl_->steps + taken + 1;
-      impl_->writer->put_time(step, times[k]);
-      for (int f = 0; f < static_cast<int>(impl_->names.size()); ++f) {
-        const auto values = file->field(static_cast<int>(k) + 1, f);
-        RPC_REQUIRE(static_cast<GO>(values.size()) == impl_->nodes.size(),
-                    "restart: \"" << older
-                                  << "\" cannot be read. Remove it; the times before the restart are lost then.");
-        impl_->writer->put_field(step, f, values);
-      }
-      impl_->writer->end_time();
-      ++taken;
-    }
-  });
-  Teuchos::broadcast(*impl_->comm, 0, &taken);
+  for (const double time : all) {
+    if (!std::binary_search(wanted.begin(), wanted.end(), time)) continue;
+    const int step = impl_->steps + ++taken;
+    on_writers([&] {
+      const int from = static_cast<int>(std::find(times.begin(), times.end(), time) - times.begin()) + 1;
+      impl_->writer->put_time(step, time);
+      for (int f = 0; f < static_cast<int>(impl_->names.size()); ++f)
+        for (GO first = 0; first < file->num_nodes(); first += at_once) {
+          const GO count = std::min(at_once, file->num_nodes() - first);
+          const auto values = file->field(from, f, first, count);
+          RPC_REQUIRE(static_cast<GO>(values.size()) == count,
+                      "restart: \"" << path
+                                    << "\" cannot be read. Remove it; the times before the restart are lost then.");
+          impl_->writer->put_field(step, f, first, values);
+        }
+      impl_->writer->flush_time();
+    });
+    if (impl_->writer) impl_->writer->keep_time();
+  }
   impl_->steps += taken;
   return taken;
 }
 
 void ExodusFile::publish()
 {
-  on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->publish(); });
+  on_writers([&] { impl_->writer->publish(); });
 }
 
 void ExodusFile::commit()
 {
-  on_root(*impl_->comm, ExitCode::internal_error, [&] { impl_->writer->commit(); });
+  on_writers([&] { impl_->writer->finish(); }); // none has a name before all are whole
+  on_writers([&] { impl_->writer->commit(); });
 }
 
-std::vector<double> exodus_times(const std::string &path)
+std::vector<double> exodus_times(const std::string &path, const Comm &comm, const ExodusFiles files)
 {
-  const auto file = ExodusReader::open(path);
-  return file ? file->times() : std::vector<double>();
+  const bool split = files == ExodusFiles::split;
+  std::vector<double> times;
+  if (split || comm.getRank() == 0)
+    if (const auto file = ExodusReader::open(split ? exodus_file_of(path, comm.getSize(), comm.getRank()) : path))
+      times = file->times();
+  std::vector<double> all = times; // of rank 0
+  int count = static_cast<int>(all.size());
+  Teuchos::broadcast(comm, 0, &count);
+  all.resize(count);
+  if (count > 0) Teuchos::broadcast(comm, 0, count, all.data());
+  if (!split || count == 0) return all;
+  std::vector<int> missing(count);
+  for (int k = 0; k < count; ++k) missing[k] = std::find(times.begin(), times.end(), all[k]) == times.end() ? 1 : 0;
+  missing = largest(comm, missing);
+  std::vector<double> common;
+  for (int k = 0; k < count; ++k)
+    if (missing[k] == 0) common.push_back(all[k]);
+  return common;
 }
 
-void end_exodus_after(const std::string &path, const int number)
+void end_exodus_after(const std::string &path, const int number, const Comm &comm, const ExodusFiles files)
 {
-  set_number_of_times(path, number);
+  if (files == ExodusFiles::split)
+    set_number_of_times(exodus_file_of(path, comm.getSize(), comm.getRank()), number);
+  else if (comm.getRank() == 0)
+    set_number_of_times(path, number);
 }
 
 void write_exodus(const std::string &path, const std::string &title, const mesh::Mesh &mesh, const double time,
-                  const std::vector<NodalField> &fields, const std::vector<std::string> &info)
+                  const std::vector<NodalField> &fields, const std::vector<std::string> &info, const ExodusFiles files)
 {
   require_fields(mesh, names_of(fields), fields); // before there is a file
-  ExodusFile file(path, title, mesh, names_of(fields), info);
+  ExodusFile file(path, title, mesh, names_of(fields), info, {}, files);
   file.write(time, fields);
   file.commit();
 }

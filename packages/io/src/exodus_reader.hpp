@@ -43,12 +43,14 @@ public:
     if (!times.empty() && ex_get_all_times(id_, times.data()) < 0) times.clear();
     return times;
   }
-  std::vector<double> coordinate(const int direction) const
+  /// Of some nodes. @param first  from 0
+  std::vector<double> coordinate(const int direction, const GO first, const GO count) const
   {
-    std::vector<double> values(num_nodes());
+    std::vector<double> values(count);
     std::array<double *, 3> by_direction{};
     by_direction[direction] = values.data();
-    if (ex_get_coord(id_, by_direction[0], by_direction[1], by_direction[2]) < 0) values.clear();
+    if (count > 0 && ex_get_partial_coord(id_, first + 1, count, by_direction[0], by_direction[1], by_direction[2]) < 0)
+      values.clear();
     return values;
   }
   std::vector<std::string> field_names() const
@@ -61,11 +63,12 @@ public:
     if (count > 0 && ex_get_variable_names(id_, EX_NODAL, count, pointers.data()) < 0) return {};
     return {pointers.begin(), pointers.end()};
   }
-  /// @param step  from 1   @param index  of the field
-  std::vector<double> field(const int step, const int index) const
+  /// At some nodes. @param step  from 1   @param index  of the field   @param first  node, from 0
+  std::vector<double> field(const int step, const int index, const GO first, const GO count) const
   {
-    std::vector<double> values(num_nodes());
-    if (ex_get_var(id_, step, EX_NODAL, index + 1, 1, num_nodes(), values.data()) < 0) values.clear();
+    std::vector<double> values(count);
+    if (count > 0 && ex_get_partial_var(id_, step, EX_NODAL, index + 1, 1, first + 1, count, values.data()) < 0)
+      values.clear();
     return values;
   }
   /// @param index  of the array among those that ExodusFile was given

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <exodusII.h>
 #include <fcntl.h>
+#include <numeric>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -20,7 +21,7 @@
 namespace rpc::io
 {
 
-/// Facets of the whole mesh, 1-based as Exodus counts, ordered by cell and ordinal; rank 0 only.
+/// Facets of a file's mesh, 1-based as Exodus counts, ordered by cell and ordinal.
 struct SideSet {
   std::string name;
   std::vector<int> cell, ordinal;
@@ -34,6 +35,14 @@ struct ExodusHeader {
   std::vector<std::string> blocks;
   std::vector<GO> block_sizes; // cells in each
   GO num_nodes, num_cells;
+};
+
+/// What a file that has a rank's part of a mesh says of the whole.
+struct ExodusShare {
+  int num_parts = 0;
+  GO num_nodes = 0, num_cells = 0;           // of the whole mesh
+  std::vector<int> block_sizes, side_sizes;  // cells in each block, facets of each side
+  std::vector<int> node_number, cell_number; // (nodes), (cells) in the whole mesh, 1-based
 };
 
 /// The library takes arrays of pointers to non-const characters, which it only reads.
@@ -67,7 +76,7 @@ inline void set_number_of_times(const std::string &path, const int number)
   ::close(fd);
 }
 
-/// An Exodus file that is written, on rank 0, under its temporary name until commit() or publish(). Private to io.
+/// An Exodus file that one rank writes, under its temporary name until commit() or publish(). Private to io.
 class ExodusWriter
 {
 public:
@@ -90,25 +99,50 @@ public:
   ExodusWriter(const ExodusWriter &) = delete;
   ExodusWriter &operator=(const ExodusWriter &) = delete;
 
-  void put_header(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)
+  /// @param share  null: the file has the whole mesh
+  void put_header(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays,
+                  const ExodusShare *const share = nullptr)
   {
+    if (share) {
+      std::string kind = "p"; // one rank's part
+      check(ex_put_init_info(id_, share->num_parts, 1, kind.data()), "define");
+      check(ex_put_init_global(id_, share->num_nodes, share->num_cells, static_cast<int64_t>(header.blocks.size()),
+                               static_cast<int64_t>(arrays.size()), static_cast<int64_t>(sides.size())),
+            "define");
+    }
     define(header, sides, arrays);
     put_names(header, sides, arrays);
     put_sides(sides);
     put_arrays(arrays);
+    if (!share) return;
+    put_whole(*share);
+    if (header.num_nodes > 0)
+      check(ex_put_id_map(id_, EX_NODE_MAP, share->node_number.data()), "write the numbers of the nodes of");
+    if (header.num_cells > 0)
+      check(ex_put_id_map(id_, EX_ELEM_MAP, share->cell_number.data()), "write the numbers of the cells of");
   }
-  void put_coordinate(const int direction, const std::vector<double> &values)
+  /// @param first  node, from 0
+  void put_coordinate(const int direction, const GO first, const std::vector<double> &values)
   {
+    if (values.empty()) return;
     std::array<const double *, 3> by_direction{};
     by_direction[direction] = values.data();
-    check(ex_put_coord(id_, by_direction[0], by_direction[1], by_direction[2]), "write the coordinates of");
+    check(ex_put_partial_coord(id_, first + 1, static_cast<int64_t>(values.size()), by_direction[0], by_direction[1],
+                               by_direction[2]),
+          "write the coordinates of");
   }
-  void put_cells(const std::vector<int> &nodes)
+  /// @param first  cell, from 0; they run block by block   @param nodes  (cells, nodes per cell)
+  void put_cells(const GO first, const std::vector<int> &nodes)
   {
-    const int *first = nodes.data(); // cells run block by block
+    const GO end = first + static_cast<GO>(nodes.size()) / nodes_per_cell_;
+    GO block_begin = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      if (blocks_[b] > 0) check(ex_put_conn(id_, EX_ELEM_BLOCK, b + 1, first, nullptr, nullptr), "write the cells of");
-      first += blocks_[b] * nodes_per_cell_;
+      const GO from = std::max(first, block_begin), to = std::min(end, block_begin + blocks_[b]);
+      if (from < to)
+        check(ex_put_partial_elem_conn(id_, static_cast<ex_entity_id>(b + 1), from - block_begin + 1, to - from,
+                                       nodes.data() + (from - first) * nodes_per_cell_),
+              "write the cells of");
+      block_begin += blocks_[b];
     }
   }
   /// @param step  from 1
@@ -118,27 +152,34 @@ public:
     check(ex_put_time(id_, step, &time), "write a time of");
   }
   /// All fields of the time are written.
-  void end_time()
+  void flush_time()
   {
     if (published_) check(ex_update(id_), "write a time of");
-    whole_ = begun_;
   }
+  /// The time stays, in the files of other ranks too.
+  void keep_time() { whole_ = begun_; }
   void publish()
   {
     check(ex_update(id_), "write");
     file_.publish();
     published_ = true;
   }
-  void put_field(const int step, const int index, const std::vector<double> &values)
+  /// @param first  node, from 0
+  void put_field(const int step, const int index, const GO first, const std::vector<double> &values)
   {
-    check(ex_put_nodal_var(id_, step, index + 1, static_cast<int64_t>(values.size()), values.data()),
+    if (values.empty()) return;
+    check(ex_put_partial_var(id_, step, EX_NODAL, index + 1, 1, first + 1, static_cast<int64_t>(values.size()),
+                             values.data()),
           "write a field of");
   }
-  void commit()
+  /// Closes the file, and brings it to the disk.
+  void finish()
   {
     check(ex_close(std::exchange(id_, -1)), "close");
-    file_.commit();
+    file_.sync();
   }
+  /// Gives the finished file its name, if it has none yet.
+  void commit() { file_.publish(); }
 
 private:
   void define(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)
@@ -167,6 +208,18 @@ private:
     }
     if (!header.field_names.empty())
       check(ex_put_variable_param(id_, EX_NODAL, static_cast<int>(header.field_names.size())), "define");
+  }
+
+  /// Blocks and sides of the whole mesh.
+  void put_whole(const ExodusShare &share)
+  {
+    std::vector<int> blocks(share.block_sizes.size()), sides(share.side_sizes.size()), none(share.side_sizes.size());
+    std::iota(blocks.begin(), blocks.end(), 1);
+    std::iota(sides.begin(), sides.end(), 1);
+    std::vector<int> cells = share.block_sizes, facets = share.side_sizes; // the library only reads them
+    check(ex_put_eb_info_global(id_, blocks.data(), cells.data()), "write the blocks of");
+    if (!sides.empty())
+      check(ex_put_ss_param_global(id_, sides.data(), facets.data(), none.data()), "write the sides of");
   }
 
   void put_names(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)

@@ -1,7 +1,6 @@
 #include "rpc/io/exodus.hpp"
 
-#include "rpc/mesh/box.hpp"
-#include "scratch.hpp"
+#include "exodus_content.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_Core.hpp>
@@ -24,122 +23,15 @@ using rpc::io::NodalField;
 using rpc::io::write_exodus;
 using rpc::mesh::Element;
 using rpc::mesh::Mesh;
+using rpc::test::box;
+using rpc::test::Content;
 using rpc::test::expect_error;
+using rpc::test::fields_of;
+using rpc::test::first_field;
 using rpc::test::Scratch;
 using rpc::test::text_of;
 
-Mesh box(const Element &element, const RCP<const Comm> &comm)
-{
-  if (element.dim == 2) return rpc::mesh::make_box({{0, -1}, {6, 2}, {6, 3}, element}, comm);
-  return rpc::mesh::make_box({{0, -1, 0}, {6, 2, 1}, {6, 3, 2}, element}, comm);
-}
-
-double first_field(const double x, const double y)
-{
-  return x + 100 * y;
-}
-
-std::vector<NodalField> fields_of(const Mesh &mesh)
-{
-  const auto coords = rpc::to_host(mesh.coords);
-  HostView<double *> first("first", mesh.num_owned_nodes()), second("second", mesh.num_owned_nodes());
-  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) {
-    first(n) = first_field(coords(n, 0), coords(n, 1));
-    second(n) = -coords(n, 0) / 3;
-  }
-  return {{"disp_x", first}, {"contact_pressure", second}};
-}
-
-/// A file read back whole; rank 0 only.
-struct Content {
-  /// @param step  time whose fields are read, from 1
-  explicit Content(const std::string &path, const int step = 1)
-  {
-    int word = sizeof(double), file_word = 0;
-    float version = 0;
-    const int id = ex_open(path.c_str(), EX_READ, &word, &file_word, &version);
-    if (id < 0) {
-      ADD_FAILURE() << "cannot open " << path;
-      return;
-    }
-    EXPECT_EQ(ex_large_model(id), 1);
-    EXPECT_EQ(file_word, static_cast<int>(sizeof(double)));
-    char text[MAX_LINE_LENGTH + 1] = {};
-    EXPECT_EQ(ex_get_init(id, text, &dim, &nodes, &cells, &blocks, &node_sets, &side_sets), 0);
-    title = text;
-    std::vector<double> x(nodes), y(nodes), z(nodes);
-    EXPECT_EQ(ex_get_coord(id, x.data(), y.data(), z.data()), 0);
-    coords = {x, y, z};
-    ex_block block{};
-    block.id = 1;
-    block.type = EX_ELEM_BLOCK;
-    EXPECT_EQ(ex_get_block_param(id, &block), 0);
-    topology = block.topology;
-    nodes_per_cell = static_cast<int>(block.num_nodes_per_entry);
-    conn.resize(block.num_entry * nodes_per_cell);
-    EXPECT_EQ(ex_get_conn(id, EX_ELEM_BLOCK, 1, conn.data(), nullptr, nullptr), 0);
-    ex_set_max_name_length(id, 255);
-    char name[256] = {};
-    EXPECT_EQ(ex_get_name(id, EX_ELEM_BLOCK, 1, name), 0);
-    block_name = name;
-    read_sides(id);
-    read_fields(id, step);
-    const int steps = static_cast<int>(ex_inquire_int(id, EX_INQ_TIME));
-    times.resize(steps);
-    if (steps > 0) {
-      EXPECT_EQ(ex_get_all_times(id, times.data()), 0);
-    }
-    EXPECT_EQ(ex_inquire_int(id, EX_INQ_QA), 1);
-    num_info = static_cast<int>(ex_inquire_int(id, EX_INQ_INFO));
-    ex_close(id);
-  }
-
-  void read_sides(const int id)
-  {
-    for (int s = 1; s <= side_sets; ++s) {
-      char name[256] = {};
-      EXPECT_EQ(ex_get_name(id, EX_SIDE_SET, s, name), 0);
-      side_names.push_back(name);
-      int count = 0, factors = 0;
-      EXPECT_EQ(ex_get_set_param(id, EX_SIDE_SET, s, &count, &factors), 0);
-      std::vector<int> cell(count), ordinal(count);
-      EXPECT_EQ(ex_get_set(id, EX_SIDE_SET, s, cell.data(), ordinal.data()), 0);
-      side_cells.push_back(cell);
-      side_ordinals.push_back(ordinal);
-    }
-  }
-
-  void read_fields(const int id, const int step)
-  {
-    int count = 0;
-    EXPECT_EQ(ex_get_variable_param(id, EX_NODAL, &count), 0);
-    for (int f = 1; f <= count; ++f) {
-      char name[256] = {}; // the library writes as many as names may have
-      EXPECT_EQ(ex_get_variable_name(id, EX_NODAL, f, name), 0);
-      field_names.push_back(name);
-      std::vector<double> values(nodes);
-      EXPECT_EQ(ex_get_nodal_var(id, step, f, nodes, values.data()), 0);
-      fields.push_back(values);
-    }
-  }
-
-  std::string title, topology, block_name;
-  int dim = 0, nodes = 0, cells = 0, blocks = 0, node_sets = 0, side_sets = 0, nodes_per_cell = 0, num_info = 0;
-  std::vector<double> times;
-  std::array<std::vector<double>, 3> coords;
-  std::vector<int> conn;
-  std::vector<std::string> side_names, field_names;
-  std::vector<std::vector<int>> side_cells, side_ordinals;
-  std::vector<std::vector<double>> fields;
-};
-
-class Exodus : public testing::Test
-{
-protected:
-  RCP<const Comm> comm_ = Tpetra::getDefaultComm();
-  Scratch scratch_{*comm_};
-  const bool root_ = comm_->getRank() == 0;
-};
+using Exodus = rpc::test::ExodusTest;
 
 class ExodusElements : public Exodus, public testing::WithParamInterface<Element>
 {
@@ -280,9 +172,8 @@ TEST_F(Exodus, TakesTimesOfAFileOfTheSameMeshOnly)
   const Mesh moved = rpc::mesh::make_box({{0, -1}, {6, 2.0000001}, {6, 3}, {2, 1}}, comm_);
   rpc::io::ExodusFile other(scratch_.path("other.e"), "other", moved, {"disp_x", "contact_pressure"});
   EXPECT_EQ(other.take_times(scratch_.path("older.e"), wanted), 0);
-  if (!root_) return;
-  EXPECT_EQ(rpc::io::exodus_times(scratch_.path("same.e")), (std::vector<double>{0.5, 2}));
-  EXPECT_TRUE(rpc::io::exodus_times(scratch_.path("none.e")).empty());
+  EXPECT_EQ(rpc::io::exodus_times(scratch_.path("same.e"), *comm_), (std::vector<double>{0.5, 2}));
+  EXPECT_TRUE(rpc::io::exodus_times(scratch_.path("none.e"), *comm_).empty());
 }
 
 TEST_F(Exodus, EndsAfterSomeOfItsTimes)
@@ -292,9 +183,8 @@ TEST_F(Exodus, EndsAfterSomeOfItsTimes)
   rpc::io::ExodusFile file(path, "a", mesh, {"disp_x", "contact_pressure"});
   for (const double time : {0.5, 1., 2.}) file.write(time, fields_of(mesh));
   file.commit();
-  if (!root_) return;
-  rpc::io::end_exodus_after(path, 2);
-  EXPECT_EQ(rpc::io::exodus_times(path), (std::vector<double>{0.5, 1}));
+  rpc::io::end_exodus_after(path, 2, *comm_);
+  EXPECT_EQ(rpc::io::exodus_times(path, *comm_), (std::vector<double>{0.5, 1}));
 }
 
 TEST_F(Exodus, AFileThatIsNotCommittedDoesNotAppear)

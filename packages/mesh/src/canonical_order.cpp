@@ -1,68 +1,176 @@
 #include "rpc/mesh/canonical_order.hpp"
 
-#include "rpc/core/exchange.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/mesh/ghost_values.hpp"
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace rpc::mesh
 {
 
-CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const HostView<const GO *> &ids, const std::string &what)
-    : comm_(comm), owned_(ids.extent(0)), size_(sum_all(*comm, static_cast<GO>(ids.extent(0)))),
-      ids_(gathered_by_root(*comm, ids.data(), ids.extent(0)))
+namespace
 {
-  on_root(*comm, ExitCode::internal_error, [&] {
-    std::vector<bool> seen(size_, false);
-    for (const GO id : ids_) {
-      RPC_REQUIRE_CODE(id >= 0 && id < size_ && !seen[id], ExitCode::internal_error,
-                       "mesh: the " << what << " ids must be each of 0 .. " << size_ - 1 << " once, got " << id
-                                    << (id >= 0 && id < size_ ? " twice" : ""));
-      seen[id] = true;
-    }
-  });
+
+constexpr GO piece_size = GO(1) << 18; // ids: 2 MB a column
+
+} // namespace
+
+CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const Ids &ids, const std::string &what)
+    : comm_(comm), size_(sum_all(*comm, static_cast<GO>(ids.size()))), ids_(ids)
+{
+  const LO num_owned = static_cast<LO>(ids.size());
+  std::optional<GO> beyond;
+  std::vector<LO> sizes(num_pieces(), 0);
+  for (LO n = 0; n < num_owned; ++n) {
+    const GO id = ids(n);
+    if (id >= 0 && id < size_)
+      ++sizes[id / piece_size];
+    else
+      beyond = id;
+  }
+  const auto bad = [&](const GO id, const char *const how) {
+    return "mesh: the " + what + " ids must be each of 0 .. " + std::to_string(size_ - 1) + " once, got " +
+           std::to_string(id) + how;
+  };
+  throw_if_any(*comm, ExitCode::internal_error, beyond ? std::optional<std::string>(bad(*beyond, "")) : std::nullopt);
+  piece_.assign(1, 0);
+  for (const LO size : sizes) piece_.push_back(piece_.back() + size);
+  std::vector<LO> next(piece_.begin(), piece_.end() - 1);
+  owned_.resize(num_owned);
+  for (LO n = 0; n < num_owned; ++n) owned_[next[ids(n) / piece_size]++] = n;
+  piece_sizes_ = gathered_by_root(*comm, sizes);
+
+  // All ids there are so many, and none twice: each is there.
+  for (GO piece = 0; piece < num_pieces(); ++piece) {
+    const auto places = gathered_by_root(*comm, places_in(piece));
+    on_root(*comm, ExitCode::internal_error, [&] {
+      std::vector<bool> seen(piece_size, false);
+      for (const int place : places) {
+        RPC_REQUIRE_CODE(!seen[place], ExitCode::internal_error, bad(piece * piece_size + place, " twice"));
+        seen[place] = true;
+      }
+    });
+  }
+}
+
+GO CanonicalOrder::num_pieces() const
+{
+  return (size_ + piece_size - 1) / piece_size;
+}
+
+std::vector<int> CanonicalOrder::places_in(const GO piece) const
+{
+  std::vector<int> places;
+  places.reserve(piece_[piece + 1] - piece_[piece]);
+  for (LO k = piece_[piece]; k < piece_[piece + 1]; ++k)
+    places.push_back(static_cast<int>(ids_(owned_[k]) - piece * piece_size));
+  return places;
 }
 
 template <class T>
-std::vector<T> CanonicalOrder::gather(const T *values, const int width) const
+void CanonicalOrder::in_pieces(const T *const values, const int width,
+                               const std::function<void(GO, const std::vector<T> &)> &take) const
 {
-  const std::vector<T> by_rank = gathered_by_root(*comm_, values, owned_ * width);
-  std::vector<T> by_id(by_rank.size());
-  for (std::size_t n = 0; n < ids_.size(); ++n)
-    std::copy_n(by_rank.begin() + n * width, width, by_id.begin() + ids_[n] * width);
-  return by_id;
+  for (GO piece = 0; piece < num_pieces(); ++piece) {
+    std::vector<int> places = places_in(piece);
+    std::vector<T> mine;
+    mine.reserve(places.size() * width);
+    for (LO k = piece_[piece]; k < piece_[piece + 1]; ++k)
+      mine.insert(mine.end(), values + std::size_t(width) * owned_[k], values + std::size_t(width) * (owned_[k] + 1));
+    std::vector<T> ordered(comm_->getRank() == 0 ? width * std::min(piece_size, size_ - piece * piece_size) : 0);
+    const auto put = [&] {
+      for (std::size_t k = 0; k < places.size(); ++k)
+        std::copy_n(mine.begin() + static_cast<std::ptrdiff_t>(k * width), width,
+                    ordered.begin() + static_cast<std::ptrdiff_t>(places[k]) * width);
+    };
+    if (comm_->getRank() == 0) {
+      put();
+      for (int rank = 1; rank < comm_->getSize(); ++rank) {
+        const LO count = piece_sizes_[rank * num_pieces() + piece];
+        if (count == 0) continue;
+        places.resize(count);
+        mine.resize(std::size_t(width) * count);
+        Teuchos::receive(*comm_, rank, count, places.data());
+        Teuchos::receive(*comm_, rank, width * count, mine.data());
+        put();
+      }
+    } else if (!places.empty()) {
+      Teuchos::send(*comm_, static_cast<int>(places.size()), places.data(), 0);
+      Teuchos::send(*comm_, static_cast<int>(mine.size()), mine.data(), 0);
+    }
+    on_root(*comm_, ExitCode::internal_error, [&] { take(piece * piece_size, ordered); });
+  }
 }
 
+void CanonicalOrder::from_pieces(const std::function<std::vector<double>(GO, GO)> &give, double *const values) const
+{
+  for (GO piece = 0; piece < num_pieces(); ++piece) {
+    std::vector<double> ordered;
+    on_root(*comm_, ExitCode::internal_error, [&] {
+      const GO count = std::min(piece_size, size_ - piece * piece_size);
+      ordered = give(piece * piece_size, count);
+      RPC_REQUIRE_CODE(static_cast<GO>(ordered.size()) == count, ExitCode::internal_error,
+                       "mesh: a piece of " << count << " values has " << ordered.size());
+    });
+    std::vector<int> places = places_in(piece);
+    std::vector<double> mine(places.size());
+    const auto pick = [&] {
+      for (std::size_t k = 0; k < places.size(); ++k) mine[k] = ordered[places[k]];
+    };
+    if (comm_->getRank() == 0) {
+      pick();
+      for (std::size_t k = 0; k < mine.size(); ++k) values[owned_[piece_[piece] + k]] = mine[k];
+      for (int rank = 1; rank < comm_->getSize(); ++rank) {
+        const LO count = piece_sizes_[rank * num_pieces() + piece];
+        if (count == 0) continue;
+        places.resize(count);
+        mine.resize(count);
+        Teuchos::receive(*comm_, rank, count, places.data());
+        pick();
+        Teuchos::send(*comm_, count, mine.data(), rank);
+      }
+    } else if (!places.empty()) {
+      Teuchos::send(*comm_, static_cast<int>(places.size()), places.data(), 0);
+      Teuchos::receive(*comm_, 0, static_cast<int>(mine.size()), mine.data());
+      for (std::size_t k = 0; k < mine.size(); ++k) values[owned_[piece_[piece] + k]] = mine[k];
+    }
+  }
+}
+
+template <class T>
+std::vector<T> CanonicalOrder::gather(const T *const values, const int width) const
+{
+  std::vector<T> all;
+  in_pieces<T>(values, width,
+               [&](GO, const std::vector<T> &piece) { all.insert(all.end(), piece.begin(), piece.end()); });
+  return all;
+}
+
+template void CanonicalOrder::in_pieces(const double *, int,
+                                        const std::function<void(GO, const std::vector<double> &)> &) const;
+template void CanonicalOrder::in_pieces(const int *, int,
+                                        const std::function<void(GO, const std::vector<int> &)> &) const;
+template void CanonicalOrder::in_pieces(const GO *, int,
+                                        const std::function<void(GO, const std::vector<GO> &)> &) const;
 template std::vector<double> CanonicalOrder::gather(const double *, int) const;
 template std::vector<int> CanonicalOrder::gather(const int *, int) const;
 template std::vector<GO> CanonicalOrder::gather(const GO *, int) const;
 
-/// The owners of the ghosts are asked.
 HostView<GO *> overlap_node_ids(const Mesh &mesh)
 {
-  if (mesh.comm().getSize() == 1) return mesh.node_id;
+  const HostView<GO *> own = mesh.node_id.list();
+  if (mesh.comm().getSize() == 1) return own;
   const LO num_owned = mesh.num_owned_nodes();
   HostView<GO *> ids("rpc::mesh::overlap_node_ids", mesh.num_local_nodes());
-  for (LO n = 0; n < num_owned; ++n) ids(n) = mesh.node_id(n);
-  const auto size = static_cast<Teuchos_Ordinal>(mesh.ghosts.size());
-  std::vector<int> rank(size), node(size), order(size), counts(mesh.comm().getSize());
-  mesh.owned_nodes->getRemoteIndexList(Teuchos::ArrayView<const GO>(mesh.ghosts.data(), size),
-                                       Teuchos::ArrayView<int>(rank.data(), size),
-                                       Teuchos::ArrayView<int>(node.data(), size));
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](const int a, const int b) { return rank[a] < rank[b]; });
-  std::vector<double> questions, answers; // doubles hold ids exactly
-  for (const int ghost : order) {
-    ++counts[rank[ghost]];
-    questions.push_back(node[ghost]);
-  }
-  const Exchange exchange(mesh.comm(), counts);
-  for (const double lid : exchange.forward(questions, 1))
-    answers.push_back(static_cast<double>(mesh.node_id(static_cast<LO>(lid))));
-  const std::vector<double> got = exchange.back(answers, 1);
-  for (std::size_t k = 0; k < order.size(); ++k) ids(num_owned + order[k]) = static_cast<GO>(got[k]);
+  std::copy_n(own.data(), num_owned, ids.data());
+  std::vector<LO> all(mesh.ghosts.size());
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<double> exact(own.data(), own.data() + num_owned); // doubles hold ids exactly
+  const auto of_ghosts = GhostValues(mesh, all).of(exact.data());
+  for (std::size_t k = 0; k < all.size(); ++k) ids(num_owned + static_cast<LO>(k)) = static_cast<GO>(of_ghosts[k]);
   return ids;
 }
 

@@ -235,6 +235,17 @@ TEST(Coarser, MeshFileCannotBeCoarsened)
   EXPECT_FALSE(rpc::mesh::coarser(GmshOptions{"body.msh"}, 2));
 }
 
+TEST(MemoryOfABox, ARefusalTellsHowManyNodesFit)
+{
+  constexpr double gib = 1 << 30;
+  EXPECT_FALSE(rpc::mesh::memory_refusal(1'000'000, 1024, gib, "memory"));
+  const auto refusal = rpc::mesh::memory_refusal(2'097'152, 1024, gib, "the GPU's memory");
+  ASSERT_TRUE(refusal);
+  for (const char *const part : {"2097152 nodes", "at least 2 GiB of the GPU's memory", "at most 1 GiB",
+                                 "enough for 1048576 nodes", "more ranks on more machines or GPUs"})
+    EXPECT_NE(refusal->find(part), std::string::npos) << *refusal;
+}
+
 TEST(Coarser, FactorBelowOneIsRefused)
 {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();

@@ -38,8 +38,10 @@ TEST(Box, EachNodeAndCellIdOccursOnceOverAllRanks)
 {
   for_each_box([](const Made &made) {
     EXPECT_EQ(made.mesh.owned_nodes->getGlobalNumElements(), std::size_t(made.lattice.num_nodes()));
-    EXPECT_EQ(occurrences(made.mesh.node_id, made.lattice.num_nodes()), std::vector<int>(made.lattice.num_nodes(), 1));
-    EXPECT_EQ(occurrences(made.mesh.cell_id, made.lattice.num_cells()), std::vector<int>(made.lattice.num_cells(), 1));
+    EXPECT_EQ(occurrences(made.mesh.node_id.list(), made.lattice.num_nodes()),
+              std::vector<int>(made.lattice.num_nodes(), 1));
+    EXPECT_EQ(occurrences(made.mesh.cell_id.list(), made.lattice.num_cells()),
+              std::vector<int>(made.lattice.num_cells(), 1));
     EXPECT_EQ(static_cast<LO>(made.mesh.node_id.extent(0)), made.mesh.num_owned_nodes());
     EXPECT_EQ(static_cast<LO>(made.mesh.cell_id.extent(0)), made.mesh.num_owned_cells);
   });

@@ -26,7 +26,8 @@ using rpc::test::expect_error;
 HostView<GO *> scattered_ids(const Comm &comm, const GO n)
 {
   std::vector<GO> ids;
-  for (GO id = comm.getRank(); id < n; id += comm.getSize()) ids.insert(ids.begin(), id);
+  for (GO id = comm.getRank(); id < n; id += comm.getSize()) ids.push_back(id);
+  std::reverse(ids.begin(), ids.end());
   HostView<GO *> view("ids", ids.size());
   std::copy(ids.begin(), ids.end(), view.data());
   return view;
@@ -67,6 +68,45 @@ TEST(CanonicalOrder, ValuesComeOrderedById)
 TEST(CanonicalOrder, SerialCommunicatorWorksToo)
 {
   expect_ordered(Teuchos::rcp(new Teuchos::SerialComm<int>));
+}
+
+TEST(CanonicalOrder, PiecesFollowEachOtherAndComeBack)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const GO n = 600'001; // several pieces
+  const auto ids = scattered_ids(*comm, n);
+  const CanonicalOrder order(comm, ids, "node");
+  std::vector<double> values;
+  for (std::size_t k = 0; k < ids.extent(0); ++k) values.push_back(0.5 * ids(k));
+  std::vector<double> all;
+  std::size_t largest = 0;
+  order.in_pieces<double>(values.data(), 1, [&](const GO first, const std::vector<double> &piece) {
+    EXPECT_EQ(first, static_cast<GO>(all.size()));
+    all.insert(all.end(), piece.begin(), piece.end());
+    largest = std::max(largest, piece.size());
+  });
+  EXPECT_EQ(all.size(), comm->getRank() == 0 ? static_cast<std::size_t>(n) : 0);
+  EXPECT_LT(largest, static_cast<std::size_t>(n) / 2); // rank 0 never has all
+  for (std::size_t k = 0; k < all.size(); ++k) ASSERT_EQ(all[k], 0.5 * k);
+  std::vector<double> back(values.size(), -1);
+  order.from_pieces(
+      [&](const GO first, const GO count) {
+        return std::vector<double>(all.begin() + first, all.begin() + first + count);
+      },
+      back.data());
+  EXPECT_EQ(back, values);
+}
+
+TEST(CanonicalOrder, AnErrorInAPieceIsThrownOnEveryRank)
+{
+  const auto comm = Tpetra::getDefaultComm();
+  const auto ids = scattered_ids(*comm, 600'001);
+  const CanonicalOrder order(comm, ids, "node");
+  expect_error(ExitCode::bad_input, "disk full", [&] {
+    order.in_pieces<GO>(ids.data(), 1, [](const GO first, const std::vector<GO> &) {
+      if (first > 0) throw rpc::Error(ExitCode::bad_input, "disk full");
+    });
+  });
 }
 
 TEST(CanonicalOrder, IdsThatAreNoPermutationAreRefusedOnEveryRank)

@@ -158,8 +158,8 @@ TEST(Distribute, EachNodeAndCellIsOwnedOnceAndEachRankOwnsACell)
 {
   for_each_mesh([](const Dealt &dealt) {
     const int num_nodes = dealt.whole.num_nodes(), num_cells = dealt.whole.num_cells();
-    EXPECT_EQ(occurrences(dealt.mesh.node_id, num_nodes), std::vector<int>(num_nodes, 1));
-    EXPECT_EQ(occurrences(dealt.mesh.cell_id, num_cells), std::vector<int>(num_cells, 1));
+    EXPECT_EQ(occurrences(dealt.mesh.node_id.list(), num_nodes), std::vector<int>(num_nodes, 1));
+    EXPECT_EQ(occurrences(dealt.mesh.cell_id.list(), num_cells), std::vector<int>(num_cells, 1));
     EXPECT_EQ(static_cast<LO>(dealt.mesh.node_id.extent(0)), dealt.mesh.num_owned_nodes());
     EXPECT_EQ(static_cast<LO>(dealt.mesh.cell_id.extent(0)), dealt.mesh.num_owned_cells);
     EXPECT_GT(dealt.mesh.num_owned_cells, 0);

@@ -6,7 +6,6 @@
 #include <Teuchos_Array.hpp>
 #include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
-#include <map>
 #include <utility>
 
 // Contact nodes are few, so that their supports live on the host; doubles hold gids exactly.
@@ -16,6 +15,7 @@ namespace rpc::solver
 namespace
 {
 
+const LO elsewhere = Teuchos::OrdinalTraits<LO>::invalid();
 const auto to_be_counted = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
 
 /// Some gids, each once, ascending.
@@ -41,124 +41,6 @@ std::vector<int> owners(const Map &map, const std::vector<GO> &gids)
   return ranks;
 }
 
-/// Rows of a matrix, as (column's gid, value).
-using Row = std::vector<std::pair<GO, double>>;
-
-/// (gids) The rows of a matrix, whatever ranks own them; collective.
-/// @param gids  ascending, each once
-std::vector<Row> rows_of(const CrsMatrix &P, const std::vector<GO> &gids)
-{
-  const Comm &comm = *P.getComm();
-  const auto rank = owners(*P.getRowMap(), gids);
-  std::vector<std::size_t> order(gids.size()); // of the questions: by the rank that is asked
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](const std::size_t a, const std::size_t b) { return rank[a] < rank[b]; });
-  std::vector<int> counts(comm.getSize());
-  std::vector<double> questions;
-  for (const std::size_t k : order) {
-    ++counts[rank[k]];
-    questions.push_back(static_cast<double>(gids[k]));
-  }
-  const Exchange exchange(comm, counts);
-  std::vector<LO> asked;
-  for (const double gid : exchange.forward(questions, 1))
-    asked.push_back(P.getRowMap()->getLocalElement(static_cast<GO>(gid)));
-  const HostRows mine = host_rows(P, asked);
-  int longest = 0;
-  for (std::size_t i = 0; i < asked.size(); ++i)
-    longest = std::max(longest, static_cast<int>(mine.begin[i + 1] - mine.begin[i]));
-  const int width = 1 + 2 * max_all(comm, longest); // number of entries, entries
-  std::vector<double> answers(static_cast<std::size_t>(width) * asked.size());
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    double *answer = &answers[width * i];
-    *answer++ = static_cast<double>(mine.begin[i + 1] - mine.begin[i]);
-    for (std::size_t e = mine.begin[i]; e < mine.begin[i + 1]; ++e) {
-      *answer++ = static_cast<double>(P.getColMap()->getGlobalElement(mine.column(e)));
-      *answer++ = mine.value(e);
-    }
-  }
-  const auto got = exchange.back(answers, width);
-  std::vector<Row> rows(gids.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const double *const row = &got[width * k];
-    for (int e = 0; e < static_cast<int>(row[0]); ++e)
-      rows[order[k]].emplace_back(static_cast<GO>(row[1 + 2 * e]), row[2 + 2 * e]);
-  }
-  return rows;
-}
-
-void append_row(const Row &row, SupportRows &rows)
-{
-  for (const auto &[node, weight] : row) {
-    rows.node.push_back(node);
-    rows.weight.push_back(weight);
-  }
-  rows.begin.push_back(rows.node.size());
-}
-
-} // namespace
-
-ContactSupports contact_supports(const DeviceView<LO *> &nodes, const RCP<const Map> &mesh)
-{
-  const auto node = to_host(nodes);
-  ContactSupports supports;
-  supports.contact = rcp(new Map(to_be_counted, node.extent(0), 0, mesh->getComm()));
-  for (std::size_t c = 0; c < node.extent(0); ++c) {
-    supports.node.push_back(mesh->getGlobalElement(node(c)));
-    supports.weight.push_back(1);
-    supports.begin.push_back(c + 1);
-  }
-  return supports;
-}
-
-ContactSupports coarser(const ContactSupports &supports, const CrsMatrix &interpolation)
-{
-  const std::vector<GO> wanted = distinct(supports.node);
-  const std::vector<Row> rows = rows_of(interpolation, wanted);
-  ContactSupports coarse;
-  coarse.contact = supports.contact;
-  std::map<GO, double> sum; // of one contact node
-  for (int c = 0; c < supports.size(); ++c) {
-    sum.clear();
-    for (std::size_t e = supports.begin[c]; e < supports.begin[c + 1]; ++e)
-      for (const auto &[node, weight] : rows[place_in(wanted, supports.node[e])])
-        sum[node] += supports.weight[e] * weight;
-    for (const auto &[node, weight] : sum) {
-      coarse.node.push_back(node);
-      coarse.weight.push_back(weight);
-    }
-    coarse.begin.push_back(coarse.node.size());
-  }
-  return coarse;
-}
-
-ContactSupports supports_of_blocks(const std::vector<GO> &row, const std::vector<GO> &column,
-                                   const CrsMatrix &interpolation)
-{
-  std::vector<GO> wanted = row; // ascending
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  const Map &nodes = *interpolation.getRowMap();
-  std::vector<GO> others;
-  for (const GO gid : column)
-    if (!nodes.isNodeGlobalElement(gid)) others.push_back(gid);
-  others = distinct(std::move(others));
-  const auto own = static_cast<std::ptrdiff_t>(wanted.size());
-  wanted.insert(wanted.end(), others.begin(), others.end());
-  std::inplace_merge(wanted.begin(), wanted.begin() + own, wanted.end());
-  const std::vector<Row> rows = rows_of(interpolation, wanted);
-  ContactSupports supports;
-  supports.contact = rcp(new Map(to_be_counted, row.size(), 0, nodes.getComm()));
-  for (std::size_t b = 0; b < row.size(); ++b) {
-    append_row(rows[place_in(wanted, row[b])], supports);
-    append_row(rows[place_in(wanted, column[b])], supports.column);
-  }
-  return supports;
-}
-
-namespace
-{
-
 /// Numbers of a message: those of a support's entries, and the entries.
 void write_row(const SupportRows &rows, const int c, double *&to)
 {
@@ -182,6 +64,175 @@ const double *read_row(const double *from, const int length, SupportRows &rows)
   return from;
 }
 
+/// Appends entries of other rows.
+void append(const SupportRows &from, const int row, SupportRows &to)
+{
+  const auto first = static_cast<std::ptrdiff_t>(from.begin[row]),
+             last = static_cast<std::ptrdiff_t>(from.begin[row + 1]);
+  to.node.insert(to.node.end(), from.node.begin() + first, from.node.begin() + last);
+  to.weight.insert(to.weight.end(), from.weight.begin() + first, from.weight.begin() + last);
+  to.begin.push_back(to.node.size());
+}
+
+/// Rows of a matrix that this rank has, by their columns' gids.
+SupportRows own_rows(const CrsMatrix &P, const std::vector<LO> &rows)
+{
+  const HostRows mine = host_rows(P, rows);
+  const Map &columns = *P.getColMap();
+  SupportRows result;
+  result.begin = mine.begin;
+  result.node.reserve(mine.begin.back());
+  for (std::size_t e = 0; e < mine.begin.back(); ++e) result.node.push_back(columns.getGlobalElement(mine.column(e)));
+  result.weight.assign(mine.value.data(), mine.value.data() + mine.begin.back());
+  return result;
+}
+
+/// (gids) Rows of a matrix that other ranks own; collective.
+SupportRows rows_of_others(const CrsMatrix &P, const std::vector<GO> &gids)
+{
+  const Comm &comm = *P.getComm();
+  const auto rank = owners(*P.getRowMap(), gids);
+  std::vector<std::size_t> order(gids.size()); // of the questions: by the rank that is asked
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const std::size_t a, const std::size_t b) { return rank[a] < rank[b]; });
+  std::vector<int> counts(comm.getSize());
+  std::vector<double> questions;
+  for (const std::size_t k : order) {
+    ++counts[rank[k]];
+    questions.push_back(static_cast<double>(gids[k]));
+  }
+  const Exchange exchange(comm, counts);
+  std::vector<LO> asked;
+  for (const double gid : exchange.forward(questions, 1))
+    asked.push_back(P.getRowMap()->getLocalElement(static_cast<GO>(gid)));
+  const SupportRows mine = own_rows(P, asked);
+  int longest = 0;
+  for (int i = 0; i < mine.size(); ++i) longest = std::max(longest, row_length(mine, i));
+  const int width = 1 + 2 * max_all(comm, longest); // number of entries, entries
+  std::vector<double> answers(static_cast<std::size_t>(width) * asked.size());
+  for (int i = 0; i < mine.size(); ++i) {
+    double *answer = &answers[static_cast<std::size_t>(width) * i];
+    *answer++ = row_length(mine, i);
+    write_row(mine, i, answer);
+  }
+  const auto got = exchange.back(answers, width);
+  std::vector<std::size_t> place(order.size()); // of an answer
+  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = k;
+  SupportRows rows;
+  for (const std::size_t k : place) {
+    const double *const row = &got[width * k];
+    read_row(row + 1, static_cast<int>(row[0]), rows);
+  }
+  return rows;
+}
+
+/// (gids) The rows of a matrix, whatever ranks own them; collective.
+/// @param gids  ascending, each once
+SupportRows rows_of(const CrsMatrix &P, const std::vector<GO> &gids)
+{
+  const Map &map = *P.getRowMap();
+  std::vector<LO> own(gids.size()), here;
+  std::vector<GO> others;
+  for (std::size_t k = 0; k < gids.size(); ++k) {
+    own[k] = map.getLocalElement(gids[k]);
+    if (own[k] == elsewhere)
+      others.push_back(gids[k]);
+    else
+      here.push_back(own[k]);
+  }
+  SupportRows mine = own_rows(P, here);
+  if (map.getComm()->getSize() == 1) return mine;
+  const SupportRows theirs = rows_of_others(P, others);
+  if (others.empty()) return mine;
+  SupportRows rows;
+  int next_own = 0, next_other = 0;
+  for (const LO row : own) row == elsewhere ? append(theirs, next_other++, rows) : append(mine, next_own++, rows);
+  return rows;
+}
+
+} // namespace
+
+ContactSupports contact_supports(const DeviceView<LO *> &nodes, const RCP<const Map> &mesh)
+{
+  const auto node = to_host(nodes);
+  ContactSupports supports;
+  supports.contact = rcp(new Map(to_be_counted, node.extent(0), 0, mesh->getComm()));
+  for (std::size_t c = 0; c < node.extent(0); ++c) {
+    supports.node.push_back(mesh->getGlobalElement(node(c)));
+    supports.weight.push_back(1);
+    supports.begin.push_back(c + 1);
+  }
+  return supports;
+}
+
+ContactSupports coarser(const ContactSupports &supports, const CrsMatrix &interpolation)
+{
+  const std::vector<GO> wanted = distinct(supports.node);
+  const SupportRows rows = rows_of(interpolation, wanted);
+  ContactSupports coarse;
+  coarse.contact = supports.contact;
+  std::vector<std::pair<GO, double>> sum; // of one contact node
+  for (int c = 0; c < supports.size(); ++c) {
+    sum.clear();
+    for (std::size_t e = supports.begin[c]; e < supports.begin[c + 1]; ++e) {
+      const std::size_t row = place_in(wanted, supports.node[e]);
+      for (std::size_t k = rows.begin[row]; k < rows.begin[row + 1]; ++k)
+        sum.emplace_back(rows.node[k], supports.weight[e] * rows.weight[k]);
+    }
+    std::stable_sort(sum.begin(), sum.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
+    const std::size_t first = coarse.node.size();
+    for (const auto &[node, weight] : sum) {
+      if (coarse.node.size() > first && coarse.node.back() == node) {
+        coarse.weight.back() += weight;
+        continue;
+      }
+      coarse.node.push_back(node);
+      coarse.weight.push_back(weight);
+    }
+    coarse.begin.push_back(coarse.node.size());
+  }
+  return coarse;
+}
+
+ContactSupports supports_of_blocks(const std::vector<GO> &row, const std::vector<GO> &column,
+                                   const CrsMatrix &interpolation)
+{
+  std::vector<GO> wanted = row; // ascending
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  const Map &nodes = *interpolation.getRowMap();
+  std::vector<GO> others;
+  for (const GO gid : column)
+    if (!nodes.isNodeGlobalElement(gid)) others.push_back(gid);
+  others = distinct(std::move(others));
+  const auto own = static_cast<std::ptrdiff_t>(wanted.size());
+  wanted.insert(wanted.end(), others.begin(), others.end());
+  std::inplace_merge(wanted.begin(), wanted.begin() + own, wanted.end());
+  const SupportRows rows = rows_of(interpolation, wanted);
+  std::vector<int> number(num_local(nodes)); // of an owned node among these
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    if (const LO node = nodes.getLocalElement(wanted[k]); node != elsewhere) number[node] = static_cast<int>(k);
+  const auto row_of = [&](const GO gid) {
+    const LO node = nodes.getLocalElement(gid);
+    return node == elsewhere ? static_cast<int>(place_in(wanted, gid)) : number[node];
+  };
+  ContactSupports supports;
+  supports.contact = rcp(new Map(to_be_counted, row.size(), 0, nodes.getComm()));
+  for (SupportRows *const rows_of_side : {static_cast<SupportRows *>(&supports), &supports.column}) {
+    rows_of_side->begin.reserve(row.size() + 1);
+    rows_of_side->node.reserve(4 * row.size()); // on a flat side at most
+    rows_of_side->weight.reserve(4 * row.size());
+  }
+  for (std::size_t b = 0; b < row.size(); ++b) {
+    append(rows, row_of(row[b]), supports);
+    append(rows, row_of(column[b]), supports.column);
+  }
+  return supports;
+}
+
+namespace
+{
+
 /// (entries) The ranks that own the nodes; collective.
 std::vector<int> owners_of_entries(const SupportRows &supports, const Map &mesh)
 {
@@ -200,27 +251,48 @@ std::vector<int> owners_of_entries(const SupportRows &supports, const Map &mesh)
 
 } // namespace
 
-NearSupports near_supports(const ContactSupports &supports, const Map &mesh)
+namespace
 {
-  const Comm &comm = *mesh.getComm();
+
+/// Contact nodes with an entry at a node of another rank, for each rank, in their order; `own`: those with one at a node of this rank.
+struct Destinations {
+  std::vector<std::vector<int>> to_rank; // none to this one
+  std::vector<int> own;
+};
+
+Destinations destinations(const ContactSupports &supports, const Map &mesh)
+{
+  const int here = mesh.getComm()->getRank();
   const std::vector<int> owner = owners_of_entries(supports, mesh);
-  int longest = 0;
-  std::vector<std::vector<int>> to_rank(comm.getSize()); // contact nodes
-  for (int c = 0; c < supports.size(); ++c) {
-    longest = std::max(longest, row_length(supports, c) + row_length(supports.column, c));
+  Destinations to{std::vector<std::vector<int>>(mesh.getComm()->getSize()), {}};
+  for (int c = 0; c < supports.size(); ++c)
     for (std::size_t e = supports.begin[c]; e < supports.begin[c + 1]; ++e) {
-      auto &list = to_rank[owner[e]];
+      auto &list = owner[e] == here ? to.own : to.to_rank[owner[e]];
       if (list.empty() || list.back() != c) list.push_back(c);
     }
-  }
-  constexpr int head = 3; // gid of the contact node, numbers of entries
-  const int width = head + 2 * max_all(comm, longest);
+  return to;
+}
+
+/// Supports that other ranks have sent, by the gids of their contact nodes.
+struct Received : SupportRows {
+  std::vector<GO> gid;
+  SupportRows column;
+};
+
+/// Collective.
+Received exchange_supports(const ContactSupports &supports, const std::vector<std::vector<int>> &to_rank,
+                           const bool two_sided, const Comm &comm)
+{
+  int longest = 0;
   std::vector<int> counts;
   std::size_t num_sent = 0;
   for (const auto &list : to_rank) {
     counts.push_back(static_cast<int>(list.size()));
     num_sent += list.size();
+    for (const int c : list) longest = std::max(longest, row_length(supports, c) + row_length(supports.column, c));
   }
+  constexpr int head = 3; // gid of the contact node, numbers of entries
+  const int width = head + 2 * max_all(comm, longest);
   std::vector<double> sent(width * num_sent);
   double *next = sent.data();
   for (const auto &list : to_rank)
@@ -235,20 +307,50 @@ NearSupports near_supports(const ContactSupports &supports, const Map &mesh)
     }
   const Exchange exchange(comm, counts);
   const auto got = exchange.forward(sent, width);
-  std::vector<std::pair<GO, std::size_t>> order; // (gid of the contact node, row)
-  for (int k = 0; k < exchange.num_received(); ++k)
-    order.emplace_back(static_cast<GO>(got[static_cast<std::size_t>(width) * k]), k);
-  if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
+  Received received;
+  for (int k = 0; k < exchange.num_received(); ++k) {
+    const double *const row = &got[static_cast<std::size_t>(width) * k];
+    received.gid.push_back(static_cast<GO>(row[0]));
+    const double *const columns = read_row(row + head, static_cast<int>(row[1]), received);
+    if (two_sided) read_row(columns, static_cast<int>(row[2]), received.column);
+  }
+  return received;
+}
+
+} // namespace
+
+NearSupports near_supports(const ContactSupports &supports, const Map &mesh)
+{
+  const Comm &comm = *mesh.getComm();
+  const Destinations to = destinations(supports, mesh);
   const bool two_sided = max_all(comm, supports.column.size()) > 0;
+  Received received;
+  if (comm.getSize() > 1) received = exchange_supports(supports, to.to_rank, two_sided, comm);
+  std::vector<std::pair<GO, int>> order; // (gid of the contact node, row): of this rank's own ones, then of the others
+  for (const int c : to.own) order.emplace_back(supports.contact->getGlobalElement(c), c);
+  for (std::size_t k = 0; k < received.gid.size(); ++k)
+    order.emplace_back(received.gid[k], supports.size() + static_cast<int>(k));
+  if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
   NearSupports near;
+  for (auto [rows, own] : {std::pair<SupportRows *, const SupportRows *>(&near, &supports),
+                           std::pair<SupportRows *, const SupportRows *>(&near.column, &supports.column)}) {
+    rows->begin.reserve(order.size() + 1);
+    rows->node.reserve(own->node.size());
+    rows->weight.reserve(own->weight.size());
+  }
   Teuchos::Array<GO> gids;
+  gids.reserve(static_cast<Teuchos::Array<GO>::size_type>(order.size()));
   for (const auto &[gid, k] : order) {
     gids.push_back(gid);
-    const double *const row = &got[width * k];
-    const double *const columns = read_row(row + head, static_cast<int>(row[1]), near);
-    if (two_sided) read_row(columns, static_cast<int>(row[2]), near.column);
+    const bool own = k < supports.size();
+    const int row = own ? k : k - supports.size();
+    append(own ? static_cast<const SupportRows &>(supports) : received, row, near);
+    if (two_sided) append(own ? supports.column : received.column, row, near.column);
   }
-  near.importer = rcp(new Import(supports.contact, rcp(new Map(to_be_counted, gids(), 0, mesh.getComm()))));
+  RCP<const Map> their_map = supports.contact;
+  if (comm.getSize() > 1 || near.size() != supports.size())
+    their_map = rcp(new Map(to_be_counted, gids(), 0, mesh.getComm()));
+  near.importer = rcp(new Import(supports.contact, their_map));
   return near;
 }
 

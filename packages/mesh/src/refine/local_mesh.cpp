@@ -42,7 +42,8 @@ LocalMesh local_mesh(const Mesh &mesh)
   local.moved.assign(local.gid.size(), 0);
   local.cells = rows_of(mesh.cells);
   local.block = values_of(mesh.block);
-  local.cell_id.assign(mesh.cell_id.data(), mesh.cell_id.data() + mesh.cell_id.extent(0));
+  const auto cell_id = mesh.cell_id.list();
+  local.cell_id.assign(cell_id.data(), cell_id.data() + cell_id.extent(0));
   for (const Side &side : mesh.sides) local.sides.push_back({side.name, values_of(side.cell), values_of(side.ordinal)});
   local.geometry = mesh.geometry;
   for (const PointSet &set : mesh.points) local.points.push_back({set.name, {set.node.begin(), set.node.end()}});

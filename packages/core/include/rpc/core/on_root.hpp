@@ -13,6 +13,10 @@ namespace rpc
 /// ran out, else `default_code`
 void on_root(const Teuchos::Comm<int> &comm, ExitCode default_code, const std::function<void()> &work);
 
+/// Runs `work` on every rank, where ranks meet with different things, such as their own files; collective on comm. `work` itself is not.
+/// @throws rpc::Error on every rank if work throws on any: what the lowest of these ranks met with, as on_root() does
+void on_each(const Teuchos::Comm<int> &comm, ExitCode default_code, const std::function<void()> &work);
+
 /// What `work` returns on rank 0, where alone it runs, on every rank; collective on comm. For what each rank would find
 /// differently, such as files on its own disk.
 /// @throws rpc::Error on every rank, as on_root() does

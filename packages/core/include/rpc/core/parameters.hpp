@@ -27,6 +27,11 @@ void set_fields(Teuchos::ParameterList &valid, const std::string &name, const st
 /// Texts of an array of fields, which a deck may give as ints, doubles or strings.
 std::vector<std::string> field_texts(const Teuchos::ParameterList &list, const std::string &name);
 
+/// Declares `name` as a choice among some words. A deck may also give a bool, as it did before there were more than two.
+/// @param words  the first is the default and what `true` stands for, the last what `false` stands for
+void set_choice(Teuchos::ParameterList &valid, const std::string &name, const std::vector<std::string> &words,
+                const std::string &doc);
+
 /// Declares a sublist whose content is handed on to a library unread.
 void set_pass_through(Teuchos::ParameterList &valid, const std::string &name, const std::string &doc);
 

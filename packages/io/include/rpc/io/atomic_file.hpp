@@ -28,6 +28,9 @@ public:
   /// Gives the file its name while it is still being written; an older file of that name is replaced. From now on it stays.
   /// @throws rpc::Error as the constructor does
   void publish();
+  /// Flushes the file to disk. The writer has closed it before.
+  /// @throws rpc::Error as the constructor does
+  void sync() const;
   /// Flushes the file to disk and publishes it, if that has not been done. The writer has closed the file before.
   /// @throws rpc::Error as the constructor does
   void commit();

@@ -17,7 +17,7 @@ void write_checkpoint(const std::string &path, const mesh::Mesh &mesh, double ti
                       const std::vector<NodalField> &fields, const std::string &text,
                       const std::vector<NamedArray> &arrays = {});
 
-/// What write_checkpoint() was given. Rank 0 reads; any number of ranks may have written. Collective.
+/// What write_checkpoint() was given. Rank 0 reads, fields a piece at a time; any number of ranks may have written. Collective.
 class Checkpoint
 {
 public:
@@ -41,7 +41,6 @@ private:
   std::string text_, mesh_number_, fields_number_;
   std::vector<std::string> names_;
   std::vector<NamedArray> arrays_;
-  std::vector<std::vector<double>> values_; // (fields; nodes in the order of their ids), rank 0 only
 };
 
 } // namespace rpc::io

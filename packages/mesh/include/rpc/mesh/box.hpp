@@ -4,6 +4,7 @@
 
 #include <Teuchos_ParameterList.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace rpc::mesh
@@ -53,6 +54,10 @@ BoxOptions divided(BoxOptions options, int num_ranks, GO least_nodes);
 /// The direction in which a box is one cell of order 1 and thinner than 1.7 times the shortest distance of nodes in the others; the
 /// thinnest of several. A coarser box would be too stiff when it bends, so multigrid ends here.
 std::optional<int> thin_direction(const BoxOptions &options);
+
+/// Why a rank cannot have so many nodes; none if it can.
+/// @param bytes  that a run takes for each node at least [B]   @param limit  [B]   @param what  "memory", "the GPU's memory"
+std::optional<std::string> memory_refusal(GO nodes, double bytes, double limit, const std::string &what);
 
 /// Makes this rank's part of a box; no communication of mesh data, and no rank holds the whole.
 ///

@@ -3,35 +3,54 @@
 #include "rpc/core/tpetra.hpp"
 #include "rpc/mesh/mesh.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace rpc::mesh
 {
 
-/// Collects data of entities that each have one owner on rank 0, ordered by their rank-independent id.
+/// Takes data of entities that each have one owner to rank 0, ordered by their rank-independent id, and back.
 ///
-/// The ids travel once; then one field at a time.
+/// A piece of ids travels at a time, so that rank 0 holds no more than a piece of what is not its own.
 class CanonicalOrder
 {
 public:
   /// @param ids   (owned) 0-based; over all ranks each of 0 .. n-1 once
   /// @param what  for the message, "node"
   /// @throws rpc::Error (internal_error) on every rank if they are not; collective on comm
-  CanonicalOrder(const RCP<const Comm> &comm, const HostView<const GO *> &ids, const std::string &what);
+  CanonicalOrder(const RCP<const Comm> &comm, const Ids &ids, const std::string &what);
 
   GO size() const { return size_; } ///< n, over all ranks
 
+  /// Calls `take` on rank 0 for one piece after another; collective.
   /// @param values  (owned, width), row by row, in the order of ids; T is double, int or GO
+  /// @param take    gets the first id of a piece, and (ids of the piece, width) row by row, ordered by id
+  /// @throws rpc::Error on every rank if `take` throws, as on_root() does
+  template <class T>
+  void in_pieces(const T *values, int width,
+                 const std::function<void(GO first, const std::vector<T> &piece)> &take) const;
+  /// The other way round: rank 0 is asked for one piece after another; collective.
+  /// @param give    is told the first id of a piece and how many it has
+  /// @param values  (owned) in the order of ids, out
+  /// @throws rpc::Error on every rank if `give` throws, as on_root() does
+  void from_pieces(const std::function<std::vector<double>(GO first, GO count)> &give, double *values) const;
+  /// All pieces: for what rank 0 needs as a whole.
   /// @return rank 0: (n, width), row by row, ordered by id; empty elsewhere. Collective
   template <class T>
   std::vector<T> gather(const T *values, int width = 1) const;
 
 private:
+  GO num_pieces() const;
+  /// This rank's ids in a piece, seen from its first one.
+  std::vector<int> places_in(GO piece) const;
+
   RCP<const Comm> comm_;
-  std::size_t owned_ = 0;
   GO size_ = 0;
-  std::vector<GO> ids_; // of all ranks; rank 0 only
+  Ids ids_;
+  std::vector<LO> owned_;       // by pieces
+  std::vector<LO> piece_;       // (pieces + 1) where each begins in owned_
+  std::vector<LO> piece_sizes_; // (ranks, pieces) of all ranks; rank 0 only
 };
 
 /// Rank-independent id of every local node: (overlap nodes) 0-based. Collective.

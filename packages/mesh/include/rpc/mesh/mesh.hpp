@@ -3,6 +3,7 @@
 #include "rpc/core/tpetra.hpp"
 #include "rpc/mesh/element.hpp"
 #include "rpc/mesh/geometry.hpp"
+#include "rpc/mesh/ids.hpp"
 
 #include <memory>
 #include <string>
@@ -51,8 +52,8 @@ struct Mesh {
   DeviceView<double **> coords; ///< (overlap nodes, dim) [m]
   DeviceView<LO **> cells;      ///< (local cells, nodes per cell) overlap node lids
   DeviceView<int *> block;      ///< (local cells) index into blocks
-  HostView<GO *> node_id;       ///< (owned nodes)
-  HostView<GO *> cell_id;       ///< (owned cells); over the whole mesh they run block by block
+  Ids node_id;                  ///< (owned nodes)
+  Ids cell_id;                  ///< (owned cells); over the whole mesh they run block by block
   LO num_owned_cells = 0;
   std::vector<std::string> blocks;       ///< names of the parts of the body, the same on all ranks
   std::vector<Side> sides;               ///< the same on all ranks, though a rank may have no facets of one

@@ -1,0 +1,43 @@
+#include "rpc/core/parameters.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <numeric>
+
+namespace rpc
+{
+
+std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates)
+{
+  const auto distance = [](const std::string &a, const std::string &b) { // Levenshtein, case ignored
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= b.size(); ++j) {
+        const bool same =
+            std::tolower(static_cast<unsigned char>(a[i - 1])) == std::tolower(static_cast<unsigned char>(b[j - 1]));
+        const std::size_t replaced = diagonal + (same ? 0 : 1);
+        diagonal = row[j];
+        row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+      }
+    }
+    return row.back();
+  };
+  std::string best;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  for (const auto &candidate : candidates) {
+    const std::size_t d = distance(name, candidate);
+    const bool abbreviated = !name.empty() && d == candidate.size() - name.size();
+    if (!abbreviated && 2 * d > std::max(name.size(), candidate.size())) continue; // no likeness at all
+    if (d < best_distance) {
+      best = candidate;
+      best_distance = d;
+    }
+  }
+  return best;
+}
+
+} // namespace rpc
