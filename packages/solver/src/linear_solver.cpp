@@ -34,6 +34,8 @@ constexpr GO most_rows_set_up_anew = 2500;
 // rough solves beyond a part. With contact so many solves are to come, by measurement of steps.
 constexpr int first_iterations = 15, fair_iterations = 30, solves_with_contact = 4;
 constexpr double full_tolerance = 1e-8;
+// A factor that leaves out slight changes is judged after so many.
+constexpr int first_iterations_of_factor = 3;
 
 double fair(const double tolerance)
 {
@@ -236,13 +238,16 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     Convergence seen;
     const auto gives_up = [&](const int iterations, const double residual) {
       if (iterations > seen.iterations()) seen.add(residual);
-      return sparse_pays_now(seen, least);
+      if (!on_sparse) return sparse_pays_now(seen, least);
+      return seen.iterations() >= first_iterations_of_factor &&
+             sparse.renewal_pays(seen.iterations_in_all(least, options.max_iterations) - seen.iterations());
     };
-    const KrylovResult done = krylov.solve(*used, H->is_symmetric(), b, x, tolerance,
-                                           may_be_sparse && !on_sparse ? GivesUp(gives_up) : GivesUp());
+    const KrylovResult done =
+        krylov.solve(*used, H->is_symmetric(), b, x, tolerance, may_be_sparse ? GivesUp(gives_up) : GivesUp());
     given_up = done.given_up;
     lost_iterations += std::max(0., done.iterations - fair(least));
     if (used == &algebraic) algebraic.learn(done.iterations, done.residual);
+    if (on_meshes) meshes->learn(done.iterations, done.residual);
     result = {done.converged, done.broken, false, done.iterations, done.reason};
     counts.iterations.push_back(result.iterations);
     counts.solve_seconds += Teuchos::Time::wallTime() - start;
