@@ -15,6 +15,7 @@ SIGNALS = [signal.SIGINT, signal.SIGTERM]
 NOT_CONVERGED = 4
 RESULTS = [f"out/beam.{end}" for end in ("contact.csv", "e", "json")]
 LARGE = "--set=Mesh->Cells={1280,256}"  # seconds are left when the signal comes, on a busy machine too
+FACTORED = "--set=Mesh->Cells={20,20,10}"  # some ten seconds, near nu = 0.5
 NO_MULTIGRID = ["--set=Linear Solver->MueLu->max levels=1", "--set=Linear Solver->MueLu->coarse: type=RELAXATION",
                 "--set=Linear Solver->Maximum Iterations=100000"]
 
@@ -25,10 +26,15 @@ def catches(pid, number):
     return bool(int(mask, 16) >> (number - 1) & 1)
 
 
+def num_threads(pid):
+    status = pathlib.Path(f"/proc/{pid}/status").read_text()
+    return int(next(line.split()[1] for line in status.splitlines() if line.startswith("Threads:")))
+
+
 @unittest.skipUnless(pathlib.Path(f"/proc/self/task/{os.getpid()}/children").exists(), "needs Linux' /proc")
 class Interrupt(RpcTestCase):
-    def start(self, *arguments):
-        process = subprocess.Popen(LAUNCH + [PROGRAM, "--input=beam.xml", "--output=out", *arguments], cwd=self.folder,
+    def start(self, *arguments, deck="beam.xml"):
+        process = subprocess.Popen(LAUNCH + [PROGRAM, f"--input={deck}", "--output=out", *arguments], cwd=self.folder,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL,
                                    preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         self.addCleanup(process.kill)
@@ -99,6 +105,27 @@ class Interrupt(RpcTestCase):
     def test_within_a_long_linear_solve_results_are_written(self):
         summary = self.interrupt_solve(signal.SIGTERM, "uzawa newton", *NO_MULTIGRID)
         self.assertEqual(summary["newton_iterations"], [0])
+
+    @unittest.skipUnless(os.environ.get("RPC_MUMPS") == "ON", "needs MUMPS, whose factor has a thread of its own")
+    @unittest.skipIf(RANKS > 1, "needs one rank: on several, an MPI that allows calls from several threads")
+    def test_within_a_factor_the_run_ends_within_seconds(self):
+        for number in SIGNALS:
+            with self.subTest(number.name):
+                process = self.start("--set=Material->Poisson's Ratio=0.4999", FACTORED, "--set=Output->Exodus=false", deck="block.xml")
+                rank = self.last_rank(process)
+                threads = num_threads(rank)
+                self.wait_for(process, lambda: num_threads(rank) > threads)
+                time.sleep(0.5)
+                self.assertGreater(num_threads(rank), threads, "the factor takes seconds: else this tells nothing")
+                os.kill(rank, number)
+                sent = time.monotonic()
+                result = self.end(process, NOT_CONVERGED)
+                self.assertLess(time.monotonic() - sent, 5)
+                self.assertEqual(errors(result), [])
+                self.assertIn(f"NOT CONVERGED: interrupted by {number.name} in Uzawa iteration 1", result.stdout)
+                self.assertEqual(files(self.folder), ["out/block.contact.csv", "out/block.json"])
+                summary = json.loads((self.folder / "out" / "block.json").read_text())
+                self.assertIn("sparse factor", summary["solver_path"])
 
     def test_while_results_are_written_lets_them_be_finished(self):
         process = self.start("--set=Mesh->Cells={160,32}")

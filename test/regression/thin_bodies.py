@@ -1,4 +1,5 @@
-"""Newton steps on thin bodies, where bending turns choices of states by pressures over: bounded scene by scene."""
+"""Newton steps on thin bodies, where bending turns choices of states by pressures over: bounded scene by scene. Iterations of linear solves
+on nearly incompressible bodies of stretched cells, with and without friction."""
 
 import json
 import unittest
@@ -15,7 +16,7 @@ DECK = """<ParameterList name="thin">
   </ParameterList>
   <ParameterList name="Material">
     <Parameter name="Young's Modulus" type="double" value="1000"/>
-    <Parameter name="Poisson's Ratio" type="double" value="0.3"/>
+    <Parameter name="Poisson's Ratio" type="double" value="%(nu)s"/>
   </ParameterList>
   <ParameterList name="Dirichlet">%(held)s</ParameterList>
   <ParameterList name="Traction">
@@ -25,6 +26,7 @@ DECK = """<ParameterList name="thin">
     <Parameter name="Side" type="string" value="bottom"/>
     <Parameter name="Yield Stress" type="string" value="%(yield)s"/>
     <Parameter name="Gap" type="string" value="%(gap)s"/>
+    <Parameter name="Friction Coefficient" type="string" value="%(friction)s"/>
   </ParameterList>
   <ParameterList name="Output"><Parameter name="Exodus" type="bool" value="false"/></ParameterList>
 </ParameterList>
@@ -32,13 +34,13 @@ DECK = """<ParameterList name="thin">
 ROUGH = "{0} + {1}*(43758.5453*sin(11*x + 78.233*z) - rint(43758.5453*sin(11*x + 78.233*z)))"
 
 
-def deck(upper, cells, element, load, gap, xi="inf", sides=("left",)):
+def deck(upper, cells, element, load, gap, xi="inf", sides=("left",), nu=0.3, friction=0):
     axes = "XYZ"[:len(cells)]
     zeros = "".join(f'<Parameter name="{axis}" type="double" value="0"/>' for axis in axes)
     held = "".join(f'<ParameterList name="{side}">{zeros}</ParameterList>' for side in sides)
     text = lambda values: ", ".join(map(str, values))
     return DECK % {"lower": text([0.0] * len(cells)), "upper": text(upper), "cells": text(cells), "element": element, "held": held,
-                   "load": -load, "gap": gap.replace("<", "&lt;"), "yield": xi}
+                   "load": -load, "gap": gap.replace("<", "&lt;"), "yield": xi, "nu": nu, "friction": friction}
 
 
 BOTH, ALL = ("left", "right"), ("left", "right", "front", "back")
@@ -65,6 +67,28 @@ class ThinBodies(RpcTestCase):
                 steps = sum(summary["newton_iterations"])
                 self.assertGreaterEqual(steps, 4)
                 self.assertLessEqual(steps, most)
+
+
+class Rubber(RpcTestCase):
+    def test_no_solve_waits_for_iterations_that_stall(self):
+        bodies = {  # upper, cells, element
+            "in the plane": ((2, 1), (32, 32), "Q2"), "in the plane, stretched": ((2, 1), (16, 96), "Q2"), "in space, stretched": ((1, 1, 1), (4, 4, 16), "Q2"),
+            "of Q1": ((2, 1), (48, 96), "Q1")}
+        for name, (upper, cells, element) in bodies.items():
+            for nu in (0.499, 0.4999, 0.49999):
+                for friction in (0, 0.3):
+                    with self.subTest(f"{name}, nu {nu}, friction {friction}"):
+                        (self.folder / "thin.xml").write_text(deck(upper, cells, element, 1, "1e-3*x", 20, nu=nu, friction=friction))
+                        self.rpc("--input=thin.xml")
+                        summary = json.loads((self.folder / "thin.json").read_text())
+                        self.assertTrue(summary["converged"])
+                        self.assertLessEqual(max(summary["linear_iterations"]), 30)
+                        self.assertRegex(summary["solver_path"], "^sparse factor: about [0-9]+ CG iterations expected$")
+
+    def test_what_is_not_incompressible_keeps_its_multigrid(self):
+        (self.folder / "thin.xml").write_text(deck((2, 1), (32, 32), "Q2", 1, "1e-3*x", 20))
+        self.rpc("--input=thin.xml")
+        self.assertEqual(json.loads((self.folder / "thin.json").read_text())["solver_path"], "meshes")
 
 
 if __name__ == "__main__":

@@ -32,6 +32,9 @@ constexpr double headway = 0.7;
 constexpr GO few_changes = 3; // edges that move on by a point
 // Forces that the law does not admit over those that it does: bodies of equal sides stay below.
 constexpr double much = 0.3;
+// At once, where such forces are so many times the admissible ones and more than so many points change. With 10 a coarse block takes that path for nothing.
+constexpr double far_too_much = 1000;
+constexpr GO many_changes = 10;
 constexpr int most_path_steps = 50;
 constexpr double path_forcing = 3e-2; // of its linear solves; 1e-6 saves no step, with 1e-1 some paths take more
 // The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and
@@ -131,7 +134,8 @@ bool ActiveSetStage::makes_headway()
                     choice_->changes > headway * last_changes_;
   idle_changes_ = idle ? idle_changes_ + 1 : 0;
   last_changes_ = choice_->changes;
-  return idle_changes_ < 2;
+  const bool is_far = choice_->overshoot > far_too_much && choice_->changes > many_changes;
+  return idle_changes_ < 2 && !is_far;
 }
 
 /// The interior-point method goes on where choices overshoot; else, or where that has been, Newton's.

@@ -110,6 +110,71 @@ TEST(LinearSolver, TakesMeshesUnlessMueLuIsGiven)
   }));
 }
 
+/// All points of a plate get springs of so small a part of their own stiffness.
+void support_slightly(const Block &plate, const double part)
+{
+  const auto own = to_host(own_stiffness(plate.H->base(), plate.points)), weight = to_host(plate.points.weight);
+  HostView<double *> added("added", plate.points.size());
+  for (LO i = 0; i < plate.points.size(); ++i) added(i) = part * own(i) * weight(i);
+  plate.H->set(plate.points, along_directions(plate.points, added));
+}
+
+double residual_of(const Block &block, const Vector &x, const Vector &b)
+{
+  Vector r(b, Teuchos::Copy);
+  block.H->apply(x, r, Teuchos::NO_TRANS, -1., 1.);
+  return r.norm2() / b.norm2();
+}
+
+/// All points change, too many for terms of rank one. What is 1e-8 of a node's stiffness costs CG a few iterations; 1e-6 holds the plate
+/// against bending, and asks for a new factor.                                                                   (4.12)
+TEST(LinearSolver, LeavesSlightChangesOfContactToCGWhileThatIsCheaperThanAFactor)
+{
+  const Block plate({3, 1}, {48, 48, 1}, true, {1, 1, 0.01});
+  LinearSolverOptions options;
+  options.expected_iterations = 400;
+  LinearSolver solver(options, plate.H, fem::node_coordinates(plate.d), fem::rigid_body_modes(plate.d));
+  const Vector b = plate.vector(15);
+  Vector x(b.getMap());
+  struct Case {
+    double part;
+    int setups; // since the start
+  };
+  for (const auto &[part, setups] : {Case{0, 1}, {1e-12, 1}, {1e-10, 1}, {1e-8, 1}, {1e-6, 2}, {1, 3}}) {
+    SCOPED_TRACE(part);
+    support_slightly(plate, part);
+    const auto result = solver.solve(b, x, 1e-8);
+    EXPECT_TRUE(result.converged) << result.reason;
+    EXPECT_LT(residual_of(plate, x, b), 1.01e-8);
+    EXPECT_EQ(solver.counts().preconditioner_setups, setups);
+    EXPECT_LE(result.iterations, 6);
+  }
+  for (const int iterations : solver.counts().iterations)
+    EXPECT_LE(iterations, 10) << "one that is given up is so soon";
+  EXPECT_EQ(solver.counts().iterations.size(), 7U) << "one is given up";
+}
+
+/// The same on meshes, whose coarsest one is factored: from the first solve on that takes many more iterations, slight changes count.
+TEST(LinearSolver, FollowsSlightChangesOfContactOnTheCoarsestMeshOnceTheyCostIterations)
+{
+  const Block plate({3, 1}, {48, 48, 2}, true, {1, 1, 0.01});
+  const auto solver = plate.solver();
+  const Vector b = plate.vector(15);
+  Vector x(b.getMap());
+  const auto iterations = [&](const double part) {
+    support_slightly(plate, part);
+    const auto result = solver->solve(b, x, 1e-8);
+    EXPECT_TRUE(result.converged) << result.reason;
+    EXPECT_LT(residual_of(plate, x, b), 1.01e-8);
+    return result.iterations;
+  };
+  const int usual = iterations(0);
+  EXPECT_LE(iterations(1e-10), usual + 4) << "nearly nothing has changed";
+  EXPECT_GT(iterations(9e-6), usual + 8) << "else this tells nothing of what follows";
+  for (const double part : {8e-6, 1e-6, 9e-6, 1e-8}) EXPECT_LE(iterations(part), usual + 2) << part;
+  EXPECT_EQ(solver->counts().preconditioner_setups, 1);
+}
+
 /// x by a dense factor of the whole matrix, which is made column by column.
 Vector solved_densely(const Operator &H, const Vector &b)
 {

@@ -16,6 +16,8 @@ namespace
 constexpr const char *no_factor = "a sparse factor: the matrix is not positive definite";
 // Rows up to which each rank factors the whole matrix: a solve then takes one sum over the ranks.
 constexpr std::size_t most_rows_on_each_rank = 5200;
+// A factor that takes less time [s] is made anew for the slightest change.
+constexpr double short_time = 5e-3;
 
 /// Calls work(row, column, value) with gids for the entries of this rank's rows on and below the diagonal.
 template <class Work>
@@ -91,6 +93,11 @@ bool DirectSolver::make()
 void DirectSolver::update()
 {
   if (!make()) throw std::runtime_error(no_factor);
+}
+
+double DirectSolver::slight_change() const
+{
+  return cost().seconds > short_time ? slight_change_of_contact : 0;
 }
 
 void DirectSolver::apply(const Vector &b, Vector &x) const

@@ -5,12 +5,14 @@
 
 #include <BelosLinearProblem.hpp>
 #include <BelosSolverFactory.hpp>
+#include <BelosStatusTest.hpp>
 #include <BelosTpetraAdapter.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <limits>
 #include <new>
+#include <vector>
 
 namespace rpc::solver
 {
@@ -31,6 +33,30 @@ struct GivenUp {
 using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
 using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
 using SolverFactory = Belos::SolverFactory<double, MultiVector, Operator>;
+using StatusTest = Belos::StatusTest<double, MultiVector, Operator>;
+
+/// GivesUp for GMRES, which applies its preconditioner to no residual. It ends nothing but by an exception.
+class AsksWhetherToGoOn : public StatusTest
+{
+public:
+  Belos::StatusType checkStatus(Belos::Iteration<double, MultiVector, Operator> *const at) override
+  {
+    if (!gives_up) return Belos::Undefined;
+    std::vector<double> norm(1);
+    const auto residual = at->getNativeResiduals(&norm);
+    if (residual != Teuchos::null) residual->norm2(norm);
+    iterations = at->getNumIters();
+    if (gives_up(iterations, norm[0] / norm_of_right_side)) throw GivenUp();
+    return Belos::Undefined;
+  }
+  Belos::StatusType getStatus() const override { return Belos::Undefined; }
+  void reset() override {}
+  void print(std::ostream &, int) const override {}
+
+  GivesUp gives_up; // null: never
+  double norm_of_right_side = 1;
+  int iterations = 0;
+};
 
 /// Of Belos' names: methods that break down, or go wrong, where H is not symmetric.
 bool needs_symmetry(std::string method)
@@ -100,9 +126,8 @@ struct Krylov::Method {
   /// @param list  on top of rpc's defaults
   Method(const std::string &name, const int max_iterations, const Teuchos::ParameterList &list,
          const RCP<const Operator> &H)
-      : needs_symmetric_H(needs_symmetry(name)),
-        stops_by_residual(list.numParams() == 0 && name == LinearSolverOptions().method),
-        preconditioner(rcp(new Applied(H->getDomainMap()))),
+      : needs_symmetric_H(needs_symmetry(name)), is_cg(name == LinearSolverOptions().method),
+        stops_by_residual(list.numParams() == 0 && is_cg), preconditioner(rcp(new Applied(H->getDomainMap()))),
         problem(rcp(new LinearProblem(H, Teuchos::null, Teuchos::null)))
   {
     const auto belos = Teuchos::parameterList("Belos");
@@ -111,14 +136,20 @@ struct Krylov::Method {
     belos->setParameters(list);
     problem->setRightPrec(preconditioner);
     manager = SolverFactory().create(name, belos);
+    if (name == gmres) {
+      asks = rcp(new AsksWhetherToGoOn);
+      manager->setDebugStatusTest(asks);
+    }
     manager->setProblem(problem);
   }
 
   bool needs_symmetric_H;
+  bool is_cg;             // preconditions residuals
   bool stops_by_residual; // at |r| <= tolerance |b|, as Belos' CG does unless the deck says otherwise
   RCP<Applied> preconditioner;
   RCP<LinearProblem> problem;
   RCP<SolverManager> manager;
+  RCP<AsksWhetherToGoOn> asks; // of GMRES; else null
 };
 
 Krylov::Krylov(const LinearSolverOptions &options, const RCP<const Operator> &H)
@@ -145,7 +176,11 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
   method.preconditioner->enough = method.stops_by_residual ? surely * least * rest->norm2() : 0;
   method.preconditioner->to_residuals = is_symmetric;
   method.preconditioner->B = &B;
-  method.preconditioner->gives_up = is_symmetric ? gives_up : GivesUp();
+  method.preconditioner->gives_up = method.is_cg ? gives_up : GivesUp();
+  if (!method.asks.is_null()) {
+    method.asks->gives_up = gives_up;
+    method.asks->norm_of_right_side = b.norm2();
+  }
   method.preconditioner->norm_of_right_side = b.norm2();
   method.preconditioner->iterations = 0;
   x.putScalar(0);
@@ -159,8 +194,9 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
                       std::to_string(result.iterations) + " iterations";
   } catch (const GivenUp &) {
     result.given_up = true;
-    result.iterations = method.preconditioner->iterations;
-    result.reason = "given up after " + std::to_string(result.iterations) + " CG iterations";
+    result.iterations = method.asks.is_null() ? method.preconditioner->iterations : method.asks->iterations;
+    result.reason =
+        "given up after " + std::to_string(result.iterations) + (is_symmetric ? " CG" : " GMRES") + " iterations";
   } catch (const std::bad_alloc &) { // on this rank alone
     throw;
   } catch (const std::exception &failure) { // such as an indefinite or singular matrix; the same on all ranks

@@ -20,7 +20,8 @@ struct KrylovResult {
   std::string reason{};  ///< why it did not converge, if it did not
 };
 
-/// Asked before each iteration of CG whether to end it: by how many there were, and what they have left, |r|/|b|. The same on all ranks.
+/// Asked before each iteration whether to end it: by how many there were, and what they have left, |r|/|b|. The same on all ranks. Of the
+/// deck's own methods only CG asks.
 using GivesUp = std::function<bool(int iterations, double residual)>;
 
 /// Belos' Krylov methods for one operator, the preconditioner on the right; each solver manager is made once. The deck's method solves

@@ -1,5 +1,6 @@
 #include "rpc/solver/linear_solver.hpp"
 
+#include "convergence.hpp"
 #include "krylov.hpp"
 #include "muelu_defaults.hpp"
 #include "policy.hpp"
@@ -32,10 +33,13 @@ constexpr GO most_rows_set_up_anew = 2500;
 // A sparse factor is thought of after so many CG iterations of a solve, and iterations count as lost beyond so many of a solve to 1e-8, of
 // rough solves beyond a part. With contact so many solves are to come, by measurement of steps.
 constexpr int first_iterations = 15, fair_iterations = 30, solves_with_contact = 4;
+constexpr double full_tolerance = 1e-8;
+// A factor that leaves out slight changes is judged after so many.
+constexpr int first_iterations_of_factor = 3;
 
 double fair(const double tolerance)
 {
-  return fair_iterations * std::min(1., std::log(tolerance) / std::log(1e-8));
+  return fair_iterations * std::min(1., std::log(tolerance) / std::log(full_tolerance));
 }
 
 // Rows up to which it is thought of at all: in the plane they take gigabytes, in space more than most machines have.
@@ -114,8 +118,9 @@ struct LinearSolver::Impl {
   Result attempt(const Vector &b, Vector &x, double tolerance);
   Used used_for_policy() const;
   const Sparse::Prospect *prospect();
-  double iterations_to_come(int iterations, double residual, double tolerance) const;
-  bool sparse_pays(int iterations, double residual, double tolerance);
+  bool sparse_pays(double iterations_in_all, double tolerance);
+  bool sparse_pays_now(const Convergence &seen, double tolerance);
+  void choose_before_the_first_solve();
   bool take(Next next, const std::string &reason);
   void record(const Preconditioner &B, const std::string &reason);
 };
@@ -150,25 +155,33 @@ const Sparse::Prospect *LinearSolver::Impl::prospect()
   return nullptr;
 }
 
-/// CG iterations of a solve in all, at its present rate.
-double LinearSolver::Impl::iterations_to_come(const int iterations, const double residual, const double tolerance) const
-{
-  const double most = options.max_iterations;
-  return residual < 1 ? std::min(iterations * std::log(tolerance) / std::log(residual), most) : most;
-}
-
-/// Whether the iterations that CG has lost, and will lose in this solve and those to come at its present rate, take longer than a sparse
+/// Whether the iterations that CG has lost, and will lose in this solve and those to come if each takes so many, take longer than a sparse
 /// factor.                                                                                                        (4.10)
-bool LinearSolver::Impl::sparse_pays(const int iterations, const double residual, const double tolerance)
+bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const double tolerance)
 {
-  if (iterations < first_iterations || !may_be_sparse) return false;
-  const double all = iterations_to_come(iterations, residual, tolerance);
+  if (!may_be_sparse) return false;
   if (iteration_seconds < 0) iteration_seconds = seconds_of_iteration(H->base());
-  const double lost = iteration_seconds * (lost_iterations + solves_to_come * std::max(all - fair(tolerance), 0.));
+  const double lost =
+      iteration_seconds * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair(tolerance), 0.));
   constexpr double seconds_of_analysis = 5e-6; // a row; not worth it for less
   if (lost < seconds_of_analysis * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
   const auto *const found = prospect();
   return found && found->cost.seconds < lost;
+}
+
+/// The same at the present rate of a solve.
+bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double tolerance)
+{
+  return seen.iterations() >= first_iterations &&
+         sparse_pays(seen.iterations_in_all(tolerance, options.max_iterations), tolerance);
+}
+
+/// By the iterations that the body lets expect.
+void LinearSolver::Impl::choose_before_the_first_solve()
+{
+  const double expected = std::min<double>(options.expected_iterations, options.max_iterations);
+  if (!(expected > 0) || on_sparse || !counts.iterations.empty() || !sparse_pays(expected, full_tolerance)) return;
+  take(Next::sparse, "about " + std::to_string(static_cast<int>(expected)) + " CG iterations expected");
 }
 
 /// Brings a preconditioner to H, and counts what that took. @return whether it can be used
@@ -222,14 +235,19 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
     const double least = std::max(tolerance, options.tolerance);
+    Convergence seen;
     const auto gives_up = [&](const int iterations, const double residual) {
-      return sparse_pays(iterations, residual, least);
+      if (iterations > seen.iterations()) seen.add(residual);
+      if (!on_sparse) return sparse_pays_now(seen, least);
+      return seen.iterations() >= first_iterations_of_factor &&
+             sparse.renewal_pays(seen.iterations_in_all(least, options.max_iterations) - seen.iterations());
     };
-    const KrylovResult done = krylov.solve(*used, H->is_symmetric(), b, x, tolerance,
-                                           may_be_sparse && !on_sparse ? GivesUp(gives_up) : GivesUp());
+    const KrylovResult done =
+        krylov.solve(*used, H->is_symmetric(), b, x, tolerance, may_be_sparse ? GivesUp(gives_up) : GivesUp());
     given_up = done.given_up;
     lost_iterations += std::max(0., done.iterations - fair(least));
     if (used == &algebraic) algebraic.learn(done.iterations, done.residual);
+    if (on_meshes) meshes->learn(done.iterations, done.residual);
     result = {done.converged, done.broken, false, done.iterations, done.reason};
     counts.iterations.push_back(result.iterations);
     counts.solve_seconds += Teuchos::Time::wallTime() - start;
@@ -342,6 +360,7 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const doubl
     return nothing_to_do;
   }
   impl_->stands_in = false;
+  impl_->choose_before_the_first_solve();
   for (;;) {
     const Result result = impl_->attempt(b, x, tolerance);
     if (impl_->counts.path.empty() && impl_->used) impl_->record(*impl_->used, "");

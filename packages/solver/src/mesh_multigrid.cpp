@@ -74,6 +74,28 @@ double changed_part(const Comm &comm, const DeviceView<double ***> &before, cons
   return whole > 0 ? all[0] / whole : 0;
 }
 
+/// The largest change of a node's block beside its own stiffness; collective.
+/// @param own  (nodes, dim, dim) K's own blocks
+double largest_change(const Comm &comm, const DeviceView<double ***> &own, const DeviceView<double ***> &before,
+                      const DeviceView<double ***> &now)
+{
+  const int dim = static_cast<int>(now.extent(1));
+  double mine = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::largest_change", device_range(static_cast<LO>(now.extent(0))),
+      KOKKOS_LAMBDA(const LO n, double &most) {
+        double change = 0, stiffness = 0;
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) {
+            change = math::larger(change, math::magnitude(now(n, k, l) - before(n, k, l)));
+            stiffness = math::larger(stiffness, math::magnitude(own(n, k, l)));
+          }
+        most = math::larger(most, change / stiffness);
+      },
+      Kokkos::Max<double>(mine));
+  return max_all(comm, std::max(mine, 0.));
+}
+
 /// v <- T v or T^T v at the contact nodes, T = H_ii^-1 K_ii with the own blocks of both: the move that is left of v where contact
 /// resists it.                                                                                                    (4.7b)
 /// @param v  (owned dofs), at the contact nodes   @param kept  (nodes, dim) what T acts on is v less this; T v is added to it
@@ -217,13 +239,17 @@ DeviceView<double ***> MeshMultigrid::write_contact()
   return update;
 }
 
-void MeshMultigrid::update()
+bool MeshMultigrid::update(const bool slight_changes_too)
 {
   const auto update = write_contact();
-  const double part = changed_part(*H_->getDomainMap()->getComm(), contact_of_coarsest_, update);
-  if (!(part > coarsest_->most_change())) return;
+  const Comm &comm = *H_->getDomainMap()->getComm();
+  if (!(changed_part(comm, contact_of_coarsest_, update) > coarsest_->most_change())) return true;
+  if (!slight_changes_too &&
+      largest_change(comm, contact_base_, contact_of_coarsest_, update) <= coarsest_->slight_change())
+    return false;
   contact_of_coarsest_ = update;
   coarsest_->update();
+  return true;
 }
 
 void MeshMultigrid::cycle(const std::size_t l, const Vector &b, Vector &x) const

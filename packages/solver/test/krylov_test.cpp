@@ -5,6 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -134,6 +135,33 @@ TEST(Krylov, SolvesOnceForCGAndOnceForGmresWithOneObject)
       round[is_symmetric] = result.iterations;
     }
   for (const bool is_symmetric : {true, false}) EXPECT_EQ(iterations[0][is_symmetric], iterations[1][is_symmetric]);
+}
+
+/// GMRES preconditions vectors that are no residuals: what it asks with are the residuals all the same.
+TEST(Krylov, AsksBothMethodsWhetherToGiveUpByTheirResiduals)
+{
+  Case of;
+  for (const bool is_symmetric : {true, false}) {
+    const RCP<const Operator> H = is_symmetric ? RCP<const Operator>(of.grid.A) : of.H;
+    Krylov krylov({}, H);
+    std::vector<double> residuals;
+    const auto asked = [&](const int iterations, const double residual) {
+      if (iterations == static_cast<int>(residuals.size())) residuals.push_back(residual);
+      return iterations == 20;
+    };
+    const auto result = krylov.solve(of.B, is_symmetric, of.b, of.x, 1e-9, asked);
+    EXPECT_TRUE(result.given_up);
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.iterations, 20);
+    EXPECT_EQ(result.reason, is_symmetric ? "given up after 20 CG iterations" : "given up after 20 GMRES iterations");
+    ASSERT_EQ(residuals.size(), 21U);
+    EXPECT_NEAR(residuals[0], 1, 1e-12);
+    EXPECT_LT(residuals[20], 0.1);
+    const auto without = krylov.solve(of.B, is_symmetric, of.b, of.x, residuals[15] * (1 + 1e-9));
+    EXPECT_TRUE(without.converged) << "it can be used again: " << without.reason;
+    EXPECT_EQ(without.iterations, 15) << "the residual after 15 iterations is the one that was told";
+    EXPECT_NEAR(residual_of(*H, of.x, of.b), residuals[15], 1e-6 * residuals[15]);
+  }
 }
 
 TEST(Krylov, TellsOfAMatrixThatIsNotPositiveDefinite)

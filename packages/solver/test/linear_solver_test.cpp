@@ -188,6 +188,34 @@ TEST(LinearSolver, TakesAHierarchyWhereAFactorWouldBeTooLarge)
   EXPECT_EQ(solver_path(solver->counts()), "algebraic: a factor is refused");
 }
 
+/// Where the body lets expect many iterations, of all solves that contact will ask for, there is a factor from the first solve on.
+TEST(LinearSolver, TakesASparseFactorBeforeTheFirstSolveWhereManyIterationsAreExpected)
+{
+  const SupportedGrid body(large);
+  const Vector b = body.grid.right_side();
+  Vector x(b.getMap());
+  for (const bool many : {false, true}) {
+    LinearSolverOptions options = options_for("auto");
+    options.expected_iterations = many ? 400 : 29; // a fair number is 30
+    const auto solver = body.solver(options, [&] {
+      EXPECT_FALSE(many) << "no coarse meshes are made in vain";
+      return body.levels();
+    });
+    const auto result = solver->solve(b, x, 1e-9);
+    EXPECT_TRUE(result.converged) << result.reason;
+    EXPECT_LT(body.residual(x, b), 1.01e-9);
+    EXPECT_EQ(solver_path(solver->counts()), many ? "sparse factor: about 400 CG iterations expected" : "meshes");
+    EXPECT_LE(result.iterations, many ? 2 : 29);
+    EXPECT_EQ(solver->counts().iterations.size(), 1U);
+    EXPECT_EQ(solver->counts().preconditioner_setups, 1);
+  }
+  LinearSolverOptions options = options_for("mesh");
+  options.expected_iterations = 400;
+  const auto solver = body.solver(options, [&] { return body.levels(); });
+  EXPECT_TRUE(solver->solve(b, x, 1e-9).converged);
+  EXPECT_EQ(solver_path(solver->counts()), "meshes") << "the deck says so";
+}
+
 /// H stands still: a second right side costs its iterations, and nothing else.
 TEST(LinearSolver, SolvesForFurtherRightSidesWithoutASetUp)
 {

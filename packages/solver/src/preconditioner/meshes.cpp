@@ -4,6 +4,7 @@
 #include "muelu_defaults.hpp"
 #include "multigrid.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +12,9 @@ namespace rpc::solver
 {
 namespace
 {
+
+// CG iterations of a solve, beyond what it takes with the coarsest solver of the present contact, which take longer than that.
+constexpr int many_more_iterations = 8;
 
 /// MueLu's hierarchy for the order-1 matrix of a mesh that has no coarser one. It is renewed where much of contact has changed.
 class AlgebraicSolver : public CoarsestSolver
@@ -71,7 +75,7 @@ Preconditioner::Prepared Meshes::prepare(double)
   const bool exists = !multigrid_.is_null();
   if (exists && revision == revision_) return Prepared::unchanged;
   if (exists) {
-    multigrid_->update();
+    is_current_ = multigrid_->update(follows_slight_);
   } else {
     const MeshLevels levels = make_levels_();
     if (levels.level.empty()) throw std::runtime_error("multigrid: a coarser mesh would be too small for the ranks");
@@ -80,9 +84,20 @@ Preconditioner::Prepared Meshes::prepare(double)
     H_->allow_rounding(true);
     multigrid_ =
         rcp(new MeshMultigrid(H_, levels, [&](const MeshLevel &level) { return coarsest(level, levels.down_to_few); }));
+    is_current_ = true;
   }
   revision_ = revision;
   return exists ? Prepared::updated : Prepared::made;
+}
+
+void Meshes::learn(const int iterations, const double residual)
+{
+  const double digits = -std::log10(residual);
+  if (!(digits > 0)) return;
+  if (is_current_)
+    usual_iterations_ = iterations / digits;
+  else if (iterations - usual_iterations_ * digits > many_more_iterations)
+    follows_slight_ = true;
 }
 
 std::string Meshes::description() const

@@ -21,9 +21,10 @@ constexpr double worth_a_factor = 0.7;
 constexpr double negligible = 1e-13; // of a block, beside the node's own one
 
 /// The differences of two updates as terms of rank one, of this rank.
+/// @param least  part of a node's own stiffness up to which its difference is left out
 template <int Dim>
 std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<double ***> &now,
-                                  const DeviceView<double ***> &before)
+                                  const DeviceView<double ***> &before, const double least)
 {
   const auto a = to_host(now), b = to_host(before), own = to_host(H.base_blocks());
   const auto node = to_host(H.nodes());
@@ -37,7 +38,7 @@ std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<dou
         largest = std::max(largest, std::abs(difference[k][l]));
         stiffness = std::max(stiffness, std::abs(own(n, k, l)));
       }
-    if (!(largest > negligible * stiffness)) continue;
+    if (!(largest > least * stiffness)) continue;
     const EigenPairs<Dim> pairs = eigen_pairs(difference);
     for (int k = 0; k < Dim; ++k) {
       if (!(std::abs(pairs.value[k]) > negligible * (largest + stiffness))) continue;
@@ -52,10 +53,10 @@ std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<dou
 }
 
 std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<double ***> &now,
-                                  const DeviceView<double ***> &before)
+                                  const DeviceView<double ***> &before, const double least)
 {
-  if (H.dofs_per_node() == 1) return terms_of<1>(H, now, before);
-  return H.dofs_per_node() == 2 ? terms_of<2>(H, now, before) : terms_of<3>(H, now, before);
+  if (H.dofs_per_node() == 1) return terms_of<1>(H, now, before, least);
+  return H.dofs_per_node() == 2 ? terms_of<2>(H, now, before, least) : terms_of<3>(H, now, before, least);
 }
 
 } // namespace
@@ -69,15 +70,19 @@ const Sparse::Prospect &Sparse::prospect()
   return prospect_;
 }
 
-/// By terms of rank one, if that takes less time than a new factor.
+/// By terms of rank one, if that takes less time than a new factor: by all of them, else by all but slight ones.
 bool Sparse::follow(const DeviceView<double ***> &update)
 {
-  const auto terms = terms_of(*H_, update, written_);
-  const double seconds = prospect_.cost.seconds_of_column * solver_->num_new(terms);
-  if (seconds > worth_a_factor * prospect_.cost.seconds) return false;
-  solver_->add(terms);
-  is_fresh_ = false;
-  return true;
+  for (const double least : {negligible, slight_change_of_contact}) {
+    const auto terms = terms_of(*H_, update, written_, least);
+    const double seconds = prospect_.cost.seconds_of_column * solver_->num_new(terms);
+    if (seconds > worth_a_factor * prospect_.cost.seconds) continue;
+    solver_->add(terms);
+    is_fresh_ = false;
+    is_exact_ = least == negligible;
+    return true;
+  }
+  return false;
 }
 
 Preconditioner::Prepared Sparse::prepare(double)
@@ -94,7 +99,7 @@ Preconditioner::Prepared Sparse::prepare(double)
   written_ = update;
   write_update(*A_, *H_, written_);
   solver_->update();
-  made_ = is_fresh_ = true;
+  made_ = is_fresh_ = is_exact_ = true;
   revision_ = revision;
   return Prepared::made;
 }

@@ -34,6 +34,11 @@ public:
   std::string description() const override;
   /// Whether the factor is that of the present H, without updates.
   bool is_from_scratch() const { return is_fresh_; }
+  /// Whether a new factor takes less time than so many iterations: never where the present one is that of H but for rounding.   (4.12)
+  bool renewal_pays(double iterations) const
+  {
+    return !is_exact_ && prospect_.cost.seconds < iterations * prospect_.cost.seconds_of_solve;
+  }
 
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
              double beta = 0) const override;
@@ -50,6 +55,7 @@ private:
   DeviceView<double ***> written_; // (nodes of H, dim, dim) the update in A
   int revision_ = -1;              // of H when it was last brought to it
   bool made_ = false, is_fresh_ = false;
+  bool is_exact_ = false; // no terms were left out
 };
 
 } // namespace rpc::solver

@@ -14,8 +14,10 @@ struct LinearSolverOptions {
   std::string multigrid = "auto";        ///< from where the hierarchy comes: auto, mesh, algebraic
   std::string reuse = "tP";              ///< parts of an algebraic hierarchy kept when the matrix changes: none, tP, RP
   double damping = 4. / 3;               ///< of algebraic prolongators for the whole matrix, unless `muelu` says it
-  Teuchos::ParameterList belos;          ///< on top of the defaults
-  Teuchos::ParameterList muelu;          ///< on top of the defaults
+  double expected_iterations =
+      0; ///< of CG to 1e-8 with multigrid, where the body lets expect many; 0: not known. No parameter.
+  Teuchos::ParameterList belos; ///< on top of the defaults
+  Teuchos::ParameterList muelu; ///< on top of the defaults
 };
 
 /// Parameters of the deck's `Linear Solver` sublist; `Belos` and `MueLu` pass through.

@@ -19,6 +19,9 @@ public:
   virtual void update() = 0;
   /// What part of the contact stiffness may change before update() is called: until then the solver is that of earlier states.
   virtual double most_change() const { return 0; }
+  /// Changes of a contact node's block up to this part of its own stiffness are slight: update() takes longer than the CG iterations that
+  /// they cost on most bodies.                                                                        doc/theory.md (4.12)
+  virtual double slight_change() const { return 0; }
   /// x <- about A^-1 b, by a symmetric positive definite operator; collective.
   virtual void apply(const Vector &b, Vector &x) const = 0;
 };
@@ -45,7 +48,9 @@ public:
   ~MeshMultigrid() override;
 
   /// Follows H; collective.
-  void update();
+  /// @param slight_changes_too  the coarsest solver follows these as well
+  /// @return whether it is as good as that of the present states
+  bool update(bool slight_changes_too = true);
 
   /// y <- B x; collective.
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
