@@ -44,6 +44,9 @@ bash "$root/doc/picture.sh" --output="$here/indent_force.png" "perfectly plastic
 /usr/bin/python3 "$here/indent.py" "$here/indent.png" "$work"/{Yield,Hardening,Stiffness}/indent.e
 "$rpc" --input="$root/input/track.xml" --output="$work" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 /usr/bin/python3 "$here/track.py" "$here/track.png" "$work/track.e"
+"$rpc" --input="$root/input/block_adaptive.xml" --output="$work" >"$work/log" || { cat "$work/log" >&2; exit 1; }
+bash "$root/doc/picture.sh" "$work/block_adaptive.e" --output="$here/block_adaptive.png"
+/usr/bin/python3 "$here/space_accuracy.py" "$here/space_accuracy.png" "$rpc"
 for deck in shear ball_friction; do
   "$rpc" --input="$root/input/$deck.xml" --output="$work" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 done
