@@ -1,6 +1,7 @@
 #include "next_mesh.hpp"
 
 #include "rpc/adapt/new_sizes.hpp"
+#include "size_plan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,9 +45,8 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
 
   const double dofs = static_cast<double>(d.owned_dofs->getGlobalNumElements());
   const mesh::Mesh &mesh = *d.mesh;
-  // In space meshes by a field of sizes have tetrahedra, six for each hexahedron.
-  const int parts = mesh.dim() == 3 && mesh.element.shape == mesh::Shape::tensor ? 6 : 1;
-  const double cells = parts * static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
+  const double cells =
+      cells_per_cell(mesh.element) * static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
   const double most_dofs = share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
   const double excess = mesh.dim() == 2        ? 1
                         : predicted_cells_ > 0 ? std::max(1., cells / predicted_cells_)

@@ -1,11 +1,18 @@
 #pragma once
 
 #include "rpc/adapt/new_sizes.hpp"
+#include "rpc/mesh/element.hpp"
 
 #include <vector>
 
 namespace rpc::adapt
 {
+
+/// Cells of a mesh by a field of sizes that stand for one of an element: in space six tetrahedra for a hexahedron.
+inline int cells_per_cell(const mesh::Element &element)
+{
+  return element.dim == 3 && element.shape == mesh::Shape::tensor ? 6 : 1;
+}
 
 /// A mesh with the error of each cell, whole and on the host, rows by id.
 struct EstimatedMesh {
@@ -21,8 +28,10 @@ struct EstimatedMesh {
   const double *at(const int node) const { return &coords[std::size_t(dim) * node]; }
   const int *vertices_of(const int cell) const { return &cells[std::size_t(vertices) * cell]; }
   bool simplices() const { return vertices == dim + 1; }
-  /// Cells of a mesh by a field of sizes that stand for one of these: hexahedra give way to tetrahedra.
-  int cells_per_cell() const { return dim == 3 && !simplices() ? 6 : 1; }
+  int cells_per_cell() const
+  {
+    return adapt::cells_per_cell({dim, order, simplices() ? mesh::Shape::simplex : mesh::Shape::tensor});
+  }
 };
 
 /// New cell sizes.

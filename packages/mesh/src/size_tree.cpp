@@ -50,6 +50,19 @@ NearestSize nearest_on_edge(const std::array<double, dim> &from, const std::arra
   return {square, (1 - t) * size_from + t * size_to};
 }
 
+/// By the arms from a point to the vertices of a triangle, whose inside is not asked.
+template <std::size_t dim>
+NearestSize nearest_on_edges(const std::array<std::array<double, dim>, 3> &arm, const std::array<double, 3> &size)
+{
+  NearestSize best{std::numeric_limits<double>::infinity(), size[0]};
+  for (int v = 0; v < 3; ++v) {
+    const int w = (v + 1) % 3;
+    const NearestSize here = nearest_on_edge(arm[v], arm[w], size[v], size[w]);
+    if (here.square < best.square) best = here;
+  }
+  return best;
+}
+
 using Arm = std::array<double, 3>;
 
 double dot(const Arm &a, const Arm &b)
@@ -75,13 +88,7 @@ NearestSize nearest_on_triangle(const std::array<Arm, 3> &arm, const std::array<
       return {height * height / whole, part[0] * size[0] + part[1] * size[1] + part[2] * size[2]};
     }
   }
-  NearestSize best{std::numeric_limits<double>::infinity(), size[0]};
-  for (int v = 0; v < 3; ++v) {
-    const int w = (v + 1) % 3;
-    const NearestSize here = nearest_on_edge(arm[v], arm[w], size[v], size[w]);
-    if (here.square < best.square) best = here;
-  }
-  return best;
+  return nearest_on_edges(arm, size);
 }
 
 NearestSize nearest_in(const std::array<std::array<double, 2>, 3> &arm, const std::array<double, 3> &size)
@@ -90,13 +97,7 @@ NearestSize nearest_in(const std::array<std::array<double, 2>, 3> &arm, const st
   const double part[3] = {cross(1, 2), cross(2, 0), cross(0, 1)}, whole = part[0] + part[1] + part[2];
   if (whole != 0 && part[0] / whole >= 0 && part[1] / whole >= 0 && part[2] / whole >= 0)
     return {0, (part[0] * size[0] + part[1] * size[1] + part[2] * size[2]) / whole};
-  NearestSize best{std::numeric_limits<double>::infinity(), size[0]};
-  for (int v = 0; v < 3; ++v) {
-    const int w = (v + 1) % 3;
-    const NearestSize here = nearest_on_edge(arm[v], arm[w], size[v], size[w]);
-    if (here.square < best.square) best = here;
-  }
-  return best;
+  return nearest_on_edges(arm, size);
 }
 
 NearestSize nearest_in(const std::array<Arm, 4> &arm, const std::array<double, 4> &size)

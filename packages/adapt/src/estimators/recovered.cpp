@@ -381,7 +381,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
                              mesh.num_owned_cells,
                              of.contact.friction.anywhere,
                              DeviceView<double *>("rpc::adapt::contact_terms", side.facets.extent(0))};
-    double of_side[8] = {}, peak_of_side = 0, spread_of_side = 0, drop_of_side = 0;
+    double of_side[num_sums - 1] = {}, peak_of_side = 0, spread_of_side = 0, drop_of_side = 0;
     const auto facets = device_range(static_cast<LO>(side.facets.extent(0)));
     Kokkos::parallel_reduce("rpc::adapt::contact_terms", facets, terms, of_side[0], of_side[1], of_side[2]);
     add_to_cells(side, terms.squared, squared);
@@ -395,7 +395,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
       peak = std::max(peak, peak_of_side);
       spread = std::max(spread, spread_of_side);
     }
-    for (int m = 0; m < 8; ++m) sums[1 + m] += of_side[m];
+    for (int m = 1; m < num_sums; ++m) sums[m] += of_side[m - 1];
   }
   double all[num_sums];
   Teuchos::reduceAll(mesh.comm(), Teuchos::REDUCE_SUM, num_sums, sums, all);
