@@ -25,6 +25,7 @@ constexpr int most_updates = 2; // of multipliers at the end, even if pressures 
 constexpr int most_idle_turns = 4;
 constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
+constexpr double rounding = 1e-13;  // of the largest pressure: the same, where tolerances are tighter
 
 // The interior-point method takes over where twice on end a choice with much overshoot changes more than this part of the points of
 // the one before. With 1 the worst of thin bodies take three steps more.
@@ -91,7 +92,7 @@ void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, 
 /// What becomes of the iteration at a point, after the step that led there.
 ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
 {
-  choice_ = iterate_.choose_active_set(u, negligible * pressure_tolerance_); // (5.8)
+  choice_ = iterate_.choose_active_set(u, std::max(negligible * pressure_tolerance_, rounding)); // (5.8)
   // The active set does not change at first: one accurate solve, which keeps the energy balance to rounding.
   if (choice_->changes == 0 && steps_ == 0) rough_ = false;
   if (choice_->confirmed) {
