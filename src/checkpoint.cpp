@@ -144,31 +144,34 @@ const mesh::GmshOptions *sized_mesh(const analysis::HistoryState &state)
   const auto *const gmsh = std::get_if<mesh::GmshOptions>(&state.mesh_options);
   return gmsh && gmsh->sizes ? gmsh : nullptr;
 }
-/// A field of cell sizes, and how often the mesh by it was refined, as arrays of a file.
+/// A field of cell sizes, how often the mesh by it was refined, and whether it is nested, as arrays of a file.
 std::vector<io::NamedArray> arrays_of(const mesh::GmshOptions &mesh)
 {
   const mesh::SizeField &sizes = *mesh.sizes;
   return {{"sizes_coords", sizes.coords},
           {"sizes_simplices", {sizes.simplices.begin(), sizes.simplices.end()}},
           {"sizes_size", sizes.size},
-          {"sizes_dimension_refinements", {double(sizes.dim), double(mesh.refinements)}}};
+          {"sizes_kind", {double(sizes.dim), double(mesh.refinements), double(mesh.nested)}}};
 }
 /// The mesh that a checkpoint is on: the deck's, unless the file has a field of cell sizes.
 mesh::MeshOptions mesh_of(const io::Checkpoint &file, const std::string &path, const Scene &scene, const Comm &comm)
 {
   const auto *const coords = array_of(file, "sizes_coords"), *const simplices = array_of(file, "sizes_simplices"),
                     *const size = array_of(file, "sizes_size"),
-                    *const kind = array_of(file, "sizes_dimension_refinements");
+                    *const kind = array_of(file, "sizes_kind");
   if (!coords || !simplices || !size || !kind) return scene.mesh;
   std::shared_ptr<mesh::SizeField> sizes;
-  int refinements = 0;
+  int refinements = 0, nested = 0;
   if (comm.getRank() == 0) { // which has the arrays' values
     sizes = std::make_shared<mesh::SizeField>(
         mesh::SizeField{*coords, {simplices->begin(), simplices->end()}, *size, static_cast<int>(kind->at(0))});
     refinements = static_cast<int>(kind->at(1));
+    nested = static_cast<int>(kind->at(2));
   }
   Teuchos::broadcast(comm, 0, Teuchos::outArg(refinements));
-  const auto options = mesh::with_sizes(scene.mesh, sizes, refinements);
+  Teuchos::broadcast(comm, 0, Teuchos::outArg(nested));
+  const auto options =
+      nested ? mesh::refined_to_sizes(scene.mesh, sizes) : mesh::with_sizes(scene.mesh, sizes, refinements);
   RPC_REQUIRE(options && scene.adapt.adapts(),
               "restart: \"" << path
                             << "\" is on a mesh that was adapted, and the deck adapts none. Give it "

@@ -87,6 +87,7 @@ ASSIGNMENTS = [
     (["Adapt->Target Relative Error=-0.1"], ['"Adapt->Target Relative Error" must be in (0, 1)', "got -0.1"]),
     (["Adapt->Max Dofs=0"], ['"Adapt->Max Dofs" must be > 0', "got 0"]),
     (["Adapt->Max Cycles=-2"], ['"Adapt->Max Cycles" must be > 0', "got -2"]),
+    (["Adapt->Meshes=fine"], ['"Adapt->Meshes" must be one of automatic, gmsh, nested', '"fine"']),
     (["Adapt->Exact Energy=inf"], ['"Adapt->Exact Energy" must be a double, and finite', '"inf"']),
     # solvers
     (["Uzawa->Tolerance=-1"], ['"Uzawa->Tolerance" must be in (0, 1)', "got -1"]),

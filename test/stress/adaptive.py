@@ -1,6 +1,6 @@
 """Random bodies in space and of revolution that ask for an error: none fails, and error bars hold the true error.
 
-    python3 adaptive.py --rpc=build/rpc [--kind=space|axisymmetric] [--seed=1] [--scenes=100] [--only=K] [--jobs=2] [--np=1] [--keep=DIR]
+    python3 adaptive.py --rpc=build/rpc [--kind=space|axisymmetric] [--meshes=automatic|gmsh|nested] [--seed=1] [--scenes=100] [--only=K] [--jobs=2] [--np=1] [--keep=DIR]
 
 Scene K comes from the seed and K alone: a geometry for gmsh (round bottoms, holes, re-entrant edges, two materials, balls, cylinders and
 their sections) or a box, held or pressed, on a foundation that yields or not, with a target for the error in the energy norm. The first mesh is
@@ -219,7 +219,8 @@ class Outcome:
 
 
 def run(options, folder, output, *more):
-    command = [*(options.mpiexec.split() + ["-np", str(options.np)] if options.np > 1 else []), options.rpc, "--input=scene.yaml", f"--output={output}", *more]
+    command = [*(options.mpiexec.split() + ["-np", str(options.np)] if options.np > 1 else []), options.rpc, "--input=scene.yaml", f"--output={output}",
+               f"--set=Adapt->Meshes={options.meshes}", *more]
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=900, stdin=subprocess.DEVNULL)
     summary = folder / output / "scene.json"
     return result, json.loads(summary.read_text()) if summary.exists() else None
@@ -289,7 +290,8 @@ def compare(outcome, summary, reference):
 
 
 def main():
-    options = scenes.arguments(__doc__, 100, ("--kind", {"choices": list(TARGETS), "default": "space"}))
+    options = scenes.arguments(__doc__, 100, ("--kind", {"choices": list(TARGETS), "default": "space"}),
+                               ("--meshes", {"choices": ["automatic", "gmsh", "nested"], "default": "automatic"}))
     numbers = [options.only] if options.only is not None else range(options.scenes)
     outcomes = []
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
@@ -301,7 +303,7 @@ def main():
                 if not held:
                     print(f"  {o.number}: the bar of {key} does not hold the true error", flush=True)
     failed = sum(bool(o.complaints) for o in outcomes)
-    print(f"{len(outcomes)} scenes ({options.kind}, seed {options.seed}), {failed} failed; dofs at most {max(o.dofs for o in outcomes)}, "
+    print(f"{len(outcomes)} scenes ({options.kind}, {options.meshes} meshes, seed {options.seed}), {failed} failed; dofs at most {max(o.dofs for o in outcomes)}, "
           f"longest {max(o.seconds for o in outcomes):.1f} s")
     shares = {}
     for key in ("contact_force", "energy_J", "max_pressure", "contact_area", "max_penetration"):

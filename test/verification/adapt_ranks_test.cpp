@@ -75,13 +75,22 @@ TEST(AdaptiveRanks, GiveABeamOfQuadrilateralsTheSameMeshes)
 
 TEST(AdaptiveRanks, GiveBodiesInSpaceTheSameMeshes)
 {
-  // Of a box whose hexahedra give way to tetrahedra, and of a ball by gmsh.
+  // Of a box whose hexahedra give way to tetrahedra, and of a ball; by gmsh and nested.
   expect_same_meshes("../../../input/block_adaptive.xml",
                      {{"Adapt->Target Relative Error=0.06"},
+                      {"Adapt->Target Relative Error=0.1", "Adapt->Meshes=gmsh"},
                       {"Adapt->Target Relative Error=0.15", "Mesh->Element=P1", "Mesh->Cells={4,4,2}"}},
                      2);
   expect_same_meshes("../../../input/ball_adaptive.xml",
-                     {{"Adapt->Target Relative Error=0.06", "Contact->Yield Stress=100"}}, 3);
+                     {{"Adapt->Target Relative Error=0.06", "Contact->Yield Stress=100"},
+                      {"Adapt->Target Relative Error=0.06", "Adapt->Meshes=nested"}},
+                     3);
+}
+
+TEST(AdaptiveRanks, GiveNestedMeshesOfThePlaneTheSame)
+{
+  expect_same_meshes("bracket.xml", {{"Adapt->Meshes=nested"}});
+  expect_same_meshes("../../../input/beam_adaptive.xml", {{"Adapt->Meshes=nested"}});
 }
 
 } // namespace

@@ -63,30 +63,56 @@ TEST(AdaptiveBall, OfRevolutionHasTheForceToFiveDigits)
   }
 }
 
+/// The coarser meshes are the levels of multigrid, down to the first one.
+TEST(AdaptiveBall, OfNestedMeshesHasTheSameForceAndNoAlgebraicLevels)
+{
+  const Ball &ball = balls[0];
+  const Solution s = run_scene(input + "ball_adaptive.xml", {"Adapt->Meshes=nested"});
+  ASSERT_TRUE(s.adaptation && s.adaptation->reached) << s.adaptation->reason;
+  EXPECT_LT(s.adaptation->cycles.back().dofs, 200000u);
+  const auto &contact = s.contact.total;
+  const auto &errors = s.adaptation->errors;
+  EXPECT_NEAR(4 * contact.force[2] / ball.force, 1, 5e-4);
+  EXPECT_NEAR(contact.max_pressure / ball.max_pressure, 1, 5e-3);
+  EXPECT_LT(std::abs(contact.force[2] - ball.force / 4), errors.contact_force);
+  EXPECT_LT(std::abs(contact.contact_length - ball.contact_area / 4), errors.contact_length);
+  EXPECT_NE(s.linear.description.find("meshes"), std::string::npos) << s.linear.description;
+  EXPECT_EQ(s.linear.description.find("algebraic"), std::string::npos) << s.linear.description;
+  EXPECT_EQ(s.linear.preconditioner_setups, 1);
+  for (const int iterations : s.linear.iterations) EXPECT_LE(iterations, 15);
+}
+
 TEST(AdaptiveBlock, GradesItsClampedEdgesWithFewerUnknownsThanUniformMeshes)
 {
   // A uniform mesh of 24 x 24 x 12 Q2 cells, 180 075 dofs, has J = -1.03892878 J and an estimate of 4.7e-2.
-  const Solution s = run_scene(input + "block_adaptive.xml", {"Adapt->Target Relative Error=0.04"});
-  ASSERT_TRUE(s.adaptation->reached) << s.adaptation->reason;
-  EXPECT_LT(s.energy, -1.03893);
-  EXPECT_LT(s.adaptation->cycles.back().dofs, 180000u);
-  EXPECT_EQ(s.discretization.mesh->element.name(), "P2");
+  for (const char *const meshes : {"gmsh", "nested"}) {
+    const Solution s = run_scene(input + "block_adaptive.xml",
+                                 {"Adapt->Target Relative Error=0.04", std::string("Adapt->Meshes=") + meshes});
+    ASSERT_TRUE(s.adaptation->reached) << s.adaptation->reason;
+    EXPECT_LT(s.energy, -1.03893);
+    EXPECT_LT(s.adaptation->cycles.back().dofs, 180000u);
+    EXPECT_EQ(s.discretization.mesh->element.name(), "P2");
+  }
 }
 
 TEST(AdaptiveSteps, InSpaceKeepDentsAndDissipation)
 {
-  // The ball is pressed, lifted off its dent, and pressed again as far: that dissipates nothing more.
-  const std::vector<std::string> steps = {"Contact->Yield Stress=100",
-                                          "Dirichlet->top->Z=-0.02*(t < 1.5 ? min(t, 2 - t) : t - 1.5)",
-                                          "Steps->Times={0.5, 1, 1.4, 2, 2.5}", "Adapt->Target Relative Error=0.05"};
-  const Solution s = run_scene(input + "ball_adaptive.xml", steps);
-  ASSERT_TRUE(succeeded(s)) << s.adaptation->reason << s.uzawa.reason;
-  ASSERT_EQ(s.history.size(), 5u);
-  const auto &pressed = s.history[1], &again = s.history[4];
-  EXPECT_NEAR(pressed.energies.dissipated / again.energies.dissipated, 1, 0.01);
-  EXPECT_GT(pressed.energies.dissipated, 0.004);
-  EXPECT_NEAR(again.contact.force[2] / pressed.contact.force[2], 1, 0.01);
-  EXPECT_NEAR(s.contact.total.max_dent / 0.00701, 1, 0.02); // a quarter of the axisymmetric ball has the same
+  for (const char *const meshes : {"gmsh", "nested"}) {
+    SCOPED_TRACE(meshes);
+    // The ball is pressed, lifted off its dent, and pressed again as far: that dissipates nothing more.
+    const std::vector<std::string> steps = {"Contact->Yield Stress=100",
+                                            "Dirichlet->top->Z=-0.02*(t < 1.5 ? min(t, 2 - t) : t - 1.5)",
+                                            "Steps->Times={0.5, 1, 1.4, 2, 2.5}", "Adapt->Target Relative Error=0.05",
+                                            std::string("Adapt->Meshes=") + meshes};
+    const Solution s = run_scene(input + "ball_adaptive.xml", steps);
+    ASSERT_TRUE(succeeded(s)) << s.adaptation->reason << s.uzawa.reason;
+    ASSERT_EQ(s.history.size(), 5u);
+    const auto &pressed = s.history[1], &again = s.history[4];
+    EXPECT_NEAR(pressed.energies.dissipated / again.energies.dissipated, 1, 0.01);
+    EXPECT_GT(pressed.energies.dissipated, 0.004);
+    EXPECT_NEAR(again.contact.force[2] / pressed.contact.force[2], 1, 0.01);
+    EXPECT_NEAR(s.contact.total.max_dent / 0.00701, 1, 0.02); // a quarter of the axisymmetric ball has the same
+  }
 }
 
 } // namespace

@@ -102,8 +102,8 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
 {
   Adaptation adaptation;
   std::vector<Cycle> &cycles = adaptation.cycles;
-  MeshPlanner planner(task);
   std::optional<mesh::MeshOptions> options = earlier ? earlier->mesh_options : task.mesh;
+  MeshPlanner planner(task, *options);
   std::optional<Solution> last, best;
   std::string hint;
   analysis::PhaseSeconds seconds;
@@ -229,7 +229,7 @@ Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &li
   if (!task.adapt.adapts())
     return with_estimate(task, listener,
                          [&](const analysis::Listener &all) { return analysis::solve(task, comm, all); });
-  if (comm->getRank() == 0) mesh::start_gmsh_early();
+  if (comm->getRank() == 0 && !nests(task.mesh, task.adapt)) mesh::start_gmsh_early();
   return task.has_steps() ? solve_steps_adaptively(task, comm, listener)
                           : solve_adaptively(task, nullptr, comm, listener);
 }

@@ -25,16 +25,35 @@ constexpr double greatest_excess = 1.5;
 constexpr double share_of_max_dofs = 0.75;
 // A mesh in space has up to so many times the cells that are expected: coarse ones cannot be as coarse as they may, for the body's edges.
 constexpr double excess_in_space = 2;
+// The same of nested meshes, which are no coarser than the first one and have neighbours of small cells halved.
+constexpr double excess_nested = 3.2, excess_nested_in_plane = 2;
 // In space gmsh makes cells of twice the size, which are halved: that takes an eighth of gmsh's time, and multigrid has a mesh more. Meshes of
 // fewer cells are gmsh's: halved ones could not be as coarse. In the plane gmsh is fast enough, and finer gradings pay. doc/design.md
 constexpr double least_halved = 6000;
 
 } // namespace
 
+/// How many times as many cells the next mesh may have as planned.
+/// @param cells  of the present mesh
+double MeshPlanner::excess(const double cells, const int dim) const
+{
+  const bool nested = nests(task_.mesh, task_.adapt);
+  if (dim == 2 && !nested) return 1;
+  if (predicted_cells_ > 0) return std::max(1., cells / predicted_cells_);
+  if (!nested) return excess_in_space;
+  return dim == 2 ? excess_nested_in_plane : excess_nested;
+}
+
 std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d, const ErrorEstimate &estimate,
                                                    const double energy_norm_squared, Forecast &forecast,
                                                    std::string &reason)
 {
+  const bool nested = nests(task_.mesh, task_.adapt);
+  if (nested && d.mesh->element.shape != mesh::Shape::simplex &&
+      !std::holds_alternative<mesh::BoxOptions>(task_.mesh)) {
+    reason = "only triangles and tetrahedra are halved, and the mesh has " + d.mesh->element.name() + " cells";
+    return std::nullopt;
+  }
   const double eta = std::sqrt(estimate.total());
   const double wanted = (d.dim() == 2 ? aim : aim_in_space) * task_.adapt.target * std::sqrt(energy_norm_squared);
   const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
@@ -48,9 +67,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   const double cells =
       cells_per_cell(mesh.element) * static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
   const double most_dofs = share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
-  const double excess = mesh.dim() == 2        ? 1
-                        : predicted_cells_ > 0 ? std::max(1., cells / predicted_cells_)
-                                               : excess_in_space;
+  const double excess = this->excess(cells, mesh.dim());
   const double allowed = most_dofs * cells / dofs / excess;
   const double sensible = greatest_excess * cells * std::pow(eta / bound, double(mesh.dim()) / mesh.element.order);
   const auto sizes =
@@ -66,8 +83,13 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   forecast.dofs = dofs * sizes.predicted_cells / cells * excess;
   forecast.last_dofs = std::max(forecast.dofs, dofs * std::pow(eta / wanted, double(mesh.dim()) / mesh.element.order));
   predicted_cells_ = sizes.predicted_cells;
-  const bool halved = mesh.dim() == 3 && sizes.predicted_cells >= least_halved;
-  return mesh::with_sizes(task_.mesh, sizes.field, halved ? 1 : 0);
+  const bool halved = !nested && mesh.dim() == 3 && sizes.predicted_cells >= least_halved;
+  auto options = sized(task_.mesh, task_.adapt, sizes.field, halved ? 1 : 0);
+  if (nested) {
+    if (sum_all(mesh.comm(), GO(base_ ? 1 : 0)) == 0) base_ = mesh::base_mesh(task_.mesh, mesh.comm());
+    std::get<mesh::GmshOptions>(*options).base = base_;
+  }
+  return options;
 }
 
 } // namespace rpc::adapt

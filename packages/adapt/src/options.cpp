@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <variant>
 
 namespace rpc::adapt
 {
@@ -16,6 +18,10 @@ Teuchos::ParameterList valid_adapt_parameters()
       "Bound on the estimated error in the energy norm over that of the solution, in (0, 1): meshes are refined where "
       "the error is until it holds. 0: one mesh, as \"Mesh\" gives it.");
   valid.set("Max Dofs", 2000000, "Unknowns that no mesh but the first is to exceed, > 0.");
+  valid.set("Meshes", "automatic",
+            "Who makes the meshes after the first one: `gmsh`, anew; `nested`: cells of the first one are halved, each "
+            "rank its own, to triangles or tetrahedra whose coarser meshes are multigrid's. `automatic`: nested for "
+            "boxes in space, and for a .msh, which gmsh cannot mesh anew.");
   valid.set("Max Cycles", 12, "Meshes, > 0.");
   valid.set("Estimate Error", false, "Estimate the error without refining; with a target that is done anyway.");
   valid.set("Exact Energy", std::numeric_limits<double>::quiet_NaN(),
@@ -34,6 +40,12 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list)
   options.exact_energy = list.get<double>("Exact Energy");
   options.estimate = list.get<bool>("Estimate Error") || options.adapts();
   options.write_all = list.get<bool>("Write All");
+  const auto &meshes = list.get<std::string>("Meshes");
+  RPC_REQUIRE(meshes == "automatic" || meshes == "gmsh" || meshes == "nested",
+              "deck: \"Adapt->Meshes\" must be one of automatic, gmsh, nested, got \"" << meshes << "\"");
+  options.meshes = meshes == "gmsh"     ? NextMeshes::gmsh
+                   : meshes == "nested" ? NextMeshes::nested
+                                        : NextMeshes::automatic;
   RPC_REQUIRE(options.target >= 0 && options.target < 1,
               "deck: \"Adapt->Target Relative Error\" must be in (0, 1), or 0 for none, got " << options.target);
   RPC_REQUIRE(options.max_dofs > 0, "deck: \"Adapt->Max Dofs\" must be > 0, got " << options.max_dofs);
@@ -43,12 +55,25 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list)
   return options;
 }
 
+bool nests(const mesh::MeshOptions &first, const AdaptOptions &adapt)
+{
+  if (adapt.meshes != NextMeshes::automatic) return adapt.meshes == NextMeshes::nested;
+  if (const auto *const box = std::get_if<mesh::BoxOptions>(&first)) return box->element.dim == 3;
+  return !mesh::with_sizes(first, nullptr);
+}
+
+std::optional<mesh::MeshOptions> sized(const mesh::MeshOptions &first, const AdaptOptions &adapt,
+                                       std::shared_ptr<const mesh::SizeField> sizes, const int refinements)
+{
+  if (nests(first, adapt)) return mesh::refined_to_sizes(first, std::move(sizes));
+  return mesh::with_sizes(first, std::move(sizes), refinements);
+}
+
 void require_adaptable(const Task &task)
 {
-  RPC_REQUIRE(
-      !task.adapt.adapts() || mesh::with_sizes(task.mesh, nullptr),
-      "deck: \"Adapt->Target Relative Error\" goes with a box or a .geo, which can be meshed anew; the mesh is a "
-      ".msh");
+  RPC_REQUIRE(!task.adapt.adapts() || sized(task.mesh, task.adapt, nullptr, 0),
+              "deck: \"Adapt->Meshes\" = gmsh goes with a box or a .geo, which can be meshed anew; the mesh is a .msh. "
+              "Its cells can be halved: nested.");
   const auto &contact = task.model.contact;
   for (std::size_t a = 0; a < contact.size() && task.adapt.estimate; ++a)
     for (std::size_t b = 0; b < a; ++b)

@@ -12,7 +12,7 @@ namespace rpc::fem
 RCP<CrsMatrix> interpolation_from_parents(const mesh::Mesh &coarse, const mesh::Mesh &fine,
                                           const mesh::Parents &parents)
 {
-  const auto weights = mesh::child_weights(coarse.element, fine.element);
+  const auto weights = mesh::child_weights(coarse.element, fine.element, parents.vertices);
   const auto cells = to_host(fine.cells), coarse_cells = to_host(coarse.cells);
   const LO num_owned = fine.num_owned_nodes();
   std::vector<std::pair<LO, int>> seen(num_owned,

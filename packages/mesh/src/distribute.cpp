@@ -176,10 +176,10 @@ void receive_part(const Comm &comm, Part &part)
   });
 }
 
-Part deal(const MeshData &whole, const Comm &comm)
+Part deal(const MeshData &whole, const Comm &comm, const std::vector<double> &weights)
 {
   Division division;
-  on_root(comm, ExitCode::internal_error, [&] { division = divide(whole, comm.getSize()); });
+  on_root(comm, ExitCode::internal_error, [&] { division = divide(whole, comm.getSize(), weights); });
   Part part;
   std::vector<std::string> sides, points;
   if (comm.getRank() == 0) {
@@ -207,9 +207,9 @@ Part deal(const MeshData &whole, const Comm &comm)
 
 } // namespace
 
-Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm)
+Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const std::vector<double> &weights)
 {
-  const Part part = deal(whole, *comm);
+  const Part part = deal(whole, *comm, weights);
   Mesh mesh;
   mesh.element = part.mesh.element;
   const GO invalid = Teuchos::OrdinalTraits<GO>::invalid();

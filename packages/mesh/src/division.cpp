@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <metis.h>
+#include <numeric>
 #include <utility>
 
 namespace rpc::mesh
@@ -14,7 +15,7 @@ namespace
 {
 
 /// A part of the mesh for each cell, none of them empty.
-std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts)
+std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts, const std::vector<double> &weights)
 {
   const int num_cells = whole.num_cells(), width = whole.element.num_nodes();
   RPC_REQUIRE_CODE(num_cells >= num_parts, ExitCode::bad_mesh,
@@ -30,11 +31,16 @@ std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts)
   for (int c = 0; c <= num_cells; ++c) begin.push_back(idx_t(vertices) * c);
   for (int c = 0; c < num_cells; ++c)
     for (int v = 0; v < vertices; ++v) vertex.push_back(whole.cells[std::size_t(width) * c + v]);
+  std::vector<idx_t> weight;
+  constexpr double finest = 1e6; // of a sum that fits in METIS' numbers
+  const double scale = finest / std::max(1., std::accumulate(weights.begin(), weights.end(), 0.));
+  for (const double w : weights) weight.push_back(static_cast<idx_t>(1 + w * scale));
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1; // the same cut in every run
-  const int status = METIS_PartMeshDual(&cells, &nodes, begin.data(), vertex.data(), nullptr, nullptr, &common, &parts,
-                                        nullptr, options, &cut, cell_part.data(), node_part.data());
+  const int status =
+      METIS_PartMeshDual(&cells, &nodes, begin.data(), vertex.data(), weight.empty() ? nullptr : weight.data(), nullptr,
+                         &common, &parts, nullptr, options, &cut, cell_part.data(), node_part.data());
   RPC_REQUIRE_CODE(status == METIS_OK, ExitCode::internal_error,
                    "mesh: METIS could not divide " << num_cells << " cells among " << num_parts
                                                    << " ranks: its status is " << status);
@@ -75,10 +81,10 @@ Lists neighbours(const MeshData &whole, const Lists &cells_at, const std::vector
 
 } // namespace
 
-Division divide(const MeshData &whole, const int num_ranks)
+Division divide(const MeshData &whole, const int num_ranks, const std::vector<double> &weights)
 {
   Division division;
-  const std::vector<int> part = parts_of_cells(whole, num_ranks);
+  const std::vector<int> part = parts_of_cells(whole, num_ranks, weights);
   division.cells = sorted_into_lists(part, num_ranks);
   const Lists cells_at = node_to_cells(whole.element, whole.cells, whole.num_nodes());
   auto &owner = division.node_owner;

@@ -20,6 +20,7 @@ struct Division {
 
 /// METIS' cut, and the order of each rank's nodes; on one rank by itself.
 /// @throws rpc::Error (bad_mesh) if there are fewer cells than ranks
-Division divide(const MeshData &whole, int num_ranks);
+/// @param weights  (cells) what each counts for, > 0; empty: all the same
+Division divide(const MeshData &whole, int num_ranks, const std::vector<double> &weights = {});
 
 } // namespace rpc::mesh

@@ -63,31 +63,6 @@ void check_last_line(const std::string &where, const std::string &geo)
                    where << "the last line must end in a line break, or gmsh would ignore a part of it");
 }
 
-void check_sizes(const std::string &where, const SizeField &field, const double factor)
-{
-  const std::size_t nodes = field.size.size();
-  const std::size_t vertices = field.dim + 1;
-  RPC_REQUIRE_CODE(field.coords.size() == field.dim * nodes && !field.simplices.empty() &&
-                       field.simplices.size() % vertices == 0 &&
-                       std::all_of(field.simplices.begin(), field.simplices.end(),
-                                   [&](const int n) { return n >= 0 && std::size_t(n) < nodes; }),
-                   ExitCode::bad_mesh,
-                   where << "a size field must have one triangle or tetrahedron or more, of its nodes, got "
-                         << field.simplices.size() / vertices << " of " << nodes << " nodes");
-  const auto bad = std::find_if(field.size.begin(), field.size.end(),
-                                [](const double size) { return !(size > 0 && std::isfinite(size)); });
-  RPC_REQUIRE_CODE(bad == field.size.end(), ExitCode::bad_mesh,
-                   where << "cell sizes must be > 0 and finite [m], got " << *bad);
-  RPC_REQUIRE_CODE(
-      std::all_of(field.coords.begin(), field.coords.end(), [](const double x) { return std::isfinite(x); }),
-      ExitCode::bad_mesh, where << "the nodes of a size field must have finite coordinates");
-  constexpr double most_cells = 5e6;
-  const double cells = expected_cells(field) / std::pow(factor, field.dim);
-  RPC_REQUIRE_CODE(cells <= most_cells, ExitCode::bad_mesh,
-                   where << "cell sizes are too small: they ask for about " << cells << " cells; at most " << most_cells
-                         << " are made");
-}
-
 /// @param[out] again  whether another attempt may do better where this one fails
 GmshContents answer_of_gmsh(const std::string &where, const GmshOptions &options, const GmshRequest &request,
                             bool &again)
@@ -124,7 +99,7 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
   GmshRequest request = request_for(options);
   request.size_factor = options.size_factor;
   request.order = options.order == 0 ? 2 : options.order;
-  request.geometry = options.refinements > 0;
+  request.geometry = options.refinements > 0 || options.nested;
   if (options.box) {
     const mesh::Element &element = options.box->element;
     request.box_dim = element.dim;
@@ -133,7 +108,7 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
     request.quadrilaterals = element.dim == 2 && element.shape == Shape::tensor;
     request.order = 1; // middle nodes of straight edges are made faster than gmsh does it
   }
-  if (options.sizes) {
+  if (options.sizes && !options.nested) {
     check_sizes(where, *options.sizes, options.size_factor);
     request.sizes = *options.sizes;
   }
@@ -202,9 +177,9 @@ MeshData read_gmsh(const GmshOptions &options)
   const bool make = is_geo(where, options);
   RPC_REQUIRE(make || options.size_factor == 1,
               where << "a size factor only goes with a .geo, got " << options.size_factor);
-  RPC_REQUIRE(make || !options.sizes, where << "cell sizes only go with a .geo");
+  RPC_REQUIRE(make || !options.sizes || options.nested, where << "cell sizes only go with a .geo");
   MeshData mesh = make ? meshed_geo(where, options) : mesh_of_gmsh(where, contents_of_msh(where, options), false);
-  if (make && options.refinements > 0) mesh.geometry_file = options.file;
+  if (make && (options.refinements > 0 || options.nested)) mesh.geometry_file = options.file;
   RPC_REQUIRE(options.order == 0 || options.order == mesh.element.order,
               where << "its cells are of order " << mesh.element.order << ", which \"Order\" = " << options.order
                     << " does not change; that only goes with a .geo");

@@ -2,10 +2,13 @@
 
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/mesh/distribute.hpp"
 #include "rpc/mesh/refinement.hpp"
+#include "whole_mesh.hpp"
 
+#include <Teuchos_DefaultSerialComm.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -77,6 +80,33 @@ bool can_be_meshed(const GmshOptions &options)
   return options.box || std::filesystem::path(options.file).extension() == ".geo";
 }
 
+/// A field of rank 0 on all ranks; collective.
+SizeField on_all_ranks(const Comm &comm, const SizeField *const field)
+{
+  const bool here = comm.getRank() == 0;
+  SizeField all;
+  all.coords = gathered_by_all(comm, here ? field->coords : std::vector<double>{});
+  all.simplices = gathered_by_all(comm, here ? field->simplices : std::vector<int>{});
+  all.size = gathered_by_all(comm, here ? field->size : std::vector<double>{});
+  all.dim = here ? field->dim : 0;
+  Teuchos::broadcast(comm, 0, Teuchos::outArg(all.dim));
+  return all;
+}
+
+/// The base, dealt out so that ranks have about as many of the cells that are to come, then refined.
+Mesh make_nested(const GmshOptions &options, const RCP<const Comm> &comm)
+{
+  std::shared_ptr<const MeshData> base = options.base;
+  if (sum_all(*comm, GO(base ? 1 : 0)) == 0) base = base_mesh(options, *comm);
+  const SizeField sizes = on_all_ranks(*comm, options.sizes.get());
+  on_root(*comm, ExitCode::bad_mesh, [&] { check_sizes("mesh: ", sizes, 1); });
+  std::vector<double> weights;
+  if (base && comm->getSize() > 1) weights = cells_to_come(*base, sizes, options.refinements);
+  auto mesh = std::make_shared<const Mesh>(distribute(base ? *base : MeshData{}, comm, weights));
+  for (int k = 0; k < options.refinements; ++k) mesh = std::make_shared<Mesh>(refined(mesh));
+  return *refined_to(std::move(mesh), sizes);
+}
+
 } // namespace
 
 Teuchos::ParameterList valid_parameters()
@@ -125,7 +155,7 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, const double fact
     return result;
   }
   auto &gmsh = std::get<GmshOptions>(result);
-  if (!can_be_meshed(gmsh) || gmsh.refinements > 0) return std::nullopt;
+  if (!can_be_meshed(gmsh) || gmsh.refinements > 0 || gmsh.nested) return std::nullopt;
   gmsh.size_factor *= factor;
   return result;
 }
@@ -147,11 +177,39 @@ std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_pt
   return result;
 }
 
+MeshOptions refined_to_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes,
+                             std::shared_ptr<const MeshData> base)
+{
+  GmshOptions result;
+  if (const auto *const box = std::get_if<BoxOptions>(&options)) {
+    result.box = *box;
+    result.box->element.shape = Shape::simplex;
+  } else {
+    result = std::get<GmshOptions>(options);
+  }
+  result.nested = true;
+  result.sizes = std::move(sizes);
+  result.base = std::move(base);
+  return result;
+}
+
+std::shared_ptr<const MeshData> base_mesh(const MeshOptions &options, const Comm &comm)
+{
+  std::shared_ptr<const MeshData> base;
+  on_root(comm, ExitCode::bad_mesh, [&] {
+    const auto gmsh = std::get<GmshOptions>(refined_to_sizes(options, nullptr));
+    base = std::make_shared<MeshData>(gmsh.box ? whole_mesh(make_box(*gmsh.box, rcp(new Teuchos::SerialComm<int>)))
+                                               : read_gmsh(gmsh));
+  });
+  return base;
+}
+
 Mesh make_mesh(const MeshOptions &options, const RCP<const Comm> &comm)
 {
   if (const auto *box = std::get_if<BoxOptions>(&options)) return make_box(*box, comm);
-  MeshData whole;
   const auto &gmsh = std::get<GmshOptions>(options);
+  if (gmsh.nested) return make_nested(gmsh, comm);
+  MeshData whole;
   on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(gmsh); });
   auto mesh = std::make_shared<Mesh>(distribute(whole, comm));
   whole = {};

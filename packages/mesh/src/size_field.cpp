@@ -1,5 +1,7 @@
 #include "rpc/mesh/size_field.hpp"
 
+#include "rpc/core/error.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,33 +35,61 @@ double mean_inverse_cube(std::array<double, 4> h)
   return 3. / 2 * (mean_inverse_square(h[0], h[1], h[2]) - mean_inverse_square(h[1], h[2], h[3])) / (h[3] - h[0]);
 }
 
+template <int dim>
+using Vertices = std::array<std::array<double, dim>, dim + 1>;
+
+double area(const Vertices<2> &x)
+{
+  return std::abs((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[2][0] - x[0][0]) * (x[1][1] - x[0][1])) / 2;
+}
+
+double volume(const Vertices<3> &x)
+{
+  double six_volumes = 0;
+  for (int d = 0; d < 3; ++d) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    six_volumes +=
+        (x[1][d] - x[0][d]) * ((x[2][e] - x[0][e]) * (x[3][f] - x[0][f]) - (x[2][f] - x[0][f]) * (x[3][e] - x[0][e]));
+  }
+  return std::abs(six_volumes) / 6;
+}
+
+template <int dim>
+Vertices<dim> vertices_of(const SizeField &field, const int *const nodes)
+{
+  Vertices<dim> x;
+  for (int v = 0; v <= dim; ++v) std::copy_n(&field.coords[std::size_t(dim) * nodes[v]], dim, x[v].begin());
+  return x;
+}
+
 double cells_in_triangle(const SizeField &field, const int *const nodes)
 {
-  const auto x = [&](const int vertex, const int d) { return field.coords[2 * std::size_t(nodes[vertex]) + d]; };
-  const double area =
-      std::abs((x(1, 0) - x(0, 0)) * (x(2, 1) - x(0, 1)) - (x(2, 0) - x(0, 0)) * (x(1, 1) - x(0, 1))) / 2;
-  if (!(area > 0)) return 0; // with sizes of 1e-300 the mean alone would be infinite
-  return area * mean_inverse_square(field.size[nodes[0]], field.size[nodes[1]], field.size[nodes[2]]) * 4 /
+  const double whole = area(vertices_of<2>(field, nodes));
+  if (!(whole > 0)) return 0; // with sizes of 1e-300 the mean alone would be infinite
+  return whole * mean_inverse_square(field.size[nodes[0]], field.size[nodes[1]], field.size[nodes[2]]) * 4 /
          std::sqrt(3.);
 }
 
 double cells_in_tetrahedron(const SizeField &field, const int *const nodes)
 {
-  double arm[3][3];
-  for (int a = 0; a < 3; ++a)
-    for (int d = 0; d < 3; ++d)
-      arm[a][d] = field.coords[3 * std::size_t(nodes[a + 1]) + d] - field.coords[3 * std::size_t(nodes[0]) + d];
-  double six_volumes = 0;
-  for (int d = 0; d < 3; ++d) {
-    const int e = (d + 1) % 3, f = (d + 2) % 3;
-    six_volumes += arm[0][d] * (arm[1][e] * arm[2][f] - arm[1][f] * arm[2][e]);
-  }
-  if (!(std::abs(six_volumes) > 0)) return 0;
-  return std::abs(six_volumes) / 6 * tetrahedra_per_cube *
+  const double whole = volume(vertices_of<3>(field, nodes));
+  if (!(whole > 0)) return 0;
+  return whole * tetrahedra_per_cube *
          mean_inverse_cube({field.size[nodes[0]], field.size[nodes[1]], field.size[nodes[2]], field.size[nodes[3]]});
 }
 
 } // namespace
+
+template <>
+double cell_size<2>(const Vertices<2> &vertex)
+{
+  return std::sqrt(area(vertex) * 4 / std::sqrt(3.));
+}
+template <>
+double cell_size<3>(const Vertices<3> &vertex)
+{
+  return std::cbrt(volume(vertex) * tetrahedra_per_cube);
+}
 
 double expected_cells(const SizeField &field)
 {
@@ -68,6 +98,31 @@ double expected_cells(const SizeField &field)
   for (std::size_t s = 0; s + vertices <= field.simplices.size(); s += vertices)
     cells += (field.dim == 2 ? cells_in_triangle : cells_in_tetrahedron)(field, &field.simplices[s]);
   return cells;
+}
+
+void check_sizes(const std::string &where, const SizeField &field, const double factor)
+{
+  const std::size_t nodes = field.size.size();
+  const std::size_t vertices = field.dim + 1;
+  RPC_REQUIRE_CODE(field.coords.size() == field.dim * nodes && !field.simplices.empty() &&
+                       field.simplices.size() % vertices == 0 &&
+                       std::all_of(field.simplices.begin(), field.simplices.end(),
+                                   [&](const int n) { return n >= 0 && std::size_t(n) < nodes; }),
+                   ExitCode::bad_mesh,
+                   where << "a size field must have one triangle or tetrahedron or more, of its nodes, got "
+                         << field.simplices.size() / vertices << " of " << nodes << " nodes");
+  const auto bad = std::find_if(field.size.begin(), field.size.end(),
+                                [](const double size) { return !(size > 0 && std::isfinite(size)); });
+  RPC_REQUIRE_CODE(bad == field.size.end(), ExitCode::bad_mesh,
+                   where << "cell sizes must be > 0 and finite [m], got " << *bad);
+  RPC_REQUIRE_CODE(
+      std::all_of(field.coords.begin(), field.coords.end(), [](const double x) { return std::isfinite(x); }),
+      ExitCode::bad_mesh, where << "the nodes of a size field must have finite coordinates");
+  constexpr double most_cells = 5e6;
+  const double cells = expected_cells(field) / std::pow(factor, field.dim);
+  RPC_REQUIRE_CODE(cells <= most_cells, ExitCode::bad_mesh,
+                   where << "cell sizes are too small: they ask for about " << cells << " cells; at most " << most_cells
+                         << " are made");
 }
 
 } // namespace rpc::mesh

@@ -1,13 +1,10 @@
 #include "rpc/mesh/refinement.hpp"
 
-#include "block_mesh.hpp"
 #include "expect_error.hpp"
-#include "parts_measures.hpp"
-#include "rpc/mesh/distribute.hpp"
+#include "refined_meshes.hpp"
 #include "rpc/mesh/make_mesh.hpp"
 #include "rpc/mesh/topology.hpp"
 
-#include <Tpetra_Core.hpp>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>
@@ -20,54 +17,11 @@ using mesh::Element;
 using mesh::Mesh;
 using mesh::MeshData;
 using mesh::Shape;
-using Shared = std::shared_ptr<const Mesh>;
-
-RCP<const Comm> world()
-{
-  return Tpetra::getDefaultComm();
-}
-/// This rank by itself: what it makes is the serial result, there to compare with.
-RCP<const Comm> alone()
-{
-  static const RCP<const Comm> comm = world()->split(world()->getRank(), 0);
-  return comm;
-}
-
-/// A block of 3 x 2 (x 2) cells, sheared, in two blocks, with its sides at both ends and all others, and a point.
-MeshData sheared_block(const Element &element)
-{
-  const std::array<int, 3> cells{3, 2, 2};
-  MeshData data = test::block(element, cells);
-  const int dim = element.dim, width = element.num_nodes();
-  data.blocks = {"near", "far"};
-  for (int c = 0; c < data.num_cells(); ++c) data.block[c] = c % 2;
-  const mesh::Entities facets = mesh::facets_of(element, data.cells);
-  data.sides = {{"low", {}, {}}, {"high", {}, {}}, {"rest", {}, {}}};
-  for (int f = 0; f < facets.size(); ++f) {
-    if (facets.num_cells_at(f) != 1) continue;
-    const auto at_x = [&](const double x) {
-      return std::all_of(facets.vertices.begin() + std::ptrdiff_t(facets.num_vertices) * f,
-                         facets.vertices.begin() + std::ptrdiff_t(facets.num_vertices) * (f + 1),
-                         [&](const int n) { return data.coords[std::size_t(dim) * n] == x; });
-    };
-    auto &side = data.sides[at_x(0) ? 0 : at_x(3) ? 1 : 2];
-    side.cell.push_back(facets.cell(f, 0));
-    side.ordinal.push_back(facets.ordinal(f, 0));
-  }
-  data.points = {{"first", {data.cells[0]}}, {"last", {data.cells[std::size_t(width) * (data.num_cells() - 1)]}}};
-  std::sort(data.points[1].node.begin(), data.points[1].node.end());
-  for (int n = 0; n < data.num_nodes(); ++n) {
-    double *const x = &data.coords[std::size_t(dim) * n];
-    x[0] += 0.3 * x[1];
-    if (dim == 3) x[1] -= 0.2 * x[2];
-  }
-  return data;
-}
-
-Shared dealt(const MeshData &whole, const RCP<const Comm> &comm)
-{
-  return std::make_shared<Mesh>(mesh::distribute(comm->getRank() == 0 ? whole : MeshData{}, comm));
-}
+using test::alone;
+using test::dealt;
+using test::Shared;
+using test::sheared_block;
+using test::world;
 
 Shared refined(Shared mesh, const int times)
 {
@@ -135,93 +89,23 @@ TEST(Refinement, KeepsTheBodyItsSidesAndTheirNormals)
   });
 }
 
-/// Facets are shared by two cells, or lie on the boundary; those on the boundary are the parts of the coarse ones.
+/// Facets on the boundary are the parts of the coarse ones.
 TEST(Refinement, IsConforming)
 {
   for_each_element([](const Element &element) {
     const Shared coarse = dealt(sheared_block(element), world()), fine = refined(coarse, 2);
-    const auto boundary = [](const Mesh &mesh) {
-      const mesh::Topology topology = mesh::topology(mesh);
-      GO count = 0;
-      for (int f = 0; f < topology.facets.size(); ++f) {
-        EXPECT_LE(topology.facets.num_cells_at(f), 2);
-        count += topology.owns_facet[f] && topology.on_boundary(f);
-      }
-      return sum_all(mesh.comm(), count);
-    };
-    EXPECT_EQ(boundary(*fine), power(4, element.dim - 1) * boundary(*coarse));
-    GO listed = 0;
-    for (const mesh::Side &side : fine->sides) {
-      const auto cell = to_host(side.cell);
-      for (std::size_t f = 0; f < cell.extent(0); ++f) listed += cell(f) < fine->num_owned_cells;
-    }
-    EXPECT_EQ(sum_all(fine->comm(), listed), boundary(*fine));
+    EXPECT_EQ(test::expect_conforming(*fine), power(4, element.dim - 1) * test::expect_conforming(*coarse));
   });
 }
 
-/// A rank's part holds what the whole mesh, refined by one rank, has there.
 TEST(Refinement, IsTheSameOnAnyNumberOfRanks)
 {
   for_each_element([](const Element &element) {
     const MeshData whole = sheared_block(element);
-    const Shared mesh = refined(dealt(whole, world()), 2);
-    const Shared serial = refined(dealt(whole, alone()), 2);
-    const auto coords = to_host(mesh->coords), all_coords = to_host(serial->coords);
-    const auto cells = to_host(mesh->cells), all_cells = to_host(serial->cells);
-    const auto ids = mesh::overlap_node_ids(*mesh);
-    std::vector<LO> node_of(serial->num_local_nodes()), cell_of(serial->num_cells());
-    for (LO n = 0; n < serial->num_local_nodes(); ++n) node_of[serial->node_id(n)] = n;
-    for (LO c = 0; c < serial->num_cells(); ++c) cell_of[serial->cell_id(c)] = c;
-    for (LO n = 0; n < mesh->num_local_nodes(); ++n)
-      for (int d = 0; d < element.dim; ++d) EXPECT_NEAR(coords(n, d), all_coords(node_of[ids(n)], d), 1e-14);
-    for (LO c = 0; c < mesh->num_owned_cells; ++c) {
-      const LO other = cell_of[mesh->cell_id(c)];
-      for (std::size_t a = 0; a < cells.extent(1); ++a)
-        EXPECT_EQ(ids(cells(c, a)), serial->node_id(all_cells(other, a)));
-      EXPECT_EQ(to_host(mesh->block)(c), to_host(serial->block)(other));
-    }
+    const Shared mesh = refined(dealt(whole, world()), 2), serial = refined(dealt(whole, alone()), 2);
+    test::expect_part_of(*serial, *mesh);
+    test::expect_cells_around_owned_nodes(*serial, *mesh);
   });
-}
-
-/// All cells at an owned node are local, and there are no others.
-TEST(Refinement, HoldsTheCellsAroundOwnedNodes)
-{
-  for_each_element([](const Element &element) {
-    const MeshData whole = sheared_block(element);
-    const Shared mesh = refined(dealt(whole, world()), 2);
-    const Shared serial = refined(dealt(whole, alone()), 2);
-    const auto cells = to_host(mesh->cells), all_cells = to_host(serial->cells);
-    std::vector<int> around(serial->num_local_nodes(), 0);
-    std::vector<LO> node_of(serial->num_local_nodes());
-    for (LO n = 0; n < serial->num_local_nodes(); ++n) node_of[serial->node_id(n)] = n;
-    for (std::size_t c = 0; c < all_cells.extent(0); ++c)
-      for (std::size_t a = 0; a < all_cells.extent(1); ++a) ++around[all_cells(c, a)];
-    std::vector<int> here(mesh->num_local_nodes(), 0);
-    for (LO c = 0; c < mesh->num_cells(); ++c) {
-      bool touches = c < mesh->num_owned_cells;
-      for (std::size_t a = 0; a < cells.extent(1); ++a) {
-        ++here[cells(c, a)];
-        touches = touches || cells(c, a) < mesh->num_owned_nodes();
-      }
-      EXPECT_TRUE(touches);
-    }
-    for (LO n = 0; n < mesh->num_owned_nodes(); ++n) EXPECT_EQ(here[n], around[node_of[mesh->node_id(n)]]);
-  });
-}
-
-/// Six times the volume over the cube of the root mean square edge, over what that is of a regular tetrahedron.
-double quality(const std::vector<std::vector<double>> &x)
-{
-  double squares = 0, J[3][3];
-  for (int a = 0; a < 4; ++a)
-    for (int b = 0; b < a; ++b)
-      for (int d = 0; d < 3; ++d) squares += (x[a][d] - x[b][d]) * (x[a][d] - x[b][d]) / 6;
-  for (int k = 0; k < 3; ++k)
-    for (int d = 0; d < 3; ++d) J[k][d] = x[k + 1][d] - x[0][d];
-  const double six_volumes = J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) -
-                             J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
-                             J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
-  return std::sqrt(2.) * six_volumes / std::pow(squares, 1.5);
 }
 
 /// From a regular one, a corner of a cube, a flat and a long one: positive volumes, and no child of a child gets worse.
@@ -240,20 +124,15 @@ TEST(Refinement, TetrahedraDoNotDegenerate)
     body.blocks = {"body"};
     body.block = {0};
     Shared mesh = dealt(body, alone());
-    const auto worst = [](const Mesh &mesh) {
-      double least = 1;
-      for (LO c = 0; c < mesh.num_cells(); ++c) least = std::min(least, quality(test::places(mesh, c, {0, 1, 2, 3})));
-      return least;
-    };
-    if (worst(*mesh) < 0) { // the other way round
+    if (test::worst_quality(*mesh) < 0) { // the other way round
       body.cells = {0, 2, 1, 3};
       mesh = dealt(body, alone());
     }
-    const double first = worst(*refined(mesh, 1));
-    EXPECT_GT(first, 0.3 * worst(*mesh));
+    const double first = test::worst_quality(*refined(mesh, 1));
+    EXPECT_GT(first, 0.3 * test::worst_quality(*mesh));
     mesh = refined(mesh, 4);
     EXPECT_EQ(mesh->num_cells(), 4096);
-    EXPECT_GT(worst(*mesh), 0.9 * first);
+    EXPECT_GT(test::worst_quality(*mesh), 0.9 * first);
   }
 }
 

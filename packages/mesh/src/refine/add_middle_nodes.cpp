@@ -53,7 +53,7 @@ void add_places(const LocalMesh &mesh, const Middles &middles, const NewPlaces &
   for (const int c : cells)
     for (int e = 0; e < middles.per_cell; ++e) {
       const int m = middles.of_cell[std::size_t(middles.per_cell) * c + e];
-      if (done[m] || middles.owner_vertex(m) >= mesh.num_owned_nodes()) continue;
+      if (m < 0 || done[m] || middles.owner_vertex(m) >= mesh.num_owned_nodes()) continue;
       done[m] = 1;
       double *const x = &coords[std::size_t(dim) * m];
       if (place) {
@@ -96,8 +96,10 @@ NewMesh new_mesh(const LocalMesh &mesh, const std::vector<Middles> &kinds, const
     int *const nodes = &made.cells[std::size_t(width) * c];
     std::copy_n(mesh.nodes_of(c), vertices, nodes);
     for (std::size_t k = 0; k < kinds.size(); ++k)
-      for (int e = 0; e < kinds[k].per_cell; ++e)
-        nodes[kinds[k].slot[e]] = made.first[k] + kinds[k].of_cell[std::size_t(kinds[k].per_cell) * c + e];
+      for (int e = 0; e < kinds[k].per_cell; ++e) {
+        const int m = kinds[k].of_cell[std::size_t(kinds[k].per_cell) * c + e];
+        nodes[kinds[k].slot[e]] = m < 0 ? -1 : made.first[k] + m;
+      }
   }
   return made;
 }
@@ -189,7 +191,7 @@ std::vector<int> number_nodes(const LocalMesh &mesh, const std::vector<Middles> 
   std::vector<int> lid(made.size(), -1);
   int num_owned = 0;
   for (const int node : made.cells)
-    if (made.owned[node] && lid[node] < 0) lid[node] = num_owned++;
+    if (node >= 0 && made.owned[node] && lid[node] < 0) lid[node] = num_owned++;
   const auto &comm = mesh.owned_nodes->getComm();
   owned_nodes = rcp(new Map(Teuchos::OrdinalTraits<GO>::invalid(), static_cast<std::size_t>(num_owned), 0, comm));
   const GO first = sum_before(*comm, static_cast<GO>(num_owned));
@@ -208,9 +210,9 @@ std::vector<int> number_nodes(const LocalMesh &mesh, const std::vector<Middles> 
 
 } // namespace
 
-LocalMesh with_middle_nodes(const LocalMesh &mesh, const NewPlaces &place, const std::string &file)
+LocalMesh with_middle_nodes(const LocalMesh &mesh, const std::vector<Middles> &kinds, const NewPlaces &place,
+                            const std::string &file)
 {
-  const std::vector<Middles> kinds = middles_of(mesh);
   NewMesh made = new_mesh(mesh, kinds, place, file);
   LocalMesh whole;
   whole.element = {mesh.dim(), 2, mesh.element.shape};
@@ -226,7 +228,7 @@ LocalMesh with_middle_nodes(const LocalMesh &mesh, const NewPlaces &place, const
     whole.moved[lid[n]] = made.moved[n];
     std::copy_n(&made.coords[std::size_t(dim) * n], dim, &whole.coords[std::size_t(dim) * lid[n]]);
   }
-  for (const int node : made.cells) whole.cells.push_back(lid[node]);
+  for (const int node : made.cells) whole.cells.push_back(node < 0 ? -1 : lid[node]);
   whole.block = mesh.block;
   whole.cell_id = mesh.cell_id;
   whole.sides = mesh.sides;
@@ -239,6 +241,7 @@ LocalMesh with_middle_nodes(const LocalMesh &mesh, const NewPlaces &place, const
   }
   whole.parent = mesh.parent;
   whole.kind = mesh.kind;
+  whole.child_vertices = mesh.child_vertices;
   return whole;
 }
 

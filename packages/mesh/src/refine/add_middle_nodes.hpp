@@ -1,6 +1,6 @@
 #pragma once
 
-#include "local_mesh.hpp"
+#include "middles.hpp"
 
 #include <functional>
 
@@ -13,8 +13,10 @@ using NewPlaces = std::function<void(int cell, int node, double *x)>;
 /// Adds the nodes in the middle of edges, faces and cells that make a mesh of order 1 one of order 2, in the same cells. Those of the
 /// boundary go to its shape, where it is curved. Nodes are numbered anew, as cells meet them, so that neighbours lie close in memory; ids
 /// of nodes stay, those of new ones follow them. Collective.
+/// @param kinds  those that get nodes, see middles_of(); a cell has -1 in the place of the others
 /// @param place  empty: in the middle of the vertices
 /// @param file   the .geo of shapes without closed formulas
-LocalMesh with_middle_nodes(const LocalMesh &mesh, const NewPlaces &place, const std::string &file);
+LocalMesh with_middle_nodes(const LocalMesh &mesh, const std::vector<Middles> &kinds, const NewPlaces &place,
+                            const std::string &file);
 
 } // namespace rpc::mesh

@@ -1,6 +1,7 @@
 #include "children.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace rpc::mesh
 {
@@ -46,7 +47,7 @@ int orientation(const Element &whole, const std::vector<int> &nodes)
 /// The four parts of the octahedron for each diagonal: the nodes between vertices a, b and between the other two are its ends.
 void add_inner_tetrahedra(Children &children)
 {
-  const Element &whole = children.whole;
+  const Element &whole = children.kinds.whole;
   // Opposite corners of the octahedron sum to the same place.
   children.diagonal = {{4, 9}, {5, 7}, {6, 8}};
   for (int d = 0; d < 3; ++d) {
@@ -56,7 +57,7 @@ void add_inner_tetrahedra(Children &children)
     for (int i = 0; i < 4; ++i) {
       std::vector<int> nodes = {ends[0], ends[1], ring[i], ring[(i + 1) % 4]};
       if (orientation(whole, nodes) < 0) std::swap(nodes[2], nodes[3]);
-      children.vertices.push_back(nodes);
+      children.kinds.add(nodes);
     }
   }
 }
@@ -76,24 +77,77 @@ int facet_with(const Element &whole, const std::vector<int> &nodes)
 Children make_children(const int dim, const Shape shape)
 {
   Children children;
-  children.whole = {dim, 2, shape};
+  children.kinds.whole = {dim, 2, shape};
   children.per_cell = 1 << dim;
-  children.vertices = at_vertices(children.whole);
-  if (shape == Shape::simplex && dim == 2) children.vertices.push_back({3, 4, 5});
+  for (const auto &nodes : at_vertices(children.kinds.whole)) children.kinds.add(nodes);
+  if (shape == Shape::simplex && dim == 2) children.kinds.add({3, 4, 5});
   if (shape == Shape::simplex && dim == 3) add_inner_tetrahedra(children);
-  const Element child{dim, 1, shape};
-  for (const auto &vertices : children.vertices) {
-    children.facets.emplace_back();
-    for (const auto &facet : child.facets()) {
-      std::vector<int> nodes;
-      for (const int v : facet) nodes.push_back(vertices[v]);
-      children.facets.back().push_back(facet_with(children.whole, nodes));
-    }
-  }
   return children;
 }
 
 } // namespace
+
+void ChildKinds::add(const std::vector<int> &nodes)
+{
+  vertices.push_back(nodes);
+  facets.emplace_back();
+  for (const auto &facet : Element{whole.dim, 1, whole.shape}.facets()) {
+    std::vector<int> of_facet;
+    for (const int v : facet) of_facet.push_back(nodes[v]);
+    facets.back().push_back(facet_with(whole, of_facet));
+  }
+}
+
+ChildVertices ChildKinds::places() const
+{
+  const bool simplex = whole.shape == Shape::simplex;
+  ChildVertices all;
+  for (const auto &nodes : vertices) {
+    all.emplace_back();
+    for (const int node : nodes) {
+      std::array<double, 3> X{};
+      for (int d = 0; d < whole.dim; ++d) X[d] = whole.lattice()[node][d] / 2. * (simplex ? 1 : 2) - (simplex ? 0 : 1);
+      all.back().push_back(X);
+    }
+  }
+  return all;
+}
+
+Bisection::Bisection(const Element &element)
+{
+  kinds_.whole = {element.dim, 2, element.shape};
+}
+
+const std::vector<int> &Bisection::children(const std::vector<int> &order)
+{
+  found_.clear();
+  std::vector<int> nodes(kinds_.whole.num_vertices());
+  std::iota(nodes.begin(), nodes.end(), 0);
+  divide(nodes, order);
+  return found_;
+}
+
+void Bisection::divide(const std::vector<int> &nodes, const std::vector<int> &order)
+{
+  const auto &edges = kinds_.whole.edges();
+  const auto place = [&](const int node) { return std::find(nodes.begin(), nodes.end(), node) - nodes.begin(); };
+  const auto end = static_cast<std::ptrdiff_t>(nodes.size());
+  int first = -1;
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (order[e] >= 0 && (first < 0 || order[e] < order[first]) && place(edges[e][0]) < end && place(edges[e][1]) < end)
+      first = static_cast<int>(e);
+  if (first < 0) {
+    const auto [at, is_new] = kind_of_.emplace(nodes, kinds_.size());
+    if (is_new) kinds_.add(nodes);
+    found_.push_back(at->second);
+    return;
+  }
+  for (const int kept : {0, 1}) { // in the other end's place comes the middle, which keeps the orientation
+    std::vector<int> part = nodes;
+    part[place(edges[first][1 - kept])] = edges[first].back();
+    divide(part, order);
+  }
+}
 
 const Children &children_of(const Element &element)
 {
@@ -102,30 +156,22 @@ const Children &children_of(const Element &element)
   return all[2 * (element.dim - 2) + (element.shape == Shape::tensor ? 1 : 0)];
 }
 
-std::vector<std::vector<std::array<double, 3>>> child_points(const Element &element)
+ChildVertices child_points(const Element &element, const ChildVertices &vertices)
 {
-  const Children &children = children_of(element);
   const Element linear{element.dim, 1, element.shape};
-  const bool simplex = element.shape == Shape::simplex;
-  const auto reference = [&](const int node, const int d) { // of the parent
-    return children.whole.lattice()[node][d] / 2. * (simplex ? 1 : 2) - (simplex ? 0 : 1);
-  };
   std::vector<int> along; // the vertex next to the first one in each direction
   for (int d = 0; d < element.dim; ++d) {
     std::vector<int> unit(element.dim, 0);
     unit[d] = 1;
     along.push_back(node_at(linear, unit));
   }
-  std::vector<std::vector<std::array<double, 3>>> points;
-  for (const auto &vertices : children.vertices) {
+  ChildVertices points;
+  for (const auto &at : vertices) {
     points.emplace_back();
     for (const auto &place : element.lattice()) {
-      std::array<double, 3> X{};
-      for (int i = 0; i < element.dim; ++i) {
-        X[i] = reference(vertices[0], i);
-        for (int d = 0; d < element.dim; ++d)
-          X[i] += (reference(vertices[along[d]], i) - reference(vertices[0], i)) * place[d] / element.order;
-      }
+      std::array<double, 3> X = at[0];
+      for (int i = 0; i < element.dim; ++i)
+        for (int d = 0; d < element.dim; ++d) X[i] += (at[along[d]][i] - at[0][i]) * place[d] / element.order;
       points.back().push_back(X);
     }
   }

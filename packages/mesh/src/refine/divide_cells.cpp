@@ -12,10 +12,8 @@ namespace
 
 /// The children that a rank has of each cell.
 struct Family {
-  int per_cell = 0;
-  std::vector<int> lid; // (cells, per_cell) -1: not here
-
-  const int *of(const int cell) const { return &lid[std::size_t(per_cell) * cell]; }
+  const ChildKinds &kinds;
+  Lists lid; ///< of each cell's children; -1: not here
 };
 
 /// The shortest diagonal of the octahedron inside a tetrahedron; of those that differ by rounding the first.
@@ -38,44 +36,43 @@ int shortest_diagonal(const LocalMesh &mesh, const Children &children, const int
   return shortest;
 }
 
-/// Fills cells, blocks, ids and parents of the children.
-Family add_children(const LocalMesh &whole, LocalMesh &fine)
+/// Fills cells, blocks, parents and kinds of the children that a rank is to have; ids of those that it owns are left to be told.
+/// @param kinds_of_cell  (cell) -> kinds of all its children
+template <class KindsOfCell>
+Lists add_children(const LocalMesh &whole, const ChildKinds &kinds, const KindsOfCell &kinds_of_cell, LocalMesh &fine)
 {
-  const Children &children = children_of(whole.element);
   const int num_owned = whole.num_owned_nodes();
-  Family family;
-  family.per_cell = children.per_cell;
-  family.lid.assign(std::size_t(children.per_cell) * whole.num_cells(), -1);
+  Lists lids;
+  lids.begin.reserve(whole.num_cells() + 1);
   for (int c = 0; c < whole.num_cells(); ++c) {
     const int *const nodes = whole.nodes_of(c);
     const bool owned = c < whole.num_owned_cells();
-    const int diagonal = shortest_diagonal(whole, children, nodes);
-    for (int k = 0; k < children.per_cell; ++k) {
-      const int kind = children.kind(k, diagonal);
-      const auto &vertices = children.vertices[kind];
-      if (!owned && std::none_of(vertices.begin(), vertices.end(), [&](const int v) { return nodes[v] < num_owned; }))
-        continue;
-      family.lid[std::size_t(children.per_cell) * c + k] = fine.num_cells();
+    for (const int kind : kinds_of_cell(c)) {
+      const auto &vertices = kinds.vertices[kind];
+      const bool here =
+          owned || std::any_of(vertices.begin(), vertices.end(), [&](const int v) { return nodes[v] < num_owned; });
+      lids.value.push_back(here ? fine.num_cells() : -1);
+      if (!here) continue;
       for (const int v : vertices) fine.cells.push_back(nodes[v]);
       fine.block.push_back(whole.block[c]);
       fine.parent.push_back(c);
       fine.kind.push_back(kind);
-      if (owned) fine.cell_id.push_back(children.per_cell * whole.cell_id[c] + k);
+      if (owned) fine.cell_id.push_back(-1);
     }
+    lids.begin.push_back(lids.value.size());
   }
-  return family;
+  return lids;
 }
 
 /// The parts of facets, those of them that a rank is to have: of its own cells, or at a node that it owns.
 template <class Facets>
 void add_parts(const LocalMesh &fine, const Family &family, const Facets &whole, Facets &parts)
 {
-  const Children &children = children_of(fine.element);
   for (std::size_t f = 0; f < whole.cell.size(); ++f)
-    for (int k = 0; k < family.per_cell; ++k) {
-      const int cell = family.of(whole.cell[f])[k];
+    for (const int *child = family.lid.first(whole.cell[f]); child != family.lid.last(whole.cell[f]); ++child) {
+      const int cell = *child;
       if (cell < 0) continue;
-      const auto &facets = children.facets[fine.kind[cell]];
+      const auto &facets = family.kinds.facets[fine.kind[cell]];
       for (std::size_t o = 0; o < facets.size(); ++o) {
         if (facets[o] != whole.ordinal[f]) continue;
         const auto &local = fine.element.facets()[o];
@@ -89,7 +86,7 @@ void add_parts(const LocalMesh &fine, const Family &family, const Facets &whole,
     }
 }
 
-/// Leaves the nodes that cells have; all owned ones have cells.
+/// Leaves the nodes that cells have, and owned ones.
 void take_nodes(const LocalMesh &whole, LocalMesh &fine)
 {
   const int dim = whole.dim();
@@ -108,14 +105,15 @@ void take_nodes(const LocalMesh &whole, LocalMesh &fine)
   for (int &node : fine.cells) node = lid[node];
 }
 
-} // namespace
-
-LocalMesh divided(const LocalMesh &whole)
+/// The mesh of the children, but for the ids of its cells.
+template <class KindsOfCell>
+LocalMesh divided_by(const LocalMesh &whole, const ChildKinds &kinds, const KindsOfCell &kinds_of_cell, Lists &children)
 {
   LocalMesh fine;
   fine.element = {whole.dim(), 1, whole.element.shape};
   fine.owned_nodes = whole.owned_nodes;
-  const Family family = add_children(whole, fine);
+  Family family{kinds, add_children(whole, kinds, kinds_of_cell, fine)};
+  fine.child_vertices = kinds.places();
   for (const SideData &side : whole.sides) {
     fine.sides.push_back({side.name, {}, {}});
     add_parts(fine, family, side, fine.sides.back());
@@ -126,7 +124,51 @@ LocalMesh divided(const LocalMesh &whole)
   }
   take_nodes(whole, fine);
   fine.points = whole.points;
+  children = std::move(family.lid);
   return fine;
+}
+
+} // namespace
+
+LocalMesh divided(const LocalMesh &whole)
+{
+  const Children &ways = children_of(whole.element);
+  std::vector<int> kinds(ways.per_cell);
+  const auto kinds_of_cell = [&](const int c) -> const std::vector<int> & {
+    const int diagonal = shortest_diagonal(whole, ways, whole.nodes_of(c));
+    for (int k = 0; k < ways.per_cell; ++k) kinds[k] = ways.kind(k, diagonal);
+    return kinds;
+  };
+  Lists children;
+  LocalMesh fine = divided_by(whole, ways.kinds, kinds_of_cell, children);
+  for (int c = 0; c < whole.num_owned_cells(); ++c)
+    for (int k = 0; k < ways.per_cell; ++k) fine.cell_id[children.first(c)[k]] = ways.per_cell * whole.cell_id[c] + k;
+  return fine;
+}
+
+LocalMesh divided(const LocalMesh &whole, const EdgeMarks &marks)
+{
+  Bisection bisection(whole.element);
+  const Middles &edges = marks.edges;
+  std::vector<int> order(edges.per_cell);
+  const auto kinds_of_cell = [&](const int c) -> const std::vector<int> & {
+    for (int e = 0; e < edges.per_cell; ++e) {
+      const int edge = edges.of_cell[std::size_t(edges.per_cell) * c + e];
+      order[e] = edge < 0 ? -1 : marks.order[edge];
+    }
+    return bisection.children(order);
+  };
+  Lists children;
+  LocalMesh fine = divided_by(whole, bisection.kinds(), kinds_of_cell, children);
+  std::vector<int> count;
+  for (int c = 0; c < whole.num_owned_cells(); ++c) count.push_back(children.size_of(c));
+  const Comm &comm = *whole.owned_nodes->getComm();
+  GO total = 0;
+  const std::vector<GO> first =
+      sums_before(comm, sum_all(comm, static_cast<GO>(count.size())), whole.cell_id, count, total);
+  for (std::size_t c = 0; c < count.size(); ++c)
+    for (int k = 0; k < count[c]; ++k) fine.cell_id[children.first(static_cast<int>(c))[k]] = first[c] + k;
+  return without_unused_nodes(std::move(fine));
 }
 
 } // namespace rpc::mesh

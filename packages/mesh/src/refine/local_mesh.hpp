@@ -22,8 +22,9 @@ struct LocalMesh {
   std::vector<SideData> sides;
   std::vector<BoundaryPart> geometry;
   std::vector<PointData> points;
-  std::vector<LO> parent; ///< (local cells) of the mesh before
-  std::vector<int> kind;  ///< (local cells)
+  std::vector<LO> parent;       ///< (local cells) of the mesh before
+  std::vector<int> kind;        ///< (local cells)
+  ChildVertices child_vertices; ///< of each kind
 
   int dim() const { return element.dim; }
   int num_owned_nodes() const { return num_local(*owned_nodes); }
@@ -35,6 +36,9 @@ struct LocalMesh {
 
 /// Collective.
 LocalMesh local_mesh(const Mesh &mesh);
+
+/// Without the owned nodes that no cell has: ids and gids of the others close up. Collective.
+LocalMesh without_unused_nodes(LocalMesh mesh);
 
 /// The mesh of `local`; names, and where the geometry is from, are those of the coarse one. Collective.
 Mesh mesh_of(const LocalMesh &local, const std::shared_ptr<const Mesh> &coarse);

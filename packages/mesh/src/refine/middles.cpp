@@ -58,18 +58,30 @@ Middles middles_of_cells(const LocalMesh &mesh, const Element &whole)
   return middles;
 }
 
-/// (owned nodes) Sum of the counts of all nodes with lower ids. Each rank sums over a range of ids; collective.
-/// @param[out] total  over all nodes
-std::vector<GO> sums_before(const LocalMesh &mesh, const std::vector<int> &count, GO &total)
+} // namespace
+
+std::vector<Middles> middles_of(const LocalMesh &mesh)
 {
-  const Comm &comm = *mesh.owned_nodes->getComm();
-  const GO num_ids = static_cast<GO>(mesh.owned_nodes->getGlobalNumElements()), ranks = comm.getSize(),
-           block = (num_ids + ranks - 1) / ranks, first = block * comm.getRank();
+  const Element whole{mesh.dim(), 2, mesh.element.shape};
+  const bool tensor = whole.shape == Shape::tensor;
+  std::vector<Middles> all;
+  all.push_back(middles_of_entities(edges_of(mesh.element, mesh.cells), whole.edges()));
+  if (tensor && mesh.dim() == 3)
+    all.push_back(middles_of_entities(facets_of(mesh.element, mesh.cells), whole.facets()));
+  if (tensor) all.push_back(middles_of_cells(mesh, whole));
+  for (Middles &middles : all) sort_by_ids(mesh, middles);
+  return all;
+}
+
+std::vector<GO> sums_before(const Comm &comm, const GO num_ids, const std::vector<GO> &id,
+                            const std::vector<int> &count, GO &total)
+{
+  const GO ranks = comm.getSize(), block = (num_ids + ranks - 1) / ranks, first = block * comm.getRank();
   std::vector<int> rank;
   std::vector<double> rows;
-  for (int n = 0; n < mesh.num_owned_nodes(); ++n) {
-    rank.push_back(static_cast<int>(mesh.id[n] / block));
-    rows.insert(rows.end(), {static_cast<double>(mesh.id[n]), static_cast<double>(count[n])});
+  for (std::size_t n = 0; n < count.size(); ++n) {
+    rank.push_back(static_cast<int>(id[n] / block));
+    rows.insert(rows.end(), {static_cast<double>(id[n]), static_cast<double>(count[n])});
   }
   const Routed routed(comm, rank);
   const std::vector<double> received = routed.forward(rows, 2);
@@ -86,27 +98,13 @@ std::vector<GO> sums_before(const LocalMesh &mesh, const std::vector<int> &count
   return {sums.begin(), sums.end()};
 }
 
-} // namespace
-
-std::vector<Middles> middles_of(const LocalMesh &mesh)
-{
-  const Element whole{mesh.dim(), 2, mesh.element.shape};
-  const bool tensor = whole.shape == Shape::tensor;
-  std::vector<Middles> all;
-  all.push_back(middles_of_entities(edges_of(mesh.element, mesh.cells), whole.edges()));
-  if (tensor && mesh.dim() == 3)
-    all.push_back(middles_of_entities(facets_of(mesh.element, mesh.cells), whole.facets()));
-  if (tensor) all.push_back(middles_of_cells(mesh, whole));
-  for (Middles &middles : all) sort_by_ids(mesh, middles);
-  return all;
-}
-
 std::vector<GO> ids_of(const LocalMesh &mesh, const Middles &middles, GO &first)
 {
   std::vector<int> count;
   for (int n = 0; n < mesh.num_owned_nodes(); ++n) count.push_back(middles.at_vertex.size_of(n));
   GO total = 0;
-  const std::vector<GO> before = sums_before(mesh, count, total);
+  const std::vector<GO> before = sums_before(
+      *mesh.owned_nodes->getComm(), static_cast<GO>(mesh.owned_nodes->getGlobalNumElements()), mesh.id, count, total);
   std::vector<GO> ids(middles.size(), -1);
   for (int n = 0; n < mesh.num_owned_nodes(); ++n)
     for (int k = 0; k < count[n]; ++k) ids[middles.at_vertex.first(n)[k]] = first + before[n] + k;

@@ -4,6 +4,7 @@
 #include "add_middle_nodes.hpp"
 #include "children.hpp"
 #include "divide_cells.hpp"
+#include "halved.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/memory.hpp"
 #include "rpc/mesh/shape_functions.hpp"
@@ -21,19 +22,21 @@ namespace
 {
 
 /// Refuses what could only run out of memory or of local numbers later; collective.
-void require_room(const Mesh &coarse)
+/// @param growth  times as many cells as the coarse mesh has on this rank
+/// @param asked   what asks for them
+void require_room(const Mesh &coarse, const double growth, const std::string &asked)
 {
   constexpr double gib = 1 << 30;
   const double per_node = coarse.dim() == 2 ? 800 : 1400; // [B] as of boxes
-  const double nodes = std::pow(2, coarse.dim()) * coarse.num_owned_nodes();
-  const double entries = std::pow(2, coarse.dim()) * coarse.num_cells() * coarse.element.num_nodes();
+  const double nodes = growth * coarse.num_owned_nodes();
+  const double entries = growth * coarse.num_cells() * coarse.element.num_nodes();
   std::optional<std::string> message;
   if (const double limit = memory_limit();
       per_node * nodes > limit || entries > static_cast<double>(std::numeric_limits<int>::max())) {
     std::ostringstream text;
-    text << std::setprecision(3) << "deck: \"Mesh->Refinements\" give a rank about " << nodes
-         << " nodes, which take at least " << per_node * nodes / gib << " GiB of memory; a rank can have at most "
-         << limit / gib << " GiB here. Use fewer, or more ranks on more machines.";
+    text << std::setprecision(3) << asked << " a rank about " << nodes << " nodes, which take at least "
+         << per_node * nodes / gib << " GiB of memory; a rank can have at most " << limit / gib
+         << " GiB here. Use fewer, or more ranks on more machines.";
     message = text.str();
   }
   throw_if_any(coarse.comm(), ExitCode::bad_input, message);
@@ -45,7 +48,8 @@ class PlacesInParent
 public:
   /// @param parents  of order 2   @param children  of order 1, with the same nodes, but for those that it dropped
   PlacesInParent(const LocalMesh &parents, const LocalMesh &children)
-      : parents_(parents), children_(children), weights_(child_weights(parents.element, parents.element))
+      : parents_(parents), children_(children),
+        weights_(child_weights(parents.element, parents.element, children.child_vertices))
   {
   }
   void operator()(const int cell, const int node, double *const x) const
@@ -86,15 +90,27 @@ void require_good_cells(const LocalMesh &mesh)
   throw_if_any(*mesh.owned_nodes->getComm(), ExitCode::bad_mesh, message);
 }
 
+/// The mesh with the vertices of its cells only; all nodes stay.
+LocalMesh of_vertices(const LocalMesh &mesh)
+{
+  if (mesh.element.order == 1) return mesh;
+  LocalMesh linear = mesh;
+  linear.element.order = 1;
+  linear.cells.clear();
+  for (int c = 0; c < mesh.num_cells(); ++c)
+    linear.cells.insert(linear.cells.end(), mesh.nodes_of(c), mesh.nodes_of(c) + mesh.element.num_vertices());
+  return linear;
+}
+
 } // namespace
 
-ChildWeights child_weights(const Element &coarse, const Element &fine)
+ChildWeights child_weights(const Element &coarse, const Element &fine, const ChildVertices &vertices)
 {
   constexpr double rounding = 1e-12;
   ChildWeights weights;
   with_shape_functions(coarse, [&](const auto &shape) {
     constexpr int dim = std::decay_t<decltype(shape)>::dim, nodes = std::decay_t<decltype(shape)>::nodes;
-    for (const auto &points : child_points(fine)) {
+    for (const auto &points : child_points(fine, vertices)) {
       weights.emplace_back();
       for (const auto &point : points) {
         double X[dim], N[nodes], dN[nodes][dim];
@@ -112,14 +128,34 @@ ChildWeights child_weights(const Element &coarse, const Element &fine)
 Mesh refined(const std::shared_ptr<const Mesh> &coarse)
 {
   RPC_REQUIRE_CODE(!coarse->element.mixed(), ExitCode::internal_error, "mesh: mixed elements are not refined");
-  require_room(*coarse);
+  require_room(*coarse, std::pow(2, coarse->dim()), "deck: \"Mesh->Refinements\" give");
   const LocalMesh whole = local_mesh(*coarse);
   LocalMesh fine;
   if (whole.element.order == 1) {
-    fine = divided(with_middle_nodes(whole, {}, coarse->geometry_file));
+    fine = divided(with_middle_nodes(whole, middles_of(whole), {}, coarse->geometry_file));
   } else {
     const LocalMesh children = divided(whole);
-    fine = with_middle_nodes(children, PlacesInParent(whole, children), coarse->geometry_file);
+    fine = with_middle_nodes(children, middles_of(children), PlacesInParent(whole, children), coarse->geometry_file);
+  }
+  require_good_cells(fine);
+  return mesh_of(fine, coarse);
+}
+
+Mesh halved(const std::shared_ptr<const Mesh> &coarse, const std::vector<Halving> &halving)
+{
+  const LocalMesh whole = local_mesh(*coarse);
+  const LocalMesh linear = of_vertices(whole);
+  const EdgeMarks marks = marked_edges(linear, middles_of(linear).front(), halving);
+  const double cells = std::max(1, whole.num_cells());
+  const auto cut = static_cast<double>(
+      std::count_if(marks.edges.of_cell.begin(), marks.edges.of_cell.end(), [](const int edge) { return edge >= 0; }));
+  require_room(*coarse, 1 + cut / cells, "mesh: sizes of cells give");
+  LocalMesh fine;
+  if (whole.element.order == 1) {
+    fine = divided(with_middle_nodes(linear, {marks.edges}, {}, coarse->geometry_file), marks);
+  } else {
+    const LocalMesh children = divided(whole, marks);
+    fine = with_middle_nodes(children, middles_of(children), PlacesInParent(whole, children), coarse->geometry_file);
   }
   require_good_cells(fine);
   return mesh_of(fine, coarse);

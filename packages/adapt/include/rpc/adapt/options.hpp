@@ -3,9 +3,18 @@
 #include "rpc/analysis/run.hpp"
 
 #include <Teuchos_ParameterList.hpp>
+#include <memory>
+#include <optional>
 
 namespace rpc::adapt
 {
+
+/// Who makes the meshes after the first one.
+enum class NextMeshes {
+  automatic, ///< nested for boxes in space and for a .msh, else gmsh
+  gmsh,      ///< anew, by a field of sizes
+  nested     ///< cells of the first one are halved where a field of sizes asks for it
+};
 
 struct AdaptOptions {
   double target = 0;       ///< of the relative error in the energy norm, in (0, 1); 0: one mesh, as it is given
@@ -14,6 +23,7 @@ struct AdaptOptions {
   double exact_energy = 0; ///< J of the exact solution [J], in 2D per m; NaN: unknown
   bool estimate = false;   ///< whether the error is estimated; adapting implies it
   bool write_all = false;  ///< results of every mesh, not of the last only
+  NextMeshes meshes = NextMeshes::automatic;
 
   bool adapts() const { return target > 0; }
 };
@@ -22,6 +32,15 @@ struct AdaptOptions {
 Teuchos::ParameterList valid_adapt_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
 AdaptOptions adapt_options(const Teuchos::ParameterList &list);
+
+/// Whether cells of the first mesh are halved, rather than gmsh asked for another mesh.
+bool nests(const mesh::MeshOptions &first, const AdaptOptions &adapt);
+
+/// Of a task's first mesh the one by a field of sizes; none where there is none to be had.
+/// @param sizes        see mesh::with_sizes()
+/// @param refinements  of what gmsh makes; nested meshes have the deck's
+std::optional<mesh::MeshOptions> sized(const mesh::MeshOptions &first, const AdaptOptions &adapt,
+                                       std::shared_ptr<const mesh::SizeField> sizes, int refinements);
 
 /// What is to be solved, on meshes that are adapted where that is asked for.
 struct Task : analysis::Task {

@@ -19,6 +19,10 @@ struct GmshOptions {
   std::optional<BoxOptions> box = std::nullopt; ///< meshed by `sizes`; no file then, its cells and `order` do not count
   std::shared_ptr<const SizeField> sizes = nullptr; ///< of cells, instead of those that a .geo asks for
   int refinements = 0; ///< how often make_mesh() halves each cell, >= 0; with it a .geo's mesh has its geometry
+  bool nested =
+      false; ///< make_mesh() meets `sizes` by refined_to(), and gmsh does not know them; a box may have no sizes then
+  std::shared_ptr<const MeshData> base =
+      nullptr; ///< of a nested one what read_gmsh() gives, on rank 0; null: not made yet
 };
 
 /// Begins to load gmsh, which takes a tenth of a second, while this process does other things; the first mesh would do it.

@@ -41,6 +41,16 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, double factor);
 std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes,
                                       int refinements = 0);
 
+/// The options by which the mesh that others ask for is refined to a field of sizes, see refined_to(). A box gets triangles or tetrahedra.
+/// @param sizes  read on rank 0 only, may be null on others
+/// @param base   the mesh that others ask for, see base_mesh()
+MeshOptions refined_to_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes,
+                             std::shared_ptr<const MeshData> base = nullptr);
+
+/// What refined_to_sizes() begins with, on rank 0; null on others. Collective.
+/// @throws rpc::Error on every rank, as make_mesh() does
+std::shared_ptr<const MeshData> base_mesh(const MeshOptions &options, const Comm &comm);
+
 /// This rank's part of the mesh; collective.
 /// @throws rpc::Error on every rank, as make_box() and read_gmsh() do
 Mesh make_mesh(const MeshOptions &options, const RCP<const Comm> &comm);

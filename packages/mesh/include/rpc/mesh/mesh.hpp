@@ -5,6 +5,7 @@
 #include "rpc/mesh/geometry.hpp"
 #include "rpc/mesh/ids.hpp"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,11 +33,16 @@ struct PointSet {
 
 struct Mesh;
 
+/// Kinds of children of a cell: (kinds, vertices) reference coordinates of the parent where the child's vertices lie; those beyond the
+/// dimension are 0.
+using ChildVertices = std::vector<std::vector<std::array<double, 3>>>;
+
 /// The mesh that another one was refined from, see refined().
 struct Parents {
   std::shared_ptr<const Mesh> mesh;
-  std::vector<LO> cell;  ///< (local cells) the parent's local cell
-  std::vector<int> kind; ///< (local cells) which child of it this is, see child_weights()
+  std::vector<LO> cell;   ///< (local cells) the parent's local cell
+  std::vector<int> kind;  ///< (local cells) which kind of child of it this is
+  ChildVertices vertices; ///< of each kind
 };
 
 /// One rank's part of a mesh.

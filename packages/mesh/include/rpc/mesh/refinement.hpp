@@ -1,11 +1,12 @@
 #pragma once
 
 #include "rpc/mesh/mesh.hpp"
+#include "rpc/mesh/size_field.hpp"
 
 #include <memory>
 #include <vector>
 
-/// Nested refinement: each cell is halved in all directions. doc/theory.md, section 2
+/// Nested refinement: each cell is halved in all directions, or those that a field of sizes tells. doc/theory.md, section 2
 namespace rpc::mesh
 {
 
@@ -20,11 +21,21 @@ namespace rpc::mesh
 /// @throws rpc::Error on every rank: bad_input where the mesh cannot fit in memory or in a rank's numbers, bad_mesh where a cell would be inverted
 Mesh refined(const std::shared_ptr<const Mesh> &coarse);
 
+/// A mesh of triangles or tetrahedra with those halved that are larger than a field of sizes asks for: as a rule in all directions; where that would
+/// make them too small, at their longest edge. Neighbours are halved as far as needed to fit, longest edges first, so that angles stay
+/// bounded. All else as in refined(); cells that stay are their own children.                       doc/theory.md (2.18)
+///
+/// Each level halves a cell at most once in each direction, and is the parent of the next one; there are as many as the field asks for. A cell
+/// counts as small enough at 1.12 times its size, so that the mesh has about expected_cells(). Collective.
+/// @param sizes  the same on all ranks
+/// @throws rpc::Error on every rank, as refined() does; bad_input where cells are no triangles or tetrahedra
+std::shared_ptr<const Mesh> refined_to(std::shared_ptr<const Mesh> mesh, const SizeField &sizes);
+
 /// Values of a parent's shape functions at the nodes of its children: (kinds of children, see Parents::kind; nodes of the child; nodes of the
 /// parent). Rounding is 0.
 using ChildWeights = std::vector<std::vector<std::vector<double>>>;
 /// @param coarse, fine  of one shape and dimension; orders may differ
-ChildWeights child_weights(const Element &coarse, const Element &fine);
+ChildWeights child_weights(const Element &coarse, const Element &fine, const ChildVertices &vertices);
 
 /// The mesh that is reached by going `levels` times to the parents; null where there are not as many.
 std::shared_ptr<const Mesh> ancestor(const std::shared_ptr<const Mesh> &mesh, int levels);

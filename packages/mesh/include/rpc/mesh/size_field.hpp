@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <string>
 #include <vector>
 
 namespace rpc::mesh
@@ -21,8 +23,18 @@ struct SizeField {
 /// graded meshes of a ball: 4.3 to 6.1.)
 inline constexpr double tetrahedra_per_cube = 5;
 
+/// The size of a cell by which a mesh of equal ones has expected_cells() [m]: an edge of a regular triangle of its area, in space the edge of a cube of so many times its volume.
+/// @tparam dim  2 or 3
+template <int dim>
+double cell_size(const std::array<std::array<double, dim>, dim + 1> &vertex);
+
 /// About how many cells a mesh of triangles or tetrahedra has that follows the field: the integral of 4 / (sqrt(3) size^2), in space of
 /// tetrahedra_per_cube / size^3.
 double expected_cells(const SizeField &field);
+
+/// @param where   what messages begin with
+/// @param factor  on all sizes
+/// @throws rpc::Error (bad_mesh) if sizes are not > 0 and finite, simplices name nodes that do not exist, or more than 5 million cells are asked for
+void check_sizes(const std::string &where, const SizeField &field, double factor);
 
 } // namespace rpc::mesh
