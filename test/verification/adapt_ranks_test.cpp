@@ -87,6 +87,11 @@ TEST(AdaptiveRanks, GiveBodiesInSpaceTheSameMeshes)
                      3);
 }
 
+TEST(AdaptiveRanks, GiveABodyFromAMshFileTheSameMeshes)
+{
+  expect_same_meshes("octant_msh.xml", {{}}, 3);
+}
+
 TEST(AdaptiveRanks, GiveNestedMeshesOfThePlaneTheSame)
 {
   expect_same_meshes("bracket.xml", {{"Adapt->Meshes=nested"}});

@@ -13,6 +13,8 @@ namespace
 
 // A new mesh is planned for so much less than the target: predictions are right to some ten per cent.
 constexpr double aim = 0.95, aim_in_space = 0.88; // another mesh costs more there
+// Sizes of nested cells are a factor of 1.26 or 1.41 apart: near the target plans that ask for little change nothing in many places.
+constexpr double aim_near_nested = 0.7;
 // The estimate falls by no more from one mesh to the next: a coarse mesh knows little of where a fine one is to be fine.
 constexpr double greatest_reduction = 4;
 // Near the target the next plan makes up for the excess of the last estimate over its plan, up to a factor. Cells hardly
@@ -55,9 +57,11 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
     return std::nullopt;
   }
   const double eta = std::sqrt(estimate.total());
-  const double wanted = (d.dim() == 2 ? aim : aim_in_space) * task_.adapt.target * std::sqrt(energy_norm_squared);
+  const double target = task_.adapt.target * std::sqrt(energy_norm_squared);
+  const double far = (d.dim() == 2 ? aim : aim_in_space) * target;
+  const bool is_near = eta < (d.dim() == 2 || nested ? near : near_in_space) * far;
+  const double wanted = is_near && nested ? aim_near_nested * target : far;
   const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
-  const bool is_near = eta < (d.dim() == 2 ? near : near_in_space) * wanted;
   const double missed = is_near ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
   planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
   const double bound = planned_ / missed;

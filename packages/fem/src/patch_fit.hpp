@@ -37,7 +37,10 @@ struct FitPatch {
   using Table = PatchTable<Dim, Nodes, Axisymmetric>;
   using Terms = typename Table::Terms;
   /// What lower terms must leave of a term's square. Patches inside leave 3e-2 at least on meshes that are fit for use.
-  static constexpr double threshold = 1e-3;
+  static constexpr double threshold = 1e-2;
+  /// The same of the square of the constant, in coordinates in which patches have size 1. Products of coordinates vanish at all nodes of some
+  /// patches.
+  static constexpr double least = 1e-6;
 
   ElasticCells<Dim, Nodes, Axisymmetric> body; //                                       in
   DeviceView<double **> recovery;              // (points, Nodes)                       in, shape functions
@@ -77,7 +80,7 @@ struct FitPatch {
     bool one_block = true;
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
       one_block = one_block && body.block(node_cell(k)) == body.block(first);
-    const int fitted = cholesky(normal, threshold);
+    const int fitted = cholesky(normal, threshold, least * normal[0][0]);
     int degree = one_block ? Table::degree : 1;
     while (degree > 1 && Terms::up_to(degree) > fitted) --degree;
     const int terms = Terms::up_to(degree);
@@ -122,7 +125,7 @@ struct FitPatch {
         }
       }
     }
-    const int fitted = cholesky(normal, threshold);
+    const int fitted = cholesky(normal, threshold, least * normal[0][0]);
     int degree = 2;
     while (degree > 0 && Terms::up_to(degree) > fitted) --degree;
     const int terms = Terms::up_to(degree);

@@ -51,9 +51,10 @@ struct Monomials {
 ///
 /// Goes on for as long as a row's pivot keeps more than `threshold` of the row's diagonal entry: for normal equations
 /// that is the part of a term's square which the terms before it cannot express, whatever the scale of the term.
+/// @param least  a pivot at most so large is rounding: of a term that is 0 at all places threshold alone would keep it
 /// @return how many leading rows of L are done
 template <int Size>
-KOKKOS_INLINE_FUNCTION int cholesky(double (&A)[Size][Size], const double threshold)
+KOKKOS_INLINE_FUNCTION int cholesky(double (&A)[Size][Size], const double threshold, const double least = 0)
 {
   for (int i = 0; i < Size; ++i) {
     double pivot = A[i][i];
@@ -62,7 +63,7 @@ KOKKOS_INLINE_FUNCTION int cholesky(double (&A)[Size][Size], const double thresh
       A[i][j] /= A[j][j];
       pivot -= A[i][j] * A[i][j];
     }
-    if (!(pivot > threshold * A[i][i])) return i;
+    if (!(pivot > threshold * A[i][i] && pivot > least)) return i;
     A[i][i] = math::sqrt(pivot);
   }
   return Size;

@@ -1,6 +1,9 @@
 #include "rpc/fem/stress.hpp"
 
+#include "block_mesh.hpp"
 #include "bodies.hpp"
+#include "rpc/mesh/distribute.hpp"
+#include "rpc/mesh/refinement.hpp"
 
 #include <functional>
 
@@ -92,6 +95,31 @@ TEST(NodalStresses, LinearDisplacementGivesHookesStressAtEveryNode)
     const auto all = stresses(d, *interpolate(d, [&](const Point &x) { return linear(x, element.dim); }));
     EXPECT_LT(difference(all, repeated(hookes_law(element.dim), all.size())), 1e-12);
   }
+}
+
+/// Vertices of bisected tetrahedra have few neighbours, in pairs on opposite sides: products of their coordinates vanish at all of them.
+TEST(NodalStresses, LinearDisplacementGivesHookesStressOnBisectedCells)
+{
+  for (const int dim : {2, 3})
+    for (const int order : {1, 2}) {
+      SCOPED_TRACE(std::to_string(dim) + "D, order " + std::to_string(order));
+      mesh::MeshData body = test::block({dim, order, mesh::Shape::simplex}, {2, 2, 2});
+      for (int n = 0; n < body.num_nodes(); ++n) { // rounding is to show
+        double *const x = &body.coords[std::size_t(dim) * n];
+        x[0] += std::sqrt(0.07) * x[1];
+        x[1] *= std::sqrt(0.83);
+        if (dim == 3) x[2] += std::sqrt(0.03) * x[0] - std::sqrt(0.05) * x[1];
+      }
+      const auto coarse =
+          std::make_shared<mesh::Mesh>(mesh::distribute(world()->getRank() == 0 ? body : mesh::MeshData{}, world()));
+      const double size = mesh::diameter(*coarse) / (dim == 2 ? 30 : 14);
+      mesh::SizeField sizes{{0, 0, 1, 0, 0, 1}, {0, 1, 2}, {size, size, size}, 2};
+      if (dim == 3) sizes = {{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 1, 2, 3}, {size, size, size, size}, 3};
+      const auto d = fem::discretize(mesh::refined_to(coarse, sizes));
+      EXPECT_GT(d.mesh->num_cells(), 2 * coarse->num_cells());
+      const auto all = stresses(d, *interpolate(d, [&](const Point &x) { return linear(x, dim); }));
+      EXPECT_LT(difference(all, repeated(hookes_law(dim), all.size())), 1e-11);
+    }
 }
 
 TEST(NodalStresses, AreExactForDisplacementsOfOneDegreeMoreThanTheElement)

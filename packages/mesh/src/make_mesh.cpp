@@ -80,6 +80,17 @@ bool can_be_meshed(const GmshOptions &options)
   return options.box || std::filesystem::path(options.file).extension() == ".geo";
 }
 
+/// gmsh's mesh, halved as often as asked for.
+Mesh make_refined(const GmshOptions &options, const RCP<const Comm> &comm)
+{
+  MeshData whole;
+  on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(options); });
+  auto mesh = std::make_shared<Mesh>(distribute(whole, comm));
+  whole = {};
+  for (int k = 0; k < options.refinements; ++k) mesh = std::make_shared<Mesh>(refined(mesh));
+  return *mesh;
+}
+
 /// A field of rank 0 on all ranks; collective.
 SizeField on_all_ranks(const Comm &comm, const SizeField *const field)
 {
@@ -209,12 +220,17 @@ Mesh make_mesh(const MeshOptions &options, const RCP<const Comm> &comm)
   if (const auto *box = std::get_if<BoxOptions>(&options)) return make_box(*box, comm);
   const auto &gmsh = std::get<GmshOptions>(options);
   if (gmsh.nested) return make_nested(gmsh, comm);
-  MeshData whole;
-  on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(gmsh); });
-  auto mesh = std::make_shared<Mesh>(distribute(whole, comm));
-  whole = {};
-  for (int k = 0; k < gmsh.refinements; ++k) mesh = std::make_shared<Mesh>(refined(mesh));
-  return *mesh;
+  const bool by_sizes = sum_all(*comm, GO(gmsh.sizes ? 1 : 0)) > 0; // which rank 0 alone need have
+  if (!by_sizes || gmsh.refinements == 0) return make_refined(gmsh, comm);
+  try {
+    return make_refined(gmsh, comm);
+  } catch (const Error &error) { // on all ranks: cells too large for a curved boundary
+    if (error.code() != ExitCode::bad_mesh) throw;
+    GmshOptions fine = gmsh;
+    fine.size_factor = std::ldexp(gmsh.size_factor, -gmsh.refinements);
+    fine.refinements = 0;
+    return make_refined(fine, comm);
+  }
 }
 
 } // namespace rpc::mesh

@@ -194,6 +194,26 @@ TEST(SizeFieldInSpace, RefinementsHalveCellsThatAreMadeTwiceAsLong)
   EXPECT_EQ(again.size_factor, 1);
 }
 
+/// A plate with a hole in cells that are wider than it: halved they would be inverted, gmsh's own small ones are not.
+TEST(SizeFieldInSpace, CellsTooLargeForACurvedBoundaryAreMadeSmallByGmsh)
+{
+  const ScratchFile geo("hole.geo", "Mesh.HighOrderOptimize = 1;\nSetFactory(\"OpenCASCADE\");\n"
+                                    "Box(1) = {0, 0, 0, 2, 1, 1};\nCylinder(2) = {0.8, 0.5, 0, 0, 0, 1, 0.17};\n"
+                                    "BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };\n"
+                                    "Physical Volume(\"body\") = {3};\n");
+  GmshOptions options;
+  options.file = geo.path();
+  options.order = 2;
+  const auto comm = Tpetra::getDefaultComm();
+  int halved = 0, small = 0;
+  for (const double size : {0.15, 0.25, 0.35, 0.45}) {
+    const Mesh mesh = make_mesh(with_sizes(options, comm->getRank() == 0 ? constant(size) : nullptr, 1).value(), comm);
+    (mesh.parents ? halved : small) += 1;
+  }
+  EXPECT_GT(halved, 0);
+  EXPECT_GT(small, 0);
+}
+
 TEST(SizeFieldInSpace, EqualOptionsGiveEqualMeshesBitByBit)
 {
   const Sizes field = field_of({-1, 2, 0}, {1, 3, 1}, 8, [](const double x, const double y, const double z) {

@@ -37,7 +37,8 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, double factor);
 /// about as long as the field says there. A size factor is 1 then, and sizes and refinements that the options had are replaced. A box in
 /// space gets tetrahedra; all else keeps its kind of cells. None where gmsh cannot make another mesh: for a .msh.
 /// @param sizes        read on rank 0 only, may be null on others
-/// @param refinements  gmsh makes cells 2^refinements times as long as the field says, and refined() halves them as often
+/// @param refinements  gmsh makes cells 2^refinements times as long as the field says, and refined() halves them as often; where these are too
+///                     large for a curved boundary, make_mesh() has gmsh make the small ones
 std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes,
                                       int refinements = 0);
 
