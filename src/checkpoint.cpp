@@ -157,8 +157,7 @@ std::vector<io::NamedArray> arrays_of(const mesh::GmshOptions &mesh)
 mesh::MeshOptions mesh_of(const io::Checkpoint &file, const std::string &path, const Scene &scene, const Comm &comm)
 {
   const auto *const coords = array_of(file, "sizes_coords"), *const simplices = array_of(file, "sizes_simplices"),
-                    *const size = array_of(file, "sizes_size"),
-                    *const kind = array_of(file, "sizes_kind");
+                    *const size = array_of(file, "sizes_size"), *const kind = array_of(file, "sizes_kind");
   if (!coords || !simplices || !size || !kind) return scene.mesh;
   std::shared_ptr<mesh::SizeField> sizes;
   int refinements = 0, nested = 0;

@@ -21,12 +21,12 @@ namespace rpc::mesh
 /// @throws rpc::Error on every rank: bad_input where the mesh cannot fit in memory or in a rank's numbers, bad_mesh where a cell would be inverted
 Mesh refined(const std::shared_ptr<const Mesh> &coarse);
 
-/// A mesh of triangles or tetrahedra with those halved that are larger than a field of sizes asks for: as a rule in all directions; where that would
-/// make them too small, at their longest edge. Neighbours are halved as far as needed to fit, longest edges first, so that angles stay
-/// bounded. All else as in refined(); cells that stay are their own children.                       doc/theory.md (2.18)
+/// Halves triangles or tetrahedra that are larger than a field of sizes asks for: as a rule in all directions, at their longest edge where that
+/// would make them too small. Neighbours are halved as far as needed to fit, longest edges first, so that angles stay bounded. All else as in
+/// refined(); cells that stay are their own children.                                              doc/theory.md (2.18)
 ///
-/// Each level halves a cell at most once in each direction, and is the parent of the next one; there are as many as the field asks for. A cell
-/// counts as small enough at 1.12 times its size, so that the mesh has about expected_cells(). Collective.
+/// Each level halves a cell at most once in each direction and is the parent of the next one; there are as many as the field asks for. A cell
+/// is small enough at 2^(1/(2 dim)) times its size, so that the mesh has about expected_cells(). Collective.
 /// @param sizes  the same on all ranks
 /// @throws rpc::Error on every rank, as refined() does; bad_input where cells are no triangles or tetrahedra
 std::shared_ptr<const Mesh> refined_to(std::shared_ptr<const Mesh> mesh, const SizeField &sizes);
