@@ -62,7 +62,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   const bool is_near = eta < (d.dim() == 2 || nested ? near : near_in_space) * far;
   const double wanted = is_near && nested ? aim_near_nested * target : far;
   const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
-  const double missed = is_near ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
+  const double missed = is_near && !nested ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
   planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
   const double bound = planned_ / missed;
 
