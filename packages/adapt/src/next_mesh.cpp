@@ -25,6 +25,8 @@ constexpr double near = 2, near_in_space = 1.3, greatest_correction = 3, growth_
 constexpr double greatest_excess = 1.5;
 // Meshes are planned that much smaller than allowed: gmsh makes more cells or fewer than it is asked for.
 constexpr double share_of_max_dofs = 0.75;
+// At the limit an estimate that falls by less ends the run.
+constexpr double hardly_less = 0.97;
 // A mesh in space has up to so many times the cells that are expected: coarse ones cannot be as coarse as they may, for the body's edges.
 constexpr double excess_in_space = 2;
 // The same of nested meshes, which are no coarser than the first one and have neighbours of small cells halved.
@@ -53,7 +55,8 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   const bool nested = nests(task_.mesh, task_.adapt);
   if (nested && d.mesh->element.shape != mesh::Shape::simplex &&
       !std::holds_alternative<mesh::BoxOptions>(task_.mesh)) {
-    reason = "only triangles and tetrahedra are halved, and the mesh has " + d.mesh->element.name() + " cells";
+    reason = "only triangles and tetrahedra are halved, and the mesh has " + d.mesh->element.name() +
+             " cells; a .geo can be meshed anew, \"Adapt->Meshes\" = gmsh";
     return std::nullopt;
   }
   const double eta = std::sqrt(estimate.total());
@@ -76,7 +79,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   const double sensible = greatest_excess * cells * std::pow(eta / bound, double(mesh.dim()) / mesh.element.order);
   const auto sizes =
       new_sizes(d, estimate, {bound * bound, std::min(allowed, sensible), is_near ? growth_near : growth});
-  const bool no_better = eta >= eta_before_;
+  const bool no_better = eta > hardly_less * eta_before_;
   eta_before_ = eta;
   const bool at_limit = dofs > 0.9 * most_dofs && sizes.predicted_cells > 0.9 * allowed;
   if (at_limit || (no_better && sizes.predicted_cells > 0.7 * allowed)) {

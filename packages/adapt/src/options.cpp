@@ -21,7 +21,7 @@ Teuchos::ParameterList valid_adapt_parameters()
   valid.set("Meshes", "automatic",
             "Who makes the meshes after the first one: `gmsh`, anew; `nested`: cells of the first one are halved, each "
             "rank its own, to triangles or tetrahedra whose coarser meshes are multigrid's. `automatic`: nested for "
-            "boxes in space, and for a .msh, which gmsh cannot mesh anew.");
+            "a .msh, which gmsh cannot mesh anew, else gmsh.");
   valid.set("Max Cycles", 12, "Meshes, > 0.");
   valid.set("Estimate Error", false, "Estimate the error without refining; with a target that is done anyway.");
   valid.set("Exact Energy", std::numeric_limits<double>::quiet_NaN(),
@@ -58,7 +58,6 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list)
 bool nests(const mesh::MeshOptions &first, const AdaptOptions &adapt)
 {
   if (adapt.meshes != NextMeshes::automatic) return adapt.meshes == NextMeshes::nested;
-  if (const auto *const box = std::get_if<mesh::BoxOptions>(&first)) return box->element.dim == 3;
   return !mesh::with_sizes(first, nullptr);
 }
 

@@ -150,8 +150,14 @@ std::shared_ptr<const Problem> Problem::coarser(const double factor, const doubl
   const mesh::Mesh &own = *discretization().mesh;
   if (own.parents) {
     const double wanted = own.dim() == 3 ? factor / 2 : factor; // a mesh of half as long cells costs an eighth in space
+    const auto nodes = [](const NestedMesh &of) {
+      return static_cast<double>(of.discretization().mesh->owned_nodes->getGlobalNumElements());
+    };
+    // Times as long as the cells of a mesh with so many nodes; near a boundary there are more of them.
+    const auto longer = [&](const NestedMesh &than) { return std::pow(nodes(*mesh_) / nodes(than), 1. / own.dim()); };
+    constexpr double boundary = 0.65;
     auto mesh = mesh_->parent();
-    for (double halved = 2; halved < wanted && mesh->discretization().mesh->parents; halved *= 2) mesh = mesh->parent();
+    while (longer(*mesh) < boundary * wanted && mesh->discretization().mesh->parents) mesh = mesh->parent();
     return std::make_shared<Problem>(mesh, model_, t);
   }
   if (!own.box || own.element.order == 2) return nullptr;

@@ -5,6 +5,7 @@
 #include "sorted_lists.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <metis.h>
 #include <numeric>
 #include <utility>
@@ -32,9 +33,9 @@ std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts, cons
   for (int c = 0; c < num_cells; ++c)
     for (int v = 0; v < vertices; ++v) vertex.push_back(whole.cells[std::size_t(width) * c + v]);
   std::vector<idx_t> weight;
-  constexpr double finest = 1e6; // of a sum that fits in METIS' numbers
-  const double scale = finest / std::max(1., std::accumulate(weights.begin(), weights.end(), 0.));
-  for (const double w : weights) weight.push_back(static_cast<idx_t>(1 + w * scale));
+  constexpr double whole_weight = 1e8; // fits in METIS' numbers, several times
+  const double scale = whole_weight / std::max(1., std::accumulate(weights.begin(), weights.end(), 0.));
+  for (const double w : weights) weight.push_back(static_cast<idx_t>(std::max(1., std::round(w * scale))));
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1; // the same cut in every run

@@ -63,6 +63,15 @@ void check_last_line(const std::string &where, const std::string &geo)
                    where << "the last line must end in a line break, or gmsh would ignore a part of it");
 }
 
+void check_number_of_cells(const std::string &where, const SizeField &field, const double factor)
+{
+  constexpr double most_cells = 5e6;
+  const double cells = expected_cells(field) / std::pow(factor, field.dim);
+  RPC_REQUIRE_CODE(cells <= most_cells, ExitCode::bad_mesh,
+                   where << "cell sizes are too small: they ask for about " << cells << " cells; at most " << most_cells
+                         << " are made");
+}
+
 /// @param[out] again  whether another attempt may do better where this one fails
 GmshContents answer_of_gmsh(const std::string &where, const GmshOptions &options, const GmshRequest &request,
                             bool &again)
@@ -108,8 +117,9 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
     request.quadrilaterals = element.dim == 2 && element.shape == Shape::tensor;
     request.order = 1; // middle nodes of straight edges are made faster than gmsh does it
   }
-  if (options.sizes && !options.nested) {
-    check_sizes(where, *options.sizes, options.size_factor);
+  if (options.sizes) {
+    check_sizes(where, *options.sizes);
+    check_number_of_cells(where, *options.sizes, options.size_factor);
     request.sizes = *options.sizes;
   }
   constexpr int most_attempts = 5;
@@ -177,7 +187,7 @@ MeshData read_gmsh(const GmshOptions &options)
   const bool make = is_geo(where, options);
   RPC_REQUIRE(make || options.size_factor == 1,
               where << "a size factor only goes with a .geo, got " << options.size_factor);
-  RPC_REQUIRE(make || !options.sizes || options.nested, where << "cell sizes only go with a .geo");
+  RPC_REQUIRE(make || !options.sizes, where << "cell sizes only go with a .geo");
   MeshData mesh = make ? meshed_geo(where, options) : mesh_of_gmsh(where, contents_of_msh(where, options), false);
   if (make && (options.refinements > 0 || options.nested)) mesh.geometry_file = options.file;
   RPC_REQUIRE(options.order == 0 || options.order == mesh.element.order,

@@ -80,15 +80,18 @@ bool can_be_meshed(const GmshOptions &options)
   return options.box || std::filesystem::path(options.file).extension() == ".geo";
 }
 
-/// gmsh's mesh, halved as often as asked for.
-Mesh make_refined(const GmshOptions &options, const RCP<const Comm> &comm)
+std::shared_ptr<const Mesh> halved_in_all_directions(std::shared_ptr<const Mesh> mesh, const int times)
+{
+  for (int k = 0; k < times; ++k) mesh = std::make_shared<Mesh>(refined(mesh));
+  return mesh;
+}
+
+/// What gmsh makes or a file has, dealt out.
+std::shared_ptr<const Mesh> dealt(const GmshOptions &options, const RCP<const Comm> &comm)
 {
   MeshData whole;
   on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(options); });
-  auto mesh = std::make_shared<Mesh>(distribute(whole, comm));
-  whole = {};
-  for (int k = 0; k < options.refinements; ++k) mesh = std::make_shared<Mesh>(refined(mesh));
-  return *mesh;
+  return std::make_shared<Mesh>(distribute(whole, comm));
 }
 
 /// A field of rank 0 on all ranks; collective.
@@ -110,12 +113,17 @@ Mesh make_nested(const GmshOptions &options, const RCP<const Comm> &comm)
   std::shared_ptr<const MeshData> base = options.base;
   if (sum_all(*comm, GO(base ? 1 : 0)) == 0) base = base_mesh(options, *comm);
   const SizeField sizes = on_all_ranks(*comm, options.sizes.get());
-  on_root(*comm, ExitCode::bad_mesh, [&] { check_sizes("mesh: ", sizes, 1); });
   std::vector<double> weights;
-  if (base && comm->getSize() > 1) weights = cells_to_come(*base, sizes, options.refinements);
-  auto mesh = std::make_shared<const Mesh>(distribute(base ? *base : MeshData{}, comm, weights));
-  for (int k = 0; k < options.refinements; ++k) mesh = std::make_shared<Mesh>(refined(mesh));
-  return *refined_to(std::move(mesh), sizes);
+  on_root(*comm, ExitCode::bad_mesh, [&] {
+    check_sizes("mesh: ", sizes);
+    RPC_REQUIRE_CODE(base->element.shape == Shape::simplex && base->element.dim == sizes.dim, ExitCode::bad_mesh,
+                     "mesh: sizes of cells in " << sizes.dim << "D do not fit a mesh of " << base->element.name()
+                                                << " cells in " << base->element.dim << "D");
+    if (comm->getSize() > 1) weights = cells_to_come(*base, sizes, options.refinements);
+  });
+  if (!base) base = std::make_shared<MeshData>(); // another rank
+  auto mesh = std::make_shared<const Mesh>(distribute(*base, comm, weights));
+  return *refined_to(halved_in_all_directions(std::move(mesh), options.refinements), sizes);
 }
 
 } // namespace
@@ -188,8 +196,7 @@ std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_pt
   return result;
 }
 
-MeshOptions refined_to_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes,
-                             std::shared_ptr<const MeshData> base)
+MeshOptions refined_to_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes)
 {
   GmshOptions result;
   if (const auto *const box = std::get_if<BoxOptions>(&options)) {
@@ -200,7 +207,6 @@ MeshOptions refined_to_sizes(const MeshOptions &options, std::shared_ptr<const S
   }
   result.nested = true;
   result.sizes = std::move(sizes);
-  result.base = std::move(base);
   return result;
 }
 
@@ -221,16 +227,17 @@ Mesh make_mesh(const MeshOptions &options, const RCP<const Comm> &comm)
   const auto &gmsh = std::get<GmshOptions>(options);
   if (gmsh.nested) return make_nested(gmsh, comm);
   const bool by_sizes = sum_all(*comm, GO(gmsh.sizes ? 1 : 0)) > 0; // which rank 0 alone need have
-  if (!by_sizes || gmsh.refinements == 0) return make_refined(gmsh, comm);
+  const auto mesh = dealt(gmsh, comm);
+  if (!by_sizes) return *halved_in_all_directions(mesh, gmsh.refinements);
   try {
-    return make_refined(gmsh, comm);
+    return *halved_in_all_directions(mesh, gmsh.refinements);
   } catch (const Error &error) { // on all ranks: cells too large for a curved boundary
     if (error.code() != ExitCode::bad_mesh) throw;
-    GmshOptions fine = gmsh;
-    fine.size_factor = std::ldexp(gmsh.size_factor, -gmsh.refinements);
-    fine.refinements = 0;
-    return make_refined(fine, comm);
   }
+  GmshOptions fine = gmsh;
+  fine.size_factor = std::ldexp(gmsh.size_factor, -gmsh.refinements);
+  fine.refinements = 0;
+  return *dealt(fine, comm);
 }
 
 } // namespace rpc::mesh

@@ -100,7 +100,7 @@ double expected_cells(const SizeField &field)
   return cells;
 }
 
-void check_sizes(const std::string &where, const SizeField &field, const double factor)
+void check_sizes(const std::string &where, const SizeField &field)
 {
   const std::size_t nodes = field.size.size();
   const std::size_t vertices = field.dim + 1;
@@ -118,11 +118,6 @@ void check_sizes(const std::string &where, const SizeField &field, const double 
   RPC_REQUIRE_CODE(
       std::all_of(field.coords.begin(), field.coords.end(), [](const double x) { return std::isfinite(x); }),
       ExitCode::bad_mesh, where << "the nodes of a size field must have finite coordinates");
-  constexpr double most_cells = 5e6;
-  const double cells = expected_cells(field) / std::pow(factor, field.dim);
-  RPC_REQUIRE_CODE(cells <= most_cells, ExitCode::bad_mesh,
-                   where << "cell sizes are too small: they ask for about " << cells << " cells; at most " << most_cells
-                         << " are made");
 }
 
 } // namespace rpc::mesh

@@ -63,8 +63,7 @@ std::string complaint(const Point &x)
 {
   std::ostringstream text;
   text << "mesh: refinement: the cells are too large for the curved boundary at (" << x[0] << ", " << x[1] << ", "
-       << x[2] << "), on which no new node is found near its edge or face. Use a smaller \"Mesh->Size Factor\" and "
-       << "fewer \"Mesh->Refinements\".";
+       << x[2] << "), on which no new node is found near its edge or face. " << remedy_for_curved_boundaries;
   return text.str();
 }
 
@@ -93,7 +92,9 @@ std::vector<Move> moves_of(const LocalMesh &mesh, const std::vector<Middles> &mi
         move.shapes.push_back(mesh.geometry[pairs[end].second].shape);
       const bool flat = std::all_of(move.shapes.begin(), move.shapes.end(),
                                     [](const BoundaryShape &shape) { return shape.kind == BoundaryShape::Kind::flat; });
-      if (!flat && middles[k].owner_vertex(move.middle) < mesh.num_owned_nodes()) moves.push_back(std::move(move));
+      const bool in_place = !middles[k].in_place.empty() && middles[k].in_place[move.middle];
+      if (!flat && !in_place && middles[k].owner_vertex(move.middle) < mesh.num_owned_nodes())
+        moves.push_back(std::move(move));
     }
   }
   return moves;

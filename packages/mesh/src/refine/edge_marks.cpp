@@ -128,11 +128,11 @@ Middles those_of(const LocalMesh &mesh, const Middles &edges, const std::vector<
 
 } // namespace
 
-EdgeMarks marked_edges(const LocalMesh &mesh, const Middles &edges, const std::vector<Halving> &halving)
+EdgeMarks marked_edges(const LocalMesh &mesh, const Middles &edges, const std::vector<Halving> &halving,
+                       std::vector<char> marked)
 {
   const std::vector<int> order = order_of(mesh, edges);
   const Element::Table faces = edges_of_faces(mesh.element);
-  std::vector<char> marked(edges.size(), 0);
   const auto mark_longest = [&](const int *const of_cell, const std::vector<int> &face) {
     const int longest = of_cell[*std::min_element(
         face.begin(), face.end(), [&](const int a, const int b) { return order[of_cell[a]] < order[of_cell[b]]; })];

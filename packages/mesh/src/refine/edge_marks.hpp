@@ -22,6 +22,8 @@ struct EdgeMarks {
 /// (M.-C. Rivara, 1984; in space A. Plaza, G. F. Carey, 2000.)
 /// @param edges    of `mesh`, all of them
 /// @param halving  (owned cells)
-EdgeMarks marked_edges(const LocalMesh &mesh, const Middles &edges, const std::vector<Halving> &halving);
+/// @param marked   (edges) 1: to be halved whatever cells ask for
+EdgeMarks marked_edges(const LocalMesh &mesh, const Middles &edges, const std::vector<Halving> &halving,
+                       std::vector<char> marked);
 
 } // namespace rpc::mesh

@@ -12,12 +12,13 @@ namespace rpc::mesh
 ///
 /// Each belongs to the rank of its vertex with the lowest id, which has all cells around it.
 struct Middles {
-  int width = 0;             ///< vertices of each
-  int per_cell = 0;          ///< how many a cell has
-  std::vector<int> vertices; ///< (middles, width) node lids, by ascending id
-  std::vector<int> of_cell;  ///< (cells, per_cell); -1: not among them
-  std::vector<int> slot;     ///< (per_cell) which node of the cell of order 2 lies there
-  Lists at_vertex;           ///< (overlap nodes) those whose first vertex it is, by the ids of the other ones
+  int width = 0;              ///< vertices of each
+  int per_cell = 0;           ///< how many a cell has
+  std::vector<int> vertices;  ///< (middles, width) node lids, by ascending id
+  std::vector<int> of_cell;   ///< (cells, per_cell); -1: not among them
+  std::vector<int> slot;      ///< (per_cell) which node of the cell of order 2 lies there
+  std::vector<char> in_place; ///< (middles) 1: the coarse mesh has a node there, which does not move; empty: nowhere
+  Lists at_vertex;            ///< (overlap nodes) those whose first vertex it is, by the ids of the other ones
 
   int size() const { return static_cast<int>(vertices.size()) / width; }
   const int *vertices_of(const int middle) const { return &vertices[std::size_t(width) * middle]; }

@@ -2,6 +2,7 @@
 
 #include "../mesh_checks.hpp"
 #include "add_middle_nodes.hpp"
+#include "boundary_places.hpp"
 #include "children.hpp"
 #include "divide_cells.hpp"
 #include "halved.hpp"
@@ -83,8 +84,7 @@ void require_good_cells(const LocalMesh &mesh)
     std::ostringstream text;
     text << "mesh: refinement inverts a cell, with a vertex at (" << x[0] << ", " << x[1];
     if (mesh.dim() == 3) text << ", " << x[2];
-    text << "): the coarse cells are too large for the curved boundary. Use a smaller \"Mesh->Size Factor\" and fewer "
-            "\"Mesh->Refinements\".";
+    text << "): the coarse cells are too large for the curved boundary. " << remedy_for_curved_boundaries;
     message = text.str();
   }
   throw_if_any(*mesh.owned_nodes->getComm(), ExitCode::bad_mesh, message);
@@ -100,6 +100,35 @@ LocalMesh of_vertices(const LocalMesh &mesh)
   for (int c = 0; c < mesh.num_cells(); ++c)
     linear.cells.insert(linear.cells.end(), mesh.nodes_of(c), mesh.nodes_of(c) + mesh.element.num_vertices());
   return linear;
+}
+
+/// (edges) 1 where the middle node of a cell of order 2 is one of the mesh's named points: it is to stay a node of theirs.
+std::vector<char> with_named_middles(const LocalMesh &whole, const Middles &edges)
+{
+  std::vector<char> named_node(whole.num_nodes(), 0), named(edges.size(), 0);
+  for (const PointData &set : whole.points)
+    for (const int node : set.node) named_node[node] = 1;
+  if (whole.element.order == 1) return named;
+  for (int c = 0; c < whole.num_cells(); ++c)
+    for (int e = 0; e < edges.per_cell; ++e)
+      if (named_node[whole.nodes_of(c)[edges.slot[e]]]) named[edges.of_cell[std::size_t(edges.per_cell) * c + e]] = 1;
+  return named;
+}
+
+/// Edges of children that are edges of their parents have a middle node there.
+void mark_in_place(const LocalMesh &children, Middles &edges)
+{
+  const auto is_corner = [](const std::array<double, 3> &X) {
+    return std::all_of(X.begin(), X.end(), [](const double x) { return x == 0 || x == 1; });
+  };
+  const auto &ends = Element{children.dim(), 2, children.element.shape}.edges();
+  edges.in_place.assign(edges.size(), 0);
+  for (int c = 0; c < children.num_cells(); ++c) {
+    const auto &vertices = children.child_vertices[children.kind[c]];
+    for (int e = 0; e < edges.per_cell; ++e)
+      if (is_corner(vertices[ends[e][0]]) && is_corner(vertices[ends[e][1]]))
+        edges.in_place[edges.of_cell[std::size_t(edges.per_cell) * c + e]] = 1;
+  }
 }
 
 } // namespace
@@ -145,7 +174,8 @@ Mesh halved(const std::shared_ptr<const Mesh> &coarse, const std::vector<Halving
 {
   const LocalMesh whole = local_mesh(*coarse);
   const LocalMesh linear = of_vertices(whole);
-  const EdgeMarks marks = marked_edges(linear, middles_of(linear).front(), halving);
+  const Middles edges = middles_of(linear).front();
+  const EdgeMarks marks = marked_edges(linear, edges, halving, with_named_middles(whole, edges));
   const double cells = std::max(1, whole.num_cells());
   const auto cut = static_cast<double>(
       std::count_if(marks.edges.of_cell.begin(), marks.edges.of_cell.end(), [](const int edge) { return edge >= 0; }));
@@ -155,7 +185,9 @@ Mesh halved(const std::shared_ptr<const Mesh> &coarse, const std::vector<Halving
     fine = divided(with_middle_nodes(linear, {marks.edges}, {}, coarse->geometry_file), marks);
   } else {
     const LocalMesh children = divided(whole, marks);
-    fine = with_middle_nodes(children, middles_of(children), PlacesInParent(whole, children), coarse->geometry_file);
+    std::vector<Middles> middles = middles_of(children);
+    mark_in_place(children, middles.front());
+    fine = with_middle_nodes(children, middles, PlacesInParent(whole, children), coarse->geometry_file);
   }
   require_good_cells(fine);
   return mesh_of(fine, coarse);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -69,16 +70,57 @@ std::vector<Halving> halving_by(const SizeTree<dim> &size, const Mesh &mesh, con
   return halving;
 }
 
+/// A level with hardly more nodes than its parent costs multigrid as much as that one, and gains little.
+bool adds_little(const Mesh &mesh)
+{
+  constexpr double least = 1.3;
+  const auto nodes = [](const Mesh &of) { return static_cast<double>(of.owned_nodes->getGlobalNumElements()); };
+  return mesh.parents && nodes(mesh) < least * nodes(*mesh.parents->mesh);
+}
+
+/// A mesh's grandparents as its parents.
+std::shared_ptr<const Parents> grandparents(const Mesh &mesh)
+{
+  const Parents &own = *mesh.parents, &above = *own.mesh->parents;
+  auto joined = std::make_shared<Parents>();
+  joined->mesh = above.mesh;
+  std::map<std::pair<int, int>, int> number; // of the kind, by those of both levels
+  for (std::size_t c = 0; c < own.cell.size(); ++c) {
+    const LO parent = own.cell[c];
+    joined->cell.push_back(above.cell[parent]);
+    const auto [at, is_new] =
+        number.emplace(std::make_pair(above.kind[parent], own.kind[c]), static_cast<int>(joined->vertices.size()));
+    joined->kind.push_back(at->second);
+    if (!is_new) continue;
+    const auto &outer = above.vertices[above.kind[parent]];
+    joined->vertices.emplace_back();
+    for (const auto &X : own.vertices[own.kind[c]]) { // affine, as cells are simplices
+      auto Y = outer[0];
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t d = 0; d + 1 < outer.size(); ++d) Y[i] += X[d] * (outer[d + 1][i] - outer[0][i]);
+      joined->vertices.back().push_back(Y);
+    }
+  }
+  return joined;
+}
+
 template <int dim>
-std::shared_ptr<const Mesh> refined_in(std::shared_ptr<const Mesh> mesh, const SizeField &sizes)
+std::shared_ptr<const Mesh> refined_in(std::shared_ptr<const Mesh> base, const SizeField &sizes)
 {
   const SizeTree<dim> size(sizes);
+  std::shared_ptr<Mesh> mesh; // null: the base
   for (std::vector<Halving> halving;;) {
-    halving = halving_by<dim>(size, *mesh, settled_cells(*mesh, halving));
+    const std::shared_ptr<const Mesh> last = mesh ? mesh : base;
+    halving = halving_by<dim>(size, *last, settled_cells(*last, halving));
     const auto asked = static_cast<GO>(halving.size()) - std::count(halving.begin(), halving.end(), Halving::none);
-    if (sum_all(mesh->comm(), GO(asked)) == 0) return mesh;
-    mesh = std::make_shared<Mesh>(halved(mesh, halving));
+    if (sum_all(base->comm(), GO(asked)) == 0) break;
+    // Of two levels that are nearly the same the coarser one is left out.
+    if (mesh && adds_little(*mesh) && mesh->parents->mesh != base) mesh->parents = grandparents(*mesh);
+    mesh = std::make_shared<Mesh>(halved(last, halving));
   }
+  if (!mesh) return base;
+  if (adds_little(*mesh) && mesh->parents->mesh != base) mesh->parents = grandparents(*mesh);
+  return mesh;
 }
 
 } // namespace

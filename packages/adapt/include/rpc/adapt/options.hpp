@@ -11,7 +11,7 @@ namespace rpc::adapt
 
 /// Who makes the meshes after the first one.
 enum class NextMeshes {
-  automatic, ///< nested for boxes in space and for a .msh, else gmsh
+  automatic, ///< nested for a .msh, else gmsh
   gmsh,      ///< anew, by a field of sizes
   nested     ///< cells of the first one are halved where a field of sizes asks for it
 };
@@ -36,9 +36,9 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list);
 /// Whether cells of the first mesh are halved, rather than gmsh asked for another mesh.
 bool nests(const mesh::MeshOptions &first, const AdaptOptions &adapt);
 
-/// Of a task's first mesh the one by a field of sizes; none where there is none to be had.
+/// The options of the first mesh with a field of sizes; none if gmsh is to mesh a .msh anew.
 /// @param sizes        see mesh::with_sizes()
-/// @param refinements  of what gmsh makes; nested meshes have the deck's
+/// @param refinements  of gmsh's meshes; nested ones keep those of the first mesh
 std::optional<mesh::MeshOptions> sized(const mesh::MeshOptions &first, const AdaptOptions &adapt,
                                        std::shared_ptr<const mesh::SizeField> sizes, int refinements);
 

@@ -13,16 +13,15 @@ namespace rpc::mesh
 
 /// A mesh that gmsh makes or made.
 struct GmshOptions {
-  std::string file;                             ///< .geo, meshed by gmsh, or .msh (2.2 or 4.1, ASCII or binary)
-  double size_factor = 1;                       ///< of all cell sizes that a .geo or `sizes` ask for, > 0
-  int order = 0;                                ///< 1 or 2; 0: 2 for a .geo, for a .msh what it has
-  std::optional<BoxOptions> box = std::nullopt; ///< meshed by `sizes`; no file then, its cells and `order` do not count
+  std::string file;       ///< .geo, meshed by gmsh, or .msh (2.2 or 4.1, ASCII or binary)
+  double size_factor = 1; ///< of all cell sizes that a .geo or `sizes` ask for, > 0
+  int order = 0;          ///< 1 or 2; 0: 2 for a .geo, for a .msh what it has
+  std::optional<BoxOptions> box =
+      std::nullopt; ///< no file then; if not `nested`, meshed by `sizes`, and its cells and `order` do not count
   std::shared_ptr<const SizeField> sizes = nullptr; ///< of cells, instead of those that a .geo asks for
   int refinements = 0; ///< how often make_mesh() halves each cell, >= 0; with it a .geo's mesh has its geometry
-  bool nested =
-      false; ///< make_mesh() meets `sizes` by refined_to(), and gmsh does not know them; a box may have no sizes then
-  std::shared_ptr<const MeshData> base =
-      nullptr; ///< of a nested one what read_gmsh() gives, on rank 0; null: not made yet
+  bool nested = false; ///< make_mesh() meets `sizes` by refined_to(), from base_mesh(): read_gmsh() is not to see them
+  std::shared_ptr<const MeshData> base = nullptr; ///< base_mesh() of a nested one, on rank 0; null: not made yet
 };
 
 /// Begins to load gmsh, which takes a tenth of a second, while this process does other things; the first mesh would do it.

@@ -44,11 +44,9 @@ std::optional<MeshOptions> with_sizes(const MeshOptions &options, std::shared_pt
 
 /// The options by which the mesh that others ask for is refined to a field of sizes, see refined_to(). A box gets triangles or tetrahedra.
 /// @param sizes  read on rank 0 only, may be null on others
-/// @param base   the mesh that others ask for, see base_mesh()
-MeshOptions refined_to_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes,
-                             std::shared_ptr<const MeshData> base = nullptr);
+MeshOptions refined_to_sizes(const MeshOptions &options, std::shared_ptr<const SizeField> sizes);
 
-/// What refined_to_sizes() begins with, on rank 0; null on others. Collective.
+/// What a mesh by refined_to_sizes() begins with, on rank 0; null on others. GmshOptions::base takes it, so that it is made once. Collective.
 /// @throws rpc::Error on every rank, as make_mesh() does
 std::shared_ptr<const MeshData> base_mesh(const MeshOptions &options, const Comm &comm);
 

@@ -25,8 +25,9 @@ Mesh refined(const std::shared_ptr<const Mesh> &coarse);
 /// would make them too small. Neighbours are halved as far as needed to fit, longest edges first, so that angles stay bounded. All else as in
 /// refined(); cells that stay are their own children.                                              doc/theory.md (2.18)
 ///
-/// Each level halves a cell at most once in each direction and is the parent of the next one; there are as many as the field asks for. A cell
-/// is small enough at 2^(1/(2 dim)) times its size, so that the mesh has about expected_cells(). Collective.
+/// A cell, by its vertices, is small enough if its cell_size() is at most 2^(1/(2 dim)) times what the field asks for at its centre, so that the mesh
+/// has about expected_cells(). Cells are halved level by level. A level is the parent of the next one, but for those that have hardly more nodes
+/// than their own parent: they are left out. Collective.
 /// @param sizes  the same on all ranks
 /// @throws rpc::Error on every rank, as refined() does; bad_input where cells are no triangles or tetrahedra
 std::shared_ptr<const Mesh> refined_to(std::shared_ptr<const Mesh> mesh, const SizeField &sizes);

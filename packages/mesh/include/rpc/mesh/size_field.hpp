@@ -32,9 +32,8 @@ double cell_size(const std::array<std::array<double, dim>, dim + 1> &vertex);
 /// tetrahedra_per_cube / size^3.
 double expected_cells(const SizeField &field);
 
-/// @param where   what messages begin with
-/// @param factor  on all sizes
-/// @throws rpc::Error (bad_mesh) if sizes are not > 0 and finite, simplices name nodes that do not exist, or more than 5 million cells are asked for
-void check_sizes(const std::string &where, const SizeField &field, double factor);
+/// @param where  what messages begin with
+/// @throws rpc::Error (bad_mesh) if sizes are not > 0 and finite, or simplices name nodes that do not exist
+void check_sizes(const std::string &where, const SizeField &field);
 
 } // namespace rpc::mesh
