@@ -80,7 +80,7 @@ TEST(AdaptiveRanks, GiveBodiesInSpaceTheSameMeshes)
                      {{"Adapt->Target Relative Error=0.08", "Adapt->Meshes=nested"},
                       {"Adapt->Target Relative Error=0.1", "Adapt->Meshes=gmsh"},
                       {"Adapt->Target Relative Error=0.15", "Mesh->Element=P1", "Mesh->Cells={4,4,2}"}},
-                     2);
+                     3);
   expect_same_meshes("../../../input/ball_adaptive.xml",
                      {{"Adapt->Target Relative Error=0.06", "Contact->Yield Stress=100"},
                       {"Adapt->Target Relative Error=0.06", "Adapt->Meshes=nested"}},

@@ -22,6 +22,17 @@ struct Ball {
 constexpr Ball balls[] = {{"0.02", "inf", 9.227754, 204.735, 0.067285, 0.07241196},
                           {"0.05", "100", 23.758670, 100, 0.237671, 0.53143957}};
 
+/// Of a quarter of the ball: to the accuracy that is asked for, and within the error bars, which hold for the area too.
+void expect_force_and_pressure(const Solution &s, const Ball &ball)
+{
+  const auto &contact = s.contact.total;
+  const auto &errors = s.adaptation->errors;
+  EXPECT_NEAR(4 * contact.force[2] / ball.force, 1, 5e-4);
+  EXPECT_NEAR(contact.max_pressure / ball.max_pressure, 1, 5e-3);
+  EXPECT_LT(std::abs(contact.force[2] - ball.force / 4), errors.contact_force);
+  EXPECT_LT(std::abs(contact.contact_length - ball.contact_area / 4), errors.contact_length);
+}
+
 TEST(AdaptiveBall, InSpaceHasTheForceThePressureAndTheRadiusThatWereAskedFor)
 {
   for (const Ball &ball : balls) {
@@ -33,16 +44,12 @@ TEST(AdaptiveBall, InSpaceHasTheForceThePressureAndTheRadiusThatWereAskedFor)
     EXPECT_LT(s.adaptation->cycles.back().dofs, 150000u);
     const auto &contact = s.contact.total;
     const auto &errors = s.adaptation->errors;
-    // A quarter of the ball.
-    EXPECT_NEAR(4 * contact.force[2] / ball.force, 1, 5e-4);
-    EXPECT_NEAR(contact.max_pressure / ball.max_pressure, 1, 5e-3);
+    expect_force_and_pressure(s, ball);
     EXPECT_NEAR(std::sqrt(4 * contact.contact_length / ball.contact_area), 1, 5e-3);
     const double exact = std::sqrt(2 * (4 * s.energy - ball.energy) / (4 * s.energy_norm_squared));
     EXPECT_GT(relative_estimate(s) / exact, 0.8);
-    EXPECT_LT(relative_estimate(s) / exact, 2);
+    EXPECT_LT(relative_estimate(s) / exact, 1.6);
     EXPECT_LT(std::abs(s.energy - ball.energy / 4), errors.energy);
-    EXPECT_LT(std::abs(contact.force[2] - ball.force / 4), errors.contact_force);
-    EXPECT_LT(std::abs(contact.contact_length - ball.contact_area / 4), errors.contact_length);
     EXPECT_LT(std::abs(contact.max_pressure - ball.max_pressure), errors.max_pressure + 1e-9);
     // Nested meshes carry multigrid.
     EXPECT_EQ(s.linear.preconditioner_setups, 1);
@@ -71,12 +78,7 @@ TEST(AdaptiveBall, OfNestedMeshesHasTheSameForceAndNoAlgebraicLevels)
   const Solution s = run_scene(input + "ball_adaptive.xml", {"Adapt->Meshes=nested"});
   ASSERT_TRUE(s.adaptation && s.adaptation->reached) << s.adaptation->reason;
   EXPECT_LT(s.adaptation->cycles.back().dofs, 200000u);
-  const auto &contact = s.contact.total;
-  const auto &errors = s.adaptation->errors;
-  EXPECT_NEAR(4 * contact.force[2] / ball.force, 1, 5e-4);
-  EXPECT_NEAR(contact.max_pressure / ball.max_pressure, 1, 5e-3);
-  EXPECT_LT(std::abs(contact.force[2] - ball.force / 4), errors.contact_force);
-  EXPECT_LT(std::abs(contact.contact_length - ball.contact_area / 4), errors.contact_length);
+  expect_force_and_pressure(s, ball);
   EXPECT_NE(s.linear.description.find("meshes"), std::string::npos) << s.linear.description;
   EXPECT_EQ(s.linear.description.find("algebraic"), std::string::npos) << s.linear.description;
   EXPECT_EQ(s.linear.preconditioner_setups, 1);
@@ -91,7 +93,7 @@ TEST(AdaptiveBlock, GradesItsClampedEdgesWithFewerUnknownsThanUniformMeshes)
                                  {"Adapt->Target Relative Error=0.04", std::string("Adapt->Meshes=") + meshes});
     ASSERT_TRUE(s.adaptation->reached) << s.adaptation->reason;
     EXPECT_LT(s.energy, -1.03893);
-    EXPECT_LT(s.adaptation->cycles.back().dofs, 180000u);
+    EXPECT_LT(s.adaptation->cycles.back().dofs, 160000u);
     EXPECT_EQ(s.discretization.mesh->element.name(), "P2");
   }
 }

@@ -108,7 +108,7 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
   GmshRequest request = request_for(options);
   request.size_factor = options.size_factor;
   request.order = options.order == 0 ? 2 : options.order;
-  request.geometry = options.refinements > 0 || options.nested;
+  request.geometry = options.needs_geometry();
   if (options.box) {
     const mesh::Element &element = options.box->element;
     request.box_dim = element.dim;
@@ -189,7 +189,7 @@ MeshData read_gmsh(const GmshOptions &options)
               where << "a size factor only goes with a .geo, got " << options.size_factor);
   RPC_REQUIRE(make || !options.sizes, where << "cell sizes only go with a .geo");
   MeshData mesh = make ? meshed_geo(where, options) : mesh_of_gmsh(where, contents_of_msh(where, options), false);
-  if (make && (options.refinements > 0 || options.nested)) mesh.geometry_file = options.file;
+  if (make && options.needs_geometry()) mesh.geometry_file = options.file;
   RPC_REQUIRE(options.order == 0 || options.order == mesh.element.order,
               where << "its cells are of order " << mesh.element.order << ", which \"Order\" = " << options.order
                     << " does not change; that only goes with a .geo");

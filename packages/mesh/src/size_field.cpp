@@ -35,15 +35,12 @@ double mean_inverse_cube(std::array<double, 4> h)
   return 3. / 2 * (mean_inverse_square(h[0], h[1], h[2]) - mean_inverse_square(h[1], h[2], h[3])) / (h[3] - h[0]);
 }
 
-template <int dim>
-using Vertices = std::array<std::array<double, dim>, dim + 1>;
-
-double area(const Vertices<2> &x)
+double area(const SimplexVertices<2> &x)
 {
   return std::abs((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[2][0] - x[0][0]) * (x[1][1] - x[0][1])) / 2;
 }
 
-double volume(const Vertices<3> &x)
+double volume(const SimplexVertices<3> &x)
 {
   double six_volumes = 0;
   for (int d = 0; d < 3; ++d) {
@@ -55,9 +52,9 @@ double volume(const Vertices<3> &x)
 }
 
 template <int dim>
-Vertices<dim> vertices_of(const SizeField &field, const int *const nodes)
+SimplexVertices<dim> vertices_of(const SizeField &field, const int *const nodes)
 {
-  Vertices<dim> x;
+  SimplexVertices<dim> x;
   for (int v = 0; v <= dim; ++v) std::copy_n(&field.coords[std::size_t(dim) * nodes[v]], dim, x[v].begin());
   return x;
 }
@@ -81,12 +78,12 @@ double cells_in_tetrahedron(const SizeField &field, const int *const nodes)
 } // namespace
 
 template <>
-double cell_size<2>(const Vertices<2> &vertex)
+double cell_size<2>(const SimplexVertices<2> &vertex)
 {
   return std::sqrt(area(vertex) * 4 / std::sqrt(3.));
 }
 template <>
-double cell_size<3>(const Vertices<3> &vertex)
+double cell_size<3>(const SimplexVertices<3> &vertex)
 {
   return std::cbrt(volume(vertex) * tetrahedra_per_cube);
 }

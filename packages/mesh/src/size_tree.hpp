@@ -43,6 +43,16 @@ private:
   std::vector<Simplex> simplices_;
 };
 
+/// How many times as large a cell is as the field says at its centre, by cell_size().
+template <int dim>
+double excess(const SizeTree<dim> &size, const SimplexVertices<dim> &cell)
+{
+  std::array<double, dim> centre{};
+  for (const auto &vertex : cell)
+    for (int d = 0; d < dim; ++d) centre[d] += vertex[d] / (dim + 1);
+  return cell_size<dim>(cell) / size(centre);
+}
+
 extern template class SizeTree<2>;
 extern template class SizeTree<3>;
 

@@ -11,12 +11,9 @@ namespace rpc::mesh
 namespace
 {
 
-template <int dim>
-using Vertices = std::array<std::array<double, dim>, dim + 1>;
-
 /// Ends of the longest edge.
 template <int dim>
-std::pair<int, int> longest_edge(const Vertices<dim> &x)
+std::pair<int, int> longest_edge(const SimplexVertices<dim> &x)
 {
   std::pair<int, int> longest{0, 1};
   double most = -1;
@@ -33,18 +30,15 @@ std::pair<int, int> longest_edge(const Vertices<dim> &x)
 
 /// Halves the cell in thought until its parts are small enough.
 template <int dim>
-double parts_of(const Vertices<dim> &x, const SizeTree<dim> &size, const int depth)
+double parts_of(const SimplexVertices<dim> &x, const SizeTree<dim> &size, const int depth)
 {
-  constexpr int deepest = 120; // 2^40 times as small, in space
-  std::array<double, dim> centre{};
-  for (const auto &vertex : x)
-    for (int d = 0; d < dim; ++d) centre[d] += vertex[d] / (dim + 1);
-  const double times = std::pow(cell_size<dim>(x) / size(centre), dim); // as many cells
+  constexpr int deepest = 120;                              // 2^40 times as small, in space
+  const double times = std::pow(excess<dim>(size, x), dim); // as many cells
   if (!(times > 2) || depth == deepest) return std::max(1., times);
   const auto [a, b] = longest_edge<dim>(x);
   std::array<double, dim> middle;
   for (int d = 0; d < dim; ++d) middle[d] = (x[a][d] + x[b][d]) / 2;
-  Vertices<dim> one = x, other = x;
+  SimplexVertices<dim> one = x, other = x;
   one[a] = middle;
   other[b] = middle;
   return parts_of<dim>(one, size, depth + 1) + parts_of<dim>(other, size, depth + 1);
@@ -57,7 +51,7 @@ std::vector<double> cells_in(const MeshData &mesh, const SizeField &sizes, const
   const int width = mesh.element.num_nodes();
   std::vector<double> cells;
   for (int c = 0; c < mesh.num_cells(); ++c) {
-    Vertices<dim> x;
+    SimplexVertices<dim> x;
     for (int v = 0; v <= dim; ++v)
       std::copy_n(&mesh.coords[std::size_t(dim) * mesh.cells[std::size_t(width) * c + v]], dim, x[v].begin());
     cells.push_back(std::max(parts_of<dim>(x, size, 0), std::pow(2., dim * refinements)));

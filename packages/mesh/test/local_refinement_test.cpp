@@ -63,7 +63,7 @@ void for_each_simplex(const Check &check)
 template <int dim>
 double size_of(const Mesh &mesh, const LO cell)
 {
-  std::array<std::array<double, dim>, dim + 1> vertex;
+  mesh::SimplexVertices<dim> vertex;
   const auto coords = to_host(mesh.coords);
   const auto cells = to_host(mesh.cells);
   for (int v = 0; v <= dim; ++v)
@@ -133,22 +133,7 @@ TEST(LocalRefinement, IsTheSameOnAnyNumberOfRanks)
 /// nothing to that.
 TEST(LocalRefinement, TetrahedraDoNotDegenerate)
 {
-  const std::vector<std::vector<double>> bodies = {{1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1}, // regular
-                                                   {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1},
-                                                   {0, 0, 0, 1, 0, 0, 0, 1, 0, .4, .3, .1},
-                                                   {0, 0, 0, 1, .1, 0, 0, 1.2, 0, .2, .3, 5}};
-  for (const auto &coords : bodies) {
-    MeshData body;
-    body.element = {3, 1, Shape::simplex};
-    body.coords = coords;
-    body.cells = {0, 1, 2, 3};
-    body.blocks = {"body"};
-    body.block = {0};
-    Shared mesh = dealt(body, alone());
-    if (test::worst_quality(*mesh) < 0) {
-      body.cells = {0, 2, 1, 3};
-      mesh = dealt(body, alone());
-    }
+  for (const Shared &mesh : test::tetrahedra()) {
     const double first = test::worst_quality(*mesh);
     double coarser = 0;
     for (const double least : {1e-1, 1e-3, 1e-6}) {
@@ -264,29 +249,13 @@ TEST(LocalRefinement, FollowsTheMapOfCurvedCells)
   }
 }
 
-/// The area of a quarter of a disc, one triangle at first, converges as the arc's cells shrink.
+/// New nodes lie on the arc, and the area converges as its cells shrink.
 TEST(LocalRefinement, PutsNewNodesOnTheBoundarysShape)
 {
   for (const int order : {1, 2}) {
-    MeshData body;
-    body.element = {2, order, Shape::simplex};
-    body.coords = {0, 0, 1, 0, 0, 1};
-    body.cells = {0, 1, 2};
-    if (order == 2) {
-      body.coords.insert(body.coords.end(), {.5, 0, std::sqrt(.5), std::sqrt(.5), 0, .5});
-      body.cells.insert(body.cells.end(), {3, 4, 5});
-    }
-    body.blocks = {"body"};
-    body.block = {0};
-    mesh::BoundaryPart arc;
-    arc.shape.kind = mesh::BoundaryShape::Kind::sphere;
-    arc.shape.radius = 1;
-    arc.cell = {0};
-    arc.ordinal = {1};
-    body.geometry = {arc};
     const auto error = [&](const double size) { // fine at the arc, coarse at the centre
       const SizeField field{{0, 0, 1, 0, 0, 1}, {0, 1, 2}, {1, size, size}, 2};
-      return std::abs(test::body_measure(*mesh::refined_to(dealt(body, alone()), field)) / (M_PI / 4) - 1);
+      return test::quarter_disc_error(*mesh::refined_to(test::quarter_disc(order), field));
     };
     EXPECT_NEAR(std::log2(error(0.08) / error(0.02)) / 2, 2 * order, 0.3) << "order " << order;
   }

@@ -8,6 +8,7 @@
 #include <Tpetra_Core.hpp>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
 #include <vector>
@@ -158,6 +159,56 @@ inline double worst_quality(const mesh::Mesh &mesh)
   double least = 1;
   for (LO c = 0; c < mesh.num_cells(); ++c) least = std::min(least, quality(places(mesh, c, {0, 1, 2, 3})));
   return least;
+}
+
+/// A single tetrahedron each, on one rank: a regular one, a corner of a cube, a flat and a long one.
+inline std::vector<Shared> tetrahedra()
+{
+  std::vector<Shared> all;
+  for (const std::vector<double> &coords : {std::vector<double>{1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1},
+                                            {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1},
+                                            {0, 0, 0, 1, 0, 0, 0, 1, 0, .4, .3, .1},
+                                            {0, 0, 0, 1, .1, 0, 0, 1.2, 0, .2, .3, 5}}) {
+    mesh::MeshData body;
+    body.element = {3, 1, mesh::Shape::simplex};
+    body.coords = coords;
+    body.cells = {0, 1, 2, 3};
+    body.blocks = {"body"};
+    body.block = {0};
+    all.push_back(dealt(body, alone()));
+    if (worst_quality(*all.back()) > 0) continue;
+    body.cells = {0, 2, 1, 3}; // the other way round
+    all.back() = dealt(body, alone());
+  }
+  return all;
+}
+
+/// A quarter of a disc of radius 1 on one rank, one triangle whose longest edge is an arc.
+inline Shared quarter_disc(const int order)
+{
+  mesh::MeshData body;
+  body.element = {2, order, mesh::Shape::simplex};
+  body.coords = {0, 0, 1, 0, 0, 1};
+  body.cells = {0, 1, 2};
+  if (order == 2) {
+    body.coords.insert(body.coords.end(), {.5, 0, std::sqrt(.5), std::sqrt(.5), 0, .5});
+    body.cells.insert(body.cells.end(), {3, 4, 5});
+  }
+  body.blocks = {"body"};
+  body.block = {0};
+  mesh::BoundaryPart arc;
+  arc.shape.kind = mesh::BoundaryShape::Kind::sphere;
+  arc.shape.radius = 1;
+  arc.cell = {0};
+  arc.ordinal = {1};
+  body.geometry = {arc};
+  return dealt(body, alone());
+}
+
+/// How much the area differs from that of a quarter of a disc, relative.
+inline double quarter_disc_error(const mesh::Mesh &mesh)
+{
+  return std::abs(body_measure(mesh) / (M_PI / 4) - 1);
 }
 
 } // namespace rpc::test

@@ -108,26 +108,10 @@ TEST(Refinement, IsTheSameOnAnyNumberOfRanks)
   });
 }
 
-/// From a regular one, a corner of a cube, a flat and a long one: positive volumes, and no child of a child gets worse.
+/// Positive volumes, and no child of a child gets worse.
 TEST(Refinement, TetrahedraDoNotDegenerate)
 {
-  const std::vector<std::vector<double>> bodies = {
-      {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1}, // regular: its corners are those of a cube
-      {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1},
-      {0, 0, 0, 1, 0, 0, 0, 1, 0, .4, .3, .1},
-      {0, 0, 0, 1, .1, 0, 0, 1.2, 0, .2, .3, 5}};
-  for (const auto &coords : bodies) {
-    MeshData body;
-    body.element = {3, 1, Shape::simplex};
-    body.coords = coords;
-    body.cells = {0, 1, 2, 3};
-    body.blocks = {"body"};
-    body.block = {0};
-    Shared mesh = dealt(body, alone());
-    if (test::worst_quality(*mesh) < 0) { // the other way round
-      body.cells = {0, 2, 1, 3};
-      mesh = dealt(body, alone());
-    }
+  for (Shared mesh : test::tetrahedra()) {
     const double first = test::worst_quality(*refined(mesh, 1));
     EXPECT_GT(first, 0.3 * test::worst_quality(*mesh));
     mesh = refined(mesh, 4);
@@ -168,29 +152,13 @@ TEST(Refinement, LeadsBackToItsParents)
   EXPECT_EQ(fine->parents->cell.size(), std::size_t(fine->num_cells()));
 }
 
-/// A quarter of a disc, one triangle whose longest edge is an arc: new nodes lie on it, and the area converges.
+/// New nodes lie on the arc, and the area converges.
 TEST(Refinement, PutsNewNodesOnTheBoundarysShape)
 {
   for (const int order : {1, 2}) {
-    MeshData body;
-    body.element = {2, order, Shape::simplex};
-    body.coords = {0, 0, 1, 0, 0, 1};
-    body.cells = {0, 1, 2};
-    if (order == 2) {
-      body.coords.insert(body.coords.end(), {.5, 0, std::sqrt(.5), std::sqrt(.5), 0, .5});
-      body.cells.insert(body.cells.end(), {3, 4, 5});
-    }
-    body.blocks = {"body"};
-    body.block = {0};
-    mesh::BoundaryPart arc;
-    arc.shape.kind = mesh::BoundaryShape::Kind::sphere;
-    arc.shape.radius = 1;
-    arc.cell = {0};
-    arc.ordinal = {1};
-    body.geometry = {arc};
     double last = 1;
     for (const int times : {2, 3, 4}) {
-      const double error = std::abs(test::body_measure(*refined(dealt(body, alone()), times)) / (M_PI / 4) - 1);
+      const double error = test::quarter_disc_error(*refined(test::quarter_disc(order), times));
       if (times > 2) {
         EXPECT_NEAR(std::log2(last / error), 2 * order, 0.3) << "order " << order << ", " << times << " times";
       }

@@ -52,7 +52,7 @@ void add_places(const LocalMesh &mesh, const Middles &middles, const NewPlaces &
   std::vector<char> done(middles.size(), 0);
   for (const int c : cells)
     for (int e = 0; e < middles.per_cell; ++e) {
-      const int m = middles.of_cell[std::size_t(middles.per_cell) * c + e];
+      const int m = middles.of(c)[e];
       if (m < 0 || done[m] || middles.owner_vertex(m) >= mesh.num_owned_nodes()) continue;
       done[m] = 1;
       double *const x = &coords[std::size_t(dim) * m];
@@ -97,7 +97,7 @@ NewMesh new_mesh(const LocalMesh &mesh, const std::vector<Middles> &kinds, const
     std::copy_n(mesh.nodes_of(c), vertices, nodes);
     for (std::size_t k = 0; k < kinds.size(); ++k)
       for (int e = 0; e < kinds[k].per_cell; ++e) {
-        const int m = kinds[k].of_cell[std::size_t(kinds[k].per_cell) * c + e];
+        const int m = kinds[k].of(c)[e];
         nodes[kinds[k].slot[e]] = m < 0 ? -1 : made.first[k] + m;
       }
   }

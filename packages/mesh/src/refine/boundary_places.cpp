@@ -32,7 +32,7 @@ std::vector<OnPart> on_parts(const LocalMesh &mesh, const Middles &middles)
       const auto &facet = whole.facets()[part.ordinal[f]];
       for (int e = 0; e < middles.per_cell; ++e) {
         if (std::find(facet.begin(), facet.end(), middles.slot[e]) == facet.end()) continue;
-        const int m = middles.of_cell[std::size_t(middles.per_cell) * part.cell[f] + e];
+        const int m = middles.of(part.cell[f])[e];
         if (m >= 0) pairs.emplace_back(m, static_cast<int>(p));
       }
     }

@@ -153,7 +153,7 @@ LocalMesh divided(const LocalMesh &whole, const EdgeMarks &marks)
   std::vector<int> order(edges.per_cell);
   const auto kinds_of_cell = [&](const int c) -> const std::vector<int> & {
     for (int e = 0; e < edges.per_cell; ++e) {
-      const int edge = edges.of_cell[std::size_t(edges.per_cell) * c + e];
+      const int edge = edges.of(c)[e];
       order[e] = edge < 0 ? -1 : marks.order[edge];
     }
     return bisection.children(order);

@@ -141,7 +141,7 @@ EdgeMarks marked_edges(const LocalMesh &mesh, const Middles &edges, const std::v
     return is_new;
   };
   for (int c = 0; c < mesh.num_owned_cells(); ++c) {
-    const int *const of_cell = &edges.of_cell[std::size_t(edges.per_cell) * c];
+    const int *const of_cell = edges.of(c);
     if (halving[c] == Halving::longest_edge) mark_longest(of_cell, faces.back());
     if (halving[c] != Halving::all_edges) continue;
     for (int e = 0; e < edges.per_cell; ++e) marked[of_cell[e]] = 1;
@@ -155,7 +155,7 @@ EdgeMarks marked_edges(const LocalMesh &mesh, const Middles &edges, const std::v
     for (bool here = true; here;) {
       here = false;
       for (int c = 0; c < mesh.num_owned_cells(); ++c) {
-        const int *const of_cell = &edges.of_cell[std::size_t(edges.per_cell) * c];
+        const int *const of_cell = edges.of(c);
         for (const auto &face : faces)
           if (std::any_of(face.begin(), face.end(), [&](const int e) { return marked[of_cell[e]] != 0; }))
             here |= mark_longest(of_cell, face);

@@ -22,6 +22,7 @@ struct Middles {
 
   int size() const { return static_cast<int>(vertices.size()) / width; }
   const int *vertices_of(const int middle) const { return &vertices[std::size_t(width) * middle]; }
+  const int *of(const int cell) const { return &of_cell[std::size_t(per_cell) * cell]; }
   int owner_vertex(const int middle) const { return *vertices_of(middle); }
 };
 

@@ -111,7 +111,7 @@ std::vector<char> with_named_middles(const LocalMesh &whole, const Middles &edge
   if (whole.element.order == 1) return named;
   for (int c = 0; c < whole.num_cells(); ++c)
     for (int e = 0; e < edges.per_cell; ++e)
-      if (named_node[whole.nodes_of(c)[edges.slot[e]]]) named[edges.of_cell[std::size_t(edges.per_cell) * c + e]] = 1;
+      if (named_node[whole.nodes_of(c)[edges.slot[e]]]) named[edges.of(c)[e]] = 1;
   return named;
 }
 
@@ -126,8 +126,7 @@ void mark_in_place(const LocalMesh &children, Middles &edges)
   for (int c = 0; c < children.num_cells(); ++c) {
     const auto &vertices = children.child_vertices[children.kind[c]];
     for (int e = 0; e < edges.per_cell; ++e)
-      if (is_corner(vertices[ends[e][0]]) && is_corner(vertices[ends[e][1]]))
-        edges.in_place[edges.of_cell[std::size_t(edges.per_cell) * c + e]] = 1;
+      if (is_corner(vertices[ends[e][0]]) && is_corner(vertices[ends[e][1]])) edges.in_place[edges.of(c)[e]] = 1;
   }
 }
 

@@ -58,14 +58,10 @@ std::vector<Halving> halving_by(const SizeTree<dim> &size, const Mesh &mesh, con
   std::vector<Halving> halving(mesh.num_owned_cells, Halving::none);
   for (LO c = 0; c < mesh.num_owned_cells; ++c) {
     if (settled[c]) continue;
-    std::array<std::array<double, dim>, dim + 1> vertex;
-    std::array<double, dim> centre{};
+    SimplexVertices<dim> vertex;
     for (int v = 0; v <= dim; ++v)
-      for (int d = 0; d < dim; ++d) {
-        vertex[v][d] = coords(cells(c, v), d);
-        centre[d] += vertex[v][d] / (dim + 1);
-      }
-    halving[c] = halving_of(cell_size<dim>(vertex) / size(centre), dim);
+      for (int d = 0; d < dim; ++d) vertex[v][d] = coords(cells(c, v), d);
+    halving[c] = halving_of(excess<dim>(size, vertex), dim);
   }
   return halving;
 }

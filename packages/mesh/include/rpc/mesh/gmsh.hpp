@@ -22,6 +22,8 @@ struct GmshOptions {
   int refinements = 0; ///< how often make_mesh() halves each cell, >= 0; with it a .geo's mesh has its geometry
   bool nested = false; ///< make_mesh() meets `sizes` by refined_to(), from base_mesh(): read_gmsh() is not to see them
   std::shared_ptr<const MeshData> base = nullptr; ///< base_mesh() of a nested one, on rank 0; null: not made yet
+
+  bool needs_geometry() const { return refinements > 0 || nested; } ///< for new nodes on curved boundaries
 };
 
 /// Begins to load gmsh, which takes a tenth of a second, while this process does other things; the first mesh would do it.

@@ -23,10 +23,15 @@ struct SizeField {
 /// graded meshes of a ball: 4.3 to 6.1.)
 inline constexpr double tetrahedra_per_cube = 5;
 
-/// The size of a cell by which a mesh of equal ones has expected_cells() [m]: an edge of a regular triangle of its area, in space the edge of a cube of so many times its volume.
+/// Places of a triangle's or tetrahedron's vertices [m].
+template <int dim>
+using SimplexVertices = std::array<std::array<double, dim>, dim + 1>;
+
+/// The size of a cell by which a mesh of equal ones has expected_cells() [m]: an edge of a regular triangle of its area, in space the edge of
+/// a cube of tetrahedra_per_cube times its volume.
 /// @tparam dim  2 or 3
 template <int dim>
-double cell_size(const std::array<std::array<double, dim>, dim + 1> &vertex);
+double cell_size(const SimplexVertices<dim> &vertex);
 
 /// About how many cells a mesh of triangles or tetrahedra has that follows the field: the integral of 4 / (sqrt(3) size^2), in space of
 /// tetrahedra_per_cube / size^3.
