@@ -33,8 +33,9 @@ constexpr double headway = 0.7;
 constexpr GO few_changes = 3; // edges that move on by a point
 // Forces that the law does not admit over those that it does: bodies of equal sides stay below.
 constexpr double much = 0.3;
-// At once, where such forces are so many times the admissible ones and more than so many points change. With 10 a coarse block takes that path for nothing.
-constexpr double far_too_much = 1000;
+// At once, where such forces are so many times the admissible ones and more than so many points change; or at the second choice that
+// overshoots so often. Choices that settle in the end overshoot once at most by so much.
+constexpr double far_too_much = 10, too_much_twice = 3;
 constexpr GO many_changes = 10;
 constexpr int most_path_steps = 50;
 constexpr double path_forcing = 3e-2; // of its linear solves; 1e-6 saves no step, with 1e-1 some paths take more
@@ -82,7 +83,7 @@ void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, 
 {
   choice_ = std::move(choice);
   seen_.clear();
-  changes_ = idle_changes_ = 0;
+  changes_ = idle_changes_ = overshoots_ = 0;
   last_changes_ = 0;
   most_changes_ = most;
   norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
@@ -106,7 +107,7 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     if (confirmed_) return Verdict::converged;
     if (idle_steps_ > (turns_ ? most_idle_turns : 0)) return Verdict::over;
     rough_ = false;
-  } else if (!is_new_choice() || ++changes_ > most_changes_ || (!rubs_ && !makes_headway())) {
+  } else if (!is_new_choice() || (!contracts() && ++changes_ > most_changes_) || (!rubs_ && !makes_headway())) {
     return give_up(u); // in circles, or too slow
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
@@ -128,6 +129,12 @@ bool ActiveSetStage::is_new_choice()
   return false;
 }
 
+/// Whether the choice changes much fewer points than the one before, so that few will be left soon.
+bool ActiveSetStage::contracts() const
+{
+  return !rubs_ && last_changes_ > 0 && choice_->changes <= headway * last_changes_;
+}
+
 /// Whether the choices come to an end.
 bool ActiveSetStage::makes_headway()
 {
@@ -135,8 +142,9 @@ bool ActiveSetStage::makes_headway()
                     choice_->changes > headway * last_changes_;
   idle_changes_ = idle ? idle_changes_ + 1 : 0;
   last_changes_ = choice_->changes;
+  if (choice_->overshoot > too_much_twice) ++overshoots_;
   const bool is_far = choice_->overshoot > far_too_much && choice_->changes > many_changes;
-  return idle_changes_ < 2 && !is_far;
+  return idle_changes_ < 2 && overshoots_ < 2 && !is_far;
 }
 
 /// The interior-point method goes on where choices overshoot; else, or where that has been, Newton's.
@@ -163,22 +171,43 @@ bool ActiveSetStage::leaves_path()
 ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector &direction)
 {
   const Vector &u = solver::tpetra(group.getX());
-  Vector F(u.getMap());
-  iterate_.linearize_interior(u, F); // (5.18)
-  const auto solved = solver::solve_for_direction(group.context(), F, direction, path_forcing);
-  const bool usable = !solved.broken && std::isfinite(group.context().direction_norm);
-  if (!usable || solved.interrupted) {
+  if (!solve_interior(group.context(), u, direction)) {
     path_ = Path::behind;
     return Step::none;
   }
-  direction.scale(-1.);
-  const double t = iterate_.advance_interior(u, direction); // (5.19)
+  const double t = iterate_.advance_interior(u, direction);
   if (!(t > 0)) return Step::none;
   direction.scale(t);
   ++path_steps_;
   ++group.context().steps;
   ++steps_;
   return Step::full;
+}
+
+/// The direction of a step of the path: predictor, and what it lacks of the corrector.                            (5.18), (5.19)
+/// @return whether it can be used
+bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction)
+{
+  const auto solve = [&](const Vector &F, Vector &d, const double tolerance) {
+    const auto solved = solver::solve_for_direction(context, F, d, tolerance);
+    return !solved.broken && !solved.interrupted && std::isfinite(context.direction_norm);
+  };
+  Vector F(u.getMap());
+  iterate_.linearize_interior(u, F);
+  if (!solve(F, direction, path_forcing)) return false;
+  direction.scale(-1.);
+  iterate_.correct_interior(u, direction, F);
+  Vector lacking(u.getMap());
+  iterate_.hessian()->apply(direction, lacking);
+  lacking.update(1., F, 1.);
+  const double wanted = path_forcing * F.norm2(), missing = lacking.norm2();
+  if (missing <= wanted) return true;
+  const int iterations = context.linear_iterations;
+  Vector &correction = F; // no longer needed
+  if (!solve(lacking, correction, wanted / missing)) return false;
+  context.linear_iterations += iterations;
+  direction.update(-1., correction, 1.);
+  return true;
 }
 
 /// |F|_2 that the next solve is to leave: roughly while states change; while slip turns the better the shorter the step is.

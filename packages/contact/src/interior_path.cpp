@@ -14,14 +14,14 @@ namespace
 // The path is joined where pairs multiply to this part of pressure times displacement. Less is no gain: a point that has to change
 // its state starts too near to its corner.
 constexpr double first_mu = 0.1;
-constexpr double start_slope = 10; // of p against v from the given point to the path, in pressure over displacement
+constexpr double start_slope = 1; // of p against v from the given point to the path, in pressure over displacement
 constexpr double nearly = 0.995;   // of the way to the next point's corner
 // So many steps on end that are shorter than this tell that points start with a pressure far below what they will bear, as where the
 // foundation bends the body and not the load. A few steps are short on any path.
 constexpr double short_step = 0.1, more_pressure = 100;
 constexpr int many_short_steps = 3;
-// mu falls to this part by a step; after one cut short to t by twice (1 - t)^2.
-constexpr double first_part = 0.3, most_part = 0.5, least_part = 0.01;
+// mu falls to (1 - t)^2 of itself, t the length of the step for mu = 0, within these bounds.
+constexpr double most_part = 0.5, least_part = 1e-3;
 
 /// 1/(D + 1/r) of a point [Pa/m].                                                                              (5.18)
 KOKKOS_INLINE_FUNCTION double linear_stiffness(const SmoothedPoints &s, const LO i, const InteriorPoint &at)
@@ -63,8 +63,28 @@ void join_all(const ContactNodes &c, const Vector &u, const double pressure, con
   Kokkos::fence();
 }
 
-/// The longest step of this rank's points that keeps them inside.
-double longest_step(const SmoothedPoints &s, const DeviceView<InteriorPoint *> &change,
+/// The changes of the points that go with one of the displacement.                                                (5.17)
+DeviceView<InteriorPoint *> changes_along(const SmoothedPoints &points, const DeviceView<InteriorPoint *> &at,
+                                          const DeviceView<InteriorTarget *> &aim, const Vector &u, const Vector &d)
+{
+  const SmoothedPoints s = points;
+  const DeviceView<InteriorPoint *> change("rpc::contact::interior_change", s.size());
+  const auto x = device_read(u), move = device_read(d);
+  Kokkos::parallel_for(
+      "rpc::contact::interior_change", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
+        const ContactNodes &c = s.points;
+        if (c.fixed(i)) return;
+        const Foundation f = c.law(i);
+        const double dp = linear_stiffness(s, i, at(i)) *
+                          (along_direction(c, i, move) + linear_excess(at(i), penetration(c, i, x), aim(i), f));
+        change(i) = linear_change(at(i), dp, aim(i), f);
+      });
+  Kokkos::fence();
+  return change;
+}
+
+/// The part of a change, at most 1, that keeps the points of all ranks inside.                                      (5.19)
+double longest_step(const Comm &comm, const SmoothedPoints &s, const DeviceView<InteriorPoint *> &change,
                     const DeviceView<InteriorPoint *> &at)
 {
   double longest = 0;
@@ -74,7 +94,7 @@ double longest_step(const SmoothedPoints &s, const DeviceView<InteriorPoint *> &
         if (!s.points.fixed(i)) least = math::fmin(least, longest_step(at(i), change(i), s.points.law(i)));
       },
       Kokkos::Min<double>(longest));
-  return longest;
+  return std::min(1., nearly * min_all(comm, longest));
 }
 
 /// Over all ranks: sum_i w_i (p_i s_i + q_i d_i) [J], sum_i w_i p_i [N], and the sum of w_i times a point's number of pairs.
@@ -102,6 +122,7 @@ std::array<double, 3> sums(const Comm &comm, const ContactNodes &points, const D
 
 InteriorPath::InteriorPath(const SmoothedFunctional &functional, const Vector &u, const double load)
     : at_("rpc::contact::interior", functional.points().size()),
+      aim_("rpc::contact::interior_target", functional.points().size()),
       state_("rpc::contact::interior_state", functional.points().size())
 {
   const ContactNodes &c = functional.points().points;
@@ -115,7 +136,6 @@ void InteriorPath::join(const SmoothedFunctional &functional, const Vector &u)
 {
   mu_ = first_mu * pressure_ * length_;
   join_all(functional.points().points, u, pressure_, mu_, start_slope * pressure_ / length_, at_);
-  target_ = first_part * mu_;
 }
 
 void InteriorPath::rejoin_where_it_creeps(const SmoothedFunctional &functional, const Vector &u)
@@ -150,7 +170,7 @@ void InteriorPath::gradient(const SmoothedFunctional &functional, const Vector &
   functional.elastic_gradient(u, F);
   const SmoothedPoints s = functional.points();
   const auto at = at_;
-  const double mu = target_;
+  const auto aim = aim_;
   const DeviceView<double *> p("rpc::contact::interior_pressure", s.size());
   {
     const auto x = device_read(u);
@@ -159,33 +179,32 @@ void InteriorPath::gradient(const SmoothedFunctional &functional, const Vector &
           const ContactNodes &c = s.points;
           if (c.fixed(i)) return;
           const Foundation f = c.law(i);
-          p(i) = at(i).pressure + linear_stiffness(s, i, at(i)) * linear_excess(at(i), penetration(c, i, x), mu, f);
+          p(i) = at(i).pressure + linear_stiffness(s, i, at(i)) * linear_excess(at(i), penetration(c, i, x), aim(i), f);
         });
     Kokkos::fence();
   }
   add_contact_force(s.points, p, F);
 }
 
+void InteriorPath::correct(const SmoothedFunctional &functional, const Vector &u, const Vector &d)
+{
+  const SmoothedPoints s = functional.points();
+  const auto change = changes_along(s, at_, aim_, u, d);
+  const double t = longest_step(*u.getMap()->getComm(), s, change, at_);
+  const double mu = std::clamp((1 - t) * (1 - t), least_part, most_part) * mu_;
+  const auto aim = aim_;
+  Kokkos::parallel_for(
+      "rpc::contact::interior_target", device_range(s.size()),
+      KOKKOS_LAMBDA(const LO i) { aim(i) = corrected_target(change(i), mu, t, s.points.law(i)); });
+  Kokkos::fence();
+}
+
 double InteriorPath::advance(const SmoothedFunctional &functional, const Vector &u, const Vector &d)
 {
   const SmoothedPoints s = functional.points();
   const auto at = at_;
-  const double mu = target_;
-  const DeviceView<InteriorPoint *> change("rpc::contact::interior_change", s.size());
-  {
-    const auto x = device_read(u), move = device_read(d);
-    Kokkos::parallel_for(
-        "rpc::contact::interior_change", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
-          const ContactNodes &c = s.points;
-          if (c.fixed(i)) return;
-          const Foundation f = c.law(i);
-          const double dp = linear_stiffness(s, i, at(i)) *
-                            (along_direction(c, i, move) + linear_excess(at(i), penetration(c, i, x), mu, f));
-          change(i) = linear_change(at(i), dp, mu, f);
-        });
-    Kokkos::fence();
-  }
-  const double t = std::min(1., nearly * min_all(*u.getMap()->getComm(), longest_step(s, change, at)));
+  const auto change = changes_along(s, at, aim_, u, d);
+  const double t = longest_step(*u.getMap()->getComm(), s, change, at);
   const auto state = state_;
   LO changes = 0;
   Kokkos::parallel_reduce(
@@ -204,7 +223,7 @@ double InteriorPath::advance(const SmoothedFunctional &functional, const Vector 
   mu_ = products / pairs;
   gap_ = products / (force * length_);
   short_steps_ = t < short_step ? short_steps_ + 1 : 0;
-  target_ = std::clamp(2 * (1 - t) * (1 - t), least_part, most_part) * mu_;
+  Kokkos::deep_copy(aim_, InteriorTarget{0, 0});
   return t;
 }
 

@@ -218,6 +218,12 @@ void Iterate::linearize_interior(const Vector &u, Vector &F)
   interior_->gradient(functional_, u, F);
 }
 
+void Iterate::correct_interior(const Vector &u, const Vector &d, Vector &F)
+{
+  interior_->correct(functional_, u, d);
+  interior_->gradient(functional_, u, F);
+}
+
 double Iterate::replace_multipliers(const DeviceView<double *> &p, const DeviceView<double **> &q)
 {
   auto [change, size] = replace(points_, p, multipliers().normal);

@@ -44,7 +44,8 @@ TEST(InteriorPath, StepsOfOnePointOnASpringTendToTheLaw)
   const double k = 15;
   for (const Foundation &f : laws) {
     for (const double v0 : {-0.4, 0.1, 1.}) {
-      double mu = 0.1, v = v0;
+      double v = v0;
+      InteriorTarget target{0.1, 0.1};
       InteriorPoint x = on_path(1, mu, 10, f);
       State state = State::open;
       for (int step = 0; step < 60; ++step) {

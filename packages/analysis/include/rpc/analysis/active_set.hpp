@@ -51,12 +51,14 @@ private:
   Step proposed(solver::NewtonGroup &group, Vector &direction);
   Verdict choose(const Vector &u);
   bool is_new_choice();
+  bool contracts() const;
   bool makes_headway();
   double needed_norm() const;
   Verdict give_up(const Vector &u);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
   bool leaves_path();
   Step propose_interior(solver::NewtonGroup &group, Vector &direction);
+  bool solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction);
 
   contact::Iterate &iterate_;
   double scale_, target_;                          // of forces, and |F|_2 that is small enough [N]
@@ -79,6 +81,7 @@ private:
   int updates_ = 0;      // of the multipliers alone, the active set being confirmed
   GO last_changes_ = 0;  // points that the last choice changed
   int idle_steps_ = 0;   // of a confirmed active set, one after the other, that left more than half of F
+  int overshoots_ = 0;   // choices with much too large forces that the law does not admit
   int idle_changes_ = 0; // choices, one after the other, that changed hardly fewer points than the one before
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;

@@ -9,8 +9,9 @@ namespace rpc::contact
 /// An interior-point method for the contact law: points and their pressures follow the rounded law (5.15) while mu falls to 0. Its
 /// steps are as many on thin bodies as on others, for no point changes its state at once.  doc/theory.md (5.15) to (5.20)
 ///
-/// A step is linear: (K + sum_i w_i m_i m_i^T/(D_i + 1/r_i)) d = -F, blocks() and gradient(); advance() takes as much of it as
-/// keeps all points inside. All members are collective.
+/// A step has two solves with one matrix (Mehrotra): (K + sum_i w_i m_i m_i^T/(D_i + 1/r_i)) d = -F, blocks() and gradient(), for
+/// mu = 0; correct() learns from it what mu can be reached and what products the linear equations leave out; then d for these.
+/// advance() takes as much of it as keeps all points inside. All members are collective.
 class InteriorPath
 {
 public:
@@ -25,6 +26,8 @@ public:
   DeviceView<double ***> blocks(const SmoothedPoints &points) const;
   /// F <- Ku - b + sum_i w_i m_i (p_i + e_i/(D_i + 1/r_i))                                                        (5.18)
   void gradient(const SmoothedFunctional &functional, const Vector &u, Vector &F) const;
+  /// The next gradient() and advance() are for the mu that a step along `d`, for mu = 0, tells, and for what it leaves out. (5.19)
+  void correct(const SmoothedFunctional &functional, const Vector &u, const Vector &d);
   /// Takes a step of the points along a displacement, as long as they stay inside, at most 1. @return its length    (5.19)
   double advance(const SmoothedFunctional &functional, const Vector &u, const Vector &d);
 
@@ -38,11 +41,11 @@ public:
 private:
   void join(const SmoothedFunctional &functional, const Vector &u);
 
-  DeviceView<InteriorPoint *> at_; // (points)
-  DeviceView<State *> state_;      // (points) that they tend to
+  DeviceView<InteriorPoint *> at_;   // (points)
+  DeviceView<InteriorTarget *> aim_; // (points) of the next step
+  DeviceView<State *> state_;        // (points) that they tend to
   double pressure_ = 0;            // that points start with [Pa]
   double length_ = 0;              // size of displacements [m]
-  double target_ = 0;              // mu that the next step is for [J/m^2]
   double mu_ = 0;                  // mean of p s and q d [J/m^2]
   double gap_ = 1;
   bool settled_ = false;

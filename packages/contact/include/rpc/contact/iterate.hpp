@@ -72,6 +72,8 @@ public:
   void start_interior_path(const Vector &u);
   /// Brings hessian() to the linearized law, from a new start where steps are short, and sets what it is to be solved for.                            (5.18)
   void linearize_interior(const Vector &u, Vector &F);
+  /// After the step d for mu = 0, what hessian() is to be solved for instead.                                  (5.19)
+  void correct_interior(const Vector &u, const Vector &d, Vector &F);
   /// @return the length of the step that was taken along d                                                    (5.19)
   double advance_interior(const Vector &u, const Vector &d) { return interior_->advance(functional_, u, d); }
   const InteriorPath &interior_path() const { return *interior_; }

@@ -18,6 +18,12 @@ struct InteriorPoint {
   double dent;     ///< d [m]
 };
 
+/// What the products of the pairs are to become in a step [J/m^2].
+struct InteriorTarget {
+  double opening; ///< p s
+  double dent;    ///< q d
+};
+
 KOKKOS_INLINE_FUNCTION bool can_yield(const Foundation &f)
 {
   return !is_rigid(f.yield);
@@ -75,28 +81,37 @@ KOKKOS_INLINE_FUNCTION double linear_compliance(const InteriorPoint &x, const Fo
   return compliance;
 }
 
-/// By how much v is larger than what the linearized equations for `mu` have at the present p [m].                  (5.17)
-KOKKOS_INLINE_FUNCTION double linear_excess(const InteriorPoint &x, const double v, const double mu,
+/// By how much v is larger than what the linearized equations for the target have at the present p [m].            (5.17)
+KOKKOS_INLINE_FUNCTION double linear_excess(const InteriorPoint &x, const double v, const InteriorTarget &target,
                                             const Foundation &f)
 {
-  double excess = v - f.compliance * x.pressure - x.dent + mu / x.pressure;
+  double excess = v - f.compliance * x.pressure - x.dent + target.opening / x.pressure;
   if (can_yield(f)) {
     const double q = spare_strength(x, f);
-    excess -= (mu - q * x.dent) / (q + f.hardening * x.dent);
+    excess -= (target.dent - q * x.dent) / (q + f.hardening * x.dent);
   }
   return excess;
 }
 
 /// The changes of s and d that go with one of p.                                                                   (5.17)
-KOKKOS_INLINE_FUNCTION InteriorPoint linear_change(const InteriorPoint &x, const double dp, const double mu,
-                                                   const Foundation &f)
+KOKKOS_INLINE_FUNCTION InteriorPoint linear_change(const InteriorPoint &x, const double dp,
+                                                   const InteriorTarget &target, const Foundation &f)
 {
-  InteriorPoint change{dp, (mu - x.opening * dp) / x.pressure - x.opening, 0};
+  InteriorPoint change{dp, (target.opening - x.opening * dp) / x.pressure - x.opening, 0};
   if (can_yield(f)) {
     const double q = spare_strength(x, f);
-    change.dent = (mu - q * x.dent + x.dent * dp) / (q + f.hardening * x.dent);
+    change.dent = (target.dent - q * x.dent + x.dent * dp) / (q + f.hardening * x.dent);
   }
   return change;
+}
+
+/// The target that makes the products mu, of the linearized equations, after a change whose products they leave out. (5.19)
+/// @param part  of these products that is taken off
+KOKKOS_INLINE_FUNCTION InteriorTarget corrected_target(const InteriorPoint &change, const double mu, const double part,
+                                                       const Foundation &f)
+{
+  return {mu - part * change.pressure * change.opening,
+          mu - part * (f.hardening * change.dent - change.pressure) * change.dent};
 }
 
 /// The largest step along a change that keeps p, s, d and q >= 0; infinite if every step does.
