@@ -27,8 +27,8 @@ constexpr double enough = 0.3;      // of the tolerance: recomputed residuals ar
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 constexpr double rounding = 1e-13;  // of the largest pressure: the same, where tolerances are tighter
 
-// The interior-point method takes over where twice on end a choice with much overshoot changes more than this part of the points of
-// the one before. With 1 the worst of thin bodies take three steps more.
+// The interior-point method takes over where twice on end a choice with much overshoot changes more than this part of the fewest
+// points that one has changed. With 1 the worst of thin bodies take three steps more.
 constexpr double headway = 0.7;
 constexpr GO few_changes = 3; // edges that move on by a point
 // Forces that the law does not admit over those that it does: bodies of equal sides stay below.
@@ -38,7 +38,7 @@ constexpr double much = 0.3;
 constexpr double far_too_much = 10, too_much_twice = 3;
 constexpr GO many_changes = 10;
 constexpr int most_path_steps = 50;
-constexpr double path_forcing = 3e-2; // of its linear solves; 1e-6 saves no step, with 1e-1 some paths take more
+constexpr double path_forcing = 1e-2; // of its linear solves; 1e-3 saves no step, with 3e-2 some paths take more
 // The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and
 // below the last gap in any case. A trial may change states so often.
 constexpr double first_trial = 1e-2, next_trial = 1e-2, last_gap = 1e-8;
@@ -84,7 +84,7 @@ void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, 
   choice_ = std::move(choice);
   seen_.clear();
   changes_ = idle_changes_ = overshoots_ = 0;
-  last_changes_ = 0;
+  fewest_changes_ = 0;
   most_changes_ = most;
   norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
   rough_ = false; // a small residual may be all of the bending
@@ -129,19 +129,19 @@ bool ActiveSetStage::is_new_choice()
   return false;
 }
 
-/// Whether the choice changes much fewer points than the one before, so that few will be left soon.
+/// Whether the choice changes much fewer points than any before, so that few will be left soon.
 bool ActiveSetStage::contracts() const
 {
-  return !rubs_ && last_changes_ > 0 && choice_->changes <= headway * last_changes_;
+  return !rubs_ && fewest_changes_ > 0 && choice_->changes <= headway * fewest_changes_;
 }
 
 /// Whether the choices come to an end.
 bool ActiveSetStage::makes_headway()
 {
-  const bool idle = last_changes_ > 0 && choice_->overshoot > much && choice_->changes > few_changes &&
-                    choice_->changes > headway * last_changes_;
+  const bool idle = fewest_changes_ > 0 && choice_->overshoot > much && choice_->changes > few_changes &&
+                    choice_->changes > headway * fewest_changes_;
   idle_changes_ = idle ? idle_changes_ + 1 : 0;
-  last_changes_ = choice_->changes;
+  fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, choice_->changes) : choice_->changes;
   if (choice_->overshoot > too_much_twice) ++overshoots_;
   const bool is_far = choice_->overshoot > far_too_much && choice_->changes > many_changes;
   return idle_changes_ < 2 && overshoots_ < 2 && !is_far;

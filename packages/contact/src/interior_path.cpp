@@ -14,8 +14,8 @@ namespace
 // The path is joined where pairs multiply to this part of pressure times displacement. Less is no gain: a point that has to change
 // its state starts too near to its corner.
 constexpr double first_mu = 0.1;
-constexpr double start_slope = 1; // of p against v from the given point to the path, in pressure over displacement
-constexpr double nearly = 0.995;   // of the way to the next point's corner
+constexpr double start_slope = 10; // of p against v from the given point to the path, in pressure over displacement
+constexpr double nearly = 0.98;    // of the way to the next point's corner
 // So many steps on end that are shorter than this tell that points start with a pressure far below what they will bear, as where the
 // foundation bends the body and not the load. A few steps are short on any path.
 constexpr double short_step = 0.1, more_pressure = 100;

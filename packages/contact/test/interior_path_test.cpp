@@ -38,35 +38,79 @@ TEST(InteriorPath, JoinsThePathOnTheGivenLine)
   }
 }
 
+/// A point that a spring presses on the foundation: p = k (v0 - v).
+struct PointOnASpring {
+  double k, v0, v;
+  Foundation law;
+  InteriorPoint at;
+
+  InteriorPoint change(const InteriorTarget &target, double &dv) const
+  {
+    const double D = linear_compliance(at, law), e = linear_excess(at, v, target, law);
+    dv = (k * (v0 - v) - at.pressure - e / D) / (k + 1 / D);
+    return linear_change(at, (dv + e) / D, target, law);
+  }
+  double step_to(const InteriorTarget &target)
+  {
+    double dv;
+    const InteriorPoint by = change(target, dv);
+    const double t = std::min(1., 0.9 * longest_step(at, by, law));
+    at = {at.pressure + t * by.pressure, at.opening + t * by.opening, at.dent + t * by.dent};
+    v += t * dv;
+    return t;
+  }
+  /// For mu = 0 and then for what that leaves out, as InteriorPath does.
+  double corrected_step()
+  {
+    double dv;
+    const InteriorPoint by = change({0, 0}, dv);
+    const double t = std::min(1., 0.9 * longest_step(at, by, law));
+    return step_to(corrected_target(by, (1 - t) * (1 - t) * mean_product(), t, law));
+  }
+  double mean_product() const { return complementarity(at, law) / (can_yield(law) ? 2 : 1); }
+};
+
 TEST(InteriorPath, StepsOfOnePointOnASpringTendToTheLaw)
 {
-  // p = k (v0 - v), a point that a spring presses on the foundation from v0; its solution obeys the law.
-  const double k = 15;
-  for (const Foundation &f : laws) {
-    for (const double v0 : {-0.4, 0.1, 1.}) {
-      double v = v0;
-      InteriorTarget target{0.1, 0.1};
-      InteriorPoint x = on_path(1, mu, 10, f);
-      State state = State::open;
-      for (int step = 0; step < 60; ++step) {
-        const double D = linear_compliance(x, f), e = linear_excess(x, v, mu, f);
-        const double dv = (k * (v0 - v) - x.pressure - e / D) / (k + 1 / D);
-        const InteriorPoint change = linear_change(x, (dv + e) / D, mu, f);
-        const double t = std::min(1., 0.9 * longest_step(x, change, f));
-        const InteriorPoint before = x;
-        x = {x.pressure + t * change.pressure, x.opening + t * change.opening, x.dent + t * change.dent};
-        v += t * dv;
-        mu = 0.1 * complementarity(x, f);
-        state = tends_to(before, x, f);
-        if (complementarity(x, f) < 1e-12) break;
+  int plain = 0, corrected = 0; // steps of all cases
+  for (const bool corrects : {false, true}) {
+    for (const Foundation &f : laws) {
+      for (const double v0 : {-0.4, 0.1, 1.}) {
+        PointOnASpring x{15, v0, v0, f, on_path(1, 0.1, 10, f)};
+        State state = State::open;
+        for (int step = 0; step < 60 && complementarity(x.at, f) > 1e-12; ++step) {
+          const InteriorPoint before = x.at;
+          const double mu = (step == 0 ? 1 : 0.1) * complementarity(x.at, f);
+          corrects ? x.corrected_step() : x.step_to({mu, mu});
+          state = tends_to(before, x.at, f);
+          ++(corrects ? corrected : plain);
+        }
+        EXPECT_NEAR(x.at.pressure, x.k * (v0 - x.v), 1e-8);
+        EXPECT_NEAR(x.at.pressure, pressure(x.v, x.at.pressure, 1, f), 1e-6);
+        const State expected = v0 < 0                                          ? State::open
+                               : x.k * v0 > f.yield * (1 + x.k * f.compliance) ? State::yielding
+                                                                               : State::closed;
+        EXPECT_EQ(state, expected) << f.yield << " " << f.hardening << " " << f.compliance << " " << v0;
       }
-      EXPECT_NEAR(x.pressure, k * (v0 - v), 1e-8);
-      EXPECT_NEAR(x.pressure, pressure(v, x.pressure, 1, f), 1e-6);
-      const State expected = v0 < 0                                      ? State::open
-                             : k * v0 > f.yield * (1 + k * f.compliance) ? State::yielding
-                                                                         : State::closed;
-      EXPECT_EQ(state, expected) << f.yield << " " << f.hardening << " " << f.compliance << " " << v0;
     }
+  }
+  EXPECT_LT(corrected, 0.8 * plain);
+}
+
+TEST(InteriorPath, TargetsTakeOffTheProductsThatLinearStepsLeaveOut)
+{
+  const double mu = 0.2;
+  const InteriorPoint x{2, 0.5, 0.25};
+  for (const Foundation &f : laws) {
+    const InteriorPoint predicted = linear_change(x, -0.3, {0, 0}, f);
+    const InteriorTarget target = corrected_target(predicted, mu, 1, f);
+    const InteriorPoint y = linear_change(x, -0.3, target, f);
+    const double ps = x.pressure * x.opening + x.opening * y.pressure + x.pressure * y.opening;
+    EXPECT_NEAR(ps + predicted.pressure * predicted.opening, mu, 1e-14);
+    if (!can_yield(f)) continue;
+    const double q = spare_strength(x, f), dq = f.hardening * y.dent - y.pressure;
+    const double predicted_dq = f.hardening * predicted.dent - predicted.pressure;
+    EXPECT_NEAR(q * x.dent + x.dent * dq + q * y.dent + predicted_dq * predicted.dent, mu, 1e-14);
   }
 }
 

@@ -44,9 +44,9 @@ private:
   DeviceView<InteriorPoint *> at_;   // (points)
   DeviceView<InteriorTarget *> aim_; // (points) of the next step
   DeviceView<State *> state_;        // (points) that they tend to
-  double pressure_ = 0;            // that points start with [Pa]
-  double length_ = 0;              // size of displacements [m]
-  double mu_ = 0;                  // mean of p s and q d [J/m^2]
+  double pressure_ = 0;              // that points start with [Pa]
+  double length_ = 0;                // size of displacements [m]
+  double mu_ = 0;                    // mean of p s and q d [J/m^2]
   double gap_ = 1;
   bool settled_ = false;
   int short_steps_ = 0; // on end
