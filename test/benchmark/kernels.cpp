@@ -100,7 +100,8 @@ struct Body {
   /// Neighbours of each node, the pattern that the assembly goes by.
   double node_graph_bytes() const
   {
-    return sizeof(std::size_t) * d.nodes.row.extent(0) + sizeof(LO) * d.nodes.col.extent(0);
+    const auto nodes = d.nodes();
+    return sizeof(std::size_t) * nodes.row.extent(0) + sizeof(LO) * nodes.col.extent(0);
   }
 };
 

@@ -47,12 +47,13 @@ struct PressedBox {
     const auto load = rcp(new Vector(d.owned_dofs));
     fem::add_traction(d, d.mesh->side("top", ""), {ScalarField(0.), push, ScalarField(0.)}, "Traction", *load);
     const auto dirichlet = fem::dirichlet_dofs(d, conditions);
-    const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
+    const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet.fixed);
     const auto nodes = contact::contact_nodes(d, {foundation}, dirichlet, material);
     elastic = fem::elastic_problem(d, K.couplings, load, dirichlet);
     iterate = std::make_shared<contact::Iterate>(elastic, nodes, updated(K.matrix, nodes));
-    linear = std::make_shared<solver::LinearSolver>(options, iterate->hessian(), fem::node_coordinates(d),
-                                                    fem::rigid_body_modes(d));
+    linear = std::make_shared<solver::LinearSolver>(
+        options, iterate->hessian(),
+        solver::Body{d.dim(), [d = d] { return fem::node_coordinates(d); }, [d = d] { return fem::rigid_body_modes(d); }});
     u = rcp(new Vector(d.owned_dofs));
   }
 };

@@ -66,7 +66,7 @@ struct Scene {
     const auto load = rcp(new Vector(d.owned_dofs));
     fem::add_body_force(d, {ScalarField(0.3), ScalarField(-2.), ScalarField(0.)}, "Body Force", *load);
     const auto dirichlet = fem::dirichlet_dofs(d, {condition});
-    const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
+    const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet.fixed);
     const auto nodes = contact::contact_nodes(d, foundations, dirichlet, material);
     elastic = fem::elastic_problem(d, K.couplings, load, dirichlet);
     iterate = std::make_shared<contact::Iterate>(elastic, nodes, updated(K.matrix, nodes));

@@ -39,15 +39,14 @@ DeviceView<char *> at_vertices(const DeviceView<char *> &prescribed, const Devic
   return flag;
 }
 
-solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, const fem::DirichletDofs &dirichlet,
+solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, const DeviceView<char *> &prescribed,
                            RCP<const CrsMatrix> interpolation)
 {
-  auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), dirichlet).matrix;
+  auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), prescribed).matrix;
   return {std::move(K),
           std::move(interpolation),
-          dirichlet.fixed,
-          fem::node_coordinates(d),
-          fem::rigid_body_modes(d),
+          prescribed,
+          body_of(d),
           d.mesh->element.order};
 }
 
@@ -67,6 +66,11 @@ std::string thin_text(const mesh::BoxOptions &box, const int direction)
 
 } // namespace
 
+solver::Body body_of(const fem::Discretization &d)
+{
+  return {d.dim(), [d] { return fem::node_coordinates(d); }, [d] { return fem::rigid_body_modes(d); }};
+}
+
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed)
 {
   solver::MeshLevels levels;
@@ -82,21 +86,17 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   std::optional<int> thin = thin_direction(finest);
   if (thin) { // no coarser mesh will do: the mesh is its own coarser one, where it is factored
     const fem::Discretization &d = finest.discretization();
-    fem::DirichletDofs dirichlet;
-    dirichlet.fixed = prescribed;
-    levels.level.push_back(level_on(d, model, dirichlet, fem::interpolation(d, d)));
+    levels.level.push_back(level_on(d, model, prescribed, fem::interpolation(d, d)));
   }
   while (!thin && (levels.level.empty() || num_unknowns(*mesh) > few)) {
     const NestedMesh *const coarse = mesh->coarser().get();
     if (!coarse) break;
     mesh = coarse;
     const fem::Discretization &d = mesh->discretization();
-    fem::DirichletDofs dirichlet;
-    if (mesh->node_of_finer().extent(0) > 0)
-      dirichlet.fixed = at_vertices(prescribed, mesh->node_of_finer(), dim);
-    else
-      dirichlet = fem::dirichlet_dofs(d, held);
-    levels.level.push_back(level_on(d, model, dirichlet, mesh->to_finer()));
+    const auto prescribed_here = mesh->node_of_finer().extent(0) > 0
+                                     ? at_vertices(prescribed, mesh->node_of_finer(), dim)
+                                     : fem::dirichlet_dofs(d, held).fixed;
+    levels.level.push_back(level_on(d, model, prescribed_here, mesh->to_finer()));
     thin = thin_direction(*mesh);
   }
   if (thin && num_unknowns(*mesh) > few) levels.end = thin_text(*mesh->discretization().mesh->box, *thin);

@@ -98,13 +98,14 @@ Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, con
   const auto dirichlet = prescribed_of(d, model_);
   prescribed_ = dirichlet.fixed;
   free_parts_ = contact::free_parts(d, dirichlet);
-  const auto assembled = [d, materials = model_.materials, dirichlet] {
+  const auto assembled = [d, materials = model_.materials, prescribed = prescribed_] {
     const auto K = fem::assemble_stiffness(d, materials);
     require_finite(*K, "the stiffness matrix, from \"Material\" and \"Mesh\"",
                    [&d] { return fem::node_coordinates(d); });
-    return fem::eliminate_dirichlet(d, K, dirichlet);
+    return fem::eliminate_dirichlet(d, K, prescribed);
   };
-  const auto repeated = fem::repeated_stiffness(d, model_.materials, dirichlet);
+  const auto repeated = fem::repeated_stiffness(d, model_.materials, prescribed_);
+  if (repeated && mesh_->is_finest()) d.forget_nodes(); // coarser meshes have a matrix soon
   const fem::EliminatedStiffness K = repeated ? fem::EliminatedStiffness{} : assembled();
   couplings_ = repeated ? repeated->couplings : K.couplings;
   stiffness_ = repeated ? rcp(new StiffnessOperator(

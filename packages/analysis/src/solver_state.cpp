@@ -1,5 +1,7 @@
 #include "rpc/analysis/solver_state.hpp"
 
+#include "rpc/analysis/mesh_levels.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,9 +39,8 @@ SolverState::SolverState(const Problem &problem, const solver::LinearSolverOptio
     : options_(options), hessian_(rcp(new UpdatedOperator(problem.stiffness(), problem.contact_candidates())))
 {
   const fem::Discretization &d = problem.discretization();
-  linear_ =
-      std::make_unique<solver::LinearSolver>(tuned(options, d, problem.model().materials), hessian_,
-                                             fem::node_coordinates(d), fem::rigid_body_modes(d), problem.mesh_levels());
+  linear_ = std::make_unique<solver::LinearSolver>(tuned(options, d, problem.model().materials), hessian_, body_of(d),
+                                                   problem.mesh_levels());
 }
 
 } // namespace rpc::analysis

@@ -46,7 +46,7 @@ struct Block {
     foundation.gap = ScalarField(0.);
     model.contact = {foundation};
     dirichlet = fem::dirichlet_dofs(d, model.dirichlet);
-    auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), dirichlet).matrix;
+    auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), dirichlet.fixed).matrix;
     points = contact::contact_nodes(d, model.contact, dirichlet, model.materials);
     H = updated(K, points);
   }
@@ -83,7 +83,7 @@ struct Block {
   {
     solver::LinearSolverOptions options;
     options.multigrid = "mesh";
-    return std::make_unique<solver::LinearSolver>(options, H, fem::node_coordinates(d), fem::rigid_body_modes(d),
+    return std::make_unique<solver::LinearSolver>(options, H, analysis::body_of(d),
                                                   [this] { return levels(); });
   }
 };

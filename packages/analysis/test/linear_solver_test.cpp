@@ -30,7 +30,7 @@ TEST(LinearSolver, GoesOnFromTheResidualWhereRoundingEndsCG)
   options.multigrid = "algebraic";
   options.muelu.set("coarse: max size", 100000); // a factor
   options.reuse = "none";
-  LinearSolver solver(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d));
+  LinearSolver solver(options, block.H, analysis::body_of(block.d));
   const Vector b = block.vector(11);
   Vector x(b.getMap()), residual(b.getMap());
   for (int k = 0; k < 2; ++k) {
@@ -54,7 +54,7 @@ TEST(LinearSolver, FactorsFewUnknowns)
   const auto iterations = [&](const std::function<void(LinearSolverOptions &)> &set) {
     LinearSolverOptions options;
     set(options);
-    LinearSolver solver(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d));
+    LinearSolver solver(options, block.H, analysis::body_of(block.d));
     int most = 0;
     for (const double end : {0., 0.7, 1.3}) {
       block.close([end](const double at) { return at < end; });
@@ -79,7 +79,7 @@ TEST(LinearSolver, TellsWhereFewUnknownsHaveNoFactor)
   K->scale(-1.);
   K->fillComplete();
   const auto H = test::updated(K, block.points);
-  LinearSolver solver({}, H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d));
+  LinearSolver solver({}, H, analysis::body_of(block.d));
   const Vector b = block.vector(13);
   Vector x(b.getMap());
   EXPECT_FALSE(solver.solve(b, x, 1e-6).converged);
@@ -94,7 +94,7 @@ TEST(LinearSolver, TakesMeshesUnlessMueLuIsGiven)
     bool made = false;
     LinearSolverOptions options;
     set(options);
-    LinearSolver solver(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d), [&] {
+    LinearSolver solver(options, block.H, analysis::body_of(block.d), [&] {
       made = true;
       return block.levels();
     });
@@ -133,7 +133,7 @@ TEST(LinearSolver, LeavesSlightChangesOfContactToCGWhileThatIsCheaperThanAFactor
   const Block plate({3, 1}, {48, 48, 1}, true, {1, 1, 0.01});
   LinearSolverOptions options;
   options.expected_iterations = 400;
-  LinearSolver solver(options, plate.H, fem::node_coordinates(plate.d), fem::rigid_body_modes(plate.d));
+  LinearSolver solver(options, plate.H, analysis::body_of(plate.d));
   const Vector b = plate.vector(15);
   Vector x(b.getMap());
   struct Case {
@@ -237,7 +237,7 @@ TEST(LinearSolver, SolvesByGmresWhereContactIsNotSymmetric)
   for (const Kind &kind : {Kind{"mesh", "meshes", 20}, {"algebraic", "algebraic", 20}, {"auto", "factor", 15}}) {
     LinearSolverOptions options;
     options.multigrid = kind.multigrid;
-    LinearSolver solver(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d),
+    LinearSolver solver(options, block.H, analysis::body_of(block.d),
                         kind.path == std::string("meshes") ? solver::MakeMeshLevels([&] { return block.levels(); })
                                                            : solver::MakeMeshLevels());
     const auto result = solver.solve(b, x, 1e-9);

@@ -32,7 +32,7 @@ std::vector<int> some_cells(const mesh::Element &element)
 /// The solver for the coarsest level that these meshes lead to.
 std::unique_ptr<solver::CoarsestSolver> directly(const solver::MeshLevel &level)
 {
-  return solver::direct_solver(level.stiffness, static_cast<int>(level.coordinates->getNumVectors()));
+  return solver::direct_solver(level.stiffness, level.body.dim);
 }
 
 TEST(MeshMultigrid, IsSymmetricAndPositive)
@@ -194,7 +194,7 @@ TEST(MeshMultigrid, GivesWayToTheAlgebraicOneWhereItFails)
   const Block block({2, 1}, {67, 35});
   LinearSolverOptions options;
   options.multigrid = "mesh";
-  LinearSolver solver(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d), [&] {
+  LinearSolver solver(options, block.H, analysis::body_of(block.d), [&] {
     MeshLevels levels = block.levels();
     CrsMatrix &coarsest = *levels.level.back().stiffness;
     coarsest.resumeFill();
@@ -222,7 +222,7 @@ TEST(MeshMultigrid, TakesSmallMeshes)
   EXPECT_EQ(solver->counts().fallback, "");
   LinearSolverOptions options;
   options.multigrid = "mesh";
-  LinearSolver without(options, block.H, fem::node_coordinates(block.d), fem::rigid_body_modes(block.d),
+  LinearSolver without(options, block.H, analysis::body_of(block.d),
                        [] { return MeshLevels(); });
   EXPECT_TRUE(without.solve(b, x, 1e-8).converged);
   EXPECT_NE(without.counts().fallback, "");

@@ -202,7 +202,7 @@ struct SolvedOnDents {
     const auto &problem = scene.elastic;
     const auto nodes = contact::contact_nodes(scene.d, options(), problem.dirichlet, scene.material, dents.get());
     const auto K =
-        fem::eliminate_dirichlet(scene.d, fem::assemble_stiffness(scene.d, scene.material), problem.dirichlet);
+        fem::eliminate_dirichlet(scene.d, fem::assemble_stiffness(scene.d, scene.material), problem.dirichlet.fixed);
     scene.iterate = std::make_shared<contact::Iterate>(problem, nodes, test::updated(K.matrix, nodes));
     u = scene.vector(0.08, 3.1);
     for (int k = 0; k < 400; ++k) scene.iterate->update_multipliers(*u); // to the law, at this u

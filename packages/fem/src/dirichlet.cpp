@@ -228,7 +228,7 @@ DeviceView<LO *> nodes_beside_prescribed(const Discretization &d, const DeviceVi
 {
   const LO num_nodes = d.mesh->num_owned_nodes();
   const DeviceView<LO *> beside("rpc::fem::beside_prescribed", num_nodes);
-  const auto nodes = d.nodes;
+  const auto nodes = d.nodes();
   const int dim = d.dim();
   Kokkos::parallel_for(
       "rpc::fem::find_prescribed_neighbours", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
@@ -286,12 +286,12 @@ void clear_couplings(const RowsOfNodes &list, const int dim, const DeviceView<ch
   Kokkos::fence();
 }
 
-EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DirichletDofs &dirichlet)
+EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DeviceView<char *> &prescribed)
 {
-  const auto nodes = nodes_beside_prescribed(d, dirichlet.fixed); // few: the others' entries need not be read
+  const auto nodes = nodes_beside_prescribed(d, prescribed); // few: the others' entries need not be read
   const RowsOfNodes rows{nodes, nodes, K->getLocalMatrixDevice()};
-  EliminatedStiffness eliminated{std::move(K), listed_couplings(rows, d.dim(), dirichlet.fixed)};
-  clear_couplings(rows, d.dim(), dirichlet.fixed); // paper (2), (2.9)
+  EliminatedStiffness eliminated{std::move(K), listed_couplings(rows, d.dim(), prescribed)};
+  clear_couplings(rows, d.dim(), prescribed); // paper (2), (2.9)
   return eliminated;
 }
 

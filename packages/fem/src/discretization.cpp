@@ -162,22 +162,28 @@ Discretization discretize(std::shared_ptr<const mesh::Mesh> mesh, const Kinemati
   d.halo = std::make_shared<const Halo>(*d.node_halo, d.dim());
   if (!d.axisymmetric()) d.congruent = congruent_cells(*d.mesh); // where cells are alike, radii are not
   d.node_to_cells = around_nodes(d.mesh->cells, d.mesh->num_owned_nodes());
-  d.nodes = node_graph(*d.mesh, d.node_to_cells);
   return d;
+}
+
+NodeGraph Discretization::nodes() const
+{
+  if (kept_nodes->row.extent(0) == 0) *kept_nodes = node_graph(*mesh, node_to_cells);
+  return *kept_nodes;
 }
 
 RCP<const CrsGraph> dof_graph(const Discretization &d)
 {
+  const NodeGraph nodes = d.nodes();
   using LocalGraph = CrsGraph::local_graph_device_type;
   const LO num_nodes = d.mesh->num_owned_nodes();
   const int dim = d.dim();
   LocalGraph::row_map_type::non_const_type row("rpc::fem::graph_row", num_dofs(dim, num_nodes) + 1);
   LocalGraph::entries_type::non_const_type col(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::graph_col"),
-                                               std::size_t(dim) * dim * d.nodes.col.extent(0));
+                                               std::size_t(dim) * dim * nodes.col.extent(0));
   if (dim == 2)
-    fill_dof_graph(FillDofGraph<2>{d.nodes, row, col});
+    fill_dof_graph(FillDofGraph<2>{nodes, row, col});
   else
-    fill_dof_graph(FillDofGraph<3>{d.nodes, row, col});
+    fill_dof_graph(FillDofGraph<3>{nodes, row, col});
   const RCP<const Map> columns = overlap_dofs(d);
   const RCP<const Import> ghosts = columns == d.owned_dofs ? Teuchos::null : rcp(new Import(d.owned_dofs, columns));
   const RCP<CrsGraph> graph = rcp(new CrsGraph(d.owned_dofs, columns, row, col));

@@ -128,7 +128,7 @@ MatrixValues mixed_stiffness(const Discretization &d, const Discretization &whol
     const AddRestricted<Dim> add{
         d.mesh->cells, d.mesh->block,   alike ? whole.congruent.of_cell : DeviceView<signed char *>(),
         num_blocks,    first,           last,
-        restricted,    d.node_to_cells, d.nodes,
+        restricted,    d.node_to_cells, d.nodes(),
         values};
     Kokkos::parallel_for("rpc::fem::add_restricted", device_range(d.mesh->num_owned_nodes()), add);
     Kokkos::fence();

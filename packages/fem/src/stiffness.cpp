@@ -65,7 +65,7 @@ NodeStiffness<Dim, Nodes> node_stiffness(const Discretization &d, const CellStif
   const DeviceView<double *[dofs][dofs]> matrix("rpc::fem::kind_stiffness", num_matrices);
   bad = tabulate_stiffness(stiffness, Examples{d.congruent.example, num_blocks}, num_matrices, matrix);
   Kokkos::parallel_for("rpc::fem::balance_stiffness", device_range(num_matrices), BalanceStiffness<Dim, Nodes>{matrix});
-  return {d.mesh->cells, d.mesh->block, d.congruent.of_cell, matrix, num_blocks, d.node_to_cells, d.nodes};
+  return {d.mesh->cells, d.mesh->block, d.congruent.of_cell, matrix, num_blocks, d.node_to_cells, d.nodes()};
 }
 
 /// The matrix's values where cells are alike: each entry is written once.
@@ -82,7 +82,8 @@ MatrixValues gather_stiffness(const Discretization &d, const CellStiffness<Dim, 
     const DeviceView<LO *> source(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::source_of_rows"), num_owned);
     Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
                          GatherOrFindSource<Dim, Nodes>{rows, example, source});
-    fill_entries<Dim>("rpc::fem::copy_stiffness", d.nodes, CopiedRows<Dim>{d.nodes, source, values}, values);
+    const NodeGraph nodes = d.nodes();
+    fill_entries<Dim>("rpc::fem::copy_stiffness", nodes, CopiedRows<Dim>{nodes, source, values}, values);
   } else {
     Kokkos::parallel_for("rpc::fem::gather_stiffness", device_range(num_owned),
                          GatherStiffness<Dim, Nodes>{rows, example});
@@ -99,7 +100,7 @@ MatrixValues add_stiffness(const Discretization &d, const CellStiffness<Dim, Nod
   const MatrixValues values("rpc::fem::stiffness", num_entries);
   const LO num_cells = d.mesh->num_cells(), num_owned = d.mesh->num_owned_nodes();
   if constexpr (one_thread) {
-    const AddStiffness<Dim, Nodes, Axisymmetric> add{stiffness, d.nodes, num_owned, values};
+    const AddStiffness<Dim, Nodes, Axisymmetric> add{stiffness, d.nodes(), num_owned, values};
     Kokkos::parallel_reduce("rpc::fem::add_stiffness", device_range(num_cells), add, bad);
   } else {
     constexpr LO at_a_time = (1 << 28) / static_cast<LO>(sizeof(double[Dim * Nodes][Dim * Nodes])); // cells in 256 MB
@@ -290,12 +291,12 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
 }
 
 std::optional<RepeatedStiffness> repeated_stiffness(const Discretization &d, const Materials &materials,
-                                                    const DirichletDofs &dirichlet)
+                                                    const DeviceView<char *> &prescribed)
 {
   const bool has_kinds = d.congruent.size() > 0 || d.mesh->num_cells() == 0; // on this rank
   if (min_all(d.mesh->comm(), has_kinds ? 1 : 0) == 0) return std::nullopt;
   std::optional<RepeatedStiffness> result;
-  with_elastic_cells(d, materials, [&](const auto &body) { result = repeated_stiffness_of(d, body, dirichlet.fixed); });
+  with_elastic_cells(d, materials, [&](const auto &body) { result = repeated_stiffness_of(d, body, prescribed); });
   return result;
 }
 

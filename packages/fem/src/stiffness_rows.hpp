@@ -129,7 +129,7 @@ LO add_tabulated_stiffness(const Discretization &d, const CellStiffness<Dim, Nod
     const LO count = most < num_cells - first ? most : num_cells - first;
     bad += tabulate_stiffness(stiffness, CellsFrom{first, d.mesh->block}, count, matrix);
     const AddTabulated<Dim, Nodes> add{d.mesh->cells, first,           first + count, d.mesh->num_owned_nodes(),
-                                       matrix,        d.node_to_cells, d.nodes,       values};
+                                       matrix,        d.node_to_cells, d.nodes(),     values};
     Kokkos::parallel_for("rpc::fem::add_tabulated", device_range(Nodes * count), add);
     Kokkos::fence();
   }

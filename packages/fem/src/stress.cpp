@@ -44,7 +44,7 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
                                                  device_read(u_overlap),
                                                  node_to_cells.row,
                                                  node_to_cells.cell,
-                                                 d.nodes,
+                                                 d.nodes(),
                                                  facet_mates(mesh.element),
                                                  table->getLocalViewDevice(Tpetra::Access::ReadWrite)};
     Kokkos::parallel_for("rpc::fem::fit_patch", nodes, fit);

@@ -55,7 +55,7 @@ Eliminated eliminated(const fem::Discretization &d, const std::vector<DirichletC
                       const RCP<Vector> &load)
 {
   auto dirichlet = fem::dirichlet_dofs(d, conditions);
-  const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, steel), dirichlet);
+  const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, steel), dirichlet.fixed);
   return {fem::elastic_problem(d, K.couplings, load, dirichlet), K.matrix};
 }
 

@@ -95,8 +95,8 @@ TEST(Discretization, NodeGraphIsTheGraphOncePerNode)
     const auto d = body(box, world());
     const auto adjacent = adjacency(box);
     const auto ids = overlap_node_ids(*d.mesh);
-    const auto row = to_host(d.nodes.row);
-    const auto col = to_host(d.nodes.col);
+    const auto row = to_host(d.nodes().row);
+    const auto col = to_host(d.nodes().col);
     ASSERT_EQ(static_cast<LO>(row.extent(0)), d.mesh->num_owned_nodes() + 1);
     EXPECT_EQ(row(d.mesh->num_owned_nodes()), col.extent(0));
     for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n) {

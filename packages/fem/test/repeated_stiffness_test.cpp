@@ -69,10 +69,10 @@ TEST(RepeatedStiffness, HasTheRowsAndTheCouplingsOfTheAssembledMatrix)
     const auto whole = body(many_cells(element), world());
     for (const auto &d : {whole, in_two_layers(whole)}) {
       const auto dirichlet = held(d);
-      const auto repeated = fem::repeated_stiffness(d, in_layers(d), dirichlet);
+      const auto repeated = fem::repeated_stiffness(d, in_layers(d), dirichlet.fixed);
       ASSERT_TRUE(repeated);
       EXPECT_FALSE(repeated->rows.reads_matrix());
-      const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, in_layers(d)), dirichlet);
+      const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, in_layers(d)), dirichlet.fixed);
       expect_same_rows(repeated->rows, *K.matrix);
       EXPECT_EQ(values_of(repeated->couplings.row), values_of(K.couplings.row));
       EXPECT_EQ(values_of(repeated->couplings.begin), values_of(K.couplings.begin));
@@ -87,15 +87,15 @@ TEST(RepeatedStiffness, IsNotThereWhereCellsDiffer)
   const auto bent = body(many_cells({2, 1}), world(), [](const Point &x) {
     return Point{x[0] + 0.02 * std::sin(7 * x[1]) * std::cos(5 * x[0]), x[1], x[2]};
   });
-  EXPECT_FALSE(fem::repeated_stiffness(bent, steel, held(bent)));
+  EXPECT_FALSE(fem::repeated_stiffness(bent, steel, held(bent).fixed));
 }
 
 TEST(RepeatedStiffness, LeavesWhatIsWrongToTheAssemblyThatSaysIt)
 {
   const auto d = body(many_cells({2, 1}), world());
-  EXPECT_FALSE(fem::repeated_stiffness(d, fem::Material{1e160, 0.3}, held(d)));
+  EXPECT_FALSE(fem::repeated_stiffness(d, fem::Material{1e160, 0.3}, held(d).fixed));
   const auto mirrored = body(many_cells({2, 1}), world(), [](const Point &x) { return Point{-x[0], x[1], x[2]}; });
-  EXPECT_FALSE(fem::repeated_stiffness(mirrored, steel, held(mirrored)));
+  EXPECT_FALSE(fem::repeated_stiffness(mirrored, steel, held(mirrored).fixed));
 }
 
 /// Every third node may touch, some of them twice.
@@ -128,10 +128,10 @@ TEST(RepeatedStiffness, MakesAnOperatorThatIsAssembledWhenSomebodyAsks)
     SCOPED_TRACE(text_of(element));
     const auto d = body(many_cells(element), world());
     const auto dirichlet = held(d);
-    const auto repeated = fem::repeated_stiffness(d, steel, dirichlet);
+    const auto repeated = fem::repeated_stiffness(d, steel, dirichlet.fixed);
     ASSERT_TRUE(repeated);
     const auto assemble = [&] {
-      return fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, steel), dirichlet).matrix;
+      return fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, steel), dirichlet.fixed).matrix;
     };
     const auto points = some_points(d);
     const auto nodes = distinct_nodes({points.node});

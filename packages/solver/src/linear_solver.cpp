@@ -93,7 +93,7 @@ std::string chosen_solver(const LinearSolverCounts &counts)
 struct LinearSolver::Impl {
   LinearSolverOptions options;
   RCP<UpdatedOperator> H;
-  RCP<MultiVector> coordinates;
+  Body body;
   LinearSolverCounts counts;
   std::optional<Meshes> meshes; // nothing: the deck or the mesh rules it out
   std::optional<Factor> factor; // nothing: there are many unknowns, the deck rules it out, or it was too weak
@@ -111,8 +111,7 @@ struct LinearSolver::Impl {
   bool stands_in = false;         // since the meshes failed in the present solve
   Preconditioner *used = nullptr; // in the last solve
 
-  Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, const RCP<MultiVector> &nodes,
-       const RCP<MultiVector> &modes, MakeMeshLevels levels);
+  Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels);
   void prepare(double tolerance);
   bool counted(Preconditioner &B, double tolerance);
   Result attempt(const Vector &b, Vector &x, double tolerance);
@@ -125,10 +124,9 @@ struct LinearSolver::Impl {
   void record(const Preconditioner &B, const std::string &reason);
 };
 
-LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, const RCP<MultiVector> &nodes,
-                         const RCP<MultiVector> &modes, MakeMeshLevels levels)
-    : options(std::move(given)), H(of), coordinates(nodes),
-      algebraic(H, {nodes, modes}, options,
+LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels)
+    : options(std::move(given)), H(of), body(std::move(of_body)),
+      algebraic(H, body, options,
                 static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew),
       sparse(H), krylov(options, H)
 {
@@ -256,7 +254,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
       result.converged = false;
       result.broken = true;
       result.reason = describe_not_finite("the solution of linear solve " + std::to_string(counts.iterations.size()), x,
-                                          *coordinates);
+                                          *body.coordinates());
     }
   } catch (const Interrupted &) {
     result = {};
@@ -332,10 +330,8 @@ bool LinearSolver::Impl::take(const Next next, const std::string &reason)
   return false;
 }
 
-LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H,
-                           const RCP<MultiVector> &coordinates, const RCP<MultiVector> &null_space,
-                           MakeMeshLevels levels)
-    : impl_(std::make_unique<Impl>(std::move(options), H, coordinates, null_space, std::move(levels)))
+LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, Body body, MakeMeshLevels levels)
+    : impl_(std::make_unique<Impl>(std::move(options), H, std::move(body), std::move(levels)))
 {
 }
 
@@ -346,9 +342,9 @@ const LinearSolverCounts &LinearSolver::counts() const
   return impl_->counts;
 }
 
-const MultiVector &LinearSolver::coordinates() const
+const Body &LinearSolver::body() const
 {
-  return *impl_->coordinates;
+  return impl_->body;
 }
 
 LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const double tolerance)

@@ -63,7 +63,7 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeF()
   norm_F_ = F_.data().norm2();
   if (!std::isfinite(norm_F_) && context_->failure.empty())
     context_->failure = describe_not_finite("the forces on the nodes, those of the functional included", F_.data(),
-                                            context_->linear_solver.coordinates());
+                                            *context_->linear_solver.body().coordinates());
   has_F_ = true;
   return Ok;
 }

@@ -187,7 +187,7 @@ solver::MinimizeResult minimized(Chain &chain, const RCP<Vector> &u, const doubl
   const auto place = rcp(new MultiVector(map, 1)), constant = rcp(new MultiVector(map, 1));
   for (LO i = 0; i < num_local(*map); ++i) place->replaceLocalValue(i, 0, double(map->getGlobalElement(i)));
   constant->putScalar(1);
-  solver::LinearSolver linear({}, chain.hessian(), place, constant);
+  solver::LinearSolver linear({}, chain.hessian(), {1, [place] { return place; }, [constant] { return constant; }});
   return solver::minimize(chain, linear, u, scale, {}, nullptr, report);
 }
 

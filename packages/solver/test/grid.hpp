@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/tpetra.hpp"
+#include "rpc/solver/body.hpp"
 
 #include <Teuchos_Array.hpp>
 #include <Tpetra_Core.hpp>
@@ -78,6 +78,11 @@ struct Grid {
     Vector r(b, Teuchos::Copy);
     A->apply(x, r, Teuchos::NO_TRANS, 1., -1.);
     return r.norm2() / b.norm2();
+  }
+
+  solver::Body body() const
+  {
+    return {2, [at = coordinates] { return at; }, [modes = null_space] { return modes; }};
   }
 
   RCP<const Map> map; ///< two unknowns a node

@@ -30,7 +30,7 @@ struct Block {
     fem::add_body_force(d, {ScalarField(0.3), ScalarField(-2.), ScalarField(0.5)}, "Body Force", *load);
     const fem::DirichletCondition held{"top", "top", {ScalarField(0.), ScalarField(0.), ScalarField(0.)}};
     const auto dirichlet = fem::dirichlet_dofs(d, {held});
-    const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet);
+    const auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, material), dirichlet.fixed);
     auto below = test::below(40), beside = test::beside(25);
     below.gap = test::field([](const Point &x) { return 0.02 * (1 - x[0]) + 0.01 * x[2]; });
     below.normal = contact::Normal::fixed;

@@ -60,7 +60,7 @@ struct SupportedGrid {
     const auto stiffness = rcp(new CrsMatrix(*grid.A, Teuchos::Copy));
     const LO num_columns = num_local(*grid.A->getColMap());
     levels.level.push_back(
-        {stiffness, identity, DeviceView<char *>("prescribed", num_columns), grid.coordinates, grid.null_space});
+        {stiffness, identity, DeviceView<char *>("prescribed", num_columns), grid.body()});
     levels.prescribed = DeviceView<char *>("prescribed", num_columns);
     levels.down_to_few = true;
     return levels;
@@ -69,7 +69,7 @@ struct SupportedGrid {
   std::unique_ptr<solver::LinearSolver> solver(const solver::LinearSolverOptions &options,
                                                solver::MakeMeshLevels levels = {}) const
   {
-    return std::make_unique<solver::LinearSolver>(options, H, grid.coordinates, grid.null_space, std::move(levels));
+    return std::make_unique<solver::LinearSolver>(options, H, grid.body(), std::move(levels));
   }
 
   /// |b - H x| / |b|

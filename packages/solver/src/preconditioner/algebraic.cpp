@@ -42,7 +42,7 @@ bool leaves_strength_open(const Teuchos::ParameterList &user)
 Algebraic::Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options,
                      const bool for_each_state)
     : H_(std::move(H)), body_(std::move(body)),
-      muelu_(list_for(*H_->getDomainMap(), static_cast<int>(body_.coordinates->getNumVectors()), options)),
+      muelu_(list_for(*H_->getDomainMap(), body_.dim, options)),
       for_each_state_(for_each_state), may_strengthen_(leaves_strength_open(options.muelu))
 {
 }
@@ -89,8 +89,8 @@ void Algebraic::set_up()
       !multigrid_.is_null() && muelu_.get<std::string>("reuse: type") != "none" && renew_multigrid(A_, multigrid_);
   if (is_renewed_) return;
   Teuchos::ParameterList list = muelu_;
-  list.sublist("user data").set("Coordinates", body_.coordinates);
-  list.sublist("user data").set("Nullspace", body_.null_space);
+  list.sublist("user data").set("Coordinates", body_.coordinates());
+  list.sublist("user data").set("Nullspace", body_.null_space());
   multigrid_ = Teuchos::null; // two hierarchies would take twice the memory
   multigrid_ = make_multigrid(A_, list);
 }

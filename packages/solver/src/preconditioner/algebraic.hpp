@@ -3,6 +3,7 @@
 #include "local_correction.hpp"
 #include "multigrid.hpp"
 #include "rpc/algebra/updated_operator.hpp"
+#include "rpc/solver/body.hpp"
 #include "rpc/solver/linear_solver_options.hpp"
 #include "rpc/solver/preconditioner.hpp"
 
@@ -18,11 +19,6 @@ namespace rpc::solver
 class Algebraic : public Preconditioner
 {
 public:
-  /// What a hierarchy is made of.
-  struct Body {
-    RCP<MultiVector> coordinates; ///< (nodes; dim) [m]
-    RCP<MultiVector> null_space;  ///< (dofs; rigid body modes)
-  };
   /// @param for_each_state  made for H itself whenever it changes, without a patch
   Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options, bool for_each_state);
 

@@ -24,8 +24,8 @@ public:
       : now_(level.stiffness), A_(rcp(new CrsMatrix(*level.stiffness, Teuchos::Copy))), list_(list),
         residual_(rcp(new Vector(A_->getDomainMap()))), correction_(rcp(new Vector(A_->getDomainMap())))
   {
-    list_.sublist("user data").set("Coordinates", level.coordinates);
-    list_.sublist("user data").set("Nullspace", level.null_space);
+    list_.sublist("user data").set("Coordinates", level.body.coordinates());
+    list_.sublist("user data").set("Nullspace", level.body.null_space());
     multigrid_ = make_multigrid(A_, list_);
   }
   void update() override

@@ -7,6 +7,9 @@
 namespace rpc::analysis
 {
 
+/// The mesh's body for algebraic multigrid: its nodes and rigid motions.
+solver::Body body_of(const fem::Discretization &d);
+
 /// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns. Collective.
 /// @param prescribed  (overlap dofs) 1 where the displacement of the finest mesh is prescribed
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed);

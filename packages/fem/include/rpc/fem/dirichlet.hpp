@@ -61,8 +61,8 @@ struct EliminatedStiffness {
 };
 
 /// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays.    paper (2), doc/theory.md (2.9)
-/// @param K  becomes the matrix; collective
-EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DirichletDofs &dirichlet);
+/// @param K  becomes the matrix; collective   @param prescribed  (overlap dofs) 1 where the displacement is
+EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DeviceView<char *> &prescribed);
 
 /// The same of a matrix that is not assembled, for most of its rows repeat those of a few nodes.
 struct RepeatedStiffness {
@@ -72,7 +72,7 @@ struct RepeatedStiffness {
 
 /// @return nothing where less than three quarters of the rows repeat, on any rank, or where the assembly has something to complain of; collective
 std::optional<RepeatedStiffness> repeated_stiffness(const Discretization &d, const Materials &materials,
-                                                    const DirichletDofs &dirichlet);
+                                                    const DeviceView<char *> &prescribed);
 
 /// The discrete elastic problem with its boundary conditions built in: find u with K u = load, where nothing touches and K is without
 /// the couplings of prescribed unknowns.

@@ -43,8 +43,12 @@ struct Discretization {
   std::shared_ptr<const Halo> halo, node_halo; ///< of unknowns and of nodes; empty in one process
   CongruentCells congruent;
   NodeToCells node_to_cells;
-  NodeGraph nodes;
+  std::shared_ptr<NodeGraph> kept_nodes = std::make_shared<NodeGraph>(); ///< of all copies; empty: to be made
 
+  /// Made where it is asked for, and kept until it is forgotten: a box without a matrix needs it but once, and it takes as much
+  /// memory as four displacements.
+  NodeGraph nodes() const;
+  void forget_nodes() const { *kept_nodes = {}; }
   int dim() const { return mesh->dim(); }
   LO num_overlap_dofs() const { return num_dofs(dim(), mesh->num_local_nodes()); }
   bool axisymmetric() const { return kinematics == Kinematics::axisymmetric; }

@@ -40,11 +40,10 @@ std::string solver_path(const LinearSolverCounts &counts);
 class LinearSolver
 {
 public:
-  /// @param H            may change between solves
-  /// @param coordinates  (nodes; dim)          @param null_space  (rows of A; rigid body modes)
-  /// @param levels       makes the coarser meshes; may be null: there are none. Collective.
-  LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, const RCP<MultiVector> &coordinates,
-               const RCP<MultiVector> &null_space, MakeMeshLevels levels = {});
+  /// @param H       may change between solves
+  /// @param body    whose stiffness H is
+  /// @param levels  makes the coarser meshes; may be null: there are none. Collective.
+  LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, Body body, MakeMeshLevels levels = {});
   ~LinearSolver();
 
   struct Result {
@@ -63,7 +62,7 @@ public:
   double inverse_energy(const Vector &F);
 
   const LinearSolverCounts &counts() const;
-  const MultiVector &coordinates() const; ///< (nodes; dim) [m]
+  const Body &body() const;
 
 private:
   struct Impl;

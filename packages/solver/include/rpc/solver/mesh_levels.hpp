@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/tpetra.hpp"
+#include "rpc/solver/body.hpp"
 
 #include <functional>
 #include <string>
@@ -14,8 +14,7 @@ struct MeshLevel {
   RCP<CrsMatrix> stiffness;           ///< K of this mesh, prescribed unknowns eliminated; multigrid adds contact to it
   RCP<const CrsMatrix> interpolation; ///< (owned nodes of the next finer mesh x owned nodes of this one)
   DeviceView<char *> prescribed;      ///< (columns of `stiffness`) 1 where the displacement is prescribed
-  RCP<MultiVector> coordinates;       ///< (owned nodes; dim) [m]
-  RCP<MultiVector> null_space;        ///< (owned dofs; rigid body modes)
+  Body body;                          ///< on this mesh
   int order = 1;                      ///< of its elements; 2 too where that is so in some directions alone
 };
 
