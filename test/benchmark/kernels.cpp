@@ -174,7 +174,7 @@ void smoother(benchmark::State &state, const double stream, const Body &body)
   const auto K = body.stiffness();
   const solver::NodeSmoother::Options options;
   const auto blocks = K->diagonal_blocks();
-  const solver::NodeSmoother smoother(K, blocks, solver::largest_eigenvalue(*K, blocks), options);
+  const solver::NodeSmoother smoother(K, blocks, {}, solver::largest_eigenvalue(*K, blocks), options);
   Vector b(body.d.owned_dofs), x(body.d.owned_dofs);
   b.randomize();
   // After each product a step reads the product, the inverse block, b, the step before (the first has none) and x, and writes the

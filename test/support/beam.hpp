@@ -51,9 +51,9 @@ struct PressedBox {
     const auto nodes = contact::contact_nodes(d, {foundation}, dirichlet, material);
     elastic = fem::elastic_problem(d, K.couplings, load, dirichlet);
     iterate = std::make_shared<contact::Iterate>(elastic, nodes, updated(K.matrix, nodes));
-    linear = std::make_shared<solver::LinearSolver>(
-        options, iterate->hessian(),
-        solver::Body{d.dim(), [d = d] { return fem::node_coordinates(d); }, [d = d] { return fem::rigid_body_modes(d); }});
+    linear = std::make_shared<solver::LinearSolver>(options, iterate->hessian(),
+                                                    solver::Body{d.dim(), [d = d] { return fem::node_coordinates(d); },
+                                                                 [d = d] { return fem::rigid_body_modes(d); }});
     u = rcp(new Vector(d.owned_dofs));
   }
 };

@@ -389,20 +389,37 @@ RepeatedRows::Blocks RepeatedRows::blocks() const
   return {dim_, kind_, begin_, offset_, value_, rest()};
 }
 
-DeviceView<double ***> diagonal_blocks(const RepeatedRows &rows)
+NodeBlocks diagonal_blocks(const RepeatedRows &rows)
 {
-  const int dim = rows.dim();
-  const DeviceView<double ***> block(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::diagonal_blocks"),
-                                     rows.num_nodes(), dim, dim);
+  const int dim = rows.dim(), num_kinds = rows.num_kinds();
+  const LO num_nodes = rows.num_nodes();
   const auto from = rows.blocks();
+  NodeBlocks blocks;
+  LO num_blocks = num_nodes;
+  if (num_kinds > 0) { // those of the kinds, then those of nodes of no kind
+    blocks.place = DeviceView<LO *>("rpc::repeated_rows::place_of_block", num_nodes);
+    const auto place = blocks.place;
+    LO others = 0;
+    Kokkos::parallel_scan(
+        "rpc::repeated_rows::place_blocks", device_range(num_nodes),
+        KOKKOS_LAMBDA(const LO node, LO &next, const bool last) {
+          const int kind = from.kind(node);
+          if (last) place(node) = kind >= 0 ? kind : num_kinds + next;
+          next += kind < 0;
+        },
+        others);
+    num_blocks = num_kinds + others;
+  }
+  blocks.block = DeviceView<double ***>("rpc::repeated_rows::diagonal_blocks", num_blocks, dim, dim);
+  const auto block = blocks;
   Kokkos::parallel_for(
-      "rpc::repeated_rows::read_diagonal_blocks", device_range(rows.num_nodes()), KOKKOS_LAMBDA(const LO node) {
-        const LO own = from.own(node);
+      "rpc::repeated_rows::read_diagonal_blocks", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
+        const LO own = from.own(node), to = block.of(node); // equal numbers where nodes share it
         for (int i = 0; i < dim; ++i)
-          for (int j = 0; j < dim; ++j) block(node, i, j) = from.entry(node, own, i, j);
+          for (int j = 0; j < dim; ++j) block.block(to, i, j) = from.entry(node, own, i, j);
       });
   Kokkos::fence();
-  return block;
+  return blocks;
 }
 
 void RepeatedRows::apply(const Vector &x, Vector &y) const

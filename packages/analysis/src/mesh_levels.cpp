@@ -43,11 +43,7 @@ solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, con
                            RCP<const CrsMatrix> interpolation)
 {
   auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), prescribed).matrix;
-  return {std::move(K),
-          std::move(interpolation),
-          prescribed,
-          body_of(d),
-          d.mesh->element.order};
+  return {std::move(K), std::move(interpolation), prescribed, body_of(d), d.mesh->element.order};
 }
 
 std::optional<int> thin_direction(const NestedMesh &mesh)

@@ -83,8 +83,7 @@ struct Block {
   {
     solver::LinearSolverOptions options;
     options.multigrid = "mesh";
-    return std::make_unique<solver::LinearSolver>(options, H, analysis::body_of(d),
-                                                  [this] { return levels(); });
+    return std::make_unique<solver::LinearSolver>(options, H, analysis::body_of(d), [this] { return levels(); });
   }
 };
 

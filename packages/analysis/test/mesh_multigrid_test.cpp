@@ -222,8 +222,7 @@ TEST(MeshMultigrid, TakesSmallMeshes)
   EXPECT_EQ(solver->counts().fallback, "");
   LinearSolverOptions options;
   options.multigrid = "mesh";
-  LinearSolver without(options, block.H, analysis::body_of(block.d),
-                       [] { return MeshLevels(); });
+  LinearSolver without(options, block.H, analysis::body_of(block.d), [] { return MeshLevels(); });
   EXPECT_TRUE(without.solve(b, x, 1e-8).converged);
   EXPECT_NE(without.counts().fallback, "");
 }

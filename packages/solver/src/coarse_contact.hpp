@@ -49,7 +49,7 @@ public:
   /// (n) Owned nodes with entries that change, ascending.
   const DeviceView<LO *> &nodes() const { return nodes_; }
   /// (owned nodes, dim, dim) The diagonal blocks of all nodes, as long as no contact is written.
-  DeviceView<double ***> base_blocks() const { return diagonal_blocks(rows_); }
+  NodeBlocks base_blocks() const { return diagonal_blocks(rows_); }
   /// (n, dim, dim) Their present diagonal blocks.
   DeviceView<double ***> blocks() const;
 

@@ -126,8 +126,7 @@ struct LinearSolver::Impl {
 
 LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels)
     : options(std::move(given)), H(of), body(std::move(of_body)),
-      algebraic(H, body, options,
-                static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew),
+      algebraic(H, body, options, static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew),
       sparse(H), krylov(options, H)
 {
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());

@@ -101,23 +101,23 @@ double largest_change(const Comm &comm, const DeviceView<double ***> &own, const
 /// @param v  (owned dofs), at the contact nodes   @param kept  (nodes, dim) what T acts on is v less this; T v is added to it
 template <int Dim, class Values>
 struct Truncate {
-  DeviceView<LO *> node;          // (nodes)                       in
-  DeviceView<double ***> base;    // (nodes, Dim, Dim)             in
-  DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)       in
-  bool transposed;                //
-  DeviceView<double **> kept;     // (nodes, Dim)                  in
-  Values v;                       //                               inout
+  DeviceView<LO *> node;       // (nodes)            in
+  DeviceView<double ***> base; // (nodes, Dim, Dim)  in
+  NodeBlocks inverse;          //                    in
+  bool transposed;             //
+  DeviceView<double **> kept;  // (nodes, Dim)       in
+  Values v;                    //                    inout
 
   KOKKOS_FUNCTION void operator()(const LO i) const
   {
-    const LO n = node(i);
+    const LO n = node(i), place = inverse.of(n);
     double x[Dim], y[Dim];
     for (int k = 0; k < Dim; ++k) x[k] = v(dof(Dim, n, k)) - kept(i, k);
     for (int pass = 0; pass < 2; ++pass) {
       const bool by_base = (pass == 0) != transposed;
       for (int k = 0; k < Dim; ++k) {
         y[k] = 0;
-        for (int l = 0; l < Dim; ++l) y[k] += (by_base ? base(i, k, l) : inverse(n, k, l)) * x[l];
+        for (int l = 0; l < Dim; ++l) y[k] += (by_base ? base(i, k, l) : inverse.block(place, k, l)) * x[l];
       }
       for (int k = 0; k < Dim; ++k) x[k] = y[k];
     }
@@ -125,7 +125,7 @@ struct Truncate {
   }
 };
 
-void truncate(const DeviceView<LO *> &node, const DeviceView<double ***> &base, const DeviceView<double ***> &inverse,
+void truncate(const DeviceView<LO *> &node, const DeviceView<double ***> &base, const NodeBlocks &inverse,
               const bool transposed, const DeviceView<double **> &kept, Vector &v)
 {
   const auto values = device_write(v);
@@ -160,14 +160,13 @@ struct MeshMultigrid::Level {
   RCP<CoarseContact> coarse;                        // the matrix of the next coarser mesh
   RCP<const Map>
       blocks; // this mesh's blocks of contact, of which the coarser one's are made; null: of contact nodes' own
-  RCP<Vector> residual, coarse_residual, correction;
+  RCP<Vector> coarse_residual, correction;
 
   /// @param fine_prescribed  (owned dofs, at least) of this mesh
   void add_transfers(const MeshLevel &coarse, const int dim, const DeviceView<char *> &fine_prescribed)
   {
     const auto coarse_dofs = coarse.stiffness->getDomainMap();
     interpolation = std::make_unique<NodeInterpolation>(coarse.interpolation, dim, fine_prescribed, coarse.prescribed);
-    residual = rcp(new Vector(A->getDomainMap()));
     coarse_residual = rcp(new Vector(coarse_dofs));
     correction = rcp(new Vector(coarse_dofs));
   }
@@ -212,7 +211,8 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     const double largest =
         l == 0 ? largest_eigenvalue(Rounded(H_, false), block) : largest_eigenvalue(*levels_[l]->A, block);
     levels_[l]->smoother = std::make_unique<NodeSmoother>(
-        levels_[l]->A, block, std::max(largest, largest_of_contact),
+        levels_[l]->A, block, l == 0 ? contact_node_ : levels_[l - 1]->coarse->nodes(),
+        std::max(largest, largest_of_contact),
         (l == 0 ? levels.order : levels.level[l - 1].order) == 2 ? order_two : order_one);
   }
   contact_of_coarsest_ = write_contact();
@@ -259,10 +259,11 @@ void MeshMultigrid::cycle(const std::size_t l, const Vector &b, Vector &x) const
   const bool finest =
       l == 0; // where coarse functions are truncated at contact points                             (4.7b)
   level.smoother->start(b, x);
-  level.A->apply(x, *level.residual);
-  level.residual->update(1., b, -1.);
-  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), true, at_rest_, *level.residual);
-  level.interpolation->restrict_to(*level.residual, *level.coarse_residual);
+  Vector &residual = level.smoother->work();
+  level.A->apply(x, residual);
+  residual.update(1., b, -1.);
+  if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), true, at_rest_, residual);
+  level.interpolation->restrict_to(residual, *level.coarse_residual);
   cycle(l + 1, *level.coarse_residual, *level.correction);
   if (finest) take_values(contact_node_, x, kept_);
   level.interpolation->prolong(*level.correction, x, NodeInterpolation::Write::add);

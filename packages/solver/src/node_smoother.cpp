@@ -22,14 +22,14 @@ constexpr double margin = 1.08;
 /// size, and cofactors would lose the small ones.
 template <int Dim>
 struct InvertBlocks {
-  DeviceView<LO *> node;          // (n) rows of `inverse`; empty: all      in
+  DeviceView<LO *> place;         // (n) in `inverse`; empty: the first n   in
   DeviceView<double ***> block;   // (n, Dim, Dim)                          in
-  DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)                out
+  DeviceView<double ***> inverse; // (blocks, Dim, Dim)                     out
 
   /// @param bad  counts blocks that are not positive definite
   KOKKOS_FUNCTION void operator()(const LO i, LO &bad) const
   {
-    const LO n = node.extent(0) == 0 ? i : node(i);
+    const LO n = place.extent(0) == 0 ? i : place(i);
     double a[Dim][Dim];
     for (int k = 0; k < Dim; ++k)
       for (int l = 0; l < Dim; ++l) a[k][l] = 0.5 * (block(i, k, l) + block(i, l, k));
@@ -68,14 +68,15 @@ struct InvertBlocks {
 /// move <- keep move + add D^-1 (b - product), x <- x + move; without a product, x <- move.
 template <int Dim, class In, class Out>
 struct ChebyshevStep {
-  DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)  in
-  In b, product;                  // (owned dofs)             in
-  double keep, add;               //
-  bool at_zero;                   // x = 0, and so is the product
-  Out move, x;                    // (owned dofs)             inout
+  NodeBlocks inverse; //             in
+  In b, product;      // (owned dofs) in
+  double keep, add;   //
+  bool at_zero;       // x = 0, and so is the product
+  Out move, x;        // (owned dofs) inout
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
+    const LO place = inverse.of(node);
     double r[Dim];
     for (int k = 0; k < Dim; ++k) {
       const LO i = dof(Dim, node, k);
@@ -84,7 +85,7 @@ struct ChebyshevStep {
     for (int k = 0; k < Dim; ++k) {
       const LO i = dof(Dim, node, k);
       double z = 0;
-      for (int l = 0; l < Dim; ++l) z += inverse(node, k, l) * r[l];
+      for (int l = 0; l < Dim; ++l) z += inverse.block(place, k, l) * r[l];
       const double d = keep == 0 ? add * z : keep * move(i) + add * z;
       move(i) = d;
       x(i) = at_zero ? d : x(i) + d;
@@ -95,26 +96,27 @@ struct ChebyshevStep {
 /// z <- D^-1 r, for the eigenvalue.
 template <int Dim, class In, class Out>
 struct ApplyInverse {
-  DeviceView<double ***> inverse; // (owned nodes, Dim, Dim)  in
-  In r;                           // (owned dofs)             in
-  Out z;                          // (owned dofs)             out
+  NodeBlocks inverse; //             in
+  In r;               // (owned dofs) in
+  Out z;              // (owned dofs) out
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
+    const LO place = inverse.of(node);
     for (int k = 0; k < Dim; ++k) {
       double sum = 0;
-      for (int l = 0; l < Dim; ++l) sum += inverse(node, k, l) * r(dof(Dim, node, l));
+      for (int l = 0; l < Dim; ++l) sum += inverse.block(place, k, l) * r(dof(Dim, node, l));
       z(dof(Dim, node, k)) = sum;
     }
   }
 };
 
-void apply_inverse(const DeviceView<double ***> &inverse, const Vector &r, Vector &z)
+void apply_inverse(const NodeBlocks &inverse, const Vector &r, Vector &z)
 {
   const auto from = device_read(r);
   const auto to = device_write(z);
-  const auto range = device_range(static_cast<LO>(inverse.extent(0)));
-  if (inverse.extent(1) == 2)
+  const auto range = device_range(inverse.num_nodes());
+  if (inverse.dim() == 2)
     Kokkos::parallel_for("rpc::solver::apply_inverse", range,
                          ApplyInverse<2, decltype(from), decltype(to)>{inverse, from, to});
   else
@@ -135,34 +137,57 @@ void fill_without_order(Vector &x)
   Kokkos::fence();
 }
 
-/// (owned nodes, dim, dim) <- their inverses, at some nodes; collective.
-void invert(const Comm &comm, const DeviceView<LO *> &node, const DeviceView<double ***> &block,
+/// Inverts blocks, to some places of the inverses; collective.
+void invert(const Comm &comm, const DeviceView<LO *> &place, const DeviceView<double ***> &block,
             const DeviceView<double ***> &inverse)
 {
   LO bad = 0;
   const auto range = device_range(static_cast<LO>(block.extent(0)));
   if (inverse.extent(1) == 2)
-    Kokkos::parallel_reduce("rpc::solver::invert_blocks", range, InvertBlocks<2>{node, block, inverse}, bad);
+    Kokkos::parallel_reduce("rpc::solver::invert_blocks", range, InvertBlocks<2>{place, block, inverse}, bad);
   else
-    Kokkos::parallel_reduce("rpc::solver::invert_blocks", range, InvertBlocks<3>{node, block, inverse}, bad);
+    Kokkos::parallel_reduce("rpc::solver::invert_blocks", range, InvertBlocks<3>{place, block, inverse}, bad);
   if (sum_all(comm, GO(bad)) > 0)
     throw std::runtime_error("multigrid: a node's block of the matrix is not positive definite");
 }
 
-DeviceView<double ***> as_large_as(const DeviceView<double ***> &block)
+DeviceView<double ***> unset_blocks(const LO n, const int dim)
 {
-  return DeviceView<double ***>(Kokkos::ViewAllocateWithoutInitializing("rpc::solver::inverse_blocks"), block.extent(0),
-                                block.extent(1), block.extent(2));
+  return DeviceView<double ***>(Kokkos::ViewAllocateWithoutInitializing("rpc::solver::inverse_blocks"), n, dim, dim);
+}
+
+/// The inverses, which `changing` nodes do not share. Collective.
+NodeBlocks inverses(const Comm &comm, const NodeBlocks &D, const DeviceView<LO *> &changing)
+{
+  if (D.place.extent(0) == 0) {
+    const NodeBlocks inverse{{}, unset_blocks(D.num_blocks(), D.dim())};
+    invert(comm, {}, D.block, inverse.block);
+    return inverse;
+  }
+  const LO shared = D.num_blocks(), own = static_cast<LO>(changing.extent(0));
+  const int dim = D.dim();
+  const NodeBlocks inverse{DeviceView<LO *>("rpc::solver::place_of_inverse", D.num_nodes()),
+                           unset_blocks(shared + own, dim)};
+  invert(comm, {}, D.block, inverse.block);
+  Kokkos::deep_copy(inverse.place, D.place);
+  Kokkos::parallel_for(
+      "rpc::solver::own_inverses", device_range(own), KOKKOS_LAMBDA(const LO i) {
+        const LO from = inverse.place(changing(i)), to = shared + i;
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) inverse.block(to, k, l) = inverse.block(from, k, l);
+        inverse.place(changing(i)) = to;
+      });
+  Kokkos::fence();
+  return inverse;
 }
 
 } // namespace
 
 /// From the coefficients of the conjugate gradients for some right side.
-double largest_eigenvalue(const Operator &A, const DeviceView<double ***> &block)
+double largest_eigenvalue(const Operator &A, const NodeBlocks &D)
 {
   const auto map = A.getDomainMap();
-  const auto inverse = as_large_as(block);
-  invert(*map->getComm(), {}, block, inverse);
+  const NodeBlocks inverse = inverses(*map->getComm(), D, {});
   Vector r(map), z(map), p(map), q(map);
   fill_without_order(r);
   apply_inverse(inverse, r, z);
@@ -197,17 +222,23 @@ double largest_eigenvalue(const Operator &A, const DeviceView<double ***> &block
   return largest;
 }
 
-NodeSmoother::NodeSmoother(RCP<const Operator> A, const DeviceView<double ***> &block, const double largest,
-                           const Options &options)
-    : A_(std::move(A)), options_(options), inverse_(as_large_as(block)), largest_(largest),
-      move_(rcp(new Vector(A_->getDomainMap()))), product_(rcp(new Vector(A_->getDomainMap())))
+NodeSmoother::NodeSmoother(RCP<const Operator> A, const NodeBlocks &D, const DeviceView<LO *> &changing,
+                           const double largest, const Options &options)
+    : A_(std::move(A)), options_(options), inverse_(inverses(*A_->getDomainMap()->getComm(), D, changing)),
+      largest_(largest), move_(rcp(new Vector(A_->getDomainMap()))), product_(rcp(new Vector(A_->getDomainMap())))
 {
-  set_blocks({}, block);
 }
 
 void NodeSmoother::set_blocks(const DeviceView<LO *> &node, const DeviceView<double ***> &block)
 {
-  invert(*A_->getDomainMap()->getComm(), node, block, inverse_);
+  const NodeBlocks inverse = inverse_;
+  const DeviceView<LO *> place(Kokkos::ViewAllocateWithoutInitializing("rpc::solver::place_of_changed"),
+                               node.extent(0));
+  Kokkos::parallel_for(
+      "rpc::solver::places_of_changed", device_range(static_cast<LO>(node.extent(0))),
+      KOKKOS_LAMBDA(const LO i) { place(i) = inverse.of(node(i)); });
+  Kokkos::fence();
+  invert(*A_->getDomainMap()->getComm(), place, block, inverse.block);
 }
 
 void NodeSmoother::step(const Vector &b, const double keep, const double add, const bool at_zero, Vector &x) const
@@ -216,10 +247,10 @@ void NodeSmoother::step(const Vector &b, const double keep, const double add, co
   const auto product = device_read(*product_);
   const auto move = device_write(*move_);
   const auto to = device_write(x);
-  const auto range = device_range(static_cast<LO>(inverse_.extent(0)));
+  const auto range = device_range(inverse_.num_nodes());
   using In = std::decay_t<decltype(from)>;
   using Out = std::decay_t<decltype(to)>;
-  if (inverse_.extent(1) == 2)
+  if (inverse_.dim() == 2)
     Kokkos::parallel_for("rpc::solver::chebyshev_step", range,
                          ChebyshevStep<2, In, Out>{inverse_, from, product, keep, add, at_zero, move, to});
   else

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/algebra/node_blocks.hpp"
 #include "rpc/core/tpetra.hpp"
 
 namespace rpc::solver
@@ -7,9 +8,9 @@ namespace rpc::solver
 
 /// The largest eigenvalue of D^-1 A, by some steps of Lanczos' method and with a margin for its error; the same on any number of
 /// ranks up to rounding. Collective.
-/// @param block  (owned nodes, dim, dim) D
+/// @param D  its blocks
 /// @throws std::runtime_error on all ranks if A or D is not positive definite
-double largest_eigenvalue(const Operator &A, const DeviceView<double ***> &block);
+double largest_eigenvalue(const Operator &A, const NodeBlocks &D);
 
 /// Chebyshev polynomials of D^-1 A for a symmetric positive definite A, D its diagonal blocks of the nodes: they damp what lies
 /// between the largest eigenvalue of D^-1 A and a part of it.                                          doc/theory.md (4.7c)
@@ -24,18 +25,21 @@ public:
   };
 
   /// @param A        what it smooths for
-  /// @param block    (owned nodes, dim, dim) D
+  /// @param D        its blocks
+  /// @param changing (n) owned nodes at which D may change
   /// @param largest  upper bound of the eigenvalues of D^-1 A, also when both change. Collective.
   /// @throws std::runtime_error on all ranks if D is not positive definite
-  NodeSmoother(RCP<const Operator> A, const DeviceView<double ***> &block, double largest, const Options &options);
+  NodeSmoother(RCP<const Operator> A, const NodeBlocks &D, const DeviceView<LO *> &changing, double largest,
+               const Options &options);
 
   /// D changes at some nodes; collective.
-  /// @param node   (n) owned nodes
+  /// @param node   (n) some of those at which it may change
   /// @param block  (n, dim, dim); of a block that is not symmetric its symmetric part counts
   void set_blocks(const DeviceView<LO *> &node, const DeviceView<double ***> &block);
 
-  /// (owned nodes, dim, dim) D^-1.
-  const DeviceView<double ***> &inverse_blocks() const { return inverse_; }
+  const NodeBlocks &inverse_blocks() const { return inverse_; } ///< of D
+  /// (owned dofs) That start() and improve() write, and others may use between them.
+  Vector &work() const { return *product_; }
 
   /// x <- p(D^-1 A) D^-1 b: the polynomial's x for x = 0 at the start.
   void start(const Vector &b, Vector &x) const;
@@ -48,7 +52,7 @@ private:
 
   RCP<const Operator> A_;
   Options options_;
-  DeviceView<double ***> inverse_; // (owned nodes, dim, dim) of D
+  NodeBlocks inverse_; // of D
   double largest_;
   RCP<Vector> move_, product_; // of the last step; A x
 };

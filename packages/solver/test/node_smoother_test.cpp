@@ -38,6 +38,7 @@ struct Nodes {
     }
     A->fillComplete();
   }
+  NodeBlocks each(const std::vector<std::vector<double>> &block) const { return {{}, blocks(block)}; }
   /// (n, dim, dim) The same block n times.
   DeviceView<double ***> blocks(const std::vector<std::vector<double>> &block, const int n = 5) const
   {
@@ -49,20 +50,22 @@ struct Nodes {
     Kokkos::deep_copy(result, to);
     return result;
   }
-  DeviceView<double ***> ones() const { return blocks({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}); }
+  NodeBlocks ones() const { return each({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}); }
   void expect_inverse(const NodeSmoother &smoother, const LO node, const std::vector<std::vector<double>> &value) const
   {
-    const auto inverse = to_host(smoother.inverse_blocks());
+    const auto place = to_host(smoother.inverse_blocks().place);
+    const auto inverse = to_host(smoother.inverse_blocks().block);
+    const LO at = place.extent(0) == 0 ? node : place(node);
     for (int k = 0; k < dim; ++k)
-      for (int l = 0; l < dim; ++l) EXPECT_NEAR(inverse(node, k, l), value[k][l], 1e-15) << node << k << l;
+      for (int l = 0; l < dim; ++l) EXPECT_NEAR(inverse(at, k, l), value[k][l], 1e-15) << node << k << l;
   }
 };
 
 TEST(NodeSmoother, InvertsItsBlocks)
 {
   const Nodes plane(2), space(3);
-  const NodeSmoother two(plane.A, plane.blocks({{4, 1}, {1, 3}}), 1, {});
-  const NodeSmoother three(space.A, space.blocks({{2, -1, 0}, {-1, 2, -1}, {0, -1, 2}}), 1, {});
+  const NodeSmoother two(plane.A, plane.each({{4, 1}, {1, 3}}), {}, 1, {});
+  const NodeSmoother three(space.A, space.each({{2, -1, 0}, {-1, 2, -1}, {0, -1, 2}}), {}, 1, {});
   for (LO n = 0; n < 5; ++n) {
     plane.expect_inverse(two, n, {{3. / 11, -1. / 11}, {-1. / 11, 4. / 11}});
     space.expect_inverse(three, n, {{0.75, 0.5, 0.25}, {0.5, 1, 0.5}, {0.25, 0.5, 0.75}});
@@ -74,31 +77,46 @@ TEST(NodeSmoother, KeepsTheDigitsOfSmallEigenvalues)
 {
   const Nodes plane(2);
   const double stiff = 1e8;
-  const NodeSmoother smoother(plane.A, plane.blocks({{1 + stiff, stiff}, {stiff, 1 + stiff}}), 1, {});
-  const auto inverse = to_host(smoother.inverse_blocks()); // eigenvalues 1 and 1 / (1 + 2 stiff)
+  const NodeSmoother smoother(plane.A, plane.each({{1 + stiff, stiff}, {stiff, 1 + stiff}}), {}, 1, {});
+  const auto inverse = to_host(smoother.inverse_blocks().block); // eigenvalues 1 and 1 / (1 + 2 stiff)
   EXPECT_NEAR(inverse(0, 0, 0) - inverse(0, 0, 1), 1, 1e-7);
 }
 
 TEST(NodeSmoother, TakesTheSymmetricPartOfABlock)
 {
   const Nodes plane(2);
-  const NodeSmoother smoother(plane.A, plane.blocks({{4, 2}, {0, 3}}), 1, {});
+  const NodeSmoother smoother(plane.A, plane.each({{4, 2}, {0, 3}}), {}, 1, {});
   plane.expect_inverse(smoother, 2, {{3. / 11, -1. / 11}, {-1. / 11, 4. / 11}});
 }
 
 TEST(NodeSmoother, ReplacesTheBlocksOfSomeNodes)
 {
   const Nodes plane(2);
-  NodeSmoother smoother(plane.A, plane.ones(), 1, {});
+  NodeSmoother smoother(plane.A, plane.ones(), {}, 1, {});
   smoother.set_blocks(device_values(std::vector<LO>{1, 4}, "node"), plane.blocks({{4, 1}, {1, 3}}, 2));
   for (const LO n : {0, 2, 3}) plane.expect_inverse(smoother, n, {{1, 0}, {0, 1}});
   for (const LO n : {1, 4}) plane.expect_inverse(smoother, n, {{3. / 11, -1. / 11}, {-1. / 11, 4. / 11}});
 }
 
+TEST(NodeSmoother, ReplacesTheBlocksOfNodesThatShareThemWithOthers)
+{
+  const Nodes plane(2);
+  const auto list = [](const std::vector<LO> &values) { return device_values(values, "nodes"); };
+  const NodeBlocks shared{list({0, 1, 0, 0, 1}), plane.blocks({{2, 0}, {0, 4}}, 2)};
+  NodeSmoother smoother(plane.A, shared, list({1, 3}), 1, {});
+  for (const LO n : {0, 1, 2, 3, 4}) plane.expect_inverse(smoother, n, {{0.5, 0}, {0, 0.25}});
+  smoother.set_blocks(list({3}), plane.blocks({{4, 1}, {1, 3}}, 1));
+  for (const LO n : {0, 1, 2, 4}) plane.expect_inverse(smoother, n, {{0.5, 0}, {0, 0.25}});
+  plane.expect_inverse(smoother, 3, {{3. / 11, -1. / 11}, {-1. / 11, 4. / 11}});
+  smoother.set_blocks(list({1, 3}), plane.blocks({{1, 0}, {0, 1}}, 2));
+  for (const LO n : {0, 2, 4}) plane.expect_inverse(smoother, n, {{0.5, 0}, {0, 0.25}});
+  for (const LO n : {1, 3}) plane.expect_inverse(smoother, n, {{1, 0}, {0, 1}});
+}
+
 TEST(NodeSmoother, RefusesABlockThatIsNotDefiniteOnAllRanks)
 {
   const Nodes plane(2);
-  NodeSmoother smoother(plane.A, plane.ones(), 1, {});
+  NodeSmoother smoother(plane.A, plane.ones(), {}, 1, {});
   const bool last = Tpetra::getDefaultComm()->getRank() == Tpetra::getDefaultComm()->getSize() - 1;
   const double nan = std::nan("");
   for (const double bad : {0.9, 1., nan}) { // determinant < 0, 0, NaN
@@ -120,7 +138,7 @@ TEST(NodeSmoother, IsChebyshevsPolynomial)
     return now;
   };
   for (const int degree : {1, 2, 3}) {
-    const NodeSmoother smoother(plane.A, plane.ones(), largest, {degree, ratio});
+    const NodeSmoother smoother(plane.A, plane.ones(), {}, largest, {degree, ratio});
     const Vector solution = wave_on(plane.dofs, 0.2);
     Vector b(plane.dofs), x(plane.dofs);
     plane.A->apply(solution, b);
@@ -152,7 +170,7 @@ TEST(NodeSmoother, FindsTheLargestEigenvalue)
     EXPECT_LE(found, 2.2) << dim;
   }
   const Nodes plane(2);
-  const double halved = solver::largest_eigenvalue(*plane.A, plane.blocks({{2, 0}, {0, 2}}));
+  const double halved = solver::largest_eigenvalue(*plane.A, plane.each({{2, 0}, {0, 2}}));
   EXPECT_NEAR(halved, 0.5 * solver::largest_eigenvalue(*plane.A, plane.ones()), 1e-12);
   plane.A->resumeFill();
   plane.A->scale(-1.);

@@ -59,8 +59,7 @@ struct SupportedGrid {
     solver::MeshLevels levels;
     const auto stiffness = rcp(new CrsMatrix(*grid.A, Teuchos::Copy));
     const LO num_columns = num_local(*grid.A->getColMap());
-    levels.level.push_back(
-        {stiffness, identity, DeviceView<char *>("prescribed", num_columns), grid.body()});
+    levels.level.push_back({stiffness, identity, DeviceView<char *>("prescribed", num_columns), grid.body()});
     levels.prescribed = DeviceView<char *>("prescribed", num_columns);
     levels.down_to_few = true;
     return levels;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/algebra/alike_nodes.hpp"
+#include "rpc/algebra/node_blocks.hpp"
 #include "rpc/core/tpetra.hpp"
 
 namespace rpc
@@ -112,7 +113,7 @@ private:
   DeviceView<double *> value_; // (neighbours * size of a block)
 };
 
-/// (owned nodes, dim, dim) The blocks on the diagonal.
-DeviceView<double ***> diagonal_blocks(const RepeatedRows &rows);
+/// The blocks on the diagonal. Nodes of a kind share one.
+NodeBlocks diagonal_blocks(const RepeatedRows &rows);
 
 } // namespace rpc

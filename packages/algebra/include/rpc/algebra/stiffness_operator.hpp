@@ -47,8 +47,8 @@ public:
   void apply_rounded(const RoundedRows &rounded, const MultiVector &x, MultiVector &y) const;
 
   int dofs_per_node() const { return rows_.dim(); }
-  /// (owned nodes, dim, dim) The blocks on the diagonal.
-  DeviceView<double ***> diagonal_blocks() const { return rpc::diagonal_blocks(rows_); }
+  /// The blocks on the diagonal.
+  NodeBlocks diagonal_blocks() const { return rpc::diagonal_blocks(rows_); }
   /// (n, dim, dim) Those of some owned nodes.
   DeviceView<double ***> diagonal_blocks(const DeviceView<LO *> &nodes) const;
   const RepeatedRows &rows() const { return rows_; }

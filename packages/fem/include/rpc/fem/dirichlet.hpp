@@ -62,7 +62,8 @@ struct EliminatedStiffness {
 
 /// Eliminates the prescribed unknowns from both rows and columns: the diagonal stays.    paper (2), doc/theory.md (2.9)
 /// @param K  becomes the matrix; collective   @param prescribed  (overlap dofs) 1 where the displacement is
-EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K, const DeviceView<char *> &prescribed);
+EliminatedStiffness eliminate_dirichlet(const Discretization &d, RCP<CrsMatrix> K,
+                                        const DeviceView<char *> &prescribed);
 
 /// The same of a matrix that is not assembled, for most of its rows repeat those of a few nodes.
 struct RepeatedStiffness {
