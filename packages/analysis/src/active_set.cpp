@@ -27,10 +27,12 @@ constexpr double enough = 0.3;      // of the tolerance: recomputed residuals ar
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 constexpr double rounding = 1e-13;  // of the largest pressure: the same, where tolerances are tighter
 
-// The interior-point method takes over where twice on end a choice with much overshoot changes more than this part of the fewest
-// points that one has changed. With 1 the worst of thin bodies take three steps more.
+// The interior-point method takes over where choices with much overshoot, one after the other, change more than this part of the
+// fewest points that one of them has changed: two of them, or four where edges move on by a point. With 1 the worst of thin bodies take
+// three steps more.
 constexpr double headway = 0.7;
-constexpr GO few_changes = 3; // edges that move on by a point
+constexpr GO few_changes = 3;
+constexpr int most_idle = 4, idle_of_few = 1, idle_of_many = 2;
 // Forces that the law does not admit over those that it does: bodies of equal sides stay below.
 constexpr double much = 0.3;
 // At once, where such forces are so many times the admissible ones and more than so many points change; or at the second choice that
@@ -83,8 +85,8 @@ void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, 
 {
   choice_ = std::move(choice);
   seen_.clear();
-  changes_ = idle_changes_ = overshoots_ = 0;
-  fewest_changes_ = 0;
+  changes_ = idle_ = overshoots_ = 0;
+  fewest_changes_ = fewest_overshooting_ = 0;
   most_changes_ = most;
   norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
   rough_ = false; // a small residual may be all of the bending
@@ -138,13 +140,17 @@ bool ActiveSetStage::contracts() const
 /// Whether the choices come to an end.
 bool ActiveSetStage::makes_headway()
 {
-  const bool idle = fewest_changes_ > 0 && choice_->overshoot > much && choice_->changes > few_changes &&
-                    choice_->changes > headway * fewest_changes_;
-  idle_changes_ = idle ? idle_changes_ + 1 : 0;
-  fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, choice_->changes) : choice_->changes;
+  const auto lower = [this](GO &fewest) {
+    fewest = fewest > 0 ? std::min(fewest, choice_->changes) : choice_->changes;
+  };
+  const bool overshoots = choice_->overshoot > much;
+  const bool idle = overshoots && fewest_overshooting_ > 0 && choice_->changes > headway * fewest_overshooting_;
+  idle_ = idle ? idle_ + (choice_->changes > few_changes ? idle_of_many : idle_of_few) : 0;
+  lower(fewest_changes_);
+  if (overshoots) lower(fewest_overshooting_);
   if (choice_->overshoot > too_much_twice) ++overshoots_;
   const bool is_far = choice_->overshoot > far_too_much && choice_->changes > many_changes;
-  return idle_changes_ < 2 && overshoots_ < 2 && !is_far;
+  return idle_ < most_idle && overshoots_ < 2 && !is_far;
 }
 
 /// The interior-point method goes on where choices overshoot; else, or where that has been, Newton's.

@@ -110,16 +110,16 @@ TEST(ActiveSet, AboveAGapIsFoundWhereTheLoadReachesTheYieldLimitInPart)
   }
 }
 
-TEST(ActiveSet, ThatDoesNotSettleIsFoundOnTheInteriorPathWhereItOvershootsElseByNewton)
+/// Foundations that are wavy in yield stress and gap, found by search.
+TEST(ActiveSet, OfWavyFoundationsIsFoundByTheInteriorPathWhereItOvershootsElseByManyChanges)
 {
   struct Wavy {
     const char *name;
     double yield, yield_phase, yield_waves, gap, gap_phase, gap_waves;
-    bool overshoots;
+    int most;
   };
-  // Found by search: the states go in circles with much overshoot, or would need more than ten changes.
-  for (const Wavy &w :
-       {Wavy{"circles", 60, 28, 40, 0.1, 24, 19, true}, Wavy{"many changes", 10, 28, 5, 0.03, 27, 35, false}}) {
+  for (const Wavy &w : {Wavy{"circles, with much overshoot", 60, 28, 40, 0.1, 24, 19, 14},
+                        Wavy{"more than ten changes, fewer each time", 10, 28, 5, 0.03, 27, 35, 13}}) {
     SCOPED_TRACE(w.name);
     const ScalarField xi(
         "xi", [w](const Point &x) { return w.yield * (1 + 0.97 * std::sin(w.yield_phase + w.yield_waves * x[0])); });
@@ -129,10 +129,10 @@ TEST(ActiveSet, ThatDoesNotSettleIsFoundOnTheInteriorPathWhereItOvershootsElseBy
     Beam beam({}, below(xi, 0, gap));
     const Found found = solve(beam);
     EXPECT_TRUE(found.all.converged) << found.all.reason;
-    EXPECT_EQ(found.confirmed, w.overshoots);
-    EXPECT_LE(found.steps, w.overshoots ? 22 : most_steps);
-    EXPECT_GE(found.newton_steps(), w.overshoots ? 0 : 2);
-    EXPECT_LE(found.newton_steps(), w.overshoots ? 0 : 15);
+    EXPECT_TRUE(found.confirmed);
+    EXPECT_GE(found.steps, 10);
+    EXPECT_LE(found.steps, w.most);
+    EXPECT_EQ(found.newton_steps(), 0);
   }
 }
 

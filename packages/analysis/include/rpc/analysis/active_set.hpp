@@ -77,12 +77,13 @@ private:
          before_ = norm_,      // |F|_2 for the active set, after and before the step
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set
   int steps_ = 0;
-  int changes_ = 0;       // of the active set
-  int updates_ = 0;       // of the multipliers alone, the active set being confirmed
-  GO fewest_changes_ = 0; // points that a choice has changed; 0: none
-  int idle_steps_ = 0;    // of a confirmed active set, one after the other, that left more than half of F
-  int overshoots_ = 0;    // choices with much too large forces that the law does not admit
-  int idle_changes_ = 0;  // choices, one after the other, that changed hardly fewer points than any before
+  int changes_ = 0; // of the active set
+  int updates_ = 0; // of the multipliers alone, the active set being confirmed
+  GO fewest_changes_ = 0,
+     fewest_overshooting_ = 0; // points that a choice has changed, and one that overshoots; 0: none
+  int idle_steps_ = 0;         // of a confirmed active set, one after the other, that left more than half of F
+  int overshoots_ = 0;         // choices with much too large forces that the law does not admit
+  int idle_ = 0; // of choices, one after the other, that overshoot and change hardly fewer points than any before
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried
