@@ -39,7 +39,7 @@ STEP_BARS = [Bar("steps from a coarser mesh", steps, 0.5, 4), Bar("steps from a 
              Bar("cold steps", cold_steps, 0.95, 25), Bar("cold steps", cold_steps, 1.0, 60)]
 TIME_BARS = [Bar("contact over elastic solve", ratio, 0.5, 1.5, (2,)), Bar("contact over elastic solve", ratio, 0.9, 2.5, (2,)),
              Bar("contact over elastic solve", ratio, 1.0, 6.0, (2,)), Bar("contact over elastic solve", ratio, 0.5, 2.5, (3,))]
-HARD_BARS = [Bar("steps", steps, 1.0, 40), Bar("CG iterations of a solve", most_cg, 1.0, 60)]
+HARD_BARS = [Bar("steps", steps, 1.0, 25), Bar("CG iterations of a solve", most_cg, 1.0, 60)]
 HARD_TIME_BARS = [Bar("contact over elastic solve", ratio, 0.5, 1.6), Bar("contact over elastic solve", ratio, 0.95, 3),
                   Bar("contact over elastic solve", ratio, 1.0, 6)]
 FRICTION_BARS = [Bar("steps from a coarser mesh", steps, 0.5, 6), Bar("steps from a coarser mesh", steps, 0.95, 15),
