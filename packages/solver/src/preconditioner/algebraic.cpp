@@ -41,8 +41,7 @@ bool leaves_strength_open(const Teuchos::ParameterList &user)
 
 Algebraic::Algebraic(RCP<const UpdatedOperator> H, Body body, const LinearSolverOptions &options,
                      const bool for_each_state)
-    : H_(std::move(H)), body_(std::move(body)),
-      muelu_(list_for(*H_->getDomainMap(), body_.dim, options)),
+    : H_(std::move(H)), body_(std::move(body)), muelu_(list_for(*H_->getDomainMap(), body_.dim, options)),
       for_each_state_(for_each_state), may_strengthen_(leaves_strength_open(options.muelu))
 {
 }
