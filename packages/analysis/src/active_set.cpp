@@ -40,7 +40,9 @@ constexpr double much = 0.3;
 constexpr double far_too_much = 10, too_much_twice = 3;
 constexpr GO many_changes = 10;
 constexpr int most_path_steps = 50;
-constexpr double path_forcing = 1e-2; // of its linear solves; 1e-3 saves no step, with 3e-2 some paths take more
+// Of its linear solves; 1e-3 saves no step, with 3e-2 some paths take more. But after a step shorter than a half, for then the solves
+// may be what cuts it short: plates 1:500 take half as many steps.
+constexpr double path_forcing = 1e-2, path_forcing_after_short = 1e-4, short_path_step = 0.5;
 // The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and
 // below the last gap in any case. A trial may change states so often.
 constexpr double first_trial = 1e-2, next_trial = 1e-2, last_gap = 1e-8;
@@ -54,7 +56,8 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
       pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
-      most_changes_(most_changes), rubs_(iterate_.points().friction.anywhere), then_(then), trial_gap_(first_trial)
+      most_changes_(most_changes), rubs_(iterate_.points().friction.anywhere), then_(then), path_forcing_(path_forcing),
+      trial_gap_(first_trial)
 {
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
@@ -183,6 +186,7 @@ ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector
   }
   const double t = iterate_.advance_interior(u, direction);
   if (!(t > 0)) return Step::none;
+  path_forcing_ = t < short_path_step ? path_forcing_after_short : path_forcing;
   direction.scale(t);
   ++path_steps_;
   ++group.context().steps;
@@ -200,13 +204,13 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
   };
   Vector F(u.getMap());
   iterate_.linearize_interior(u, F);
-  if (!solve(F, direction, path_forcing)) return false;
+  if (!solve(F, direction, path_forcing_)) return false;
   direction.scale(-1.);
   iterate_.correct_interior(u, direction, F);
   Vector lacking(u.getMap());
   iterate_.hessian()->apply(direction, lacking);
   lacking.update(1., F, 1.);
-  const double wanted = path_forcing * F.norm2(), missing = lacking.norm2();
+  const double wanted = path_forcing_ * F.norm2(), missing = lacking.norm2();
   if (missing <= wanted) return true;
   const int iterations = context.linear_iterations;
   Vector &correction = F; // no longer needed
