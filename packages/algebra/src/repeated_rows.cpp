@@ -410,13 +410,24 @@ NodeBlocks diagonal_blocks(const RepeatedRows &rows)
         others);
     num_blocks = num_kinds + others;
   }
-  blocks.block = DeviceView<double ***>("rpc::repeated_rows::diagonal_blocks", num_blocks, dim, dim);
-  const auto block = blocks;
+  blocks.block = DeviceView<double ***>(Kokkos::ViewAllocateWithoutInitializing("rpc::repeated_rows::diagonal_blocks"),
+                                        num_blocks, dim, dim);
+  const auto to = blocks;
   Kokkos::parallel_for(
-      "rpc::repeated_rows::read_diagonal_blocks", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
-        const LO own = from.own(node), to = block.of(node); // equal numbers where nodes share it
+      "rpc::repeated_rows::read_blocks_of_kinds", device_range(std::max(num_kinds, 0)), KOKKOS_LAMBDA(const LO kind) {
+        LO own = from.begin(kind);
+        while (from.offset(own) != 0) ++own;
         for (int i = 0; i < dim; ++i)
-          for (int j = 0; j < dim; ++j) block.block(to, i, j) = from.entry(node, own, i, j);
+          for (int j = 0; j < dim; ++j)
+            to.block(kind, i, j) =
+                from.value(RepeatedRows::block_size(dim) * own + RepeatedRows::place_in_block(dim, i, j));
+      });
+  Kokkos::parallel_for(
+      "rpc::repeated_rows::read_other_blocks", device_range(num_nodes), KOKKOS_LAMBDA(const LO node) {
+        if (from.kind(node) >= 0) return;
+        const LO own = from.own(node), place = to.of(node);
+        for (int i = 0; i < dim; ++i)
+          for (int j = 0; j < dim; ++j) to.block(place, i, j) = from.entry(node, own, i, j);
       });
   Kokkos::fence();
   return blocks;
