@@ -28,20 +28,21 @@ constexpr double negligible = 1e-3; // of the tolerance of pressures: violations
 constexpr double rounding = 1e-13;  // of the largest pressure: the same, where tolerances are tighter
 
 // The interior-point method takes over where choices with much overshoot, one after the other, change more than this part of the
-// fewest points that one of them has changed: two of them, or four where edges move on by a point. With 1 the worst of thin bodies take
-// three steps more.
+// fewest points that such a choice has changed: after two of them, or after four that change few points, edges that move on by a point.
+// With 1 the worst of thin bodies take three steps more.
 constexpr double headway = 0.7;
 constexpr GO few_changes = 3;
 constexpr int most_idle = 4, idle_of_few = 1, idle_of_many = 2;
 // Forces that the law does not admit over those that it does: bodies of equal sides stay below.
 constexpr double much = 0.3;
-// At once, where such forces are so many times the admissible ones and more than so many points change; or at the second choice that
-// overshoots so often. Choices that settle in the end overshoot once at most by so much.
+// It takes over at once where such forces are far_too_much times the admissible ones and more than many_changes points change, and at
+// the second choice whose such forces are too_much_twice times the admissible ones. Choices that settle in the end have one such choice
+// at most.
 constexpr double far_too_much = 10, too_much_twice = 3;
 constexpr GO many_changes = 10;
 constexpr int most_path_steps = 50;
-// Of its linear solves; 1e-3 saves no step, with 3e-2 some paths take more. But after a step shorter than a half, for then the solves
-// may be what cuts it short: plates 1:500 take half as many steps.
+// What the path's linear solves leave of their right sides: with 1e-3 no step less, with 3e-2 some paths take more. After a step
+// shorter than a half they leave less, for then the solves may be what cuts steps short: plates 1:500 take half as many steps.
 constexpr double path_forcing = 1e-2, path_forcing_after_short = 1e-4, short_path_step = 0.5;
 // The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and
 // below the last gap in any case. A trial may change states so often.

@@ -159,8 +159,8 @@ DeviceView<double ***> unset_blocks(const LO n, const int dim)
 /// The inverses, which `changing` nodes do not share. Collective.
 NodeBlocks inverses(const Comm &comm, const NodeBlocks &D, const DeviceView<LO *> &changing)
 {
-  if (D.place.extent(0) == 0) {
-    const NodeBlocks inverse{{}, unset_blocks(D.num_blocks(), D.dim())};
+  if (D.place.extent(0) == 0 || changing.extent(0) == 0) {
+    const NodeBlocks inverse{D.place, unset_blocks(D.num_blocks(), D.dim())};
     invert(comm, {}, D.block, inverse.block);
     return inverse;
   }

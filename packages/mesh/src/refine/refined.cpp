@@ -28,7 +28,7 @@ namespace
 void require_room(const Mesh &coarse, const double growth, const std::string &asked)
 {
   constexpr double gib = 1 << 30;
-  const double per_node = coarse.dim() == 2 ? 800 : 1400; // [B] less than any takes, for it has a matrix
+  const double per_node = coarse.dim() == 2 ? 800 : 1400; // [B] less than a mesh of gmsh takes, which has a matrix
   const double nodes = growth * coarse.num_owned_nodes();
   const double entries = growth * coarse.num_cells() * coarse.element.num_nodes();
   std::optional<std::string> message;

@@ -77,12 +77,12 @@ private:
          before_ = norm_,      // |F|_2 for the active set, after and before the step
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set
   int steps_ = 0;
-  int changes_ = 0; // of the active set
-  int updates_ = 0; // of the multipliers alone, the active set being confirmed
-  GO fewest_changes_ = 0,
-     fewest_overshooting_ = 0; // points that a choice has changed, and one that overshoots; 0: none
+  int changes_ = 0;            // of the active set
+  int updates_ = 0;            // of the multipliers alone, the active set being confirmed
+  GO fewest_changes_ = 0;      // fewest points that a choice has changed; 0: none was made
+  GO fewest_overshooting_ = 0; // the same of choices that overshoot
   int idle_steps_ = 0;         // of a confirmed active set, one after the other, that left more than half of F
-  int overshoots_ = 0;         // choices with much too large forces that the law does not admit
+  int overshoots_ = 0;         // choices with forces far above what the law admits
   int idle_ = 0; // of choices, one after the other, that overshoot and change hardly fewer points than any before
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;

@@ -8,7 +8,7 @@ namespace rpc::solver
 {
 
 /// What algebraic multigrid has to know of a body. The fields are made when they are asked for, since most solves do without:
-/// in space they take as much memory as seven or more displacements.
+/// in space they take as much memory as seven displacements.
 struct Body {
   int dim = 0;                                   ///< unknowns of a node
   std::function<RCP<MultiVector>()> coordinates; ///< (owned nodes; dim) [m]
