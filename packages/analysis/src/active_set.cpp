@@ -16,10 +16,11 @@ constexpr int most_changes = 10;      // of the active set; then Newton with its
 constexpr int most_changes_tried = 3; // where a Tresca problem has just been solved
 constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
 constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
-// While the active set changes, solves bring the residual below this part of what it was, and of the load: three to five CG
-// iterations. With 1e-1 pressures are too rough to choose by, 1e-4 saves no step. What the multipliers of the last rough
-// solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
-constexpr double forcing = 5e-3;
+// While the active set changes, solves bring the residual below this part of what it was, and of the load, or the error in energy below
+// rough_error: two to four CG iterations. With a residual of 1e-1 pressures are too rough to choose by, 1e-4 saves no step. On thin bodies
+// the residual needs three times the iterations of the error. What the multipliers of the last rough solve miss, the penalty leaves a
+// part of, k/r, in the final pressures: some 1e-8 of them.
+constexpr double forcing = 5e-3, rough_error = 1e-2;
 constexpr int most_updates = 2; // of multipliers at the end, even if pressures miss their tolerance then
 // Steps of a confirmed active set that leave more than half of F, one after the other, while slip in space turns.
 constexpr int most_idle_turns = 4;
@@ -41,9 +42,9 @@ constexpr double much = 0.3;
 constexpr double far_too_much = 10, too_much_twice = 3;
 constexpr GO many_changes = 10;
 constexpr int most_path_steps = 50;
-// What the path's linear solves leave of their right sides: with 1e-3 no step less, with 3e-2 some paths take more. After a step
-// shorter than a half they leave less, for then the solves may be what cuts steps short: plates 1:500 take half as many steps.
-constexpr double path_forcing = 1e-2, path_forcing_after_short = 1e-4, short_path_step = 0.5;
+// What the path's linear solves leave: of the error in energy, or of their right sides. With an error of 0.03 no step less; the right side
+// tells nothing of how far a thin body has bent.
+constexpr double path_error = 0.1, path_forcing = 1e-2;
 // The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and
 // below the last gap in any case. A trial may change states so often.
 constexpr double first_trial = 1e-2, next_trial = 1e-2, last_gap = 1e-8;
@@ -57,8 +58,7 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
       pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
-      most_changes_(most_changes), rubs_(iterate_.points().friction.anywhere), then_(then), path_forcing_(path_forcing),
-      trial_gap_(first_trial)
+      most_changes_(most_changes), rubs_(iterate_.points().friction.anywhere), then_(then), trial_gap_(first_trial)
 {
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
@@ -187,7 +187,6 @@ ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector
   }
   const double t = iterate_.advance_interior(u, direction);
   if (!(t > 0)) return Step::none;
-  path_forcing_ = t < short_path_step ? path_forcing_after_short : path_forcing;
   direction.scale(t);
   ++path_steps_;
   ++group.context().steps;
@@ -199,19 +198,21 @@ ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector
 /// @return whether it can be used
 bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction)
 {
+  double energy = 0; // of the predictor
   const auto solve = [&](const Vector &F, Vector &d, const double tolerance) {
-    const auto solved = solver::solve_for_direction(context, F, d, tolerance);
+    const auto solved = solver::solve_for_direction(context, F, d, {tolerance, path_error, energy});
+    energy = solved.energy;
     return !solved.broken && !solved.interrupted && std::isfinite(context.direction_norm);
   };
   Vector F(u.getMap());
   iterate_.linearize_interior(u, F);
-  if (!solve(F, direction, path_forcing_)) return false;
+  if (!solve(F, direction, path_forcing)) return false;
   direction.scale(-1.);
   iterate_.correct_interior(u, direction, F);
   Vector lacking(u.getMap());
   iterate_.hessian()->apply(direction, lacking);
   lacking.update(1., F, 1.);
-  const double wanted = path_forcing_ * F.norm2(), missing = lacking.norm2();
+  const double wanted = path_forcing * F.norm2(), missing = lacking.norm2();
   if (missing <= wanted) return true;
   const int iterations = context.linear_iterations;
   Vector &correction = F; // no longer needed
@@ -221,15 +222,15 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
   return true;
 }
 
-/// |F|_2 that the next solve is to leave: roughly while states change; while slip turns the better the shorter the step is.
-double ActiveSetStage::needed_norm() const
+/// What the next solve is to leave: roughly while states change; while slip turns the better the shorter the step is.
+solver::Accuracy ActiveSetStage::wanted() const
 {
   double rough = 0;
   if (rough_)
     rough = forcing * std::min(scale_, norm_);
   else if (turns_)
     rough = std::min(forcing, norm_ / scale_) * norm_;
-  return std::max(enough * target_, rough);
+  return {std::max(enough * target_, rough) / norm_, rough_ ? rough_error : 0};
 }
 
 ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
@@ -295,7 +296,7 @@ ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direct
     move_to();
   }
   u = Teuchos::null; // a solve needs the memory
-  const auto solved = solver::solve_for_direction(group.context(), F, direction, needed_norm() / norm_); // (5.9)
+  const auto solved = solver::solve_for_direction(group.context(), F, direction, wanted()); // (5.9)
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {
       u = rcp(new Vector(start_, Teuchos::Copy));

@@ -154,7 +154,8 @@ TEST(LinearSolver, LeavesSlightChangesOfContactToCGWhileThatIsCheaperThanAFactor
   EXPECT_EQ(solver.counts().iterations.size(), 7U) << "one is given up";
 }
 
-/// The same on meshes, whose coarsest one is factored: from the first solve on that takes many more iterations, slight changes count.
+/// The same on meshes, whose coarsest one is factored: a change is followed once solves have cost as much time as that, and until then no
+/// more than in one solve; the next changes are put off again.
 TEST(LinearSolver, FollowsSlightChangesOfContactOnTheCoarsestMeshOnceTheyCostIterations)
 {
   const Block plate({3, 1}, {48, 48, 2}, true, {1, 1, 0.01});
@@ -170,8 +171,10 @@ TEST(LinearSolver, FollowsSlightChangesOfContactOnTheCoarsestMeshOnceTheyCostIte
   };
   const int usual = iterations(0);
   EXPECT_LE(iterations(1e-10), usual + 4) << "nearly nothing has changed";
-  EXPECT_GT(iterations(9e-6), usual + 8) << "else this tells nothing of what follows";
-  for (const double part : {8e-6, 1e-6, 9e-6, 1e-8}) EXPECT_LE(iterations(part), usual + 2) << part;
+  EXPECT_GT(iterations(1e-3), usual + 8) << "else this tells nothing of what follows";
+  EXPECT_LE(iterations(1.1e-3), usual + 2) << "this one is followed";
+  EXPECT_LE(iterations(1.11e-3), usual + 2) << "nearly nothing has changed since";
+  EXPECT_LE(iterations(1), usual + 2) << "more than slight";
   EXPECT_EQ(solver->counts().preconditioner_setups, 1);
 }
 

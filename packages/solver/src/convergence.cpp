@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rpc::solver
 {
@@ -9,6 +10,7 @@ namespace
 {
 
 constexpr int window = 20; // CG stands still for ten iterations now and then, and goes on
+constexpr double slowest = 0.9; // rate of gains that is reckoned with: a stall is an error of ten gains
 
 } // namespace
 
@@ -24,6 +26,19 @@ double Convergence::iterations_in_all(const double tolerance, const double most)
   const double fallen = std::log(least_[k - w] / least_[k]);
   if (!(fallen > 0)) return most;
   return std::min(k + w * std::log(least_[k] / tolerance) / fallen, most);
+}
+
+void EnergyError::add(const double energy)
+{
+  const double gain = std::max(energy - energy_, 0.);
+  if (gain_ >= 0) rate_ = gain_ > 0 ? std::min(gain / gain_, slowest) : slowest;
+  energy_ = energy;
+  gain_ = gain;
+}
+
+double EnergyError::squared() const
+{
+  return gain_ >= 0 && rate_ < 1 ? gain_ * rate_ / (1 - rate_) : std::numeric_limits<double>::infinity();
 }
 
 } // namespace rpc::solver

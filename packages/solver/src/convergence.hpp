@@ -24,4 +24,27 @@ private:
   std::vector<double> least_{1.}; // (iterations + 1) rho, the least residual so far
 };
 
+/// The error of CG in the norm of H by what its iterations add to the energy of x. From x = 0 on,
+///
+///     |x_k|_H^2 = x_k . b,    |x - x_k|_H^2 = |x|_H^2 - |x_k|_H^2,
+///
+/// so that the gains of all later iterations are the error's square; they are taken to fall on as the last ones have.
+/// doc/theory.md (4.10c)
+class EnergyError
+{
+public:
+  /// @param rate  by which gains fall, until two of them tell; 1: not known, which is never small
+  explicit EnergyError(const double rate = 1) : rate_(rate) {}
+
+  /// After an iteration. @param energy  x_k . b [J]
+  void add(double energy);
+  /// About |x - x_k|_H^2 [J]; infinite before the first iteration, and where no rate is known.
+  double squared() const;
+  double energy() const { return energy_; }
+  double rate() const { return rate_; }
+
+private:
+  double energy_ = 0, gain_ = -1, rate_; // gain -1: none yet
+};
+
 } // namespace rpc::solver

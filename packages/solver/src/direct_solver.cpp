@@ -95,9 +95,9 @@ void DirectSolver::update()
   if (!make()) throw std::runtime_error(no_factor);
 }
 
-double DirectSolver::slight_change() const
+double DirectSolver::seconds_of_update() const
 {
-  return cost().seconds > short_time ? slight_change_of_contact : 0;
+  return cost().seconds > short_time ? cost().seconds : 0;
 }
 
 void DirectSolver::apply(const Vector &b, Vector &x) const

@@ -11,11 +11,6 @@
 namespace rpc::solver
 {
 
-/// Contact that changes at a node by no more than this part of the node's own stiffness needs no new factor: CG takes it. On thin bodies
-/// bending is so soft that the rounded law of the interior path adds some 1e-9 of it, at all nodes and in each step.
-///                                                                                                  doc/theory.md (4.12)
-constexpr double slight_change_of_contact = 1e-5;
-
 /// A^-1 by a sparse factor. A few unknowns are factored on each rank alike, more by all ranks together. Rows have gids from 0, without gaps.
 class DirectSolver : public CoarsestSolver
 {
@@ -31,7 +26,7 @@ public:
   /// Factors the matrix as it is now; collective. @return whether it is positive definite
   bool make();
   void update() override;
-  double slight_change() const override;
+  double seconds_of_update() const override;
   void apply(const Vector &b, Vector &x) const override;
 
   /// What was added to the matrix since make(), in place of what was said before: no new factor is made for it. Collective.

@@ -1,5 +1,6 @@
 #include "krylov.hpp"
 
+#include "convergence.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
 
@@ -28,6 +29,10 @@ constexpr const char *gmres = "Pseudoblock GMRES";
 
 /// Thrown through Belos where an iteration is given up.
 struct GivenUp {
+};
+
+/// The same where the error is small enough.
+struct Enough {
 };
 
 using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
@@ -101,7 +106,9 @@ public:
       const double norm = x.getVector(0)->norm2();
       // Belos' CG preconditions a residual before it looks whether the residual is small enough to stop.
       if (norm <= enough) return y.assign(x);
-      if (gives_up && gives_up(iterations, norm / norm_of_right_side)) throw GivenUp();
+      left = norm / norm_of_right_side;
+      if (wanted.error > 0 && iterations > 0 && error_is_small()) throw Enough();
+      if (gives_up && gives_up(iterations, left)) throw GivenUp();
     }
     ++iterations;
     if (to_residuals)
@@ -115,9 +122,20 @@ public:
   double enough = 0; // CG stops at residuals of this norm, which need no preconditioner; 0: not known
   GivesUp gives_up;  // null: never
   double norm_of_right_side = 1;
+  Accuracy wanted{1};
+  const Vector *solution = nullptr, *right_side = nullptr; // x as far as CG has come, from 0, and b
+  double energy_of_start = 0;                              // what is to be added to x . b [J]
+  mutable EnergyError error;
+  mutable double left = 1; // |r|/|b| before the last iteration
   mutable int iterations = 0;
 
 private:
+  bool error_is_small() const
+  {
+    error.add(solution->dot(*right_side));
+    return error.squared() <= wanted.error * wanted.error * (error.energy() + energy_of_start + wanted.energy);
+  }
+
   RCP<const Map> map_;
   mutable int applications_ = 0;
 };
@@ -162,14 +180,15 @@ Krylov::~Krylov() = default;
 
 /// From the preconditioner's start, else from 0.
 KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Preconditioner &B, const Vector &b,
-                             Vector &x, const double tolerance, const GivesUp &gives_up)
+                             Vector &x, const Accuracy &wanted, const GivesUp &gives_up)
 {
   KrylovResult result;
+  const bool by_error = wanted.error > 0 && is_symmetric && method.stops_by_residual;
   const Preconditioner::Start start = is_symmetric ? B.start(b) : Preconditioner::Start();
   const RCP<const Vector> rest = start.rest.is_null() ? Teuchos::rcpFromRef(b) : RCP<const Vector>(start.rest);
   const double left = start.rest.is_null() ? 1 : rest->norm2() / b.norm2();
   const auto list = Teuchos::parameterList();
-  const double least = std::min(1., tolerance / left);
+  const double least = std::min(1., wanted.residual / left);
   list->set("Convergence Tolerance", least);
   method.manager->setParameters(list);
   constexpr double surely = 1 - 1e-12; // Belos divides by |rest|
@@ -183,6 +202,11 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
   }
   method.preconditioner->norm_of_right_side = b.norm2();
   method.preconditioner->iterations = 0;
+  method.preconditioner->wanted = by_error ? wanted : Accuracy(wanted.residual);
+  method.preconditioner->solution = &x;
+  method.preconditioner->right_side = rest.get();
+  method.preconditioner->energy_of_start = by_error && !start.x.is_null() ? start.x->dot(b) : 0;
+  method.preconditioner->error = EnergyError(wanted.energy > 0 ? rate_ : 1);
   x.putScalar(0);
   method.problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), RCP<const MultiVector>(rest));
   try {
@@ -192,6 +216,10 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
     if (!result.converged)
       result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(result.residual) + " after " +
                       std::to_string(result.iterations) + " iterations";
+  } catch (const Enough &) {
+    result.converged = true;
+    result.iterations = method.preconditioner->iterations;
+    result.residual = method.preconditioner->left;
   } catch (const GivenUp &) {
     result.given_up = true;
     result.iterations = method.asks.is_null() ? method.preconditioner->iterations : method.asks->iterations;
@@ -205,22 +233,27 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
     result.reason = "the linear solver broke down: " + one_line(failure.what());
   }
   if (!start.x.is_null()) x.update(1., *start.x, 1.);
+  if (by_error && !result.broken) {
+    result.energy = x.dot(b);
+    rate_ = method.preconditioner->error.rate();
+  }
   return result;
 }
 
 // CG breaks down, too, where the residual is at rounding level: of a small remainder on the patch, where its
 // preconditioner expects zeros. Then CG starts once more, from the residual as it is.                           (4.9a)
 KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, const Vector &b, Vector &x,
-                           const double tolerance, const GivesUp &gives_up)
+                           const Accuracy &wanted, const GivesUp &gives_up)
 {
   Method &method = is_symmetric ? *of_deck_ : for_any_matrix();
-  KrylovResult result = iterate(method, is_symmetric, B, b, x, std::max(tolerance, options_.tolerance), gives_up);
+  const Accuracy possible(std::max(wanted.residual, options_.tolerance), wanted.error, wanted.energy);
+  KrylovResult result = iterate(method, is_symmetric, B, b, x, possible, gives_up);
   if (!result.broken || !std::isfinite(x.norm2())) return result;
   Vector residual(b, Teuchos::Copy);
   H_->apply(x, residual, Teuchos::NO_TRANS, -1., 1.);
   if (!(energy_error(B, b, residual) <= small_error)) return result;
   Vector move(b.getMap());
-  const double rest = std::max(tolerance * b.norm2() / residual.norm2(), options_.tolerance);
+  const double rest = std::max(wanted.residual * b.norm2() / residual.norm2(), options_.tolerance);
   KrylovResult more = iterate(method, is_symmetric, B, residual, move, rest, {});
   if (more.converged)
     x.update(1., move, 1.);

@@ -114,8 +114,9 @@ struct LinearSolver::Impl {
   Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels);
   void prepare(double tolerance);
   bool counted(Preconditioner &B, double tolerance);
-  Result attempt(const Vector &b, Vector &x, double tolerance);
+  Result attempt(const Vector &b, Vector &x, const Accuracy &wanted);
   Used used_for_policy() const;
+  double seconds_of_cg();
   const Sparse::Prospect *prospect();
   bool sparse_pays(double iterations_in_all, double tolerance);
   bool sparse_pays_now(const Convergence &seen, double tolerance);
@@ -140,6 +141,13 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
     solves_to_come = solves_with_contact;
 }
 
+/// Of an iteration of CG with multigrid; collective.
+double LinearSolver::Impl::seconds_of_cg()
+{
+  if (iteration_seconds < 0) iteration_seconds = seconds_of_iteration(H->base());
+  return iteration_seconds;
+}
+
 /// What a sparse factor takes; null where it cannot be had. Collective.
 const Sparse::Prospect *LinearSolver::Impl::prospect()
 {
@@ -157,9 +165,8 @@ const Sparse::Prospect *LinearSolver::Impl::prospect()
 bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const double tolerance)
 {
   if (!may_be_sparse) return false;
-  if (iteration_seconds < 0) iteration_seconds = seconds_of_iteration(H->base());
   const double lost =
-      iteration_seconds * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair(tolerance), 0.));
+      seconds_of_cg() * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair(tolerance), 0.));
   constexpr double seconds_of_analysis = 5e-6; // a row; not worth it for less
   if (lost < seconds_of_analysis * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
   const auto *const found = prospect();
@@ -222,16 +229,16 @@ void LinearSolver::Impl::record(const Preconditioner &B, const std::string &reas
 }
 
 /// One solve with what is in use.
-LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, const double tolerance)
+LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, const Accuracy &wanted)
 {
   Result result;
   given_up = false;
   try {
     if (interrupted(*H->getDomainMap()->getComm())) throw Interrupted();
-    prepare(std::max(tolerance, options.tolerance));
+    const double least = std::max(wanted.residual, options.tolerance);
+    prepare(least);
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::krylov"));
     const double start = Teuchos::Time::wallTime();
-    const double least = std::max(tolerance, options.tolerance);
     Convergence seen;
     const auto gives_up = [&](const int iterations, const double residual) {
       if (iterations > seen.iterations()) seen.add(residual);
@@ -240,12 +247,12 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
              sparse.renewal_pays(seen.iterations_in_all(least, options.max_iterations) - seen.iterations());
     };
     const KrylovResult done =
-        krylov.solve(*used, H->is_symmetric(), b, x, tolerance, may_be_sparse ? GivesUp(gives_up) : GivesUp());
+        krylov.solve(*used, H->is_symmetric(), b, x, wanted, may_be_sparse ? GivesUp(gives_up) : GivesUp());
     given_up = done.given_up;
     lost_iterations += std::max(0., done.iterations - fair(least));
     if (used == &algebraic) algebraic.learn(done.iterations, done.residual);
-    if (on_meshes) meshes->learn(done.iterations, done.residual);
-    result = {done.converged, done.broken, false, done.iterations, done.reason};
+    if (on_meshes) meshes->learn(done.iterations, seconds_of_cg());
+    result = {done.converged, done.broken, false, done.iterations, done.energy, done.reason};
     counts.iterations.push_back(result.iterations);
     counts.solve_seconds += Teuchos::Time::wallTime() - start;
     counts.description = used->description();
@@ -346,7 +353,7 @@ const Body &LinearSolver::body() const
   return impl_->body;
 }
 
-LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const double tolerance)
+LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accuracy &wanted)
 {
   if (b.norm2() == 0) {
     x.putScalar(0);
@@ -357,7 +364,7 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const doubl
   impl_->stands_in = false;
   impl_->choose_before_the_first_solve();
   for (;;) {
-    const Result result = impl_->attempt(b, x, tolerance);
+    const Result result = impl_->attempt(b, x, wanted);
     if (impl_->counts.path.empty() && impl_->used) impl_->record(*impl_->used, "");
     const auto outcome = outcome_of(result, impl_->given_up);
     if (!outcome) return result;

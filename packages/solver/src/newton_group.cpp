@@ -91,9 +91,12 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
   return std::isfinite(context_->direction_norm) && !result.broken ? (result.converged ? Ok : NotConverged) : Failed;
 }
 
-LinearSolver::Result solve_for_direction(NewtonContext &context, const Vector &F, Vector &d, const double tolerance)
+LinearSolver::Result solve_for_direction(NewtonContext &context, const Vector &F, Vector &d, const Accuracy &wanted)
 {
-  const auto result = context.linear_solver.solve(F, d, std::min(0.1, tolerance));
+  constexpr double least_digits = 0.1;
+  Accuracy asked = wanted;
+  if (wanted.error == 0) asked.residual = std::min(least_digits, wanted.residual);
+  const auto result = context.linear_solver.solve(F, d, asked);
   context.linear_iterations = result.iterations;
   context.direction_norm = d.norm2();
   return result;

@@ -7,6 +7,7 @@ namespace
 {
 
 using rpc::solver::Convergence;
+using rpc::solver::EnergyError;
 
 TEST(Convergence, OfAConstantRateIsToldExactly)
 {
@@ -39,6 +40,35 @@ TEST(Convergence, CountsTheLeastResidualOnly)
   EXPECT_EQ(seen.iterations_in_all(1e-8, 500), 500);
   for (const double residual : {0.1, 0.4}) seen.add(residual);
   EXPECT_NEAR(seen.iterations_in_all(1e-2, 500), 5 + 5, 1e-9);
+}
+
+/// Energies 1 - q^k: what is left of 1 is q^k, and the first gain alone tells nothing unless a rate is known.
+TEST(EnergyError, OfAConstantRateIsToldExactly)
+{
+  constexpr double q = 0.3;
+  EnergyError error, with_rate(q);
+  EXPECT_TRUE(std::isinf(error.squared()));
+  EXPECT_TRUE(std::isinf(with_rate.squared())) << "nothing was gained yet";
+  for (int k = 1; k <= 6; ++k) {
+    error.add(1 - std::pow(q, k));
+    with_rate.add(1 - std::pow(q, k));
+    if (k == 1) {
+      EXPECT_TRUE(std::isinf(error.squared()));
+    } else {
+      EXPECT_NEAR(error.squared(), std::pow(q, k), 1e-14) << k;
+    }
+    EXPECT_NEAR(with_rate.squared(), std::pow(q, k), 1e-14) << k;
+  }
+  EXPECT_NEAR(error.rate(), q, 1e-12);
+}
+
+/// Gains that rise, or stand still, are never the end of it.
+TEST(EnergyError, OfAStallIsTenGains)
+{
+  EnergyError error;
+  for (const double energy : {1., 1.1, 1.3}) error.add(energy);
+  EXPECT_NEAR(error.squared(), 9 * 0.2, 1e-12);
+  EXPECT_NEAR(error.rate(), 0.9, 1e-12);
 }
 
 } // namespace

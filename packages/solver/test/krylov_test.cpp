@@ -164,6 +164,48 @@ TEST(Krylov, AsksBothMethodsWhetherToGiveUpByTheirResiduals)
   }
 }
 
+/// |x - y|_A^2
+double energy_of_difference(const Operator &A, const Vector &x, const Vector &y)
+{
+  Vector difference(x, Teuchos::Copy), image(x.getMap());
+  difference.update(-1., y, 1.);
+  A.apply(difference, image);
+  return difference.dot(image);
+}
+
+/// The error in energy is what was asked for, while the residual is still much larger than its own bound; for a correction it counts
+/// beside the energy of what is corrected.
+TEST(Krylov, EndsCGWhereTheErrorInEnergyIsSmallEnough)
+{
+  Case of;
+  const Operator &A = *of.grid.A;
+  Krylov krylov({}, of.grid.A);
+  Vector exact(of.x.getMap());
+  ASSERT_TRUE(krylov.solve(of.B, true, of.b, exact, 1e-12).converged);
+  const double energy = exact.dot(of.b);
+  int last = 0;
+  for (const double wanted : {0.3, 0.1, 0.01}) {
+    SCOPED_TRACE(wanted);
+    const auto result = krylov.solve(of.B, true, of.b, of.x, {1e-12, wanted});
+    EXPECT_TRUE(result.converged) << result.reason;
+    EXPECT_GT(result.iterations, last);
+    last = result.iterations;
+    const double error = std::sqrt(energy_of_difference(A, of.x, exact) / energy);
+    EXPECT_LT(error, 2.5 * wanted) << "gains of CG with a diagonal fall unevenly";
+    EXPECT_GT(error, 0.1 * wanted) << "it goes on no longer than it must";
+    EXPECT_NEAR(result.energy, of.x.dot(of.b), 1e-12 * energy);
+    EXPECT_NEAR(energy - result.energy, energy_of_difference(A, of.x, exact), 1e-9 * energy) << "CG's error is H-orthogonal to x";
+    EXPECT_NEAR(result.residual, of.grid.relative_residual(of.x, of.b), 1e-9);
+  }
+  const auto alone = krylov.solve(of.B, true, of.b, of.x, {1e-12, 0.1});
+  const auto corrects = krylov.solve(of.B, true, of.b, of.x, {1e-12, 0.1, 99 * energy});
+  EXPECT_LT(corrects.iterations, alone.iterations);
+  EXPECT_LT(energy_of_difference(A, of.x, exact), 1.5 * 1.5 * 0.01 * 100 * energy);
+  const auto other = krylov.solve(of.B, false, of.b, of.x, {1e-9, 0.1});
+  EXPECT_LT(of.grid.relative_residual(of.x, of.b), 1.01e-9) << "GMRES knows no energy";
+  EXPECT_EQ(other.energy, 0);
+}
+
 TEST(Krylov, TellsOfAMatrixThatIsNotPositiveDefinite)
 {
   Case of;

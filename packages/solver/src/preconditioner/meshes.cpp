@@ -4,7 +4,7 @@
 #include "muelu_defaults.hpp"
 #include "multigrid.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -12,9 +12,6 @@ namespace rpc::solver
 {
 namespace
 {
-
-// CG iterations of a solve, beyond what it takes with the coarsest solver of the present contact, which take longer than that.
-constexpr int many_more_iterations = 8;
 
 /// MueLu's hierarchy for the order-1 matrix of a mesh that has no coarser one. It is renewed where much of contact has changed.
 class AlgebraicSolver : public CoarsestSolver
@@ -75,7 +72,7 @@ Preconditioner::Prepared Meshes::prepare(double)
   const bool exists = !multigrid_.is_null();
   if (exists && revision == revision_) return Prepared::unchanged;
   if (exists) {
-    is_current_ = multigrid_->update(follows_slight_);
+    is_current_ = multigrid_->update(lost_seconds_ >= multigrid_->seconds_of_update());
   } else {
     const MeshLevels levels = make_levels_();
     if (levels.level.empty()) throw std::runtime_error("multigrid: a coarser mesh would be too small for the ranks");
@@ -90,14 +87,10 @@ Preconditioner::Prepared Meshes::prepare(double)
   return exists ? Prepared::updated : Prepared::made;
 }
 
-void Meshes::learn(const int iterations, const double residual)
+void Meshes::learn(const int iterations, const double seconds_of_iteration)
 {
-  const double digits = -std::log10(residual);
-  if (!(digits > 0)) return;
-  if (is_current_)
-    usual_iterations_ = iterations / digits;
-  else if (iterations - usual_iterations_ * digits > many_more_iterations)
-    follows_slight_ = true;
+  // A solve on the interior path takes one or two iterations where nothing has been put off.
+  lost_seconds_ = is_current_ ? 0 : lost_seconds_ + std::max(iterations - 1, 0) * seconds_of_iteration;
 }
 
 std::string Meshes::description() const

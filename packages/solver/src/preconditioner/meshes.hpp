@@ -25,9 +25,9 @@ public:
   void forget() override;
   std::string name() const override { return "meshes"; }
   std::string description() const override;
-  /// CG's iterations to |r|/|b| = residual: where slight changes of contact that the coarsest solver has not followed cost many of them, it
-  /// follows all from now on.
-  void learn(int iterations, double residual);
+  /// CG's iterations in a solve: where slight changes of contact that the coarsest solver has not followed have cost as much time as it takes
+  /// to follow them, it does so next.                                                                doc/theory.md (4.12)
+  void learn(int iterations, double seconds_of_iteration);
 
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp = Teuchos::NO_TRANS, double = 1,
              double = 0) const override
@@ -48,8 +48,7 @@ private:
   std::string end_;              // of MeshLevels
   int revision_ = -1;            // of H when it was last brought to it
   bool is_current_ = false;      // the coarsest solver is that of the present contact
-  bool follows_slight_ = false;  // changes of contact, all of them
-  double usual_iterations_ = 0;  // for each digit, where it is current
+  double lost_seconds_ = 0;      // since it was
 };
 
 } // namespace rpc::solver

@@ -19,17 +19,24 @@ constexpr double most_closed_stiffness = 1e4;
 // New terms are solved for as long as they take this part of a new factor's time at most.
 constexpr double worth_a_factor = 0.7;
 constexpr double negligible = 1e-13; // of a block, beside the node's own one
+// Where all terms would take longer, those of changes up to such a part of the node's own stiffness are left to CG.       (4.12)
+constexpr double left_out[] = {negligible, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
+
+/// A change of a contact node's block, and how large it is beside the node's own stiffness.
+struct Change {
+  RankOneTerm term;
+  double part;
+};
 
 /// The differences of two updates as terms of rank one, of this rank.
-/// @param least  part of a node's own stiffness up to which its difference is left out
 template <int Dim>
-std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<double ***> &now,
-                                  const DeviceView<double ***> &before, const double least)
+std::vector<Change> changes_of(const UpdatedOperator &H, const DeviceView<double ***> &now,
+                               const DeviceView<double ***> &before)
 {
   const auto a = to_host(now), b = to_host(before), own = to_host(H.base_blocks());
   const auto node = to_host(H.nodes());
   const Map &dofs = *H.getDomainMap();
-  std::vector<RankOneTerm> terms;
+  std::vector<Change> changes;
   for (std::size_t n = 0; n < node.extent(0); ++n) {
     double difference[Dim][Dim], largest = 0, stiffness = 0;
     for (int k = 0; k < Dim; ++k)
@@ -38,7 +45,7 @@ std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<dou
         largest = std::max(largest, std::abs(difference[k][l]));
         stiffness = std::max(stiffness, std::abs(own(n, k, l)));
       }
-    if (!(largest > least * stiffness)) continue;
+    if (!(largest > negligible * stiffness)) continue;
     const EigenPairs<Dim> pairs = eigen_pairs(difference);
     for (int k = 0; k < Dim; ++k) {
       if (!(std::abs(pairs.value[k]) > negligible * (largest + stiffness))) continue;
@@ -46,17 +53,17 @@ std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<dou
       term.first_row = dofs.getGlobalElement(dof(Dim, node(n), 0));
       std::copy(pairs.vector[k], pairs.vector[k] + Dim, term.v);
       term.scale = pairs.value[k];
-      terms.push_back(term);
+      changes.push_back({term, largest / stiffness});
     }
   }
-  return terms;
+  return changes;
 }
 
-std::vector<RankOneTerm> terms_of(const UpdatedOperator &H, const DeviceView<double ***> &now,
-                                  const DeviceView<double ***> &before, const double least)
+std::vector<Change> changes_of(const UpdatedOperator &H, const DeviceView<double ***> &now,
+                               const DeviceView<double ***> &before)
 {
-  if (H.dofs_per_node() == 1) return terms_of<1>(H, now, before, least);
-  return H.dofs_per_node() == 2 ? terms_of<2>(H, now, before, least) : terms_of<3>(H, now, before, least);
+  if (H.dofs_per_node() == 1) return changes_of<1>(H, now, before);
+  return H.dofs_per_node() == 2 ? changes_of<2>(H, now, before) : changes_of<3>(H, now, before);
 }
 
 } // namespace
@@ -70,11 +77,14 @@ const Sparse::Prospect &Sparse::prospect()
   return prospect_;
 }
 
-/// By terms of rank one, if that takes less time than a new factor: by all of them, else by all but slight ones.
+/// By terms of rank one, if that takes less time than a new factor: by all of them, else by the larger ones.
 bool Sparse::follow(const DeviceView<double ***> &update)
 {
-  for (const double least : {negligible, slight_change_of_contact}) {
-    const auto terms = terms_of(*H_, update, written_, least);
+  const std::vector<Change> changes = changes_of(*H_, update, written_);
+  for (const double least : left_out) {
+    std::vector<RankOneTerm> terms;
+    for (const Change &change : changes)
+      if (change.part > least) terms.push_back(change.term);
     const double seconds = prospect_.cost.seconds_of_column * solver_->num_new(terms);
     if (seconds > worth_a_factor * prospect_.cost.seconds) continue;
     solver_->add(terms);

@@ -53,7 +53,7 @@ private:
   bool is_new_choice();
   bool contracts() const;
   bool makes_headway();
-  double needed_norm() const;
+  solver::Accuracy wanted() const;
   Verdict give_up(const Vector &u);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
   bool leaves_path();
@@ -86,7 +86,6 @@ private:
   int idle_ = 0; // of choices, one after the other, that overshoot and change hardly fewer points than any before
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;
-  double path_forcing_; // of its linear solves
   double trial_gap_;    // of the path, at which the states that it leads to are tried
 };
 

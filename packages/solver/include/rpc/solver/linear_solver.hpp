@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/algebra/updated_operator.hpp"
+#include "rpc/solver/accuracy.hpp"
 #include "rpc/solver/linear_solver_options.hpp"
 #include "rpc/solver/mesh_levels.hpp"
 
@@ -51,11 +52,12 @@ public:
     bool broken = false; ///< x is no approximation of anything
     bool interrupted = false;
     int iterations = 0;
+    double energy = 0;  ///< x . b, about |x|_H^2, where an error was asked for of CG [J]
     std::string reason; ///< why not, if not
   };
   /// x <- approximately H^-1 b, from x = 0, for any b; collective. Failure is a result, not an exception. x is 0 where b is.
-  /// @param tolerance  |r| / |b|; never taken below the options' one
-  Result solve(const Vector &b, Vector &x, double tolerance);
+  /// @param wanted  a number is |r| / |b|; never taken below the options' one
+  Result solve(const Vector &b, Vector &x, const Accuracy &wanted);
 
   /// About F . H^-1 F: one multigrid cycle stands for H^-1. 0 where F is 0, NaN where the cycle breaks
   /// down; collective.

@@ -19,9 +19,8 @@ public:
   virtual void update() = 0;
   /// What part of the contact stiffness may change before update() is called: until then the solver is that of earlier states.
   virtual double most_change() const { return 0; }
-  /// Changes of a contact node's block up to this part of its own stiffness are slight: update() takes longer than the CG iterations that
-  /// they cost on most bodies.                                                                        doc/theory.md (4.12)
-  virtual double slight_change() const { return 0; }
+  /// About what update() takes, where it may be put off while CG takes less time for what it has missed [s]; 0: it may not.
+  virtual double seconds_of_update() const { return 0; }
   /// x <- about A^-1 b, by a symmetric positive definite operator; collective.
   virtual void apply(const Vector &b, Vector &x) const = 0;
 };
@@ -48,9 +47,12 @@ public:
   ~MeshMultigrid() override;
 
   /// Follows H; collective.
-  /// @param slight_changes_too  the coarsest solver follows these as well
+  /// @param slight_changes_too  the coarsest solver follows these as well: where no node's block changes by more than a tenth of the node's
+  ///                            own stiffness                                                        doc/theory.md (4.12)
   /// @return whether it is as good as that of the present states
   bool update(bool slight_changes_too = true);
+  /// Of the coarsest solver.
+  double seconds_of_update() const { return coarsest_->seconds_of_update(); }
 
   /// y <- B x; collective.
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,

@@ -79,7 +79,7 @@ private:
 
 /// Solves with the functional's Hessian, and records iterations and the direction's length; collective.
 /// @param[out] d  about H^-1 F
-/// @param tolerance  |r|/|F|; taken no larger than 0.1
-LinearSolver::Result solve_for_direction(NewtonContext &context, const Vector &F, Vector &d, double tolerance);
+/// @param wanted  its residual is taken no larger than 0.1 where no error counts
+LinearSolver::Result solve_for_direction(NewtonContext &context, const Vector &F, Vector &d, const Accuracy &wanted);
 
 } // namespace rpc::solver
