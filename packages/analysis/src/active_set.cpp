@@ -12,15 +12,16 @@ using solver::NewtonGroup;
 namespace
 {
 
-constexpr int most_changes = 10;      // of the active set; then Newton with its sweep needs fewer steps
+constexpr int most_changes =
+    10; // of the active set; then the interior-point method needs fewer steps, or with friction Newton's
 constexpr int most_changes_tried = 3; // where a Tresca problem has just been solved
 constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
 constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
 // While the active set changes, solves bring the residual below this part of what it was, and of the load, or the error in energy below
-// rough_error: two to four CG iterations. With a residual of 1e-1 pressures are too rough to choose by, 1e-4 saves no step. On thin bodies
-// the residual needs three times the iterations of the error. What the multipliers of the last rough solve miss, the penalty leaves a
-// part of, k/r, in the final pressures: some 1e-8 of them.
-constexpr double forcing = 5e-3, rough_error = 1e-2;
+// rough_error: two to five CG iterations. With a residual of 1e-1 pressures are too rough to choose by, 1e-4 saves no step, and an error of
+// 1e-2 costs thin bodies half a step. On these the residual needs up to three times the iterations of the error. What the multipliers of
+// the last rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
+constexpr double forcing = 5e-3, rough_error = 1e-3;
 constexpr int most_updates = 2; // of multipliers at the end, even if pressures miss their tolerance then
 // Steps of a confirmed active set that leave more than half of F, one after the other, while slip in space turns.
 constexpr int most_idle_turns = 4;
@@ -157,10 +158,10 @@ bool ActiveSetStage::makes_headway()
   return idle_ < most_idle && overshoots_ < 2 && !is_far;
 }
 
-/// The interior-point method goes on where choices overshoot; else, or where that has been, Newton's.
+/// The interior-point method goes on; where that has been, Newton's.
 ActiveSetStage::Verdict ActiveSetStage::give_up(const Vector &u)
 {
-  if (path_ == Path::behind || (path_ == Path::ahead && choice_->overshoot <= much)) return Verdict::over;
+  if (path_ == Path::behind) return Verdict::over;
   if (path_ == Path::ahead) iterate_.start_interior_path(u);
   path_ = Path::on_it;
   return Verdict::go_on;
@@ -295,7 +296,7 @@ ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direct
     start_.putScalar(0);
     move_to();
   }
-  u = Teuchos::null; // a solve needs the memory
+  u = Teuchos::null;                                                                        // a solve needs the memory
   const auto solved = solver::solve_for_direction(group.context(), F, direction, wanted()); // (5.9)
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {

@@ -9,7 +9,7 @@ namespace rpc::solver
 namespace
 {
 
-constexpr int window = 20; // CG stands still for ten iterations now and then, and goes on
+constexpr int window = 20;      // CG stands still for ten iterations now and then, and goes on
 constexpr double slowest = 0.9; // rate of gains that is reckoned with: a stall is an error of ten gains
 
 } // namespace

@@ -247,8 +247,7 @@ bool MeshMultigrid::update(const bool slight_changes_too)
   const auto update = write_contact();
   const Comm &comm = *H_->getDomainMap()->getComm();
   if (!(changed_part(comm, contact_of_coarsest_, update) > coarsest_->most_change())) return true;
-  if (!slight_changes_too &&
-      largest_change(comm, contact_base_, contact_of_coarsest_, update) <= slight_change)
+  if (!slight_changes_too && largest_change(comm, contact_base_, contact_of_coarsest_, update) <= slight_change)
     return false;
   contact_of_coarsest_ = update;
   coarsest_->update();

@@ -194,7 +194,8 @@ TEST(Krylov, EndsCGWhereTheErrorInEnergyIsSmallEnough)
     EXPECT_LT(error, 2.5 * wanted) << "gains of CG with a diagonal fall unevenly";
     EXPECT_GT(error, 0.1 * wanted) << "it goes on no longer than it must";
     EXPECT_NEAR(result.energy, of.x.dot(of.b), 1e-12 * energy);
-    EXPECT_NEAR(energy - result.energy, energy_of_difference(A, of.x, exact), 1e-9 * energy) << "CG's error is H-orthogonal to x";
+    EXPECT_NEAR(energy - result.energy, energy_of_difference(A, of.x, exact), 1e-9 * energy)
+        << "CG's error is H-orthogonal to x";
     EXPECT_NEAR(result.residual, of.grid.relative_residual(of.x, of.b), 1e-9);
   }
   const auto alone = krylov.solve(of.B, true, of.b, of.x, {1e-12, 0.1});

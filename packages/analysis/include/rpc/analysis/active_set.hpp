@@ -86,7 +86,7 @@ private:
   int idle_ = 0; // of choices, one after the other, that overshoot and change hardly fewer points than any before
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;
-  double trial_gap_;    // of the path, at which the states that it leads to are tried
+  double trial_gap_; // of the path, at which the states that it leads to are tried
 };
 
 /// After a multiplier update: one step to the minimum for the active set that the last minimization ended on, as far as the

@@ -7,14 +7,16 @@ namespace rpc::solver
 /// norm is that of the stiff modes, and displacements are those of the soft ones.
 struct Accuracy {
   /// @param residual_part  > 0   @param error_part  >= 0   @param energy_before  >= 0 [J]
-  Accuracy(const double residual_part, const double error_part = 0, const double energy_before = 0) // NOLINT: a number is one
+  Accuracy(const double residual_part, const double error_part = 0,
+           const double energy_before = 0) // NOLINT: a number is one
       : residual(residual_part), error(error_part), energy(energy_before)
   {
   }
 
   double residual; ///< |b - H x| / |b|
   double error;    ///< |H^-1 b - x|_H over (|x|_H^2 + energy)^(1/2), as CG estimates it; 0: that does not count
-  double energy;   ///< |y|_H^2 of a solution y that was found just before, with the same H, and that x corrects; 0: there is none [J]
+  double
+      energy; ///< |y|_H^2 of a solution y that was found just before, with the same H, and that x corrects; 0: there is none [J]
 };
 
 } // namespace rpc::solver
