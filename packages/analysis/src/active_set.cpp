@@ -19,9 +19,9 @@ constexpr int most_visits = 3; // of a choice with friction in space, whose dire
 constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
 // While the active set changes, solves bring the residual below this part of what it was, and of the load, or the error in energy below
 // rough_error: two to five CG iterations. With a residual of 1e-1 pressures are too rough to choose by, 1e-4 saves no step, and an error of
-// 1e-2 costs thin bodies half a step. On these the residual needs up to three times the iterations of the error. What the multipliers of
+// 1e-2 costs thin bodies half a step. On these the residual needs up to twice the iterations of the error. What the multipliers of
 // the last rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
-constexpr double forcing = 5e-3, rough_error = 1e-3;
+constexpr double forcing = 5e-3, rough_error = 2e-4;
 constexpr int most_updates = 2; // of multipliers at the end, even if pressures miss their tolerance then
 // Steps of a confirmed active set that leave more than half of F, one after the other, while slip in space turns.
 constexpr int most_idle_turns = 4;
