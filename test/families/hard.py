@@ -125,6 +125,18 @@ def bump(rng, sag, lengths):
     return gap + f.noise(sag * log_uniform(rng, -2, -1), rng.uniform(8, 16)) if kind == "rough" else gap
 
 
+def passable(gap, limit, held, lengths):
+    """The gap, lifted where a clamped edge would lie in a rigid foundation: such a scene has no solution. Lengths as in bump()."""
+    if limit is not f.INFINITE:
+        return gap
+    width, depth = (*lengths, 0.0)[:2]
+    at = [k / 1000 for k in range(1001)]
+    edges = {"left": [(0.0, depth * a) for a in at], "right": [(width, depth * a) for a in at],
+             "back": [(width * a, 0.0) for a in at], "front": [(width * a, depth) for a in at]}
+    lowest = min(gap(x, 0.0, z) for side in held for x, z in edges[side])
+    return gap + f.Constant(-1.1 * lowest) if lowest < 0 else gap
+
+
 def thickness(rng, thinnest=1e-3):
     return thinnest * (0.2 / thinnest) ** rng.random()
 
@@ -147,8 +159,9 @@ def thin_plate(rng, meshes):
     held, factor = rng.choice(HELD_PLATES)
     q, sag = bending_load(rng, t, factor, nu)
     mesh = meshes.box((1.0, t, depth), [rng.uniform(1, 2), 1.0, 1.0], {1: rng.choice([1, 2, 2, 3])}, at_least=4)
+    limit = yield_stress(rng, q)
     return Scene(material={"E": 1.0, "nu": nu, "blocks": {}}, dirichlet=dict.fromkeys(held, CLAMPED_3D), traction={"top": PRESSES[3](q)},
-                 contact=[ContactSide("bottom", yield_stress(rng, q), bump(rng, sag, (1.0, depth)))], **mesh)
+                 contact=[ContactSide("bottom", limit, passable(bump(rng, sag, (1.0, depth)), limit, held, (1.0, depth)))], **mesh)
 
 
 def holed_plate(rng, meshes):
@@ -157,8 +170,9 @@ def holed_plate(rng, meshes):
     held, factor = rng.choice(HELD_PLATES)
     q, sag = bending_load(rng, t, factor, nu)
     place = {"width": 1.0, "depth": depth, "thickness": t, "r": r, "x": rng.uniform(0.3, 0.7), "z": rng.uniform(0.3, 0.7) * depth}
+    limit = yield_stress(rng, q)
     return Scene(material={"E": 1.0, "nu": nu, "blocks": {}}, dirichlet=dict.fromkeys(held, CLAMPED_3D), traction={"top": PRESSES[3](q)},
-                 contact=[ContactSide("bottom", yield_stress(rng, q), bump(rng, sag, (1.0, depth)))],
+                 contact=[ContactSide("bottom", limit, passable(bump(rng, sag, (1.0, depth)), limit, held, (1.0, depth)))],
                  **meshes.geo(HOLE % place, depth - math.pi * r * r, t))
 
 
@@ -179,9 +193,10 @@ def strip(rng, meshes):
     disc = rng.random() < 0.3
     held, factor = (("right",), 1 / 64) if disc else rng.choice([(("left",), 1 / 8), (("left", "right"), 1 / 384)])
     q, sag = bending_load(rng, t, factor, nu)
-    mesh = meshes.box((1.0, t), None, {1: rng.choice([1, 2, 4, 8])}, at_least=4)
+    mesh, limit = meshes.box((1.0, t), None, {1: rng.choice([1, 2, 4, 8])}, at_least=4), yield_stress(rng, q)
     return Scene(material={"E": 1.0, "nu": nu, "blocks": {}}, dirichlet=dict.fromkeys(held, CLAMPED), traction={"top": PRESSES[2](q)},
-                 contact=[ContactSide("bottom", yield_stress(rng, q), bump(rng, sag, (1.0,)))], kinematics=AXISYMMETRIC if disc else None, **mesh)
+                 contact=[ContactSide("bottom", limit, passable(bump(rng, sag, (1.0,)), limit, held, (1.0,)))],
+                 kinematics=AXISYMMETRIC if disc else None, **mesh)
 
 
 def slender_beam(rng, meshes):
@@ -191,9 +206,9 @@ def slender_beam(rng, meshes):
     held, factor = rng.choice([(("left",), 1 / 8), (("left", "right"), 1 / 384)])
     q, sag = bending_load(rng, t, factor, nu)
     mesh = meshes.box((1.0, t, width), None, {1: rng.randint(1, 4), 2: rng.randint(1, 4)}, at_least=4)
-    gap = bump(rng, sag, (1.0, 1.0))
+    gap, limit = bump(rng, sag, (1.0, 1.0)), yield_stress(rng, q)
     return Scene(material={"E": 1.0, "nu": nu, "blocks": {}}, dirichlet=dict.fromkeys(held, CLAMPED_3D), traction={"top": PRESSES[3](q)},
-                 contact=[ContactSide("bottom", yield_stress(rng, q), gap)], **mesh)
+                 contact=[ContactSide("bottom", limit, passable(gap, limit, held, (1.0, width)))], **mesh)
 
 
 def solid_sag(q, lengths):
