@@ -12,8 +12,8 @@ using solver::NewtonGroup;
 namespace
 {
 
-constexpr int most_changes =
-    10; // of the active set; then the interior-point method needs fewer steps, or with friction Newton's
+// Changes of the active set; then the interior-point method needs fewer steps, or with friction Newton's.
+constexpr int most_changes = 10;
 constexpr int most_changes_tried = 3; // where a Tresca problem has just been solved
 constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
 constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
@@ -296,7 +296,8 @@ ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direct
     start_.putScalar(0);
     move_to();
   }
-  u = Teuchos::null;                                                                        // a solve needs the memory
+  u = Teuchos::null; // a solve needs the memory
+
   const auto solved = solver::solve_for_direction(group.context(), F, direction, wanted()); // (5.9)
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {

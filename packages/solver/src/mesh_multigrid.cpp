@@ -25,8 +25,8 @@ constexpr double largest_of_contact = 2.25;
 // The update of a node counts on coarse meshes as so many times its own stiffness. With a quarter or four times that, CG takes a fourth more
 // iterations.                                                                                                    (4.7b)
 constexpr double most_on_coarse_meshes = 1;
-// Changes of a node's block, beside the node's own stiffness, that the coarsest solver need not follow at once. All of that bound is too
-// much: a factor that misses a closed point solves for nothing.                                                   (4.12)
+// Changes of a node's block, beside the node's own stiffness, that the coarsest solver need not follow at once. Where it misses points
+// that close, whose blocks change by most_on_coarse_meshes, CG hardly converges.                                  (4.12)
 constexpr double slight_change = 0.1;
 
 constexpr const char *not_definite = "multigrid: the matrix of the coarsest mesh is not positive definite";

@@ -93,9 +93,9 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
 
 LinearSolver::Result solve_for_direction(NewtonContext &context, const Vector &F, Vector &d, const Accuracy &wanted)
 {
-  constexpr double least_digits = 0.1;
+  constexpr double largest_residual = 0.1;
   Accuracy asked = wanted;
-  if (wanted.error == 0) asked.residual = std::min(least_digits, wanted.residual);
+  if (wanted.error == 0) asked.residual = std::min(largest_residual, wanted.residual);
   const auto result = context.linear_solver.solve(F, d, asked);
   context.linear_iterations = result.iterations;
   context.direction_norm = d.norm2();
