@@ -2,7 +2,7 @@
 
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/dofs.hpp"
-#include "vectors.hpp"
+#include "rpc/core/vectors.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "rpc/algebra/rounded_rows.hpp"
 
 #include "rpc/core/dofs.hpp"
-#include "vectors.hpp"
+#include "rpc/core/vectors.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,8 +1,10 @@
 #include "rpc/analysis/mesh_levels.hpp"
 
 #include "rpc/fem/interpolation.hpp"
-#include "rpc/mesh/box.hpp"
+#include "rpc/mesh/box_patches.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,6 +18,10 @@ namespace
 constexpr GO few_2d = 800, few_3d = 400;
 // Unknowns of a coarsest mesh that is still factored, where there is no coarser one.
 constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
+
+// Above this ratio smoothers on stars take less time than those of single nodes, by measurement in space; on cells that are stretched more
+// than that they take too many iterations.                                                                        (4.7f)
+constexpr double least_ratio_of_stars = 0.48, most_stretched_of_stars = 5;
 
 /// Which components of which sides are prescribed, whatever their values.
 std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondition> conditions)
@@ -43,7 +49,7 @@ solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, con
                            RCP<const CrsMatrix> interpolation)
 {
   auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), prescribed).matrix;
-  return {std::move(K), std::move(interpolation), prescribed, body_of(d), d.mesh->element.order};
+  return {std::move(K), std::move(interpolation), prescribed, body_of(d), d.mesh->element.order, {}};
 }
 
 std::optional<int> thin_direction(const NestedMesh &mesh)
@@ -60,7 +66,64 @@ std::string thin_text(const mesh::BoxOptions &box, const int direction)
   return text + " cells";
 }
 
+/// The patches of a box of which the other one is the next coarser one.
+solver::PatchesOfMesh patches_between(const mesh::Mesh &fine, const mesh::BoxOptions &coarse)
+{
+  const Comm &comm = fine.comm();
+  solver::PatchesOfMesh patches;
+  for (LO n = 0; n < fine.num_local_nodes(); ++n) patches.columns.push_back(fine.node_gid(n));
+  patches.stars = mesh::vertex_stars(*fine.box, comm);
+  patches.interiors = mesh::inside_cells_of(coarse, *fine.box, comm);
+  return patches;
+}
+
+/// Levels of order 2 for nearly incompressible boxes.
+solver::MeshLevels levels_of_stars(const fem::Discretization &finest, const Model &model,
+                                   const DeviceView<char *> &prescribed)
+{
+  solver::MeshLevels levels;
+  levels.prescribed = prescribed;
+  levels.order = 2;
+  const auto held = held_sides(model.dirichlet);
+  const GO few = finest.dim() == 2 ? few_2d : few_3d;
+  fem::Discretization fine = finest;
+  solver::PatchesOfMesh *patches = &levels.patches;
+  while (static_cast<GO>(fine.owned_dofs->getGlobalNumElements()) > few) {
+    const auto options = mesh::halved(*fine.mesh->box);
+    if (!options) break;
+    auto coarse = coarser_box(fine, *options);
+    *patches = patches_between(*fine.mesh, *coarse.mesh->box);
+    levels.level.push_back(
+        level_on(coarse, model, fem::dirichlet_dofs(coarse, held).fixed, fem::interpolation(coarse, fine)));
+    patches = &levels.level.back().patches;
+    fine = std::move(coarse);
+  }
+  levels.down_to_few = static_cast<GO>(fine.owned_dofs->getGlobalNumElements()) <=
+                       (fine.dim() == 2 ? most_factored_2d : most_factored_3d);
+  levels.end = "on stars of vertices";
+  return levels;
+}
+
 } // namespace
+
+double largest_ratio(const fem::Discretization &d, const fem::Materials &materials)
+{
+  double nu = 0;
+  for (const std::string &block : d.mesh->blocks) nu = std::max(nu, materials.of(block).poissons_ratio);
+  return nu;
+}
+
+bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials)
+{
+  if (!d.mesh->box || d.mesh->element.name() != "Q2") return false;
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (int direction = 0; direction < d.dim(); ++direction) {
+    shortest = std::min(shortest, d.mesh->box->node_distance(direction));
+    longest = std::max(longest, d.mesh->box->node_distance(direction));
+  }
+  return longest <= most_stretched_of_stars * shortest && d.kinematics != fem::Kinematics::plane_stress &&
+         largest_ratio(d, materials) > least_ratio_of_stars;
+}
 
 solver::Body body_of(const fem::Discretization &d)
 {
@@ -69,6 +132,10 @@ solver::Body body_of(const fem::Discretization &d)
 
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed)
 {
+  if (smooths_on_stars(finest.discretization(), model.materials)) {
+    auto levels = levels_of_stars(finest.discretization(), model, prescribed);
+    if (levels.down_to_few) return levels;
+  }
   solver::MeshLevels levels;
   levels.prescribed = prescribed;
   const int dim = finest.discretization().dim();

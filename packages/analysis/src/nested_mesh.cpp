@@ -17,16 +17,13 @@ namespace
 // Nodes below which one more rank takes longer for its messages than it saves, in the set-up and in a cycle; by measurement.
 constexpr GO least_nodes_of_rank = on_gpu ? 200'000 : 2000;
 
-/// The next coarser box, on fewer ranks where it is small.
-std::optional<fem::Discretization> coarser_box(const fem::Discretization &d)
+/// The next coarser box.
+std::optional<fem::Discretization> next_coarser_box(const fem::Discretization &d)
 {
   if (!d.mesh->box) return std::nullopt;
   const auto options = mesh::coarsened(*d.mesh->box);
   if (!options) return std::nullopt;
-  const auto comm = d.mesh->owned_nodes->getComm();
-  return fem::discretize(
-      std::make_shared<mesh::Mesh>(mesh::make_box(mesh::divided(*options, comm->getSize(), least_nodes_of_rank), comm)),
-      d.kinematics);
+  return coarser_box(d, *options);
 }
 
 /// Interpolations one after the other.
@@ -62,6 +59,14 @@ bool goes_to_order_one(const mesh::Mesh &mesh)
 }
 
 } // namespace
+
+fem::Discretization coarser_box(const fem::Discretization &d, const mesh::BoxOptions &options)
+{
+  const auto comm = d.mesh->owned_nodes->getComm();
+  return fem::discretize(
+      std::make_shared<mesh::Mesh>(mesh::make_box(mesh::divided(options, comm->getSize(), least_nodes_of_rank), comm)),
+      d.kinematics);
+}
 
 NestedMesh::NestedMesh(fem::Discretization d) : discretization_(std::move(d))
 {
@@ -108,7 +113,7 @@ std::shared_ptr<NestedMesh> NestedMesh::make_coarser() const
     return made;
   }
   if (family_ && !d.mesh->parents) return order_one_of_parent();
-  auto box = coarser_box(d);
+  auto box = next_coarser_box(d);
   if (!box) return nullptr;
   auto made = std::make_shared<NestedMesh>(std::move(*box));
   made->to_finer_ = fem::interpolation(made->discretization(), d);

@@ -27,7 +27,7 @@ struct Block {
   /// @param cells   of the lattice, for each direction
   /// @param is_box  whether there are coarser boxes; else the mesh counts as one from a file
   Block(const mesh::Element &element, const std::vector<int> &cells, const bool is_box = true,
-        const std::vector<double> &upper = {2, 1, 1})
+        const std::vector<double> &upper = {2, 1, 1}, const double nu = 0.3)
   {
     mesh::BoxOptions box{{0, 0}, {upper[0], upper[1]}, {cells[0], cells[1]}, element};
     if (element.dim == 3) box = {{0, 0, 0}, upper, cells, element};
@@ -36,7 +36,7 @@ struct Block {
     d = fem::discretize(mesh);
     fem::DirichletCondition held{"left", "left", {ScalarField(0.), ScalarField(0.)}};
     if (element.dim == 3) held.displacement[2] = ScalarField(0.);
-    model.materials = fem::Material{1000, 0.3};
+    model.materials = fem::Material{1000, nu};
     model.dirichlet = {held};
     contact::ContactOptions foundation;
     foundation.side = element.dim == 2 ? "bottom" : "back";

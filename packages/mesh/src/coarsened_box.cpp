@@ -24,6 +24,13 @@ double shortest_distance(const BoxOptions &options)
   return shortest;
 }
 
+/// Half as many cells in a direction.
+void halve(const int d, const BoxOptions &options, BoxOptions &coarse)
+{
+  coarse.cells[d] = options.cells[d] / 2;
+  coarse.last[d] = (options.cells[d] % 2 + 1 + options.last_in(d)) / 2; // of the last two or three
+}
+
 /// Order 1 in these directions; where it is that already, half as many cells.
 BoxOptions coarsened_along(const Directions &directions, const BoxOptions &options)
 {
@@ -33,8 +40,7 @@ BoxOptions coarsened_along(const Directions &directions, const BoxOptions &optio
   for (int d = 0; d < options.element.dim; ++d) {
     lower[d] = directions[d] && options.element.order_along(d) == 2;
     if (!directions[d] || lower[d]) continue;
-    coarse.cells[d] = options.cells[d] / 2;
-    coarse.last[d] = (options.cells[d] % 2 + 1 + options.last_in(d)) / 2; // of the last two or three
+    halve(d, options, coarse);
   }
   coarse.element = options.element.with_order_one_along(lower);
   return coarse;
@@ -66,6 +72,20 @@ std::optional<BoxOptions> coarsened(const BoxOptions &options)
   for (int d = 0; d < dim; ++d) to_one[d] = closest[d] && coarse.intervals(d) == 1;
   const BoxOptions across = coarsened_along(to_one, fine);
   return thin_direction(across) ? across : coarse;
+}
+
+std::optional<BoxOptions> halved(const BoxOptions &options)
+{
+  const int dim = options.element.dim;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int d = 0; d < dim; ++d)
+    if (options.cells[d] > 1) shortest = std::min(shortest, options.node_distance(d));
+  if (!std::isfinite(shortest)) return std::nullopt;
+  BoxOptions coarse = options;
+  coarse.last.resize(dim, 1.);
+  for (int d = 0; d < dim; ++d)
+    if (options.cells[d] > 1 && options.node_distance(d) <= stretched * shortest) halve(d, options, coarse);
+  return coarse;
 }
 
 std::optional<int> thin_direction(const BoxOptions &options)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "contact_supports.hpp"
+#include "patch_matrices.hpp"
 #include "rpc/algebra/repeated_rows.hpp"
 #include "rpc/core/halo.hpp"
 
@@ -46,6 +47,10 @@ public:
   /// Collective. @param update  U, packed_blocks() [N/m]
   void write(const MultiVector &update);
 
+  /// The matrix without contact.
+  const RepeatedRows &rows() const { return rows_; }
+  /// What contact adds to it.
+  AddedBlocks added() const { return {row_, column_, added_}; }
   /// (n) Owned nodes with entries that change, ascending.
   const DeviceView<LO *> &nodes() const { return nodes_; }
   /// (owned nodes, dim, dim) The diagonal blocks of all nodes, as long as no contact is written.

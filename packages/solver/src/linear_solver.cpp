@@ -355,8 +355,13 @@ const Body &LinearSolver::body() const
   return impl_->body;
 }
 
-LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accuracy &wanted)
+LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accuracy &asked)
 {
+  Accuracy wanted = asked;
+  if (wanted.error > 0) {
+    wanted.residual *= impl_->options.rough_part;
+    wanted.error *= impl_->options.rough_part;
+  }
   if (b.norm2() == 0) {
     x.putScalar(0);
     Result nothing_to_do;

@@ -10,6 +10,12 @@ namespace rpc::analysis
 /// The mesh's body for algebraic multigrid: its nodes and rigid motions.
 solver::Body body_of(const fem::Discretization &d);
 
+/// The largest Poisson's ratio of the blocks.
+double largest_ratio(const fem::Discretization &d, const fem::Materials &materials);
+
+/// Whether multigrid's smoothers solve on stars of vertices: nearly incompressible boxes of Q2 want it.               (4.7f)
+bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials);
+
 /// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns. Collective.
 /// @param prescribed  (overlap dofs) 1 where the displacement of the finest mesh is prescribed
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/fem/discretization.hpp"
+#include "rpc/mesh/box.hpp"
 
 #include <memory>
 #include <utility>
@@ -59,6 +60,9 @@ private:
   mutable bool asked_ = false;     // for a coarser one
   mutable std::shared_ptr<const NestedMesh> coarser_;
 };
+
+/// A coarser box of the same body, on fewer ranks where it is small. Collective.
+fem::Discretization coarser_box(const fem::Discretization &d, const mesh::BoxOptions &options);
 
 /// Interpolation of the values at the owned nodes of a coarse mesh to those of a finer one: step by step where the one leads to the
 /// other, else found by a search, see fem::interpolation(). Collective.

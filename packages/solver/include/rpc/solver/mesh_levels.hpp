@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/core/node_patches.hpp"
 #include "rpc/solver/body.hpp"
 
 #include <functional>
@@ -9,6 +10,14 @@
 namespace rpc::solver
 {
 
+/// Patches of nodes on which the smoother of a mesh solves, for nearly incompressible bodies; no stars: it takes single nodes.
+/// doc/theory.md (4.7f)
+struct PatchesOfMesh {
+  std::vector<GO> columns; ///< gids of the nodes of the matrix's columns
+  NodePatches stars;       ///< each vertex with the nodes inside the cells around it
+  NodePatches interiors;   ///< the nodes inside each cell of the next coarser mesh
+};
+
 /// A coarser mesh of the same body, for multigrid.
 struct MeshLevel {
   RCP<CrsMatrix> stiffness;           ///< K of this mesh, prescribed unknowns eliminated; multigrid adds contact to it
@@ -16,6 +25,7 @@ struct MeshLevel {
   DeviceView<char *> prescribed;      ///< (columns of `stiffness`) 1 where the displacement is prescribed
   Body body;                          ///< on this mesh
   int order = 1;                      ///< of its elements; 2 too where that is so in some directions alone
+  PatchesOfMesh patches;              ///< of this mesh
 };
 
 /// From the finest of them to the coarsest one; nodes have consecutive gids from 0, a node's unknowns follow each other.
@@ -24,9 +34,11 @@ struct MeshLevels {
   int order = 1; ///< of the finest mesh, which is none of the levels
   /// (owned dofs, at least) of the finest mesh: 1 where the displacement is prescribed
   DeviceView<char *> prescribed;
+  PatchesOfMesh patches; ///< of the finest mesh
   /// The coarsest is solved directly: it has few unknowns, or multigrid has to end there. Otherwise algebraic multigrid follows.
   bool down_to_few = false;
-  /// Why multigrid ends where it does, "thin in z: factored at 48 x 48 x 1 cells"; empty where unknowns are few.
+  /// Why multigrid ends where it does, "thin in z: factored at 48 x 48 x 1 cells", or what else is particular about it; empty where there is
+  /// nothing to say.
   std::string end;
 };
 
