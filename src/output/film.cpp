@@ -1,6 +1,7 @@
 #include "output/film.hpp"
 
 #include "output/paths.hpp"
+#include "rpc/core/memory.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/timed.hpp"
 #include "rpc/fem/stress.hpp"
@@ -56,7 +57,9 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const analysis::Sol
   std::vector<io::NodalField> fields;
   const char *const displacement[] = {"disp_x", "disp_y", "disp_z"};
   for (int c = 0; c < dim; ++c) fields.push_back({displacement[c], column(*s.u, dim, c, n, 0)});
+  return_freed_memory(); // the linear solver's: recovery takes several times as much as the fields
   const auto stress = fem::RecoveredStress(d, scene.model.materials, *s.u).at_nodes();
+  return_freed_memory();
   const auto names = fem::stress_names(d);
   for (std::size_t k = 0; k < names.size(); ++k)
     fields.push_back({names[k], column(*stress, 1, 0, n, static_cast<int>(k))});

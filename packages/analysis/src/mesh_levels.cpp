@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -48,8 +49,27 @@ DeviceView<char *> at_vertices(const DeviceView<char *> &prescribed, const Devic
 solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, const DeviceView<char *> &prescribed,
                            RCP<const CrsMatrix> interpolation)
 {
-  auto K = fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, model.materials), prescribed).matrix;
-  return {std::move(K), std::move(interpolation), prescribed, body_of(d), d.mesh->element.order, {}};
+  const auto assembled = [d, materials = model.materials, prescribed] {
+    return fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, materials), prescribed).matrix;
+  };
+  solver::MeshLevel level{{}, std::move(interpolation), prescribed, body_of(d), d.mesh->element.order};
+  if (const auto repeated = fem::repeated_stiffness(d, model.materials, prescribed)) {
+    d.forget_nodes();
+    level.unassembled =
+        std::make_shared<const UnassembledMatrix>(UnassembledMatrix{repeated->rows, d.owned_dofs, d.halo, assembled});
+    level.columns = fem::overlap_dofs(d);
+  } else {
+    level.stiffness = assembled();
+  }
+  return level;
+}
+
+/// Of the coarsest mesh; collective.
+void assemble(solver::MeshLevel &level)
+{
+  if (!level.unassembled) return;
+  level.stiffness = level.unassembled->assemble();
+  level.unassembled.reset();
 }
 
 std::optional<int> thin_direction(const NestedMesh &mesh)
@@ -98,6 +118,7 @@ solver::MeshLevels levels_of_stars(const fem::Discretization &finest, const Mode
     patches = &levels.level.back().patches;
     fine = std::move(coarse);
   }
+  if (!levels.level.empty()) assemble(levels.level.back());
   levels.down_to_few = static_cast<GO>(fine.owned_dofs->getGlobalNumElements()) <=
                        (fine.dim() == 2 ? most_factored_2d : most_factored_3d);
   levels.end = "on stars of vertices";
@@ -162,6 +183,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
     levels.level.push_back(level_on(d, model, prescribed_here, mesh->to_finer()));
     thin = thin_direction(*mesh);
   }
+  if (!levels.level.empty()) assemble(levels.level.back());
   if (thin && num_unknowns(*mesh) > few) levels.end = thin_text(*mesh->discretization().mesh->box, *thin);
   levels.down_to_few = thin || num_unknowns(*mesh) <= (dim == 2 ? most_factored_2d : most_factored_3d);
   return levels;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <malloc.h>
 #include <sstream>
 #include <string>
 #include <sys/resource.h>
@@ -87,6 +88,13 @@ double memory_limit()
 double memory_left()
 {
   return std::min({available(), left_in_container(), left_in_shell()});
+}
+
+void return_freed_memory()
+{
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 } // namespace rpc

@@ -9,6 +9,7 @@
 #include <array>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 namespace rpc::fem
 {
@@ -208,14 +209,30 @@ RCP<const Vector> on_overlap(const Discretization &d, const Vector &owned)
 RCP<const MultiVector> nodes_on_overlap(const Discretization &d, const RCP<const MultiVector> &owned)
 {
   if (d.node_halo->is_empty()) return owned;
-  const auto nodes = rcp(new Map(d.mesh->num_local_nodes(), 0, rcp(new Teuchos::SerialComm<int>))); // no list
-  const auto overlap = rcp(new MultiVector(nodes, owned->getNumVectors()));
+  const auto overlap = rcp(new MultiVector(overlap_rows(d), owned->getNumVectors()));
   for (std::size_t v = 0; v < owned->getNumVectors(); ++v) {
     const auto column = owned->getVector(v);
     const auto to = overlap->getVectorNonConst(v);
     Kokkos::deep_copy(device_write(*to), device_read(d.node_halo->at_columns(*column)));
   }
   return overlap;
+}
+
+RCP<const Map> overlap_rows(const Discretization &d)
+{
+  return rcp(new Map(d.mesh->num_local_nodes(), 0, rcp(new Teuchos::SerialComm<int>)));
+}
+
+void fill_ghost_rows(const Discretization &d, MultiVector &table)
+{
+  if (d.node_halo->is_empty()) return;
+  Vector owned(d.mesh->owned_nodes, false);
+  const std::pair<LO, LO> own_rows(0, d.mesh->num_owned_nodes());
+  for (std::size_t v = 0; v < table.getNumVectors(); ++v) {
+    const auto column = table.getVectorNonConst(v);
+    Kokkos::deep_copy(device_write(owned), Kokkos::subview(device_read(*column), own_rows));
+    Kokkos::deep_copy(device_write(*column), device_read(d.node_halo->at_columns(owned)));
+  }
 }
 
 RCP<MultiVector> node_coordinates(const Discretization &d)

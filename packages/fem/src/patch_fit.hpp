@@ -49,7 +49,7 @@ struct FitPatch {
   DeviceView<LO *> node_cell;                  // cells around nodes                    in
   NodeGraph graph;                             //                                       in
   DeviceView<int ***> mate;                    // see facet_mates                       in
-  WriteColumns table;                          // (owned nodes, PatchTable)             out, at vertices
+  WriteColumns table;                          // (overlap nodes, PatchTable)           out, at owned vertices
 
   KOKKOS_FUNCTION void operator()(const LO node) const
   {
@@ -169,7 +169,7 @@ struct FitPatch {
 };
 
 /// Vertices at the boundary take the polynomial of the nearest vertex inside, for the sake of their neighbours that have
-/// no vertex inside around them: corners.
+/// no vertex inside around them: corners. Only rows of vertices inside are read, and only others are written.
 template <int Dim, int Nodes, bool Axisymmetric>
 struct AdoptPolynomial {
   using Table = PatchTable<Dim, Nodes, Axisymmetric>;
@@ -177,8 +177,7 @@ struct AdoptPolynomial {
   DeviceView<LO **> cells;            // (cells, Nodes)                        in
   DeviceView<std::size_t *> node_row; // (owned nodes + 1)                     in
   DeviceView<LO *> node_cell;         // cells around nodes                    in
-  ReadColumns from;                   // (overlap nodes, PatchTable)           in
-  WriteColumns table;                 // (owned nodes, PatchTable)             inout
+  WriteColumns table;                 // (overlap nodes, PatchTable)           inout
   int vertices;                       // per cell
 
   KOKKOS_FUNCTION void operator()(const LO node) const
@@ -189,13 +188,13 @@ struct AdoptPolynomial {
     for (std::size_t k = node_row(node); k < node_row(node + 1); ++k) {
       for (int a = 0; a < vertices; ++a) {
         const LO other = cells(node_cell(k), a);
-        if (from(other, int(Table::trust)) == Table::inside && (nearest < 0 || nearer(node, other, nearest)))
+        if (table(other, int(Table::trust)) == Table::inside && (nearest < 0 || nearer(node, other, nearest)))
           nearest = other;
       }
     }
     if (nearest < 0) return;
-    for (int c = 0; c < Table::columns; ++c) table(node, c) = from(nearest, c);
-    table(node, int(Table::trust)) = Table::adopted;
+    for (int c = Table::trust + 1; c < Table::columns; ++c) table(node, c) = table(nearest, c);
+    table(node, int(Table::trust)) = Table::adopted; // never that of a vertex inside, which another thread may look at
   }
 
   /// Of equally near ones the first by coordinates, which does not depend on the number of ranks.
@@ -203,7 +202,8 @@ struct AdoptPolynomial {
   {
     double square[2] = {}, first = 0;
     for (int i = 0; i < Dim; ++i) {
-      const double xa = from(a, Table::centre + i), xb = from(b, Table::centre + i), x = table(node, Table::centre + i);
+      const double xa = table(a, Table::centre + i), xb = table(b, Table::centre + i),
+                   x = table(node, Table::centre + i);
       square[0] += (xa - x) * (xa - x);
       square[1] += (xb - x) * (xb - x);
       if (first == 0) first = xa - xb;

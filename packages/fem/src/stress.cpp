@@ -37,31 +37,30 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
   const mesh::Mesh &mesh = *d.mesh;
   const auto nodes = device_range(mesh.num_owned_nodes());
   const NodeToCells &node_to_cells = d.node_to_cells;
-  const auto table = rcp(new MultiVector(mesh.owned_nodes, Table::columns)); // zero
+  const NodeGraph graph = d.nodes(); // first: lists twice as long are freed then, and the table takes their place
+  const auto table = rcp(new MultiVector(overlap_rows(d), Table::columns)); // zero
   {
     const FitPatch<Dim, Nodes, Axisymmetric> fit{body,
                                                  d.reference.recovery.value,
                                                  device_read(u_overlap),
                                                  node_to_cells.row,
                                                  node_to_cells.cell,
-                                                 d.nodes(),
+                                                 graph,
                                                  facet_mates(mesh.element),
                                                  table->getLocalViewDevice(Tpetra::Access::ReadWrite)};
     Kokkos::parallel_for("rpc::fem::fit_patch", nodes, fit);
     Kokkos::fence();
   }
+  fill_ghost_rows(d, *table);
   {
-    const auto from = nodes_on_overlap(d, table);
-    const AdoptPolynomial<Dim, Nodes, Axisymmetric> adopt{mesh.cells,
-                                                          node_to_cells.row,
-                                                          node_to_cells.cell,
-                                                          from->getLocalViewDevice(Tpetra::Access::ReadOnly),
+    const AdoptPolynomial<Dim, Nodes, Axisymmetric> adopt{mesh.cells, node_to_cells.row, node_to_cells.cell,
                                                           table->getLocalViewDevice(Tpetra::Access::ReadWrite),
                                                           mesh.element.num_vertices()};
     Kokkos::parallel_for("rpc::fem::adopt_polynomial", nodes, adopt);
     Kokkos::fence();
   }
-  return nodes_on_overlap(d, table);
+  fill_ghost_rows(d, *table);
+  return table;
 }
 
 /// The fitted polynomials at work, with their kernels' types named once.

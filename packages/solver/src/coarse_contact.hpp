@@ -4,6 +4,10 @@
 #include "patch_matrices.hpp"
 #include "rpc/algebra/repeated_rows.hpp"
 #include "rpc/core/halo.hpp"
+#include "rpc/solver/mesh_levels.hpp"
+
+#include <memory>
+#include <vector>
 
 namespace rpc::solver
 {
@@ -16,25 +20,24 @@ MultiVector packed_blocks(const RCP<const Map> &contact, const DeviceView<double
 ///
 ///     S^T U S.                                                                                  doc/theory.md (4.7a)
 ///
-/// The sum is written into the entries of the nodes around the contact nodes, in place. Couplings of nodes that share no cell of the coarse
+/// Where A is assembled the sum is written into the entries of the nodes around the contact nodes, in place. Rows that repeat, and those
+/// of an A that is not assembled, stay as they are: the sum is added to their products. Couplings of nodes that share no cell of the coarse
 /// mesh are replaced by their bound on the diagonal; they occur where meshes are not nested.
 class CoarseContact : public Operator
 {
 public:
   /// Collective.
   /// @param supports    S, see contact_supports.hpp   @param nodes  map of the coarse mesh's nodes
-  /// @param A  the coarse mesh's matrix without contact
-  /// @param prescribed  (columns of A) 1 where displacements are prescribed
-  CoarseContact(const ContactSupports &supports, const Map &nodes, int dim, RCP<CrsMatrix> A,
-                const DeviceView<char *> &prescribed);
+  /// @param mesh  the coarse one, A without contact
+  CoarseContact(const ContactSupports &supports, const Map &nodes, int dim, const MeshLevel &mesh);
 
   /// y <- (A with contact) x; collective.
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
              double beta = 0) const override;
-  RCP<const Map> getDomainMap() const override { return A_->getDomainMap(); }
-  RCP<const Map> getRangeMap() const override { return A_->getRangeMap(); }
+  RCP<const Map> getDomainMap() const override { return dofs_; }
+  RCP<const Map> getRangeMap() const override { return dofs_; }
 
-  /// y += (S^T U S) x in the rows that repeat in A.  @param x  (columns of A)
+  /// y += (S^T U S) x in the rows that it is not written into.  @param x  (columns of A)
   void add_product(const Vector &x, Vector &y) const;
   /// Whether couplings had to be bounded on any rank.
   bool is_bounded() const { return bounded_; }
@@ -60,12 +63,14 @@ public:
 
 private:
   int dim_;
-  RCP<CrsMatrix> A_;
+  RCP<const Map> dofs_;
+  RCP<CrsMatrix> A_;                     // null: not assembled
   RepeatedRows rows_;                    // of the matrix without contact
-  Halo halo_;                            // of its columns
+  std::shared_ptr<const Halo> halo_;     // of its columns
   RCP<const Import> near_;               // from the contact nodes to those near this rank's nodes
+  std::vector<GO> row_gid_, column_gid_; // (blocks) nodes
   DeviceView<LO *> row_, column_;        // (blocks) owned node; column's node
-  DeviceView<std::size_t **> entry_;     // (blocks, dim) where the block begins in each of its rows
+  DeviceView<LO *> place_;               // (blocks) which one of its node's blocks it is
   DeviceView<double ***> base_;          // (blocks, dim, dim) without contact
   DeviceView<std::size_t *> begin_;      // (blocks + 1) where a block's parts begin
   DeviceView<int *> contact_;            // (parts) near contact node
@@ -75,7 +80,7 @@ private:
   DeviceView<std::size_t *> first_;      // (n + 1) where a node's blocks begin
   DeviceView<double ***> sum_, added_;   // (blocks, dim, dim) S^T U S, and with 0 at prescribed unknowns
   bool bounded_ = false;                 // some couplings of it
-  DeviceView<std::size_t **> own_entry_; // (n, dim) where the node's own block begins
+  DeviceView<std::size_t *> own_;        // (n) the node's own block
 };
 
 } // namespace rpc::solver

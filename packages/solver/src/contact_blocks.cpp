@@ -57,27 +57,25 @@ Lists entries_at(const std::vector<LO> &nodes, const std::vector<LO> &node)
 }
 
 /// Appends the blocks of a node's rows, by their columns, with their parts in the order of the contact nodes.
-/// @param first  the node's first row among `around`
-void add_blocks(const HostRows &around, const std::size_t first, const int dim, const std::vector<Part> &parts,
+/// @param n  number of the node among those of `blocks` and `around`
+void add_blocks(const HostBlocks &around, const std::size_t n, const int dim, const std::vector<Part> &parts,
                 ContactBlocks &blocks)
 {
-  const LO node = blocks.nodes[first / dim];
-  const std::size_t start = around.begin[first], length = around.begin[first + 1] - start;
-  std::vector<std::size_t> begin(length / dim + 1);
+  const LO node = blocks.nodes[n];
+  const std::size_t start = around.begin[n];
+  std::vector<std::size_t> begin(around.begin[n + 1] - start + 1);
   for (const Part &part : parts) ++begin[part.place + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   const std::size_t so_far = blocks.contact.size();
   for (std::size_t place = 0; place + 1 < begin.size(); ++place) {
     if (begin[place] == begin[place + 1]) continue;
-    const LO column = node_of(dim, around.column(start + dim * place));
+    const LO column = around.column(start + place);
     if (column == node) blocks.own.push_back(blocks.row.size());
     blocks.row.push_back(node);
     blocks.column.push_back(column);
     blocks.begin.push_back(so_far + begin[place + 1]);
-    for (int i = 0; i < dim; ++i) {
-      blocks.entry.push_back(around.first(first + i) + dim * place);
-      for (int j = 0; j < dim; ++j) blocks.base.push_back(around.value(around.begin[first + i] + dim * place + j));
-    }
+    blocks.place.push_back(static_cast<LO>(place));
+    for (int k = 0; k < dim * dim; ++k) blocks.base.push_back(around.value(dim * dim * (start + place) + k));
   }
   blocks.contact.resize(so_far + parts.size());
   blocks.coefficient.resize(so_far + parts.size());
@@ -90,9 +88,9 @@ void add_blocks(const HostRows &around, const std::size_t first, const int dim, 
 
 } // namespace
 
-ContactBlocks contact_blocks(const NearSupports &supports, const int dim, const CrsMatrix &A)
+ContactBlocks contact_blocks(const NearSupports &supports, const RepeatedRows &A, const Map &rows, const Map &columns)
 {
-  const Map &rows = *A.getRowMap(), &columns = *A.getColMap();
+  const int dim = A.dim();
   const SupportRows &right = supports.column.size() > 0 ? supports.column : supports;
   const std::vector<LO> row_node = local_nodes(rows, dim, supports.node);
   const std::vector<LO> column_node = local_nodes(columns, dim, right.node);
@@ -102,10 +100,7 @@ ContactBlocks contact_blocks(const NearSupports &supports, const int dim, const 
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   if (nodes.empty()) return blocks;
-  std::vector<LO> their_rows;
-  for (const LO node : nodes)
-    for (int k = 0; k < dim; ++k) their_rows.push_back(dof(dim, node, k));
-  const HostRows around = host_rows(A, their_rows);
+  const HostBlocks around = host_blocks(A, nodes);
   std::vector<int> contact_of; // (supports' entries)
   for (int c = 0; c < supports.size(); ++c) contact_of.resize(supports.begin[c + 1], c);
   const Lists entries = entries_at(nodes, row_node);
@@ -114,8 +109,8 @@ ContactBlocks contact_blocks(const NearSupports &supports, const int dim, const 
   std::vector<std::size_t> place_of(num_local(columns) / dim, none); // of columns' nodes in the rows of a node
   std::vector<Part> parts;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const std::size_t first = dim * n, start = around.begin[first], places = (around.begin[first + 1] - start) / dim;
-    const auto column_at = [&](const std::size_t place) { return node_of(dim, around.column(start + dim * place)); };
+    const std::size_t start = around.begin[n], places = around.begin[n + 1] - start;
+    const auto column_at = [&](const std::size_t place) { return around.column(start + place); };
     for (std::size_t place = 0; place < places; ++place) place_of[column_at(place)] = place;
     parts.clear();
     for (std::size_t e = entries.begin[n]; e < entries.begin[n + 1]; ++e) {
@@ -130,7 +125,7 @@ ContactBlocks contact_blocks(const NearSupports &supports, const int dim, const 
           parts.push_back({place, c, both});
       }
     }
-    add_blocks(around, first, dim, parts, blocks);
+    add_blocks(around, n, dim, parts, blocks);
     for (std::size_t place = 0; place < places; ++place) place_of[column_at(place)] = none;
   }
   return blocks;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "contact_supports.hpp"
+#include "rpc/algebra/repeated_rows.hpp"
 
 namespace rpc::solver
 {
@@ -10,7 +11,7 @@ namespace rpc::solver
 struct ContactBlocks {
   std::vector<LO> nodes;             ///< owned ones around the contact nodes, ascending
   std::vector<LO> row, column;       ///< (blocks) owned node; column's node
-  std::vector<std::size_t> entry;    ///< (blocks * dim) where the block begins in each of its rows
+  std::vector<LO> place;             ///< (blocks) which one of its node's blocks it is
   std::vector<double> base;          ///< (blocks * dim * dim) the matrix as it is
   std::vector<std::size_t> own;      ///< (nodes) their blocks on the diagonal
   std::vector<std::size_t> begin{0}; ///< (blocks + 1) where a block's parts begin
@@ -20,7 +21,7 @@ struct ContactBlocks {
 };
 
 /// Couplings of nodes that share no cell of the mesh become their bound on the diagonal, 2 a b <= a^2 + b^2.
-/// @param A  each node's unknowns are consecutive rows with equal columns
-ContactBlocks contact_blocks(const NearSupports &supports, int dim, const CrsMatrix &A);
+/// @param A  the matrix   @param rows, columns  its maps
+ContactBlocks contact_blocks(const NearSupports &supports, const RepeatedRows &A, const Map &rows, const Map &columns);
 
 } // namespace rpc::solver

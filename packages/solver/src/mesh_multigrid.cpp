@@ -190,7 +190,7 @@ struct MeshMultigrid::Level {
   /// @param fine_prescribed  (owned dofs, at least) of this mesh
   void add_transfers(const MeshLevel &coarse, const int dim, const DeviceView<char *> &fine_prescribed)
   {
-    const auto coarse_dofs = coarse.stiffness->getDomainMap();
+    const auto coarse_dofs = coarse.dofs();
     interpolation = std::make_unique<NodeInterpolation>(coarse.interpolation, dim, fine_prescribed, coarse.prescribed);
     coarse_residual = rcp(new Vector(coarse_dofs));
     correction = rcp(new Vector(coarse_dofs));
@@ -216,8 +216,7 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
       level->A = levels_.back()->coarse;
     level->add_transfers(coarse, dim, l == 0 ? levels.prescribed : levels.level[l - 1].prescribed);
     const auto contact_of = [&](const ContactSupports &of) {
-      return rcp(
-          new CoarseContact(of, *coarse.interpolation->getDomainMap(), dim, coarse.stiffness, coarse.prescribed));
+      return rcp(new CoarseContact(of, *coarse.interpolation->getDomainMap(), dim, coarse));
     };
     if (l > 0 && !levels_.back()->coarse->is_bounded()) {
       const ContactSupports of_blocks = levels_.back()->coarse->coarser_supports(*coarse.interpolation);

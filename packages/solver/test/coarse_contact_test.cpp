@@ -40,6 +40,20 @@ Dense dense_matrix(const int nodes, const bool even = false)
   return A;
 }
 
+/// A mesh with its matrix.
+/// @param held       (columns) 1 where prescribed
+/// @param assembled  contact may be written into A; else its rows are known, and A stays as it is
+solver::MeshLevel level_of(const RCP<CrsMatrix> &A, const std::vector<char> &held, const bool assembled)
+{
+  solver::MeshLevel level{assembled ? A : Teuchos::null, {}, device_values(held, "prescribed"), {}};
+  if (assembled) return level;
+  level.unassembled = std::make_shared<const UnassembledMatrix>(
+      UnassembledMatrix{RepeatedRows::of(A, dim), A->getDomainMap(),
+                        std::make_shared<const Halo>(A->getGraph()->getImporter()), [A] { return A; }});
+  level.columns = A->getColMap();
+  return level;
+}
+
 /// Lines of ever fewer nodes, and contact at nodes of the first one.
 struct Lines {
   std::vector<int> num_nodes;
@@ -51,7 +65,7 @@ struct Lines {
   bool first_is_prescribed, even;
 
   explicit Lines(std::vector<int> nodes, const bool with_contact = true, const bool prescribed = false,
-                 const bool rows_repeat = false)
+                 const bool rows_repeat = false, const bool assembled = true)
       : num_nodes(std::move(nodes)), update(line_of(1), 1), weights(dense_interpolation(num_nodes[0], num_nodes[0])),
         first_is_prescribed(prescribed), even(rows_repeat)
   {
@@ -80,7 +94,7 @@ struct Lines {
     std::vector<char> held(num_local(columns));
     for (std::size_t i = 0; i < held.size(); ++i)
       held[i] = prescribed && columns.getGlobalElement(static_cast<LO>(i)) == 0;
-    contact = rcp(new CoarseContact(supports, *line, dim, A, device_values(held, "prescribed")));
+    contact = rcp(new CoarseContact(supports, *line, dim, level_of(A, held, assembled)));
   }
 
   /// A + S^T U S, where couplings of nodes that are no neighbours are bounded on the diagonal.
@@ -166,7 +180,7 @@ TEST(CoarseContact, IsThatOfTheFinerMeshInterpolated)
     A = distributed(dense_matrix(num_nodes[l]), unknowns, unknowns);
     std::vector<char> held;
     for (LO i = 0; i < num_local(*A->getColMap()); ++i) held.push_back(A->getColMap()->getGlobalElement(i) == 0);
-    const auto coarse = rcp(new CoarseContact(supports, *line, dim, A, device_values(held, "prescribed")));
+    const auto coarse = rcp(new CoarseContact(supports, *line, dim, level_of(A, held, true)));
     EXPECT_FALSE(coarse->is_bounded());
     coarse->write(contact->packed_sums(supports.contact));
     contact = coarse;
@@ -221,6 +235,22 @@ TEST(CoarseContact, IsAddedToRowsThatRepeat)
   EXPECT_GT(RepeatedRows::of(lines.A, dim).num_kinds(), 0);
   lines.contact->write(lines.update);
   lines.expect_products_of(lines.expected());
+}
+
+/// Nothing is written then: contact is added in all rows, those that do not repeat too.
+TEST(CoarseContact, NeedsNoMatrix)
+{
+  for (const bool rows_repeat : {false, true}) {
+    const Lines lines({129, 65}, true, true, rows_repeat, false);
+    EXPECT_EQ(RepeatedRows::of(lines.A, dim).num_kinds() > 0, rows_repeat);
+    for (int k = 0; k < 2; ++k) lines.contact->write(lines.update);
+    lines.expect_products_of(lines.expected());
+    lines.expect_blocks_of(lines.expected());
+    MultiVector none(lines.update, Teuchos::Copy);
+    none.putScalar(0);
+    lines.contact->write(none);
+    lines.expect_products_of(dense_matrix(65, rows_repeat));
+  }
 }
 
 TEST(CoarseContact, IsSymmetricToTheLastBit)

@@ -11,4 +11,8 @@ double memory_limit();
 /// not tell. All processes of the machine share it.
 double memory_left();
 
+/// Gives memory that was freed back to the system, where the C library can (glibc's keeps it). Before and after work that takes much
+/// memory once: what is kept lies in pieces of other sizes, and the work would take new pages beside them. Takes milliseconds.
+void return_freed_memory();
+
 } // namespace rpc

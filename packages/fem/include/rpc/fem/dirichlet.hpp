@@ -71,7 +71,7 @@ struct RepeatedStiffness {
   PrescribedCouplings couplings;
 };
 
-/// @return nothing where less than three quarters of the rows repeat, on any rank, or where the assembly has something to complain of; collective
+/// @return nothing for mixed elements, where less than three quarters of the rows repeat on any rank, or where the assembly would complain; collective
 std::optional<RepeatedStiffness> repeated_stiffness(const Discretization &d, const Materials &materials,
                                                     const DeviceView<char *> &prescribed);
 

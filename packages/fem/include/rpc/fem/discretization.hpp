@@ -76,6 +76,13 @@ RCP<const Vector> on_overlap(const Discretization &d, const Vector &&owned) = de
 /// neighbours; collective.
 RCP<const MultiVector> nodes_on_overlap(const Discretization &d, const RCP<const MultiVector> &owned);
 
+/// The map of such tables: of this rank alone, without a list.
+RCP<const Map> overlap_rows(const Discretization &d);
+
+/// Rows of the neighbours' nodes become what these have in theirs; collective.
+/// @param table  on overlap_rows()
+void fill_ghost_rows(const Discretization &d, MultiVector &table);
+
 /// Coordinates of the owned nodes, (owned nodes; dim) [m]: multigrid partitions by them.
 RCP<MultiVector> node_coordinates(const Discretization &d);
 

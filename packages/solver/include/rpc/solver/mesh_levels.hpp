@@ -1,9 +1,11 @@
 #pragma once
 
+#include "rpc/algebra/stiffness_operator.hpp"
 #include "rpc/core/node_patches.hpp"
 #include "rpc/solver/body.hpp"
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,12 +22,18 @@ struct PatchesOfMesh {
 
 /// A coarser mesh of the same body, for multigrid.
 struct MeshLevel {
-  RCP<CrsMatrix> stiffness;           ///< K of this mesh, prescribed unknowns eliminated; multigrid adds contact to it
+  /// K of this mesh, prescribed unknowns eliminated; multigrid writes contact into it. Null where `unassembled` stands for it.
+  RCP<CrsMatrix> stiffness;
   RCP<const CrsMatrix> interpolation; ///< (owned nodes of the next finer mesh x owned nodes of this one)
-  DeviceView<char *> prescribed;      ///< (columns of `stiffness`) 1 where the displacement is prescribed
+  DeviceView<char *> prescribed;      ///< (columns of K) 1 where the displacement is prescribed
   Body body;                          ///< on this mesh
   int order = 1;                      ///< of its elements; 2 too where that is so in some directions alone
-  PatchesOfMesh patches;              ///< of this mesh
+  PatchesOfMesh patches = {};         ///< of this mesh
+  /// K where most of its rows repeat, or null. The coarsest mesh always has a matrix: its solver takes one.
+  std::shared_ptr<const UnassembledMatrix> unassembled = nullptr;
+  RCP<const Map> columns = Teuchos::null; ///< of `unassembled`
+
+  RCP<const Map> dofs() const { return unassembled ? unassembled->dofs : RCP<const Map>(stiffness->getDomainMap()); }
 };
 
 /// From the finest of them to the coarsest one; nodes have consecutive gids from 0, a node's unknowns follow each other.
