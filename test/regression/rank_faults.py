@@ -6,18 +6,20 @@ import signal
 import subprocess
 import time
 import unittest
+from pathlib import Path
 
 from rpc_run import LAUNCH, PROGRAM, RANKS, RpcTestCase, errors, files, ranks_below
 
 SCENE = ["--set=Mesh->Cells={640,128}"]  # takes seconds
+LARGE = ["--set=Mesh->Cells={1280,256}"]  # with algebraic multigrid hundreds of megabytes
 SOON = 30  # [s]
 INTERNAL_ERROR, BAD_INPUT = 1, 2
 
 
 class RankFaults(RpcTestCase):
-    def begun(self, *arguments):
+    def begun(self, *arguments, scene=SCENE):
         """A run that has come to its first Newton step, and its ranks' processes."""
-        process = subprocess.Popen([*LAUNCH, PROGRAM, "--input=beam.xml", "--output=out", *SCENE, *arguments], cwd=self.folder,
+        process = subprocess.Popen([*LAUNCH, PROGRAM, "--input=beam.xml", "--output=out", *scene, *arguments], cwd=self.folder,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
         self.addCleanup(process.kill)
         for line in process.stdout:
@@ -50,6 +52,17 @@ class RankFaults(RpcTestCase):
         for part in ("rpc: error: output: ", f'"out/beam.e.{RANKS}.', "File too large"):
             self.assertIn(part, errors(result)[0])
         self.assertEqual(files(self.folder), [])
+
+    def test_a_rank_that_runs_out_of_memory(self):
+        process, ranks = self.begun("--set=Linear Solver->Multigrid=algebraic", "--set=Output->Exodus=none", scene=LARGE)
+        pages = int(Path(f"/proc/{ranks[-1]}/statm").read_text().split()[0])  # of addresses that are in use
+        most = pages * resource.getpagesize() + 32 * 2**20  # MPI's own small allocations must not be the first to fail: it does not look
+        resource.prlimit(ranks[-1], resource.RLIMIT_AS, (most, most))
+        result = self.ended(process, SOON)
+        self.assertEqual(result.returncode, INTERNAL_ERROR, result.stderr)
+        self.assertEqual(len(errors(result)), 1, result.stderr)
+        self.assertIn("out of memory", errors(result)[0])
+        self.assertEqual([name for name in files(self.folder) if name.endswith(".json")], [])
 
     def test_a_rank_that_cannot_start(self):
         one = [PROGRAM, "--input=beam.xml", "--output=out"]

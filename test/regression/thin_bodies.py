@@ -71,10 +71,11 @@ class ThinBodies(RpcTestCase):
 
 class Rubber(RpcTestCase):
     def test_no_solve_waits_for_iterations_that_stall(self):
-        bodies = {  # upper, cells, element
-            "in the plane": ((2, 1), (32, 32), "Q2"), "in the plane, stretched": ((2, 1), (16, 96), "Q2"), "in space, stretched": ((1, 1, 1), (4, 4, 16), "Q2"),
-            "of Q1": ((2, 1), (48, 96), "Q1")}
-        for name, (upper, cells, element) in bodies.items():
+        stars, factor = "^meshes$", "^sparse factor: about [0-9]+ CG iterations expected$"
+        bodies = {  # upper, cells, element, path
+            "in the plane": ((2, 1), (32, 32), "Q2", stars), "in the plane, stretched": ((2, 1), (16, 96), "Q2", factor),
+            "in space": ((1, 1, 1), (4, 4, 16), "Q2", stars), "in space, stretched": ((1, 1, 1), (4, 4, 24), "Q2", factor), "of Q1": ((2, 1), (48, 96), "Q1", factor)}
+        for name, (upper, cells, element, path) in bodies.items():
             for nu in (0.499, 0.4999, 0.49999):
                 for friction in (0, 0.3):
                     with self.subTest(f"{name}, nu {nu}, friction {friction}"):
@@ -83,7 +84,8 @@ class Rubber(RpcTestCase):
                         summary = json.loads((self.folder / "thin.json").read_text())
                         self.assertTrue(summary["converged"])
                         self.assertLessEqual(max(summary["linear_iterations"]), 30)
-                        self.assertRegex(summary["solver_path"], "^sparse factor: about [0-9]+ CG iterations expected$")
+                        self.assertRegex(summary["solver_path"], path)
+                        self.assertEqual("on stars of vertices" in summary["solver"], path == stars)
 
     def test_what_is_not_incompressible_keeps_its_multigrid(self):
         (self.folder / "thin.xml").write_text(deck((2, 1), (32, 32), "Q2", 1, "1e-3*x", 20))

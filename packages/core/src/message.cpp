@@ -37,4 +37,9 @@ bool is_out_of_memory(const std::exception &error)
          std::string(error.what()).rfind("Kokkos failed to allocate", 0) == 0;
 }
 
+void pass_on_out_of_memory(const std::exception &error)
+{
+  if (is_out_of_memory(error)) throw;
+}
+
 } // namespace rpc

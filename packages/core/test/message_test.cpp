@@ -50,4 +50,18 @@ TEST(IsOutOfMemory, KnowsTheStandardsExceptionAndKokkos)
   EXPECT_FALSE(rpc::is_out_of_memory(std::runtime_error("Kokkos failed")));
 }
 
+TEST(PassOnOutOfMemory, ThrowsWhatAllRanksCannotAnswerAlike)
+{
+  const auto handled = [](const auto &thrown) {
+    try {
+      throw thrown;
+    } catch (const std::exception &error) {
+      rpc::pass_on_out_of_memory(error);
+    }
+  };
+  EXPECT_THROW(handled(std::bad_alloc()), std::bad_alloc);
+  EXPECT_THROW(handled(std::runtime_error("Kokkos failed to allocate memory for label \"x\".")), std::runtime_error);
+  EXPECT_NO_THROW(handled(std::runtime_error("a singular matrix")));
+}
+
 } // namespace

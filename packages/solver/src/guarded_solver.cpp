@@ -1,8 +1,8 @@
 #include "guarded_solver.hpp"
+#include "rpc/core/message.hpp"
 
 #include <exception>
 #include <limits>
-#include <new>
 
 namespace rpc::solver
 {
@@ -12,9 +12,8 @@ void GuardedSolver::Setup(MueLu::Level &level)
   failed_ = false;
   try {
     direct_->Setup(level);
-  } catch (const std::bad_alloc &) {
-    throw;
-  } catch (const std::exception &) { // a singular matrix
+  } catch (const std::exception &failure) { // a singular matrix
+    pass_on_out_of_memory(failure);
     failed_ = true;
   }
   IsSetup(true);
@@ -24,9 +23,8 @@ void GuardedSolver::Apply(XpetraVectors &x, const XpetraVectors &b, const bool i
 {
   try {
     if (!failed_) return direct_->Apply(x, b, initial_guess_is_zero);
-  } catch (const std::bad_alloc &) {
-    throw;
-  } catch (const std::exception &) { // Amesos2 factors at the first solve
+  } catch (const std::exception &failure) { // Amesos2 factors at the first solve
+    pass_on_out_of_memory(failure);
   }
   x.putScalar(std::numeric_limits<double>::quiet_NaN());
 }

@@ -3,6 +3,7 @@
 #include "convergence.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/message.hpp"
 
 #include <BelosLinearProblem.hpp>
 #include <BelosSolverFactory.hpp>
@@ -12,7 +13,6 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <vector>
 
 namespace rpc::solver
@@ -80,9 +80,8 @@ double energy_error(const Preconditioner &B, const Vector &b, const Vector &resi
     return std::sqrt(inverse_energy(B, residual) / inverse_energy(B, b));
   } catch (const Error &) {
     throw;
-  } catch (const std::bad_alloc &) { // on this rank alone
-    throw;
-  } catch (const std::exception &) { // such as a singular coarse matrix; the same on all ranks
+  } catch (const std::exception &failure) { // such as a singular coarse matrix; the same on all ranks
+    pass_on_out_of_memory(failure);
     return std::numeric_limits<double>::quiet_NaN();
   }
 }
@@ -225,9 +224,8 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
     result.iterations = method.asks.is_null() ? method.preconditioner->iterations : method.asks->iterations;
     result.reason =
         "given up after " + std::to_string(result.iterations) + (is_symmetric ? " CG" : " GMRES") + " iterations";
-  } catch (const std::bad_alloc &) { // on this rank alone
-    throw;
   } catch (const std::exception &failure) { // such as an indefinite or singular matrix; the same on all ranks
+    pass_on_out_of_memory(failure);
     result.broken = true;
     result.residual = std::numeric_limits<double>::quiet_NaN();
     result.reason = "the linear solver broke down: " + one_line(failure.what());

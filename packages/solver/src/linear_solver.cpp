@@ -11,13 +11,13 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/message.hpp"
 
 #include <Teuchos_StackedTimer.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <optional>
 #include <utility>
 
@@ -215,9 +215,8 @@ void LinearSolver::Impl::prepare(const double tolerance)
     counted(algebraic, tolerance);
   } catch (const Error &) {
     throw;
-  } catch (const std::bad_alloc &) { // on this rank alone
-    throw;
   } catch (const std::exception &failure) {
+    pass_on_out_of_memory(failure);
     if (options.muelu.numParams() == 0 || counts.preconditioner_setups > 0) throw;
     throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
   }
@@ -270,9 +269,8 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     result.reason = interruption();
   } catch (const Error &) {
     throw;
-  } catch (const std::bad_alloc &) { // on this rank alone
-    throw;
   } catch (const std::exception &failure) { // of a set-up, such as a singular matrix; the same on all ranks
+    pass_on_out_of_memory(failure);
     counts.iterations.push_back(0);
     result.broken = true;
     result.reason = "the linear solver broke down: " + one_line(failure.what());
@@ -392,9 +390,8 @@ double LinearSolver::inverse_energy(const Vector &F)
     return std::numeric_limits<double>::quiet_NaN();
   } catch (const Error &) {
     throw;
-  } catch (const std::bad_alloc &) { // on this rank alone
-    throw;
-  } catch (const std::exception &) { // a breakdown, such as a singular coarse matrix; the same on all ranks
+  } catch (const std::exception &failure) { // a breakdown, such as a singular coarse matrix; the same on all ranks
+    pass_on_out_of_memory(failure);
     return std::numeric_limits<double>::quiet_NaN();
   }
 }

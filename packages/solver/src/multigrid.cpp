@@ -3,6 +3,7 @@
 #include "gathered_solver.hpp"
 #include "guarded_solver.hpp"
 #include "one_thread_aggregates.hpp"
+#include "rpc/core/message.hpp"
 #include "rpc/core/muelu.hpp"
 
 #include <MueLu_CreateTpetraPreconditioner.hpp>
@@ -11,7 +12,6 @@
 #include <MueLu_SingleLevelFactoryBase.hpp>
 #include <MueLu_SmootherFactory.hpp>
 #include <exception>
-#include <new>
 
 namespace rpc::solver
 {
@@ -163,9 +163,8 @@ bool renew_multigrid(const RCP<CrsMatrix> &A, RCP<Multigrid> &multigrid)
   try {
     MueLu::ReuseTpetraPreconditioner(A, *multigrid);
     return true;
-  } catch (const std::bad_alloc &) { // on this rank alone
-    throw;
-  } catch (const std::exception &) { // on all ranks
+  } catch (const std::exception &failure) { // on all ranks
+    pass_on_out_of_memory(failure);
     multigrid = Teuchos::null;
     return false;
   }

@@ -2,6 +2,7 @@
 
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/core/message.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/solver/exact_line_search.hpp"
 #include "rpc/solver/sweep_direction.hpp"
@@ -232,6 +233,7 @@ RCP<NOX::Solver::Generic> build_solver(const RCP<NewtonGroup> &group, const Newt
   } catch (const Error &) {
     throw;
   } catch (const std::exception &failure) {
+    pass_on_out_of_memory(failure);
     reason = one_line(failure.what());
   } catch (const char *failure) { // some of NOX's errors are bare strings
     reason = failure;
@@ -314,9 +316,8 @@ MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solve
     result.converged = status == NOX::StatusTest::Converged;
   } catch (const Error &) { // a mistake in the deck
     throw;
-  } catch (const std::bad_alloc &) { // on this rank alone
-    throw;
   } catch (const std::exception &failure) { // NOX throws when a direction cannot be had; the same on all ranks
+    pass_on_out_of_memory(failure);
     result.steps = context->steps;
     result.reason = one_line(failure.what());
   } catch (const char *failure) { // some of NOX's errors are bare strings
