@@ -100,8 +100,6 @@ struct MultiplyNode {
 
 #ifdef RPC_HAS_VECTORS
 
-using Four = double __attribute__((vector_size(32)));
-
 /// Neighbours of one kind, for the loops below.
 struct Stencil {
   const LO *offset;

@@ -97,31 +97,65 @@ solver::PatchesOfMesh patches_between(const mesh::Mesh &fine, const mesh::BoxOpt
   return patches;
 }
 
-/// Levels of order 2 for nearly incompressible boxes.
+/// The longest node distance over the shortest one.
+double stretch(const mesh::BoxOptions &box)
+{
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (int d = 0; d < box.element.dim; ++d) {
+    shortest = std::min(shortest, box.node_distance(d));
+    longest = std::max(longest, box.node_distance(d));
+  }
+  return longest / shortest;
+}
+
+GO num_unknowns(const mesh::BoxOptions &box)
+{
+  GO nodes = 1;
+  for (int d = 0; d < box.element.dim; ++d) nodes *= box.intervals(d) + 1;
+  return num_dofs(box.element.dim, nodes);
+}
+
+/// Boxes of the same element, down to one that is factored: it has few unknowns, or its cells are too stretched for stars. None where such a
+/// box has too many unknowns, or there is none.
+std::vector<mesh::BoxOptions> coarser_on_stars(mesh::BoxOptions box)
+{
+  const GO few = box.element.dim == 2 ? few_2d : few_3d;
+  const GO most = box.element.dim == 2 ? most_factored_2d : most_factored_3d;
+  std::vector<mesh::BoxOptions> coarser;
+  while (coarser.empty() || num_unknowns(box) > few) {
+    if (stretch(box) > most_stretched_of_stars) {
+      if (num_unknowns(box) > most) coarser.clear();
+      return coarser;
+    }
+    const auto next = mesh::halved(box);
+    if (!next) return {};
+    coarser.push_back(*next);
+    box = *next;
+  }
+  return coarser;
+}
+
+/// Levels of order 2 for nearly incompressible boxes.                                                               (4.7f)
 solver::MeshLevels levels_of_stars(const fem::Discretization &finest, const Model &model,
                                    const DeviceView<char *> &prescribed)
 {
   solver::MeshLevels levels;
   levels.prescribed = prescribed;
   levels.order = 2;
+  levels.down_to_few = true;
+  levels.remark = "on stars of vertices";
   const auto held = held_sides(model.dirichlet);
-  const GO few = finest.dim() == 2 ? few_2d : few_3d;
   fem::Discretization fine = finest;
   solver::PatchesOfMesh *patches = &levels.patches;
-  while (static_cast<GO>(fine.owned_dofs->getGlobalNumElements()) > few) {
-    const auto options = mesh::halved(*fine.mesh->box);
-    if (!options) break;
-    auto coarse = coarser_box(fine, *options);
+  for (const mesh::BoxOptions &box : coarser_on_stars(*finest.mesh->box)) {
+    auto coarse = coarser_box(fine, box);
     *patches = patches_between(*fine.mesh, *coarse.mesh->box);
     levels.level.push_back(
         level_on(coarse, model, fem::dirichlet_dofs(coarse, held).fixed, fem::interpolation(coarse, fine)));
     patches = &levels.level.back().patches;
     fine = std::move(coarse);
   }
-  if (!levels.level.empty()) assemble(levels.level.back());
-  levels.down_to_few = static_cast<GO>(fine.owned_dofs->getGlobalNumElements()) <=
-                       (fine.dim() == 2 ? most_factored_2d : most_factored_3d);
-  levels.end = "on stars of vertices";
+  assemble(levels.level.back());
   return levels;
 }
 
@@ -136,14 +170,8 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 
 bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials)
 {
-  if (!d.mesh->box || d.mesh->element.name() != "Q2") return false;
-  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-  for (int direction = 0; direction < d.dim(); ++direction) {
-    shortest = std::min(shortest, d.mesh->box->node_distance(direction));
-    longest = std::max(longest, d.mesh->box->node_distance(direction));
-  }
-  return longest <= most_stretched_of_stars * shortest && d.kinematics != fem::Kinematics::plane_stress &&
-         largest_ratio(d, materials) > least_ratio_of_stars;
+  return d.mesh->box && d.mesh->element.name() == "Q2" && d.kinematics != fem::Kinematics::plane_stress &&
+         largest_ratio(d, materials) > least_ratio_of_stars && !coarser_on_stars(*d.mesh->box).empty();
 }
 
 solver::Body body_of(const fem::Discretization &d)
@@ -153,10 +181,8 @@ solver::Body body_of(const fem::Discretization &d)
 
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed)
 {
-  if (smooths_on_stars(finest.discretization(), model.materials)) {
-    auto levels = levels_of_stars(finest.discretization(), model, prescribed);
-    if (levels.down_to_few) return levels;
-  }
+  if (smooths_on_stars(finest.discretization(), model.materials))
+    return levels_of_stars(finest.discretization(), model, prescribed);
   solver::MeshLevels levels;
   levels.prescribed = prescribed;
   const int dim = finest.discretization().dim();
@@ -184,7 +210,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
     thin = thin_direction(*mesh);
   }
   if (!levels.level.empty()) assemble(levels.level.back());
-  if (thin && num_unknowns(*mesh) > few) levels.end = thin_text(*mesh->discretization().mesh->box, *thin);
+  if (thin && num_unknowns(*mesh) > few) levels.remark = thin_text(*mesh->discretization().mesh->box, *thin);
   levels.down_to_few = thin || num_unknowns(*mesh) <= (dim == 2 ? most_factored_2d : most_factored_3d);
   return levels;
 }

@@ -105,7 +105,7 @@ Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, con
     return fem::eliminate_dirichlet(d, K, prescribed);
   };
   const auto repeated = fem::repeated_stiffness(d, model_.materials, prescribed_);
-  if (repeated && mesh_->is_finest()) d.forget_nodes(); // coarser meshes have a matrix soon
+  if (repeated && mesh_->is_finest()) d.forget_nodes(); // of coarser meshes too, but contact asks for theirs once more
   const fem::EliminatedStiffness K = repeated ? fem::EliminatedStiffness{} : assembled();
   couplings_ = repeated ? repeated->couplings : K.couplings;
   stiffness_ = repeated ? rcp(new StiffnessOperator(

@@ -16,7 +16,7 @@
 namespace rpc::test
 {
 
-/// A block with odd numbers of cells, clamped at its left side, that may touch with its bottom (in space: its back).
+/// A block with odd numbers of cells, clamped at its left side (of revolution: its outer one), that may touch with its bottom (in space: its back).
 struct Block {
   fem::Discretization d;
   analysis::Model model;
@@ -27,14 +27,16 @@ struct Block {
   /// @param cells   of the lattice, for each direction
   /// @param is_box  whether there are coarser boxes; else the mesh counts as one from a file
   Block(const mesh::Element &element, const std::vector<int> &cells, const bool is_box = true,
-        const std::vector<double> &upper = {2, 1, 1}, const double nu = 0.3)
+        const std::vector<double> &upper = {2, 1, 1}, const double nu = 0.3,
+        const fem::Kinematics kinematics = fem::Kinematics::plane_strain)
   {
     mesh::BoxOptions box{{0, 0}, {upper[0], upper[1]}, {cells[0], cells[1]}, element};
     if (element.dim == 3) box = {{0, 0, 0}, upper, cells, element};
     auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
     if (!is_box) mesh->box = nullptr;
-    d = fem::discretize(mesh);
-    fem::DirichletCondition held{"left", "left", {ScalarField(0.), ScalarField(0.)}};
+    d = fem::discretize(mesh, kinematics);
+    const char *const side = d.axisymmetric() ? "right" : "left"; // off the axis
+    fem::DirichletCondition held{side, side, {ScalarField(0.), ScalarField(0.)}};
     if (element.dim == 3) held.displacement[2] = ScalarField(0.);
     model.materials = fem::Material{1000, nu};
     model.dirichlet = {held};

@@ -112,7 +112,7 @@ TEST(StretchedCells, OfThinBodiesEndWhereTheyAreFactored)
   const auto plate = levels_of({3, 1}, {20, 20, 4}, {1, 1, 0.01});
   ASSERT_EQ(plate.level.size(), 2U);
   EXPECT_TRUE(plate.down_to_few);
-  EXPECT_EQ(plate.end, "thin in z: factored at 20 x 20 x 1 cells");
+  EXPECT_EQ(plate.remark, "thin in z: factored at 20 x 20 x 1 cells");
   EXPECT_EQ(unknowns(plate), 21U * 21U * 2U * 3U);
 
   const auto quadratic = levels_of({3, 2}, {10, 10, 1}, {1, 1, 0.01});
@@ -123,11 +123,11 @@ TEST(StretchedCells, OfThinBodiesEndWhereTheyAreFactored)
 
   const auto strip = levels_of({2, 1}, {500, 1, 0}, {500, 1, 1});
   ASSERT_EQ(strip.level.size(), 1U) << "the mesh itself";
-  EXPECT_EQ(strip.end, "thin in y: factored at 500 x 1 cells");
+  EXPECT_EQ(strip.remark, "thin in y: factored at 500 x 1 cells");
   EXPECT_EQ(unknowns(strip), 501U * 2U * 2U);
 
   const auto block = levels_of({3, 1}, {20, 20, 20}, {1, 1, 1});
-  EXPECT_EQ(block.end, "");
+  EXPECT_EQ(block.remark, "");
   EXPECT_TRUE(block.down_to_few);
 }
 
@@ -138,7 +138,7 @@ TEST(StretchedCells, LeaveSquareOnesAlone)
     const int n = element.order == 1 ? 24 : 12;
     const Block block(element, {2 * n, n, n}, true, {2, 1, 1});
     const auto levels = block.levels();
-    EXPECT_EQ(levels.end, "");
+    EXPECT_EQ(levels.remark, "");
     int cells = n;
     for (std::size_t l = 0; l < levels.level.size(); ++l) {
       if (l > 0 || element.order == 1) cells /= 2;

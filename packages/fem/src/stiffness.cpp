@@ -293,7 +293,8 @@ RCP<CrsMatrix> assemble_stiffness(const Discretization &d, const Materials &mate
 std::optional<RepeatedStiffness> repeated_stiffness(const Discretization &d, const Materials &materials,
                                                     const DeviceView<char *> &prescribed)
 {
-  if (d.mesh->element.mixed()) return std::nullopt; // each cell's matrix is made of the one of order 2
+  if (d.mesh->element.mixed())
+    return std::nullopt; // the rows come from matrices of order 2 cells, which are made with the whole matrix alone
   const bool has_kinds = d.congruent.size() > 0 || d.mesh->num_cells() == 0; // on this rank
   if (min_all(d.mesh->comm(), has_kinds ? 1 : 0) == 0) return std::nullopt;
   std::optional<RepeatedStiffness> result;

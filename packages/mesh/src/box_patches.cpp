@@ -42,7 +42,7 @@ NodePatches vertex_stars(const BoxOptions &box, const Comm &comm)
   return stars;
 }
 
-NodePatches inside_cells_of(const BoxOptions &halved, const BoxOptions &box, const Comm &comm)
+NodePatches inside_cells_of(const BoxOptions &coarse, const BoxOptions &box, const Comm &comm)
 {
   const int dim = box.element.dim;
   const Grid grid(box, comm.getSize());
@@ -50,12 +50,12 @@ NodePatches inside_cells_of(const BoxOptions &halved, const BoxOptions &box, con
   NodePatches interiors;
   for (GO n = 0; n < owned.size(); ++n) {
     const Index first =
-        owned.at(n); // of a patch, if it follows the lower side of a cell of the halved box in each direction
+        owned.at(n); // of a patch, if it follows the lower side of a cell of the coarser box in each direction
     Index end{{1, 1, 1}};
     bool is_first = true;
     for (int d = 0; d < dim; ++d) {
-      const GO order = box.element.order_along(d), cells = halved.cells[d];
-      const GO length = order * (halved.cells[d] < box.cells[d] ? 2 : 1),
+      const GO order = box.element.order_along(d), cells = coarse.cells[d];
+      const GO length = order * (coarse.cells[d] < box.cells[d] ? 2 : 1),
                cell = first[d] / length; // of a cell, in intervals
       is_first = is_first && first[d] % length == 1 && cell < cells;
       end[d] = cell == cells - 1 ? box.intervals(d) : length * (cell + 1);

@@ -163,8 +163,8 @@ struct MeshMultigrid::Level {
   RCP<const Operator> A;
   std::unique_ptr<NodeSmoother> smoother;
   std::shared_ptr<PatchSolver> stars; // null: the smoother takes single nodes
-  std::unique_ptr<PatchSolver>
-      interiors; // of the next coarser mesh's cells; null: functions of it are taken as they are
+  /// Of the next coarser mesh's cells; null: its functions are taken as they are.
+  std::unique_ptr<PatchSolver> interiors;
   std::unique_ptr<NodeInterpolation> interpolation; // from the next coarser mesh
   RCP<CoarseContact> coarse;                        // the matrix of the next coarser mesh
   RCP<const Map>
@@ -260,7 +260,8 @@ void MeshMultigrid::add_smoother(const MeshLevels &levels, const std::size_t l)
   const RepeatedRows &rows = is_finest ? H_->base().rows() : contact->rows();
   const AddedBlocks added = is_finest ? AddedBlocks{contact_node_, contact_node_, H_->update()} : contact->added();
   level.stars = std::make_shared<PatchSolver>(rows, nodes, patches.columns, patches.stars, added);
-  level.interiors = std::make_unique<PatchSolver>(rows, nodes, patches.columns, patches.interiors, added);
+  level.interiors = std::make_unique<PatchSolver>(rows, nodes, patches.columns, patches.interiors,
+                                                  AddedBlocks{}); // contact is at sides, which no interior has nodes of
   level.smoother->use(level.stars);
   for (RCP<Vector> *const v : {&level.fine_correction, &level.product, &level.inside})
     *v = rcp(new Vector(level.A->getDomainMap()));

@@ -248,7 +248,7 @@ void NodeSmoother::set_blocks(const DeviceView<LO *> &node, const DeviceView<dou
   invert(*A_->getDomainMap()->getComm(), place, block, inverse.block);
 }
 
-/// The same with B.
+/// A step of the polynomial with the patches' B in the place of D^-1.
 void NodeSmoother::step_on_patches(const Vector &b, const double keep, const double add, const bool at_zero,
                                    Vector &x) const
 {

@@ -1,9 +1,11 @@
 #include "patch_matrices.hpp"
 
 #include "rpc/core/dofs.hpp"
+#include "rpc/core/error.hpp"
 
 #include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <unordered_map>
@@ -139,6 +141,11 @@ BlockRows PatchMatrices::rows_of_ghosts(const AppendRow &append) const
   for (std::size_t r = 0; r < asked_.size(); ++r) longest = std::max(longest, mine.begin[r + 1] - mine.begin[r]);
   longest = max_all(*nodes_->getComm(), longest);
   const std::size_t width = 1 + longest * (1 + area); // the number of blocks, their columns, their values
+  const double bytes =
+      static_cast<double>(max_all(*nodes_->getComm(), asked_.size())) * static_cast<double>(width) * sizeof(double);
+  RPC_REQUIRE_CODE(bytes < std::numeric_limits<int>::max(), ExitCode::bad_mesh,
+                   "multigrid: neighbouring ranks would exchange "
+                       << bytes << " bytes, of which a message has at most 2^31. Use more ranks.");
   std::vector<double> answers(width * asked_.size());
   for (std::size_t r = 0; r < asked_.size(); ++r) {
     const std::size_t first = mine.begin[r], size = mine.begin[r + 1] - first;
@@ -165,12 +172,12 @@ bool PatchMatrices::changes(const int patch) const
 }
 
 /// The kinds of its nodes, and how they are numbered.
-std::optional<std::vector<LO>> PatchMatrices::likeness(const int patch) const
+std::vector<LO> PatchMatrices::likeness(const int patch) const
 {
   std::vector<LO> likeness;
   for (LO e = begin_[patch]; e < begin_[patch + 1]; ++e) {
     const int kind = node_[e] < num_owned_ ? rows_->kind(node_[e]) : -1;
-    if (kind < 0) return std::nullopt;
+    if (kind < 0) return {};
     likeness.push_back(kind);
     likeness.push_back(node_[e] - node_[begin_[patch]]);
   }
@@ -214,7 +221,7 @@ std::vector<double> PatchMatrices::without_contact(const int patch) const
 }
 
 /// Appends what contact adds in the rows of an owned node.
-void PatchMatrices::append_added(const LO node, const HostView<double ***> &block, BlockRows &to) const
+void PatchMatrices::append_added(const LO node, const BlocksOnHost &block, BlockRows &to) const
 {
   const auto [first, last] = std::equal_range(added_row_.begin(), added_row_.end(), node);
   for (auto row = first; row != last; ++row) {

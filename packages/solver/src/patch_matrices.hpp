@@ -6,7 +6,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace rpc::solver
@@ -44,8 +43,8 @@ public:
 
   /// Whether contact adds to a patch.
   bool changes(int patch) const;
-  /// Equal for patches whose matrices are equal without contact; none where that is not known.
-  std::optional<std::vector<LO>> likeness(int patch) const;
+  /// Equal for patches whose matrices are equal without contact; empty where that is not known beforehand.
+  std::vector<LO> likeness(int patch) const;
   /// (rows, rows) Without contact. For the time of construction: the rows of A are not kept.
   std::vector<double> without_contact(int patch) const;
   void forget_rows();
@@ -57,12 +56,13 @@ public:
 
 private:
   class Rows;
+  using BlocksOnHost = decltype(to_host(DeviceView<double ***>())); // in the device's layout
   /// Appends the blocks of an owned node.
   using AppendRow = std::function<void(LO node, BlockRows &to)>;
   /// Takes a block of a row: its column's gid and its values.
   using TakeBlock = std::function<void(GO column, const double *value)>;
   BlockRows rows_of_ghosts(const AppendRow &append) const;
-  void append_added(LO node, const HostView<double ***> &block, BlockRows &to) const;
+  void append_added(LO node, const BlocksOnHost &block, BlockRows &to) const;
   std::vector<double> gathered(int patch, const std::function<void(LO node, const TakeBlock &take)> &blocks_of) const;
 
   int dim_;

@@ -2,13 +2,17 @@
 
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/dofs.hpp"
+#include "rpc/core/fingerprint.hpp"
 #include "rpc/core/vectors.hpp"
 
 #include <Teuchos_LAPACK.hpp>
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <map>
 #include <numeric>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
 
 namespace rpc::solver
@@ -22,6 +26,17 @@ constexpr const char *not_definite = "multigrid: the matrix of a patch of nodes 
 KOKKOS_INLINE_FUNCTION constexpr std::size_t stride_of(const std::size_t rows)
 {
   return (rows + 3) / 4 * 4;
+}
+
+std::uint64_t fingerprint(const std::vector<double> &values)
+{
+  std::uint64_t print = values.size();
+  for (const double value : values) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof(bits));
+    print = scrambled(print, bits);
+  }
+  return print;
 }
 
 /// Appends the inverse of a symmetric positive definite matrix. @return whether it is one
@@ -63,8 +78,6 @@ struct SolveOnPatch {
 };
 
 #ifdef RPC_HAS_VECTORS
-
-using Four = double __attribute__((vector_size(32)));
 
 /// Rows of `Vectors` vectors of the solutions on `Count` patches that share an inverse: they share its loads.
 /// @param x  (columns, Count)   @param y  (Count) where these rows begin
@@ -185,7 +198,8 @@ PatchSolver::PatchSolver(const RepeatedRows &rows, const RCP<const Map> &nodes, 
       halo_(std::make_shared<const Halo>(Halo(nodes, matrices_.ghosts()), dim_))
 {
   const int num_patches = matrices_.size();
-  std::map<std::vector<LO>, std::size_t> place_of;
+  std::map<std::vector<LO>, int> patch_like;
+  std::unordered_multimap<std::uint64_t, int> patches_with; // by their matrices' fingerprints
   std::vector<std::size_t> place(num_patches);
   std::vector<double> inverses;
   bool good = true;
@@ -195,14 +209,26 @@ PatchSolver::PatchSolver(const RepeatedRows &rows, const RCP<const Map> &nodes, 
       without_.push_back(matrices_.without_contact(p));
       continue;
     }
-    place[p] = inverses.size();
-    if (const auto likeness = matrices_.likeness(p)) {
-      const auto [at, is_new] = place_of.try_emplace(*likeness, inverses.size());
-      place[p] = at->second;
-      if (!is_new) continue;
+    const auto likeness = matrices_.likeness(p);
+    const auto known = likeness.empty() ? patch_like.end() : patch_like.find(likeness);
+    int other = known == patch_like.end() ? -1 : known->second; // has the same matrix
+    if (other < 0) {
+      auto matrix = matrices_.without_contact(p);
+      const std::uint64_t print = fingerprint(matrix);
+      const auto [first, last] = patches_with.equal_range(print);
+      const auto equal =
+          std::find_if(first, last, [&](const auto &of) { return matrices_.without_contact(of.second) == matrix; });
+      if (equal != last) {
+        other = equal->second;
+      } else {
+        place[p] = inverses.size();
+        good = append_inverse(std::move(matrix), matrices_.rows_of(p), inverses) && good;
+        ++num_inverses_;
+        patches_with.emplace(print, p);
+      }
+      if (!likeness.empty()) patch_like.emplace(likeness, p);
     }
-    good = append_inverse(matrices_.without_contact(p), matrices_.rows_of(p), inverses) && good;
-    ++num_inverses_;
+    if (other >= 0) place[p] = place[other];
   }
   matrices_.forget_rows();
   first_changing_ = inverses.size();
@@ -250,7 +276,10 @@ void PatchSolver::set_added(const DeviceView<double ***> &block)
     good = append_inverse(std::move(matrix), matrices_.rows_of(changing_[c]), inverse) && good;
     std::copy(inverse.begin(), inverse.end(), changing_inverse_.data() + place_of_changing_[c]);
   }
-  if (min_all(*comm_, good ? 1 : 0) == 0) throw std::runtime_error(not_definite);
+  if (min_all(*comm_, good ? 1 : 0) == 0) {
+    for (auto &last : last_added_) last.clear(); // all are made anew next
+    throw std::runtime_error(not_definite);
+  }
   if (!changed) return;
   const std::pair<std::size_t, std::size_t> all(first_changing_, inverse_.extent(0));
   Kokkos::deep_copy(Kokkos::subview(inverse_, all), changing_inverse_);
@@ -261,9 +290,9 @@ void PatchSolver::apply(const Vector &r, Vector &z) const
   const auto from = device_read(halo_->at_columns(r));
   using In = std::decay_t<decltype(from)>;
   const auto apply_in = [&](const auto dim) {
-    const SolveOnPatch<dim, In> solve{begin_, node_, patch_, place_, inverse_, from, part_};
+    const SolveOnPatch<decltype(dim)::value, In> solve{begin_, node_, patch_, place_, inverse_, from, part_};
 #ifdef RPC_HAS_VECTORS
-    using Patches = SolveOnPatches<dim, In>;
+    using Patches = SolveOnPatches<decltype(dim)::value, In>;
     const LO chunks = (num_patches() + Patches::patches_at_once - 1) / Patches::patches_at_once;
     Kokkos::parallel_for("rpc::solver::solve_on_patches", device_range(chunks), Patches{solve, num_patches()});
 #else
@@ -271,7 +300,7 @@ void PatchSolver::apply(const Vector &r, Vector &z) const
 #endif
     const auto to = device_write(halo_->is_empty() ? z : halo_->columns());
     Kokkos::parallel_for("rpc::solver::add_parts", device_range(static_cast<LO>(first_entry_.extent(0)) - 1),
-                         AddParts<dim, std::decay_t<decltype(to)>>{first_entry_, entry_, part_, to});
+                         AddParts<decltype(dim)::value, std::decay_t<decltype(to)>>{first_entry_, entry_, part_, to});
   };
   if (dim_ == 2)
     apply_in(std::integral_constant<int, 2>());

@@ -43,7 +43,7 @@ private:
   std::vector<int> changing_; // patches that contact adds to
   std::vector<std::vector<double>> without_,
       last_added_;                             // (changing) their matrices without contact; what contact added last
-  std::vector<std::size_t> place_of_changing_; // (changing) of their inverses among those of all of them
+  std::vector<std::size_t> place_of_changing_; // (changing) where its inverse begins in changing_inverse_
   HostView<double *> changing_inverse_;
   std::size_t first_changing_ = 0; // place among all inverses
   int num_inverses_ = 0;

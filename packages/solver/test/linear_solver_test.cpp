@@ -33,6 +33,21 @@ bool contains(const std::string &text, const std::string &part)
   return text.find(part) != std::string::npos;
 }
 
+TEST(RoughSolve, LeavesAPartWhereTheBodyWantsMore)
+{
+  const SupportedGrid body(large);
+  auto options = options_for("algebraic");
+  options.rough_part = 1e-3;
+  const auto solver = body.solver(options);
+  const Vector b = body.grid.right_side();
+  Vector x(b.getMap());
+  EXPECT_TRUE(solver->solve(b, x, {1e-3, 1e-30}).converged); // by the residual: no error is so small
+  EXPECT_LT(body.residual(x, b), 1.01e-6);
+  EXPECT_TRUE(solver->solve(b, x, 1e-3).converged);
+  EXPECT_GT(body.residual(x, b), 1.01e-6) << "not rough";
+  EXPECT_LT(body.residual(x, b), 1.01e-3);
+}
+
 TEST(FailedSolve, OfMeshesIsTakenOverByTheAlgebraicHierarchyWhichSaysWhy)
 {
   const SupportedGrid body(large);

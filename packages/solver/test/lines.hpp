@@ -35,11 +35,10 @@ inline RCP<const Map> line_of(const int n)
 {
   return rcp(new Map(n, 0, Tpetra::getDefaultComm()));
 }
-/// Two unknowns at each.
-inline RCP<const Map> unknowns_of(const Map &nodes)
+inline RCP<const Map> unknowns_of(const Map &nodes, const int dim = 2)
 {
-  return rcp(
-      new Map(2 * nodes.getGlobalNumElements(), 2 * static_cast<std::size_t>(num_local(nodes)), 0, nodes.getComm()));
+  return rcp(new Map(dim * nodes.getGlobalNumElements(), dim * static_cast<std::size_t>(num_local(nodes)), 0,
+                     nodes.getComm()));
 }
 
 /// Linear interpolation between nodes that divide the same line into equal parts.

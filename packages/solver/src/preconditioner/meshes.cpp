@@ -77,7 +77,7 @@ Preconditioner::Prepared Meshes::prepare(double)
     const MeshLevels levels = make_levels_();
     if (levels.level.empty()) throw std::runtime_error("multigrid: a coarser mesh would be too small for the ranks");
     num_levels_ = levels.level.size() + 1;
-    end_ = levels.down_to_few ? levels.end : "algebraic below";
+    remark_ = levels.down_to_few ? levels.remark : "algebraic below";
     H_->allow_rounding(true);
     multigrid_ =
         rcp(new MeshMultigrid(H_, levels, [&](const MeshLevel &level) { return coarsest(level, levels.down_to_few); }));
@@ -95,7 +95,7 @@ void Meshes::learn(const int iterations, const double seconds_of_iteration)
 
 std::string Meshes::description() const
 {
-  return name() + ", " + std::to_string(num_levels_) + " levels" + (end_.empty() ? "" : ", " + end_);
+  return name() + ", " + std::to_string(num_levels_) + " levels" + (remark_.empty() ? "" : ", " + remark_);
 }
 
 void Meshes::forget()

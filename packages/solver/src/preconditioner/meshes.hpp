@@ -45,7 +45,7 @@ private:
   LinearSolverOptions options_;
   RCP<MeshMultigrid> multigrid_; // null: to be made
   std::size_t num_levels_ = 0;   // with the finest one
-  std::string end_;              // of MeshLevels
+  std::string remark_;           // of MeshLevels
   int revision_ = -1;            // of H when it was last brought to it
   bool is_current_ = false;      // the coarsest solver is that of the present contact
   double lost_seconds_ = 0;      // since it was

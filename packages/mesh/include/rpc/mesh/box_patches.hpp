@@ -10,7 +10,7 @@ namespace rpc::mesh
 /// up to 3 x 3 x 3 nodes of order 2.
 NodePatches vertex_stars(const BoxOptions &box, const Comm &comm);
 
-/// The nodes of a box that lie inside each cell of halved(box). A patch is on the rank that owns its first node.
-NodePatches inside_cells_of(const BoxOptions &halved, const BoxOptions &box, const Comm &comm);
+/// The nodes of a box that lie inside each cell of the coarser box, which is halved(box). A patch is on the rank that owns its first node.
+NodePatches inside_cells_of(const BoxOptions &coarse, const BoxOptions &box, const Comm &comm);
 
 } // namespace rpc::mesh

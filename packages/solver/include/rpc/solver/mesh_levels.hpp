@@ -47,7 +47,7 @@ struct MeshLevels {
   bool down_to_few = false;
   /// Why multigrid ends where it does, "thin in z: factored at 48 x 48 x 1 cells", or what else is particular about it; empty where there is
   /// nothing to say.
-  std::string end;
+  std::string remark;
 };
 
 /// Makes them when they are needed; none if there is no coarser mesh. Collective.
