@@ -190,7 +190,8 @@ void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const
     print(out_, "note: from %lld nodes of the contact sides the normal misses the obstacle: they never touch\n",
           static_cast<long long>(contact.num_missing));
   for (const std::string &note :
-       {fem::locking_note(d, scene.model.materials), fem::bending_note(d, scene.model.materials)})
+       {fem::locking_note(d, scene.model.materials), fem::incompressibility_note(d, scene.model.materials),
+        fem::bending_note(d, scene.model.materials)})
     if (!note.empty()) print(out_, "note: %s\n", note.c_str());
   if (!scene.has_steps())
     print(out_, "uzawa newton   |F|/|b|     step    open  closed  yields krylov   time [s]\n");

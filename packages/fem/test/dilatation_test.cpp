@@ -284,6 +284,20 @@ TEST(LockingNote, WarnsOfP1InNearlyIncompressibleMaterialsOnly)
   EXPECT_EQ(note(q1, 0.4999), "");
 }
 
+TEST(IncompressibilityNote, AdvisesQ2WhereOtherElementsOfABoxAreSlow)
+{
+  const auto note = [](const mesh::Element &element, const double nu) {
+    return fem::incompressibility_note(body(small_box(element), world()), fem::Material{1, nu});
+  };
+  const mesh::Element p1{2, 1, mesh::Shape::simplex}, p2{2, 2, mesh::Shape::simplex}, q1{2, 1}, q2{2, 2};
+  EXPECT_NE(note(q1, 0.4999).find("Q1 cells with nu = 0.4999"), std::string::npos);
+  EXPECT_NE(note(q1, 0.4999).find("take Q2"), std::string::npos);
+  EXPECT_NE(note(p2, 0.4999).find("take Q2"), std::string::npos);
+  EXPECT_EQ(note(q1, 0.498), "");
+  EXPECT_EQ(note(q2, 0.4999), "");
+  EXPECT_EQ(note(p1, 0.4999), "") << "these lock, which another note says";
+}
+
 TEST(BendingNote, TellsByWhatFactorLongCellsOfOrderOneAreTooStiff)
 {
   const auto note = [](const mesh::Element &element, const double thickness, const double nu) {

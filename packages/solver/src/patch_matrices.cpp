@@ -93,27 +93,7 @@ PatchMatrices::PatchMatrices(const RepeatedRows &rows, const RCP<const Map> &nod
     }
     node_.push_back(node);
   }
-  const Comm &comm = *nodes->getComm();
-  if (comm.getSize() > 1) {
-    std::vector<int> rank(ghosts_.size()), counts(comm.getSize());
-    const auto size = static_cast<Teuchos_Ordinal>(ghosts_.size());
-    nodes->getRemoteIndexList(Teuchos::ArrayView<const GO>(ghosts_.data(), size),
-                              Teuchos::ArrayView<int>(rank.data(), size));
-    std::vector<std::size_t> order(ghosts_.size()); // of the questions: by the rank that is asked
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](const std::size_t a, const std::size_t b) { return rank[a] < rank[b]; });
-    std::vector<double> questions;
-    answer_.resize(ghosts_.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      ++counts[rank[order[k]]];
-      questions.push_back(static_cast<double>(ghosts_[order[k]]));
-      answer_[order[k]] = k;
-    }
-    exchange_ = std::make_unique<Exchange>(comm, counts);
-    for (const double gid : exchange_->forward(questions, 1))
-      asked_.push_back(nodes->getLocalElement(static_cast<GO>(gid)));
-  }
+  if (nodes->getComm()->getSize() > 1) ask_owners();
   ghost_rows_ = rows_of_ghosts([this](const LO node, BlockRows &to) { rows_->append(node, to); });
   const auto row = to_host(added.row), column = to_host(added.column);
   for (std::size_t b = 0; b < row.extent(0); ++b) {
@@ -121,6 +101,30 @@ PatchMatrices::PatchMatrices(const RepeatedRows &rows, const RCP<const Map> &nod
     added_column_.push_back(rows_->gid(column(b)));
   }
   set_added(added.block);
+}
+
+/// Tells the owners of ghosts whose rows this rank wants; collective.
+void PatchMatrices::ask_owners()
+{
+  const Comm &comm = *nodes_->getComm();
+  std::vector<int> rank(ghosts_.size()), counts(comm.getSize());
+  const auto size = static_cast<Teuchos_Ordinal>(ghosts_.size());
+  nodes_->getRemoteIndexList(Teuchos::ArrayView<const GO>(ghosts_.data(), size),
+                             Teuchos::ArrayView<int>(rank.data(), size));
+  std::vector<std::size_t> order(ghosts_.size()); // of the questions: by the rank that is asked
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const std::size_t a, const std::size_t b) { return rank[a] < rank[b]; });
+  std::vector<double> questions;
+  answer_.resize(ghosts_.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    ++counts[rank[order[k]]];
+    questions.push_back(static_cast<double>(ghosts_[order[k]]));
+    answer_[order[k]] = k;
+  }
+  exchange_ = std::make_unique<Exchange>(comm, counts);
+  for (const double gid : exchange_->forward(questions, 1))
+    asked_.push_back(nodes_->getLocalElement(static_cast<GO>(gid)));
 }
 
 void PatchMatrices::forget_rows()

@@ -61,6 +61,7 @@ private:
   using AppendRow = std::function<void(LO node, BlockRows &to)>;
   /// Takes a block of a row: its column's gid and its values.
   using TakeBlock = std::function<void(GO column, const double *value)>;
+  void ask_owners();
   BlockRows rows_of_ghosts(const AppendRow &append) const;
   void append_added(LO node, const BlocksOnHost &block, BlockRows &to) const;
   std::vector<double> gathered(int patch, const std::function<void(LO node, const TakeBlock &take)> &blocks_of) const;

@@ -197,38 +197,42 @@ PatchSolver::PatchSolver(const RepeatedRows &rows, const RCP<const Map> &nodes, 
     : matrices_(rows, nodes, columns, patches, added), dim_(rows.dim()), comm_(nodes->getComm()),
       halo_(std::make_shared<const Halo>(Halo(nodes, matrices_.ghosts()), dim_))
 {
-  const int num_patches = matrices_.size();
+  invert_what_stays();
+  list_entries();
+  set_added(added.block);
+}
+
+/// Inverses of the patches that contact does not add to, and room for the others.
+void PatchSolver::invert_what_stays()
+{
   std::map<std::vector<LO>, int> patch_like;
   std::unordered_multimap<std::uint64_t, int> patches_with; // by their matrices' fingerprints
-  std::vector<std::size_t> place(num_patches);
+  std::vector<std::size_t> place(matrices_.size());
   std::vector<double> inverses;
   bool good = true;
-  for (int p = 0; p < num_patches; ++p) {
+  const auto make = [&](const int p) {
+    auto matrix = matrices_.without_contact(p);
+    const std::uint64_t print = fingerprint(matrix);
+    const auto [first, last] = patches_with.equal_range(print);
+    const auto equal =
+        std::find_if(first, last, [&](const auto &other) { return matrices_.without_contact(other.second) == matrix; });
+    if (equal != last) return place[equal->second];
+    const std::size_t end = inverses.size();
+    good = append_inverse(std::move(matrix), matrices_.rows_of(p), inverses) && good;
+    ++num_inverses_;
+    patches_with.emplace(print, p);
+    return end;
+  };
+  for (int p = 0; p < matrices_.size(); ++p) {
     if (matrices_.changes(p)) {
       changing_.push_back(p);
       without_.push_back(matrices_.without_contact(p));
       continue;
     }
     const auto likeness = matrices_.likeness(p);
-    const auto known = likeness.empty() ? patch_like.end() : patch_like.find(likeness);
-    int other = known == patch_like.end() ? -1 : known->second; // has the same matrix
-    if (other < 0) {
-      auto matrix = matrices_.without_contact(p);
-      const std::uint64_t print = fingerprint(matrix);
-      const auto [first, last] = patches_with.equal_range(print);
-      const auto equal =
-          std::find_if(first, last, [&](const auto &of) { return matrices_.without_contact(of.second) == matrix; });
-      if (equal != last) {
-        other = equal->second;
-      } else {
-        place[p] = inverses.size();
-        good = append_inverse(std::move(matrix), matrices_.rows_of(p), inverses) && good;
-        ++num_inverses_;
-        patches_with.emplace(print, p);
-      }
-      if (!likeness.empty()) patch_like.emplace(likeness, p);
-    }
-    if (other >= 0) place[p] = place[other];
+    const auto like = likeness.empty() ? patch_like.end() : patch_like.find(likeness);
+    place[p] = like == patch_like.end() ? make(p) : place[like->second];
+    if (!likeness.empty()) patch_like.emplace(likeness, p);
   }
   matrices_.forget_rows();
   first_changing_ = inverses.size();
@@ -242,10 +246,16 @@ PatchSolver::PatchSolver(const RepeatedRows &rows, const RCP<const Map> &nodes, 
   last_added_.resize(changing_.size());
   changing_inverse_ = HostView<double *>("rpc::solver::changing_inverses", inverses.size() - first_changing_);
   if (min_all(*comm_, good ? 1 : 0) == 0) throw std::runtime_error(not_definite);
+  place_ = device_values(place, "rpc::solver::place_of_inverse");
+  inverse_ = device_values(inverses, "rpc::solver::patch_inverses");
+}
 
+/// The nodes of patches, and the patches of nodes.
+void PatchSolver::list_entries()
+{
   const auto &begin = matrices_.begin(), &node = matrices_.node();
   std::vector<LO> patch(node.size()), first_entry(matrices_.num_nodes() + 1), entry(node.size());
-  for (int p = 0; p < num_patches; ++p) std::fill(patch.begin() + begin[p], patch.begin() + begin[p + 1], p);
+  for (int p = 0; p < matrices_.size(); ++p) std::fill(patch.begin() + begin[p], patch.begin() + begin[p + 1], p);
   for (const LO n : node) ++first_entry[n + 1];
   std::partial_sum(first_entry.begin(), first_entry.end(), first_entry.begin());
   std::vector<LO> next(first_entry.begin(), first_entry.end() - 1);
@@ -253,12 +263,9 @@ PatchSolver::PatchSolver(const RepeatedRows &rows, const RCP<const Map> &nodes, 
   begin_ = device_values(begin, "rpc::solver::patch_begin");
   node_ = device_values(node, "rpc::solver::patch_nodes");
   patch_ = device_values(patch, "rpc::solver::patch_of_entry");
-  place_ = device_values(place, "rpc::solver::place_of_inverse");
-  inverse_ = device_values(inverses, "rpc::solver::patch_inverses");
   first_entry_ = device_values(first_entry, "rpc::solver::first_entry");
   entry_ = device_values(entry, "rpc::solver::entries_of_nodes");
   part_ = DeviceView<double *>("rpc::solver::patch_parts", dim_ * node.size());
-  set_added(added.block);
 }
 
 void PatchSolver::set_added(const DeviceView<double ***> &block)

@@ -39,6 +39,9 @@ public:
   int num_inverses() const { return num_inverses_; }
 
 private:
+  void invert_what_stays();
+  void list_entries();
+
   PatchMatrices matrices_;
   std::vector<int> changing_; // patches that contact adds to
   std::vector<std::vector<double>> without_,

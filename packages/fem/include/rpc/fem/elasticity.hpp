@@ -58,6 +58,10 @@ DeviceView<int *> projected_dilatation_table(const Discretization &d, const Mate
 /// What a user should know: that elements which lock meet a nearly incompressible material; empty if there is nothing.
 std::string locking_note(const Discretization &d, const Materials &materials);
 
+/// What a user should know: that linear solves take many iterations for a nearly incompressible box of these elements, and of which they do
+/// not (theory, 4.7f); empty if there is nothing.
+std::string incompressibility_note(const Discretization &d, const Materials &materials);
+
 /// What a user should know: that cells of order 1 are so long that a thin box is too stiff where it bends (theory, 2.6a); empty if there
 /// is nothing.
 std::string bending_note(const Discretization &d, const Materials &materials);
