@@ -16,7 +16,7 @@ namespace rpc::solver
 namespace
 {
 
-const LO elsewhere = Teuchos::OrdinalTraits<LO>::invalid();
+const LO owned_elsewhere = Teuchos::OrdinalTraits<LO>::invalid();
 
 void append_row(const BlockRows &from, const std::size_t row, const std::size_t area, BlockRows &to)
 {
@@ -86,7 +86,7 @@ PatchMatrices::PatchMatrices(const RepeatedRows &rows, const RCP<const Map> &nod
   std::unordered_map<GO, LO> place_of_ghost;
   for (const GO gid : patches.node) {
     LO node = nodes->getLocalElement(gid);
-    if (node == elsewhere) {
+    if (node == owned_elsewhere) {
       const auto [at, is_new] = place_of_ghost.try_emplace(gid, num_owned_ + static_cast<LO>(ghosts_.size()));
       if (is_new) ghosts_.push_back(gid);
       node = at->second;

@@ -20,7 +20,7 @@ namespace rpc::solver
 namespace
 {
 
-constexpr const char *not_definite = "multigrid: the matrix of a patch of nodes is not positive definite";
+constexpr const char *patch_not_definite = "multigrid: the matrix of a patch of nodes is not positive definite";
 
 /// Distance of the columns of an inverse: whole vectors.
 KOKKOS_INLINE_FUNCTION constexpr std::size_t stride_of(const std::size_t rows)
@@ -245,7 +245,7 @@ void PatchSolver::invert_what_stays()
   num_inverses_ += static_cast<int>(changing_.size());
   last_added_.resize(changing_.size());
   changing_inverse_ = HostView<double *>("rpc::solver::changing_inverses", inverses.size() - first_changing_);
-  if (min_all(*comm_, good ? 1 : 0) == 0) throw std::runtime_error(not_definite);
+  if (min_all(*comm_, good ? 1 : 0) == 0) throw std::runtime_error(patch_not_definite);
   place_ = device_values(place, "rpc::solver::place_of_inverse");
   inverse_ = device_values(inverses, "rpc::solver::patch_inverses");
 }
@@ -285,7 +285,7 @@ void PatchSolver::set_added(const DeviceView<double ***> &block)
   }
   if (min_all(*comm_, good ? 1 : 0) == 0) {
     for (auto &last : last_added_) last.clear(); // all are made anew next
-    throw std::runtime_error(not_definite);
+    throw std::runtime_error(patch_not_definite);
   }
   if (!changed) return;
   const std::pair<std::size_t, std::size_t> all(first_changing_, inverse_.extent(0));
