@@ -58,7 +58,7 @@ Lists entries_at(const std::vector<LO> &nodes, const std::vector<LO> &node)
 
 /// Appends the blocks of a node's rows, by their columns, with their parts in the order of the contact nodes.
 /// @param n  number of the node among those of `blocks` and `around`
-void add_blocks(const HostBlocks &around, const std::size_t n, const int dim, const std::vector<Part> &parts,
+void add_blocks(const HostRows &around, const std::size_t n, const int dim, const std::vector<Part> &parts,
                 ContactBlocks &blocks)
 {
   const LO node = blocks.nodes[n];
@@ -100,7 +100,7 @@ ContactBlocks contact_blocks(const NearSupports &supports, const RepeatedRows &A
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   if (nodes.empty()) return blocks;
-  const HostBlocks around = host_blocks(A, nodes);
+  const HostRows around = host_blocks(A, nodes);
   std::vector<int> contact_of; // (supports' entries)
   for (int c = 0; c < supports.size(); ++c) contact_of.resize(supports.begin[c + 1], c);
   const Lists entries = entries_at(nodes, row_node);

@@ -1,6 +1,7 @@
 #include "contact_supports.hpp"
 
 #include "host_rows.hpp"
+#include "owner_questions.hpp"
 #include "rpc/core/exchange.hpp"
 
 #include <Teuchos_Array.hpp>
@@ -29,16 +30,6 @@ std::vector<GO> distinct(std::vector<GO> gids)
 std::size_t place_in(const std::vector<GO> &sorted, const GO gid)
 {
   return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), gid) - sorted.begin());
-}
-
-/// (gids) The rank that owns each of them; collective.
-std::vector<int> owners(const Map &map, const std::vector<GO> &gids)
-{
-  std::vector<int> ranks(gids.size(), 0);
-  if (map.getComm()->getSize() > 1)
-    map.getRemoteIndexList(Teuchos::ArrayView<const GO>(gids.data(), static_cast<Teuchos_Ordinal>(gids.size())),
-                           Teuchos::ArrayView<int>(ranks.data(), static_cast<Teuchos_Ordinal>(ranks.size())));
-  return ranks;
 }
 
 /// Numbers of a message: those of a support's entries, and the entries.
@@ -90,40 +81,19 @@ SupportRows own_rows(const CrsMatrix &P, const std::vector<LO> &rows)
 /// (gids) Rows of a matrix that other ranks own; collective.
 SupportRows rows_of_others(const CrsMatrix &P, const std::vector<GO> &gids)
 {
-  const Comm &comm = *P.getComm();
-  const auto rank = owners(*P.getRowMap(), gids);
-  std::vector<std::size_t> order(gids.size()); // of the questions: by the rank that is asked
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](const std::size_t a, const std::size_t b) { return rank[a] < rank[b]; });
-  std::vector<int> counts(comm.getSize());
-  std::vector<double> questions;
-  for (const std::size_t k : order) {
-    ++counts[rank[k]];
-    questions.push_back(static_cast<double>(gids[k]));
-  }
-  const Exchange exchange(comm, counts);
-  std::vector<LO> asked;
-  for (const double gid : exchange.forward(questions, 1))
-    asked.push_back(P.getRowMap()->getLocalElement(static_cast<GO>(gid)));
-  const SupportRows mine = own_rows(P, asked);
-  int longest = 0;
-  for (int i = 0; i < mine.size(); ++i) longest = std::max(longest, row_length(mine, i));
-  const int width = 1 + 2 * max_all(comm, longest); // number of entries, entries
-  std::vector<double> answers(static_cast<std::size_t>(width) * asked.size());
+  const OwnerQuestions questions(*P.getRowMap(), gids);
+  const SupportRows mine = own_rows(P, questions.asked());
+  NumberLists entries; // twice as many numbers
+  entries.value.resize(2 * mine.node.size());
+  double *to = entries.value.data();
   for (int i = 0; i < mine.size(); ++i) {
-    double *answer = &answers[static_cast<std::size_t>(width) * i];
-    *answer++ = row_length(mine, i);
-    write_row(mine, i, answer);
+    write_row(mine, i, to);
+    entries.begin.push_back(2 * mine.begin[i + 1]);
   }
-  const auto got = exchange.back(answers, width);
-  std::vector<std::size_t> place(order.size()); // of an answer
-  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = k;
+  const NumberLists got = questions.answers(entries);
   SupportRows rows;
-  for (const std::size_t k : place) {
-    const double *const row = &got[width * k];
-    read_row(row + 1, static_cast<int>(row[0]), rows);
-  }
+  for (std::size_t k = 0; k < gids.size(); ++k)
+    read_row(got.value.data() + got.begin[k], static_cast<int>(got.begin[k + 1] - got.begin[k]) / 2, rows);
   return rows;
 }
 

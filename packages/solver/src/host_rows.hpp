@@ -8,24 +8,18 @@
 namespace rpc::solver
 {
 
-/// Some of a matrix's own rows, on the host.
+/// Rows of a matrix on the host: for each column a value, or a block of values.
 struct HostRows {
-  std::vector<std::size_t> begin{0}; // (rows + 1) where a row's entries begin here
-  HostView<LO *> column;             // (entries)  local
-  HostView<double *> value;          // (entries)
+  std::vector<std::size_t> begin{0}; // (rows + 1) where a row's columns begin
+  HostView<LO *> column;             // (columns)  local
+  HostView<double *> value;          // (columns, values of a column)
 };
 
-/// Only these rows leave the device. @param rows  local
+/// Some of a matrix's own rows. Only these leave the device. @param rows  local
 HostRows host_rows(const CrsMatrix &A, const std::vector<LO> &rows);
 
-/// The blocks in the rows of some owned nodes, on the host.
-struct HostBlocks {
-  std::vector<std::size_t> begin{0}; // (nodes + 1) where a node's blocks begin
-  HostView<LO *> column;             // (blocks)           node, overlap lid
-  HostView<double *> value;          // (blocks, dim, dim)
-};
-
-/// Only these leave the device. @param nodes  lids
-HostBlocks host_blocks(const RepeatedRows &rows, const std::vector<LO> &nodes);
+/// The blocks in the rows of some owned nodes: columns are nodes (overlap lids), each with dim x dim values, row after row. Only these leave
+/// the device. @param nodes  lids
+HostRows host_blocks(const RepeatedRows &rows, const std::vector<LO> &nodes);
 
 } // namespace rpc::solver

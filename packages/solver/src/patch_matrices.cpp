@@ -1,13 +1,12 @@
 #include "patch_matrices.hpp"
 
+#include "host_rows.hpp"
 #include "rpc/core/dofs.hpp"
-#include "rpc/core/error.hpp"
 
 #include <Teuchos_OrdinalTraits.hpp>
 #include <algorithm>
-#include <limits>
+#include <iterator>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -29,58 +28,10 @@ void append_row(const BlockRows &from, const std::size_t row, const std::size_t 
 
 } // namespace
 
-/// The rows of owned nodes.
-class PatchMatrices::Rows
-{
-public:
-  Rows(const RepeatedRows &rows, const std::vector<GO> &columns)
-      : dim_(rows.dim()), columns_(columns), kind_(to_host(rows.blocks().kind)), begin_(to_host(rows.blocks().begin)),
-        offset_(to_host(rows.blocks().offset)), value_(to_host(rows.blocks().value)),
-        row_map_(to_host(rows.blocks().rest.graph.row_map)), entries_(to_host(rows.blocks().rest.graph.entries)),
-        values_(to_host(rows.blocks().rest.values))
-  {
-  }
-  /// Nodes of one kind have the same rows but for a shift of the columns; < 0: of no kind.
-  int kind(const LO node) const { return kind_(node); }
-  GO gid(const LO column) const { return columns_[column]; }
-  void append(const LO node, BlockRows &to) const
-  {
-    const int k = kind_(node);
-    if (k >= 0) {
-      for (LO n = begin_(k); n < begin_(k + 1); ++n) {
-        to.column.push_back(columns_[node + offset_(n)]);
-        const std::size_t block = RepeatedRows::block_size(dim_) * n;
-        for (int i = 0; i < dim_; ++i)
-          for (int j = 0; j < dim_; ++j) to.value.push_back(value_(block + RepeatedRows::place_in_block(dim_, i, j)));
-      }
-    } else {
-      const LO row = dim_ * (-1 - k);
-      const std::size_t first = row_map_(row), length = row_map_(row + 1) - first;
-      for (std::size_t e = 0; e < length; e += dim_) {
-        to.column.push_back(columns_[node_of(dim_, entries_(first + e))]);
-        for (int i = 0; i < dim_; ++i)
-          for (int j = 0; j < dim_; ++j) to.value.push_back(values_(row_map_(row + i) + e + j));
-      }
-    }
-    to.begin.push_back(to.column.size());
-  }
-
-private:
-  using Matrix = RowsOfNodes::LocalMatrix;
-
-  int dim_;
-  std::vector<GO> columns_;
-  decltype(to_host(DeviceView<int *>())) kind_;
-  decltype(to_host(DeviceView<LO *>())) begin_, offset_;
-  decltype(to_host(DeviceView<double *>())) value_;
-  decltype(to_host(Matrix::row_map_type())) row_map_;
-  decltype(to_host(Matrix::index_type())) entries_;
-  decltype(to_host(Matrix::values_type())) values_;
-};
-
 PatchMatrices::PatchMatrices(const RepeatedRows &rows, const RCP<const Map> &nodes, const std::vector<GO> &columns,
                              const NodePatches &patches, const AddedBlocks &added)
-    : dim_(rows.dim()), nodes_(nodes), num_owned_(num_local(*nodes)), rows_(std::make_shared<Rows>(rows, columns))
+    : dim_(rows.dim()), nodes_(nodes), num_owned_(num_local(*nodes)), rows_(rows), columns_(columns),
+      kind_(to_host(rows.blocks().kind))
 {
   for (const std::size_t b : patches.begin) begin_.push_back(static_cast<LO>(b));
   std::unordered_map<GO, LO> place_of_ghost;
@@ -93,38 +44,21 @@ PatchMatrices::PatchMatrices(const RepeatedRows &rows, const RCP<const Map> &nod
     }
     node_.push_back(node);
   }
-  if (nodes->getComm()->getSize() > 1) ask_owners();
-  ghost_rows_ = rows_of_ghosts([this](const LO node, BlockRows &to) { rows_->append(node, to); });
+  if (nodes->getComm()->getSize() > 1) {
+    questions_ = std::make_unique<OwnerQuestions>(*nodes, ghosts_);
+    const HostRows asked = host_blocks(*rows_, questions_->asked());
+    BlockRows mine;
+    mine.begin = asked.begin;
+    for (std::size_t b = 0; b < asked.begin.back(); ++b) mine.column.push_back(columns_[asked.column(b)]);
+    mine.value.assign(asked.value.data(), asked.value.data() + asked.value.extent(0));
+    ghost_rows_ = rows_of_ghosts(mine);
+  }
   const auto row = to_host(added.row), column = to_host(added.column);
   for (std::size_t b = 0; b < row.extent(0); ++b) {
     added_row_.push_back(row(b));
-    added_column_.push_back(rows_->gid(column(b)));
+    added_column_.push_back(columns_[column(b)]);
   }
   set_added(added.block);
-}
-
-/// Tells the owners of ghosts whose rows this rank wants; collective.
-void PatchMatrices::ask_owners()
-{
-  const Comm &comm = *nodes_->getComm();
-  std::vector<int> rank(ghosts_.size()), counts(comm.getSize());
-  const auto size = static_cast<Teuchos_Ordinal>(ghosts_.size());
-  nodes_->getRemoteIndexList(Teuchos::ArrayView<const GO>(ghosts_.data(), size),
-                             Teuchos::ArrayView<int>(rank.data(), size));
-  std::vector<std::size_t> order(ghosts_.size()); // of the questions: by the rank that is asked
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](const std::size_t a, const std::size_t b) { return rank[a] < rank[b]; });
-  std::vector<double> questions;
-  answer_.resize(ghosts_.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    ++counts[rank[order[k]]];
-    questions.push_back(static_cast<double>(ghosts_[order[k]]));
-    answer_[order[k]] = k;
-  }
-  exchange_ = std::make_unique<Exchange>(comm, counts);
-  for (const double gid : exchange_->forward(questions, 1))
-    asked_.push_back(nodes_->getLocalElement(static_cast<GO>(gid)));
 }
 
 void PatchMatrices::forget_rows()
@@ -133,40 +67,31 @@ void PatchMatrices::forget_rows()
   ghost_rows_ = {};
 }
 
-/// (ghosts) What their owners append for them; collective.
-BlockRows PatchMatrices::rows_of_ghosts(const AppendRow &append) const
+/// (ghosts) The rows that their owners have; collective.
+/// @param mine  (nodes that this rank is asked for)
+BlockRows PatchMatrices::rows_of_ghosts(const BlockRows &mine) const
 {
-  BlockRows result;
-  if (!exchange_) return result;
-  BlockRows mine;
-  for (const LO node : asked_) append(node, mine);
   const std::size_t area = static_cast<std::size_t>(dim_) * dim_;
-  std::size_t longest = 0;
-  for (std::size_t r = 0; r < asked_.size(); ++r) longest = std::max(longest, mine.begin[r + 1] - mine.begin[r]);
-  longest = max_all(*nodes_->getComm(), longest);
-  const std::size_t width = 1 + longest * (1 + area); // the number of blocks, their columns, their values
-  const double bytes =
-      static_cast<double>(max_all(*nodes_->getComm(), asked_.size())) * static_cast<double>(width) * sizeof(double);
-  RPC_REQUIRE_CODE(bytes < std::numeric_limits<int>::max(), ExitCode::bad_mesh,
-                   "multigrid: neighbouring ranks would exchange "
-                       << bytes << " bytes, of which a message has at most 2^31. Use more ranks.");
-  std::vector<double> answers(width * asked_.size());
-  for (std::size_t r = 0; r < asked_.size(); ++r) {
-    const std::size_t first = mine.begin[r], size = mine.begin[r + 1] - first;
-    double *const to = &answers[width * r];
-    to[0] = static_cast<double>(size);
-    for (std::size_t b = 0; b < size; ++b) to[1 + b] = static_cast<double>(mine.column[first + b]);
-    std::copy_n(mine.value.begin() + static_cast<std::ptrdiff_t>(area * first), area * size, to + 1 + longest);
+  NumberLists blocks; // each a column and its values
+  for (std::size_t r = 0; r + 1 < mine.begin.size(); ++r) {
+    for (std::size_t b = mine.begin[r]; b < mine.begin[r + 1]; ++b) {
+      const double *const value = &mine.value[area * b];
+      blocks.value.push_back(static_cast<double>(mine.column[b]));
+      blocks.value.insert(blocks.value.end(), value, value + area);
+    }
+    blocks.begin.push_back(blocks.value.size());
   }
-  const auto got = exchange_->back(answers, static_cast<int>(width));
-  for (const std::size_t answer : answer_) {
-    const double *const from = &got[width * answer], *const value = from + 1 + longest;
-    const auto size = static_cast<std::size_t>(from[0]);
-    for (std::size_t b = 0; b < size; ++b) result.column.push_back(static_cast<GO>(from[1 + b]));
-    result.value.insert(result.value.end(), value, value + area * size);
-    result.begin.push_back(result.column.size());
+  const NumberLists got = questions_->answers(blocks);
+  BlockRows rows;
+  for (std::size_t g = 0; g + 1 < got.begin.size(); ++g) {
+    for (std::size_t at = got.begin[g]; at < got.begin[g + 1]; at += 1 + area) {
+      const double *const value = &got.value[at] + 1;
+      rows.column.push_back(static_cast<GO>(got.value[at]));
+      rows.value.insert(rows.value.end(), value, value + area);
+    }
+    rows.begin.push_back(rows.column.size());
   }
-  return result;
+  return rows;
 }
 
 bool PatchMatrices::changes(const int patch) const
@@ -180,7 +105,7 @@ std::vector<LO> PatchMatrices::likeness(const int patch) const
 {
   std::vector<LO> likeness;
   for (LO e = begin_[patch]; e < begin_[patch + 1]; ++e) {
-    const int kind = node_[e] < num_owned_ ? rows_->kind(node_[e]) : -1;
+    const int kind = node_[e] < num_owned_ ? kind_(node_[e]) : -1;
     if (kind < 0) return {};
     likeness.push_back(kind);
     likeness.push_back(node_[e] - node_[begin_[patch]]);
@@ -212,16 +137,28 @@ std::vector<double> PatchMatrices::gathered(const int patch,
 
 std::vector<double> PatchMatrices::without_contact(const int patch) const
 {
-  const auto take_row = [this](const BlockRows &rows, const std::size_t row, const TakeBlock &take) {
-    for (std::size_t b = rows.begin[row]; b < rows.begin[row + 1]; ++b)
-      take(rows.column[b], &rows.value[static_cast<std::size_t>(dim_) * dim_ * b]);
-  };
+  std::vector<LO> own;
+  std::copy_if(node_.begin() + begin_[patch], node_.begin() + begin_[patch + 1], std::back_inserter(own),
+               [this](const LO node) { return node < num_owned_; });
+  const HostRows rows = host_blocks(*rows_, own);
+  const std::size_t area = static_cast<std::size_t>(dim_) * dim_;
+  std::size_t next = 0; // of `own`
   return gathered(patch, [&](const LO node, const TakeBlock &take) {
-    if (node >= num_owned_) return take_row(ghost_rows_, node - num_owned_, take);
-    BlockRows own;
-    rows_->append(node, own);
-    take_row(own, 0, take);
+    if (node < num_owned_) {
+      for (std::size_t b = rows.begin[next]; b < rows.begin[next + 1]; ++b)
+        take(columns_[rows.column(b)], &rows.value(area * b));
+      ++next;
+    } else {
+      take_row(ghost_rows_, node - num_owned_, take);
+    }
   });
+}
+
+/// The blocks of a row.
+void PatchMatrices::take_row(const BlockRows &rows, const std::size_t row, const TakeBlock &take) const
+{
+  for (std::size_t b = rows.begin[row]; b < rows.begin[row + 1]; ++b)
+    take(rows.column[b], &rows.value[static_cast<std::size_t>(dim_) * dim_ * b]);
 }
 
 /// Appends what contact adds in the rows of an owned node.
@@ -240,20 +177,19 @@ void PatchMatrices::append_added(const LO node, const BlocksOnHost &block, Block
 void PatchMatrices::set_added(const DeviceView<double ***> &block)
 {
   const auto value = to_host(block);
-  const auto append = [&](const LO node, BlockRows &to) { append_added(node, value, to); };
   added_ = {};
-  for (LO n = 0; n < num_owned_; ++n) append(n, added_);
-  const BlockRows of_ghosts = rows_of_ghosts(append);
+  for (LO n = 0; n < num_owned_; ++n) append_added(n, value, added_);
+  if (!questions_) return;
+  BlockRows mine;
+  for (const LO node : questions_->asked()) append_added(node, value, mine);
+  const BlockRows of_ghosts = rows_of_ghosts(mine);
   for (std::size_t g = 0; g < ghosts_.size(); ++g)
     append_row(of_ghosts, g, static_cast<std::size_t>(dim_) * dim_, added_);
 }
 
 std::vector<double> PatchMatrices::added(const int patch) const
 {
-  return gathered(patch, [this](const LO node, const TakeBlock &take) {
-    for (std::size_t b = added_.begin[node]; b < added_.begin[node + 1]; ++b)
-      take(added_.column[b], &added_.value[static_cast<std::size_t>(dim_) * dim_ * b]);
-  });
+  return gathered(patch, [this](const LO node, const TakeBlock &take) { take_row(added_, node, take); });
 }
 
 } // namespace rpc::solver

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "owner_questions.hpp"
 #include "rpc/algebra/repeated_rows.hpp"
-#include "rpc/core/exchange.hpp"
 #include "rpc/solver/mesh_levels.hpp"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace rpc::solver
@@ -55,14 +56,11 @@ public:
   std::vector<double> added(int patch) const;
 
 private:
-  class Rows;
   using BlocksOnHost = decltype(to_host(DeviceView<double ***>())); // in the device's layout
-  /// Appends the blocks of an owned node.
-  using AppendRow = std::function<void(LO node, BlockRows &to)>;
   /// Takes a block of a row: its column's gid and its values.
   using TakeBlock = std::function<void(GO column, const double *value)>;
-  void ask_owners();
-  BlockRows rows_of_ghosts(const AppendRow &append) const;
+  BlockRows rows_of_ghosts(const BlockRows &mine) const;
+  void take_row(const BlockRows &rows, std::size_t row, const TakeBlock &take) const;
   void append_added(LO node, const BlocksOnHost &block, BlockRows &to) const;
   std::vector<double> gathered(int patch, const std::function<void(LO node, const TakeBlock &take)> &blocks_of) const;
 
@@ -71,14 +69,15 @@ private:
   LO num_owned_;
   std::vector<LO> begin_, node_;
   std::vector<GO> ghosts_;
-  std::unique_ptr<Exchange> exchange_; // from ghosts to their owners; null in one process
-  std::vector<LO> asked_;              // owned nodes that others ask for
-  std::vector<std::size_t> answer_;    // (ghosts) which of the answers is its own
-  std::shared_ptr<const Rows> rows_;   // of the owned nodes; null: forgotten
-  BlockRows ghost_rows_;               // (ghosts)
-  std::vector<LO> added_row_;          // (blocks) ascending
-  std::vector<GO> added_column_;       // (blocks)
-  BlockRows added_;                    // (nodes) what contact adds now
+  std::unique_ptr<OwnerQuestions> questions_; // about the ghosts; null in one process
+  std::optional<RepeatedRows> rows_;          // of the owned nodes; none: forgotten
+  std::vector<GO> columns_;                   // (nodes of A's columns) gids
+  decltype(to_host(DeviceView<int *>()))
+      kind_;             // (owned nodes) nodes of one kind have the same rows but for a shift of columns; < 0: of none
+  BlockRows ghost_rows_; // (ghosts)
+  std::vector<LO> added_row_;    // (blocks) ascending
+  std::vector<GO> added_column_; // (blocks)
+  BlockRows added_;              // (nodes) what contact adds now
 };
 
 } // namespace rpc::solver
