@@ -199,7 +199,7 @@ PatchSolver::PatchSolver(const RepeatedRows &rows, const RCP<const Map> &nodes, 
 {
   invert_what_stays();
   list_entries();
-  set_added(added.block);
+  invert_what_changes();
 }
 
 /// Inverses of the patches that contact does not add to, and room for the others.
@@ -271,6 +271,12 @@ void PatchSolver::list_entries()
 void PatchSolver::set_added(const DeviceView<double ***> &block)
 {
   matrices_.set_added(block);
+  invert_what_changes();
+}
+
+/// Inverses of the patches to which contact adds something else than last time.
+void PatchSolver::invert_what_changes()
+{
   bool good = true, changed = false;
   std::vector<double> inverse;
   for (std::size_t c = 0; c < changing_.size(); ++c) {

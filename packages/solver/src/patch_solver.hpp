@@ -40,6 +40,7 @@ public:
 
 private:
   void invert_what_stays();
+  void invert_what_changes();
   void list_entries();
 
   PatchMatrices matrices_;
