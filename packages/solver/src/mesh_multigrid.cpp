@@ -167,8 +167,8 @@ struct MeshMultigrid::Level {
   std::unique_ptr<PatchSolver> interiors;
   std::unique_ptr<NodeInterpolation> interpolation; // from the next coarser mesh
   RCP<CoarseContact> coarse;                        // the matrix of the next coarser mesh
-  RCP<const Map>
-      blocks; // this mesh's blocks of contact, of which the coarser one's are made; null: of contact nodes' own
+  /// This mesh's blocks of contact, of which the coarser one's are made; null: these are made of contact nodes' own.
+  RCP<const Map> blocks;
   RCP<Vector> coarse_residual, correction;
   RCP<Vector> fine_correction, product, inside; // where there are interiors
 
@@ -278,13 +278,15 @@ DeviceView<double ***> MeshMultigrid::write_contact()
     const auto &blocks = levels_[l]->blocks;
     levels_[l]->coarse->write(blocks.is_null() ? packed : levels_[l - 1]->coarse->packed_sums(blocks));
   }
-  levels_[0]->smoother->set_blocks(contact_node_, H_->blocks());
+  levels_[0]->smoother->set_blocks(contact_node_, H_->blocks()); // truncation asks for them, on stars too
+  if (levels_[0]->stars) levels_[0]->stars->set_added(H_->update());
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const CoarseContact &contact = *levels_[l - 1]->coarse;
-    levels_[l]->smoother->set_blocks(contact.nodes(), contact.blocks());
+    if (levels_[l]->stars)
+      levels_[l]->stars->set_added(contact.added().block);
+    else
+      levels_[l]->smoother->set_blocks(contact.nodes(), contact.blocks());
   }
-  for (std::size_t l = 0; l < levels_.size(); ++l)
-    if (levels_[l]->stars) levels_[l]->stars->set_added(l == 0 ? H_->update() : levels_[l - 1]->coarse->added().block);
   return update;
 }
 
