@@ -200,6 +200,15 @@ GO UpdatedOperator::set(const NodePoints &points, const DeviceView<double ***> &
   return all[0];
 }
 
+void UpdatedOperator::follow(const UpdatedOperator &other)
+{
+  if (revision_ == other.revision_) return;
+  update_ = other.update_; // a change of either makes other blocks
+  coupling_ = other.coupling_;
+  symmetric_ = other.symmetric_;
+  revision_ = other.revision_;
+}
+
 DeviceView<double ***> UpdatedOperator::blocks() const
 {
   return sum_of(base_blocks_, update_);

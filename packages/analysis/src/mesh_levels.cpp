@@ -1,6 +1,7 @@
 #include "rpc/analysis/mesh_levels.hpp"
 
 #include "rpc/fem/interpolation.hpp"
+#include "rpc/fem/soft_dilatation.hpp"
 #include "rpc/mesh/box_patches.hpp"
 
 #include <algorithm>
@@ -20,9 +21,13 @@ constexpr GO few_2d = 800, few_3d = 400;
 // Unknowns of a coarsest mesh that is still factored, where there is no coarser one.
 constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
 
-// Above this ratio smoothers on stars take less time than those of single nodes, by measurement in space; on cells that are stretched more
-// than that they take too many iterations.                                                                        (4.7f)
-constexpr double least_ratio_of_stars = 0.48, most_stretched_of_stars = 5;
+// Above this ratio a mixed form, and smoothers on stars, take less time than smoothers of single nodes, by measurement in space; on cells that
+// are stretched more than that stars take too many iterations.                                              (4.7f), (4.13)
+constexpr double nearly_incompressible = 0.48, most_stretched_of_stars = 5;
+
+// Poisson's ratio of the soft part of a mixed form. A larger one costs multigrid iterations, a smaller one makes the pressures' equations
+// worse, most with one constant pressure in a tetrahedron of P2, by measurement.                                   (4.13)
+constexpr double ratio_of_soft_part = 0.4, ratio_of_soft_tetrahedra = 0.47;
 
 /// Which components of which sides are prescribed, whatever their values.
 std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondition> conditions)
@@ -171,7 +176,16 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials)
 {
   return d.mesh->box && d.mesh->element.name() == "Q2" && d.kinematics != fem::Kinematics::plane_stress &&
-         largest_ratio(d, materials) > least_ratio_of_stars && !coarser_on_stars(*d.mesh->box).empty();
+         largest_ratio(d, materials) > nearly_incompressible && !coarser_on_stars(*d.mesh->box).empty();
+}
+
+std::optional<fem::Materials> materials_of_mixed(const fem::Discretization &d, const Model &model)
+{
+  const mesh::Element &element = d.mesh->element;
+  if (element.order == 1 || element.mixed() || !(largest_ratio(d, model.materials) > nearly_incompressible)) return {};
+  if (model.contact.empty() && smooths_on_stars(d, model.materials)) return {};
+  const bool tetrahedra = element.dim == 3 && element.shape == mesh::Shape::simplex;
+  return fem::softened(d, model.materials, tetrahedra ? ratio_of_soft_tetrahedra : ratio_of_soft_part);
 }
 
 solver::Body body_of(const fem::Discretization &d)

@@ -2,6 +2,7 @@
 
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/core/finite.hpp"
+#include "rpc/fem/soft_dilatation.hpp"
 #include "rpc/fem/surface.hpp"
 #include "rpc/mesh/box.hpp"
 
@@ -43,6 +44,30 @@ fem::DirichletDofs prescribed_of(const fem::Discretization &d, const Model &mode
   require_finite(*dirichlet.value, "the displacements that \"Dirichlet\" prescribes",
                  [&d] { return fem::node_coordinates(d); });
   return dirichlet;
+}
+
+/// K, prescribed unknowns eliminated, with what was eliminated. Assembled only where somebody asks for its matrix, if its rows repeat.
+struct Stiffness {
+  RCP<const StiffnessOperator> rows;
+  fem::PrescribedCouplings couplings;
+};
+
+/// Collective. @param prescribed  (overlap dofs)
+Stiffness stiffness_of(const fem::Discretization &d, const fem::Materials &materials,
+                       const DeviceView<char *> &prescribed)
+{
+  const auto assembled = [d, materials, prescribed] {
+    const auto K = fem::assemble_stiffness(d, materials);
+    require_finite(*K, "the stiffness matrix, from \"Material\" and \"Mesh\"",
+                   [&d] { return fem::node_coordinates(d); });
+    return fem::eliminate_dirichlet(d, K, prescribed);
+  };
+  if (const auto repeated = fem::repeated_stiffness(d, materials, prescribed))
+    return {
+        rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.halo, [assembled] { return assembled().matrix; }})),
+        repeated->couplings};
+  const fem::EliminatedStiffness K = assembled();
+  return {rcp(new StiffnessOperator(K.matrix, d.dim())), K.couplings};
 }
 
 /// (n) Owned nodes of some sides, ascending.
@@ -98,30 +123,41 @@ Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, con
   const auto dirichlet = prescribed_of(d, model_);
   prescribed_ = dirichlet.fixed;
   free_parts_ = contact::free_parts(d, dirichlet);
-  const auto assembled = [d, materials = model_.materials, prescribed = prescribed_] {
-    const auto K = fem::assemble_stiffness(d, materials);
-    require_finite(*K, "the stiffness matrix, from \"Material\" and \"Mesh\"",
-                   [&d] { return fem::node_coordinates(d); });
-    return fem::eliminate_dirichlet(d, K, prescribed);
-  };
-  const auto repeated = fem::repeated_stiffness(d, model_.materials, prescribed_);
-  if (repeated && mesh_->is_finest()) d.forget_nodes(); // of coarser meshes too, but contact asks for theirs once more
-  const fem::EliminatedStiffness K = repeated ? fem::EliminatedStiffness{} : assembled();
-  couplings_ = repeated ? repeated->couplings : K.couplings;
-  stiffness_ = repeated ? rcp(new StiffnessOperator(
-                              {repeated->rows, d.owned_dofs, d.halo, [assembled] { return assembled().matrix; }}))
-                        : rcp(new StiffnessOperator(K.matrix, d.dim()));
+  const Stiffness K = stiffness_of(d, model_.materials, prescribed_);
+  const bool repeats = K.rows->assemblies() == 0;
+  if (repeats && mesh_->is_finest()) d.forget_nodes(); // of coarser meshes too, but contact asks for theirs once more
+  stiffness_ = K.rows;
+  couplings_ = K.couplings;
   candidates_ = nodes_of(d, contact_sides());
 }
 
 solver::MakeMeshLevels Problem::mesh_levels() const
 {
+  return mesh_levels(model_);
+}
+
+solver::MakeMeshLevels Problem::mesh_levels(Model model) const
+{
   if (!mesh_->may_have_coarser()) return {};
-  return [finest = mesh_, model = model_, prescribed = prescribed_] {
+  return [finest = mesh_, model = std::move(model), prescribed = prescribed_] {
     const auto made = analysis::mesh_levels(*finest, model, prescribed);
     if (finest->is_finest())
       finest->forget_coarser(); // prediction has been before, and multigrid needs no more of them
     return made;
+  };
+}
+
+solver::MakeMixedForm Problem::mixed_form() const
+{
+  const auto soft = materials_of_mixed(discretization(), model_);
+  if (!soft || !mesh_->may_have_coarser()) return {};
+  Model soft_model = model_;
+  soft_model.materials = *soft;
+  return [mesh = mesh_, whole = model_.materials, soft = *soft, prescribed = prescribed_,
+          levels = mesh_levels(std::move(soft_model))] {
+    const fem::Discretization &d = mesh->discretization();
+    return solver::MixedForm{stiffness_of(d, soft, prescribed).rows, levels,
+                             fem::stiff_dilatation(d, whole, soft, prescribed)};
   };
 }
 

@@ -7,6 +7,7 @@
 #include "preconditioner/algebraic.hpp"
 #include "preconditioner/factor.hpp"
 #include "preconditioner/meshes.hpp"
+#include "preconditioner/mixed.hpp"
 #include "preconditioner/sparse.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
@@ -30,9 +31,9 @@ namespace
 // multigrid that is nearly one.
 constexpr GO most_rows_set_up_anew = 2500;
 
-// A sparse factor is thought of after so many CG iterations of a solve, and iterations count as lost beyond so many of a solve to 1e-8, of
-// rough solves beyond a part. With contact so many solves are to come, by measurement of steps.
-constexpr int first_iterations = 15, fair_iterations = 30, solves_with_contact = 4;
+// Iterations count as lost, for a sparse factor, beyond so many of a solve to 1e-8, of rough solves beyond a part. With contact so many
+// solves are to come, by measurement of steps.
+constexpr int fair_iterations = 30, solves_with_contact = 4;
 constexpr double full_tolerance = 1e-8;
 // A factor that leaves out slight changes is judged after so many.
 constexpr int first_iterations_of_factor = 3;
@@ -98,11 +99,13 @@ struct LinearSolver::Impl {
   Body body;
   LinearSolverCounts counts;
   std::optional<Meshes> meshes; // nothing: the deck or the mesh rules it out
+  std::optional<Mixed> mixed;   // nothing: the same, or the body is not nearly incompressible
   std::optional<Factor> factor; // nothing: there are many unknowns, the deck rules it out, or it was too weak
   Algebraic algebraic;
   Sparse sparse;
   Krylov krylov;
   bool on_meshes;                 // or on one of the others
+  bool on_mixed = false;          // until it fails
   bool on_sparse = false;         // from some solve on
   int solves_to_come = 1;         // about
   bool may_be_sparse;             // the deck leaves the preconditioner open, and memory may do
@@ -113,7 +116,8 @@ struct LinearSolver::Impl {
   bool stands_in = false;         // since the meshes failed in the present solve
   Preconditioner *used = nullptr; // in the last solve
 
-  Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels);
+  Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels,
+       MakeMixedForm mixed_form);
   void prepare(double tolerance);
   bool counted(Preconditioner &B, double tolerance);
   Result attempt(const Vector &b, Vector &x, const Accuracy &wanted);
@@ -127,7 +131,8 @@ struct LinearSolver::Impl {
   void record(const Preconditioner &B, const std::string &reason);
 };
 
-LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels)
+LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels,
+                         MakeMixedForm mixed_form)
     : options(std::move(given)), H(of), body(std::move(of_body)),
       algebraic(H, body, options, static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew),
       sparse(H), krylov(options, H)
@@ -138,6 +143,8 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
     meshes.emplace(H, std::move(levels), options);
   if (automatic && unknowns <= most_rows_set_up_anew) factor.emplace(H);
   on_meshes = meshes.has_value();
+  if (mixed_form && automatic && on_meshes) mixed.emplace(H, std::move(mixed_form), options);
+  on_mixed = mixed.has_value();
   may_be_sparse = automatic && unknowns <= most_sparse_rows;
   if (sum_all(*H->getDomainMap()->getComm(), static_cast<GO>(H->nodes().extent(0))) > 0)
     solves_to_come = solves_with_contact;
@@ -178,7 +185,7 @@ bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const doubl
 /// The same at the present rate of a solve.
 bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double tolerance)
 {
-  return seen.iterations() >= first_iterations &&
+  return seen.iterations() >= options.first_iterations &&
          sparse_pays(seen.iterations_in_all(tolerance, options.max_iterations), tolerance);
 }
 
@@ -206,8 +213,16 @@ bool LinearSolver::Impl::counted(Preconditioner &B, const double tolerance)
 void LinearSolver::Impl::prepare(const double tolerance)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
-  if (on_sparse || on_meshes) {
-    counted(on_sparse ? static_cast<Preconditioner &>(sparse) : *meshes, tolerance);
+  if (on_sparse) {
+    counted(sparse, tolerance);
+    return;
+  }
+  if (on_mixed) {
+    counted(*mixed, tolerance);
+    return;
+  }
+  if (on_meshes) {
+    counted(*meshes, tolerance);
     return;
   }
   if (factor && counted(*factor, tolerance)) return;
@@ -247,12 +262,13 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
       return seen.iterations() >= first_iterations_of_factor &&
              sparse.renewal_pays(seen.iterations_in_all(least, options.max_iterations) - seen.iterations());
     };
+    const GivesUp asked = may_be_sparse ? GivesUp(gives_up) : GivesUp();
     const KrylovResult done =
-        krylov.solve(*used, H->is_symmetric(), b, x, wanted, may_be_sparse ? GivesUp(gives_up) : GivesUp());
+        on_mixed ? mixed->solve(b, x, wanted, asked) : krylov.solve(*used, H->is_symmetric(), b, x, wanted, asked);
     given_up = done.given_up;
     lost_iterations += std::max(0., done.iterations - fair(least));
     if (used == &algebraic) algebraic.learn(done.iterations, done.residual);
-    if (on_meshes) meshes->learn(done.iterations, seconds_of_cg());
+    if (on_meshes && !on_mixed && !on_sparse) meshes->learn(done.iterations, seconds_of_cg());
     result = {done.converged, done.broken, false, done.iterations, done.energy, done.reason};
     counts.iterations.push_back(result.iterations);
     counts.solve_seconds += Teuchos::Time::wallTime() - start;
@@ -281,6 +297,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
 Used LinearSolver::Impl::used_for_policy() const
 {
   if (on_sparse) return sparse.is_from_scratch() ? Used::sparse_fresh : Used::sparse;
+  if (on_mixed) return Used::mixed;
   if (on_meshes) return met_singular ? Used::meshes_again : Used::meshes;
   if (stands_in) return Used::stand_in;
   if (factor && used == &*factor) return Used::factor;
@@ -310,6 +327,8 @@ bool LinearSolver::Impl::take(const Next next, const std::string &reason)
     return true;
   case Next::sparse:
     if (!prospect()) return false;
+    if (on_mixed) mixed->forget();
+    on_mixed = false;
     if (on_meshes) {
       meshes->forget();
       counts.fallback = reason;
@@ -319,6 +338,12 @@ bool LinearSolver::Impl::take(const Next next, const std::string &reason)
     on_meshes = false;
     on_sparse = true;
     record(sparse, reason);
+    return true;
+  case Next::whole:
+    mixed->forget();
+    on_mixed = false;
+    counts.fallback = reason;
+    record(*meshes, reason);
     return true;
   case Next::stronger:
     if (!algebraic.strengthen()) return false;
@@ -336,8 +361,9 @@ bool LinearSolver::Impl::take(const Next next, const std::string &reason)
   return false;
 }
 
-LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, Body body, MakeMeshLevels levels)
-    : impl_(std::make_unique<Impl>(std::move(options), H, std::move(body), std::move(levels)))
+LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, Body body, MakeMeshLevels levels,
+                           MakeMixedForm mixed)
+    : impl_(std::make_unique<Impl>(std::move(options), H, std::move(body), std::move(levels), std::move(mixed)))
 {
 }
 

@@ -17,6 +17,7 @@ enum Outcome : unsigned {
 /// What it was preconditioned with.
 enum class Used {
   meshes,       ///< multigrid on coarser meshes
+  mixed,        ///< a mixed form with multigrid on coarser meshes
   meshes_again, ///< the same, after matrices were met that neither hierarchy could solve for
   stand_in,     ///< factor or algebraic hierarchy, in the solve in which multigrid on meshes failed
   factor,       ///< of H, of few unknowns
@@ -32,6 +33,7 @@ enum class Next {
   stand_in,   ///< the factor or the algebraic hierarchy, instead of meshes
   anew,       ///< the same, from nothing
   sparse,     ///< a sparse factor, where memory allows one
+  whole,      ///< multigrid on coarser meshes for the whole matrix, instead of the mixed form
   stronger,   ///< the algebraic hierarchy with a stronger smoother; once, and not against the deck
   meshes_back ///< multigrid on meshes, for the next solve; the result stands: the matrix is singular
 };
@@ -51,6 +53,9 @@ constexpr Rule policy[] = {
     {Used::meshes,         dear | failed,          Next::sparse, Next::stand_in},     // coarse meshes miss what the matrix tells; it stays
     {Used::meshes,         slow,                   Next::stand_in, Next::nothing},    // the same, and a factor would take longer
     {Used::meshes,         broken,                 Next::stand_in, Next::nothing},    // the same
+    {Used::mixed,          dear,                   Next::sparse, Next::nothing},      // a factor takes less time
+    {Used::mixed,          slow,                   Next::nothing, Next::nothing},     // a factor would take longer
+    {Used::mixed,          failed | broken,        Next::whole, Next::nothing},       // an active set may leave the body unheld
     {Used::meshes_again,   dear | failed,          Next::sparse, Next::stand_in},     // the same
     {Used::meshes_again,   slow,                   Next::stand_in, Next::nothing},    // the same
     {Used::meshes_again,   broken,                 Next::nothing, Next::nothing},     // an active set leaves the body unheld, once more

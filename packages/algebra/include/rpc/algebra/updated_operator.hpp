@@ -43,6 +43,8 @@ public:
   /// @return number of nodes where it changed, over all ranks
   /// @throws rpc::Error (internal_error) on all ranks if a point lies at another node
   GO set(const NodePoints &points, const DeviceView<double ***> &block, const DeviceView<double ***> &coupling = {});
+  /// The update becomes that of another operator on the same nodes.
+  void follow(const UpdatedOperator &other);
   /// Grows with each change of H.
   int revision() const { return revision_; }
   /// Whether H is symmetric, up to rounding.

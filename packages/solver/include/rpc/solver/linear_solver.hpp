@@ -4,6 +4,7 @@
 #include "rpc/solver/accuracy.hpp"
 #include "rpc/solver/linear_solver_options.hpp"
 #include "rpc/solver/mesh_levels.hpp"
+#include "rpc/solver/mixed_form.hpp"
 
 #include <memory>
 #include <string>
@@ -44,7 +45,9 @@ public:
   /// @param H       may change between solves
   /// @param body    whose stiffness H is
   /// @param levels  makes the coarser meshes; may be null: there are none. Collective.
-  LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, Body body, MakeMeshLevels levels = {});
+  /// @param mixed   splits the stiffness of a nearly incompressible body; may be null: it stays whole
+  LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, Body body, MakeMeshLevels levels = {},
+               MakeMixedForm mixed = {});
   ~LinearSolver();
 
   struct Result {

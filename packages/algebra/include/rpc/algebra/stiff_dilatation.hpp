@@ -1,0 +1,19 @@
+#pragma once
+
+#include "rpc/core/tpetra.hpp"
+
+namespace rpc
+{
+
+/// What the dilatation adds to a stiffness that is soft in it, cell by cell:
+///
+///     K = K_0 + Z^T diag(s) Z                                                                    doc/theory.md (4.13)
+///
+/// A row of Z is one mode of one cell, made orthonormal there: (Z u)_m is the m-th coefficient of div u.
+struct StiffDilatation {
+  RCP<const CrsMatrix> modes;     ///< Z, (modes of owned cells x owned dofs), 0 at prescribed unknowns [m^(dim/2 - 1)]
+  DeviceView<double *> stiffness; ///< (modes) s = lambda - lambda_0, 0 in cells whose stiffness is not split [Pa]
+  DeviceView<double *> modulus;   ///< (modes) lambda_0 + 2 mu, that of K_0 for a change of volume [Pa]
+};
+
+} // namespace rpc

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "rpc/algebra/stiff_dilatation.hpp"
+#include "rpc/fem/elasticity.hpp"
+
+#include <optional>
+
+/// The split of a nearly incompressible stiffness into a soft one and what the dilatation adds, for mixed solvers. doc/theory.md (4.13)
+namespace rpc::fem
+{
+
+/// The same materials with Poisson's ratios of at most `ratio`, and their shear moduli, in blocks where the projection stands for the
+/// dilatation; it stands for it there still. Nothing where no block changes.
+/// @param ratio  in (0, 0.5)
+std::optional<Materials> softened(const Discretization &d, const Materials &materials, double ratio);
+
+/// What softened materials lack; collective.
+/// @param soft        of softened()   @param prescribed  (overlap dofs) 1 where the displacement is
+StiffDilatation stiff_dilatation(const Discretization &d, const Materials &materials, const Materials &soft,
+                                 const DeviceView<char *> &prescribed);
+
+} // namespace rpc::fem

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "rpc/algebra/stiff_dilatation.hpp"
+#include "rpc/algebra/stiffness_operator.hpp"
+#include "rpc/solver/mesh_levels.hpp"
+
+#include <functional>
+
+namespace rpc::solver
+{
+
+/// The stiffness of a nearly incompressible body in two parts, (4.13), for Mixed.
+struct MixedForm {
+  RCP<const StiffnessOperator> soft; ///< K_0
+  MakeMeshLevels levels;             ///< of the body whose stiffness is K_0
+  StiffDilatation dilatation;        ///< what K has beyond it
+};
+
+/// Makes it when it is needed; collective.
+using MakeMixedForm = std::function<MixedForm()>;
+
+} // namespace rpc::solver

@@ -1,0 +1,210 @@
+#include "preconditioner/mixed.hpp"
+
+#include "rpc/core/math.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace rpc::solver
+{
+namespace
+{
+
+// Solves of the mixed system, each for what the last one has left of H x = b.
+constexpr int most_solves = 3;
+
+/// Factors of the equations of pressures, one for each mode.
+struct Weights {
+  Vector of_equation; // w [N/m^(dim/2)], and the pressures are w q
+  Vector compliance;  // w^2 / s
+  Vector schur;       // 1 / (w^2 (1/s + 1/modulus)): the inverse of what stands for Z H_0^-1 Z^T + 1/s
+};
+
+/// w of a mode is what its error is worth as a force: s |Z_m|.                                                     (4.14a)
+Weights weights_of(const StiffDilatation &dilatation)
+{
+  const auto &rows = dilatation.modes->getRangeMap();
+  Weights weights{Vector(rows), Vector(rows), Vector(rows)};
+  const auto Z = dilatation.modes->getLocalMatrixDevice();
+  const auto stiffness = dilatation.stiffness, modulus = dilatation.modulus;
+  const auto w = device_write(weights.of_equation), c = device_write(weights.compliance),
+             schur = device_write(weights.schur);
+  Kokkos::parallel_for(
+      "rpc::solver::weights_of_modes", device_range(num_local(*rows)), KOKKOS_LAMBDA(const LO m) {
+        const bool is_split = stiffness(m) > 0; // others have no equation: their pressures are 0
+        double square = 0;
+        for (std::size_t k = Z.graph.row_map(m); k < Z.graph.row_map(m + 1); ++k) square += Z.values(k) * Z.values(k);
+        const double s = is_split ? stiffness(m) : modulus(m), factor = square > 0 ? s * s * square : 1.;
+        w(m) = math::sqrt(factor);
+        c(m) = factor / s;
+        schur(m) = 1 / (factor * (1 / s + (is_split ? 1 / modulus(m) : 0.)));
+      });
+  Kokkos::fence();
+  return weights;
+}
+
+} // namespace
+
+struct Mixed::System {
+  System(const UpdatedOperator &H, MixedForm made, const LinearSolverOptions &options);
+
+  /// u <- about H_0^-1 r.
+  void solve_soft(const MultiVector &r, MultiVector &u) const { meshes.apply(r, u); }
+  RCP<const MultiVector> displacements(const MultiVector &x) const { return x.offsetView(dofs, 0); }
+  RCP<MultiVector> displacements(MultiVector &x) const { return x.offsetViewNonConst(dofs, 0); }
+  RCP<const MultiVector> pressures(const MultiVector &x) const { return x.offsetView(modes, num_local(*dofs)); }
+  RCP<MultiVector> pressures(MultiVector &x) const { return x.offsetViewNonConst(modes, num_local(*dofs)); }
+
+  class Saddle;
+  class Triangular;
+
+  StiffDilatation dilatation;
+  RCP<UpdatedOperator> H0;
+  Meshes meshes; // of H_0
+  RCP<const Map> dofs, modes, all;
+  Weights weights;
+  mutable Vector work; // (modes)
+  RCP<Saddle> saddle;
+  std::unique_ptr<Triangular> triangular;
+  std::unique_ptr<Krylov> krylov;
+};
+
+/// y <- (H_0 u + Z^T w q, w Z u - w^2 / s q) of x = (u, q).
+class Mixed::System::Saddle : public Operator
+{
+public:
+  explicit Saddle(const System &system) : system_(system) {}
+  RCP<const Map> getDomainMap() const override { return system_.all; }
+  RCP<const Map> getRangeMap() const override { return system_.all; }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
+  {
+    const System &s = system_;
+    for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
+      const auto of_x = x.getVector(k);
+      const auto of_y = y.getVectorNonConst(k);
+      const auto u = s.displacements(*of_x), q = s.pressures(*of_x);
+      const auto force = s.displacements(*of_y), volume = s.pressures(*of_y);
+      s.H0->apply(*u, *force);
+      s.work.elementWiseMultiply(1., s.weights.of_equation, *q, 0.);
+      s.dilatation.modes->apply(s.work, *force, Teuchos::TRANS, 1., 1.);
+      s.dilatation.modes->apply(*u, s.work);
+      volume->elementWiseMultiply(1., s.weights.of_equation, s.work, 0.);
+      volume->elementWiseMultiply(-1., s.weights.compliance, *q, 1.);
+    }
+  }
+
+private:
+  const System &system_;
+};
+
+/// y <- (V r_u, S^-1 (w Z V r_u - r_q)) of r = (r_u, r_q), V the multigrid for H_0 and S = w^2 (1/s + 1/modulus).
+class Mixed::System::Triangular : public Preconditioner
+{
+public:
+  explicit Triangular(const System &system) : system_(system) {}
+  RCP<const Map> getDomainMap() const override { return system_.all; }
+  RCP<const Map> getRangeMap() const override { return system_.all; }
+  Prepared prepare(double) override { return Prepared::unchanged; }
+  void forget() override {}
+  std::string name() const override { return "mixed"; }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
+  {
+    const System &s = system_;
+    for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
+      const auto of_x = x.getVector(k);
+      const auto of_y = y.getVectorNonConst(k);
+      const auto u = s.displacements(*of_y), q = s.pressures(*of_y);
+      s.solve_soft(*s.displacements(*of_x), *u);
+      s.dilatation.modes->apply(*u, s.work);
+      q->elementWiseMultiply(1., s.weights.of_equation, s.work, 0.);
+      q->update(-1., *s.pressures(*of_x), 1.);
+      s.work.assign(*q);
+      q->elementWiseMultiply(1., s.weights.schur, s.work, 0.);
+    }
+  }
+
+private:
+  const System &system_;
+};
+
+Mixed::System::System(const UpdatedOperator &H, MixedForm made, const LinearSolverOptions &options)
+    : dilatation(std::move(made.dilatation)), H0(rcp(new UpdatedOperator(std::move(made.soft), H.nodes()))),
+      meshes(H0, std::move(made.levels), options), dofs(H.getDomainMap()), modes(dilatation.modes->getRangeMap()),
+      all(rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), num_local(*dofs) + num_local(*modes), 0,
+                      dofs->getComm()))),
+      weights(weights_of(dilatation)), work(modes), saddle(rcp(new Saddle(*this))),
+      triangular(std::make_unique<Triangular>(*this)), krylov(std::make_unique<Krylov>(options, saddle))
+{
+}
+
+Mixed::Mixed(RCP<const UpdatedOperator> H, MakeMixedForm make, LinearSolverOptions options)
+    : H_(std::move(H)), make_(std::move(make)), options_(std::move(options))
+{
+}
+
+Mixed::~Mixed() = default;
+
+Preconditioner::Prepared Mixed::prepare(const double tolerance)
+{
+  if (!system_) system_ = std::make_unique<System>(*H_, make_(), options_);
+  system_->H0->follow(*H_);
+  return system_->meshes.prepare(tolerance);
+}
+
+void Mixed::forget()
+{
+  system_.reset();
+}
+
+std::string Mixed::description() const
+{
+  return name() + (system_ ? ": " + system_->meshes.description() : "");
+}
+
+KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, const GivesUp &gives_up) const
+{
+  const System &s = *system_;
+  const double enough = std::max(wanted.residual, options_.tolerance) * b.norm2();
+  Vector right_side(s.all), found(s.all), rest(b, Teuchos::Copy);
+  KrylovResult result;
+  x.putScalar(0);
+  double left = b.norm2();
+  for (int k = 0; k < most_solves; ++k) {
+    right_side.putScalar(0);
+    s.displacements(right_side)->assign(rest);
+    KrylovResult more = s.krylov->solve(*s.triangular, false, right_side, found, enough / left, gives_up);
+    more.iterations += result.iterations;
+    result = std::move(more);
+    if (result.broken || result.given_up) break;
+    x.update(1., *s.displacements(std::as_const(found)), 1.);
+    rest.assign(b);
+    H_->apply(x, rest, Teuchos::NO_TRANS, -1., 1.);
+    left = rest.norm2();
+    result.residual = left / b.norm2();
+    if (result.rounded) result.converged = true; // what is left of H x = b is rounding too
+    if (result.rounded || !result.converged || left <= enough) break;
+  }
+  if (wanted.error > 0) result.energy = x.dot(b);
+  return result;
+}
+
+void Mixed::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
+{
+  const System &s = *system_;
+  MultiVector forces(x.getMap(), 1), correction(x.getMap(), 1);
+  for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
+    const auto u = y.getVectorNonConst(k);
+    s.solve_soft(*x.getVector(k), *u);
+    Vector pressure(s.modes);
+    s.dilatation.modes->apply(*u, pressure);
+    for (const Vector *factor : {&s.weights.of_equation, &s.weights.schur, &s.weights.of_equation}) {
+      s.work.assign(pressure);
+      pressure.elementWiseMultiply(1., *factor, s.work, 0.);
+    }
+    s.dilatation.modes->apply(pressure, forces, Teuchos::TRANS);
+    s.solve_soft(forces, correction);
+    u->update(-1., correction, 1.);
+  }
+}
+
+} // namespace rpc::solver

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "krylov.hpp"
+#include "preconditioner/meshes.hpp"
+#include "rpc/solver/mixed_form.hpp"
+
+#include <memory>
+
+namespace rpc::solver
+{
+
+/// Solves for a nearly incompressible H = K_0 + Z^T diag(s) Z + contact with the pressures as unknowns of their own, whose equations do
+/// not grow stiff with s:                                                                        doc/theory.md (4.14)
+///
+///     [ H_0   Z^T     ] [u]   [b]
+///     [ Z    -diag(s)^-1 ] [p] = [0],     H_0 = K_0 + contact.
+///
+/// GMRES solves them, preconditioned by multigrid on meshes for H_0. Where a solve does not end well, another preconditioner of H has to
+/// take over.
+class Mixed : public Preconditioner
+{
+public:
+  /// @param make  not null
+  Mixed(RCP<const UpdatedOperator> H, MakeMixedForm make, LinearSolverOptions options);
+  ~Mixed() override;
+
+  Prepared prepare(double tolerance) override;
+  void forget() override;
+  std::string name() const override { return "mixed"; }
+  std::string description() const override;
+
+  /// x <- approximately H^-1 b; collective. @param wanted  its residual counts, that of H x = b
+  KrylovResult solve(const Vector &b, Vector &x, const Accuracy &wanted, const GivesUp &gives_up) const;
+
+  /// y <- B x with the pressures of the soft body's displacements.                                               (4.15)
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
+             double beta = 0) const override;
+  RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
+
+private:
+  struct System;
+
+  RCP<const UpdatedOperator> H_;
+  MakeMixedForm make_;
+  LinearSolverOptions options_;
+  std::unique_ptr<System> system_; // null: to be made
+};
+
+} // namespace rpc::solver
