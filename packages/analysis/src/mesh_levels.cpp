@@ -1,7 +1,6 @@
 #include "rpc/analysis/mesh_levels.hpp"
 
 #include "rpc/fem/interpolation.hpp"
-#include "rpc/fem/soft_dilatation.hpp"
 #include "rpc/mesh/box_patches.hpp"
 
 #include <algorithm>
@@ -24,10 +23,6 @@ constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
 // Above this ratio a mixed form, and smoothers on stars, take less time than smoothers of single nodes, by measurement in space; on cells that
 // are stretched more than that stars take too many iterations.                                              (4.7f), (4.13)
 constexpr double nearly_incompressible = 0.48, most_stretched_of_stars = 5;
-
-// Poisson's ratio of the soft part of a mixed form. A larger one costs multigrid iterations, a smaller one makes the pressures' equations
-// worse, most with one constant pressure in a tetrahedron of P2, by measurement.                                   (4.13)
-constexpr double ratio_of_soft_part = 0.4, ratio_of_soft_tetrahedra = 0.47;
 
 /// Which components of which sides are prescribed, whatever their values.
 std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondition> conditions)
@@ -173,19 +168,15 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
   return nu;
 }
 
-bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials)
+bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials)
 {
-  return d.mesh->box && d.mesh->element.name() == "Q2" && d.kinematics != fem::Kinematics::plane_stress &&
-         largest_ratio(d, materials) > nearly_incompressible && !coarser_on_stars(*d.mesh->box).empty();
+  return d.kinematics != fem::Kinematics::plane_stress && largest_ratio(d, materials) > nearly_incompressible;
 }
 
-std::optional<fem::Materials> materials_of_mixed(const fem::Discretization &d, const Model &model)
+bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials)
 {
-  const mesh::Element &element = d.mesh->element;
-  if (element.order == 1 || element.mixed() || !(largest_ratio(d, model.materials) > nearly_incompressible)) return {};
-  if (model.contact.empty() && smooths_on_stars(d, model.materials)) return {};
-  const bool tetrahedra = element.dim == 3 && element.shape == mesh::Shape::simplex;
-  return fem::softened(d, model.materials, tetrahedra ? ratio_of_soft_tetrahedra : ratio_of_soft_part);
+  return d.mesh->box && d.mesh->element.name() == "Q2" && is_nearly_incompressible(d, materials) &&
+         !coarser_on_stars(*d.mesh->box).empty();
 }
 
 solver::Body body_of(const fem::Discretization &d)
@@ -227,6 +218,18 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   if (thin && num_unknowns(*mesh) > few) levels.remark = thin_text(*mesh->discretization().mesh->box, *thin);
   levels.down_to_few = thin || num_unknowns(*mesh) <= (dim == 2 ? most_factored_2d : most_factored_3d);
   return levels;
+}
+
+solver::MakeMeshLevels make_mesh_levels(std::shared_ptr<const NestedMesh> finest, const Model &model,
+                                        const DeviceView<char *> &prescribed)
+{
+  if (!finest->may_have_coarser()) return {};
+  return [finest = std::move(finest), model, prescribed] {
+    const auto made = mesh_levels(*finest, model, prescribed);
+    if (finest->is_finest())
+      finest->forget_coarser(); // prediction has been before, and multigrid needs no more of them
+    return made;
+  };
 }
 
 } // namespace rpc::analysis

@@ -1,8 +1,8 @@
 #include "rpc/analysis/problem.hpp"
 
 #include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/analysis/stiffness.hpp"
 #include "rpc/core/finite.hpp"
-#include "rpc/fem/soft_dilatation.hpp"
 #include "rpc/fem/surface.hpp"
 #include "rpc/mesh/box.hpp"
 
@@ -44,30 +44,6 @@ fem::DirichletDofs prescribed_of(const fem::Discretization &d, const Model &mode
   require_finite(*dirichlet.value, "the displacements that \"Dirichlet\" prescribes",
                  [&d] { return fem::node_coordinates(d); });
   return dirichlet;
-}
-
-/// K, prescribed unknowns eliminated, with what was eliminated. Assembled only where somebody asks for its matrix, if its rows repeat.
-struct Stiffness {
-  RCP<const StiffnessOperator> rows;
-  fem::PrescribedCouplings couplings;
-};
-
-/// Collective. @param prescribed  (overlap dofs)
-Stiffness stiffness_of(const fem::Discretization &d, const fem::Materials &materials,
-                       const DeviceView<char *> &prescribed)
-{
-  const auto assembled = [d, materials, prescribed] {
-    const auto K = fem::assemble_stiffness(d, materials);
-    require_finite(*K, "the stiffness matrix, from \"Material\" and \"Mesh\"",
-                   [&d] { return fem::node_coordinates(d); });
-    return fem::eliminate_dirichlet(d, K, prescribed);
-  };
-  if (const auto repeated = fem::repeated_stiffness(d, materials, prescribed))
-    return {
-        rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.halo, [assembled] { return assembled().matrix; }})),
-        repeated->couplings};
-  const fem::EliminatedStiffness K = assembled();
-  return {rcp(new StiffnessOperator(K.matrix, d.dim())), K.couplings};
 }
 
 /// (n) Owned nodes of some sides, ascending.
@@ -133,32 +109,12 @@ Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, con
 
 solver::MakeMeshLevels Problem::mesh_levels() const
 {
-  return mesh_levels(model_);
-}
-
-solver::MakeMeshLevels Problem::mesh_levels(Model model) const
-{
-  if (!mesh_->may_have_coarser()) return {};
-  return [finest = mesh_, model = std::move(model), prescribed = prescribed_] {
-    const auto made = analysis::mesh_levels(*finest, model, prescribed);
-    if (finest->is_finest())
-      finest->forget_coarser(); // prediction has been before, and multigrid needs no more of them
-    return made;
-  };
+  return make_mesh_levels(mesh_, model_, prescribed_);
 }
 
 solver::MakeMixedForm Problem::mixed_form() const
 {
-  const auto soft = materials_of_mixed(discretization(), model_);
-  if (!soft || !mesh_->may_have_coarser()) return {};
-  Model soft_model = model_;
-  soft_model.materials = *soft;
-  return [mesh = mesh_, whole = model_.materials, soft = *soft, prescribed = prescribed_,
-          levels = mesh_levels(std::move(soft_model))] {
-    const fem::Discretization &d = mesh->discretization();
-    return solver::MixedForm{stiffness_of(d, soft, prescribed).rows, levels,
-                             fem::stiff_dilatation(d, whole, soft, prescribed)};
-  };
+  return analysis::mixed_form(mesh_, model_, prescribed_);
 }
 
 Step Problem::step(const double t, const MultiVector *const dents, const Memory *const before) const

@@ -2,6 +2,7 @@
 
 #include "rpc/algebra/along_points.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/analysis/stiffness.hpp"
 #include "rpc/mesh/box.hpp"
 #include "rpc/solver/linear_solver.hpp"
 #include "updated.hpp"
@@ -81,11 +82,15 @@ struct Block {
     }
     return v;
   }
-  std::unique_ptr<solver::LinearSolver> solver() const
+  /// @param mixed  with pressures as unknowns of their own, where rpc has them
+  std::unique_ptr<solver::LinearSolver> solver(const bool mixed = false) const
   {
     solver::LinearSolverOptions options;
     options.multigrid = "mesh";
-    return std::make_unique<solver::LinearSolver>(options, H, analysis::body_of(d), [this] { return levels(); });
+    const auto nested = std::make_shared<analysis::NestedMesh>(d);
+    return std::make_unique<solver::LinearSolver>(
+        options, H, analysis::body_of(d), [this] { return levels(); },
+        mixed ? analysis::mixed_form(nested, model, dirichlet.fixed) : solver::MakeMixedForm());
   }
 };
 

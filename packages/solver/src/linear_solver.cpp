@@ -143,7 +143,7 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
     meshes.emplace(H, std::move(levels), options);
   if (automatic && unknowns <= most_rows_set_up_anew) factor.emplace(H);
   on_meshes = meshes.has_value();
-  if (mixed_form && automatic && on_meshes) mixed.emplace(H, std::move(mixed_form), options);
+  if (mixed_form && on_meshes) mixed.emplace(H, std::move(mixed_form), options);
   on_mixed = mixed.has_value();
   may_be_sparse = automatic && unknowns <= most_sparse_rows;
   if (sum_all(*H->getDomainMap()->getComm(), static_cast<GO>(H->nodes().extent(0))) > 0)

@@ -53,7 +53,7 @@ constexpr Rule policy[] = {
     {Used::meshes,         dear | failed,          Next::sparse, Next::stand_in},     // coarse meshes miss what the matrix tells; it stays
     {Used::meshes,         slow,                   Next::stand_in, Next::nothing},    // the same, and a factor would take longer
     {Used::meshes,         broken,                 Next::stand_in, Next::nothing},    // the same
-    {Used::mixed,          dear,                   Next::sparse, Next::nothing},      // a factor takes less time
+    {Used::mixed,          dear,                   Next::sparse, Next::whole},        // a factor takes less time
     {Used::mixed,          slow,                   Next::nothing, Next::nothing},     // a factor would take longer
     {Used::mixed,          failed | broken,        Next::whole, Next::nothing},       // an active set may leave the body unheld
     {Used::meshes_again,   dear | failed,          Next::sparse, Next::stand_in},     // the same

@@ -8,8 +8,8 @@ namespace
 
 using namespace rpc::solver;
 
-constexpr Used all_used[] = {Used::meshes,    Used::meshes_again, Used::stand_in, Used::factor,
-                             Used::algebraic, Used::from_scratch, Used::sparse,   Used::sparse_fresh};
+constexpr Used all_used[] = {Used::mixed,     Used::meshes,       Used::meshes_again, Used::stand_in,    Used::factor,
+                             Used::algebraic, Used::from_scratch, Used::sparse,       Used::sparse_fresh};
 constexpr Outcome all_outcomes[] = {slow, failed, broken, dear};
 
 TEST(Policy, HasOneRowForEachCase)
@@ -28,6 +28,7 @@ TEST(Policy, HasOneRowForEachCase)
 /// What is used once a row has been followed.
 Used after(const Next next, const Used used)
 {
+  if (next == Next::whole) return Used::meshes;
   if (next == Next::stand_in) return Used::stand_in;
   if (next == Next::sparse || used == Used::sparse) return Used::sparse_fresh;
   return Used::from_scratch;

@@ -4,7 +4,7 @@
 #include "rpc/analysis/problem.hpp"
 #include "rpc/solver/mesh_levels.hpp"
 
-#include <optional>
+#include <memory>
 
 namespace rpc::analysis
 {
@@ -18,12 +18,15 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 /// Whether multigrid's smoothers solve on stars of vertices: nearly incompressible boxes of Q2 want it.               (4.7f)
 bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials);
 
-/// The materials of the soft part of the stiffness where a mixed form of the equations takes the least time: for nearly incompressible
-/// bodies of order 2, but for boxes that nothing touches and that stars of vertices suit. Else nothing.               (4.13)
-std::optional<fem::Materials> materials_of_mixed(const fem::Discretization &d, const Model &model);
+/// Whether smoothers of single nodes take longer than what else there is, by the blocks' ratios.              (4.7f), (4.13)
+bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials);
 
 /// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns. Collective.
 /// @param prescribed  (overlap dofs) 1 where the displacement of the finest mesh is prescribed
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed);
+
+/// The same for when they are needed: then coarser meshes are forgotten where nobody else needs them. Null where there are none.
+solver::MakeMeshLevels make_mesh_levels(std::shared_ptr<const NestedMesh> finest, const Model &model,
+                                        const DeviceView<char *> &prescribed);
 
 } // namespace rpc::analysis

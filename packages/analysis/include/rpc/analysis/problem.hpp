@@ -76,12 +76,10 @@ public:
   const DeviceView<LO *> &contact_candidates() const { return candidates_; }
   /// Makes the meshes that multigrid needs; null where there is no coarser one.
   solver::MakeMeshLevels mesh_levels() const;
-  /// Splits the stiffness, where smoothers of single nodes see too little of a nearly incompressible body; else null. doc/theory.md (4.13)
+  /// Splits the stiffness where a mixed form suits it, see analysis::mixed_form(); else null.
   solver::MakeMixedForm mixed_form() const;
 
 private:
-  solver::MakeMeshLevels mesh_levels(Model model) const;
-
   Model model_;
   std::shared_ptr<const NestedMesh> mesh_;
   DeviceView<char *> prescribed_; // (overlap dofs)

@@ -1,0 +1,57 @@
+#include "rpc/analysis/stiffness.hpp"
+
+#include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/core/finite.hpp"
+#include "rpc/fem/soft_dilatation.hpp"
+
+#include <utility>
+
+namespace rpc::analysis
+{
+namespace
+{
+
+// Poisson's ratio of the soft part of a mixed form, by measurement. A larger one costs multigrid iterations, a smaller one makes the
+// equations of pressures worse, most where they are constant in tetrahedra.                                        (4.13)
+constexpr double ratio_of_soft_part = 0.4, ratio_of_soft_tetrahedra = 0.47;
+
+} // namespace
+
+Stiffness stiffness_of(const fem::Discretization &d, const fem::Materials &materials,
+                       const DeviceView<char *> &prescribed)
+{
+  const auto assembled = [d, materials, prescribed] {
+    const auto K = fem::assemble_stiffness(d, materials);
+    require_finite(*K, "the stiffness matrix, from \"Material\" and \"Mesh\"",
+                   [&d] { return fem::node_coordinates(d); });
+    return fem::eliminate_dirichlet(d, K, prescribed);
+  };
+  if (const auto repeated = fem::repeated_stiffness(d, materials, prescribed))
+    return {
+        rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.halo, [assembled] { return assembled().matrix; }})),
+        repeated->couplings};
+  const fem::EliminatedStiffness K = assembled();
+  return {rcp(new StiffnessOperator(K.matrix, d.dim())), K.couplings};
+}
+
+solver::MakeMixedForm mixed_form(std::shared_ptr<const NestedMesh> finest, const Model &model,
+                                 const DeviceView<char *> &prescribed)
+{
+  const fem::Discretization &d = finest->discretization();
+  const mesh::Element &element = d.mesh->element;
+  if (element.order == 1 || !finest->may_have_coarser() || !is_nearly_incompressible(d, model.materials)) return {};
+  if (model.contact.empty() && smooths_on_stars(d, model.materials)) return {};
+  const bool tetrahedra = element.dim == 3 && element.shape == mesh::Shape::simplex;
+  const auto soft = fem::softened(d, model.materials, tetrahedra ? ratio_of_soft_tetrahedra : ratio_of_soft_part);
+  if (!soft) return {};
+  Model soft_model = model;
+  soft_model.materials = *soft;
+  return [finest, whole = model.materials, prescribed, levels = make_mesh_levels(finest, soft_model, prescribed),
+          soft = *soft] {
+    const fem::Discretization &of = finest->discretization();
+    return solver::MixedForm{stiffness_of(of, soft, prescribed).rows, levels,
+                             fem::stiff_dilatation(of, whole, soft, prescribed)};
+  };
+}
+
+} // namespace rpc::analysis
