@@ -106,6 +106,29 @@ TEST(UpdatedOperator, HasARevisionForEachChange)
   ASSERT_EQ(one, 1);
 }
 
+/// Of another stiffness on the same nodes: the update and whether it is symmetric, not the stiffness.
+TEST(UpdatedOperator, FollowsAnother)
+{
+  Stiffness s;
+  UpdatedOperator twice(s.H.shared_base(), s.H.nodes());
+  for (const double added : {7., 3.}) {
+    s.H.set(s.points, s.added([&](const LO i) { return added + i; }));
+    twice.follow(s.H);
+    EXPECT_EQ(twice.revision(), s.H.revision());
+    EXPECT_EQ(twice.is_symmetric(), s.H.is_symmetric());
+    Vector x(s.u->getMap()), y(s.u->getMap());
+    s.H.apply(*s.u, x);
+    twice.apply(*s.u, y);
+    y.update(-1., x, 1.);
+    EXPECT_EQ(y.norm2(), 0);
+  }
+  const auto before = to_host(twice.update());
+  s.H.set(s.points, s.added([](LO) { return 1.; }));
+  const auto after = to_host(twice.update());
+  for (std::size_t n = 0; n < before.extent(0); ++n)
+    EXPECT_EQ(after(n, 0, 0), before(n, 0, 0)) << "until it follows again";
+}
+
 TEST(UpdatedOperator, RefusesPointsAtOtherNodes)
 {
   Stiffness s;

@@ -2,6 +2,7 @@
 
 #include "rpc/core/math.hpp"
 
+#include <Tpetra_RowMatrixTransposer.hpp>
 #include <algorithm>
 #include <utility>
 
@@ -12,6 +13,13 @@ namespace
 
 // Solves of the mixed system, each for what the last one has left of H x = b.
 constexpr int most_solves = 3;
+
+/// Z^T where several threads would add to a row at once in a product with Z's columns, in any order; else null.
+RCP<const CrsMatrix> transposed(const RCP<const CrsMatrix> &Z)
+{
+  if (ExecutionSpace().concurrency() == 1) return Teuchos::null;
+  return Tpetra::RowMatrixTransposer<double, LO, GO, Node>(Z).createTranspose();
+}
 
 /// Factors of the equations of pressures, one for each mode.
 struct Weights {
@@ -48,17 +56,27 @@ Weights weights_of(const StiffDilatation &dilatation)
 struct Mixed::System {
   System(const UpdatedOperator &H, MixedForm made, const LinearSolverOptions &options);
 
+  /// forces <- forces + Z^T p.
+  void add_forces(const Vector &p, Vector &forces) const
+  {
+    if (Z_transposed.is_null())
+      dilatation.modes->apply(p, forces, Teuchos::TRANS, 1., 1.);
+    else
+      Z_transposed->apply(p, forces, Teuchos::NO_TRANS, 1., 1.);
+  }
   /// u <- about H_0^-1 r.
-  void solve_soft(const MultiVector &r, MultiVector &u) const { meshes.apply(r, u); }
-  RCP<const MultiVector> displacements(const MultiVector &x) const { return x.offsetView(dofs, 0); }
-  RCP<MultiVector> displacements(MultiVector &x) const { return x.offsetViewNonConst(dofs, 0); }
-  RCP<const MultiVector> pressures(const MultiVector &x) const { return x.offsetView(modes, num_local(*dofs)); }
-  RCP<MultiVector> pressures(MultiVector &x) const { return x.offsetViewNonConst(modes, num_local(*dofs)); }
+  void solve_soft(const Vector &r, Vector &u) const { meshes.apply(r, u); }
+  /// The parts of x = (u, q).
+  RCP<const Vector> displacements(const Vector &x) const { return x.offsetView(dofs, 0)->getVector(0); }
+  RCP<Vector> displacements(Vector &x) const { return x.offsetViewNonConst(dofs, 0)->getVectorNonConst(0); }
+  RCP<const Vector> pressures(const Vector &x) const { return x.offsetView(modes, num_local(*dofs))->getVector(0); }
+  RCP<Vector> pressures(Vector &x) const { return x.offsetViewNonConst(modes, num_local(*dofs))->getVectorNonConst(0); }
 
   class Saddle;
   class Triangular;
 
   StiffDilatation dilatation;
+  RCP<const CrsMatrix> Z_transposed; // or null
   RCP<UpdatedOperator> H0;
   Meshes meshes; // of H_0
   RCP<const Map> dofs, modes, all;
@@ -86,7 +104,7 @@ public:
       const auto force = s.displacements(*of_y), volume = s.pressures(*of_y);
       s.H0->apply(*u, *force);
       s.work.elementWiseMultiply(1., s.weights.of_equation, *q, 0.);
-      s.dilatation.modes->apply(s.work, *force, Teuchos::TRANS, 1., 1.);
+      s.add_forces(s.work, *force);
       s.dilatation.modes->apply(*u, s.work);
       volume->elementWiseMultiply(1., s.weights.of_equation, s.work, 0.);
       volume->elementWiseMultiply(-1., s.weights.compliance, *q, 1.);
@@ -128,8 +146,9 @@ private:
 };
 
 Mixed::System::System(const UpdatedOperator &H, MixedForm made, const LinearSolverOptions &options)
-    : dilatation(std::move(made.dilatation)), H0(rcp(new UpdatedOperator(std::move(made.soft), H.nodes()))),
-      meshes(H0, std::move(made.levels), options), dofs(H.getDomainMap()), modes(dilatation.modes->getRangeMap()),
+    : dilatation(std::move(made.dilatation)), Z_transposed(transposed(dilatation.modes)),
+      H0(rcp(new UpdatedOperator(std::move(made.soft), H.nodes()))), meshes(H0, std::move(made.levels), options),
+      dofs(H.getDomainMap()), modes(dilatation.modes->getRangeMap()),
       all(rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), num_local(*dofs) + num_local(*modes), 0,
                       dofs->getComm()))),
       weights(weights_of(dilatation)), work(modes), saddle(rcp(new Saddle(*this))),
@@ -191,17 +210,17 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
 void Mixed::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
   const System &s = *system_;
-  MultiVector forces(x.getMap(), 1), correction(x.getMap(), 1);
+  Vector forces(x.getMap()), correction(x.getMap()), pressure(s.modes);
   for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
     const auto u = y.getVectorNonConst(k);
     s.solve_soft(*x.getVector(k), *u);
-    Vector pressure(s.modes);
     s.dilatation.modes->apply(*u, pressure);
     for (const Vector *factor : {&s.weights.of_equation, &s.weights.schur, &s.weights.of_equation}) {
       s.work.assign(pressure);
       pressure.elementWiseMultiply(1., *factor, s.work, 0.);
     }
-    s.dilatation.modes->apply(pressure, forces, Teuchos::TRANS);
+    forces.putScalar(0);
+    s.add_forces(pressure, forces);
     s.solve_soft(forces, correction);
     u->update(-1., correction, 1.);
   }
