@@ -93,7 +93,7 @@ TEST(MixedElement, ShapeFunctionsReproduceTheirPolynomials)
 {
   for_each_mixed([](const Element &element, const auto dim) {
     const mesh::MixedShapeFunctions<dim> shape(element);
-    const auto f = [&](const double(&x)[dim]) {
+    const auto f = [&](const double *const x) {
       double product = 1;
       for (int d = 0; d < dim; ++d) product *= 0.7 + (d + 1) * x[d] - (element.order_along(d) - 1) * 1.3 * x[d] * x[d];
       return product;

@@ -118,6 +118,7 @@ struct LinearSolver::Impl {
 
   Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels,
        MakeMixedForm mixed_form);
+  Preconditioner *chosen();
   void prepare(double tolerance);
   bool counted(Preconditioner &B, double tolerance);
   Result attempt(const Vector &b, Vector &x, const Accuracy &wanted);
@@ -209,20 +210,20 @@ bool LinearSolver::Impl::counted(Preconditioner &B, const double tolerance)
   return done != Preconditioner::Prepared::refused;
 }
 
+/// What is in use; null: the factor of few unknowns or the algebraic hierarchy.
+Preconditioner *LinearSolver::Impl::chosen()
+{
+  if (on_sparse) return &sparse;
+  if (on_mixed) return &*mixed;
+  return on_meshes ? &*meshes : nullptr;
+}
+
 /// `used` <- the preconditioner that is in use, for the present H.
 void LinearSolver::Impl::prepare(const double tolerance)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
-  if (on_sparse) {
-    counted(sparse, tolerance);
-    return;
-  }
-  if (on_mixed) {
-    counted(*mixed, tolerance);
-    return;
-  }
-  if (on_meshes) {
-    counted(*meshes, tolerance);
+  if (Preconditioner *const B = chosen()) {
+    counted(*B, tolerance);
     return;
   }
   if (factor && counted(*factor, tolerance)) return;
@@ -268,7 +269,10 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     given_up = done.given_up;
     lost_iterations += std::max(0., done.iterations - fair(least));
     if (used == &algebraic) algebraic.learn(done.iterations, done.residual);
-    if (on_meshes && !on_mixed && !on_sparse) meshes->learn(done.iterations, seconds_of_cg());
+    if (on_mixed)
+      mixed->learn(done.iterations, seconds_of_cg());
+    else if (on_meshes)
+      meshes->learn(done.iterations, seconds_of_cg());
     result = {done.converged, done.broken, false, done.iterations, done.energy, done.reason};
     counts.iterations.push_back(result.iterations);
     counts.solve_seconds += Teuchos::Time::wallTime() - start;
@@ -342,7 +346,6 @@ bool LinearSolver::Impl::take(const Next next, const std::string &reason)
   case Next::whole:
     mixed->forget();
     on_mixed = false;
-    counts.fallback = reason;
     record(*meshes, reason);
     return true;
   case Next::stronger:

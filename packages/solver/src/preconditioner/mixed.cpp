@@ -170,6 +170,11 @@ Preconditioner::Prepared Mixed::prepare(const double tolerance)
   return system_->meshes.prepare(tolerance);
 }
 
+void Mixed::learn(const int iterations, const double seconds_of_iteration)
+{
+  if (system_) system_->meshes.learn(iterations, seconds_of_iteration);
+}
+
 void Mixed::forget()
 {
   system_.reset();

@@ -32,6 +32,9 @@ public:
   /// x <- approximately H^-1 b; collective. @param wanted  its residual counts, that of H x = b
   KrylovResult solve(const Vector &b, Vector &x, const Accuracy &wanted, const GivesUp &gives_up) const;
 
+  /// Of iterations in a solve, see Meshes::learn().
+  void learn(int iterations, double seconds_of_iteration);
+
   /// y <- B x with the pressures of the soft body's displacements.                                               (4.15)
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
              double beta = 0) const override;
