@@ -24,7 +24,7 @@ RCP<const CrsMatrix> transposed(const RCP<const CrsMatrix> &Z)
 /// Factors of the equations of pressures, one for each mode.
 struct Weights {
   Vector of_equation; // w [N/m^(dim/2)], and the pressures are w q
-  Vector compliance;  // w^2 / s
+  Vector softness;    // w^2 / s
   Vector schur;       // 1 / (w^2 (1/s + 1/modulus)): the inverse of what stands for Z H_0^-1 Z^T + 1/s
 };
 
@@ -35,7 +35,7 @@ Weights weights_of(const StiffDilatation &dilatation)
   Weights weights{Vector(rows), Vector(rows), Vector(rows)};
   const auto Z = dilatation.modes->getLocalMatrixDevice();
   const auto stiffness = dilatation.stiffness, modulus = dilatation.modulus;
-  const auto w = device_write(weights.of_equation), c = device_write(weights.compliance),
+  const auto w = device_write(weights.of_equation), c = device_write(weights.softness),
              schur = device_write(weights.schur);
   Kokkos::parallel_for(
       "rpc::solver::weights_of_modes", device_range(num_local(*rows)), KOKKOS_LAMBDA(const LO m) {
@@ -107,7 +107,7 @@ public:
       s.add_forces(s.work, *force);
       s.dilatation.modes->apply(*u, s.work);
       volume->elementWiseMultiply(1., s.weights.of_equation, s.work, 0.);
-      volume->elementWiseMultiply(-1., s.weights.compliance, *q, 1.);
+      volume->elementWiseMultiply(-1., s.weights.softness, *q, 1.);
     }
   }
 
