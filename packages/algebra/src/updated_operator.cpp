@@ -202,6 +202,8 @@ GO UpdatedOperator::set(const NodePoints &points, const DeviceView<double ***> &
 
 void UpdatedOperator::follow(const UpdatedOperator &other)
 {
+  RPC_REQUIRE_CODE(nodes_.data() == other.nodes_.data(), ExitCode::internal_error,
+                   "operator: the one that is followed has other nodes");
   if (revision_ == other.revision_) return;
   update_ = other.update_; // a change of either makes other blocks
   coupling_ = other.coupling_;

@@ -99,9 +99,7 @@ Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, con
   const auto dirichlet = prescribed_of(d, model_);
   prescribed_ = dirichlet.fixed;
   free_parts_ = contact::free_parts(d, dirichlet);
-  const Stiffness K = stiffness_of(d, model_.materials, prescribed_);
-  const bool repeats = K.rows->assemblies() == 0;
-  if (repeats && mesh_->is_finest()) d.forget_nodes(); // of coarser meshes too, but contact asks for theirs once more
+  const Stiffness K = stiffness_of(*mesh_, model_.materials, prescribed_);
   stiffness_ = K.rows;
   couplings_ = K.couplings;
   candidates_ = nodes_of(d, contact_sides());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rpc::analysis
 {
@@ -13,8 +14,8 @@ namespace
 // The iterations to 1e-8 that are expected on stars of vertices, (4.7f), and of the mixed form, (4.14): too few to think of a sparse factor,
 // whose symbolic factorization alone takes as much time and memory as some of them.
 constexpr int expected_of_mixed = 30, expected_on_stars = 15;
-// There first residuals tell little: GMRES has to find the pressures first.
-constexpr int first_of_mixed = 40;
+// There the first residuals of a solve tell little: GMRES has to find the pressures first, and stars take up to 32 with contact.
+constexpr int first_iterations = 40;
 
 /// The CG iterations to 1e-8 that multigrid takes at least on a body of the largest nu of its blocks: smoothers of single nodes see no
 /// functions without divergence.                                                                                 (4.10b)
@@ -35,18 +36,17 @@ double rough_part(const double nu)
 }
 
 /// Prolongators of quadratic elements want more smoothing: 32 to 35 instead of 34 to 37 iterations on the beam (P2).
-solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Problem &problem)
+solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Problem &problem, const bool is_mixed)
 {
   const fem::Discretization &d = problem.discretization();
   const fem::Materials &materials = problem.model().materials;
   if (d.mesh->element.order == 2) options.damping = 1.6;
   if (d.kinematics == fem::Kinematics::plane_stress) return options; // nothing is nearly incompressible
   const double nu = largest_ratio(d, materials);
-  const bool is_mixed = problem.mixed_form() != nullptr;
   options.expected_iterations = expected_iterations(nu);
   if (is_mixed || smooths_on_stars(d, materials)) {
     options.expected_iterations = is_mixed ? expected_of_mixed : expected_on_stars;
-    options.first_iterations = std::max(options.first_iterations, first_of_mixed);
+    options.first_iterations = std::max(options.first_iterations, first_iterations);
   }
   options.rough_part = rough_part(nu);
   return options;
@@ -57,8 +57,10 @@ solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Pro
 SolverState::SolverState(const Problem &problem, const solver::LinearSolverOptions &options)
     : options_(options), hessian_(rcp(new UpdatedOperator(problem.stiffness(), problem.contact_candidates())))
 {
-  linear_ = std::make_unique<solver::LinearSolver>(tuned(options, problem), hessian_, body_of(problem.discretization()),
-                                                   problem.mesh_levels(), problem.mixed_form());
+  auto mixed = problem.mixed_form();
+  const auto for_this = tuned(options, problem, static_cast<bool>(mixed));
+  linear_ = std::make_unique<solver::LinearSolver>(for_this, hessian_, body_of(problem.discretization()),
+                                                   problem.mesh_levels(), std::move(mixed));
 }
 
 } // namespace rpc::analysis

@@ -17,19 +17,21 @@ constexpr double ratio_of_soft_part = 0.4, ratio_of_soft_tetrahedra = 0.47;
 
 } // namespace
 
-Stiffness stiffness_of(const fem::Discretization &d, const fem::Materials &materials,
-                       const DeviceView<char *> &prescribed)
+Stiffness stiffness_of(const NestedMesh &mesh, const fem::Materials &materials, const DeviceView<char *> &prescribed)
 {
+  const fem::Discretization &d = mesh.discretization();
   const auto assembled = [d, materials, prescribed] {
     const auto K = fem::assemble_stiffness(d, materials);
     require_finite(*K, "the stiffness matrix, from \"Material\" and \"Mesh\"",
                    [&d] { return fem::node_coordinates(d); });
     return fem::eliminate_dirichlet(d, K, prescribed);
   };
-  if (const auto repeated = fem::repeated_stiffness(d, materials, prescribed))
+  if (const auto repeated = fem::repeated_stiffness(d, materials, prescribed)) {
+    if (mesh.is_finest()) d.forget_nodes(); // of coarser meshes too, but contact asks for theirs once more
     return {
         rcp(new StiffnessOperator({repeated->rows, d.owned_dofs, d.halo, [assembled] { return assembled().matrix; }})),
         repeated->couplings};
+  }
   const fem::EliminatedStiffness K = assembled();
   return {rcp(new StiffnessOperator(K.matrix, d.dim())), K.couplings};
 }
@@ -43,14 +45,13 @@ solver::MakeMixedForm mixed_form(std::shared_ptr<const NestedMesh> finest, const
   if (model.contact.empty() && smooths_on_stars(d, model.materials)) return {};
   const bool tetrahedra = element.dim == 3 && element.shape == mesh::Shape::simplex;
   const auto soft = fem::softened(d, model.materials, tetrahedra ? ratio_of_soft_tetrahedra : ratio_of_soft_part);
-  if (!soft) return {};
+  if (!soft || is_nearly_incompressible(d, *soft)) return {}; // a block with its full dilatation would stay as it is
   Model soft_model = model;
   soft_model.materials = *soft;
   return [finest, whole = model.materials, prescribed, levels = make_mesh_levels(finest, soft_model, prescribed),
           soft = *soft] {
-    const fem::Discretization &of = finest->discretization();
-    return solver::MixedForm{stiffness_of(of, soft, prescribed).rows, levels,
-                             fem::stiff_dilatation(of, whole, soft, prescribed)};
+    return solver::MixedForm{stiffness_of(*finest, soft, prescribed).rows, levels,
+                             fem::stiff_dilatation(finest->discretization(), whole, soft, prescribed)};
   };
 }
 

@@ -26,7 +26,9 @@ struct FillModes {
   Begins begin;                                // (modes * cells + 1)                           out
   Columns column;                              // (modes * cells * dofs)                        out
   Values value;                                // (modes * cells * dofs)  [m^(dim/2 - 1)]       out
-  DeviceView<double *> stiffness, modulus;     // (modes * cells)                        [Pa]   out
+  DeviceView<double *> stiffness;              // (modes * cells)                        [Pa]   out
+  DeviceView<double *> wave_modulus;           // (modes * cells)                        [Pa]   out
+  DeviceView<double *> bulk_modulus;           // (modes * cells)                        [Pa]   out
 
   KOKKOS_FUNCTION void operator()(const LO cell) const
   {
@@ -44,7 +46,8 @@ struct FillModes {
       const std::size_t first = static_cast<std::size_t>(dofs) * row;
       begin(row + 1) = first + dofs;
       stiffness(row) = is_split ? added : 0;
-      modulus(row) = soft(body.block(cell), 0) + 2 * soft(body.block(cell), 1);
+      wave_modulus(row) = soft(body.block(cell), 0) + 2 * soft(body.block(cell), 1);
+      bulk_modulus(row) = soft(body.block(cell), 0) + 2 * soft(body.block(cell), 1) / (Axisymmetric ? 3 : Dim);
       for (int n = 0; n < Nodes; ++n)
         for (int i = 0; i < Dim; ++i) {
           const LO unknown = dof(Dim, body.cells(cell, order[n]), i);
@@ -68,23 +71,23 @@ StiffDilatation stiff_dilatation_of(const Discretization &d, const ElasticCells<
   const typename Fill::Columns column(ViewAllocateWithoutInitializing("rpc::fem::modes_column"), num_entries);
   const typename Fill::Values value(ViewAllocateWithoutInitializing("rpc::fem::modes"), num_entries);
   const DeviceView<double *> stiffness("rpc::fem::stiffness_of_modes", num_modes);
-  const DeviceView<double *> modulus("rpc::fem::modulus_of_modes", num_modes);
-  const Fill fill{body, lame_table(d, soft), prescribed, begin, column, value, stiffness, modulus};
+  const DeviceView<double *> wave_modulus("rpc::fem::wave_modulus", num_modes);
+  const DeviceView<double *> bulk_modulus("rpc::fem::bulk_modulus", num_modes);
+  const Fill fill{body, lame_table(d, soft), prescribed, begin, column, value, stiffness, wave_modulus, bulk_modulus};
   Kokkos::parallel_for("rpc::fem::fill_modes", device_range(num_cells), fill);
   Kokkos::fence();
   const auto columns = overlap_dofs(d);
   const auto rows =
       rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), num_modes, 0, d.owned_dofs->getComm()));
   const LocalMatrix local("rpc::fem::modes", num_modes, num_local(*columns), num_entries, value, begin, column);
-  return {rcp(new CrsMatrix(local, rows, columns, d.owned_dofs, rows)), stiffness, modulus};
+  return {rcp(new CrsMatrix(local, rows, columns, d.owned_dofs, rows)), stiffness, wave_modulus, bulk_modulus};
 }
 
 } // namespace
 
 std::optional<Materials> softened(const Discretization &d, const Materials &materials, const double ratio)
 {
-  const auto projected =
-      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), projected_dilatation_table(d, materials));
+  const auto projected = to_host(projected_dilatation_table(d, materials));
   Materials soft = materials;
   bool changes = false;
   for (std::size_t b = 0; b < d.mesh->blocks.size(); ++b) {

@@ -315,7 +315,7 @@ TEST(SoftDilatation, AndWhatItLacksAreTheStiffness)
     K->apply(u, whole);
     K_0->apply(u, sum);
     split.modes->apply(u, volume);
-    const auto s = to_host(split.stiffness), modulus = to_host(split.modulus);
+    const auto s = to_host(split.stiffness), modulus = to_host(split.wave_modulus);
     for (LO m = 0; m < num_local(*volume.getMap()); ++m) {
       EXPECT_NEAR(s(m), material.lambda() - soft->of(d.mesh->blocks[0]).lambda(), 1e-10 * s(m));
       EXPECT_NEAR(modulus(m), soft->of(d.mesh->blocks[0]).lambda() + 2 * material.mu(), 1e-10 * s(m));

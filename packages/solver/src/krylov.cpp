@@ -247,7 +247,7 @@ KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, con
   Method &method = is_symmetric ? *of_deck_ : for_any_matrix();
   const Accuracy possible(std::max(wanted.residual, options_.tolerance), wanted.error, wanted.energy);
   KrylovResult result = iterate(method, is_symmetric, B, b, x, possible, gives_up);
-  if (!result.broken || !std::isfinite(x.norm2())) return result;
+  if (!result.broken || !is_symmetric || !std::isfinite(x.norm2())) return result;
   Vector residual(b, Teuchos::Copy);
   H_->apply(x, residual, Teuchos::NO_TRANS, -1., 1.);
   if (!(energy_error(B, b, residual) <= small_error)) return result;

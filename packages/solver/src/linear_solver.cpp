@@ -106,6 +106,7 @@ struct LinearSolver::Impl {
   Krylov krylov;
   bool on_meshes;                 // or on one of the others
   bool on_mixed = false;          // until it fails
+  bool mixed_again = false;       // in the next solve: a matrix was met that may be singular
   bool on_sparse = false;         // from some solve on
   int solves_to_come = 1;         // about
   bool may_be_sparse;             // the deck leaves the preconditioner open, and memory may do
@@ -344,8 +345,11 @@ bool LinearSolver::Impl::take(const Next next, const std::string &reason)
     record(sparse, reason);
     return true;
   case Next::whole:
+  case Next::whole_once:
     mixed->forget();
     on_mixed = false;
+    mixed_again = next == Next::whole_once;
+    if (!mixed_again) options.first_iterations = LinearSolverOptions().first_iterations;
     record(*meshes, reason);
     return true;
   case Next::stronger:
@@ -396,6 +400,7 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accur
     return nothing_to_do;
   }
   impl_->stands_in = false;
+  impl_->on_mixed = impl_->on_mixed || (std::exchange(impl_->mixed_again, false) && !impl_->on_sparse);
   impl_->choose_before_the_first_solve();
   for (;;) {
     const Result result = impl_->attempt(b, x, wanted);

@@ -34,6 +34,7 @@ enum class Next {
   anew,       ///< the same, from nothing
   sparse,     ///< a sparse factor, where memory allows one
   whole,      ///< multigrid on coarser meshes for the whole matrix, instead of the mixed form
+  whole_once, ///< the same for this solve alone
   stronger,   ///< the algebraic hierarchy with a stronger smoother; once, and not against the deck
   meshes_back ///< multigrid on meshes, for the next solve; the result stands: the matrix is singular
 };
@@ -55,7 +56,8 @@ constexpr Rule policy[] = {
     {Used::meshes,         broken,                 Next::stand_in, Next::nothing},    // the same
     {Used::mixed,          dear,                   Next::sparse, Next::whole},        // a factor takes less time
     {Used::mixed,          slow,                   Next::nothing, Next::nothing},     // a factor would take longer
-    {Used::mixed,          failed | broken,        Next::whole, Next::nothing},       // an active set may leave the body unheld
+    {Used::mixed,          failed,                 Next::whole, Next::nothing},       // cells are too stretched for it
+    {Used::mixed,          broken,                 Next::whole_once, Next::nothing},  // an active set may leave the body unheld
     {Used::meshes_again,   dear | failed,          Next::sparse, Next::stand_in},     // the same
     {Used::meshes_again,   slow,                   Next::stand_in, Next::nothing},    // the same
     {Used::meshes_again,   broken,                 Next::nothing, Next::nothing},     // an active set leaves the body unheld, once more

@@ -28,7 +28,7 @@ TEST(Policy, HasOneRowForEachCase)
 /// What is used once a row has been followed.
 Used after(const Next next, const Used used)
 {
-  if (next == Next::whole) return Used::meshes;
+  if (next == Next::whole || next == Next::whole_once) return Used::meshes;
   if (next == Next::stand_in) return Used::stand_in;
   if (next == Next::sparse || used == Used::sparse) return Used::sparse_fresh;
   return Used::from_scratch;

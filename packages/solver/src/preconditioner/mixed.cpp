@@ -4,6 +4,7 @@
 
 #include <Tpetra_RowMatrixTransposer.hpp>
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace rpc::solver
@@ -13,42 +14,69 @@ namespace
 
 // Solves of the mixed system, each for what the last one has left of H x = b.
 constexpr int most_solves = 3;
+// Errors of products over what the largest entries would give: sums of some hundred terms.
+constexpr double rounding = 10 * std::numeric_limits<double>::epsilon();
 
-/// Z^T where several threads would add to a row at once in a product with Z's columns, in any order; else null.
+/// Z^T where several threads would add to a row at once in a product with Z's columns, in any order; else null. Collective.
 RCP<const CrsMatrix> transposed(const RCP<const CrsMatrix> &Z)
 {
-  if (ExecutionSpace().concurrency() == 1) return Teuchos::null;
+  if (max_all(*Z->getComm(), static_cast<int>(ExecutionSpace().concurrency())) == 1) return Teuchos::null;
   return Tpetra::RowMatrixTransposer<double, LO, GO, Node>(Z).createTranspose();
 }
 
 /// Factors of the equations of pressures, one for each mode.
 struct Weights {
-  Vector of_equation; // w [N/m^(dim/2)], and the pressures are w q
-  Vector softness;    // w^2 / s
-  Vector schur;       // 1 / (w^2 (1/s + 1/modulus)): the inverse of what stands for Z H_0^-1 Z^T + 1/s
+  explicit Weights(const RCP<const Map> &rows) : of_equation(rows), softness(rows), schur(rows), bulk(rows) {}
+
+  Vector of_equation;  // w [N/m^(dim/2)]; the pressures are w q
+  Vector softness;     // w^2 / s
+  Vector schur;        // 1 / (w^2 (1/s + 1/wave modulus)): the inverse of what stands for Z H_0^-1 Z^T + 1/s
+  Vector bulk;         // 1 / (1/s + 1/bulk modulus) [Pa]
+  double stiffest = 0; // the largest s |Z_m|^2 [N/m]
 };
 
-/// w of a mode is what its error is worth as a force: s |Z_m|.                                                     (4.14a)
+/// w of a mode is what its error is worth as a force: s |Z_m|. Collective.                                         (4.14a)
 Weights weights_of(const StiffDilatation &dilatation)
 {
   const auto &rows = dilatation.modes->getRangeMap();
-  Weights weights{Vector(rows), Vector(rows), Vector(rows)};
+  Weights weights(rows);
   const auto Z = dilatation.modes->getLocalMatrixDevice();
-  const auto stiffness = dilatation.stiffness, modulus = dilatation.modulus;
-  const auto w = device_write(weights.of_equation), c = device_write(weights.softness),
-             schur = device_write(weights.schur);
-  Kokkos::parallel_for(
-      "rpc::solver::weights_of_modes", device_range(num_local(*rows)), KOKKOS_LAMBDA(const LO m) {
+  const auto stiffness = dilatation.stiffness, wave = dilatation.wave_modulus, volume = dilatation.bulk_modulus;
+  const auto w = device_write(weights.of_equation), softness = device_write(weights.softness),
+             schur = device_write(weights.schur), bulk = device_write(weights.bulk);
+  double stiffest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::weights_of_modes", device_range(num_local(*rows)),
+      KOKKOS_LAMBDA(const LO m, double &largest) {
         const bool is_split = stiffness(m) > 0; // others have no equation: their pressures are 0
         double square = 0;
         for (std::size_t k = Z.graph.row_map(m); k < Z.graph.row_map(m + 1); ++k) square += Z.values(k) * Z.values(k);
-        const double s = is_split ? stiffness(m) : modulus(m), factor = square > 0 ? s * s * square : 1.;
+        const double s = is_split ? stiffness(m) : wave(m), factor = square > 0 ? s * s * square : 1.;
         w(m) = math::sqrt(factor);
-        c(m) = factor / s;
-        schur(m) = 1 / (factor * (1 / s + (is_split ? 1 / modulus(m) : 0.)));
-      });
+        softness(m) = factor / s;
+        schur(m) = 1 / (factor * (1 / s + (is_split ? 1 / wave(m) : 0.)));
+        bulk(m) = is_split ? 1 / (1 / s + 1 / volume(m)) : 0.;
+        largest = math::fmax(largest, stiffness(m) * square);
+      },
+      Kokkos::Max<double>(stiffest));
   Kokkos::fence();
+  weights.stiffest = max_all(*rows->getComm(), std::max(stiffest, 0.));
   return weights;
+}
+
+/// The largest entry of what contact adds [N/m]; collective.
+double stiffest_contact(const UpdatedOperator &H)
+{
+  const auto update = H.update();
+  const int dim = static_cast<int>(update.extent(1));
+  double stiffest = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::stiffest_contact", device_range(static_cast<LO>(update.extent(0))),
+      KOKKOS_LAMBDA(const LO n, double &largest) {
+        for (int k = 0; k < dim; ++k) largest = math::fmax(largest, update(n, k, k));
+      },
+      Kokkos::Max<double>(stiffest));
+  return max_all(*H.getDomainMap()->getComm(), std::max(stiffest, 0.));
 }
 
 } // namespace
@@ -69,8 +97,11 @@ struct Mixed::System {
   /// The parts of x = (u, q).
   RCP<const Vector> displacements(const Vector &x) const { return x.offsetView(dofs, 0)->getVector(0); }
   RCP<Vector> displacements(Vector &x) const { return x.offsetViewNonConst(dofs, 0)->getVectorNonConst(0); }
-  RCP<const Vector> pressures(const Vector &x) const { return x.offsetView(modes, num_local(*dofs))->getVector(0); }
-  RCP<Vector> pressures(Vector &x) const { return x.offsetViewNonConst(modes, num_local(*dofs))->getVectorNonConst(0); }
+  RCP<const Vector> pressures(const Vector &x) const { return x.offsetView(mode_map, num_local(*dofs))->getVector(0); }
+  RCP<Vector> pressures(Vector &x) const
+  {
+    return x.offsetViewNonConst(mode_map, num_local(*dofs))->getVectorNonConst(0);
+  }
 
   class Saddle;
   class Triangular;
@@ -79,7 +110,7 @@ struct Mixed::System {
   RCP<const CrsMatrix> Z_transposed; // or null
   RCP<UpdatedOperator> H0;
   Meshes meshes; // of H_0
-  RCP<const Map> dofs, modes, all;
+  RCP<const Map> dofs, mode_map, all;
   Weights weights;
   mutable Vector work; // (modes)
   RCP<Saddle> saddle;
@@ -94,8 +125,15 @@ public:
   explicit Saddle(const System &system) : system_(system) {}
   RCP<const Map> getDomainMap() const override { return system_.all; }
   RCP<const Map> getRangeMap() const override { return system_.all; }
-  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const override
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, const double alpha,
+             const double beta) const override
   {
+    if (alpha != 1 || beta != 0) {
+      MultiVector product(y.getMap(), y.getNumVectors());
+      apply(x, product, Teuchos::NO_TRANS, 1, 0);
+      y.update(alpha, product, beta);
+      return;
+    }
     const System &s = system_;
     for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
       const auto of_x = x.getVector(k);
@@ -148,10 +186,10 @@ private:
 Mixed::System::System(const UpdatedOperator &H, MixedForm made, const LinearSolverOptions &options)
     : dilatation(std::move(made.dilatation)), Z_transposed(transposed(dilatation.modes)),
       H0(rcp(new UpdatedOperator(std::move(made.soft), H.nodes()))), meshes(H0, std::move(made.levels), options),
-      dofs(H.getDomainMap()), modes(dilatation.modes->getRangeMap()),
-      all(rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), num_local(*dofs) + num_local(*modes), 0,
-                      dofs->getComm()))),
-      weights(weights_of(dilatation)), work(modes), saddle(rcp(new Saddle(*this))),
+      dofs(H.getDomainMap()), mode_map(dilatation.modes->getRangeMap()),
+      all(rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), num_local(*dofs) + num_local(*mode_map),
+                      0, dofs->getComm()))),
+      weights(weights_of(dilatation)), work(mode_map), saddle(rcp(new Saddle(*this))),
       triangular(std::make_unique<Triangular>(*this)), krylov(std::make_unique<Krylov>(options, saddle))
 {
 }
@@ -189,41 +227,45 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
 {
   const System &s = *system_;
   const double enough = std::max(wanted.residual, options_.tolerance) * b.norm2();
+  const double stiffest = s.weights.stiffest + stiffest_contact(*H_);
   Vector right_side(s.all), found(s.all), rest(b, Teuchos::Copy);
   KrylovResult result;
   x.putScalar(0);
   double left = b.norm2();
-  for (int k = 0; k < most_solves; ++k) {
+  for (int k = 0; k < most_solves && !result.converged; ++k) {
     right_side.putScalar(0);
     s.displacements(right_side)->assign(rest);
     KrylovResult more = s.krylov->solve(*s.triangular, false, right_side, found, enough / left, gives_up);
     more.iterations += result.iterations;
     result = std::move(more);
     if (result.broken || result.given_up) break;
+    const bool goes_on = result.converged || result.rounded;
     x.update(1., *s.displacements(std::as_const(found)), 1.);
     rest.assign(b);
     H_->apply(x, rest, Teuchos::NO_TRANS, -1., 1.);
     left = rest.norm2();
     result.residual = left / b.norm2();
-    if (result.rounded) result.converged = true; // what is left of H x = b is rounding too
-    if (result.rounded || !result.converged || left <= enough) break;
+    result.converged = left <= std::max(enough, rounding * stiffest * x.norm2());
+    if (!goes_on) break;
   }
-  if (wanted.error > 0) result.energy = x.dot(b);
+  if (result.converged)
+    result.reason.clear();
+  else if (result.reason.empty())
+    result.reason = "GMRES left |r|/|b| = " + std::to_string(result.residual) + " after " +
+                    std::to_string(result.iterations) + " iterations";
+  if (result.converged && wanted.error > 0) result.energy = x.dot(b);
   return result;
 }
 
 void Mixed::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
   const System &s = *system_;
-  Vector forces(x.getMap()), correction(x.getMap()), pressure(s.modes);
+  Vector forces(x.getMap()), correction(x.getMap()), pressure(s.mode_map);
   for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
     const auto u = y.getVectorNonConst(k);
     s.solve_soft(*x.getVector(k), *u);
-    s.dilatation.modes->apply(*u, pressure);
-    for (const Vector *factor : {&s.weights.of_equation, &s.weights.schur, &s.weights.of_equation}) {
-      s.work.assign(pressure);
-      pressure.elementWiseMultiply(1., *factor, s.work, 0.);
-    }
+    s.dilatation.modes->apply(*u, s.work);
+    pressure.elementWiseMultiply(1., s.weights.bulk, s.work, 0.);
     forces.putScalar(0);
     s.add_forces(pressure, forces);
     s.solve_soft(forces, correction);

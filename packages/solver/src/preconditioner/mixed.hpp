@@ -29,13 +29,15 @@ public:
   std::string name() const override { return "mixed"; }
   std::string description() const override;
 
-  /// x <- approximately H^-1 b; collective. @param wanted  its residual counts, that of H x = b
+  /// x <- approximately H^-1 b, after prepare(); collective.
+  /// @param b  not 0, but 0 at prescribed unknowns: K and K_0 differ there   @param wanted  its residual counts, that of H x = b
+  /// @param gives_up  null: never   @throws Interrupted on all ranks
   KrylovResult solve(const Vector &b, Vector &x, const Accuracy &wanted, const GivesUp &gives_up) const;
 
   /// Of iterations in a solve, see Meshes::learn().
   void learn(int iterations, double seconds_of_iteration);
 
-  /// y <- B x with the pressures of the soft body's displacements.                                               (4.15)
+  /// y <- (V - V Z^T diag(1/s + 1/bulk modulus)^-1 Z V) x, V the multigrid for H_0: positive definite as long as V <= H_0^-1.  (4.16)
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
              double beta = 0) const override;
   RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }

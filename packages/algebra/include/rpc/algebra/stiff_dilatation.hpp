@@ -11,9 +11,12 @@ namespace rpc
 ///
 /// A row of Z is one mode of one cell, made orthonormal there: (Z u)_m is the m-th coefficient of div u.
 struct StiffDilatation {
-  RCP<const CrsMatrix> modes;     ///< Z, (modes of owned cells x owned dofs), 0 at prescribed unknowns [m^(dim/2 - 1)]
-  DeviceView<double *> stiffness; ///< (modes) s = lambda - lambda_0, 0 in cells whose stiffness is not split [Pa]
-  DeviceView<double *> modulus;   ///< (modes) lambda_0 + 2 mu, that of K_0 for a change of volume [Pa]
+  RCP<const CrsMatrix>
+      modes; ///< Z, (modes of owned cells x owned dofs), 0 at prescribed unknowns [m^(dim/2 - 1)], of revolution [m^(1/2)]
+  DeviceView<double *> stiffness;    ///< (modes) s = lambda - lambda_0, 0 in cells whose stiffness is not split [Pa]
+  DeviceView<double *> wave_modulus; ///< (modes) lambda_0 + 2 mu, of K_0 for waves that change the volume [Pa]
+  DeviceView<double *>
+      bulk_modulus; ///< (modes) lambda_0 + 2 mu/dim, the least of K_0 for a change of volume, dim = 3 of revolution [Pa]
 };
 
 } // namespace rpc

@@ -43,7 +43,9 @@ public:
   /// @return number of nodes where it changed, over all ranks
   /// @throws rpc::Error (internal_error) on all ranks if a point lies at another node
   GO set(const NodePoints &points, const DeviceView<double ***> &block, const DeviceView<double ***> &coupling = {});
-  /// The update becomes that of another operator on the same nodes.
+  /// The update becomes that of another operator on the same nodes. An operator that follows is never set by itself: revisions tell whether
+  /// there is anything to do.
+  /// @throws rpc::Error (internal_error) where the nodes are others
   void follow(const UpdatedOperator &other);
   /// Grows with each change of H.
   int revision() const { return revision_; }

@@ -18,7 +18,7 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 /// Whether multigrid's smoothers solve on stars of vertices: nearly incompressible boxes of Q2 want it.               (4.7f)
 bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials);
 
-/// Whether smoothers of single nodes take longer than what else there is, by the blocks' ratios.              (4.7f), (4.13)
+/// Whether some block has a Poisson's ratio above 0.48, outside plane stress.                                 (4.7f), (4.13)
 bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials);
 
 /// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns. Collective.

@@ -17,11 +17,10 @@ struct Stiffness {
   fem::PrescribedCouplings couplings;
 };
 
-/// Collective.
+/// Where rows repeat, the finest mesh's node graph is forgotten. Collective.
 /// @param prescribed  (overlap dofs) 1 where the displacement is
 /// @throws rpc::Error (bad_input) where numbers overflow, (bad_mesh) for a cell with a Jacobian <= 0
-Stiffness stiffness_of(const fem::Discretization &d, const fem::Materials &materials,
-                       const DeviceView<char *> &prescribed);
+Stiffness stiffness_of(const NestedMesh &mesh, const fem::Materials &materials, const DeviceView<char *> &prescribed);
 
 /// Splits K of a nearly incompressible body of order 2 for a solver that has pressures as unknowns of their own; null for other bodies, for
 /// boxes that nothing touches and that stars of vertices suit, and where there is no coarser mesh. doc/theory.md (4.13)

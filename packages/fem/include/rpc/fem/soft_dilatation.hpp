@@ -14,8 +14,9 @@ namespace rpc::fem
 /// @param ratio  in (0, 0.5)
 std::optional<Materials> softened(const Discretization &d, const Materials &materials, double ratio);
 
-/// What softened materials lack; collective.
+/// What softened materials lack: a row of Z for each mode of the projection of each owned cell, cell by cell; collective.
 /// @param soft        of softened()   @param prescribed  (overlap dofs) 1 where the displacement is
+/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
 StiffDilatation stiff_dilatation(const Discretization &d, const Materials &materials, const Materials &soft,
                                  const DeviceView<char *> &prescribed);
 

@@ -34,7 +34,7 @@ std::string solver_path(const LinearSolverCounts &counts);
 
 /// A Krylov method of Belos with multigrid: on coarser meshes where there are some, mesh_levels.hpp, followed by an algebraic
 /// hierarchy where they do not lead down to few unknowns; else smoothed aggregation by MueLu that knows the rigid body modes. Of few
-/// unknowns the matrix is factored.
+/// unknowns the matrix is factored. Where the stiffness is given in two parts, GMRES solves for pressures too, mixed_form.hpp.
 ///
 /// The preconditioner is set up at the first solve, and follows H when H has changed. What is tried where a solve fails or is slow
 /// stands in one table, src/policy.hpp. Any right side may be solved for: with the same H nothing is set up again, unless the table or
@@ -55,10 +55,10 @@ public:
     bool broken = false; ///< x is no approximation of anything
     bool interrupted = false;
     int iterations = 0;
-    double energy = 0;  ///< x . b, about |x|_H^2, where an error was asked for of CG [J]
+    double energy = 0;  ///< x . b, about |x|_H^2, where an error was asked for of CG or of the mixed form [J]
     std::string reason; ///< why not, if not
   };
-  /// x <- approximately H^-1 b, from x = 0, for any b; collective. Failure is a result, not an exception. x is 0 where b is.
+  /// x <- approximately H^-1 b, from x = 0, for any b, which the mixed form takes to be 0 at prescribed unknowns; collective. Failure is a result, not an exception. x is 0 where b is.
   /// @param wanted  a number is |r| / |b|; never taken below the options' one
   Result solve(const Vector &b, Vector &x, const Accuracy &wanted);
 

@@ -16,7 +16,7 @@ struct LinearSolverOptions {
   double damping = 4. / 3;               ///< of algebraic prolongators for the whole matrix, unless `muelu` says it
   double expected_iterations =
       0; ///< of CG to 1e-8 with multigrid, where the body lets expect many; 0: not known. No parameter.
-  int first_iterations = 15; ///< of each solve, by whose residuals a sparse factor is not thought of yet. No parameter.
+  int first_iterations = 15; ///< of a solve before a sparse factor is considered. No parameter.
   double rough_part =
       1; ///< rough solves (Accuracy::error > 0) leave this part of what they are asked to leave, in (0, 1]. No parameter.
   Teuchos::ParameterList belos; ///< on top of the defaults
