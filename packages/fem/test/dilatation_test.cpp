@@ -286,7 +286,7 @@ TEST(LockingNote, WarnsOfP1InNearlyIncompressibleMaterialsOnly)
   EXPECT_EQ(note(q1, 0.4999), "");
 }
 
-/// K = K_0 + Z^T diag(s) Z on the unknowns that are not prescribed, of two materials, of which one is split.            (4.13)
+/// K = K_0 + Z^T diag(s) Z on the unknowns that are not prescribed.                                                   (4.13)
 TEST(SoftDilatation, AndWhatItLacksAreTheStiffness)
 {
   for (const mesh::Element &element : mesh::all_elements()) {
@@ -315,9 +315,10 @@ TEST(SoftDilatation, AndWhatItLacksAreTheStiffness)
     K->apply(u, whole);
     K_0->apply(u, sum);
     split.modes->apply(u, volume);
-    const auto s = to_host(split.stiffness), modulus = to_host(split.wave_modulus);
+    const auto s = to_host(split.stiffness), modulus = to_host(split.wave_modulus), bulk = to_host(split.bulk_modulus);
     for (LO m = 0; m < num_local(*volume.getMap()); ++m) {
       EXPECT_NEAR(s(m), material.lambda() - soft->of(d.mesh->blocks[0]).lambda(), 1e-10 * s(m));
+      EXPECT_NEAR(bulk(m), soft->of(d.mesh->blocks[0]).lambda() + 2 * material.mu() / d.dim(), 1e-10 * s(m));
       EXPECT_NEAR(modulus(m), soft->of(d.mesh->blocks[0]).lambda() + 2 * material.mu(), 1e-10 * s(m));
       volume.replaceLocalValue(m, s(m) * volume.getData()[m]);
     }
@@ -342,7 +343,42 @@ TEST(SoftDilatation, ModesOfAnExpansionAreTheRootsOfVolumes)
     for (LO i = 0; i < num_local(*d.owned_dofs); ++i)
       u.replaceLocalValue(i, coords(node_of(d.dim(), i), component_of(d.dim(), i)) / d.dim());
     split.modes->apply(u, volumes);
-    EXPECT_NEAR(volumes.norm2() * volumes.norm2(), volume(d), 1e-12);
+    const auto of_mode = volumes.getData();
+    EXPECT_NEAR(volumes.norm2() * volumes.norm2(), volume(d), 1e-12); // of all cells
+    const LO modes = num_local(*volumes.getMap()) / d.mesh->num_owned_cells;
+    for (LO m = 0; m < num_local(*volumes.getMap()); ++m)
+      if (m % modes > 0) EXPECT_NEAR(of_mode[m], 0, 1e-12);
+  }
+}
+
+/// Of two blocks one is split: cells of the other one have no modes, and K_0 is K there.
+TEST(SoftDilatation, SplitsTheBlocksThatAreStiff)
+{
+  const auto both = body(small_box({2, 2}), world());
+  const auto mesh = std::make_shared<mesh::Mesh>(*both.mesh);
+  mesh->blocks.push_back("steel");
+  const auto block = to_host(mesh->block);
+  const DeviceView<int *> blocks("blocks", block.extent(0));
+  const auto host = Kokkos::create_mirror_view(blocks);
+  for (std::size_t c = 0; c < block.extent(0); ++c) host(c) = static_cast<int>(c % 2);
+  Kokkos::deep_copy(blocks, host);
+  mesh->block = blocks;
+  const auto d = fem::discretize(mesh);
+  fem::Materials materials(rubber);
+  materials.block["steel"] = {1000, 0.3};
+  const auto soft = fem::softened(d, materials, 0.4);
+  ASSERT_TRUE(soft);
+  EXPECT_EQ(soft->of("steel").poissons_ratio, 0.3);
+  const DeviceView<char *> nothing("nothing", d.num_overlap_dofs());
+  const auto split = fem::stiff_dilatation(d, materials, *soft, nothing);
+  const auto s = to_host(split.stiffness);
+  Vector u(d.owned_dofs), volumes(split.modes->getRangeMap());
+  u.randomize();
+  split.modes->apply(u, volumes);
+  for (LO m = 0; m < num_local(*volumes.getMap()); ++m) {
+    const bool is_stiff = host(m / 3) == 0;
+    EXPECT_EQ(s(m) > 0, is_stiff);
+    EXPECT_EQ(volumes.getData()[m] != 0, is_stiff);
   }
 }
 
