@@ -29,9 +29,8 @@ bool is_split(const Block &block)
 
 /// Iterations to 1e-8 for an unordered right side, nothing and every other stretch of the contact side closed. What is found is the solution
 /// of H x = b, by the energy of its error: the residual's norm is that of rounding.
-void expect_few(const Block &block, const int most, const int most_closed)
+void expect_few(const Block &block, const int most)
 {
-  if (on_gpu && !is_split(block)) return; // it has stars of vertices there
   const auto solver = block.solver(true);
   const Vector b = block.vector(3);
   Vector x(b.getMap()), r(b.getMap()), error(b.getMap());
@@ -39,7 +38,7 @@ void expect_few(const Block &block, const int most, const int most_closed)
     if (closed) block.close_half();
     const auto result = solver->solve(b, x, 1e-8);
     EXPECT_TRUE(result.converged) << result.reason;
-    EXPECT_LE(result.iterations, closed ? most_closed : most) << (closed ? "closed" : "elastic");
+    EXPECT_LE(result.iterations, most) << (closed ? "closed" : "elastic");
     block.H->apply(x, r);
     r.update(1., b, -1.);
     EXPECT_TRUE(block.solver()->solve(r, error, 1e-2).converged);
@@ -58,17 +57,16 @@ TEST(MixedForm, TakesFewIterationsUpToOneHalf)
   struct Body {
     mesh::Element element;
     Kinematics kinematics;
-    int most, most_closed;
+    int most;
   };
-  for (const auto &[element, kinematics, most, most_closed] :
-       std::vector<Body>{{plane_q2, Kinematics::plane_strain, 28, 48},
-                         {plane_q2, Kinematics::axisymmetric, 28, 46},
-                         {plane_p2, Kinematics::plane_strain, 30, 52},
-                         {q2, Kinematics::plane_strain, 32, 50},
-                         {p2, Kinematics::plane_strain, 55, 80}})
+  for (const auto &[element, kinematics, most] : std::vector<Body>{{plane_q2, Kinematics::plane_strain, 17},
+                                                                   {plane_q2, Kinematics::axisymmetric, 17},
+                                                                   {plane_p2, Kinematics::plane_strain, 19},
+                                                                   {q2, Kinematics::plane_strain, 19},
+                                                                   {p2, Kinematics::plane_strain, 34}})
     for (const double nu : {0.49, 0.499, 0.49999}) {
       SCOPED_TRACE(element.name() + " in " + std::to_string(element.dim) + "D, nu " + std::to_string(nu));
-      expect_few(Block(element, cells_of(element), true, {2, 1, 1}, nu, kinematics), most, most_closed);
+      expect_few(Block(element, cells_of(element), true, {2, 1, 1}, nu, kinematics), most);
     }
 }
 
@@ -77,8 +75,7 @@ TEST(MixedForm, TakesBodiesFromFiles)
 {
   for (const mesh::Element &element : {plane_p2, p2}) {
     SCOPED_TRACE(element.name() + " in " + std::to_string(element.dim) + "D");
-    expect_few(Block(element, cells_of(element), false, {2, 1, 1}, 0.4999), element.dim == 2 ? 40 : 60,
-               element.dim == 2 ? 60 : 80);
+    expect_few(Block(element, cells_of(element), false, {2, 1, 1}, 0.4999), element.dim == 2 ? 16 : 26);
   }
 }
 
@@ -89,7 +86,7 @@ TEST(MixedForm, TakesStretchedCells)
       SCOPED_TRACE(element.name() + " in " + std::to_string(element.dim) + "D, stretched by " + std::to_string(ratio));
       const std::vector<double> upper = {1, 1, 1 / ratio}, upper_in_plane = {ratio, 1, 1};
       const std::vector<int> cells = element.dim == 2 ? std::vector<int>{15, 16, 0} : std::vector<int>{5, 5, 4};
-      expect_few(Block(element, cells, true, element.dim == 2 ? upper_in_plane : upper, 0.499), 55, 55);
+      expect_few(Block(element, cells, true, element.dim == 2 ? upper_in_plane : upper, 0.499), 32);
     }
 }
 
@@ -116,7 +113,7 @@ TEST(MixedForm, IsThatOfNearlyIncompressibleBodiesOfOrderTwo)
                         const Kinematics kinematics = Kinematics::plane_strain) {
     return Block(element, cells_of(element), true, {2, 1, 1}, nu, kinematics);
   };
-  EXPECT_EQ(is_split(block(q2, 0.49)), !on_gpu);
+  EXPECT_TRUE(is_split(block(q2, 0.49)));
   EXPECT_TRUE(is_split(block(plane_p2, 0.49)));
   EXPECT_FALSE(is_split(block(q2, 0.47)));
   EXPECT_FALSE(is_split(block({3, 1}, 0.49)));

@@ -210,7 +210,6 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
   method.problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), RCP<const MultiVector>(rest));
   try {
     result.converged = method.manager->solve() == Belos::Converged;
-    result.rounded = method.manager->isLOADetected();
     result.iterations = method.manager->getNumIters();
     result.residual = left * method.manager->achievedTol();
     if (!result.converged)

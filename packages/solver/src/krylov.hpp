@@ -15,7 +15,6 @@ namespace rpc::solver
 struct KrylovResult {
   bool converged = false;
   bool broken = false;   ///< the method broke down, as on an indefinite or singular matrix
-  bool rounded = false;  ///< it ended as rounding lets the true residual fall no further than the iteration's own one
   bool given_up = false; ///< GivesUp has asked for that
   int iterations = 0;    ///< 0 where it broke down: they are not to be had
   double residual = 1;   ///< |r|/|b| by the method's own account; NaN where it broke down

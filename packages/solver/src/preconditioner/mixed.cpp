@@ -4,6 +4,7 @@
 
 #include <Tpetra_RowMatrixTransposer.hpp>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -12,8 +13,10 @@ namespace rpc::solver
 namespace
 {
 
-// Solves of the mixed system, each for what the last one has left of H x = b.
-constexpr int most_solves = 3;
+// BiCGStab starts again, for what is left of H x = b, after so many iterations: its own residuals are no longer those of x by then.
+constexpr int iterations_at_once = 40;
+// Passes that bring less than this part of the residual's digits have met rounding, or stall.
+constexpr double least_gain = 0.5;
 // Errors of products over what the largest entries would give: sums of some hundred terms.
 constexpr double rounding = 10 * std::numeric_limits<double>::epsilon();
 
@@ -77,6 +80,15 @@ double stiffest_contact(const UpdatedOperator &H)
       },
       Kokkos::Max<double>(stiffest));
   return max_all(*H.getDomainMap()->getComm(), std::max(stiffest, 0.));
+}
+
+/// For the mixed system, which is not definite: the deck's method is for H.
+LinearSolverOptions for_saddle()
+{
+  LinearSolverOptions options;
+  options.method = "BiCGStab";
+  options.max_iterations = iterations_at_once;
+  return options;
 }
 
 } // namespace
@@ -190,7 +202,7 @@ Mixed::System::System(const UpdatedOperator &H, MixedForm made, const LinearSolv
       all(rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), num_local(*dofs) + num_local(*mode_map),
                       0, dofs->getComm()))),
       weights(weights_of(dilatation)), work(mode_map), saddle(rcp(new Saddle(*this))),
-      triangular(std::make_unique<Triangular>(*this)), krylov(std::make_unique<Krylov>(options, saddle))
+      triangular(std::make_unique<Triangular>(*this)), krylov(std::make_unique<Krylov>(for_saddle(), saddle))
 {
 }
 
@@ -226,33 +238,37 @@ std::string Mixed::description() const
 KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, const GivesUp &gives_up) const
 {
   const System &s = *system_;
-  const double enough = std::max(wanted.residual, options_.tolerance) * b.norm2();
+  const double norm = b.norm2(), enough = std::max(wanted.residual, options_.tolerance) * norm;
   const double stiffest = s.weights.stiffest + stiffest_contact(*H_);
   Vector right_side(s.all), found(s.all), rest(b, Teuchos::Copy);
   KrylovResult result;
   x.putScalar(0);
-  double left = b.norm2();
-  for (int k = 0; k < most_solves && !result.converged; ++k) {
+  double left = norm;
+  while (!result.converged && !result.given_up && result.iterations < options_.max_iterations) {
     right_side.putScalar(0);
     s.displacements(right_side)->assign(rest);
-    KrylovResult more = s.krylov->solve(*s.triangular, false, right_side, found, enough / left, gives_up);
-    more.iterations += result.iterations;
-    result = std::move(more);
-    if (result.broken || result.given_up) break;
-    const bool goes_on = result.converged || result.rounded;
+    const KrylovResult pass = s.krylov->solve(*s.triangular, false, right_side, found, enough / left);
+    if (pass.broken) {
+      result.broken = true;
+      result.reason = pass.reason;
+      return result;
+    }
     x.update(1., *s.displacements(std::as_const(found)), 1.);
     rest.assign(b);
     H_->apply(x, rest, Teuchos::NO_TRANS, -1., 1.);
-    left = rest.norm2();
-    result.residual = left / b.norm2();
+    const double before = std::exchange(left, rest.norm2());
     result.converged = left <= std::max(enough, rounding * stiffest * x.norm2());
-    if (!goes_on) break;
+    result.residual = left / norm;
+    // Between two passes the residual is taken to fall evenly.
+    for (int k = 1; k <= pass.iterations && gives_up && !result.converged; ++k)
+      result.given_up = gives_up(result.iterations + k,
+                                 before / norm * std::pow(left / before, static_cast<double>(k) / pass.iterations));
+    result.iterations += pass.iterations;
+    if (!(left < least_gain * before)) break;
   }
-  if (result.converged)
-    result.reason.clear();
-  else if (result.reason.empty())
-    result.reason = "GMRES left |r|/|b| = " + std::to_string(result.residual) + " after " +
-                    std::to_string(result.iterations) + " iterations";
+  if (!result.converged)
+    result.reason = (result.given_up ? "given up after " : "|r|/|b| = " + std::to_string(result.residual) + " after ") +
+                    std::to_string(result.iterations) + " BiCGStab iterations";
   if (result.converged && wanted.error > 0) result.energy = x.dot(b);
   return result;
 }

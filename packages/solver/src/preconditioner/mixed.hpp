@@ -15,7 +15,7 @@ namespace rpc::solver
 ///     [ H_0   Z^T     ] [u]   [b]
 ///     [ Z    -diag(s)^-1 ] [p] = [0],     H_0 = K_0 + contact.
 ///
-/// GMRES solves them, preconditioned by multigrid on meshes for H_0. Where a solve does not end well, another preconditioner of H has to
+/// BiCGStab solves them, preconditioned by multigrid on meshes for H_0. Where a solve does not end well, another preconditioner of H has to
 /// take over.
 class Mixed : public Preconditioner
 {

@@ -34,7 +34,7 @@ std::string solver_path(const LinearSolverCounts &counts);
 
 /// A Krylov method of Belos with multigrid: on coarser meshes where there are some, mesh_levels.hpp, followed by an algebraic
 /// hierarchy where they do not lead down to few unknowns; else smoothed aggregation by MueLu that knows the rigid body modes. Of few
-/// unknowns the matrix is factored. Where the stiffness is given in two parts, GMRES solves for pressures too, mixed_form.hpp.
+/// unknowns the matrix is factored. Where the stiffness is given in two parts, BiCGStab solves for pressures too, mixed_form.hpp.
 ///
 /// The preconditioner is set up at the first solve, and follows H when H has changed. What is tried where a solve fails or is slow
 /// stands in one table, src/policy.hpp. Any right side may be solved for: with the same H nothing is set up again, unless the table or
