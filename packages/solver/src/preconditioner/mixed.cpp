@@ -15,8 +15,9 @@ namespace
 
 // BiCGStab starts again, for what is left of H x = b, after so many iterations: its own residuals are no longer those of x by then.
 constexpr int iterations_at_once = 40;
-// Passes that bring less than this part of the residual's digits have met rounding, or stall.
-constexpr double least_gain = 0.5;
+// What a pass leaves of the residual at most, though less were enough: its own residual is a little below that of H x = b. One that leaves
+// more than `stalled` has met rounding, or stalls.
+constexpr double pass_tolerance = 0.1, stalled = 0.5;
 // Errors of products over what the largest entries would give: sums of some hundred terms.
 constexpr double rounding = 10 * std::numeric_limits<double>::epsilon();
 
@@ -247,7 +248,8 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
   while (!result.converged && !result.given_up && result.iterations < options_.max_iterations) {
     right_side.putScalar(0);
     s.displacements(right_side)->assign(rest);
-    const KrylovResult pass = s.krylov->solve(*s.triangular, false, right_side, found, enough / left);
+    const KrylovResult pass =
+        s.krylov->solve(*s.triangular, false, right_side, found, std::min(enough / left, pass_tolerance));
     if (pass.broken) {
       result.broken = true;
       result.reason = pass.reason;
@@ -264,7 +266,7 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
       result.given_up = gives_up(result.iterations + k,
                                  before / norm * std::pow(left / before, static_cast<double>(k) / pass.iterations));
     result.iterations += pass.iterations;
-    if (!(left < least_gain * before)) break;
+    if (!(left < stalled * before)) break;
   }
   if (!result.converged)
     result.reason = (result.given_up ? "given up after " : "|r|/|b| = " + std::to_string(result.residual) + " after ") +
