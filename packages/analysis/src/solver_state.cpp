@@ -14,7 +14,7 @@ namespace
 // The iterations to 1e-8 that are expected on stars of vertices, (4.7f), and of the mixed form, (4.14): too few to think of a sparse factor,
 // whose symbolic factorization alone takes as much time and memory as some of them.
 constexpr int expected_of_mixed = 30, expected_on_stars = 15;
-// There a sparse factor is considered later: stars take up to 32 iterations with contact, and the mixed form looks at its residual as often.
+// There a sparse factor is considered later: stars take up to 32 iterations with contact.
 constexpr int first_iterations = 40;
 
 /// The CG iterations to 1e-8 that multigrid takes at least on a body of the largest nu of its blocks: smoothers of single nodes see no

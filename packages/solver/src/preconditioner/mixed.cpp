@@ -14,7 +14,7 @@ namespace
 {
 
 // BiCGStab starts again, for what is left of H x = b, after so many iterations: its own residuals are no longer those of x by then.
-constexpr int iterations_at_once = 40;
+constexpr int iterations_at_once = 80;
 // What a pass leaves of the residual at most, though less were enough: its own residual is a little below that of H x = b. One that leaves
 // more than `stalled` has met rounding, or stalls.
 constexpr double pass_tolerance = 0.1, stalled = 0.5;
