@@ -349,6 +349,8 @@ RepeatedRows RepeatedRows::of(RCP<const CrsMatrix> A, const int dim)
   number_the_rest(result.kind_);
   const auto example = device_values(kinds ? kinds->example : std::vector<LO>{}, "rpc::repeated_rows::example");
   result.list_kinds({example, example, matrix});
+  const bool repeat = result.num_kinds() > 0 || num_nodes == 0; // on this rank
+  result.pays_ = dim > 1 && (!on_gpu || min_all(*result.A_->getComm(), repeat ? 1 : 0) == 1);
   return result;
 }
 
@@ -356,6 +358,7 @@ RepeatedRows RepeatedRows::of(const AlikeNodes &kinds, const RowsOfNodes &rows, 
 {
   RepeatedRows result;
   result.dim_ = dim;
+  result.pays_ = dim > 1;
   result.rest_ = rows.rows;
   result.kind_ = kinds.kind;
   const LO num_kinds = static_cast<LO>(kinds.example.size());
@@ -375,11 +378,6 @@ void RepeatedRows::list_kinds(const RowsOfNodes &examples)
   Kokkos::parallel_for("rpc::repeated_rows::list", device_range(examples.size()),
                        ListKinds{dim_, examples, begin_, offset_, value_});
   Kokkos::fence();
-}
-
-bool RepeatedRows::pays() const
-{
-  return dim_ > 1 && (!on_gpu || num_kinds() > 0 || num_nodes() == 0);
 }
 
 RepeatedRows::Blocks RepeatedRows::blocks() const

@@ -29,7 +29,7 @@ public:
   using LocalMatrix = RowsOfNodes::LocalMatrix;
 
   /// @param A    fill-complete; each node's unknowns are consecutive rows with equal columns, and so are its columns. It is kept: rows
-  ///             that do not repeat have its values as they come to be, the others as they are now.
+  ///             that do not repeat have its values as they come to be, the others as they are now. Collective.
   /// @param dim  unknowns of a node, 1 to 3; with one, products are left to Tpetra
   static RepeatedRows of(RCP<const CrsMatrix> A, int dim);
 
@@ -42,8 +42,8 @@ public:
   /// @param x  (columns of A)   @param y  (rows of A)
   void apply(const Vector &x, Vector &y) const;
   /// Whether that takes less time than Tpetra's product. On a GPU it does not where no rows repeat: a thread for each node would read
-  /// entries far apart.
-  bool pays() const;
+  /// entries far apart. The same on all ranks, for the two products exchange in different ways.
+  bool pays() const { return pays_; }
   /// Whether it reads rows from the matrix that it was made of.
   bool reads_matrix() const { return !A_.is_null(); }
 
@@ -105,6 +105,7 @@ private:
   void list_kinds(const RowsOfNodes &examples);
 
   int dim_ = 2;
+  bool pays_ = true;
   RCP<const CrsMatrix> A_;     // or null
   LocalMatrix rest_;           // without A: the rows that do not repeat, among others
   DeviceView<int *> kind_;     // (owned nodes) < 0: -1 - place of the node among those of the matrix that has the rest
