@@ -36,7 +36,7 @@ Stiffness stiffness_of(const NestedMesh &mesh, const fem::Materials &materials, 
   return {rcp(new StiffnessOperator(K.matrix, d.dim())), K.couplings};
 }
 
-solver::MakeMixedForm mixed_form(std::shared_ptr<const NestedMesh> finest, const Model &model,
+solver::MakeMixedForm mixed_form(const std::shared_ptr<const NestedMesh> &finest, const Model &model,
                                  const DeviceView<char *> &prescribed)
 {
   const fem::Discretization &d = finest->discretization();

@@ -19,7 +19,7 @@ constexpr int iterations_at_once = 80;
 // more than `stalled` has met rounding, or stalls.
 constexpr double pass_tolerance = 0.1, stalled = 0.5;
 // Errors of products over what the largest entries would give: sums of some hundred terms.
-constexpr double rounding = 10 * std::numeric_limits<double>::epsilon();
+constexpr double rounding_of_products = 10 * std::numeric_limits<double>::epsilon();
 
 /// Z^T where several threads would add to a row at once in a product with Z's columns, in any order; else null. Collective.
 RCP<const CrsMatrix> transposed(const RCP<const CrsMatrix> &Z)
@@ -259,7 +259,7 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
     rest.assign(b);
     H_->apply(x, rest, Teuchos::NO_TRANS, -1., 1.);
     const double before = std::exchange(left, rest.norm2());
-    result.converged = left <= std::max(enough, rounding * stiffest * x.norm2());
+    result.converged = left <= std::max(enough, rounding_of_products * stiffest * x.norm2());
     result.residual = left / norm;
     // Between two passes the residual is taken to fall evenly.
     for (int k = 1; k <= pass.iterations && gives_up && !result.converged; ++k)

@@ -24,7 +24,7 @@ Stiffness stiffness_of(const NestedMesh &mesh, const fem::Materials &materials, 
 
 /// Splits K of a nearly incompressible body of order 2 for a solver that has pressures as unknowns of their own; null for other bodies, for
 /// boxes that nothing touches and that stars of vertices suit, and where there is no coarser mesh. doc/theory.md (4.13)
-solver::MakeMixedForm mixed_form(std::shared_ptr<const NestedMesh> finest, const Model &model,
+solver::MakeMixedForm mixed_form(const std::shared_ptr<const NestedMesh> &finest, const Model &model,
                                  const DeviceView<char *> &prescribed);
 
 } // namespace rpc::analysis
