@@ -73,14 +73,11 @@ class ThinBodies(RpcTestCase):
 class Rubber(RpcTestCase):
     def test_no_solve_waits_for_iterations_that_stall(self):
         mixed, factor = "^mixed$", "^sparse factor: about [0-9]+ CG iterations expected$"
-        bodies = {  # upper, cells, element, path, iterations
-            "in the plane": ((2, 1), (32, 32), "Q2", mixed, 36),
-            "in the plane, stretched by 12": ((2, 1), (16, 96), "Q2", "^mixed( -> sparse factor: given up after [0-9]+ GMRES iterations)?$", 50),
-            "in space, stretched by 4": ((1, 1, 1), (4, 4, 16), "Q2", mixed, 30),
-            "in space, stretched by 6": ((1, 1, 1), (4, 4, 24), "Q2", mixed, 32),
-            "of triangles": ((2, 1), (32, 32), "P2", mixed, 32), "of tetrahedra": ((1, 1, 1), (6, 6, 6), "P2", mixed, 44),
-            "of Q1": ((2, 1), (48, 96), "Q1", factor, 30)}
-        for name, (upper, cells, element, path, most) in bodies.items():
+        bodies = {  # upper, cells, element, path
+            "in the plane": ((2, 1), (32, 32), "Q2", mixed), "in the plane, stretched by 12": ((2, 1), (16, 96), "Q2", mixed),
+            "in space, stretched by 4": ((1, 1, 1), (4, 4, 16), "Q2", mixed), "in space, stretched by 6": ((1, 1, 1), (4, 4, 24), "Q2", mixed),
+            "of triangles": ((2, 1), (32, 32), "P2", mixed), "of tetrahedra": ((1, 1, 1), (6, 6, 6), "P2", mixed), "of Q1": ((2, 1), (48, 96), "Q1", factor)}
+        for name, (upper, cells, element, path) in bodies.items():
             for nu in (0.499, 0.4999, 0.49999):
                 for friction in (0, 0.3):
                     with self.subTest(f"{name}, nu {nu}, friction {friction}"):
@@ -88,7 +85,7 @@ class Rubber(RpcTestCase):
                         self.rpc("--input=thin.xml")
                         summary = json.loads((self.folder / "thin.json").read_text())
                         self.assertTrue(summary["converged"])
-                        self.assertLessEqual(max(summary["linear_iterations"]), most)
+                        self.assertLessEqual(max(summary["linear_iterations"]), 44 if "by 12" in name else 30)
                         self.assertRegex(summary["solver_path"], path)
 
     def test_what_nothing_touches_is_solved_on_stars(self):

@@ -166,7 +166,7 @@ private:
   const System &system_;
 };
 
-/// y <- (V r_u, S^-1 (w Z V r_u - r_q)) of r = (r_u, r_q), V the multigrid for H_0 and S = w^2 (1/s + 1/modulus).
+/// y <- (V r_u, S^-1 (w Z V r_u - r_q)) of r = (r_u, r_q), V the multigrid for H_0 and S = w^2 (1/s + 1/wave modulus).
 class Mixed::System::Triangular : public Preconditioner
 {
 public:
@@ -261,7 +261,7 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
     const double before = std::exchange(left, rest.norm2());
     result.converged = left <= std::max(enough, rounding_of_products * stiffest * x.norm2());
     result.residual = left / norm;
-    // Between two passes the residual is taken to fall evenly.
+    // BiCGStab does not tell its residuals: within a pass they are taken to fall evenly. The judgement on the last one counts.
     for (int k = 1; k <= pass.iterations && gives_up && !result.converged; ++k)
       result.given_up = gives_up(result.iterations + k,
                                  before / norm * std::pow(left / before, static_cast<double>(k) / pass.iterations));
