@@ -9,4 +9,4 @@
 #SBATCH --signal=TERM@120
 set -eu
 # Each rank sees all GPUs of its node and takes the one of its number there; --gpus-per-task=1 does as well.
-srun --cpu-bind=cores rpc --input="${DECK:-block.xml}" --output="results-$SLURM_JOB_ID"
+srun --mpi=pmix --cpu-bind=cores rpc --input="${DECK:-block.xml}" --output="results-$SLURM_JOB_ID"

@@ -10,4 +10,4 @@ export CUDA_MPS_PIPE_DIRECTORY=$TMPDIR/mps CUDA_MPS_LOG_DIRECTORY=$TMPDIR/mps-lo
 mkdir -p "$CUDA_MPS_PIPE_DIRECTORY" "$CUDA_MPS_LOG_DIRECTORY"
 nvidia-cuda-mps-control -d
 trap 'echo quit | nvidia-cuda-mps-control' EXIT
-srun --cpu-bind=cores rpc --input="${DECK:-block.xml}" --output="results-$SLURM_JOB_ID"
+srun --mpi=pmix --cpu-bind=cores rpc --input="${DECK:-block.xml}" --output="results-$SLURM_JOB_ID"

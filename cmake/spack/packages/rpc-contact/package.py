@@ -1,15 +1,20 @@
-"""rpc for Spack: spack repo add cmake/spack && spack install rpc (doc/portability.md says what was checked)."""
+"""rpc for Spack: spack repo add cmake/spack && spack install rpc-contact (doc/portability.md says what was checked).
+
+The name rpc is taken: in Spack it is a virtual package, that of remote procedure calls.
+"""
 
 from spack.package import *
 
 
-class Rpc(CMakePackage, CudaPackage):
+class RpcContact(CMakePackage, CudaPackage):
     """Contact of an elastic body with a rigid-plastic foundation, by finite elements on Trilinos."""
 
     homepage = "https://example.org/rpc"
-    # From a checkout: spack install rpc@main with  spack develop --path=CHECKOUT rpc@main
+    # From a checkout: spack install rpc-contact@main with  spack develop --path=CHECKOUT rpc-contact@main
 
     version("main")
+
+    generator("ninja")
 
     variant("openmp", default=False, description="Kokkos' threads instead of its serial backend")
     variant("gmsh", default=True, description="meshes from gmsh's geometry files")
@@ -20,7 +25,6 @@ class Rpc(CMakePackage, CudaPackage):
     depends_on("cxx", type="build")
     depends_on("c", type="build")
     depends_on("cmake@3.23:", type="build")
-    depends_on("ninja", type="build")
     depends_on("pkgconfig", type="build")
     depends_on("mpi")
     depends_on("lapack")
