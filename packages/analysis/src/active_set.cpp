@@ -16,6 +16,10 @@ namespace
 constexpr int most_changes = 10;
 constexpr int most_changes_tried = 3; // where a Tresca problem has just been solved
 constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
+// Where edges creep the fifth choice and later ones tell how many follow: overshoots fall, each against the one before the last, and are
+// 0 in the end, on a straight line. More than most_to_go are no cheaper than the interior-point method.
+constexpr int fewest_to_tell = 4;
+constexpr double most_to_go = 8;
 constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
 // While the active set changes, solves bring the residual below this part of what it was, and of the load, or the error in energy below
 // rough_error: two to five CG iterations. With a residual of 1e-1 pressures are too rough to choose by, 1e-4 saves no step, and an error of
@@ -71,8 +75,7 @@ bool ActiveSetStage::resume(const NewtonGroup &from)
 {
   const Vector &u = solver::tpetra(from.getX());
   if (path_ == Path::ahead) {
-    iterate_.start_interior_path(u);
-    path_ = Path::on_it;
+    start_path(u);
     decided_ = false;
     return true;
   }
@@ -93,6 +96,7 @@ void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, 
   changes_ = idle_ = overshoots_ = 0;
   fewest_changes_ = fewest_overshooting_ = 0;
   most_changes_ = most;
+  overshoot_ = {};
   norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
   rough_ = false; // a small residual may be all of the bending
 }
@@ -114,7 +118,9 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     if (confirmed_) return Verdict::converged;
     if (idle_steps_ > (turns_ ? most_idle_turns : 0)) return Verdict::over;
     rough_ = false;
-  } else if (!is_new_choice() || (!contracts() && ++changes_ > most_changes_) || (!rubs_ && !makes_headway())) {
+  } else if (path_expected_ && path_ == Path::ahead && steps_ > 0 && choice_->changes > few_changes) {
+    return give_up(u);
+  } else if (!is_new_choice() || !may_settle() || (!rubs_ && !makes_headway())) {
     return give_up(u); // in circles, or too slow
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
@@ -142,6 +148,20 @@ bool ActiveSetStage::contracts() const
   return !rubs_ && fewest_changes_ > 0 && choice_->changes <= headway * fewest_changes_;
 }
 
+/// Whether the choices may come to an end: each changes much fewer points than any before, or there were few, or they creep and few are
+/// left.
+bool ActiveSetStage::may_settle()
+{
+  const bool contracted = contracts();
+  const bool creeps =
+      !rubs_ && choice_->overshoot > 0 && choice_->overshoot < overshoot_[1] && overshoot_[0] < overshoot_[2];
+  const double to_go = 2 * choice_->overshoot / (overshoot_[1] - choice_->overshoot);
+  overshoot_ = {choice_->overshoot, overshoot_[0], overshoot_[1]};
+  if (contracted) return true;
+  if (++changes_ <= fewest_to_tell || !creeps) return changes_ <= most_changes_;
+  return changes_ <= most_changes_resumed && to_go <= most_to_go;
+}
+
 /// Whether the choices come to an end.
 bool ActiveSetStage::makes_headway()
 {
@@ -162,9 +182,18 @@ bool ActiveSetStage::makes_headway()
 ActiveSetStage::Verdict ActiveSetStage::give_up(const Vector &u)
 {
   if (path_ == Path::behind) return Verdict::over;
-  if (path_ == Path::ahead) iterate_.start_interior_path(u);
-  path_ = Path::on_it;
+  if (path_ == Path::ahead)
+    start_path(u);
+  else
+    path_ = Path::on_it;
   return Verdict::go_on;
+}
+
+void ActiveSetStage::start_path(const Vector &u)
+{
+  iterate_.start_interior_path(u);
+  path_ = Path::on_it;
+  took_path_ = true;
 }
 
 /// Whether the states that the path leads to are to be tried, or taken; then they are the next choice.

@@ -119,7 +119,7 @@ Prediction Predictor::from_rest(const Problem &fine, const Step &step)
       contact::with_weightless(coarse.state, coarse.step.contact, problem.discretization(), problem.contact_sides());
   return {contact::interpolated(*coarser_->to_fine, coarse.step.contact, state, step.contact,
                                 fine.discretization().owned_dofs),
-          "", work_of(coarse, start)};
+          "", level_ == 1 && coarse.interior_path, work_of(coarse, start)};
 }
 
 /// A later step: what it changes.                                                                                (11.5)
@@ -152,7 +152,7 @@ Prediction Predictor::from_last(const Problem &fine, const Step &step, const Mem
   };
   predicted.pressure = changed(*now.pressure, *before.pressure, *last.pressure);
   if (!last.tangential.is_null()) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
-  return {state_of(step.contact, predicted), "", work_of(coarse, start)};
+  return {state_of(step.contact, predicted), "", level_ == 1 && coarse.interior_path, work_of(coarse, start)};
 }
 
 } // namespace rpc::analysis

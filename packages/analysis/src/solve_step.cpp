@@ -23,9 +23,9 @@ constexpr const char *in_want_of_friction =
     "; without friction that follows the pressures the load moves the body, and no pressures were found that hold it: "
     "raise the friction or what presses the body on the foundation, lower the load, or prescribe a displacement";
 
-std::string predict(Iterate &iterate, Vector &u, const Starts &starts, std::vector<LevelWork> &work);
+Prediction predict(Iterate &iterate, Vector &u, const Starts &starts);
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      int iteration, bool previous_confirmed, const Progress &progress);
+                      int iteration, bool previous_confirmed, bool path_expected, const Progress &progress);
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state);
@@ -42,11 +42,15 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
   const auto u = rcp(new Vector(*step.elastic.dirichlet.value, Teuchos::Copy)); // seen from the iterate's origin
   Iterate iterate(step.elastic, step.contact, state.hessian());
   if (step.support.by_contact_only) iterate.hold_by_contact(); // (9.8)
+  bool path_expected = false;
   const auto counts_before = state.linear().counts();
   solver::check_nox_parameters(iterate, state.linear(), u, options.newton);
   {
     const Timed timer("prediction", s.prediction_seconds);
-    s.not_predicted = predict(iterate, *u, starts, s.levels); // (5.11), (11.5)
+    Prediction prediction = predict(iterate, *u, starts); // (5.11), (11.5)
+    s.not_predicted = std::move(prediction.reason);
+    s.levels = std::move(prediction.work);
+    path_expected = prediction.interior_path;
   }
   {
     const Timed timer("solve", s.solve_seconds);
@@ -57,7 +61,8 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       if (uzawa.iterations > 0) // the correction is small against u (5.13)
         iterate.move_origin(*u, *uzawa.residuals.internal.forces, *step.elastic.applied_load);
       const Minimization found = // paper (10), (4.1): choose states (5.8) and solve (5.7), (5.9),
-          minimize(iterate, u, state, options, uzawa.iterations + 1, confirmed, progress); // then Newton (4.2)
+          minimize(iterate, u, state, options, uzawa.iterations + 1, confirmed, path_expected,
+                   progress); // Newton (4.2)
       confirmed = found.active_set_confirmed;
       uzawa.multiplier_change = found.active_set_confirmed ? iterate.take_active_set_pressures(*u)
                                                            : iterate.update_multipliers(*u); // paper (11), (5.1)
@@ -65,6 +70,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       uzawa.residuals = judge(problem, step, iterate, s.state, state); // paper (8); (5.2) - (5.5)
       uzawa.newton_iterations.push_back(found.steps);
       s.line_search_steps += found.line_search_steps;
+      s.interior_path = s.interior_path || found.interior_path;
       ++uzawa.iterations;
       if (progress.uzawa) progress.uzawa(uzawa);
       const double previous = residual_before(worst, found.bounds_follow);
@@ -119,16 +125,19 @@ bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts)
                              contact::contact_law_residual(iterate.points(), iterate.state(u)) <= near_equilibrium);
 }
 
-/// @return why no coarser mesh predicted the start; empty if one did, or none was needed
-std::string predict(Iterate &iterate, Vector &u, const Starts &starts, std::vector<LevelWork> &work)
+/// @return its reason is why no coarser mesh predicted the start; empty if one did, or none was needed
+Prediction predict(Iterate &iterate, Vector &u, const Starts &starts)
 {
+  Prediction prediction;
   const bool near = !starts.states.empty() && start_from_nearest(iterate, u, starts);
-  if (near) return "";
-  if (!starts.predict) return "there is none";
-  Prediction prediction = starts.predict();
-  work = std::move(prediction.work);
+  if (near) return prediction;
+  if (starts.predict)
+    prediction = starts.predict();
+  else
+    prediction.reason = "there is none";
   if (prediction.start) iterate.start_from(*prediction.start, u);
-  return starts.states.empty() ? prediction.reason : "";
+  if (!starts.states.empty()) prediction.reason.clear();
+  return prediction;
 }
 
 // Solve: one NOX solver for each minimization. Its first directions are those of the active-set iteration, then Newton's -----
@@ -170,7 +179,8 @@ Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOpt
 }
 
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      const int iteration, const bool previous_confirmed, const Progress &progress)
+                      const int iteration, const bool previous_confirmed, const bool path_expected,
+                      const Progress &progress)
 {
   const int all = options.newton.max_iterations;
   const auto run = [&](solver::FirstStage *const stage, const int most_steps) {
@@ -190,13 +200,15 @@ Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state
   }
   if (iteration > 1) return minimize_for_next_bounds(iterate, *u, options, run);
   ActiveSetStage stage(iterate, active_set_tolerances(options));
+  if (path_expected) stage.expect_path();
   const auto result = run(&stage, all);
   return {result.converged,
           result.steps,
           result.reason,
           stage.confirmed(),
           result.steps - stage.steps(),
-          friction && !stage.confirmed()};
+          friction && !stage.confirmed(),
+          stage.took_path()};
 }
 
 /// The residual that an iteration's is compared with: the last one, or one of some iterations ago where bounds follow the pressures, for

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace
@@ -160,6 +161,50 @@ TEST(ActiveSet, OfThinStripsIsFoundByTheInteriorPath)
       EXPECT_LE(all.steps, 30);
     }
   }
+}
+
+/// On a strip that is expected to need the path no choice after the first is tried, and the states are the same.
+TEST(ActiveSet, GoesToThePathAtOnceWhereItIsExpected)
+{
+  const auto found = [](const bool expected) {
+    rpc::test::PressedBox strip({{0, 0}, {1, 0.02}, {100, 1}, {2, 1}}, {1000, 0.3}, {"left"}, ScalarField(-1e-3),
+                                flat(3e-3, 1e-2));
+    analysis::ActiveSetStage stage(*strip.iterate, {});
+    if (expected) stage.expect_path();
+    const auto all = rpc::test::minimize(strip, {}, &stage);
+    EXPECT_TRUE(all.converged) << all.reason;
+    EXPECT_TRUE(stage.confirmed());
+    EXPECT_TRUE(stage.took_path());
+    return std::pair(stage.steps(), strip.iterate->count_states(*strip.u));
+  };
+  const auto [steps, states] = found(false);
+  const auto [fewer_steps, same_states] = found(true);
+  EXPECT_LT(fewer_steps, steps);
+  EXPECT_EQ(same_states.open, states.open);
+  EXPECT_EQ(same_states.closed, states.closed);
+  EXPECT_EQ(same_states.yielding, states.yielding);
+}
+
+TEST(ActiveSet, OfTheBeamTakesNoPath)
+{
+  Beam beam;
+  analysis::ActiveSetStage stage(*beam.iterate, {});
+  EXPECT_TRUE(minimize(beam, {}, &stage).converged);
+  EXPECT_FALSE(stage.took_path());
+}
+
+/// The edge of the contact zone of a block whose surface has many short cells moves on by a point with each choice.
+TEST(ActiveSet, WhoseEdgeCreepsGoesToThePathWhereMuchOfTheWayIsLeft)
+{
+  const ScalarField gap("gap", [](const Point &x) { return 0.02 * (x[0] - 0.6) * (x[0] - 0.6) - 0.002; });
+  rpc::test::PressedBox block({{0, 0}, {1.25, 0.9}, {400, 4}, {2, 1}}, {14000, 0.2}, {"right"}, ScalarField(-120.),
+                              below(ScalarField(2360.), 0, gap));
+  analysis::ActiveSetStage stage(*block.iterate, {});
+  const auto all = rpc::test::minimize(block, {}, &stage);
+  EXPECT_TRUE(all.converged) << all.reason;
+  EXPECT_TRUE(stage.confirmed());
+  EXPECT_TRUE(stage.took_path());
+  EXPECT_LE(all.steps, 20) << "24 where ten choices creep before the path";
 }
 
 TEST(ActiveSet, StepsAreReportedLikeNewtons)

@@ -18,7 +18,7 @@ constexpr double start_slope = 10; // of p against v from the given point to the
 constexpr double nearly = 0.98;    // of the way to the next point's corner
 // So many steps on end that are shorter than this tell that points start with a pressure far below what they will bear, as where the
 // foundation bends the body and not the load. A few steps are short on any path.
-constexpr double short_step = 0.1, more_pressure = 100;
+constexpr double short_step = 0.25, more_pressure = 100;
 constexpr int many_short_steps = 3;
 // mu falls to (1 - t)^2 of itself, t the length of the step for mu = 0, within these bounds.
 constexpr double most_part = 0.5, least_part = 1e-3;

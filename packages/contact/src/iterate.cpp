@@ -22,6 +22,8 @@ constexpr double weak_spring = 1e-4, weakest_spring = 1e-10, weaken = 1e-2;
 constexpr double long_step = 1.1; // the step of a quadratic is 1
 // Multiple of the mean pressure, load over contact area, above which a yield limit counts as out of reach at the start.
 constexpr double beyond_reach = 100;
+// The interior path starts with the load's pressure, or with so many times the mean pressure of a start if that is more.
+constexpr double above_start = 3;
 
 void start_multipliers(const ContactNodes &c, const double pressure_bound, const DeviceView<double *> &lambda)
 {
@@ -39,6 +41,16 @@ double free_weight(const ContactNodes &c)
   Kokkos::parallel_reduce(
       "rpc::contact::free_weight", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &part) { part += c.fixed(i) ? 0 : c.weight(i); }, sum);
+  return sum;
+}
+
+/// Of this rank's free points: sum_i w_i lambda_i [N].
+double total_force(const ContactNodes &c, const DeviceView<double *> &lambda)
+{
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::total_force", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) { part += c.fixed(i) ? 0 : c.weight(i) * lambda(i); }, sum);
   return sum;
 }
 
@@ -147,8 +159,8 @@ Iterate::Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<Up
   fem::clear_prescribed(dirichlet_, lifted);
   applied_force_ = applied.norm2();
   prescribed_force_ = lifted.norm2();
-  const double weight = sum_all(*lifted.getMap()->getComm(), free_weight(points_));
-  pressure_bound_ = weight > 0 ? beyond_reach * lifted.norm1() / weight : 0;
+  weight_ = sum_all(*lifted.getMap()->getComm(), free_weight(points_));
+  pressure_bound_ = weight_ > 0 ? beyond_reach * lifted.norm1() / weight_ : 0;
   reset_multipliers();
 }
 
@@ -208,7 +220,7 @@ void Iterate::take_active_set(const ActiveSetChoice &choice, Vector &u)
 
 void Iterate::start_interior_path(const Vector &u)
 {
-  interior_.emplace(functional_, u, pressure_bound_ / beyond_reach);
+  interior_.emplace(functional_, u, std::max(pressure_bound_ / beyond_reach, above_start * start_pressure_));
 }
 
 void Iterate::linearize_interior(const Vector &u, Vector &F)
@@ -286,6 +298,7 @@ void Iterate::reset_multipliers()
   if (prescribed_force_ > 0) // else nothing acts, and lambda = 0 is the solution
     start_multipliers(points_, pressure_bound_, multipliers().normal);
   multipliers_given_ = false;
+  start_pressure_ = 0;
   if (!functional_.points().has_friction()) return;
   Kokkos::deep_copy(multipliers().tangential, 0.);
   replace_tangential(functional_.points(), multipliers().normal, multipliers().tangential);
@@ -302,8 +315,11 @@ void Iterate::start_from(const ContactState &state, Vector &u)
 {
   multipliers_given_ = true;
   take_free(dirichlet_, *state.displacement, u);
-  if (state.multiplier.normal.extent(0) == 0) return; // no contact node on this rank
-  take_admissible(points_, state.multiplier.normal, multipliers().normal);
+  const bool here = state.multiplier.normal.extent(0) > 0; // there are contact nodes on this rank
+  if (here) take_admissible(points_, state.multiplier.normal, multipliers().normal);
+  const double force = sum_all(*u.getMap()->getComm(), here ? total_force(points_, multipliers().normal) : 0);
+  start_pressure_ = weight_ > 0 ? force / weight_ : 0;
+  if (!here) return;
   if (!functional_.points().has_friction()) return;
   const DeviceView<double **> none("rpc::contact::no_traction", points_.size(), points_.dim);
   replace_tangential(functional_.points(), multipliers().normal,

@@ -4,6 +4,7 @@
 #include "rpc/contact/iterate.hpp"
 #include "rpc/solver/first_stage.hpp"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -43,6 +44,10 @@ public:
   /// Once, for more changes than before, with good solves. doc/theory.md (5.9a)
   bool resume(const solver::NewtonGroup &from) override;
 
+  /// The interior-point method takes over at the first choice that corrects more than a few points: on a coarser mesh choices made no
+  /// headway.
+  void expect_path() { path_expected_ = true; }
+  bool took_path() const { return took_path_; } ///< the interior-point method has been at work
   bool confirmed() const { return confirmed_; } ///< the active set is the solution's
   int steps() const { return steps_; }
 
@@ -52,9 +57,11 @@ private:
   Verdict choose(const Vector &u);
   bool is_new_choice();
   bool contracts() const;
+  bool may_settle();
   bool makes_headway();
   solver::Accuracy wanted() const;
   Verdict give_up(const Vector &u);
+  void start_path(const Vector &u);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
   bool leaves_path();
   Step propose_interior(solver::NewtonGroup &group, Vector &direction);
@@ -77,14 +84,16 @@ private:
          before_ = norm_,      // |F|_2 for the active set, after and before the step
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set
   int steps_ = 0;
-  int changes_ = 0;            // of the active set
-  int updates_ = 0;            // of the multipliers alone, the active set being confirmed
-  GO fewest_changes_ = 0;      // fewest points that a choice has changed; 0: none was made
-  GO fewest_overshooting_ = 0; // the same of choices that overshoot
-  int idle_steps_ = 0;         // of a confirmed active set, one after the other, that left more than half of F
-  int overshoots_ = 0;         // choices with forces far above what the law admits
+  int changes_ = 0;                   // of the active set
+  int updates_ = 0;                   // of the multipliers alone, the active set being confirmed
+  GO fewest_changes_ = 0;             // fewest points that a choice has changed; 0: none was made
+  GO fewest_overshooting_ = 0;        // the same of choices that overshoot
+  int idle_steps_ = 0;                // of a confirmed active set, one after the other, that left more than half of F
+  int overshoots_ = 0;                // choices with forces far above what the law admits
+  std::array<double, 3> overshoot_{}; // of the last choices, the last one first
   int idle_ = 0; // of choices, one after the other, that overshoot and change hardly fewer points than any before
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
+  bool path_expected_ = false, took_path_ = false;
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried
 };

@@ -53,6 +53,7 @@ struct LevelWork {
 struct Prediction {
   std::optional<contact::ContactState> start;
   std::string reason;          ///< why there is none
+  bool interior_path = false;  ///< its states were found by the interior-point method
   std::vector<LevelWork> work; ///< on the meshes that were asked, from the coarsest
 };
 
@@ -76,6 +77,7 @@ struct StepSolution {
   std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
 
   solver::LinearSolverCounts linear;                ///< of this step
+  bool interior_path = false;                       ///< the interior-point method was needed to find the states
   int line_search_steps = 0;                        ///< Newton's, where the active-set iteration was not enough
   std::vector<LevelWork> levels;                    ///< coarser meshes that predicted the solution, from the coarsest
   std::string not_predicted;                        ///< why no coarser mesh did; empty if one did

@@ -36,6 +36,7 @@ struct Minimization {
   int line_search_steps = 0;         ///< of the steps, those of Newton's with its line search
   bool bounds_follow =
       false; ///< friction's bounds were given: they follow the pressures from one iteration to the next
+  bool interior_path = false; ///< the interior-point method was needed
 };
 
 /// How the Uzawa iteration went, so far or to its end.

@@ -140,6 +140,8 @@ private:
   RCP<Vector> origin_;             // null: 0
   double applied_force_ = 0;       // |applied load|_2 on free unknowns [N]
   double prescribed_force_ = 0;    // the same with the forces of prescribed displacements [N]
+  double weight_ = 0;              // of the free points: their area [m^2], in 2D per m
+  double start_pressure_ = 0;      // mean of the multipliers that a start gave [Pa]
   double pressure_bound_ = 0;      // pressure that the load will hardly reach anywhere [Pa]
   ActiveSet active_;               // that hessian() belongs to
   double spring_ = 0;              // weak springs at nodes that are not closed, in units of the points' scaling
