@@ -4,6 +4,7 @@
 #include "rpc/core/parallel.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -18,6 +19,8 @@ constexpr const char *no_factor = "a sparse factor: the matrix is not positive d
 constexpr std::size_t most_rows_on_each_rank = 5200;
 // A factor that takes less time [s] is made anew for the slightest change.
 constexpr double short_time = 5e-3;
+// What an update keeps, over the entries of the factor, and over the memory that is free.
+constexpr double kept_of_factor = 2, kept_of_free = 0.25;
 
 /// Calls work(row, column, value) with gids for the entries of this rank's rows on and below the diagonal.
 template <class Work>
@@ -147,7 +150,9 @@ void DirectSolver::add(const std::vector<RankOneTerm> &terms)
     of_all[t] = {static_cast<long long>(from[0]), {from[1], from[2], from[3]}, from[4]};
   }
   const bool has_vectors = to_root_.is_null() || comm.getRank() == 0;
-  update_.set(*factor_, static_cast<int>(A_->getGlobalNumRows()), has_vectors, of_all);
+  const double most_kept =
+      std::min(kept_of_factor * cost().entries, kept_of_free * min_all(comm, memory_left()) / sizeof(double));
+  update_.set(*factor_, static_cast<int>(A_->getGlobalNumRows()), has_vectors, of_all, most_kept);
 }
 
 std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, const int dofs_per_node, const double most_work)

@@ -1,5 +1,6 @@
 #include "low_rank_update.hpp"
 
+#include <Teuchos_BLAS.hpp>
 #include <Teuchos_LAPACK.hpp>
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,7 @@ int LowRankUpdate::num_new(const std::vector<RankOneTerm> &terms) const
 }
 
 void LowRankUpdate::set(const SparseFactor &factor, const int size, const bool has_vectors,
-                        const std::vector<RankOneTerm> &terms)
+                        const std::vector<RankOneTerm> &terms, const double most_kept)
 {
   size_ = size;
   std::vector<int> made;
@@ -73,6 +74,8 @@ void LowRankUpdate::set(const SparseFactor &factor, const int size, const bool h
     present_.push_back(column);
     scale_.push_back(term.scale);
   }
+  keeps_ = keeps_ && static_cast<double>(column_.size()) * size <= most_kept;
+  if (!keeps_) solved_ = {};
   std::vector<double> x;
   for (std::size_t first = 0; first < made.size(); first += columns_at_once) {
     const int count = static_cast<int>(std::min<std::size_t>(columns_at_once, made.size() - first));
@@ -86,6 +89,10 @@ void LowRankUpdate::set(const SparseFactor &factor, const int size, const bool h
     for (int c = 0; c < count; ++c) // symmetric: with those of later columns, later ones bring them
       for (int other = 0; other <= made[first + c]; ++other)
         flexibility_[made[first + c]][other] = product(column_[other], x.data() + static_cast<std::size_t>(c) * size);
+    for (int c = 0; keeps_ && c < count; ++c) {
+      const auto column = x.begin() + static_cast<std::ptrdiff_t>(c) * size;
+      solved_.emplace_back(column, column + size);
+    }
   }
   if (!has_vectors) return;
   const int n = static_cast<int>(present_.size());
@@ -105,12 +112,18 @@ void LowRankUpdate::solve(const SparseFactor &factor, double *const x) const
   const int n = static_cast<int>(present_.size());
   if (n == 0) return factor.solve(x);
   if (!x) {
-    factor.solve(nullptr);
+    if (!keeps_) factor.solve(nullptr);
     return factor.solve(nullptr);
   }
-  std::vector<double> z(x, x + size_), forces(n);
-  factor.solve(z.data());
-  for (int i = 0; i < n; ++i) forces[i] = scale_[i] * product(column_[present_[i]], z.data());
+  std::vector<double> forces(n);
+  if (keeps_) {
+    const Teuchos::BLAS<int, double> blas;
+    for (int i = 0; i < n; ++i) forces[i] = scale_[i] * blas.DOT(size_, solved_[present_[i]].data(), 1, x, 1);
+  } else {
+    std::vector<double> z(x, x + size_);
+    factor.solve(z.data());
+    for (int i = 0; i < n; ++i) forces[i] = scale_[i] * product(column_[present_[i]], z.data());
+  }
   int info = 0;
   Teuchos::LAPACK<int, double>().GETRS('N', n, 1, matrix_.data(), n, pivot_.data(), forces.data(), n, &info);
   for (int i = 0; i < n; ++i) add(column_[present_[i]], -forces[i], x);

@@ -19,8 +19,8 @@ struct RankOneTerm {
 ///
 ///     (A + V S V^T)^-1 = A^-1 - A^-1 V C V^T A^-1,    C = (I + S V^T A^-1 V)^-1 S                    doc/theory.md (4.11)
 ///
-/// It is exact, and takes two solves with the factor. V^T A^-1 V is kept for all terms that there ever were, so that a change of states costs
-/// a column for each place where there was none before.
+/// It is exact, and takes one solve with the factor while A^-1 V is kept, else two. V^T A^-1 V, and A^-1 V as long as it is not too large, are
+/// kept for all terms that there ever were, so that a change of states costs a column for each place where there was none before.
 class LowRankUpdate
 {
 public:
@@ -28,7 +28,9 @@ public:
   int num_new(const std::vector<RankOneTerm> &terms) const;
   /// Collective on the factor's ranks.
   /// @param size  of A   @param has_vectors  this rank does: see SparseFactor::solve   @param terms  all of them, the same on each rank
-  void set(const SparseFactor &factor, int size, bool has_vectors, const std::vector<RankOneTerm> &terms);
+  /// @param most_kept  entries that A^-1 V may have, the same on each rank
+  void set(const SparseFactor &factor, int size, bool has_vectors, const std::vector<RankOneTerm> &terms,
+           double most_kept);
   /// x <- (A + V S V^T)^-1 x, like SparseFactor::solve; collective.
   void solve(const SparseFactor &factor, double *x) const;
   /// There are no terms, and A is another one.
@@ -41,6 +43,8 @@ private:
   std::multimap<long long, int> columns_at_;     // by first row
   std::vector<RankOneTerm> column_;              // (columns) without their scale
   std::vector<std::vector<double>> flexibility_; // (columns, columns up to this one) V^T A^-1 V
+  std::vector<std::vector<double>> solved_;      // (columns, size) A^-1 V, where this rank has vectors
+  bool keeps_ = true;                            // A^-1 V; false: it was too large
   std::vector<int> present_;                     // (terms) their columns
   std::vector<double> scale_;                    // (terms)
   std::vector<double> matrix_;                   // (terms, terms) LU factors of I + S V^T A^-1 V

@@ -44,8 +44,12 @@ std::vector<double> product(const std::vector<RankOneTerm> &terms, const std::ve
   return y;
 }
 
+class LowRankUpdateThatKeeps : public testing::TestWithParam<double> // at most so many entries of A^-1 V
+{
+};
+
 /// Terms that come, change, go and come back; stiff ones, and one that takes away most of what is there.
-TEST(LowRankUpdate, IsExactForAnyTerms)
+TEST_P(LowRankUpdateThatKeeps, IsExactForAnyTerms)
 {
   const auto entries = chain();
   const auto factor = SparseFactor::analyse(rpc::rcp(new Teuchos::SerialComm<int>), size, entries, 1);
@@ -64,7 +68,7 @@ TEST(LowRankUpdate, IsExactForAnyTerms)
   for (const Case &present : {Case{{}, 0}, Case{{slanted, stiff}, 2}, Case{{changed, weaker}, 1}, Case{{across}, 1},
                               Case{{}, 0}, Case{{slanted, stiff, weaker, across}, 0}}) {
     EXPECT_EQ(update.num_new(present.terms), present.num_new);
-    update.set(*factor, size, true, present.terms);
+    update.set(*factor, size, true, present.terms, GetParam());
     columns += present.num_new;
     std::vector<double> x(size);
     for (int i = 0; i < size; ++i) x[i] = std::sin(1. + i);
@@ -76,5 +80,7 @@ TEST(LowRankUpdate, IsExactForAnyTerms)
   EXPECT_EQ(update.num_new({slanted, stiff, weaker, across}), 4);
   EXPECT_EQ(columns, 4);
 }
+// None, two of the four columns, all.
+INSTANTIATE_TEST_SUITE_P(Entries, LowRankUpdateThatKeeps, testing::Values(0, 2 * size, 4 * size));
 
 } // namespace

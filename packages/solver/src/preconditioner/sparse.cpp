@@ -16,8 +16,10 @@ namespace
 // The factor takes closed nodes for at most so many times their own stiffness: all of it would cost digits where they open again. CG
 // takes the difference in an iteration.
 constexpr double most_closed_stiffness = 1e4;
-// New terms are solved for as long as they take this part of a new factor's time at most.
-constexpr double worth_a_factor = 0.7;
+// New terms are solved for as long as they take this part of a new factor's time at most; where that would mean a new factor again, as
+// much more as factors were made, for the changes that follow are at the same places.
+constexpr double worth_a_factor = 0.7, worth_factors = 1.4;
+constexpr int most_factors_worth = 3;
 constexpr double negligible = 1e-13; // of a block, beside the node's own one
 // Where all terms would take longer, those of changes up to such a part of the node's own stiffness are left to CG.       (4.12)
 constexpr double left_out[] = {negligible, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
@@ -77,21 +79,23 @@ const Sparse::Prospect &Sparse::prospect()
   return prospect_;
 }
 
-/// By terms of rank one, if that takes less time than a new factor: by all of them, else by the larger ones.
+/// By terms of rank one, if that takes less time than a new factor, or than those that changes have cost before: by all of them, else by
+/// the larger ones.
 bool Sparse::follow(const DeviceView<double ***> &update)
 {
   const std::vector<Change> changes = changes_of(*H_, update, written_);
-  for (const double least : left_out) {
-    std::vector<RankOneTerm> terms;
-    for (const Change &change : changes)
-      if (change.part > least) terms.push_back(change.term);
-    const double seconds = prospect_.cost.seconds_of_column * solver_->num_new(terms);
-    if (seconds > worth_a_factor * prospect_.cost.seconds) continue;
-    solver_->add(terms);
-    is_fresh_ = false;
-    is_exact_ = least == negligible;
-    return true;
-  }
+  for (const double worth : {worth_a_factor, worth_factors * std::min(factors_, most_factors_worth)})
+    for (const double least : left_out) {
+      std::vector<RankOneTerm> terms;
+      for (const Change &change : changes)
+        if (change.part > least) terms.push_back(change.term);
+      const double seconds = prospect_.cost.seconds_of_column * solver_->num_new(terms);
+      if (seconds > worth * prospect_.cost.seconds) continue;
+      solver_->add(terms);
+      is_fresh_ = false;
+      is_exact_ = least == negligible;
+      return true;
+    }
   return false;
 }
 
@@ -109,6 +113,7 @@ Preconditioner::Prepared Sparse::prepare(double)
   written_ = update;
   write_update(*A_, *H_, written_);
   solver_->update();
+  ++factors_;
   made_ = is_fresh_ = is_exact_ = true;
   revision_ = revision;
   return Prepared::made;
@@ -126,6 +131,7 @@ std::string Sparse::description() const
 void Sparse::forget()
 {
   made_ = false;
+  factors_ = 0;
   solver_.reset();
   A_ = Teuchos::null;
 }

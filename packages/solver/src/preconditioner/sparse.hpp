@@ -53,6 +53,7 @@ private:
   std::unique_ptr<DirectSolver> solver_; // of A
   Prospect prospect_;
   DeviceView<double ***> written_; // (nodes of H, dim, dim) the update in A
+  int factors_ = 0;                // that were made
   int revision_ = -1;              // of H when it was last brought to it
   bool made_ = false, is_fresh_ = false;
   bool is_exact_ = false; // no terms were left out
