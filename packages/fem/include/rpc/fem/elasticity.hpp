@@ -58,8 +58,8 @@ DeviceView<int *> projected_dilatation_table(const Discretization &d, const Mate
 /// What a user should know: that elements which lock meet a nearly incompressible material; empty if there is nothing.
 std::string locking_note(const Discretization &d, const Materials &materials);
 
-/// What a user should know: that linear solves take many iterations for a nearly incompressible box of these elements, and of which they do
-/// not (theory, 4.7f); empty if there is nothing.
+/// What a user should know: that linear solves take many iterations for a nearly incompressible box of Q1, and fewer for one of Q2; empty if
+/// there is nothing.
 std::string incompressibility_note(const Discretization &d, const Materials &materials);
 
 /// What a user should know: that cells of order 1 are so long that a thin box is too stiff where it bends (theory, 2.6a); empty if there
