@@ -118,7 +118,8 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     if (confirmed_) return Verdict::converged;
     if (idle_steps_ > (turns_ ? most_idle_turns : 0)) return Verdict::over;
     rough_ = false;
-  } else if (path_expected_ && path_ == Path::ahead && steps_ > 0 && choice_->changes > few_changes) {
+  } else if (path_expected_ && path_ == Path::ahead && steps_ > 0 && choice_->changes > few_changes &&
+             choice_->overshoot > much) {
     return give_up(u);
   } else if (!is_new_choice() || !may_settle() || (!rubs_ && !makes_headway())) {
     return give_up(u); // in circles, or too slow

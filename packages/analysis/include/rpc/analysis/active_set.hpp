@@ -44,8 +44,8 @@ public:
   /// Once, for more changes than before, with good solves. doc/theory.md (5.9a)
   bool resume(const solver::NewtonGroup &from) override;
 
-  /// The interior-point method takes over at the first choice that corrects more than a few points: on a coarser mesh choices made no
-  /// headway.
+  /// The interior-point method takes over at the first choice that overshoots and corrects more than a few points: on a coarser mesh
+  /// choices made no headway.
   void expect_path() { path_expected_ = true; }
   bool took_path() const { return took_path_; } ///< the interior-point method has been at work
   bool confirmed() const { return confirmed_; } ///< the active set is the solution's
