@@ -16,8 +16,8 @@ namespace
 // The factor takes closed nodes for at most so many times their own stiffness: all of it would cost digits where they open again. CG
 // takes the difference in an iteration.
 constexpr double most_closed_stiffness = 1e4;
-// New terms are solved for as long as they take this part of a new factor's time at most; where that would mean a new factor again, as
-// much more as factors were made, for the changes that follow are at the same places.
+// New terms are solved for while they take worth_a_factor times a new factor's time at most. Where none of left_out keeps to that, they may
+// take worth_factors times the time of all factors made so far, of most_factors_worth at most: later changes are at the same places.
 constexpr double worth_a_factor = 0.7, worth_factors = 1.4;
 constexpr int most_factors_worth = 3;
 constexpr double negligible = 1e-13; // of a block, beside the node's own one
@@ -79,8 +79,8 @@ const Sparse::Prospect &Sparse::prospect()
   return prospect_;
 }
 
-/// By terms of rank one, if that takes less time than a new factor, or than those that changes have cost before: by all of them, else by
-/// the larger ones.
+/// By terms of rank one, by all of them or by the larger ones, if that takes less time than a new factor, else if it takes not much more
+/// than the factors that were made before.
 bool Sparse::follow(const DeviceView<double ***> &update)
 {
   const std::vector<Change> changes = changes_of(*H_, update, written_);
