@@ -75,7 +75,7 @@ bool ActiveSetStage::resume(const NewtonGroup &from)
 {
   const Vector &u = solver::tpetra(from.getX());
   if (path_ == Path::ahead) {
-    start_path(u);
+    give_up(u);
     decided_ = false;
     return true;
   }
@@ -183,18 +183,9 @@ bool ActiveSetStage::makes_headway()
 ActiveSetStage::Verdict ActiveSetStage::give_up(const Vector &u)
 {
   if (path_ == Path::behind) return Verdict::over;
-  if (path_ == Path::ahead)
-    start_path(u);
-  else
-    path_ = Path::on_it;
-  return Verdict::go_on;
-}
-
-void ActiveSetStage::start_path(const Vector &u)
-{
-  iterate_.start_interior_path(u);
+  if (path_ == Path::ahead) iterate_.start_interior_path(u);
   path_ = Path::on_it;
-  took_path_ = true;
+  return Verdict::go_on;
 }
 
 /// Whether the states that the path leads to are to be tried, or taken; then they are the next choice.

@@ -47,8 +47,8 @@ public:
   /// The interior-point method takes over at the first choice that overshoots and corrects more than a few points: on a coarser mesh
   /// choices made no headway.
   void expect_path() { path_expected_ = true; }
-  bool took_path() const { return took_path_; } ///< the interior-point method has been at work
-  bool confirmed() const { return confirmed_; } ///< the active set is the solution's
+  bool took_path() const { return !rubs_ && path_ != Path::ahead; } ///< the interior-point method has been at work
+  bool confirmed() const { return confirmed_; }                     ///< the active set is the solution's
   int steps() const { return steps_; }
 
 private:
@@ -61,7 +61,6 @@ private:
   bool makes_headway();
   solver::Accuracy wanted() const;
   Verdict give_up(const Vector &u);
-  void start_path(const Vector &u);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
   bool leaves_path();
   Step propose_interior(solver::NewtonGroup &group, Vector &direction);
@@ -93,7 +92,7 @@ private:
   std::array<double, 3> overshoot_{}; // of the last choices, the last one first
   int idle_ = 0; // of choices, one after the other, that overshoot and change hardly fewer points than any before
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
-  bool path_expected_ = false, took_path_ = false;
+  bool path_expected_ = false;
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried
 };
