@@ -3,6 +3,7 @@
 #include "gmsh_mesh.hpp"
 #include "gmsh_nearest.hpp"
 #include "gmsh_process.hpp"
+#include "mesh_checks.hpp"
 #include "middle_nodes.hpp"
 #include "msh_reader.hpp"
 #include "rpc/core/error.hpp"
@@ -122,13 +123,16 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
     check_number_of_cells(where, *options.sizes, options.size_factor);
     request.sizes = *options.sizes;
   }
-  constexpr int most_attempts = 5;
+  const int most_attempts = options.sizes ? 5 : 2;
   for (;; ++request.attempt) {
+    const bool is_last = request.attempt + 1 == most_attempts;
     bool again = false;
     try {
       return attempt(where, options, request, again);
+    } catch (const BentCell &) {
+      if (is_last) throw;
     } catch (const Error &) {
-      if (!again || !options.sizes || request.attempt + 1 == most_attempts) throw;
+      if (!again || !options.sizes || is_last) throw;
     }
   }
 }
@@ -143,6 +147,15 @@ MeshData meshed_geo(const std::string &where, const GmshOptions &options)
 GmshContents contents_of_msh(const std::string &where, const GmshOptions &options)
 {
   return read_msh(where, read_text(where, options.file));
+}
+
+MeshData read_msh_file(const std::string &where, const GmshOptions &options)
+{
+  try {
+    return mesh_of_gmsh(where, contents_of_msh(where, options), false);
+  } catch (const BentCell &refused) {
+    throw Error(refused.code(), std::string(refused.what()) + ", or set Mesh.HighOrderOptimize = 1 in gmsh");
+  }
 }
 
 MeshData read_box(const GmshOptions &options)
@@ -188,7 +201,7 @@ MeshData read_gmsh(const GmshOptions &options)
   RPC_REQUIRE(make || options.size_factor == 1,
               where << "a size factor only goes with a .geo, got " << options.size_factor);
   RPC_REQUIRE(make || !options.sizes, where << "cell sizes only go with a .geo");
-  MeshData mesh = make ? meshed_geo(where, options) : mesh_of_gmsh(where, contents_of_msh(where, options), false);
+  MeshData mesh = make ? meshed_geo(where, options) : read_msh_file(where, options);
   if (make && options.needs_geometry()) mesh.geometry_file = options.file;
   RPC_REQUIRE(options.order == 0 || options.order == mesh.element.order,
               where << "its cells are of order " << mesh.element.order << ", which \"Order\" = " << options.order

@@ -20,14 +20,16 @@ namespace rpc::mesh
 namespace
 {
 
-/// The first error in gmsh's log; those after it tend to follow from it.
+/// The first error in gmsh's log; those after it tend to follow from it. That curved cells could not all be straightened is none: whether
+/// one is inverted is looked at later.
 std::string first_error()
 {
   std::vector<std::string> log;
   gmsh::logger::get(log);
   const std::string mark = "Error: ";
   for (const auto &line : log)
-    if (line.compare(0, mark.size(), mark) == 0) return line.substr(mark.size());
+    if (line.compare(0, mark.size(), mark) == 0 && line.find("critical value") == line.npos)
+      return line.substr(mark.size());
   return "";
 }
 
@@ -154,8 +156,7 @@ void set_field_options(const GmshRequest &request)
       {"RandomFactor", tie_breaker},
       {"Smoothing", 0},                 // it takes half as long as all the rest, and triangles are good without
       {"LcIntegrationPrecision", 1e-4}, // cells, per step along a curve: the default takes a thousand times the steps
-      {"SubdivisionAlgorithm", 0},
-      {"HighOrderOptimize", request.attempt == 0 ? 0 : 1}}; // straightens cells whose curved edges bend too far
+      {"SubdivisionAlgorithm", 0}};
   for (const auto &[name, value] : options) gmsh::option::setNumber(std::string("Mesh.") + name, value);
   if (request.quadrilaterals || (!request.file.empty() && recombines())) {
     gmsh::option::setNumber("Mesh.SubdivisionAlgorithm", 1); // or some triangles would be left
@@ -235,6 +236,7 @@ std::string make_mesh(const GmshRequest &request, const int dim)
   if (!complaint.str().empty()) return complaint.str();
   gmsh::option::setNumber("Mesh.ElementOrder", request.order);
   gmsh::option::setNumber("Mesh.SecondOrderIncomplete", 0);
+  if (request.attempt > 0 || field) gmsh::option::setNumber("Mesh.HighOrderOptimize", request.attempt > 0);
   if (field)
     complaint << mesh_by_field(request, dim);
   else if (!mesh_by_own_sizes(body, factor, dim))

@@ -206,7 +206,8 @@ double signed_measure(const TaggedMesh &draft, const int *const nodes)
   else if (measure < 0)
     text << "inverted: its volume is " << measure << "; its nodes must be in gmsh's order";
   else if (element.order == 2)
-    text << "inverted: its curved edges bend too far; make smaller cells there, or set Mesh.HighOrderOptimize = 1";
+    throw BentCell(ExitCode::bad_mesh,
+                   text.str() + "inverted: its curved edges bend too far; make smaller cells there");
   else
     text << "inverted: an angle between its edges" << (plane ? "" : " or faces") << " is 180 degrees or more";
   throw Error(ExitCode::bad_mesh, text.str());

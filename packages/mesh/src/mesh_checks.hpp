@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/core/error.hpp"
 #include "rpc/mesh/mesh_data.hpp"
 #include "rpc/mesh/topology.hpp"
 
@@ -24,7 +25,15 @@ struct TaggedMesh {
 ///         one place
 void check_nodes(const TaggedMesh &draft);
 
-/// @throws rpc::Error (bad_mesh) if a cell names a node twice, is degenerate, or inverted anywhere
+/// A cell whose curved edges bend so far that it is inverted; gmsh's optimizer may straighten it.
+class BentCell : public Error
+{
+public:
+  using Error::Error;
+};
+
+/// @throws BentCell (bad_mesh)
+/// @throws rpc::Error (bad_mesh) if a cell names a node twice, is degenerate, or inverted otherwise
 void check_cells(const TaggedMesh &draft);
 
 /// Those of some cells that are degenerate or inverted somewhere.

@@ -163,6 +163,31 @@ TEST(Gmsh, RefusalsNameFileRuleAndRemedy)
   refused(square() + square() + body, {"gmsh: "});
 }
 
+/// A ring that is thinner than the arcs of its cells are high: the first mesh has inverted cells, the second one is straightened. One of a
+/// hundredth of that thickness cannot be.
+TEST(Gmsh, StraightensCellsWhoseCurvedEdgesBendTooFar)
+{
+  const auto ring = [](const std::string &inner) {
+    std::string text = "Point(1) = {0, 0, 0, 1};\n";
+    for (const std::string &radius : {std::string("1"), inner})
+      for (const char *const at : {"r, 0", "0, r", "-r, 0", "0, -r"})
+        text += "r = " + radius + "; Point(newp) = {" + at + ", 0, 1};\n";
+    return text +
+           "Circle(1) = {2, 1, 3}; Circle(2) = {3, 1, 4}; Circle(3) = {4, 1, 5}; Circle(4) = {5, 1, 2};\n"
+           "Circle(5) = {6, 1, 7}; Circle(6) = {7, 1, 8}; Circle(7) = {8, 1, 9}; Circle(8) = {9, 1, 6};\n"
+           "Curve Loop(1) = {1:4}; Curve Loop(2) = {5:8}; Plane Surface(1) = {1, 2};\n" +
+           body;
+  };
+  const MeshData mesh = read_geo(ring("0.95"));
+  EXPECT_GT(mesh.num_cells(), 8);
+  for (std::size_t n = 0; n + 1 < mesh.coords.size(); n += 2) {
+    const double r = std::hypot(mesh.coords[n], mesh.coords[n + 1]);
+    EXPECT_TRUE(r > 0.95 - 1e-9 && r < 1 + 1e-9) << r;
+  }
+  expect_error(ExitCode::bad_mesh, {"inverted", "curved edges bend too far", "smaller cells"},
+               [&] { read_geo(ring("0.9999999")); });
+}
+
 TEST(Gmsh, GroupsWithoutNamesAreNumberedAndWithoutABlockAllIsTheBody)
 {
   const MeshData plain = read_geo(square() + "Physical Curve(7) = {1};\n");
