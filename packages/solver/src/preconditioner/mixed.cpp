@@ -21,11 +21,13 @@ constexpr double pass_tolerance = 0.1, stalled = 0.5;
 // Errors of products over what the largest entries would give: sums of some hundred terms.
 constexpr double rounding_of_products = 10 * std::numeric_limits<double>::epsilon();
 
-/// Z^T where several threads would add to a row at once in a product with Z's columns, in any order; else null. Collective.
+/// Z^T where several threads would add to a row at once in a product with Z's columns, in any order; else null. Its rows are the columns
+/// of the rank's part of Z: a product sums over the ranks that share one. (Rows that had one owner each would be sorted on the host.)
+/// Collective.
 RCP<const CrsMatrix> transposed(const RCP<const CrsMatrix> &Z)
 {
   if (max_all(*Z->getComm(), static_cast<int>(ExecutionSpace().concurrency())) == 1) return Teuchos::null;
-  return Tpetra::RowMatrixTransposer<double, LO, GO, Node>(Z).createTranspose();
+  return Tpetra::RowMatrixTransposer<double, LO, GO, Node>(Z).createTransposeLocal();
 }
 
 /// Factors of the equations of pressures, one for each mode.
