@@ -83,7 +83,15 @@ bool BandFactor::make(const std::vector<double> &value)
   return exists_;
 }
 
-void BandFactor::solve(double *const x, const int columns) const
+void BandFactor::solve(const SparseColumns &B, double *const x) const
+{
+  std::fill_n(x, static_cast<std::size_t>(size_) * B.count(), 0.);
+  for (int c = 0; c < B.count(); ++c)
+    for (int e = B.begin[c]; e < B.begin[c + 1]; ++e) x[static_cast<std::size_t>(c) * size_ + B.row[e]] = B.value[e];
+  solve_in_place(x, B.count());
+}
+
+void BandFactor::solve_in_place(double *const x, const int columns) const
 {
   std::vector<double> ordered(static_cast<std::size_t>(size_) * columns);
   for (int c = 0; c < columns; ++c)

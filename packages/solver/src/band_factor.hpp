@@ -14,9 +14,12 @@ public:
   FactorCost cost() const override;
   bool make(const std::vector<double> &value) override;
   bool exists() const override { return exists_; }
-  void solve(double *x, int columns) const override;
+  void solve(double *x) const override { solve_in_place(x, 1); }
+  void solve(const SparseColumns &B, double *x) const override;
 
 private:
+  void solve_in_place(double *x, int columns) const; // (columns, size)
+
   int size_, width_ = 0; // of the matrix; of the band below the diagonal
   bool exists_ = false;
   std::vector<std::size_t> entry_; // (entries) place of each in the factor, `above` for those that do not count

@@ -22,6 +22,16 @@ double product(const RankOneTerm &term, const double *const x)
   return sum;
 }
 
+void append(const RankOneTerm &term, SparseColumns &columns)
+{
+  for (int k = 0; k < 3; ++k)
+    if (term.v[k] != 0) {
+      columns.row.push_back(static_cast<int>(term.first_row) + k);
+      columns.value.push_back(term.v[k]);
+    }
+  columns.begin.push_back(static_cast<int>(columns.row.size()));
+}
+
 /// x += factor v.
 void add(const RankOneTerm &term, const double factor, double *const x)
 {
@@ -79,13 +89,14 @@ void LowRankUpdate::set(const SparseFactor &factor, const int size, const bool h
   std::vector<double> x;
   for (std::size_t first = 0; first < made.size(); first += columns_at_once) {
     const int count = static_cast<int>(std::min<std::size_t>(columns_at_once, made.size() - first));
+    SparseColumns columns;
+    for (int c = 0; c < count; ++c) append(column_[made[first + c]], columns);
     if (!has_vectors) {
-      factor.solve(nullptr, count);
+      factor.solve(columns, nullptr);
       continue;
     }
-    x.assign(static_cast<std::size_t>(size) * count, 0.);
-    for (int c = 0; c < count; ++c) add(column_[made[first + c]], 1, x.data() + static_cast<std::size_t>(c) * size);
-    factor.solve(x.data(), count);
+    x.resize(static_cast<std::size_t>(size) * count);
+    factor.solve(columns, x.data());
     for (int c = 0; c < count; ++c) // symmetric: with those of later columns, later ones bring them
       for (int other = 0; other <= made[first + c]; ++other)
         flexibility_[made[first + c]][other] = product(column_[other], x.data() + static_cast<std::size_t>(c) * size);

@@ -16,7 +16,8 @@ public:
   FactorCost cost() const override;
   bool make(const std::vector<double> &value) override;
   bool exists() const override;
-  void solve(double *x, int columns) const override;
+  void solve(double *x) const override;
+  void solve(const SparseColumns &B, double *x) const override;
 
 private:
   struct Impl;

@@ -18,6 +18,15 @@ struct SymmetricEntries {
 /// The entries of all ranks on every rank; collective.
 SymmetricEntries entries_of_all(const Comm &comm, const SymmetricEntries &mine);
 
+/// Columns of few entries.
+struct SparseColumns {
+  std::vector<int> begin{0}; ///< (columns + 1) where the entries of each begin
+  std::vector<int> row;      ///< (entries) each once in a column
+  std::vector<double> value; ///< (entries)
+
+  int count() const { return static_cast<int>(begin.size()) - 1; }
+};
+
 /// What a factor takes, as its symbolic factorization tells before it is made.
 struct FactorCost {
   double operations = 0; ///< multiplications and additions
@@ -25,7 +34,7 @@ struct FactorCost {
   double bytes = 0;      ///< most that a rank needs while it is made [B]
   /// About, by constants of one machine: a choice by them is the same in every run.
   double seconds = 0, seconds_of_solve = 0; ///< [s]
-  double seconds_of_column = 0;             ///< of many that are solved for together [s]
+  double seconds_of_column = 0;             ///< of many of few entries that are solved for together [s]
 };
 
 /// Cholesky factor of a sparse symmetric positive definite matrix on the host.
@@ -59,10 +68,13 @@ public:
   virtual bool make(const std::vector<double> &value) = 0;
   virtual bool exists() const = 0;
 
-  /// X <- A^-1 X; collective.
-  /// @param x  (columns, size) on rank 0, one column after the other, where it is read and written; on other ranks it may be null. Many
-  ///           columns together take an eighth of the time of as many single ones.
-  virtual void solve(double *x, int columns = 1) const = 0;
+  /// x <- A^-1 x; collective.
+  /// @param x  (size) on rank 0, where it is read and written; on other ranks it may be null
+  virtual void solve(double *x) const = 0;
+  /// X <- A^-1 B; collective. Many columns together take a part of the time of as many solves, the less the fewer entries they have.
+  /// @param B  as many columns on each rank; of other ranks than 0 the entries do not count
+  /// @param x  (columns, size) on rank 0, one column after the other, where it is written; on other ranks it may be null
+  virtual void solve(const SparseColumns &B, double *x) const = 0;
 };
 
 /// A factor on this rank alone, of entries that are all its own; null where it would take more than so many operations, or the matrix
