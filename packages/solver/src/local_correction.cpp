@@ -1,6 +1,7 @@
 #include "local_correction.hpp"
 
 #include "rpc/algebra/bounded_update.hpp"
+#include "rpc/core/math.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/core/sparse_rows.hpp"
 
@@ -31,15 +32,25 @@ struct Changes {
   LO size() const { return static_cast<LO>(node.extent(0)); }
 };
 
-/// (nodes, dim, dim) The symmetric part of H's update less what was written.
-DeviceView<double ***> differences(const UpdatedOperator &H, const DeviceView<double ***> &written)
+/// (nodes, dim, dim) The symmetric part of H's update less what was written; 0 where no entry is more than a part of the node's own
+/// stiffness.
+DeviceView<double ***> differences(const UpdatedOperator &H, const DeviceView<double ***> &written, const double slight)
 {
   const DeviceView<double ***> rest = bounded_update(H);
+  const auto own = H.base_blocks();
   const int dim = H.dofs_per_node();
   Kokkos::parallel_for(
       "rpc::solver::differences", device_range(static_cast<LO>(rest.extent(0))), KOKKOS_LAMBDA(const LO n) {
+        double largest = 0, stiffness = 0;
         for (int k = 0; k < dim; ++k)
-          for (int l = 0; l < dim; ++l) rest(n, k, l) -= written(n, k, l);
+          for (int l = 0; l < dim; ++l) {
+            rest(n, k, l) -= written(n, k, l);
+            largest = math::fmax(largest, math::fmax(rest(n, k, l), -rest(n, k, l)));
+            stiffness = math::fmax(stiffness, math::fmax(own(n, k, l), -own(n, k, l)));
+          }
+        if (largest > slight * stiffness) return;
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) rest(n, k, l) = 0;
       });
   Kokkos::fence();
   return rest;
@@ -62,9 +73,9 @@ LO count_not_zero(const DeviceView<double ***> &block)
   return count;
 }
 
-Changes changes_of(const UpdatedOperator &H, const DeviceView<double ***> &written)
+Changes changes_of(const UpdatedOperator &H, const DeviceView<double ***> &written, const double slight)
 {
-  const auto rest = differences(H, written);
+  const auto rest = differences(H, written, slight);
   const auto nodes = H.nodes();
   const int dim = H.dofs_per_node();
   const LO n = count_not_zero(rest);
@@ -300,17 +311,17 @@ DeviceView<double *> times_columns(const PatchEntries &list, const int size, con
 
 } // namespace
 
-GO num_changes(const UpdatedOperator &H, const DeviceView<double ***> &written)
+GO num_changes(const UpdatedOperator &H, const DeviceView<double ***> &written, const double slight)
 {
-  return sum_all(*H.getDomainMap()->getComm(), GO(count_not_zero(differences(H, written))));
+  return sum_all(*H.getDomainMap()->getComm(), GO(count_not_zero(differences(H, written, slight))));
 }
 
 std::optional<LocalCorrection> LocalCorrection::around(const UpdatedOperator &H, const CrsMatrix &A,
-                                                       const DeviceView<double ***> &written)
+                                                       const DeviceView<double ***> &written, const double slight)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::local_correction"));
   const Comm &comm = *A.getComm();
-  const Changes changes = changes_of(H, written);
+  const Changes changes = changes_of(H, written, slight);
   if (sum_all(comm, GO(changes.size())) == 0) return std::nullopt;
   Vector place(A.getRowMap());
   mark_changed(changes, H.dofs_per_node(), place);

@@ -24,8 +24,9 @@ struct PatchEntries {
   DeviceView<double *> value;      ///< (entries)
 };
 
-/// Number of nodes of all ranks at which the symmetric part of H's update is another one than what was written; collective.
-GO num_changes(const UpdatedOperator &H, const DeviceView<double ***> &written);
+/// Number of nodes of all ranks at which the symmetric part of H's update is another one than what was written, by more than a part of
+/// their own stiffness; collective.
+GO num_changes(const UpdatedOperator &H, const DeviceView<double ***> &written, double slight = 0);
 
 /// Carries a preconditioner M of a matrix A over to the stiffness H, by exact solves on a patch, the
 /// unknowns of the contact nodes where the two differ and, in the plane, of some layers of cells around them:
@@ -38,9 +39,10 @@ class LocalCorrection
 public:
   /// Collective. Of an update that is not symmetric it takes the symmetric part.
   /// @param A        K with an earlier update in it   @param written  (nodes of H, dim, dim) that one, symmetric
-  /// @return nothing where H is A, or the patch would be too large
+  /// @param slight   changes up to this part of a node's own stiffness are left out
+  /// @return nothing where there are no other changes, or the patch would be too large
   static std::optional<LocalCorrection> around(const UpdatedOperator &H, const CrsMatrix &A,
-                                               const DeviceView<double ***> &written);
+                                               const DeviceView<double ***> &written, double slight = 0);
 
   /// y <- B x; collective.
   void apply(const Operator &M, const Vector &x, Vector &y) const;

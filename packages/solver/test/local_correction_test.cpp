@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <utility>
 
 namespace
 {
@@ -65,6 +66,33 @@ TEST(LocalCorrection, HoldsTwoLayersAroundTheNode)
   const auto correction = written.correction();
   ASSERT_TRUE(correction);
   EXPECT_EQ(correction->size(), 2 * 5 * 3);
+}
+
+/// Of two changes, of a 20th and of five times the nodes' own stiffness.
+TEST(LocalCorrection, LeavesOutSlightChanges)
+{
+  Beam beam;
+  open_between(beam, 2, 2.001);
+  const Written now(beam);
+  const auto own = to_host(now.H.base_blocks()), before = to_host(now.update);
+  const auto node = to_host(now.H.nodes());
+  const auto coordinates = fem::node_coordinates(beam.d);
+  const auto at = coordinates->getLocalViewHost(Tpetra::Access::ReadOnly);
+  for (std::size_t n = 0; n < node.extent(0); ++n) {
+    const double x = at(node(n), 0);
+    if (std::abs(x - 1) < 1e-9) before(n, 1, 1) += own(n, 1, 1) / 20;
+    if (std::abs(x - 3) < 1e-9) before(n, 1, 1) += 5 * own(n, 1, 1);
+  }
+  const auto written = to_device(before);
+  const auto around = [&](const double part) { return LocalCorrection::around(now.H, *now.A, written, part); };
+  constexpr int of_a_node = 2 * 5 * 3;
+  const auto of_both = around(0), of_one = around(0.1);
+  ASSERT_TRUE(of_both && of_one);
+  EXPECT_EQ(of_both->size(), 2 * of_a_node);
+  EXPECT_EQ(of_one->size(), of_a_node);
+  EXPECT_FALSE(around(6));
+  for (const auto &[part, changes] : {std::pair(0., 2), std::pair(0.1, 1), std::pair(6., 0)})
+    EXPECT_EQ(solver::num_changes(now.H, written, part), changes) << part;
 }
 
 TEST(LocalCorrection, IsSymmetricPositiveAndExactOnThePatch)

@@ -17,6 +17,9 @@ constexpr double most_stiffness = 5;
 // Corrections have worn out where they cost a solve of so many digits more CG iterations than a set-up takes the time of. Solves
 // of few digits tell little.
 constexpr double full_digits = 8, few_digits = 2, setup_in_iterations = 12;
+// Where the patch would be too large, rough solves, of so many digits at most, leave changes up to such a part of a node's own stiffness
+// to CG.                                                                                                          (4.12)
+constexpr double most_slight = 0.1, rough_digits = 6;
 // Set-ups for changed states; then corrections go on until CG runs out of patience.
 constexpr int most_setups_for_states = 1;
 
@@ -53,12 +56,15 @@ Preconditioner::Prepared Algebraic::prepare(const double tolerance)
   const bool renewal_pays = is_worn_ && excess(-std::log10(tolerance)) > setup_in_iterations;
   if (exists && revision == revision_ && !renewal_pays) return Prepared::unchanged;
   if (exists && !is_worn_ && !for_each_state_) {
-    correction_ = LocalCorrection::around(*H_, *A_, written_);
     is_fresh_ = false;
-    const bool is_exact = !correction_ && num_changes(*H_, written_) == 0;
-    if (correction_ || is_exact) {
+    const bool is_rough = -std::log10(tolerance) <= rough_digits;
+    for (const double slight : {0., most_slight}) {
+      if (slight > 0 && !is_rough) continue;
+      correction_ = LocalCorrection::around(*H_, *A_, written_, slight);
+      const bool is_whole = !correction_ && num_changes(*H_, written_, slight) == 0; // there is nothing to correct
+      if (!correction_ && !is_whole) continue;
       revision_ = revision;
-      return is_exact ? Prepared::unchanged : Prepared::updated;
+      return is_whole && slight == 0 ? Prepared::unchanged : Prepared::updated;
     }
   }
   setups_for_states_ += exists;
