@@ -186,18 +186,21 @@ bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const doubl
   return found && found->cost.seconds < lost;
 }
 
-/// The same at the present rate of a solve.
+/// The same at the present rate of a solve, and where it would end at CG's limit by far: the factor takes over then anyway.
 bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double tolerance)
 {
-  return seen.iterations() >= options.first_iterations &&
-         sparse_pays(seen.iterations_in_all(tolerance, options.max_iterations), tolerance);
+  if (seen.iterations() < options.first_iterations) return false;
+  const double limit = options.max_iterations, by_far = 2 * limit;
+  if (seen.iterations() >= limit / 2 && seen.iterations_in_all(tolerance, by_far) >= by_far && prospect()) return true;
+  return sparse_pays(seen.iterations_in_all(tolerance, limit), tolerance);
 }
 
-/// By the iterations that the body lets expect.
+/// By the iterations that the body lets expect. Where these are more than CG may take, a factor would follow anyway.
 void LinearSolver::Impl::choose_before_the_first_solve()
 {
-  const double expected = std::min<double>(options.expected_iterations, options.max_iterations);
-  if (!(expected > 0) || on_sparse || !counts.iterations.empty() || !sparse_pays(expected, full_tolerance)) return;
+  const double expected = options.expected_iterations;
+  if (!(expected > 0) || on_sparse || !counts.iterations.empty()) return;
+  if (expected > options.max_iterations ? !prospect() : !sparse_pays(expected, full_tolerance)) return;
   take(Next::sparse, "about " + std::to_string(static_cast<int>(expected)) + " CG iterations expected");
 }
 

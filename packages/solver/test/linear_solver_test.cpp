@@ -224,6 +224,14 @@ TEST(LinearSolver, TakesASparseFactorBeforeTheFirstSolveWhereManyIterationsAreEx
     EXPECT_EQ(solver->counts().iterations.size(), 1U);
     EXPECT_EQ(solver->counts().preconditioner_setups, 1);
   }
+  LinearSolverOptions limited = options_for("auto"); // a few iterations are expected, and fewer allowed
+  limited.expected_iterations = 31;
+  for (const int limit : {40, 30}) {
+    limited.max_iterations = limit;
+    const auto of_few = body.solver(limited, [&] { return body.levels(); });
+    EXPECT_TRUE(of_few->solve(b, x, 1e-9).converged);
+    EXPECT_EQ(solver_path(of_few->counts()), limit == 30 ? "sparse factor: about 31 CG iterations expected" : "meshes");
+  }
   LinearSolverOptions options = options_for("mesh");
   options.expected_iterations = 400;
   const auto solver = body.solver(options, [&] { return body.levels(); });
