@@ -22,9 +22,8 @@ struct GmshRequest {
   bool quadrilaterals = false;            ///< in a plane box; a .geo has its own kind
   double size_factor = 1;                 ///< of all cell sizes
   int order = 2;
-  int attempt =
-      0; ///< from the second on gmsh straightens curved cells; by a field of sizes each breaks ties in another way
-  SizeField sizes;             ///< without simplices: those that the .geo asks for
+  int attempt = 0; ///< later ones than 0 straighten curved cells; by a field of sizes each breaks ties in another way
+  SizeField sizes; ///< without simplices: those that the .geo asks for
   bool dimension_only = false; ///< no mesh is wanted
   bool geometry = false;       ///< of the boundary, besides the mesh
   /// Points that are wanted on the .geo's boundary instead of a mesh: near each of some, on a curve, in space on a surface, or on the

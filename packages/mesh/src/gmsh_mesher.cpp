@@ -236,6 +236,7 @@ std::string make_mesh(const GmshRequest &request, const int dim)
   if (!complaint.str().empty()) return complaint.str();
   gmsh::option::setNumber("Mesh.ElementOrder", request.order);
   gmsh::option::setNumber("Mesh.SecondOrderIncomplete", 0);
+  // Straightens cells whose curved edges bend too far. The first attempt by a field leaves that out, for it takes time.
   if (request.attempt > 0 || field) gmsh::option::setNumber("Mesh.HighOrderOptimize", request.attempt > 0);
   if (field)
     complaint << mesh_by_field(request, dim);

@@ -42,8 +42,7 @@ constexpr int too_little_memory[] = {-8, -9, -14, -15, -17, -19, -20}, out_of_me
 
 // By measurement on one core, of factors of 1e7 to 1e11 operations in the plane and in space: within 15 % of the measured times.
 constexpr double dense_seconds = 3.5e-11, entry_seconds = 3.1e-8, entry_seconds_in_solve = 3e-9;
-constexpr double columns_for_one =
-    12; // of many, at contact nodes, in the time of a single one: 10 to 24 by measurement
+constexpr double columns_for_one = 12; // of many at contact nodes in the time of a single one; 10 to 24 by measurement
 // P ranks make a factor, and solve with it, so many times as fast as one: P to this power. By measurement on two.
 constexpr double gain = 0.6;
 // A factor that takes longer [s] is made where a request to stop can be seen meanwhile.
