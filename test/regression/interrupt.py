@@ -60,6 +60,12 @@ class Interrupt(RpcTestCase):
         self.wait_for(process, ready)
         return max(ranks_below(process.pid))
 
+    def read_to(self, process, line):
+        """Reads the log to the line that begins so."""
+        for text in process.stdout:
+            if text.startswith(line):
+                break
+
     def end(self, process, code):
         out, err = process.communicate(timeout=600)
         self.assertEqual(process.returncode, code, f"{out}\n{err}")
@@ -87,9 +93,7 @@ class Interrupt(RpcTestCase):
     def interrupt_solve(self, number, line, *arguments):
         process = self.start(LARGE, *arguments)
         rank = self.last_rank(process)
-        for text in process.stdout:
-            if text.startswith(line):
-                break
+        self.read_to(process, line)
         os.kill(rank, number)
         return self.expect_results(process, number)
 
@@ -114,6 +118,7 @@ class Interrupt(RpcTestCase):
             with self.subTest(number.name):
                 process = self.start(*FACTORED, "--set=Output->Exodus=false", deck="block.xml")
                 rank = self.last_rank(process)
+                self.read_to(process, "    1      0")  # MPI's threads, and the prediction, are there before
                 threads = num_threads(rank)
                 self.wait_for(process, lambda: num_threads(rank) > threads)
                 time.sleep(0.5)
