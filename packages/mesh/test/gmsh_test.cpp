@@ -163,8 +163,8 @@ TEST(Gmsh, RefusalsNameFileRuleAndRemedy)
   refused(square() + square() + body, {"gmsh: "});
 }
 
-/// A ring that is thinner than the arcs of its cells are high: the first mesh has inverted cells, the second one is straightened. One of a
-/// hundredth of that thickness cannot be.
+/// A ring that is thinner than the arcs of its cells are high: the first mesh has inverted cells, the second one is straightened. A
+/// ring of 1e-7 of its radius cannot be.
 TEST(Gmsh, StraightensCellsWhoseCurvedEdgesBendTooFar)
 {
   const auto ring = [](const std::string &inner) {
