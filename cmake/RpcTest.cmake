@@ -1,6 +1,7 @@
 # rpc_add_test(<package> <name> [LABEL unit] [NP 1 2 3] [LIBRARIES libs] [TIMEOUT seconds])
 # The GoogleTests of <name>_test.cpp, linked to rpc::<package> where there is such a target; one CTest entry
-# <package>.<name>.np<k> per number of ranks. LABEL is unit, verification, regression or performance.
+# <package>.<name>.np<k> per number of ranks. LABEL is unit, verification, regression or performance. What the sources of all tests of
+# a package are compiled with belongs to the target <package>_tests.
 find_package(GTest QUIET)
 rpc_require("GoogleTest" libgtest-dev GTest_FOUND)
 
@@ -87,11 +88,16 @@ function(rpc_add_test package name)
   if(TARGET rpc::${package})
     list(PREPEND arg_LIBRARIES rpc::${package})
   endif()
-  set(target ${package}_${name}_test)
-  add_library(${target} OBJECT ${name}_test.cpp)
-  target_compile_options(${target} PRIVATE -Wall -Wextra)
-  target_link_libraries(${target} PUBLIC rpc_test_main ${arg_LIBRARIES})
-  target_link_libraries(rpc_tests PRIVATE ${target})
+  set(target ${package}_tests)
+  if(NOT TARGET ${target})
+    # -O1: tests spend their time in the libraries, and the compiler half of its time on what the tests' own code gains above that.
+    add_library(${target} OBJECT)
+    target_compile_options(${target} PRIVATE -Wall -Wextra $<$<CONFIG:Release>:-O1>)
+    target_link_libraries(${target} PUBLIC rpc_test_main)
+    target_link_libraries(rpc_tests PRIVATE ${target})
+  endif()
+  target_sources(${target} PRIVATE ${name}_test.cpp)
+  target_link_libraries(${target} PUBLIC ${arg_LIBRARIES})
   file(RELATIVE_PATH source ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
   foreach(np IN LISTS arg_NP)
     rpc_add_run_test(${package}.${name} ${np} LABEL ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} COMMAND rpc_tests --source=${source})

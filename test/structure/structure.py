@@ -4,7 +4,8 @@
 
 Prints each arrow that is not allowed, each line of the program that launches a kernel or works on a matrix, each name that differs
 between Trilinos versions outside VERSION_HEADERS, each parameter of a contact law that is read outside its folder, each kernel in a
-private member function, which nvcc refuses, and each source file that is longer than MOST_LINES; the exit code is 1 if there is one.
+private member function, which nvcc refuses, each source file that is longer than MOST_LINES, and each file of GoogleTests outside a
+namespace of its own; the exit code is 1 if there is one.
 """
 
 import pathlib
@@ -164,6 +165,17 @@ def check_lengths(root):
                 yield f"{file.relative_to(root)}: {lines} lines, more than {MOST_LINES}"
 
 
+def check_namespaces_of_tests(root):
+    """Several are compiled as one file: what a_test.cpp defines lies in an unnamed namespace within a_test."""
+    for top in ("packages", "test"):
+        for file in sorted((root / top).rglob("*_test.cpp")):
+            begin, end = f"\nnamespace {file.stem}\n{{\nnamespace\n{{\n", f"\n}} // namespace\n}} // namespace {file.stem}\n"
+            text = "\n" + file.read_text()
+            inside = text.partition(begin)[2]
+            if not inside.endswith(end) or re.search(r"^(?:namespace|TEST)", text.partition(begin)[0], re.MULTILINE):
+                yield f"{file.relative_to(root)}: is not within namespace {file.stem} and an unnamed one"
+
+
 def violations(root):
     folders = sorted(path.parent for path in root.glob("packages/*/CMakeLists.txt"))
     for folder in folders:
@@ -178,6 +190,7 @@ def violations(root):
     yield from check_law(root)
     yield from check_kernels(root)
     yield from check_lengths(root)
+    yield from check_namespaces_of_tests(root)
 
 
 def main():

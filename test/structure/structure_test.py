@@ -9,6 +9,11 @@ import structure
 SOURCE = pathlib.Path(__file__).parents[2]
 
 
+def test_file(text="", stem="a_test"):
+    """What a file of GoogleTests has around it."""
+    return f"{text}\nnamespace {stem}\n{{\nnamespace\n{{\n\n}} // namespace\n}} // namespace {stem}\n"
+
+
 class Structure(unittest.TestCase):
     def violations(self, **files):
         """Of a tree of mesh, contact and the program, and these files: names with / written as __."""
@@ -41,8 +46,8 @@ class Structure(unittest.TestCase):
         self.assertEqual(found, ["packages/mesh/include/rpc/mesh/a.hpp:2: mesh includes rpc/contact/b.hpp"])
 
     def test_tests_may_make_bodies_but_not_run_back(self):
-        self.assertEqual(self.violations(**{"packages__mesh__test__a_test.cpp": '#include "rpc/fem/b.hpp"\n'}), [])
-        self.assertEqual(len(self.violations(**{"packages__mesh__test__a_test.cpp": '#include "rpc/solver/b.hpp"\n'})), 1)
+        self.assertEqual(self.violations(**{"packages__mesh__test__a_test.cpp": test_file('#include "rpc/fem/b.hpp"\n')}), [])
+        self.assertEqual(len(self.violations(**{"packages__mesh__test__a_test.cpp": test_file('#include "rpc/solver/b.hpp"\n')})), 1)
 
     def test_finds_a_link_that_runs_back(self):
         found = self.violations(**{"packages__mesh__CMakeLists.txt": "rpc_add_package(mesh DEPENDS rpc::core rpc::io)"})
@@ -92,7 +97,7 @@ class Structure(unittest.TestCase):
         line = "const double most = c.law(i).yield;"
         self.assertEqual(len(self.violations(**{"packages__contact__src__result.cpp": line})), 1)
         self.assertEqual(self.violations(**{"packages__contact__include__rpc__contact__law__a.hpp": line}), [])
-        self.assertEqual(self.violations(**{"packages__contact__test__a_test.cpp": line}), [])
+        self.assertEqual(self.violations(**{"packages__contact__test__a_test.cpp": test_file(line)}), [])
         self.assertEqual(self.violations(**{"packages__contact__src__result.cpp": "peak.yield_jump = sums.yielded_length > 0;"}), [])
 
     def test_finds_a_kernel_in_a_private_member(self):
@@ -104,10 +109,16 @@ class Structure(unittest.TestCase):
         self.assertEqual(self.violations(**files), [])
 
     def test_finds_a_source_file_that_is_too_long(self):
-        for where in ("packages__mesh__src__a.cpp", "packages__mesh__include__rpc__mesh__a.hpp", "packages__mesh__test__a_test.cpp", "src__a.cpp"):
+        for where in ("packages__mesh__src__a.cpp", "packages__mesh__include__rpc__mesh__a.hpp", "packages__mesh__test__a.hpp", "src__a.cpp"):
             found = self.violations(**{where: "\n" * 451})
             self.assertEqual(found, [where.replace("__", "/") + ": 451 lines, more than 450"])
             self.assertEqual(self.violations(**{where: "\n" * 450}), [])
+
+    def test_finds_tests_outside_a_namespace_of_their_own(self):
+        where = "packages__mesh__test__a_test.cpp"
+        self.assertEqual(self.violations(**{where: test_file()}), [])
+        for text in ("TEST(A, b) {}\n", test_file(stem="b_test"), test_file("TEST(A, b) {}"), test_file() + "TEST(A, b) {}\n"):
+            self.assertEqual(self.violations(**{where: text}), ["packages/mesh/test/a_test.cpp: is not within namespace a_test and an unnamed one"])
 
 
 if __name__ == "__main__":

@@ -5,6 +5,8 @@
 
 // Adaptive meshes do not depend on the number of ranks.
 
+namespace adapt_ranks_test
+{
 namespace
 {
 
@@ -99,3 +101,4 @@ TEST(AdaptiveRanks, GiveNestedMeshesOfThePlaneTheSame)
 }
 
 } // namespace
+} // namespace adapt_ranks_test

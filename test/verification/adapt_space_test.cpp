@@ -6,6 +6,8 @@
 
 // Adaptive meshes in space and of bodies of revolution, against each other and against independent values.
 
+namespace adapt_space_test
+{
 namespace
 {
 
@@ -140,3 +142,4 @@ TEST(AdaptiveSteps, InSpaceKeepDentsAndDissipation)
 }
 
 } // namespace
+} // namespace adapt_space_test

@@ -10,6 +10,8 @@
 // Adaptive meshes: the error that was asked for, with the dofs that it takes. Exact energies of the beam come from hp elements of
 // order 4 to 8 in independent code.
 
+namespace adapt_test
+{
 namespace
 {
 
@@ -395,3 +397,4 @@ TEST(Adaptive, TargetsOutOfReachLeaveTheBestResult)
 }
 
 } // namespace
+} // namespace adapt_test

@@ -10,6 +10,8 @@
 // Example 1 of Namm & Tsoy (2025). The paper's values are printed there; the converged ones come from hp elements of
 // order 4 to 8 in independent code, good to 2e-8.
 
+namespace beam_test
+{
 namespace
 {
 
@@ -205,3 +207,4 @@ TEST(SlenderBeam, DoesNotCreepAndTakesRoundingForWhatItIs)
 }
 
 } // namespace
+} // namespace beam_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace block_test
+{
 namespace
 {
 
@@ -186,3 +188,4 @@ TEST(BlockIn3d, IsCompressedUniformlyToRounding)
 }
 
 } // namespace
+} // namespace block_test

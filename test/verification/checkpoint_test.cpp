@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 
+namespace checkpoint_test
+{
 namespace
 {
 
@@ -83,3 +85,4 @@ TEST(Checkpoint, HoldsWhatTheLawHasAndDentsOfFoundations)
 }
 
 } // namespace
+} // namespace checkpoint_test

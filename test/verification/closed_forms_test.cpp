@@ -5,6 +5,8 @@
 
 // Thin and nearly incompressible bodies against closed forms.
 
+namespace closed_forms_test
+{
 namespace
 {
 
@@ -90,3 +92,4 @@ TEST(Rubber, OfUniformStressIsExactForAllElements)
 }
 
 } // namespace
+} // namespace closed_forms_test

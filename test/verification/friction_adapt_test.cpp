@@ -8,6 +8,8 @@
 // Estimated errors and adaptive meshes with friction. Tresca's problem has the minimum J + friction_work, so that the true error of a
 // mesh is 2 (J_h - J) of that sum, with J of a finer mesh.
 
+namespace friction_adapt_test
+{
 namespace
 {
 
@@ -105,3 +107,4 @@ TEST(AdaptWithFriction, StepsCarrySlipAndTractionToNewMeshes)
 }
 
 } // namespace
+} // namespace friction_adapt_test

@@ -3,6 +3,8 @@
 // A cylinder of radius 1 and height 1 that is pressed on the foundation and grows wider upwards: u_r = r (alpha + c z),
 // u_z = -epsilon z. Its shear stress G c r is friction's at z = 0, where it slips by alpha r, or sticks.
 
+namespace friction_axisymmetric_test
+{
 namespace
 {
 
@@ -118,3 +120,4 @@ TEST_P(CylinderOf, AllElementsConvergesToItsClosedForm)
 }
 
 } // namespace
+} // namespace friction_axisymmetric_test

@@ -3,6 +3,8 @@
 // A column pressed on a foundation and sheared to and fro: stresses are uniform, and exact with all elements. In the plane its top
 // moves along a line, in space around.
 
+namespace friction_column_test
+{
 namespace
 {
 
@@ -150,3 +152,4 @@ TEST_P(FrictionColumn, FollowsItsClosedForm)
 }
 
 } // namespace
+} // namespace friction_column_test

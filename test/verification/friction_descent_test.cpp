@@ -6,6 +6,8 @@
 // Tresca's problem has a convex functional: J_T = J + sum_i w_i s_i |e_i|. The smoothed one falls with each of Newton's steps, its minima
 // rise from one Uzawa iteration to the next, and J_T falls to the same value from above.
 
+namespace friction_descent_test
+{
 namespace
 {
 
@@ -105,3 +107,4 @@ TEST_P(TrescaDescent, EndsAtTheProgramsSolution)
 }
 
 } // namespace
+} // namespace friction_descent_test

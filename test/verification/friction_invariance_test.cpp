@@ -2,6 +2,8 @@
 
 // The solution belongs to the scene: to no way of writing it down.
 
+namespace friction_invariance_test
+{
 namespace
 {
 
@@ -210,3 +212,4 @@ TEST(FrictionInvariance, MirroredSceneInSpaceHasTheMirroredSolution)
 }
 
 } // namespace
+} // namespace friction_invariance_test

@@ -5,6 +5,8 @@
 
 // A block that lies on its foundation and is pushed along it: friction holds it up to mu N, and no further.
 
+namespace friction_limit_test
+{
 namespace
 {
 
@@ -215,3 +217,4 @@ TEST(SqueezedBlock, BetweenTwoFoundationsIsPulledOutAtTheSumOfTheirLimits)
 }
 
 } // namespace
+} // namespace friction_limit_test

@@ -4,6 +4,8 @@
 // contact, p = p0 sqrt(1 - x^2/a^2); points stick where |x| < c = a sqrt(1 - Q/(mu P)), and
 // q = mu p0/a (sqrt(a^2 - x^2) - sqrt(c^2 - x^2)). On a rigid foundation that is so where nu = 1/2.
 
+namespace friction_mindlin_test
+{
 namespace
 {
 
@@ -81,3 +83,4 @@ TEST_P(Mindlin, StickWidthAndTractionsAreTheClosedForm)
 }
 
 } // namespace
+} // namespace friction_mindlin_test

@@ -2,6 +2,8 @@
 
 // Tractions and displacements converge where a part sticks and a part slips.
 
+namespace friction_order_test
+{
 namespace
 {
 
@@ -71,3 +73,4 @@ TEST_P(FrictionOrder, OfTractionsAndSlip)
 }
 
 } // namespace
+} // namespace friction_order_test

@@ -4,6 +4,8 @@
 
 // Several ranks find what one rank finds.
 
+namespace friction_ranks_test
+{
 namespace
 {
 
@@ -80,3 +82,4 @@ TEST_P(FrictionRanks, FindTheSolutionOfOneRank)
 }
 
 } // namespace
+} // namespace friction_ranks_test

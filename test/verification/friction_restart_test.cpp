@@ -7,6 +7,8 @@
 
 // A run with friction that goes on from a checkpoint is the run without a break, to the last bit.
 
+namespace friction_restart_test
+{
 namespace
 {
 
@@ -95,3 +97,4 @@ TEST_P(FrictionRestart, GoesOnBitForBit)
 }
 
 } // namespace
+} // namespace friction_restart_test

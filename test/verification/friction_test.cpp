@@ -4,6 +4,8 @@
 // Friction against an independent program (dense Schur complements of the contact unknowns, exact solves), closed forms and
 // published values.
 
+namespace friction_test
+{
 namespace
 {
 
@@ -214,3 +216,4 @@ TEST(Loop, OnAYieldingFoundationSlipsAtTheYieldStressTimesMu)
 }
 
 } // namespace
+} // namespace friction_test

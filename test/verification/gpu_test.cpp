@@ -5,6 +5,8 @@
 #include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
 
+namespace gpu_test
+{
 namespace
 {
 
@@ -31,3 +33,4 @@ TEST(Gpu, IsChosenWhereThereAreKernelsForIt)
 }
 
 } // namespace
+} // namespace gpu_test

@@ -10,6 +10,8 @@
 // code on quadratic triangles with 142 196 dofs; they are good to 0.01 % at xi >= 100 and to 0.5 % at xi = 20, 50, where
 // contact ends between two nodes.
 
+namespace hertz_test
+{
 namespace
 {
 
@@ -135,3 +137,4 @@ TEST(HertzCurvedEdges, AreWhatMakesQuadraticElementsQuadratic)
 }
 
 } // namespace
+} // namespace hertz_test

@@ -12,6 +12,8 @@
 #include <numeric>
 #include <random>
 
+namespace invariance_test
+{
 namespace
 {
 
@@ -455,3 +457,4 @@ TEST_P(Numbers, OfNodesAndCellsDoNotMatter)
 }
 
 } // namespace
+} // namespace invariance_test

@@ -11,6 +11,8 @@
 
 // Plane stress and axisymmetric bodies against closed forms: Lame's tube and disc, bars and cylinders.
 
+namespace kinematics_test
+{
 namespace
 {
 
@@ -413,3 +415,4 @@ TEST(Ball, AdaptsItsMesh)
 }
 
 } // namespace
+} // namespace kinematics_test

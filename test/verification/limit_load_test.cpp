@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 
+namespace limit_load_test
+{
 namespace
 {
 
@@ -185,3 +187,4 @@ TEST(Wedge, BetweenSlantedFoundationsIsHeldByBoth)
 }
 
 } // namespace
+} // namespace limit_load_test

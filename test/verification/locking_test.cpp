@@ -12,6 +12,8 @@
 // Nearly incompressible materials: errors against an exact solution whose stresses stay bounded as nu nears 0.5.
 // It prints the table of doc/robustness.md.
 
+namespace locking_test
+{
 namespace
 {
 
@@ -344,3 +346,4 @@ TEST(NearlyIncompressibleContact, PressureOfABondedPadDoesNotOscillate)
 }
 
 } // namespace
+} // namespace locking_test

@@ -13,6 +13,8 @@
 
 // A contact problem in space with a known solution (doc/theory.md, (7.3)), on straight and on curved, distorted cells.
 
+namespace manufactured_space_test
+{
 namespace
 {
 
@@ -202,3 +204,4 @@ INSTANTIATE_TEST_SUITE_P(Elements, ManufacturedInSpace,
                          });
 
 } // namespace
+} // namespace manufactured_space_test

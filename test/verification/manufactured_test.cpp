@@ -7,6 +7,8 @@
 
 // input/manufactured.xml against its exact solution (doc/theory.md, section 7): open, closed and yielded parts.
 
+namespace manufactured_test
+{
 namespace
 {
 
@@ -184,3 +186,4 @@ TEST(ManufacturedStates, AreWhereTheyShouldBe)
 }
 
 } // namespace
+} // namespace manufactured_test

@@ -9,6 +9,8 @@
 
 // Several ranks find what one rank finds.
 
+namespace ranks_test
+{
 namespace
 {
 
@@ -123,3 +125,4 @@ TEST_P(Ranks, FindTheSolutionOfOneRank)
 }
 
 } // namespace
+} // namespace ranks_test

@@ -7,6 +7,8 @@
 
 // Refined meshes of .geo files, from deck to result.
 
+namespace refinement_test
+{
 namespace
 {
 
@@ -97,3 +99,4 @@ TEST(Refinement, IsRefusedWhereItMakesNoSense)
 }
 
 } // namespace
+} // namespace refinement_test

@@ -5,6 +5,8 @@
 
 // Bodies in space: the ball of Hertz against an independent solution, and the block of input/ by all four elements.
 
+namespace space_test
+{
 namespace
 {
 
@@ -108,3 +110,4 @@ TEST(Block, IsTheSameInOtherAxesAndUnits)
 }
 
 } // namespace
+} // namespace space_test

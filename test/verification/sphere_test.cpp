@@ -4,6 +4,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace sphere_test
+{
 namespace
 {
 
@@ -43,3 +45,4 @@ TEST(Sphere, PressesTheCubeWhoseCornersItMisses)
 }
 
 } // namespace
+} // namespace sphere_test

@@ -8,6 +8,8 @@
 
 // input/track.xml: a half cylinder presses a dent into the foundation, is moved along by 0.7, and presses another one beside it.
 
+namespace track_test
+{
 namespace
 {
 
@@ -126,3 +128,4 @@ TEST(Track, WithDentsThatMoveWithTheBodyIsTheFirstDentAgain)
 }
 
 } // namespace
+} // namespace track_test

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace observed_error_test
+{
 namespace
 {
 
@@ -55,3 +57,4 @@ TEST(Unsettled, IsNotToldByOneChangeOrByOnesBelowTheResolution)
 }
 
 } // namespace
+} // namespace observed_error_test

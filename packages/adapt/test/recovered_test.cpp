@@ -6,6 +6,8 @@
 
 #include <limits>
 
+namespace recovered_test
+{
 namespace
 {
 
@@ -339,3 +341,4 @@ TEST(RecoveredEstimate, OfAHardeningFoundationKnowsNoBoundOfThePressure)
 }
 
 } // namespace
+} // namespace recovered_test

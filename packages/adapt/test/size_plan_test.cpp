@@ -7,6 +7,8 @@
 #include <optional>
 #include <random>
 
+namespace size_plan_test
+{
 namespace
 {
 
@@ -326,3 +328,4 @@ TEST(SizePlanInSpace, DoesNotDependOnTheOriginNorOnLastDigits)
 }
 
 } // namespace
+} // namespace size_plan_test

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace bounded_update_test
+{
 namespace
 {
 
@@ -143,3 +145,4 @@ TYPED_TEST(BoundedUpdate, OfABlockThatIsNotSymmetricIsSymmetricAndNotNegative)
 }
 
 } // namespace
+} // namespace bounded_update_test

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace jacobi_test
+{
 namespace
 {
 
@@ -69,3 +71,4 @@ TEST(Jacobi, OfOneDirectionHasOneEigenvalue)
 }
 
 } // namespace
+} // namespace jacobi_test

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <string>
 
+namespace repeated_rows_test
+{
 namespace
 {
 
@@ -78,7 +80,9 @@ TEST(RepeatedRows, RowsThatAreAloneAreReadFromTheMatrix)
     for (int k = 0; k < 40; ++k) values(values.extent(0) / 2 + 3 * k) *= 1 + 0.01 * k;
   }
   const auto rows = RepeatedRows::of(A, 2);
-  if (A->getComm()->getSize() == 1) EXPECT_GT(rows.num_kinds(), 0);
+  if (A->getComm()->getSize() == 1) {
+    EXPECT_GT(rows.num_kinds(), 0);
+  }
   EXPECT_LT(difference(rows, *A), 1e-14);
 }
 
@@ -104,3 +108,4 @@ TEST(RepeatedRows, BlocksAreThoseOfTheMatrix)
 }
 
 } // namespace
+} // namespace repeated_rows_test

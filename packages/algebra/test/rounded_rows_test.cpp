@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <memory>
 
+namespace rounded_rows_test
+{
 namespace
 {
 
@@ -87,3 +89,4 @@ TEST_F(RoundedRowsTest, GiveATranslationNoForce)
 }
 
 } // namespace
+} // namespace rounded_rows_test

@@ -9,6 +9,8 @@
 #include <functional>
 #include <gtest/gtest.h>
 
+namespace updated_operator_test
+{
 namespace
 {
 
@@ -250,3 +252,4 @@ TEST(UpdatedOperator, RoundsTheBodyButNotTheUpdate)
 }
 
 } // namespace
+} // namespace updated_operator_test

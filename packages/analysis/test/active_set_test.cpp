@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+namespace active_set_test
+{
 namespace
 {
 
@@ -306,3 +308,4 @@ TEST(SameActiveSet, AfterAMultiplierUpdateTakesOneStepWhereThePapersNewtonTakesM
 }
 
 } // namespace
+} // namespace active_set_test

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <memory>
 
+namespace foundation_dents_test
+{
 namespace
 {
 
@@ -337,3 +339,4 @@ TEST(DentsOfTheBody, SlideAlongWithIt)
 }
 
 } // namespace
+} // namespace foundation_dents_test

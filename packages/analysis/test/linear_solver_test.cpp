@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace linear_solver_test
+{
 namespace
 {
 
@@ -254,3 +256,4 @@ TEST(LinearSolver, SolvesByGmresWhereContactIsNotSymmetric)
 }
 
 } // namespace
+} // namespace linear_solver_test

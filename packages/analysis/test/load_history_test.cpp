@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace load_history_test
+{
 namespace
 {
 
@@ -331,3 +333,4 @@ TEST(Steps, TimesMustRiseAndNumbersBeInRange)
 }
 
 } // namespace
+} // namespace load_history_test

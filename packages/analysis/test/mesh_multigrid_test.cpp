@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace mesh_multigrid_test
+{
 namespace
 {
 
@@ -287,3 +289,4 @@ TEST(MeshMultigrid, TakesSmallMeshes)
 }
 
 } // namespace
+} // namespace mesh_multigrid_test

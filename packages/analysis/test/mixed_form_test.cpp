@@ -6,6 +6,8 @@
 #include <vector>
 
 /// Nearly incompressible bodies with pressures as unknowns of their own.                       doc/theory.md (4.13) to (4.15)
+namespace mixed_form_test
+{
 namespace
 {
 
@@ -138,3 +140,4 @@ TEST(MixedForm, IsThatOfNearlyIncompressibleBodiesOfOrderTwo)
 }
 
 } // namespace
+} // namespace mixed_form_test

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <memory>
 
+namespace moving_foundation_test
+{
 namespace
 {
 
@@ -119,3 +121,4 @@ TEST(LoadHistory, AFoundationThatTurnsItsNormalsNeedsNoOtherMatrixAndNoOtherMult
 }
 
 } // namespace
+} // namespace moving_foundation_test

@@ -11,6 +11,8 @@
 #include <memory>
 #include <utility>
 
+namespace nested_mesh_test
+{
 namespace
 {
 
@@ -262,3 +264,4 @@ TEST(NestedMesh, LeavesOtherMeshesAlone)
 }
 
 } // namespace
+} // namespace nested_mesh_test

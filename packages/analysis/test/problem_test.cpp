@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <memory>
 
+namespace problem_test
+{
 namespace
 {
 
@@ -202,3 +204,4 @@ TEST(Problem, WorkOfTheSupportsAndLoadsIsTheChangeOfEnergy)
 }
 
 } // namespace
+} // namespace problem_test

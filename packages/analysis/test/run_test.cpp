@@ -3,6 +3,8 @@
 #include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
 
+namespace run_test
+{
 namespace
 {
 
@@ -99,3 +101,4 @@ TEST(Run, PhasesAddUp)
 }
 
 } // namespace
+} // namespace run_test

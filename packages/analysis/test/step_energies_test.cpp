@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+namespace step_energies_test
+{
 namespace
 {
 
@@ -112,3 +114,4 @@ TEST(LoadHistory, EnergiesBalanceExactlyOnProportionalElasticPaths)
 }
 
 } // namespace
+} // namespace step_energies_test

@@ -5,6 +5,8 @@
 #include <memory>
 #include <vector>
 
+namespace step_parts_test
+{
 namespace
 {
 
@@ -118,3 +120,4 @@ TEST(LoadHistory, AStepThatFailsIsNotRemembered)
 }
 
 } // namespace
+} // namespace step_parts_test

@@ -6,6 +6,8 @@
 #include <vector>
 
 /// Multigrid on the meshes of boxes that are thin or whose cells are stretched.
+namespace stretched_cells_test
+{
 namespace
 {
 
@@ -151,3 +153,4 @@ TEST(StretchedCells, LeaveSquareOnesAlone)
 }
 
 } // namespace
+} // namespace stretched_cells_test

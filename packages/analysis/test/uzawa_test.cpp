@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace uzawa_test
+{
 namespace
 {
 
@@ -141,3 +143,4 @@ TEST(Uzawa, ThePapersTestAsksForMultipliersAtRestAsWell)
 }
 
 } // namespace
+} // namespace uzawa_test

@@ -9,6 +9,8 @@
 #include <memory>
 #include <optional>
 
+namespace active_set_test
+{
 namespace
 {
 
@@ -222,3 +224,4 @@ TEST(HoldByContact, ChangesNeitherTheFunctionalNorItsGradients)
 }
 
 } // namespace
+} // namespace active_set_test

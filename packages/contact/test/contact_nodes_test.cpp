@@ -9,6 +9,8 @@
 #include <functional>
 #include <vector>
 
+namespace contact_nodes_test
+{
 namespace
 {
 
@@ -283,3 +285,4 @@ TEST(ContactNodes, MayBePressedIntoAFoundationThatNeverYieldsButGivesWayElastica
 }
 
 } // namespace
+} // namespace contact_nodes_test

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+namespace contact_options_test
+{
 namespace
 {
 
@@ -261,3 +263,4 @@ TEST(ContactOptions, AFoundationRemembersUnlessToldNotTo)
 }
 
 } // namespace
+} // namespace contact_options_test

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace contact_state_test
+{
 namespace
 {
 
@@ -109,3 +111,4 @@ TEST(StartFrom, LeavesPrescribedDisplacementsAndStaysWithinTheYieldLimit)
 }
 
 } // namespace
+} // namespace contact_state_test

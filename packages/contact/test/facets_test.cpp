@@ -7,6 +7,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace facets_test
+{
 namespace
 {
 
@@ -169,3 +171,4 @@ TEST(FacetSurface, OfABentSideIsOfSecondOrder)
 }
 
 } // namespace
+} // namespace facets_test

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+namespace foundation_test
+{
 namespace
 {
 
@@ -344,3 +346,4 @@ TEST(FoundationLaw, MultiplierUpdatesAtAGivenPenetrationLeadToTheLaw)
 }
 
 } // namespace
+} // namespace foundation_test

@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+namespace friction_test
+{
 namespace
 {
 
@@ -275,3 +277,4 @@ TEST(Friction, StatesChangeByTheNeighbourRule)
 }
 
 } // namespace
+} // namespace friction_test

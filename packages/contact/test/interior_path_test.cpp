@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+namespace interior_path_test
+{
 namespace
 {
 
@@ -126,3 +128,4 @@ TEST(InteriorPath, StepsEndAtTheNearestCorner)
 }
 
 } // namespace
+} // namespace interior_path_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace lagged_bounds_test
+{
 namespace
 {
 
@@ -61,3 +63,4 @@ TEST(LaggedBounds, BeginWithThePlainIterationAndStayPositive)
 }
 
 } // namespace
+} // namespace lagged_bounds_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace move_origin_test
+{
 namespace
 {
 
@@ -176,3 +178,4 @@ TEST(MoveOrigin, GradientKeepsTheDigitsOfSmallSteps)
 }
 
 } // namespace
+} // namespace move_origin_test

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace moving_dents_test
+{
 namespace
 {
 
@@ -213,3 +215,4 @@ TEST(MovingDents, MakeTheVolumeThatOfTheFoundation)
 }
 
 } // namespace
+} // namespace moving_dents_test

@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+namespace nearest_point_test
+{
 namespace
 {
 
@@ -162,3 +164,4 @@ TEST(NearestPoint, OfManyGeneratorsTakesFewSteps)
 }
 
 } // namespace
+} // namespace nearest_point_test

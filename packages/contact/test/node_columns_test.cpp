@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+namespace node_columns_test
+{
 namespace
 {
 
@@ -83,3 +85,4 @@ TEST(NodeColumns, AreNoneWithoutSides)
 }
 
 } // namespace
+} // namespace node_columns_test

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+namespace obstacle_gap_test
+{
 namespace
 {
 
@@ -217,3 +219,4 @@ TEST(ContactNodes, RefuseTheCentreOfACircleWhichHasNoNormal)
 }
 
 } // namespace
+} // namespace obstacle_gap_test

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace obstacle_test
+{
 namespace
 {
 
@@ -268,3 +270,4 @@ TEST(Obstacle, TakesAsManyCoordinatesAsThereAreDimensions)
 }
 
 } // namespace
+} // namespace obstacle_test

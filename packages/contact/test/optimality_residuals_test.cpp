@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace optimality_residuals_test
+{
 namespace
 {
 
@@ -361,3 +363,4 @@ TEST(OptimalityResiduals, OfABodyThatItsSupportsLiftOffAreRounding)
 }
 
 } // namespace
+} // namespace optimality_residuals_test

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+namespace other_foundations_test
+{
 namespace
 {
 
@@ -176,3 +178,4 @@ TEST(OtherFoundations, ActiveSetMovesClosingPointsOntoTheCompressedSpring)
 }
 
 } // namespace
+} // namespace other_foundations_test

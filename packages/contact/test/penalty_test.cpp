@@ -5,6 +5,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace penalty_test
+{
 namespace
 {
 
@@ -152,3 +154,4 @@ TEST(Penalty, RaisedIsInTheGradientEvenAfterTheOriginHasMoved)
 }
 
 } // namespace
+} // namespace penalty_test

@@ -11,6 +11,8 @@
 #include <limits>
 #include <vector>
 
+namespace response_test
+{
 namespace
 {
 
@@ -166,3 +168,4 @@ TEST(Interpolated, LawComesBackFromItsColumnsAndInterpolantsBelowZeroAreNone)
 }
 
 } // namespace
+} // namespace response_test

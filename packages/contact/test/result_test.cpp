@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+namespace result_test
+{
 namespace
 {
 
@@ -290,3 +292,4 @@ TEST(ContactResult, NodesThatAreHeldHaveThePressureOfTheirLawAtTheirPenetration)
 }
 
 } // namespace
+} // namespace result_test

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace stored_dents_test
+{
 namespace
 {
 
@@ -101,3 +103,4 @@ TEST(StoredDents, ThatAreDamagedAreRefusedOnAllRanks)
 }
 
 } // namespace
+} // namespace stored_dents_test

@@ -10,6 +10,8 @@
 #include <limits>
 #include <sstream>
 
+namespace support_test
+{
 namespace
 {
 
@@ -385,3 +387,4 @@ TEST(Support, OfAFoundationThatHardensHasNoLimit)
 }
 
 } // namespace
+} // namespace support_test

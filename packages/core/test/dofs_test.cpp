@@ -4,6 +4,8 @@
 #include <limits>
 #include <type_traits>
 
+namespace dofs_test
+{
 namespace
 {
 
@@ -35,3 +37,4 @@ TEST(Dofs, OfGlobalNodesDoNotOverflowLocalOrdinals)
 }
 
 } // namespace
+} // namespace dofs_test

@@ -5,6 +5,8 @@
 #include <Tpetra_Core.hpp>
 #include <optional>
 
+namespace error_test
+{
 namespace
 {
 
@@ -58,3 +60,4 @@ TEST(Require, ThrowsItsCodeAndTheStreamedMessageOnlyIfBroken)
 }
 
 } // namespace
+} // namespace error_test

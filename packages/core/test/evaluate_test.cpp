@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace evaluate_test
+{
 namespace
 {
 
@@ -93,3 +95,4 @@ TEST(Evaluate, BadValueOnOneRankIsThrownOnAll)
 }
 
 } // namespace
+} // namespace evaluate_test

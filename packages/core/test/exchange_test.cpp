@@ -3,6 +3,8 @@
 #include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
 
+namespace exchange_test
+{
 namespace
 {
 
@@ -51,3 +53,4 @@ TEST(Exchange, OfNothingIsNothing)
 }
 
 } // namespace
+} // namespace exchange_test

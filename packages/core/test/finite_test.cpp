@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace finite_test
+{
 namespace
 {
 
@@ -82,3 +84,4 @@ TEST(Finite, MatrixEntryIsNamedByItsRow)
 }
 
 } // namespace
+} // namespace finite_test

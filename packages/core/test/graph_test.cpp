@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
+namespace graph_test
+{
 namespace
 {
 
@@ -40,3 +42,4 @@ TEST(ReverseCuthillMckee, PutsNeighboursSideBySide)
 }
 
 } // namespace
+} // namespace graph_test

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+namespace halo_test
+{
 namespace
 {
 
@@ -166,3 +168,4 @@ TEST(Halo, ReachesRanksWithoutNodesOfTheirOwn)
 }
 
 } // namespace
+} // namespace halo_test

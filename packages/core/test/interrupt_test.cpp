@@ -6,6 +6,8 @@
 #include <csignal>
 #include <gtest/gtest.h>
 
+namespace interrupt_test
+{
 namespace
 {
 
@@ -33,3 +35,4 @@ TEST(Interrupt, OfOneRankStopsAllAndTheNextSignalHasItsDefaultAction)
 }
 
 } // namespace
+} // namespace interrupt_test

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+namespace memory_test
+{
 namespace
 {
 
@@ -29,3 +31,4 @@ TEST(MemoryLimit, TheShellsBoundCounts)
 }
 
 } // namespace
+} // namespace memory_test

@@ -4,6 +4,8 @@
 #include <new>
 #include <stdexcept>
 
+namespace message_test
+{
 namespace
 {
 
@@ -65,3 +67,4 @@ TEST(PassOnOutOfMemory, ThrowsWhatAllRanksCannotAnswerAlike)
 }
 
 } // namespace
+} // namespace message_test

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <new>
 
+namespace on_root_test
+{
 namespace
 {
 
@@ -81,3 +83,4 @@ TEST(OnEach, WhatTheLowestRankMeetsWithIsThrownOnEveryRank)
 }
 
 } // namespace
+} // namespace on_root_test

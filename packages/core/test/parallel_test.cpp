@@ -3,6 +3,8 @@
 #include <Tpetra_Core.hpp>
 #include <gtest/gtest.h>
 
+namespace parallel_test
+{
 namespace
 {
 
@@ -73,3 +75,4 @@ TEST(OverRanks, VectorsAreAddedAndComparedEntryByEntry)
 }
 
 } // namespace
+} // namespace parallel_test

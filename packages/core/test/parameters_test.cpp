@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace parameters_test
+{
 namespace
 {
 
@@ -387,3 +389,4 @@ TEST(PrintParameters, ListsEachParameterWithTypeDefaultAndDoc)
 }
 
 } // namespace
+} // namespace parameters_test

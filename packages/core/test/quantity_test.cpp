@@ -3,6 +3,8 @@
 #include <array>
 #include <gtest/gtest.h>
 
+namespace quantity_test
+{
 namespace
 {
 
@@ -39,7 +41,7 @@ TEST(Quantity, SumsAndMaximaAreCombinedByTheTable)
 
 TEST(Quantity, NamesAndUnitsFollowTheBody)
 {
-  const ResultScope plane{true, false}, space{false, false};
+  const ResultScope plane{true, false, {}}, space{false, false, {}};
   EXPECT_EQ(table[2].name(plane), "patch_length");
   EXPECT_EQ(table[2].name(space), "patch_area");
   EXPECT_EQ(table[1].name(space), "peak");
@@ -54,7 +56,7 @@ TEST(Quantity, NamesAndUnitsFollowTheBody)
 
 TEST(Quantity, NumbersOfFrictionAreThereOnlyWithFriction)
 {
-  const ResultScope without{true, false}, with{true, true};
+  const ResultScope without{true, false, {}}, with{true, true, {}};
   EXPECT_EQ(names(defined_numbers(table, without), without),
             (std::vector<std::string>{"work", "peak", "patch_length"}));
   EXPECT_EQ(names(defined_numbers(table, with), with),
@@ -63,9 +65,10 @@ TEST(Quantity, NumbersOfFrictionAreThereOnlyWithFriction)
 
 TEST(Quantity, ColumnsComeInTheirPlaces)
 {
-  const ResultScope without{true, false}, with{true, true};
+  const ResultScope without{true, false, {}}, with{true, true, {}};
   EXPECT_EQ(names(history_columns(table, without), without), (std::vector<std::string>{"peak", "work"}));
   EXPECT_EQ(names(history_columns(table, with), with), (std::vector<std::string>{"peak", "work", "slip"}));
 }
 
 } // namespace
+} // namespace quantity_test

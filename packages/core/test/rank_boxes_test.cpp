@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace rank_boxes_test
+{
 namespace
 {
 
@@ -98,3 +100,4 @@ TEST(RankBoxes, AreKnownToAllRanks)
 }
 
 } // namespace
+} // namespace rank_boxes_test

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace units_test
+{
 namespace
 {
 
@@ -74,3 +76,4 @@ TEST(UnitsOptions, ANameThatWouldBreakATableIsRefused)
 }
 
 } // namespace
+} // namespace units_test

@@ -1,6 +1,8 @@
 #include "bodies.hpp"
 #include "rpc/fem/elasticity.hpp"
 
+namespace congruent_cells_test
+{
 namespace
 {
 
@@ -154,3 +156,4 @@ TEST(CongruentCells, GiveTheInternalWorkOfEachCellByItself)
 }
 
 } // namespace
+} // namespace congruent_cells_test

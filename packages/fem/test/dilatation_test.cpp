@@ -8,6 +8,8 @@
 
 // The projected dilatation, doc/theory.md (2.6).
 
+namespace dilatation_test
+{
 namespace
 {
 
@@ -347,7 +349,9 @@ TEST(SoftDilatation, ModesOfAnExpansionAreTheRootsOfVolumes)
     EXPECT_NEAR(volumes.norm2() * volumes.norm2(), volume(d), 1e-12); // of all cells
     const LO modes = num_local(*volumes.getMap()) / d.mesh->num_owned_cells;
     for (LO m = 0; m < num_local(*volumes.getMap()); ++m)
-      if (m % modes > 0) EXPECT_NEAR(of_mode[m], 0, 1e-12);
+      if (m % modes > 0) {
+        EXPECT_NEAR(of_mode[m], 0, 1e-12);
+      }
   }
 }
 
@@ -441,3 +445,4 @@ TEST(OrderNote, TellsOfP2WhereItsDilatationIsProjected)
 }
 
 } // namespace
+} // namespace dilatation_test

@@ -7,6 +7,8 @@
 #include <Teuchos_LAPACK.hpp>
 #include <limits>
 
+namespace dirichlet_test
+{
 namespace
 {
 
@@ -383,3 +385,4 @@ TEST(DirichletOptions, AnEmptyEntryAndAMissingDirectionAreRefused)
 }
 
 } // namespace
+} // namespace dirichlet_test

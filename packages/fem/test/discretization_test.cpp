@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+namespace discretization_test
+{
 namespace
 {
 
@@ -178,3 +180,4 @@ TEST(RigidBodyModes, AreTranslationsAndRotationsAboutTheCentroid)
 }
 
 } // namespace
+} // namespace discretization_test

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+namespace elasticity_test
+{
 namespace
 {
 
@@ -289,3 +291,4 @@ TEST(InternalForces, SumToZeroAndHaveNoMoment)
 }
 
 } // namespace
+} // namespace elasticity_test

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace fill_entries_test
+{
 namespace
 {
 
@@ -67,3 +69,4 @@ TEST(FillEntries, IsTheSameWithIndicesOf64Bits)
 }
 
 } // namespace
+} // namespace fill_entries_test

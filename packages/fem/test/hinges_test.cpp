@@ -5,6 +5,8 @@
 
 #include <map>
 
+namespace hinges_test
+{
 namespace
 {
 
@@ -135,3 +137,4 @@ TEST(Hinges, InSpaceTurnAboutEdgesAndPoints)
 }
 
 } // namespace
+} // namespace hinges_test

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+namespace interpolation_test
+{
 namespace
 {
 
@@ -388,3 +390,4 @@ TEST(Interpolation, BetweenDifferentDimensionsIsRefused)
 }
 
 } // namespace
+} // namespace interpolation_test

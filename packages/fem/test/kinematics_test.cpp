@@ -11,6 +11,8 @@
 
 #include <algorithm>
 
+namespace kinematics_test
+{
 namespace
 {
 
@@ -338,3 +340,4 @@ TEST(Axisymmetry, PiecesJoinedInACircleAreStiff)
 }
 
 } // namespace
+} // namespace kinematics_test

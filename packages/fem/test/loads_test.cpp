@@ -5,6 +5,8 @@
 
 #include <limits>
 
+namespace loads_test
+{
 namespace
 {
 
@@ -167,3 +169,4 @@ TEST(LoadOptions, ThirdComponentIn2dIsRefusedByName)
 }
 
 } // namespace
+} // namespace loads_test

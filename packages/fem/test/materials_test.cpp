@@ -5,6 +5,8 @@
 
 #include <limits>
 
+namespace materials_test
+{
 namespace
 {
 
@@ -330,3 +332,4 @@ TEST(InternalForces, OfTwoBlocksAreTheSameOnAnyNumberOfRanks)
 }
 
 } // namespace
+} // namespace materials_test

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+namespace mixed_box_test
+{
 namespace
 {
 
@@ -129,3 +131,4 @@ TEST(MixedBox, StaysOnTheRanksOfItsCells)
 }
 
 } // namespace
+} // namespace mixed_box_test

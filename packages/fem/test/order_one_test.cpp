@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+namespace order_one_test
+{
 namespace
 {
 
@@ -100,3 +102,4 @@ TEST(OrderOne, IsOfOrderTwoOnly)
 }
 
 } // namespace
+} // namespace order_one_test

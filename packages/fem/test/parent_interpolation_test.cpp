@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace parent_interpolation_test
+{
 namespace
 {
 
@@ -90,3 +92,4 @@ TEST(ParentInterpolation, LeadsFromVerticesToVertices)
 }
 
 } // namespace
+} // namespace parent_interpolation_test

@@ -3,6 +3,8 @@
 #include "bodies.hpp"
 #include "drawn_mesh.hpp"
 
+namespace parts_test
+{
 namespace
 {
 
@@ -81,3 +83,4 @@ TEST(Parts, ThatTouchInOneNodeAreOne)
 }
 
 } // namespace
+} // namespace parts_test

@@ -3,6 +3,8 @@
 #include "bodies.hpp"
 #include "rpc/fem/stress.hpp"
 
+namespace peaks_test
+{
 namespace
 {
 
@@ -162,3 +164,4 @@ TEST(BodyPeaks, NearTheStressesThatAreRecovered)
 }
 
 } // namespace
+} // namespace peaks_test

@@ -3,6 +3,8 @@
 #include "bodies.hpp"
 #include "rpc/fem/elasticity.hpp"
 
+namespace reactions_test
+{
 namespace
 {
 
@@ -126,3 +128,4 @@ TEST(ReactionForces, BalanceTheLoad)
 }
 
 } // namespace
+} // namespace reactions_test

@@ -17,6 +17,8 @@
 #include <Intrepid2_HGRAD_TRI_C2_FEM.hpp>
 #endif
 
+namespace reference_element_test
+{
 namespace
 {
 
@@ -320,3 +322,4 @@ TEST(ReferenceElement, AgreesWithIntrepid2)
 }
 
 } // namespace
+} // namespace reference_element_test

@@ -5,6 +5,8 @@
 #include "rpc/fem/elasticity.hpp"
 #include "same_rows.hpp"
 
+namespace repeated_stiffness_test
+{
 namespace
 {
 
@@ -165,3 +167,4 @@ TEST(RepeatedStiffness, MakesAnOperatorThatIsAssembledWhenSomebodyAsks)
 }
 
 } // namespace
+} // namespace repeated_stiffness_test

@@ -5,6 +5,8 @@
 
 #include <random>
 
+namespace rigid_motion_test
+{
 namespace
 {
 
@@ -201,3 +203,4 @@ TEST(MotionInWords, NamesTheAxisOfAScrew)
 }
 
 } // namespace
+} // namespace rigid_motion_test

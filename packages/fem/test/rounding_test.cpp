@@ -2,6 +2,8 @@
 
 #include "bodies.hpp"
 
+namespace rounding_test
+{
 namespace
 {
 
@@ -91,3 +93,4 @@ TEST(RoundingEnergy, ScalesWithUnitsAsEnergiesDo)
 }
 
 } // namespace
+} // namespace rounding_test

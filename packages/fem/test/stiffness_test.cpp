@@ -11,6 +11,8 @@
 #include <cmath>
 #include <vector>
 
+namespace stiffness_test
+{
 namespace
 {
 
@@ -340,3 +342,4 @@ TEST(CellStiffness, TakesAFewKilobytesOfAThreadsStack)
 }
 
 } // namespace
+} // namespace stiffness_test

@@ -7,6 +7,8 @@
 
 #include <functional>
 
+namespace stress_test
+{
 namespace
 {
 
@@ -294,3 +296,4 @@ TEST(StressNames, AreOnePerColumnVonMisesLast)
 }
 
 } // namespace
+} // namespace stress_test

@@ -5,6 +5,8 @@
 
 #include <set>
 
+namespace surface_test
+{
 namespace
 {
 
@@ -221,3 +223,4 @@ TEST(ExtendToUnknown, IsTheSameOnAnyNumberOfRanks)
 }
 
 } // namespace
+} // namespace surface_test

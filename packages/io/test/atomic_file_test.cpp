@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace atomic_file_test
+{
 namespace
 {
 
@@ -186,3 +188,4 @@ TEST_F(AtomicFileTest, FolderWithoutPermissionIsRefused)
 }
 
 } // namespace
+} // namespace atomic_file_test

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+namespace checkpoint_test
+{
 namespace
 {
 
@@ -169,3 +171,4 @@ TEST(Checkpoint, RefusesWhatIsDamagedOrNoCheckpoint)
 }
 
 } // namespace
+} // namespace checkpoint_test

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
+namespace contact_csv_test
+{
 namespace
 {
 
@@ -31,16 +33,17 @@ struct Vertex {
 
 ContactTable empty_table(const std::size_t n, const int dim)
 {
-  return {"side",
-          HostView<GO *>("id", n),
-          HostView<double **>("position", n, dim),
-          HostView<double *>("weight", n),
-          HostView<double *>("u_nu", n),
-          HostView<double *>("gap", n),
-          HostView<double *>("pressure", n),
-          HostView<double *>("dent", n),
-          HostView<int *>("state", n),
-          {}};
+  ContactTable table;
+  table.side = "side";
+  table.id = HostView<GO *>("id", n);
+  table.position = HostView<double **>("position", n, dim);
+  table.weight = HostView<double *>("weight", n);
+  table.u_nu = HostView<double *>("u_nu", n);
+  table.gap = HostView<double *>("gap", n);
+  table.pressure = HostView<double *>("pressure", n);
+  table.dent = HostView<double *>("dent", n);
+  table.state = HostView<int *>("state", n);
+  return table;
 }
 
 /// The vertices and facets dealt out to the ranks like cards, from the last one on, so that no order survives by
@@ -250,3 +253,4 @@ TEST_F(ContactCsv, BadTableIsRefusedOnEveryRank)
 }
 
 } // namespace
+} // namespace contact_csv_test

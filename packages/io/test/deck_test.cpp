@@ -9,6 +9,8 @@
 #include <regex>
 #include <stdlib.h>
 
+namespace deck_test
+{
 namespace
 {
 
@@ -266,3 +268,4 @@ TEST_F(Deck, IsLookedUpAsGivenThenInTheInputFolders)
 }
 
 } // namespace
+} // namespace deck_test

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+namespace exodus_split_test
+{
 namespace
 {
 
@@ -170,3 +172,4 @@ TEST_F(ExodusSplit, AFileThatOneRankCannotWriteIsAnErrorOnAllOfThem)
 }
 
 } // namespace
+} // namespace exodus_split_test

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+namespace exodus_test
+{
 namespace
 {
 
@@ -273,3 +275,4 @@ TEST_F(Exodus, FullDiskIsToldOnEveryRankAndLeavesTheOldFile)
 }
 
 } // namespace
+} // namespace exodus_test

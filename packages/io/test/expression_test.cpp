@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace expression_test
+{
 namespace
 {
 
@@ -92,3 +94,4 @@ TEST(Expression, AssignmentsAndListsAreRefused)
 }
 
 } // namespace
+} // namespace expression_test

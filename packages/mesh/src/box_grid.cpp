@@ -31,8 +31,9 @@ Grid::Grid(const int num_ranks, const BoxOptions &options)
     order_[d] = options.element.order_along(d);
     cells_[d] = options.cells[d];
   }
-  // The shortest direction runs fastest: least bandwidth, and blocks along the longest one share short borders.
-  std::sort(axes_.data(), axes_.data() + dim_, [&](const int a, const int b) { return cells_[a] < cells_[b]; });
+  // The shortest direction runs fastest: least bandwidth, and blocks along the longest one share short borders. Equal ones keep
+  // their order.
+  std::stable_sort(axes_.data(), axes_.data() + dim_, [&](const int a, const int b) { return cells_[a] < cells_[b]; });
   divided_ = choose_blocks();
 }
 

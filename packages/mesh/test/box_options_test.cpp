@@ -12,6 +12,8 @@
 #include <limits>
 #include <unistd.h>
 
+namespace box_options_test
+{
 namespace
 {
 
@@ -254,3 +256,4 @@ TEST(Coarser, FactorBelowOneIsRefused)
 }
 
 } // namespace
+} // namespace box_options_test

@@ -11,6 +11,8 @@
 #include <set>
 #include <vector>
 
+namespace box_patches_test
+{
 namespace
 {
 
@@ -116,3 +118,4 @@ TEST(InsideCells, HoldTheNodesInsideEachCoarseCell)
 }
 
 } // namespace
+} // namespace box_patches_test

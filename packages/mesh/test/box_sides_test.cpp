@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace box_sides_test
+{
 namespace
 {
 
@@ -170,3 +172,4 @@ TEST(Box, UnknownSideIsRefusedWithTheListOfSides)
 }
 
 } // namespace
+} // namespace box_sides_test

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+namespace box_test
+{
 namespace
 {
 
@@ -260,3 +262,4 @@ TEST(Diameter, IsTheDiagonalWhereverTheBoxLies)
 }
 
 } // namespace
+} // namespace box_test

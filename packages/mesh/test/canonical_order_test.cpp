@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <set>
 
+namespace canonical_order_test
+{
 namespace
 {
 
@@ -152,3 +154,4 @@ TEST(OwnedFacets, EachFacetOfASideAppearsOnceOverAllRanks)
 }
 
 } // namespace
+} // namespace canonical_order_test

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+namespace coarsened_box_test
+{
 namespace
 {
 
@@ -138,3 +140,4 @@ TEST(CoarsenedBox, IsNoneOfOneCell)
 }
 
 } // namespace
+} // namespace coarsened_box_test

@@ -9,6 +9,8 @@
 #include <map>
 #include <set>
 
+namespace distribute_test
+{
 namespace
 {
 
@@ -388,3 +390,4 @@ TEST(Distribute, FewerCellsThanRanksAreABadMeshOnEveryRank)
 }
 
 } // namespace
+} // namespace distribute_test

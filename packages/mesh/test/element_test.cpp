@@ -8,6 +8,8 @@
 #include <numeric>
 #include <set>
 
+namespace element_test
+{
 namespace
 {
 
@@ -261,3 +263,4 @@ TEST(ParseElement, RefusesOthersWithTheListOfThoseThatExist)
 }
 
 } // namespace
+} // namespace element_test

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <memory>
 
+namespace gmsh_in_space_test
+{
 namespace
 {
 
@@ -168,3 +170,4 @@ TEST(GmshInSpace, GroupsWithoutNamesAreNumberedAndWithoutABlockAllIsTheBody)
 }
 
 } // namespace
+} // namespace gmsh_in_space_test

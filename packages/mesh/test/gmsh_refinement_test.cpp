@@ -11,6 +11,8 @@
 #include <functional>
 #include <gtest/gtest.h>
 
+namespace gmsh_refinement_test
+{
 namespace
 {
 
@@ -177,3 +179,4 @@ TEST(GmshRefinement, HasNoCoarserMeshByGmsh)
 }
 
 } // namespace
+} // namespace gmsh_refinement_test

@@ -13,6 +13,8 @@
 #include <cstring>
 #include <sys/resource.h>
 
+namespace gmsh_test
+{
 namespace
 {
 
@@ -266,3 +268,4 @@ TEST(Gmsh, OneRankReadsWhileTheOthersWait)
 }
 
 } // namespace
+} // namespace gmsh_test

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
+namespace local_refinement_test
+{
 namespace
 {
 
@@ -309,3 +311,4 @@ TEST(LocalRefinement, Refusals)
 }
 
 } // namespace
+} // namespace local_refinement_test

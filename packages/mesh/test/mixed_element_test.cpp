@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+namespace mixed_element_test
+{
 namespace
 {
 
@@ -160,3 +162,4 @@ TEST(MixedElement, MakesABoxOnAnyRanks)
 }
 
 } // namespace
+} // namespace mixed_element_test

@@ -16,6 +16,8 @@
 #include <regex>
 #include <set>
 
+namespace msh_in_space_test
+{
 namespace
 {
 
@@ -429,3 +431,4 @@ TEST(MshInSpace, HexahedraMustShareTheMiddleNodeOfAFace)
 }
 
 } // namespace
+} // namespace msh_in_space_test

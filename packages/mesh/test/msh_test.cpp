@@ -11,6 +11,8 @@
 #include <iterator>
 #include <regex>
 
+namespace msh_test
+{
 namespace
 {
 
@@ -270,3 +272,4 @@ TEST(Msh, MiddleNodesMustAgree)
 }
 
 } // namespace
+} // namespace msh_test

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace quadrature_test
+{
 namespace
 {
 
@@ -182,3 +184,4 @@ TEST(NodalRule, HasItsPointsAtTheNodesAndItsDegree)
 }
 
 } // namespace
+} // namespace quadrature_test

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <set>
 
+namespace refinement_test
+{
 namespace
 {
 
@@ -212,3 +214,4 @@ TEST(Refinement, RefusesCellsThatACurvedBoundaryInverts)
 }
 
 } // namespace
+} // namespace refinement_test

@@ -7,6 +7,8 @@
 #include <limits>
 #include <type_traits>
 
+namespace shape_functions_test
+{
 namespace
 {
 
@@ -277,3 +279,4 @@ TEST(ShapeFunctions, BernsteinCoefficientsEncloseTheFunction)
 }
 
 } // namespace
+} // namespace shape_functions_test

@@ -13,6 +13,8 @@
 #include <functional>
 #include <numeric>
 
+namespace size_field_in_space_test
+{
 namespace
 {
 
@@ -270,3 +272,4 @@ TEST(SizeFieldInSpace, Refusals)
 }
 
 } // namespace
+} // namespace size_field_in_space_test

@@ -15,6 +15,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+namespace size_field_test
+{
 namespace
 {
 
@@ -403,3 +405,4 @@ TEST(SizeField, TheProgramEndsWithTheProcessThatStartedIt)
 }
 
 } // namespace
+} // namespace size_field_test

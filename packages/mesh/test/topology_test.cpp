@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace topology_test
+{
 namespace
 {
 
@@ -256,3 +258,4 @@ TEST(Topology, HasTheFacetsOfTheSides)
 }
 
 } // namespace
+} // namespace topology_test

@@ -40,29 +40,6 @@ using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
 using SolverFactory = Belos::SolverFactory<double, MultiVector, Operator>;
 using StatusTest = Belos::StatusTest<double, MultiVector, Operator>;
 
-/// GivesUp for GMRES, which applies its preconditioner to no residual. It ends nothing but by an exception.
-class AsksWhetherToGoOn : public StatusTest
-{
-public:
-  Belos::StatusType checkStatus(Belos::Iteration<double, MultiVector, Operator> *const at) override
-  {
-    if (!gives_up) return Belos::Undefined;
-    std::vector<double> norm(1);
-    const auto residual = at->getNativeResiduals(&norm);
-    if (residual != Teuchos::null) residual->norm2(norm);
-    iterations = at->getNumIters();
-    if (gives_up(iterations, norm[0] / norm_of_right_side)) throw GivenUp();
-    return Belos::Undefined;
-  }
-  Belos::StatusType getStatus() const override { return Belos::Undefined; }
-  void reset() override {}
-  void print(std::ostream &, int) const override {}
-
-  GivesUp gives_up; // null: never
-  double norm_of_right_side = 1;
-  int iterations = 0;
-};
-
 /// Of Belos' names: methods that break down, or go wrong, where H is not symmetric.
 bool needs_symmetry(std::string method)
 {
@@ -87,6 +64,29 @@ double energy_error(const Preconditioner &B, const Vector &b, const Vector &resi
 }
 
 } // namespace
+
+/// GivesUp for GMRES, which applies its preconditioner to no residual. It ends nothing but by an exception.
+class AsksWhetherToGoOn : public StatusTest
+{
+public:
+  Belos::StatusType checkStatus(Belos::Iteration<double, MultiVector, Operator> *const at) override
+  {
+    if (!gives_up) return Belos::Undefined;
+    std::vector<double> norm(1);
+    const auto residual = at->getNativeResiduals(&norm);
+    if (residual != Teuchos::null) residual->norm2(norm);
+    iterations = at->getNumIters();
+    if (gives_up(iterations, norm[0] / norm_of_right_side)) throw GivenUp();
+    return Belos::Undefined;
+  }
+  Belos::StatusType getStatus() const override { return Belos::Undefined; }
+  void reset() override {}
+  void print(std::ostream &, int) const override {}
+
+  GivesUp gives_up; // null: never
+  double norm_of_right_side = 1;
+  int iterations = 0;
+};
 
 /// The preconditioner as Belos applies it: to residuals of CG, or to any vectors. Now and then it looks whether the run is to stop:
 /// the solves of a big scene take minutes.

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace coarse_contact_test
+{
 namespace
 {
 
@@ -312,3 +314,4 @@ TEST(ContactSupports, OfARankAreThoseAroundItsNodes)
 }
 
 } // namespace
+} // namespace coarse_contact_test

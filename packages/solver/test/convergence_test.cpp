@@ -3,6 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace convergence_test
+{
 namespace
 {
 
@@ -72,3 +74,4 @@ TEST(EnergyError, OfAStallIsTenGains)
 }
 
 } // namespace
+} // namespace convergence_test

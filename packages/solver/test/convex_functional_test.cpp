@@ -12,6 +12,8 @@
 
 // The solver knows nothing of contact: here it minimizes a functional of a chain of springs.
 
+namespace convex_functional_test
+{
 namespace
 {
 
@@ -287,3 +289,4 @@ TEST(ConvexFunctional, IsMinimizedThoughItsSweepsLeadBackBeforeKinks)
 }
 
 } // namespace
+} // namespace convex_functional_test

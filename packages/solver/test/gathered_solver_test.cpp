@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <stdexcept>
 
+namespace gathered_solver_test
+{
 namespace
 {
 
@@ -138,3 +140,4 @@ TEST(GuardedSolver, TellsAllRanksOfAFailureOnOneByTheNorm)
 }
 
 } // namespace
+} // namespace gathered_solver_test

@@ -6,6 +6,8 @@
 
 // Alone in its program: a run that has been asked to stop is so for ever.
 
+namespace interrupted_solve_test
+{
 namespace
 {
 
@@ -42,3 +44,4 @@ TEST(InterruptedSolve, IsAResultAndNobodyTakesOver)
 }
 
 } // namespace
+} // namespace interrupted_solve_test

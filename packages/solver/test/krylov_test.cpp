@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+namespace krylov_test
+{
 namespace
 {
 
@@ -222,3 +224,4 @@ TEST(Krylov, TellsOfAMatrixThatIsNotPositiveDefinite)
 }
 
 } // namespace
+} // namespace krylov_test

@@ -9,6 +9,8 @@
 
 // What a linear solver does after a solve that failed, and for further right sides.
 
+namespace linear_solver_test
+{
 namespace
 {
 
@@ -303,3 +305,4 @@ TEST(LinearSolver, FollowsStatesWhereTheUpdateIsNotSymmetric)
 }
 
 } // namespace
+} // namespace linear_solver_test

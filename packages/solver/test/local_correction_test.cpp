@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <utility>
 
+namespace local_correction_test
+{
 namespace
 {
 
@@ -137,3 +139,4 @@ TEST(LocalCorrection, IsSymmetricPositiveAndExactOnThePatch)
 }
 
 } // namespace
+} // namespace local_correction_test

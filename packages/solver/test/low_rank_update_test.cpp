@@ -4,6 +4,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace low_rank_update_test
+{
 namespace
 {
 
@@ -84,3 +86,4 @@ TEST_P(LowRankUpdateThatKeeps, IsExactForAnyTerms)
 INSTANTIATE_TEST_SUITE_P(Entries, LowRankUpdateThatKeeps, testing::Values(0, 2 * size, 4 * size));
 
 } // namespace
+} // namespace low_rank_update_test

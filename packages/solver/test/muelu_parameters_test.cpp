@@ -4,6 +4,8 @@
 
 #include <string>
 
+namespace muelu_parameters_test
+{
 namespace
 {
 
@@ -139,3 +141,4 @@ TEST(MueLuParameters, InItsOtherLanguagesAreLeftToMueLu)
 }
 
 } // namespace
+} // namespace muelu_parameters_test

@@ -8,6 +8,8 @@
 
 // What stands in for factories of MueLu gives MueLu's own hierarchy.
 
+namespace multigrid_test
+{
 namespace
 {
 
@@ -104,3 +106,4 @@ TEST(Multigrid, RenewedForAScaledMatrixIsTheScaledInverse)
 }
 
 } // namespace
+} // namespace multigrid_test

@@ -12,6 +12,8 @@
 #include <memory>
 #include <random>
 
+namespace newton_test
+{
 namespace
 {
 
@@ -214,3 +216,4 @@ TEST(LinearSolver, StopsEarlyWhereLessAccuracyIsAskedFor)
 }
 
 } // namespace
+} // namespace newton_test

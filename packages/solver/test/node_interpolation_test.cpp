@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace node_interpolation_test
+{
 namespace
 {
 
@@ -78,3 +80,4 @@ TEST(NodeInterpolation, HasATranspose)
 }
 
 } // namespace
+} // namespace node_interpolation_test

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <stdexcept>
 
+namespace node_smoother_test
+{
 namespace
 {
 
@@ -179,3 +181,4 @@ TEST(NodeSmoother, FindsTheLargestEigenvalue)
 }
 
 } // namespace
+} // namespace node_smoother_test

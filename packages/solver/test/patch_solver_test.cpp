@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
+namespace patch_solver_test
+{
 namespace
 {
 
@@ -168,3 +170,4 @@ TEST(PatchSolver, TellsAllRanksOfAMatrixThatIsNotPositiveDefinite)
 }
 
 } // namespace
+} // namespace patch_solver_test

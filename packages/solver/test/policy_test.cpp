@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <iterator>
 
+namespace policy_test
+{
 namespace
 {
 
@@ -66,3 +68,4 @@ TEST(Policy, BlamesTheMatrixWhereAllThatIsFreshBreaksDown)
 }
 
 } // namespace
+} // namespace policy_test

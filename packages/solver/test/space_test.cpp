@@ -9,6 +9,8 @@
 
 // Functional, operator, line search and local correction for a body in space.
 
+namespace space_test
+{
 namespace
 {
 
@@ -180,3 +182,4 @@ TEST(InSpace, LocalCorrectionIsSymmetricPositiveAndExactAtChangedPoints)
 }
 
 } // namespace
+} // namespace space_test

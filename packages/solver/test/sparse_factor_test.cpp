@@ -7,6 +7,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace sparse_factor_test
+{
 namespace
 {
 
@@ -98,7 +100,9 @@ TEST(SparseFactor, SolvesForManyColumnsOfFewEntries)
     if (n == 90 && !SparseFactor::can_be_shared) continue;
     const auto factor =
         n == 90 ? SparseFactor::analyse(comm, size, share_of(A, *comm), 1) : factor_of(size, A, any_work);
-    if (n == 90) ASSERT_TRUE(factor->make(share_of(A, *comm).value));
+    if (n == 90) {
+      ASSERT_TRUE(factor->make(share_of(A, *comm).value));
+    }
     SparseColumns B;
     std::vector<double> whole(static_cast<std::size_t>(size) * columns, 0.);
     for (int c = 0; c < columns; ++c) {
@@ -185,3 +189,4 @@ TEST(BandFactor, OfNothingIsNothing)
 }
 
 } // namespace
+} // namespace sparse_factor_test

@@ -10,6 +10,18 @@
 
 namespace rpc::solver
 {
+
+/// Factors of the equations of pressures, one for each mode.
+struct ModeWeights {
+  explicit ModeWeights(const RCP<const Map> &rows) : of_equation(rows), softness(rows), schur(rows), bulk(rows) {}
+
+  Vector of_equation;  // w [N/m^(dim/2)]; the pressures are w q
+  Vector softness;     // w^2 / s
+  Vector schur;        // 1 / (w^2 (1/s + 1/wave modulus)): the inverse of what stands for Z H_0^-1 Z^T + 1/s
+  Vector bulk;         // 1 / (1/s + 1/bulk modulus) [Pa]
+  double stiffest = 0; // the largest s |Z_m|^2 [N/m]
+};
+
 namespace
 {
 
@@ -30,22 +42,11 @@ RCP<const CrsMatrix> transposed(const RCP<const CrsMatrix> &Z)
   return Tpetra::RowMatrixTransposer<double, LO, GO, Node>(Z).createTransposeLocal();
 }
 
-/// Factors of the equations of pressures, one for each mode.
-struct Weights {
-  explicit Weights(const RCP<const Map> &rows) : of_equation(rows), softness(rows), schur(rows), bulk(rows) {}
-
-  Vector of_equation;  // w [N/m^(dim/2)]; the pressures are w q
-  Vector softness;     // w^2 / s
-  Vector schur;        // 1 / (w^2 (1/s + 1/wave modulus)): the inverse of what stands for Z H_0^-1 Z^T + 1/s
-  Vector bulk;         // 1 / (1/s + 1/bulk modulus) [Pa]
-  double stiffest = 0; // the largest s |Z_m|^2 [N/m]
-};
-
 /// w of a mode is what its error is worth as a force: s |Z_m|. Collective.                                         (4.14a)
-Weights weights_of(const StiffDilatation &dilatation)
+ModeWeights weights_of(const StiffDilatation &dilatation)
 {
   const auto &rows = dilatation.modes->getRangeMap();
-  Weights weights(rows);
+  ModeWeights weights(rows);
   const auto Z = dilatation.modes->getLocalMatrixDevice();
   const auto stiffness = dilatation.stiffness, wave = dilatation.wave_modulus, volume = dilatation.bulk_modulus;
   const auto w = device_write(weights.of_equation), softness = device_write(weights.softness),
@@ -126,7 +127,7 @@ struct Mixed::System {
   RCP<UpdatedOperator> H0;
   Meshes meshes; // of H_0
   RCP<const Map> dofs, mode_map, all;
-  Weights weights;
+  ModeWeights weights;
   mutable Vector work; // (modes)
   RCP<Saddle> saddle;
   std::unique_ptr<Triangular> triangular;
