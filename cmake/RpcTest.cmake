@@ -50,6 +50,13 @@ set_target_properties(rpc_yield PROPERTIES LIBRARY_OUTPUT_DIRECTORY $<1:${PROJEC
 add_dependencies(rpc_tests rpc_yield)
 set(rpc_ranks_environment LD_PRELOAD=$<TARGET_FILE:rpc_yield>)
 
+# Open MPI's folder in /tmp is the same for all runs on a host: of two that start or end at once one may fail. Appends a folder of the
+# test's own to a list of environment variables.
+function(rpc_append_session_folder environment test)
+  list(APPEND ${environment} OMPI_MCA_orte_tmpdir_base=${PROJECT_BINARY_DIR}/sessions/${test})
+  set(${environment} ${${environment}} PARENT_SCOPE)
+endfunction()
+
 # rpc_add_run_test(<name> <np> LABEL label TIMEOUT seconds COMMAND target args...): the CTest entry <name>.np<np> that runs an
 # executable target, through mpiexec for np > 1; none then where Trilinos has no MPI.
 function(rpc_add_run_test name np)
@@ -65,13 +72,14 @@ function(rpc_add_run_test name np)
   if(np GREATER 1)
     set(launch ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${np} ${rpc_mpiexec_flags})
     list(APPEND environment ${rpc_ranks_environment})
+    rpc_append_session_folder(environment ${name}.np${np})
   endif()
   list(POP_FRONT arg_COMMAND target)
   add_test(NAME ${name}.np${np} COMMAND ${launch} $<TARGET_FILE:${target}> ${arg_COMMAND})
   math(EXPR processors "${np} * ${RPC_TEST_THREADS}")
   math(EXPR timeout "${arg_TIMEOUT} * ${RPC_TEST_TIMEOUT_FACTOR}")
   set_tests_properties(${name}.np${np} PROPERTIES LABELS ${arg_LABEL} PROCESSORS ${processors} TIMEOUT ${timeout}
-                       ENVIRONMENT "${environment}")
+                       COST ${np} ENVIRONMENT "${environment}")
 endfunction()
 
 function(rpc_add_test package name)

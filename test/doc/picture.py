@@ -34,6 +34,8 @@ from rpc_run import SOURCE, RpcTestCase, files
 from scene import Scene, automatic_scale
 from surface import LEVELS, NORMAL, PLACE, VALUE
 
+figure.DPI = history.DPI = 70  # half of what users get: a quarter of the pixels
+
 BLOCK = """<ParameterList name="block">
   <ParameterList name="Mesh">
     <Parameter name="Lower" type="Array(double)" value="{-1, -1, 0}"/>

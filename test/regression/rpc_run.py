@@ -22,9 +22,10 @@ NOISE = ["Teuchos::", ".cpp", ".hpp", "Throw number", "Throw test", "Traceback",
 
 
 def run(arguments, cwd, environment=None):
-    return subprocess.run(LAUNCH + [PROGRAM] + [str(a) for a in arguments], cwd=cwd, capture_output=True, text=True,
-                          errors="replace", timeout=600, stdin=subprocess.DEVNULL,
-                          env={**os.environ, **(environment or {})})
+    with tempfile.TemporaryDirectory(prefix="rpc_mpi_") as session:  # Open MPI's own: those of two runs that start or end at once collide
+        return subprocess.run(LAUNCH + [PROGRAM] + [str(a) for a in arguments], cwd=cwd, capture_output=True, text=True,
+                              errors="replace", timeout=600, stdin=subprocess.DEVNULL,
+                              env={**os.environ, "OMPI_MCA_orte_tmpdir_base": session, **(environment or {})})
 
 
 def run_all(jobs):
