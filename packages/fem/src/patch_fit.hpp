@@ -57,24 +57,27 @@ struct FitPatch {
     if (place_in(body.cells, first, node) >= static_cast<int>(mate.extent(0))) return;
     double L[Dim][Dim] = {}; // second moments of the patch, then their root
     const std::size_t begin = graph.row(node), end = graph.row(node + 1);
+    const double part = 1. / static_cast<double>(end - begin);
     for (std::size_t k = begin; k < end; ++k) {
-      double dx[Dim][1];
+      double dx[Dim];
       step(node, graph.col(k), dx);
       for (int i = 0; i < Dim; ++i)
-        for (int j = 0; j <= i; ++j) L[i][j] += dx[i][0] * dx[j][0] / (end - begin);
+        for (int j = 0; j <= i; ++j) L[i][j] += dx[i] * dx[j] * part;
     }
     cholesky(L, 0);
+    double inverse[Dim][Dim];
+    invert_lower(L, inverse);
 
     double normal[Terms::size][Terms::size] = {}, c[Terms::size][Dim] = {};
     for (std::size_t k = begin; k < end; ++k) {
-      double dx[Dim][1], xi[Dim], term[Terms::size];
-      step(node, graph.col(k), dx);
-      solve_lower(L, Dim, dx);
-      for (int i = 0; i < Dim; ++i) xi[i] = dx[i][0];
+      const LO other = graph.col(k);
+      double dx[Dim], xi[Dim], term[Terms::size];
+      step(node, other, dx);
+      in_frame(inverse, dx, xi);
       Terms::evaluate(xi, term);
       for (int s = 0; s < Terms::size; ++s) {
         for (int t = 0; t <= s; ++t) normal[s][t] += term[s] * term[t];
-        for (int i = 0; i < Dim; ++i) c[s][i] += term[s] * (u(dof(Dim, graph.col(k), i)) - u(dof(Dim, node, i)));
+        for (int i = 0; i < Dim; ++i) c[s][i] += term[s] * (u(dof(Dim, other, i)) - u(dof(Dim, node, i)));
       }
     }
     bool one_block = true;
@@ -97,11 +100,11 @@ struct FitPatch {
       for (int i = 0; i < Dim; ++i) table(node, column++) = s < terms ? c[s][i] : 0;
     if constexpr (Axisymmetric) table(node, int(Table::radial)) = u(dof(Dim, node, 0)) + c[0][0];
     if constexpr (ElasticCells<Dim, Nodes>::may_project)
-      if (body.projects(first)) fit_dilatation(node, L);
+      if (body.projects(first)) fit_dilatation(node, inverse);
   }
 
   /// The polynomial of the projected dilatation, by least squares from its values at the points for recovery.
-  KOKKOS_FUNCTION void fit_dilatation(const LO node, const double (&L)[Dim][Dim]) const
+  KOKKOS_FUNCTION void fit_dilatation(const LO node, const double (&inverse)[Dim][Dim]) const
   {
     using Terms = typename Table::Dilatation;
     double normal[Terms::size][Terms::size] = {}, c[Terms::size][1] = {};
@@ -111,13 +114,12 @@ struct FitPatch {
       Projection<Dim, Nodes> projection;
       if (!body.project(cell, projection)) continue;
       for (int q = 0; q < static_cast<int>(recovery.extent(0)); ++q) {
-        double at[Dim], dilatation[Nodes][Dim], dx[Dim][1], xi[Dim], term[Terms::size];
+        double at[Dim], dilatation[Nodes][Dim], dx[Dim], xi[Dim], term[Terms::size];
         position(x, recovery, q, at);
         projection.gradients(at, dilatation);
         const double value = body.divergence(u, cell, dilatation);
-        for (int i = 0; i < Dim; ++i) dx[i][0] = at[i] - body.coords(node, i);
-        solve_lower(L, Dim, dx);
-        for (int i = 0; i < Dim; ++i) xi[i] = dx[i][0];
+        for (int i = 0; i < Dim; ++i) dx[i] = at[i] - body.coords(node, i);
+        in_frame(inverse, dx, xi);
         Terms::evaluate(xi, term);
         for (int s = 0; s < Terms::size; ++s) {
           for (int t = 0; t <= s; ++t) normal[s][t] += term[s] * term[t];
@@ -134,9 +136,17 @@ struct FitPatch {
     for (int s = 0; s < Terms::size; ++s) table(node, Table::dilatation + s) = s < terms ? c[s][0] : 0;
   }
 
-  KOKKOS_FUNCTION void step(const LO from, const LO to, double (&dx)[Dim][1]) const
+  /// xi = L^-1 dx.
+  static KOKKOS_FUNCTION void in_frame(const double (&inverse)[Dim][Dim], const double (&dx)[Dim], double (&xi)[Dim])
   {
-    for (int i = 0; i < Dim; ++i) dx[i][0] = body.coords(to, i) - body.coords(from, i);
+    for (int i = 0; i < Dim; ++i) {
+      xi[i] = 0;
+      for (int j = 0; j <= i; ++j) xi[i] += inverse[i][j] * dx[j];
+    }
+  }
+  KOKKOS_FUNCTION void step(const LO from, const LO to, double (&dx)[Dim]) const
+  {
+    for (int i = 0; i < Dim; ++i) dx[i] = body.coords(to, i) - body.coords(from, i);
   }
 
   /// Whether cells close all around a vertex: every facet at it is shared by two of them.

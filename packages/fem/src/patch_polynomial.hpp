@@ -20,29 +20,39 @@ struct Monomials {
 
   static KOKKOS_INLINE_FUNCTION void evaluate(const double (&x)[Dim], double (&term)[size])
   {
-    double unused[size][Dim];
-    evaluate(x, term, unused);
+    double power[3][Degree + 1];
+    powers(x, power);
+    for (int degree = 0, t = 0; degree <= Degree; ++degree)
+      for (int j = 0; j <= degree; ++j)
+        for (int k = 0; k <= (Dim == 3 ? degree - j : 0); ++k, ++t)
+          term[t] = power[0][degree - j - k] * power[1][j] * power[2][k];
   }
   static KOKKOS_INLINE_FUNCTION void evaluate(const double (&x)[Dim], double (&term)[size],
                                               double (&gradient)[size][Dim])
   {
-    double power[3][Degree + 1] = {}; // x_i^k; in 2D the third is 1, 0, ..., 0
-    for (int i = 0; i < 3; ++i) {
-      power[i][0] = 1;
-      for (int k = 1; k <= Degree && i < Dim; ++k) power[i][k] = power[i][k - 1] * x[i];
-    }
-    int t = 0;
-    for (int degree = 0; degree <= Degree; ++degree) {
+    evaluate(x, term);
+    double power[3][Degree + 1];
+    powers(x, power);
+    for (int degree = 0, t = 0; degree <= Degree; ++degree) {
       for (int j = 0; j <= degree; ++j) {
         for (int k = 0; k <= (Dim == 3 ? degree - j : 0); ++k, ++t) {
           const int exponent[3] = {degree - j - k, j, k};
-          term[t] = power[0][exponent[0]] * power[1][j] * power[2][k];
           for (int d = 0; d < Dim; ++d) {
             gradient[t][d] = exponent[d];
             for (int e = 0; e < Dim && exponent[d] > 0; ++e) gradient[t][d] *= power[e][exponent[e] - (e == d ? 1 : 0)];
           }
         }
       }
+    }
+  }
+
+private:
+  /// x_i^k; in 2D the third are 1, 0, ..., 0.
+  static KOKKOS_INLINE_FUNCTION void powers(const double (&x)[Dim], double (&power)[3][Degree + 1])
+  {
+    for (int i = 0; i < 3; ++i) {
+      power[i][0] = 1;
+      for (int k = 1; k <= Degree; ++k) power[i][k] = i < Dim ? power[i][k - 1] * x[i] : 0;
     }
   }
 };
@@ -67,6 +77,19 @@ KOKKOS_INLINE_FUNCTION int cholesky(double (&A)[Size][Size], const double thresh
     A[i][i] = math::sqrt(pivot);
   }
   return Size;
+}
+
+/// L^-1 of a lower triangular L, whose upper part is not read; the inverse's is 0.
+template <int Size>
+KOKKOS_INLINE_FUNCTION void invert_lower(const double (&L)[Size][Size], double (&inverse)[Size][Size])
+{
+  for (int j = 0; j < Size; ++j) {
+    for (int i = 0; i < Size; ++i) {
+      double sum = i == j;
+      for (int k = j; k < i; ++k) sum -= L[i][k] * inverse[k][j];
+      inverse[i][j] = i < j ? 0 : sum / L[i][i];
+    }
+  }
 }
 
 /// b <- L^-1 b, or L^-T b, by the leading n rows of L.

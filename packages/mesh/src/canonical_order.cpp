@@ -19,7 +19,7 @@ constexpr GO piece_size = GO(1) << 18; // ids: 2 MB a column
 } // namespace
 
 CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const Ids &ids, const std::string &what)
-    : comm_(comm), size_(sum_all(*comm, static_cast<GO>(ids.size()))), ids_(ids)
+    : comm_(comm), size_(sum_all(*comm, static_cast<GO>(ids.size())))
 {
   const LO num_owned = static_cast<LO>(ids.size());
   std::optional<GO> beyond;
@@ -40,12 +40,18 @@ CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const Ids &ids, cons
   for (const LO size : sizes) piece_.push_back(piece_.back() + size);
   std::vector<LO> next(piece_.begin(), piece_.end() - 1);
   owned_.resize(num_owned);
-  for (LO n = 0; n < num_owned; ++n) owned_[next[ids(n) / piece_size]++] = n;
+  places_.resize(num_owned);
+  for (LO n = 0; n < num_owned; ++n) {
+    const LO at = next[ids(n) / piece_size]++;
+    owned_[at] = n;
+    places_[at] = static_cast<int>(ids(n) % piece_size);
+  }
   piece_sizes_ = gathered_by_root(*comm, sizes);
 
   // All ids there are so many, and none twice: each is there.
   for (GO piece = 0; piece < num_pieces(); ++piece) {
-    const auto places = gathered_by_root(*comm, places_in(piece));
+    const auto mine = places_in(piece);
+    const auto places = gathered_by_root(*comm, std::vector<int>(mine.begin(), mine.end()));
     on_root(*comm, ExitCode::internal_error, [&] {
       std::vector<bool> seen(piece_size, false);
       for (const int place : places) {
@@ -61,45 +67,38 @@ GO CanonicalOrder::num_pieces() const
   return (size_ + piece_size - 1) / piece_size;
 }
 
-std::vector<int> CanonicalOrder::places_in(const GO piece) const
-{
-  std::vector<int> places;
-  places.reserve(piece_[piece + 1] - piece_[piece]);
-  for (LO k = piece_[piece]; k < piece_[piece + 1]; ++k)
-    places.push_back(static_cast<int>(ids_(owned_[k]) - piece * piece_size));
-  return places;
-}
-
 template <class T>
 void CanonicalOrder::in_pieces(const T *const values, const int width,
                                const std::function<void(GO, const std::vector<T> &)> &take) const
 {
+  std::vector<T> ordered, others;
+  std::vector<int> places_of_others;
   for (GO piece = 0; piece < num_pieces(); ++piece) {
-    std::vector<int> places = places_in(piece);
-    std::vector<T> mine;
-    mine.reserve(places.size() * width);
-    for (LO k = piece_[piece]; k < piece_[piece + 1]; ++k)
-      mine.insert(mine.end(), values + std::size_t(width) * owned_[k], values + std::size_t(width) * (owned_[k] + 1));
-    std::vector<T> ordered(comm_->getRank() == 0 ? width * std::min(piece_size, size_ - piece * piece_size) : 0);
-    const auto put = [&] {
-      for (std::size_t k = 0; k < places.size(); ++k)
-        std::copy_n(mine.begin() + static_cast<std::ptrdiff_t>(k * width), width,
-                    ordered.begin() + static_cast<std::ptrdiff_t>(places[k]) * width);
+    const auto places = places_in(piece);
+    const auto count = static_cast<std::size_t>(places.size());
+    const auto row = [&, first = piece_[piece]](const std::size_t k) {
+      return values + std::size_t(width) * owned_[first + static_cast<LO>(k)];
     };
     if (comm_->getRank() == 0) {
-      put();
+      ordered.resize(width * std::min(piece_size, size_ - piece * piece_size));
+      const auto put = [&](const T *const from, const int place) {
+        for (int c = 0; c < width; ++c) ordered[std::size_t(width) * place + c] = from[c];
+      };
+      for (std::size_t k = 0; k < count; ++k) put(row(k), places[k]);
       for (int rank = 1; rank < comm_->getSize(); ++rank) {
-        const LO count = piece_sizes_[rank * num_pieces() + piece];
-        if (count == 0) continue;
-        places.resize(count);
-        mine.resize(std::size_t(width) * count);
-        Teuchos::receive(*comm_, rank, count, places.data());
-        Teuchos::receive(*comm_, rank, width * count, mine.data());
-        put();
+        const LO num_theirs = piece_sizes_[rank * num_pieces() + piece];
+        if (num_theirs == 0) continue;
+        places_of_others.resize(num_theirs);
+        others.resize(std::size_t(width) * num_theirs);
+        Teuchos::receive(*comm_, rank, num_theirs, places_of_others.data());
+        Teuchos::receive(*comm_, rank, width * num_theirs, others.data());
+        for (LO k = 0; k < num_theirs; ++k) put(others.data() + std::size_t(width) * k, places_of_others[k]);
       }
-    } else if (!places.empty()) {
-      Teuchos::send(*comm_, static_cast<int>(places.size()), places.data(), 0);
-      Teuchos::send(*comm_, static_cast<int>(mine.size()), mine.data(), 0);
+    } else if (count > 0) {
+      others.resize(width * count); // here this rank's own
+      for (std::size_t k = 0; k < count; ++k) std::copy_n(row(k), width, others.data() + width * k);
+      Teuchos::send(*comm_, static_cast<int>(count), places.getRawPtr(), 0);
+      Teuchos::send(*comm_, static_cast<int>(others.size()), others.data(), 0);
     }
     on_root(*comm_, ExitCode::internal_error, [&] { take(piece * piece_size, ordered); });
   }
@@ -115,27 +114,26 @@ void CanonicalOrder::from_pieces(const std::function<std::vector<double>(GO, GO)
       RPC_REQUIRE_CODE(static_cast<GO>(ordered.size()) == count, ExitCode::internal_error,
                        "mesh: a piece of " << count << " values has " << ordered.size());
     });
-    std::vector<int> places = places_in(piece);
-    std::vector<double> mine(places.size());
-    const auto pick = [&] {
-      for (std::size_t k = 0; k < places.size(); ++k) mine[k] = ordered[places[k]];
-    };
+    const auto mine = places_in(piece);
+    const LO *const owned = owned_.data() + piece_[piece];
     if (comm_->getRank() == 0) {
-      pick();
-      for (std::size_t k = 0; k < mine.size(); ++k) values[owned_[piece_[piece] + k]] = mine[k];
+      for (LO k = 0; k < mine.size(); ++k) values[owned[k]] = ordered[mine[k]];
+      std::vector<int> places;
+      std::vector<double> theirs;
       for (int rank = 1; rank < comm_->getSize(); ++rank) {
         const LO count = piece_sizes_[rank * num_pieces() + piece];
         if (count == 0) continue;
         places.resize(count);
-        mine.resize(count);
+        theirs.resize(count);
         Teuchos::receive(*comm_, rank, count, places.data());
-        pick();
-        Teuchos::send(*comm_, count, mine.data(), rank);
+        for (LO k = 0; k < count; ++k) theirs[k] = ordered[places[k]];
+        Teuchos::send(*comm_, count, theirs.data(), rank);
       }
-    } else if (!places.empty()) {
-      Teuchos::send(*comm_, static_cast<int>(places.size()), places.data(), 0);
-      Teuchos::receive(*comm_, 0, static_cast<int>(mine.size()), mine.data());
-      for (std::size_t k = 0; k < mine.size(); ++k) values[owned_[piece_[piece] + k]] = mine[k];
+    } else if (mine.size() > 0) {
+      std::vector<double> received(mine.size());
+      Teuchos::send(*comm_, static_cast<int>(mine.size()), mine.getRawPtr(), 0);
+      Teuchos::receive(*comm_, 0, static_cast<int>(received.size()), received.data());
+      for (LO k = 0; k < mine.size(); ++k) values[owned[k]] = received[k];
     }
   }
 }

@@ -42,13 +42,16 @@ public:
 
 private:
   GO num_pieces() const;
-  /// This rank's ids in a piece, seen from its first one.
-  std::vector<int> places_in(GO piece) const;
+  /// This rank's ids in a piece, seen from the piece's first id.
+  Teuchos::ArrayView<const int> places_in(GO piece) const
+  {
+    return {places_.data() + piece_[piece], piece_[piece + 1] - piece_[piece]};
+  }
 
   RCP<const Comm> comm_;
   GO size_ = 0;
-  Ids ids_;
   std::vector<LO> owned_;       // by pieces
+  std::vector<int> places_;     // of owned_, each in its piece
   std::vector<LO> piece_;       // (pieces + 1) where each begins in owned_
   std::vector<LO> piece_sizes_; // (ranks, pieces) of all ranks; rank 0 only
 };
