@@ -10,6 +10,7 @@ import resource
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 import unittest
 
@@ -141,6 +142,20 @@ class KeptResults(RpcTestCase):
     # Meshes change in some of the steps.
     ADAPTED = ["--set=Mesh->Cells={10,2}", "--set=Adapt->Target Relative Error=0.04", *HISTORY[:-1]]
 
+    wholes = {}  # folders of runs without a break
+
+    def run_whole(self, history, deck):
+        """A run without a break, in the folder `whole`; the same for all tests that ask for it, for it takes its time."""
+        key = (deck, *history)
+        if key not in self.wholes:
+            self.rpc(f"--input={deck}.xml", *history, "--output=whole")
+            kept = tempfile.TemporaryDirectory(prefix="rpc_whole_")
+            self.addClassCleanup(kept.cleanup)
+            self.wholes[key] = pathlib.Path(kept.name) / "whole"
+            shutil.copytree(self.folder / "whole", self.wholes[key])
+        else:
+            shutil.copytree(self.wholes[key], self.folder / "whole")
+
     def stopped(self, number, after, history, deck):
         """A run that gets a signal soon after a step: exit code and output."""
         process = self.start(*history, deck=deck)
@@ -155,7 +170,7 @@ class KeptResults(RpcTestCase):
         return process.returncode, out + err
 
     def expect_same_end_after_kill(self, history, deck, attempts):
-        self.rpc(f"--input={deck}.xml", *history, "--output=whole")
+        self.run_whole(history, deck)
         random.seed(30)
         for attempt in range(attempts):
             shutil.rmtree(self.folder / "out", ignore_errors=True)
@@ -181,7 +196,7 @@ class KeptResults(RpcTestCase):
 
     def test_after_a_signal_a_restart_on_adapted_meshes_ends_as_the_run_without_a_break(self):
         plain = [argument for argument in self.ADAPTED if "Checkpoint" not in argument]
-        self.rpc("--input=beam_adaptive.xml", *plain, "--output=whole")
+        self.run_whole(self.ADAPTED, "beam_adaptive")  # checkpoints change nothing
         random.seed(31)
         for number, after in [(signal.SIGTERM, 5), (signal.SIGINT, 21)]:
             shutil.rmtree(self.folder / "out", ignore_errors=True)
@@ -195,7 +210,7 @@ class KeptResults(RpcTestCase):
                 self.expect_equal_runs("whole", "out", "beam_adaptive")
 
     def test_an_older_checkpoint_on_an_adapted_mesh_takes_over_the_film_up_to_it(self):
-        self.rpc("--input=beam_adaptive.xml", *self.ADAPTED, "--output=whole")
+        self.run_whole(self.ADAPTED, "beam_adaptive")
         shorter = [argument.replace("To=10", "To=2.5") for argument in self.ADAPTED]
         self.rpc("--input=beam_adaptive.xml", *shorter, "--output=out")
         result = self.rpc("--input=beam_adaptive.xml", *self.ADAPTED, "--output=out", "--restart=out/beam_adaptive.checkpoint-000006.e")
