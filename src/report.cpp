@@ -277,7 +277,8 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
     out << '\n';
   }
   print(out,
-        "  work                %d Uzawa, %d Newton, %zu linear solves, %d CG iterations, %d preconditioner set-ups\n",
+        "  work                %d Uzawa, %d Newton, %zu linear solves, %d iterations in them, %d preconditioner "
+        "set-ups\n",
         s.uzawa.iterations, sum(s.uzawa.newton_iterations), s.linear.iterations.size(), sum(s.linear.iterations),
         s.linear.preconditioner_setups);
   out << "    linear solver     " << solver::chosen_solver(s.linear) << '\n';
@@ -285,7 +286,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
     print(out, "    %d of the Newton steps with sweep and line search: the active-set iteration did not settle\n",
           s.line_search_steps);
   for (const auto &level : s.levels)
-    print(out, "    predicted by      %zu dofs: %d Newton, %d CG iterations, %.3f s\n", level.dofs,
+    print(out, "    predicted by      %zu dofs: %d Newton, %d linear iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
   if (s.adaptation) print_adaptation(out, *s.adaptation, scope);
   print_balance(out, s.history);

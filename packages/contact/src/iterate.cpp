@@ -34,23 +34,17 @@ void start_multipliers(const ContactNodes &c, const double pressure_bound, const
   Kokkos::fence();
 }
 
-/// This rank's sum of the weights of nodes that take part in the solution.
-double free_weight(const ContactNodes &c)
+/// Of this rank's points that take part in the solution: sum_i w_i value_i; without values that of the weights.
+double weighted_sum(const ContactNodes &c, const DeviceView<double *> &value = {})
 {
   double sum = 0;
+  const bool has_values = value.extent(0) > 0;
   Kokkos::parallel_reduce(
-      "rpc::contact::free_weight", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &part) { part += c.fixed(i) ? 0 : c.weight(i); }, sum);
-  return sum;
-}
-
-/// Of this rank's free points: sum_i w_i lambda_i [N].
-double total_force(const ContactNodes &c, const DeviceView<double *> &lambda)
-{
-  double sum = 0;
-  Kokkos::parallel_reduce(
-      "rpc::contact::total_force", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i, double &part) { part += c.fixed(i) ? 0 : c.weight(i) * lambda(i); }, sum);
+      "rpc::contact::weighted_sum", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) {
+        if (!c.fixed(i)) part += c.weight(i) * (has_values ? value(i) : 1);
+      },
+      sum);
   return sum;
 }
 
@@ -159,7 +153,7 @@ Iterate::Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<Up
   fem::clear_prescribed(dirichlet_, lifted);
   applied_force_ = applied.norm2();
   prescribed_force_ = lifted.norm2();
-  weight_ = sum_all(*lifted.getMap()->getComm(), free_weight(points_));
+  weight_ = sum_all(*lifted.getMap()->getComm(), weighted_sum(points_));
   pressure_bound_ = weight_ > 0 ? beyond_reach * lifted.norm1() / weight_ : 0;
   reset_multipliers();
 }
@@ -317,7 +311,7 @@ void Iterate::start_from(const ContactState &state, Vector &u)
   take_free(dirichlet_, *state.displacement, u);
   const bool here = state.multiplier.normal.extent(0) > 0; // there are contact nodes on this rank
   if (here) take_admissible(points_, state.multiplier.normal, multipliers().normal);
-  const double force = sum_all(*u.getMap()->getComm(), here ? total_force(points_, multipliers().normal) : 0);
+  const double force = sum_all(*u.getMap()->getComm(), here ? weighted_sum(points_, multipliers().normal) : 0);
   start_pressure_ = weight_ > 0 ? force / weight_ : 0;
   if (!here) return;
   if (!functional_.points().has_friction()) return;

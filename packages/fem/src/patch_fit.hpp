@@ -4,6 +4,9 @@
 #include "elastic_cells.hpp"
 #include "patch_polynomial.hpp"
 
+#include <limits>
+#include <type_traits>
+
 /// The fit of a polynomial to the displacements around each vertex, (2.13): by the normal equations of least squares.
 namespace rpc::fem
 {
@@ -31,16 +34,46 @@ struct PatchTable {
   static constexpr int across_blocks = 0, adopted = degree + 1, inside = degree + 2;
 };
 
+/// What the fit around a vertex takes from the places of nodes alone.
+template <int Dim, int Terms>
+struct PatchGeometry {
+  double frame[Dim][Dim], inverse[Dim][Dim]; // L, and L^-1
+  double normal[Terms][Terms];               // the factor of the normal equations
+  int fitted;                                // its leading rows
+  bool inside;                               // cells close all around the vertex
+};
+
+/// The same of a patch that others may be translates of: what tells them, and once there is one, the part that each neighbour has in the
+/// coefficients.
+template <int Dim, int Terms, int Most>
+struct KnownPatch : PatchGeometry<Dim, Terms> {
+  int neighbours = 0, cells = 0;
+  double dx[Most][Dim]; // from the vertex to its neighbours  [m]
+  int terms = 0;        // that part_of has; 0: none yet
+  double part_of[Most][Terms];
+};
+
 /// The polynomial of a vertex, by least squares from the displacements of all nodes that share a cell with it.
+///
+/// A call fits those of some nodes in turn. A host takes over from one patch to the next what congruent patches have in common.
 template <int Dim, int Nodes, bool Axisymmetric>
 struct FitPatch {
   using Table = PatchTable<Dim, Nodes, Axisymmetric>;
   using Terms = typename Table::Terms;
+  using Coefficients = double[Terms::size][Dim];
   /// What lower terms must leave of a term's square. Patches inside leave 3e-2 at least on meshes that are fit for use.
   static constexpr double threshold = 1e-2;
   /// The same of the square of the constant, in coordinates in which patches have size 1. Products of coordinates vanish at all nodes of some
   /// patches.
   static constexpr double least = 1e-6;
+  /// Meshes of simplices have few congruent patches, and a GPU has a thread for each node.
+  static constexpr bool takes_over = !on_gpu && !StaticElement<Dim, Nodes>::simplex;
+  static constexpr int nodes_per_call = takes_over ? 256 : 1;
+  static constexpr int along = 2 * StaticElement<Dim, Nodes>::order + 1; // nodes of two cells, in a row
+  static constexpr int most = along * along * (Dim == 3 ? along : 1);
+  /// Places of nodes are known to so many times their rounding errors.
+  static constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+  using Patch = std::conditional_t<takes_over, KnownPatch<Dim, Terms::size, most>, PatchGeometry<Dim, Terms::size>>;
 
   ElasticCells<Dim, Nodes, Axisymmetric> body; //                                       in
   DeviceView<double **> recovery;              // (points, Nodes)                       in, shape functions
@@ -51,56 +84,150 @@ struct FitPatch {
   DeviceView<int ***> mate;                    // see facet_mates                       in
   WriteColumns table;                          // (overlap nodes, PatchTable)           out, at owned vertices
 
-  KOKKOS_FUNCTION void operator()(const LO node) const
+  static LO num_calls(const LO num_nodes) { return num_nodes / nodes_per_call + (num_nodes % nodes_per_call > 0); }
+
+  KOKKOS_FUNCTION void operator()(const LO call) const
   {
-    const LO first = node_cell(node_row(node));
-    if (place_in(body.cells, first, node) >= static_cast<int>(mate.extent(0))) return;
-    double L[Dim][Dim] = {}; // second moments of the patch, then their root
+    const LO all = static_cast<LO>(node_row.extent(0)) - 1, begin = call * nodes_per_call;
+    const LO end = all - begin < nodes_per_call ? all : begin + nodes_per_call;
+    Patch patch;
+    for (LO node = begin; node < end; ++node) {
+      const LO first = node_cell(node_row(node));
+      if (place_in(body.cells, first, node) < static_cast<int>(mate.extent(0))) fit(node, first, patch);
+    }
+  }
+
+  /// @param first  cell at the node   @param patch  the last one, then the node's
+  KOKKOS_FUNCTION void fit(const LO node, const LO first, Patch &patch) const
+  {
+    bool is_known = false;
+    if constexpr (takes_over) is_known = is_translate(node, patch);
+    if (!is_known) look_at(node, patch);
+
+    bool one_block = true;
+    for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
+      one_block = one_block && body.block(node_cell(k)) == body.block(first);
+    int degree = one_block ? Table::degree : 1;
+    while (degree > 1 && Terms::up_to(degree) > patch.fitted) --degree;
+    const int terms = Terms::up_to(degree);
+    Coefficients c = {};
+    if constexpr (takes_over)
+      if (is_known) weigh(node, terms, patch, c);
+    if (!is_known) solve(node, terms, patch, c);
+
+    const int trust = degree == Table::degree && patch.inside ? Table::inside : degree;
+    table(node, int(Table::trust)) = one_block ? trust : Table::across_blocks;
+    for (int i = 0; i < Dim; ++i) table(node, Table::centre + i) = body.coords(node, i);
+    int column = Table::frame;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j <= i; ++j) table(node, column++) = patch.frame[i][j];
+    for (int s = 1; s < Terms::size; ++s)
+      for (int i = 0; i < Dim; ++i) table(node, column++) = s < terms ? c[s][i] : 0;
+    if constexpr (Axisymmetric) table(node, int(Table::radial)) = u(dof(Dim, node, 0)) + c[0][0];
+    if constexpr (ElasticCells<Dim, Nodes>::may_project)
+      if (body.projects(first)) fit_dilatation(node, patch.inverse);
+  }
+
+  /// Whether a node's patch is the known one elsewhere, up to rounding.
+  KOKKOS_FUNCTION bool is_translate(const LO node, const Patch &known) const
+  {
+    const std::size_t begin = graph.row(node), end = graph.row(node + 1);
+    if (end - begin != static_cast<std::size_t>(known.neighbours)) return false;
+    if (node_row(node + 1) - node_row(node) != static_cast<std::size_t>(known.cells)) return false;
+    double dx[Dim];
+    for (std::size_t k = begin; k < end; ++k) {
+      step(node, graph.col(k), dx);
+      for (int i = 0; i < Dim; ++i) {
+        const double size = math::magnitude(body.coords(node, i)) + math::magnitude(dx[i]);
+        if (!(math::magnitude(dx[i] - known.dx[k - begin][i]) <= rounding * size)) return false;
+      }
+    }
+    return true;
+  }
+
+  KOKKOS_FUNCTION void look_at(const LO node, Patch &patch) const
+  {
     const std::size_t begin = graph.row(node), end = graph.row(node + 1);
     const double part = 1. / static_cast<double>(end - begin);
+    auto &L = patch.frame; // second moments of the patch, then their root
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) L[i][j] = 0;
     for (std::size_t k = begin; k < end; ++k) {
       double dx[Dim];
       step(node, graph.col(k), dx);
       for (int i = 0; i < Dim; ++i)
         for (int j = 0; j <= i; ++j) L[i][j] += dx[i] * dx[j] * part;
+      if constexpr (takes_over)
+        for (int i = 0; i < Dim && end - begin <= most; ++i) patch.dx[k - begin][i] = dx[i];
     }
     cholesky(L, 0);
-    double inverse[Dim][Dim];
-    invert_lower(L, inverse);
-
-    double normal[Terms::size][Terms::size] = {}, c[Terms::size][Dim] = {};
+    invert_lower(L, patch.inverse);
+    double normal[Terms::size][Terms::size] = {}, term[Terms::size];
     for (std::size_t k = begin; k < end; ++k) {
-      const LO other = graph.col(k);
-      double dx[Dim], xi[Dim], term[Terms::size];
-      step(node, other, dx);
-      in_frame(inverse, dx, xi);
-      Terms::evaluate(xi, term);
-      for (int s = 0; s < Terms::size; ++s) {
+      evaluate(node, graph.col(k), patch, term);
+      for (int s = 0; s < Terms::size; ++s)
         for (int t = 0; t <= s; ++t) normal[s][t] += term[s] * term[t];
-        for (int i = 0; i < Dim; ++i) c[s][i] += term[s] * (u(dof(Dim, other, i)) - u(dof(Dim, node, i)));
+    }
+    patch.fitted = cholesky(normal, threshold, least * normal[0][0]);
+    for (int s = 0; s < Terms::size; ++s)
+      for (int t = 0; t <= s; ++t) patch.normal[s][t] = normal[s][t];
+    patch.inside = is_inside(node);
+    if constexpr (takes_over) {
+      patch.neighbours = end - begin <= most ? static_cast<int>(end - begin) : 0;
+      patch.cells = static_cast<int>(node_row(node + 1) - node_row(node));
+      patch.terms = 0;
+    }
+  }
+
+  /// The coefficients by the normal equations.
+  KOKKOS_FUNCTION void solve(const LO node, const int terms, const Patch &patch, Coefficients &c) const
+  {
+    double term[Terms::size];
+    for (std::size_t k = graph.row(node); k < graph.row(node + 1); ++k) {
+      const LO other = graph.col(k);
+      evaluate(node, other, patch, term);
+      for (int i = 0; i < Dim; ++i) {
+        const double rise = u(dof(Dim, other, i)) - u(dof(Dim, node, i));
+        for (int s = 0; s < Terms::size; ++s) c[s][i] += term[s] * rise;
       }
     }
-    bool one_block = true;
-    for (std::size_t k = node_row(node); k < node_row(node + 1); ++k)
-      one_block = one_block && body.block(node_cell(k)) == body.block(first);
-    const int fitted = cholesky(normal, threshold, least * normal[0][0]);
-    int degree = one_block ? Table::degree : 1;
-    while (degree > 1 && Terms::up_to(degree) > fitted) --degree;
-    const int terms = Terms::up_to(degree);
-    solve_lower(normal, terms, c);
-    solve_lower_transposed(normal, terms, c);
+    solve_lower(patch.normal, terms, c);
+    solve_lower_transposed(patch.normal, terms, c);
+  }
 
-    const int trust = degree == Table::degree && is_inside(node) ? Table::inside : degree;
-    table(node, int(Table::trust)) = one_block ? trust : Table::across_blocks;
-    for (int i = 0; i < Dim; ++i) table(node, Table::centre + i) = body.coords(node, i);
-    int column = Table::frame;
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j <= i; ++j) table(node, column++) = L[i][j];
-    for (int s = 1; s < Terms::size; ++s)
-      for (int i = 0; i < Dim; ++i) table(node, column++) = s < terms ? c[s][i] : 0;
-    if constexpr (Axisymmetric) table(node, int(Table::radial)) = u(dof(Dim, node, 0)) + c[0][0];
-    if constexpr (ElasticCells<Dim, Nodes>::may_project)
-      if (body.projects(first)) fit_dilatation(node, inverse);
+  /// The same from the part that each neighbour has in them.
+  KOKKOS_FUNCTION void weigh(const LO node, const int terms, Patch &patch, Coefficients &c) const
+  {
+    const std::size_t begin = graph.row(node);
+    if (patch.terms != terms) {
+      for (int k = 0; k < patch.neighbours; ++k) {
+        double term[Terms::size], part[Terms::size][1];
+        evaluate(node, graph.col(begin + k), patch, term);
+        for (int s = 0; s < Terms::size; ++s) part[s][0] = s < terms ? term[s] : 0;
+        solve_lower(patch.normal, terms, part);
+        solve_lower_transposed(patch.normal, terms, part);
+        for (int s = 0; s < Terms::size; ++s) patch.part_of[k][s] = part[s][0];
+      }
+      patch.terms = terms;
+    }
+    double by_direction[Dim][Terms::size] = {};
+    for (int k = 0; k < patch.neighbours; ++k)
+      for (int i = 0; i < Dim; ++i) {
+        const double rise = u(dof(Dim, graph.col(begin + k), i)) - u(dof(Dim, node, i));
+        for (int s = 0; s < Terms::size; ++s) by_direction[i][s] += patch.part_of[k][s] * rise;
+      }
+    for (int s = 0; s < Terms::size; ++s)
+      for (int i = 0; i < Dim; ++i) c[s][i] = by_direction[i][s];
+  }
+
+  /// The terms at a neighbour.
+  KOKKOS_FUNCTION void evaluate(const LO node, const LO neighbour, const Patch &patch,
+                                double (&term)[Terms::size]) const
+  {
+    double dx[Dim], xi[Dim];
+    step(node, neighbour, dx);
+    in_frame(patch.inverse, dx, xi);
+    Terms::evaluate(xi, term);
   }
 
   /// The polynomial of the projected dilatation, by least squares from its values at the points for recovery.

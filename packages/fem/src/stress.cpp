@@ -40,15 +40,16 @@ RCP<const MultiVector> fit(const Discretization &d, const ElasticCells<Dim, Node
   const NodeGraph graph = d.nodes(); // first: lists twice as long are freed then, and the table takes their place
   const auto table = rcp(new MultiVector(overlap_rows(d), Table::columns)); // zero
   {
-    const FitPatch<Dim, Nodes, Axisymmetric> fit{body,
-                                                 d.reference.recovery.value,
-                                                 device_read(u_overlap),
-                                                 node_to_cells.row,
-                                                 node_to_cells.cell,
-                                                 graph,
-                                                 facet_mates(mesh.element),
-                                                 table->getLocalViewDevice(Tpetra::Access::ReadWrite)};
-    Kokkos::parallel_for("rpc::fem::fit_patch", nodes, fit);
+    using Fit = FitPatch<Dim, Nodes, Axisymmetric>;
+    const Fit fit{body,
+                  d.reference.recovery.value,
+                  device_read(u_overlap),
+                  node_to_cells.row,
+                  node_to_cells.cell,
+                  graph,
+                  facet_mates(mesh.element),
+                  table->getLocalViewDevice(Tpetra::Access::ReadWrite)};
+    Kokkos::parallel_for("rpc::fem::fit_patch", device_range(Fit::num_calls(mesh.num_owned_nodes())), fit);
     Kokkos::fence();
   }
   fill_ghost_rows(d, *table);

@@ -93,6 +93,7 @@ void BandFactor::solve(const SparseColumns &B, double *const x) const
 
 void BandFactor::solve_in_place(double *const x, const int columns) const
 {
+  if (size_ == 0) return; // LAPACK wants a row
   std::vector<double> ordered(static_cast<std::size_t>(size_) * columns);
   for (int c = 0; c < columns; ++c)
     for (int i = 0; i < size_; ++i)

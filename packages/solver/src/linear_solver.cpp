@@ -413,7 +413,7 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accur
     const auto outcome = outcome_of(result, impl_->given_up);
     if (!outcome) return result;
     const Rule &rule = rule_for(impl_->used_for_policy(), *outcome);
-    const std::string reason = result.converged ? std::to_string(result.iterations) + " CG iterations" : result.reason;
+    const std::string reason = result.converged ? std::to_string(result.iterations) + " iterations" : result.reason;
     const bool other = impl_->take(rule.next, reason) || impl_->take(rule.otherwise, reason);
     if (!other || *outcome == slow) return result;
   }

@@ -172,7 +172,9 @@ TEST(LinearSolver, FollowsChangesOfAFewNodesWithoutASetUp)
 
 TEST(LinearSolver, SetsUpAgainOnceWhereAllStatesChange)
 {
-  Beam beam;
+  solver::LinearSolverOptions options;
+  options.multigrid = "algebraic"; // a GPU's iterations take so long that a sparse factor of the host's would take over
+  Beam beam(options);
   Vector x(beam.u->getMap());
   const Vector &load = *beam.elastic.load;
   open_between(beam, 0.01, 4.99);
@@ -187,7 +189,7 @@ TEST(LinearSolver, SetsUpAgainOnceWhereAllStatesChange)
     EXPECT_TRUE(beam.linear->solve(load, x, 1e-8).converged);
     EXPECT_LT(residual_of(beam, x), 1.01e-8);
   }
-  EXPECT_LE(beam.linear->counts().preconditioner_setups, 2);
+  EXPECT_LE(beam.linear->counts().preconditioner_setups, 2) << solver::solver_path(beam.linear->counts());
 }
 
 TEST(LinearSolver, InverseEnergyIsThatOfASolveUpToOneMultigridCycle)
