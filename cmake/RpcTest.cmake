@@ -50,12 +50,11 @@ set_target_properties(rpc_yield PROPERTIES LIBRARY_OUTPUT_DIRECTORY $<1:${PROJEC
 add_dependencies(rpc_tests rpc_yield)
 set(rpc_ranks_environment LD_PRELOAD=$<TARGET_FILE:rpc_yield>)
 
-# Open MPI's folder in /tmp is the same for all runs on a host: of two that start or end at once one may fail. Appends a folder of the
-# test's own to a list of environment variables.
-function(rpc_append_session_folder environment test)
-  list(APPEND ${environment} OMPI_MCA_orte_tmpdir_base=${PROJECT_BINARY_DIR}/sessions/${test})
-  set(${environment} ${${environment}} PARENT_SCOPE)
-endfunction()
+# rpc_append_session_folder(<list> <test>): appends to a list of environment variables a folder of Open MPI's for one test. Its own in /tmp
+# is the same for all runs on a host, and of two that start or end at once one may fail.
+macro(rpc_append_session_folder list test)
+  list(APPEND ${list} OMPI_MCA_orte_tmpdir_base=${PROJECT_BINARY_DIR}/sessions/${test})
+endmacro()
 
 # rpc_add_run_test(<name> <np> LABEL label TIMEOUT seconds COMMAND target args...): the CTest entry <name>.np<np> that runs an
 # executable target, through mpiexec for np > 1; none then where Trilinos has no MPI.
