@@ -99,7 +99,7 @@ function(rpc_add_test package name)
   endif()
   set(target ${package}_tests)
   if(NOT TARGET ${target})
-    # -O1: tests spend their time in the libraries, and the compiler half of its time on what the tests' own code gains above that.
+    # -O1: tests spend their time in the libraries. To optimize their own code further takes the compiler longer and gains nothing.
     add_library(${target} OBJECT)
     target_compile_options(${target} PRIVATE -Wall -Wextra $<$<CONFIG:Release>:-O1>)
     target_link_libraries(${target} PUBLIC rpc_test_main)

@@ -43,13 +43,13 @@ struct PatchGeometry {
   bool inside;                               // cells close all around the vertex
 };
 
-/// The same of a patch that others may be translates of: what tells them, and once there is one, the part that each neighbour has in the
-/// coefficients.
+/// The same of a patch that the next ones may be translates of: where its neighbours lie, by which these are known, and from the first
+/// translate on what a unit displacement of each neighbour adds to the coefficients.
 template <int Dim, int Terms, int Most>
 struct KnownPatch : PatchGeometry<Dim, Terms> {
   int neighbours = 0, cells = 0;
   double dx[Most][Dim]; // from the vertex to its neighbours  [m]
-  int terms = 0;        // that part_of has; 0: none yet
+  int terms = 0;        // of part_of; 0: not computed yet
   double part_of[Most][Terms];
 };
 
