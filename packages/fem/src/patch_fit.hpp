@@ -151,7 +151,10 @@ struct FitPatch {
     const double part = 1. / static_cast<double>(end - begin);
     auto &L = patch.frame; // second moments of the patch, then their root
     for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) L[i][j] = 0;
+      for (int j = 0; j < Dim; ++j) {
+        L[i][j] = 0;
+        patch.inverse[i][j] = i == j;
+      }
     for (std::size_t k = begin; k < end; ++k) {
       double dx[Dim];
       step(node, graph.col(k), dx);
@@ -161,7 +164,7 @@ struct FitPatch {
         for (int i = 0; i < Dim && end - begin <= most; ++i) patch.dx[k - begin][i] = dx[i];
     }
     cholesky(L, 0);
-    invert_lower(L, patch.inverse);
+    solve_lower(L, Dim, patch.inverse);
     double normal[Terms::size][Terms::size] = {}, term[Terms::size];
     for (std::size_t k = begin; k < end; ++k) {
       evaluate(node, graph.col(k), patch, term);

@@ -22,17 +22,14 @@ struct Monomials {
   {
     double power[3][Degree + 1];
     powers(x, power);
-    for (int degree = 0, t = 0; degree <= Degree; ++degree)
-      for (int j = 0; j <= degree; ++j)
-        for (int k = 0; k <= (Dim == 3 ? degree - j : 0); ++k, ++t)
-          term[t] = power[0][degree - j - k] * power[1][j] * power[2][k];
+    products(power, term);
   }
   static KOKKOS_INLINE_FUNCTION void evaluate(const double (&x)[Dim], double (&term)[size],
                                               double (&gradient)[size][Dim])
   {
-    evaluate(x, term);
     double power[3][Degree + 1];
     powers(x, power);
+    products(power, term);
     for (int degree = 0, t = 0; degree <= Degree; ++degree) {
       for (int j = 0; j <= degree; ++j) {
         for (int k = 0; k <= (Dim == 3 ? degree - j : 0); ++k, ++t) {
@@ -47,6 +44,13 @@ struct Monomials {
   }
 
 private:
+  static KOKKOS_INLINE_FUNCTION void products(const double (&power)[3][Degree + 1], double (&term)[size])
+  {
+    for (int degree = 0, t = 0; degree <= Degree; ++degree)
+      for (int j = 0; j <= degree; ++j)
+        for (int k = 0; k <= (Dim == 3 ? degree - j : 0); ++k, ++t)
+          term[t] = power[0][degree - j - k] * power[1][j] * power[2][k];
+  }
   /// x_i^k; in 2D the third are 1, 0, ..., 0.
   static KOKKOS_INLINE_FUNCTION void powers(const double (&x)[Dim], double (&power)[3][Degree + 1])
   {
@@ -77,19 +81,6 @@ KOKKOS_INLINE_FUNCTION int cholesky(double (&A)[Size][Size], const double thresh
     A[i][i] = math::sqrt(pivot);
   }
   return Size;
-}
-
-/// L^-1 of a lower triangular L, whose upper part is not read; the inverse's is 0.
-template <int Size>
-KOKKOS_INLINE_FUNCTION void invert_lower(const double (&L)[Size][Size], double (&inverse)[Size][Size])
-{
-  for (int j = 0; j < Size; ++j) {
-    for (int i = 0; i < Size; ++i) {
-      double sum = i == j;
-      for (int k = j; k < i; ++k) sum -= L[i][k] * inverse[k][j];
-      inverse[i][j] = i < j ? 0 : sum / L[i][i];
-    }
-  }
 }
 
 /// b <- L^-1 b, or L^-T b, by the leading n rows of L.
