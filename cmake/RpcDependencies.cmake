@@ -36,6 +36,10 @@ function(rpc_find_library name what package header)
 endfunction()
 rpc_find_library(metis "METIS" libmetis-dev metis.h metis)
 rpc_find_library(exodus "The Exodus library" libexodusii-dev exodusII.h exoIIv2c exodus)
+# NetCDF lies under Exodus. Debian has two of it, with MPI and without; files that Exodus opens are known to the one that it was linked to.
+execute_process(COMMAND ${CMAKE_READELF} -d ${EXODUS_LIBRARY} OUTPUT_VARIABLE exodus_needs ERROR_QUIET)
+string(REGEX MATCH "libnetcdf[a-z_]*\\.so[.0-9]*" netcdf_file "${exodus_needs}")
+rpc_find_library(netcdf "The NetCDF library" libnetcdf-dev netcdf.h ${netcdf_file} netcdf)
 
 # MUMPS makes sparse factors. Without it there are banded ones only. It is looked for where Trilinos has MPI, which Debian's library takes.
 option(RPC_USE_MUMPS "Sparse factors by MUMPS, where it is found" ON)

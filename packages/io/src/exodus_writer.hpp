@@ -12,6 +12,7 @@
 #include <cstring>
 #include <exodusII.h>
 #include <fcntl.h>
+#include <netcdf.h>
 #include <numeric>
 #include <string>
 #include <unistd.h>
@@ -27,7 +28,7 @@ struct SideSet {
   std::vector<int> cell, ordinal;
 };
 
-/// What the file's header fixes. It comes before all data, which NetCDF would have to move if it grew later.
+/// What the file's header fixes.
 struct ExodusHeader {
   std::string title;
   std::vector<std::string> info, field_names;
@@ -77,6 +78,8 @@ inline void set_number_of_times(const std::string &path, const int number)
 }
 
 /// An Exodus file that one rank writes, under its temporary name until commit() or publish(). Private to io.
+/// The Exodus library writes the header and the small arrays. Coordinates, cells, times and fields are written by the NetCDF library under
+/// it, into the arrays that the header has defined: NetCDF's own choice, which Exodus cannot change, is to read and write 4 kB at a time.
 class ExodusWriter
 {
 public:
@@ -92,8 +95,8 @@ public:
   /// Of a published file a time that could not be written goes.
   ~ExodusWriter()
   {
-    if (id_ < 0) return;
-    ex_close(id_);
+    if (id_ >= 0) ex_close(id_);
+    if (netcdf_ >= 0) nc_close(netcdf_);
     if (published_ && begun_ > whole_) set_number_of_times(path_, whole_);
   }
   ExodusWriter(const ExodusWriter &) = delete;
@@ -114,22 +117,23 @@ public:
     put_names(header, sides, arrays);
     put_sides(sides);
     put_arrays(arrays);
-    if (!share) return;
-    put_whole(*share);
-    if (header.num_nodes > 0)
-      check(ex_put_id_map(id_, EX_NODE_MAP, share->node_number.data()), "write the numbers of the nodes of");
-    if (header.num_cells > 0)
-      check(ex_put_id_map(id_, EX_ELEM_MAP, share->cell_number.data()), "write the numbers of the cells of");
+    if (share) {
+      put_whole(*share);
+      if (header.num_nodes > 0)
+        check(ex_put_id_map(id_, EX_NODE_MAP, share->node_number.data()), "write the numbers of the nodes of");
+      if (header.num_cells > 0)
+        check(ex_put_id_map(id_, EX_ELEM_MAP, share->cell_number.data()), "write the numbers of the cells of");
+    }
+    check(ex_close(std::exchange(id_, -1)), "write");
+    open_for_data(header);
   }
   /// @param first  node, from 0
   void put_coordinate(const int direction, const GO first, const std::vector<double> &values)
   {
     if (values.empty()) return;
-    std::array<const double *, 3> by_direction{};
-    by_direction[direction] = values.data();
-    check(ex_put_partial_coord(id_, first + 1, static_cast<int64_t>(values.size()), by_direction[0], by_direction[1],
-                               by_direction[2]),
-          "write the coordinates of");
+    const std::size_t start = first, count = values.size();
+    check_netcdf(nc_put_vara_double(netcdf_, coordinates_[direction], &start, &count, values.data()),
+                 "write the coordinates of");
   }
   /// @param first  cell, from 0; they run block by block   @param nodes  (cells, nodes per cell)
   void put_cells(const GO first, const std::vector<int> &nodes)
@@ -138,10 +142,13 @@ public:
     GO block_begin = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const GO from = std::max(first, block_begin), to = std::min(end, block_begin + blocks_[b]);
-      if (from < to)
-        check(ex_put_partial_elem_conn(id_, static_cast<ex_entity_id>(b + 1), from - block_begin + 1, to - from,
-                                       nodes.data() + (from - first) * nodes_per_cell_),
-              "write the cells of");
+      if (from < to) {
+        const std::array start = {static_cast<std::size_t>(from - block_begin), std::size_t(0)};
+        const std::array count = {static_cast<std::size_t>(to - from), static_cast<std::size_t>(nodes_per_cell_)};
+        check_netcdf(nc_put_vara_int(netcdf_, cells_[b], start.data(), count.data(),
+                                     nodes.data() + (from - first) * nodes_per_cell_),
+                     "write the cells of");
+      }
       block_begin += blocks_[b];
     }
   }
@@ -149,18 +156,19 @@ public:
   void put_time(const int step, const double time)
   {
     begun_ = step;
-    check(ex_put_time(id_, step, &time), "write a time of");
+    const std::size_t start = step - 1;
+    check_netcdf(nc_put_var1_double(netcdf_, time_, &start, &time), "write a time of");
   }
   /// All fields of the time are written.
   void flush_time()
   {
-    if (published_) check(ex_update(id_), "write a time of");
+    if (published_) check_netcdf(nc_sync(netcdf_), "write a time of");
   }
   /// The time stays, in the files of other ranks too.
   void keep_time() { whole_ = begun_; }
   void publish()
   {
-    check(ex_update(id_), "write");
+    check_netcdf(nc_sync(netcdf_), "write");
     file_.publish();
     published_ = true;
   }
@@ -168,30 +176,42 @@ public:
   void put_field(const int step, const int index, const GO first, const std::vector<double> &values)
   {
     if (values.empty()) return;
-    check(ex_put_partial_var(id_, step, EX_NODAL, index + 1, 1, first + 1, static_cast<int64_t>(values.size()),
-                             values.data()),
-          "write a field of");
+    const std::array start = {static_cast<std::size_t>(step - 1), static_cast<std::size_t>(first)};
+    const std::array count = {std::size_t(1), values.size()};
+    check_netcdf(nc_put_vara_double(netcdf_, fields_[index], start.data(), count.data(), values.data()),
+                 "write a field of");
   }
   /// Closes the file, and brings it to the disk.
   void finish()
   {
-    check(ex_close(std::exchange(id_, -1)), "close");
+    check_netcdf(nc_close(std::exchange(netcdf_, -1)), "close");
     file_.sync();
   }
   /// Gives the finished file its name, if it has none yet.
   void commit() { file_.publish(); }
 
 private:
+  /// Exodus defines a file in steps, each of which lengthens the header at its begin. NetCDF would move the arrays behind it each time, if
+  /// there were no room between them. An Exodus file's number is that of NetCDF's.
+  /// @param count  of all that is to be defined
+  void leave_room(const std::size_t count)
+  {
+    constexpr std::size_t for_file = 1 << 14, for_each = 1 << 10, alignment = 4; // bytes
+    check_netcdf(nc_redef(id_), "define");
+    check_netcdf(nc__enddef(id_, for_file + for_each * count, alignment, 0, alignment), "define");
+  }
+
   void define(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)
   {
+    std::string program = "rpc", version = RPC_VERSION, date, time;
+    char *qa[1][4] = {{program.data(), version.data(), date.data(), time.data()}};
+    check(ex_put_qa(id_, 1, qa), "define");
+    leave_room(header.blocks.size() + sides.size() + arrays.size() + header.field_names.size());
     const auto &element = header.element;
     check(ex_put_init(id_, header.title.substr(0, MAX_LINE_LENGTH).c_str(), element.dim, header.num_nodes,
                       header.num_cells, static_cast<int64_t>(header.blocks.size()), static_cast<int64_t>(arrays.size()),
                       static_cast<int64_t>(sides.size())),
           "define");
-    std::string program = "rpc", version = RPC_VERSION, date, time;
-    char *qa[1][4] = {{program.data(), version.data(), date.data(), time.data()}};
-    check(ex_put_qa(id_, 1, qa), "define");
     auto info = cut(header.info, MAX_LINE_LENGTH);
     if (!info.empty()) check(ex_put_info(id_, static_cast<int>(info.size()), pointers(info).data()), "define");
     blocks_ = header.block_sizes;
@@ -257,9 +277,35 @@ private:
     }
   }
 
+  /// Opens the file that Exodus has defined and closed.
+  void open_for_data(const ExodusHeader &header)
+  {
+    std::size_t block = std::size_t(4) << 20; // bytes that are read or written at once
+    check_netcdf(nc__open(file_.temporary().c_str(), NC_WRITE, &block, &netcdf_), "open");
+    int old_fill = 0;
+    check_netcdf(nc_set_fill(netcdf_, NC_NOFILL, &old_fill), "open");
+    const auto variable = [&](const std::string &name) {
+      int number = -1;
+      check_netcdf(nc_inq_varid(netcdf_, name.c_str(), &number), "write");
+      return number;
+    };
+    const std::array<const char *, 3> directions = {"coordx", "coordy", "coordz"};
+    for (int d = 0; d < header.element.dim && header.num_nodes > 0; ++d) coordinates_[d] = variable(directions[d]);
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      cells_.push_back(blocks_[b] > 0 ? variable("connect" + std::to_string(b + 1)) : -1);
+    time_ = variable("time_whole");
+    for (std::size_t f = 0; f < header.field_names.size() && header.num_nodes > 0; ++f)
+      fields_.push_back(variable("vals_nod_var" + std::to_string(f + 1)));
+  }
+
   void check(const int status, const char *action) const
   {
     if (status != 0) fail(action);
+  }
+
+  void check_netcdf(const int status, const char *action) const
+  {
+    if (status != NC_NOERR) fail(action, nc_strerror(status), status);
   }
 
   [[noreturn]] void fail(const char *action) const
@@ -267,15 +313,24 @@ private:
     const char *message = nullptr, *function = nullptr;
     int code = 0;
     ex_get_err(&message, &function, &code);
+    fail(action, message ? message : "", code);
+  }
+
+  [[noreturn]] void fail(const char *action, const std::string &message, const int code) const
+  {
     std::string text = "output: cannot " + std::string(action) + " \"" + path_ + "\"";
-    if (message && *message) text += ": " + std::string(message);
+    if (!message.empty()) text += ": " + message;
     if (code > 0) text += std::string(" (") + std::strerror(code) + ")"; // NetCDF hands on errno; its own codes are < 0
     throw Error(ExitCode::internal_error, text);
   }
 
   std::string path_;
   AtomicFile file_;
-  int id_ = -1;
+  int id_ = -1;     // Exodus': of the file while its header is written
+  int netcdf_ = -1; // NetCDF's: of the file after that
+  std::array<int, 3> coordinates_ = {-1, -1, -1};
+  std::vector<int> cells_, fields_; // NetCDF's variables, by block and by field
+  int time_ = -1;
   int begun_ = 0, whole_ = 0; // times that are begun, and whole
   bool published_ = false;
   std::vector<GO> blocks_; // cells in each
