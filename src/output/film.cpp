@@ -44,7 +44,7 @@ std::vector<LO> shown_points(const contact::ContactNodes &contact, const contact
 template <class HostColumn>
 HostView<double *> scatter(const std::vector<LO> &shown, const HostColumn &values, const double elsewhere)
 {
-  HostView<double *> result("rpc::output::contact_field", shown.size());
+  HostView<double *> result(Kokkos::ViewAllocateWithoutInitializing("rpc::output::contact_field"), shown.size());
   for (std::size_t n = 0; n < shown.size(); ++n) result(n) = shown[n] < 0 ? elsewhere : values(shown[n]);
   return result;
 }
