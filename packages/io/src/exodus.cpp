@@ -102,9 +102,9 @@ SideSet gather_side(const mesh::Mesh &mesh, const mesh::Side &side)
 /// (owned nodes) One coordinate [m].
 std::vector<double> owned_coordinate(const mesh::Mesh &mesh, const int direction)
 {
-  const auto coords = to_host(mesh.coords);
+  const auto coordinate = to_host(Kokkos::subview(mesh.coords, Kokkos::ALL, direction));
   std::vector<double> owned(mesh.num_owned_nodes());
-  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) owned[n] = coords(n, direction);
+  for (LO n = 0; n < mesh.num_owned_nodes(); ++n) owned[n] = coordinate(n);
   return owned;
 }
 

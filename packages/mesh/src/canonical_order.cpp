@@ -19,23 +19,21 @@ constexpr GO piece_size = GO(1) << 18; // ids: 2 MB a column
 } // namespace
 
 CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const Ids &ids, const std::string &what)
-    : comm_(comm), size_(sum_all(*comm, static_cast<GO>(ids.size()))), in_order_(comm->getSize() == 1)
+    : comm_(comm), size_(sum_all(*comm, static_cast<GO>(ids.size())))
 {
+  const HostView<GO *> id = ids.list(); // at once: each number of a formula takes divisions
   const LO num_owned = static_cast<LO>(ids.size());
-  for (LO n = 0; n < num_owned && in_order_; ++n) in_order_ = ids(n) == n;
-  if (in_order_) return;
   std::optional<GO> beyond;
   std::vector<LO> sizes(num_pieces(), 0);
   for (LO n = 0; n < num_owned; ++n) {
-    const GO id = ids(n);
-    if (id >= 0 && id < size_)
-      ++sizes[id / piece_size];
+    if (id(n) >= 0 && id(n) < size_)
+      ++sizes[id(n) / piece_size];
     else
-      beyond = id;
+      beyond = id(n);
   }
-  const auto bad = [&](const GO id, const char *const how) {
+  const auto bad = [&](const GO which, const char *const how) {
     return "mesh: the " + what + " ids must be each of 0 .. " + std::to_string(size_ - 1) + " once, got " +
-           std::to_string(id) + how;
+           std::to_string(which) + how;
   };
   throw_if_any(*comm, ExitCode::internal_error, beyond ? std::optional<std::string>(bad(*beyond, "")) : std::nullopt);
   piece_.assign(1, 0);
@@ -44,9 +42,9 @@ CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const Ids &ids, cons
   owned_.resize(num_owned);
   places_.resize(num_owned);
   for (LO n = 0; n < num_owned; ++n) {
-    const LO at = next[ids(n) / piece_size]++;
+    const LO at = next[id(n) / piece_size]++;
     owned_[at] = n;
-    places_[at] = static_cast<int>(ids(n) % piece_size);
+    places_[at] = static_cast<int>(id(n) % piece_size);
   }
   piece_sizes_ = gathered_by_root(*comm, sizes);
 
@@ -69,11 +67,6 @@ GO CanonicalOrder::num_pieces() const
   return (size_ + piece_size - 1) / piece_size;
 }
 
-GO CanonicalOrder::end_of(const GO piece) const
-{
-  return std::min((piece + 1) * piece_size, size_);
-}
-
 template <class T>
 void CanonicalOrder::in_pieces(const T *const values, const int width,
                                const std::function<void(GO, const std::vector<T> &)> &take) const
@@ -81,19 +74,13 @@ void CanonicalOrder::in_pieces(const T *const values, const int width,
   std::vector<T> ordered, others;
   std::vector<int> places_of_others;
   for (GO piece = 0; piece < num_pieces(); ++piece) {
-    if (in_order_) {
-      const auto first = static_cast<std::size_t>(piece * piece_size), end = static_cast<std::size_t>(end_of(piece));
-      ordered.assign(values + width * first, values + width * end);
-      on_root(*comm_, ExitCode::internal_error, [&] { take(piece * piece_size, ordered); });
-      continue;
-    }
     const auto places = places_in(piece);
     const auto count = static_cast<std::size_t>(places.size());
     const auto row = [&, first = piece_[piece]](const std::size_t k) {
       return values + std::size_t(width) * owned_[first + static_cast<LO>(k)];
     };
     if (comm_->getRank() == 0) {
-      ordered.resize(width * (end_of(piece) - piece * piece_size));
+      ordered.resize(width * std::min(piece_size, size_ - piece * piece_size));
       const auto put = [&](const T *const from, const int place) {
         for (int c = 0; c < width; ++c) ordered[std::size_t(width) * place + c] = from[c];
       };
@@ -122,15 +109,11 @@ void CanonicalOrder::from_pieces(const std::function<std::vector<double>(GO, GO)
   for (GO piece = 0; piece < num_pieces(); ++piece) {
     std::vector<double> ordered;
     on_root(*comm_, ExitCode::internal_error, [&] {
-      const GO count = end_of(piece) - piece * piece_size;
+      const GO count = std::min(piece_size, size_ - piece * piece_size);
       ordered = give(piece * piece_size, count);
       RPC_REQUIRE_CODE(static_cast<GO>(ordered.size()) == count, ExitCode::internal_error,
                        "mesh: a piece of " << count << " values has " << ordered.size());
     });
-    if (in_order_) {
-      std::copy(ordered.begin(), ordered.end(), values + piece * piece_size);
-      continue;
-    }
     const auto mine = places_in(piece);
     const LO *const owned = owned_.data() + piece_[piece];
     if (comm_->getRank() == 0) {

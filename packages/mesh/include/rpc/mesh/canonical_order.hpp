@@ -42,7 +42,6 @@ public:
 
 private:
   GO num_pieces() const;
-  GO end_of(GO piece) const; // the id after a piece's last
   /// This rank's ids in a piece, seen from the piece's first id.
   Teuchos::ArrayView<const int> places_in(GO piece) const
   {
@@ -51,7 +50,6 @@ private:
 
   RCP<const Comm> comm_;
   GO size_ = 0;
-  bool in_order_ = false;       // one rank has the ids 0 .. n-1 in this order, as of a box: the lists below are empty
   std::vector<LO> owned_;       // by pieces
   std::vector<int> places_;     // of owned_, each in its piece
   std::vector<LO> piece_;       // (pieces + 1) where each begins in owned_
