@@ -280,7 +280,7 @@ private:
   /// Opens the file that Exodus has defined and closed.
   void open_for_data(const ExodusHeader &header)
   {
-    std::size_t block = std::size_t(4) << 20; // bytes that are read or written at once
+    std::size_t block = std::size_t(256) << 10; // bytes that are read or written at once: they stay in a core's cache
     check_netcdf(nc__open(file_.temporary().c_str(), NC_WRITE, &block, &netcdf_), "open");
     int old_fill = 0;
     check_netcdf(nc_set_fill(netcdf_, NC_NOFILL, &old_fill), "open");
