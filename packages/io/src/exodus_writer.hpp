@@ -192,7 +192,7 @@ public:
 
 private:
   /// Exodus defines a file in steps, each of which lengthens the header at its begin. NetCDF would move the arrays behind it each time, if
-  /// there were no room between them. An Exodus file's number is that of NetCDF's.
+  /// there were no room between them. It keeps room before the first array only if there is one. An Exodus file's number is NetCDF's too.
   /// @param count  of all that is to be defined
   void leave_room(const std::size_t count)
   {
@@ -305,7 +305,7 @@ private:
 
   void check_netcdf(const int status, const char *action) const
   {
-    if (status != NC_NOERR) fail(action, nc_strerror(status), status);
+    if (status != NC_NOERR) fail(action, nc_strerror(status));
   }
 
   [[noreturn]] void fail(const char *action) const
@@ -313,14 +313,15 @@ private:
     const char *message = nullptr, *function = nullptr;
     int code = 0;
     ex_get_err(&message, &function, &code);
-    fail(action, message ? message : "", code);
+    std::string text = message ? message : "";
+    if (code > 0) text += std::string(" (") + std::strerror(code) + ")"; // NetCDF hands on errno; its own codes are < 0
+    fail(action, text);
   }
 
-  [[noreturn]] void fail(const char *action, const std::string &message, const int code) const
+  [[noreturn]] void fail(const char *action, const std::string &message) const
   {
     std::string text = "output: cannot " + std::string(action) + " \"" + path_ + "\"";
     if (!message.empty()) text += ": " + message;
-    if (code > 0) text += std::string(" (") + std::strerror(code) + ")"; // NetCDF hands on errno; its own codes are < 0
     throw Error(ExitCode::internal_error, text);
   }
 
