@@ -36,7 +36,8 @@ function(rpc_find_library name what package header)
 endfunction()
 rpc_find_library(metis "METIS" libmetis-dev metis.h metis)
 rpc_find_library(exodus "The Exodus library" libexodusii-dev exodusII.h exoIIv2c exodus)
-# NetCDF lies under Exodus. Debian has two of it, with MPI and without; files that Exodus opens are known to the one that it was linked to.
+# Exodus writes its files by NetCDF, of which Debian has two libraries, with MPI and without. rpc calls the one that Exodus was linked to: a
+# file that one of them has opened is unknown to the other.
 execute_process(COMMAND ${CMAKE_READELF} -d ${EXODUS_LIBRARY} OUTPUT_VARIABLE exodus_needs ERROR_QUIET)
 string(REGEX MATCH "libnetcdf[a-z_]*\\.so[.0-9]*" netcdf_file "${exodus_needs}")
 rpc_find_library(netcdf "The NetCDF library" libnetcdf-dev netcdf.h ${netcdf_file} netcdf)

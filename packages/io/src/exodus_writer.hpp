@@ -78,8 +78,8 @@ inline void set_number_of_times(const std::string &path, const int number)
 }
 
 /// An Exodus file that one rank writes, under its temporary name until commit() or publish(). Private to io.
-/// The Exodus library writes the header and the small arrays. Coordinates, cells, times and fields are written by the NetCDF library under
-/// it, into the arrays that the header has defined: NetCDF's own choice, which Exodus cannot change, is to read and write 4 kB at a time.
+/// The Exodus library defines all arrays and writes the small ones. rpc writes coordinates, cells, times and fields by calls of NetCDF, the
+/// library that Exodus itself writes by: a file that Exodus has opened is read and written 4 kB at a time, which it offers no way to change.
 class ExodusWriter
 {
 public:
@@ -191,9 +191,10 @@ public:
   void commit() { file_.publish(); }
 
 private:
-  /// Exodus defines a file in steps, each of which lengthens the header at its begin. NetCDF would move the arrays behind it each time, if
-  /// there were no room between them. It keeps room before the first array only if there is one. An Exodus file's number is NetCDF's too.
-  /// @param count  of all that is to be defined
+  /// Leaves free bytes between the header, with which the file begins, and the first array. Exodus defines a file in steps, each of which
+  /// lengthens the header. Without free bytes NetCDF moves all arrays each time, though nothing is written to them yet.
+  /// To be called when the file has an array: NetCDF forgets the free bytes of a file without one. NetCDF's number of a file is Exodus' number.
+  /// @param count  of blocks, sides, arrays and fields that are to be defined
   void leave_room(const std::size_t count)
   {
     constexpr std::size_t for_file = 1 << 14, for_each = 1 << 10, alignment = 4; // bytes
@@ -286,7 +287,7 @@ private:
     check_netcdf(nc_set_fill(netcdf_, NC_NOFILL, &old_fill), "open");
     const auto variable = [&](const std::string &name) {
       int number = -1;
-      check_netcdf(nc_inq_varid(netcdf_, name.c_str(), &number), "write");
+      check_netcdf(nc_inq_varid(netcdf_, name.c_str(), &number), "find an array of");
       return number;
     };
     const std::array<const char *, 3> directions = {"coordx", "coordy", "coordz"};
@@ -327,10 +328,10 @@ private:
 
   std::string path_;
   AtomicFile file_;
-  int id_ = -1;     // Exodus': of the file while its header is written
-  int netcdf_ = -1; // NetCDF's: of the file after that
+  int id_ = -1;     // the file's number while Exodus writes, else -1
+  int netcdf_ = -1; // its number while NetCDF writes, else -1
   std::array<int, 3> coordinates_ = {-1, -1, -1};
-  std::vector<int> cells_, fields_; // NetCDF's variables, by block and by field
+  std::vector<int> cells_, fields_; // by block and by field; these four are NetCDF's numbers of arrays
   int time_ = -1;
   int begun_ = 0, whole_ = 0; // times that are begun, and whole
   bool published_ = false;

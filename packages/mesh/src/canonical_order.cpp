@@ -21,7 +21,7 @@ constexpr GO piece_size = GO(1) << 18; // ids: 2 MB a column
 CanonicalOrder::CanonicalOrder(const RCP<const Comm> &comm, const Ids &ids, const std::string &what)
     : comm_(comm), size_(sum_all(*comm, static_cast<GO>(ids.size())))
 {
-  const HostView<GO *> id = ids.list(); // at once: each number of a formula takes divisions
+  const HostView<GO *> id = ids.list(); // a list: to compute a single id of a box takes divisions
   const LO num_owned = static_cast<LO>(ids.size());
   std::optional<GO> beyond;
   std::vector<LO> sizes(num_pieces(), 0);

@@ -41,7 +41,7 @@ class RpcContact(CMakePackage, CudaPackage):
     depends_on("mumps +mpi +metis", when="+mumps")
     depends_on("gmsh", when="+gmsh")
     depends_on("seacas~applications~legacy")
-    depends_on("netcdf-c")  # under seacas
+    depends_on("netcdf-c")  # which seacas writes by
     depends_on("nlohmann-json")
 
     def cmake_args(self):
