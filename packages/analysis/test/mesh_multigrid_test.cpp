@@ -211,10 +211,10 @@ class Counting : public solver::CoarsestSolver
 {
 public:
   Counting(std::unique_ptr<CoarsestSolver> solver, int &updates) : solver_(std::move(solver)), updates_(updates) {}
-  void update() override
+  Update update(const double slight) override
   {
     ++updates_;
-    solver_->update();
+    return solver_->update(slight);
   }
   double most_change() const override { return 0.1; }
   void apply(const Vector &b, Vector &x) const override { solver_->apply(b, x); }

@@ -1,5 +1,6 @@
 #include "direct_solver.hpp"
 
+#include "matrix_changes.hpp"
 #include "rpc/core/memory.hpp"
 #include "rpc/core/parallel.hpp"
 
@@ -19,6 +20,12 @@ constexpr const char *no_factor = "a sparse factor: the matrix is not positive d
 constexpr std::size_t most_rows_on_each_rank = 5200;
 // A factor that takes less time [s] is made anew for the slightest change.
 constexpr double short_time = 5e-3;
+// New terms are solved for while they take worth_a_factor times a new factor's time at most. Where none of left_out keeps to that, they may
+// take worth_factors times the time of all factors made so far, of most_factors_worth at most: later changes are at the same places.
+constexpr double worth_a_factor = 0.7, worth_factors = 1.4;
+constexpr int most_factors_worth = 3;
+// Where all terms would take longer, those of changes up to such a part of a node's own block are left to CG.          (4.12)
+constexpr double left_out[] = {0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
 // What an update keeps, over the entries of the factor, and over the memory that is free.
 constexpr double kept_of_factor = 2, kept_of_free = 0.25;
 
@@ -57,7 +64,8 @@ RCP<const Map> on_root(const Map &rows)
 
 } // namespace
 
-DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node) : A_(std::move(A))
+DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node)
+    : A_(std::move(A)), dofs_per_node_(dofs_per_node)
 {
   const auto comm = A_->getComm();
   on_one_rank_ = max_all(*comm, static_cast<std::size_t>(num_local(*A_->getRowMap()))) == A_->getGlobalNumRows();
@@ -86,16 +94,45 @@ std::string DirectSolver::lacks_memory() const
 
 bool DirectSolver::make()
 {
+  const auto values = A_->getLocalMatrixDevice().values;
+  if (factored_.extent(0) != values.extent(0))
+    factored_ = HostView<double *>(Kokkos::ViewAllocateWithoutInitializing("rpc::solver::factored"), values.extent(0));
+  Kokkos::deep_copy(factored_, values);
   std::vector<double> value;
   for_lower_entries(*A_, [&](GO, GO, const double entry) { value.push_back(entry); });
   const Comm &comm = *A_->getComm();
   update_.forget();
-  return factor_->make(to_root_.is_null() && comm.getSize() > 1 ? gathered_by_all(comm, value) : value);
+  ++factors_;
+  return may_follow_ = factor_->make(to_root_.is_null() && comm.getSize() > 1 ? gathered_by_all(comm, value) : value);
 }
 
-void DirectSolver::update()
+/// By terms of rank one, by all of them or by the larger ones, if that takes less time than a new factor, else if it takes not much more
+/// than the factors that were made before.
+std::optional<CoarsestSolver::Update> DirectSolver::follow(const double slight)
 {
+  if (!may_follow_ || cost().seconds < short_time) return std::nullopt;
+  const MatrixChanges changes = changes_since(factored_, *A_, dofs_per_node_);
+  for (const double worth : {worth_a_factor, worth_factors * std::min(factors_, most_factors_worth)})
+    for (const double least : left_out) {
+      if (least > slight) continue;
+      const LowRankTerms wanted = low_rank_terms(changes, least, dofs_per_node_);
+      if (cost().seconds_of_column * update_.num_new(wanted.terms) > worth * cost().seconds) continue;
+      const Comm &comm = *A_->getComm();
+      const bool has_vectors = to_root_.is_null() || comm.getRank() == 0;
+      const double most_kept =
+          std::min(kept_of_factor * cost().entries, kept_of_free * min_all(comm, memory_left()) / sizeof(double));
+      update_.set(*factor_, static_cast<int>(A_->getGlobalNumRows()), has_vectors, wanted.terms, wanted.couplings,
+                  most_kept);
+      return least == 0 ? Update::exact : Update::rough;
+    }
+  return std::nullopt;
+}
+
+CoarsestSolver::Update DirectSolver::update(const double slight)
+{
+  if (const auto done = follow(slight)) return *done;
   if (!make()) throw std::runtime_error(no_factor);
+  return Update::made;
 }
 
 double DirectSolver::seconds_of_update() const
@@ -129,30 +166,6 @@ void DirectSolver::apply(const Vector &b, Vector &x) const
   update_.solve(*factor_, all.data());
   for (LO i = 0; i < num_rows; ++i) mine(i) = all[map.getGlobalElement(i)];
   Kokkos::deep_copy(DeviceView<double *>(device_write(x)), mine);
-}
-
-int DirectSolver::num_new(const std::vector<RankOneTerm> &terms) const
-{
-  return sum_all(*A_->getComm(), update_.num_new(terms));
-}
-
-void DirectSolver::add(const std::vector<RankOneTerm> &terms)
-{
-  constexpr int numbers = 5; // of a term
-  const Comm &comm = *A_->getComm();
-  std::vector<double> mine;
-  for (const RankOneTerm &term : terms)
-    mine.insert(mine.end(), {static_cast<double>(term.first_row), term.v[0], term.v[1], term.v[2], term.scale});
-  const std::vector<double> all = comm.getSize() > 1 ? gathered_by_all(comm, mine) : mine;
-  std::vector<RankOneTerm> of_all(all.size() / numbers);
-  for (std::size_t t = 0; t < of_all.size(); ++t) {
-    const double *const from = all.data() + numbers * t;
-    of_all[t] = {static_cast<long long>(from[0]), {from[1], from[2], from[3]}, from[4]};
-  }
-  const bool has_vectors = to_root_.is_null() || comm.getRank() == 0;
-  const double most_kept =
-      std::min(kept_of_factor * cost().entries, kept_of_free * min_all(comm, memory_left()) / sizeof(double));
-  update_.set(*factor_, static_cast<int>(A_->getGlobalNumRows()), has_vectors, of_all, most_kept);
 }
 
 std::unique_ptr<CoarsestSolver> direct_solver(RCP<const CrsMatrix> A, const int dofs_per_node, const double most_work)

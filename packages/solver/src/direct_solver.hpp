@@ -1,17 +1,18 @@
 #pragma once
 
 #include "low_rank_update.hpp"
+#include "rpc/core/tpetra.hpp"
 #include "rpc/solver/mesh_multigrid.hpp"
 #include "sparse_factor.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
-#include <vector>
 
 namespace rpc::solver
 {
 
-/// A^-1 by a sparse factor. A few unknowns are factored on each rank alike, more by all ranks together. Rows have gids from 0, without gaps.
+/// A^-1 by a sparse factor, and by an update of it where few entries of A have changed. A few unknowns are factored on each rank alike, more by all ranks together. Rows have gids from 0, without gaps.
 class DirectSolver : public CoarsestSolver
 {
 public:
@@ -25,22 +26,25 @@ public:
 
   /// Factors the matrix as it is now; collective. @return whether it is positive definite
   bool make();
-  void update() override;
+  /// By terms of low rank, (4.11), where these take less time than a new factor.
+  Update update(double slight) override;
   double seconds_of_update() const override;
+  /// The next update makes a new factor.
+  void forget() { may_follow_ = false; }
   void apply(const Vector &b, Vector &x) const override;
 
-  /// What was added to the matrix since make(), in place of what was said before: no new factor is made for it. Collective.
-  /// @param terms  of this rank
-  void add(const std::vector<RankOneTerm> &terms);
-  /// How many terms, of all ranks, add() would have to solve for; collective.
-  int num_new(const std::vector<RankOneTerm> &terms) const;
-
 private:
+  std::optional<Update> follow(double slight);
+
   RCP<const CrsMatrix> A_;
+  int dofs_per_node_;
   std::unique_ptr<SparseFactor> factor_;
-  LowRankUpdate update_;      // of the factor
-  RCP<const Import> to_root_; // null: each rank has a factor of its own
-  bool on_one_rank_ = false;  // all rows are, which then solves alone
+  HostView<double *> factored_; // (entries of this rank) A's when the factor was made
+  int factors_ = 0;             // that were made
+  bool may_follow_ = false;     // by an update of the factor
+  LowRankUpdate update_;        // of the factor
+  RCP<const Import> to_root_;   // null: each rank has a factor of its own
+  bool on_one_rank_ = false;    // all rows are, which then solves alone
 };
 
 } // namespace rpc::solver

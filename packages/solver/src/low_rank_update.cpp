@@ -66,9 +66,11 @@ int LowRankUpdate::num_new(const std::vector<RankOneTerm> &terms) const
 }
 
 void LowRankUpdate::set(const SparseFactor &factor, const int size, const bool has_vectors,
-                        const std::vector<RankOneTerm> &terms, const double most_kept)
+                        const std::vector<RankOneTerm> &terms, const std::vector<Coupling> &couplings,
+                        const double most_kept)
 {
   size_ = size;
+  coupling_ = couplings;
   std::vector<int> made;
   present_.clear();
   scale_.clear();
@@ -107,15 +109,30 @@ void LowRankUpdate::set(const SparseFactor &factor, const int size, const bool h
   }
   if (!has_vectors) return;
   const int n = static_cast<int>(present_.size());
-  matrix_.assign(static_cast<std::size_t>(n) * n, 0.);
-  for (int j = 0; j < n; ++j)
+  matrix_.clear();
+  std::vector<double> flexibility(n);
+  for (int j = 0; j < n; ++j) {
     for (int i = 0; i < n; ++i)
-      matrix_[static_cast<std::size_t>(j) * n + i] =
-          (i == j) + scale_[i] * flexibility_[std::max(present_[i], present_[j])][std::min(present_[i], present_[j])];
+      flexibility[i] = flexibility_[std::max(present_[i], present_[j])][std::min(present_[i], present_[j])];
+    const std::vector<double> column = times_S(flexibility);
+    matrix_.insert(matrix_.end(), column.begin(), column.end());
+    matrix_[static_cast<std::size_t>(j) * n + j] += 1;
+  }
   pivot_.resize(n);
   int info = 0;
   if (n > 0) Teuchos::LAPACK<int, double>().GETRF(n, n, matrix_.data(), n, pivot_.data(), &info);
   if (info != 0) matrix_.assign(matrix_.size(), std::numeric_limits<double>::quiet_NaN()); // singular: norms will tell
+}
+
+std::vector<double> LowRankUpdate::times_S(const std::vector<double> &x) const
+{
+  std::vector<double> y(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = scale_[i] * x[i];
+  for (const Coupling &c : coupling_) {
+    y[c.i] += c.value * x[c.j];
+    y[c.j] += c.value * x[c.i];
+  }
+  return y;
 }
 
 void LowRankUpdate::solve(const SparseFactor &factor, double *const x) const
@@ -126,15 +143,16 @@ void LowRankUpdate::solve(const SparseFactor &factor, double *const x) const
     if (!keeps_) factor.solve(nullptr);
     return factor.solve(nullptr);
   }
-  std::vector<double> forces(n);
+  std::vector<double> moves(n); // V^T A^-1 x
   if (keeps_) {
     const Teuchos::BLAS<int, double> blas;
-    for (int i = 0; i < n; ++i) forces[i] = scale_[i] * blas.DOT(size_, solved_[present_[i]].data(), 1, x, 1);
+    for (int i = 0; i < n; ++i) moves[i] = blas.DOT(size_, solved_[present_[i]].data(), 1, x, 1);
   } else {
     std::vector<double> z(x, x + size_);
     factor.solve(z.data());
-    for (int i = 0; i < n; ++i) forces[i] = scale_[i] * product(column_[present_[i]], z.data());
+    for (int i = 0; i < n; ++i) moves[i] = product(column_[present_[i]], z.data());
   }
+  std::vector<double> forces = times_S(moves);
   int info = 0;
   Teuchos::LAPACK<int, double>().GETRS('N', n, 1, matrix_.data(), n, pivot_.data(), forces.data(), n, &info);
   for (int i = 0; i < n; ++i) add(column_[present_[i]], -forces[i], x);

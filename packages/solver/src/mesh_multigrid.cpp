@@ -297,8 +297,8 @@ bool MeshMultigrid::update(const bool slight_changes_too)
   if (!(changed_part(comm, contact_of_coarsest_, update) > coarsest_->most_change())) return true;
   if (!slight_changes_too && largest_change(comm, contact_base_, contact_of_coarsest_, update) <= slight_change)
     return false;
+  if (coarsest_->update(slight_changes_too ? 0 : slight_change) == CoarsestSolver::Update::rough) return false;
   contact_of_coarsest_ = update;
-  coarsest_->update();
   return true;
 }
 

@@ -9,6 +9,7 @@ namespace low_rank_update_test
 namespace
 {
 
+using rpc::solver::Coupling;
 using rpc::solver::LowRankUpdate;
 using rpc::solver::RankOneTerm;
 using rpc::solver::SparseFactor;
@@ -32,16 +33,29 @@ SymmetricEntries chain()
   return entries;
 }
 
-std::vector<double> product(const std::vector<RankOneTerm> &terms, const std::vector<double> &x)
+double along(const RankOneTerm &term, const std::vector<double> &x)
+{
+  double sum = 0;
+  for (int k = 0; k < 3; ++k)
+    if (term.v[k] != 0) sum += term.v[k] * x[term.first_row + k];
+  return sum;
+}
+
+void add(const RankOneTerm &term, const double factor, std::vector<double> &y)
+{
+  for (int k = 0; k < 3; ++k)
+    if (term.v[k] != 0) y[term.first_row + k] += factor * term.v[k];
+}
+
+std::vector<double> product(const std::vector<RankOneTerm> &terms, const std::vector<Coupling> &couplings,
+                            const std::vector<double> &x)
 {
   std::vector<double> y(size);
   for (int i = 0; i < size; ++i) y[i] = 2.1 * x[i] - (i > 0 ? x[i - 1] : 0) - (i + 1 < size ? x[i + 1] : 0);
-  for (const auto &term : terms) {
-    double along = 0;
-    for (int k = 0; k < 3; ++k)
-      if (term.v[k] != 0) along += term.v[k] * x[term.first_row + k];
-    for (int k = 0; k < 3; ++k)
-      if (term.v[k] != 0) y[term.first_row + k] += term.scale * along * term.v[k];
+  for (const auto &term : terms) add(term, term.scale * along(term, x), y);
+  for (const auto &[i, j, value] : couplings) {
+    add(terms[i], value * along(terms[j], x), y);
+    add(terms[j], value * along(terms[i], x), y);
   }
   return y;
 }
@@ -66,15 +80,17 @@ TEST_P(LowRankUpdateThatKeeps, IsExactForAnyTerms)
   struct Case {
     std::vector<RankOneTerm> terms;
     int num_new;
+    std::vector<Coupling> couplings = {};
   };
-  for (const Case &present : {Case{{}, 0}, Case{{slanted, stiff}, 2}, Case{{changed, weaker}, 1}, Case{{across}, 1},
-                              Case{{}, 0}, Case{{slanted, stiff, weaker, across}, 0}}) {
+  for (const Case &present :
+       {Case{{}, 0}, Case{{slanted, stiff}, 2}, Case{{changed, weaker}, 1}, Case{{across}, 1}, Case{{}, 0},
+        Case{{slanted, stiff, weaker, across}, 0}, Case{{slanted, across, weaker}, 0, {{0, 1, -1.5}, {2, 0, 0.7}}}}) {
     EXPECT_EQ(update.num_new(present.terms), present.num_new);
-    update.set(*factor, size, true, present.terms, GetParam());
+    update.set(*factor, size, true, present.terms, present.couplings, GetParam());
     columns += present.num_new;
     std::vector<double> x(size);
     for (int i = 0; i < size; ++i) x[i] = std::sin(1. + i);
-    auto solution = product(present.terms, x);
+    auto solution = product(present.terms, present.couplings, x);
     update.solve(*factor, solution.data());
     for (int i = 0; i < size; ++i) EXPECT_NEAR(solution[i], x[i], 1e-9) << present.terms.size() << " " << i;
   }

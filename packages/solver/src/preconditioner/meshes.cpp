@@ -25,11 +25,11 @@ public:
     list_.sublist("user data").set("Nullspace", level.body.null_space());
     multigrid_ = make_multigrid(A_, list_);
   }
-  void update() override
+  Update update(double) override
   {
     Kokkos::deep_copy(A_->getLocalMatrixDevice().values, now_->getLocalMatrixDevice().values);
-    if (!multigrid_.is_null() && renew_multigrid(A_, multigrid_)) return;
-    multigrid_ = make_multigrid(A_, list_);
+    if (multigrid_.is_null() || !renew_multigrid(A_, multigrid_)) multigrid_ = make_multigrid(A_, list_);
+    return Update::made;
   }
   double most_change() const override { return small_change; }
   /// Two cycles: the matrix is small beside that of order 2, and one cycle costs it a third more CG iterations.

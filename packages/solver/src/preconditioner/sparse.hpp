@@ -29,15 +29,16 @@ public:
   Prepared prepare(double tolerance) override;
   void forget() override;
   /// The next prepare() makes a new factor.
-  void renew() { made_ = false; }
+  void renew();
   std::string name() const override { return "sparse factor"; }
   std::string description() const override;
   /// Whether the factor is that of the present H, without updates.
-  bool is_from_scratch() const { return is_fresh_; }
+  bool is_from_scratch() const { return last_update_ == CoarsestSolver::Update::made; }
   /// Whether a new factor takes less time than so many iterations: never where the present one is that of H but for rounding.   (4.12)
   bool renewal_pays(double iterations) const
   {
-    return !is_exact_ && prospect_.cost.seconds < iterations * prospect_.cost.seconds_of_solve;
+    return last_update_ == CoarsestSolver::Update::rough &&
+           prospect_.cost.seconds < iterations * prospect_.cost.seconds_of_solve;
   }
 
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
@@ -46,17 +47,13 @@ public:
   RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
 
 private:
-  bool follow(const DeviceView<double ***> &update);
-
   RCP<const UpdatedOperator> H_;
   RCP<CrsMatrix> A_;                     // K with an update; null: it was not analysed
   std::unique_ptr<DirectSolver> solver_; // of A
   Prospect prospect_;
-  DeviceView<double ***> written_; // (nodes of H, dim, dim) the update in A
-  int factors_ = 0;                // that were made
-  int revision_ = -1;              // of H when it was last brought to it
-  bool made_ = false, is_fresh_ = false;
-  bool is_exact_ = false; // no terms were left out
+  int revision_ = -1; // of H when it was last brought to it
+  bool made_ = false;
+  CoarsestSolver::Update last_update_ = CoarsestSolver::Update::made;
 };
 
 } // namespace rpc::solver

@@ -14,9 +14,18 @@ namespace rpc::solver
 class CoarsestSolver
 {
 public:
+  /// How an update has followed the matrix.
+  enum class Update {
+    made,  ///< made for it
+    exact, ///< as good as that
+    rough  ///< slight changes have been left out
+  };
+
   virtual ~CoarsestSolver() = default;
-  /// The matrix has changed; collective. @throws std::runtime_error on all ranks if it is not positive definite
-  virtual void update() = 0;
+  /// The matrix has changed; collective.
+  /// @param slight  changes of a node's own block alone, up to this part of it, may be left out where that saves time
+  /// @throws std::runtime_error on all ranks if it is not positive definite
+  virtual Update update(double slight) = 0;
   /// What part of the contact stiffness may change before update() is called: until then the solver is that of earlier states.
   virtual double most_change() const { return 0; }
   /// About what update() takes, where it may be put off while CG takes less time for what it has missed [s]; 0: it may not.
@@ -73,7 +82,7 @@ private:
   DeviceView<double **> at_rest_, kept_;       // (nodes, dim) zeros; what truncation leaves as it is
   std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
   std::unique_ptr<CoarsestSolver> coarsest_;
-  DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) update that it is made for
+  DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) the last update that it follows but for rounding
 };
 
 } // namespace rpc::solver
