@@ -54,17 +54,6 @@ DeviceView<LO *> nodes_of(const fem::Discretization &d, const std::vector<const 
   return distinct_nodes(lists);
 }
 
-/// The model for a coarser box, whose cells of order 1 bend more stiffly: softer, so that it bends as much as on the finer mesh. (5.11a)
-Model bending_alike(const Model &model, const fem::Discretization &fine, const fem::Discretization &coarse)
-{
-  Model softer = model;
-  const double part = fem::excess_stiffness_in_bending(fine, model.materials) /
-                      fem::excess_stiffness_in_bending(coarse, model.materials);
-  softer.materials.common.youngs_modulus *= part;
-  for (auto &[name, material] : softer.materials.block) material.youngs_modulus *= part;
-  return softer;
-}
-
 } // namespace
 
 std::vector<Point> foundations_moved(const Model &model, const double from, const double to)
@@ -171,8 +160,7 @@ std::shared_ptr<const Problem> Problem::coarser(const double factor, const doubl
   auto mesh = mesh_;
   do mesh = mesh->coarser();
   while (mesh && most_cells(*mesh) > most);
-  return mesh ? std::make_shared<Problem>(mesh, bending_alike(model_, discretization(), mesh->discretization()), t)
-              : nullptr;
+  return mesh ? std::make_shared<Problem>(mesh, model_, t) : nullptr;
 }
 
 std::vector<const mesh::Side *> Problem::contact_sides() const

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <optional>
 #include <sstream>
 
 namespace rpc::fem
@@ -189,84 +188,34 @@ std::string incompressibility_note(const Discretization &d, const Materials &mat
   return "";
 }
 
-namespace
-{
-
-/// How a box of order 1 bends beside what (2.6a) wants: the thinnest direction, and how many times as long as the body is thick cells are.
-struct Bending {
-  int across;
-  double thickness;   // [m]
-  double longest;     // of the cells' lengths, over the thickness
-  double mean_square; // of the same lengths, along directions in which the body is about as long as in the longest one
-};
-
-std::optional<Bending> bending_of(const mesh::Mesh &mesh)
-{
-  if (!mesh.box || mesh.element.order != 1) return std::nullopt;
-  const mesh::BoxOptions &box = *mesh.box;
-  const auto extent = [&box](const int k) { return box.upper[k] - box.lower[k]; };
-  Bending bending{0, 0, 0, 0};
-  double most = 0;
-  for (int k = 0; k < mesh.dim(); ++k) {
-    if (extent(k) < extent(bending.across)) bending.across = k;
-    most = std::max(most, extent(k));
-  }
-  bending.thickness = extent(bending.across);
-  int directions = 0;
-  for (int k = 0; k < mesh.dim(); ++k) {
-    if (k == bending.across) continue;
-    const double length = box.cell_length(k) / bending.thickness;
-    bending.longest = std::max(bending.longest, length);
-    constexpr double about = 0.5;
-    if (extent(k) < about * most) continue;
-    bending.mean_square += length * length;
-    ++directions;
-  }
-  bending.mean_square /= directions;
-  return bending;
-}
-
-/// The second and the third term of (2.6a), of the block where they are largest, for cells of such a length over the thickness.
-struct BendingTerms {
-  double shear = 0, all = 0;
-};
-
-BendingTerms bending_terms(const Discretization &d, const Materials &materials, const Bending &bending,
-                           const double length_squared)
-{
-  BendingTerms terms;
-  const double layer = d.mesh->box->cell_length(bending.across) / bending.thickness;
-  const bool stress = d.kinematics == Kinematics::plane_stress;
-  for (const std::string &block : d.mesh->blocks) {
-    const Material &material = materials.of(block);
-    const double nu = material.poissons_ratio;
-    terms.shear = std::max(terms.shear, (stress ? 0.5 / (1 + nu) : 0.5 * (1 - nu)) * length_squared);
-    const double lateral = projects(d, material) ? 0 : nu * nu / (stress ? 1 - nu * nu : 1 - 2 * nu);
-    terms.all = std::max(terms.all, terms.shear + lateral * layer * layer);
-  }
-  return terms;
-}
-
-} // namespace
-
-double excess_stiffness_in_bending(const Discretization &d, const Materials &materials)
-{
-  const auto bending = bending_of(*d.mesh);
-  return bending ? 1 + bending_terms(d, materials, *bending, bending->mean_square).all : 1;
-}
-
 std::string bending_note(const Discretization &d, const Materials &materials)
 {
-  const auto bending = bending_of(*d.mesh);
-  if (!bending) return "";
-  const double slenderness = bending->longest;
-  const auto [shear, all] = bending_terms(d, materials, *bending, slenderness * slenderness);
+  const mesh::Mesh &mesh = *d.mesh;
+  if (!mesh.box || mesh.element.order != 1) return "";
+  const mesh::BoxOptions &box = *mesh.box;
+  const auto thickness = [&box](const int k) { return box.upper[k] - box.lower[k]; };
+  int across = 0;
+  for (int k = 1; k < mesh.dim(); ++k)
+    if (thickness(k) < thickness(across)) across = k;
+  double length = 0;
+  for (int k = 0; k < mesh.dim(); ++k)
+    if (k != across) length = std::max(length, box.cell_length(k));
+  const double slenderness = length / thickness(across), layer = box.cell_length(across) / thickness(across);
+  double shear = 0, excess = 0; // (2.6a)
+  for (const std::string &block : mesh.blocks) {
+    const Material &material = materials.of(block);
+    const double nu = material.poissons_ratio;
+    const bool stress = d.kinematics == Kinematics::plane_stress;
+    shear = std::max(shear, (stress ? 0.5 / (1 + nu) : 0.5 * (1 - nu)) * slenderness * slenderness);
+    const double lateral = projects(d, material) ? 0 : nu * nu / (stress ? 1 - nu * nu : 1 - 2 * nu);
+    excess = std::max(excess, shear + lateral * layer * layer);
+  }
   constexpr double notable = 0.25, fair = 0.05;
   if (shear < notable) return "";
   std::ostringstream note;
-  note << std::setprecision(2) << d.mesh->element.name() << " cells " << slenderness
+  note << std::setprecision(2) << mesh.element.name() << " cells " << slenderness
        << " times as long as the body is thick make it "
-       << (d.mesh->element.shape == mesh::Shape::simplex ? "more than " : "up to ") << 1 + all
+       << (mesh.element.shape == mesh::Shape::simplex ? "more than " : "up to ") << 1 + excess
        << " times too stiff where it bends; take order 2, or cells at most " << slenderness * std::sqrt(fair / shear)
        << " times its thickness long for 5 %";
   return note.str();

@@ -426,20 +426,6 @@ TEST(BendingNote, TellsByWhatFactorLongCellsOfOrderOneAreTooStiff)
   EXPECT_EQ(note({2, 2}, 0.5, 0), "");
 }
 
-/// (1 - nu)/2 (h/t)^2, of Q1 exactly so: bending energies of two meshes of a plate stand in that ratio.
-TEST(BendingNote, StiffnessInBendingIsThatOfTheCells)
-{
-  const auto excess = [](const mesh::BoxOptions &box, const double nu) {
-    return fem::excess_stiffness_in_bending(body(box, world()), fem::Material{1, nu});
-  };
-  const mesh::Element q1{2, 1}, q2{2, 2}, q1_in_space{3, 1};
-  EXPECT_DOUBLE_EQ(excess({{0, 0}, {8, 0.5}, {4, 2}, q1}, 0), 9);
-  EXPECT_DOUBLE_EQ(excess({{0, 0}, {8, 0.5}, {8, 2}, q1}, 0), 3);
-  EXPECT_DOUBLE_EQ(excess({{0, 0}, {8, 0.5}, {4, 2}, q2}, 0), 1);
-  EXPECT_DOUBLE_EQ(excess({{0, 0, 0}, {8, 0.5, 6}, {4, 1, 6}, q1_in_space}, 0), 1 + 0.5 * (16 + 4) / 2) << "a plate";
-  EXPECT_DOUBLE_EQ(excess({{0, 0, 0}, {8, 0.5, 1}, {4, 1, 1}, q1_in_space}, 0), 9) << "a beam bends along its length";
-}
-
 TEST(OrderNote, TellsOfP2WhereItsDilatationIsProjected)
 {
   const auto note = [](const mesh::Element &element, const double nu,

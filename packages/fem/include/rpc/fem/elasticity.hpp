@@ -62,10 +62,6 @@ std::string locking_note(const Discretization &d, const Materials &materials);
 /// there is nothing.
 std::string incompressibility_note(const Discretization &d, const Materials &materials);
 
-/// How many times too stiffly a box with cells of order 1 bends, (2.6a): between two meshes of a body this changes, for P1 too, which bends
-/// more stiffly than that. 1 of other meshes.
-double excess_stiffness_in_bending(const Discretization &d, const Materials &materials);
-
 /// What a user should know: that cells of order 1 are so long that a thin box is too stiff where it bends (theory, 2.6a); empty if there
 /// is nothing.
 std::string bending_note(const Discretization &d, const Materials &materials);
