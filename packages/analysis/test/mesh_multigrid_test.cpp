@@ -249,6 +249,47 @@ TEST(MeshMultigrid, RenewsWhatIsDearWhereMuchHasChanged)
   EXPECT_EQ(updates, 2);
 }
 
+/// A solver for the coarsest mesh that says each time that it has left out slight changes.
+class Rough : public solver::CoarsestSolver
+{
+public:
+  Rough(std::unique_ptr<CoarsestSolver> solver, int &updates) : solver_(std::move(solver)), updates_(updates) {}
+  Update update(const double slight) override
+  {
+    ++updates_;
+    solver_->update(slight);
+    return slight > 0 ? Update::rough : Update::exact;
+  }
+  void apply(const Vector &b, Vector &x) const override { solver_->apply(b, x); }
+
+private:
+  std::unique_ptr<CoarsestSolver> solver_;
+  int &updates_;
+};
+
+/// States that come back are followed as well: what the coarsest solver was brought to counts, not what it was exact for.
+TEST(MeshMultigrid, FollowsStatesThatComeBackAfterARoughUpdate)
+{
+  const Block block({2, 1}, {67, 35});
+  const auto close_up_to = [&](const double x) { block.close([x](const double at) { return at < x; }); };
+  close_up_to(1);
+  int updates = 0;
+  MeshMultigrid B(block.H, block.levels(),
+                  [&](const solver::MeshLevel &level) { return std::make_unique<Rough>(directly(level), updates); });
+  EXPECT_TRUE(B.update(false));
+  EXPECT_EQ(updates, 0);
+  close_up_to(1.2);
+  EXPECT_FALSE(B.update(false));
+  EXPECT_EQ(updates, 1);
+  EXPECT_FALSE(B.update(false)) << "nothing has changed, but it is not exact yet";
+  EXPECT_EQ(updates, 1);
+  close_up_to(1);
+  EXPECT_FALSE(B.update(false));
+  EXPECT_EQ(updates, 2);
+  EXPECT_TRUE(B.update(true));
+  EXPECT_EQ(updates, 3);
+}
+
 /// Coarse matrices that are not positive definite: the algebraic hierarchy takes over, and the counts say why.
 TEST(MeshMultigrid, GivesWayToTheAlgebraicOneWhereItFails)
 {

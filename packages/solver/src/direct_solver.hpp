@@ -12,7 +12,8 @@
 namespace rpc::solver
 {
 
-/// A^-1 by a sparse factor, and by an update of it where few entries of A have changed. A few unknowns are factored on each rank alike, more by all ranks together. Rows have gids from 0, without gaps.
+/// A^-1 by a sparse factor, and by an update of it where few entries of A have changed. A few unknowns are factored on each rank alike, more
+/// by all ranks together. Rows have gids from 0, without gaps.
 class DirectSolver : public CoarsestSolver
 {
 public:

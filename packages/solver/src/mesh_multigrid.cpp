@@ -294,12 +294,13 @@ bool MeshMultigrid::update(const bool slight_changes_too)
 {
   const auto update = write_contact();
   const Comm &comm = *H_->getDomainMap()->getComm();
-  if (!(changed_part(comm, contact_of_coarsest_, update) > coarsest_->most_change())) return true;
+  const bool changes = changed_part(comm, contact_of_coarsest_, update) > coarsest_->most_change();
+  if (!changes && coarsest_is_exact_) return true;
   if (!slight_changes_too && largest_change(comm, contact_base_, contact_of_coarsest_, update) <= slight_change)
     return false;
-  if (coarsest_->update(slight_changes_too ? 0 : slight_change) == CoarsestSolver::Update::rough) return false;
   contact_of_coarsest_ = update;
-  return true;
+  coarsest_is_exact_ = coarsest_->update(slight_changes_too ? 0 : slight_change) != CoarsestSolver::Update::rough;
+  return coarsest_is_exact_;
 }
 
 void MeshMultigrid::cycle(const std::size_t l, const Vector &b, Vector &x) const

@@ -82,7 +82,8 @@ private:
   DeviceView<double **> at_rest_, kept_;       // (nodes, dim) zeros; what truncation leaves as it is
   std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
   std::unique_ptr<CoarsestSolver> coarsest_;
-  DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) the last update that it follows but for rounding
+  DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) what it was brought to last
+  bool coarsest_is_exact_ = true;              // then; else slight changes were left out
 };
 
 } // namespace rpc::solver
