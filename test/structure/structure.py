@@ -4,8 +4,8 @@
 
 Prints each arrow that is not allowed, each line of the program that launches a kernel or works on a matrix, each name that differs
 between Trilinos versions outside VERSION_HEADERS, each parameter of a contact law that is read outside its folder, each kernel in a
-private member function, which nvcc refuses, each source file that is longer than MOST_LINES, and each file of GoogleTests outside a
-namespace of its own; the exit code is 1 if there is one.
+private member function, which nvcc refuses, each source file that is longer than MOST_LINES, each file of GoogleTests outside a
+namespace of its own, and each constant that two sources of a package define; the exit code is 1 if there is one.
 """
 
 import pathlib
@@ -63,6 +63,9 @@ CLASS = re.compile(r"^(?:class|struct) (\w+)[^;\n]*\n\{\n(.*?)^\};", re.MULTILIN
 HIDDEN_PART = re.compile(r"^(?:private|protected):\n(.*?)(?=^public:|\Z)", re.MULTILINE | re.DOTALL)
 NAME_OF_FUNCTION = re.compile(r"\b(\w+)\(")
 MEMBER = re.compile(r"^\S[^\n]*?\b(\w+)::(~?\w+)\((?:[^\n]*\n)+?\{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
+
+CONSTANT = re.compile(r"^(?:static |inline )*constexpr [^\n;({]*;", re.MULTILINE)
+NAME_OF_CONSTANT = re.compile(r"(\w+)(?:\[\w*\])? = ")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 PACKAGE = re.compile(r"rpc_add_package\(\s*(\w+)(.*?)\)", re.DOTALL)
@@ -176,6 +179,18 @@ def check_namespaces_of_tests(root):
                 yield f"{file.relative_to(root)}: is not within namespace {file.stem} and an unnamed one"
 
 
+def check_constants(root):
+    """Several sources of a package may be compiled as one file."""
+    for folder in [*sorted(root.glob("packages/*/src")), root / "src"]:
+        first = {}
+        for file in sorted(folder.rglob("*.cpp")):
+            names = [name for line in CONSTANT.findall(file.read_text()) for name in NAME_OF_CONSTANT.findall(line)]
+            for name in names:
+                other = first.setdefault(name, file)
+                if other != file:
+                    yield f"{file.relative_to(root)}: {name} is also a constant of {other.relative_to(root)}"
+
+
 def violations(root):
     folders = sorted(path.parent for path in root.glob("packages/*/CMakeLists.txt"))
     for folder in folders:
@@ -191,6 +206,7 @@ def violations(root):
     yield from check_kernels(root)
     yield from check_lengths(root)
     yield from check_namespaces_of_tests(root)
+    yield from check_constants(root)
 
 
 def main():

@@ -120,6 +120,13 @@ class Structure(unittest.TestCase):
         for text in ("TEST(A, b) {}\n", test_file(stem="b_test"), test_file("TEST(A, b) {}"), test_file() + "TEST(A, b) {}\n"):
             self.assertEqual(self.violations(**{where: text}), ["packages/mesh/test/a_test.cpp: is not within namespace a_test and an unnamed one"])
 
+    def test_finds_a_constant_that_two_sources_define(self):
+        files = {"packages__mesh__src__a.cpp": "constexpr double tiny = 1e-9; // small\n",
+                 "packages__mesh__src__sub__b.cpp": "constexpr double huge = 1e9, tiny = 1e-3;\n"}
+        self.assertEqual(self.violations(**files), ["packages/mesh/src/sub/b.cpp: tiny is also a constant of packages/mesh/src/a.cpp"])
+        files["packages__mesh__src__sub__b.cpp"] = "void f()\n{\n  constexpr double tiny = 1e-3;\n}\n"
+        self.assertEqual(self.violations(**files), [])
+
 
 if __name__ == "__main__":
     unittest.main()

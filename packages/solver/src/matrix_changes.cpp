@@ -12,8 +12,6 @@ namespace rpc::solver
 namespace
 {
 
-constexpr double rounding = 1e-13; // of a node's own block
-
 /// The local matrix on the host, with gids.
 class HostMatrix
 {
@@ -58,6 +56,7 @@ struct OwnBlock {
 template <int Dim>
 void add_changes_of(const HostMatrix &A, const HostView<const double *> &before, const LO first, MatrixChanges &changes)
 {
+  constexpr double rounding = 1e-13; // of the node's own block
   const GO node = A.row(first);
   OwnBlock<Dim> own;
   std::vector<MatrixChanges::Between> others;

@@ -28,9 +28,6 @@ constexpr double largest_on_stars_2d = 4, largest_on_stars_3d = 8;
 // The update of a node counts on coarse meshes as so many times its own stiffness. With a quarter or four times that, CG takes a fourth more
 // iterations.                                                                                                    (4.7b)
 constexpr double most_on_coarse_meshes = 1;
-// Changes of a node's block, beside the node's own stiffness, that the coarsest solver need not follow at once. Where it misses points
-// that close, whose blocks change by most_on_coarse_meshes, CG hardly converges.                                  (4.12)
-constexpr double slight_change = 0.1;
 
 constexpr const char *not_definite = "multigrid: the matrix of the coarsest mesh is not positive definite";
 
@@ -296,10 +293,12 @@ bool MeshMultigrid::update(const bool slight_changes_too)
   const Comm &comm = *H_->getDomainMap()->getComm();
   const bool changes = changed_part(comm, contact_of_coarsest_, update) > coarsest_->most_change();
   if (!changes && coarsest_is_exact_) return true;
-  if (!slight_changes_too && largest_change(comm, contact_base_, contact_of_coarsest_, update) <= slight_change)
+  if (!slight_changes_too &&
+      largest_change(comm, contact_base_, contact_of_coarsest_, update) <= CoarsestSolver::slight_change)
     return false;
   contact_of_coarsest_ = update;
-  coarsest_is_exact_ = coarsest_->update(slight_changes_too ? 0 : slight_change) != CoarsestSolver::Update::rough;
+  coarsest_is_exact_ =
+      coarsest_->update(slight_changes_too ? 0 : CoarsestSolver::slight_change) != CoarsestSolver::Update::rough;
   return coarsest_is_exact_;
 }
 

@@ -13,8 +13,6 @@ namespace
 // The factor takes closed nodes for at most so many times their own stiffness: all of it would cost digits where they open again. CG
 // takes the difference in an iteration.
 constexpr double most_closed_stiffness = 1e4;
-// Changes up to such a part of a node's own block may be left to CG.                                                 (4.12)
-constexpr double slight_change = 0.1;
 
 } // namespace
 
@@ -34,7 +32,7 @@ Preconditioner::Prepared Sparse::prepare(double)
   if (!prospect().obstacle.empty()) throw std::runtime_error(prospect_.obstacle);
   write_update(*A_, *H_, bounded_update(*H_, most_closed_stiffness));
   made_ = false;
-  last_update_ = solver_->update(slight_change);
+  last_update_ = solver_->update(CoarsestSolver::slight_change);
   made_ = true;
   revision_ = revision;
   return last_update_ == CoarsestSolver::Update::made ? Prepared::made : Prepared::updated;
