@@ -50,6 +50,9 @@ constexpr int most_path_steps = 50;
 // What the path's linear solves leave: of the error in energy, or of their right sides. With an error of 0.03 no step less; the right side
 // tells nothing of how far a thin body has bent.
 constexpr double path_error = 0.1, path_forcing = 1e-2;
+// Steps shorter than long_enough are centred, and once more where that makes them longer by least_gain.             (5.19a)
+constexpr int most_centerings = 2;
+constexpr double long_enough = 0.9, least_gain = 0.03;
 // The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and
 // below the last gap in any case. A trial may change states so often.
 constexpr double first_trial = 1e-2, next_trial = 1e-2, last_gap = 1e-8;
@@ -216,7 +219,7 @@ ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector
   return Step::full;
 }
 
-/// The direction of a step of the path: predictor, and what it lacks of the corrector.                            (5.18), (5.19)
+/// The direction of a step of the path: predictor, and what it lacks of the correctors.                    (5.18), (5.19)
 /// @return whether it can be used
 bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction)
 {
@@ -226,21 +229,38 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
     energy = solved.energy;
     return !solved.broken && !solved.interrupted && std::isfinite(context.direction_norm);
   };
+  // d <- -H^-1 F, from what d is
+  const auto improve = [&](const Vector &F, Vector &d) {
+    Vector lacking(u.getMap());
+    iterate_.hessian()->apply(d, lacking);
+    lacking.update(1., F, 1.);
+    const double wanted = path_forcing * F.norm2(), missing = lacking.norm2();
+    if (missing <= wanted) return true;
+    const int iterations = context.linear_iterations;
+    Vector correction(u.getMap());
+    if (!solve(lacking, correction, wanted / missing)) return false;
+    context.linear_iterations += iterations;
+    d.update(-1., correction, 1.);
+    return true;
+  };
   Vector F(u.getMap());
   iterate_.linearize_interior(u, F);
   if (!solve(F, direction, path_forcing)) return false;
   direction.scale(-1.);
   iterate_.correct_interior(u, direction, F);
-  Vector lacking(u.getMap());
-  iterate_.hessian()->apply(direction, lacking);
-  lacking.update(1., F, 1.);
-  const double wanted = path_forcing * F.norm2(), missing = lacking.norm2();
-  if (missing <= wanted) return true;
-  const int iterations = context.linear_iterations;
-  Vector &correction = F; // no longer needed
-  if (!solve(lacking, correction, wanted / missing)) return false;
-  context.linear_iterations += iterations;
-  direction.update(-1., correction, 1.);
+  if (!improve(F, direction)) return false;
+  double t = iterate_.longest_interior_step(u, direction);
+  for (int times = 0; times < most_centerings && t < long_enough; ++times) {
+    iterate_.center_interior(u, direction, F);
+    Vector centered(direction, Teuchos::Copy);
+    const double longer = improve(F, centered) ? iterate_.longest_interior_step(u, centered) : 0;
+    if (longer > t)
+      direction.assign(centered);
+    else
+      iterate_.take_back_interior();
+    if (longer < t + least_gain) break;
+    t = longer;
+  }
   return true;
 }
 

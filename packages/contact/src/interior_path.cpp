@@ -21,7 +21,8 @@ constexpr double nearly = 0.98;    // of the way to the next point's corner
 constexpr double short_step = 0.25, more_pressure = 100;
 constexpr int many_short_steps = 3;
 // mu falls to (1 - t)^2 of itself, t the length of the step for mu = 0, within these bounds.
-constexpr double most_part = 0.5, least_part = 1e-3;
+constexpr double most_part = 0.9, least_part = 1e-3;
+constexpr double longer_by = 0.3; // than what can be taken is the step that center() is for
 
 /// 1/(D + 1/r) of a point [Pa/m].                                                                              (5.18)
 KOKKOS_INLINE_FUNCTION double linear_stiffness(const SmoothedPoints &s, const LO i, const InteriorPoint &at)
@@ -83,9 +84,25 @@ DeviceView<InteriorPoint *> changes_along(const SmoothedPoints &points, const De
   return change;
 }
 
+/// F <- F + sum_i w_i m_i de_i/(D_i + 1/r_i) for targets that change from `aim` to `next`.                          (5.18)
+void add_force_of(const DeviceView<InteriorTarget *> &next, const DeviceView<InteriorTarget *> &aim,
+                  const SmoothedPoints &points, const DeviceView<InteriorPoint *> &at, Vector &F)
+{
+  const SmoothedPoints s = points;
+  const DeviceView<double *> p("rpc::contact::interior_pressure_change", s.size());
+  Kokkos::parallel_for(
+      "rpc::contact::interior_pressure_change", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
+        if (s.points.fixed(i)) return;
+        const InteriorTarget more{next(i).opening - aim(i).opening, next(i).dent - aim(i).dent};
+        p(i) = linear_stiffness(s, i, at(i)) * excess_of(more, at(i), s.points.law(i));
+      });
+  Kokkos::fence();
+  add_contact_force(s.points, p, F);
+}
+
 /// The part of a change, at most 1, that keeps the points of all ranks inside.                                      (5.19)
-double longest_step(const Comm &comm, const SmoothedPoints &s, const DeviceView<InteriorPoint *> &change,
-                    const DeviceView<InteriorPoint *> &at)
+double longest_of_all(const Comm &comm, const SmoothedPoints &s, const DeviceView<InteriorPoint *> &change,
+                      const DeviceView<InteriorPoint *> &at)
 {
   double longest = 0;
   Kokkos::parallel_reduce(
@@ -186,17 +203,44 @@ void InteriorPath::gradient(const SmoothedFunctional &functional, const Vector &
   add_contact_force(s.points, p, F);
 }
 
-void InteriorPath::correct(const SmoothedFunctional &functional, const Vector &u, const Vector &d)
+void InteriorPath::correct(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F)
 {
   const SmoothedPoints s = functional.points();
   const auto change = changes_along(s, at_, aim_, u, d);
-  const double t = longest_step(*u.getMap()->getComm(), s, change, at_);
-  const double mu = std::clamp((1 - t) * (1 - t), least_part, most_part) * mu_;
-  const auto aim = aim_;
+  const double t = longest_of_all(*u.getMap()->getComm(), s, change, at_);
+  aim_mu_ = std::clamp((1 - t) * (1 - t), least_part, most_part) * mu_;
+  const double mu = aim_mu_;
+  const DeviceView<InteriorTarget *> next("rpc::contact::interior_target", s.size());
   Kokkos::parallel_for(
       "rpc::contact::interior_target", device_range(s.size()),
-      KOKKOS_LAMBDA(const LO i) { aim(i) = corrected_target(change(i), mu, t, s.points.law(i)); });
+      KOKKOS_LAMBDA(const LO i) { next(i) = corrected_target(change(i), mu, t, s.points.law(i)); });
   Kokkos::fence();
+  add_force_of(next, aim_, s, at_, F);
+  aim_ = next;
+}
+
+double InteriorPath::longest_step(const SmoothedFunctional &functional, const Vector &u, const Vector &d) const
+{
+  const SmoothedPoints &s = functional.points();
+  return longest_of_all(*u.getMap()->getComm(), s, changes_along(s, at_, aim_, u, d), at_);
+}
+
+void InteriorPath::center(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F)
+{
+  const SmoothedPoints s = functional.points();
+  const auto change = changes_along(s, at_, aim_, u, d);
+  const double t = std::min(1., longest_of_all(*u.getMap()->getComm(), s, change, at_) + longer_by), mu = aim_mu_;
+  const auto at = at_;
+  const auto aim = aim_;
+  const DeviceView<InteriorTarget *> next("rpc::contact::interior_target", s.size());
+  Kokkos::parallel_for(
+      "rpc::contact::interior_center", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
+        if (!s.points.fixed(i)) next(i) = centered_target(at(i), change(i), aim(i), t, mu, s.points.law(i));
+      });
+  Kokkos::fence();
+  add_force_of(next, aim, s, at, F);
+  aim_before_ = aim;
+  aim_ = next;
 }
 
 double InteriorPath::advance(const SmoothedFunctional &functional, const Vector &u, const Vector &d)
@@ -204,7 +248,7 @@ double InteriorPath::advance(const SmoothedFunctional &functional, const Vector 
   const SmoothedPoints s = functional.points();
   const auto at = at_;
   const auto change = changes_along(s, at, aim_, u, d);
-  const double t = longest_step(*u.getMap()->getComm(), s, change, at);
+  const double t = longest_of_all(*u.getMap()->getComm(), s, change, at);
   const auto state = state_;
   LO changes = 0;
   Kokkos::parallel_reduce(
@@ -212,7 +256,7 @@ double InteriorPath::advance(const SmoothedFunctional &functional, const Vector 
       KOKKOS_LAMBDA(const LO i, LO &count) {
         if (s.points.fixed(i)) return;
         const InteriorPoint before = at(i), by = change(i);
-        at(i) = {before.pressure + t * by.pressure, before.opening + t * by.opening, before.dent + t * by.dent};
+        at(i) = moved(before, t, by);
         const State next = tends_to(before, at(i), s.points.law(i));
         count += next != state(i);
         state(i) = next;

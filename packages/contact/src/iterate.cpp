@@ -226,8 +226,12 @@ void Iterate::linearize_interior(const Vector &u, Vector &F)
 
 void Iterate::correct_interior(const Vector &u, const Vector &d, Vector &F)
 {
-  interior_->correct(functional_, u, d);
-  interior_->gradient(functional_, u, F);
+  interior_->correct(functional_, u, d, F);
+}
+
+void Iterate::center_interior(const Vector &u, const Vector &d, Vector &F)
+{
+  interior_->center(functional_, u, d, F);
 }
 
 double Iterate::replace_multipliers(const DeviceView<double *> &p, const DeviceView<double **> &q)

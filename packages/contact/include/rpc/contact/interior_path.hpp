@@ -10,8 +10,9 @@ namespace rpc::contact
 /// steps are as many on thin bodies as on others, for no point changes its state at once.  doc/theory.md (5.15) to (5.20)
 ///
 /// A step has two solves with one matrix (Mehrotra): (K + sum_i w_i m_i m_i^T/(D_i + 1/r_i)) d = -F, blocks() and gradient(), for
-/// mu = 0; correct() learns from it what mu can be reached and what products the linear equations leave out; then d for these.
-/// advance() takes as much of it as keeps all points inside. All members are collective.
+/// mu = 0; correct() learns from it what mu can be reached and what products the linear equations leave out; then d for these. Where
+/// little of that d can be taken, center() corrects it further (Gondzio). advance() takes as much of it as keeps all points inside.
+/// All members are collective.
 class InteriorPath
 {
 public:
@@ -24,10 +25,16 @@ public:
 
   /// (points, dim, dim) What the linearized law adds to K [N/m].
   DeviceView<double ***> blocks(const SmoothedPoints &points) const;
-  /// F <- Ku - b + sum_i w_i m_i (p_i + e_i/(D_i + 1/r_i))                                                        (5.18)
+  /// F <- Ku - b + sum_i w_i m_i (p_i + e_i/(D_i + 1/r_i)), for mu = 0 after a step                              (5.18)
   void gradient(const SmoothedFunctional &functional, const Vector &u, Vector &F) const;
-  /// The next gradient() and advance() are for the mu that a step along `d`, for mu = 0, tells, and for what it leaves out. (5.19)
-  void correct(const SmoothedFunctional &functional, const Vector &u, const Vector &d);
+  /// The next advance() is for the mu that a step along `d`, for mu = 0, tells, and for what it leaves out. F follows. (5.19)
+  void correct(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F);
+  /// How much of a displacement the points may take, at most 1.                                                   (5.19)
+  double longest_step(const SmoothedFunctional &functional, const Vector &u, const Vector &d) const;
+  /// The next advance() is for products that let more of a step like `d` be taken. F follows.                     (5.19a)
+  void center(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F);
+  /// The next advance() is for what it was for before center().
+  void take_back() { aim_ = aim_before_; }
   /// Takes a step of the points along a displacement, as long as they stay inside, at most 1. @return its length    (5.19)
   double advance(const SmoothedFunctional &functional, const Vector &u, const Vector &d);
 
@@ -42,11 +49,13 @@ private:
   void join(const SmoothedFunctional &functional, const Vector &u);
 
   DeviceView<InteriorPoint *> at_;   // (points)
-  DeviceView<InteriorTarget *> aim_; // (points) of the next step
+  DeviceView<InteriorTarget *> aim_, // (points) of the next step
+      aim_before_;                   // and before it was centred
   DeviceView<State *> state_;        // (points) that they tend to
   double pressure_ = 0;              // that points start with [Pa]
   double length_ = 0;                // size of displacements [m]
   double mu_ = 0;                    // mean of p s and q d [J/m^2]
+  double aim_mu_ = 0;                // of the next step
   double gap_ = 1;
   bool settled_ = false;
   int short_steps_ = 0; // on end

@@ -81,14 +81,22 @@ KOKKOS_INLINE_FUNCTION double linear_compliance(const InteriorPoint &x, const Fo
   return compliance;
 }
 
+/// What a target adds to e of the linearized equations [m].                                                        (5.17)
+KOKKOS_INLINE_FUNCTION double excess_of(const InteriorTarget &target, const InteriorPoint &x, const Foundation &f)
+{
+  double excess = target.opening / x.pressure;
+  if (can_yield(f)) excess -= target.dent / (spare_strength(x, f) + f.hardening * x.dent);
+  return excess;
+}
+
 /// By how much v is larger than what the linearized equations for the target have at the present p [m].            (5.17)
 KOKKOS_INLINE_FUNCTION double linear_excess(const InteriorPoint &x, const double v, const InteriorTarget &target,
                                             const Foundation &f)
 {
-  double excess = v - f.compliance * x.pressure - x.dent + target.opening / x.pressure;
+  double excess = v - f.compliance * x.pressure - x.dent + excess_of(target, x, f);
   if (can_yield(f)) {
     const double q = spare_strength(x, f);
-    excess -= (target.dent - q * x.dent) / (q + f.hardening * x.dent);
+    excess += q * x.dent / (q + f.hardening * x.dent);
   }
   return excess;
 }
@@ -112,6 +120,31 @@ KOKKOS_INLINE_FUNCTION InteriorTarget corrected_target(const InteriorPoint &chan
 {
   return {mu - part * change.pressure * change.opening,
           mu - part * (f.hardening * change.dent - change.pressure) * change.dent};
+}
+
+/// The point after a part of a change.
+KOKKOS_INLINE_FUNCTION InteriorPoint moved(const InteriorPoint &x, const double part, const InteriorPoint &change)
+{
+  return {x.pressure + part * change.pressure, x.opening + part * change.opening, x.dent + part * change.dent};
+}
+
+/// The target of a change, corrected for a longer step than can be taken: products far from mu are brought to a tenth of it or ten times
+/// as much, a large one by no more than ten mu.                                                                  (5.19a)
+/// @param change  what the linearized equations have for `target`   @param part  of it, which is to become a step
+KOKKOS_INLINE_FUNCTION InteriorTarget centered_target(const InteriorPoint &x, const InteriorPoint &change,
+                                                      const InteriorTarget &target, const double part, const double mu,
+                                                      const Foundation &f)
+{
+  constexpr double far = 10;
+  const auto missing = [&](const double product) {
+    const double wanted = math::larger(mu / far, math::fmin(far * mu, product));
+    return math::larger(wanted - product, -far * mu);
+  };
+  const InteriorPoint next = moved(x, part, change);
+  InteriorTarget centered = target;
+  centered.opening += missing(next.pressure * next.opening);
+  if (can_yield(f)) centered.dent += missing(spare_strength(next, f) * next.dent);
+  return centered;
 }
 
 /// The largest step along a change that keeps p, s, d and q >= 0; infinite if every step does.
