@@ -180,7 +180,7 @@ def check_namespaces_of_tests(root):
 
 
 def check_constants(root):
-    """Several sources of a package may be compiled as one file."""
+    """Several sources of a package may be compiled as one file: no two of them define the same constant."""
     for folder in [*sorted(root.glob("packages/*/src")), root / "src"]:
         first = {}
         for file in sorted(folder.rglob("*.cpp")):

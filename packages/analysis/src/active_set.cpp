@@ -219,7 +219,7 @@ ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector
   return Step::full;
 }
 
-/// The direction of a step of the path: predictor, and what it lacks of the correctors.                    (5.18), (5.19)
+/// The direction of a step of the path: predictor, and what it lacks of the correctors.             (5.18) to (5.19a)
 /// @return whether it can be used
 bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction)
 {
@@ -229,7 +229,7 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
     energy = solved.energy;
     return !solved.broken && !solved.interrupted && std::isfinite(context.direction_norm);
   };
-  // d <- -H^-1 F, from what d is
+  // Brings d to -H^-1 F, by a solve for what it lacks; false where that fails.
   const auto improve = [&](const Vector &F, Vector &d) {
     Vector lacking(u.getMap());
     iterate_.hessian()->apply(d, lacking);

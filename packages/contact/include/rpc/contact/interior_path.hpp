@@ -25,15 +25,16 @@ public:
 
   /// (points, dim, dim) What the linearized law adds to K [N/m].
   DeviceView<double ***> blocks(const SmoothedPoints &points) const;
-  /// F <- Ku - b + sum_i w_i m_i (p_i + e_i/(D_i + 1/r_i)), for mu = 0 after a step                              (5.18)
+  /// F <- Ku - b + sum_i w_i m_i (p_i + e_i/(D_i + 1/r_i)) for the present targets, which are 0 after a step     (5.18)
   void gradient(const SmoothedFunctional &functional, const Vector &u, Vector &F) const;
-  /// The next advance() is for the mu that a step along `d`, for mu = 0, tells, and for what it leaves out. F follows. (5.19)
+  /// The targets become those of the mu that a step along `d`, for mu = 0, tells, and of what it leaves out.       (5.19)
+  /// @param F  gradient() for the targets before; then for the new ones
   void correct(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F);
-  /// How much of a displacement the points may take, at most 1.                                                   (5.19)
+  /// The part of a displacement, at most 1, with which all points stay inside.                                    (5.19)
   double longest_step(const SmoothedFunctional &functional, const Vector &u, const Vector &d) const;
-  /// The next advance() is for products that let more of a step like `d` be taken. F follows.                     (5.19a)
+  /// The targets become those of products that let more of a step like `d` be taken. F as in correct().           (5.19a)
   void center(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F);
-  /// The next advance() is for what it was for before center().
+  /// The targets become those before center().
   void take_back() { aim_ = aim_before_; }
   /// Takes a step of the points along a displacement, as long as they stay inside, at most 1. @return its length    (5.19)
   double advance(const SmoothedFunctional &functional, const Vector &u, const Vector &d);

@@ -74,14 +74,14 @@ public:
   void linearize_interior(const Vector &u, Vector &F);
   /// After the step d for mu = 0, what hessian() is to be solved for instead.                                  (5.19)
   void correct_interior(const Vector &u, const Vector &d, Vector &F);
-  /// How much of the step d can be taken.                                                                       (5.19)
+  /// The part of the step d that can be taken, at most 1.                                                       (5.19)
   double longest_interior_step(const Vector &u, const Vector &d) const
   {
     return interior_->longest_step(functional_, u, d);
   }
-  /// What hessian() is to be solved for so that more can be taken of a step like d.                            (5.19a)
+  /// F: what hessian() is to be solved for instead, so that more can be taken of a step like d.                (5.19a)
   void center_interior(const Vector &u, const Vector &d, Vector &F);
-  /// The next step is the one before it was centred.
+  /// The next step is for what it was for before center_interior().
   void take_back_interior() { interior_->take_back(); }
   /// @return the length of the step that was taken along d                                                    (5.19)
   double advance_interior(const Vector &u, const Vector &d) { return interior_->advance(functional_, u, d); }

@@ -21,8 +21,8 @@ public:
     rough  ///< slight changes have been left out
   };
 
-  /// Part of a node's own block whose change CG may be left with. Where a solver misses points that close, whose blocks change by all of
-  /// it, CG hardly converges.                                                                               doc/theory.md (4.12)
+  /// Changes of a node's own block up to this part of it may be left to CG. Where a solver misses points that close, whose blocks change
+  /// by all of themselves, CG hardly converges.                                                             doc/theory.md (4.12)
   static constexpr double slight_change = 0.1;
 
   virtual ~CoarsestSolver() = default;
@@ -86,8 +86,8 @@ private:
   DeviceView<double **> at_rest_, kept_;       // (nodes, dim) zeros; what truncation leaves as it is
   std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
   std::unique_ptr<CoarsestSolver> coarsest_;
-  DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) what it was brought to last
-  bool coarsest_is_exact_ = true;              // then; else slight changes were left out
+  DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) the update that coarsest_ was brought to last
+  bool coarsest_is_exact_ = true;              // it follows that update but for rounding; else it left out slight changes
 };
 
 } // namespace rpc::solver
