@@ -86,8 +86,8 @@ private:
   DeviceView<double **> at_rest_, kept_;       // (nodes, dim) zeros; what truncation leaves as it is
   std::vector<std::unique_ptr<Level>> levels_; // from the finest to the one above the coarsest
   std::unique_ptr<CoarsestSolver> coarsest_;
-  DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) the update that coarsest_ was brought to last
-  bool coarsest_is_exact_ = true;              // it follows that update but for rounding; else it left out slight changes
+  DeviceView<double ***> contact_of_coarsest_; // (nodes, dim, dim) the update coarsest_ was brought to last
+  bool coarsest_is_exact_ = true;              // else it has left out slight changes of that update
 };
 
 } // namespace rpc::solver
