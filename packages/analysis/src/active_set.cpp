@@ -12,15 +12,23 @@ using solver::NewtonGroup;
 namespace
 {
 
-// Changes of the active set; then the interior-point method needs fewer steps, or with friction Newton's.
-constexpr int most_changes = 10;
-constexpr int most_changes_tried = 3; // where a Tresca problem has just been solved
-constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
-// Where edges creep the fifth choice and later ones tell how many follow: overshoots fall, each against the one before the last, and are
-// 0 in the end, on a straight line. More than most_to_go are no cheaper than the interior-point method.
-constexpr int fewest_to_tell = 4;
-constexpr double most_to_go = 8;
+// Choices of states that make no headway; then the interior-point method needs fewer steps, or with friction Newton's. The numbers down to
+// few_changes are from thin bodies whose choices were followed to their end; half or twice as large they cost 0 to 3 % more steps.
+constexpr int most_idle = 6;
+constexpr int most_changes = 10;         // with friction, whether they make headway or not
+constexpr int most_changes_tried = 3;    // where a Tresca problem has just been solved
 constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
+constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
+// A choice makes headway if at most so many more would follow if the number of changes went on to fall as it has, or the way that edges
+// still have to creep. This shows after some choices.
+constexpr double most_left = 10, most_left_creeping = 4;
+constexpr int fewest_to_tell = 4;
+// Forces that the law does not admit over those that it does. Bodies of equal sides stay below much; a choice with much counts twice.
+constexpr double much = 0.5;
+// The interior-point method takes over at once where they are far_too_much and more than few points change, from a start that nothing
+// predicts further still; and where it was needed on a coarser mesh, if the first solve leaves more than few points to change.
+constexpr double far_too_much = 4, far_too_much_at_first = 10;
+constexpr GO few_changes = 5;
 // While the active set changes, solves bring the residual below this part of what it was, and of the load, or the error in energy below
 // rough_error: two to five CG iterations. With a residual of 1e-1 pressures are too rough to choose by, 1e-4 saves no step, and an error of
 // 1e-2 costs thin bodies half a step. On these the residual needs up to twice the iterations of the error. What the multipliers of
@@ -33,19 +41,6 @@ constexpr double enough = 0.3;      // of the tolerance: recomputed residuals ar
 constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
 constexpr double rounding = 1e-13;  // of the largest pressure: the same, where tolerances are tighter
 
-// The interior-point method takes over where choices with much overshoot, one after the other, change more than this part of the
-// fewest points that such a choice has changed: after two of them, or after four that change few points, edges that move on by a point.
-// With 1 the worst of thin bodies take three steps more.
-constexpr double headway = 0.7;
-constexpr GO few_changes = 3;
-constexpr int most_idle = 4, idle_of_few = 1, idle_of_many = 2;
-// Forces that the law does not admit over those that it does: bodies of equal sides stay below.
-constexpr double much = 0.3;
-// It takes over at once where such forces are far_too_much times the admissible ones and more than many_changes points change, and at
-// the second choice whose such forces are too_much_twice times the admissible ones. Choices that settle in the end have one such choice
-// at most.
-constexpr double far_too_much = 10, too_much_twice = 3;
-constexpr GO many_changes = 10;
 constexpr int most_path_steps = 50;
 // What the path's linear solves leave: of the error in energy, or of their right sides. With an error of 0.03 no step less; the right side
 // tells nothing of how far a thin body has bent.
@@ -66,12 +61,12 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
       pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
-      most_changes_(most_changes), rubs_(iterate_.points().friction.anywhere), then_(then), trial_gap_(first_trial)
+      rubs_(iterate_.points().friction.anywhere), then_(then), most_idle_(most_idle), trial_gap_(first_trial)
 {
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
-  if (then == Then::nothing) most_changes_ = most_changes_tried;
+  most_idle_ = then == Then::nothing ? most_changes_tried : most_changes;
 }
 
 bool ActiveSetStage::resume(const NewtonGroup &from)
@@ -96,10 +91,11 @@ void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, 
 {
   choice_ = std::move(choice);
   seen_.clear();
-  changes_ = idle_ = overshoots_ = 0;
-  fewest_changes_ = fewest_overshooting_ = 0;
-  most_changes_ = most;
-  overshoot_ = {};
+  choices_ = 1; // the first one of all has no solve before it
+  idle_ = 0;
+  most_idle_ = most;
+  fewest_changes_ = 0;
+  levers_ = {};
   norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
   rough_ = false; // a small residual may be all of the bending
 }
@@ -121,10 +117,7 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     if (confirmed_) return Verdict::converged;
     if (idle_steps_ > (turns_ ? most_idle_turns : 0)) return Verdict::over;
     rough_ = false;
-  } else if (path_expected_ && path_ == Path::ahead && steps_ > 0 && choice_->changes > few_changes &&
-             choice_->overshoot > much) {
-    return give_up(u);
-  } else if (!is_new_choice() || !may_settle() || (!rubs_ && !makes_headway())) {
+  } else if (!is_new_choice() || !may_settle()) {
     return give_up(u); // in circles, or too slow
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
@@ -137,7 +130,12 @@ bool ActiveSetStage::is_new_choice()
 {
   const int visits = seen_[choice_->fingerprint]++;
   if (visits == 0) return true;
-  if (!rubs_) return false;
+  if (!rubs_) { // what rough solves leave may decide; by good ones hardly a point goes to and fro
+    if (!rough_) return false;
+    rough_ = false;
+    seen_ = {{choice_->fingerprint, 1}};
+    return true;
+  }
   if (turns_ && visits < most_visits) return true;
   for (const double part : {0.5, 1.}) {
     choice_ = iterate_.largest_changes(*choice_, part);
@@ -146,40 +144,28 @@ bool ActiveSetStage::is_new_choice()
   return false;
 }
 
-/// Whether the choice changes much fewer points than any before, so that few will be left soon.
-bool ActiveSetStage::contracts() const
-{
-  return !rubs_ && fewest_changes_ > 0 && choice_->changes <= headway * fewest_changes_;
-}
-
-/// Whether the choices may come to an end: each changes much fewer points than any before, or there were few, or they creep and few are
-/// left.
+/// Whether the choices may come to an end soon.                                                                   (5.8a)
 bool ActiveSetStage::may_settle()
 {
-  const bool contracted = contracts();
-  const bool creeps =
-      !rubs_ && choice_->overshoot > 0 && choice_->overshoot < overshoot_[1] && overshoot_[0] < overshoot_[2];
-  const double to_go = 2 * choice_->overshoot / (overshoot_[1] - choice_->overshoot);
-  overshoot_ = {choice_->overshoot, overshoot_[0], overshoot_[1]};
-  if (contracted) return true;
-  if (++changes_ <= fewest_to_tell || !creeps) return changes_ <= most_changes_;
-  return changes_ <= most_changes_resumed && to_go <= most_to_go;
-}
-
-/// Whether the choices come to an end.
-bool ActiveSetStage::makes_headway()
-{
-  const auto lower = [this](GO &fewest) {
-    fewest = fewest > 0 ? std::min(fewest, choice_->changes) : choice_->changes;
-  };
-  const bool overshoots = choice_->overshoot > much;
-  const bool idle = overshoots && fewest_overshooting_ > 0 && choice_->changes > headway * fewest_overshooting_;
-  idle_ = idle ? idle_ + (choice_->changes > few_changes ? idle_of_many : idle_of_few) : 0;
-  lower(fewest_changes_);
-  if (overshoots) lower(fewest_overshooting_);
-  if (choice_->overshoot > too_much_twice) ++overshoots_;
-  const bool is_far = choice_->overshoot > far_too_much && choice_->changes > many_changes;
-  return idle_ < most_idle && overshoots_ < 2 && !is_far;
+  const int before = choices_++;
+  if (rubs_) return ++idle_ <= most_idle_;
+  const GO changes = choice_->changes;
+  const double overshoot = choice_->overshoot, infinity = std::numeric_limits<double>::infinity();
+  const double lever = overshoot < 1 ? overshoot / (1 - overshoot) : infinity;
+  const bool creeps = lever > 0 && lever < levers_[1] && levers_[0] < levers_[2];
+  const bool is_near = creeps && 2 * lever <= most_left_creeping * (levers_[1] - lever);
+  levers_ = {lever, levers_[0], levers_[1]};
+  if (before == 0) return true; // not by a solve, but by where it starts
+  const auto number = static_cast<double>(changes), fewest = static_cast<double>(fewest_changes_);
+  const bool contracts = number < fewest && std::log(number) <= most_left * std::log(fewest / number);
+  fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
+  if (changes > few_changes) {
+    if (overshoot > (from_ == Start::anywhere ? far_too_much_at_first : far_too_much)) return false;
+    if (from_ == Start::predicted_by_path && path_ == Path::ahead && before == 1) return false;
+  }
+  if (creeps && !is_near && !contracts && before >= fewest_to_tell) return false;
+  if (!contracts && !is_near) idle_ += overshoot > much ? 2 : 1;
+  return idle_ <= most_idle_;
 }
 
 /// The interior-point method goes on; where that has been, Newton's.
@@ -199,7 +185,7 @@ bool ActiveSetStage::leaves_path()
   if (!ends && !(path.settled() && path.gap() <= trial_gap_)) return false;
   path_ = ends ? Path::behind : Path::tried;
   trial_gap_ = next_trial * path.gap();
-  start_over(iterate_.end_of_interior_path(), ends ? most_changes : trial_changes); // (5.20)
+  start_over(iterate_.end_of_interior_path(), trial_changes); // (5.20)
   return true;
 }
 

@@ -19,6 +19,8 @@ constexpr std::size_t least_nodes_predicted = 500;
 // Steps on a coarser mesh: with rough solves there they cost no more than a few elastic solves of the finer one, and what they
 // lead to is a start in any case.
 constexpr int most_steps_predicting = 40;
+// On meshes with fewer contact points choices of states settle or not by chance.
+constexpr GO fewest_points_telling = 50;
 
 /// Why no coarser mesh is to predict a step on this one; empty if one is.
 std::string no_prediction(const fem::Discretization &d, const contact::ContactNodes &contact, const bool enabled)
@@ -27,6 +29,12 @@ std::string no_prediction(const fem::Discretization &d, const contact::ContactNo
   if (!enabled) return "switched off";
   if (d.mesh->owned_nodes->getGlobalNumElements() < least_nodes_predicted) return "the mesh is small";
   return "";
+}
+
+/// Whether a coarser mesh's solution tells that this one will need the interior-point method.
+bool tells_of_the_path(const StepSolution &coarse, const int level)
+{
+  return level == 1 && coarse.interior_path && coarse.step.contact.num_total >= fewest_points_telling;
 }
 
 StepOptions rough(StepOptions options)
@@ -119,7 +127,7 @@ Prediction Predictor::from_rest(const Problem &fine, const Step &step)
       contact::with_weightless(coarse.state, coarse.step.contact, problem.discretization(), problem.contact_sides());
   return {contact::interpolated(*coarser_->to_fine, coarse.step.contact, state, step.contact,
                                 fine.discretization().owned_dofs),
-          "", level_ == 1 && coarse.interior_path, work_of(coarse, start)};
+          "", tells_of_the_path(coarse, level_), work_of(coarse, start)};
 }
 
 /// A later step: what it changes.                                                                                (11.5)
@@ -152,7 +160,7 @@ Prediction Predictor::from_last(const Problem &fine, const Step &step, const Mem
   };
   predicted.pressure = changed(*now.pressure, *before.pressure, *last.pressure);
   if (!last.tangential.is_null()) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
-  return {state_of(step.contact, predicted), "", level_ == 1 && coarse.interior_path, work_of(coarse, start)};
+  return {state_of(step.contact, predicted), "", tells_of_the_path(coarse, level_), work_of(coarse, start)};
 }
 
 } // namespace rpc::analysis

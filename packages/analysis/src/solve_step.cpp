@@ -25,7 +25,7 @@ constexpr const char *in_want_of_friction =
 
 Prediction predict(Iterate &iterate, Vector &u, const Starts &starts);
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      int iteration, bool previous_confirmed, bool path_expected, const Progress &progress);
+                      int iteration, bool previous_confirmed, ActiveSetStage::Start start, const Progress &progress);
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state);
@@ -42,7 +42,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
   const auto u = rcp(new Vector(*step.elastic.dirichlet.value, Teuchos::Copy)); // seen from the iterate's origin
   Iterate iterate(step.elastic, step.contact, state.hessian());
   if (step.support.by_contact_only) iterate.hold_by_contact(); // (9.8)
-  bool path_expected = false;
+  auto start = ActiveSetStage::Start::anywhere;
   const auto counts_before = state.linear().counts();
   solver::check_nox_parameters(iterate, state.linear(), u, options.newton);
   {
@@ -50,7 +50,8 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
     Prediction prediction = predict(iterate, *u, starts); // (5.11), (11.5)
     s.not_predicted = std::move(prediction.reason);
     s.levels = std::move(prediction.work);
-    path_expected = prediction.interior_path;
+    if (prediction.start)
+      start = prediction.interior_path ? ActiveSetStage::Start::predicted_by_path : ActiveSetStage::Start::predicted;
   }
   {
     const Timed timer("solve", s.solve_seconds);
@@ -61,7 +62,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       if (uzawa.iterations > 0) // the correction is small against u (5.13)
         iterate.move_origin(*u, *uzawa.residuals.internal.forces, *step.elastic.applied_load);
       const Minimization found = // paper (10), (4.1): choose states (5.8) and solve (5.7), (5.9),
-          minimize(iterate, u, state, options, uzawa.iterations + 1, confirmed, path_expected,
+          minimize(iterate, u, state, options, uzawa.iterations + 1, confirmed, start,
                    progress); // Newton (4.2)
       confirmed = found.active_set_confirmed;
       uzawa.multiplier_change = found.active_set_confirmed ? iterate.take_active_set_pressures(*u)
@@ -179,7 +180,7 @@ Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOpt
 }
 
 Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      const int iteration, const bool previous_confirmed, const bool path_expected,
+                      const int iteration, const bool previous_confirmed, const ActiveSetStage::Start start,
                       const Progress &progress)
 {
   const int all = options.newton.max_iterations;
@@ -200,7 +201,7 @@ Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state
   }
   if (iteration > 1) return minimize_for_next_bounds(iterate, *u, options, run);
   ActiveSetStage stage(iterate, active_set_tolerances(options));
-  if (path_expected) stage.expect_path();
+  stage.starts(start);
   const auto result = run(&stage, all);
   return {result.converged,
           result.steps,

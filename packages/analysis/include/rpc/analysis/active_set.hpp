@@ -26,8 +26,8 @@ ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 /// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.7), (5.8), (5.9)
 ///
 /// Converges where a choice confirms the last active set, which is then the solution's, up to the share k/r that the penalty leaves
-/// to a multiplier update. After too many changes, when an active set comes back or where choices make no headway, as on thin bodies,
-/// an interior-point method finds the states, (5.15) to (5.20). Where even these are not confirmed, Newton's directions with their
+/// to a multiplier update. When an active set comes back or where choices make no headway, as on thin bodies, (5.8a), an interior-point
+/// method finds the states, (5.15) to (5.20). Where even these are not confirmed, Newton's directions with their
 /// line search go on.
 class ActiveSetStage : public solver::FirstStage
 {
@@ -44,9 +44,13 @@ public:
   /// Once, for more changes than before, with good solves. doc/theory.md (5.9a)
   bool resume(const solver::NewtonGroup &from) override;
 
-  /// The interior-point method takes over at the first choice that overshoots and corrects more than a few points: on a coarser mesh
-  /// choices made no headway.
-  void expect_path() { path_expected_ = true; }
+  /// What is known of the start. The better it is, the sooner choices that make no headway tell that the interior-point method is needed.
+  enum class Start {
+    anywhere,         ///< nothing
+    predicted,        ///< a coarser mesh's solution
+    predicted_by_path ///< such a one that the interior-point method found
+  };
+  void starts(Start start) { from_ = start; }
   bool took_path() const { return !rubs_ && path_ != Path::ahead; } ///< the interior-point method has been at work
   bool confirmed() const { return confirmed_; }                     ///< the active set is the solution's
   int steps() const { return steps_; }
@@ -56,9 +60,7 @@ private:
   Step proposed(solver::NewtonGroup &group, Vector &direction);
   Verdict choose(const Vector &u);
   bool is_new_choice();
-  bool contracts() const;
   bool may_settle();
-  bool makes_headway();
   solver::Accuracy wanted() const;
   Verdict give_up(const Vector &u);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
@@ -73,7 +75,6 @@ private:
   std::optional<contact::ActiveSetChoice> choice_; // at the present point
   Vector start_;                                   // to go back to
   bool rough_;                                     // solves are, while the active set changes
-  int most_changes_;                               // of the active set
   bool rubs_;                                      // there is friction
   bool turns_ = false;                             // and in space: the branches of an active set are not linear
   bool confirmed_ = false, decided_ = false;
@@ -83,16 +84,14 @@ private:
          before_ = norm_,      // |F|_2 for the active set, after and before the step
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set
   int steps_ = 0;
-  int changes_ = 0;                   // of the active set
-  int updates_ = 0;                   // of the multipliers alone, the active set being confirmed
-  GO fewest_changes_ = 0;             // fewest points that a choice has changed; 0: none was made
-  GO fewest_overshooting_ = 0;        // the same of choices that overshoot
-  int idle_steps_ = 0;                // of a confirmed active set, one after the other, that left more than half of F
-  int overshoots_ = 0;                // choices with forces far above what the law admits
-  std::array<double, 3> overshoot_{}; // of the last choices, the last one first
-  int idle_ = 0; // of choices, one after the other, that overshoot and change hardly fewer points than any before
+  int updates_ = 0;                // of the multipliers alone, the active set being confirmed
+  int idle_steps_ = 0;             // of a confirmed active set, one after the other, that left more than half of F
+  int choices_ = 0;                // since the start, or since the path
+  int idle_ = 0, most_idle_;       // of these, that make no headway; those with much overshoot count twice
+  GO fewest_changes_ = 0;          // fewest points that one of them has changed; 0: there was none
+  std::array<double, 3> levers_{}; // of the last ones, the last one first: overshoot o as o / (1 - o)
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
-  bool path_expected_ = false;
+  Start from_ = Start::anywhere;
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried
 };
