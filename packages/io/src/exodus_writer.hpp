@@ -191,15 +191,17 @@ public:
   void commit() { file_.publish(); }
 
 private:
+  static constexpr std::size_t room_for_file = 1 << 14; // bytes
+
   /// Leaves free bytes between the header, with which the file begins, and the first array. Exodus defines a file in steps, each of which
   /// lengthens the header. Without free bytes NetCDF moves all arrays each time, though nothing is written to them yet.
   /// To be called when the file has an array: NetCDF forgets the free bytes of a file without one. NetCDF's number of a file is Exodus' number.
   /// @param count  of blocks, sides, arrays and fields that are to be defined
   void leave_room(const std::size_t count)
   {
-    constexpr std::size_t for_file = 1 << 14, for_each = 1 << 10, alignment = 4; // bytes
+    constexpr std::size_t for_each = 1 << 10, alignment = 4; // bytes
     check_netcdf(nc_redef(id_), "define");
-    check_netcdf(nc__enddef(id_, for_file + for_each * count, alignment, 0, alignment), "define");
+    check_netcdf(nc__enddef(id_, room_for_file + for_each * count, alignment, 0, alignment), "define");
   }
 
   void define(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)
@@ -278,10 +280,24 @@ private:
     }
   }
 
+  /// Bytes that are read or written at once: so many that they stay in a core's cache, but fewer than lie before the first time. NetCDF holds
+  /// two such blocks. With those of a time among them it would write the time and, at the file's beginning, the number of times in one go,
+  /// and a process that is killed meanwhile would leave a number that counts a time whose end is missing.
+  static std::size_t bytes_at_once(const ExodusHeader &header)
+  {
+    constexpr std::size_t most = 1 << 18, least = 1 << 12;
+    const auto before = room_for_file +
+                        sizeof(double) * header.element.dim * static_cast<std::size_t>(header.num_nodes) +
+                        sizeof(int) * header.element.num_nodes() * static_cast<std::size_t>(header.num_cells);
+    std::size_t bytes = most;
+    while (bytes > least && 4 * bytes > before) bytes /= 2;
+    return bytes;
+  }
+
   /// Opens the file that Exodus has defined and closed.
   void open_for_data(const ExodusHeader &header)
   {
-    std::size_t block = std::size_t(256) << 10; // bytes that are read or written at once: they stay in a core's cache
+    std::size_t block = bytes_at_once(header);
     check_netcdf(nc__open(file_.temporary().c_str(), NC_WRITE, &block, &netcdf_), "open");
     int old_fill = 0;
     check_netcdf(nc_set_fill(netcdf_, NC_NOFILL, &old_fill), "open");

@@ -275,6 +275,42 @@ TEST_F(Exodus, ALargeMeshTakesFewWrites)
   EXPECT_LE(num_writes() - before, 100);
 }
 
+/// The number of times in a file's header: a process that is killed leaves it as it is.
+int number_of_times(const std::string &path)
+{
+  std::ifstream file(path, std::ios::binary);
+  std::array<unsigned char, 8> begin{};
+  file.read(reinterpret_cast<char *>(begin.data()), begin.size());
+  EXPECT_EQ(begin[3], 2) << "another format of NetCDF: the number lies elsewhere";
+  return begin[4] << 24 | begin[5] << 16 | begin[6] << 8 | begin[7];
+}
+
+TEST_F(Exodus, ATimeIsCountedOnceAllOfItIsInTheFile)
+{
+  for (const int cells : {4, 10, 60, 300}) {
+    SCOPED_TRACE(cells);
+    const auto mesh = rpc::mesh::make_box({{0, 0}, {1, 1}, {cells, cells}, Element{2, 1}}, comm_);
+    const std::string path = scratch_.path("a" + std::to_string(cells) + ".e");
+    const auto fields = fields_of(mesh);
+    rpc::io::ExodusFile film(path, "t", mesh, {fields[0].name}, {});
+    film.write(1, {fields[0]});
+    film.publish();
+    comm_->barrier();
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit old{};
+    ::getrlimit(RLIMIT_FSIZE, &old);
+    rlimit limit = old;
+    limit.rlim_cur = std::filesystem::file_size(path) + 20; // bytes: a part of the next time
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    expect_error(ExitCode::internal_error, "cannot", [&] { film.write(2, {fields[0]}); });
+    ::setrlimit(RLIMIT_FSIZE, &old);
+    std::signal(SIGXFSZ, SIG_DFL);
+    comm_->barrier();
+    EXPECT_EQ(number_of_times(path), 1);
+    comm_->barrier();
+  }
+}
+
 TEST_F(Exodus, FullDiskIsToldOnEveryRankAndLeavesTheOldFile)
 {
   const auto mesh = rpc::mesh::make_box({{0, 0}, {1, 1}, {200, 200}, Element{2, 1}}, comm_);
