@@ -49,7 +49,7 @@ constexpr double path_error = 0.1, path_forcing = 1e-2;
 constexpr int most_centerings = 2;
 constexpr double long_enough = 0.9, least_gain = 0.03;
 // The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and
-// below the last gap in any case. A trial may change states so often.
+// below the last gap in any case. So many changes without headway may follow.
 constexpr double first_trial = 1e-2, next_trial = 1e-2, last_gap = 1e-8;
 constexpr int trial_changes = 2;
 
