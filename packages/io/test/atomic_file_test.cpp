@@ -4,9 +4,7 @@
 #include "scratch.hpp"
 
 #include <Tpetra_Core.hpp>
-#include <csignal>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,29 +20,8 @@ using rpc::io::require_replaceable;
 using rpc::io::require_writable_folder;
 using rpc::io::write_text;
 using rpc::test::expect_error;
+using rpc::test::FileSizeLimit;
 using rpc::test::text_of;
-
-/// While it lives no file may grow beyond `bytes`: writes fail as on a full disk.
-class FileSizeLimit
-{
-public:
-  explicit FileSizeLimit(const rlim_t bytes)
-  {
-    std::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &old_);
-    rlimit limit = old_;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit()
-  {
-    ::setrlimit(RLIMIT_FSIZE, &old_);
-    std::signal(SIGXFSZ, SIG_DFL);
-  }
-
-private:
-  rlimit old_{};
-};
 
 class AtomicFileTest : public testing::Test
 {

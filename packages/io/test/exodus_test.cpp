@@ -5,12 +5,10 @@
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_Core.hpp>
 #include <array>
-#include <csignal>
 #include <exodusII.h>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 namespace exodus_test
 {
@@ -30,6 +28,7 @@ using rpc::test::box;
 using rpc::test::Content;
 using rpc::test::expect_error;
 using rpc::test::fields_of;
+using rpc::test::FileSizeLimit;
 using rpc::test::first_field;
 using rpc::test::Scratch;
 using rpc::test::text_of;
@@ -296,15 +295,10 @@ TEST_F(Exodus, ATimeIsCountedOnceAllOfItIsInTheFile)
     film.write(1, {fields[0]});
     film.publish();
     comm_->barrier();
-    std::signal(SIGXFSZ, SIG_IGN);
-    rlimit old{};
-    ::getrlimit(RLIMIT_FSIZE, &old);
-    rlimit limit = old;
-    limit.rlim_cur = std::filesystem::file_size(path) + 20; // bytes: a part of the next time
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    expect_error(ExitCode::internal_error, "cannot", [&] { film.write(2, {fields[0]}); });
-    ::setrlimit(RLIMIT_FSIZE, &old);
-    std::signal(SIGXFSZ, SIG_DFL);
+    {
+      const FileSizeLimit limit(std::filesystem::file_size(path) + 20); // bytes: a part of the next time
+      expect_error(ExitCode::internal_error, "cannot", [&] { film.write(2, {fields[0]}); });
+    }
     comm_->barrier();
     EXPECT_EQ(number_of_times(path), 1);
     comm_->barrier();
@@ -315,21 +309,16 @@ TEST_F(Exodus, FullDiskIsToldOnEveryRankAndLeavesTheOldFile)
 {
   const auto mesh = rpc::mesh::make_box({{0, 0}, {1, 1}, {200, 200}, Element{2, 1}}, comm_);
   if (root_) scratch_.write("a.e", "old");
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit old{};
-  ::getrlimit(RLIMIT_FSIZE, &old);
   for (const rlim_t bytes : {1000, 1500000}) { // when the header is defined, in the fields
-    rlimit limit = old;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    expect_error(ExitCode::internal_error, "cannot",
-                 [&] { write_exodus(scratch_.path("a.e"), "t", mesh, 0.5, fields_of(mesh)); });
-    ::setrlimit(RLIMIT_FSIZE, &old);
+    {
+      const FileSizeLimit limit(bytes);
+      expect_error(ExitCode::internal_error, "cannot",
+                   [&] { write_exodus(scratch_.path("a.e"), "t", mesh, 0.5, fields_of(mesh)); });
+    }
     comm_->barrier();
     EXPECT_EQ(scratch_.num_files(), 1);
     EXPECT_EQ(text_of(scratch_.path("a.e")), "old");
   }
-  std::signal(SIGXFSZ, SIG_DFL);
 }
 
 } // namespace

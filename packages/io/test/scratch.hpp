@@ -3,6 +3,7 @@
 #include "expect_error.hpp"
 #include "rpc/core/tpetra.hpp"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <stdlib.h>
 #include <string>
+#include <sys/resource.h>
 
 /// What tests of files share.
 namespace rpc::test
@@ -56,5 +58,27 @@ inline std::string text_of(const std::string &path)
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
+
+/// While it lives no file may grow beyond `bytes`: writes fail as on a full disk.
+class FileSizeLimit
+{
+public:
+  explicit FileSizeLimit(const rlim_t bytes)
+  {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    rlimit limit = old_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit()
+  {
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+
+private:
+  rlimit old_{};
+};
 
 } // namespace rpc::test
