@@ -179,6 +179,12 @@ RoundedRows::RoundedRows(const CrsMatrix &A, const int dim) : dim_(dim)
   Kokkos::fence();
 }
 
+std::shared_ptr<const RoundedRows> rounded_where_it_pays(const RepeatedRows &rows)
+{
+  if (on_gpu || rows.matrix().is_null() || rows.num_kinds() > 0 || rows.dim() == 1) return nullptr;
+  return std::make_shared<RoundedRows>(*rows.matrix(), rows.dim());
+}
+
 void RoundedRows::apply(const Vector &x, Vector &y) const
 {
   constexpr LO at_once = 512;

@@ -40,12 +40,6 @@ void StiffnessOperator::apply(const MultiVector &x, MultiVector &y, const Teucho
   }
 }
 
-std::shared_ptr<const RoundedRows> StiffnessOperator::rounded_rows() const
-{
-  if (on_gpu || !rows_.reads_matrix() || rows_.num_kinds() > 0 || rows_.dim() == 1) return nullptr;
-  return std::make_shared<RoundedRows>(*matrix(), rows_.dim());
-}
-
 void StiffnessOperator::apply_rounded(const RoundedRows &rounded, const MultiVector &x, MultiVector &y) const
 {
   multiply_vectors(rounded, *this, x, y);

@@ -174,7 +174,7 @@ void UpdatedOperator::allow_rounding(const bool allowed)
   if (!allowed)
     rounded_.reset();
   else if (!rounded_)
-    rounded_ = K_->rounded_rows();
+    rounded_ = rounded_where_it_pays(K_->rows());
 }
 
 GO UpdatedOperator::set(const NodePoints &points, const DeviceView<double ***> &block,

@@ -243,6 +243,7 @@ TEST(UpdatedOperator, RoundsTheBodyButNotTheUpdate)
   };
   const double force = product(false, false).norm2();
   EXPECT_EQ(distance(product(true, false), product(false, false)), 0) << "before it is allowed to";
+  EXPECT_FALSE(s.H.is_rounded());
   s.H.allow_rounding(true);
   s.H.set(s.points, s.added([](LO) { return 1e12; })); // single precision would be off by 1e5
   for (const bool with_update : {false, true})

@@ -2,7 +2,7 @@
 
 #include "contact_supports.hpp"
 #include "patch_matrices.hpp"
-#include "rpc/algebra/repeated_rows.hpp"
+#include "rpc/algebra/rounded_rows.hpp"
 #include "rpc/core/halo.hpp"
 #include "rpc/solver/mesh_levels.hpp"
 
@@ -30,6 +30,10 @@ public:
   /// @param supports    S, see contact_supports.hpp   @param nodes  map of the coarse mesh's nodes
   /// @param mesh  the coarse one, A without contact
   CoarseContact(const ContactSupports &supports, const Map &nodes, int dim, const MeshLevel &mesh);
+
+  /// From now on apply() takes A in single precision where that saves time, and contact in double precision (4.7d). To be called before
+  /// the first write().
+  void allow_rounding() { rounded_ = rounded_where_it_pays(rows_); }
 
   /// y <- (A with contact) x; collective.
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
@@ -81,6 +85,8 @@ private:
   DeviceView<double ***> sum_, added_;   // (blocks, dim, dim) S^T U S, and with 0 at prescribed unknowns
   bool bounded_ = false;                 // some couplings of it
   DeviceView<std::size_t *> own_;        // (n) the node's own block
+
+  std::shared_ptr<const RoundedRows> rounded_; // A without contact, for apply(); null: apply() reads rows_
 };
 
 } // namespace rpc::solver

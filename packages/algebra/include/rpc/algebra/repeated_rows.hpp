@@ -44,8 +44,8 @@ public:
   /// Whether that takes less time than Tpetra's product. On a GPU it does not where no rows repeat: a thread for each node would read
   /// entries far apart. The same on all ranks, for the two products exchange in different ways.
   bool pays() const { return pays_; }
-  /// Whether it reads rows from the matrix that it was made of.
-  bool reads_matrix() const { return !A_.is_null(); }
+  /// The matrix that it was made of, from which rows that do not repeat are read; null: there is none.
+  const RCP<const CrsMatrix> &matrix() const { return A_; }
 
   /// 0 where less than three quarters of this rank's rows repeat.
   int num_kinds() const { return static_cast<int>(begin_.extent(0)) - 1; }

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "rpc/core/tpetra.hpp"
+#include "rpc/algebra/repeated_rows.hpp"
+
+#include <memory>
 
 namespace rpc
 {
@@ -29,5 +31,8 @@ private:
   DeviceView<float *> value_;       // (blocks * dim * dim, and some more)
   DeviceView<double *> sum_;        // (owned nodes * dim * dim) S_i, row after row
 };
+
+/// The same of rows as they are now. Null where they would save no time: only rows that are read one by one, on the host, do.
+std::shared_ptr<const RoundedRows> rounded_where_it_pays(const RepeatedRows &rows);
 
 } // namespace rpc

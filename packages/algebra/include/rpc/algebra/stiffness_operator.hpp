@@ -40,10 +40,7 @@ public:
   RCP<const Map> getRangeMap() const override { return dofs_; }
   bool hasTransposeApply() const override { return false; }
 
-  /// K's rows in single precision, for preconditioners. Null where they would save no time: only rows that are read one by one, on the
-  /// host, do.
-  std::shared_ptr<const RoundedRows> rounded_rows() const;
-  /// y <- K x by these.
+  /// y <- K x by rows in single precision, for preconditioners.
   void apply_rounded(const RoundedRows &rounded, const MultiVector &x, MultiVector &y) const;
 
   int dofs_per_node() const { return rows_.dim(); }
