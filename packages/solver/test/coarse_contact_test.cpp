@@ -275,8 +275,7 @@ TEST(CoarseContact, RoundsTheBodyButNotContact)
     lines.contact->write(lines.update);
     Dense expected = lines.expected();
     const Dense A = dense_matrix(65, rows_repeat);
-    for (std::size_t k = 0; k < A.value.size(); ++k)
-      expected.value[k] += (1e8 - 1) * (expected.value[k] - A.value[k]);
+    for (std::size_t k = 0; k < A.value.size(); ++k) expected.value[k] += (1e8 - 1) * (expected.value[k] - A.value[k]);
     lines.expect_products_of(expected, 1e-6);
   }
 }
