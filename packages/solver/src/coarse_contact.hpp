@@ -20,9 +20,9 @@ MultiVector packed_blocks(const RCP<const Map> &contact, const DeviceView<double
 ///
 ///     S^T U S.                                                                                  doc/theory.md (4.7a)
 ///
-/// Where A is assembled, the sum is written into its entries at the nodes around the contact nodes, in place. Products with rows that repeat do
-/// not read these entries, and where A is not assembled there are none: the sum is added to the products there. Couplings of nodes that
-/// share no cell of the coarse mesh are replaced by their bound on the diagonal; they occur where meshes are not nested.
+/// Where A is assembled, the sum is written into its entries at the nodes around the contact nodes, in place. Products with rows that repeat,
+/// or in single precision, do not read these entries, and where A is not assembled there are none: the sum is added to the products there.
+/// Couplings of nodes that share no cell of the coarse mesh are replaced by their bound on the diagonal; they occur where meshes are not nested.
 class CoarseContact : public Operator
 {
 public:
