@@ -349,8 +349,7 @@ RepeatedRows RepeatedRows::of(RCP<const CrsMatrix> A, const int dim)
   number_the_rest(result.kind_);
   const auto example = device_values(kinds ? kinds->example : std::vector<LO>{}, "rpc::repeated_rows::example");
   result.list_kinds({example, example, matrix});
-  const bool repeat = result.num_kinds() > 0 || num_nodes == 0; // on this rank
-  result.pays_ = dim > 1 && (!on_gpu || min_all(*result.A_->getComm(), repeat ? 1 : 0) == 1);
+  result.pays_ = dim > 1 && (!on_gpu || min_all(*result.A_->getComm(), result.any_repeat() ? 1 : 0) == 1);
   return result;
 }
 

@@ -119,15 +119,15 @@ void CoarseContact::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp
     const auto from = x.getVector(k);
     const auto to = y.getVectorNonConst(k);
     const Vector &columns = halo_->at_columns(*from);
-    if (rounded_) {
-      rounded_->apply(columns, *to);
-      add_product(columns, *to);
-    } else if (!A_.is_null() && !rows_.pays()) {
+    if (!rounded_ && !A_.is_null() && !rows_.pays()) { // contact is in all of A's entries
       A_->localApply(columns, *to);
-    } else {
-      rows_.apply(columns, *to);
-      add_product(columns, *to);
+      continue;
     }
+    if (rounded_)
+      rounded_->apply(columns, *to);
+    else
+      rows_.apply(columns, *to);
+    add_product(columns, *to);
   }
 }
 
@@ -139,7 +139,7 @@ void CoarseContact::add_product(const Vector &x, Vector &y) const
   const auto first = first_;
   const auto added = added_;
   const auto kind = rows_.blocks().kind;
-  const bool in_place = !A_.is_null() && !rounded_; // else no row has been read that contact is written into
+  const bool in_place = !A_.is_null() && !rounded_; // single precision has no entries with contact
   const int dim = dim_;
   Kokkos::parallel_for(
       "rpc::solver::add_contact", device_range(num_dofs(dim, static_cast<LO>(nodes.extent(0)))),

@@ -63,8 +63,7 @@ double seconds_of_iteration(const StiffnessOperator &K)
 {
   // Rows that repeat are read once. In the plane vectors count for more beside them.
   const double of_repeated = K.dofs_per_node() == 3 ? 1e-9 : 2e-9, of_others = 8e-9;
-  const bool repeat =
-      min_all(*K.getDomainMap()->getComm(), K.rows().num_kinds() > 0 || K.rows().num_nodes() == 0 ? 1 : 0) == 1;
+  const bool repeat = min_all(*K.getDomainMap()->getComm(), K.rows().any_repeat() ? 1 : 0) == 1;
   const double of_entry = repeat ? of_repeated : of_others;
   const double on_host = of_entry * num_entries(K) / K.getDomainMap()->getComm()->getSize();
   constexpr double faster = 50, launches = 2e-3; // on an H100; factors are made on its host

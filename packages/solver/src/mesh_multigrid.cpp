@@ -225,7 +225,7 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
       level->blocks = Teuchos::null;
       level->coarse = contact_of(supports);
     }
-    if (H_->is_rounded()) level->coarse->allow_rounding(); // else few rows of coarse meshes are read one by one
+    if (H_->is_rounded()) level->coarse->allow_rounding(); // where the finest rows repeat, most of the coarse ones do
     levels_.push_back(std::move(level));
   }
   for (std::size_t l = 0; l < levels_.size(); ++l) add_smoother(levels, l); // contact is not in the coarse matrices yet

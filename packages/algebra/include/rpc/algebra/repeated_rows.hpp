@@ -47,6 +47,8 @@ public:
   /// The matrix that it was made of, from which rows that do not repeat are read; null: there is none.
   const RCP<const CrsMatrix> &matrix() const { return A_; }
 
+  /// Whether rows of this rank repeat; where it has none, too.
+  bool any_repeat() const { return num_kinds() > 0 || num_nodes() == 0; }
   /// 0 where less than three quarters of this rank's rows repeat.
   int num_kinds() const { return static_cast<int>(begin_.extent(0)) - 1; }
   LO num_nodes() const { return static_cast<LO>(kind_.extent(0)); }

@@ -36,7 +36,7 @@ public:
   void apply_base_rounded(const MultiVector &x, MultiVector &y) const;
   /// Keeps K's rows in single precision too, where that saves time, or no longer.
   void allow_rounding(bool allowed);
-  /// Whether it does, on this rank.
+  /// Whether it keeps them now, on this rank.
   bool is_rounded() const { return rounded_ != nullptr; }
 
   /// The update at each node becomes the sum of the blocks of its points; it is 0 at nodes without a point.
