@@ -72,6 +72,31 @@ TEST(RepeatedRows, GiveTheProductsOfTheMatrix)
   }
 }
 
+/// One unknown at each point of a grid, coupled with those around it.
+TEST(RepeatedRows, HaveOneUnknownANode)
+{
+  constexpr int nx = 41, ny = 17;
+  const auto comm = Tpetra::getDefaultComm();
+  const auto map = rcp(new Map(GO(nx) * ny * comm->getSize(), nx * ny, 0, comm));
+  for (const bool alike : {true, false}) {
+    const auto A = rcp(new CrsMatrix(map, 9));
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        for (int q = std::max(j - 1, 0); q <= std::min(j + 1, ny - 1); ++q)
+          for (int p = std::max(i - 1, 0); p <= std::min(i + 1, nx - 1); ++p) {
+            const GO first = map->getMinGlobalIndex(), row = first + nx * j + i, column = first + nx * q + p;
+            const double value = 3 + 2 * (p - i) - 0.5 * (q - j) + (alike ? 0 : 1e-3 * std::sin(1. + row * row));
+            A->insertGlobalValues(row, Teuchos::tuple(column), Teuchos::tuple(value));
+          }
+    A->fillComplete();
+    const auto rows = RepeatedRows::of(A, 1);
+    EXPECT_EQ(rows.num_kinds(), alike ? 9 : 0);
+    EXPECT_EQ(rows.pays(), alike) << "Tpetra's product is as fast";
+    EXPECT_LT(difference(rows, *A), 1e-14);
+    test::expect_same_rows(rows, *A);
+  }
+}
+
 TEST(RepeatedRows, RowsThatAreAloneAreReadFromTheMatrix)
 {
   const auto A = stiffness({2, 1});

@@ -20,9 +20,9 @@ constexpr GO few_2d = 800, few_3d = 400;
 // Unknowns of a coarsest mesh that is still factored, where there is no coarser one.
 constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
 
-// Above this ratio a mixed form, and smoothers on stars, take less time than smoothers of single nodes, by measurement in space; on cells that
-// are stretched more than that stars take too many iterations.                                              (4.7f), (4.13)
-constexpr double nearly_incompressible = 0.48, most_stretched_of_stars = 5;
+// Above these ratios, of order 2 and of order 1, a mixed form, and smoothers on stars, take less time than smoothers of single nodes, by
+// measurement in space; on cells that are stretched more than that stars take too many iterations.          (4.7f), (4.13)
+constexpr double nearly_incompressible = 0.48, nearly_incompressible_of_order_one = 0.485, most_stretched_of_stars = 5;
 
 /// Which components of which sides are prescribed, whatever their values.
 std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondition> conditions)
@@ -62,6 +62,24 @@ solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, con
     level.stiffness = assembled();
   }
   return level;
+}
+
+/// Of nodal values to themselves.
+RCP<const CrsMatrix> identity(const RCP<const Map> &nodes)
+{
+  using LocalMatrix = CrsMatrix::local_matrix_device_type;
+  const LO n = num_local(*nodes);
+  const LocalMatrix::row_map_type::non_const_type begin("rpc::analysis::identity_begin", n + 1);
+  const LocalMatrix::index_type::non_const_type column("rpc::analysis::identity_column", n);
+  const LocalMatrix::values_type::non_const_type value("rpc::analysis::identity", n);
+  Kokkos::parallel_for(
+      "rpc::analysis::identity", device_range(n), KOKKOS_LAMBDA(const LO i) {
+        begin(i + 1) = i + 1;
+        column(i) = i;
+        value(i) = 1;
+      });
+  Kokkos::fence();
+  return rcp(new CrsMatrix(LocalMatrix("rpc::analysis::identity", n, n, n, value, begin, column), nodes, nodes, nodes, nodes));
 }
 
 /// Of the coarsest mesh; collective.
@@ -170,7 +188,8 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 
 bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials)
 {
-  return d.kinematics != fem::Kinematics::plane_stress && largest_ratio(d, materials) > nearly_incompressible;
+  const double least = d.mesh->element.order == 1 ? nearly_incompressible_of_order_one : nearly_incompressible;
+  return d.kinematics != fem::Kinematics::plane_stress && largest_ratio(d, materials) > least;
 }
 
 bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials)
@@ -199,9 +218,9 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   };
   const NestedMesh *mesh = &finest;
   std::optional<int> thin = thin_direction(finest);
-  if (thin) { // no coarser mesh will do: the mesh is its own coarser one, where it is factored
+  if (thin || !finest.may_have_coarser()) { // the mesh is its own coarser one, where it is factored, or has an algebraic hierarchy
     const fem::Discretization &d = finest.discretization();
-    levels.level.push_back(level_on(d, model, prescribed, fem::interpolation(d, d)));
+    levels.level.push_back(level_on(d, model, prescribed, identity(d.mesh->owned_nodes)));
   }
   while (!thin && (levels.level.empty() || num_unknowns(*mesh) > few)) {
     const NestedMesh *const coarse = mesh->coarser().get();
@@ -223,7 +242,6 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
 solver::MakeMeshLevels make_mesh_levels(std::shared_ptr<const NestedMesh> finest, const Model &model,
                                         const DeviceView<char *> &prescribed)
 {
-  if (!finest->may_have_coarser()) return {};
   return [finest = std::move(finest), model, prescribed] {
     const auto made = mesh_levels(*finest, model, prescribed);
     if (finest->is_finest())

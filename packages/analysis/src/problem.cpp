@@ -107,7 +107,7 @@ Problem::Problem(std::shared_ptr<const NestedMesh> mesh, const Model &model, con
 
 solver::MakeMeshLevels Problem::mesh_levels() const
 {
-  return make_mesh_levels(mesh_, model_, prescribed_);
+  return mesh_->may_have_coarser() ? make_mesh_levels(mesh_, model_, prescribed_) : solver::MakeMeshLevels();
 }
 
 solver::MakeMixedForm Problem::mixed_form() const

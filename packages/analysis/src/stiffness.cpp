@@ -41,9 +41,11 @@ solver::MakeMixedForm mixed_form(const std::shared_ptr<const NestedMesh> &finest
 {
   const fem::Discretization &d = finest->discretization();
   const mesh::Element &element = d.mesh->element;
-  if (element.order == 1 || !finest->may_have_coarser() || !is_nearly_incompressible(d, model.materials)) return {};
+  const bool simplex = element.shape == mesh::Shape::simplex;
+  if (simplex && element.order == 1) return {}; // it locks: most of its pressures move nothing
+  if (!is_nearly_incompressible(d, model.materials)) return {};
   if (model.contact.empty() && smooths_on_stars(d, model.materials)) return {};
-  const bool tetrahedra = element.dim == 3 && element.shape == mesh::Shape::simplex;
+  const bool tetrahedra = element.dim == 3 && simplex;
   const auto soft = fem::softened(d, model.materials, tetrahedra ? ratio_of_soft_tetrahedra : ratio_of_soft_part);
   if (!soft || is_nearly_incompressible(d, *soft)) return {}; // a block with its full dilatation would stay as it is
   Model soft_model = model;

@@ -175,14 +175,14 @@ std::string locking_note(const Discretization &d, const Materials &materials)
 std::string incompressibility_note(const Discretization &d, const Materials &materials)
 {
   const mesh::Mesh &mesh = *d.mesh;
-  if (d.kinematics == Kinematics::plane_stress || !mesh.box || mesh.element.name() != "Q1") return "";
-  constexpr double many_iterations = 0.498; // above it, by measurement
+  if (d.kinematics == Kinematics::plane_stress || mesh.element.name() != "Q1") return "";
+  constexpr double alternating = 0.498;
   for (const std::string &block : mesh.blocks) {
     const double nu = materials.of(block).poissons_ratio;
-    if (!(nu > many_iterations)) continue;
+    if (!(nu > alternating)) continue;
     std::ostringstream note;
     note << "Q1 cells with nu = " << nu << " in block \"" << block
-         << "\" make linear solves slow, and pressures may alternate from cell to cell; take Q2";
+         << "\": pressures in the body may alternate from cell to cell; take Q2";
     return note.str();
   }
   return "";

@@ -15,6 +15,8 @@ using LocalMatrix = CrsMatrix::local_matrix_device_type;
 template <int Dim, int Nodes, bool Axisymmetric>
 struct FillModes {
   static constexpr int modes = Projection<Dim, Nodes>::modes, dofs = Dim * Nodes;
+  /// A constant pressure in each cell and one node a cell: checkerboards.
+  static constexpr bool alternates = StaticElement<Dim, Nodes>::order == 1 && !StaticElement<Dim, Nodes>::simplex;
 
   using Begins = LocalMatrix::row_map_type::non_const_type;
   using Columns = LocalMatrix::index_type::non_const_type;
@@ -26,6 +28,9 @@ struct FillModes {
   Begins begin;                                // (modes * cells + 1)                           out
   Columns column;                              // (modes * cells * dofs)                        out
   Values value;                                // (modes * cells * dofs)  [m^(dim/2 - 1)]       out
+  Begins node_begin;                           // (cells + 1), where pressures alternate        out
+  Columns node_column;                         // (cells * Nodes)                               out
+  Values root_of_volume;                       // (cells * Nodes)         [m^(dim/2)]           out
   DeviceView<double *> stiffness;              // (modes * cells)                        [Pa]   out
   DeviceView<double *> wave_modulus;           // (modes * cells)                        [Pa]   out
   DeviceView<double *> bulk_modulus;           // (modes * cells)                        [Pa]   out
@@ -56,6 +61,14 @@ struct FillModes {
           value(at) = is_split && !prescribed(unknown) ? projection.Z[m][order[n]][i] : 0;
         }
     }
+    if constexpr (alternates) {
+      const std::size_t first = static_cast<std::size_t>(Nodes) * cell;
+      node_begin(cell + 1) = first + Nodes;
+      for (int n = 0; n < Nodes; ++n) {
+        node_column(first + n) = body.cells(cell, order[n]);
+        root_of_volume(first + n) = is_split ? projection.root[0][0] : 0;
+      }
+    }
   }
 };
 
@@ -73,14 +86,28 @@ StiffDilatation stiff_dilatation_of(const Discretization &d, const ElasticCells<
   const DeviceView<double *> stiffness("rpc::fem::stiffness_of_modes", num_modes);
   const DeviceView<double *> wave_modulus("rpc::fem::wave_modulus", num_modes);
   const DeviceView<double *> bulk_modulus("rpc::fem::bulk_modulus", num_modes);
-  const Fill fill{body, lame_table(d, soft), prescribed, begin, column, value, stiffness, wave_modulus, bulk_modulus};
+  const LO num_around = Fill::alternates ? num_cells : 0;
+  const std::size_t num_at_nodes = static_cast<std::size_t>(Nodes) * num_around;
+  const typename Fill::Begins node_begin("rpc::fem::cells_begin", num_around + 1);
+  const typename Fill::Columns node_column(ViewAllocateWithoutInitializing("rpc::fem::cells_column"), num_at_nodes);
+  const typename Fill::Values root(ViewAllocateWithoutInitializing("rpc::fem::roots_of_volumes"), num_at_nodes);
+  const Fill fill{body,       lame_table(d, soft), prescribed, begin,     column,       value,
+                  node_begin, node_column,         root,       stiffness, wave_modulus, bulk_modulus};
   Kokkos::parallel_for("rpc::fem::fill_modes", device_range(num_cells), fill);
   Kokkos::fence();
   const auto columns = overlap_dofs(d);
   const auto rows =
       rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), num_modes, 0, d.owned_dofs->getComm()));
   const LocalMatrix local("rpc::fem::modes", num_modes, num_local(*columns), num_entries, value, begin, column);
-  return {rcp(new CrsMatrix(local, rows, columns, d.owned_dofs, rows)), stiffness, wave_modulus, bulk_modulus};
+  RCP<const CrsMatrix> at_nodes;
+  if constexpr (Fill::alternates) {
+    const auto nodes = d.mesh->comm().getSize() == 1 ? d.mesh->owned_nodes : d.mesh->overlap_nodes();
+    const LocalMatrix around("rpc::fem::at_nodes", num_cells, num_local(*nodes), num_at_nodes, root, node_begin,
+                             node_column);
+    at_nodes = rcp(new CrsMatrix(around, rows, nodes, d.mesh->owned_nodes, rows));
+  }
+  return {rcp(new CrsMatrix(local, rows, columns, d.owned_dofs, rows)), at_nodes, stiffness, wave_modulus,
+          bulk_modulus};
 }
 
 } // namespace

@@ -334,7 +334,8 @@ TEST(SoftDilatation, AndWhatItLacksAreTheStiffness)
 TEST(SoftDilatation, ModesOfAnExpansionAreTheRootsOfVolumes)
 {
   for (const mesh::Element &element :
-       {mesh::Element{2, 2}, mesh::Element{3, 2}, mesh::Element{3, 2, mesh::Shape::simplex}}) {
+       {mesh::Element{2, 1}, mesh::Element{3, 1}, mesh::Element{2, 2}, mesh::Element{3, 2},
+        mesh::Element{3, 2, mesh::Shape::simplex}}) {
     SCOPED_TRACE(text_of(element));
     const auto d = one_cell(element);
     const fem::Material material{50, 0.4999, Dilatation::projected};
@@ -352,6 +353,16 @@ TEST(SoftDilatation, ModesOfAnExpansionAreTheRootsOfVolumes)
       if (m % modes > 0) {
         EXPECT_NEAR(of_mode[m], 0, 1e-12);
       }
+    EXPECT_EQ(split.at_nodes.is_null(), element.order == 2);
+    if (element.order == 2) continue;
+    // The same root at each node of the cell: its product with 1 at all nodes, and with the root itself the other way.
+    Vector ones(split.at_nodes->getDomainMap()), sums(split.at_nodes->getRangeMap()), around(ones.getMap());
+    ones.putScalar(1);
+    split.at_nodes->apply(ones, sums);
+    sums.update(-element.num_nodes(), volumes, 1.);
+    EXPECT_LT(sums.norm2(), 1e-12);
+    split.at_nodes->apply(volumes, around, Teuchos::TRANS);
+    EXPECT_NEAR(around.normInf(), volume(d), 1e-12);
   }
 }
 
@@ -396,7 +407,7 @@ TEST(SoftDilatation, LeavesOtherMaterialsAlone)
   EXPECT_TRUE(fem::softened(p2, fem::Material{50, 0.49}, 0.4));
 }
 
-TEST(IncompressibilityNote, AdvisesQ2WhereQ1IsSlow)
+TEST(IncompressibilityNote, AdvisesQ2WherePressuresOfQ1Alternate)
 {
   const auto note = [](const mesh::Element &element, const double nu) {
     return fem::incompressibility_note(body(small_box(element), world()), fem::Material{1, nu});

@@ -144,11 +144,11 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
 {
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
   const bool automatic = options.multigrid == "auto" && options.muelu.numParams() == 0;
-  if (levels && (options.multigrid == "mesh" || (automatic && unknowns > few_rows)))
-    meshes.emplace(H, std::move(levels), options);
+  const bool want_meshes = options.multigrid == "mesh" || (automatic && unknowns > few_rows);
+  if (levels && want_meshes) meshes.emplace(H, std::move(levels), options);
   if (automatic && unknowns <= most_rows_set_up_anew) factor.emplace(H);
   on_meshes = meshes.has_value();
-  if (mixed_form && on_meshes) mixed.emplace(H, std::move(mixed_form), options);
+  if (mixed_form && want_meshes) mixed.emplace(H, std::move(mixed_form), options);
   on_mixed = mixed.has_value();
   may_be_sparse = automatic && unknowns <= most_sparse_rows;
   if (sum_all(*H->getDomainMap()->getComm(), static_cast<GO>(H->nodes().extent(0))) > 0)
@@ -356,7 +356,7 @@ bool LinearSolver::Impl::take(const Next next, const std::string &reason)
     on_mixed = false;
     mixed_again = next == Next::whole_once;
     if (!mixed_again) options.first_iterations = LinearSolverOptions().first_iterations;
-    record(*meshes, reason);
+    record(meshes ? static_cast<const Preconditioner &>(*meshes) : algebraic, reason);
     return true;
   case Next::stronger:
     if (!algebraic.strengthen()) return false;

@@ -1,5 +1,6 @@
 #include "node_smoother.hpp"
 
+#include "chebyshev.hpp"
 #include "patch_solver.hpp"
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/fingerprint.hpp"
@@ -184,14 +185,19 @@ NodeBlocks inverses(const Comm &comm, const NodeBlocks &D, const DeviceView<LO *
 
 } // namespace
 
-/// From the coefficients of the conjugate gradients for some right side.
 double largest_eigenvalue(const Operator &A, const NodeBlocks &D)
 {
+  const NodeBlocks inverse = inverses(*A.getDomainMap()->getComm(), D, {});
+  return largest_eigenvalue(A, [&inverse](const Vector &r, Vector &z) { apply_inverse(inverse, r, z); });
+}
+
+/// From the coefficients of the conjugate gradients for some right side.
+double largest_eigenvalue(const Operator &A, const std::function<void(const Vector &r, Vector &z)> &apply_inverse)
+{
   const auto map = A.getDomainMap();
-  const NodeBlocks inverse = inverses(*map->getComm(), D, {});
   Vector r(map), z(map), p(map), q(map);
   fill_without_order(r);
-  apply_inverse(inverse, r, z);
+  apply_inverse(r, z);
   p.update(1., z, 0.);
   double rho = r.dot(z);
   const double enough = 1e-24 * rho; // nothing is left where there are fewer eigenvalues than steps
@@ -203,7 +209,7 @@ double largest_eigenvalue(const Operator &A, const NodeBlocks &D)
     if (!(energy > 0)) throw std::runtime_error("multigrid: the matrix of a level is not positive definite");
     const double alpha = rho / energy;
     r.update(-alpha, q, 1.);
-    apply_inverse(inverse, r, z);
+    apply_inverse(r, z);
     const double next = r.dot(z), beta = next / rho;
     diagonal.push_back(1 / alpha + last_beta / last_alpha);
     beside.push_back(std::sqrt(beta) / alpha);
@@ -278,20 +284,11 @@ void NodeSmoother::step(const Vector &b, const double keep, const double add, co
 
 void NodeSmoother::polynomial(const Vector &b, const bool at_zero, Vector &x) const
 {
-  const double smallest = largest_ / options_.ratio;
-  const double centre = 0.5 * (largest_ + smallest), radius = 0.5 * (largest_ - smallest), sigma = centre / radius;
-  double rho = 1 / sigma;
-  for (int k = 0; k < options_.degree; ++k) {
+  chebyshev(largest_, largest_ / options_.ratio, options_.degree, [&](const int k, const double keep, const double add) {
     const bool zero = at_zero && k == 0;
     if (!zero) A_->apply(x, *product_);
-    if (k == 0) {
-      step(b, 0, 1 / centre, zero, x);
-    } else {
-      const double next = 1 / (2 * sigma - rho);
-      step(b, next * rho, 2 * next / radius, false, x);
-      rho = next;
-    }
-  }
+    step(b, keep, add, zero, x);
+  });
 }
 
 void NodeSmoother::start(const Vector &b, Vector &x) const

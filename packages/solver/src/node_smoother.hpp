@@ -3,6 +3,7 @@
 #include "rpc/algebra/node_blocks.hpp"
 #include "rpc/core/tpetra.hpp"
 
+#include <functional>
 #include <memory>
 
 namespace rpc::solver
@@ -15,6 +16,8 @@ class PatchSolver;
 /// @param D  its blocks
 /// @throws std::runtime_error on all ranks if A or D is not positive definite
 double largest_eigenvalue(const Operator &A, const NodeBlocks &D);
+/// The same for any symmetric positive definite D. @param apply_inverse  z <- D^-1 r
+double largest_eigenvalue(const Operator &A, const std::function<void(const Vector &r, Vector &z)> &apply_inverse);
 
 /// Chebyshev polynomials of D^-1 A for a symmetric positive definite A, D its diagonal blocks of the nodes: they damp what lies
 /// between the largest eigenvalue of D^-1 A and a part of it.                                          doc/theory.md (4.7c)

@@ -1,8 +1,9 @@
 #include "preconditioner/mixed.hpp"
 
+#include "checkerboards.hpp"
 #include "rpc/core/math.hpp"
+#include "shared_rows.hpp"
 
-#include <Tpetra_RowMatrixTransposer.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,11 +14,12 @@ namespace rpc::solver
 
 /// Factors of the equations of pressures, one for each mode.
 struct ModeWeights {
-  explicit ModeWeights(const RCP<const Map> &rows) : of_equation(rows), softness(rows), schur(rows), bulk(rows) {}
+  explicit ModeWeights(const RCP<const Map> &rows) : of_equation(rows), softness(rows), schur(rows), inverse(rows), bulk(rows) {}
 
   Vector of_equation;  // w [N/m^(dim/2)]; the pressures are w q
   Vector softness;     // w^2 / s
   Vector schur;        // 1 / (w^2 (1/s + 1/wave modulus)): the inverse of what stands for Z H_0^-1 Z^T + 1/s
+  Vector inverse;      // 1 / w
   Vector bulk;         // 1 / (1/s + 1/bulk modulus) [Pa]
   double stiffest = 0; // the largest s |Z_m|^2 [N/m]
 };
@@ -33,15 +35,6 @@ constexpr double pass_tolerance = 0.1, stalled = 0.5;
 // Errors of products over what the largest entries would give: sums of some hundred terms.
 constexpr double rounding_of_products = 10 * std::numeric_limits<double>::epsilon();
 
-/// Z^T where several threads would add to a row at once in a product with Z's columns, in any order; else null. Its rows are the columns
-/// of the rank's part of Z: a product sums over the ranks that share one. (Rows that had one owner each would be sorted on the host.)
-/// Collective.
-RCP<const CrsMatrix> transposed(const RCP<const CrsMatrix> &Z)
-{
-  if (max_all(*Z->getComm(), static_cast<int>(ExecutionSpace().concurrency())) == 1) return Teuchos::null;
-  return Tpetra::RowMatrixTransposer<double, LO, GO, Node>(Z).createTransposeLocal();
-}
-
 /// w of a mode is what its error is worth as a force: s |Z_m|. Collective.                                         (4.14a)
 ModeWeights weights_of(const StiffDilatation &dilatation)
 {
@@ -50,7 +43,8 @@ ModeWeights weights_of(const StiffDilatation &dilatation)
   const auto Z = dilatation.modes->getLocalMatrixDevice();
   const auto stiffness = dilatation.stiffness, wave = dilatation.wave_modulus, volume = dilatation.bulk_modulus;
   const auto w = device_write(weights.of_equation), softness = device_write(weights.softness),
-             schur = device_write(weights.schur), bulk = device_write(weights.bulk);
+             schur = device_write(weights.schur), inverse = device_write(weights.inverse),
+             bulk = device_write(weights.bulk);
   double stiffest = 0;
   Kokkos::parallel_reduce(
       "rpc::solver::weights_of_modes", device_range(num_local(*rows)),
@@ -60,6 +54,7 @@ ModeWeights weights_of(const StiffDilatation &dilatation)
         for (std::size_t k = Z.graph.row_map(m); k < Z.graph.row_map(m + 1); ++k) square += Z.values(k) * Z.values(k);
         const double s = is_split ? stiffness(m) : wave(m), factor = square > 0 ? s * s * square : 1.;
         w(m) = math::sqrt(factor);
+        inverse(m) = 1 / w(m);
         softness(m) = factor / s;
         schur(m) = 1 / (factor * (1 / s + (is_split ? 1 / wave(m) : 0.)));
         bulk(m) = is_split ? 1 / (1 / s + 1 / volume(m)) : 0.;
@@ -100,16 +95,15 @@ LinearSolverOptions for_saddle()
 struct Mixed::System {
   System(const UpdatedOperator &H, MixedForm made, const LinearSolverOptions &options);
 
-  /// forces <- forces + Z^T p.
-  void add_forces(const Vector &p, Vector &forces) const
-  {
-    if (Z_transposed.is_null())
-      dilatation.modes->apply(p, forces, Teuchos::TRANS, 1., 1.);
-    else
-      Z_transposed->apply(p, forces, Teuchos::NO_TRANS, 1., 1.);
-  }
   /// u <- about H_0^-1 r.
   void solve_soft(const Vector &r, Vector &u) const { meshes.apply(r, u); }
+  /// q <- q + w^-1 C w^-1 of_equation
+  void add_checkerboards(Vector &q) const
+  {
+    work.elementWiseMultiply(1., weights.inverse, of_equation, 0.);
+    checkerboards->apply(work, of_equation);
+    q.elementWiseMultiply(1., weights.inverse, of_equation, 1.);
+  }
   /// The parts of x = (u, q).
   RCP<const Vector> displacements(const Vector &x) const { return x.offsetView(dofs, 0)->getVector(0); }
   RCP<Vector> displacements(Vector &x) const { return x.offsetViewNonConst(dofs, 0)->getVectorNonConst(0); }
@@ -123,12 +117,13 @@ struct Mixed::System {
   class Triangular;
 
   StiffDilatation dilatation;
-  RCP<const CrsMatrix> Z_transposed; // or null
+  SharedRows Z;
   RCP<UpdatedOperator> H0;
   Meshes meshes; // of H_0
   RCP<const Map> dofs, mode_map, all;
   ModeWeights weights;
-  mutable Vector work; // (modes)
+  std::unique_ptr<const Checkerboards> checkerboards; // null: pressures do not alternate
+  mutable Vector work, of_equation;                   // (modes)
   RCP<Saddle> saddle;
   std::unique_ptr<Triangular> triangular;
   std::unique_ptr<Krylov> krylov;
@@ -158,8 +153,8 @@ public:
       const auto force = s.displacements(*of_y), volume = s.pressures(*of_y);
       s.H0->apply(*u, *force);
       s.work.elementWiseMultiply(1., s.weights.of_equation, *q, 0.);
-      s.add_forces(s.work, *force);
-      s.dilatation.modes->apply(*u, s.work);
+      s.Z.apply_transposed(s.work, *force, 1.);
+      s.Z.apply(*u, s.work);
       volume->elementWiseMultiply(1., s.weights.of_equation, s.work, 0.);
       volume->elementWiseMultiply(-1., s.weights.softness, *q, 1.);
     }
@@ -187,11 +182,12 @@ public:
       const auto of_y = y.getVectorNonConst(k);
       const auto u = s.displacements(*of_y), q = s.pressures(*of_y);
       s.solve_soft(*s.displacements(*of_x), *u);
-      s.dilatation.modes->apply(*u, s.work);
+      s.Z.apply(*u, s.work);
       q->elementWiseMultiply(1., s.weights.of_equation, s.work, 0.);
       q->update(-1., *s.pressures(*of_x), 1.);
-      s.work.assign(*q);
-      q->elementWiseMultiply(1., s.weights.schur, s.work, 0.);
+      s.of_equation.assign(*q);
+      q->elementWiseMultiply(1., s.weights.schur, s.of_equation, 0.);
+      if (s.checkerboards) s.add_checkerboards(*q);
     }
   }
 
@@ -200,14 +196,16 @@ private:
 };
 
 Mixed::System::System(const UpdatedOperator &H, MixedForm made, const LinearSolverOptions &options)
-    : dilatation(std::move(made.dilatation)), Z_transposed(transposed(dilatation.modes)),
+    : dilatation(std::move(made.dilatation)), Z(dilatation.modes),
       H0(rcp(new UpdatedOperator(std::move(made.soft), H.nodes()))), meshes(H0, std::move(made.levels), options),
       dofs(H.getDomainMap()), mode_map(dilatation.modes->getRangeMap()),
       all(rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), num_local(*dofs) + num_local(*mode_map),
                       0, dofs->getComm()))),
-      weights(weights_of(dilatation)), work(mode_map), saddle(rcp(new Saddle(*this))),
+      weights(weights_of(dilatation)), work(mode_map), of_equation(mode_map), saddle(rcp(new Saddle(*this))),
       triangular(std::make_unique<Triangular>(*this)), krylov(std::make_unique<Krylov>(for_saddle(), saddle))
 {
+  if (!dilatation.at_nodes.is_null())
+    checkerboards = std::make_unique<const Checkerboards>(dilatation, H0->base());
 }
 
 Mixed::Mixed(RCP<const UpdatedOperator> H, MakeMixedForm make, LinearSolverOptions options)
@@ -285,10 +283,9 @@ void Mixed::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double
   for (std::size_t k = 0; k < x.getNumVectors(); ++k) {
     const auto u = y.getVectorNonConst(k);
     s.solve_soft(*x.getVector(k), *u);
-    s.dilatation.modes->apply(*u, s.work);
+    s.Z.apply(*u, s.work);
     pressure.elementWiseMultiply(1., s.weights.bulk, s.work, 0.);
-    forces.putScalar(0);
-    s.add_forces(pressure, forces);
+    s.Z.apply_transposed(pressure, forces, 0.);
     s.solve_soft(forces, correction);
     u->update(-1., correction, 1.);
   }

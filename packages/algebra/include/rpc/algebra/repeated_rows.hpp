@@ -30,7 +30,7 @@ public:
 
   /// @param A    fill-complete; each node's unknowns are consecutive rows with equal columns, and so are its columns. It is kept: rows
   ///             that do not repeat have its values as they come to be, the others as they are now. Collective.
-  /// @param dim  unknowns of a node, 1 to 3; with one, products are left to Tpetra
+  /// @param dim  unknowns of a node, 1 to 3
   static RepeatedRows of(RCP<const CrsMatrix> A, int dim);
 
   /// Of a matrix that there is not.
@@ -41,8 +41,8 @@ public:
   /// y <- A x, of this rank.
   /// @param x  (columns of A)   @param y  (rows of A)
   void apply(const Vector &x, Vector &y) const;
-  /// Whether that takes less time than Tpetra's product. On a GPU it does not where no rows repeat: a thread for each node would read
-  /// entries far apart. The same on all ranks, for the two products exchange in different ways.
+  /// Whether that takes less time than Tpetra's product. On a GPU, and for one unknown a node, it does not where no rows repeat: a thread for
+  /// each node would read entries far apart, and a node's columns are read once anyway. The same on all ranks, for the two products exchange in different ways.
   bool pays() const { return pays_; }
   /// The matrix that it was made of, from which rows that do not repeat are read; null: there is none.
   const RCP<const CrsMatrix> &matrix() const { return A_; }
@@ -95,8 +95,11 @@ public:
   Blocks blocks() const;
 
   /// A block in the list of a kind: four numbers in the plane, column after column; in space three columns of four, the last of which
-  /// is 0.
-  KOKKOS_INLINE_FUNCTION static constexpr std::size_t block_size(const int dim) { return dim == 2 ? 4 : 12; }
+  /// is 0; of one unknown a node one number.
+  KOKKOS_INLINE_FUNCTION static constexpr std::size_t block_size(const int dim)
+  {
+    return dim == 1 ? 1 : dim == 2 ? 4 : 12;
+  }
   KOKKOS_INLINE_FUNCTION static constexpr int place_in_block(const int dim, const int row, const int column)
   {
     return dim == 2 ? 2 * column + row : 4 * column + row;

@@ -18,14 +18,14 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 /// Whether multigrid's smoothers solve on stars of vertices: nearly incompressible boxes of Q2 want it.               (4.7f)
 bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials);
 
-/// Whether some block has a Poisson's ratio above 0.48, outside plane stress.                                 (4.7f), (4.13)
+/// Whether some block has a Poisson's ratio above 0.48, for order 1 above 0.485, outside plane stress.        (4.7f), (4.13)
 bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials);
 
-/// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns. Collective.
+/// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns; the mesh itself where it leads to none. Collective.
 /// @param prescribed  (overlap dofs) 1 where the displacement of the finest mesh is prescribed
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed);
 
-/// The same for when they are needed: then coarser meshes are forgotten where nobody else needs them. Null where there are none.
+/// The same for when they are needed: then coarser meshes are forgotten where nobody else needs them.
 solver::MakeMeshLevels make_mesh_levels(std::shared_ptr<const NestedMesh> finest, const Model &model,
                                         const DeviceView<char *> &prescribed);
 

@@ -1,0 +1,186 @@
+#include "checkerboards.hpp"
+
+#include "chebyshev.hpp"
+#include "node_smoother.hpp"
+#include "rpc/core/dofs.hpp"
+#include "rpc/core/math.hpp"
+
+#include <TpetraExt_MatrixMatrix.hpp>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace rpc::solver
+{
+namespace
+{
+
+// Of the polynomial: so much of the root of the condition number takes the least time, by measurement.
+constexpr double degree_of_root = 0.7;
+constexpr int least_degree = 4, largest_degree = 40;
+
+/// (dofs) diag(K)^(-1/2)
+Vector roots_of_softness(const StiffnessOperator &K)
+{
+  Vector roots(K.getDomainMap());
+  const auto blocks = K.diagonal_blocks();
+  const int dim = K.dofs_per_node();
+  const auto to = device_write(roots);
+  LO bad = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::roots_of_softness", device_range(blocks.num_nodes()),
+      KOKKOS_LAMBDA(const LO n, LO &count) {
+        const LO place = blocks.of(n);
+        for (int k = 0; k < dim; ++k) {
+          const double own = blocks.block(place, k, k);
+          count += own > 0 ? 0 : 1;
+          to(dof(dim, n, k)) = own > 0 ? 1 / math::sqrt(own) : 0.;
+        }
+      },
+      bad);
+  if (sum_all(*K.getDomainMap()->getComm(), GO(bad)) > 0)
+    throw std::runtime_error("mixed form: the diagonal of the matrix is not positive");
+  return roots;
+}
+
+/// diag(1/s), s the wave modulus where the stiffness is not split.
+RCP<CrsMatrix> softness(const StiffDilatation &dilatation)
+{
+  using LocalMatrix = CrsMatrix::local_matrix_device_type;
+  const auto &map = dilatation.modes->getRangeMap();
+  const LO n = num_local(*map);
+  const auto stiffness = dilatation.stiffness, wave = dilatation.wave_modulus;
+  const LocalMatrix::row_map_type::non_const_type begin("rpc::solver::softness_begin", n + 1);
+  const LocalMatrix::index_type::non_const_type column("rpc::solver::softness_column", n);
+  const LocalMatrix::values_type::non_const_type value("rpc::solver::softness", n);
+  Kokkos::parallel_for(
+      "rpc::solver::softness", device_range(n), KOKKOS_LAMBDA(const LO m) {
+        begin(m + 1) = m + 1;
+        column(m) = m;
+        value(m) = 1 / (stiffness(m) > 0 ? stiffness(m) : wave(m));
+      });
+  Kokkos::fence();
+  return rcp(new CrsMatrix(LocalMatrix("rpc::solver::softness", n, n, n, value, begin, column), map, map, map, map));
+}
+
+/// Z diag(K_0)^-1 Z^T + diag(1/s). Tpetra leaves rows without entries where Z is 0; the sum has its diagonal.
+RCP<CrsMatrix> softness_of_pressures(const StiffDilatation &dilatation, const StiffnessOperator &soft)
+{
+  CrsMatrix scaled(*dilatation.modes, Teuchos::Copy);
+  scaled.rightScale(roots_of_softness(soft));
+  CrsMatrix product(scaled.getRangeMap(), 0);
+  Tpetra::MatrixMatrix::Multiply(scaled, false, scaled, true, product);
+  return Tpetra::MatrixMatrix::add(1., false, product, 1., false, *softness(dilatation));
+}
+
+/// (rows) A_mm^(-1/2)
+Vector roots_of_diagonal(const CrsMatrix &A)
+{
+  Vector roots(A.getRowMap());
+  A.getLocalDiagCopy(roots);
+  const auto value = device_write(roots);
+  Kokkos::parallel_for(
+      "rpc::solver::roots_of_diagonal", device_range(num_local(*A.getRowMap())),
+      KOKKOS_LAMBDA(const LO m) { value(m) = 1 / math::sqrt(value(m)); });
+  Kokkos::fence();
+  return roots;
+}
+
+/// (nodes) 1 / (nodes of a cell times the volume of the split cells at the node), 0 where there are none.
+Vector means_at_nodes(const SharedRows &at_nodes)
+{
+  const auto &N = at_nodes.matrix();
+  const auto local = N.getLocalMatrixDevice();
+  Vector root(N.getRangeMap()), weight(N.getDomainMap());
+  const auto of_cell = device_write(root);
+  Kokkos::parallel_for(
+      "rpc::solver::roots_of_volumes", device_range(static_cast<LO>(local.numRows())), KOKKOS_LAMBDA(const LO m) {
+        const std::size_t begin = local.graph.row_map(m), end = local.graph.row_map(m + 1);
+        of_cell(m) = begin < end ? static_cast<double>(end - begin) * local.values(begin) : 0.;
+      });
+  Kokkos::fence();
+  at_nodes.apply_transposed(root, weight, 0.);
+  const auto of_node = device_write(weight);
+  Kokkos::parallel_for(
+      "rpc::solver::means_at_nodes", device_range(num_local(*N.getDomainMap())),
+      KOKKOS_LAMBDA(const LO n) { of_node(n) = of_node(n) > 0 ? 1 / of_node(n) : 0.; });
+  Kokkos::fence();
+  return weight;
+}
+
+/// The least eigenvalue is at least the least 1/s, scaled; collective.
+double least_softness(const Vector &scale, const StiffDilatation &dilatation)
+{
+  const auto root = device_read(scale);
+  const auto stiffness = dilatation.stiffness;
+  double least = 1;
+  Kokkos::parallel_reduce(
+      "rpc::solver::least_softness", device_range(static_cast<LO>(scale.getLocalLength())),
+      KOKKOS_LAMBDA(const LO m, double &smallest) {
+        if (stiffness(m) > 0) smallest = math::fmin(smallest, root(m) * root(m) / stiffness(m));
+      },
+      Kokkos::Min<double>(least));
+  return min_all(*scale.getMap()->getComm(), std::min(least, 1.));
+}
+
+} // namespace
+
+Checkerboards::Checkerboards(const StiffDilatation &dilatation, const StiffnessOperator &soft)
+    : at_nodes_(dilatation.at_nodes), of_node_(means_at_nodes(at_nodes_)), matrix_(softness_of_pressures(dilatation, soft)),
+      scale_(roots_of_diagonal(*matrix_)), at_node_(of_node_.getMap()), scaled_(scale_.getMap()),
+      product_(scale_.getMap()), move_(scale_.getMap())
+{
+  matrix_->leftScale(scale_);
+  matrix_->rightScale(scale_);
+  rows_ = RepeatedRows::of(matrix_, 1);
+  halo_ = Halo(matrix_->getGraph()->getImporter());
+  largest_ = largest_eigenvalue(*matrix_, [](const Vector &r, Vector &z) { z.assign(r); });
+  const double root = std::sqrt(largest_ / least_softness(scale_, dilatation));
+  degree_ = static_cast<int>(
+      std::clamp(std::ceil(degree_of_root * root), double(least_degree), double(largest_degree)));
+  const double reached = std::min(root, degree_ / degree_of_root);
+  smallest_ = largest_ / std::max(reached * reached, 2.);
+}
+
+/// y <- A x, A the matrix to be inverted.
+void Checkerboards::multiply(const Vector &x, Vector &y) const
+{
+  if (rows_.pays())
+    rows_.apply(halo_.at_columns(x), y);
+  else
+    matrix_->apply(x, y);
+}
+
+/// y <- (I - F) y
+void Checkerboards::without_smooth(Vector &y) const
+{
+  at_nodes_.apply_transposed(y, at_node_, 0.);
+  at_node_.elementWiseMultiply(1., of_node_, at_node_, 0.);
+  at_nodes_.apply(at_node_, product_);
+  y.update(-1., product_, 1.);
+}
+
+void Checkerboards::apply(const Vector &x, Vector &y) const
+{
+  y.assign(x);
+  without_smooth(y);
+  scaled_.elementWiseMultiply(1., scale_, y, 0.);
+  const auto b = device_read(scaled_);
+  chebyshev(largest_, smallest_, degree_, [&](const int k, const double keep, const double add) {
+    const bool at_zero = k == 0;
+    if (!at_zero) multiply(y, product_);
+    const auto product = device_read(product_);
+    const auto move = device_write(move_), to = device_write(y);
+    Kokkos::parallel_for(
+        "rpc::solver::step_of_pressures", device_range(static_cast<LO>(y.getLocalLength())), KOKKOS_LAMBDA(const LO m) {
+          move(m) = at_zero ? add * b(m) : keep * move(m) + add * (b(m) - product(m));
+          to(m) = at_zero ? move(m) : to(m) + move(m);
+        });
+    Kokkos::fence();
+  });
+  scaled_.elementWiseMultiply(1., scale_, y, 0.);
+  y.assign(scaled_);
+  without_smooth(y);
+}
+
+} // namespace rpc::solver
