@@ -79,7 +79,8 @@ RCP<const CrsMatrix> identity(const RCP<const Map> &nodes)
         value(i) = 1;
       });
   Kokkos::fence();
-  return rcp(new CrsMatrix(LocalMatrix("rpc::analysis::identity", n, n, n, value, begin, column), nodes, nodes, nodes, nodes));
+  return rcp(
+      new CrsMatrix(LocalMatrix("rpc::analysis::identity", n, n, n, value, begin, column), nodes, nodes, nodes, nodes));
 }
 
 /// Of the coarsest mesh; collective.
@@ -218,7 +219,9 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   };
   const NestedMesh *mesh = &finest;
   std::optional<int> thin = thin_direction(finest);
-  if (thin || !finest.may_have_coarser()) { // the mesh is its own coarser one, where it is factored, or has an algebraic hierarchy
+  if (thin ||
+      !finest
+           .may_have_coarser()) { // the mesh is its own coarser one, where it is factored, or has an algebraic hierarchy
     const fem::Discretization &d = finest.discretization();
     levels.level.push_back(level_on(d, model, prescribed, identity(d.mesh->owned_nodes)));
   }

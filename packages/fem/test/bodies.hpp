@@ -4,6 +4,7 @@
 #include "larger.hpp"
 #include "rpc/core/field.hpp"
 #include "rpc/fem/discretization.hpp"
+#include "rpc/fem/elasticity.hpp"
 #include "rpc/mesh/box.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -219,6 +220,25 @@ inline ScalarField parse_constant(const std::string &text, const std::string &)
   ScalarField constant(std::stod(text));
   constant.text = text;
   return constant;
+}
+
+/// One cell with no two sides parallel; hexahedra with faces that are not plane.
+inline fem::Discretization one_cell(const mesh::Element &element)
+{
+  const std::vector<double> lower(element.dim, 0.), upper(element.dim, 1.);
+  const auto skew = [](const Point &x) {
+    return Point{x[0] + 0.2 * x[0] * x[1] - 0.1 * x[2], x[1] + 0.15 * x[0] * (1 - x[1]) + 0.1 * x[1] * x[2],
+                 x[2] * (1 + 0.2 * x[0] * x[1])};
+  };
+  return body({lower, upper, std::vector<int>(element.dim, 1), element}, alone(), skew);
+}
+
+inline double volume(const fem::Discretization &d)
+{
+  fem::VectorField unit = {field([](const Point &) { return 1.; }), ScalarField(0.), ScalarField(0.)};
+  Vector load(d.owned_dofs);
+  fem::add_body_force(d, unit, "test", load);
+  return resultant(d, load)[0];
 }
 
 } // namespace rpc::test

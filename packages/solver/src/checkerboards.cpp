@@ -126,9 +126,9 @@ double least_softness(const Vector &scale, const StiffDilatation &dilatation)
 } // namespace
 
 Checkerboards::Checkerboards(const StiffDilatation &dilatation, const StiffnessOperator &soft)
-    : at_nodes_(dilatation.at_nodes), of_node_(means_at_nodes(at_nodes_)), matrix_(softness_of_pressures(dilatation, soft)),
-      scale_(roots_of_diagonal(*matrix_)), at_node_(of_node_.getMap()), scaled_(scale_.getMap()),
-      product_(scale_.getMap()), move_(scale_.getMap())
+    : at_nodes_(dilatation.at_nodes), of_node_(means_at_nodes(at_nodes_)),
+      matrix_(softness_of_pressures(dilatation, soft)), scale_(roots_of_diagonal(*matrix_)),
+      at_node_(of_node_.getMap()), scaled_(scale_.getMap()), product_(scale_.getMap()), move_(scale_.getMap())
 {
   matrix_->leftScale(scale_);
   matrix_->rightScale(scale_);
@@ -136,8 +136,8 @@ Checkerboards::Checkerboards(const StiffDilatation &dilatation, const StiffnessO
   halo_ = Halo(matrix_->getGraph()->getImporter());
   largest_ = largest_eigenvalue(*matrix_, [](const Vector &r, Vector &z) { z.assign(r); });
   const double root = std::sqrt(largest_ / least_softness(scale_, dilatation));
-  degree_ = static_cast<int>(
-      std::clamp(std::ceil(degree_of_root * root), double(least_degree), double(largest_degree)));
+  degree_ =
+      static_cast<int>(std::clamp(std::ceil(degree_of_root * root), double(least_degree), double(largest_degree)));
   const double reached = std::min(root, degree_ / degree_of_root);
   smallest_ = largest_ / std::max(reached * reached, 2.);
 }

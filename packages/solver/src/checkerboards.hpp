@@ -11,7 +11,7 @@ namespace rpc::solver
 /// the softness of Z K_0^-1 Z^T falls short of that for waves by the more, the smoother they alternate. What they do move are displacements
 /// that alternate as well, which K_0 resists about as its diagonal does. So
 ///
-///     C = (I - F) (Z diag(K_0)^-1 Z^T + 1/s)^-1 (I - F)                                         doc/theory.md (4.15a)
+///     C = (I - F) (Z diag(K_0)^-1 Z^T + diag(1/s))^-1 (I - F)                                   doc/theory.md (4.15a)
 ///
 /// adds to the inverse of the Schur complement what it lacks for them. F, the mean over the nodes of a cell of the mean over the cells at a
 /// node, keeps smooth pressures as they are and takes alternating ones to 0. Chebyshev polynomials stand for the inverse.
@@ -30,13 +30,13 @@ private:
   void multiply(const Vector &x, Vector &y) const;
   void without_smooth(Vector &y) const;
 
-  SharedRows at_nodes_;     // N
-  Vector of_node_;          // (nodes) 1 / (nodes of a cell times the volume of the split cells at the node) [m^-dim]
-  RCP<CrsMatrix> matrix_;   // the one to be inverted, with a diagonal of 1
-  RepeatedRows rows_;       // of it
-  Halo halo_;               // of its columns
-  Vector scale_;            // (modes) what made it so
-  int degree_;              // of the polynomial
+  SharedRows at_nodes_;   // N
+  Vector of_node_;        // (nodes) 1 / (nodes of a cell times the volume of the split cells at the node) [m^-dim]
+  RCP<CrsMatrix> matrix_; // the one to be inverted, with a diagonal of 1
+  RepeatedRows rows_;     // of it
+  Halo halo_;             // of its columns
+  Vector scale_;          // (modes) what made it so
+  int degree_;            // of the polynomial
   double largest_, smallest_;
   mutable Vector at_node_, scaled_, product_, move_;
 };

@@ -284,11 +284,12 @@ void NodeSmoother::step(const Vector &b, const double keep, const double add, co
 
 void NodeSmoother::polynomial(const Vector &b, const bool at_zero, Vector &x) const
 {
-  chebyshev(largest_, largest_ / options_.ratio, options_.degree, [&](const int k, const double keep, const double add) {
-    const bool zero = at_zero && k == 0;
-    if (!zero) A_->apply(x, *product_);
-    step(b, keep, add, zero, x);
-  });
+  chebyshev(largest_, largest_ / options_.ratio, options_.degree,
+            [&](const int k, const double keep, const double add) {
+              const bool zero = at_zero && k == 0;
+              if (!zero) A_->apply(x, *product_);
+              step(b, keep, add, zero, x);
+            });
 }
 
 void NodeSmoother::start(const Vector &b, Vector &x) const

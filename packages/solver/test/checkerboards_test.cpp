@@ -60,10 +60,7 @@ struct Grid {
     soft = rcp(new StiffnessOperator(K, 2));
   }
   static bool is_split(const int cell) { return cell < nx * (ny - 1); }
-  static int node_of(const int cell, const int a)
-  {
-    return (nx + 1) * (cell / nx + a / 2) + cell % nx + a % 2;
-  }
+  static int node_of(const int cell, const int a) { return (nx + 1) * (cell / nx + a / 2) + cell % nx + a % 2; }
 
   /// Z diag(K_0)^-1 Z^T + 1/s, by the nodes that cells share.
   static Dense to_be_inverted(const double s)

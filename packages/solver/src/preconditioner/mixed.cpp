@@ -14,7 +14,10 @@ namespace rpc::solver
 
 /// Factors of the equations of pressures, one for each mode.
 struct ModeWeights {
-  explicit ModeWeights(const RCP<const Map> &rows) : of_equation(rows), softness(rows), schur(rows), inverse(rows), bulk(rows) {}
+  explicit ModeWeights(const RCP<const Map> &rows)
+      : of_equation(rows), softness(rows), schur(rows), inverse(rows), bulk(rows)
+  {
+  }
 
   Vector of_equation;  // w [N/m^(dim/2)]; the pressures are w q
   Vector softness;     // w^2 / s
@@ -204,8 +207,7 @@ Mixed::System::System(const UpdatedOperator &H, MixedForm made, const LinearSolv
       weights(weights_of(dilatation)), work(mode_map), of_equation(mode_map), saddle(rcp(new Saddle(*this))),
       triangular(std::make_unique<Triangular>(*this)), krylov(std::make_unique<Krylov>(for_saddle(), saddle))
 {
-  if (!dilatation.at_nodes.is_null())
-    checkerboards = std::make_unique<const Checkerboards>(dilatation, H0->base());
+  if (!dilatation.at_nodes.is_null()) checkerboards = std::make_unique<const Checkerboards>(dilatation, H0->base());
 }
 
 Mixed::Mixed(RCP<const UpdatedOperator> H, MakeMixedForm make, LinearSolverOptions options)
