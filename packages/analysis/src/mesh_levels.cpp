@@ -1,5 +1,6 @@
 #include "rpc/analysis/mesh_levels.hpp"
 
+#include "rpc/algebra/diagonal_matrix.hpp"
 #include "rpc/fem/interpolation.hpp"
 #include "rpc/mesh/box_patches.hpp"
 
@@ -67,20 +68,9 @@ solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, con
 /// Of nodal values to themselves.
 RCP<const CrsMatrix> identity(const RCP<const Map> &nodes)
 {
-  using LocalMatrix = CrsMatrix::local_matrix_device_type;
-  const LO n = num_local(*nodes);
-  const LocalMatrix::row_map_type::non_const_type begin("rpc::analysis::identity_begin", n + 1);
-  const LocalMatrix::index_type::non_const_type column("rpc::analysis::identity_column", n);
-  const LocalMatrix::values_type::non_const_type value("rpc::analysis::identity", n);
-  Kokkos::parallel_for(
-      "rpc::analysis::identity", device_range(n), KOKKOS_LAMBDA(const LO i) {
-        begin(i + 1) = i + 1;
-        column(i) = i;
-        value(i) = 1;
-      });
-  Kokkos::fence();
-  return rcp(
-      new CrsMatrix(LocalMatrix("rpc::analysis::identity", n, n, n, value, begin, column), nodes, nodes, nodes, nodes));
+  Vector ones(nodes);
+  ones.putScalar(1);
+  return diagonal_matrix(ones);
 }
 
 /// Of the coarsest mesh; collective.
@@ -219,9 +209,8 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   };
   const NestedMesh *mesh = &finest;
   std::optional<int> thin = thin_direction(finest);
-  if (thin ||
-      !finest
-           .may_have_coarser()) { // the mesh is its own coarser one, where it is factored, or has an algebraic hierarchy
+  const bool is_its_own = thin || !finest.may_have_coarser(); // and is factored, or has an algebraic hierarchy
+  if (is_its_own) {
     const fem::Discretization &d = finest.discretization();
     levels.level.push_back(level_on(d, model, prescribed, identity(d.mesh->owned_nodes)));
   }

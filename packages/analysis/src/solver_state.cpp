@@ -16,8 +16,8 @@ namespace
 constexpr int expected_of_mixed = 30, expected_on_stars = 15;
 // Of order 1 it has polynomials beside its cycles, of the degree of (4.15c); a step takes so much of a CG iteration. In the plane a sparse
 // factor may take less time than that.
-constexpr int expected_of_order_one = 15, largest_degree = 40;
-constexpr double degree_of_root = 0.7, cost_of_step = 0.035;
+constexpr int expected_of_order_one = 15;
+constexpr double cost_of_step = 0.035;
 // There a sparse factor is considered later: stars take up to 32 iterations with contact.
 constexpr int first_iterations = 40;
 
@@ -34,8 +34,7 @@ double expected_iterations(const double nu)
 double expected_of_mixed_form(const mesh::Element &element, const double nu)
 {
   if (element.dim == 3 || element.order == 2) return expected_of_mixed;
-  const double degree = std::min<double>(degree_of_root / std::sqrt(1 - 2 * nu), largest_degree);
-  return 2 * expected_of_order_one * (1 + cost_of_step * degree);
+  return 2 * expected_of_order_one * (1 + cost_of_step * solver::degree_for_pressures(1 / (1 - 2 * nu)));
 }
 
 /// Of what rough solves may leave: pressures err by more than displacements do where a body is nearly incompressible, and states are chosen

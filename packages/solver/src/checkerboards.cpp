@@ -2,8 +2,10 @@
 
 #include "chebyshev.hpp"
 #include "node_smoother.hpp"
+#include "rpc/algebra/diagonal_matrix.hpp"
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/math.hpp"
+#include "rpc/solver/mixed_form.hpp"
 
 #include <TpetraExt_MatrixMatrix.hpp>
 #include <algorithm>
@@ -43,24 +45,17 @@ Vector roots_of_softness(const StiffnessOperator &K)
   return roots;
 }
 
-/// diag(1/s), s the wave modulus where the stiffness is not split.
-RCP<CrsMatrix> softness(const StiffDilatation &dilatation)
+/// (modes) 1/s, s the wave modulus where the stiffness is not split.
+Vector softness(const StiffDilatation &dilatation)
 {
-  using LocalMatrix = CrsMatrix::local_matrix_device_type;
-  const auto &map = dilatation.modes->getRangeMap();
-  const LO n = num_local(*map);
+  Vector softness(dilatation.modes->getRangeMap());
+  const auto to = device_write(softness);
   const auto stiffness = dilatation.stiffness, wave = dilatation.wave_modulus;
-  const LocalMatrix::row_map_type::non_const_type begin("rpc::solver::softness_begin", n + 1);
-  const LocalMatrix::index_type::non_const_type column("rpc::solver::softness_column", n);
-  const LocalMatrix::values_type::non_const_type value("rpc::solver::softness", n);
   Kokkos::parallel_for(
-      "rpc::solver::softness", device_range(n), KOKKOS_LAMBDA(const LO m) {
-        begin(m + 1) = m + 1;
-        column(m) = m;
-        value(m) = 1 / (stiffness(m) > 0 ? stiffness(m) : wave(m));
-      });
+      "rpc::solver::softness", device_range(static_cast<LO>(softness.getLocalLength())),
+      KOKKOS_LAMBDA(const LO m) { to(m) = 1 / (stiffness(m) > 0 ? stiffness(m) : wave(m)); });
   Kokkos::fence();
-  return rcp(new CrsMatrix(LocalMatrix("rpc::solver::softness", n, n, n, value, begin, column), map, map, map, map));
+  return softness;
 }
 
 /// Z diag(K_0)^-1 Z^T + diag(1/s). Tpetra leaves rows without entries where Z is 0; the sum has its diagonal.
@@ -70,7 +65,7 @@ RCP<CrsMatrix> softness_of_pressures(const StiffDilatation &dilatation, const St
   scaled.rightScale(roots_of_softness(soft));
   CrsMatrix product(scaled.getRangeMap(), 0);
   Tpetra::MatrixMatrix::Multiply(scaled, false, scaled, true, product);
-  return Tpetra::MatrixMatrix::add(1., false, product, 1., false, *softness(dilatation));
+  return Tpetra::MatrixMatrix::add(1., false, product, 1., false, *diagonal_matrix(softness(dilatation)));
 }
 
 /// (rows) A_mm^(-1/2)
@@ -135,11 +130,15 @@ Checkerboards::Checkerboards(const StiffDilatation &dilatation, const StiffnessO
   rows_ = RepeatedRows::of(matrix_, 1);
   halo_ = Halo(matrix_->getGraph()->getImporter());
   largest_ = largest_eigenvalue(*matrix_, [](const Vector &r, Vector &z) { z.assign(r); });
-  const double root = std::sqrt(largest_ / least_softness(scale_, dilatation));
-  degree_ =
-      static_cast<int>(std::clamp(std::ceil(degree_of_root * root), double(least_degree), double(largest_degree)));
+  const double condition = largest_ / least_softness(scale_, dilatation), root = std::sqrt(condition);
+  degree_ = degree_for_pressures(condition);
   const double reached = std::min(root, degree_ / degree_of_root);
   smallest_ = largest_ / std::max(reached * reached, 2.);
+}
+
+int degree_for_pressures(const double condition)
+{
+  return std::clamp(static_cast<int>(std::ceil(degree_of_root * std::sqrt(condition))), least_degree, largest_degree);
 }
 
 /// y <- A x, A the matrix to be inverted.

@@ -41,8 +41,9 @@ public:
   /// y <- A x, of this rank.
   /// @param x  (columns of A)   @param y  (rows of A)
   void apply(const Vector &x, Vector &y) const;
-  /// Whether that takes less time than Tpetra's product. On a GPU, and for one unknown a node, it does not where no rows repeat: a thread for
-  /// each node would read entries far apart, and a node's columns are read once anyway. The same on all ranks, for the two products exchange in different ways.
+  /// Whether that takes less time than Tpetra's product. Where no rows repeat it does not on a GPU, for a thread for each node would read
+  /// entries far apart, and not for one unknown a node, whose columns are read once anyway. The same on all ranks, for the two products
+  /// exchange in different ways.
   bool pays() const { return pays_; }
   /// The matrix that it was made of, from which rows that do not repeat are read; null: there is none.
   const RCP<const CrsMatrix> &matrix() const { return A_; }

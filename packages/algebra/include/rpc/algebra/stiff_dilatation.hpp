@@ -14,7 +14,7 @@ struct StiffDilatation {
   RCP<const CrsMatrix>
       modes; ///< Z, (modes of owned cells x owned dofs), 0 at prescribed unknowns [m^(dim/2 - 1)], of revolution [m^(1/2)]
   /// N, (modes of owned cells x owned nodes): the root of a split cell's volume at each of its nodes [m^(dim/2)], of revolution [m^(3/2)].
-  /// Null where no pressures that alternate from cell to cell move the body too little, (4.15a).
+  /// Null but for Q1, whose pressures may alternate from cell to cell without moving the body, (4.15a).
   RCP<const CrsMatrix> at_nodes;
   DeviceView<double *> stiffness;    ///< (modes) s = lambda - lambda_0, 0 in cells whose stiffness is not split [Pa]
   DeviceView<double *> wave_modulus; ///< (modes) lambda_0 + 2 mu, of K_0 for waves that change the volume [Pa]
