@@ -52,7 +52,8 @@ Teuchos::ParameterList valid_linear_solver_parameters()
       "and those "
       "that a mesh was refined from; "
       "`algebraic`: by MueLu from the matrix; `auto`: `mesh` unless `MueLu` is given. With `mesh` and `auto` nearly "
-      "incompressible bodies of order 2 have pressures as unknowns of their own, and BiCGStab (theory, 4.14).");
+      "incompressible bodies of order 2, and of Q1, have pressures as unknowns of their own, and BiCGStab (theory, "
+      "4.14).");
   valid.set("Reuse", "tP",
             "What of an algebraic hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
             "tentative prolongator), `RP` (transfer operators).");
