@@ -33,7 +33,7 @@ bool is_split(const Block &block)
 /// of H x = b, by the energy of its error: the residual's norm is that of rounding.
 void expect_few(const Block &block, const int most)
 {
-  const auto solver = block.solver(true);
+  const auto solver = block.solver(true), other = block.solver(block.d.mesh->element.order == 1); // CG stalls for Q1
   const Vector b = block.vector(3);
   Vector x(b.getMap()), r(b.getMap()), error(b.getMap());
   for (const bool closed : {false, true}) {
@@ -43,7 +43,7 @@ void expect_few(const Block &block, const int most)
     EXPECT_LE(result.iterations, most) << (closed ? "closed" : "elastic");
     block.H->apply(x, r);
     r.update(1., b, -1.);
-    EXPECT_TRUE(solver->solve(r, error, 1e-2).converged);
+    EXPECT_TRUE(other->solve(r, error, 1e-2).converged);
     EXPECT_LT(std::sqrt(r.dot(error) / b.dot(x)), 1e-5);
   }
   // The energy of a force, F . H^-1 F, by the cycle that stands for H^-1: positive, and of the right size.                (4.16)
