@@ -14,8 +14,8 @@ namespace
 // The iterations to 1e-8 that are expected on stars of vertices, (4.7f), and of the mixed form, (4.14): too few to think of a sparse factor,
 // whose symbolic factorization alone takes as much time and memory as some of them.
 constexpr int expected_of_mixed = 30, expected_on_stars = 15;
-// Of order 1 it has polynomials beside its cycles, of the degree of (4.15c); a step takes so much of a CG iteration. In the plane a sparse
-// factor may take less time than that.
+// Of order 1 it has polynomials beside its cycles, of the degree of (4.15c); a step takes so much of a CG iteration. In the plane, and where
+// no cells repeat, a sparse factor may take less time than that.
 constexpr int expected_of_order_one = 15;
 constexpr double cost_of_step = 0.035;
 // There a sparse factor is considered later: stars take up to 32 iterations with contact.
@@ -30,10 +30,10 @@ double expected_iterations(const double nu)
   return 4 / std::sqrt(1 - 2 * nu);
 }
 
-/// The iterations of the mixed form, of order 1 in the plane counted as CG iterations that take the same time.        (4.10d)
-double expected_of_mixed_form(const mesh::Element &element, const double nu)
+/// The iterations of the mixed form, of order 1 but for boxes in space counted as CG iterations that take the same time.    (4.10d)
+double expected_of_mixed_form(const mesh::Mesh &mesh, const double nu)
 {
-  if (element.dim == 3 || element.order == 2) return expected_of_mixed;
+  if (mesh.element.order == 2 || (mesh.dim() == 3 && mesh.box)) return expected_of_mixed;
   return 2 * expected_of_order_one * (1 + cost_of_step * solver::degree_for_pressures(1 / (1 - 2 * nu)));
 }
 
@@ -56,7 +56,7 @@ solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Pro
   const double nu = largest_ratio(d, materials);
   options.expected_iterations = expected_iterations(nu);
   if (is_mixed || smooths_on_stars(d, materials)) {
-    options.expected_iterations = is_mixed ? expected_of_mixed_form(d.mesh->element, nu) : expected_on_stars;
+    options.expected_iterations = is_mixed ? expected_of_mixed_form(*d.mesh, nu) : expected_on_stars;
     options.first_iterations = std::max(options.first_iterations, first_iterations);
   }
   options.rough_part = rough_part(nu);
