@@ -120,7 +120,7 @@ struct MultiplyNodes {
         const row_products::NodeRows rows{one.rest.graph.row_map.data(), one.rest.graph.entries.data(),
                                           one.rest.values.data()};
         double *const y = &one.y(dof(Dim, node, 0));
-        row_products::multiply_alone<Dim>(rows, -1 - k, end - node, one.x.data(), y);
+        row_products::multiply_alone(row_products::Dimension<Dim>(), rows, -1 - k, end - node, one.x.data(), y);
         node = end;
         continue;
       }
@@ -130,7 +130,7 @@ struct MultiplyNodes {
                                           one.begin(k + 1) - begin};
       const double *const x = one.x.data() + dof(Dim, static_cast<std::ptrdiff_t>(node), 0);
       double *const y = one.y.data() + dof(Dim, static_cast<std::ptrdiff_t>(node), 0);
-      row_products::multiply_run<Dim>(stencil, end - node, x, y);
+      row_products::multiply_run(row_products::Dimension<Dim>(), stencil, end - node, x, y);
       node = end;
     }
   }

@@ -96,44 +96,6 @@ __attribute__((always_inline)) inline void multiply_some_1d(const Stencil &stenc
   for (int v = 0; v < Vectors; ++v) __builtin_memcpy(y + 4 * v, &sum[v], sizeof(Four));
 }
 
-// With the widest vectors that the processor has, of four numbers: eight at a time gain nothing in the plane, and a quarter in space
-// where they do not slow down the processor.
-
-/// @param count  of nodes   @param x, y  at the first of the nodes
-__attribute__((target_clones("arch=x86-64-v3", "default"))) void multiply_run_1d(const Stencil &stencil, const LO count,
-                                                                                 const double *x, double *y)
-{
-  constexpr int vectors = 4;
-  LO done = 0;
-  for (; done + 4 * vectors <= count; done += 4 * vectors, x += 4 * vectors, y += 4 * vectors)
-    multiply_some_1d<vectors>(stencil, x, y);
-  for (; done + 4 <= count; done += 4, x += 4, y += 4) multiply_some_1d<1>(stencil, x, y);
-  for (; done < count; ++done, ++x, ++y) {
-    double sum = 0;
-    for (LO n = 0; n < stencil.size; ++n) sum += stencil.value[n] * x[stencil.offset[n]];
-    *y = sum;
-  }
-}
-__attribute__((target_clones("arch=x86-64-v3", "default"))) void multiply_run_2d(const Stencil &stencil, const LO count,
-                                                                                 const double *x, double *y)
-{
-  constexpr int pairs = 4;
-  LO done = 0;
-  for (; done + 2 * pairs <= count; done += 2 * pairs, x += 4 * pairs, y += 4 * pairs)
-    multiply_pairs_2d<pairs>(stencil, x, y);
-  for (; done + 2 <= count; done += 2, x += 4, y += 4) multiply_pairs_2d<1>(stencil, x, y);
-  if (done < count) multiply_one_2d(stencil, x, y);
-}
-__attribute__((target_clones("arch=x86-64-v3", "default"))) void multiply_run_3d(const Stencil &stencil, const LO count,
-                                                                                 const double *x, double *y)
-{
-  constexpr int at_once = 4;
-  LO done = 0;
-  for (; done + at_once <= count; done += at_once, x += 3 * at_once, y += 3 * at_once)
-    multiply_some_3d<at_once>(stencil, x, y);
-  for (; done < count; ++done, x += 3, y += 3) multiply_some_3d<1>(stencil, x, y);
-}
-
 /// The rows of some nodes, each entry of a block with a sum of its own: no addition waits for another one.
 /// @param x  (columns)   @param y  at the first of the nodes
 template <int Dim>
@@ -157,57 +119,63 @@ __attribute__((always_inline)) inline void multiply_alone_inline(const NodeRows 
     }
   }
 }
+
+} // namespace
+
+// With the widest vectors that the processor has, of four numbers: eight at a time gain nothing in the plane, and a quarter in space
+// where they do not slow down the processor.
+
+__attribute__((target_clones("arch=x86-64-v3", "default"))) void
+multiply_run(Dimension<1>, const Stencil &stencil, const LO count, const double *x, double *y)
+{
+  constexpr int vectors = 4;
+  LO done = 0;
+  for (; done + 4 * vectors <= count; done += 4 * vectors, x += 4 * vectors, y += 4 * vectors)
+    multiply_some_1d<vectors>(stencil, x, y);
+  for (; done + 4 <= count; done += 4, x += 4, y += 4) multiply_some_1d<1>(stencil, x, y);
+  for (; done < count; ++done, ++x, ++y) {
+    double sum = 0;
+    for (LO n = 0; n < stencil.size; ++n) sum += stencil.value[n] * x[stencil.offset[n]];
+    *y = sum;
+  }
+}
+__attribute__((target_clones("arch=x86-64-v3", "default"))) void
+multiply_run(Dimension<2>, const Stencil &stencil, const LO count, const double *x, double *y)
+{
+  constexpr int pairs = 4;
+  LO done = 0;
+  for (; done + 2 * pairs <= count; done += 2 * pairs, x += 4 * pairs, y += 4 * pairs)
+    multiply_pairs_2d<pairs>(stencil, x, y);
+  for (; done + 2 <= count; done += 2, x += 4, y += 4) multiply_pairs_2d<1>(stencil, x, y);
+  if (done < count) multiply_one_2d(stencil, x, y);
+}
+__attribute__((target_clones("arch=x86-64-v3", "default"))) void
+multiply_run(Dimension<3>, const Stencil &stencil, const LO count, const double *x, double *y)
+{
+  constexpr int at_once = 4;
+  LO done = 0;
+  for (; done + at_once <= count; done += at_once, x += 3 * at_once, y += 3 * at_once)
+    multiply_some_3d<at_once>(stencil, x, y);
+  for (; done < count; ++done, x += 3, y += 3) multiply_some_3d<1>(stencil, x, y);
+}
+
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void
-multiply_alone_1d(const NodeRows &rows, const LO first_node, const LO count, const double *const x, double *const y)
+multiply_alone(Dimension<1>, const NodeRows &rows, const LO first_node, const LO count, const double *const x,
+               double *const y)
 {
   multiply_alone_inline<1>(rows, first_node, count, x, y);
 }
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void
-multiply_alone_2d(const NodeRows &rows, const LO first_node, const LO count, const double *const x, double *const y)
+multiply_alone(Dimension<2>, const NodeRows &rows, const LO first_node, const LO count, const double *const x,
+               double *const y)
 {
   multiply_alone_inline<2>(rows, first_node, count, x, y);
 }
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void
-multiply_alone_3d(const NodeRows &rows, const LO first_node, const LO count, const double *const x, double *const y)
+multiply_alone(Dimension<3>, const NodeRows &rows, const LO first_node, const LO count, const double *const x,
+               double *const y)
 {
   multiply_alone_inline<3>(rows, first_node, count, x, y);
-}
-
-} // namespace
-
-template <>
-void multiply_run<1>(const Stencil &stencil, const LO count, const double *const x, double *const y)
-{
-  multiply_run_1d(stencil, count, x, y);
-}
-template <>
-void multiply_run<2>(const Stencil &stencil, const LO count, const double *const x, double *const y)
-{
-  multiply_run_2d(stencil, count, x, y);
-}
-template <>
-void multiply_run<3>(const Stencil &stencil, const LO count, const double *const x, double *const y)
-{
-  multiply_run_3d(stencil, count, x, y);
-}
-
-template <>
-void multiply_alone<1>(const NodeRows &rows, const LO first_node, const LO count, const double *const x,
-                       double *const y)
-{
-  multiply_alone_1d(rows, first_node, count, x, y);
-}
-template <>
-void multiply_alone<2>(const NodeRows &rows, const LO first_node, const LO count, const double *const x,
-                       double *const y)
-{
-  multiply_alone_2d(rows, first_node, count, x, y);
-}
-template <>
-void multiply_alone<3>(const NodeRows &rows, const LO first_node, const LO count, const double *const x,
-                       double *const y)
-{
-  multiply_alone_3d(rows, first_node, count, x, y);
 }
 
 } // namespace rpc::row_products

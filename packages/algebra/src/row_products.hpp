@@ -3,6 +3,8 @@
 #include "rpc/algebra/repeated_rows.hpp"
 #include "rpc/core/vectors.hpp"
 
+#include <type_traits>
+
 /// Products of the rows of nodes that follow each other, on the host, with its vectors.
 namespace rpc::row_products
 {
@@ -22,15 +24,20 @@ struct NodeRows {
   const double *value;                                                        // (entries)
 };
 
+template <int Dim>
+using Dimension = std::integral_constant<int, Dim>;
+
 /// The rows of nodes of one kind.
 /// @param count  of nodes   @param x, y  at the first of the nodes
-template <int Dim>
-void multiply_run(const Stencil &stencil, LO count, const double *x, double *y);
+void multiply_run(Dimension<1>, const Stencil &stencil, LO count, const double *x, double *y);
+void multiply_run(Dimension<2>, const Stencil &stencil, LO count, const double *x, double *y);
+void multiply_run(Dimension<3>, const Stencil &stencil, LO count, const double *x, double *y);
 
 /// The rows of nodes of no kind.
 /// @param x  (columns)   @param y  at the first of the nodes
-template <int Dim>
-void multiply_alone(const NodeRows &rows, LO first_node, LO count, const double *x, double *y);
+void multiply_alone(Dimension<1>, const NodeRows &rows, LO first_node, LO count, const double *x, double *y);
+void multiply_alone(Dimension<2>, const NodeRows &rows, LO first_node, LO count, const double *x, double *y);
+void multiply_alone(Dimension<3>, const NodeRows &rows, LO first_node, LO count, const double *x, double *y);
 
 #endif
 } // namespace rpc::row_products

@@ -14,12 +14,10 @@ namespace
 // The iterations to 1e-8 that are expected on stars of vertices, (4.7f), and of the mixed form, (4.14): too few to think of a sparse factor,
 // whose symbolic factorization alone takes as much time and memory as some of them.
 constexpr int expected_of_mixed = 30, expected_on_stars = 15;
-// Of order 1 it has polynomials beside its cycles, of the degree of (4.15c); a step takes so much of a CG iteration. In the plane, and where
-// no cells repeat, a sparse factor may take less time than that.
-constexpr int expected_of_order_one = 15;
-constexpr double cost_of_step = 0.035;
 // There a sparse factor is considered later: stars take up to 32 iterations with contact.
 constexpr int first_iterations = 40;
+// A step of the polynomial (4.15b), which the mixed form of order 1 has beside each cycle, takes so much of a CG iteration.
+constexpr double cost_of_step = 0.035;
 
 /// The CG iterations to 1e-8 that multigrid takes at least on a body of the largest nu of its blocks: smoothers of single nodes see no
 /// functions without divergence.                                                                                 (4.10b)
@@ -30,11 +28,12 @@ double expected_iterations(const double nu)
   return 4 / std::sqrt(1 - 2 * nu);
 }
 
-/// The iterations of the mixed form, of order 1 but for boxes in space counted as CG iterations that take the same time.    (4.10d)
+/// The iterations of the mixed form. Of order 1, in the plane and on meshes from files, CG iterations are counted that take the same time: a
+/// sparse factor may take less.                                                                                  (4.10d)
 double expected_of_mixed_form(const mesh::Mesh &mesh, const double nu)
 {
   if (mesh.element.order == 2 || (mesh.dim() == 3 && mesh.box)) return expected_of_mixed;
-  return 2 * expected_of_order_one * (1 + cost_of_step * solver::degree_for_pressures(1 / (1 - 2 * nu)));
+  return expected_of_mixed * (1 + cost_of_step * solver::degree_for_pressures(1 / (1 - 2 * nu)));
 }
 
 /// Of what rough solves may leave: pressures err by more than displacements do where a body is nearly incompressible, and states are chosen

@@ -81,6 +81,14 @@ Vector roots_of_diagonal(const CrsMatrix &A)
   return roots;
 }
 
+/// diag(roots) A diag(roots), in A's place.
+RCP<const CrsMatrix> scaled(const RCP<CrsMatrix> &A, const Vector &roots)
+{
+  A->leftScale(roots);
+  A->rightScale(roots);
+  return A;
+}
+
 /// (nodes) 1 / (nodes of a cell times the volume of the split cells at the node), 0 where there are none.
 Vector means_at_nodes(const SharedRows &at_nodes)
 {
@@ -121,15 +129,16 @@ double least_softness(const Vector &scale, const StiffDilatation &dilatation)
 } // namespace
 
 Checkerboards::Checkerboards(const StiffDilatation &dilatation, const StiffnessOperator &soft)
-    : at_nodes_(dilatation.at_nodes), of_node_(means_at_nodes(at_nodes_)),
-      matrix_(softness_of_pressures(dilatation, soft)), scale_(roots_of_diagonal(*matrix_)),
-      at_node_(of_node_.getMap()), scaled_(scale_.getMap()), product_(scale_.getMap()), move_(scale_.getMap())
+    : Checkerboards(dilatation, softness_of_pressures(dilatation, soft))
 {
-  matrix_->leftScale(scale_);
-  matrix_->rightScale(scale_);
-  rows_ = RepeatedRows::of(matrix_, 1);
-  halo_ = Halo(matrix_->getGraph()->getImporter());
-  largest_ = largest_eigenvalue(*matrix_, [](const Vector &r, Vector &z) { z.assign(r); });
+}
+
+Checkerboards::Checkerboards(const StiffDilatation &dilatation, const RCP<CrsMatrix> &A)
+    : at_nodes_(dilatation.at_nodes), of_node_(means_at_nodes(at_nodes_)), scale_(roots_of_diagonal(*A)),
+      A_(scaled(A, scale_), 1), at_node_(of_node_.getMap()), scaled_(scale_.getMap()), product_(scale_.getMap()),
+      move_(scale_.getMap())
+{
+  largest_ = largest_eigenvalue(*A, [](const Vector &r, Vector &z) { z.assign(r); });
   const double condition = largest_ / least_softness(scale_, dilatation), root = std::sqrt(condition);
   degree_ = degree_for_pressures(condition);
   const double reached = std::min(root, degree_ / degree_of_root);
@@ -139,15 +148,6 @@ Checkerboards::Checkerboards(const StiffDilatation &dilatation, const StiffnessO
 int degree_for_pressures(const double condition)
 {
   return std::clamp(static_cast<int>(std::ceil(degree_of_root * std::sqrt(condition))), least_degree, largest_degree);
-}
-
-/// y <- A x, A the matrix to be inverted.
-void Checkerboards::multiply(const Vector &x, Vector &y) const
-{
-  if (rows_.pays())
-    rows_.apply(halo_.at_columns(x), y);
-  else
-    matrix_->apply(x, y);
 }
 
 /// y <- (I - F) y
@@ -167,7 +167,7 @@ void Checkerboards::apply(const Vector &x, Vector &y) const
   const auto b = device_read(scaled_);
   chebyshev(largest_, smallest_, degree_, [&](const int k, const double keep, const double add) {
     const bool at_zero = k == 0;
-    if (!at_zero) multiply(y, product_);
+    if (!at_zero) A_.apply(y, product_);
     const auto product = device_read(product_);
     const auto move = device_write(move_), to = device_write(y);
     Kokkos::parallel_for(
@@ -177,8 +177,7 @@ void Checkerboards::apply(const Vector &x, Vector &y) const
         });
     Kokkos::fence();
   });
-  scaled_.elementWiseMultiply(1., scale_, y, 0.);
-  y.assign(scaled_);
+  y.elementWiseMultiply(1., scale_, y, 0.);
   without_smooth(y);
 }
 

@@ -27,16 +27,15 @@ public:
   void apply(const Vector &x, Vector &y) const;
 
 private:
-  void multiply(const Vector &x, Vector &y) const;
+  /// @param A  Z diag(K_0)^-1 Z^T + diag(1/s), which is written into
+  Checkerboards(const StiffDilatation &dilatation, const RCP<CrsMatrix> &A);
   void without_smooth(Vector &y) const;
 
-  SharedRows at_nodes_;   // N
-  Vector of_node_;        // (nodes) 1 / (nodes of a cell times the volume of the split cells at the node) [m^-dim]
-  RCP<CrsMatrix> matrix_; // the one to be inverted, with a diagonal of 1
-  RepeatedRows rows_;     // of it
-  Halo halo_;             // of its columns
-  Vector scale_;          // (modes) what made it so
-  int degree_;            // of the polynomial
+  SharedRows at_nodes_; // N
+  Vector of_node_;      // (nodes) 1 / (nodes of a cell times the volume of the split cells at the node) [m^-dim]
+  Vector scale_;        // (modes) roots of the inverse of A's diagonal
+  StiffnessOperator A_; // to be inverted, with a diagonal of 1; one unknown a cell
+  int degree_;          // of the polynomial
   double largest_, smallest_;
   mutable Vector at_node_, scaled_, product_, move_;
 };

@@ -1,10 +1,13 @@
 #include "../src/checkerboards.hpp"
 
+#include "lines.hpp"
 #include "rpc/core/device_values.hpp"
 
+#include <Teuchos_LAPACK.hpp>
 #include <Tpetra_Core.hpp>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numeric>
 #include <vector>
 
 /// What the Schur complement lacks for pressures that alternate from cell to cell.                     doc/theory.md (4.15a)
@@ -14,7 +17,7 @@ namespace
 {
 
 using namespace rpc;
-using Dense = std::vector<std::vector<double>>;
+using namespace rpc::test;
 
 constexpr int nx = 9, ny = 7, cells = nx * ny, nodes = (nx + 1) * (ny + 1), dofs = 2 * nodes;
 constexpr double own = 4; // K_0's diagonal
@@ -65,15 +68,15 @@ struct Grid {
   /// Z diag(K_0)^-1 Z^T + 1/s, by the nodes that cells share.
   static Dense to_be_inverted(const double s)
   {
-    Dense A(cells, std::vector<double>(cells));
+    Dense A(cells, cells);
     for (int c = 0; c < cells; ++c) {
-      A[c][c] = is_split(c) ? 1 / s : 1;
+      A(c, c) = is_split(c) ? 1 / s : 1;
       for (int d = 0; d < cells; ++d)
         for (int a = 0; a < 4; ++a)
           for (int b = 0; b < 4; ++b) {
             if (node_of(c, a) != node_of(d, b) || node_of(c, a) % (nx + 1) == 0) continue;
             if (!is_split(c) || !is_split(d)) continue;
-            A[c][d] += ((a % 2 == b % 2 ? 0.25 : -0.25) + (a / 2 == b / 2 ? 0.25 : -0.25)) / own;
+            A(c, d) += ((a % 2 == b % 2 ? 0.25 : -0.25) + (a / 2 == b / 2 ? 0.25 : -0.25)) / own;
           }
     }
     return A;
@@ -81,52 +84,34 @@ struct Grid {
   /// I - F
   static Dense without_smooth()
   {
-    Dense G(cells, std::vector<double>(cells));
+    Dense G(cells, cells);
     std::vector<int> around(nodes);
     for (int c = 0; c < cells; ++c)
       for (int a = 0; a < 4; ++a) around[node_of(c, a)] += is_split(c);
     for (int c = 0; c < cells; ++c) {
-      G[c][c] = 1;
+      G(c, c) = 1;
       for (int d = 0; d < cells; ++d)
         for (int a = 0; a < 4; ++a)
           for (int b = 0; b < 4; ++b)
             if (node_of(c, a) == node_of(d, b) && is_split(c) && is_split(d))
-              G[c][d] -= 1. / (4 * around[node_of(c, a)]);
+              G(c, d) -= 1. / (4 * around[node_of(c, a)]);
     }
     return G;
   }
 };
 
-std::vector<double> product(const Dense &A, const std::vector<double> &x)
+/// Of A x = b.
+Dense solution(Dense A, Dense b)
 {
-  std::vector<double> y(A.size());
-  for (std::size_t i = 0; i < A.size(); ++i)
-    for (std::size_t j = 0; j < x.size(); ++j) y[i] += A[i][j] * x[j];
-  return y;
-}
-
-/// By Gauss' elimination.
-std::vector<double> solution(Dense A, std::vector<double> b)
-{
-  const int n = static_cast<int>(b.size());
-  for (int k = 0; k < n; ++k)
-    for (int i = k + 1; i < n; ++i) {
-      const double factor = A[i][k] / A[k][k];
-      for (int j = k; j < n; ++j) A[i][j] -= factor * A[k][j];
-      b[i] -= factor * b[k];
-    }
-  for (int k = n - 1; k >= 0; --k) {
-    for (int j = k + 1; j < n; ++j) b[k] -= A[k][j] * b[j];
-    b[k] /= A[k][k];
-  }
+  int info = 0;
+  Teuchos::LAPACK<int, double>().POSV('L', cells, 1, A.value.data(), cells, b.value.data(), cells, &info);
+  EXPECT_EQ(info, 0);
   return b;
 }
 
-double dot(const std::vector<double> &x, const std::vector<double> &y)
+double dot(const Dense &x, const Dense &y)
 {
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
-  return sum;
+  return std::inner_product(x.value.begin(), x.value.end(), y.value.begin(), 0.);
 }
 
 TEST(Checkerboards, LeaveConstantPressuresAlone)
@@ -144,16 +129,16 @@ TEST(Checkerboards, LeaveConstantPressuresAlone)
 TEST(Checkerboards, AreAsSoftAsTheDilatationInsideTheBody)
 {
   const Dense A = Grid::to_be_inverted(100), G = Grid::without_smooth();
-  std::vector<double> board(cells), stripes(cells);
+  Dense board(cells, 1), stripes(cells, 1);
   for (int c = 0; c < cells; ++c) {
-    stripes[c] = c % nx % 2 == 0 ? 1 : -1;
-    board[c] = c / nx % 2 == 0 ? stripes[c] : -stripes[c];
+    stripes(c, 0) = c % nx % 2 == 0 ? 1 : -1;
+    board(c, 0) = c / nx % 2 == 0 ? stripes(c, 0) : -stripes(c, 0);
   }
   const int inside = nx * 2 + 4;
-  EXPECT_NEAR(product(A, board)[inside], board[inside] / 100, 1e-15);
-  EXPECT_NEAR(product(G, board)[inside], board[inside], 1e-15);
-  EXPECT_NEAR(product(A, stripes)[inside], stripes[inside] * (1 + 0.01), 1e-15);
-  EXPECT_NEAR(product(G, stripes)[inside], stripes[inside], 1e-15);
+  EXPECT_NEAR(product(A, board)(inside, 0), board(inside, 0) / 100, 1e-15);
+  EXPECT_NEAR(product(G, board)(inside, 0), board(inside, 0), 1e-15);
+  EXPECT_NEAR(product(A, stripes)(inside, 0), stripes(inside, 0) * (1 + 0.01), 1e-15);
+  EXPECT_NEAR(product(G, stripes)(inside, 0), stripes(inside, 0), 1e-15);
 }
 
 /// A polynomial whose degree is 0.7 of the root of the condition number lies within 1 -+ 1/cosh(1.4) of the inverse, for all vectors. Above a
@@ -166,15 +151,14 @@ TEST(Checkerboards, StandForTheInverse)
     const solver::Checkerboards C(grid.dilatation, *grid.soft);
     const Dense A = Grid::to_be_inverted(s), G = Grid::without_smooth();
     for (int phase = 0; phase < 12; ++phase) {
-      std::vector<double> x(cells);
+      Dense x(cells, 1), y(cells, 1);
       for (int c = 0; c < cells; ++c)
-        x[c] = phase == 0 ? (c == 20) : phase == 1 ? (c + c / nx) % 2 - 0.5 : std::sin(phase + 12.9898 * c * phase);
+        x(c, 0) = phase == 0 ? (c == 20) : phase == 1 ? (c + c / nx) % 2 - 0.5 : std::sin(phase + 12.9898 * c * phase);
       Vector given(grid.of_cells), found(grid.of_cells);
-      for (int c = 0; c < cells; ++c) given.replaceLocalValue(c, x[c]);
+      for (int c = 0; c < cells; ++c) given.replaceLocalValue(c, x(c, 0));
       C.apply(given, found);
-      std::vector<double> y(cells);
-      for (int c = 0; c < cells; ++c) y[c] = found.getData()[c];
-      const auto rest = product(G, x);
+      for (int c = 0; c < cells; ++c) y(c, 0) = found.getData()[c];
+      const Dense rest = product(G, x);
       const double expected = dot(rest, solution(A, rest));
       EXPECT_GT(dot(x, y), s < 1e4 ? (1 - error) * expected : 0) << s << " " << phase;
       EXPECT_LT(dot(x, y), (1 + error) * expected) << s << " " << phase;
