@@ -73,13 +73,13 @@ class ThinBodies(RpcTestCase):
 
 class Rubber(RpcTestCase):
     def test_no_solve_waits_for_iterations_that_stall(self):
-        mixed = "^mixed$"
-        either = f"{mixed}|^sparse factor: about [0-9]+ CG iterations expected$"  # in the plane, by nu
-        bodies = {  # upper, cells, element, path
+        mixed, factor = "^mixed$", "^sparse factor: about [0-9]+ CG iterations expected$"
+        by_nu = {0.499: mixed, 0.4999: factor, 0.49999: factor}  # of Q1 in the plane
+        bodies = {  # upper, cells, element, path, or paths by nu
             "in the plane": ((2, 1), (32, 32), "Q2", mixed), "in the plane, stretched by 12": ((2, 1), (16, 96), "Q2", mixed),
             "in space, stretched by 4": ((1, 1, 1), (4, 4, 16), "Q2", mixed), "in space, stretched by 6": ((1, 1, 1), (4, 4, 24), "Q2", mixed),
             "of triangles": ((2, 1), (32, 32), "P2", mixed), "of tetrahedra": ((1, 1, 1), (6, 6, 6), "P2", mixed),
-            "of Q1": ((2, 1), (48, 96), "Q1", either), "of Q1, in space": ((1, 1, 1), (10, 9, 8), "Q1", mixed)}
+            "of Q1": ((2, 1), (48, 96), "Q1", by_nu), "of Q1, in space": ((1, 1, 1), (10, 9, 8), "Q1", mixed)}
         for name, (upper, cells, element, path) in bodies.items():
             for nu in (0.499, 0.4999, 0.49999):
                 for friction in (0, 0.3):
@@ -89,7 +89,7 @@ class Rubber(RpcTestCase):
                         summary = json.loads((self.folder / "thin.json").read_text())
                         self.assertTrue(summary["converged"])
                         self.assertLessEqual(max(summary["linear_iterations"]), 44 if "by 12" in name else 30)
-                        self.assertRegex(summary["solver_path"], path)
+                        self.assertRegex(summary["solver_path"], path[nu] if path is by_nu else path)
 
     def test_what_nothing_touches_is_solved_on_stars(self):
         """The same block without its Contact list."""
