@@ -81,11 +81,13 @@ TEST(Beam, WorkStaysInItsRangeOnEveryMesh)
       const Solution s = beam(n, range.xi);
       EXPECT_LE(s.uzawa.iterations, range.uzawa) << range.xi << " " << n;
       EXPECT_LE(sum(s.uzawa.newton_iterations), range.newton) << range.xi << " " << n;
-      EXPECT_GE(sum(s.uzawa.newton_iterations), 2);
+      const bool narrow =
+          n == 16; // 80 x 16 cells: factored as a band, which needs a matrix and leaves nothing to polish
+      EXPECT_GE(sum(s.uzawa.newton_iterations), narrow ? 1 : 2);
       EXPECT_EQ(s.linear.iterations.size(), static_cast<std::size_t>(sum(s.uzawa.newton_iterations)));
       EXPECT_LE(s.linear.preconditioner_setups, range.setups) << range.xi << " " << n;
       EXPECT_LE(largest(s.linear.iterations), 20) << range.xi << " " << n;
-      EXPECT_EQ(s.matrix_assemblies, 0);
+      EXPECT_EQ(s.matrix_assemblies, narrow ? 1 : 0);
       EXPECT_LE(s.uzawa.residuals.worst(), 1e-8);
       EXPECT_LE(s.uzawa.residuals.equilibrium_residual, 1e-10);
     }

@@ -191,7 +191,19 @@ bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materi
 
 solver::Body body_of(const fem::Discretization &d)
 {
-  return {d.dim(), [d] { return fem::node_coordinates(d); }, [d] { return fem::rigid_body_modes(d); }};
+  solver::Body body{d.dim(), [d] { return fem::node_coordinates(d); }, [d] { return fem::rigid_body_modes(d); }};
+  const mesh::Mesh &mesh = *d.mesh;
+  if (!mesh.box) return body;
+  body.is_thin = mesh::thin_direction(*mesh.box).has_value();
+  const int order = mesh.element.order;
+  const auto num_nodes = [&](const int axis) { return order * static_cast<double>(mesh.box->cells[axis]) + 1; };
+  for (int axis = 0; axis < d.dim(); ++axis) body.axes.push_back(axis);
+  std::stable_sort(body.axes.begin(), body.axes.end(),
+                   [&](const int a, const int b) { return num_nodes(a) > num_nodes(b); });
+  double nodes_between = 1, nodes_of_plane = 1; // of a node and its neighbour along all axes, at order 1
+  for (int k = d.dim() - 1; k > 0; --k) nodes_between += nodes_of_plane *= num_nodes(body.axes[k]);
+  body.band_width = d.dim() * (order * nodes_between + 1) - 1;
+  return body;
 }
 
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed)

@@ -5,13 +5,18 @@
 namespace rpc::solver
 {
 
-/// By LAPACK's band factorization in the reverse Cuthill-McKee order, of entries that are all this rank's.
+/// By LAPACK's band factorization, of entries that are all this rank's.
 class BandFactor : public SparseFactor
 {
 public:
+  /// In the reverse Cuthill-McKee order.
   BandFactor(int size, const SymmetricEntries &entries);
+  /// @param place  (size) of each row in the band
+  BandFactor(int size, const SymmetricEntries &entries, std::vector<int> place);
 
-  FactorCost cost() const override;
+  /// What a factor takes of `size` rows with `width` entries below the diagonal.
+  static FactorCost cost_of(double size, double width);
+  FactorCost cost() const override { return cost_of(size_, width_); }
   bool make(const std::vector<double> &value) override;
   bool exists() const override { return exists_; }
   void solve(double *x) const override { solve_in_place(x, 1); }

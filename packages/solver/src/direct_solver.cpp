@@ -1,5 +1,6 @@
 #include "direct_solver.hpp"
 
+#include "band_factor.hpp"
 #include "matrix_changes.hpp"
 #include "rpc/core/memory.hpp"
 #include "rpc/core/parallel.hpp"
@@ -18,40 +19,41 @@ namespace
 constexpr const char *no_factor = "a sparse factor: the matrix is not positive definite";
 // Rows up to which each rank factors the whole matrix: a solve then takes one sum over the ranks.
 constexpr std::size_t most_rows_on_each_rank = 5200;
-// A factor that takes less time [s] is made anew for the slightest change.
-constexpr double short_time = 5e-3;
+// A factor that takes less time [s], or no more than so many columns, is made anew for the slightest change.
+constexpr double short_time = 5e-3, few_columns = 3;
 // New terms are solved for while they take worth_a_factor times a new factor's time at most. Where none of left_out keeps to that, they may
 // take worth_factors times the time of all factors made so far, of most_factors_worth at most: later changes are at the same places.
 constexpr double worth_a_factor = 0.7, worth_factors = 1.4;
 constexpr int most_factors_worth = 3;
 // Where all terms would take longer, those of changes up to such a part of a node's own block are left to CG.          (4.12)
 constexpr double left_out[] = {0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
+// A factor that takes the time of fewer solves is made anew rather than without slight changes.
+constexpr double few_solves = 8;
 // What an update keeps, over the entries of the factor, and over the memory that is free.
 constexpr double kept_of_factor = 2, kept_of_free = 0.25;
 
-/// Calls work(row, column, value) with gids for the entries of this rank's rows on and below the diagonal.
-template <class Work>
-void for_lower_entries(const CrsMatrix &A, const Work &work)
+/// The entries of this rank's rows on and below the diagonal, by gids, without values.
+/// @param lower  <- (entries) which of all of the rank's entries each is
+SymmetricEntries pattern_of(const CrsMatrix &A, std::vector<std::size_t> &lower)
 {
   const Map &rows = *A.getRowMap(), &columns = *A.getColMap();
-  const auto matrix = A.getLocalMatrixDevice();
-  const auto begin = to_host(matrix.graph.row_map);
-  const auto entries = to_host(matrix.graph.entries);
-  const auto values = to_host(matrix.values);
-  for (LO row = 0; row < num_local(rows); ++row) {
-    const GO i = rows.getGlobalElement(row);
-    for (auto e = begin(row); e < begin(row + 1); ++e)
-      if (const GO j = columns.getGlobalElement(entries(e)); j <= i) work(i, j, values(e));
-  }
-}
-
-SymmetricEntries pattern_of(const CrsMatrix &A)
-{
+  const auto graph = A.getLocalMatrixDevice().graph;
+  const auto begin = to_host(graph.row_map);
+  const auto entries = to_host(graph.entries);
+  std::vector<int> gid_of_column(num_local(columns));
+  for (LO j = 0; j < num_local(columns); ++j) gid_of_column[j] = static_cast<int>(columns.getGlobalElement(j));
   SymmetricEntries mine;
-  for_lower_entries(A, [&](const GO row, const GO column, double) {
-    mine.row.push_back(static_cast<int>(row));
-    mine.column.push_back(static_cast<int>(column));
-  });
+  lower.clear();
+  for (LO row = 0; row < num_local(rows); ++row) {
+    const int i = static_cast<int>(rows.getGlobalElement(row));
+    for (auto e = begin(row); e < begin(row + 1); ++e) {
+      const int j = gid_of_column[entries(e)];
+      if (j > i) continue;
+      mine.row.push_back(i);
+      mine.column.push_back(j);
+      lower.push_back(e);
+    }
+  }
   return mine;
 }
 
@@ -64,16 +66,20 @@ RCP<const Map> on_root(const Map &rows)
 
 } // namespace
 
-DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node)
+DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node, std::vector<int> places)
     : A_(std::move(A)), dofs_per_node_(dofs_per_node)
 {
   const auto comm = A_->getComm();
   on_one_rank_ = max_all(*comm, static_cast<std::size_t>(num_local(*A_->getRowMap()))) == A_->getGlobalNumRows();
   const int size = static_cast<int>(A_->getGlobalNumRows());
-  const SymmetricEntries mine = pattern_of(*A_);
-  if (comm->getSize() == 1 || !SparseFactor::can_be_shared || A_->getGlobalNumRows() <= most_rows_on_each_rank) {
-    factor_ = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size,
-                                    comm->getSize() > 1 ? entries_of_all(*comm, mine) : mine, dofs_per_node);
+  const SymmetricEntries mine = pattern_of(*A_, lower_);
+  if (comm->getSize() == 1 || !SparseFactor::can_be_shared || A_->getGlobalNumRows() <= most_rows_on_each_rank ||
+      !places.empty()) {
+    const SymmetricEntries all = comm->getSize() > 1 ? entries_of_all(*comm, mine) : mine;
+    if (places.empty())
+      factor_ = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size, all, dofs_per_node);
+    else
+      factor_ = std::make_unique<BandFactor>(size, all, std::move(places));
     return;
   }
   factor_ = SparseFactor::analyse(comm, size, mine, dofs_per_node);
@@ -98,8 +104,8 @@ bool DirectSolver::make()
   if (factored_.extent(0) != values.extent(0))
     factored_ = HostView<double *>(Kokkos::ViewAllocateWithoutInitializing("rpc::solver::factored"), values.extent(0));
   Kokkos::deep_copy(factored_, values);
-  std::vector<double> value;
-  for_lower_entries(*A_, [&](GO, GO, const double entry) { value.push_back(entry); });
+  std::vector<double> value(lower_.size());
+  for (std::size_t k = 0; k < lower_.size(); ++k) value[k] = factored_(lower_[k]);
   const Comm &comm = *A_->getComm();
   update_.forget();
   ++factors_;
@@ -110,11 +116,12 @@ bool DirectSolver::make()
 /// than the factors that were made before.
 std::optional<CoarsestSolver::Update> DirectSolver::follow(const double slight)
 {
-  if (!may_follow_ || cost().seconds < short_time) return std::nullopt;
+  if (!may_follow_ || cost().seconds < std::max(short_time, few_columns * cost().seconds_of_column))
+    return std::nullopt;
   const MatrixChanges changes = changes_since(factored_, *A_, dofs_per_node_);
   for (const double worth : {worth_a_factor, worth_factors * std::min(factors_, most_factors_worth)})
     for (const double least : left_out) {
-      if (least > slight) continue;
+      if (least > slight || (least > 0 && cost().seconds < few_solves * cost().seconds_of_solve)) continue;
       const LowRankTerms wanted = low_rank_terms(changes, least, dofs_per_node_);
       if (cost().seconds_of_column * update_.num_new(wanted.terms) > worth * cost().seconds) continue;
       const Comm &comm = *A_->getComm();

@@ -19,7 +19,8 @@ class DirectSolver : public CoarsestSolver
 public:
   /// Analyses the matrix; there is no factor yet. Collective.
   /// @param dofs_per_node  unknowns of a node, whose gids follow each other
-  DirectSolver(RCP<const CrsMatrix> A, int dofs_per_node);
+  /// @param places  (unknowns of all ranks) of each gid in a narrow band, which each rank factors; empty: not known
+  DirectSolver(RCP<const CrsMatrix> A, int dofs_per_node, std::vector<int> places = {});
 
   FactorCost cost() const { return factor_->cost(); }
   /// Empty if the memory that is free now will do for the factor; else why not. The same on all ranks; collective.
@@ -40,12 +41,13 @@ private:
   RCP<const CrsMatrix> A_;
   int dofs_per_node_;
   std::unique_ptr<SparseFactor> factor_;
-  HostView<double *> factored_; // (entries of this rank) A's when the factor was made
-  int factors_ = 0;             // that were made
-  bool may_follow_ = false;     // by an update of the factor
-  LowRankUpdate update_;        // of the factor
-  RCP<const Import> to_root_;   // null: each rank has a factor of its own
-  bool on_one_rank_ = false;    // all rows are, which then solves alone
+  HostView<double *> factored_;    // (entries of this rank) A's when the factor was made
+  std::vector<std::size_t> lower_; // (of these on and below the diagonal) which each is
+  int factors_ = 0;                // that were made
+  bool may_follow_ = false;        // by an update of the factor
+  LowRankUpdate update_;           // of the factor
+  RCP<const Import> to_root_;      // null: each rank has a factor of its own
+  bool on_one_rank_ = false;       // all rows are, which then solves alone
 };
 
 } // namespace rpc::solver

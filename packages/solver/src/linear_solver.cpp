@@ -1,6 +1,7 @@
 #include "rpc/solver/linear_solver.hpp"
 
 #include "convergence.hpp"
+#include "iteration_cost.hpp"
 #include "krylov.hpp"
 #include "muelu_defaults.hpp"
 #include "policy.hpp"
@@ -45,30 +46,6 @@ double fair(const double tolerance)
 
 // Rows up to which it is thought of at all: in the plane they take gigabytes, in space more than most machines have.
 constexpr GO most_sparse_rows = 3000000;
-
-/// Entries of K's rows on all ranks; collective.
-double num_entries(const StiffnessOperator &K)
-{
-  const auto blocks = K.rows().blocks();
-  double mine = 0;
-  Kokkos::parallel_reduce(
-      "rpc::solver::num_entries", device_range(num_local(*K.getDomainMap()) / K.dofs_per_node()),
-      KOKKOS_LAMBDA(const LO node, double &sum) { sum += blocks.size(node); }, mine);
-  return K.dofs_per_node() * K.dofs_per_node() * sum_all(*K.getDomainMap()->getComm(), mine);
-}
-
-/// About what a CG iteration with multigrid takes [s], by constants of one machine: a choice by them is the same in every run.
-/// Collective.
-double seconds_of_iteration(const StiffnessOperator &K)
-{
-  // Rows that repeat are read once. In the plane vectors count for more beside them.
-  const double of_repeated = K.dofs_per_node() == 3 ? 1e-9 : 2e-9, of_others = 8e-9;
-  const bool repeat = min_all(*K.getDomainMap()->getComm(), K.rows().any_repeat() ? 1 : 0) == 1;
-  const double of_entry = repeat ? of_repeated : of_others;
-  const double on_host = of_entry * num_entries(K) / K.getDomainMap()->getComm()->getSize();
-  constexpr double faster = 50, launches = 2e-3; // on an H100; factors are made on its host
-  return on_gpu ? std::max(on_host / faster, launches) : on_host;
-}
 
 /// What is to be done about a result; nothing where it is good.
 std::optional<Outcome> outcome_of(const LinearSolver::Result &result, const bool given_up)
@@ -140,7 +117,7 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
                          MakeMixedForm mixed_form)
     : options(std::move(given)), H(of), body(std::move(of_body)),
       algebraic(H, body, options, static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew),
-      sparse(H), krylov(options, H)
+      sparse(H, body), krylov(options, H)
 {
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
   const bool automatic = options.multigrid == "auto" && options.muelu.numParams() == 0;
@@ -196,11 +173,19 @@ bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double t
   return sparse_pays(seen.iterations_in_all(tolerance, limit), tolerance);
 }
 
-/// By the iterations that the body lets expect. Where these are more than CG may take, a factor would follow anyway.
+/// By the form of the body, and by the iterations that it lets expect. Where these are more than CG may take, a factor would follow anyway.
 void LinearSolver::Impl::choose_before_the_first_solve()
 {
+  if (on_sparse || !counts.iterations.empty()) return;
+  if (may_be_sparse && chosen()) {
+    const bool narrow = is_narrow(body, H->base());
+    if (narrow) sparse.number_along_the_body();
+    const std::string band =
+        "the body is slender: a band of " + std::to_string(static_cast<int>(body.band_width)) + " unknowns";
+    if ((narrow || body.is_thin) && take(Next::sparse, narrow ? band : "the body is one thin layer of cells")) return;
+  }
   const double expected = options.expected_iterations;
-  if (!(expected > 0) || on_sparse || !counts.iterations.empty()) return;
+  if (!(expected > 0)) return;
   if (expected > options.max_iterations ? !prospect() : !sparse_pays(expected, full_tolerance)) return;
   take(Next::sparse, "about " + std::to_string(static_cast<int>(expected)) + " CG iterations expected");
 }

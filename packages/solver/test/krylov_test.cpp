@@ -86,6 +86,67 @@ struct Case {
   }
 };
 
+/// 2 times the identity, which counts its products.
+class Twice : public Operator
+{
+public:
+  explicit Twice(RCP<const Map> map) : map_(std::move(map)) {}
+  RCP<const Map> getDomainMap() const override { return map_; }
+  RCP<const Map> getRangeMap() const override { return map_; }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, const double alpha,
+             const double beta) const override
+  {
+    ++products;
+    y.update(2 * alpha, x, beta);
+  }
+
+  mutable int products = 0;
+
+private:
+  RCP<const Map> map_;
+};
+
+/// Its inverse.
+class Half : public Diagonal
+{
+public:
+  Half(const CrsMatrix &A, const bool is_exact) : Diagonal(A), is_exact_(is_exact) {}
+  bool is_exact() const override { return is_exact_; }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp = Teuchos::NO_TRANS, double = 1,
+             double = 0) const override
+  {
+    y.update(0.5, x, 0.);
+  }
+
+private:
+  bool is_exact_;
+};
+
+/// Of a solve that may leave much an exact preconditioner's answer is the result; others look at its residual.
+TEST(Krylov, TakesAnExactAnswerAsItIsWhereMuchMayBeLeft)
+{
+  const Grid grid(24);
+  const auto H = rcp(new Twice(grid.map));
+  const Vector b = grid.right_side();
+  Krylov krylov({}, H);
+  for (const bool is_exact : {false, true})
+    for (const bool is_symmetric : {false, true})
+      for (const double error : {0., 1e-3, 0.1}) {
+        SCOPED_TRACE(error);
+        const Half B(*grid.A, is_exact);
+        Vector x(grid.map);
+        H->products = 0;
+        const auto result = krylov.solve(B, is_symmetric, b, x, {1e-2, error});
+        EXPECT_TRUE(result.converged);
+        EXPECT_EQ(result.iterations, 1);
+        EXPECT_EQ(H->products == 0, is_exact && is_symmetric && error == 0.1);
+        EXPECT_LT(residual_of(*H, x, b), 1e-14);
+        if (is_symmetric && error > 0) {
+          EXPECT_NEAR(result.energy, 0.5 * b.dot(b), 1e-12 * b.dot(b));
+        }
+      }
+}
+
 TEST(Krylov, SolvesForAMatrixThatIsNotSymmetricByGmres)
 {
   Case of;

@@ -181,6 +181,38 @@ TEST(SparseFactor, RefusesAMatrixThatIsNotPositiveDefinite)
   for (const int n : {10, 90}) EXPECT_FALSE(factor_of(n * n, scattered_grid(n, -1), any_work)) << n;
 }
 
+/// A grid of 40 x 5 places, scattered by their numbers: the band is one column of places wide.
+TEST(BandFactor, FollowsAGivenOrder)
+{
+  const int length = 40, height = 5, size = length * height;
+  const auto number = [&](const int i, const int j) { return (7 * (i * height + j)) % size; };
+  SymmetricEntries A;
+  const auto add = [&](const int row, const int column, const double value) {
+    A.row.push_back(row);
+    A.column.push_back(column);
+    A.value.push_back(value);
+  };
+  std::vector<int> place(size);
+  for (int i = 0; i < length; ++i)
+    for (int j = 0; j < height; ++j) {
+      place[number(i, j)] = i * height + j;
+      add(number(i, j), number(i, j), 4);
+      const int beside[][2] = {{i - 1, j}, {i + 1, j}, {i, j - 1}, {i, j + 1}};
+      for (const auto &[k, l] : beside)
+        if (k >= 0 && k < length && l >= 0 && l < height) add(number(i, j), number(k, l), -1);
+    }
+  BandFactor factor(size, A, place);
+  const auto cost = factor.cost(), told = BandFactor::cost_of(size, height);
+  EXPECT_EQ(cost.entries, size * (height + 1.));
+  EXPECT_EQ(cost.entries, told.entries);
+  EXPECT_EQ(cost.seconds, told.seconds);
+  ASSERT_TRUE(factor.make(A.value));
+  const auto x = some_solution(size);
+  auto solution = product(A, x);
+  factor.solve(solution.data());
+  for (int i = 0; i < size; ++i) ASSERT_NEAR(solution[i], x[i], 1e-13) << i;
+}
+
 TEST(BandFactor, OfNothingIsNothing)
 {
   BandFactor factor(0, {});

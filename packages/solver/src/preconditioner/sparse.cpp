@@ -1,7 +1,10 @@
 #include "preconditioner/sparse.hpp"
 
 #include "rpc/algebra/bounded_update.hpp"
+#include "rpc/core/parallel.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -14,13 +17,56 @@ namespace
 // takes the difference in an iteration.
 constexpr double most_closed_stiffness = 1e4;
 
+/// On all ranks; collective. @param a, b  (nodes, dim, dim)
+bool are_equal(const Comm &comm, const DeviceView<double ***> &a, const DeviceView<double ***> &b)
+{
+  const int dim = static_cast<int>(a.extent(1));
+  LO different = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::are_equal", device_range(static_cast<LO>(a.extent(0))),
+      KOKKOS_LAMBDA(const LO n, LO &count) {
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) count += a(n, k, l) != b(n, k, l);
+      },
+      different);
+  return sum_all(comm, GO(different)) == 0;
+}
+
+/// Of all unknowns by their gids, in a numbering of the nodes plane by plane along a box; collective.
+std::vector<int> places_along(const Body &body, const int dofs_per_node)
+{
+  const auto coordinates = body.coordinates();
+  const Map &nodes = *coordinates->getMap();
+  const auto x = coordinates->getLocalViewHost(Tpetra::Access::ReadOnly);
+  std::vector<double> mine; // of each node its coordinates, from the longest axis on, and its gid
+  for (LO n = 0; n < num_local(nodes); ++n) {
+    for (const int axis : body.axes) mine.push_back(x(n, axis));
+    mine.push_back(static_cast<double>(nodes.getGlobalElement(n)));
+  }
+  const std::vector<double> all = gathered_by_all(*nodes.getComm(), mine);
+  const std::size_t entries = body.axes.size() + 1;
+  const int num_nodes = static_cast<int>(all.size() / entries);
+  std::vector<int> order(num_nodes);
+  std::iota(order.begin(), order.end(), 0);
+  const auto of = [&](const int node) { return all.begin() + static_cast<std::ptrdiff_t>(node * entries); };
+  std::sort(order.begin(), order.end(), [&](const int a, const int b) {
+    return std::lexicographical_compare(of(a), of(a) + entries, of(b), of(b) + entries);
+  });
+  std::vector<int> place(static_cast<std::size_t>(num_nodes) * dofs_per_node);
+  for (int at = 0; at < num_nodes; ++at)
+    for (int c = 0; c < dofs_per_node; ++c)
+      place[static_cast<int>(of(order[at])[entries - 1]) * dofs_per_node + c] = at * dofs_per_node + c;
+  return place;
+}
+
 } // namespace
 
 const Sparse::Prospect &Sparse::prospect()
 {
   if (solver_) return prospect_;
   A_ = H_->base().copy();
-  solver_ = std::make_unique<DirectSolver>(A_, H_->dofs_per_node());
+  solver_ = std::make_unique<DirectSolver>(A_, H_->dofs_per_node(),
+                                           along_ ? places_along(body_, H_->dofs_per_node()) : std::vector<int>());
   prospect_ = {solver_->cost(), solver_->lacks_memory()};
   return prospect_;
 }
@@ -30,7 +76,9 @@ Preconditioner::Prepared Sparse::prepare(double)
   const int revision = H_->revision();
   if (made_ && revision == revision_) return Prepared::unchanged;
   if (!prospect().obstacle.empty()) throw std::runtime_error(prospect_.obstacle);
-  write_update(*A_, *H_, bounded_update(*H_, most_closed_stiffness));
+  const auto bounded = bounded_update(*H_, most_closed_stiffness);
+  has_all_ = are_equal(*H_->getDomainMap()->getComm(), bounded, H_->update());
+  write_update(*A_, *H_, bounded);
   made_ = false;
   last_update_ = solver_->update(CoarsestSolver::slight_change);
   made_ = true;

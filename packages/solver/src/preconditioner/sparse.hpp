@@ -2,6 +2,7 @@
 
 #include "direct_solver.hpp"
 #include "rpc/algebra/updated_operator.hpp"
+#include "rpc/solver/body.hpp"
 #include "rpc/solver/preconditioner.hpp"
 
 #include <memory>
@@ -15,7 +16,7 @@ namespace rpc::solver
 class Sparse : public Preconditioner
 {
 public:
-  explicit Sparse(RCP<const UpdatedOperator> H) : H_(std::move(H)) {}
+  Sparse(RCP<const UpdatedOperator> H, Body body) : H_(std::move(H)), body_(std::move(body)) {}
 
   /// What a factor takes, and why it cannot be had, if so.
   struct Prospect {
@@ -24,13 +25,16 @@ public:
   };
   /// Orders the unknowns and counts, once; collective.
   const Prospect &prospect();
+  /// From the next prospect() on it is the factor of a narrow band along the body, a box, on each rank.
+  void number_along_the_body() { along_ = true; }
 
   /// @throws std::runtime_error where H is not positive definite, or there is an obstacle
   Prepared prepare(double tolerance) override;
   void forget() override;
   /// The next prepare() makes a new factor.
   void renew();
-  std::string name() const override { return "sparse factor"; }
+  bool is_exact() const override { return has_all_ && last_update_ != CoarsestSolver::Update::rough; }
+  std::string name() const override { return along_ ? "band factor" : "sparse factor"; }
   std::string description() const override;
   /// Whether the factor is that of the present H, without updates.
   bool is_from_scratch() const { return last_update_ == CoarsestSolver::Update::made; }
@@ -48,11 +52,14 @@ public:
 
 private:
   RCP<const UpdatedOperator> H_;
+  Body body_;
+  bool along_ = false;                   // numbered along the body
   RCP<CrsMatrix> A_;                     // K with an update; null: it was not analysed
   std::unique_ptr<DirectSolver> solver_; // of A
   Prospect prospect_;
   int revision_ = -1; // of H when it was last brought to it
   bool made_ = false;
+  bool has_all_ = false; // of contact's stiffness
   CoarsestSolver::Update last_update_ = CoarsestSolver::Update::made;
 };
 

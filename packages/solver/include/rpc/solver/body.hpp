@@ -3,16 +3,21 @@
 #include "rpc/core/tpetra.hpp"
 
 #include <functional>
+#include <vector>
 
 namespace rpc::solver
 {
 
-/// What algebraic multigrid has to know of a body. The fields are made when they are asked for, since most solves do without:
-/// in space they take as much memory as seven displacements.
+/// What preconditioners have to know of a body beside its matrix. The fields are made when they are asked for, since most solves do
+/// without: in space they take as much memory as seven displacements.
 struct Body {
   int dim = 0;                                   ///< unknowns of a node
   std::function<RCP<MultiVector>()> coordinates; ///< (owned nodes; dim) [m]
   std::function<RCP<MultiVector>()> null_space;  ///< (owned dofs; rigid body modes)
+  std::vector<int> axes = {};                    ///< of a box, from the one with most nodes on; empty: no box
+  /// Of a box: how far entries of K lie from the diagonal at most, where nodes are numbered plane by plane along axes[0] [unknowns].
+  double band_width = 0;
+  bool is_thin = false; ///< a box that coarser cells would be thicker than, (4.7e): multigrid has no mesh but this one
 };
 
 } // namespace rpc::solver

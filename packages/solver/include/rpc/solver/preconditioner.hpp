@@ -34,6 +34,8 @@ public:
   struct Start {
     RCP<Vector> x, rest;
   };
+  /// Whether B = H^-1 but for rounding.
+  virtual bool is_exact() const { return false; }
   /// The exact solution on a part of the unknowns, where the preconditioner has one.
   virtual Start start(const Vector &) const { return {}; }
   /// y <- B r for the residuals r that follow from this start only, where that takes less work.
