@@ -36,6 +36,9 @@ constexpr GO most_rows_set_up_anew = 2500;
 // solves are to come, by measurement of steps.
 constexpr int fair_iterations = 30, solves_with_contact = 4;
 constexpr double full_tolerance = 1e-8;
+// How many iterations a solve will take shows after such a part of the time of a factor: where layers are of unlike stiffness, CG stands
+// still at first and is fast then.
+constexpr double part_to_tell = 0.3;
 // A factor that leaves out slight changes is judged after so many.
 constexpr int first_iterations_of_factor = 3;
 
@@ -170,7 +173,8 @@ bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double t
   if (seen.iterations() < options.first_iterations) return false;
   const double limit = options.max_iterations, by_far = 2 * limit;
   if (seen.iterations() >= limit / 2 && seen.iterations_in_all(tolerance, by_far) >= by_far && prospect()) return true;
-  return sparse_pays(seen.iterations_in_all(tolerance, limit), tolerance);
+  return sparse_pays(seen.iterations_in_all(tolerance, limit), tolerance) &&
+         seen.iterations() * seconds_of_cg() >= part_to_tell * sparse.prospect().cost.seconds;
 }
 
 /// By the form of the body, and by the iterations that it lets expect. Where these are more than CG may take, a factor would follow anyway.
