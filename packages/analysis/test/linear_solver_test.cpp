@@ -89,7 +89,7 @@ TEST(LinearSolver, TellsWhereFewUnknownsHaveNoFactor)
 
 TEST(LinearSolver, TakesMeshesUnlessMueLuIsGiven)
 {
-  const Block block({2, 1}, {67, 35});
+  const Block block({2, 1}, {167, 135});
   const Vector b = block.vector(9);
   Vector x(b.getMap());
   const auto makes_levels = [&](const std::function<void(LinearSolverOptions &)> &set) {

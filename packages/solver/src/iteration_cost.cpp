@@ -29,32 +29,28 @@ double with_all_ranks(const StiffnessOperator &K, const double seconds)
   return on_gpu ? std::max(on_host / faster, launches) : on_host;
 }
 
-bool rows_repeat(const StiffnessOperator &K)
-{
-  return min_all(*K.getDomainMap()->getComm(), K.rows().any_repeat() ? 1 : 0) == 1;
-}
-
-constexpr double seconds_of_entry = 8e-9; // of a row that does not repeat, in a CG iteration with multigrid
-
 } // namespace
 
-double seconds_of_iteration(const StiffnessOperator &K)
+IterationSeconds seconds_of_iteration(const StiffnessOperator &K)
 {
+  const double entries = num_entries(K);
+  const auto rows = static_cast<double>(K.getDomainMap()->getGlobalNumElements());
+  if (min_all(*K.getDomainMap()->getComm(), K.rows().any_repeat() ? 1 : 0) == 0) {
+    const double all = with_all_ranks(K, 8e-9 * entries);
+    return {all, all};
+  }
   // Rows that repeat are read once. In the plane vectors count for more beside them.
-  const double of_repeated = K.dofs_per_node() == 3 ? 1e-9 : 2e-9;
-  return with_all_ranks(K, (rows_repeat(K) ? of_repeated : seconds_of_entry) * num_entries(K));
+  const double counted = (K.dofs_per_node() == 3 ? 1e-9 : 2e-9) * entries;
+  return {with_all_ranks(K, counted), with_all_ranks(K, 1e-9 * entries + 70e-9 * rows)};
 }
 
 bool is_narrow(const Body &body, const StiffnessOperator &K)
 {
   if (body.axes.empty()) return false;
-  // What iterations take, by measurement within a quarter. (The counts above, by which other choices are made, are less.)
-  constexpr double of_repeated = 1e-9, of_row = 70e-9, few_iterations = 5.5;
+  constexpr double few_iterations = 5.5;
   const auto unknowns = static_cast<double>(K.getDomainMap()->getGlobalNumElements());
-  const double iteration =
-      rows_repeat(K) ? of_repeated * num_entries(K) + of_row * unknowns : seconds_of_entry * num_entries(K);
   const FactorCost band = BandFactor::cost_of(unknowns, body.band_width);
-  return band.seconds + band.seconds_of_solve <= few_iterations * with_all_ranks(K, iteration);
+  return band.seconds + band.seconds_of_solve <= few_iterations * seconds_of_iteration(K).measured;
 }
 
 } // namespace rpc::solver

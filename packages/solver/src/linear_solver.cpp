@@ -87,18 +87,18 @@ struct LinearSolver::Impl {
   Algebraic algebraic;
   Sparse sparse;
   Krylov krylov;
-  bool on_meshes;                 // or on one of the others
-  bool on_mixed = false;          // until it fails
-  bool mixed_again = false;       // in the next solve: a matrix was met that may be singular
-  bool on_sparse = false;         // from some solve on
-  int solves_to_come = 1;         // about
-  bool may_be_sparse;             // the deck leaves the preconditioner open, and memory may do
-  double lost_iterations = 0;     // of CG, in all solves, beyond what is fair
-  double iteration_seconds = -1;  // -1: not asked for yet
-  bool given_up = false;          // the last solve, in favour of a sparse factor
-  bool met_singular = false;      // a matrix that neither hierarchy can solve for
-  bool stands_in = false;         // since the meshes failed in the present solve
-  Preconditioner *used = nullptr; // in the last solve
+  bool on_meshes;                                    // or on one of the others
+  bool on_mixed = false;                             // until it fails
+  bool mixed_again = false;                          // in the next solve: a matrix was met that may be singular
+  bool on_sparse = false;                            // from some solve on
+  int solves_to_come = 1;                            // about
+  bool may_be_sparse;                                // the deck leaves the preconditioner open, and memory may do
+  double lost_iterations = 0;                        // of CG, in all solves, beyond what is fair
+  std::optional<IterationSeconds> iteration_seconds; // nothing: not asked for yet
+  bool given_up = false;                             // the last solve, in favour of a sparse factor
+  bool met_singular = false;                         // a matrix that neither hierarchy can solve for
+  bool stands_in = false;                            // since the meshes failed in the present solve
+  Preconditioner *used = nullptr;                    // in the last solve
 
   Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels,
        MakeMixedForm mixed_form);
@@ -107,7 +107,7 @@ struct LinearSolver::Impl {
   bool counted(Preconditioner &B, double tolerance);
   Result attempt(const Vector &b, Vector &x, const Accuracy &wanted);
   Used used_for_policy() const;
-  double seconds_of_cg();
+  const IterationSeconds &seconds_of_cg();
   const Sparse::Prospect *prospect();
   bool sparse_pays(double iterations_in_all, double tolerance);
   bool sparse_pays_now(const Convergence &seen, double tolerance);
@@ -136,10 +136,10 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
 }
 
 /// Of an iteration of CG with multigrid; collective.
-double LinearSolver::Impl::seconds_of_cg()
+const IterationSeconds &LinearSolver::Impl::seconds_of_cg()
 {
-  if (iteration_seconds < 0) iteration_seconds = seconds_of_iteration(H->base());
-  return iteration_seconds;
+  if (!iteration_seconds) iteration_seconds = seconds_of_iteration(H->base());
+  return *iteration_seconds;
 }
 
 /// What a sparse factor takes; null where it cannot be had. Collective.
@@ -160,7 +160,7 @@ bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const doubl
 {
   if (!may_be_sparse) return false;
   const double lost =
-      seconds_of_cg() * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair(tolerance), 0.));
+      seconds_of_cg().counted * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair(tolerance), 0.));
   constexpr double seconds_of_analysis = 5e-6; // a row; not worth it for less
   if (lost < seconds_of_analysis * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
   const auto *const found = prospect();
@@ -174,20 +174,18 @@ bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double t
   const double limit = options.max_iterations, by_far = 2 * limit;
   if (seen.iterations() >= limit / 2 && seen.iterations_in_all(tolerance, by_far) >= by_far && prospect()) return true;
   return sparse_pays(seen.iterations_in_all(tolerance, limit), tolerance) &&
-         seen.iterations() * seconds_of_cg() >= part_to_tell * sparse.prospect().cost.seconds;
+         seen.iterations() * seconds_of_cg().measured >= part_to_tell * sparse.prospect().cost.seconds;
 }
 
 /// By the form of the body, and by the iterations that it lets expect. Where these are more than CG may take, a factor would follow anyway.
 void LinearSolver::Impl::choose_before_the_first_solve()
 {
   if (on_sparse || !counts.iterations.empty()) return;
-  if (may_be_sparse && chosen()) {
-    const bool narrow = is_narrow(body, H->base());
-    if (narrow) sparse.number_along_the_body();
-    const std::string band =
-        "the body is slender: a band of " + std::to_string(static_cast<int>(body.band_width)) + " unknowns";
-    if ((narrow || body.is_thin) && take(Next::sparse, narrow ? band : "the body is one thin layer of cells")) return;
-  }
+  const bool is_open = may_be_sparse && chosen();
+  const bool narrow = is_open && is_narrow(body, H->base());
+  if (narrow) sparse.number_along_the_body();
+  if (narrow && take(Next::sparse, "it takes no longer than a few iterations")) return;
+  if (is_open && body.is_thin && take(Next::sparse, "the body is one thin layer of cells")) return;
   const double expected = options.expected_iterations;
   if (!(expected > 0)) return;
   if (expected > options.max_iterations ? !prospect() : !sparse_pays(expected, full_tolerance)) return;
@@ -266,9 +264,9 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     lost_iterations += std::max(0., done.iterations - fair(least));
     if (used == &algebraic) algebraic.learn(done.iterations, done.residual);
     if (on_mixed)
-      mixed->learn(done.iterations, seconds_of_cg());
+      mixed->learn(done.iterations, seconds_of_cg().counted);
     else if (on_meshes)
-      meshes->learn(done.iterations, seconds_of_cg());
+      meshes->learn(done.iterations, seconds_of_cg().counted);
     result = {done.converged, done.broken, false, done.iterations, done.energy, done.reason};
     counts.iterations.push_back(result.iterations);
     counts.solve_seconds += Teuchos::Time::wallTime() - start;
