@@ -196,12 +196,11 @@ solver::Body body_of(const fem::Discretization &d)
   if (!mesh.box) return body;
   body.is_thin = mesh::thin_direction(*mesh.box).has_value();
   const int order = mesh.element.order;
-  const auto num_nodes = [&](const int axis) { return order * static_cast<double>(mesh.box->cells[axis]) + 1; };
-  for (int axis = 0; axis < d.dim(); ++axis) body.axes.push_back(axis);
-  std::stable_sort(body.axes.begin(), body.axes.end(),
-                   [&](const int a, const int b) { return num_nodes(a) > num_nodes(b); });
+  std::vector<double> nodes; // along the axes, from that with fewest on
+  for (const int cells : mesh.box->cells) nodes.push_back(order * static_cast<double>(cells) + 1);
+  std::sort(nodes.begin(), nodes.end());
   double nodes_between = 1, nodes_of_plane = 1; // of a node and its neighbour along all axes, at order 1
-  for (int k = d.dim() - 1; k > 0; --k) nodes_between += nodes_of_plane *= num_nodes(body.axes[k]);
+  for (int k = 0; k + 1 < d.dim(); ++k) nodes_between += nodes_of_plane *= nodes[k];
   body.band_width = d.dim() * (order * nodes_between + 1) - 1;
   return body;
 }

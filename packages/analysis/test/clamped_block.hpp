@@ -82,6 +82,13 @@ struct Block {
     }
     return v;
   }
+  /// |b - H x| / |b|
+  double residual(const Vector &x, const Vector &b) const
+  {
+    Vector r(b, Teuchos::Copy);
+    H->apply(x, r, Teuchos::NO_TRANS, -1., 1.);
+    return r.norm2() / b.norm2();
+  }
   /// @param mixed  with pressures as unknowns of their own, where rpc has them
   std::unique_ptr<solver::LinearSolver> solver(const bool mixed = false) const
   {

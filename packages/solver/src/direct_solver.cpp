@@ -7,6 +7,7 @@
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -57,6 +58,13 @@ SymmetricEntries pattern_of(const CrsMatrix &A, std::vector<std::size_t> &lower)
   return mine;
 }
 
+std::vector<int> as_numbered(const int size)
+{
+  std::vector<int> place(size);
+  std::iota(place.begin(), place.end(), 0);
+  return place;
+}
+
 /// All unknowns on rank 0, by their gids.
 RCP<const Map> on_root(const Map &rows)
 {
@@ -66,7 +74,7 @@ RCP<const Map> on_root(const Map &rows)
 
 } // namespace
 
-DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node, std::vector<int> places)
+DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node, const bool is_band)
     : A_(std::move(A)), dofs_per_node_(dofs_per_node)
 {
   const auto comm = A_->getComm();
@@ -74,12 +82,12 @@ DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node, std:
   const int size = static_cast<int>(A_->getGlobalNumRows());
   const SymmetricEntries mine = pattern_of(*A_, lower_);
   if (comm->getSize() == 1 || !SparseFactor::can_be_shared || A_->getGlobalNumRows() <= most_rows_on_each_rank ||
-      !places.empty()) {
+      is_band) {
     const SymmetricEntries all = comm->getSize() > 1 ? entries_of_all(*comm, mine) : mine;
-    if (places.empty())
-      factor_ = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size, all, dofs_per_node);
+    if (is_band)
+      factor_ = std::make_unique<BandFactor>(size, all, as_numbered(size));
     else
-      factor_ = std::make_unique<BandFactor>(size, all, std::move(places));
+      factor_ = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size, all, dofs_per_node);
     return;
   }
   factor_ = SparseFactor::analyse(comm, size, mine, dofs_per_node);

@@ -19,8 +19,8 @@ class DirectSolver : public CoarsestSolver
 public:
   /// Analyses the matrix; there is no factor yet. Collective.
   /// @param dofs_per_node  unknowns of a node, whose gids follow each other
-  /// @param places  (unknowns of all ranks) of each gid in a narrow band, which each rank factors; empty: not known
-  DirectSolver(RCP<const CrsMatrix> A, int dofs_per_node, std::vector<int> places = {});
+  /// @param is_band  whether gids that A couples are close to each other: then each rank has a band factor in their order
+  DirectSolver(RCP<const CrsMatrix> A, int dofs_per_node, bool is_band = false);
 
   FactorCost cost() const { return factor_->cost(); }
   /// Empty if the memory that is free now will do for the factor; else why not. The same on all ranks; collective.

@@ -44,13 +44,11 @@ IterationSeconds seconds_of_iteration(const StiffnessOperator &K)
   return {with_all_ranks(K, counted), with_all_ranks(K, 1e-9 * entries + 70e-9 * rows)};
 }
 
-bool is_narrow(const Body &body, const StiffnessOperator &K)
+bool is_narrow(const double unknowns, const double width, const IterationSeconds &iteration)
 {
-  if (body.axes.empty()) return false;
   constexpr double few_iterations = 5.5;
-  const auto unknowns = static_cast<double>(K.getDomainMap()->getGlobalNumElements());
-  const FactorCost band = BandFactor::cost_of(unknowns, body.band_width);
-  return band.seconds + band.seconds_of_solve <= few_iterations * seconds_of_iteration(K).measured;
+  const FactorCost band = BandFactor::cost_of(unknowns, width);
+  return band.seconds + band.seconds_of_solve <= few_iterations * iteration.measured;
 }
 
 } // namespace rpc::solver

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "rpc/algebra/stiffness_operator.hpp"
-#include "rpc/solver/body.hpp"
 
 namespace rpc::solver
 {
@@ -15,7 +14,8 @@ struct IterationSeconds {
 /// Collective.
 IterationSeconds seconds_of_iteration(const StiffnessOperator &K);
 
-/// Whether a factor of K, numbered along a box, takes no more time than a few CG iterations with multigrid. Collective.   (4.10e)
-bool is_narrow(const Body &body, const StiffnessOperator &K);
+/// Whether a band factor takes no more time than a few CG iterations with multigrid.                               (4.10e)
+/// @param width  of the band below the diagonal
+bool is_narrow(double unknowns, double width, const IterationSeconds &iteration);
 
 } // namespace rpc::solver

@@ -120,7 +120,7 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
                          MakeMixedForm mixed_form)
     : options(std::move(given)), H(of), body(std::move(of_body)),
       algebraic(H, body, options, static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew),
-      sparse(H, body), krylov(options, H)
+      sparse(H), krylov(options, H)
 {
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
   const bool automatic = options.multigrid == "auto" && options.muelu.numParams() == 0;
@@ -182,8 +182,10 @@ void LinearSolver::Impl::choose_before_the_first_solve()
 {
   if (on_sparse || !counts.iterations.empty()) return;
   const bool is_open = may_be_sparse && chosen();
-  const bool narrow = is_open && is_narrow(body, H->base());
-  if (narrow) sparse.number_along_the_body();
+  const bool narrow =
+      is_open && body.band_width > 0 &&
+      is_narrow(static_cast<double>(H->getDomainMap()->getGlobalNumElements()), body.band_width, seconds_of_cg());
+  if (narrow) sparse.take_band();
   if (narrow && take(Next::sparse, "it takes no longer than a few iterations")) return;
   if (is_open && body.is_thin && take(Next::sparse, "the body is one thin layer of cells")) return;
   const double expected = options.expected_iterations;

@@ -20,28 +20,35 @@ using rpc::solver::SymmetricEntries;
 
 constexpr double any_work = 1e12;
 
-/// Five-point differences on n x n places, numbered by a step that scatters neighbours, with something added to the diagonal;
-/// the diagonal comes in two parts.
-SymmetricEntries scattered_grid(const int n, const double shift)
+/// Five-point differences on length x height places, of which each has a number: a step of 7 scatters neighbours. Something is added to the
+/// diagonal, which comes in two parts.
+int number_of(const int place, const int size)
 {
-  const int size = n * n;
-  const auto number = [&](const int i, const int j) { return (7 * (i * n + j)) % size; };
+  return 7 * place % size;
+}
+SymmetricEntries scattered_grid(const int length, const int height, const double shift)
+{
+  const auto number = [&](const int i, const int j) { return number_of(i * height + j, length * height); };
   SymmetricEntries entries;
   const auto add = [&](const int row, const int column, const double value) {
     entries.row.push_back(row);
     entries.column.push_back(column);
     entries.value.push_back(value);
   };
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
+  for (int i = 0; i < length; ++i)
+    for (int j = 0; j < height; ++j) {
       const int here = number(i, j);
       add(here, here, 4);
       add(here, here, shift);
-      for (const int other : {i > 0 ? number(i - 1, j) : -1, i + 1 < n ? number(i + 1, j) : -1,
-                              j > 0 ? number(i, j - 1) : -1, j + 1 < n ? number(i, j + 1) : -1})
+      for (const int other : {i > 0 ? number(i - 1, j) : -1, i + 1 < length ? number(i + 1, j) : -1,
+                              j > 0 ? number(i, j - 1) : -1, j + 1 < height ? number(i, j + 1) : -1})
         if (other >= 0) add(here, other, -1);
     }
   return entries;
+}
+SymmetricEntries scattered_grid(const int n, const double shift)
+{
+  return scattered_grid(n, n, shift);
 }
 
 std::vector<double> product(const SymmetricEntries &A, const std::vector<double> &x)
@@ -185,22 +192,9 @@ TEST(SparseFactor, RefusesAMatrixThatIsNotPositiveDefinite)
 TEST(BandFactor, FollowsAGivenOrder)
 {
   const int length = 40, height = 5, size = length * height;
-  const auto number = [&](const int i, const int j) { return (7 * (i * height + j)) % size; };
-  SymmetricEntries A;
-  const auto add = [&](const int row, const int column, const double value) {
-    A.row.push_back(row);
-    A.column.push_back(column);
-    A.value.push_back(value);
-  };
+  const auto A = scattered_grid(length, height, 0);
   std::vector<int> place(size);
-  for (int i = 0; i < length; ++i)
-    for (int j = 0; j < height; ++j) {
-      place[number(i, j)] = i * height + j;
-      add(number(i, j), number(i, j), 4);
-      const int beside[][2] = {{i - 1, j}, {i + 1, j}, {i, j - 1}, {i, j + 1}};
-      for (const auto &[k, l] : beside)
-        if (k >= 0 && k < length && l >= 0 && l < height) add(number(i, j), number(k, l), -1);
-    }
+  for (int at = 0; at < size; ++at) place[number_of(at, size)] = at;
   BandFactor factor(size, A, place);
   const auto cost = factor.cost(), told = BandFactor::cost_of(size, height);
   EXPECT_EQ(cost.entries, size * (height + 1.));

@@ -3,8 +3,6 @@
 #include "rpc/algebra/bounded_update.hpp"
 #include "rpc/core/parallel.hpp"
 
-#include <algorithm>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -32,41 +30,13 @@ bool are_equal(const Comm &comm, const DeviceView<double ***> &a, const DeviceVi
   return sum_all(comm, GO(different)) == 0;
 }
 
-/// Of all unknowns by their gids, in a numbering of the nodes plane by plane along a box; collective.
-std::vector<int> places_along(const Body &body, const int dofs_per_node)
-{
-  const auto coordinates = body.coordinates();
-  const Map &nodes = *coordinates->getMap();
-  const auto x = coordinates->getLocalViewHost(Tpetra::Access::ReadOnly);
-  std::vector<double> mine; // of each node its coordinates, from the longest axis on, and its gid
-  for (LO n = 0; n < num_local(nodes); ++n) {
-    for (const int axis : body.axes) mine.push_back(x(n, axis));
-    mine.push_back(static_cast<double>(nodes.getGlobalElement(n)));
-  }
-  const std::vector<double> all = gathered_by_all(*nodes.getComm(), mine);
-  const std::size_t entries = body.axes.size() + 1;
-  const int num_nodes = static_cast<int>(all.size() / entries);
-  std::vector<int> order(num_nodes);
-  std::iota(order.begin(), order.end(), 0);
-  const auto of = [&](const int node) { return all.begin() + static_cast<std::ptrdiff_t>(node * entries); };
-  std::sort(order.begin(), order.end(), [&](const int a, const int b) {
-    return std::lexicographical_compare(of(a), of(a) + entries, of(b), of(b) + entries);
-  });
-  std::vector<int> place(static_cast<std::size_t>(num_nodes) * dofs_per_node);
-  for (int at = 0; at < num_nodes; ++at)
-    for (int c = 0; c < dofs_per_node; ++c)
-      place[static_cast<int>(of(order[at])[entries - 1]) * dofs_per_node + c] = at * dofs_per_node + c;
-  return place;
-}
-
 } // namespace
 
 const Sparse::Prospect &Sparse::prospect()
 {
   if (solver_) return prospect_;
   A_ = H_->base().copy();
-  solver_ = std::make_unique<DirectSolver>(A_, H_->dofs_per_node(),
-                                           along_ ? places_along(body_, H_->dofs_per_node()) : std::vector<int>());
+  solver_ = std::make_unique<DirectSolver>(A_, H_->dofs_per_node(), is_band_);
   prospect_ = {solver_->cost(), solver_->lacks_memory()};
   return prospect_;
 }

@@ -2,7 +2,6 @@
 
 #include "direct_solver.hpp"
 #include "rpc/algebra/updated_operator.hpp"
-#include "rpc/solver/body.hpp"
 #include "rpc/solver/preconditioner.hpp"
 
 #include <memory>
@@ -16,7 +15,7 @@ namespace rpc::solver
 class Sparse : public Preconditioner
 {
 public:
-  Sparse(RCP<const UpdatedOperator> H, Body body) : H_(std::move(H)), body_(std::move(body)) {}
+  explicit Sparse(RCP<const UpdatedOperator> H) : H_(std::move(H)) {}
 
   /// What a factor takes, and why it cannot be had, if so.
   struct Prospect {
@@ -25,8 +24,8 @@ public:
   };
   /// Orders the unknowns and counts, once; collective.
   const Prospect &prospect();
-  /// From the next prospect() on it is the factor of a narrow band along the body, a box, on each rank.
-  void number_along_the_body() { along_ = true; }
+  /// From the first prospect() on it is the factor of a narrow band, in the order of the gids, on each rank.
+  void take_band() { is_band_ = true; }
 
   /// @throws std::runtime_error where H is not positive definite, or there is an obstacle
   Prepared prepare(double tolerance) override;
@@ -34,7 +33,7 @@ public:
   /// The next prepare() makes a new factor.
   void renew();
   bool is_exact() const override { return has_all_ && last_update_ != CoarsestSolver::Update::rough; }
-  std::string name() const override { return along_ ? "band factor" : "sparse factor"; }
+  std::string name() const override { return is_band_ ? "band factor" : "sparse factor"; }
   std::string description() const override;
   /// Whether the factor is that of the present H, without updates.
   bool is_from_scratch() const { return last_update_ == CoarsestSolver::Update::made; }
@@ -52,8 +51,7 @@ public:
 
 private:
   RCP<const UpdatedOperator> H_;
-  Body body_;
-  bool along_ = false;                   // numbered along the body
+  bool is_band_ = false;
   RCP<CrsMatrix> A_;                     // K with an update; null: it was not analysed
   std::unique_ptr<DirectSolver> solver_; // of A
   Prospect prospect_;

@@ -3,7 +3,6 @@
 #include "rpc/core/tpetra.hpp"
 
 #include <functional>
-#include <vector>
 
 namespace rpc::solver
 {
@@ -14,8 +13,8 @@ struct Body {
   int dim = 0;                                   ///< unknowns of a node
   std::function<RCP<MultiVector>()> coordinates; ///< (owned nodes; dim) [m]
   std::function<RCP<MultiVector>()> null_space;  ///< (owned dofs; rigid body modes)
-  std::vector<int> axes = {};                    ///< of a box, from the one with most nodes on; empty: no box
-  /// Of a box: how far entries of K lie from the diagonal at most, where nodes are numbered plane by plane along axes[0] [unknowns].
+  /// Of a box: how far entries of K lie from the diagonal at most [unknowns], for its nodes are numbered plane by plane along the side
+  /// with most cells; 0: no box.
   double band_width = 0;
   bool is_thin = false; ///< a box that coarser cells would be thicker than, (4.7e): multigrid has no mesh but this one
 };
