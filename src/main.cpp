@@ -1,6 +1,7 @@
 #include "checkpoint.hpp"
 #include "command_line.hpp"
 #include "gpu.hpp"
+#include "host_program.hpp"
 #include "output/paths.hpp"
 #include "output/results.hpp"
 #include "report.hpp"
@@ -19,6 +20,8 @@
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <Tpetra_Core.hpp>
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -46,13 +49,18 @@ void keep_freed_memory()
 #endif
 }
 
+/// Whether a launcher, such as mpirun, has started this process: there may be more ranks.
+bool is_launched()
+{
+  constexpr std::array marks{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"};
+  return std::any_of(marks.begin(), marks.end(), [](const char *const mark) { return std::getenv(mark) != nullptr; });
+}
+
 /// One process without mpirun has no partners: Open MPI need not start a daemon for it and look for network cards, which
 /// takes it 0.35 s; nor make a folder, which processes without a daemon would share and remove under each other. The user's
 /// own settings win; other MPIs know nothing of these.
 void start_mpi_alone()
 {
-  for (const char *const launched : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
-    if (std::getenv(launched)) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);
@@ -147,6 +155,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
       rpc::io::remove_abandoned(line.output, [&](const std::string &file) { return rpc::is_result(scene, file); });
   });
 
+  if (const std::string report = rpc::hand_over_report(); !report.empty()) out << "host: " << report << '\n';
   if (const std::string gpus = rpc::gpu_report(*comm); !gpus.empty()) out << "GPU: " << gpus << '\n';
   const auto timers = Teuchos::rcp(new Teuchos::StackedTimer("rpc"));
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
@@ -188,7 +197,10 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
 int main(int argc, char *argv[])
 {
   keep_freed_memory();
-  start_mpi_alone();
+  if (!is_launched()) {
+    rpc::hand_over_small_scene(argc, argv);
+    start_mpi_alone();
+  }
   keep_mpi_from_managed_memory();
   rpc::install_interrupt_handlers();
   std::signal(SIGXFSZ, SIG_IGN); // a file beyond the shell's limit is a write that fails, not the end

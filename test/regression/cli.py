@@ -91,6 +91,32 @@ class CommandLine(RpcTestCase):
         self.rpc("--input", "beam.xml", "--set", "Mesh->Cells={20,4}", "--output", "out")
         self.assertIn("beam.json", files(self.folder / "out"))
 
+    def test_small_scene_is_handed_over(self):
+        """To a program that tells its arguments, its processors and that it would not hand the scene on."""
+        program = self.folder / "host_rpc"
+        program.write_text('#!/bin/sh\necho "$@; $RPC_HAND_OVER_REPORT; ${RPC_HOST_PROGRAM}."\ngrep Cpus_allowed_list /proc/self/status\n')
+        program.chmod(0o755)
+        cpus = re.search(r"Cpus_allowed_list:\s*(\S+)", open("/proc/self/status").read())[1]
+        for places in ({}, {"OMP_PROC_BIND": "true", "OMP_PLACES": "cores"}):
+            text = self.rpc("--input=beam.xml", SMALL, environment={"RPC_HOST_PROGRAM": str(program), **places}).stdout
+            self.assertRegex(text, r"^--input=beam.xml --set=\S+; taken over from \S+: 210 unknowns, at most \d+; \.\n")
+            self.assertEqual(re.search(r"Cpus_allowed_list:\s*(\S+)", text)[1], cpus)
+
+    def test_what_the_host_cannot_take_stays(self):
+        program = self.folder / "host_rpc"
+        program.write_text("#!/bin/sh\nexit 1\n")
+        program.chmod(0o755)
+        given = {"RPC_HOST_PROGRAM": str(program)}
+        self.rpc("--version", environment=given)
+        self.rpc("--check", "--input=beam.xml", environment=given)
+        self.rpc("--input=beam.xml", SMALL, "--kokkos-threads=1", environment=given)
+        self.rpc("--input=beam.xml", "--set=Mesh->Cells={2,1}", "--set=Material->Poisson's Ratio=7", environment=given, code=2)
+        self.rpc("--input=beam.xml", "--set=Mesh->Cells={450,450}", "--set=Output->Exodus=none", environment=given)  # large
+        self.rpc("--input=hertz.xml", "--set=Mesh->Size Factor=4", environment=given)  # of a size that gmsh will tell
+        for missing in (self.folder / "nothing", self.folder):
+            text = self.rpc("--input=beam.xml", SMALL, environment={"RPC_HOST_PROGRAM": str(missing)}).stdout
+            self.assertIn(f'host: cannot start RPC_HOST_PROGRAM = "{missing}"', text)
+
 
 class Decks(RpcTestCase):
     def test_deck_is_taken_as_given_before_one_that_comes_with_rpc(self):

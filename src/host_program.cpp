@@ -1,0 +1,130 @@
+#include "host_program.hpp"
+
+#include "command_line.hpp"
+#include "rpc/io/deck.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <dlfcn.h>
+#include <exception>
+#include <optional>
+#include <sched.h>
+#include <thread>
+#include <unistd.h>
+#include <variant>
+#include <vector>
+
+namespace rpc
+{
+namespace
+{
+
+constexpr const char *program_variable = "RPC_HOST_PROGRAM", *report_variable = "RPC_HAND_OVER_REPORT";
+
+/// A function of OpenMP's, where a library has brought OpenMP into this process; else null.
+template <typename Function>
+Function *openmp(const char *const name)
+{
+  return reinterpret_cast<Function *>(dlsym(RTLD_DEFAULT, name));
+}
+
+int threads_of_host()
+{
+  const auto threads = openmp<int()>("omp_get_max_threads");
+  return threads ? threads() : static_cast<int>(std::thread::hardware_concurrency());
+}
+
+/// Where the environment asks for places (OMP_PROC_BIND), OpenMP has bound this thread to the first of them as it was loaded. The next
+/// program is to find them all.
+void leave_place()
+{
+  const auto places = openmp<int()>("omp_get_num_places");
+  const auto size = openmp<int(int)>("omp_get_place_num_procs");
+  const auto list = openmp<void(int, int *)>("omp_get_place_proc_ids");
+  if (!places || !size || !list) return;
+  cpu_set_t all;
+  CPU_ZERO(&all);
+  for (int place = 0; place < places(); ++place) {
+    std::vector<int> ids(size(place));
+    list(place, ids.data());
+    for (const int id : ids) CPU_SET(id, &all);
+  }
+  if (CPU_COUNT(&all) > 0) sched_setaffinity(0, sizeof all, &all);
+}
+
+/// What a command line asks to solve; none where it asks for other things.
+std::optional<Scene> scene_of(const int argc, char *argv[])
+{
+  const Arguments arguments = split_arguments(argc, argv);
+  const CommandLine line = parse_command_line(arguments.own);
+  if (arguments.kokkos.size() > 1 || line.help || line.version || line.print_parameters || line.check) return {};
+  if (line.input.empty()) return {};
+  const Teuchos::SerialComm<int> alone;
+  return read_scene(io::find_deck(line.input, alone), line.assignments, alone);
+}
+
+bool is_nearly_incompressible(const fem::Materials &materials)
+{
+  constexpr double least = 0.48; // where other solvers and more iterations begin
+  const auto is = [](const fem::Material &material) { return material.poissons_ratio > least; };
+  return is(materials.common) || std::any_of(materials.block.begin(), materials.block.end(),
+                                             [&is](const auto &block) { return is(block.second); });
+}
+
+} // namespace
+
+std::string host_program()
+{
+  const char *const given = std::getenv(program_variable);
+  return given ? given : RPC_HOST_PROGRAM;
+}
+
+GO foreseen_unknowns(const Scene &scene)
+{
+  const auto *const box = std::get_if<mesh::BoxOptions>(&scene.mesh);
+  if (!box) return -1;
+  GO unknowns = box->element.dim;
+  for (int direction = 0; direction < box->element.dim; ++direction) unknowns *= box->intervals(direction) + 1;
+  return scene.adapt.adapts() ? std::max<GO>(unknowns, scene.adapt.max_dofs) : unknowns;
+}
+
+GO most_unknowns_of_host(const int threads, const bool nearly_incompressible)
+{
+  constexpr double of_one_thread = 50000, power = 0.75, most_threads = 16; // measured, doc/portability.md
+  constexpr double work = 10; // of nearly incompressible bodies, for one thread
+  const double unknowns = of_one_thread * std::pow(std::clamp<double>(threads, 1, most_threads), power);
+  return static_cast<GO>(nearly_incompressible ? unknowns / work : unknowns);
+}
+
+void hand_over_small_scene(const int argc, char *argv[])
+{
+  const std::string program = host_program();
+  if (program.empty()) return;
+  try {
+    const std::optional<Scene> scene = scene_of(argc, argv);
+    if (!scene) return;
+    const GO unknowns = foreseen_unknowns(*scene);
+    const GO most = most_unknowns_of_host(threads_of_host(), is_nearly_incompressible(scene->model.materials));
+    if (unknowns < 0 || unknowns > most) return;
+    const std::string reason = std::to_string(unknowns) + " unknowns, at most " + std::to_string(most);
+    setenv(report_variable, ("taken over from " + std::string(argv[0]) + ": " + reason).c_str(), 1);
+  } catch (const std::exception &) {
+    return;
+  }
+  setenv(program_variable, "", 1); // the next one keeps what it gets
+  leave_place();
+  execv(program.c_str(), argv);
+  const std::string reason = std::strerror(errno);
+  setenv(report_variable, ("cannot start RPC_HOST_PROGRAM = \"" + program + "\": " + reason).c_str(), 1);
+}
+
+std::string hand_over_report()
+{
+  const char *const report = std::getenv(report_variable);
+  return report ? report : "";
+}
+
+} // namespace rpc
