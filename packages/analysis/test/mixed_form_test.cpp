@@ -68,7 +68,7 @@ TEST(MixedForm, TakesFewIterationsUpToOneHalf)
                                                                    {plane_q2, Kinematics::axisymmetric, 17},
                                                                    {plane_p2, Kinematics::plane_strain, 19},
                                                                    {q2, Kinematics::plane_strain, 19},
-                                                                   {p2, Kinematics::plane_strain, 34}})
+                                                                   {p2, Kinematics::plane_strain, 32}})
     for (const double nu : {0.49, 0.499, 0.49999}) {
       SCOPED_TRACE(element.name() + " in " + std::to_string(element.dim) + "D, nu " + std::to_string(nu));
       expect_few(Block(element, cells_of(element), true, {2, 1, 1}, nu, kinematics), most);
@@ -86,12 +86,13 @@ TEST(MixedForm, TakesBodiesFromFiles)
 
 TEST(MixedForm, TakesStretchedCells)
 {
-  for (const mesh::Element &element : {plane_q1, q1, plane_q2, plane_p2, q2})
+  for (const mesh::Element &element : {plane_q1, q1, plane_q2, plane_p2, q2, p2})
     for (const double ratio : {4., 16.}) {
       SCOPED_TRACE(element.name() + " in " + std::to_string(element.dim) + "D, stretched by " + std::to_string(ratio));
       const std::vector<double> upper = {1, 1, 1 / ratio}, upper_in_plane = {ratio, 1, 1};
       const std::vector<int> cells = element.dim == 2 ? std::vector<int>{15, 16, 0} : std::vector<int>{5, 5, 4};
-      expect_few(Block(element, cells, true, element.dim == 2 ? upper_in_plane : upper, 0.499), 32);
+      const int most = element == p2 && ratio > 4 ? 60 : 32;
+      expect_few(Block(element, cells, true, element.dim == 2 ? upper_in_plane : upper, 0.499), most);
     }
 }
 

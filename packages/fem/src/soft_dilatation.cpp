@@ -15,8 +15,7 @@ using LocalMatrix = CrsMatrix::local_matrix_device_type;
 template <int Dim, int Nodes, bool Axisymmetric>
 struct FillModes {
   static constexpr int modes = Projection<Dim, Nodes>::modes, dofs = Dim * Nodes;
-  /// A constant pressure in each cell and one node a cell: checkerboards.
-  static constexpr bool alternates = StaticElement<Dim, Nodes>::order == 1 && !StaticElement<Dim, Nodes>::simplex;
+  static constexpr int corners = StaticElement<Dim, Nodes>::simplex ? Dim + 1 : 1 << Dim;
 
   using Begins = LocalMatrix::row_map_type::non_const_type;
   using Columns = LocalMatrix::index_type::non_const_type;
@@ -28,9 +27,9 @@ struct FillModes {
   Begins begin;                                // (modes * cells + 1)                           out
   Columns column;                              // (modes * cells * dofs)                        out
   Values value;                                // (modes * cells * dofs)  [m^(dim/2 - 1)]       out
-  Begins node_begin;                           // (cells + 1), where pressures alternate        out
-  Columns node_column;                         // (cells * Nodes)                               out
-  Values root_of_volume;                       // (cells * Nodes)         [m^(dim/2)]           out
+  Begins node_begin;                           // (cells + 1), empty: not wanted                out
+  Columns node_column;                         // (cells * corners)                             out
+  Values root_of_volume;                       // (cells * corners)       [m^(dim/2)]           out
   DeviceView<double *> stiffness;              // (modes * cells)                        [Pa]   out
   DeviceView<double *> wave_modulus;           // (modes * cells)                        [Pa]   out
   DeviceView<double *> bulk_modulus;           // (modes * cells)                        [Pa]   out
@@ -61,20 +60,20 @@ struct FillModes {
           value(at) = is_split && !prescribed(unknown) ? projection.Z[m][order[n]][i] : 0;
         }
     }
-    if constexpr (alternates) {
-      const std::size_t first = static_cast<std::size_t>(Nodes) * cell;
-      node_begin(cell + 1) = first + Nodes;
-      for (int n = 0; n < Nodes; ++n) {
-        node_column(first + n) = body.cells(cell, order[n]);
-        root_of_volume(first + n) = is_split ? projection.root[0][0] : 0;
-      }
+    if (modes > 1 || node_begin.extent(0) == 0) return;
+    std::size_t at = static_cast<std::size_t>(corners) * cell;
+    node_begin(cell + 1) = at + corners;
+    for (int n = 0; n < Nodes; ++n) {
+      if (order[n] >= corners) continue;
+      node_column(at) = body.cells(cell, order[n]);
+      root_of_volume(at++) = is_split ? projection.root[0][0] : 0;
     }
   }
 };
 
 template <int Dim, int Nodes, bool Axisymmetric>
 StiffDilatation stiff_dilatation_of(const Discretization &d, const ElasticCells<Dim, Nodes, Axisymmetric> &body,
-                                    const Materials &soft, const DeviceView<char *> &prescribed)
+                                    const Materials &soft, const DeviceView<char *> &prescribed, const bool alternating)
 {
   using Fill = FillModes<Dim, Nodes, Axisymmetric>;
   const LO num_cells = d.mesh->num_owned_cells, num_modes = Fill::modes * num_cells;
@@ -86,9 +85,9 @@ StiffDilatation stiff_dilatation_of(const Discretization &d, const ElasticCells<
   const DeviceView<double *> stiffness("rpc::fem::stiffness_of_modes", num_modes);
   const DeviceView<double *> wave_modulus("rpc::fem::wave_modulus", num_modes);
   const DeviceView<double *> bulk_modulus("rpc::fem::bulk_modulus", num_modes);
-  const LO num_around = Fill::alternates ? num_cells : 0;
-  const std::size_t num_at_nodes = static_cast<std::size_t>(Nodes) * num_around;
-  const typename Fill::Begins node_begin("rpc::fem::cells_begin", num_around + 1);
+  const bool has_nodes = alternating && Fill::modes == 1;
+  const std::size_t num_at_nodes = has_nodes ? static_cast<std::size_t>(Fill::corners) * num_cells : 0;
+  const typename Fill::Begins node_begin("rpc::fem::cells_begin", has_nodes ? num_cells + 1 : 0);
   const typename Fill::Columns node_column(ViewAllocateWithoutInitializing("rpc::fem::cells_column"), num_at_nodes);
   const typename Fill::Values root(ViewAllocateWithoutInitializing("rpc::fem::roots_of_volumes"), num_at_nodes);
   const Fill fill{body,       lame_table(d, soft), prescribed, begin,     column,       value,
@@ -100,13 +99,17 @@ StiffDilatation stiff_dilatation_of(const Discretization &d, const ElasticCells<
       rcp(new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), num_modes, 0, d.owned_dofs->getComm()));
   const LocalMatrix local("rpc::fem::modes", num_modes, num_local(*columns), num_entries, value, begin, column);
   RCP<const CrsMatrix> at_nodes;
-  if constexpr (Fill::alternates) {
+  if (has_nodes) {
     const auto nodes = d.mesh->comm().getSize() == 1 ? d.mesh->owned_nodes : d.mesh->overlap_nodes();
     const LocalMatrix around("rpc::fem::at_nodes", num_cells, num_local(*nodes), num_at_nodes, root, node_begin,
                              node_column);
     at_nodes = rcp(new CrsMatrix(around, rows, nodes, d.mesh->owned_nodes, rows));
   }
-  return {rcp(new CrsMatrix(local, rows, columns, d.owned_dofs, rows)), at_nodes, stiffness, wave_modulus,
+  return {rcp(new CrsMatrix(local, rows, columns, d.owned_dofs, rows)),
+          at_nodes,
+          StaticElement<Dim, Nodes>::order == 2,
+          stiffness,
+          wave_modulus,
           bulk_modulus};
 }
 
@@ -127,10 +130,11 @@ std::optional<Materials> softened(const Discretization &d, const Materials &mate
 }
 
 StiffDilatation stiff_dilatation(const Discretization &d, const Materials &materials, const Materials &soft,
-                                 const DeviceView<char *> &prescribed)
+                                 const DeviceView<char *> &prescribed, const bool alternating)
 {
   StiffDilatation result;
-  with_elastic_cells(d, materials, [&](const auto &body) { result = stiff_dilatation_of(d, body, soft, prescribed); });
+  with_elastic_cells(d, materials,
+                     [&](const auto &body) { result = stiff_dilatation_of(d, body, soft, prescribed, alternating); });
   return result;
 }
 

@@ -33,7 +33,7 @@ TEST(SoftDilatation, AndWhatItLacksAreTheStiffness)
       return fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, materials), fixed).matrix;
     };
     const auto K = eliminated(material), K_0 = eliminated(*soft);
-    const auto split = fem::stiff_dilatation(d, material, *soft, fixed);
+    const auto split = fem::stiff_dilatation(d, material, *soft, fixed, true);
     const int modes = element.order == 2 && element.shape != mesh::Shape::simplex ? 1 + element.dim : 1;
     EXPECT_EQ(num_local(*split.modes->getRangeMap()), modes * d.mesh->num_owned_cells);
 
@@ -67,7 +67,7 @@ TEST(SoftDilatation, ModesOfAnExpansionAreTheRootsOfVolumes)
     const auto d = one_cell(element);
     const fem::Material material{50, 0.4999, Dilatation::projected};
     const DeviceView<char *> nothing("nothing", d.num_overlap_dofs());
-    const auto split = fem::stiff_dilatation(d, material, *fem::softened(d, material, 0.4), nothing);
+    const auto split = fem::stiff_dilatation(d, material, *fem::softened(d, material, 0.4), nothing, true);
     Vector u(d.owned_dofs), volumes(split.modes->getRangeMap());
     const auto coords = to_host(d.mesh->coords);
     for (LO i = 0; i < num_local(*d.owned_dofs); ++i)
@@ -80,13 +80,16 @@ TEST(SoftDilatation, ModesOfAnExpansionAreTheRootsOfVolumes)
       if (m % modes > 0) {
         EXPECT_NEAR(of_mode[m], 0, 1e-12);
       }
-    EXPECT_EQ(split.at_nodes.is_null(), element.order == 2);
-    if (element.order == 2) continue;
-    // The same root at each node of the cell: its product with 1 at all nodes, and with the root itself the other way.
+    EXPECT_EQ(split.at_nodes.is_null(), modes > 1);
+    EXPECT_EQ(split.alternating_ones_move, element.order == 2);
+    EXPECT_TRUE(
+        fem::stiff_dilatation(d, material, *fem::softened(d, material, 0.4), nothing, false).at_nodes.is_null());
+    if (modes > 1) continue;
+    // The same root at each vertex of the cell: its product with 1 at all nodes, and with the root itself the other way.
     Vector ones(split.at_nodes->getDomainMap()), sums(split.at_nodes->getRangeMap()), around(ones.getMap());
     ones.putScalar(1);
     split.at_nodes->apply(ones, sums);
-    sums.update(-element.num_nodes(), volumes, 1.);
+    sums.update(element.shape == mesh::Shape::simplex ? -(element.dim + 1) : -(1 << element.dim), volumes, 1.);
     EXPECT_LT(sums.norm2(), 1e-12);
     split.at_nodes->apply(volumes, around, Teuchos::TRANS);
     EXPECT_NEAR(around.normInf(), volume(d), 1e-12);
@@ -112,7 +115,7 @@ TEST(SoftDilatation, SplitsTheBlocksThatAreStiff)
   ASSERT_TRUE(soft);
   EXPECT_EQ(soft->of("steel").poissons_ratio, 0.3);
   const DeviceView<char *> nothing("nothing", d.num_overlap_dofs());
-  const auto split = fem::stiff_dilatation(d, materials, *soft, nothing);
+  const auto split = fem::stiff_dilatation(d, materials, *soft, nothing, true);
   const auto s = to_host(split.stiffness);
   Vector u(d.owned_dofs), volumes(split.modes->getRangeMap());
   u.randomize();

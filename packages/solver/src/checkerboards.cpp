@@ -20,6 +20,8 @@ namespace
 // Of the polynomial: so much of the root of the condition number takes the least time, by measurement.
 constexpr double degree_of_root = 0.7;
 constexpr int least_degree = 4, largest_degree = 40;
+// Of the matrix, where all pressures move the body: so much takes the least degree.
+constexpr double condition_where_all_move = 30;
 
 /// (dofs) diag(K)^(-1/2)
 Vector roots_of_softness(const StiffnessOperator &K)
@@ -139,7 +141,9 @@ Checkerboards::Checkerboards(const StiffDilatation &dilatation, const RCP<CrsMat
       move_(scale_.getMap())
 {
   largest_ = largest_eigenvalue(*A, [](const Vector &r, Vector &z) { z.assign(r); });
-  const double condition = largest_ / least_softness(scale_, dilatation), root = std::sqrt(condition);
+  const double softest = largest_ / least_softness(scale_, dilatation);
+  const double condition = dilatation.alternating_ones_move ? std::min(softest, condition_where_all_move) : softest;
+  const double root = std::sqrt(condition);
   degree_ = degree_for_pressures(condition);
   const double reached = std::min(root, degree_ / degree_of_root);
   smallest_ = largest_ / std::max(reached * reached, 2.);

@@ -7,7 +7,7 @@
 namespace rpc::solver
 {
 
-/// For pressures that are constant in quadrilaterals and hexahedra of order 1: those that alternate from cell to cell hardly move the body, and
+/// For pressures that are constant in cells, in quadrilaterals and hexahedra of order 1 and in tetrahedra of order 2: those that alternate from cell to cell hardly move the body, and
 /// the softness of Z K_0^-1 Z^T falls short of that for waves by the more, the smoother they alternate. What they do move are displacements
 /// that alternate as well, which K_0 resists about as its diagonal does. So
 ///

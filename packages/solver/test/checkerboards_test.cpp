@@ -5,6 +5,7 @@
 
 #include <Teuchos_LAPACK.hpp>
 #include <Tpetra_Core.hpp>
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>
@@ -30,7 +31,7 @@ struct Grid {
   RCP<StiffnessOperator> soft;
   double s;
 
-  explicit Grid(const double stiffness) : s(stiffness)
+  explicit Grid(const double stiffness, const bool all_move = false) : s(stiffness)
   {
     const auto comm = Tpetra::getDefaultComm();
     const auto map = [&](const int n) { return rcp(new Map(GO(n) * comm->getSize(), n, 0, comm)); };
@@ -59,7 +60,8 @@ struct Grid {
     K->fillComplete();
     std::vector<double> of_split(cells), ones(cells, 1.);
     for (int c = 0; c < cells; ++c) of_split[c] = is_split(c) ? s : 0;
-    dilatation = {Z, N, device_values(of_split, "s"), device_values(ones, "wave"), device_values(ones, "bulk")};
+    dilatation = {
+        Z, N, all_move, device_values(of_split, "s"), device_values(ones, "wave"), device_values(ones, "bulk")};
     soft = rcp(new StiffnessOperator(K, 2));
   }
   static bool is_split(const int cell) { return cell < nx * (ny - 1); }
@@ -142,28 +144,38 @@ TEST(Checkerboards, AreAsSoftAsTheDilatationInsideTheBody)
 }
 
 /// A polynomial whose degree is 0.7 of the root of the condition number lies within 1 -+ 1/cosh(1.4) of the inverse, for all vectors. Above a
-/// degree of 40 it falls short of it for the softest ones, and is not much larger for any.
+/// degree of 40, or of 4 where all pressures are said to move the body, it falls short of it for the softest ones, and is not much larger for
+/// any.
 TEST(Checkerboards, StandForTheInverse)
 {
   const double error = 1 / std::cosh(1.4);
-  for (const double s : {3., 30., 300., 1e5}) {
-    const Grid grid(s);
-    const solver::Checkerboards C(grid.dilatation, *grid.soft);
-    const Dense A = Grid::to_be_inverted(s), G = Grid::without_smooth();
-    for (int phase = 0; phase < 12; ++phase) {
-      Dense x(cells, 1), y(cells, 1);
-      for (int c = 0; c < cells; ++c)
-        x(c, 0) = phase == 0 ? (c == 20) : phase == 1 ? (c + c / nx) % 2 - 0.5 : std::sin(phase + 12.9898 * c * phase);
-      Vector given(grid.of_cells), found(grid.of_cells);
-      for (int c = 0; c < cells; ++c) given.replaceLocalValue(c, x(c, 0));
-      C.apply(given, found);
-      for (int c = 0; c < cells; ++c) y(c, 0) = found.getData()[c];
-      const Dense rest = product(G, x);
-      const double expected = dot(rest, solution(A, rest));
-      EXPECT_GT(dot(x, y), s < 1e4 ? (1 - error) * expected : 0) << s << " " << phase;
-      EXPECT_LT(dot(x, y), (1 + error) * expected) << s << " " << phase;
+  for (const bool all_move : {false, true})
+    for (const double s : {3., 30., 300., 1e5}) {
+      const bool is_exact = all_move ? s < 10 : s < 1e4;
+      const Grid grid(s, all_move);
+      const solver::Checkerboards C(grid.dilatation, *grid.soft);
+      const Dense A = Grid::to_be_inverted(s), G = Grid::without_smooth();
+      double largest = 0;
+      for (int phase = 0; phase < 12; ++phase) {
+        Dense x(cells, 1), y(cells, 1);
+        for (int c = 0; c < cells; ++c)
+          x(c, 0) = phase == 0   ? (c == 20)
+                    : phase == 1 ? (c + c / nx) % 2 - 0.5
+                                 : std::sin(phase + 12.9898 * c * phase);
+        Vector given(grid.of_cells), found(grid.of_cells);
+        for (int c = 0; c < cells; ++c) given.replaceLocalValue(c, x(c, 0));
+        C.apply(given, found);
+        for (int c = 0; c < cells; ++c) y(c, 0) = found.getData()[c];
+        const Dense rest = product(G, x);
+        const double expected = dot(rest, solution(A, rest));
+        EXPECT_GT(dot(x, y), is_exact ? (1 - error) * expected : 0) << s << " " << phase;
+        EXPECT_LT(dot(x, y), (1 + error) * expected) << s << " " << phase;
+        largest = std::max(largest, dot(x, y) / dot(rest, rest));
+      }
+      if (all_move) {
+        EXPECT_LT(largest, 60) << s; // about thirty times the inverse of the largest eigenvalue, whatever s
+      }
     }
-  }
 }
 
 } // namespace
