@@ -16,7 +16,7 @@ struct MixedForm {
   StiffDilatation dilatation;        ///< what K has beyond it
 };
 
-/// Of the polynomial in the matrix of alternating pressures, which elements of order 1 have.                  doc/theory.md (4.15c)
+/// Of the polynomial in the matrix of alternating pressures.                                                   doc/theory.md (4.15c)
 /// @param condition  that matrix's condition number, < 1e9
 int degree_for_pressures(double condition);
 
