@@ -2,6 +2,7 @@
 
 #include "command_line.hpp"
 #include "rpc/io/deck.hpp"
+#include "scene.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -12,6 +13,7 @@
 #include <exception>
 #include <optional>
 #include <sched.h>
+#include <string>
 #include <thread>
 #include <unistd.h>
 #include <variant>
@@ -55,15 +57,14 @@ void leave_place()
   if (CPU_COUNT(&all) > 0) sched_setaffinity(0, sizeof all, &all);
 }
 
-/// What a command line asks to solve; none where it asks for other things.
-std::optional<Scene> scene_of(const int argc, char *argv[])
+/// The deck that a command line asks to solve; none where it asks for other things.
+std::optional<Teuchos::ParameterList> deck_of(const int argc, char *argv[])
 {
   const Arguments arguments = split_arguments(argc, argv);
   const CommandLine line = parse_command_line(arguments.own);
   if (arguments.kokkos.size() > 1 || line.help || line.version || line.print_parameters || line.check) return {};
   if (line.input.empty()) return {};
-  const Teuchos::SerialComm<int> alone;
-  return read_scene(io::find_deck(line.input, alone), line.assignments, alone);
+  return read_parameters(io::find_deck(line.input, Teuchos::SerialComm<int>()), line.assignments);
 }
 
 bool is_nearly_incompressible(const fem::Materials &materials)
@@ -82,13 +83,14 @@ std::string host_program()
   return given ? given : RPC_HOST_PROGRAM;
 }
 
-GO foreseen_unknowns(const Scene &scene)
+GO foreseen_unknowns(Teuchos::ParameterList deck)
 {
-  const auto *const box = std::get_if<mesh::BoxOptions>(&scene.mesh);
-  if (!box) return -1;
-  GO unknowns = box->element.dim;
-  for (int direction = 0; direction < box->element.dim; ++direction) unknowns *= box->intervals(direction) + 1;
-  return scene.adapt.adapts() ? std::max<GO>(unknowns, scene.adapt.max_dofs) : unknowns;
+  if (deck.sublist("Mesh").get<std::string>("Type") != "box") return -1;
+  const auto box = std::get<mesh::BoxOptions>(mesh::mesh_options(deck.sublist("Mesh"), "", Teuchos::SerialComm<int>()));
+  GO unknowns = box.element.dim;
+  for (int direction = 0; direction < box.element.dim; ++direction) unknowns *= box.intervals(direction) + 1;
+  const adapt::AdaptOptions adapt = adapt::adapt_options(deck.sublist("Adapt"));
+  return adapt.adapts() ? std::max<GO>(unknowns, adapt.max_dofs) : unknowns;
 }
 
 GO most_unknowns_of_host(const int threads, const bool nearly_incompressible)
@@ -104,10 +106,11 @@ void hand_over_small_scene(const int argc, char *argv[])
   const std::string program = host_program();
   if (program.empty()) return;
   try {
-    const std::optional<Scene> scene = scene_of(argc, argv);
-    if (!scene) return;
-    const GO unknowns = foreseen_unknowns(*scene);
-    const GO most = most_unknowns_of_host(threads_of_host(), is_nearly_incompressible(scene->model.materials));
+    std::optional<Teuchos::ParameterList> deck = deck_of(argc, argv);
+    if (!deck) return;
+    const bool nearly_incompressible = is_nearly_incompressible(fem::material_options(deck->sublist("Material")));
+    const GO unknowns = foreseen_unknowns(*deck);
+    const GO most = most_unknowns_of_host(threads_of_host(), nearly_incompressible);
     if (unknowns < 0 || unknowns > most) return;
     const std::string reason = std::to_string(unknowns) + " unknowns, at most " + std::to_string(most);
     setenv(report_variable, ("taken over from " + std::string(argv[0]) + ": " + reason).c_str(), 1);
@@ -116,7 +119,7 @@ void hand_over_small_scene(const int argc, char *argv[])
   }
   setenv(program_variable, "", 1); // the next one keeps what it gets
   leave_place();
-  execv(program.c_str(), argv);
+  execvp(program.c_str(), argv);
   const std::string reason = std::strerror(errno);
   setenv(report_variable, ("cannot start RPC_HOST_PROGRAM = \"" + program + "\": " + reason).c_str(), 1);
 }

@@ -69,13 +69,19 @@ Teuchos::ParameterList valid_deck()
   return valid;
 }
 
-Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments, const Comm &comm)
+Teuchos::ParameterList read_parameters(const std::string &deck_path, const std::vector<std::string> &assignments,
+                                       const Comm &comm)
 {
   const Teuchos::ParameterList valid = valid_deck();
   Teuchos::ParameterList deck = io::read_deck(deck_path, comm);
   for (const auto &assignment : assignments) assign(deck, valid, assignment);
   validate(deck, valid);
+  return deck;
+}
 
+Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments, const Comm &comm)
+{
+  Teuchos::ParameterList deck = read_parameters(deck_path, assignments, comm);
   Scene scene;
   scene.name = std::filesystem::path(deck_path).stem().string();
   scene.mesh = mesh::mesh_options(deck.sublist("Mesh"), std::filesystem::path(deck_path).parent_path().string(), comm);

@@ -29,6 +29,10 @@ struct Scene : adapt::Task {
 /// Every parameter of a deck: the packages' lists put together.
 Teuchos::ParameterList valid_deck();
 
+/// A deck's parameters, all that it may have: names and types are right, values not looked at yet. As read_scene().
+Teuchos::ParameterList read_parameters(const std::string &deck_path, const std::vector<std::string> &assignments,
+                                       const Comm &comm = Teuchos::SerialComm<int>());
+
 /// Rank 0 reads the files, of which other ranks may have none; collective on comm, by default each rank for itself.
 /// @param assignments  "Sublist->Parameter=value", applied on top of the deck
 /// @throws rpc::Error (bad_input) on every rank on the first thing that is wrong

@@ -1,5 +1,7 @@
 #include "host_program.hpp"
 
+#include "scene.hpp"
+
 #include <cstdlib>
 #include <gtest/gtest.h>
 
@@ -8,9 +10,9 @@ namespace host_program_test
 namespace
 {
 
-rpc::Scene scene(const std::string &deck, const std::vector<std::string> &assignments = {})
+Teuchos::ParameterList scene(const std::string &deck, const std::vector<std::string> &assignments = {})
 {
-  return rpc::read_scene(std::string(RPC_TEST_DECKS) + "/../../../input/" + deck, assignments);
+  return rpc::read_parameters(std::string(RPC_TEST_DECKS) + "/../../../input/" + deck, assignments);
 }
 
 /// By hand: nodes of the box times the dimension, nodes between vertices of order 2 included.

@@ -5,7 +5,6 @@
 
 #include <Teuchos_LAPACK.hpp>
 #include <Tpetra_Core.hpp>
-#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>
@@ -155,7 +154,6 @@ TEST(Checkerboards, StandForTheInverse)
       const Grid grid(s, all_move);
       const solver::Checkerboards C(grid.dilatation, *grid.soft);
       const Dense A = Grid::to_be_inverted(s), G = Grid::without_smooth();
-      double largest = 0;
       for (int phase = 0; phase < 12; ++phase) {
         Dense x(cells, 1), y(cells, 1);
         for (int c = 0; c < cells; ++c)
@@ -170,10 +168,6 @@ TEST(Checkerboards, StandForTheInverse)
         const double expected = dot(rest, solution(A, rest));
         EXPECT_GT(dot(x, y), is_exact ? (1 - error) * expected : 0) << s << " " << phase;
         EXPECT_LT(dot(x, y), (1 + error) * expected) << s << " " << phase;
-        largest = std::max(largest, dot(x, y) / dot(rest, rest));
-      }
-      if (all_move) {
-        EXPECT_LT(largest, 60) << s; // about thirty times the inverse of the largest eigenvalue, whatever s
       }
     }
 }
