@@ -18,6 +18,9 @@ struct CommandLine {
   bool help = false;
   bool print_parameters = false;
   bool version = false;
+
+  /// Whether a scene is to be solved: texts, and the check of a deck, need no kernels and so no GPU.
+  bool solves() const { return !help && !version && !print_parameters && !check; }
 };
 
 /// The arguments, those for Kokkos apart: Kokkos must not see the others, or it answers to --help and --threads too.

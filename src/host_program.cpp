@@ -62,8 +62,7 @@ std::optional<Teuchos::ParameterList> deck_of(const int argc, char *argv[])
 {
   const Arguments arguments = split_arguments(argc, argv);
   const CommandLine line = parse_command_line(arguments.own);
-  if (arguments.kokkos.size() > 1 || line.help || line.version || line.print_parameters || line.check) return {};
-  if (line.input.empty()) return {};
+  if (arguments.kokkos.size() > 1 || !line.solves() || line.input.empty()) return {};
   return read_parameters(io::find_deck(line.input, Teuchos::SerialComm<int>()), line.assignments);
 }
 

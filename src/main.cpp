@@ -215,7 +215,8 @@ int main(int argc, char *argv[])
   try {
     const rpc::Arguments arguments = rpc::split_arguments(argc, argv);
     const rpc::CommandLine line = rpc::parse_command_line(arguments.own);
-    const auto kokkos = rpc::start_kokkos(arguments.kokkos, root);
+    std::unique_ptr<Tpetra::ScopeGuard> kokkos;
+    if (line.solves() || arguments.kokkos.size() > 1) kokkos = rpc::start_kokkos(arguments.kokkos, root);
     if (arguments.kokkos_help) return 0;
     const auto comm = Tpetra::getDefaultComm();
     const ExitCode code = run(line, comm, out);

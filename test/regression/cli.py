@@ -62,6 +62,13 @@ class CommandLine(RpcTestCase):
         self.assertIn("nothing wrong", result.stdout)
         self.assertEqual(list(self.folder.iterdir()), [])
 
+    def test_texts_and_checks_need_no_kernels(self):
+        """Kokkos does not start, which on a machine without a GPU it could not; nor with this."""
+        refused = {"KOKKOS_NUM_THREADS": "many"}
+        for options in (["--help"], ["--version"], ["--print-parameters"], ["--check", "--input=beam.xml"]):
+            self.rpc(*options, environment=refused)
+        self.rpc("--input=beam.xml", SMALL, environment=refused, code=1)
+
     def test_kokkos_options_are_taken(self):
         for options in [["--kokkos-threads=1"], ["--kokkos-num-devices=1"], ["--kokkos-disable-warnings"]]:
             self.rpc("--version", *options)
