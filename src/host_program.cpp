@@ -1,7 +1,9 @@
 #include "host_program.hpp"
 
 #include "command_line.hpp"
+#include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/io/deck.hpp"
+#include "rpc/mesh/box_grid.hpp"
 #include "scene.hpp"
 
 #include <algorithm>
@@ -66,10 +68,12 @@ std::optional<Teuchos::ParameterList> deck_of(const int argc, char *argv[])
   return read_parameters(io::find_deck(line.input, Teuchos::SerialComm<int>()), line.assignments);
 }
 
-bool is_nearly_incompressible(const fem::Materials &materials)
+/// As far as a deck tells before there is a mesh: of any order, and in plane stress too.
+bool may_be_nearly_incompressible(const fem::Materials &materials)
 {
-  constexpr double least = 0.48; // where other solvers and more iterations begin
-  const auto is = [](const fem::Material &material) { return material.poissons_ratio > least; };
+  const auto is = [](const fem::Material &material) {
+    return material.poissons_ratio > analysis::nearly_incompressible;
+  };
   return is(materials.common) || std::any_of(materials.block.begin(), materials.block.end(),
                                              [&is](const auto &block) { return is(block.second); });
 }
@@ -82,12 +86,11 @@ std::string host_program()
   return given ? given : RPC_HOST_PROGRAM;
 }
 
-GO foreseen_unknowns(Teuchos::ParameterList deck)
+GO foreseen_unknowns(const Teuchos::ParameterList &deck)
 {
   if (deck.sublist("Mesh").get<std::string>("Type") != "box") return -1;
   const auto box = std::get<mesh::BoxOptions>(mesh::mesh_options(deck.sublist("Mesh"), "", Teuchos::SerialComm<int>()));
-  GO unknowns = box.element.dim;
-  for (int direction = 0; direction < box.element.dim; ++direction) unknowns *= box.intervals(direction) + 1;
+  const GO unknowns = box.element.dim * mesh::Grid(box, 1).num_nodes_total();
   const adapt::AdaptOptions adapt = adapt::adapt_options(deck.sublist("Adapt"));
   return adapt.adapts() ? std::max<GO>(unknowns, adapt.max_dofs) : unknowns;
 }
@@ -105,9 +108,9 @@ void hand_over_small_scene(const int argc, char *argv[])
   const std::string program = host_program();
   if (program.empty()) return;
   try {
-    std::optional<Teuchos::ParameterList> deck = deck_of(argc, argv);
+    const std::optional<Teuchos::ParameterList> deck = deck_of(argc, argv);
     if (!deck) return;
-    const bool nearly_incompressible = is_nearly_incompressible(fem::material_options(deck->sublist("Material")));
+    const bool nearly_incompressible = may_be_nearly_incompressible(fem::material_options(deck->sublist("Material")));
     const GO unknowns = foreseen_unknowns(*deck);
     const GO most = most_unknowns_of_host(threads_of_host(), nearly_incompressible);
     if (unknowns < 0 || unknowns > most) return;

@@ -14,7 +14,7 @@ std::string host_program();
 /// Unknowns of the largest mesh of a scene, where its deck tells before there is a mesh: for a box. -1: not known.
 /// @param deck  of read_parameters()
 /// @throws rpc::Error (bad_input) on a box or an adaptation with a value out of range
-GO foreseen_unknowns(Teuchos::ParameterList deck);
+GO foreseen_unknowns(const Teuchos::ParameterList &deck);
 
 /// Unknowns up to which a host with so many threads takes less time than a GPU, start and end of the process included.
 /// @param nearly_incompressible  the body is, which takes several times the work

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import pathlib
 import re
 import shutil
 import time
@@ -98,22 +99,24 @@ class CommandLine(RpcTestCase):
         self.rpc("--input", "beam.xml", "--set", "Mesh->Cells={20,4}", "--output", "out")
         self.assertIn("beam.json", files(self.folder / "out"))
 
+    def host_program(self, commands):
+        """The environment with a program of the shell's commands to hand small scenes over to."""
+        program = self.folder / "host_rpc"
+        program.write_text(f"#!/bin/sh\n{commands}\n")
+        program.chmod(0o755)
+        return {"RPC_HOST_PROGRAM": str(program)}
+
     def test_small_scene_is_handed_over(self):
         """To a program that tells its arguments, its processors and that it would not hand the scene on."""
-        program = self.folder / "host_rpc"
-        program.write_text('#!/bin/sh\necho "$@; $RPC_HAND_OVER_REPORT; ${RPC_HOST_PROGRAM}."\ngrep Cpus_allowed_list /proc/self/status\n')
-        program.chmod(0o755)
-        cpus = re.search(r"Cpus_allowed_list:\s*(\S+)", open("/proc/self/status").read())[1]
+        given = self.host_program('echo "$@; $RPC_HAND_OVER_REPORT; ${RPC_HOST_PROGRAM}."; grep Cpus_allowed_list /proc/self/status')
+        cpus = re.search(r"Cpus_allowed_list:\s*(\S+)", pathlib.Path("/proc/self/status").read_text())[1]
         for places in ({}, {"OMP_PROC_BIND": "true", "OMP_PLACES": "cores"}):
-            text = self.rpc("--input=beam.xml", SMALL, environment={"RPC_HOST_PROGRAM": str(program), **places}).stdout
+            text = self.rpc("--input=beam.xml", SMALL, environment={**given, **places}).stdout
             self.assertRegex(text, r"^--input=beam.xml --set=\S+; taken over from \S+: 210 unknowns, at most \d+; \.\n")
             self.assertEqual(re.search(r"Cpus_allowed_list:\s*(\S+)", text)[1], cpus)
 
     def test_what_the_host_cannot_take_stays(self):
-        program = self.folder / "host_rpc"
-        program.write_text("#!/bin/sh\nexit 1\n")
-        program.chmod(0o755)
-        given = {"RPC_HOST_PROGRAM": str(program)}
+        given = self.host_program("exit 1")
         self.rpc("--version", environment=given)
         self.rpc("--check", "--input=beam.xml", environment=given)
         self.rpc("--input=beam.xml", SMALL, "--kokkos-threads=1", environment=given)

@@ -23,7 +23,7 @@ constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
 
 // Above these ratios, of order 2 and of order 1, a mixed form, and smoothers on stars, take less time than smoothers of single nodes, by
 // measurement in space; on cells that are stretched more than that stars take too many iterations.          (4.7f), (4.13)
-constexpr double nearly_incompressible = 0.48, nearly_incompressible_of_order_one = 0.485, most_stretched_of_stars = 5;
+constexpr double nearly_incompressible_of_order_one = 0.485, most_stretched_of_stars = 5;
 
 /// Which components of which sides are prescribed, whatever their values.
 std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondition> conditions)

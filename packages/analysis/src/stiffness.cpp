@@ -14,16 +14,16 @@ namespace
 /// How the stiffness of a nearly incompressible body is split.
 struct Split {
   double ratio;     ///< Poisson's ratio of the soft part
-  bool alternating; ///< pressures that alternate from cell to cell are told apart                               (4.15a)
+  bool alternating; ///< pressures that alternate from cell to cell have equations of their own                  (4.15a)
 };
 
-/// By measurement. A larger ratio costs multigrid iterations, a smaller one makes the equations of pressures worse, most where they are
-/// constant in tetrahedra: there alternating ones are worth their equations where the body hardly gives way.         (4.13)
+/// By measurement. A larger ratio costs multigrid iterations, a smaller one makes the equations of pressures worse, most where pressures are
+/// constant in tetrahedra. In tetrahedra equations for alternating pressures pay where nu is above 0.495 only.       (4.13)
 Split split_of(const mesh::Element &element, const double nu)
 {
-  constexpr double soft = 0.4, soft_tetrahedra = 0.47, hardly_gives_way = 0.495, softer_tetrahedra = 0.45;
+  constexpr double soft = 0.4, soft_tetrahedra = 0.47, pays_above = 0.495, softer_tetrahedra = 0.45;
   if (element.dim == 2 || element.shape != mesh::Shape::simplex) return {soft, element.order == 1};
-  return nu > hardly_gives_way ? Split{softer_tetrahedra, true} : Split{soft_tetrahedra, false};
+  return nu > pays_above ? Split{softer_tetrahedra, true} : Split{soft_tetrahedra, false};
 }
 
 } // namespace

@@ -15,7 +15,7 @@ using LocalMatrix = CrsMatrix::local_matrix_device_type;
 template <int Dim, int Nodes, bool Axisymmetric>
 struct FillModes {
   static constexpr int modes = Projection<Dim, Nodes>::modes, dofs = Dim * Nodes;
-  static constexpr int corners = StaticElement<Dim, Nodes>::simplex ? Dim + 1 : 1 << Dim;
+  static constexpr int vertices = StaticElement<Dim, Nodes>::vertices;
 
   using Begins = LocalMatrix::row_map_type::non_const_type;
   using Columns = LocalMatrix::index_type::non_const_type;
@@ -27,9 +27,9 @@ struct FillModes {
   Begins begin;                                // (modes * cells + 1)                           out
   Columns column;                              // (modes * cells * dofs)                        out
   Values value;                                // (modes * cells * dofs)  [m^(dim/2 - 1)]       out
-  Begins node_begin;                           // (cells + 1), empty: not wanted                out
-  Columns node_column;                         // (cells * corners)                             out
-  Values root_of_volume;                       // (cells * corners)       [m^(dim/2)]           out
+  Begins node_begin;                           // (cells + 1), empty: none is wanted            out
+  Columns node_column;                         // (cells * vertices)                            out
+  Values root_of_volume;                       // (cells * vertices)      [m^(dim/2)]           out
   DeviceView<double *> stiffness;              // (modes * cells)                        [Pa]   out
   DeviceView<double *> wave_modulus;           // (modes * cells)                        [Pa]   out
   DeviceView<double *> bulk_modulus;           // (modes * cells)                        [Pa]   out
@@ -61,10 +61,10 @@ struct FillModes {
         }
     }
     if (modes > 1 || node_begin.extent(0) == 0) return;
-    std::size_t at = static_cast<std::size_t>(corners) * cell;
-    node_begin(cell + 1) = at + corners;
+    std::size_t at = static_cast<std::size_t>(vertices) * cell;
+    node_begin(cell + 1) = at + vertices;
     for (int n = 0; n < Nodes; ++n) {
-      if (order[n] >= corners) continue;
+      if (order[n] >= vertices) continue;
       node_column(at) = body.cells(cell, order[n]);
       root_of_volume(at++) = is_split ? projection.root[0][0] : 0;
     }
@@ -86,7 +86,7 @@ StiffDilatation stiff_dilatation_of(const Discretization &d, const ElasticCells<
   const DeviceView<double *> wave_modulus("rpc::fem::wave_modulus", num_modes);
   const DeviceView<double *> bulk_modulus("rpc::fem::bulk_modulus", num_modes);
   const bool has_nodes = alternating && Fill::modes == 1;
-  const std::size_t num_at_nodes = has_nodes ? static_cast<std::size_t>(Fill::corners) * num_cells : 0;
+  const std::size_t num_at_nodes = has_nodes ? static_cast<std::size_t>(Fill::vertices) * num_cells : 0;
   const typename Fill::Begins node_begin("rpc::fem::cells_begin", has_nodes ? num_cells + 1 : 0);
   const typename Fill::Columns node_column(ViewAllocateWithoutInitializing("rpc::fem::cells_column"), num_at_nodes);
   const typename Fill::Values root(ViewAllocateWithoutInitializing("rpc::fem::roots_of_volumes"), num_at_nodes);

@@ -20,7 +20,7 @@ namespace
 // Of the polynomial: so much of the root of the condition number takes the least time, by measurement.
 constexpr double degree_of_root = 0.7;
 constexpr int least_degree = 4, largest_degree = 40;
-// Of the matrix, where all pressures move the body: so much takes the least degree.
+// The condition number that the matrix is taken to have at most where all pressures move the body: the least degree is enough for it.
 constexpr double condition_where_all_move = 30;
 
 /// (dofs) diag(K)^(-1/2)

@@ -7,9 +7,9 @@
 namespace rpc::solver
 {
 
-/// For pressures that are constant in cells, in quadrilaterals and hexahedra of order 1 and in tetrahedra of order 2: those that alternate from cell to cell hardly move the body, and
-/// the softness of Z K_0^-1 Z^T falls short of that for waves by the more, the smoother they alternate. What they do move are displacements
-/// that alternate as well, which K_0 resists about as its diagonal does. So
+/// For pressures that are constant in cells: in quadrilaterals and hexahedra of order 1 and in tetrahedra of order 2. Those that alternate
+/// from cell to cell hardly move the body, and the softness of Z K_0^-1 Z^T falls short of that for waves by the more, the smoother they
+/// alternate. What they do move are displacements that alternate as well, which K_0 resists about as its diagonal does. So
 ///
 ///     C = (I - F) (Z diag(K_0)^-1 Z^T + diag(1/s))^-1 (I - F)                                   doc/theory.md (4.15a)
 ///

@@ -14,9 +14,9 @@ struct StiffDilatation {
   RCP<const CrsMatrix>
       modes; ///< Z, (modes of owned cells x owned dofs), 0 at prescribed unknowns [m^(dim/2 - 1)], of revolution [m^(1/2)]
   /// N, (modes of owned cells x owned nodes): the root of a split cell's volume at each of its vertices [m^(dim/2)], of revolution [m^(3/2)].
-  /// Null where pressures that alternate from cell to cell are like others, (4.15a).
+  /// Null where pressures that alternate from cell to cell have no equations of their own, (4.15a).
   RCP<const CrsMatrix> at_nodes;
-  /// Whether all of these move the body, if by little: those of P2; some of Q1 move nothing.
+  /// Whether each alternating pressure moves the body, if by little: so it is in P2 tetrahedra; in Q1 some move nothing.
   bool alternating_ones_move = false;
   DeviceView<double *> stiffness;    ///< (modes) s = lambda - lambda_0, 0 in cells whose stiffness is not split [Pa]
   DeviceView<double *> wave_modulus; ///< (modes) lambda_0 + 2 mu, of K_0 for waves that change the volume [Pa]

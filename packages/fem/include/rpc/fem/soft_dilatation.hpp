@@ -16,7 +16,8 @@ std::optional<Materials> softened(const Discretization &d, const Materials &mate
 
 /// What softened materials lack: a row of Z for each mode of the projection of each owned cell, cell by cell; collective.
 /// @param soft        of softened()   @param prescribed  (overlap dofs) 1 where the displacement is
-/// @param alternating  whether pressures that alternate from cell to cell are to be told apart; where a cell has more than one mode they never are
+/// @param alternating  whether pressures that alternate from cell to cell are to have equations of their own, StiffDilatation::at_nodes. They
+///                     never have where a cell has more than one mode
 /// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
 StiffDilatation stiff_dilatation(const Discretization &d, const Materials &materials, const Materials &soft,
                                  const DeviceView<char *> &prescribed, bool alternating);
