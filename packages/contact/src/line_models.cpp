@@ -50,9 +50,18 @@ struct Places {
   DeviceView<double **> e; // (points, dim), empty without friction
 
   Places(const ContactNodes &c, const Vector &u) : v(penetrations(c, u)), e(slips(c, u)) {}
+  Places(const LO points, const int dim, const bool slip) : v("rpc::contact::v", points)
+  {
+    if (slip) e = DeviceView<double **>("rpc::contact::e", points, dim);
+  }
   KOKKOS_INLINE_FUNCTION Motion operator()(const LO i) const
   {
     return e.extent(0) > 0 ? Motion{v(i), row(e, i)} : Motion{v(i)};
+  }
+  KOKKOS_INLINE_FUNCTION void set(const LO i, const Motion &at) const
+  {
+    v(i) = at.penetration;
+    if (e.extent(0) > 0) set_row(e, i, at.slip);
   }
 };
 
@@ -158,7 +167,13 @@ struct SubspaceSums {
     for (LO k = 0; k < n; ++k) move(c, moves, i, k, coefficient(k), at);
     const Response there = points.respond(i, at);
     double change[3];
-    for (int j = 0; j < c.dim; ++j) change[j] = there.force[j] - here.force[j];
+    bool acts = false; // most points do not
+    for (int j = 0; j < c.dim; ++j) {
+      change[j] = there.force[j] - here.force[j];
+      acts = acts || change[j] != 0;
+      for (int l = 0; l < c.dim; ++l) acts = acts || there.block[j][l] != 0;
+    }
+    if (!acts) return;
     for (LO k = 0; k < n; ++k) {
       sum[k] += inner_product(c, change, moves, i, k);
       for (LO l = 0; l < n; ++l)
@@ -176,6 +191,13 @@ struct SubspaceSums {
   }
 };
 
+DeviceView<double *> coefficients(const std::vector<double> &a)
+{
+  HostView<double *> given("rpc::contact::coefficients", a.size());
+  std::copy(a.begin(), a.end(), given.data());
+  return to_device(given);
+}
+
 class SubspaceModel : public SubspaceFunction
 {
 public:
@@ -188,9 +210,7 @@ public:
   Value at(const std::vector<double> &a) const override
   {
     const std::size_t n = a.size();
-    HostView<double *> given("rpc::contact::coefficients", n);
-    std::copy(a.begin(), a.end(), given.data());
-    const SubspaceSums sums(points_, from_, moves_, to_device(given));
+    const SubspaceSums sums(points_, from_, moves_, coefficients(a));
     std::vector<double> mine(n * (n + 1));
     Kokkos::parallel_reduce("rpc::contact::subspace_model", device_range(points_.size()), sums, mine.data());
     Kokkos::fence();
@@ -204,7 +224,51 @@ public:
     return value;
   }
 
+  std::unique_ptr<LineFunction> along(const std::vector<double> &a, const Value &at_a,
+                                      const std::vector<double> &direction) const override
+  {
+    const std::size_t n = a.size();
+    double slope = 0, curvature = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      slope += at_a.gradient[k] * direction[k];
+      for (std::size_t l = 0; l < n; ++l) curvature += direction[k] * elastic_[n * k + l] * direction[l];
+    }
+    return std::make_unique<LineModel>(comm_, slope, curvature, points_, places(a), moves_along(direction));
+  }
+
 private:
+  /// Where the points are at u + sum_k a_k d_k.
+  Places places(const std::vector<double> &a) const
+  {
+    const ContactNodes c = points_.points;
+    const Places from = from_, at(c.size(), c.dim, from.e.extent(0) > 0);
+    const auto moves = moves_;
+    const auto coefficient = coefficients(a);
+    Kokkos::parallel_for(
+        "rpc::contact::places", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+          Motion there = from(i);
+          for (LO k = 0; k < static_cast<LO>(coefficient.extent(0)); ++k) move(c, moves, i, k, coefficient(k), there);
+          at.set(i, there);
+        });
+    Kokkos::fence();
+    return at;
+  }
+  /// (points, dim) sum_k direction_k d_k
+  DeviceView<double **> moves_along(const std::vector<double> &direction) const
+  {
+    const ContactNodes c = points_.points;
+    const auto moves = moves_;
+    const auto coefficient = coefficients(direction);
+    const DeviceView<double **> sum("rpc::contact::moves", c.size(), c.dim);
+    Kokkos::parallel_for(
+        "rpc::contact::moves_along", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+          for (LO k = 0; k < static_cast<LO>(coefficient.extent(0)); ++k)
+            for (int j = 0; j < c.dim; ++j) sum(i, j) += coefficient(k) * moves(i, c.dim * k + j);
+        });
+    Kokkos::fence();
+    return sum;
+  }
+
   RCP<const Comm> comm_;
   std::vector<double> at_0_, elastic_;
   SmoothedPoints points_;

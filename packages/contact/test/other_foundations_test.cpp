@@ -64,6 +64,7 @@ TEST(OtherFoundations, LineModelGivesTheSlopeOfTheFunctional)
     auto &iterate = *scene.iterate;
     const auto u = scene.vector(0.08, 0.4), d = scene.vector(0.1, 2);
     expect_line_model(iterate, *u, *d);
+    expect_lines_within(iterate, *u, {d, scene.vector(0.3, 0.7), scene.vector(0.02, 5)});
   }
 }
 

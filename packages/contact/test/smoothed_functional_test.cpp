@@ -227,6 +227,17 @@ TEST(SmoothedFunctional, SubspaceModelGivesTheGradientOfTheFunctional)
   }
 }
 
+TEST(SmoothedFunctional, LinesWithinASubspaceHaveTheSlopeOfTheFunctional)
+{
+  auto rubbing = below(40);
+  rubbing.friction_bound = ScalarField(0.1);
+  for (const auto &foundation : {below(40), rubbing}) {
+    const Scene scene(std::vector{foundation});
+    expect_lines_within(*scene.iterate, *scene.vector(0.05, 0.4),
+                        {scene.vector(0.1, 2), scene.vector(0.3, 0.7), scene.vector(0.02, 5)});
+  }
+}
+
 TEST(SmoothedFunctional, PieceGradientIsTheGradientOnThePieceOfTheHessian)
 {
   const Scene scene;

@@ -16,33 +16,6 @@ namespace
 constexpr double rounding = 1e-12;      // of a slope, below which the sums' rounding decides
 constexpr double to_the_minimum = 1e-6; // a step that differs from 1 by less has met no kink: nothing is left to gain
 
-/// A line through a subspace.
-class LineWithin : public LineFunction
-{
-public:
-  LineWithin(const SubspaceFunction &function, const std::vector<double> &from, const std::vector<double> &direction)
-      : function_(function), from_(from), direction_(direction)
-  {
-  }
-  Value at(const double t) const override
-  {
-    const std::size_t n = from_.size();
-    std::vector<double> a(n);
-    for (std::size_t k = 0; k < n; ++k) a[k] = from_[k] + t * direction_[k];
-    const auto value = function_.at(a);
-    double slope = 0, curvature = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      slope += value.gradient[k] * direction_[k];
-      for (std::size_t l = 0; l < n; ++l) curvature += direction_[k] * value.curvature[n * k + l] * direction_[l];
-    }
-    return {slope, curvature};
-  }
-
-private:
-  const SubspaceFunction &function_;
-  const std::vector<double> &from_, &direction_;
-};
-
 /// -H^-1 g; empty where rounding leaves H indefinite. Directions may be as good as dependent: with the rounding of H on its
 /// diagonal, scaled to 1, the result still leads down.
 std::vector<double> newton_direction(const SubspaceFunction::Value &value)
@@ -102,7 +75,7 @@ std::vector<double> least_within(const SubspaceFunction &function, std::vector<d
     for (std::size_t k = 0; k < d.size(); ++k) slope += value.gradient[k] * d[k];
     if (step == 0) first = slope;
     if (!(slope < rounding * first)) break;
-    const double t = exact_step(LineWithin(function, a, d));
+    const double t = exact_step(*function.along(a, value, d));
     for (std::size_t k = 0; k < a.size(); ++k) a[k] += t * d[k];
   }
   return a;

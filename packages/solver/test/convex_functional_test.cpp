@@ -156,6 +156,17 @@ private:
       }
       return value;
     }
+    std::unique_ptr<LineFunction> along(const std::vector<double> &a, const Value &,
+                                        const std::vector<double> &direction) const override
+    {
+      Vector x(u_, Teuchos::Copy), d(u_.getMap()), F(u_.getMap());
+      for (std::size_t k = 0; k < a.size(); ++k) {
+        x.update(a[k], *directions_[k], 1.);
+        d.update(direction[k], *directions_[k], 1.);
+      }
+      chain_.gradient(x, F);
+      return chain_.along(x, d, F);
+    }
 
   private:
     const Chain &chain_;

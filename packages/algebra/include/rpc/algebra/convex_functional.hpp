@@ -33,6 +33,9 @@ public:
   virtual ~SubspaceFunction() = default;
   /// Collective. @param a  (directions) the same on all ranks
   virtual Value at(const std::vector<double> &a) const = 0;
+  /// The functional on u + sum_k (a_k + t direction_k) d_k. Collective. @param at_a  at(a)
+  virtual std::unique_ptr<LineFunction> along(const std::vector<double> &a, const Value &at_a,
+                                              const std::vector<double> &direction) const = 0;
 };
 
 /// A convex functional with a Lipschitz continuous gradient and a generalized Hessian, which a generalized Newton iteration
