@@ -198,6 +198,39 @@ DeviceView<double *> coefficients(const std::vector<double> &a)
   return to_device(given);
 }
 
+/// Where the points are once they have made a_k of each move.
+Places moved(const ContactNodes &c, const Places &from, const DeviceView<double **> &moves,
+             const std::vector<double> &a)
+{
+  const Places at(c.size(), c.dim, from.e.extent(0) > 0);
+  const auto coefficient = coefficients(a);
+  const LO n = static_cast<LO>(a.size());
+  Kokkos::parallel_for(
+      "rpc::contact::places", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        Motion there = from(i);
+        for (LO k = 0; k < n; ++k) move(c, moves, i, k, coefficient(k), there);
+        at.set(i, there);
+      });
+  Kokkos::fence();
+  return at;
+}
+
+/// (points, dim) The sum of direction_k times each move. [m]
+DeviceView<double **> moves_along(const ContactNodes &c, const DeviceView<double **> &moves,
+                                  const std::vector<double> &direction)
+{
+  const DeviceView<double **> sum("rpc::contact::moves", c.size(), c.dim);
+  const auto coefficient = coefficients(direction);
+  const LO n = static_cast<LO>(direction.size());
+  Kokkos::parallel_for(
+      "rpc::contact::moves_along", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        for (LO k = 0; k < n; ++k)
+          for (int j = 0; j < c.dim; ++j) sum(i, j) += coefficient(k) * moves(i, c.dim * k + j);
+      });
+  Kokkos::fence();
+  return sum;
+}
+
 class SubspaceModel : public SubspaceFunction
 {
 public:
@@ -233,42 +266,11 @@ public:
       slope += at_a.gradient[k] * direction[k];
       for (std::size_t l = 0; l < n; ++l) curvature += direction[k] * elastic_[n * k + l] * direction[l];
     }
-    return std::make_unique<LineModel>(comm_, slope, curvature, points_, places(a), moves_along(direction));
+    return std::make_unique<LineModel>(comm_, slope, curvature, points_, moved(points_.points, from_, moves_, a),
+                                       moves_along(points_.points, moves_, direction));
   }
 
 private:
-  /// Where the points are at u + sum_k a_k d_k.
-  Places places(const std::vector<double> &a) const
-  {
-    const ContactNodes c = points_.points;
-    const Places from = from_, at(c.size(), c.dim, from.e.extent(0) > 0);
-    const auto moves = moves_;
-    const auto coefficient = coefficients(a);
-    Kokkos::parallel_for(
-        "rpc::contact::places", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-          Motion there = from(i);
-          for (LO k = 0; k < static_cast<LO>(coefficient.extent(0)); ++k) move(c, moves, i, k, coefficient(k), there);
-          at.set(i, there);
-        });
-    Kokkos::fence();
-    return at;
-  }
-  /// (points, dim) sum_k direction_k d_k
-  DeviceView<double **> moves_along(const std::vector<double> &direction) const
-  {
-    const ContactNodes c = points_.points;
-    const auto moves = moves_;
-    const auto coefficient = coefficients(direction);
-    const DeviceView<double **> sum("rpc::contact::moves", c.size(), c.dim);
-    Kokkos::parallel_for(
-        "rpc::contact::moves_along", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-          for (LO k = 0; k < static_cast<LO>(coefficient.extent(0)); ++k)
-            for (int j = 0; j < c.dim; ++j) sum(i, j) += coefficient(k) * moves(i, c.dim * k + j);
-        });
-    Kokkos::fence();
-    return sum;
-  }
-
   RCP<const Comm> comm_;
   std::vector<double> at_0_, elastic_;
   SmoothedPoints points_;
