@@ -1,5 +1,6 @@
 #include "rpc/contact/line_models.hpp"
 
+#include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
 
 #include <algorithm>
@@ -191,19 +192,12 @@ struct SubspaceSums {
   }
 };
 
-DeviceView<double *> coefficients(const std::vector<double> &a)
-{
-  HostView<double *> given("rpc::contact::coefficients", a.size());
-  std::copy(a.begin(), a.end(), given.data());
-  return to_device(given);
-}
-
 /// Where the points are once they have made a_k of each move.
 Places moved(const ContactNodes &c, const Places &from, const DeviceView<double **> &moves,
              const std::vector<double> &a)
 {
   const Places at(c.size(), c.dim, from.e.extent(0) > 0);
-  const auto coefficient = coefficients(a);
+  const auto coefficient = device_values(a, "rpc::contact::coefficients");
   const LO n = static_cast<LO>(a.size());
   Kokkos::parallel_for(
       "rpc::contact::places", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
@@ -220,7 +214,7 @@ DeviceView<double **> moves_along(const ContactNodes &c, const DeviceView<double
                                   const std::vector<double> &direction)
 {
   const DeviceView<double **> sum("rpc::contact::moves", c.size(), c.dim);
-  const auto coefficient = coefficients(direction);
+  const auto coefficient = device_values(direction, "rpc::contact::coefficients");
   const LO n = static_cast<LO>(direction.size());
   Kokkos::parallel_for(
       "rpc::contact::moves_along", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
@@ -243,7 +237,7 @@ public:
   Value at(const std::vector<double> &a) const override
   {
     const std::size_t n = a.size();
-    const SubspaceSums sums(points_, from_, moves_, coefficients(a));
+    const SubspaceSums sums(points_, from_, moves_, device_values(a, "rpc::contact::coefficients"));
     std::vector<double> mine(n * (n + 1));
     Kokkos::parallel_reduce("rpc::contact::subspace_model", device_range(points_.size()), sums, mine.data());
     Kokkos::fence();

@@ -53,49 +53,43 @@ inline void expect_sweeps_to_balance(const Scene &scene, const int sweeps, const
   }
 }
 
-/// The model of a line through u along d has the functional's slope, and the curvature that differences of its slope give.
+/// A line's model from `from` along d has the functional's slope, and the curvature that differences of its slope give.
+inline void expect_line(const LineFunction &line, const contact::Iterate &iterate, const Vector &from, const Vector &d)
+{
+  for (const double t : {0., 0.3, 0.77, 1., 1.9, -0.6, -2.}) {
+    Vector G(from.getMap());
+    iterate.gradient(*plus(from, t, d), G);
+    EXPECT_NEAR(line.at(t).slope, G.dot(d), 1e-12 * G.norm2() * d.norm2()) << t;
+    const double h = 1e-7;
+    const double bend = (line.at(t + h).slope - line.at(t - h).slope) / (2 * h);
+    EXPECT_NEAR(line.at(t).curvature, bend, 1e-5 * std::abs(bend)) << t;
+  }
+}
+
+/// The model of a line through u along d.
 inline void expect_line_model(contact::Iterate &iterate, const Vector &u, const Vector &d)
 {
   Vector F(u.getMap());
   iterate.gradient(u, F);
-  const auto line = iterate.along(u, d, F);
-  for (const double t : {0., 0.3, 0.77, 1.9, -0.6}) {
-    Vector G(u.getMap());
-    iterate.gradient(*plus(u, t, d), G);
-    EXPECT_NEAR(line->at(t).slope, G.dot(d), 1e-12 * G.norm2() * d.norm2()) << t;
-    const double h = 1e-7;
-    const double bend = (line->at(t + h).slope - line->at(t - h).slope) / (2 * h);
-    EXPECT_NEAR(line->at(t).curvature, bend, 1e-5 * std::abs(bend)) << t;
-  }
+  expect_line(*iterate.along(u, d, F), iterate, u, d);
 }
 
-/// The lines of a SubspaceFunction against gradients, on pieces that they start from and beyond.
+/// The model of a line in the span of some directions, from a point there other than u.
 inline void expect_lines_within(contact::Iterate &iterate, const Vector &u,
                                 const std::vector<RCP<const Vector>> &directions)
 {
-  const std::size_t n = directions.size();
   Vector F(u.getMap());
   iterate.gradient(u, F);
   const auto model = iterate.within(u, directions, F);
   std::vector<double> a, direction;
-  for (std::size_t k = 0; k < n; ++k) {
+  Vector from(u, Teuchos::Copy), d(u.getMap());
+  for (std::size_t k = 0; k < directions.size(); ++k) {
     a.push_back(0.5 - 0.4 * double(k));
     direction.push_back(0.4 * std::cos(2. * double(k)));
-  }
-  Vector from(u, Teuchos::Copy), d(u.getMap());
-  for (std::size_t k = 0; k < n; ++k) {
     from.update(a[k], *directions[k], 1.);
     d.update(direction[k], *directions[k], 1.);
   }
-  const auto line = model->along(a, model->at(a), direction);
-  for (const double t : {0., 0.3, 1., -2.}) {
-    Vector G(u.getMap());
-    iterate.gradient(*plus(from, t, d), G);
-    EXPECT_NEAR(line->at(t).slope, G.dot(d), 1e-11 * G.norm2() * d.norm2()) << t;
-    const double h = 1e-7;
-    const double bend = (line->at(t + h).slope - line->at(t - h).slope) / (2 * h);
-    EXPECT_NEAR(line->at(t).curvature, bend, 1e-5 * std::abs(bend)) << t;
-  }
+  expect_line(*model->along(a, model->at(a), direction), iterate, from, d);
 }
 
 } // namespace rpc::test
