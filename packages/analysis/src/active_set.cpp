@@ -12,7 +12,7 @@ using solver::NewtonGroup;
 namespace
 {
 
-// Choices of states that make no headway; then the interior-point method needs fewer steps, or with friction Newton's. The numbers down to
+// Choices of states that make no headway; then Newton needs fewer steps, or the interior-point method. The numbers down to
 // few_changes are from thin bodies whose choices were followed to their end; half or twice as large they cost 0 to 3 % more steps.
 constexpr int most_idle = 6;
 constexpr int most_changes = 10;         // with friction, whether they make headway or not
@@ -25,10 +25,15 @@ constexpr double most_left = 10, most_left_creeping = 4;
 constexpr int fewest_to_tell = 4;
 // Forces that the law does not admit over those that it does. Bodies of equal sides stay below much; a choice with much counts twice.
 constexpr double much = 0.5;
-// The interior-point method takes over at once where they are far_too_much and more than few points change, from a start that nothing
-// predicts further still; and where it was needed on a coarser mesh, if the first solve leaves more than few points to change.
-constexpr double far_too_much = 4, far_too_much_at_first = 10;
+// Choices end at once where they are far_too_much and more than few points change. The first one from a start that nothing predicts does
+// not tell.
+constexpr double far_too_much = 1, far_too_much_of_rubber = 10; // of bodies that are nearly incompressible
 constexpr GO few_changes = 5;
+// Newton creeps from kink to kink where so many steps ended at one at once, and, before the interior-point method has been at work, where
+// from the second step on more than so much of the way is left per step.
+constexpr int most_short_steps = 3;
+constexpr double left_per_step = 0.5;
+constexpr int most_confirmations = 5; // of where Newton has settled
 // While the active set changes, solves bring the residual below this part of what it was, and of the load, or the error in energy below
 // rough_error: two to five CG iterations. With a residual of 1e-1 pressures are too rough to choose by, 1e-4 saves no step, and an error of
 // 1e-2 costs thin bodies half a step. On these the residual needs up to twice the iterations of the error. What the multipliers of
@@ -59,7 +64,9 @@ constexpr int trial_changes = 2;
 
 ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, const Then then)
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
-      pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
+      pressure_tolerance_(tolerances.pressure),
+      most_overshoot_(tolerances.nearly_incompressible ? far_too_much_of_rubber : far_too_much),
+      start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
       rubs_(iterate_.points().friction.anywhere), then_(then), most_idle_(most_idle), trial_gap_(first_trial)
 {
@@ -69,21 +76,55 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
   most_idle_ = then == Then::nothing ? most_changes_tried : most_changes;
 }
 
-bool ActiveSetStage::resume(const NewtonGroup &from)
+void ActiveSetStage::starts_predicted(const FoundBy coarser)
+{
+  is_predicted_ = true;
+  if (!rubs_) begins_with_ = coarser;
+  newton_is_next_ = begins_with_ == FoundBy::newton;
+}
+
+FoundBy ActiveSetStage::found_by() const
+{
+  if (!rubs_ && path_ != Path::ahead) return FoundBy::interior_path;
+  return newton_was_tried_ ? FoundBy::newton : FoundBy::choices;
+}
+
+bool ActiveSetStage::resume(const NewtonGroup &from, const solver::NewtonProgress &newton)
 {
   const Vector &u = solver::tpetra(from.getX());
+  if (newton.settled && !rubs_ && confirmations_ < most_confirmations) {
+    ++confirmations_;
+    take_over(u, trial_changes);
+    return true;
+  }
+  const bool stands = newton.short_steps >= most_short_steps;
+  const bool creeps = newton.steps > 1 && newton.left > std::pow(left_per_step, newton.steps);
+  if (!(stands || (path_ == Path::ahead && creeps))) return false;
   if (path_ == Path::ahead) {
-    give_up(u);
-    decided_ = false;
+    take_path(u);
     return true;
   }
   if (std::exchange(resumed_, true)) return false;
+  take_over(u, most_changes_resumed);
+  return true;
+}
+
+void ActiveSetStage::take_path(const Vector &u)
+{
+  iterate_.start_interior_path(u);
+  path_ = Path::on_it;
+  decided_ = false;
+}
+
+/// Choices go on from a point of Newton's.
+void ActiveSetStage::take_over(const Vector &u, const int most)
+{
   iterate_.update_hessian(u); // the states there
   start_.assign(u);
-  start_over({}, most_changes_resumed);
+  start_dual_ = iterate_.dual();
+  start_over({}, most);
   updates_ = 0;
   decided_ = false;
-  return true;
 }
 
 /// Choices start anew.
@@ -118,7 +159,7 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     if (idle_steps_ > (turns_ ? most_idle_turns : 0)) return Verdict::over;
     rough_ = false;
   } else if (!is_new_choice() || !may_settle()) {
-    return give_up(u); // in circles, or too slow
+    return give_up(); // in circles, or too slow
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
   }
@@ -159,22 +200,33 @@ bool ActiveSetStage::may_settle()
   const auto number = static_cast<double>(changes), fewest = static_cast<double>(fewest_changes_);
   const bool contracts = number < fewest && std::log(number) <= most_left * std::log(fewest / number);
   fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
-  if (changes > few_changes) {
-    if (overshoot > (from_ == Start::anywhere ? far_too_much_at_first : far_too_much)) return false;
-    if (from_ == Start::predicted_by_path && path_ == Path::ahead && before == 1) return false;
-  }
+  const bool tells = is_predicted_ || before > 1;
+  if (tells && changes > few_changes && overshoot > most_overshoot_) return false;
   if (creeps && !is_near && !contracts && before >= fewest_to_tell) return false;
   if (!contracts && !is_near) idle_ += overshoot > much ? 2 : 1;
   return idle_ <= most_idle_;
 }
 
-/// The interior-point method goes on; where that has been, Newton's.
-ActiveSetStage::Verdict ActiveSetStage::give_up(const Vector &u)
+/// Newton goes on from the start, or the interior-point method once it has begun; where that has been, Newton from here.
+ActiveSetStage::Verdict ActiveSetStage::give_up()
 {
   if (path_ == Path::behind) return Verdict::over;
-  if (path_ == Path::ahead) iterate_.start_interior_path(u);
-  path_ = Path::on_it;
+  if (path_ == Path::ahead)
+    newton_is_next_ = true;
+  else
+    path_ = Path::on_it;
   return Verdict::go_on;
+}
+
+/// Goes back to the start, where Newton begins.
+ActiveSetStage::Step ActiveSetStage::leave_to_newton(NewtonGroup &group)
+{
+  newton_is_next_ = false;
+  newton_was_tried_ = true;
+  iterate_.take_dual(start_dual_);
+  group.setX(solver::NoxVector(rcp(new Vector(start_, Teuchos::Copy))));
+  group.computeF();
+  return Step::none;
 }
 
 /// Whether the states that the path leads to are to be tried, or taken; then they are the next choice.
@@ -283,6 +335,9 @@ ActiveSetStage::Verdict ActiveSetStage::judged(const NewtonGroup &at)
   const Vector &u = solver::tpetra(at.getX());
   if (steps_ == 0) {
     start_.assign(u);
+    start_dual_ = iterate_.dual();
+    if (begins_with_ == FoundBy::interior_path && path_ == Path::ahead) take_path(u);
+    if (newton_is_next_ || path_ == Path::on_it) return Verdict::go_on;
   } else {
     Vector F(u.getMap());
     iterate_.active_set_gradient(u, solver::tpetra(at.getF()), F); // (5.6)
@@ -293,6 +348,7 @@ ActiveSetStage::Verdict ActiveSetStage::judged(const NewtonGroup &at)
 
 ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direction)
 {
+  if (newton_is_next_) return leave_to_newton(group);
   if (path_ == Path::on_it && !leaves_path()) return propose_interior(group, direction);
   if (!choice_ && judged(group) != Verdict::go_on)
     return Step::none; // a user's status tests do not ask for the verdict
@@ -310,6 +366,7 @@ ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direct
     before_ = norm_ = F.norm2();
     if (norm_ > target_) break;
     const Verdict verdict = choose(*u); // nothing to solve for: the next choice
+    if (newton_is_next_) return leave_to_newton(group);
     if (path_ == Path::on_it) return propose_interior(group, direction);
     if (verdict == Verdict::go_on) continue;
     decided_ = true;
@@ -321,6 +378,7 @@ ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direct
   if (!rough_) { // the remaining correction is small against u: solving for it keeps its relative accuracy       (5.13)
     iterate_.move_origin(*u);
     start_.putScalar(0);
+    start_dual_ = iterate_.dual();
     move_to();
   }
   u = Teuchos::null; // a solve needs the memory

@@ -31,10 +31,11 @@ std::string no_prediction(const fem::Discretization &d, const contact::ContactNo
   return "";
 }
 
-/// Whether a coarser mesh's solution tells that this one will need the interior-point method.
-bool tells_of_the_path(const StepSolution &coarse, const int level)
+/// What a coarser mesh's solution tells to begin with on this one.
+FoundBy needed_after(const StepSolution &coarse, const int level)
 {
-  return level == 1 && coarse.interior_path && coarse.step.contact.num_total >= fewest_points_telling;
+  const bool tells = level == 1 && coarse.step.contact.num_total >= fewest_points_telling;
+  return tells ? coarse.found_by : FoundBy::choices;
 }
 
 StepOptions rough(StepOptions options)
@@ -127,7 +128,7 @@ Prediction Predictor::from_rest(const Problem &fine, const Step &step)
       contact::with_weightless(coarse.state, coarse.step.contact, problem.discretization(), problem.contact_sides());
   return {contact::interpolated(*coarser_->to_fine, coarse.step.contact, state, step.contact,
                                 fine.discretization().owned_dofs),
-          "", tells_of_the_path(coarse, level_), work_of(coarse, start)};
+          "", needed_after(coarse, level_), work_of(coarse, start)};
 }
 
 /// A later step: what it changes.                                                                                (11.5)
@@ -160,7 +161,7 @@ Prediction Predictor::from_last(const Problem &fine, const Step &step, const Mem
   };
   predicted.pressure = changed(*now.pressure, *before.pressure, *last.pressure);
   if (!last.tangential.is_null()) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
-  return {state_of(step.contact, predicted), "", tells_of_the_path(coarse, level_), work_of(coarse, start)};
+  return {state_of(step.contact, predicted), "", needed_after(coarse, level_), work_of(coarse, start)};
 }
 
 } // namespace rpc::analysis

@@ -3,6 +3,7 @@
 #include "rpc/analysis/solve_step.hpp"
 
 #include "rpc/analysis/active_set.hpp"
+#include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/contact/energies.hpp"
 #include "rpc/core/timed.hpp"
 
@@ -24,8 +25,9 @@ constexpr const char *in_want_of_friction =
     "raise the friction or what presses the body on the foundation, lower the load, or prescribe a displacement";
 
 Prediction predict(Iterate &iterate, Vector &u, const Starts &starts);
-Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      int iteration, bool previous_confirmed, ActiveSetStage::Start start, const Progress &progress);
+Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
+                      const StepOptions &options, int iteration, bool previous_confirmed,
+                      const std::optional<FoundBy> &predicted, const Progress &progress);
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state);
@@ -42,7 +44,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
   const auto u = rcp(new Vector(*step.elastic.dirichlet.value, Teuchos::Copy)); // seen from the iterate's origin
   Iterate iterate(step.elastic, step.contact, state.hessian());
   if (step.support.by_contact_only) iterate.hold_by_contact(); // (9.8)
-  auto start = ActiveSetStage::Start::anywhere;
+  std::optional<FoundBy> predicted;                            // where a coarser mesh predicts the start
   const auto counts_before = state.linear().counts();
   solver::check_nox_parameters(iterate, state.linear(), u, options.newton);
   {
@@ -50,8 +52,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
     Prediction prediction = predict(iterate, *u, starts); // (5.11), (11.5)
     s.not_predicted = std::move(prediction.reason);
     s.levels = std::move(prediction.work);
-    if (prediction.start)
-      start = prediction.interior_path ? ActiveSetStage::Start::predicted_by_path : ActiveSetStage::Start::predicted;
+    if (prediction.start) predicted = prediction.found_by;
   }
   {
     const Timed timer("solve", s.solve_seconds);
@@ -62,7 +63,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       if (uzawa.iterations > 0) // the correction is small against u (5.13)
         iterate.move_origin(*u, *uzawa.residuals.internal.forces, *step.elastic.applied_load);
       const Minimization found = // paper (10), (4.1): choose states (5.8) and solve (5.7), (5.9),
-          minimize(iterate, u, state, options, uzawa.iterations + 1, confirmed, start,
+          minimize(problem, iterate, u, state, options, uzawa.iterations + 1, confirmed, predicted,
                    progress); // Newton (4.2)
       confirmed = found.active_set_confirmed;
       uzawa.multiplier_change = found.active_set_confirmed ? iterate.take_active_set_pressures(*u)
@@ -71,7 +72,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       uzawa.residuals = judge(problem, step, iterate, s.state, state); // paper (8); (5.2) - (5.5)
       uzawa.newton_iterations.push_back(found.steps);
       s.line_search_steps += found.line_search_steps;
-      s.interior_path = s.interior_path || found.interior_path;
+      s.found_by = std::max(s.found_by, found.found_by);
       ++uzawa.iterations;
       if (progress.uzawa) progress.uzawa(uzawa);
       const double previous = residual_before(worst, found.bounds_follow);
@@ -179,9 +180,9 @@ Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOpt
   return {result.converged, steps + result.steps, result.reason, false, result.steps, true};
 }
 
-Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      const int iteration, const bool previous_confirmed, const ActiveSetStage::Start start,
-                      const Progress &progress)
+Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
+                      const StepOptions &options, const int iteration, const bool previous_confirmed,
+                      const std::optional<FoundBy> &predicted, const Progress &progress)
 {
   const int all = options.newton.max_iterations;
   const auto run = [&](solver::FirstStage *const stage, const int most_steps) {
@@ -200,8 +201,10 @@ Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state
     return {result.converged, steps, result.reason, false, result.steps};
   }
   if (iteration > 1) return minimize_for_next_bounds(iterate, *u, options, run);
-  ActiveSetStage stage(iterate, active_set_tolerances(options));
-  stage.starts(start);
+  ActiveSetTolerances tolerances = active_set_tolerances(options);
+  tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
+  ActiveSetStage stage(iterate, tolerances);
+  if (predicted) stage.starts_predicted(*predicted);
   const auto result = run(&stage, all);
   return {result.converged,
           result.steps,
@@ -209,7 +212,7 @@ Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state
           stage.confirmed(),
           result.steps - stage.steps(),
           friction && !stage.confirmed(),
-          stage.took_path()};
+          stage.found_by()};
 }
 
 /// The residual that an iteration's is compared with: the last one, or one of some iterations ago where bounds follow the pressures, for

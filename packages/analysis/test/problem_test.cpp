@@ -103,8 +103,7 @@ TEST(Problem, OfASlenderBodyThatLiftsOffTakesFewSteps)
   };
   const auto step = problem.step(1);
   const auto found = test::solved(problem, step);
-  EXPECT_EQ(found.line_search_steps, 0) << "the interior path takes over where the edges creep";
-  EXPECT_LE(steps_of(found), 30);
+  EXPECT_LE(steps_of(found), 30) << "Newton or the interior path takes over where the edges creep";
   analysis::StepOptions newton;
   newton.newton.nox.sublist("Direction").set("Method", "Newton");
   analysis::SolverState solver(problem);

@@ -13,8 +13,7 @@ namespace rpc::solver
 namespace
 {
 
-constexpr double rounding = 1e-12;      // of a slope, below which the sums' rounding decides
-constexpr double to_the_minimum = 1e-6; // a step that differs from 1 by less has met no kink: nothing is left to gain
+constexpr double rounding = 1e-12; // of a slope, below which the sums' rounding decides
 
 /// -H^-1 g; empty where rounding leaves H indefinite. Directions may be as good as dependent: with the rounding of H on its
 /// diagonal, scaled to 1, the result still leads down.
@@ -97,7 +96,7 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
   if (most_earlier_ > 0 && !context.full_step && step > 0) {
     auto directions = earlier_;
     directions.push_back(rcp(new rpc::Vector(tpetra(direction), Teuchos::Copy)));
-    if (earlier_.size() == most_earlier_ && std::abs(step - 1) > to_the_minimum) {
+    if (!earlier_.empty() && std::abs(step - 1) > to_the_minimum) {
       std::vector<double> a(directions.size());
       a.back() = step;
       a = least_within(*context.functional.within(tpetra(from.getX()), directions, tpetra(from.getF())), std::move(a));

@@ -1,8 +1,11 @@
 #include "rpc/solver/first_stage.hpp"
 
+#include "rpc/solver/exact_line_search.hpp"
 #include "rpc/solver/sweep_direction.hpp"
 
 #include <NOX_Solver_Generic.H>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -11,20 +14,23 @@ namespace rpc::solver
 namespace
 {
 
-/// Newton creeps from kink to kink after so many steps that ended at one.
-constexpr int most_short_steps = 3;
-
 void end_stage(NewtonContext &context)
 {
   context.resting = std::exchange(context.stage, nullptr);
-  context.short_steps = 0;
+  context.newton = {};
 }
 
-/// Counts the last step if it was short.
-bool creeps(NewtonContext &context)
+/// A step leaves no less of the way to the minimum: the next direction is for another piece of the functional.
+constexpr double least_left = 0.1;
+
+/// Notes how Newton's last step went, which led here.
+void note_step(NewtonContext &context, const NewtonGroup &here)
 {
-  context.short_steps += context.step_length < cut_short;
-  return context.short_steps >= most_short_steps;
+  NewtonProgress &newton = context.newton;
+  newton.left *= std::max(least_left, std::abs(1 - context.step_length));
+  newton.short_steps += context.step_length < cut_short;
+  newton.settled = std::abs(context.step_length - 1) <= to_the_minimum &&
+                   context.functional.piece(tpetra(here.getX())) == context.piece;
 }
 
 } // namespace
@@ -35,15 +41,20 @@ bool StagedDirection::compute(NOX::Abstract::Vector &direction, NOX::Abstract::G
   auto &newton_group = dynamic_cast<NewtonGroup &>(group);
   NewtonContext &context = newton_group.context();
   context.full_step = false;
-  if (context.resting && creeps(context) && context.resting->resume(newton_group))
-    context.stage = std::exchange(context.resting, nullptr);
+  if (context.resting && context.newton.steps > 0) {
+    note_step(context, newton_group);
+    if (context.resting->resume(newton_group, context.newton)) context.stage = std::exchange(context.resting, nullptr);
+  }
   if (context.stage) {
     const auto step = context.stage->propose(newton_group, dynamic_cast<NoxVector &>(direction).data());
     context.full_step = step == FirstStage::Step::full;
     if (step != FirstStage::Step::none) return true;
     end_stage(context);
   }
-  return sweep_.compute(direction, group, solver);
+  if (!sweep_.compute(direction, group, solver)) return false;
+  ++context.newton.steps;
+  context.piece = context.functional.piece(tpetra(group.getX()));
+  return true;
 }
 
 Teuchos::RCP<NOX::Direction::Generic> StagedDirectionFactory::buildDirection(const Teuchos::RCP<NOX::GlobalData> &,

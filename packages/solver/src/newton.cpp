@@ -255,7 +255,7 @@ Teuchos::ParameterList valid_newton_parameters()
         std::string("Handed to NOX as it is.") +
             (name == std::string("Line Search")
                  ? " `Method` = `Exact` (default) minimizes the functional along the step exactly, with `Active Set` "
-                   "and `Sweep` from the tenth step on also within the span of the last ten directions; `Full Step` "
+                   "and `Sweep` from the second step on also within the span of the last ten directions; `Full Step` "
                    "and NOX's others work as in NOX."
              : name == std::string("Direction")
                  ? " `Method` = `Active Set` (default): steps of the primal-dual active-set iteration, then "

@@ -15,8 +15,9 @@ namespace rpc::analysis
 
 /// When the active-set iteration is content.
 struct ActiveSetTolerances {
-  double residual = 1e-10; ///< |F|_2 / |load|_2, > 0
-  double pressure = 1e-7;  ///< error of pressures, over the largest, > 0
+  double residual = 1e-10;            ///< |F|_2 / |load|_2, > 0
+  double pressure = 1e-7;             ///< error of pressures, over the largest, > 0
+  bool nearly_incompressible = false; ///< the body is: pressures err by more than displacements
 };
 
 /// By the options for Newton and Uzawa. (5.10)
@@ -41,18 +42,14 @@ public:
 
   Verdict judge(const solver::NewtonGroup &at) override;
   Step propose(solver::NewtonGroup &group, Vector &direction) override;
-  /// Once, for more changes than before, with good solves. doc/theory.md (5.9a)
-  bool resume(const solver::NewtonGroup &from) override;
+  /// Where Newton has settled, to confirm the states there; where it creeps, once by the interior-point method and once for more
+  /// changes than before, with good solves. doc/theory.md (5.9a)
+  bool resume(const solver::NewtonGroup &from, const solver::NewtonProgress &newton) override;
 
-  /// What is known of the start. The better it is, the sooner choices that make no headway tell that the interior-point method is needed.
-  enum class Start {
-    anywhere,         ///< nothing
-    predicted,        ///< a coarser mesh's solution
-    predicted_by_path ///< such a one that the interior-point method found
-  };
-  void starts(Start start) { from_ = start; }
-  bool took_path() const { return !rubs_ && path_ != Path::ahead; } ///< the interior-point method has been at work
-  bool confirmed() const { return confirmed_; }                     ///< the active set is the solution's
+  /// The start is a coarser mesh's solution. What led to its states makes the first steps, except with friction.
+  void starts_predicted(FoundBy coarser);
+  FoundBy found_by() const;                     ///< what has been at work so far
+  bool confirmed() const { return confirmed_; } ///< the active set is the solution's
   int steps() const { return steps_; }
 
 private:
@@ -62,8 +59,11 @@ private:
   bool is_new_choice();
   bool may_settle();
   solver::Accuracy wanted() const;
-  Verdict give_up(const Vector &u);
+  Verdict give_up();
+  void take_path(const Vector &u);
+  void take_over(const Vector &u, int most);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
+  Step leave_to_newton(solver::NewtonGroup &group);
   bool leaves_path();
   Step propose_interior(solver::NewtonGroup &group, Vector &direction);
   bool solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction);
@@ -71,14 +71,20 @@ private:
   contact::Iterate &iterate_;
   double scale_, target_;                          // of forces, and |F|_2 that is small enough [N]
   double pressure_tolerance_;                      // over the largest pressure
+  double most_overshoot_;                          // of forces, before choices end
   std::map<std::uint64_t, int> seen_;              // fingerprints of active sets
   std::optional<contact::ActiveSetChoice> choice_; // at the present point
-  Vector start_;                                   // to go back to
+  Vector start_;                                   // to go back to, with
+  contact::Iterate::Dual start_dual_;              // its multipliers
   bool rough_;                                     // solves are, while the active set changes
   bool rubs_;                                      // there is friction
   bool turns_ = false;                             // and in space: the branches of an active set are not linear
   bool confirmed_ = false, decided_ = false;
   bool resumed_ = false;
+  bool is_predicted_ = false; // the start is
+  FoundBy begins_with_ = FoundBy::choices;
+  bool newton_is_next_ = false, newton_was_tried_ = false;
+  int confirmations_ = 0; // of where Newton has settled
   Then then_;
   double norm_ = std::numeric_limits<double>::infinity(),
          before_ = norm_,      // |F|_2 for the active set, after and before the step
@@ -91,7 +97,6 @@ private:
   GO fewest_changes_ = 0;          // fewest points that one of them has changed; 0: there was none
   std::array<double, 3> levers_{}; // of the last ones, the last one first: overshoot o as o / (1 - o)
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
-  Start from_ = Start::anywhere;
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried
 };

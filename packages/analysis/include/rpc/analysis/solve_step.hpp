@@ -52,9 +52,9 @@ struct LevelWork {
 /// A start that coarser meshes predict.
 struct Prediction {
   std::optional<contact::ContactState> start;
-  std::string reason;          ///< why there is none
-  bool interior_path = false;  ///< its states were found by the interior-point method
-  std::vector<LevelWork> work; ///< on the meshes that were asked, from the coarsest
+  std::string reason;                  ///< why there is none
+  FoundBy found_by = FoundBy::choices; ///< on the coarser mesh: what will be needed on the finer one
+  std::vector<LevelWork> work;         ///< on the meshes that were asked, from the coarsest
 };
 
 /// Where a step may start from.
@@ -76,8 +76,8 @@ struct StepSolution {
   double energy_norm_squared = 0;               ///< a(u, u) [J], in 2D per m
   std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
 
-  solver::LinearSolverCounts linear;                ///< of this step
-  bool interior_path = false;                       ///< the interior-point method was needed to find the states
+  solver::LinearSolverCounts linear; ///< of this step
+  FoundBy found_by = FoundBy::choices;
   int line_search_steps = 0;                        ///< Newton's, where the active-set iteration was not enough
   std::vector<LevelWork> levels;                    ///< coarser meshes that predicted the solution, from the coarsest
   std::string not_predicted;                        ///< why no coarser mesh did; empty if one did

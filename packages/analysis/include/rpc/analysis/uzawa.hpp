@@ -27,6 +27,9 @@ Teuchos::ParameterList valid_uzawa_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
 UzawaOptions uzawa_options(const Teuchos::ParameterList &list);
 
+/// What led to the states of contact: the last one of them that was needed.
+enum class FoundBy { choices, newton, interior_path };
+
 /// What came out of one minimization of the smoothed functional.
 struct Minimization {
   bool converged = false;
@@ -36,7 +39,7 @@ struct Minimization {
   int line_search_steps = 0;         ///< of the steps, those of Newton's with its line search
   bool bounds_follow =
       false; ///< friction's bounds were given: they follow the pressures from one iteration to the next
-  bool interior_path = false; ///< the interior-point method was needed
+  FoundBy found_by = FoundBy::choices;
 };
 
 /// How the Uzawa iteration went, so far or to its end.

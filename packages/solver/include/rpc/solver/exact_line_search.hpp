@@ -9,6 +9,9 @@
 namespace rpc::solver
 {
 
+/// A step that differs from 1 by less has met no kink: nothing is left to gain along it.
+constexpr double to_the_minimum = 1e-6;
+
 /// The t > 0 where the slope of a piecewise quadratic functional vanishes, to rounding. doc/theory.md (4.4)
 ///
 /// The slope is continuous, nondecreasing and piecewise linear: Newton's method, kept inside a bracket and helped by
@@ -24,12 +27,12 @@ std::vector<double> least_within(const SubspaceFunction &function, std::vector<d
 /// Exact minimization of the functional along the direction, as a NOX line search for NewtonGroup; steps that the context marks
 /// as full are taken as they are. Without it full Newton steps cycle between pieces of the functional.
 ///
-/// Where steps go on ending at kinks, the functional is minimized, from where the line search ends, within the span of the
-/// direction and of the last ones before it: edges of contact zones that move by a node a step move on.
+/// Where a step ends at a kink, the functional is minimized, from there, within the span of the direction and of the last ones
+/// before it: edges of contact zones that move by a node a step move on. doc/theory.md (4.4a)
 class ExactLineSearch : public NOX::LineSearch::Generic
 {
 public:
-  /// @param earlier  directions to minimize within besides the new one, as soon as there are so many; 0: none
+  /// @param earlier  directions to minimize within at most, besides the new one; 0: none
   explicit ExactLineSearch(int earlier) : most_earlier_(earlier) {}
   bool compute(NOX::Abstract::Group &group, double &step, const NOX::Abstract::Vector &direction,
                const NOX::Solver::Generic &solver) override;

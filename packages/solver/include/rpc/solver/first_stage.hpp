@@ -31,12 +31,12 @@ public:
   virtual Verdict judge(const NewtonGroup &at) = 0;
   /// @param[in,out] group  may be moved before the step; F is computed  @param[out] direction
   virtual Step propose(NewtonGroup &group, Vector &direction) = 0;
-  /// Newton's steps creep. @return whether the stage takes over once more, from this point
-  virtual bool resume(const NewtonGroup &) { return false; }
+  /// After each of Newton's steps. @return whether the stage takes over once more, from this point
+  virtual bool resume(const NewtonGroup &, const NewtonProgress &) { return false; }
 };
 
-/// The stage's steps, then Newton's directions after sweeps, as a NOX direction for NewtonGroup. Where some of Newton's steps have
-/// been short, the stage may resume.
+/// The stage's steps, then Newton's directions after sweeps, as a NOX direction for NewtonGroup. After each of Newton's steps the
+/// stage may resume.
 class StagedDirection : public NOX::Direction::Generic
 {
 public:
