@@ -348,10 +348,11 @@ ActiveSetStage::Verdict ActiveSetStage::judged(const NewtonGroup &at)
 
 ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direction)
 {
-  if (newton_is_next_) return leave_to_newton(group);
   if (path_ == Path::on_it && !leaves_path()) return propose_interior(group, direction);
   if (!choice_ && judged(group) != Verdict::go_on)
     return Step::none; // a user's status tests do not ask for the verdict
+  if (newton_is_next_) return leave_to_newton(group);
+  if (path_ == Path::on_it) return propose_interior(group, direction);
   auto u = rcp(new Vector(solver::tpetra(group.getX()), Teuchos::Copy));
   const auto move_to = [&] {
     group.setX(solver::NoxVector(u));

@@ -337,18 +337,24 @@ TEST(ActiveSet, StepsAreNotTakenWhereTheDeckAsksForOtherDirections)
   }
 }
 
-TEST(ActiveSet, StopsAtTheUsersStatusTests)
+/// They stand in place of those that ask for the stage's verdict.
+TEST(ActiveSet, StopsAtTheUsersStatusTestsWhateverItBeginsWith)
 {
-  Beam beam;
-  analysis::ActiveSetStage stage(*beam.iterate, {});
+  using analysis::FoundBy;
   solver::NewtonOptions options;
   Teuchos::ParameterList &tests = options.nox.sublist("Status Tests");
   tests.set("Test Type", "MaxIters");
   tests.set("Maximum Iterations", 2);
-  const auto result = minimize(beam, options, &stage);
-  EXPECT_FALSE(result.converged);
-  EXPECT_EQ(result.steps, 2);
-  EXPECT_EQ(stage.steps(), 2);
+  for (const FoundBy coarser : {FoundBy::choices, FoundBy::newton, FoundBy::interior_path}) {
+    rpc::test::PressedBox strip({{0, 0}, {1, 0.02}, {100, 1}, {2, 1}}, {1000, 0.3}, {"left"}, ScalarField(-1e-3),
+                                flat(inf, 1e-3));
+    analysis::ActiveSetStage stage(*strip.iterate, {});
+    stage.starts_predicted(coarser);
+    const auto result = rpc::test::minimize(strip, options, &stage);
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.steps, 2);
+    EXPECT_EQ(stage.steps(), coarser == FoundBy::newton ? 0 : 2);
+  }
 }
 
 TEST(SameActiveSet, AfterAMultiplierUpdateTakesOneStepWhereThePapersNewtonTakesMore)
