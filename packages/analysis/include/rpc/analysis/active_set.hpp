@@ -27,9 +27,9 @@ ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 /// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.7), (5.8), (5.9)
 ///
 /// Converges where a choice confirms the last active set, which is then the solution's, up to the share k/r that the penalty leaves
-/// to a multiplier update. When an active set comes back or where choices make no headway, as on thin bodies, (5.8a), an interior-point
-/// method finds the states, (5.15) to (5.20). Where even these are not confirmed, Newton's directions with their
-/// line search go on.
+/// to a multiplier update. When an active set comes back or where choices make no headway, as on thin bodies, (5.8a), Newton's directions
+/// with their line search go on, and where these creep, (5.9a), an interior-point method, (5.15) to (5.20). With friction Newton alone
+/// follows.
 class ActiveSetStage : public solver::FirstStage
 {
 public:
