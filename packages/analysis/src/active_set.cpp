@@ -29,11 +29,10 @@ constexpr double much = 0.5;
 // not tell.
 constexpr double far_too_much = 1, far_too_much_of_rubber = 10; // of bodies that are nearly incompressible
 constexpr GO few_changes = 5;
-// Newton creeps from kink to kink where so many steps ended at one at once, and, before the interior-point method has been at work, where
-// from the second step on more than so much of the way is left per step.
+// Newton stands at kinks after so many short steps. Newton creeps where k steps, two or more, leave more than left_per_step^k of the way.
 constexpr int most_short_steps = 3;
 constexpr double left_per_step = 0.5;
-constexpr int most_confirmations = 5; // of where Newton has settled
+constexpr int most_confirmations = 5; // of states where Newton has settled
 // While the active set changes, solves bring the residual below this part of what it was, and of the load, or the error in energy below
 // rough_error: two to five CG iterations. With a residual of 1e-1 pressures are too rough to choose by, 1e-4 saves no step, and an error of
 // 1e-2 costs thin bodies half a step. On these the residual needs up to twice the iterations of the error. What the multipliers of
@@ -78,9 +77,8 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
 
 void ActiveSetStage::starts_predicted(const FoundBy coarser)
 {
-  is_predicted_ = true;
-  if (!rubs_) begins_with_ = coarser;
-  newton_is_next_ = begins_with_ == FoundBy::newton;
+  predicted_ = rubs_ ? FoundBy::choices : coarser;
+  newton_is_next_ = predicted_ == FoundBy::newton;
 }
 
 FoundBy ActiveSetStage::found_by() const
@@ -99,12 +97,11 @@ bool ActiveSetStage::resume(const NewtonGroup &from, const solver::NewtonProgres
   }
   const bool stands = newton.short_steps >= most_short_steps;
   const bool creeps = newton.steps > 1 && newton.left > std::pow(left_per_step, newton.steps);
-  if (!(stands || (path_ == Path::ahead && creeps))) return false;
-  if (path_ == Path::ahead) {
+  if (path_ == Path::ahead && (stands || creeps)) {
     take_path(u);
     return true;
   }
-  if (std::exchange(resumed_, true)) return false;
+  if (!stands || std::exchange(resumed_, true)) return false;
   take_over(u, most_changes_resumed);
   return true;
 }
@@ -200,7 +197,7 @@ bool ActiveSetStage::may_settle()
   const auto number = static_cast<double>(changes), fewest = static_cast<double>(fewest_changes_);
   const bool contracts = number < fewest && std::log(number) <= most_left * std::log(fewest / number);
   fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
-  const bool tells = is_predicted_ || before > 1;
+  const bool tells = predicted_ || before > 1;
   if (tells && changes > few_changes && overshoot > most_overshoot_) return false;
   if (creeps && !is_near && !contracts && before >= fewest_to_tell) return false;
   if (!contracts && !is_near) idle_ += overshoot > much ? 2 : 1;
@@ -336,7 +333,7 @@ ActiveSetStage::Verdict ActiveSetStage::judged(const NewtonGroup &at)
   if (steps_ == 0) {
     start_.assign(u);
     start_dual_ = iterate_.dual();
-    if (begins_with_ == FoundBy::interior_path && path_ == Path::ahead) take_path(u);
+    if (predicted_ == FoundBy::interior_path && path_ == Path::ahead) take_path(u);
     if (newton_is_next_ || path_ == Path::on_it) return Verdict::go_on;
   } else {
     Vector F(u.getMap());

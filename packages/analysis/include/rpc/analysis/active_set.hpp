@@ -81,8 +81,7 @@ private:
   bool turns_ = false;                             // and in space: the branches of an active set are not linear
   bool confirmed_ = false, decided_ = false;
   bool resumed_ = false;
-  bool is_predicted_ = false; // the start is
-  FoundBy begins_with_ = FoundBy::choices;
+  std::optional<FoundBy> predicted_; // what to begin with where a coarser mesh predicts the start
   bool newton_is_next_ = false, newton_was_tried_ = false;
   int confirmations_ = 0; // of where Newton has settled
   Then then_;

@@ -27,7 +27,8 @@ Teuchos::ParameterList valid_uzawa_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
 UzawaOptions uzawa_options(const Teuchos::ParameterList &list);
 
-/// What led to the states of contact: the last one of them that was needed.
+/// What found the states of contact: choices of states, after these Newton's method, or after that the interior-point method. With
+/// friction it says choices.
 enum class FoundBy { choices, newton, interior_path };
 
 /// What came out of one minimization of the smoothed functional.
