@@ -52,8 +52,10 @@ bool StagedDirection::compute(NOX::Abstract::Vector &direction, NOX::Abstract::G
     end_stage(context);
   }
   if (!sweep_.compute(direction, group, solver)) return false;
-  ++context.newton.steps;
-  context.piece = context.functional.piece(tpetra(group.getX()));
+  if (context.resting) {
+    ++context.newton.steps;
+    context.piece = context.functional.piece(tpetra(group.getX()));
+  }
   return true;
 }
 
