@@ -282,6 +282,8 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
         s.uzawa.iterations, sum(s.uzawa.newton_iterations), s.linear.iterations.size(), sum(s.linear.iterations),
         s.linear.preconditioner_setups);
   out << "    linear solver     " << solver::chosen_solver(s.linear) << '\n';
+  if (s.coarse_choices > 0)
+    print(out, "    %d of the Newton steps to states that the coarser mesh chose\n", s.coarse_choices);
   if (s.line_search_steps > 0)
     print(out, "    %d of the Newton steps with sweep and line search: the active-set iteration did not settle\n",
           s.line_search_steps);

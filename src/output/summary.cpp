@@ -125,6 +125,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["multiplier_change"] = s.uzawa.multiplier_change;
   json["uzawa_iterations"] = s.uzawa.iterations;
   json["newton_iterations"] = s.uzawa.newton_iterations;
+  json["coarse_choices"] = s.coarse_choices;
   json["line_search_steps"] = s.line_search_steps;
   json["linear_solves"] = s.linear.iterations.size();
   json["linear_iterations"] = s.linear.iterations;

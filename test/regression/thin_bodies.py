@@ -50,11 +50,11 @@ SCENES = {  # deck, most steps
     "strip over waves": (deck((1, 0.02), (50, 1), "Q2", 1e-3, "2e-3*(0.5 + 0.5*sin(15*x))"), 11),
     "strip over a rough foundation": (deck((1, 0.02), (60, 1), "P2", 1e-3, ROUGH.format("2e-3", "1e-3").replace(" + 78.233*z", ""), "0.01", BOTH), 6),
     "strip of which rough solves take a point to and fro": (deck((1, 0.002660804), (449, 4), "Q2", 1.7246739020181432e-7, "0.12146827586714429*(x - 0.6202524474006608)^2 + 0.0017698480931658397", "2.9848978085874425e-7", nu=0.012139926853788507), 6),
-    "beam in space": (deck((1, 0.02, 0.02), (100, 2, 1), "Q1", 1e-2, "1e-2"), 8),
-    "beam in space over a bump": (deck((1, 0.02, 0.02), (60, 1, 1), "Q2", 1e-2, "5e-3*(1 - exp(-(x - 0.6)^2/0.02))", "inf", BOTH), 6),
+    "beam in space": (deck((1, 0.02, 0.02), (100, 2, 1), "Q1", 1e-2, "1e-2"), 7),
+    "beam in space over a bump": (deck((1, 0.02, 0.02), (60, 1, 1), "Q2", 1e-2, "5e-3*(1 - exp(-(x - 0.6)^2/0.02))", "inf", BOTH), 5),
     "plate over a bump": (deck((1, 0.02, 1), (16, 1, 16), "Q1", 1e-2, "2e-3*(1 - exp(-((x - 0.6)^2 + (z - 0.4)^2)/0.05))", "0.2", BOTH), 16),
-    "plate over a rough foundation": (deck((1, 0.05, 1), (16, 2, 16), "Q1", 1e-1, ROUGH.format("2e-3", "2e-3"), "0.5"), 11),
-    "plate held all around": (deck((1, 0.02, 1), (8, 1, 8), "P2", 1e-2, "5e-4*((x - 0.4)^2 + (z - 0.5)^2)", "inf", ALL), 12),
+    "plate over a rough foundation": (deck((1, 0.05, 1), (16, 2, 16), "Q1", 1e-1, ROUGH.format("2e-3", "2e-3"), "0.5"), 9),
+    "plate held all around": (deck((1, 0.02, 1), (8, 1, 8), "P2", 1e-2, "5e-4*((x - 0.4)^2 + (z - 0.5)^2)", "inf", ALL), 16),
 }
 
 

@@ -29,6 +29,9 @@ constexpr double much = 0.5;
 // not tell.
 constexpr double far_too_much = 1, far_too_much_of_rubber = 10; // of bodies that are nearly incompressible
 constexpr GO few_changes = 5;
+// A coarser mesh chooses where a choice has much overshoot, and in any case from the patience-th on. Its choices end after most_coarse, or
+// where most_idle_coarse on end have not fewer changes than any before.
+constexpr int patience = 4, most_coarse = 25, most_idle_coarse = 3;
 // Newton stands at kinks after so many short steps. Newton creeps where k steps, two or more, leave more than left_per_step^k of the way.
 constexpr int most_short_steps = 3;
 constexpr double left_per_step = 0.5;
@@ -38,7 +41,8 @@ constexpr int most_confirmations = 5; // of states where Newton has settled
 // 1e-2 costs thin bodies half a step. On these the residual needs up to twice the iterations of the error. What the multipliers of
 // the last rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
 constexpr double forcing = 5e-3, rough_error = 2e-4;
-constexpr int most_updates = 2; // of multipliers at the end, even if pressures miss their tolerance then
+constexpr double coarse_error = 1e-8; // the same where a coarser mesh chooses: it would learn what a solve leaves
+constexpr int most_updates = 2;       // of multipliers at the end, even if pressures miss their tolerance then
 // Steps of a confirmed active set that leave more than half of F, one after the other, while slip in space turns.
 constexpr int most_idle_turns = 4;
 constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
@@ -75,16 +79,18 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
   most_idle_ = then == Then::nothing ? most_changes_tried : most_changes;
 }
 
-void ActiveSetStage::starts_predicted(const FoundBy coarser)
+void ActiveSetStage::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
 {
   predicted_ = rubs_ ? FoundBy::choices : coarser;
-  newton_is_next_ = predicted_ == FoundBy::newton;
+  if (!rubs_) make_coarse_ = std::move(coarse_choice);
+  newton_is_next_ = predicted_ == FoundBy::newton && !make_coarse_;
 }
 
 FoundBy ActiveSetStage::found_by() const
 {
   if (!rubs_ && path_ != Path::ahead) return FoundBy::interior_path;
-  return newton_was_tried_ ? FoundBy::newton : FoundBy::choices;
+  if (newton_was_tried_) return FoundBy::newton;
+  return coarse_choices_ > 0 ? FoundBy::coarse_choices : FoundBy::choices;
 }
 
 bool ActiveSetStage::resume(const NewtonGroup &from, const solver::NewtonProgress &newton)
@@ -155,8 +161,12 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     if (confirmed_) return Verdict::converged;
     if (idle_steps_ > (turns_ ? most_idle_turns : 0)) return Verdict::over;
     rough_ = false;
+  } else if (coarse_) {
+    if (!choose_by_coarse_mesh(u)) return give_up(u);
   } else if (!is_new_choice() || !may_settle()) {
-    return give_up(); // in circles, or too slow
+    return give_up(u); // in circles, or too slow
+  } else if (is_for_coarse_mesh() && begin_coarse_choices(u)) {
+    return Verdict::go_on;
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
   }
@@ -204,9 +214,47 @@ bool ActiveSetStage::may_settle()
   return idle_ <= most_idle_;
 }
 
-/// Newton goes on from the start, or the interior-point method once it has begun; where that has been, Newton from here.
-ActiveSetStage::Verdict ActiveSetStage::give_up()
+/// Whether it is time for choices by a coarser mesh.
+bool ActiveSetStage::is_for_coarse_mesh() const
 {
+  const bool was_needed = predicted_ && *predicted_ != FoundBy::choices; // more than choices by pressures, there
+  return was_needed || steps_ >= patience || choice_->overshoot > much * most_overshoot_;
+}
+
+/// From here on a coarser mesh chooses, if there is one that can. @return whether it has chosen
+bool ActiveSetStage::begin_coarse_choices(const Vector &u)
+{
+  if (!make_coarse_ || steps_ == 0 || path_ != Path::ahead) return false;
+  coarse_ = std::exchange(make_coarse_, {})(iterate_);
+  if (!coarse_) return false;
+  idle_ = 0;
+  fewest_changes_ = 0;
+  return choose_by_coarse_mesh(u);
+}
+
+/// The next choice by the coarser mesh. Where it finds none, or makes no headway, it chooses no more.
+bool ActiveSetStage::choose_by_coarse_mesh(const Vector &u)
+{
+  const GO changes = choice_->changes;
+  idle_ = fewest_changes_ > 0 && changes >= fewest_changes_ ? idle_ + 1 : 0;
+  fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
+  auto chosen = coarse_choices_ < most_coarse && idle_ <= most_idle_coarse ? coarse_->choose(iterate_, *choice_, u)
+                                                                           : std::nullopt;
+  if (!chosen) {
+    coarse_.reset();
+    return false;
+  }
+  choice_ = std::move(chosen);
+  ++coarse_choices_;
+  rough_ = true;
+  return true;
+}
+
+/// The coarser mesh chooses, if it has not yet. Else Newton goes on from the start, or the interior-point method once it has begun; where
+/// that has been, Newton from here.
+ActiveSetStage::Verdict ActiveSetStage::give_up(const Vector &u)
+{
+  if (begin_coarse_choices(u)) return Verdict::go_on;
   if (path_ == Path::behind) return Verdict::over;
   if (path_ == Path::ahead)
     newton_is_next_ = true;
@@ -303,6 +351,7 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
 solver::Accuracy ActiveSetStage::wanted() const
 {
   double rough = 0;
+  if (rough_ && coarse_) return {enough * target_ / norm_, coarse_error};
   if (rough_)
     rough = forcing * std::min(scale_, norm_);
   else if (turns_)
@@ -333,7 +382,7 @@ ActiveSetStage::Verdict ActiveSetStage::judged(const NewtonGroup &at)
   if (steps_ == 0) {
     start_.assign(u);
     start_dual_ = iterate_.dual();
-    if (predicted_ == FoundBy::interior_path && path_ == Path::ahead) take_path(u);
+    if (predicted_ == FoundBy::interior_path && !make_coarse_ && path_ == Path::ahead) take_path(u);
     if (newton_is_next_ || path_ == Path::on_it) return Verdict::go_on;
   } else {
     Vector F(u.getMap());
@@ -394,27 +443,6 @@ ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direct
   ++group.context().steps;
   ++steps_;
   return Step::full;
-}
-
-// After a multiplier update -----------------------------------------------------------------------------------------------
-
-SameActiveSet::Verdict SameActiveSet::judge(const NewtonGroup &at)
-{
-  return proposed_ || at.getNormF() <= at.context().target_residual ? Verdict::over : Verdict::go_on;
-}
-
-SameActiveSet::Step SameActiveSet::propose(NewtonGroup &group, Vector &direction)
-{
-  if (std::exchange(proposed_, true)) return Step::none;
-  const Vector &F = solver::tpetra(group.getF());
-  Vector G(F.getMap());
-  iterate_.active_set_gradient(solver::tpetra(group.getX()), F, G); // (5.6)
-  const auto solved =
-      solver::solve_for_direction(group.context(), G, direction, 0.1 * group.context().target_residual / G.norm2());
-  if (!solved.converged || !(direction.dot(F) > 0)) return Step::none;
-  direction.scale(-1.);
-  ++group.context().steps;
-  return Step::search;
 }
 
 } // namespace rpc::analysis

@@ -103,6 +103,15 @@ Prediction Predictor::predict(const Problem &fine, const Step &step, const Memor
 namespace
 {
 
+/// Choices of a fine mesh's states by a coarser mesh, where that is small.
+MakeCoarseChoice choice_by(const std::shared_ptr<const Problem> &coarse, const Step &step, const Problem &fine)
+{
+  if (!CoarseChoice::is_small(*coarse)) return {};
+  return [coarse, dirichlet = step.elastic.dirichlet, &fine](const contact::Iterate &iterate) {
+    return CoarseChoice::make(*coarse, dirichlet, fine.discretization(), iterate);
+  };
+}
+
 /// What a solution on a coarser mesh took, after what still coarser ones did.
 std::vector<LevelWork> work_of(const StepSolution &s, const double start)
 {
@@ -128,7 +137,8 @@ Prediction Predictor::from_rest(const Problem &fine, const Step &step)
       contact::with_weightless(coarse.state, coarse.step.contact, problem.discretization(), problem.contact_sides());
   return {contact::interpolated(*coarser_->to_fine, coarse.step.contact, state, step.contact,
                                 fine.discretization().owned_dofs),
-          "", needed_after(coarse, level_), work_of(coarse, start)};
+          "", needed_after(coarse, level_), work_of(coarse, start),
+          choice_by(history.shared_problem(), coarse.step, fine)};
 }
 
 /// A later step: what it changes.                                                                                (11.5)
@@ -161,7 +171,8 @@ Prediction Predictor::from_last(const Problem &fine, const Step &step, const Mem
   };
   predicted.pressure = changed(*now.pressure, *before.pressure, *last.pressure);
   if (!last.tangential.is_null()) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
-  return {state_of(step.contact, predicted), "", needed_after(coarse, level_), work_of(coarse, start)};
+  return {state_of(step.contact, predicted), "", needed_after(coarse, level_), work_of(coarse, start),
+          choice_by(history.shared_problem(), coarse.step, fine)};
 }
 
 } // namespace rpc::analysis

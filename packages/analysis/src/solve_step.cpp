@@ -4,6 +4,7 @@
 
 #include "rpc/analysis/active_set.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/analysis/same_active_set.hpp"
 #include "rpc/contact/energies.hpp"
 #include "rpc/core/timed.hpp"
 
@@ -24,10 +25,16 @@ constexpr const char *in_want_of_friction =
     "; without friction that follows the pressures the load moves the body, and no pressures were found that hold it: "
     "raise the friction or what presses the body on the foundation, lower the load, or prescribe a displacement";
 
+/// What a coarser mesh that predicted the start tells of the way from there.
+struct PredictedBy {
+  std::optional<FoundBy> found_by; // nothing: there was none
+  MakeCoarseChoice coarse_choice;
+};
+
 Prediction predict(Iterate &iterate, Vector &u, const Starts &starts);
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
-                      const StepOptions &options, int iteration, bool previous_confirmed,
-                      const std::optional<FoundBy> &predicted, const Progress &progress);
+                      const StepOptions &options, int iteration, bool previous_confirmed, const PredictedBy &predicted,
+                      const Progress &progress);
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state);
@@ -44,7 +51,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
   const auto u = rcp(new Vector(*step.elastic.dirichlet.value, Teuchos::Copy)); // seen from the iterate's origin
   Iterate iterate(step.elastic, step.contact, state.hessian());
   if (step.support.by_contact_only) iterate.hold_by_contact(); // (9.8)
-  std::optional<FoundBy> predicted;                            // where a coarser mesh predicts the start
+  PredictedBy predicted;
   const auto counts_before = state.linear().counts();
   solver::check_nox_parameters(iterate, state.linear(), u, options.newton);
   {
@@ -52,7 +59,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
     Prediction prediction = predict(iterate, *u, starts); // (5.11), (11.5)
     s.not_predicted = std::move(prediction.reason);
     s.levels = std::move(prediction.work);
-    if (prediction.start) predicted = prediction.found_by;
+    if (prediction.start) predicted = {prediction.found_by, std::move(prediction.coarse_choice)};
   }
   {
     const Timed timer("solve", s.solve_seconds);
@@ -72,6 +79,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       uzawa.residuals = judge(problem, step, iterate, s.state, state); // paper (8); (5.2) - (5.5)
       uzawa.newton_iterations.push_back(found.steps);
       s.line_search_steps += found.line_search_steps;
+      s.coarse_choices += found.coarse_choices;
       s.found_by = std::max(s.found_by, found.found_by);
       ++uzawa.iterations;
       if (progress.uzawa) progress.uzawa(uzawa);
@@ -169,7 +177,7 @@ Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOpt
     const Iterate::Dual dual = iterate.dual();
     ActiveSetStage stage(iterate, active_set_tolerances(options), ActiveSetStage::Then::nothing);
     const auto tried = run(&stage, most);
-    if (stage.confirmed()) return {tried.converged, tried.steps, tried.reason, true, 0};
+    if (stage.confirmed()) return {tried.converged, tried.steps, tried.reason, true};
     steps = tried.steps;
     u.assign(start);
     iterate.take_dual(dual);
@@ -177,12 +185,12 @@ Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOpt
   }
   iterate.follow_bounds();
   const auto result = run(nullptr, most);
-  return {result.converged, steps + result.steps, result.reason, false, result.steps, true};
+  return {result.converged, steps + result.steps, result.reason, false, result.steps, 0, true};
 }
 
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
                       const StepOptions &options, const int iteration, const bool previous_confirmed,
-                      const std::optional<FoundBy> &predicted, const Progress &progress)
+                      const PredictedBy &predicted, const Progress &progress)
 {
   const int all = options.newton.max_iterations;
   const auto run = [&](solver::FirstStage *const stage, const int most_steps) {
@@ -204,13 +212,14 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
   ActiveSetTolerances tolerances = active_set_tolerances(options);
   tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
   ActiveSetStage stage(iterate, tolerances);
-  if (predicted) stage.starts_predicted(*predicted);
+  if (predicted.found_by) stage.starts_predicted(*predicted.found_by, predicted.coarse_choice);
   const auto result = run(&stage, all);
   return {result.converged,
           result.steps,
           result.reason,
           stage.confirmed(),
           result.steps - stage.steps(),
+          stage.coarse_choices(),
           friction && !stage.confirmed(),
           stage.found_by()};
 }

@@ -1,9 +1,13 @@
 #include "rpc/analysis/active_set.hpp"
 
+#include "rpc/analysis/same_active_set.hpp"
+
 #include "beam.hpp"
 
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+
 #include <limits>
 #include <utility>
 #include <vector>
@@ -249,8 +253,8 @@ TEST(ActiveSet, BeginsWithWhatFoundTheStatesOfTheMeshThatPredicts)
   int steps[3] = {0, 0, 0};
   for (const double gap : {1e-3, 3e-3, 1e-2}) {
     contact::StateCounts states[3];
-    for (const FoundBy coarser : {FoundBy::choices, FoundBy::newton, FoundBy::interior_path}) {
-      const int k = static_cast<int>(coarser);
+    for (int k = 0; k < 3; ++k) {
+      const FoundBy coarser = std::array{FoundBy::choices, FoundBy::newton, FoundBy::interior_path}[k];
       rpc::test::PressedBox strip({{0, 0}, {1, 0.02}, {100, 1}, {2, 1}}, {1000, 0.3}, {"left"}, ScalarField(-1e-3),
                                   flat(inf, gap));
       analysis::ActiveSetStage stage(*strip.iterate, {});

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sparse_factor.hpp"
+#include "rpc/solver/sparse_factor.hpp"
 
 namespace rpc::solver
 {

@@ -3,7 +3,7 @@
 #include "low_rank_update.hpp"
 #include "rpc/core/tpetra.hpp"
 #include "rpc/solver/mesh_multigrid.hpp"
-#include "sparse_factor.hpp"
+#include "rpc/solver/sparse_factor.hpp"
 
 #include <memory>
 #include <optional>

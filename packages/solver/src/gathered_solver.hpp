@@ -1,7 +1,7 @@
 #pragma once
 
 #include "rpc/core/xpetra.hpp"
-#include "sparse_factor.hpp"
+#include "rpc/solver/sparse_factor.hpp"
 
 #include <MueLu_SmootherPrototype.hpp>
 #include <memory>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "rpc/algebra/updated_operator.hpp"
-#include "sparse_factor.hpp"
+#include "rpc/solver/sparse_factor.hpp"
 
 #include <memory>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "sparse_factor.hpp"
+#include "rpc/solver/sparse_factor.hpp"
 
 #include "band_factor.hpp"
 #ifdef RPC_HAVE_MUMPS

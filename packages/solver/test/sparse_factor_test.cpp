@@ -1,6 +1,6 @@
 #include "../src/band_factor.hpp"
-#include "../src/sparse_factor.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/solver/sparse_factor.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_Core.hpp>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/analysis/coarse_choice.hpp"
 #include "rpc/analysis/solve_step.hpp"
 #include "rpc/contact/iterate.hpp"
 #include "rpc/solver/first_stage.hpp"
@@ -27,9 +28,9 @@ ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 /// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.7), (5.8), (5.9)
 ///
 /// Converges where a choice confirms the last active set, which is then the solution's, up to the share k/r that the penalty leaves
-/// to a multiplier update. When an active set comes back or where choices make no headway, as on thin bodies, (5.8a), Newton's directions
-/// with their line search go on, and where these creep, (5.9a), an interior-point method, (5.15) to (5.20). With friction Newton alone
-/// follows.
+/// to a multiplier update. On thin bodies, whose choices by pressures overshoot, a coarser mesh of the body chooses, (5.8b). When an active
+/// set comes back or where choices make no headway, (5.8a), Newton's directions with their line search go on, and where these creep, (5.9a),
+/// an interior-point method, (5.15) to (5.20). With friction Newton alone follows.
 class ActiveSetStage : public solver::FirstStage
 {
 public:
@@ -46,11 +47,14 @@ public:
   /// changes than before, with good solves. doc/theory.md (5.9a)
   bool resume(const solver::NewtonGroup &from, const solver::NewtonProgress &newton) override;
 
-  /// The start is a coarser mesh's solution. What led to its states makes the first steps, except with friction.
-  void starts_predicted(FoundBy coarser);
+  /// The start is a coarser mesh's solution. What led to its states makes the first steps, or choices by the coarser mesh where
+  /// pressures were not enough; except with friction.
+  /// @param coarse_choice  empty: there are no such choices
+  void starts_predicted(FoundBy coarser, MakeCoarseChoice coarse_choice = {});
   FoundBy found_by() const;                     ///< what has been at work so far
   bool confirmed() const { return confirmed_; } ///< the active set is the solution's
   int steps() const { return steps_; }
+  int coarse_choices() const { return coarse_choices_; }
 
 private:
   Verdict judged(const solver::NewtonGroup &at);
@@ -58,8 +62,11 @@ private:
   Verdict choose(const Vector &u);
   bool is_new_choice();
   bool may_settle();
+  bool is_for_coarse_mesh() const;
+  bool begin_coarse_choices(const Vector &u);
+  bool choose_by_coarse_mesh(const Vector &u);
   solver::Accuracy wanted() const;
-  Verdict give_up();
+  Verdict give_up(const Vector &u);
   void take_path(const Vector &u);
   void take_over(const Vector &u, int most);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
@@ -81,7 +88,10 @@ private:
   bool turns_ = false;                             // and in space: the branches of an active set are not linear
   bool confirmed_ = false, decided_ = false;
   bool resumed_ = false;
-  std::optional<FoundBy> predicted_; // what to begin with where a coarser mesh predicts the start
+  std::optional<FoundBy> predicted_;     // what to begin with where a coarser mesh predicts the start
+  MakeCoarseChoice make_coarse_;         // empty: there are none, or they have begun
+  std::unique_ptr<CoarseChoice> coarse_; // null: pressures choose
+  int coarse_choices_ = 0;
   bool newton_is_next_ = false, newton_was_tried_ = false;
   int confirmations_ = 0; // of where Newton has settled
   Then then_;
@@ -98,21 +108,6 @@ private:
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried
-};
-
-/// After a multiplier update: one step to the minimum for the active set that the last minimization ended on, as far as the
-/// functional falls on the way there. That is a better guess than the states of lambda + r v at the old v. doc/theory.md (5.6)
-class SameActiveSet : public solver::FirstStage
-{
-public:
-  explicit SameActiveSet(const contact::Iterate &iterate) : iterate_(iterate) {}
-
-  Verdict judge(const solver::NewtonGroup &at) override;
-  Step propose(solver::NewtonGroup &group, Vector &direction) override;
-
-private:
-  const contact::Iterate &iterate_;
-  bool proposed_ = false;
 };
 
 } // namespace rpc::analysis

@@ -89,6 +89,7 @@ public:
                      const std::function<void(const Problem &, const Step &)> &now);
 
   const Problem &problem() const { return *problem_; }
+  const std::shared_ptr<const Problem> &shared_problem() const { return problem_; } ///< to keep it for longer
   const Memory *memory() const { return kept_.memory ? &*kept_.memory : nullptr; }
   const Memory *before() const { return kept_.before ? &*kept_.before : nullptr; } ///< of the step before
   const StepRecord &last() const { return last_; }                                 ///< of advance()

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/analysis/coarse_choice.hpp"
 #include "rpc/analysis/solver_state.hpp"
 #include "rpc/analysis/uzawa.hpp"
 #include "rpc/contact/iterate.hpp"
@@ -55,6 +56,7 @@ struct Prediction {
   std::string reason;                  ///< why there is none
   FoundBy found_by = FoundBy::choices; ///< on the coarser mesh: what will be needed on the finer one
   std::vector<LevelWork> work;         ///< on the meshes that were asked, from the coarsest
+  MakeCoarseChoice coarse_choice;      ///< by the coarser mesh, which it keeps; empty: there is none
 };
 
 /// Where a step may start from.
@@ -79,6 +81,7 @@ struct StepSolution {
   solver::LinearSolverCounts linear; ///< of this step
   FoundBy found_by = FoundBy::choices;
   int line_search_steps = 0;                        ///< Newton's, where the active-set iteration was not enough
+  int coarse_choices = 0;                           ///< steps to states that a coarser mesh chose
   std::vector<LevelWork> levels;                    ///< coarser meshes that predicted the solution, from the coarsest
   std::string not_predicted;                        ///< why no coarser mesh did; empty if one did
   double prediction_seconds = 0, solve_seconds = 0; ///< solve: without set-ups of multigrid

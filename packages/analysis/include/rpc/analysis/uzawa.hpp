@@ -27,9 +27,9 @@ Teuchos::ParameterList valid_uzawa_parameters();
 /// @throws rpc::Error (bad_input) on anything out of range
 UzawaOptions uzawa_options(const Teuchos::ParameterList &list);
 
-/// What found the states of contact: choices of states, after these Newton's method, or after that the interior-point method. With
-/// friction it says choices.
-enum class FoundBy { choices, newton, interior_path };
+/// What found the states of contact: choices of states by pressures, after these choices by a coarser mesh, after those Newton's method, or
+/// after that the interior-point method. With friction it says choices.
+enum class FoundBy { choices, coarse_choices, newton, interior_path };
 
 /// What came out of one minimization of the smoothed functional.
 struct Minimization {
@@ -38,6 +38,7 @@ struct Minimization {
   std::string reason;                ///< why not, if not
   bool active_set_confirmed = false; ///< u is the minimum for the iterate's active set, whose pressures obey the law
   int line_search_steps = 0;         ///< of the steps, those of Newton's with its line search
+  int coarse_choices = 0;            ///< steps to states that a coarser mesh chose
   bool bounds_follow =
       false; ///< friction's bounds were given: they follow the pressures from one iteration to the next
   FoundBy found_by = FoundBy::choices;

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "rpc/analysis/coarse_model.hpp"
+#include "rpc/analysis/problem.hpp"
+#include "rpc/contact/iterate.hpp"
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace rpc::analysis
+{
+
+/// Choices of contact states by a coarser mesh of the body, see CoarseModel: on thin bodies pressures at single points tell little of the
+/// states, for the body bends far under small forces. Rank 0 has the model. Without friction.
+class CoarseChoice
+{
+public:
+  /// Whether rank 0 can hold the stiffness of a mesh.
+  static bool is_small(const Problem &coarse);
+  /// Null where the factors of the coarse mesh's stiffness are not cheap. Collective.
+  /// @param coarse  small   @param dirichlet  which unknowns of the coarse mesh are prescribed
+  static std::unique_ptr<CoarseChoice> make(const Problem &coarse, const fem::DirichletDofs &dirichlet,
+                                            const fem::Discretization &fine, const contact::Iterate &iterate);
+
+  /// The next choice, at the minimum for the present active set. Nothing where the model finds none. Collective.
+  /// @param present  what pressures choose there, Iterate::choose_active_set
+  std::optional<contact::ActiveSetChoice> choose(const contact::Iterate &iterate,
+                                                 const contact::ActiveSetChoice &present, const Vector &u);
+
+private:
+  CoarseChoice(RCP<const Comm> comm, std::vector<LO> points, std::optional<CoarseModel> model);
+
+  RCP<const Comm> comm_;
+  std::vector<LO> points_;           // that take part, of this rank
+  std::optional<CoarseModel> model_; // on rank 0
+};
+
+/// By a coarser mesh, see make(). Collective.
+using MakeCoarseChoice = std::function<std::unique_ptr<CoarseChoice>(const contact::Iterate &)>;
+
+} // namespace rpc::analysis
