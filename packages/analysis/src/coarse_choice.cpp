@@ -20,14 +20,13 @@ constexpr Tpetra::global_size_t most_unknowns = 60'000; // of the coarse mesh, w
 struct PointRows {
   std::vector<int> length, dof; // of each point, and the unknowns one point after the other
   std::vector<double> value;    // with them
-  std::vector<double> weight, stiffness, yield, hardening, compliance;
+  std::vector<double> weight, stiffness, law;
 };
 
 PointRows gathered(const Comm &comm, const PointRows &mine)
 {
   const auto all = [&comm](const auto &values) { return gathered_by_root(comm, values); };
-  return {all(mine.length),    all(mine.dof),   all(mine.value),     all(mine.weight),
-          all(mine.stiffness), all(mine.yield), all(mine.hardening), all(mine.compliance)};
+  return {all(mine.length), all(mine.dof), all(mine.value), all(mine.weight), all(mine.stiffness), all(mine.law)};
 }
 
 /// (unknowns of all ranks) 1 where prescribed, on every rank.
@@ -61,6 +60,17 @@ solver::SymmetricEntries lower_half(const Comm &comm, const CrsMatrix &K)
   return {gathered_by_root(comm, mine.row), gathered_by_root(comm, mine.column), gathered_by_root(comm, mine.value)};
 }
 
+/// (points of this rank)
+DeviceView<contact::Foundation *> laws(const contact::ContactNodes &points)
+{
+  const contact::ContactNodes c = points;
+  const DeviceView<contact::Foundation *> law("rpc::analysis::law", c.size());
+  Kokkos::parallel_for(
+      "rpc::analysis::law", device_range(c.size()), KOKKOS_LAMBDA(const LO i) { law(i) = c.law(i); });
+  Kokkos::fence();
+  return law;
+}
+
 /// The displacements of this rank's points along their directions, by the coarse unknowns that are not prescribed.
 PointRows rows_of(const std::vector<LO> &points, const CrsMatrix &interpolation, const std::vector<char> &prescribed,
                   const contact::Iterate &iterate)
@@ -70,8 +80,8 @@ PointRows rows_of(const std::vector<LO> &points, const CrsMatrix &interpolation,
   const Map &coarse_nodes = *interpolation.getColMap();
   const auto node = to_host(c.node);
   const auto direction = to_host(c.direction);
-  const auto weight = to_host(c.weight), stiffness = to_host(iterate.own_stiffness()), yield = to_host(c.law.yield),
-             hardening = to_host(c.law.hardening), compliance = to_host(c.law.compliance);
+  const auto weight = to_host(c.weight), stiffness = to_host(iterate.own_stiffness());
+  const auto law = to_host(laws(c));
   PointRows rows;
   for (const LO i : points) {
     const std::size_t before = rows.dof.size();
@@ -86,9 +96,7 @@ PointRows rows_of(const std::vector<LO> &points, const CrsMatrix &interpolation,
     rows.length.push_back(static_cast<int>(rows.dof.size() - before));
     rows.weight.push_back(weight(i));
     rows.stiffness.push_back(stiffness(i));
-    rows.yield.push_back(yield(i));
-    rows.hardening.push_back(hardening(i));
-    rows.compliance.push_back(compliance(i));
+    append(law(i), rows.law);
   }
   return rows;
 }
@@ -99,7 +107,7 @@ CoarseModel model_of(const int size, const solver::SymmetricEntries &K, PointRow
   std::vector<ModelPoint> points;
   for (std::size_t i = 0; i < rows.length.size(); ++i) {
     columns.begin.push_back(columns.begin.back() + rows.length[i]);
-    points.push_back({rows.weight[i], rows.stiffness[i], {rows.yield[i], rows.hardening[i], rows.compliance[i]}});
+    points.push_back({rows.weight[i], rows.stiffness[i], contact::foundation_of(rows.law, i)});
   }
   columns.row = std::move(rows.dof);
   columns.value = std::move(rows.value);

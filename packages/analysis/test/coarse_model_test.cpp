@@ -10,14 +10,16 @@
 #include <optional>
 #include <random>
 
+namespace coarse_model_test
+{
+namespace
+{
+
 using namespace rpc;
 using analysis::CoarseModel;
 using analysis::ModelPoint;
 using analysis::ModelStates;
 using contact::State;
-
-namespace
-{
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 using Matrix = Teuchos::SerialDenseMatrix<int, double>;
@@ -116,8 +118,6 @@ std::vector<double> some_penetrations(const int n, std::mt19937 &random)
   for (double &x : v) x = number(random);
   return v;
 }
-
-} // namespace
 
 TEST(CoarseModel, FindsTheStatesOfItsOwnProblem)
 {
@@ -230,3 +230,6 @@ TEST(CoarseModel, NeedsTheUnknownsOfAPointInOneCell)
   ends.value = {0.5, 0.5};
   EXPECT_FALSE(CoarseModel(n, bar(n, 1), ends, {{1, 1, {inf}}}).is_cheap());
 }
+
+} // namespace
+} // namespace coarse_model_test

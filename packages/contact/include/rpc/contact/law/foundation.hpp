@@ -2,6 +2,9 @@
 
 #include <Kokkos_Core.hpp>
 
+#include <cstddef>
+#include <vector>
+
 /// The foundation at one contact point, and its smoothing by the modified Lagrangian.      doc/theory.md, section 3
 ///
 /// v = u_nu - g is penetration [m]; p >= 0 is the contact pressure on the body [Pa]. The foundation is a spring of stiffness
@@ -25,6 +28,18 @@ struct Foundation {
   double hardening = 0;  ///< H >= 0 [Pa/m]
   double compliance = 0; ///< c = 1/k >= 0 [m/Pa]
 };
+
+/// The law as numbers, one point after the other, for messages between ranks.
+constexpr int numbers_of_law = 3;
+inline void append(const Foundation &f, std::vector<double> &numbers)
+{
+  numbers.insert(numbers.end(), {f.yield, f.hardening, f.compliance});
+}
+inline Foundation foundation_of(const std::vector<double> &numbers, const std::size_t point)
+{
+  const double *const at = numbers.data() + numbers_of_law * point;
+  return {at[0], at[1], at[2]};
+}
 
 /// The foundation never gives way. Numbers that would overflow in products count as infinite.
 KOKKOS_INLINE_FUNCTION bool is_rigid(const double xi)
