@@ -163,8 +163,12 @@ std::unique_ptr<CoarseChoice> CoarseChoice::make(const Problem &coarse, const fe
   const auto K = lower_half(*comm, *coarse.stiffness()->copy());
   std::optional<CoarseModel> model;
   if (comm->getRank() == 0) {
-    model.emplace(model_of(size, K, rows));
-    if (!model->is_cheap()) model.reset();
+    try {
+      model.emplace(model_of(size, K, rows));
+      if (!model->is_cheap()) model.reset();
+    } catch (const std::bad_alloc &) { // there are other ways
+      model.reset();
+    }
   }
   if (!told_by_root(*comm, model.has_value())) return nullptr;
   return std::unique_ptr<CoarseChoice>(new CoarseChoice(comm, std::move(points), std::move(model)));

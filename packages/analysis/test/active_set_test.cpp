@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -275,6 +276,26 @@ TEST(ActiveSet, BeginsWithWhatFoundTheStatesOfTheMeshThatPredicts)
   }
   EXPECT_LT(steps[1], steps[0]);
   EXPECT_LT(steps[2], steps[0]);
+}
+
+/// Whatever the coarser mesh needed, the states are found without its choices where its factors are not cheap.
+TEST(ActiveSet, GoesOnWhereTheCoarserMeshCannotChoose)
+{
+  using analysis::FoundBy;
+  for (const FoundBy coarser : {FoundBy::choices, FoundBy::coarse_choices, FoundBy::newton, FoundBy::interior_path}) {
+    rpc::test::PressedBox strip({{0, 0}, {1, 0.02}, {100, 1}, {2, 1}}, {1000, 0.3}, {"left"}, ScalarField(-1e-3),
+                                flat(inf, 1e-3));
+    analysis::ActiveSetStage stage(*strip.iterate, {});
+    int asked = 0;
+    stage.starts_predicted(coarser, [&](const contact::Iterate &) {
+      ++asked;
+      return std::unique_ptr<analysis::CoarseChoice>();
+    });
+    EXPECT_TRUE(rpc::test::minimize(strip, {}, &stage).converged);
+    EXPECT_TRUE(stage.confirmed());
+    EXPECT_EQ(asked, 1);
+    EXPECT_EQ(stage.coarse_choices(), 0);
+  }
 }
 
 TEST(ActiveSet, OfTheBeamIsChosen)
