@@ -1,6 +1,8 @@
 #include "rpc/analysis/coarse_choice.hpp"
 
 #include "rpc/core/device_values.hpp"
+#include "rpc/core/error.hpp"
+#include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/fem/interpolation.hpp"
 
@@ -114,25 +116,22 @@ CoarseModel model_of(const int size, const solver::SymmetricEntries &K, PointRow
   return {size, K, std::move(columns), std::move(points)};
 }
 
+/// Where it does, states are found without the model.
+template <class Work>
+void unless_memory_runs_out(const Work &work)
+{
+  try {
+    work();
+  } catch (const std::bad_alloc &) { // work has left its result empty
+  }
+}
+
 /// What rank 0 finds, on all ranks.
 bool told_by_root(const Comm &comm, const bool found)
 {
   int told = found ? 1 : 0;
   Teuchos::broadcast(comm, 0, &told);
   return told != 0;
-}
-
-/// (points of this rank) The penetrations of an iterate's points.
-DeviceView<double *> penetrations(const contact::ContactNodes &points, const Vector &u)
-{
-  const contact::ContactNodes c = points;
-  const DeviceView<double *> v("rpc::analysis::penetration", c.size());
-  const auto x = device_read(u);
-  Kokkos::parallel_for(
-      "rpc::analysis::penetration", device_range(c.size()),
-      KOKKOS_LAMBDA(const LO i) { v(i) = contact::penetration(c, i, x); });
-  Kokkos::fence();
-  return v;
 }
 
 } // namespace
@@ -162,14 +161,10 @@ std::unique_ptr<CoarseChoice> CoarseChoice::make(const Problem &coarse, const fe
   const auto rows = gathered(*comm, rows_of(points, *fem::interpolation(d, fine), prescribed, iterate));
   const auto K = lower_half(*comm, *coarse.stiffness()->copy());
   std::optional<CoarseModel> model;
-  if (comm->getRank() == 0) {
-    try {
-      model.emplace(model_of(size, K, rows));
-      if (!model->is_cheap()) model.reset();
-    } catch (const std::bad_alloc &) { // there are other ways
-      model.reset();
-    }
-  }
+  on_root(*comm, ExitCode::internal_error, [&] {
+    unless_memory_runs_out([&] { model.emplace(model_of(size, K, rows)); });
+    if (model && !model->is_cheap()) model.reset();
+  });
   if (!told_by_root(*comm, model.has_value())) return nullptr;
   return std::unique_ptr<CoarseChoice>(new CoarseChoice(comm, std::move(points), std::move(model)));
 }
@@ -177,7 +172,7 @@ std::unique_ptr<CoarseChoice> CoarseChoice::make(const Problem &coarse, const fe
 std::optional<contact::ActiveSetChoice> CoarseChoice::choose(const contact::Iterate &iterate,
                                                              const contact::ActiveSetChoice &present, const Vector &u)
 {
-  const auto v = to_host(penetrations(iterate.functional().points().points, u)), p = to_host(present.pressure);
+  const auto v = to_host(contact::penetrations(iterate.functional().points().points, u)), p = to_host(present.pressure);
   const auto picked = [&](const auto &values) {
     std::vector<double> mine;
     for (const LO i : points_) mine.push_back(values(i));
@@ -185,13 +180,12 @@ std::optional<contact::ActiveSetChoice> CoarseChoice::choose(const contact::Iter
   };
   auto all_v = picked(v), all_p = picked(p);
   std::optional<ModelStates> found;
-  if (model_) {
-    try {
+  on_root(*comm_, ExitCode::internal_error, [&] {
+    unless_memory_runs_out([&] {
       model_->learn(std::move(all_v), std::move(all_p));
       found = model_->choose();
-    } catch (const std::bad_alloc &) { // there are other ways
-    }
-  }
+    });
+  });
   if (!told_by_root(*comm_, found.has_value())) return {};
   std::vector<int> all_states; // for messages, which know no State
   std::vector<double> all_pressures;

@@ -31,13 +31,6 @@ std::string no_prediction(const fem::Discretization &d, const contact::ContactNo
   return "";
 }
 
-/// What a coarser mesh's solution tells to begin with on this one.
-FoundBy needed_after(const StepSolution &coarse, const int level)
-{
-  const bool tells = level == 1 && coarse.step.contact.num_total >= fewest_points_telling;
-  return tells ? coarse.found_by : FoundBy::choices;
-}
-
 StepOptions rough(StepOptions options)
 {
   options.newton.residual_tolerance = options.uzawa.tolerance = options.prediction.tolerance;
@@ -103,13 +96,17 @@ Prediction Predictor::predict(const Problem &fine, const Step &step, const Memor
 namespace
 {
 
-/// Choices of a fine mesh's states by a coarser mesh, where that is small.
-MakeCoarseChoice choice_by(const std::shared_ptr<const Problem> &coarse, const Step &step, const Problem &fine)
+/// What a coarser mesh's solution tells of the way on this one, and choices of its states by that mesh where that is small.
+PredictedBy told_by(const StepSolution &solution, const std::shared_ptr<const Problem> &coarse, const int level,
+                    const Problem &fine)
 {
-  if (!CoarseChoice::is_small(*coarse)) return {};
-  return [coarse, dirichlet = step.elastic.dirichlet, &fine](const contact::Iterate &iterate) {
-    return CoarseChoice::make(*coarse, dirichlet, fine.discretization(), iterate);
-  };
+  PredictedBy by;
+  if (level == 1 && solution.step.contact.num_total >= fewest_points_telling) by.found_by = solution.found_by;
+  if (CoarseChoice::is_small(*coarse))
+    by.coarse_choice = [coarse, dirichlet = solution.step.elastic.dirichlet, &fine](const contact::Iterate &iterate) {
+      return CoarseChoice::make(*coarse, dirichlet, fine.discretization(), iterate);
+    };
+  return by;
 }
 
 /// What a solution on a coarser mesh took, after what still coarser ones did.
@@ -137,8 +134,7 @@ Prediction Predictor::from_rest(const Problem &fine, const Step &step)
       contact::with_weightless(coarse.state, coarse.step.contact, problem.discretization(), problem.contact_sides());
   return {contact::interpolated(*coarser_->to_fine, coarse.step.contact, state, step.contact,
                                 fine.discretization().owned_dofs),
-          "", needed_after(coarse, level_), work_of(coarse, start),
-          choice_by(history.shared_problem(), coarse.step, fine)};
+          "", told_by(coarse, history.shared_problem(), level_, fine), work_of(coarse, start)};
 }
 
 /// A later step: what it changes.                                                                                (11.5)
@@ -171,8 +167,8 @@ Prediction Predictor::from_last(const Problem &fine, const Step &step, const Mem
   };
   predicted.pressure = changed(*now.pressure, *before.pressure, *last.pressure);
   if (!last.tangential.is_null()) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
-  return {state_of(step.contact, predicted), "", needed_after(coarse, level_), work_of(coarse, start),
-          choice_by(history.shared_problem(), coarse.step, fine)};
+  return {state_of(step.contact, predicted), "", told_by(coarse, history.shared_problem(), level_, fine),
+          work_of(coarse, start)};
 }
 
 } // namespace rpc::analysis

@@ -25,16 +25,10 @@ constexpr const char *in_want_of_friction =
     "; without friction that follows the pressures the load moves the body, and no pressures were found that hold it: "
     "raise the friction or what presses the body on the foundation, lower the load, or prescribe a displacement";
 
-/// What a coarser mesh that predicted the start tells of the way from there.
-struct PredictedBy {
-  std::optional<FoundBy> found_by; // nothing: there was none
-  MakeCoarseChoice coarse_choice;
-};
-
 Prediction predict(Iterate &iterate, Vector &u, const Starts &starts);
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
-                      const StepOptions &options, int iteration, bool previous_confirmed, const PredictedBy &predicted,
-                      const Progress &progress);
+                      const StepOptions &options, int iteration, bool previous_confirmed,
+                      const std::optional<PredictedBy> &predicted, const Progress &progress);
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state);
@@ -51,7 +45,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
   const auto u = rcp(new Vector(*step.elastic.dirichlet.value, Teuchos::Copy)); // seen from the iterate's origin
   Iterate iterate(step.elastic, step.contact, state.hessian());
   if (step.support.by_contact_only) iterate.hold_by_contact(); // (9.8)
-  PredictedBy predicted;
+  std::optional<PredictedBy> predicted;                        // nothing: no coarser mesh predicts the start
   const auto counts_before = state.linear().counts();
   solver::check_nox_parameters(iterate, state.linear(), u, options.newton);
   {
@@ -59,7 +53,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
     Prediction prediction = predict(iterate, *u, starts); // (5.11), (11.5)
     s.not_predicted = std::move(prediction.reason);
     s.levels = std::move(prediction.work);
-    if (prediction.start) predicted = {prediction.found_by, std::move(prediction.coarse_choice)};
+    if (prediction.start) predicted = std::move(prediction.by);
   }
   {
     const Timed timer("solve", s.solve_seconds);
@@ -190,7 +184,7 @@ Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOpt
 
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
                       const StepOptions &options, const int iteration, const bool previous_confirmed,
-                      const PredictedBy &predicted, const Progress &progress)
+                      const std::optional<PredictedBy> &predicted, const Progress &progress)
 {
   const int all = options.newton.max_iterations;
   const auto run = [&](solver::FirstStage *const stage, const int most_steps) {
@@ -212,7 +206,7 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
   ActiveSetTolerances tolerances = active_set_tolerances(options);
   tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
   ActiveSetStage stage(iterate, tolerances);
-  if (predicted.found_by) stage.starts_predicted(*predicted.found_by, predicted.coarse_choice);
+  if (predicted) stage.starts_predicted(predicted->found_by, predicted->coarse_choice);
   const auto result = run(&stage, all);
   return {result.converged,
           result.steps,

@@ -402,4 +402,15 @@ ContactNodes contact_nodes(const fem::Discretization &d, const std::vector<Conta
   return c;
 }
 
+DeviceView<double *> penetrations(const ContactNodes &points, const Vector &u)
+{
+  const ContactNodes c = points;
+  const DeviceView<double *> v("rpc::contact::penetrations", c.size());
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::penetrations", device_range(c.size()), KOKKOS_LAMBDA(const LO i) { v(i) = penetration(c, i, x); });
+  Kokkos::fence();
+  return v;
+}
+
 } // namespace rpc::contact

@@ -11,17 +11,6 @@ namespace rpc::contact
 namespace
 {
 
-/// (points) Penetrations at u.
-DeviceView<double *> penetrations(const ContactNodes &c, const Vector &u)
-{
-  const DeviceView<double *> v("rpc::contact::v", c.size());
-  const auto x = device_read(u);
-  Kokkos::parallel_for(
-      "rpc::contact::penetrations", device_range(c.size()), KOKKOS_LAMBDA(const LO i) { v(i) = penetration(c, i, x); });
-  Kokkos::fence();
-  return v;
-}
-
 /// moves(:, k, :) <- the components of d at the points' nodes, as far as contact sees them: d_i along the direction. [m]
 void take_moves(const ContactNodes &c, const Vector &d, const LO k, const DeviceView<double **> &moves)
 {

@@ -50,13 +50,18 @@ struct LevelWork {
   double seconds = 0; ///< with all coarser ones
 };
 
+/// What a coarser mesh that predicted the start tells of the way from there.
+struct PredictedBy {
+  FoundBy found_by = FoundBy::choices; ///< its states: what will be needed on the finer mesh
+  MakeCoarseChoice coarse_choice;      ///< by that mesh, which it keeps; empty: there is none
+};
+
 /// A start that coarser meshes predict.
 struct Prediction {
   std::optional<contact::ContactState> start;
-  std::string reason;                  ///< why there is none
-  FoundBy found_by = FoundBy::choices; ///< on the coarser mesh: what will be needed on the finer one
-  std::vector<LevelWork> work;         ///< on the meshes that were asked, from the coarsest
-  MakeCoarseChoice coarse_choice;      ///< by the coarser mesh, which it keeps; empty: there is none
+  std::string reason; ///< why there is none
+  PredictedBy by;
+  std::vector<LevelWork> work; ///< on the meshes that were asked, from the coarsest
 };
 
 /// Where a step may start from.

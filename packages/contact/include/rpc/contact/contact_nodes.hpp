@@ -71,6 +71,9 @@ KOKKOS_INLINE_FUNCTION double penetration(const ContactNodes &c, const LO i, con
   return along_direction(c, i, u) - c.free_gap(i);
 }
 
+/// (points) v_i at all nodes; fences [m]. @param u  (owned dofs)
+DeviceView<double *> penetrations(const ContactNodes &points, const Vector &u);
+
 /// e_i = (I - nu_i nu_i^T) u_i - from_i at one node with friction, for kernels [m].                              (12.2)
 template <class U>
 KOKKOS_INLINE_FUNCTION Along slip(const ContactNodes &c, const LO i, const U &u)
