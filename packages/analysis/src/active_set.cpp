@@ -25,8 +25,7 @@ constexpr double most_left = 10, most_left_creeping = 4;
 constexpr int fewest_to_tell = 4;
 // Forces that the law does not admit over those that it does. Bodies of equal sides stay below much; a choice with much counts twice.
 constexpr double much = 0.5;
-// Choices end at once where they are far_too_much and more than few points change. The first one from a start that nothing predicts does
-// not tell.
+// Choices end at once where they are far_too_much and more than few points change, but for the first one where nothing predicts the start.
 constexpr double far_too_much = 1, far_too_much_of_rubber = 10; // of bodies that are nearly incompressible
 constexpr GO few_changes = 5;
 // A coarser mesh chooses where a choice has much overshoot, and in any case from the patience-th on. Its choices end after most_coarse, or
@@ -242,6 +241,7 @@ bool ActiveSetStage::choose_by_coarse_mesh(const Vector &u)
                                                                            : std::nullopt;
   if (!chosen) {
     coarse_.reset();
+    coarse_gave_up_ = true;
     return false;
   }
   choice_ = std::move(chosen);
@@ -250,16 +250,18 @@ bool ActiveSetStage::choose_by_coarse_mesh(const Vector &u)
   return true;
 }
 
-/// The coarser mesh chooses, if it has not yet. Else Newton goes on from the start, or the interior-point method once it has begun; where
-/// that has been, Newton from here.
+/// The coarser mesh chooses, if it has not yet. Where it could not, the interior-point method follows from here, else Newton from the start.
+/// Where that method has begun it goes on; where it has been, Newton does from here.
 ActiveSetStage::Verdict ActiveSetStage::give_up(const Vector &u)
 {
   if (begin_coarse_choices(u)) return Verdict::go_on;
   if (path_ == Path::behind) return Verdict::over;
-  if (path_ == Path::ahead)
-    newton_is_next_ = true;
-  else
+  if (path_ != Path::ahead)
     path_ = Path::on_it;
+  else if (coarse_gave_up_)
+    take_path(u);
+  else
+    newton_is_next_ = true;
   return Verdict::go_on;
 }
 

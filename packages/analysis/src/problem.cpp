@@ -152,14 +152,12 @@ std::shared_ptr<const Problem> Problem::coarser(const double factor, const doubl
     return std::make_shared<Problem>(mesh, model_, t);
   }
   if (!own.box || own.element.order == 2) return nullptr;
-  const auto most_cells = [](const NestedMesh &mesh) {
-    const auto &cells = mesh.discretization().mesh->box->cells;
-    return *std::max_element(cells.begin(), cells.end());
-  };
-  const int most = static_cast<int>(std::lround(most_cells(*mesh_) / factor));
+  const auto &cells = own.box->cells;
+  const auto direction = std::max_element(cells.begin(), cells.end()) - cells.begin();
+  const int most = static_cast<int>(std::lround(cells[direction] / factor));
   auto mesh = mesh_;
   do mesh = mesh->coarser();
-  while (mesh && most_cells(*mesh) > most);
+  while (mesh && mesh->discretization().mesh->box->cells[direction] > most);
   return mesh ? std::make_shared<Problem>(mesh, model_, t) : nullptr;
 }
 

@@ -28,9 +28,10 @@ ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 /// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.7), (5.8), (5.9)
 ///
 /// Converges where a choice confirms the last active set, which is then the solution's, up to the share k/r that the penalty leaves
-/// to a multiplier update. On thin bodies, whose choices by pressures overshoot, a coarser mesh of the body chooses, (5.8b). When an active
-/// set comes back or where choices make no headway, (5.8a), Newton's directions with their line search go on, and where these creep, (5.9a),
-/// an interior-point method, (5.15) to (5.20). With friction Newton alone follows.
+/// to a multiplier update. On thin bodies, whose choices by pressures overshoot, a coarser mesh of the body chooses, (5.8b); where it cannot,
+/// an interior-point method follows, (5.15) to (5.20). Where there is no such mesh and an active set comes back or choices make no headway,
+/// (5.8a), Newton's directions with their line search go on, and where these creep, (5.9a), the interior-point method. With friction Newton
+/// alone follows.
 class ActiveSetStage : public solver::FirstStage
 {
 public:
@@ -91,6 +92,7 @@ private:
   std::optional<FoundBy> predicted_;     // what to begin with where a coarser mesh predicts the start
   MakeCoarseChoice make_coarse_;         // empty: there are none, or they have begun
   std::unique_ptr<CoarseChoice> coarse_; // null: pressures choose
+  bool coarse_gave_up_ = false;          // there were none that settled
   int coarse_choices_ = 0;
   bool newton_is_next_ = false, newton_was_tried_ = false;
   int confirmations_ = 0; // of where Newton has settled
