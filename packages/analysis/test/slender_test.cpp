@@ -48,8 +48,9 @@ struct Slender {
 };
 // Of about equal sides: a slender body bends so far that the rounding of x leaves more than what is asked for below.
 const Slender slender[] = {{{2, 1, simplex}, {700, 1}, {1, 1}, 3}, {{2, 1}, {2, 500}, {1, 2}, 3},
-                           {{2, 2}, {200, 1}, {2, 1}, 2},          {{2, 2, simplex}, {1, 200}, {1, 1}, 2},
-                           {{3, 1}, {250, 1, 1}, {1, 1, 1}, 2},    {{3, 1, simplex}, {1, 1, 250}, {2, 1, 1}, 2}};
+                           {{2, 2}, {200, 1}, {2, 1}, 3},          {{2, 2, simplex}, {1, 200}, {1, 1}, 3},
+                           {{3, 1}, {250, 1, 1}, {1, 1, 1}, 3},    {{3, 1, simplex}, {1, 1, 250}, {2, 1, 1}, 3},
+                           {{2, 1}, {900, 6}, {2, 1}, 2}};
 
 TEST(SlenderBody, HasTheBandThatItsBoxTells)
 {

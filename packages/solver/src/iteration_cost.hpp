@@ -15,7 +15,7 @@ struct IterationSeconds {
 IterationSeconds seconds_of_iteration(const StiffnessOperator &K);
 
 /// Whether a band factor takes no more time than a few CG iterations with multigrid.                               (4.10e)
-/// @param width  of the band below the diagonal
-bool is_narrow(double unknowns, double width, const IterationSeconds &iteration);
+/// @param width  of the band below the diagonal   @param ranks  that share an iteration, while each has the factor
+bool is_narrow(double unknowns, double width, const IterationSeconds &iteration, int ranks);
 
 } // namespace rpc::solver

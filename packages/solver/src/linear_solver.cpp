@@ -182,9 +182,10 @@ void LinearSolver::Impl::choose_before_the_first_solve()
 {
   if (on_sparse || !counts.iterations.empty()) return;
   const bool is_open = may_be_sparse && chosen();
-  const bool narrow =
-      is_open && body.band_width > 0 &&
-      is_narrow(static_cast<double>(H->getDomainMap()->getGlobalNumElements()), body.band_width, seconds_of_cg());
+  const Map &unknowns = *H->getDomainMap();
+  const bool narrow = is_open && body.band_width > 0 &&
+                      is_narrow(static_cast<double>(unknowns.getGlobalNumElements()), body.band_width, seconds_of_cg(),
+                                unknowns.getComm()->getSize());
   if (narrow) sparse.take_band();
   if (narrow && take(Next::sparse, "it takes no longer than a few iterations")) return;
   if (is_open && body.is_thin && take(Next::sparse, "the body is one thin layer of cells")) return;
