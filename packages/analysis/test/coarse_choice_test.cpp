@@ -5,9 +5,9 @@
 #include "rpc/analysis/load_history.hpp"
 #include "rpc/mesh/box.hpp"
 
-#include <gtest/gtest.h>
-
+#include <Tpetra_Core.hpp>
 #include <cmath>
+#include <gtest/gtest.h>
 #include <numeric>
 
 namespace coarse_choice_test
