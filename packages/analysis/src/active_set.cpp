@@ -28,9 +28,8 @@ constexpr double much = 0.5;
 // Choices end at once where they are far_too_much and more than few points change, but for the first one where nothing predicts the start.
 constexpr double far_too_much = 1, far_too_much_of_rubber = 10; // of bodies that are nearly incompressible
 constexpr GO few_changes = 5;
-// A coarser mesh chooses where a choice has much overshoot, and in any case from the patience-th on. Its choices end after most_coarse, or
-// where most_idle_coarse on end have not fewer changes than any before.
-constexpr int patience = 4, most_coarse = 25, most_idle_coarse = 3;
+// A coarser mesh chooses where a choice has much overshoot, and in any case from the patience-th on.
+constexpr int patience = 4;
 // Newton stands at kinks after so many short steps. Newton creeps where k steps, two or more, leave more than left_per_step^k of the way.
 constexpr int most_short_steps = 3;
 constexpr double left_per_step = 0.5;
@@ -225,20 +224,13 @@ bool ActiveSetStage::begin_coarse_choices(const Vector &u)
 {
   if (!make_coarse_ || steps_ == 0 || path_ != Path::ahead) return false;
   coarse_ = std::exchange(make_coarse_, {})(iterate_);
-  if (!coarse_) return false;
-  idle_ = 0;
-  fewest_changes_ = 0;
-  return choose_by_coarse_mesh(u);
+  return coarse_ && choose_by_coarse_mesh(u);
 }
 
-/// The next choice by the coarser mesh. Where it finds none, or makes no headway, it chooses no more.
+/// The next choice by the coarser mesh. Where it makes none, it chooses no more.
 bool ActiveSetStage::choose_by_coarse_mesh(const Vector &u)
 {
-  const GO changes = choice_->changes;
-  idle_ = fewest_changes_ > 0 && changes >= fewest_changes_ ? idle_ + 1 : 0;
-  fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
-  auto chosen = coarse_choices_ < most_coarse && idle_ <= most_idle_coarse ? coarse_->choose(iterate_, *choice_, u)
-                                                                           : std::nullopt;
+  auto chosen = coarse_->choose(iterate_, *choice_, u);
   if (!chosen) {
     coarse_.reset();
     coarse_gave_up_ = true;

@@ -68,22 +68,36 @@ void Predictor::forget()
   coarser_.reset();
 }
 
+/// Null where there is none.
+const Predictor::Coarser *Predictor::coarser(const Problem &fine)
+{
+  if (coarser_) return coarser_.get();
+  const auto problem = coarser_problem_ ? coarser_problem_(fine, level_) : nullptr;
+  if (!problem) {
+    coarser_problem_ = {}; // nor will there be one
+    return nullptr;
+  }
+  coarser_ = std::make_unique<Coarser>(
+      Coarser{LoadHistory(problem, rough_, 0, linear_, Predictor(coarser_problem_, rough_, linear_, level_ + 1)),
+              interpolation(problem->mesh(), fine.mesh()), Teuchos::null});
+  return coarser_.get();
+}
+
+std::shared_ptr<const Problem> Predictor::coarser_problem(const Problem &fine)
+{
+  const Coarser *const made = coarser(fine);
+  return made ? made->history.shared_problem() : nullptr;
+}
+
 Prediction Predictor::predict(const Problem &fine, const Step &step, const Memory *const last)
 {
   Prediction prediction;
   prediction.reason = no_prediction(fine.discretization(), step.contact, rough_.prediction.enabled);
   if (!prediction.reason.empty()) return prediction;
   try {
-    if (!coarser_) {
-      const auto problem = coarser_problem_ ? coarser_problem_(fine, level_) : nullptr;
-      if (!problem) {
-        coarser_problem_ = {}; // nor will there be one
-        prediction.reason = "there is no coarser mesh of this body";
-        return prediction;
-      }
-      coarser_ = std::make_unique<Coarser>(
-          Coarser{LoadHistory(problem, rough_, 0, linear_, Predictor(coarser_problem_, rough_, linear_, level_ + 1)),
-                  interpolation(problem->mesh(), fine.mesh()), Teuchos::null});
+    if (!coarser(fine)) {
+      prediction.reason = "there is no coarser mesh of this body";
+      return prediction;
     }
     return last ? from_last(fine, step, *last) : from_rest(fine, step);
   } catch (const Error &failure) { // an interrupt too: the finest mesh is where a run stops with what it has found
@@ -93,18 +107,28 @@ Prediction Predictor::predict(const Problem &fine, const Step &step, const Memor
   }
 }
 
+/// The coarser scene, or the next one, if it is small enough to choose states by; else null.
+std::shared_ptr<const Problem> Predictor::scene_of_choices()
+{
+  LoadHistory &history = coarser_->history;
+  auto scene = history.shared_problem();
+  if (!CoarseChoice::is_small(*scene)) scene = history.coarser_problem();
+  return scene && CoarseChoice::is_small(*scene) ? scene : nullptr;
+}
+
 namespace
 {
 
-/// What a coarser mesh's solution tells of the way on this one, and choices of its states by that mesh where that is small.
-PredictedBy told_by(const StepSolution &solution, const std::shared_ptr<const Problem> &coarse, const int level,
+/// What a coarser mesh's solution tells of the way on this one, and choices of its states by a coarser scene.
+/// @param scene  of choices, may be null
+PredictedBy told_by(const StepSolution &solution, const std::shared_ptr<const Problem> &scene, const int level,
                     const Problem &fine)
 {
   PredictedBy by;
   if (level == 1 && solution.step.contact.num_total >= fewest_points_telling) by.found_by = solution.found_by;
-  if (CoarseChoice::is_small(*coarse))
-    by.coarse_choice = [coarse, dirichlet = solution.step.elastic.dirichlet, &fine](const contact::Iterate &iterate) {
-      return CoarseChoice::make(*coarse, dirichlet, fine.discretization(), iterate);
+  if (scene)
+    by.coarse_choice = [scene, time = solution.step.time, &fine](const contact::Iterate &iterate) {
+      return CoarseChoice::make(*scene, scene->dirichlet(time), fine.discretization(), iterate);
     };
   return by;
 }
@@ -134,7 +158,7 @@ Prediction Predictor::from_rest(const Problem &fine, const Step &step)
       contact::with_weightless(coarse.state, coarse.step.contact, problem.discretization(), problem.contact_sides());
   return {contact::interpolated(*coarser_->to_fine, coarse.step.contact, state, step.contact,
                                 fine.discretization().owned_dofs),
-          "", told_by(coarse, history.shared_problem(), level_, fine), work_of(coarse, start)};
+          "", told_by(coarse, scene_of_choices(), level_, fine), work_of(coarse, start)};
 }
 
 /// A later step: what it changes.                                                                                (11.5)
@@ -167,7 +191,7 @@ Prediction Predictor::from_last(const Problem &fine, const Step &step, const Mem
   };
   predicted.pressure = changed(*now.pressure, *before.pressure, *last.pressure);
   if (!last.tangential.is_null()) predicted.tangential = changed(*now.tangential, *before.tangential, *last.tangential);
-  return {state_of(step.contact, predicted), "", told_by(coarse, history.shared_problem(), level_, fine),
+  return {state_of(step.contact, predicted), "", told_by(coarse, scene_of_choices(), level_, fine),
           work_of(coarse, start)};
 }
 

@@ -136,6 +136,11 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
   return step;
 }
 
+fem::DirichletDofs Problem::dirichlet(const double t) const
+{
+  return prescribed_of(discretization(), model_.seen_at(t));
+}
+
 std::shared_ptr<const Problem> Problem::coarser(const double factor, const double t) const
 {
   const mesh::Mesh &own = *discretization().mesh;

@@ -23,7 +23,8 @@ public:
   static std::unique_ptr<CoarseChoice> make(const Problem &coarse, const fem::DirichletDofs &dirichlet,
                                             const fem::Discretization &fine, const contact::Iterate &iterate);
 
-  /// The next choice, at the minimum for the present active set. Nothing where the model finds none. Collective.
+  /// The next choice, at the minimum for the present active set. Nothing where the model finds none, or where choices make no headway; then it
+  /// is not to be asked again. Collective.
   /// @param present  what pressures choose there, Iterate::choose_active_set
   std::optional<contact::ActiveSetChoice> choose(const contact::Iterate &iterate,
                                                  const contact::ActiveSetChoice &present, const Vector &u);
@@ -31,9 +32,14 @@ public:
 private:
   CoarseChoice(RCP<const Comm> comm, std::vector<LO> points, std::optional<CoarseModel> model);
 
+  bool may_settle(const contact::ActiveSetChoice &present);
+
   RCP<const Comm> comm_;
   std::vector<LO> points_;           // that take part, of this rank
   std::optional<CoarseModel> model_; // on rank 0
+  int choices_ = 0, in_vain_ = 0;    // that were asked for, and of these on end without headway
+  GO fewest_changes_ = 0;            // that one of them would make by pressures
+  double least_overshoot_ = 0;       // of these
 };
 
 /// By a coarser mesh, see make(). Collective.

@@ -30,11 +30,15 @@ public:
 
   /// Collective. @param last  what the step before has left; null: there was none
   Prediction predict(const Problem &fine, const Step &step, const Memory *last);
+  /// The scene on the coarser mesh, made where it has not been yet; null where there is none. Collective.
+  std::shared_ptr<const Problem> coarser_problem(const Problem &fine);
   /// Coarser scenes go; they are made anew where they are asked for.
   void forget();
 
 private:
   struct Coarser;
+  const Coarser *coarser(const Problem &fine);
+  std::shared_ptr<const Problem> scene_of_choices();
   Prediction from_rest(const Problem &fine, const Step &step);
   Prediction from_last(const Problem &fine, const Step &step, const Memory &last);
 

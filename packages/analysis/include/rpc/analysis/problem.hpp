@@ -60,6 +60,7 @@ public:
   /// @param before  what the step before has left, from which slip counts; null: the body was at rest
   /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()
   Step step(double t, const MultiVector *dents = nullptr, const Memory *before = nullptr) const;
+  fem::DirichletDofs dirichlet(double t) const; ///< of step(t), alone
   /// The same scene on one of the boxes that this one leads to: the first that has at most a `factor`-th of its cells along the direction
   /// with most; of a refined mesh the first parent with cells `factor` times as long, in space half of that, or the coarsest. Null where there is none, and for boxes
   /// of order 2: linear elements, too stiff in bending, predict worse. Collective.
