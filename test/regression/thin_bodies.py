@@ -54,7 +54,8 @@ SCENES = {  # deck, most steps
     "beam in space over a bump": (deck((1, 0.02, 0.02), (60, 1, 1), "Q2", 1e-2, "5e-3*(1 - exp(-(x - 0.6)^2/0.02))", "inf", BOTH), 5),
     "plate over a bump": (deck((1, 0.02, 1), (16, 1, 16), "Q1", 1e-2, "2e-3*(1 - exp(-((x - 0.6)^2 + (z - 0.4)^2)/0.05))", "0.2", BOTH), 16),
     "plate over a rough foundation": (deck((1, 0.05, 1), (16, 2, 16), "Q1", 1e-1, ROUGH.format("2e-3", "2e-3"), "0.5"), 9),
-    "plate held all around": (deck((1, 0.02, 1), (8, 1, 8), "P2", 1e-2, "5e-4*((x - 0.4)^2 + (z - 0.5)^2)", "inf", ALL), 16),
+    "plate held all around": (deck((1, 0.02, 1), (8, 1, 8), "P2", 1e-2, "5e-4*((x - 0.4)^2 + (z - 0.5)^2)", "inf", ALL), 18),
+    "strip whose predicting mesh is too large to choose states": (deck((1, 0.132), (70907, 1), "Q1", 1.16, ROUGH.format("0.285*(x - 0.323)^2 + 2.64e-4", "1.37e-3").replace(" + 78.233*z", ""), "inf", BOTH, nu=0.055), 8),
 }
 
 

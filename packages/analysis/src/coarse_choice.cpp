@@ -16,10 +16,8 @@ namespace rpc::analysis
 namespace
 {
 
-// Choices end after most_choices, or where more than most_idle_choices on end make no headway: they have not fewer changes than all before, nor
-// less than this part of their overshoot.
+// Choices end after most_choices, or where more than most_idle_choices on end have not fewer changes than all before.
 constexpr int most_choices = 25, most_idle_choices = 3;
-constexpr double less_overshoot = 0.5;
 constexpr Tpetra::global_size_t most_unknowns = 60'000; // of the coarse mesh, whose stiffness rank 0 holds
 
 /// What each rank gives of its points, or all of it on rank 0.
@@ -173,14 +171,12 @@ std::unique_ptr<CoarseChoice> CoarseChoice::make(const Problem &coarse, const fe
   return std::unique_ptr<CoarseChoice>(new CoarseChoice(comm, std::move(points), std::move(model)));
 }
 
-/// Whether choices may come to an end soon.
+/// Whether choices may come to an end soon. What pressures would change before the first of them does not tell.
 bool CoarseChoice::may_settle(const contact::ActiveSetChoice &present)
 {
-  const bool gains =
-      choices_ == 0 || present.changes < fewest_changes_ || present.overshoot < less_overshoot * least_overshoot_;
+  const bool gains = choices_ < 2 || present.changes < fewest_changes_;
   in_vain_ = gains ? 0 : in_vain_ + 1;
-  fewest_changes_ = choices_ == 0 ? present.changes : std::min(fewest_changes_, present.changes);
-  least_overshoot_ = choices_ == 0 ? present.overshoot : std::min(least_overshoot_, present.overshoot);
+  if (gains) fewest_changes_ = present.changes;
   return choices_++ < most_choices && in_vain_ <= most_idle_choices;
 }
 

@@ -80,6 +80,17 @@ TEST(Problem, OfOneTimeGivesTheStepsOfAllOthers)
   }
 }
 
+/// The first box with a fourth of the cells along the side that has most: others may have more cells than that.
+TEST(Problem, OfStretchedCellsHasACoarserOneByItsLongestSide)
+{
+  const auto cells_of_coarser = [](const mesh::BoxOptions &box) {
+    const auto mesh = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+    return Problem(mesh, model()).coarser(4, 1)->discretization().mesh->box->cells;
+  };
+  EXPECT_EQ(cells_of_coarser({{0, 0}, {2, 1}, {64, 32}, {2, 1}}), (std::vector<int>{16, 8})) << "square cells";
+  EXPECT_EQ(cells_of_coarser({{0, 0}, {1, 0.5}, {64, 96}, {2, 1}}), (std::vector<int>{32, 24})) << "cells 3 : 1";
+}
+
 TEST(Problem, OfASlenderBodyThatLiftsOffTakesFewSteps)
 {
   // A strip on a roller, pressed near one end: the edges of its contact zone move by a node a step.

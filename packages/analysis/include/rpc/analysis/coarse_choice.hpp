@@ -38,8 +38,7 @@ private:
   std::vector<LO> points_;           // that take part, of this rank
   std::optional<CoarseModel> model_; // on rank 0
   int choices_ = 0, in_vain_ = 0;    // that were asked for, and of these on end without headway
-  GO fewest_changes_ = 0;            // that one of them would make by pressures
-  double least_overshoot_ = 0;       // of these
+  GO fewest_changes_ = 0;            // that pressures would make after one of them
 };
 
 /// By a coarser mesh, see make(). Collective.
