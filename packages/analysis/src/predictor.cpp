@@ -68,25 +68,9 @@ void Predictor::forget()
   coarser_.reset();
 }
 
-/// Null where there is none.
-const Predictor::Coarser *Predictor::coarser(const Problem &fine)
+std::shared_ptr<const Problem> Predictor::made_coarser() const
 {
-  if (coarser_) return coarser_.get();
-  const auto problem = coarser_problem_ ? coarser_problem_(fine, level_) : nullptr;
-  if (!problem) {
-    coarser_problem_ = {}; // nor will there be one
-    return nullptr;
-  }
-  coarser_ = std::make_unique<Coarser>(
-      Coarser{LoadHistory(problem, rough_, 0, linear_, Predictor(coarser_problem_, rough_, linear_, level_ + 1)),
-              interpolation(problem->mesh(), fine.mesh()), Teuchos::null});
-  return coarser_.get();
-}
-
-std::shared_ptr<const Problem> Predictor::coarser_problem(const Problem &fine)
-{
-  const Coarser *const made = coarser(fine);
-  return made ? made->history.shared_problem() : nullptr;
+  return coarser_ ? coarser_->history.shared_problem() : nullptr;
 }
 
 Prediction Predictor::predict(const Problem &fine, const Step &step, const Memory *const last)
@@ -95,9 +79,16 @@ Prediction Predictor::predict(const Problem &fine, const Step &step, const Memor
   prediction.reason = no_prediction(fine.discretization(), step.contact, rough_.prediction.enabled);
   if (!prediction.reason.empty()) return prediction;
   try {
-    if (!coarser(fine)) {
-      prediction.reason = "there is no coarser mesh of this body";
-      return prediction;
+    if (!coarser_) {
+      const auto problem = coarser_problem_ ? coarser_problem_(fine, level_) : nullptr;
+      if (!problem) {
+        coarser_problem_ = {}; // nor will there be one
+        prediction.reason = "there is no coarser mesh of this body";
+        return prediction;
+      }
+      coarser_ = std::make_unique<Coarser>(
+          Coarser{LoadHistory(problem, rough_, 0, linear_, Predictor(coarser_problem_, rough_, linear_, level_ + 1)),
+                  interpolation(problem->mesh(), fine.mesh()), Teuchos::null});
     }
     return last ? from_last(fine, step, *last) : from_rest(fine, step);
   } catch (const Error &failure) { // an interrupt too: the finest mesh is where a run stops with what it has found
@@ -107,13 +98,13 @@ Prediction Predictor::predict(const Problem &fine, const Step &step, const Memor
   }
 }
 
-/// The coarser scene, or the next one, if it is small enough to choose states by; else null.
-std::shared_ptr<const Problem> Predictor::scene_of_choices()
+/// The coarser scene, or the next one if it has been made, that is small enough to choose states by; else null.
+std::shared_ptr<const Problem> Predictor::scene_of_choices() const
 {
-  LoadHistory &history = coarser_->history;
-  auto scene = history.shared_problem();
-  if (!CoarseChoice::is_small(*scene)) scene = history.coarser_problem();
-  return scene && CoarseChoice::is_small(*scene) ? scene : nullptr;
+  const LoadHistory &history = coarser_->history;
+  for (const auto &scene : {history.shared_problem(), history.made_coarser()})
+    if (scene && CoarseChoice::is_small(*scene)) return scene;
+  return nullptr;
 }
 
 namespace

@@ -90,8 +90,8 @@ public:
 
   const Problem &problem() const { return *problem_; }
   const std::shared_ptr<const Problem> &shared_problem() const { return problem_; } ///< to keep it for longer
-  /// That predicts this one's steps; null where there is none. Collective.
-  std::shared_ptr<const Problem> coarser_problem() { return predictor_.coarser_problem(*problem_); }
+  /// The coarser scene that predicts this one's steps, if there is one by now, or null.
+  std::shared_ptr<const Problem> made_coarser() const { return predictor_.made_coarser(); }
   const Memory *memory() const { return kept_.memory ? &*kept_.memory : nullptr; }
   const Memory *before() const { return kept_.before ? &*kept_.before : nullptr; } ///< of the step before
   const StepRecord &last() const { return last_; }                                 ///< of advance()

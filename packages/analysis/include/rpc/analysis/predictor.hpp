@@ -30,15 +30,14 @@ public:
 
   /// Collective. @param last  what the step before has left; null: there was none
   Prediction predict(const Problem &fine, const Step &step, const Memory *last);
-  /// The scene on the coarser mesh, made where it has not been yet; null where there is none. Collective.
-  std::shared_ptr<const Problem> coarser_problem(const Problem &fine);
+  /// The scene on the coarser mesh, if there is one by now, or null.
+  std::shared_ptr<const Problem> made_coarser() const;
   /// Coarser scenes go; they are made anew where they are asked for.
   void forget();
 
 private:
   struct Coarser;
-  const Coarser *coarser(const Problem &fine);
-  std::shared_ptr<const Problem> scene_of_choices();
+  std::shared_ptr<const Problem> scene_of_choices() const;
   Prediction from_rest(const Problem &fine, const Step &step);
   Prediction from_last(const Problem &fine, const Step &step, const Memory &last);
 

@@ -53,7 +53,7 @@ struct LevelWork {
 /// What a coarser mesh that predicted the start tells of the way from there.
 struct PredictedBy {
   FoundBy found_by = FoundBy::choices; ///< its states: what will be needed on the finer mesh
-  MakeCoarseChoice coarse_choice;      ///< by that mesh, which it keeps; empty: there is none
+  MakeCoarseChoice coarse_choice;      ///< by that mesh or the next coarser one, which it keeps; empty: there is none
 };
 
 /// A start that coarser meshes predict.
