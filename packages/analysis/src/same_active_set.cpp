@@ -5,9 +5,25 @@
 namespace rpc::analysis
 {
 
+namespace
+{
+
+constexpr double most_left_by_rounding = 1e-3; // of the residual, for a step that rounding ends
+constexpr double same_residual = 0.1; // so much of it is not of the active set's piece at most
+
+} // namespace
+
 SameActiveSet::Verdict SameActiveSet::judge(const solver::NewtonGroup &at)
 {
-  return proposed_ || at.getNormF() <= at.context().target_residual ? Verdict::over : Verdict::go_on;
+  if (at.getNormF() <= at.context().target_residual) return Verdict::over;
+  if (!proposed_) return Verdict::go_on;
+  const Vector &F = solver::tpetra(at.getF());
+  Vector G(F.getMap());
+  iterate_.active_set_gradient(solver::tpetra(at.getX()), F, G); // (5.6)
+  G.update(-1., F, 1.);
+  const bool is_enough =
+      at.getNormF() <= most_left_by_rounding * norm_before_ && G.norm2() <= same_residual * at.getNormF();
+  return is_enough ? Verdict::converged : Verdict::over;
 }
 
 SameActiveSet::Step SameActiveSet::propose(solver::NewtonGroup &group, Vector &direction)
@@ -16,11 +32,13 @@ SameActiveSet::Step SameActiveSet::propose(solver::NewtonGroup &group, Vector &d
   const Vector &F = solver::tpetra(group.getF());
   Vector G(F.getMap());
   iterate_.active_set_gradient(solver::tpetra(group.getX()), F, G); // (5.6)
+  norm_before_ = G.norm2();
   const auto solved =
-      solver::solve_for_direction(group.context(), G, direction, 0.1 * group.context().target_residual / G.norm2());
+      solver::solve_for_direction(group.context(), G, direction, 0.1 * group.context().target_residual / norm_before_);
   if (!solved.converged || !(direction.dot(F) > 0)) return Step::none;
   direction.scale(-1.);
   ++group.context().steps;
+  ++steps_;
   return Step::search;
 }
 

@@ -200,7 +200,7 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
     SameActiveSet stage(iterate);
     const auto result = run(&stage, all);
     const int steps = result.steps == 0 && result.converged ? refine(iterate, *u, state) : result.steps;
-    return {result.converged, steps, result.reason, false, result.steps};
+    return {result.converged, steps, result.reason, false, result.steps - stage.steps()};
   }
   if (iteration > 1) return minimize_for_next_bounds(iterate, *u, options, run);
   ActiveSetTolerances tolerances = active_set_tolerances(options);

@@ -33,6 +33,23 @@ TEST(LoadHistory, OneSetUpServesAllStepsAndABoxNeedsNoMatrix)
   EXPECT_EQ(history.problem().stiffness()->assemblies(), 0);
 }
 
+/// A strip that bends far: rounding leaves more than Newton's tolerance at any origin, and what the energies ask for takes one step from the
+/// next one.
+TEST(LoadHistory, RoundingTakesOneStepOfEachLaterIteration)
+{
+  const mesh::BoxOptions box{{0, 0}, {1, 1.5e-3}, {3000, 2}, {2, 1, mesh::Shape::simplex}};
+  const auto strip = std::make_shared<mesh::Mesh>(mesh::make_box(box, Tpetra::getDefaultComm()));
+  analysis::Model model;
+  model.materials = fem::Material{young, poisson};
+  model.tractions.push_back({"top", "top", {ScalarField(0.), ScalarField(-1e-9)}});
+  model.dirichlet = {prescribed("left", ScalarField(0.), ScalarField(0.))};
+  LoadHistory history(std::make_shared<Problem>(strip, model, 1), {}, 0);
+  const auto s = advance(history, 1);
+  ASSERT_GT(s.uzawa.newton_iterations.size(), 1u);
+  for (std::size_t k = 1; k < s.uzawa.newton_iterations.size(); ++k) EXPECT_EQ(s.uzawa.newton_iterations[k], 1) << k;
+  EXPECT_EQ(s.line_search_steps, 0);
+}
+
 /// Options that give up early.
 analysis::StepOptions impatient(const int newton)
 {
