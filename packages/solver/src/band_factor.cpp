@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 // LAPACK's band Cholesky, which Teuchos does not wrap.
@@ -40,22 +41,23 @@ Lists graph_of(const int size, const SymmetricEntries &entries)
   return graph;
 }
 
-/// Of each row in the reverse Cuthill-McKee order.
-std::vector<int> places(const int size, const SymmetricEntries &entries)
-{
-  const std::vector<int> order = reverse_cuthill_mckee(graph_of(size, entries));
-  std::vector<int> place(size);
-  for (int at = 0; at < size; ++at) place[order[at]] = at;
-  return place;
-}
-
 constexpr std::size_t above = std::numeric_limits<std::size_t>::max(); // the diagonal: such an entry does not count
 
 } // namespace
 
-BandFactor::BandFactor(const int size, const SymmetricEntries &entries)
-    : BandFactor(size, entries, places(size, entries))
+std::unique_ptr<BandFactor> BandFactor::in_cuthill_mckee_order(const int size, const SymmetricEntries &entries)
 {
+  const std::vector<int> order = reverse_cuthill_mckee(graph_of(size, entries));
+  std::vector<int> place(size);
+  for (int at = 0; at < size; ++at) place[order[at]] = at;
+  return std::make_unique<BandFactor>(size, entries, std::move(place));
+}
+
+std::unique_ptr<BandFactor> BandFactor::as_numbered(const int size, const SymmetricEntries &entries)
+{
+  std::vector<int> place(size);
+  std::iota(place.begin(), place.end(), 0);
+  return std::make_unique<BandFactor>(size, entries, std::move(place));
 }
 
 BandFactor::BandFactor(const int size, const SymmetricEntries &entries, std::vector<int> place)

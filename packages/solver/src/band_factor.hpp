@@ -9,10 +9,10 @@ namespace rpc::solver
 class BandFactor : public SparseFactor
 {
 public:
-  /// In the reverse Cuthill-McKee order.
-  BandFactor(int size, const SymmetricEntries &entries);
   /// @param place  (size) of each row in the band
   BandFactor(int size, const SymmetricEntries &entries, std::vector<int> place);
+  static std::unique_ptr<BandFactor> in_cuthill_mckee_order(int size, const SymmetricEntries &entries); ///< reversed
+  static std::unique_ptr<BandFactor> as_numbered(int size, const SymmetricEntries &entries);
 
   /// What a factor takes of `size` rows with `width` entries below the diagonal.
   static FactorCost cost_of(double size, double width);

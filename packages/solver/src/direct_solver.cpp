@@ -7,7 +7,6 @@
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <algorithm>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -58,13 +57,6 @@ SymmetricEntries pattern_of(const CrsMatrix &A, std::vector<std::size_t> &lower)
   return mine;
 }
 
-std::vector<int> as_numbered(const int size)
-{
-  std::vector<int> place(size);
-  std::iota(place.begin(), place.end(), 0);
-  return place;
-}
-
 /// All unknowns on rank 0, by their gids.
 RCP<const Map> on_root(const Map &rows)
 {
@@ -85,7 +77,7 @@ DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node, cons
       is_band) {
     const SymmetricEntries all = comm->getSize() > 1 ? entries_of_all(*comm, mine) : mine;
     if (is_band)
-      factor_ = std::make_unique<BandFactor>(size, all, as_numbered(size));
+      factor_ = BandFactor::as_numbered(size, all);
     else
       factor_ = SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size, all, dofs_per_node);
     return;

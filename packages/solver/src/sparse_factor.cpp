@@ -8,6 +8,8 @@
 #include "rpc/core/parallel.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
+#include <algorithm>
+#include <cstdlib>
 
 namespace rpc::solver
 {
@@ -16,6 +18,22 @@ namespace rpc::solver
 const bool SparseFactor::can_be_shared = true;
 #else
 const bool SparseFactor::can_be_shared = false;
+#endif
+
+#ifdef RPC_HAVE_MUMPS
+namespace
+{
+
+/// How far from the diagonal entries lie.
+int width_of(const SymmetricEntries &entries)
+{
+  int width = 0;
+  for (std::size_t e = 0; e < entries.row.size(); ++e)
+    width = std::max(width, std::abs(entries.row[e] - entries.column[e]));
+  return width;
+}
+
+} // namespace
 #endif
 
 SymmetricEntries entries_of_all(const Comm &comm, const SymmetricEntries &mine)
@@ -28,17 +46,20 @@ std::unique_ptr<SparseFactor> SparseFactor::analyse(const RCP<const Comm> &comm,
 {
 #ifdef RPC_HAVE_MUMPS
   // A band has no indices and no tree: it is faster where it is narrow. By measurement.
-  constexpr int most_rows_of_band = 6000;
+  constexpr int most_rows_to_order = 6000, most_width = 200;
   constexpr double most_work_of_band = 1e8;
-  if (comm->getSize() == 1 && size <= most_rows_of_band) {
-    auto band = std::make_unique<BandFactor>(size, entries);
-    if (band->cost().operations <= most_work_of_band) return band;
+  if (comm->getSize() == 1) {
+    if (size <= most_rows_to_order) {
+      auto band = BandFactor::in_cuthill_mckee_order(size, entries);
+      if (band->cost().operations <= most_work_of_band) return band;
+    }
+    if (width_of(entries) <= most_width) return BandFactor::as_numbered(size, entries);
   }
   return std::make_unique<MumpsFactor>(comm, size, entries, dofs_per_node);
 #else
   static_cast<void>(comm);
   static_cast<void>(dofs_per_node);
-  return std::make_unique<BandFactor>(size, entries);
+  return BandFactor::in_cuthill_mckee_order(size, entries);
 #endif
 }
 

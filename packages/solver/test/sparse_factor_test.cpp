@@ -20,15 +20,16 @@ using rpc::solver::SymmetricEntries;
 
 constexpr double any_work = 1e12;
 
-/// Five-point differences on length x height places, of which each has a number: a step of 7 scatters neighbours. Something is added to the
+/// Five-point differences on length x height places, of which each has a number: steps of 7 scatter neighbours. Something is added to the
 /// diagonal, which comes in two parts.
-int number_of(const int place, const int size)
+constexpr int scattering = 7;
+int number_of(const int place, const int size, const int step = scattering)
 {
-  return 7 * place % size;
+  return step * place % size;
 }
-SymmetricEntries scattered_grid(const int length, const int height, const double shift)
+SymmetricEntries scattered_grid(const int length, const int height, const double shift, const int step = scattering)
 {
-  const auto number = [&](const int i, const int j) { return number_of(i * height + j, length * height); };
+  const auto number = [&](const int i, const int j) { return number_of(i * height + j, length * height, step); };
   SymmetricEntries entries;
   const auto add = [&](const int row, const int column, const double value) {
     entries.row.push_back(row);
@@ -176,6 +177,27 @@ TEST(SparseFactor, ToldCostGrowsAsThatOfNestedDissection)
   EXPECT_LT(operations[1] / operations[0], 12) << "a band would take n^4";
 }
 
+/// A long grid whose numbers go along it is a band; scattered, the same grid is none.
+TEST(SparseFactor, TakesTheBandThatTheNumbersAre)
+{
+  if (!SparseFactor::can_be_shared) GTEST_SKIP() << "without MUMPS";
+  const int length = 3000, height = 5, size = length * height;
+  const double band = BandFactor::cost_of(size, height).entries;
+  for (const int step : {1, scattering}) {
+    const auto A = scattered_grid(length, height, 0.1, step);
+    const auto factor = factor_of(size, A, any_work);
+    ASSERT_TRUE(factor);
+    if (step == 1)
+      EXPECT_EQ(factor->cost().entries, band);
+    else
+      EXPECT_NE(factor->cost().entries, band);
+    const auto x = some_solution(size);
+    auto solution = product(A, x);
+    factor->solve(solution.data());
+    for (int i = 0; i < size; ++i) ASSERT_NEAR(solution[i], x[i], 1e-12) << step << " " << i;
+  }
+}
+
 TEST(SparseFactor, RefusesWhatTakesTooMuchWork)
 {
   // In the right order the band of a 10 x 10 grid is about 10 wide, in the given one 70.
@@ -209,9 +231,9 @@ TEST(BandFactor, FollowsAGivenOrder)
 
 TEST(BandFactor, OfNothingIsNothing)
 {
-  BandFactor factor(0, {});
-  EXPECT_TRUE(factor.make({}));
-  factor.solve(nullptr);
+  const auto factor = BandFactor::as_numbered(0, {});
+  EXPECT_TRUE(factor->make({}));
+  factor->solve(nullptr);
 }
 
 } // namespace

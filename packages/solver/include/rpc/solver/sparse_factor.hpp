@@ -39,8 +39,8 @@ struct FactorCost {
 
 /// Cholesky factor of a sparse symmetric positive definite matrix on the host.
 ///
-/// MUMPS makes it, in METIS' order of nested dissection, on all ranks of a communicator together. Matrices of few unknowns in a narrow
-/// band, and all matrices where there is no MUMPS, go to LAPACK's band factorization, on each rank alike.
+/// MUMPS makes it, in METIS' order of nested dissection, on all ranks of a communicator together. On one rank matrices of few unknowns in a
+/// narrow band, and those whose own order is one, go to LAPACK's band factorization, and so do all matrices where there is no MUMPS.
 class SparseFactor
 {
 public:
