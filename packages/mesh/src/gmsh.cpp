@@ -110,6 +110,7 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
   request.size_factor = options.size_factor;
   request.order = options.order == 0 ? 2 : options.order;
   request.geometry = options.needs_geometry();
+  request.straight_where_bent = options.straight_where_bent;
   if (options.box) {
     const mesh::Element &element = options.box->element;
     request.box_dim = element.dim;

@@ -23,9 +23,10 @@ struct GmshRequest {
   double size_factor = 1;                 ///< of all cell sizes
   int order = 2;
   int attempt = 0; ///< later ones than 0 straighten curved cells; by a field of sizes each breaks ties in another way
-  SizeField sizes; ///< without simplices: those that the .geo asks for
-  bool dimension_only = false; ///< no mesh is wanted
-  bool geometry = false;       ///< of the boundary, besides the mesh
+  bool straight_where_bent = false; ///< later attempts make all cells straight
+  SizeField sizes;                  ///< without simplices: those that the .geo asks for
+  bool dimension_only = false;      ///< no mesh is wanted
+  bool geometry = false;            ///< of the boundary, besides the mesh
   /// Points that are wanted on the .geo's boundary instead of a mesh: near each of some, on a curve, in space on a surface, or on the
   /// curves that two surfaces share.
   std::vector<int> near_tags;      ///< (points, 2) the second is 0 where there is one

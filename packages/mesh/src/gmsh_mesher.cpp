@@ -237,7 +237,9 @@ std::string make_mesh(const GmshRequest &request, const int dim)
   gmsh::option::setNumber("Mesh.ElementOrder", request.order);
   gmsh::option::setNumber("Mesh.SecondOrderIncomplete", 0);
   // Straightens cells whose curved edges bend too far. The first attempt by a field leaves that out, for it takes time.
-  if (request.attempt > 0 || field) gmsh::option::setNumber("Mesh.HighOrderOptimize", request.attempt > 0);
+  const bool straightens = request.attempt > 0, all_cells = straightens && request.straight_where_bent;
+  if (straightens || field) gmsh::option::setNumber("Mesh.HighOrderOptimize", straightens && !all_cells);
+  if (all_cells) gmsh::option::setNumber("Mesh.SecondOrderLinear", 1);
   if (field)
     complaint << mesh_by_field(request, dim);
   else if (!mesh_by_own_sizes(body, factor, dim))

@@ -137,6 +137,7 @@ void each_part(Request &request, Each &each)
   each(request.size_factor);
   each(request.order);
   each(request.attempt);
+  each(request.straight_where_bent);
   each_part(request.sizes, each);
   each(request.dimension_only);
   each(request.geometry);

@@ -176,6 +176,7 @@ std::optional<MeshOptions> coarser(const MeshOptions &options, const double fact
   auto &gmsh = std::get<GmshOptions>(result);
   if (!can_be_meshed(gmsh) || gmsh.refinements > 0 || gmsh.nested) return std::nullopt;
   gmsh.size_factor *= factor;
+  gmsh.straight_where_bent = true;
   return result;
 }
 

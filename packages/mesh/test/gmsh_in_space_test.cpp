@@ -96,6 +96,46 @@ TEST(GmshInSpace, CurvedTetrahedraFillABallToTheFourthOrder)
   EXPECT_GT(std::abs(exact - volume(read_gmsh({octant, .25, 1}))), 10 * std::abs(coarse));
 }
 
+/// A part of a thin tube. @param size  of cells, which bend so far that some are inverted where it is much larger than the tube is thick
+std::string tube(const double size)
+{
+  return "S = " + std::to_string(size) + "; s = Sin(1.1); c = Cos(1.1);\n" +
+         "Point(1) = {0, 1, 0, S}; Point(2) = {-s, 1 - c, 0, S}; Point(3) = {s, 1 - c, 0, S};\n"
+         "Point(4) = {.96*s, 1 - .96*c, 0, S}; Point(5) = {-.96*s, 1 - .96*c, 0, S};\n"
+         "Circle(1) = {2, 1, 3}; Line(2) = {3, 4}; Circle(3) = {4, 1, 5}; Line(4) = {5, 2};\n"
+         "Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1}; out[] = Extrude {0, 0, .6} { Surface{1}; };\n"
+         "Physical Volume(\"body\") = {out[1]};\n";
+}
+
+/// Edges of cells of which the middle node is not in the middle.
+int curved_edges(const MeshData &mesh)
+{
+  const auto &edges = mesh.element.edges();
+  int curved = 0;
+  for (int cell = 0; cell < mesh.num_cells(); ++cell)
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const auto at = [&](const int k, const int d) {
+        return mesh.coords[3 * mesh.cells[cell * mesh.element.num_nodes() + edges[e][k]] + d];
+      };
+      double off = 0;
+      for (int d = 0; d < 3; ++d) off = std::max(off, std::abs((at(0, d) + at(1, d)) / 2 - at(2, d)));
+      if (off > 1e-6) ++curved;
+    }
+  return curved;
+}
+
+TEST(GmshInSpace, MakesCellsStraightWhereThatIsEnough)
+{
+  for (const double size : {0.3, 0.1}) { // some cells would be inverted, or none
+    const ScratchFile file("tube.geo", tube(size));
+    GmshOptions options{file.path(), 1, 2};
+    EXPECT_GT(curved_edges(read_gmsh(options)), 0) << size;
+    options.straight_where_bent = true;
+    EXPECT_EQ(curved_edges(read_gmsh(options)) == 0, size == 0.3) << size;
+  }
+  EXPECT_TRUE(std::get<GmshOptions>(*rpc::mesh::coarser(GmshOptions{"body.geo"}, 2)).straight_where_bent);
+}
+
 TEST(GmshInSpace, OpenCascadeTakesPartsAway)
 {
   const std::string plate = "SetFactory(\"OpenCASCADE\");\n"

@@ -19,6 +19,9 @@ struct GmshOptions {
   std::optional<BoxOptions> box =
       std::nullopt; ///< no file then; if not `nested`, meshed by `sizes`, and its cells and `order` do not count
   std::shared_ptr<const SizeField> sizes = nullptr; ///< of cells, instead of those that a .geo asks for
+  /// Where curved cells bend too far all cells are made straight; else gmsh straightens those cells alone, which can take ten times as long
+  /// as the mesh.
+  bool straight_where_bent = false;
   int refinements = 0; ///< how often make_mesh() halves each cell, >= 0; with it a .geo's mesh has its geometry
   bool nested = false; ///< make_mesh() meets `sizes` by refined_to(), from base_mesh(): read_gmsh() is not to see them
   std::shared_ptr<const MeshData> base = nullptr; ///< base_mesh() of a nested one, on rank 0; null: not made yet
