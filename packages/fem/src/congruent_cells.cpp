@@ -1,8 +1,10 @@
 #include "congruent_cells.hpp"
 
 #include "rpc/core/device_values.hpp"
+#include "rpc/core/parallel.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace rpc::fem
@@ -17,6 +19,7 @@ int parts_of_cell(const mesh::Element &element)
   return element.dim == 2 ? 2 : 6;
 }
 constexpr signed char unknown = -1;
+constexpr double relative_rounding = 2e-15; // of a difference of coordinates
 
 /// The first unless the second is larger: a NaN once there stays.
 KOKKOS_INLINE_FUNCTION double larger(const double a, const double b)
@@ -53,7 +56,7 @@ struct TakeKind {
         farthest = larger(farthest, larger(magnitude(x), magnitude(y)));
         difference = larger(difference, magnitude(edge - other));
       }
-    const double rounding = 2e-15 * farthest;
+    const double rounding = relative_rounding * farthest;
     if (difference <= rounding && rounding <= 1e-10 * size) {
       of_cell(cell) = kind;
       ++took;
@@ -75,9 +78,66 @@ LO take_kind(const mesh::Mesh &mesh, const signed char kind, const DeviceView<si
   return took;
 }
 
-} // namespace
+/// (kinds, nodes * dim + 1) Of each example its nodes, seen from the first one, and the largest of its coordinates, which has their rounding. [m]
+std::vector<double> shapes_of(const mesh::Mesh &mesh, const DeviceView<LO *> &example)
+{
+  const int nodes = mesh.element.num_nodes(), dim = mesh.dim(), size = nodes * dim + 1;
+  const auto kinds = static_cast<LO>(example.extent(0));
+  const DeviceView<double *> shape("rpc::fem::kind_shape", kinds * size);
+  const auto coords = mesh.coords;
+  const auto cells = mesh.cells;
+  Kokkos::parallel_for(
+      "rpc::fem::kind_shape", device_range(kinds), KOKKOS_LAMBDA(const LO kind) {
+        double farthest = 0;
+        for (int a = 0; a < nodes; ++a)
+          for (int d = 0; d < dim; ++d) {
+            const double x = coords(cells(example(kind), a), d);
+            shape(kind * size + a * dim + d) = x - coords(cells(example(kind), 0), d);
+            farthest = larger(farthest, magnitude(x));
+          }
+        shape(kind * size + size - 1) = farthest;
+      });
+  const auto host = to_host(shape);
+  return {host.data(), host.data() + host.extent(0)};
+}
 
-CongruentCells congruent_cells(const mesh::Mesh &mesh)
+/// Of each shape the first one of all ranks' that differs from it by the rounding of coordinates; collective.
+/// @param mine  (kinds, size)
+std::vector<double> shapes_of_all(const Comm &comm, const std::vector<double> &mine, const int size)
+{
+  const std::vector<double> all = gathered_by_all(comm, mine);
+  std::vector<double> shared;
+  for (auto own = mine.begin(); own < mine.end(); own += size) {
+    auto first = all.begin();
+    const auto is_alike = [&] {
+      const double rounding = relative_rounding * std::max(own[size - 1], first[size - 1]);
+      return std::equal(own, own + size - 1, first,
+                        [&](const double a, const double b) { return std::abs(a - b) <= rounding; });
+    };
+    while (!is_alike()) first += size; // at last to its own
+    shared.insert(shared.end(), first, first + size);
+  }
+  return shared;
+}
+
+/// Gives kinds their cells of their own.
+/// @param shapes  (kinds, nodes * dim + 1)
+void take_shapes(const mesh::Mesh &mesh, const std::vector<double> &shapes, CongruentCells &kinds)
+{
+  const int nodes = mesh.element.num_nodes(), dim = mesh.dim(), size = nodes * dim + 1;
+  HostView<double **> coords("rpc::fem::kind_coords", kinds.size() * nodes, dim);
+  HostView<LO **> cells("rpc::fem::kind_cells", kinds.size(), nodes);
+  for (int kind = 0; kind < kinds.size(); ++kind)
+    for (int a = 0; a < nodes; ++a) {
+      cells(kind, a) = kind * nodes + a;
+      for (int d = 0; d < dim; ++d) coords(cells(kind, a), d) = shapes[kind * size + a * dim + d];
+    }
+  kinds.coords = to_device(coords);
+  kinds.cells = to_device(cells);
+}
+
+/// Those of this rank, without their shapes.
+CongruentCells kinds_of(const mesh::Mesh &mesh)
 {
   const LO num_cells = mesh.num_cells();
   DeviceView<signed char *> of_cell(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::kind_of_cell"), num_cells);
@@ -96,7 +156,17 @@ CongruentCells congruent_cells(const mesh::Mesh &mesh)
     if (kind < parts && took < num_cells / (4 * parts)) return {};
     count += took;
   }
-  return {of_cell, device_values(examples, "rpc::fem::kind_example")};
+  return {of_cell, device_values(examples, "rpc::fem::kind_example"), {}, {}};
+}
+
+} // namespace
+
+CongruentCells congruent_cells(const mesh::Mesh &mesh)
+{
+  CongruentCells kinds = kinds_of(mesh);
+  const std::vector<double> mine = shapes_of(mesh, kinds.example);
+  take_shapes(mesh, shapes_of_all(mesh.comm(), mine, mesh.element.num_nodes() * mesh.dim() + 1), kinds);
+  return kinds;
 }
 
 } // namespace rpc::fem

@@ -5,7 +5,7 @@
 namespace rpc::fem
 {
 
-/// Finds the cells that are each other's translates; no kinds where there are more than a few.
+/// Finds the cells that are each other's translates; no kinds on a rank where there are more than a few. Collective.
 CongruentCells congruent_cells(const mesh::Mesh &mesh);
 
 } // namespace rpc::fem

@@ -230,14 +230,13 @@ struct ElasticCells {
 /// Gradients and volumes at the points of each kind of congruent cells; 0 from the first point on whose Jacobian is <= 0.
 template <int Dim, int Nodes>
 struct TabulateKind {
-  ElasticCells<Dim, Nodes> body;                   //                                     in, without a table
-  DeviceView<LO *> example;                        // (kinds)                            in
+  ElasticCells<Dim, Nodes> body;                   // of which the cells are the kinds   in, without a table
   DeviceView<double **[Nodes][Dim]> kind_gradient; // (kinds, points, Nodes, Dim) [1/m]  out
   DeviceView<double **> kind_volume;               // (kinds, points)           [m^Dim]  out
 
   KOKKOS_FUNCTION void operator()(const LO s) const
   {
-    body.at_plain_points(example(s), [&](const int q, const double volume, const double(&dN)[Nodes][Dim]) {
+    body.at_plain_points(s, [&](const int q, const double volume, const double(&dN)[Nodes][Dim]) {
       kind_volume(s, q) = volume;
       for (int a = 0; a < Nodes; ++a)
         for (int i = 0; i < Dim; ++i) kind_gradient(s, q, a, i) = dN[a][i];
@@ -266,7 +265,10 @@ ElasticCells<Dim, Nodes, Axisymmetric> elastic_cells(const Discretization &d, co
   if constexpr (!Axisymmetric) {
     const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::kind_gradient", d.congruent.size(), table.num_points());
     const DeviceView<double **> volume("rpc::fem::kind_volume", d.congruent.size(), table.num_points());
-    const TabulateKind<Dim, Nodes> tabulate{body, d.congruent.example, gradient, volume};
+    ElasticCells<Dim, Nodes> kinds = body;
+    kinds.coords = d.congruent.coords;
+    kinds.cells = d.congruent.cells;
+    const TabulateKind<Dim, Nodes> tabulate{kinds, gradient, volume};
     Kokkos::parallel_for("rpc::fem::tabulate_kinds", device_range(d.congruent.size()), tabulate);
     body.kind = d.congruent.of_cell;
     body.kind_gradient = gradient;

@@ -1,5 +1,8 @@
 #include "bodies.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/fem/elasticity.hpp"
+
+#include <algorithm>
 
 namespace congruent_cells_test
 {
@@ -100,6 +103,28 @@ TEST(CongruentCells, SeeADisplacedNodeAboveRounding)
   };
   EXPECT_EQ(moved(1e-15), 1);
   EXPECT_EQ(moved(1e-12), 0);
+}
+
+/// The cell by which a rank computes all cells of a kind is that of rank 0, to the last digit, wherever its own cells lie.
+TEST(CongruentCells, HaveTheSameShapeOnAllRanks)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    auto box = small_box(element);
+    for (double &x : box.upper) x += 0.1; // edges that no rank has without rounding
+    const auto d = body(box, world());
+    const auto coords = to_host(d.congruent.coords);
+    std::vector<double> mine;
+    for (std::size_t k = 0; k < coords.extent(0); ++k)
+      for (std::size_t i = 0; i < coords.extent(1); ++i) mine.push_back(coords(k, i));
+    const auto all = gathered_by_all(d.mesh->comm(), mine);
+    const auto size = static_cast<std::ptrdiff_t>(d.dim() * element.num_nodes());
+    for (auto kind = mine.begin(); kind < mine.end(); kind += size) {
+      auto first = all.begin(); // rank 0's
+      while (first < all.end() && !std::equal(kind, kind + size, first)) first += size;
+      EXPECT_LT(first - all.begin(), parts_of_cell(element) * size);
+    }
+  }
 }
 
 TEST(CongruentCells, GiveTheStiffnessOfEachCellByItself)

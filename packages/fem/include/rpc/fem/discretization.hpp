@@ -29,6 +29,10 @@ struct NodeToCells {
 struct CongruentCells {
   DeviceView<signed char *> of_cell; ///< (local cells) kind
   DeviceView<LO *> example;          ///< (kinds) a cell of each
+  /// A cell of each kind by itself, its first node at 0: the same one on all ranks that have the kind, to the last digit. Else forces of
+  /// cells that ranks have in common would not balance, and slender bodies bend by that.
+  DeviceView<double **> coords; ///< (kinds * nodes, dim) [m]
+  DeviceView<LO **> cells;      ///< (kinds, nodes) rows of coords
 
   int size() const { return static_cast<int>(example.extent(0)); }
 };
