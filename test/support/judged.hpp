@@ -19,9 +19,17 @@ inline contact::ContactEnergy contact_energy(const contact::Iterate &iterate, co
 {
   return contact::contact_energy(iterate.points(), judged_at(iterate, from_0));
 }
+/// Pi(u) [J]
+inline double elastic_energy(const Operator &K, const fem::ElasticProblem &elastic, const Vector &u)
+{
+  Vector Ku(u.getMap());
+  K.apply(u, Ku);
+  return 0.5 * u.dot(Ku) - elastic.load->dot(u) + elastic.energy_offset;
+}
 inline double energy(const contact::Iterate &iterate, const fem::ElasticProblem &elastic, const Vector &from_0)
 {
-  return contact::energy(iterate.hessian()->base(), elastic, iterate.points(), judged_at(iterate, from_0));
+  return contact::energy(elastic_energy(iterate.hessian()->base(), elastic, from_0), iterate.points(),
+                         judged_at(iterate, from_0));
 }
 inline Vector multiplier_forces(const contact::Iterate &iterate)
 {

@@ -1,4 +1,5 @@
 #include "friction_scene.hpp"
+#include "judged.hpp"
 #include "rpc/contact/energies.hpp"
 #include "rpc/contact/iterate.hpp"
 #include "rpc/solver/newton.hpp"
@@ -20,7 +21,8 @@ double tresca(const analysis::Problem &problem, const analysis::Step &step, cons
   const contact::ContactNodes &c = step.contact;
   const contact::ContactState state{rcp(new Vector(u, Teuchos::Copy)), {DeviceView<double *>("0", c.size())}, {}};
   // Without pressures energy() is that of the body alone, but for points whose normal displacement is prescribed.
-  double sum = contact::energy(*problem.stiffness(), step.elastic, c, state) + contact::friction_work(c, state);
+  double sum = contact::energy(elastic_energy(*problem.stiffness(), step.elastic, u), c, state) +
+               contact::friction_work(c, state);
   const auto x = u.getLocalViewHost(Tpetra::Access::ReadOnly);
   const auto fixed = to_host(c.fixed);
   const auto weight = to_host(c.weight), free_gap = to_host(c.free_gap);

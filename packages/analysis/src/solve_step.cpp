@@ -251,8 +251,9 @@ void read_results(const Problem &problem, StepSolution &s)
 {
   s.contact = contact::contact_result(problem.discretization(), problem.contact_sides(), s.step.contact, s.state,
                                       contact::has_friction(problem.model().contact));
-  s.energy = contact::energy(*problem.stiffness(), s.step.elastic, s.step.contact, s.state); // paper (6); (5.14)
   s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
+  const double elastic = 0.5 * s.energy_norm_squared - s.step.elastic.applied_load->dot(*s.state.displacement); // (1.2)
+  s.energy = contact::energy(elastic, s.step.contact, s.state); // paper (6); (5.14)
   s.reactions = reactions(problem, s);
 }
 

@@ -2,6 +2,7 @@
 
 #include "dense.hpp"
 #include "foundation_scene.hpp"
+#include "judged.hpp"
 #include "rpc/algebra/bounded_update.hpp"
 
 #include <algorithm>
@@ -46,12 +47,7 @@ struct Judged : Scene {
     return F;
   }
   /// Pi(u) [J]
-  double elastic_energy(const Vector &u) const
-  {
-    Vector Ku(u.getMap());
-    K.apply(u, Ku);
-    return 0.5 * u.dot(Ku) - elastic.load->dot(u) + elastic.energy_offset;
-  }
+  double elastic_energy(const Vector &u) const { return test::elastic_energy(K, elastic, u); }
   /// sum_i w_i energy(v_i, lambda_i, xi_i)
   template <class Energy>
   double over_contact(const Vector &u, const Energy &energy) const

@@ -21,9 +21,8 @@ struct ContactEnergy {
 /// Energy of the problem, J(u) = Pi(u) + sum_i w_i psi_i(v_i) [J], computed as Pi(u) + sum_i w_i (lambda_i v_i -
 /// psi_i*(lambda_i)): the two are equal where the contact law holds, but xi v+ makes much of the rounding of v at a closed
 /// node.                                                                                  paper (6); (1.4), (5.14)
-/// @param K  the body's stiffness, prescribed unknowns eliminated
-double energy(const Operator &K, const fem::ElasticProblem &elastic, const ContactNodes &points,
-              const ContactState &state);
+/// @param elastic  Pi(u) [J]
+double energy(double elastic, const ContactNodes &points, const ContactState &state);
 
 /// Largest violation of the laws of contact and friction by (u, lambda), dimensionless: of w = 0 in paper (7).  (5.3), (12.6)
 double contact_law_residual(const ContactNodes &points, const ContactState &state);
