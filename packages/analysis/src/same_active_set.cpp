@@ -9,7 +9,7 @@ namespace
 {
 
 constexpr double most_left_by_rounding = 1e-3; // of the residual, for a step that rounding ends
-constexpr double same_residual = 0.1; // so much of it is not of the active set's piece at most
+constexpr double same_residual = 0.1;          // so much of it is not of the active set's piece at most
 
 } // namespace
 
