@@ -125,15 +125,17 @@ std::vector<double> shapes_of_all(const Comm &comm, const std::vector<double> &m
 void take_shapes(const mesh::Mesh &mesh, const std::vector<double> &shapes, CongruentCells &kinds)
 {
   const int nodes = mesh.element.num_nodes(), dim = mesh.dim(), size = nodes * dim + 1;
-  HostView<double **> coords("rpc::fem::kind_coords", kinds.size() * nodes, dim);
-  HostView<LO **> cells("rpc::fem::kind_cells", kinds.size(), nodes);
+  kinds.coords = DeviceView<double **>("rpc::fem::kind_coords", kinds.size() * nodes, dim);
+  kinds.cells = DeviceView<LO **>("rpc::fem::kind_cells", kinds.size(), nodes);
+  const auto coords = Kokkos::create_mirror_view(kinds.coords);
+  const auto cells = Kokkos::create_mirror_view(kinds.cells);
   for (int kind = 0; kind < kinds.size(); ++kind)
     for (int a = 0; a < nodes; ++a) {
       cells(kind, a) = kind * nodes + a;
       for (int d = 0; d < dim; ++d) coords(cells(kind, a), d) = shapes[kind * size + a * dim + d];
     }
-  kinds.coords = to_device(coords);
-  kinds.cells = to_device(cells);
+  Kokkos::deep_copy(kinds.coords, coords);
+  Kokkos::deep_copy(kinds.cells, cells);
 }
 
 /// Those of this rank, without their shapes.
