@@ -192,6 +192,12 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   return rpc::adapt::succeeded(solution) ? ExitCode::converged : ExitCode::not_converged;
 }
 
+/// In one piece, or the launcher's lines and other ranks' could come between; without memory of its own, which may have run out.
+void say_error(const char *kind, const char *what)
+{
+  std::fprintf(stderr, "rpc: %s: %s\n", kind, what);
+}
+
 } // namespace
 
 int main(int argc, char *argv[])
@@ -208,7 +214,7 @@ int main(int argc, char *argv[])
   const bool root = mpi.rank() == 0;
   std::ostream out(root ? std::cout.rdbuf() : nullptr);
   const auto stop = [&mpi](const char *what) { // maybe on this rank alone: nobody must wait for it
-    std::cerr << "rpc: internal error: " << what << std::endl;
+    say_error("internal error", what);
     if (mpi.num_ranks() > 1) mpi.abort();
     return leave(ExitCode::internal_error);
   };
@@ -226,7 +232,7 @@ int main(int argc, char *argv[])
     });
     return leave(code);
   } catch (const rpc::Error &error) { // on all ranks
-    if (root) std::cerr << "rpc: error: " << rpc::for_terminal(error.what()) << std::endl;
+    if (root) say_error("error", rpc::for_terminal(error.what()).c_str());
     return leave(error.code());
   } catch (const std::exception &error) {
     return stop(rpc::is_out_of_memory(error) ? "out of memory; more ranks on more machines, or fewer cells, help"
