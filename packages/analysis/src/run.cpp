@@ -54,7 +54,7 @@ void note_skipped(const Task &task, Solution &s)
 {
   const mesh::Mesh &mesh = *s.discretization.mesh;
   const auto &contact = s.step.contact;
-  const LO shapes = static_cast<LO>(s.discretization.congruent.example.extent(0));
+  const LO shapes = s.discretization.congruent.size();
   const auto skip = [&s](const bool skipped, const std::string &what) {
     if (skipped) s.skipped.push_back(what);
   };

@@ -109,12 +109,11 @@ struct CellsFrom {
   KOKKOS_INLINE_FUNCTION int block_of(const LO m) const { return block(first + m); }
 };
 
-/// Or an example of each kind of congruent cells, in each block: kind * blocks + block.
-struct Examples {
-  DeviceView<LO *> example; // (kinds)  in
+/// Or those of kinds_of(), each in each block: kind * blocks + block.
+struct InEachBlock {
   int num_blocks;
 
-  KOKKOS_INLINE_FUNCTION LO cell(const LO m) const { return example(m / num_blocks); }
+  KOKKOS_INLINE_FUNCTION LO cell(const LO m) const { return m / num_blocks; }
   KOKKOS_INLINE_FUNCTION int block_of(const LO m) const { return m % num_blocks; }
 };
 
@@ -125,7 +124,7 @@ struct TabulateStiffness {
   static constexpr int dofs = Dim * Nodes;
 
   Stiffness stiffness;                     //                                       in
-  Which which;                             // CellsFrom or Examples                 in
+  Which which;                             // CellsFrom or InEachBlock              in
   DeviceView<double *[dofs][dofs]> matrix; // (tabulated cells, dofs, dofs)  [N/m]  out
 
   /// @param bad  counts cells whose Jacobian is <= 0 somewhere

@@ -78,11 +78,13 @@ LO take_kind(const mesh::Mesh &mesh, const signed char kind, const DeviceView<si
   return took;
 }
 
-/// (kinds, nodes * dim + 1) Of each example its nodes, seen from the first one, and the largest of its coordinates, which has their rounding. [m]
-std::vector<double> shapes_of(const mesh::Mesh &mesh, const DeviceView<LO *> &example)
+/// (examples, nodes * dim + 1) Of each its nodes, seen from the first one, and the largest of its coordinates, which has their rounding. [m]
+/// @param examples  cells
+std::vector<double> shapes_of(const mesh::Mesh &mesh, const std::vector<LO> &examples)
 {
   const int nodes = mesh.element.num_nodes(), dim = mesh.dim(), size = nodes * dim + 1;
-  const auto kinds = static_cast<LO>(example.extent(0));
+  const auto kinds = static_cast<LO>(examples.size());
+  const auto example = device_values(examples, "rpc::fem::kind_example");
   const DeviceView<double *> shape("rpc::fem::kind_shape", kinds * size);
   const auto coords = mesh.coords;
   const auto cells = mesh.cells;
@@ -125,11 +127,12 @@ std::vector<double> shapes_of_all(const Comm &comm, const std::vector<double> &m
 void take_shapes(const mesh::Mesh &mesh, const std::vector<double> &shapes, CongruentCells &kinds)
 {
   const int nodes = mesh.element.num_nodes(), dim = mesh.dim(), size = nodes * dim + 1;
-  kinds.coords = DeviceView<double **>("rpc::fem::kind_coords", kinds.size() * nodes, dim);
-  kinds.cells = DeviceView<LO **>("rpc::fem::kind_cells", kinds.size(), nodes);
+  const int num_kinds = static_cast<int>(shapes.size()) / size;
+  kinds.coords = DeviceView<double **>("rpc::fem::kind_coords", num_kinds * nodes, dim);
+  kinds.cells = DeviceView<LO **>("rpc::fem::kind_cells", num_kinds, nodes);
   const auto coords = Kokkos::create_mirror_view(kinds.coords);
   const auto cells = Kokkos::create_mirror_view(kinds.cells);
-  for (int kind = 0; kind < kinds.size(); ++kind)
+  for (int kind = 0; kind < num_kinds; ++kind)
     for (int a = 0; a < nodes; ++a) {
       cells(kind, a) = kind * nodes + a;
       for (int d = 0; d < dim; ++d) coords(cells(kind, a), d) = shapes[kind * size + a * dim + d];
@@ -138,12 +141,11 @@ void take_shapes(const mesh::Mesh &mesh, const std::vector<double> &shapes, Cong
   Kokkos::deep_copy(kinds.cells, cells);
 }
 
-/// Those of this rank, without their shapes.
-CongruentCells kinds_of(const mesh::Mesh &mesh)
+/// A cell of each kind of this rank; none where there are more than a few.
+/// @param of_cell  (cells) unknown; <- their kinds
+std::vector<LO> examples_of(const mesh::Mesh &mesh, const DeviceView<signed char *> &of_cell)
 {
   const LO num_cells = mesh.num_cells();
-  DeviceView<signed char *> of_cell(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::kind_of_cell"), num_cells);
-  Kokkos::deep_copy(of_cell, unknown);
   const int parts = parts_of_cell(mesh.element);
   const int most_kinds =
       parts * (mesh.dim() == 2 ? 4 : 8); // the last cells of a box may have another length in each direction
@@ -158,16 +160,22 @@ CongruentCells kinds_of(const mesh::Mesh &mesh)
     if (kind < parts && took < num_cells / (4 * parts)) return {};
     count += took;
   }
-  return {of_cell, device_values(examples, "rpc::fem::kind_example"), {}, {}};
+  return examples;
 }
 
 } // namespace
 
 CongruentCells congruent_cells(const mesh::Mesh &mesh)
 {
-  CongruentCells kinds = kinds_of(mesh);
-  const std::vector<double> mine = shapes_of(mesh, kinds.example);
-  take_shapes(mesh, shapes_of_all(mesh.comm(), mine, mesh.element.num_nodes() * mesh.dim() + 1), kinds);
+  const DeviceView<signed char *> of_cell(Kokkos::ViewAllocateWithoutInitializing("rpc::fem::kind_of_cell"),
+                                          mesh.num_cells());
+  Kokkos::deep_copy(of_cell, unknown);
+  const std::vector<LO> examples = examples_of(mesh, of_cell);
+  const std::vector<double> mine = shapes_of(mesh, examples),
+                            shared = shapes_of_all(mesh.comm(), mine, mesh.element.num_nodes() * mesh.dim() + 1);
+  CongruentCells kinds;
+  if (!examples.empty()) kinds.of_cell = of_cell;
+  take_shapes(mesh, shared, kinds);
   return kinds;
 }
 

@@ -227,10 +227,21 @@ struct ElasticCells {
   }
 };
 
+/// The kinds of congruent cells as the cells of a body, without a table. They are in no block.
+template <int Dim, int Nodes, bool Axisymmetric>
+ElasticCells<Dim, Nodes, Axisymmetric> kinds_of(const CongruentCells &congruent,
+                                                ElasticCells<Dim, Nodes, Axisymmetric> body)
+{
+  body.coords = congruent.coords;
+  body.cells = congruent.cells;
+  body.kind_volume = {};
+  return body;
+}
+
 /// Gradients and volumes at the points of each kind of congruent cells; 0 from the first point on whose Jacobian is <= 0.
 template <int Dim, int Nodes>
 struct TabulateKind {
-  ElasticCells<Dim, Nodes> body;                   // of which the cells are the kinds   in, without a table
+  ElasticCells<Dim, Nodes> body;                   // kinds_of()                         in
   DeviceView<double **[Nodes][Dim]> kind_gradient; // (kinds, points, Nodes, Dim) [1/m]  out
   DeviceView<double **> kind_volume;               // (kinds, points)           [m^Dim]  out
 
@@ -265,10 +276,7 @@ ElasticCells<Dim, Nodes, Axisymmetric> elastic_cells(const Discretization &d, co
   if constexpr (!Axisymmetric) {
     const DeviceView<double **[Nodes][Dim]> gradient("rpc::fem::kind_gradient", d.congruent.size(), table.num_points());
     const DeviceView<double **> volume("rpc::fem::kind_volume", d.congruent.size(), table.num_points());
-    ElasticCells<Dim, Nodes> kinds = body;
-    kinds.coords = d.congruent.coords;
-    kinds.cells = d.congruent.cells;
-    const TabulateKind<Dim, Nodes> tabulate{kinds, gradient, volume};
+    const TabulateKind<Dim, Nodes> tabulate{kinds_of(d.congruent, body), gradient, volume};
     Kokkos::parallel_for("rpc::fem::tabulate_kinds", device_range(d.congruent.size()), tabulate);
     body.kind = d.congruent.of_cell;
     body.kind_gradient = gradient;

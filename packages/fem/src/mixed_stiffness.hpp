@@ -106,7 +106,7 @@ MatrixValues mixed_stiffness(const Discretization &d, const Discretization &whol
                              const ElasticCells<Dim, Nodes, Axisymmetric> &body, const std::size_t num_entries, LO &bad)
 {
   constexpr int dofs = Dim * Nodes;
-  const CellStiffness<Dim, Nodes, Axisymmetric> stiffness{body};
+  const CellStiffness<Dim, Nodes, Axisymmetric> stiffness{body}, of_kinds{kinds_of(whole.congruent, body)};
   const auto weight = weights_of_mixed<Dim, Nodes>(d.mesh->element);
   const LO num_nodes = static_cast<LO>(weight.extent(1)), num_cells = d.mesh->num_cells();
   const int num_blocks = static_cast<int>(d.mesh->blocks.size());
@@ -119,7 +119,7 @@ MatrixValues mixed_stiffness(const Discretization &d, const Discretization &whol
     const LO last = step < num_cells - first ? first + step : num_cells;
     const LO count = alike ? whole.congruent.size() * num_blocks : last - first;
     const DeviceView<double *[dofs][dofs]> matrix("rpc::fem::cell_stiffness", count);
-    bad += alike ? tabulate_stiffness(stiffness, Examples{whole.congruent.example, num_blocks}, count, matrix)
+    bad += alike ? tabulate_stiffness(of_kinds, InEachBlock{num_blocks}, count, matrix)
                  : tabulate_stiffness(stiffness, CellsFrom{first, d.mesh->block}, count, matrix);
     const DeviceView<double ***> restricted("rpc::fem::restricted_stiffness", count, num_dofs(Dim, num_nodes),
                                             num_dofs(Dim, num_nodes));

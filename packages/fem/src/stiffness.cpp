@@ -63,7 +63,8 @@ NodeStiffness<Dim, Nodes> node_stiffness(const Discretization &d, const CellStif
   constexpr int dofs = Dim * Nodes;
   const int num_blocks = static_cast<int>(d.mesh->blocks.size()), num_matrices = d.congruent.size() * num_blocks;
   const DeviceView<double *[dofs][dofs]> matrix("rpc::fem::kind_stiffness", num_matrices);
-  bad = tabulate_stiffness(stiffness, Examples{d.congruent.example, num_blocks}, num_matrices, matrix);
+  const CellStiffness<Dim, Nodes> of_kinds{kinds_of(d.congruent, stiffness.body)};
+  bad = tabulate_stiffness(of_kinds, InEachBlock{num_blocks}, num_matrices, matrix);
   Kokkos::parallel_for("rpc::fem::balance_stiffness", device_range(num_matrices), BalanceStiffness<Dim, Nodes>{matrix});
   return {d.mesh->cells, d.mesh->block, d.congruent.of_cell, matrix, num_blocks, d.node_to_cells, d.nodes()};
 }

@@ -127,6 +127,28 @@ TEST(CongruentCells, HaveTheSameShapeOnAllRanks)
   }
 }
 
+/// Far from 0, where the rounding of coordinates is felt.
+TEST(CongruentCells, GiveTheSameStiffnessOnAnyNumberOfRanks)
+{
+  for (const auto &element : elements()) {
+    SCOPED_TRACE(text_of(element));
+    auto box = small_box(element);
+    for (double &x : box.lower) x += 1e3;
+    for (double &x : box.upper) x += 1e3;
+    const auto local = [](const Point &x) { return wild({x[0] - 1e3, x[1] - 1e3, x[2] - 1e3}); };
+    for (const auto &material : {steel, rubber}) {
+      const auto product = [&](const RCP<const Comm> &comm) {
+        const auto d = body(box, comm);
+        EXPECT_GT(d.congruent.size(), 0);
+        Vector result(d.owned_dofs);
+        fem::assemble_stiffness(d, material)->apply(*interpolate(d, local), result);
+        return by_node_id(d, result);
+      };
+      EXPECT_LT(difference(product(world()), product(alone())), 1e-14);
+    }
+  }
+}
+
 TEST(CongruentCells, GiveTheStiffnessOfEachCellByItself)
 {
   for (const auto &element : elements()) {

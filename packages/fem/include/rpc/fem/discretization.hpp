@@ -28,13 +28,12 @@ struct NodeToCells {
 /// does not depend on a cell's place is computed once for each kind. No kinds where cells differ: then each is computed by itself.
 struct CongruentCells {
   DeviceView<signed char *> of_cell; ///< (local cells) kind
-  DeviceView<LO *> example;          ///< (kinds) a cell of each
   /// A cell of each kind by itself, its first node at 0: the same one on all ranks that have the kind, to the last digit. Else forces of
   /// cells that ranks have in common would not balance, and slender bodies bend by that.
   DeviceView<double **> coords; ///< (kinds * nodes, dim) [m]
   DeviceView<LO **> cells;      ///< (kinds, nodes) rows of coords
 
-  int size() const { return static_cast<int>(example.extent(0)); }
+  int size() const { return static_cast<int>(cells.extent(0)); }
 };
 
 /// A mesh with its displacement unknowns, numbered as dofs.hpp says.
