@@ -28,8 +28,9 @@ constexpr double much = 0.5;
 // Choices end at once where they are far_too_much and more than few points change, but for the first one where nothing predicts the start.
 constexpr double far_too_much = 1, far_too_much_of_rubber = 10; // of bodies that are nearly incompressible
 constexpr GO few_changes = 5;
-// A coarser mesh chooses where a choice has much overshoot, and in any case from the patience-th on.
+// A coarser mesh chooses where a choice has much overshoot, and from the patience-th on where more than about one would follow.
 constexpr int patience = 4;
+constexpr double one_more = 1;
 // Newton stands at kinks after so many short steps. Newton creeps where k steps, two or more, leave more than left_per_step^k of the way.
 constexpr int most_short_steps = 3;
 constexpr double left_per_step = 0.5;
@@ -137,6 +138,7 @@ void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, 
   idle_ = 0;
   most_idle_ = most;
   fewest_changes_ = 0;
+  left_ = std::numeric_limits<double>::infinity();
   levers_ = {};
   norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
   rough_ = false; // a small residual may be all of the bending
@@ -203,7 +205,8 @@ bool ActiveSetStage::may_settle()
   levers_ = {lever, levers_[0], levers_[1]};
   if (before == 0) return true; // not by a solve, but by where it starts
   const auto number = static_cast<double>(changes), fewest = static_cast<double>(fewest_changes_);
-  const bool contracts = number < fewest && std::log(number) <= most_left * std::log(fewest / number);
+  left_ = number < fewest ? std::log(number) / std::log(fewest / number) : infinity;
+  const bool contracts = left_ <= most_left;
   fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
   const bool tells = predicted_ || before > 1;
   if (tells && changes > few_changes && overshoot > most_overshoot_) return false;
@@ -216,14 +219,14 @@ bool ActiveSetStage::may_settle()
 bool ActiveSetStage::is_for_coarse_mesh() const
 {
   const bool was_needed = predicted_ && *predicted_ != FoundBy::choices; // more than choices by pressures, there
-  return was_needed || steps_ >= patience || choice_->overshoot > much * most_overshoot_;
+  return was_needed || (steps_ >= patience && left_ > one_more) || choice_->overshoot > much * most_overshoot_;
 }
 
 /// From here on a coarser mesh chooses, if there is one that can. @return whether it has chosen
 bool ActiveSetStage::begin_coarse_choices(const Vector &u)
 {
   if (!make_coarse_ || steps_ == 0 || path_ != Path::ahead) return false;
-  coarse_ = std::exchange(make_coarse_, {})(iterate_);
+  coarse_ = std::exchange(make_coarse_, {})(iterate_, solve_seconds_);
   return coarse_ && choose_by_coarse_mesh(u);
 }
 
@@ -433,6 +436,7 @@ ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direct
     }
     return Step::none;
   }
+  solve_seconds_ = group.context().linear_solver.seconds_of_last_solve();
   direction.scale(-1.);
   ++group.context().steps;
   ++steps_;

@@ -149,7 +149,8 @@ bool CoarseChoice::is_small(const Problem &coarse)
 }
 
 std::unique_ptr<CoarseChoice> CoarseChoice::make(const Problem &coarse, const fem::DirichletDofs &dirichlet,
-                                                 const fem::Discretization &fine, const contact::Iterate &iterate)
+                                                 const fem::Discretization &fine, const contact::Iterate &iterate,
+                                                 const double solve_seconds)
 {
   const fem::Discretization &d = coarse.discretization();
   const Map &dofs = *d.owned_dofs;
@@ -165,7 +166,7 @@ std::unique_ptr<CoarseChoice> CoarseChoice::make(const Problem &coarse, const fe
   std::optional<CoarseModel> model;
   on_root(*comm, ExitCode::internal_error, [&] {
     unless_memory_runs_out([&] { model.emplace(model_of(size, K, rows)); });
-    if (model && !model->is_cheap()) model.reset();
+    if (model && !model->is_cheap(solve_seconds)) model.reset();
   });
   if (!told_by_root(*comm, model.has_value())) return nullptr;
   return std::unique_ptr<CoarseChoice>(new CoarseChoice(comm, std::move(points), std::move(model)));

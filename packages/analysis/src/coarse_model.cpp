@@ -97,9 +97,9 @@ CoarseModel::CoarseModel(const int size, const solver::SymmetricEntries &K, solv
   factor_ = solver::SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), size_, K_, 1);
 }
 
-bool CoarseModel::is_cheap() const
+bool CoarseModel::is_cheap(const double solve_seconds) const
 {
-  return factor_ && factor_->cost().seconds < most_seconds;
+  return factor_ && factor_->cost().seconds < std::min(most_seconds, solve_seconds);
 }
 
 /// (points) By how much the unknowns move the points.

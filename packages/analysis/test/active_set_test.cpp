@@ -287,7 +287,7 @@ TEST(ActiveSet, GoesOnWhereTheCoarserMeshCannotChoose)
                                 flat(inf, 1e-3));
     analysis::ActiveSetStage stage(*strip.iterate, {});
     int asked = 0;
-    stage.starts_predicted(coarser, [&](const contact::Iterate &) {
+    stage.starts_predicted(coarser, [&](const contact::Iterate &, double) {
       ++asked;
       return std::unique_ptr<analysis::CoarseChoice>();
     });

@@ -134,7 +134,7 @@ TEST(CoarseModel, FindsTheStatesOfItsOwnProblem)
       C(i, i) += 1 / (points[i].weight * stiffness);
     }
     CoarseModel model(n, bar(n, k), nodes(n), points);
-    ASSERT_TRUE(model.is_cheap());
+    ASSERT_TRUE(model.is_cheap(inf));
     model.learn(v, std::vector<double>(n, 0.));
     const auto found = model.choose(), expected = tried(C, points, v);
     ASSERT_TRUE(found && expected);
@@ -228,7 +228,13 @@ TEST(CoarseModel, NeedsTheUnknownsOfAPointInOneCell)
   ends.begin = {0, 2};
   ends.row = {0, 2};
   ends.value = {0.5, 0.5};
-  EXPECT_FALSE(CoarseModel(n, bar(n, 1), ends, {{1, 1, {inf}}}).is_cheap());
+  EXPECT_FALSE(CoarseModel(n, bar(n, 1), ends, {{1, 1, {inf}}}).is_cheap(inf));
+}
+
+TEST(CoarseModel, IsNotCheapBesideSolvesThatTakeLess)
+{
+  constexpr int n = 3;
+  EXPECT_FALSE(CoarseModel(n, bar(n, 1), nodes(n), {{1, 1, {inf}}, {1, 1, {inf}}, {1, 1, {inf}}}).is_cheap(0));
 }
 
 } // namespace

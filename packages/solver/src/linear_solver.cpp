@@ -377,6 +377,14 @@ const LinearSolverCounts &LinearSolver::counts() const
   return impl_->counts;
 }
 
+double LinearSolver::seconds_of_last_solve() const
+{
+  Impl &now = *impl_;
+  if (now.counts.iterations.empty()) return 0;
+  const double cycle = now.on_sparse ? now.sparse.prospect().cost.seconds_of_solve : now.seconds_of_cg().measured;
+  return (now.counts.iterations.back() + 1) * cycle;
+}
+
 const Body &LinearSolver::body() const
 {
   return impl_->body;

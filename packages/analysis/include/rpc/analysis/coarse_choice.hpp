@@ -20,8 +20,10 @@ public:
   static bool is_small(const Problem &coarse);
   /// Null where the factors of the coarse mesh's stiffness are not cheap. Collective.
   /// @param coarse  small   @param dirichlet  which unknowns of the coarse mesh are prescribed
+  /// @param solve_seconds  what a linear solve of the fine mesh takes
   static std::unique_ptr<CoarseChoice> make(const Problem &coarse, const fem::DirichletDofs &dirichlet,
-                                            const fem::Discretization &fine, const contact::Iterate &iterate);
+                                            const fem::Discretization &fine, const contact::Iterate &iterate,
+                                            double solve_seconds);
 
   /// The next choice, at the minimum for the present active set. Nothing where the model finds none, or where choices make no headway; then it
   /// is not to be asked again. Collective.
@@ -42,6 +44,7 @@ private:
 };
 
 /// By a coarser mesh, see make(). Collective.
-using MakeCoarseChoice = std::function<std::unique_ptr<CoarseChoice>(const contact::Iterate &)>;
+using MakeCoarseChoice =
+    std::function<std::unique_ptr<CoarseChoice>(const contact::Iterate &iterate, double solve_seconds)>;
 
 } // namespace rpc::analysis

@@ -43,8 +43,9 @@ public:
   /// @param data    (points)
   CoarseModel(int size, const solver::SymmetricEntries &K, solver::SparseColumns points, std::vector<ModelPoint> data);
 
-  /// Whether its factors, of which a choice takes some, are cheap. Without that nothing below may be asked.
-  bool is_cheap() const;
+  /// Whether each of its factors, of which a choice takes some, is cheap. Without that nothing below may be asked.
+  /// @param solve_seconds  what a linear solve of the fine mesh takes
+  bool is_cheap(double solve_seconds) const;
 
   /// Takes the minimum for an active set on the fine mesh, whose changes against the one before it teach the model.
   /// @param v  (points) penetration [m]   @param p  (points) pressures, whether the law admits them or not [Pa]

@@ -67,6 +67,8 @@ public:
   double inverse_energy(const Vector &F);
 
   const LinearSolverCounts &counts() const;
+  /// About what the last solve took [s], by constants of one machine: a choice by it is the same in every run. Collective.
+  double seconds_of_last_solve() const;
   const Body &body() const;
 
 private:
