@@ -52,14 +52,14 @@ struct Rule {
 constexpr Rule policy[] = {
     // after               that was                next          otherwise
     {Used::meshes,         dear | failed,          Next::sparse, Next::stand_in},     // coarse meshes miss what the matrix tells; it stays
-    {Used::meshes,         slow,                   Next::stand_in, Next::nothing},    // the same, and a factor would take longer
-    {Used::meshes,         broken,                 Next::stand_in, Next::nothing},    // the same
+    {Used::meshes,         slow,                   Next::nothing, Next::nothing},     // a factor would take longer
+    {Used::meshes,         broken,                 Next::stand_in, Next::nothing},    // coarse meshes miss what the matrix tells
     {Used::mixed,          dear,                   Next::sparse, Next::whole},        // a factor takes less time
     {Used::mixed,          slow,                   Next::nothing, Next::nothing},     // a factor would take longer
     {Used::mixed,          failed,                 Next::whole, Next::nothing},       // cells are too stretched for it
     {Used::mixed,          broken,                 Next::whole_once, Next::nothing},  // an active set may leave the body unheld
     {Used::meshes_again,   dear | failed,          Next::sparse, Next::stand_in},     // the same
-    {Used::meshes_again,   slow,                   Next::stand_in, Next::nothing},    // the same
+    {Used::meshes_again,   slow,                   Next::nothing, Next::nothing},     // the same
     {Used::meshes_again,   broken,                 Next::nothing, Next::nothing},     // an active set leaves the body unheld, once more
     {Used::stand_in,       dear | failed,          Next::sparse, Next::stronger},     // aggregation misses slow modes
     {Used::stand_in,       slow,                   Next::stronger, Next::nothing},    // the same, and a factor would take longer

@@ -59,6 +59,13 @@ TEST(Policy, EndsForEachOutcomeThatRepeats)
       }
 }
 
+/// Where multigrid on meshes is slow the algebraic one is no faster: of nearly incompressible P1 it took up to three times as long.
+TEST(Policy, LeavesSlowMeshesInUse)
+{
+  for (const Used used : {Used::meshes, Used::mixed, Used::meshes_again})
+    EXPECT_EQ(rule_for(used, slow).next, Next::nothing);
+}
+
 /// A matrix that is singular is nobody's fault: nothing stronger is tried.
 TEST(Policy, BlamesTheMatrixWhereAllThatIsFreshBreaksDown)
 {
