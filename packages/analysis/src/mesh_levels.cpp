@@ -5,7 +5,6 @@
 #include "rpc/mesh/box_patches.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -106,17 +105,6 @@ solver::PatchesOfMesh patches_between(const mesh::Mesh &fine, const mesh::BoxOpt
   return patches;
 }
 
-/// The longest node distance over the shortest one.
-double stretch(const mesh::BoxOptions &box)
-{
-  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-  for (int d = 0; d < box.element.dim; ++d) {
-    shortest = std::min(shortest, box.node_distance(d));
-    longest = std::max(longest, box.node_distance(d));
-  }
-  return longest / shortest;
-}
-
 GO num_unknowns(const mesh::BoxOptions &box)
 {
   GO nodes = 1;
@@ -132,7 +120,7 @@ std::vector<mesh::BoxOptions> coarser_on_stars(mesh::BoxOptions box)
   const GO most = box.element.dim == 2 ? most_factored_2d : most_factored_3d;
   std::vector<mesh::BoxOptions> coarser;
   while (coarser.empty() || num_unknowns(box) > few) {
-    if (stretch(box) > most_stretched_of_stars) {
+    if (mesh::stretch(box) > most_stretched_of_stars) {
       if (num_unknowns(box) > most) coarser.clear();
       return coarser;
     }

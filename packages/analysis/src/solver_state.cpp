@@ -22,11 +22,14 @@ constexpr double cost_of_step = 0.035;
 /// The CG iterations to 1e-8 that multigrid takes at least on a body of the largest nu of its blocks: smoothers of single nodes see no
 /// functions without divergence.                                                                                 (4.10b)
 ///
-///     4 (1 - 2 nu)^(-1/2),  of P1 6 (1 - 2 nu)^(-1/2)
-double expected_iterations(const mesh::Element &element, const double nu)
+///     4 (1 - 2 nu)^(-1/2),  of P1 6 (1 - 2 nu)^(-1/2),  in stretched cells 3 (1 - 2 nu)^(-3/4) if that is more
+double expected_iterations(const mesh::Mesh &mesh, const double nu)
 {
-  const bool is_linear_simplex = element.order == 1 && element.shape == mesh::Shape::simplex;
-  return (is_linear_simplex ? 6 : 4) / std::sqrt(1 - 2 * nu);
+  const double to_go = 1 - 2 * nu;
+  if (mesh.element.order > 1 || mesh.element.shape != mesh::Shape::simplex) return 4 * std::pow(to_go, -0.5);
+  const double square = 6 * std::pow(to_go, -0.5);
+  constexpr double stretched = 1.7; // as for coarser boxes
+  return mesh.box && mesh::stretch(*mesh.box) > stretched ? std::max(square, 3 * std::pow(to_go, -0.75)) : square;
 }
 
 /// The iterations of the mixed form. Of order 1, in the plane and on meshes from files, CG iterations are counted that take the same time: a
@@ -54,7 +57,7 @@ solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Pro
   if (d.mesh->element.order == 2) options.damping = 1.6;
   if (d.kinematics == fem::Kinematics::plane_stress) return options; // nothing is nearly incompressible
   const double nu = largest_ratio(d, materials);
-  options.expected_iterations = expected_iterations(d.mesh->element, nu);
+  options.expected_iterations = expected_iterations(*d.mesh, nu);
   if (is_mixed || smooths_on_stars(d, materials)) {
     options.expected_iterations = is_mixed ? expected_of_mixed_form(*d.mesh, nu) : expected_on_stars;
     options.first_iterations = std::max(options.first_iterations, first_iterations);

@@ -48,6 +48,16 @@ BoxOptions coarsened_along(const Directions &directions, const BoxOptions &optio
 
 } // namespace
 
+double stretch(const BoxOptions &options)
+{
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (int d = 0; d < options.element.dim; ++d) {
+    shortest = std::min(shortest, options.node_distance(d));
+    longest = std::max(longest, options.node_distance(d));
+  }
+  return longest / shortest;
+}
+
 std::optional<BoxOptions> coarsened(const BoxOptions &options)
 {
   const int dim = options.element.dim;

@@ -27,6 +27,13 @@ TEST(CoarsenedBox, HasHalfTheCellsAndItsNodesAreAmongTheFinerOnes)
   EXPECT_EQ(coarse->upper, (std::vector<double>{6, 4, 2}));
 }
 
+TEST(CoarsenedBox, StretchIsOfNodeDistances)
+{
+  EXPECT_EQ(rpc::mesh::stretch({{0, 0}, {4, 4}, {4, 4}, Element{2, 1}}), 1);
+  EXPECT_EQ(rpc::mesh::stretch({{0, 0}, {4, 12}, {4, 4}, Element{2, 2}}), 3);
+  EXPECT_EQ(rpc::mesh::stretch({{0, 0, 0}, {4, 2, 1}, {4, 4, 4}, Element{3, 1, Shape::simplex}}), 4);
+}
+
 TEST(CoarsenedBox, StretchedCellsBecomeSquareFirst)
 {
   BoxOptions box{{0, 0}, {8, 1}, {8, 64}, Element{2, 1}}; // cells of 1 x 1/64

@@ -47,6 +47,9 @@ BoxOptions box_options(const Teuchos::ParameterList &list);
 /// than one interval.
 std::optional<BoxOptions> coarsened(const BoxOptions &options);
 
+/// The longest node distance over the shortest one.
+double stretch(const BoxOptions &options);
+
 /// Half as many cells of the same element in the directions in which nodes are closest, up to 1.7 times the shortest distance, and which have
 /// more than one; of an odd number the last three become one. None where no direction has more than one cell.
 std::optional<BoxOptions> halved(const BoxOptions &options);
