@@ -26,7 +26,9 @@ constexpr std::size_t most_pairs = 30'000'000;
 constexpr double least_missing = 1e-2;
 // s is this part of the least that a change shows, so that s P K^-1 P^T stays below what the fine mesh has: only so can updates add to it.
 constexpr double part_of_scale = 0.25;
-constexpr int most_steps = 40; // of Newton's method; some ten are needed
+// Of Newton's method: ten in the mean, but its steps are short where gaps are unlike from point to point; and from the end of the path that
+// follows there.
+constexpr int first_steps = 20, last_steps = 20;
 
 double dot(const std::vector<double> &a, const std::vector<double> &b)
 {
@@ -102,6 +104,12 @@ CoarseModel::CoarseModel(const int size, const solver::SymmetricEntries &K, solv
 bool CoarseModel::is_cheap(const double solve_seconds) const
 {
   return factor_ && factor_->cost().seconds < std::min(most_seconds, most_solves * solve_seconds);
+}
+
+void CoarseModel::Unknowns::move(const double t, const Unknowns &d)
+{
+  add(t, d.y, y);
+  add(t, d.part, part);
 }
 
 /// (points) By how much the unknowns move the points.
@@ -206,35 +214,56 @@ void CoarseModel::update()
   }
 }
 
-/// d <- -H^-1 gradient for the pieces that have these stiffnesses. The unknowns of the c_j are eliminated.       (5.8e)
-bool CoarseModel::newton_direction(const Unknowns &gradient, const std::vector<double> &stiffness, Unknowns &d)
+/// Of the model's functional. @param elastic  elastic_forces()   @param pressure  (points) [Pa]
+CoarseModel::Unknowns CoarseModel::gradient(const Unknowns &elastic, std::vector<double> pressure) const
 {
+  for (std::size_t i = 0; i < pressure.size(); ++i) pressure[i] -= p_[i];
+  Unknowns gradient = elastic;
+  add(1, nodal_forces(pressure), gradient.y);
+  for (std::size_t i = 0; i < pressure.size(); ++i) pressure[i] *= data_[i].weight;
+  for (std::size_t j = 0; j < learnt_.size(); ++j) gradient.part[j] += dot(learnt_[j], pressure);
+  return gradient;
+}
+
+/// The factors of a system that has its stiffness. The unknowns of the c_j are eliminated.                       (5.8e)
+bool CoarseModel::factorize(System &system)
+{
+  const std::vector<double> &stiffness = system.stiffness;
   if (!factorize(stiffness)) return false;
   const std::size_t n = learnt_.size();
-  std::vector<std::vector<double>> coupling(n), solved(n);
-  std::vector<double> S(n * n, 0.), scaled(stiffness.size());
-  d.y = gradient.y;
-  factor_->solve(d.y.data());
-  d.part = gradient.part;
+  system.coupling.resize(n);
+  system.solved.resize(n);
+  system.S.assign(n * n, 0.);
+  std::vector<double> scaled(stiffness.size());
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t i = 0; i < scaled.size(); ++i) scaled[i] = stiffness[i] * learnt_[j][i];
-    solved[j] = coupling[j] = nodal_forces(scaled);
-    factor_->solve(solved[j].data());
+    system.solved[j] = system.coupling[j] = nodal_forces(scaled);
+    factor_->solve(system.solved[j].data());
     for (std::size_t i = 0; i < scaled.size(); ++i) scaled[i] *= data_[i].weight;
-    for (std::size_t l = 0; l <= j; ++l) S[j * n + l] = dot(scaled, learnt_[l]) - dot(coupling[j], solved[l]);
-    S[j * n + j] += 1;
-    d.part[j] -= dot(coupling[j], d.y);
+    for (std::size_t l = 0; l <= j; ++l)
+      system.S[j * n + l] = dot(scaled, learnt_[l]) - dot(system.coupling[j], system.solved[l]);
+    system.S[j * n + j] += 1;
   }
-  if (n > 0) {
-    const int size = static_cast<int>(n);
-    int info = 0;
-    Teuchos::LAPACK<int, double>().POSV('U', size, 1, S.data(), size, d.part.data(), size, &info);
-    if (info != 0) return false;
-  }
-  for (std::size_t j = 0; j < n; ++j) add(-d.part[j], solved[j], d.y);
+  if (n == 0) return true;
+  const int size = static_cast<int>(n);
+  int info = 0;
+  Teuchos::LAPACK<int, double>().POTRF('U', size, system.S.data(), size, &info);
+  return info == 0;
+}
+
+/// -H^-1 gradient.
+CoarseModel::Unknowns CoarseModel::direction(const System &system, const Unknowns &gradient) const
+{
+  Unknowns d = gradient;
+  factor_->solve(d.y.data());
+  const int size = static_cast<int>(learnt_.size());
+  for (int j = 0; j < size; ++j) d.part[j] -= dot(system.coupling[j], d.y);
+  int info = 0;
+  if (size > 0) Teuchos::LAPACK<int, double>().POTRS('U', size, 1, system.S.data(), size, d.part.data(), size, &info);
+  for (int j = 0; j < size; ++j) add(-d.part[j], system.solved[j], d.y);
   for (double &y : d.y) y = -y;
   for (double &part : d.part) part = -part;
-  return true;
+  return d;
 }
 
 /// The model's functional along a direction.
@@ -267,41 +296,49 @@ private:
   const std::vector<double> &moved_, &along_;
 };
 
-std::optional<ModelStates> CoarseModel::choose()
+/// Newton's method with exact steps, so many at most. @param x  from there   @param now  the states at its end, where it settles
+CoarseModel::Ends CoarseModel::follow_newton(const int most, Unknowns &x, ModelStates &now)
 {
   const std::size_t n = data_.size();
-  Unknowns x{std::vector<double>(size_, 0.), std::vector<double>(learnt_.size(), 0.)}, d;
-  ModelStates now{std::vector<State>(n), std::vector<double>(n)};
-  std::vector<double> stiffness(n), change(n);
-  for (int step = 0; step < most_steps; ++step) {
+  now.state.resize(n);
+  now.pressure.resize(n);
+  System system;
+  system.stiffness.resize(n);
+  for (int step = 0; step < most; ++step) {
     const std::vector<double> moved = points_moved(x);
     for (std::size_t i = 0; i < n; ++i) {
       now.state[i] = state(i, moved[i]);
-      stiffness[i] = contact::branch_stiffness(now.state[i], data_[i].stiffness, data_[i].law);
-      change[i] = pressure(i, moved[i]) - p_[i];
+      now.pressure[i] = pressure(i, moved[i]);
+      system.stiffness[i] = contact::branch_stiffness(now.state[i], data_[i].stiffness, data_[i].law);
     }
     const Unknowns elastic = elastic_forces(x);
-    Unknowns gradient = elastic;
-    add(1, nodal_forces(change), gradient.y);
-    for (std::size_t i = 0; i < n; ++i) change[i] *= data_[i].weight;
-    for (std::size_t j = 0; j < learnt_.size(); ++j) gradient.part[j] += dot(learnt_[j], change);
-    if (!newton_direction(gradient, stiffness, d)) return {};
+    if (!factorize(system)) return Ends::fails;
+    const Unknowns d = direction(system, gradient(elastic, now.pressure));
     const std::vector<double> along = points_moved(d);
     bool same = true;
     for (std::size_t i = 0; i < n; ++i) {
       same = same && state(i, moved[i] + along[i]) == now.state[i];
       now.pressure[i] = pressure(i, moved[i] + along[i]);
     }
-    if (same) return now;
+    if (same) return Ends::settled;
     const Unknowns forces = elastic_forces(d);
     const double slope = dot(elastic.y, d.y) + dot(elastic.part, d.part),
                  curvature = dot(forces.y, d.y) + dot(forces.part, d.part);
     const double t = solver::exact_step(Line(*this, slope, curvature, moved, along));
-    if (!(t > 0)) return {};
-    add(t, d.y, x.y);
-    add(t, d.part, x.part);
+    if (!(t > 0)) return Ends::fails;
+    x.move(t, d);
   }
-  return {};
+  return Ends::goes_on;
+}
+
+std::optional<ModelStates> CoarseModel::choose()
+{
+  Unknowns x{std::vector<double>(size_, 0.), std::vector<double>(learnt_.size(), 0.)};
+  ModelStates found;
+  Ends ends = follow_newton(first_steps, x, found);
+  if (ends == Ends::goes_on && follow_path(x)) ends = follow_newton(last_steps, x, found);
+  if (ends != Ends::settled) return {};
+  return found;
 }
 
 } // namespace rpc::analysis

@@ -1,10 +1,12 @@
-/// The model of a coarse mesh on problems so small that all combinations of states can be tried.
+/// The model of a coarse mesh on problems so small that all combinations of states can be tried, and on rough gaps.
 #include "rpc/analysis/coarse_model.hpp"
 
+#include <Teuchos_DefaultSerialComm.hpp>
 #include <Teuchos_SerialDenseMatrix.hpp>
 #include <Teuchos_SerialDenseSolver.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -219,6 +221,53 @@ TEST(CoarseModel, ThatIsTooStiffByMuchIsMadeSofter)
   EXPECT_EQ(model.num_learnt(), 1);
   model.learn(rest, rest);
   EXPECT_EQ(model.num_learnt(), 1) << "the way back teaches nothing new";
+}
+
+/// Stiffness of a beam clamped at both ends: squared second differences.
+solver::SymmetricEntries beam(const int n, const double k)
+{
+  solver::SymmetricEntries K;
+  for (int i = 0; i < n; ++i)
+    for (int j = std::max(0, i - 2); j <= i; ++j) {
+      K.row.push_back(i);
+      K.column.push_back(j);
+      K.value.push_back(k * (i == j ? 6 : i - j == 1 ? -4 : 1));
+    }
+  return K;
+}
+
+/// A beam on gaps that are noise from point to point: Newton's method takes more steps than it may there, and the interior path takes over.
+/// The states found are those of the solution.
+TEST(CoarseModel, FollowsThePathOnRoughGaps)
+{
+  constexpr int n = 300;
+  constexpr double stiffness = 1e3;
+  const solver::SymmetricEntries K = beam(n, 100);
+  for (const double yield : {10., inf}) {
+    SCOPED_TRACE(yield);
+    const std::vector<ModelPoint> points(n, {1., stiffness, {yield}});
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> gap(-0.3, 1.7);
+    std::vector<double> v(n), d(n);
+    for (double &penetration : v) penetration = gap(random);
+    CoarseModel model(n, K, nodes(n), points);
+    ASSERT_TRUE(model.is_cheap(inf));
+    model.learn(v, std::vector<double>(n, 0.));
+    const auto found = model.choose();
+    ASSERT_TRUE(found);
+    for (int i = 0; i < n; ++i) d[i] = -found->pressure[i];
+    const auto factor = solver::SparseFactor::analyse(rcp(new Teuchos::SerialComm<int>), n, K, 1);
+    ASSERT_TRUE(factor && factor->make(K.value));
+    factor->solve(d.data());
+    int touching = 0;
+    for (int i = 0; i < n; ++i) {
+      SCOPED_TRACE(i);
+      touching += found->state[i] != State::open;
+      EXPECT_EQ(contact::state(v[i] + d[i], 0, stiffness, points[i].law), found->state[i]);
+      EXPECT_NEAR(contact::pressure(v[i] + d[i], 0, stiffness, points[i].law), found->pressure[i], 1e-6);
+    }
+    EXPECT_GE(touching, 2);
+  }
 }
 
 TEST(CoarseModel, NeedsTheUnknownsOfAPointInOneCell)

@@ -11,17 +11,6 @@ namespace rpc::contact
 namespace
 {
 
-// The path is joined where pairs multiply to this part of pressure times displacement. Less is no gain: a point that has to change
-// its state starts too near to its corner.
-constexpr double first_mu = 0.1;
-constexpr double start_slope = 10; // of p against v from the given point to the path, in pressure over displacement
-constexpr double nearly = 0.98;    // of the way to the next point's corner
-// So many steps on end that are shorter than this tell that points start with a pressure far below what they will bear, as where the
-// foundation bends the body and not the load. A few steps are short on any path.
-constexpr double short_step = 0.25, more_pressure = 100;
-constexpr int many_short_steps = 3;
-// mu falls to (1 - t)^2 of itself, t the length of the step for mu = 0, within these bounds.
-constexpr double most_part = 0.9, least_part = 1e-3;
 constexpr double longer_by = 0.3; // than what can be taken is the step that center() is for
 
 /// 1/(D + 1/r) of a point [Pa/m].                                                                              (5.18)
@@ -208,7 +197,7 @@ void InteriorPath::correct(const SmoothedFunctional &functional, const Vector &u
   const SmoothedPoints s = functional.points();
   const auto change = changes_along(s, at_, aim_, u, d);
   const double t = longest_of_all(*u.getMap()->getComm(), s, change, at_);
-  aim_mu_ = std::clamp((1 - t) * (1 - t), least_part, most_part) * mu_;
+  aim_mu_ = aimed_mu(mu_, t);
   const double mu = aim_mu_;
   const DeviceView<InteriorTarget *> next("rpc::contact::interior_target", s.size());
   Kokkos::parallel_for(

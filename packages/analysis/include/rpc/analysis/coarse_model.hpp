@@ -59,13 +59,21 @@ public:
 private:
   struct Unknowns { // of the model: displacement of the coarse nodes, and factors of the c_j
     std::vector<double> y, part;
+    void move(double t, const Unknowns &d);
   };
   struct Change {               // of two active sets' minima
     std::vector<double> forces; // W dp [N]
     std::vector<double> moved;  // (points) -dv less the local part [m]
     std::vector<double> coarse; // (points) P K^-1 P^T W dp [m]
   };
+  /// H of (5.8e) with its factors.
+  struct System {
+    std::vector<double> stiffness;                     // (points) of the pieces [Pa/m]
+    std::vector<std::vector<double>> coupling, solved; // B and A^-1 B, a column for each c_j
+    std::vector<double> S;                             // Cholesky factor of what is left for the z_j
+  };
   class Line;
+  class Path;
   std::vector<double> points_moved(const Unknowns &x) const;
   std::vector<double> nodal_forces(const std::vector<double> &p) const;
   Unknowns elastic_forces(const Unknowns &x) const;
@@ -73,7 +81,12 @@ private:
   contact::State state(std::size_t i, double moved) const;
   bool factorize(const std::vector<double> &stiffness);
   void update();
-  bool newton_direction(const Unknowns &gradient, const std::vector<double> &stiffness, Unknowns &d);
+  Unknowns gradient(const Unknowns &elastic, std::vector<double> pressure) const;
+  bool factorize(System &system);
+  Unknowns direction(const System &system, const Unknowns &gradient) const;
+  enum class Ends { settled, goes_on, fails };
+  Ends follow_newton(int most, Unknowns &x, ModelStates &now);
+  bool follow_path(Unknowns &x);
 
   int size_;
   solver::SymmetricEntries K_;                   // of the lower half, row after row

@@ -18,6 +18,17 @@ struct InteriorPoint {
   double dent;     ///< d [m]
 };
 
+// The path is joined where pairs multiply to first_mu of pressure times displacement (less is no gain: a point that has to change its state
+// starts too near to its corner), on lines that fall by start_slope times pressure over displacement.               (5.16)
+constexpr double first_mu = 0.1, start_slope = 10;
+constexpr double nearly =
+    0.98; // of the way to the next point's corner is taken                                    (5.19)
+
+// So many steps on end that are shorter tell that points start with a pressure far below what they will bear, as where the foundation bends
+// the body and not the load: the path is joined anew, with more. A few steps are short on any path.                (5.16)
+constexpr double short_step = 0.25, more_pressure = 100;
+constexpr int many_short_steps = 3;
+
 /// What the products of the pairs are to become in a step [J/m^2].
 struct InteriorTarget {
   double opening; ///< p s
@@ -120,6 +131,13 @@ KOKKOS_INLINE_FUNCTION InteriorTarget corrected_target(const InteriorPoint &chan
 {
   return {mu - part * change.pressure * change.opening,
           mu - part * (f.hardening * change.dent - change.pressure) * change.dent};
+}
+
+/// The mu to aim at after a step that mu = 0 would allow a part t of.                                               (5.19)
+KOKKOS_INLINE_FUNCTION double aimed_mu(const double mu, const double t)
+{
+  constexpr double most_part = 0.9, least_part = 1e-3;
+  return math::larger(least_part, math::fmin(most_part, (1 - t) * (1 - t))) * mu;
 }
 
 /// The point after a part of a change.
