@@ -436,7 +436,7 @@ ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direct
     }
     return Step::none;
   }
-  solve_seconds_ = group.context().linear_solver.seconds_of_last_solve();
+  if (make_coarse_) solve_seconds_ = group.context().linear_solver.seconds_of_last_solve();
   direction.scale(-1.);
   ++group.context().steps;
   ++steps_;

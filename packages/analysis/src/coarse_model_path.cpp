@@ -60,8 +60,8 @@ private:
   std::size_t size() const { return model_.data_.size(); }
   const contact::Foundation &law(const std::size_t i) const { return model_.data_[i].law; }
 
-  void
-  join() //                                                                                                   (5.16)
+  /// From the present x, with the present load.                                                                     (5.16)
+  void join()
   {
     mu_ = contact::first_mu * load_ * length_;
     for (std::size_t i = 0; i < size(); ++i)

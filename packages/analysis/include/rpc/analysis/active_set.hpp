@@ -100,14 +100,14 @@ private:
   double norm_ = std::numeric_limits<double>::infinity(),
          before_ = norm_,      // |F|_2 for the active set, after and before the step
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set
-  double solve_seconds_ = 0;       // about what the last solve took
+  double solve_seconds_ = 0;   // about what the last solve took
   int steps_ = 0;
-  int updates_ = 0;                // of the multipliers alone, the active set being confirmed
-  int idle_steps_ = 0;             // of a confirmed active set, one after the other, that left more than half of F
-  int choices_ = 0;                // since the start, or since the path
-  int idle_ = 0, most_idle_;       // of these, that make no headway; those with much overshoot count twice
-  GO fewest_changes_ = 0;          // fewest points that one of them has changed; 0: there was none
-  double left_ = std::numeric_limits<double>::infinity(); // how many more would follow if the changes went on to fall as they have
+  int updates_ = 0;          // of the multipliers alone, the active set being confirmed
+  int idle_steps_ = 0;       // of a confirmed active set, one after the other, that left more than half of F
+  int choices_ = 0;          // since the start, or since the path
+  int idle_ = 0, most_idle_; // of these, that make no headway; those with much overshoot count twice
+  GO fewest_changes_ = 0;    // fewest points that one of them has changed; 0: there was none
+  double left_ = std::numeric_limits<double>::infinity(); // so many more would follow at this rate
   std::array<double, 3> levers_{}; // of the last ones, the last one first: overshoot o as o / (1 - o)
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;
