@@ -1,11 +1,11 @@
 """Newton steps on thin bodies, where bending turns choices of states by pressures over: bounded scene by scene. Iterations of linear solves
-on nearly incompressible bodies of stretched cells, with and without friction."""
+on nearly incompressible bodies of stretched cells, with and without friction. Beside them a well-shaped body."""
 
 import json
 import re
 import unittest
 
-from rpc_run import RpcTestCase
+from rpc_run import SOURCE, RpcTestCase
 
 DECK = """<ParameterList name="thin">
   <ParameterList name="Mesh">
@@ -70,6 +70,16 @@ class ThinBodies(RpcTestCase):
                 steps = sum(summary["newton_iterations"])
                 self.assertGreaterEqual(steps, 4)
                 self.assertLessEqual(steps, most)
+
+
+class WellShaped(RpcTestCase):
+    def test_no_coarser_mesh_chooses_the_states_of_a_last_few_points(self):
+        self.rpc(f"--input={SOURCE / 'input' / 'block.xml'}", "--set=Mesh->Element=P1", "--set=Mesh->Cells={24, 24, 12}",
+                 "--set=Material->Poisson's Ratio=0.49", "--set=Output->Exodus=none")
+        summary = json.loads((self.folder / "block.json").read_text())
+        self.assertTrue(summary["converged"])
+        self.assertGreater(sum(summary["newton_iterations"]), 4) # else the rule would not be asked
+        self.assertEqual(summary["coarse_choices"], 0)
 
 
 class Rubber(RpcTestCase):

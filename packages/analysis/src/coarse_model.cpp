@@ -18,16 +18,16 @@ using contact::State;
 namespace
 {
 
-// Most that a factor may take, of which a choice makes three to ten: in seconds, and in solves of the fine mesh as their constants tell. These
-// do not know the coarse levels that a GPU's host factors: thin bodies' iterations take ten times as long there.
+// A factor, of which a choice makes three to ten, may take so many seconds, and so many times what a solve of the fine mesh takes by its
+// constants. On a GPU these constants leave out coarse levels that are factored on the host: a thin body's solves take about ten times as long.
 constexpr double most_seconds = 1, most_solves = on_gpu ? 10 : 1;
 constexpr std::size_t most_pairs = 30'000'000;
 // A change teaches nothing where the model misses less than this part of its energy: rough solves leave as much.
 constexpr double least_missing = 1e-2;
 // s is this part of the least that a change shows, so that s P K^-1 P^T stays below what the fine mesh has: only so can updates add to it.
 constexpr double part_of_scale = 0.25;
-// Of Newton's method: ten in the mean, but its steps are short where gaps are unlike from point to point; and from the end of the path that
-// follows there.
+// Most steps of Newton's method, before the path and after it. Ten are needed in the mean, but many more where gaps are noise from point to
+// point: there the path follows.
 constexpr int first_steps = 20, last_steps = 20;
 
 double dot(const std::vector<double> &a, const std::vector<double> &b)

@@ -10,7 +10,8 @@ namespace
 {
 
 constexpr int most_steps_on_path = 40; // ten to eighteen are needed
-// The path begins with so many times the mean of the pressures, and ends below a gap, or where the points' states stay below another one.
+// The path begins with so many times the mean pressure. It ends where the gap is below end_of_path, or below early_end_of_path if the last step
+// has changed no state.
 constexpr double start_load = 3, end_of_path = 3e-6, early_end_of_path = 3e-5;
 
 } // namespace
