@@ -41,9 +41,11 @@ VERSION_NAMES = re.compile(r"""
         | [A-Z]\w*_kokkos | (?:Get|Set)KokkosRefactor          # MueLu's factories that 13.2 has twice
         | MueLu::(?:LW)?Graph(?:Base)?                         # gone or merged
         | MueLu::Utilities | MV2(?:NonConst)?TpetraMV2? | Op2(?:NonConst)?Tpetra\w+ | Tpetra\w+_To_Xpetra\w+
-        | Kokkos::Experimental
+        | Kokkos::Experimental | Kokkos::atomic_(?:increment|decrement|assign)
     )\b""", re.VERBOSE)
 VERSION_HEADERS = "packages/core/include/rpc/core"
+GMSH_VERSION_NAME = "setSizeCallback"  # gmsh's arguments and the meaning of the answer have changed
+GMSH_VERSION_HEADER = "packages/mesh/src/gmsh_size_callback.hpp"
 # Headers that a package may not include though they belong to one below it: a run gets its mesh from mesh/make_mesh.hpp.
 HIDDEN = {"analysis": ["rpc/mesh/gmsh"]}
 # What the program, which is left with command line, files and exit codes, does not do.
@@ -131,8 +133,11 @@ def check_versions(root):
             if file.parent == root / VERSION_HEADERS:
                 continue
             for number, line in enumerate(file.read_text().splitlines(), 1):
-                for name in VERSION_NAMES.findall(line.split("//")[0]):
+                text = line.split("//")[0]
+                for name in VERSION_NAMES.findall(text):
                     yield f"{file.relative_to(root)}:{number}: {name} differs between Trilinos versions: it belongs into {VERSION_HEADERS}"
+                if GMSH_VERSION_NAME in text and file != root / GMSH_VERSION_HEADER:
+                    yield f"{file.relative_to(root)}:{number}: {GMSH_VERSION_NAME} differs between gmsh's versions: it belongs into {GMSH_VERSION_HEADER}"
 
 
 def check_law(root):

@@ -67,12 +67,17 @@ class Structure(unittest.TestCase):
     def test_finds_a_name_of_one_trilinos_version_outside_core(self):
         for line in ("map.getNodeNumElements()", "map->getLocalElementList()", "#if TRILINOS_MAJOR_MINOR_VERSION >= 130400",
                      "MueLu::Aggregates_kokkos<LO> a;", "#include MUELU_HEADER(Aggregates_kokkos)", "MueLu::GraphBase<LO> &g",
-                     "MueLu::TpetraCrs_To_XpetraMatrix<double>(A)", "Kokkos::Experimental::sqrt(x)"):
+                     "MueLu::TpetraCrs_To_XpetraMatrix<double>(A)", "Kokkos::Experimental::sqrt(x)", "Kokkos::atomic_increment(&n)"):
             for where in ("packages__mesh__src__a.cpp", "packages__mesh__test__a_test.cpp", "src__a.cpp", "test__support__a.hpp"):
                 found = [each for each in self.violations(**{where: "\n" + line + "\n"}) if "versions" in each]
                 self.assertEqual(len(found), 1, line)
                 self.assertTrue(found[0].startswith(where.replace("__", "/") + ":2: "), found)
             self.assertEqual(self.violations(**{"packages__core__include__rpc__core__a.hpp": line}), [])
+
+    def test_finds_what_differs_between_versions_of_gmsh(self):
+        line = "gmsh::model::mesh::setSizeCallback(size);"
+        self.assertEqual(len(self.violations(**{"packages__mesh__src__a.cpp": line})), 1)
+        self.assertEqual(self.violations(**{"packages__mesh__src__gmsh_size_callback.hpp": line}), [])
 
     def test_takes_other_names_for_those_of_any_version(self):
         for line in ("start_kokkos(arguments)", "num_local(map)", "getNodeSmootherComplexity()", "x; // MueLu::GraphBase is gone"):

@@ -1,6 +1,7 @@
 #include "gmsh_mesher.hpp"
 
 #include "gmsh_boundary.hpp"
+#include "gmsh_size_callback.hpp"
 #include "size_tree.hpp"
 
 #include <algorithm>
@@ -86,13 +87,12 @@ bool mesh_curves(const double body, const double factor)
 void mesh_surfaces_and_volumes()
 {
   constexpr std::size_t most_nodes = 2'000'000; // of order 1: larger meshes are for gmsh alone
-  constexpr double no_size_of_its_own = 1e22;
-  std::size_t nodes = 0; // gmsh asks for the size at each, once
-  gmsh::model::mesh::setSizeCallback([&](int, int, double, double, double) {
+  std::size_t nodes = 0;                        // gmsh asks for the size at each, once
+  set_size_callback([&](int, int, double, double, double, const double own_size) {
     if (++nodes > most_nodes)
       throw "cell sizes are too small: surfaces and volumes would have more than " + std::to_string(most_nodes) +
           " nodes";
-    return no_size_of_its_own;
+    return own_size;
   });
   gmsh::model::mesh::generate(3);
   gmsh::model::mesh::removeSizeCallback();
@@ -115,7 +115,7 @@ bool recombines()
 {
   const double order = number_option("Mesh.ElementOrder");
   gmsh::option::setNumber("Mesh.ElementOrder", 1);
-  gmsh::model::mesh::setSizeCallback([](int, int, double, double, double) { return 1e22; });
+  set_size_callback([](int, int, double, double, double, double) { return unbounded_size; });
   gmsh::model::mesh::generate(2);
   gmsh::option::setNumber("Mesh.ElementOrder", order);
   std::vector<std::size_t> tags, nodes;
@@ -202,14 +202,14 @@ std::string mesh_by_field(const GmshRequest &request, const int dim)
   const auto size_at = sizes_at(request.sizes);
   std::size_t calls = 0;
   std::set<int> curves;
-  const auto size = [&](const int dimension, const int entity, const double x, const double y, const double z) {
+  set_size_callback([&](const int dimension, const int entity, const double x, const double y, const double z,
+                        const double own_size) { // of curvature, if of anything
     constexpr std::size_t most_calls =
         50'000'000; // of one or two per cell: where the field does not reach, no other bound is
     if (++calls > most_calls) throw std::string("cell sizes are too small where the size field does not reach");
     if (dimension == 1) curves.insert(entity);
-    return factor * size_at(x, y, z);
-  };
-  gmsh::model::mesh::setSizeCallback(size);
+    return std::min(own_size, factor * size_at(x, y, z));
+  });
   gmsh::model::mesh::generate(1);
   const int fixed = curve_that_asked_for_no_size(curves);
   if (fixed != 0)
