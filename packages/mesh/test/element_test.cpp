@@ -53,13 +53,15 @@ TEST(Element, NodesAreNumberedAsInExodus)
   // Exodus gives the edge and face nodes of HEX27 by the vertices around them, counted from 0.
   const Nodes around = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {4, 5}, {5, 6},
                         {6, 7}, {7, 4}, {0, 6}, {0, 2}, {4, 6}, {0, 7}, {1, 6}, {0, 5}, {3, 6}};
-  const auto &hex = Element{3, 2}.lattice();
+  const Element hexahedron{3, 2};
+  const auto &hex = hexahedron.lattice();
   EXPECT_EQ(Nodes(hex.begin(), hex.begin() + 8),
             (Nodes{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}}));
   for (std::size_t a = 0; a < around.size(); ++a)
     for (int d = 0; d < 3; ++d)
       EXPECT_EQ(2 * hex[8 + a][d], hex[around[a][0]][d] + hex[around[a][1]][d]) << "node " << 8 + a;
-  const auto &quad = Element{2, 2}.lattice();
+  const Element quadrilateral{2, 2};
+  const auto &quad = quadrilateral.lattice();
   for (int a = 0; a < 4; ++a)
     for (int d = 0; d < 2; ++d) EXPECT_EQ(2 * quad[4 + a][d], quad[a][d] + quad[(a + 1) % 4][d]) << "node " << 4 + a;
   EXPECT_EQ(quad[8], (std::vector<int>{1, 1}));
@@ -68,7 +70,8 @@ TEST(Element, NodesAreNumberedAsInExodus)
 TEST(Element, NodesOfTrianglesAreNumberedAsInExodus)
 {
   EXPECT_EQ((Element{2, 1, Shape::simplex}.lattice()), (Nodes{{0, 0}, {1, 0}, {0, 1}}));
-  const auto &triangle = Element{2, 2, Shape::simplex}.lattice();
+  const Element simplex{2, 2, Shape::simplex};
+  const auto &triangle = simplex.lattice();
   EXPECT_EQ(Nodes(triangle.begin(), triangle.begin() + 3), (Nodes{{0, 0}, {2, 0}, {0, 2}}));
   for (int a = 0; a < 3; ++a) // TRI6 has its further nodes in the middle of the edges 0-1, 1-2, 2-0
     for (int d = 0; d < 2; ++d) EXPECT_EQ(2 * triangle[3 + a][d], triangle[a][d] + triangle[(a + 1) % 3][d]);
@@ -135,7 +138,8 @@ TEST(Element, FacetNodesWalkTheFacetsOwnLatticeWithTheNormalOutward)
         for (int d = 0; d < element.dim; ++d) outward += normal[d] * (x0[d] - lattice[a][d]);
       EXPECT_EQ(outward,
                 element.order * element.num_vertices() / (element.shape == Shape::simplex ? element.dim + 1 : 2));
-      const Nodes &own = element.facet().lattice(); // with (1, 0) along s and (0, 1) along t
+      const Element side = element.facet();
+      const Nodes &own = side.lattice(); // with (1, 0) along s and (0, 1) along t
       for (std::size_t a = 0; a < facet.size(); ++a)
         for (int d = 0; d < element.dim; ++d)
           EXPECT_EQ(lattice[facet[a]][d], x0[d] + own[a][0] * s[d] + (element.dim == 3 ? own[a][1] * t[d] : 0));
@@ -148,8 +152,9 @@ TEST(Element, EveryEdgeOfAFacetIsAnEdgeAndFacetsAreWhatTheyAreSaidToBe)
   for (const Element &element : all_elements()) {
     SCOPED_TRACE(text_of(element));
     std::map<std::set<int>, int> facets_at; // nodes of an edge
+    const Element side = element.facet();
     for (const auto &facet : element.facets())
-      for (const auto &edge : element.facet().edges()) {
+      for (const auto &edge : side.edges()) {
         std::set<int> nodes;
         for (const int a : edge) nodes.insert(facet[a]);
         ++facets_at[nodes];

@@ -91,7 +91,8 @@ void ChildKinds::add(const std::vector<int> &nodes)
 {
   vertices.push_back(nodes);
   facets.emplace_back();
-  for (const auto &facet : Element{whole.dim, 1, whole.shape}.facets()) {
+  const Element linear{whole.dim, 1, whole.shape};
+  for (const auto &facet : linear.facets()) {
     std::vector<int> of_facet;
     for (const int v : facet) of_facet.push_back(nodes[v]);
     facets.back().push_back(facet_with(whole, of_facet));

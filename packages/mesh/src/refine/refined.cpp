@@ -121,7 +121,8 @@ void mark_in_place(const LocalMesh &children, Middles &edges)
   const auto is_corner = [](const std::array<double, 3> &X) {
     return std::all_of(X.begin(), X.end(), [](const double x) { return x == 0 || x == 1; });
   };
-  const auto &ends = Element{children.dim(), 2, children.element.shape}.edges();
+  const Element with_middles{children.dim(), 2, children.element.shape};
+  const auto &ends = with_middles.edges();
   edges.in_place.assign(edges.size(), 0);
   for (int c = 0; c < children.num_cells(); ++c) {
     const auto &vertices = children.child_vertices[children.kind[c]];

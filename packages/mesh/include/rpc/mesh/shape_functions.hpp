@@ -53,7 +53,8 @@ struct ShapeFunctions {
 
   ShapeFunctions()
   {
-    const auto &lattice = StaticElement<Dim, Nodes>::element().lattice();
+    const Element element = StaticElement<Dim, Nodes>::element();
+    const auto &lattice = element.lattice();
     for (int a = 0; a < Nodes; ++a)
       for (int d = 0; d < Dim; ++d) place[a][d] = lattice[a][d];
   }
