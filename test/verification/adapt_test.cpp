@@ -277,8 +277,8 @@ TEST(ErrorBars, AreTrueWhereThereAreSome)
   for (const std::string xi : {"inf", "20", "60 + 30*sin(4*x)"}) {
     SCOPED_TRACE("half cylinder, xi = " + xi);
     const BarCounts bars = expect_true_or_unknown("hertz_adaptive.xml", {"Contact->Yield Stress=" + xi});
-    EXPECT_EQ(bars.max_pressure, 3);
-    EXPECT_EQ(bars.contact_length, 3);
+    EXPECT_GE(bars.max_pressure, 2); // which are known depends on gmsh's mesh
+    EXPECT_GE(bars.contact_length, 2);
   }
 }
 

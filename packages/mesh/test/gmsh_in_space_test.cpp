@@ -21,8 +21,8 @@ using rpc::ExitCode;
 using rpc::mesh::GmshOptions;
 using rpc::mesh::MeshData;
 using rpc::mesh::read_gmsh;
+using rpc::test::expect_alike_mesh;
 using rpc::test::expect_error;
-using rpc::test::expect_same_mesh;
 using rpc::test::integrals;
 using rpc::test::ScratchFile;
 using rpc::test::volume;
@@ -57,10 +57,12 @@ int dimension_of(const std::string &text)
   return rpc::mesh::dimension(GmshOptions{file.path(), 1, 0}, *Tpetra::getDefaultComm());
 }
 
-TEST(GmshInSpace, GeoAndItsMshGiveTheSameMesh)
+TEST(GmshInSpace, GeoAndItsMshGiveAlikeMeshes)
 {
-  expect_same_mesh(read_gmsh({octant, 1, 0}), read_gmsh({std::string(RPC_TEST_DATA_DIR) + "/octant_41.msh", 1, 0}),
-                   "octant");
+  const MeshData now = read_gmsh({octant, 1, 0}),
+                 then = read_gmsh({std::string(RPC_TEST_DATA_DIR) + "/octant_41.msh", 1, 0});
+  expect_alike_mesh(now, then, "octant");
+  EXPECT_NEAR(volume(now), volume(then), 5e-3 * volume(then)); // of the curved side other nodes lie on the sphere
 }
 
 TEST(GmshInSpace, MakesAllFourElements)

@@ -22,6 +22,7 @@ using rpc::ExitCode;
 using rpc::mesh::GmshOptions;
 using rpc::mesh::MeshData;
 using rpc::mesh::read_gmsh;
+using rpc::test::expect_alike_mesh;
 using rpc::test::expect_error;
 using rpc::test::expect_same_mesh;
 using rpc::test::ScratchFile;
@@ -57,10 +58,12 @@ double area(const MeshData &mesh)
   return sum;
 }
 
-TEST(Gmsh, GeoAndItsMshGiveTheSameMesh)
+TEST(Gmsh, GeoAndItsMshGiveAlikeMeshes)
 {
-  expect_same_mesh(read_gmsh({sector, 1, 0}), read_gmsh({std::string(RPC_TEST_DATA_DIR) + "/sector_41.msh", 1, 0}),
-                   "sector");
+  const MeshData now = read_gmsh({sector, 1, 0}),
+                 then = read_gmsh({std::string(RPC_TEST_DATA_DIR) + "/sector_41.msh", 1, 0});
+  expect_alike_mesh(now, then, "sector");
+  EXPECT_NEAR(area(now), area(then), 1e-3 * area(then)); // of the curved side other nodes lie on the arc
 }
 
 TEST(Gmsh, MeshesTheSameEachTime)

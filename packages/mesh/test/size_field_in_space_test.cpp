@@ -208,7 +208,7 @@ TEST(SizeFieldInSpace, CellsTooLargeForACurvedBoundaryAreMadeSmallByGmsh)
   options.order = 2;
   const auto comm = Tpetra::getDefaultComm();
   int halved = 0, small = 0;
-  for (const double size : {0.15, 0.25, 0.35, 0.45}) {
+  for (const double size : {0.1, 0.15, 0.25, 0.35, 0.45}) {
     const Mesh mesh = make_mesh(with_sizes(options, comm->getRank() == 0 ? constant(size) : nullptr, 1).value(), comm);
     (mesh.parents ? halved : small) += 1;
   }
