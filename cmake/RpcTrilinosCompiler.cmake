@@ -7,7 +7,7 @@ set(CMAKE_CXX_EXTENSIONS OFF) # KokkosConfig.cmake warns otherwise
 function(rpc_take_compilers)
   set_property(GLOBAL PROPERTY TARGET_SUPPORTS_SHARED_LIBS TRUE) # else each of Trilinos' libraries warns; project() sets it anew
   set(Kokkos_FIND_QUIETLY ON)
-  find_package(Trilinos 13.2 QUIET COMPONENTS Kokkos)
+  find_package(Trilinos QUIET COMPONENTS Kokkos)
   if(CUDA IN_LIST Kokkos_DEVICES)
     find_program(nvcc nvcc HINTS $ENV{CUDA_ROOT}/bin NO_CACHE) # where nvcc_wrapper looks
     if(NOT nvcc)

@@ -2,7 +2,7 @@
 include(${trilinos}/TrilinosConfig.cmake)
 
 # edit_header(<header> <regular expression> <replacement>): a copy of one of Trilinos' headers is found before it
-macro(edit_header header old new)
+function(edit_header header old new)
   foreach(dir IN LISTS Trilinos_INCLUDE_DIRS)
     if(EXISTS ${dir}/${header})
       file(READ ${dir}/${header} text)
@@ -14,7 +14,16 @@ macro(edit_header header old new)
       break()
     endif()
   endforeach()
-endmacro()
+endfunction()
+
+# The header that tells Tpetra's default node, in which Trilinos 14 and later have put what older ones have under the shorter name.
+set(default_node_header KokkosClassic_DefaultNode_config.h)
+foreach(dir IN LISTS Trilinos_INCLUDE_DIRS)
+  if(EXISTS ${dir}/Tpetra_${default_node_header})
+    set(default_node_header Tpetra_${default_node_header})
+    break()
+  endif()
+endforeach()
 
 file(REMOVE_RECURSE ${CMAKE_BINARY_DIR}/edited)
 include(${edit})
