@@ -3,6 +3,7 @@
 #include "gpu.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/kokkos.hpp"
+#include "rpc/core/kokkos_start.hpp"
 #include "rpc/core/parameters.hpp"
 
 #include <Teuchos_CommandLineProcessor.hpp>
@@ -176,16 +177,20 @@ std::unique_ptr<Tpetra::ScopeGuard> start_kokkos(std::vector<char *> arguments, 
     arguments.erase(std::remove(arguments.begin(), arguments.end(), std::string("--kokkos-help")), arguments.end());
   std::string gpu = gpu_option(arguments);
   if (!gpu.empty()) arguments.push_back(gpu.data());
-  int argc = static_cast<int>(arguments.size());
-  arguments.push_back(nullptr);
-  char **argv = arguments.data();
+  std::vector<std::string> spelled; // for this version of Kokkos
+  for (const char *const argument : arguments) spelled.push_back(kokkos_spelling(argument));
+  std::vector<char *> pointers;
+  for (std::string &argument : spelled) pointers.push_back(argument.data());
+  int argc = static_cast<int>(pointers.size());
+  pointers.push_back(nullptr);
+  char **argv = pointers.data();
   std::unique_ptr<Tpetra::ScopeGuard> guard;
 #ifdef KOKKOS_ENABLE_CUDA
   setenv("KOKKOS_DISABLE_WARNINGS", "ON", 0); // it warns of managed memory, which Tpetra 13.2 cannot do without
 #endif
   std::optional<Error> failure; // maybe on this rank alone, such as one without a GPU
   try {
-    guard = std::make_unique<Tpetra::ScopeGuard>(&argc, &argv);
+    start_or_throw([&] { guard = std::make_unique<Tpetra::ScopeGuard>(&argc, &argv); });
   } catch (const std::exception &error) {
     static const std::regex place(R"(\s*\S+\.[ch]pp:\d+)"); // in Kokkos' sources
     const std::string reason = std::regex_replace(one_line(error.what()), place, "");
