@@ -33,8 +33,10 @@ std::string for_terminal(std::string message)
 
 bool is_out_of_memory(const std::exception &error)
 {
+  const std::string text =
+      error.what(); // Kokkos 3: "Kokkos failed to allocate ...", 4: "Kokkos ERROR: ... failed to allocate ..."
   return dynamic_cast<const std::bad_alloc *>(&error) ||
-         std::string(error.what()).rfind("Kokkos failed to allocate", 0) == 0;
+         (text.rfind("Kokkos", 0) == 0 && text.find("failed to allocate") != std::string::npos);
 }
 
 void pass_on_out_of_memory(const std::exception &error)

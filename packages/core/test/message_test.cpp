@@ -49,6 +49,8 @@ TEST(IsOutOfMemory, KnowsTheStandardsExceptionAndKokkos)
 {
   EXPECT_TRUE(rpc::is_out_of_memory(std::bad_alloc()));
   EXPECT_TRUE(rpc::is_out_of_memory(std::runtime_error("Kokkos failed to allocate memory for label \"x\".")));
+  EXPECT_TRUE(rpc::is_out_of_memory(
+      std::runtime_error("Kokkos ERROR: Host memory space failed to allocate 2.5 TiB (label=\"x\").")));
   EXPECT_FALSE(rpc::is_out_of_memory(std::runtime_error("Kokkos failed")));
 }
 
