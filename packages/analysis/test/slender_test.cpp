@@ -32,10 +32,11 @@ double width_of(const Block &block)
   const Map &rows = *K->getRowMap(), &columns = *K->getColMap();
   GO width = 0;
   for (LO row = 0; row < num_local(rows); ++row) {
-    Teuchos::ArrayView<const int> column;
-    Teuchos::ArrayView<const double> value;
+    CrsMatrix::local_inds_host_view_type column;
+    CrsMatrix::values_host_view_type value;
     K->getLocalRowView(row, column, value);
-    for (const int j : column) width = std::max(width, rows.getGlobalElement(row) - columns.getGlobalElement(j));
+    for (std::size_t j = 0; j < column.size(); ++j)
+      width = std::max(width, rows.getGlobalElement(row) - columns.getGlobalElement(column(j)));
   }
   return static_cast<double>(max_all(*rows.getComm(), width));
 }

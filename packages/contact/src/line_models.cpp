@@ -228,7 +228,8 @@ public:
     const std::size_t n = a.size();
     const SubspaceSums sums(points_, from_, moves_, device_values(a, "rpc::contact::coefficients"));
     std::vector<double> mine(n * (n + 1));
-    Kokkos::parallel_reduce("rpc::contact::subspace_model", device_range(points_.size()), sums, mine.data());
+    const Kokkos::View<double *, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> result(mine.data(), mine.size());
+    Kokkos::parallel_reduce("rpc::contact::subspace_model", device_range(points_.size()), sums, result);
     Kokkos::fence();
     const auto all = summed(*comm_, mine);
     Value value{at_0_, elastic_};

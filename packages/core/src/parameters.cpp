@@ -236,14 +236,14 @@ std::string unknown_name_message(const std::string &path, const std::string &nam
   return unknown_parameter(path, name, names).what() + std::string(" Valid here: ") + join(names) + ".";
 }
 
-/// The entry, marked as not given by the user.
-ParameterEntry as_default(ParameterEntry entry)
-{
-  entry.setAnyValue(Teuchos::any(entry.getAny(false)), true);
-  return entry;
-}
-
 } // namespace
+
+ParameterEntry unread(const ParameterEntry &entry, const bool is_default)
+{
+  ParameterEntry copy(entry);
+  copy.setAnyValue(entry.getAny(false), is_default);
+  return copy;
+}
 
 void set_field(ParameterList &valid, const std::string &name, const std::string &default_value, const std::string &doc)
 {
@@ -337,7 +337,7 @@ void validate(ParameterList &list, const ParameterList &valid, const std::string
     if (model.isList())
       validate(list.sublist(name), valid.sublist(name), path.empty() ? name : path + "->" + name);
     else if (!list.isParameter(name))
-      list.setEntry(name, as_default(model));
+      list.setEntry(name, unread(model, true));
   }
 }
 

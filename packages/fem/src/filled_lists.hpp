@@ -26,7 +26,7 @@ struct CountItems {
 
   KOKKOS_FUNCTION void operator()(const LO item) const
   {
-    each_list(item, [&](const LO list) { Kokkos::atomic_increment(&size(list)); });
+    each_list(item, [&](const LO list) { Kokkos::atomic_add(&size(list), 1); });
   }
 };
 

@@ -192,7 +192,7 @@ std::vector<GO> find_others(RowsInBox<Dim, Elements> &rows, const LO num_rows)
         "rpc::fem::mark_used_by_rows", device_range(num_rows), KOKKOS_LAMBDA(const LO row) {
           double weight[Elements::nodes];
           r.visit(row, weight, [&](const int, const mesh::Index &node) {
-            if (!r.own.contains(node)) Kokkos::atomic_assign(&used(r.around.index_of(node)), LO(1));
+            if (!r.own.contains(node)) Kokkos::atomic_exchange(&used(r.around.index_of(node)), LO(1));
           });
         });
   }

@@ -40,9 +40,8 @@ std::unique_ptr<Smoother> make_smoother(const std::string &type)
 ParameterList unread(ParameterList list)
 {
   for (const std::string &name : names_of(list)) {
-    Teuchos::ParameterEntry entry = list.getEntry(name);
-    entry.setAnyValue(Teuchos::any(entry.getAny(false)), entry.isDefault());
-    list.setEntry(name, entry);
+    const Teuchos::ParameterEntry &entry = list.getEntry(name);
+    list.setEntry(name, rpc::unread(entry, entry.isDefault()));
   }
   return list;
 }

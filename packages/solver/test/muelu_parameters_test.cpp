@@ -38,7 +38,7 @@ TEST(MueLuParameters, WhatTheSmoothersKnowIsTaken)
   chebyshev.set("chebyshev: max eigenvalue", 2.);
   chebyshev.set("chebyshev: min eigenvalue", 0.1);
   chebyshev.set("chebyshev: boost factor", 1.1);
-  chebyshev.set("chebyshev: textbook algorithm", false);
+  chebyshev.set("chebyshev: zero starting solution", true);
   chebyshev.set("chebyshev: eigenvalue relative tolerance", 0.01);
   chebyshev.set("chebyshev: use rowsumabs diagonal scaling", true);
   chebyshev.set("eigen-analysis: type", std::string("cg"));

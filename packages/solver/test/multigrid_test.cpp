@@ -24,6 +24,7 @@ Teuchos::ParameterList list_for(const Grid &grid, const std::string &reuse = "no
   list.set("number of equations", 2);
   list.set("aggregation: deterministic", true);
   list.set("smoother: type", "CHEBYSHEV");
+  list.sublist("smoother: params").set("chebyshev: max eigenvalue", 2.6); // estimates start with random numbers
   list.set("coarse: type", "RELAXATION");
   list.set("coarse: max size", 50);
   list.set("reuse: type", reuse);

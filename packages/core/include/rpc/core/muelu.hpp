@@ -3,28 +3,29 @@
 #include "rpc/core/tpetra.hpp"
 #include "rpc/core/xpetra.hpp"
 
-#include <MueLu_Aggregates.hpp>
 #include <MueLu_AmalgamationFactory.hpp>
 #include <MueLu_AmalgamationInfo.hpp>
 #include <MueLu_FactoryManager.hpp>
-#include <MueLu_UncoupledAggregationFactory.hpp>
-#include <MueLu_Utilities.hpp>
 #include <MueLu_config.hpp>
+#include <Xpetra_CrsMatrixWrap.hpp>
+#include <Xpetra_TpetraCrsMatrix.hpp>
+#include <Xpetra_TpetraMultiVector.hpp>
 
 #if defined(HAVE_MUELU_KOKKOS_REFACTOR) && __has_include(<MueLu_Aggregates_kokkos.hpp>)
 #define RPC_MUELU_IS_DOUBLED
+#include <MueLu_Aggregates.hpp>
 #include <MueLu_Aggregates_kokkos.hpp>
 #include <MueLu_AmalgamationFactory_kokkos.hpp>
 #include <MueLu_AmalgamationInfo_kokkos.hpp>
 #include <MueLu_LWGraph.hpp>
 #include <MueLu_LWGraph_kokkos.hpp>
+#include <MueLu_UncoupledAggregationFactory.hpp>
 #include <MueLu_UncoupledAggregationFactory_kokkos.hpp>
 #include <MueLu_Utilities_kokkos.hpp>
 #endif
 
 /// Names of MueLu that differ between Trilinos versions, see doc/trilinos_versions.md. Trilinos 13 has most factories twice:
-/// for one thread, and for many under a name that ends in _kokkos. Later versions have merged them; both names are the
-/// same there.
+/// for one thread, and for many under a name that ends in _kokkos. Later versions have each of them once.
 namespace rpc::muelu
 {
 
@@ -35,31 +36,23 @@ inline constexpr bool has_repartitioning = true;
 inline constexpr bool has_repartitioning = false;
 #endif
 
-using HostAggregates = MueLu::Aggregates<LO, GO, Node>;
-using HostAggregation = MueLu::UncoupledAggregationFactory<LO, GO, Node>;
 using HostAmalgamation = MueLu::AmalgamationFactory<double, LO, GO, Node>;
 using HostAmalgamationInfo = MueLu::AmalgamationInfo<LO, GO, Node>;
-using HostUtilities = MueLu::Utilities<double, LO, GO, Node>;
 
 #ifdef RPC_MUELU_IS_DOUBLED
-inline constexpr bool is_doubled = true;
+using HostAggregates = MueLu::Aggregates<LO, GO, Node>;
+using HostAggregation = MueLu::UncoupledAggregationFactory<LO, GO, Node>;
+using HostGraph = MueLu::LWGraph<LO, GO, Node>; // of nodes
+using HostGraphBase = MueLu::GraphBase<LO, GO, Node>;
 using DeviceAggregates = MueLu::Aggregates_kokkos<LO, GO, Node>;
 using DeviceAggregation = MueLu::UncoupledAggregationFactory_kokkos<LO, GO, Node>;
 using DeviceAmalgamation = MueLu::AmalgamationFactory_kokkos<double, LO, GO, Node>;
 using DeviceAmalgamationInfo = MueLu::AmalgamationInfo_kokkos<LO, GO, Node>;
-using DeviceUtilities = MueLu::Utilities_kokkos<double, LO, GO, Node>;
-
-// Graphs of nodes; later versions have no host graph of its own.
 using DeviceGraph = MueLu::LWGraph_kokkos<LO, GO, Node>;
-using HostGraph = MueLu::LWGraph<LO, GO, Node>;
-using HostGraphBase = MueLu::GraphBase<LO, GO, Node>;
+using DeviceUtilities = MueLu::Utilities_kokkos<double, LO, GO, Node>;
 #else
-inline constexpr bool is_doubled = false;
-using DeviceAggregates = HostAggregates;
-using DeviceAggregation = HostAggregation;
 using DeviceAmalgamation = HostAmalgamation;
 using DeviceAmalgamationInfo = HostAmalgamationInfo;
-using DeviceUtilities = HostUtilities;
 #endif
 
 /// Whether a level is made by the factories for many threads.
@@ -76,20 +69,21 @@ inline bool takes_device_factories(const MueLu::FactoryManager<double, LO, GO, N
 /// What MueLu takes in place of Tpetra's matrix and vectors, which it shares.
 inline RCP<XpetraMatrix> to_xpetra(const RCP<CrsMatrix> &A)
 {
-  return MueLu::TpetraCrs_To_XpetraMatrix<double, LO, GO, Node>(A);
+  const RCP<Xpetra::CrsMatrix<double, LO, GO, Node>> inner = rcp(new Xpetra::TpetraCrsMatrix<double, LO, GO, Node>(A));
+  return rcp(new Xpetra::CrsMatrixWrap<double, LO, GO, Node>(inner));
 }
 inline RCP<XpetraVectors> to_xpetra(const RCP<MultiVector> &v)
 {
-  return MueLu::TpetraMultiVector_To_XpetraMultiVector<double, LO, GO, Node>(v);
+  return Xpetra::toXpetra(v);
 }
 /// Tpetra's vectors behind MueLu's.
 inline const MultiVector &to_tpetra(const XpetraVectors &v)
 {
-  return HostUtilities::MV2TpetraMV(v);
+  return Xpetra::toTpetra(v);
 }
 inline MultiVector &to_tpetra(XpetraVectors &v)
 {
-  return HostUtilities::MV2NonConstTpetraMV(v);
+  return Xpetra::toTpetra(v);
 }
 
 } // namespace rpc::muelu

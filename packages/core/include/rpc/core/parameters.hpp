@@ -14,6 +14,10 @@
 namespace rpc
 {
 
+/// A copy of an entry, its value alone, that nobody has asked for yet.
+/// @param is_default  whether the copy says that the user did not give it
+Teuchos::ParameterEntry unread(const Teuchos::ParameterEntry &entry, bool is_default);
+
 /// Declares `name` in a valid_parameters() list as a field: a number, or an expression of x, y, z, t in a string.
 void set_field(Teuchos::ParameterList &valid, const std::string &name, const std::string &default_value,
                const std::string &doc);
