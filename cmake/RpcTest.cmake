@@ -48,12 +48,16 @@ endif()
 add_library(rpc_yield MODULE ${PROJECT_SOURCE_DIR}/test/support/yield.c)
 set_target_properties(rpc_yield PROPERTIES LIBRARY_OUTPUT_DIRECTORY $<1:${PROJECT_BINARY_DIR}>)
 add_dependencies(rpc_tests rpc_yield)
-set(rpc_ranks_environment LD_PRELOAD=$<TARGET_FILE:rpc_yield>)
+set(rpc_ranks_environment
+    LD_PRELOAD=$<TARGET_FILE:rpc_yield>
+    OMPI_MCA_btl=^ofi) # of other networks than the host's memory; Open MPI 6 sleeps for a second while it looks for them
 
 # rpc_append_session_folder(<list> <test>): appends to a list of environment variables a folder of Open MPI's for one test. Its own in /tmp
 # is the same for all runs on a host, and of two that start or end at once one may fail.
 macro(rpc_append_session_folder list test)
-  list(APPEND ${list} OMPI_MCA_orte_tmpdir_base=${PROJECT_BINARY_DIR}/sessions/${test})
+  foreach(name IN ITEMS OMPI_MCA_orte PRTE_MCA_prte) # Open MPI 4, later ones
+    list(APPEND ${list} ${name}_tmpdir_base=${PROJECT_BINARY_DIR}/sessions/${test})
+  endforeach()
 endmacro()
 
 # rpc_add_run_test(<name> <np> LABEL label TIMEOUT seconds COMMAND target args...): the CTest entry <name>.np<np> that runs an
@@ -69,7 +73,7 @@ function(rpc_add_run_test name np)
   set(launch)
   set(environment ${rpc_test_environment})
   if(np EQUAL 1)
-    list(APPEND environment OMPI_MCA_ess_singleton_isolated=1 OMPI_MCA_orte_create_session_dirs=0) # no daemon, as src/main.cpp does
+    list(APPEND environment OMPI_MCA_ess_singleton_isolated=1 OMPI_MCA_orte_create_session_dirs=0 OMPI_MCA_btl=self) # as src/main.cpp does
   else()
     set(launch ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${np} ${rpc_mpiexec_flags})
     list(APPEND environment ${rpc_ranks_environment})

@@ -6,5 +6,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 set_up rpc
 if [ "${NP:-1}" -eq 1 ]; then exec "$root/rpc" "$@"; fi
 if [ "$(id -u)" -eq 0 ]; then export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; fi
-export OMPI_MCA_rmaps_base_oversubscribe=1 # more ranks than cores is the user's business
-exec mpirun -np "$NP" "$root/rpc" "$@"
+launch=(mpirun -np "$NP")
+if mpirun --version 2>/dev/null | grep -qE 'Open ?MPI|OpenRTE'; then launch+=(--oversubscribe); fi # more ranks than cores is the user's business
+exec "${launch[@]}" "$root/rpc" "$@"

@@ -57,10 +57,11 @@ bool is_launched()
 }
 
 /// One process without mpirun has no partners: Open MPI need not start a daemon for it and look for network cards, which
-/// takes it 0.35 s; nor make a folder, which processes without a daemon would share and remove under each other. The user's
-/// own settings win; other MPIs know nothing of these.
+/// takes Open MPI 4 0.35 s, and 6 1.1 s; nor make a folder, which processes without a daemon would share and remove under each
+/// other. The user's own settings win; other MPIs know nothing of these.
 void start_mpi_alone()
 {
+  setenv("OMPI_MCA_btl", "self", 0);
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);

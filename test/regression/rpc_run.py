@@ -25,7 +25,8 @@ def run(arguments, cwd, environment=None):
     with tempfile.TemporaryDirectory(prefix="rpc_mpi_") as session:  # Open MPI's own: those of two runs that start or end at once collide
         return subprocess.run(LAUNCH + [PROGRAM] + [str(a) for a in arguments], cwd=cwd, capture_output=True, text=True,
                               errors="replace", timeout=600, stdin=subprocess.DEVNULL,
-                              env={**os.environ, "OMPI_MCA_orte_tmpdir_base": session, **(environment or {})})
+                              env={**os.environ, "OMPI_MCA_orte_tmpdir_base": session, "PRTE_MCA_prte_tmpdir_base": session,
+                                   **(environment or {})})
 
 
 def run_all(jobs):
@@ -42,7 +43,8 @@ def processes_below(pid, program):
         with contextlib.suppress(OSError):
             if os.path.realpath(f"/proc/{one}/exe") == os.path.realpath(program):
                 found.append(one)
-            waiting += map(int, pathlib.Path(f"/proc/{one}/task/{one}/children").read_text().split())
+            for thread in pathlib.Path(f"/proc/{one}/task").iterdir():  # a launcher may start ranks from any
+                waiting += map(int, (thread / "children").read_text().split())
     return sorted(found)
 
 
