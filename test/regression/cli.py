@@ -71,10 +71,10 @@ class CommandLine(RpcTestCase):
         self.rpc("--input=beam.xml", SMALL, environment=refused, code=1)
 
     def test_kokkos_options_are_taken(self):
-        for options in [["--kokkos-threads=1"], ["--kokkos-num-devices=1"], ["--kokkos-disable-warnings"]]:
-            self.rpc("--version", *options)
+        for option in ["--kokkos-threads=1", "--kokkos-num-threads=1", "--kokkos-device-id=0", "--kokkos-disable-warnings"]:
+            self.rpc("--version", option)
         text = self.rpc("--kokkos-help").stdout
-        self.assertEqual(text.count("--kokkos-threads=INT"), 1)
+        self.assertEqual(len(re.findall("--kokkos-(?:num-)?threads=INT", text)), 1)
 
     def test_faulty_option_is_refused(self):
         cases = [(["--inpt=beam.xml"], ['"--inpt=beam.xml"', "Did you mean --input?", "rpc --help"]),
@@ -525,11 +525,10 @@ class PassThrough(RpcTestCase):
         levels = "--set=Linear Solver->MueLu->coarse: max size=20"  # small meshes are solved directly by default
         arguments = (levels, "--set=Contact->Yield Stress=2")
         chebyshev = self.solve(*arguments)
-        relaxation = self.solve(*arguments, "--set=Linear Solver->MueLu->smoother: type=RELAXATION")
+        factors = self.solve(*arguments, "--set=Linear Solver->MueLu->smoother: type=ILUT")
         degree = self.solve(*arguments, "--set=Linear Solver->MueLu->smoother: params->chebyshev: degree=5")
-        self.assertNotEqual(sum(chebyshev["linear_iterations"]), sum(relaxation["linear_iterations"]))
-        self.assertLess(sum(degree["linear_iterations"]), sum(chebyshev["linear_iterations"]))
-        for summary in (relaxation, degree):
+        for summary in (factors, degree):
+            self.assertLess(sum(summary["linear_iterations"]), sum(chebyshev["linear_iterations"]))
             self.assertAlmostEqual(summary["energy_J"], chebyshev["energy_J"], delta=1e-9 * abs(chebyshev["energy_J"]))
 
     def test_belos_gets_its_parameters(self):
