@@ -55,7 +55,8 @@ mkdir -p "$folder"
 # inside <command...>: in the system, with mounts that end with the command
 inside() {
   unshare --mount --propagation private bash -c '
-    mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" && mount -t tmpfs tmpfs "$1/dev/shm" && exec chroot "${@:1}"' \
+    mount -t proc proc "$1/proc" && mount --rbind /sys "$1/sys" && mount --rbind /dev "$1/dev" && mount -t tmpfs tmpfs "$1/dev/shm" &&
+    exec chroot "$@"' \
     - "$fs" env -i HOME=/root LC_ALL=C.UTF-8 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
     "${settings[@]}" "$@"
 }

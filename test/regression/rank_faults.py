@@ -65,12 +65,9 @@ class RankFaults(RpcTestCase):
         self.assertEqual([name for name in files(self.folder) if name.endswith(".json")], [])
 
     def test_a_rank_that_cannot_start(self):
-        one = [PROGRAM, "--input=beam.xml", "--output=out"]
-        launch = LAUNCH.copy()
-        number = launch.index(str(RANKS))  # of ranks
-        launch[number] = str(RANKS - 1)
-        options = [*launch[1:number - 1], *launch[number + 1:]]  # count for all of the line's programs
-        command = [launch[0], *options, launch[number - 1], str(RANKS - 1), *one, ":", launch[number - 1], "1", *one, "--kokkos-threads=none"]
+        # Not by two programs with their options on one line, at which mpirun of Open MPI 5.0.7 breaks down.
+        last_alone = f'test "${{OMPI_COMM_WORLD_RANK:-$PMI_RANK}}" = {RANKS - 1} && set -- "$@" --kokkos-threads=none; exec "$@"'
+        command = [*LAUNCH, "sh", "-c", last_alone, "sh", PROGRAM, "--input=beam.xml", "--output=out"]
         start = time.monotonic()
         result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=10 * SOON, stdin=subprocess.DEVNULL, check=False)
         self.assertLess(time.monotonic() - start, SOON)

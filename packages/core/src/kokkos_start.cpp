@@ -82,7 +82,7 @@ std::string reason_in(const std::string &text)
 
 std::string kokkos_spelling(const std::string &option)
 {
-#if __has_include(<impl/Kokkos_InitializationSettings.hpp>) // since Kokkos 3.7
+#if __has_include(<impl/Kokkos_InitializationSettings.hpp>) // which came with the new names
   const std::string known = "--kokkos-num-threads", other = "--kokkos-threads";
 #else
   const std::string known = "--kokkos-threads", other = "--kokkos-num-threads";
