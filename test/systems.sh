@@ -86,7 +86,7 @@ step() {
   echo "systems: $suite: $name took $((SECONDS - start)) s"
 }
 
-remove() { if [ -z "$keep" ]; then rm -rf "$fs"; fi; }
+remove() { if [ -z "$keep" ]; then rm -rf --one-file-system "$fs"; fi; }
 
 make_system() {
   # A mirror may stand still for a while: what it has is dated, and counts all the same.
