@@ -80,6 +80,7 @@ step() {
   local name=$1 start=$SECONDS log=$folder/$suite.$1.log
   if ! "${@:2}" >"$log" 2>&1; then
     tail -n 60 "$log" >&2
+    if grep -qE 'Failed to fetch|Unable to fetch|Could not resolve' "$log"; then not_run "the mirror did not give its packages"; fi
     say "$suite: $name failed after $((SECONDS - start)) s; the end of $log stands above"
     exit 1
   fi
