@@ -25,7 +25,7 @@ namespace rpc::mesh
 namespace
 {
 
-constexpr const char *remedy = "; install gmsh's library (on Debian libgmsh4.8), or rpc anew";
+constexpr const char *remedy = "; install gmsh's library (on Debian: apt-get install libgmsh-dev), or rpc anew";
 
 /// Places of the program: an install tree, which may have been moved, and the build tree.
 std::string find_program()
