@@ -50,7 +50,7 @@ set_target_properties(rpc_yield PROPERTIES LIBRARY_OUTPUT_DIRECTORY $<1:${PROJEC
 add_dependencies(rpc_tests rpc_yield)
 set(rpc_ranks_environment
     LD_PRELOAD=$<TARGET_FILE:rpc_yield>
-    OMPI_MCA_btl=^ofi) # of other networks than the host's memory; Open MPI 6 sleeps for a second while it looks for them
+    OMPI_MCA_btl=^ofi) # no network cards: tests run on one host, and Open MPI 6 sleeps for a second while it looks for cards
 
 # rpc_append_session_folder(<list> <test>): appends to a list of environment variables a folder of Open MPI's for one test. Its own in /tmp
 # is the same for all runs on a host, and of two that start or end at once one may fail.

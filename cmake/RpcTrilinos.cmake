@@ -10,9 +10,8 @@ set(Kokkos_FIND_QUIETLY ON) # RpcTrilinosCheck.cmake says more
 # Zoltan2 repartitions MueLu's coarse levels; Intrepid2 gives tests their reference values.
 # No version is named here: Trilinos' own version file takes none but that of the same major number. RpcTrilinosCheck.cmake looks at it.
 find_package(Trilinos QUIET COMPONENTS ${rpc_packages} OPTIONAL_COMPONENTS Zoltan2 Intrepid2)
-include(${CMAKE_CURRENT_LIST_DIR}/RpcTrilinosCheck.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/RpcTrilinosCheck.cmake) # sets RPC_TRILINOS_HAS_MPI
 
-rpc_has_macro(RPC_TRILINOS_HAS_MPI TpetraCore_config.h HAVE_TPETRACORE_MPI)
 if(RPC_TRILINOS_HAS_MPI)
   find_package(MPI QUIET COMPONENTS CXX) # adds nothing when the compiler is the MPI wrapper
   if(NOT MPI_CXX_FOUND)

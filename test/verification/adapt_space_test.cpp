@@ -49,7 +49,7 @@ TEST(AdaptiveBall, InSpaceHasTheForceThePressureAndTheRadiusThatWereAskedFor)
     expect_force_and_pressure(s, ball);
     EXPECT_NEAR(std::sqrt(4 * contact.contact_length / ball.contact_area), 1, 5e-3);
     const double exact = std::sqrt(2 * (4 * s.energy - ball.energy) / (4 * s.energy_norm_squared));
-    EXPECT_GT(relative_estimate(s) / exact, 0.8); // 1.1 to 1.7 on the meshes of gmsh 4.8 and 4.15
+    EXPECT_GT(relative_estimate(s) / exact, 0.8); // up to 1.68 on meshes of gmsh 4.15
     EXPECT_LT(relative_estimate(s) / exact, 1.8);
     EXPECT_LT(std::abs(s.energy - ball.energy / 4), errors.energy);
     EXPECT_LT(std::abs(contact.max_pressure - ball.max_pressure), errors.max_pressure + 1e-9);

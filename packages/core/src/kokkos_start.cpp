@@ -1,6 +1,5 @@
 #include "rpc/core/kokkos_start.hpp"
 
-#include <Kokkos_Core.hpp>
 #include <csetjmp>
 #include <csignal>
 #include <cstdio>
@@ -69,6 +68,26 @@ void leave_abort(int)
   if (pthread_equal(pthread_self(), starting_thread) != 0) siglongjmp(before_abort, 1);
 }
 
+/// Leads abort() back to before_abort while this lives.
+class AbortCaught
+{
+public:
+  AbortCaught()
+  {
+    starting_thread = pthread_self();
+    struct sigaction leaving = {};
+    leaving.sa_handler = leave_abort;
+    sigemptyset(&leaving.sa_mask);
+    sigaction(SIGABRT, &leaving, &before_);
+  }
+  ~AbortCaught() { sigaction(SIGABRT, &before_, nullptr); }
+  AbortCaught(const AbortCaught &) = delete;
+  AbortCaught &operator=(const AbortCaught &) = delete;
+
+private:
+  struct sigaction before_ = {};
+};
+
 /// Of "Error: <reason> Raised by Kokkos::initialize().", and what may follow, the reason.
 std::string reason_in(const std::string &text)
 {
@@ -95,22 +114,12 @@ std::string kokkos_spelling(const std::string &option)
 void start_or_throw(const std::function<void()> &start)
 {
   KeptErrors errors;
-  starting_thread = pthread_self();
-  struct sigaction leaving = {}, before = {};
-  leaving.sa_handler = leave_abort;
-  sigemptyset(&leaving.sa_mask);
-  sigaction(SIGABRT, &leaving, &before);
-  if (sigsetjmp(before_abort, 1) != 0) { // Kokkos has called abort(); what it had made until then stays behind
-    sigaction(SIGABRT, &before, nullptr);
-    throw std::runtime_error(reason_in(errors.text()));
-  }
-  try {
+  {
+    const AbortCaught caught;
+    // The second time abort() has been called; what Kokkos had made until then stays behind.
+    if (sigsetjmp(before_abort, 1) != 0) throw std::runtime_error(reason_in(errors.text()));
     start();
-  } catch (...) {
-    sigaction(SIGABRT, &before, nullptr);
-    throw;
   }
-  sigaction(SIGABRT, &before, nullptr);
   std::istringstream lines(errors.text());
   for (std::string line; std::getline(lines, line);)
     if (line.rfind("Warning: command line argument", 0) != 0) std::cerr << line << '\n';

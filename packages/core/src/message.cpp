@@ -33,8 +33,8 @@ std::string for_terminal(std::string message)
 
 bool is_out_of_memory(const std::exception &error)
 {
-  const std::string text =
-      error.what(); // Kokkos 3: "Kokkos failed to allocate ...", 4: "Kokkos ERROR: ... failed to allocate ..."
+  // Kokkos 3.4: "Kokkos failed to allocate ...", 4.5: "Kokkos ERROR: ... failed to allocate ..."
+  const std::string text = error.what();
   return dynamic_cast<const std::bad_alloc *>(&error) ||
          (text.rfind("Kokkos", 0) == 0 && text.find("failed to allocate") != std::string::npos);
 }
