@@ -42,7 +42,10 @@ BLOCK = """<ParameterList name="block">
     <Parameter name="Upper" type="Array(double)" value="{1, 1, 1}"/>
     <Parameter name="Cells" type="Array(int)" value="{4, 4, 2}"/>
   </ParameterList>
-  <ParameterList name="Material"><Parameter name="Young's Modulus" type="double" value="2000"/></ParameterList>
+  <ParameterList name="Material">
+    <Parameter name="Young's Modulus" type="double" value="2000"/>
+    <Parameter name="Poisson's Ratio" type="double" value="0.3"/>
+  </ParameterList>
   <ParameterList name="Dirichlet">
     <ParameterList name="front">
       <Parameter name="X" type="double" value="0"/>

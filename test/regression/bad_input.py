@@ -167,6 +167,8 @@ def beam(old="", new=""):
 
 E = """name="Young's Modulus" type="double" value="2000\""""
 
+NU = """<Parameter name="Poisson's Ratio" type="double" value="0.3"/>"""
+
 # (file name, content, parts of the message)
 DECKS = [
     ("empty.xml", b"", ['empty.xml" is empty']),
@@ -188,6 +190,14 @@ DECKS = [
     ("type.xml", beam(E, E.replace("double", "string")), ['"Material->Young\'s Modulus" must be a double', "string"]),
     ("flat.xml", beam(E, E.replace("double", "Array(double)").replace("2000", "{2000}")), ["Young's", "array of double"]),
     ("cells.xml", beam("{160, 32}", "{160, 3.2}"), ['"Mesh->Cells" = "{160, 3.2}"', "Array(int)"]),
+    ("modulus.xml", beam("<Parameter " + E + "/>"), ['"Material->Young\'s Modulus" must be given, > 0 and finite [Pa]', 'Add it to "Material"']),
+    ("ratio.xml", beam(NU), ['"Material->Poisson\'s Ratio" must be given, in (-1, 0.5)']),
+    ("immaterial.xml", re.sub(rb'<ParameterList name="Material">.*?</ParameterList>', b"", BEAM.read_bytes(), flags=re.S),
+     ['"Material->Young\'s Modulus" must be given']),
+    ("block.xml", beam(NU, NU + '<ParameterList name="Blocks"><ParameterList name="body"><Parameter ' + E + "/></ParameterList></ParameterList>"),
+     ['"Material->Blocks->body->Poisson\'s Ratio" must be given']),
+    ("forceless.xml", beam('<ParameterList name="Traction">', '<ParameterList name="Traction"><ParameterList name="bottom"/>'),
+     ['"Traction->bottom" has no force', "[Pa]"]),
     ("nothing.xml", beam('<Parameter name="X" type="double" value="0"/>', "").replace(
         b'<Parameter name="Y" type="double" value="0"/>', b""), ['"Dirichlet->left" prescribes nothing']),
 ]
@@ -282,7 +292,8 @@ class BadInput(RpcTestCase):
     def test_a_mesh_of_surfaces_in_space_is_no_body(self):
         (self.folder / "skin.msh").write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 1\n$EndNodes\n"
                                               "$Elements\n1\n1 2 2 1 0 1 2 3\n$EndElements\n")
-        (self.folder / "skin.yaml").write_text("skin:\n  Mesh: {Type: gmsh, File: skin.msh}\n  Dirichlet: {top: {Z: 0.0}}\n")
+        (self.folder / "skin.yaml").write_text("skin:\n  Mesh: {Type: gmsh, File: skin.msh}\n"
+                                               "  Material: {Young's Modulus: 1.0, Poisson's Ratio: 0.3}\n  Dirichlet: {top: {Z: 0.0}}\n")
         self.expect_refusals([("skin", [f"--input={self.folder / 'skin.yaml'}", "--output=out"], BAD_MESH,
                                ['skin.msh": has no volumes', "node 3 at (0, 1, 1) is off the plane", 'Physical Volume("body")'])])
 

@@ -50,7 +50,7 @@ class CommandLine(RpcTestCase):
         for unit in ["[m]", "[Pa]", "[Pa/m]", "[N/m^3]"]:
             self.assertIn(unit, text)
         for line in re.findall(r"^- .*$", text, re.MULTILINE):
-            self.assertRegex(line, r"^- `[^`]+` \([a-z ]+, default `[^`]*`\): .{5,}$")
+            self.assertRegex(line, r"^- `[^`]+` \([a-z ]+, (default `[^`]*`|no default)\): .{5,}$")
         self.assertNotIn("e+00", text)
 
     def test_every_parameter_of_the_deck_is_documented(self):

@@ -24,7 +24,7 @@ class Meshes(RpcTestCase):
         side = dict(zip(self.FACES, names)) if names else {name: str(k) for k, name in enumerate(self.FACES, 1)}
         (self.folder / "cube.yaml").write_text(f"""cube:
   Mesh: {{Type: gmsh, File: cube.msh}}
-  Material: {{Young's Modulus: 1000.0}}
+  Material: {{Young's Modulus: 1000.0, Poisson's Ratio: 0.3}}
   Dirichlet:
     press: {{Side: "{side['top']}", Z: -0.01}}
     left: {{Side: "{side['left']}", X: 0.0}}

@@ -20,7 +20,8 @@ FULL = """<ParameterList name="full">
     <Parameter name="Young's Modulus" type="double" value="2000"/>
     <Parameter name="Poisson's Ratio" type="double" value="0.3"/>
     <ParameterList name="Blocks">
-      <ParameterList name="stiff"><Parameter name="Young's Modulus" type="double" value="2e4"/></ParameterList>
+      <ParameterList name="stiff"><Parameter name="Young's Modulus" type="double" value="2e4"/>
+      <Parameter name="Poisson's Ratio" type="double" value="0.3"/></ParameterList>
     </ParameterList>
   </ParameterList>
   <ParameterList name="Dirichlet">
@@ -126,7 +127,11 @@ CURVED = """<ParameterList name="curved">
     <Parameter name="Young's Modulus" type="double" value="1000"/>
     <Parameter name="Poisson's Ratio" type="double" value="0.45"/>
     <ParameterList name="Blocks">
-      <ParameterList name="body"><Parameter name="Dilatation" type="string" value="projected"/></ParameterList>
+      <ParameterList name="body">
+        <Parameter name="Young's Modulus" type="double" value="1"/>
+        <Parameter name="Poisson's Ratio" type="double" value="0.3"/>
+        <Parameter name="Dilatation" type="string" value="projected"/>
+      </ParameterList>
     </ParameterList>
   </ParameterList>
   <ParameterList name="Dirichlet">

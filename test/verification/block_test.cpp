@@ -159,9 +159,10 @@ TEST(Layers, OfTwoMaterialsAreCompressedEachByItsModulus)
   const double stiff = 8000 * factor, soft = 2000 * factor;
   for (const char *file : {"layers.geo", "layers_quads.geo"})
     for (const char *order : {"1", "2"}) {
-      const Solution s = run_scene(std::string(RPC_TEST_DECKS) + "/layers.xml",
-                                   {std::string("Mesh->File=") + file, std::string("Mesh->Order=") + order,
-                                    "Material->Blocks->stiff->Young's Modulus=8000"});
+      const Solution s =
+          run_scene(std::string(RPC_TEST_DECKS) + "/layers.xml",
+                    {std::string("Mesh->File=") + file, std::string("Mesh->Order=") + order,
+                     "Material->Blocks->stiff->Young's Modulus=8000", "Material->Blocks->stiff->Poisson's Ratio=0.3"});
       ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
       EXPECT_EQ(s.discretization.mesh->element.name(),
                 std::string(file == std::string("layers.geo") ? "P" : "Q") + order);

@@ -3,6 +3,7 @@
 #include <Teuchos_Array.hpp>
 #include <Teuchos_ParameterEntryValidator.hpp>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <ostream>
@@ -334,10 +335,9 @@ void validate(ParameterList &list, const ParameterList &valid, const std::string
   }
   for (const std::string &name : names_of(valid)) {
     const ParameterEntry &model = valid.getEntry(name);
-    if (model.isList())
-      validate(list.sublist(name), valid.sublist(name), path.empty() ? name : path + "->" + name);
-    else if (!list.isParameter(name))
-      list.setEntry(name, unread(model, true));
+    if (!list.isParameter(name))
+      list.setEntry(name, model.isList() ? ParameterEntry(ParameterList(name), true, true) : unread(model, true));
+    if (model.isList()) validate(list.sublist(name), valid.sublist(name), path.empty() ? name : path + "->" + name);
   }
 }
 
@@ -410,8 +410,9 @@ void print_parameters(std::ostream &out, const ParameterList &valid, const std::
   for (const std::string &name : names_of(valid)) {
     const ParameterEntry &entry = valid.getEntry(name);
     if (entry.isList() || name == pass_through) continue;
-    out << "- `" << name << "` (" << type_name(entry) << ", default `" << text_of(entry) << "`): " << entry.docString()
-        << "\n";
+    const bool no_default = entry.isType<double>() && std::isnan(Teuchos::getValue<double>(entry));
+    out << "- `" << name << "` (" << type_name(entry) << ", "
+        << (no_default ? "no default" : "default `" + text_of(entry) + "`") << "): " << entry.docString() << "\n";
   }
   for (const std::string &name : names_of(valid)) {
     const ParameterEntry &entry = valid.getEntry(name);

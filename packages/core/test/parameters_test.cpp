@@ -143,6 +143,17 @@ TEST(Validate, WrongTypeIsRefusedWithBothTypesAndTheValue)
   expect_invalid(array, {"\"Mesh->Cells\"", "array of int", "array of double"});
 }
 
+TEST(Validate, ListsThatAreFilledInSayThatTheyAreNoDecks)
+{
+  ParameterList list;
+  list.sublist("Dirichlet");
+  for (int time = 0; time < 2; ++time) {
+    rpc::validate(list, valid_deck());
+    EXPECT_FALSE(list.getEntry("Dirichlet").isDefault());
+    EXPECT_TRUE(list.isSublist("Contact") && list.getEntry("Contact").isDefault());
+  }
+}
+
 TEST(Validate, IntegersServeAsDoubles)
 {
   ParameterList list;
@@ -374,14 +385,17 @@ TEST(Join, PutsCommasBetween)
 TEST(PrintParameters, ListsEachParameterWithTypeDefaultAndDoc)
 {
   std::ostringstream out;
-  rpc::print_parameters(out, valid_deck());
+  ParameterList valid = valid_deck();
+  valid.set("Modulus", std::numeric_limits<double>::quiet_NaN(), "E > 0 [Pa].");
+  rpc::print_parameters(out, valid);
   const std::string text = out.str();
   for (const std::string line :
        {"- `Type` (string, default `box`): Kind of mesh.",
         "- `Lower` (array of double, default `{0, 0}`): Lower corner",
         "- `Cells` (array of int, default `{8, 8}`): Number of cells.", "- `Blocks` (array of string, default `{a}`)",
         "- `Penalty` (double, default `1e+08`): r > 0 [Pa/m].", "- `Steps` (int, default `3`)",
-        "- `Verbose` (bool, default `false`)", "- `Gap` (number or expression, default `0`): Gap [m].",
+        "- `Verbose` (bool, default `false`)", "- `Modulus` (double, no default): E > 0 [Pa].",
+        "- `Gap` (number or expression, default `0`): Gap [m].",
         "### Dirichlet-><any name>\n\nPrescribed displacements.", "- `Side` (string, default ``)",
         "### NOX\n\nHanded on to NOX.", "### Mesh\n\nThe mesh."})
     EXPECT_NE(text.find(line), std::string::npos) << line << "\nis not in\n" << text;

@@ -8,6 +8,7 @@
 #include "rpc/fem/surface.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace rpc::fem
 {
@@ -158,6 +159,9 @@ std::vector<TractionLoad> traction_options(const Teuchos::ParameterList &list, c
     const Teuchos::ParameterList &entry = list.sublist(name);
     const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
     loads.push_back({name, side, vector_field(entry, dim, "Traction->" + name, parse)});
+    RPC_REQUIRE(std::any_of(std::begin(component_name), std::end(component_name),
+                            [&](const char *const c) { return !entry.getEntry(c).isDefault(); }),
+                "deck: \"Traction->" << name << "\" has no force. Give X, Y or Z [Pa].");
   }
   return loads;
 }

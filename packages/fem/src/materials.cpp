@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace rpc::fem
@@ -23,11 +24,25 @@ Dilatation parse_dilatation(const std::string &text, const std::string &path)
               "deck: \"" + path + "->Dilatation\" must be auto, full or projected, got \"" + text + "\"");
 }
 
+constexpr const char *modulus_name = "Young's Modulus", *ratio_name = "Poisson's Ratio";
+constexpr double no_default = std::numeric_limits<double>::quiet_NaN();
+
+bool is_given(const Teuchos::ParameterList &list, const char *const name)
+{
+  return !list.getEntry(name).isDefault();
+}
+
 Material one_material(const Teuchos::ParameterList &list, const std::string &path)
 {
+  const auto require_given = [&](const char *const name, const char *const rule) {
+    RPC_REQUIRE(is_given(list, name), "deck: \"" << path << "->" << name << "\" must be given, " << rule
+                                                 << "; it has no default. Add it to \"" << path << "\"");
+  };
+  require_given(modulus_name, "> 0 and finite [Pa]");
+  require_given(ratio_name, "in (-1, 0.5)");
   Material material;
-  material.youngs_modulus = list.get<double>("Young's Modulus");
-  material.poissons_ratio = list.get<double>("Poisson's Ratio");
+  material.youngs_modulus = list.get<double>(modulus_name);
+  material.poissons_ratio = list.get<double>(ratio_name);
   RPC_REQUIRE(material.youngs_modulus > 0 && std::isfinite(material.youngs_modulus),
               "deck: \"" << path << "->Young's Modulus\" must be > 0 and finite [Pa], got " << material.youngs_modulus);
   RPC_REQUIRE(material.poissons_ratio > -1 && material.poissons_ratio < 0.5,
@@ -51,13 +66,20 @@ bool projects(const Discretization &d, const Material &material)
   return automatic || material.dilatation == Dilatation::projected;
 }
 
-/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
+/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have, or none for one that it has
 void require_blocks(const mesh::Mesh &mesh, const Materials &materials)
 {
   for (const auto &[name, material] : materials.block)
     RPC_REQUIRE(std::find(mesh.blocks.begin(), mesh.blocks.end(), name) != mesh.blocks.end(),
                 "deck: \"Material->Blocks->" << name << "\" names a block that the mesh does not have. Its blocks: "
                                              << join(mesh.blocks) << ".");
+  for (const std::string &name : mesh.blocks)
+    RPC_REQUIRE(!materials.only_blocks || materials.block.count(name) > 0,
+                "deck: \"Material->" << modulus_name << "\" must be given, > 0 and finite [Pa], and \"Material->"
+                                     << ratio_name << "\", in (-1, 0.5): block \"" << name
+                                     << "\" of the mesh has no material of its own. Add them to \"Material\" or to "
+                                        "\"Material->Blocks->"
+                                     << name << "\"");
 }
 
 /// (blocks) [Pa]
@@ -74,8 +96,8 @@ DeviceView<double *> youngs_moduli(const mesh::Mesh &mesh, const Materials &mate
 Teuchos::ParameterList valid_material_parameters()
 {
   Teuchos::ParameterList valid("Material");
-  valid.set("Young's Modulus", 1., "E > 0 [Pa].");
-  valid.set("Poisson's Ratio", 0.3, "nu, in (-1, 0.5).");
+  valid.set(modulus_name, no_default, "E > 0 [Pa]; must be given.");
+  valid.set(ratio_name, no_default, "nu, in (-1, 0.5); must be given.");
   valid.set(
       "Dilatation", "auto",
       "What counts as div u in a cell: `full`, itself; `projected`, its L2 projection on constants (Q1, P2) or linear "
@@ -84,14 +106,16 @@ Teuchos::ParameterList valid_material_parameters()
   Teuchos::ParameterList entry = valid;
   set_named_entries(valid, "Blocks", entry,
                     "Materials of single blocks of the mesh, each entry named after its block; other blocks have the "
-                    "material above.");
+                    "material above, which may be left out if there are none.");
   return valid;
 }
 
 Materials material_options(const Teuchos::ParameterList &list)
 {
-  Materials materials(one_material(list, "Material"));
   const Teuchos::ParameterList &blocks = list.sublist("Blocks");
+  Materials materials;
+  materials.only_blocks = blocks.numParams() > 0 && !is_given(list, modulus_name) && !is_given(list, ratio_name);
+  if (!materials.only_blocks) materials.common = one_material(list, "Material");
   for (auto it = blocks.begin(); it != blocks.end(); ++it)
     materials.block[blocks.name(it)] =
         one_material(blocks.sublist(blocks.name(it)), "Material->Blocks->" + blocks.name(it));

@@ -245,8 +245,10 @@ TEST(DilatationOption, IsReadForEachMaterialAndMisspellingsAreRefused)
     validate(list, fem::valid_material_parameters());
     return fem::material_options(list);
   };
-  EXPECT_EQ(read({}).common.dilatation, Dilatation::automatic);
   Teuchos::ParameterList list;
+  list.set("Young's Modulus", 1.).set("Poisson's Ratio", 0.3);
+  EXPECT_EQ(read(list).common.dilatation, Dilatation::automatic);
+  list.sublist("Blocks").sublist("rubber") = list;
   list.set("Dilatation", "full");
   list.sublist("Blocks").sublist("rubber").set("Dilatation", "projected");
   EXPECT_EQ(read(list).common.dilatation, Dilatation::full);

@@ -153,6 +153,16 @@ TEST(TractionOptions, SideIsTheNameUnlessGiven)
   EXPECT_EQ(loads[1].traction[0].constant, 4);
 }
 
+TEST(TractionOptions, EntryWithoutAForceIsRefused)
+{
+  ParameterList list, zero;
+  list.sublist("top").set("Side", "left");
+  expect_error(ExitCode::bad_input, {"\"Traction->top\" has no force", "Give X, Y or Z [Pa]"},
+               [&] { fem::traction_options(completed(list, fem::valid_traction_parameters()), 2, parse_constant); });
+  zero.sublist("top").set("Y", 0);
+  EXPECT_EQ(fem::traction_options(completed(zero, fem::valid_traction_parameters()), 2, parse_constant).size(), 1u);
+}
+
 TEST(LoadOptions, ThirdComponentIn2dIsRefusedByName)
 {
   ParameterList traction, volume;

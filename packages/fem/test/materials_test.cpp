@@ -92,14 +92,14 @@ TEST(MaterialOptions, BlocksHaveMaterialsOfTheirOwn)
   ParameterList list;
   list.set("Young's Modulus", 5.).set("Poisson's Ratio", 0.25);
   list.sublist("Blocks").sublist("hard").set("Young's Modulus", 70.).set("Poisson's Ratio", 0.1);
-  list.sublist("Blocks").sublist("soft").set("Young's Modulus", 2.);
+  list.sublist("Blocks").sublist("soft").set("Young's Modulus", 2.).set("Poisson's Ratio", 0.3);
   const auto materials = read_materials(list);
   ASSERT_EQ(materials.block.size(), 2u);
   EXPECT_EQ(materials.common.youngs_modulus, 5);
   EXPECT_EQ(materials.block.at("hard").youngs_modulus, 70);
   EXPECT_EQ(materials.block.at("hard").poissons_ratio, 0.1);
   EXPECT_EQ(materials.block.at("soft").youngs_modulus, 2);
-  EXPECT_EQ(materials.block.at("soft").poissons_ratio, 0.3); // the deck's default, not that of the common material
+  EXPECT_EQ(materials.block.at("soft").poissons_ratio, 0.3);
   EXPECT_EQ(materials.of("hard").youngs_modulus, 70);
   EXPECT_EQ(materials.of("elsewhere").youngs_modulus, 5);
 }
@@ -109,13 +109,42 @@ TEST(MaterialOptions, ValuesOutOfRangeAreRefused)
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [](const std::string &name, const double value) {
     ParameterList list, block;
-    list.set(name, value);
-    block.sublist("Blocks").sublist("hard").set(name, value);
+    list.set("Young's Modulus", 1.).set("Poisson's Ratio", 0.3).set(name, value);
+    block.sublist("Blocks").sublist("hard") = list;
     expect_error(ExitCode::bad_input, {"\"Material->" + name + "\""}, [&] { read_materials(list); });
     expect_error(ExitCode::bad_input, {"\"Material->Blocks->hard->" + name + "\""}, [&] { read_materials(block); });
   };
   for (const double e : {0., -1., inf, nan}) refused("Young's Modulus", e);
   for (const double nu : {-1., 0.5, 0.7, nan, -inf}) refused("Poisson's Ratio", nu);
+}
+
+TEST(MaterialOptions, ModulusAndRatioMustBeGiven)
+{
+  for (const std::string missing : {"Young's Modulus", "Poisson's Ratio"}) {
+    ParameterList list, block;
+    list.set(missing == "Young's Modulus" ? "Poisson's Ratio" : "Young's Modulus", 0.25);
+    block.sublist("Blocks").sublist("hard") = list;
+    expect_error(ExitCode::bad_input, {"\"Material->" + missing + "\" must be given", "Add it to \"Material\""},
+                 [&] { read_materials(list); });
+    expect_error(ExitCode::bad_input, {"\"Material->Blocks->hard->" + missing + "\" must be given"},
+                 [&] { read_materials(block); });
+  }
+  expect_error(ExitCode::bad_input, {"\"Material->Young's Modulus\" must be given, > 0 and finite [Pa]"},
+               [] { read_materials({}); });
+}
+
+TEST(MaterialOptions, OfTheBodyMayBeMissingWhereEachBlockHasItsOwn)
+{
+  const auto d = in_two_blocks(body(small_box({2, 1}), world()));
+  ParameterList list;
+  for (const std::string &name : d.mesh->blocks)
+    list.sublist("Blocks").sublist(name).set("Young's Modulus", 7.).set("Poisson's Ratio", 0.1);
+  EXPECT_EQ(to_host(fem::lame_table(d, read_materials(list)))(1, 1), fem::Material({7, 0.1}).mu());
+  const std::string first = d.mesh->blocks.front();
+  list.sublist("Blocks").remove(first);
+  expect_error(ExitCode::bad_input,
+               {"\"Material->Young's Modulus\" must be given", "block \"" + first + "\" of the mesh"},
+               [&] { fem::lame_table(d, read_materials(list)); });
 }
 
 TEST(LameTable, HasARowForEachBlockOfTheMesh)

@@ -30,6 +30,7 @@ struct Material {
 struct Materials {
   Material common;                       ///< of all blocks that are not named
   std::map<std::string, Material> block; ///< by block name
+  bool only_blocks = false;              ///< nothing is said of other blocks: the mesh must not have any
 
   Materials() = default;
   Materials(const Material &material) : common(material) {}
@@ -38,16 +39,17 @@ struct Materials {
 
 /// Parameters of the deck's `Material` sublist.
 Teuchos::ParameterList valid_material_parameters();
-/// @throws rpc::Error (bad_input) on anything out of range
+/// Young's modulus and Poisson's ratio have no defaults: those of the body must be given, or with `Blocks` those of each.
+/// @throws rpc::Error (bad_input) on anything out of range or missing
 Materials material_options(const Teuchos::ParameterList &list);
 
 /// Lame's constants of each block of a mesh, (2.3): (blocks; lambda, mu) [Pa]. In plane stress lambda is that of the strains in the
 /// plane, (2.3a).
-/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
+/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have, or none for one that it has
 DeviceView<double **> lame_table(const Discretization &d, const Materials &materials);
 
 /// The largest Young's modulus among the cells around each of some owned nodes (nodes, [Pa]).
-/// @throws rpc::Error (bad_input) if a material is given for a block that the mesh does not have
+/// @throws rpc::Error (bad_input) as lame_table()
 DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials,
                                              const DeviceView<LO *> &nodes);
 
