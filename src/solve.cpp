@@ -30,8 +30,11 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   if (!several_steps) listener.step.uzawa = [&](const analysis::UzawaResult &result) { table->uzawa(result); };
   listener.estimate = [&](const Solution &solution) { print_estimate(console, scene, solution); };
   listener.forecast = [&](const adapt::Forecast &forecast) {
-    console << "next mesh: about " << std::llround(forecast.dofs) << " dofs; the target in about "
-            << std::max(1LL, std::llround(forecast.seconds)) << " s" << std::endl;
+    console << "next mesh: about " << std::llround(forecast.dofs) << " dofs; the target ";
+    if (forecast.last_dofs > static_cast<double>(scene.adapt.max_dofs))
+      console << "takes more than \"Adapt->Max Dofs\" = " << scene.adapt.max_dofs << ", as it looks" << std::endl;
+    else
+      console << "in about " << std::max(1LL, std::llround(forecast.seconds)) << " s" << std::endl;
   };
   listener.note = [&](const std::string &note) { console << "note: " << note << std::endl; };
   listener.load_step = [&](const analysis::Solution &solution) {

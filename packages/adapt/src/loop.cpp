@@ -41,11 +41,11 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
 }
 
 /// @param previous, earlier  see analysis::solve_on()
-Solution solve_on_mesh(const Task &task, const mesh::MeshOptions &mesh, const Solution *const previous,
-                       const Solution *const earlier, const RCP<const Comm> &comm, const Listener &listener)
+Solution solve_on_mesh(const Task &task, const analysis::MadeMesh &mesh, const Solution *const previous,
+                       const Solution *const earlier, const Listener &listener)
 {
   return with_estimate(task, listener, [&](const analysis::Listener &all) {
-    return analysis::solve_on(task, mesh, previous, earlier, comm, all);
+    return analysis::solve_on(task, mesh, previous, earlier, all);
   });
 }
 
@@ -96,25 +96,60 @@ double seconds_for(const Forecast &forecast, const Cycle &last)
   return dofs * last.seconds / static_cast<double>(last.dofs);
 }
 
+/// Why no other mesh follows one that is solved.
+std::string why_ended(const Error &failure, const Comm &comm)
+{
+  return interrupted(comm) ? interruption() + " before the next mesh" : failure.what();
+}
+
+/// The mesh after that of a solution. Meshes that come out larger than allowed are made again, with larger cells. Collective.
+/// @param last         of the cycles
+/// @param[out] reason  why there is none
+std::optional<analysis::MadeMesh> next_mesh(MeshPlanner &planner, const Solution &s, const Cycle &last,
+                                            const Listener &listener, analysis::PhaseSeconds &seconds,
+                                            std::string &reason)
+{
+  const RCP<const Comm> comm = s.discretization.mesh->owned_nodes->getComm();
+  Forecast forecast;
+  auto options = planner.next(s.discretization, *s.estimate, s.energy_norm_squared, forecast, reason);
+  if (options && listener.forecast) {
+    forecast.seconds = seconds_for(forecast, last);
+    listener.forecast(forecast);
+  }
+  try {
+    while (options) {
+      analysis::MadeMesh made = analysis::made_mesh(*options, comm);
+      if (planner.fits(*made.mesh)) return made;
+      seconds.mesh += made.seconds;
+      options = planner.smaller(s.discretization, *s.estimate, *made.mesh, reason);
+    }
+  } catch (const Error &failure) { // on all ranks
+    reason = why_ended(failure, *comm);
+  }
+  return std::nullopt;
+}
+
 /// @param earlier  the load step before, if there are several; its mesh is the first one
 Solution solve_adaptively(const Task &task, const Solution *const earlier, const RCP<const Comm> &comm,
                           const Listener &listener)
 {
   Adaptation adaptation;
   std::vector<Cycle> &cycles = adaptation.cycles;
-  std::optional<mesh::MeshOptions> options = earlier ? earlier->mesh_options : task.mesh;
-  MeshPlanner planner(task, *options);
+  std::optional<analysis::MadeMesh> mesh = earlier
+                                               ? analysis::MadeMesh{earlier->mesh_options, earlier->discretization.mesh}
+                                               : analysis::made_mesh(task.mesh, comm);
+  MeshPlanner planner(task, mesh->options);
   std::optional<Solution> last, best;
   std::string hint;
   analysis::PhaseSeconds seconds;
-  while (options) {
-    const double start = Teuchos::Time::wallTime();
+  while (mesh) {
+    const double start = Teuchos::Time::wallTime() - mesh->seconds;
     std::optional<Solution> next;
     try {
-      next = solve_on_mesh(task, *options, last ? &*last : nullptr, earlier, comm, listener);
+      next = solve_on_mesh(task, *mesh, last ? &*last : nullptr, earlier, listener);
     } catch (const Error &failure) { // on all ranks
       if (!last) throw;
-      adaptation.reason = interrupted(*comm) ? interruption() + " before the next mesh" : failure.what();
+      adaptation.reason = why_ended(failure, *comm);
       break;
     }
     seconds += next->seconds;
@@ -144,12 +179,7 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
       adaptation.reason = "there were \"Adapt->Max Cycles\" = " + std::to_string(task.adapt.max_cycles) + " meshes";
       break;
     }
-    Forecast forecast;
-    options =
-        planner.next(last->discretization, *last->estimate, last->energy_norm_squared, forecast, adaptation.reason);
-    if (!options || !listener.forecast) continue;
-    forecast.seconds = seconds_for(forecast, cycles.back());
-    listener.forecast(forecast);
+    mesh = next_mesh(planner, *last, cycles.back(), listener, seconds, adaptation.reason);
   }
   if (!adaptation.reached && !hint.empty() && !interrupted(*comm)) adaptation.reason += ". " + hint;
   adaptation.errors = observed_errors({cycles.begin(), cycles.begin() + best_of(cycles) + 1});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace rpc::adapt
 {
@@ -23,10 +24,15 @@ constexpr double near = 2, near_in_space = 1.3, greatest_correction = 3, growth_
 // A mesh has no more than so many times the cells that the order of the elements asks for: where a coarse mesh asks for
 // many more, its estimate is not reliable.
 constexpr double greatest_excess = 1.5;
-// Meshes are planned that much smaller than allowed: gmsh makes more cells or fewer than it is asked for.
-constexpr double share_of_max_dofs = 0.75;
+// At the limit of unknowns meshes are planned that much smaller than allowed, for gmsh makes more cells or fewer than it is asked for: the
+// first one, and those after it, when it is known how many it makes at about this size.
+constexpr double share_of_max_dofs = 0.75, share_again = 0.9;
+// A mesh that has so much of the unknowns that were planned is one at the limit.
+constexpr double filled = 0.9;
 // At the limit an estimate that falls by less ends the run.
 constexpr double hardly_less = 0.97;
+// So many meshes are made after a solution, each with larger cells, until one is not too large.
+constexpr int most_tries = 5;
 // A mesh in space has up to so many times the cells that are expected: coarse ones cannot be as coarse as they may, for the body's edges.
 constexpr double excess_in_space = 2;
 // The same of nested meshes, which are no coarser than the first one and have neighbours of small cells halved.
@@ -35,68 +41,150 @@ constexpr double excess_nested = 3.2, excess_nested_in_plane = 2;
 // fewer cells are gmsh's: halved ones could not be as coarse. In the plane gmsh is fast enough, and finer gradings pay. doc/design.md
 constexpr double least_halved = 6000;
 
+/// Cells, as those of a field of sizes count.
+double cells_of(const mesh::Mesh &mesh)
+{
+  return cells_per_cell(mesh.element) * static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
+}
+
+double dofs_of(const mesh::Mesh &mesh)
+{
+  return static_cast<double>(mesh.dim()) * static_cast<double>(mesh.owned_nodes->getGlobalNumElements());
+}
+
+/// Unknowns as a multiple of present ones, for another estimate by the order of the elements.
+double growth_for(const double reduction, const mesh::Element &element)
+{
+  return std::pow(reduction, double(element.dim) / element.order);
+}
+
 } // namespace
 
-/// How many times as many cells the next mesh may have as planned.
+/// Cells that are made for one that is planned, as the present mesh shows; after the first one, which was not planned, a guess.
 /// @param cells  of the present mesh
-double MeshPlanner::excess(const double cells, const int dim) const
+double MeshPlanner::made_per_planned(const double cells, const int dim) const
+{
+  if (predicted_cells_ > 0) return cells / predicted_cells_;
+  if (!nests(task_.mesh, task_.adapt)) return dim == 2 ? 1 : excess_in_space;
+  return dim == 2 ? excess_nested_in_plane : excess_nested;
+}
+
+/// @param eta, target  estimates, of the present mesh and of the last one [J^(1/2)]
+MeshPlanner::Goal MeshPlanner::goal(const double eta, const double target, const int dim)
 {
   const bool nested = nests(task_.mesh, task_.adapt);
-  if (dim == 2 && !nested) return 1;
-  if (predicted_cells_ > 0) return std::max(1., cells / predicted_cells_);
-  if (!nested) return excess_in_space;
-  return dim == 2 ? excess_nested_in_plane : excess_nested;
+  const double far = (dim == 2 ? aim : aim_in_space) * target;
+  const bool is_near = eta < (dim == 2 || nested ? near : near_in_space) * far;
+  const double wanted = is_near && nested ? aim_near_nested * target : far;
+  const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
+  const double missed = is_near && !nested ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
+  planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
+  return {planned_ / missed, is_near ? growth_near : growth, std::max(1, static_cast<int>(meshes)), wanted};
+}
+
+mesh::MeshOptions MeshPlanner::options_for(const Sizes &sizes, const mesh::Mesh &mesh)
+{
+  const bool nested = nests(task_.mesh, task_.adapt);
+  predicted_cells_ = sizes.predicted_cells;
+  halved_ = halves_ && !nested && mesh.dim() == 3 && sizes.predicted_cells >= least_halved;
+  auto options = *sized(task_.mesh, task_.adapt, sizes.field, halved_ ? 1 : 0);
+  if (nested) {
+    if (sum_all(mesh.comm(), GO(base_ ? 1 : 0)) == 0) base_ = mesh::base_mesh(task_.mesh, mesh.comm());
+    std::get<mesh::GmshOptions>(options).base = base_;
+  }
+  return options;
+}
+
+/// Whether meshes at the limit of unknowns have come to their end: the present one is hardly better than the one before; or it is better by
+/// its size alone, and the whole limit would not do.
+bool MeshPlanner::nothing_gained(const double eta, const double target, const double dofs,
+                                 const mesh::Element &element) const
+{
+  const double most = static_cast<double>(task_.adapt.max_dofs);
+  if (!(planned_at_limit_ && dofs > filled * share_of_max_dofs * most)) return false;
+  const double needed = dofs * growth_for(eta / target, element);
+  const double needed_before = before_.dofs * growth_for(before_.eta / target, element);
+  return eta > hardly_less * before_.eta ||
+         (needed > most && needed > growth_for(hardly_less, element) * needed_before);
+}
+
+/// The end of a message on the limit.
+std::string MeshPlanner::least_estimate() const
+{
+  std::ostringstream text;
+  text << "the least estimated error is " << least_ << ", with " << std::llround(least_dofs_)
+       << " dofs. Raise \"Adapt->Max Dofs\" or \"Adapt->Target Relative Error\"";
+  return text.str();
 }
 
 std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d, const ErrorEstimate &estimate,
                                                    const double energy_norm_squared, Forecast &forecast,
                                                    std::string &reason)
 {
-  const bool nested = nests(task_.mesh, task_.adapt);
-  if (nested && d.mesh->element.shape != mesh::Shape::simplex &&
+  const mesh::Mesh &mesh = *d.mesh;
+  if (nests(task_.mesh, task_.adapt) && mesh.element.shape != mesh::Shape::simplex &&
       !std::holds_alternative<mesh::BoxOptions>(task_.mesh)) {
-    reason = "only triangles and tetrahedra are halved, and the mesh has " + d.mesh->element.name() +
+    reason = "only triangles and tetrahedra are halved, and the mesh has " + mesh.element.name() +
              " cells; a .geo can be meshed anew, \"Adapt->Meshes\" = gmsh";
     return std::nullopt;
   }
-  const double eta = std::sqrt(estimate.total());
-  const double target = task_.adapt.target * std::sqrt(energy_norm_squared);
-  const double far = (d.dim() == 2 ? aim : aim_in_space) * target;
-  const bool is_near = eta < (d.dim() == 2 || nested ? near : near_in_space) * far;
-  const double wanted = is_near && nested ? aim_near_nested * target : far;
-  const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
-  const double missed = is_near && !nested ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
-  planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
-  const double bound = planned_ / missed;
-
-  const double dofs = static_cast<double>(d.owned_dofs->getGlobalNumElements());
-  const mesh::Mesh &mesh = *d.mesh;
-  const double cells =
-      cells_per_cell(mesh.element) * static_cast<double>(sum_all(mesh.comm(), GO(mesh.num_owned_cells)));
-  const double most_dofs = share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
-  const double excess = this->excess(cells, mesh.dim());
-  const double allowed = most_dofs * cells / dofs / excess;
-  const double sensible = greatest_excess * cells * std::pow(eta / bound, double(mesh.dim()) / mesh.element.order);
-  const auto sizes =
-      new_sizes(d, estimate, {bound * bound, std::min(allowed, sensible), is_near ? growth_near : growth});
-  const bool no_better = eta > hardly_less * eta_before_;
-  eta_before_ = eta;
-  const bool at_limit = dofs > 0.9 * most_dofs && sizes.predicted_cells > 0.9 * allowed;
-  if (at_limit || (no_better && sizes.predicted_cells > 0.7 * allowed)) {
-    reason = "a mesh for the target would exceed \"Adapt->Max Dofs\" = " + std::to_string(task_.adapt.max_dofs);
+  const double eta = std::sqrt(estimate.total()), target = task_.adapt.target * std::sqrt(energy_norm_squared);
+  goal_ = goal(eta, target, mesh.dim());
+  const double dofs = dofs_of(mesh), cells = cells_of(mesh), ratio = made_per_planned(cells, mesh.dim());
+  if (!halved_) ratio_unless_halved_ = ratio;
+  if (const double relative = eta / std::sqrt(energy_norm_squared); relative < least_) {
+    least_ = relative;
+    least_dofs_ = dofs;
+  }
+  const double most = static_cast<double>(task_.adapt.max_dofs);
+  const double share = planned_at_limit_ ? share_again : share_of_max_dofs;
+  const double allowed = share * most * cells / dofs / ratio;
+  const double sensible = greatest_excess * cells * growth_for(eta / goal_.bound, mesh.element);
+  const double squared_error = goal_.bound * goal_.bound;
+  Sizes sizes = new_sizes(d, estimate, {squared_error, sensible, goal_.growth});
+  const bool at_limit = sizes.predicted_cells > allowed;
+  if (at_limit && nothing_gained(eta, target, dofs, mesh.element)) {
+    reason = "the target is not reached within \"Adapt->Max Dofs\" = " + std::to_string(task_.adapt.max_dofs) + ": " +
+             least_estimate();
     return std::nullopt;
   }
-  forecast.meshes = std::max(1, static_cast<int>(meshes));
-  forecast.dofs = dofs * sizes.predicted_cells / cells * excess;
-  forecast.last_dofs = std::max(forecast.dofs, dofs * std::pow(eta / wanted, double(mesh.dim()) / mesh.element.order));
-  predicted_cells_ = sizes.predicted_cells;
-  const bool halved = !nested && mesh.dim() == 3 && sizes.predicted_cells >= least_halved;
-  auto options = sized(task_.mesh, task_.adapt, sizes.field, halved ? 1 : 0);
-  if (nested) {
-    if (sum_all(mesh.comm(), GO(base_ ? 1 : 0)) == 0) base_ = mesh::base_mesh(task_.mesh, mesh.comm());
-    std::get<mesh::GmshOptions>(*options).base = base_;
+  if (at_limit) sizes = new_sizes(d, estimate, {squared_error, allowed, growth});
+  before_ = planned_at_limit_ ? Before{eta, dofs} : Before{};
+  planned_at_limit_ = at_limit;
+  tries_ = 1;
+  smallest_try_ = std::numeric_limits<double>::infinity();
+  forecast.meshes = goal_.meshes;
+  forecast.dofs = dofs * sizes.predicted_cells / cells * ratio;
+  forecast.last_dofs = std::max(forecast.dofs, dofs * growth_for(eta / goal_.wanted, mesh.element));
+  return options_for(sizes, mesh);
+}
+
+bool MeshPlanner::fits(const mesh::Mesh &mesh) const
+{
+  return dofs_of(mesh) <= static_cast<double>(task_.adapt.max_dofs);
+}
+
+std::optional<mesh::MeshOptions> MeshPlanner::smaller(const fem::Discretization &d, const ErrorEstimate &estimate,
+                                                      const mesh::Mesh &too_large, std::string &reason)
+{
+  const double made = dofs_of(too_large), most = share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
+  planned_at_limit_ = true;
+  if (made < smallest_try_ && tries_ < most_tries) {
+    smallest_try_ = made;
+    ++tries_;
+    double allowed = predicted_cells_ * most / made;
+    if (halved_ && allowed < least_halved) { // other meshes, which have other numbers of cells
+      halves_ = false;
+      allowed = most * cells_of(*d.mesh) / dofs_of(*d.mesh) / ratio_unless_halved_;
+    }
+    return options_for(new_sizes(d, estimate, {goal_.bound * goal_.bound, allowed, growth}), *d.mesh);
   }
-  return options;
+  std::ostringstream text;
+  text << "no next mesh within \"Adapt->Max Dofs\" = " << task_.adapt.max_dofs << " was found in " << tries_
+       << " tries, the smallest of them has " << std::llround(std::min(made, smallest_try_)) << " dofs; "
+       << least_estimate();
+  reason = text.str();
+  return std::nullopt;
 }
 
 } // namespace rpc::adapt

@@ -94,10 +94,17 @@ ResultScope result_scope(const Model &model, const fem::Discretization &d)
   return {d.per_length(), contact::has_friction(model.contact), model.units};
 }
 
+MadeMesh made_mesh(const mesh::MeshOptions &options, const RCP<const Comm> &comm)
+{
+  PhaseSeconds seconds;
+  auto mesh = make_mesh(options, comm, seconds);
+  return {options, std::move(mesh), seconds.mesh};
+}
+
 Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
   return task.has_steps() ? solve_steps(task, comm, listener)
-                          : solve_on(task, task.mesh, nullptr, nullptr, comm, listener);
+                          : solve_on(task, made_mesh(task.mesh, comm), nullptr, nullptr, listener);
 }
 
 std::optional<HistoryState> resumed(const Listener &listener, PhaseSeconds &seconds)
@@ -222,16 +229,15 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   return s;
 }
 
-Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solution *const previous,
-                  const Solution *const earlier, const RCP<const Comm> &comm, const Listener &listener)
+Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const previous, const Solution *const earlier,
+                  const Listener &listener)
 {
   Solution s;
   s.time = task.time;
-  s.mesh_options = options;
-  // The first mesh of a load step is that of the step before.
-  const bool same_mesh = earlier && !previous;
-  const auto mesh = same_mesh ? earlier->discretization.mesh : make_mesh(options, comm, s.seconds);
-  const auto problem = make_problem(task, mesh, s.seconds);
+  s.mesh_options = made.options;
+  s.seconds.mesh = made.seconds;
+  const RCP<const Comm> comm = made.mesh->owned_nodes->getComm();
+  const auto problem = make_problem(task, made.mesh, s.seconds);
   const fem::Discretization &d = s.discretization = problem->discretization();
   Step step;
   {
@@ -250,7 +256,7 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
     starts.push_back(contact::interpolated(*fem::interpolation(previous->discretization, d), points, state,
                                            step.contact, d.owned_dofs));
   }
-  const auto coarser = coarser_meshes(task, options, comm);
+  const auto coarser = coarser_meshes(task, made.options, comm);
   if (!task.has_steps()) {
     SolverState state(*problem, task.linear_solver);
     Starts from{starts, {}};
@@ -264,7 +270,9 @@ Solution solve_on(const Task &task, const mesh::MeshOptions &options, const Solu
     LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver, coarser);
     history.balance_energies_to(task.steps.energy_tolerance);
     if (earlier)
-      history.go_on_from(same_mesh ? *earlier->memory : interpolated(*earlier->memory, earlier->discretization, d));
+      history.go_on_from(made.mesh == earlier->discretization.mesh
+                             ? *earlier->memory
+                             : interpolated(*earlier->memory, earlier->discretization, d));
     for (const auto &start : starts) history.offer(start);
     static_cast<StepSolution &>(s) = history.advance(task.time, listener.step);
     if (s.uzawa.converged) s.memory = *history.memory();

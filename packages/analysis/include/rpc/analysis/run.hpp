@@ -6,6 +6,7 @@
 #include "rpc/mesh/make_mesh.hpp"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -95,11 +96,22 @@ Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &li
 /// converge, or where an error ends a later step the one before it, with its `failure`. An interrupted run leaves a checkpoint.
 Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
 
-/// One step of a task on one mesh.
-/// @param mesh      to be made, in place of the task's
+/// A mesh with the options by which it was made.
+struct MadeMesh {
+  mesh::MeshOptions options;
+  std::shared_ptr<const mesh::Mesh> mesh;
+  double seconds = 0; ///< that making it took [s]
+};
+
+/// Collective on comm.
+/// @throws rpc::Error on every rank, as mesh::make_mesh() does, and where the run is interrupted
+MadeMesh made_mesh(const mesh::MeshOptions &options, const RCP<const Comm> &comm);
+
+/// One step of a task on one mesh. Collective on the mesh's comm.
+/// @param made      in place of the task's mesh
 /// @param previous  solution on another mesh to start from; null: coarser meshes predict it
-/// @param earlier   solution of the load step before; without a previous mesh its mesh is taken. Null: there is none
-Solution solve_on(const Task &task, const mesh::MeshOptions &mesh, const Solution *previous, const Solution *earlier,
-                  const RCP<const Comm> &comm, const Listener &listener);
+/// @param earlier   solution of the load step before, on this mesh or another one; null: there is none
+Solution solve_on(const Task &task, const MadeMesh &made, const Solution *previous, const Solution *earlier,
+                  const Listener &listener);
 
 } // namespace rpc::analysis

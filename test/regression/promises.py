@@ -1,0 +1,84 @@
+"""What a deck asks for is met, or refused with what was reached: the most unknowns of adapted meshes."""
+
+import json
+import unittest
+
+from rpc_run import RpcTestCase, errors, run_all
+
+CONVERGED, NOT_TO_THE_TARGET = 0, 4
+
+STEEL = "Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}"
+# By name: a deck, and whose first mesh is larger than the smallest limit or not.
+PUNCH = """punch:
+  Mesh: {Lower: [0.0, 0.0, 0.0], Upper: [1.0, 1.0, 1.0], Cells: [2, 2, 2], Element: P2}
+  Dirichlet: {front: {X: 0.0, Y: 0.0, Z: -0.01}}
+  Contact: {Side: back}
+  """ + STEEL + "\n"
+DISC = """disc:
+  Kinematics: axisymmetric
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 0.01], Cells: [60, 2], Element: Q2}
+  Dirichlet: {right: {X: 0.0, Y: 0.0}}
+  Traction: {top: {Y: -1.0e-4}}
+  Contact: {Side: bottom, Gap: 0.004}
+  """ + STEEL + "\n"
+BEAM = """beam:
+  Mesh: {Lower: [0.0, 0.0], Upper: [5.0, 1.0], Cells: [20, 4], Element: P2}
+  Dirichlet: {left: {X: 0.0, Y: 0.0}, right: {X: 0.0, Y: 0.0}}
+  Traction: {top: {Y: "-20*sin(pi*x/5)"}}
+  Contact: {Side: bottom, Yield Stress: 16.0}
+  """ + STEEL + "\n"
+# Where the first meshes touch at few points, so that their estimates do not fall.
+PYRAMID = """pyramid:
+  Mesh: {Lower: [0.0, 0.0, 0.0], Upper: [1.0, 1.0, 1.0], Cells: [4, 4, 4], Element: P2}
+  Dirichlet: {front: {X: 0.0, Y: 0.0, Z: 0.0}}
+  Contact: {Side: back, Gap: "0.35*max(abs(x - 0.5), abs(y - 0.5)) - 0.05"}
+  """ + STEEL + "\n"
+
+
+def adapt(target, max_dofs, meshes="gmsh"):
+    return ["--set=Output->Exodus=none", f"--set=Adapt->Target Relative Error={target}", f"--set=Adapt->Max Dofs={max_dofs}",
+            f"--set=Adapt->Meshes={meshes}"]
+
+
+class Promises(RpcTestCase):
+    def runs(self, jobs):
+        """Runs of (deck, options): each its exit code and summary."""
+        for k, (deck, _) in enumerate(jobs):
+            (self.folder / f"deck{k}.yaml").write_text(deck)
+        results = run_all([([f"--input=deck{k}.yaml", f"--output=out{k}", *options], self.folder) for k, (_, options) in enumerate(jobs)])
+        for result in results:
+            self.assertEqual(errors(result), [], result.stdout)
+        return [(result, json.loads((self.folder / f"out{k}" / f"deck{k}.json").read_text())) for k, result in enumerate(results)]
+
+    def test_no_mesh_but_the_first_has_more_unknowns_than_allowed(self):
+        limits = [(deck, meshes, limit) for deck, meshes, all_limits in [
+            (PUNCH, "gmsh", [300, 3000, 20000, 45000]), (PUNCH, "nested", [300, 3000, 20000]), (DISC, "gmsh", [300, 1000, 3000]),
+            (DISC, "nested", [1000, 3000]), (BEAM, "gmsh", [500, 3000]), (BEAM, "nested", [500, 3000])] for limit in all_limits]
+        jobs = [(deck, adapt(1e-5, limit, meshes)) for deck, meshes, limit in limits]
+        for (deck, meshes, limit), (result, summary) in zip(limits, self.runs(jobs)):
+            with self.subTest(deck=deck.split(":")[0], meshes=meshes, limit=limit):
+                cycles = summary["adaptation"]["cycles"]
+                self.assertEqual(result.returncode, NOT_TO_THE_TARGET)
+                self.assertLessEqual(max([c["dofs"] for c in cycles[1:]], default=0), limit)
+                reason = summary["adaptation"]["reason"]
+                self.assertIn(f'"Adapt->Max Dofs" = {limit}', reason)
+                best = min(cycles, key=lambda c: c["relative_estimate"])
+                self.assertIn(f"the least estimated error is {best['relative_estimate']:.6g}, with {best['dofs']} dofs", reason)
+                self.assertEqual(summary["dofs"], best["dofs"])
+                self.assertIn(f'takes more than "Adapt->Max Dofs" = {limit}', result.stdout)
+
+    def test_a_target_is_refused_only_after_meshes_at_the_limit(self):
+        limits = [(PUNCH, "gmsh", 20000), (PUNCH, "nested", 20000), (DISC, "gmsh", 3000), (BEAM, "gmsh", 3000), (BEAM, "nested", 3000)]
+        for (deck, meshes, limit), (_, summary) in zip(limits, self.runs([(deck, adapt(1e-5, limit, meshes)) for deck, meshes, limit in limits])):
+            with self.subTest(deck=deck.split(":")[0], meshes=meshes):
+                self.assertGreater(summary["adaptation"]["cycles"][-1]["dofs"], limit / 2)
+
+    def test_a_target_within_the_limit_is_reached_though_first_estimates_do_not_fall(self):
+        for result, summary in self.runs([(PYRAMID, adapt(0.3, 30000))]):
+            self.assertEqual(result.returncode, CONVERGED, summary["adaptation"]["reason"])
+            self.assertTrue(summary["adaptation"]["reached"])
+            self.assertLessEqual(summary["dofs"], 30000)
+
+
+if __name__ == "__main__":
+    unittest.main()
