@@ -1,11 +1,11 @@
-"""What a deck asks for is met, or refused with what was reached: the most unknowns of adapted meshes."""
+"""What a deck asks for is met, or refused with what was reached: the most unknowns of adapted meshes, times without a load."""
 
 import json
 import unittest
 
 from rpc_run import RpcTestCase, errors, run_all
 
-CONVERGED, NOT_TO_THE_TARGET = 0, 4
+CONVERGED, NOT_TO_THE_TARGET, NO_SOLUTION = 0, 4, 5
 
 STEEL = "Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}"
 # By name: a deck, and whose first mesh is larger than the smallest limit or not.
@@ -32,6 +32,13 @@ PYRAMID = """pyramid:
   Mesh: {Lower: [0.0, 0.0, 0.0], Upper: [1.0, 1.0, 1.0], Cells: [4, 4, 4], Element: P2}
   Dirichlet: {front: {X: 0.0, Y: 0.0, Z: 0.0}}
   Contact: {Side: back, Gap: "0.35*max(abs(x - 0.5), abs(y - 0.5)) - 0.05"}
+  """ + STEEL + "\n"
+# Held by contact alone, with a load that rises from 0 at t = 0.
+RAMP = """ramp:
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [4, 4]}
+  Dirichlet: {left: {X: 0.0}}
+  Traction: {top: {Y: "-2*t"}}
+  Contact: {Side: bottom}
   """ + STEEL + "\n"
 
 
@@ -78,6 +85,27 @@ class Promises(RpcTestCase):
             self.assertEqual(result.returncode, CONVERGED, summary["adaptation"]["reason"])
             self.assertTrue(summary["adaptation"]["reached"])
             self.assertLessEqual(summary["dofs"], 30000)
+
+    def test_a_time_without_a_load_is_named_with_its_load_and_its_remedy_helps(self):
+        (self.folder / "ramp.yaml").write_text(RAMP)
+        adapted = ["--set=Adapt->Target Relative Error=0.1", "--set=Output->Exodus=none"]
+        parts = ["nothing presses the body", "At t = 0 the load is zero", '"Traction->top"', '"Steps->Times"']
+        for times in ["{0, 0.5, 1}", "{-0.5, 0}"]:
+            for options in [[], adapted]:
+                if times[1] == "-":
+                    options = [*options, "--set=Traction->top->Y=2*t"]
+                result = self.rpc("--input=ramp.yaml", "--output=out", f"--set=Steps->Times={times}", *options, code=None)
+                self.expect_refusal(result, NO_SOLUTION, ["at t = 0: ", *parts])
+        self.rpc("--input=ramp.yaml", "--output=out", "--set=Steps->Times={0.5, 1}", code=CONVERGED)
+        self.rpc("--input=ramp.yaml", "--output=out", "--set=Steps->Times={0.5, 1}", *adapted, code=CONVERGED)
+        self.expect_refusal(self.rpc("--input=ramp.yaml", "--output=out", "--set=Time=0", code=None), NO_SOLUTION, [*parts, '"Time"'])
+        self.rpc("--input=ramp.yaml", "--output=out", "--set=Time=0.5", code=CONVERGED)
+
+    def test_a_first_step_beyond_the_limit_names_its_time_and_no_zero_load(self):
+        (self.folder / "ramp.yaml").write_text(RAMP)
+        result = self.rpc("--input=ramp.yaml", "--output=out", "--set=Steps->Times={2, 3}", "--set=Contact->Yield Stress=3", code=None)
+        self.expect_refusal(result, NO_SOLUTION, ["at t = 2: ", "carries at most 3 [N/m]"])
+        self.assertNotIn("the load is zero", result.stderr)
 
 
 if __name__ == "__main__":

@@ -238,7 +238,7 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
       solved = true;
       if (listener.load_step) listener.load_step(*earlier);
     } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
-      if (none_yet()) throw earlier ? Error(error.code(), analysis::at_time(t) + error.what()) : error;
+      if (none_yet()) throw analysis::error_at(t, error, !earlier);
       if (!solved && interrupted(*comm)) keep();
       earlier->failure = analysis::Failure{t, one_line(error.what()), error.code()};
       if (!solved) earlier->history.push_back(analysis::broken_off(task.model, {}, t, earlier->failure->reason));

@@ -2,6 +2,7 @@
 
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/stiffness.hpp"
+#include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/fem/surface.hpp"
 #include "rpc/mesh/box.hpp"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 namespace rpc::analysis
@@ -35,6 +37,36 @@ RCP<Vector> loads_of(const fem::Discretization &d, const Model &model)
     require_finite(*load, "the forces of \"" + path + "\"", coordinates);
   }
   return load;
+}
+
+/// The names in the deck of loads that depend on time or place, and may so be zero at some time only.
+std::vector<std::string> varying_loads(const Model &model)
+{
+  std::vector<std::string> names;
+  const auto add = [&](const fem::VectorField &load, const std::string &name) {
+    if (std::any_of(load.begin(), load.end(), [](const ScalarField &f) { return !f.is_constant(); }))
+      names.push_back('"' + name + '"');
+  };
+  add(model.body_force, "Body Force");
+  for (const auto &load : model.tractions) add(load.traction, "Traction->" + load.name);
+  return names;
+}
+
+/// What becomes of a body that its load at a time does not hold. Where all loads are zero then, the message says so. Collective.
+contact::Support support_of(const fem::Discretization &d, const contact::FreeParts &free_parts, const Step &step,
+                            const Model &now)
+{
+  try {
+    return contact::check_support(d, free_parts, *step.elastic.applied_load, step.contact, now.contact, now.units);
+  } catch (const Error &error) { // on all ranks
+    const auto loads = varying_loads(now);
+    if (error.code() != ExitCode::no_solution || loads.empty() || step.elastic.applied_load->normInf() > 0) throw;
+    std::ostringstream text;
+    text << error.what() << " At t = " << step.time << " the load is zero:";
+    for (const std::string &name : loads) text << ' ' << name;
+    text << ". Leave that time out of \"Steps->Times\", or without steps choose another \"Time\".";
+    throw Error(error.code(), text.str());
+  }
 }
 
 /// Collective. @throws rpc::Error (bad_input) where numbers overflow
@@ -131,8 +163,7 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
   step.elastic = fem::elastic_problem(d, couplings_, loads_of(d, now), std::move(dirichlet));
   require_finite(*step.elastic.load, "the forces of prescribed displacements",
                  [&d] { return fem::node_coordinates(d); });
-  step.support =
-      contact::check_support(d, free_parts_, *step.elastic.applied_load, step.contact, now.contact, model_.units);
+  step.support = support_of(d, free_parts_, step, now);
   return step;
 }
 

@@ -134,6 +134,11 @@ std::string at_time(const double t)
   return text.str();
 }
 
+Error error_at(const double t, const Error &error, const bool first)
+{
+  return first && error.code() != ExitCode::no_solution ? error : Error(error.code(), at_time(t) + error.what());
+}
+
 namespace
 {
 
@@ -193,7 +198,11 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     assemblies_before = from->matrix_assemblies;
     history.go_on_from(from->last, from->before);
   }
-  if (listener.mesh) listener.mesh(problem->discretization(), problem->step(first.time).contact);
+  try {
+    if (listener.mesh) listener.mesh(problem->discretization(), problem->step(first.time).contact);
+  } catch (const Error &error) { // on all ranks
+    throw error_at(first.time, error, true);
+  }
   bool checkpoint_due = false;
   for (const double t : task.steps.times) {
     if (from && t <= from->last.time) continue;
@@ -211,7 +220,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
       if (listener.load_step) listener.load_step(s);
     } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
       const StepRecord broken = history.broken_off(one_line(error.what()));
-      if (s.history.empty()) throw records.empty() ? error : Error(error.code(), at_time(broken.time) + error.what());
+      if (s.history.empty()) throw error_at(broken.time, error, records.empty());
       if (!solved) s.history.push_back(broken);
       s.failure = Failure{solved ? s.time : broken.time, broken.reason, error.code()};
       break;

@@ -87,6 +87,9 @@ std::optional<HistoryState> resumed(const Listener &listener, PhaseSeconds &seco
 bool keep_checkpoint(const HistoryState &state, const Listener &listener);
 /// "at t = 2: ", as messages begin.
 std::string at_time(double t);
+/// The error of a load step that ends a run without results, as the user gets to see it.
+/// @param first  whether no step went before: then what is wrong with the deck or the mesh has no time, a load has
+Error error_at(double t, const Error &error, bool first);
 
 /// Mesh, assembly and solve_step(), for each load step: from a task to its solution. Collective on comm.
 /// @throws rpc::Error on every rank if the model does not fit its mesh; failing to converge is in the result
