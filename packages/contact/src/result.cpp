@@ -43,6 +43,43 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
       });
 }
 
+/// (owned nodes) The size of the largest facet around each node of a side, elsewhere 0 [m].
+DeviceView<double *> size_around(const fem::Discretization &d, const mesh::Side &side)
+{
+  const LO num_owned = d.mesh->num_owned_nodes();
+  const DeviceView<double *> size("rpc::contact::size_around", num_owned);
+  const auto of_facet = fem::facet_size(d, side);
+  const auto facets = side.facets;
+  Kokkos::parallel_for(
+      "rpc::contact::size_around", device_range(static_cast<LO>(facets.extent(0))), KOKKOS_LAMBDA(const LO f) {
+        for (std::size_t a = 0; a < facets.extent(1); ++a)
+          if (facets(f, a) < num_owned) Kokkos::atomic_fetch_max(&size(facets(f, a)), of_facet(f));
+      });
+  Kokkos::fence();
+  return size;
+}
+
+/// Takes from one side's points without weight that lie clear of the foundation the pressure that they were lent. Collective.
+void release_where_clear(const fem::Discretization &d, const mesh::Side &side, const ContactNodes &c, const LO begin,
+                         const LO end, const Vector &u, const DeviceView<double *> &p)
+{
+  // So many times the strain of the pressure over a facet's length is more than the end of a smooth contact opens, see (10.8).
+  constexpr double smooth_gap = 4;
+  const double diameter = mesh::diameter(*d.mesh);
+  const auto size = size_around(d, side);
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::release_where_clear", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end),
+      KOKKOS_LAMBDA(const LO i) {
+        if (c.weight(i) > 0) return;
+        double distance = c.gap(i) + c.dent(i);
+        for (int k = 0; k < c.dim; ++k) distance -= c.normal(i, k) * x(c.dof(i, k));
+        const double modulus = c.scaling(i) * diameter;
+        if (distance * modulus > smooth_gap * p(i) * size(c.node(i))) p(i) = 0; // (3.5a)
+      });
+  Kokkos::fence();
+}
+
 /// Displacement, penetration and state of each node, from its pressure.
 void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &result)
 {
@@ -152,6 +189,7 @@ void complete_friction(const fem::Discretization &d, const mesh::Side &side, con
       "rpc::contact::lent_friction_state", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end),
       KOKKOS_LAMBDA(const LO i) {
         if (c.weight(i) > 0 || !c.friction.exists()) return;
+        if (!(p(i) > 0)) bound(i) = math::fmin(bound(i), friction_bound(p(i), c.friction(i))); // it may lie clear
         const Along borne = admissible_friction(row(q, i), bound(i));
         set_row(q, i, borne);
         used(i) = bound(i) > 0 ? borne.length() / bound(i) : 0;
@@ -290,6 +328,8 @@ ContactResult contact_result(const fem::Discretization &d, const std::vector<con
   result.dent = DeviceView<double *>("rpc::contact::dent", n);
   result.state = DeviceView<int *>("rpc::contact::state", n);
   result.pressure = completed_pressure(d, sides, c, state.multiplier.normal);
+  for (int k = 0; k < c.num_sides() && c.num_weightless > 0; ++k)
+    release_where_clear(d, *sides[k], c, c.first(k), c.first(k + 1), *state.displacement, result.pressure);
   fill_fields(c, *state.displacement, result);
   if (with_friction || c.friction.anywhere) make_room_for_friction(c, result);
   if (c.friction.exists() && state.multiplier.has_tangential()) fill_friction(c, state, result);

@@ -115,7 +115,39 @@ struct ContactTerms {
   ReadColumns field;                // (overlap nodes; Column)                  in
   LO num_owned_cells;
   bool friction;                // in
+  double highest;               // pressure                     [Pa]      in
   DeviceView<double *> squared; // (facets), of owned cells    [J]       out
+
+  // A gap that grows as at the end of a smooth contact stays below so many times the strain at the peak times the size of a facet: its
+  // faces in space are longer than the root of their area, and their vertices have no weight.
+  static constexpr double smooth_gap = 1, smooth_gap_in_space = 4;
+
+  /// How far the nodes of a facet may lie clear of the foundation at the end of a smooth contact [m].              (10.4a)
+  KOKKOS_FUNCTION double smooth_opening(const LO f) const
+  {
+    const int of = block(cell(f));
+    const double modulus = lame(of, 0) + 2 * lame(of, 1);
+    return (recovered.extent(2) == 2 ? smooth_gap : smooth_gap_in_space) * highest * size(f) / modulus;
+  }
+
+  /// The penetration of a facet at a point, of which open nodes tell no more than a smooth contact can open: past a jump of the gap
+  /// there is nothing to read from how far they lie, and interpolants between them would rise above them all.    (10.4a)
+  KOKKOS_FUNCTION double penetration_at(const LO f, const int q) const
+  {
+    const double least = -smooth_opening(f);
+    bool jumps = false;
+    double v = 0, most = least;
+    for (std::size_t a = 0; a < facets.extent(1); ++a) {
+      double at_node = field(facets(f, a), int(penetration));
+      if (at_node < least && !(field(facets(f, a), int(pressure)) > 0)) {
+        jumps = true;
+        at_node = least;
+      }
+      most = math::fmax(most, at_node);
+      v += shape(q, a, true) * at_node;
+    }
+    return jumps ? math::fmin(v, most) : v;
+  }
 
   /// The law at a node of a facet.
   KOKKOS_FUNCTION contact::Foundation law_at(const LO f, const std::size_t a) const
@@ -189,7 +221,8 @@ struct ContactTerms {
     const int dim = static_cast<int>(recovered.extent(2)), columns = friction ? int(num_columns) : normal + dim;
     Point x;
     for (std::size_t a = 0; a < facets.extent(1); ++a)
-      for (int k = 0; k < columns; ++k) x.at[k] += shape(q, a, linear || k == penetration) * field(facets(f, a), k);
+      for (int k = 0; k < columns; ++k) x.at[k] += shape(q, a, linear) * field(facets(f, a), k);
+    x.at[penetration] = penetration_at(f, q);
     for (int i = 0; i < dim; ++i) {
       x.rest[i] = recovered(f, q, i) - applied(f, q, i);
       x.recovered -= x.rest[i] * x.at[normal + i];
@@ -297,9 +330,6 @@ struct NodalPressures {
   ContactTerms terms; // in
   double highest = 0; // pressure  [Pa]  in
   static constexpr double near_peak = 0.98;
-  // A gap that grows as at the end of a smooth contact stays below so many times the strain at the peak times the size of a facet: its
-  // faces in space are longer than the root of their area, and their vertices have no weight.
-  static constexpr double smooth_gap = 1, smooth_gap_in_space = 4;
   static constexpr double jump = 0.1; // of the yield stress between nodes of a facet, over the lower one
 
   KOKKOS_FUNCTION double at(const LO f, const int a, const int column) const
@@ -313,11 +343,9 @@ struct NodalPressures {
   {
     if (terms.cell(f) >= terms.num_owned_cells || !(highest > 0)) return;
     const int nodes = static_cast<int>(terms.facets.extent(1)), points = static_cast<int>(terms.value.extent(0));
-    const double smooth = terms.recovered.extent(2) == 2 ? smooth_gap : smooth_gap_in_space;
     double area = 0;
     for (int q = 0; q < points; ++q) area += terms.measure(f * points + q);
-    const int block = terms.block(terms.cell(f));
-    const double modulus = terms.lame(block, 0) + 2 * terms.lame(block, 1);
+    const double smooth = terms.smooth_opening(f);
     double most = at(f, 0, pressure), least = most;
     for (int a = 0; a < nodes; ++a) {
       const double p = at(f, a, pressure), xi = contact::yield_limit(terms.law_at(f, a));
@@ -326,8 +354,7 @@ struct NodalPressures {
       for (int b = 0; b < nodes; ++b) {
         const double other = at(f, b, pressure), other_xi = contact::yield_limit(terms.law_at(f, b));
         if (p >= xi && other < other_xi && other_xi > highest && other_xi > (1 + jump) * xi) yield_jumps += 1;
-        if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) * modulus > smooth * highest * terms.size(f))
-          gap_jumps += 1;
+        if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) > smooth) gap_jumps += 1;
       }
     }
     if (most >= near_peak * highest) drop = math::fmax(drop, (most - least) / highest);
@@ -380,6 +407,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
                              fields->getLocalViewDevice(Tpetra::Access::ReadOnly),
                              mesh.num_owned_cells,
                              of.contact.friction.anywhere,
+                             highest,
                              DeviceView<double *>("rpc::adapt::contact_terms", side.facets.extent(0))};
     double of_side[num_sums - 1] = {}, peak_of_side = 0, spread_of_side = 0, drop_of_side = 0;
     const auto facets = device_range(static_cast<LO>(side.facets.extent(0)));
