@@ -20,6 +20,16 @@ std::vector<double> changes(const std::vector<Cycle> &cycles, const Change &chan
   return all;
 }
 
+/// Error of a quantity on the last mesh, as all meshes show it.                                       doc/theory.md (10.7)
+/// @param distance  of the quantity on two meshes
+template <class Distance>
+double shown_error(const std::vector<Cycle> &cycles, const std::vector<double> &eta, const Distance &distance)
+{
+  std::vector<double> to_last;
+  for (std::size_t k = 0; k + 1 < cycles.size(); ++k) to_last.push_back(distance(cycles[k], cycles.back()));
+  return std::max(observed_error(changes(cycles, distance), eta), error_over_span(to_last, eta));
+}
+
 /// Why the largest pressure of the last mesh has no error bar; empty if it has one.
 std::string unknown_max_pressure(const std::vector<Cycle> &cycles, const std::vector<double> &eta)
 {
@@ -28,10 +38,32 @@ std::string unknown_max_pressure(const std::vector<Cycle> &cycles, const std::ve
   if (last.peak.at_bound || !reason.empty()) return reason;
   const auto growth =
       changes(cycles, [](const Cycle &a, const Cycle &b) { return b.contact.max_pressure - a.contact.max_pressure; });
+  std::vector<double> pressure;
+  for (const Cycle &cycle : cycles) pressure.push_back(cycle.contact.max_pressure);
   const bool grows = growth.size() > 1 && growth.back() > 0 && growth[growth.size() - 2] > 0;
-  if (grows && unsettled(growth, eta, last.recovered_max_pressure))
+  if ((grows && unsettled(growth, eta, last.recovered_max_pressure)) ||
+      grows_without_limit(pressure, eta, last.estimate * last.contact.max_pressure))
     return "the largest pressure grows from mesh to mesh and does not settle";
   return "";
+}
+
+/// No less than what the last mesh leaves open: its estimated error, and data that jump between its nodes.      (10.7a), (10.7b)
+void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, ObservedErrors &errors)
+{
+  const auto &f = last.contact.force;
+  const double force = std::hypot(f[0], f[1], f[2]), squared = last.estimate * last.estimate;
+  const double moved = force > 0 ? last.energy_norm_squared / force : 0; // in the mean, by the force
+  errors.energy =
+      std::max(errors.energy, squared * last.energy_norm_squared / 2 + last.jumped_energy + last.jumped_force * moved);
+  errors.contact_force = std::max(errors.contact_force, squared * force + last.jumped_force +
+                                                            (moved > 0 ? 2 * last.jumped_energy / moved : 0));
+  // The largest penetration may be that of a corner.
+  errors.max_penetration = std::max(errors.max_penetration, last.estimate * last.contact.max_penetration);
+  if (hardly_finer(eta)) errors.max_pressure = std::max(errors.max_pressure, last.estimate * last.contact.max_pressure);
+  errors.max_pressure = last.peak.at_bound ? 0 : std::max(errors.max_pressure, last.recovered_max_pressure);
+  errors.contact_pressure = std::max(errors.contact_pressure, last.recovered_pressure);
+  // Sums of weights are rounded.
+  errors.contact_length = std::max({errors.contact_length, last.contact_ends, 1e-12 * last.contact.contact_length});
 }
 
 } // namespace
@@ -46,8 +78,7 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
 {
   std::vector<double> eta;
   for (const auto &cycle : cycles) eta.push_back(cycle.estimate);
-  const auto error = [&](const auto &change) { return adapt::observed_error(changes(cycles, change), eta); };
-  const Cycle &last = cycles.back();
+  const auto error = [&](const auto &distance) { return shown_error(cycles, eta, distance); };
   ObservedErrors errors;
   errors.energy = error([](const Cycle &a, const Cycle &b) { return std::abs(b.energy - a.energy); });
   errors.contact_force = error([](const Cycle &a, const Cycle &b) {
@@ -56,7 +87,8 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
   });
   errors.max_pressure =
       error([](const Cycle &a, const Cycle &b) { return std::abs(b.contact.max_pressure - a.contact.max_pressure); });
-  errors.contact_pressure = error([](const Cycle &, const Cycle &b) { return b.pressure_change; });
+  errors.contact_pressure = observed_error( // of which only that from one mesh to the next is known
+      changes(cycles, [](const Cycle &, const Cycle &b) { return b.pressure_change; }), eta);
   const auto length = [](const Cycle &a, const Cycle &b) {
     return std::abs(b.contact.contact_length - a.contact.contact_length);
   };
@@ -67,16 +99,7 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
     for (const auto &q : error_bars) errors.unknown[q.key] = "one mesh shows no change";
     return errors;
   }
-  // Two meshes may agree by chance, and do where all of a side yields. Errors of forces are like eta^2; the largest penetration may be that of
-  // a corner.
-  const auto &force = last.contact.force;
-  errors.contact_force =
-      std::max(errors.contact_force, last.estimate * last.estimate * std::hypot(force[0], force[1], force[2]));
-  errors.max_penetration = std::max(errors.max_penetration, last.estimate * last.contact.max_penetration);
-  errors.max_pressure = last.peak.at_bound ? 0 : std::max(errors.max_pressure, last.recovered_max_pressure);
-  errors.contact_pressure = std::max(errors.contact_pressure, last.recovered_pressure);
-  // Sums of weights are rounded.
-  errors.contact_length = std::max({errors.contact_length, last.contact_ends, 1e-12 * last.contact.contact_length});
+  add_what_a_mesh_leaves(cycles.back(), eta, errors);
   const std::string reason = unknown_max_pressure(cycles, eta);
   if (!reason.empty()) {
     errors.max_pressure = std::numeric_limits<double>::quiet_NaN();

@@ -11,10 +11,13 @@ namespace rpc::adapt
 
 std::string PressurePeak::unknown() const
 {
-  constexpr double unresolved = 0.2;
+  constexpr double unresolved = 0.2, logarithmic = 0.05;
   if (at_bound) return "";
   if (yield_jump) return "the yield stress jumps next to a part that yields, where the pressure is singular";
   if (gap_jump) return "contact ends where the gap jumps, where the pressure is singular";
+  if (friction_jump) return "friction jumps where the body slips, where the pressure is singular";
+  if (kink > logarithmic)
+    return "the gap has a kink in contact, where the pressure grows without bound like a logarithm";
   if (drop <= unresolved) return "";
   return "the pressure falls by " + std::to_string(std::lround(100 * drop)) +
          " % within one cell where it is largest, as next to a singularity or a jump";

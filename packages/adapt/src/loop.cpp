@@ -55,6 +55,7 @@ Cycle cycle_of(const Solution &s, const double seconds)
   cycle.dofs = s.discretization.owned_dofs->getGlobalNumElements();
   cycle.estimate = relative_estimate(s);
   cycle.energy = s.energy;
+  cycle.energy_norm_squared = s.energy_norm_squared;
   cycle.contact = s.contact.total;
   cycle.pressure_change = s.pressure_norm > 0 ? s.pressure_change / s.pressure_norm : 0;
   for (const int steps : s.uzawa.newton_iterations) cycle.newton_iterations += steps;
@@ -63,6 +64,8 @@ Cycle cycle_of(const Solution &s, const double seconds)
   cycle.recovered_max_pressure = s.estimate->max_pressure;
   cycle.peak = s.estimate->peak;
   cycle.contact_ends = s.estimate->contact_ends;
+  cycle.jumped_force = s.estimate->jumped_force;
+  cycle.jumped_energy = s.estimate->jumped_energy;
   cycle.seconds = seconds;
   return cycle;
 }

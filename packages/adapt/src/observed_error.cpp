@@ -1,14 +1,33 @@
 #include "rpc/adapt/observed_error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace rpc::adapt
 {
+namespace
+{
+
+constexpr double least_reduction = 1.1; // of the estimate: less tells nothing about a limit
+constexpr double span = 4;              // by which the estimate is planned to fall from mesh to mesh at most
+constexpr double least_exponent =
+    0.5; // of the estimate, that values with a limit approach it with: half of the first order
+
+/// The value where the estimate first falls to a level, straight in its logarithm between meshes.
+double value_at(const double level, const std::vector<double> &value, const std::vector<double> &eta)
+{
+  std::size_t k = 1;
+  while (k + 1 < eta.size() && eta[k] > level) ++k;
+  const double fall = std::log(eta[k - 1] / eta[k]);
+  const double way = fall > 0 ? std::log(eta[k - 1] / level) / fall : 1;
+  return value[k - 1] + std::clamp(way, 0., 1.) * (value[k] - value[k - 1]);
+}
+
+} // namespace
 
 double observed_error(const std::vector<double> &change, const std::vector<double> &eta)
 {
-  constexpr double least_reduction = 1.1; // less tells nothing about a limit
   if (change.empty()) return std::numeric_limits<double>::quiet_NaN();
   const std::size_t last = change.size();
   const auto error = [&](const std::size_t k) {
@@ -16,6 +35,32 @@ double observed_error(const std::vector<double> &change, const std::vector<doubl
   };
   if (last < 2) return error(last);
   return std::max(error(last), error(last - 1) * std::min(1., eta[last] / eta[last - 1]));
+}
+
+double error_over_span(const std::vector<double> &distance, const std::vector<double> &eta)
+{
+  double error = 0;
+  for (std::size_t k = 0; k < distance.size(); ++k) {
+    const double reduction = eta[k] / eta.back();
+    if (reduction <= span) error = std::max(error, distance[k] / (std::max(least_reduction, reduction) - 1));
+  }
+  return error;
+}
+
+bool hardly_finer(const std::vector<double> &eta)
+{
+  constexpr double half = 0.5;
+  return eta.back() > half * *std::max_element(eta.begin(), eta.end());
+}
+
+bool grows_without_limit(const std::vector<double> &value, const std::vector<double> &eta, const double resolved)
+{
+  if (value.size() < 3 || value.back() < *std::max_element(value.begin(), value.end())) return false;
+  const double fall = eta.front() / eta.back();
+  if (!(fall > least_reduction)) return false;
+  const double middle = value_at(std::sqrt(eta.front() * eta.back()), value, eta);
+  const double first = middle - value.front(), second = value.back() - middle;
+  return second > resolved && second > std::pow(fall, -least_exponent / 2) * first;
 }
 
 bool unsettled(const std::vector<double> &change, const std::vector<double> &eta, const double resolved)

@@ -150,13 +150,13 @@ TEST(RecoveredEstimate, TakesNodesThatMissTheObstacleForOpenOnes)
 /// The squeezed body with pressures p(x), penetrations v(x) and yield stresses xi(x) at its contact nodes.
 template <class Pressure, class Penetration>
 adapt::ErrorEstimate estimate_with(const mesh::Element &element, const ScalarField &yield, const double highest,
-                                   const Pressure &p, const Penetration &v)
+                                   const Pressure &p, const Penetration &v, const ScalarField &gap = ScalarField(0.))
 {
   Squeezed body(element, 1, 0, highest);
   contact::ContactOptions options;
   options.side = "bottom";
   options.yield_stress = yield;
-  options.gap = ScalarField(0.);
+  options.gap = gap;
   body.nodes = contact::contact_nodes(body.d, {options}, fem::dirichlet_dofs(body.d, {}), steel);
   const auto x = fem::node_positions(*body.d.mesh, body.nodes.node);
   const auto pressure = Kokkos::create_mirror_view(body.result.pressure);
@@ -230,6 +230,58 @@ TEST(PressurePeak, HasNoErrorWhereContactEndsAtAJumpOfTheGap)
     EXPECT_TRUE(estimate_with(element, ScalarField(99.), 10, p, opens(1.1 * pressed)).peak.gap_jump);
     EXPECT_FALSE(estimate_with(element, ScalarField(99.), 10, p, opens(0.9 * pressed)).peak.gap_jump);
   }
+}
+
+TEST(PressurePeak, HasNoErrorAtAKinkOfTheGap)
+{
+  const auto nothing = [](double) { return 0.; };
+  const auto p = [](double) { return 10.; };
+  const ScalarField wedge("test", [](const Point &x) { return 0.2 * std::abs(x[0] - 1); }),
+      valley("test", [](const Point &x) { return -0.2 * std::abs(x[0] - 1); }),
+      smooth("test", [](const Point &x) { return 0.2 * (x[0] - 1) * (x[0] - 1); });
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    const auto at_tip = estimate_with(element, ScalarField(99.), 10, p, nothing, wedge);
+    EXPECT_NEAR(at_tip.peak.kink, Squeezed::stiffness() * 0.4 / (2 * 3.14159265358979 * 10), 1e-9);
+    EXPECT_NE(at_tip.peak.unknown().find("logarithm"), std::string::npos);
+    EXPECT_NEAR(estimate_with(element, ScalarField(99.), 10, p, nothing, smooth).peak.kink, 0, 1e-9);
+    EXPECT_NEAR(estimate_with(element, ScalarField(99.), 10, p, nothing, valley).peak.kink, 0, 1e-9);
+    const auto aside = [](const double x) { return x < 0.4 ? 10. : 3.; }; // the tip bears little
+    EXPECT_NEAR(estimate_with(element, ScalarField(99.), 10, aside, nothing, wedge).peak.kink, 0, 1e-9);
+    EXPECT_EQ(estimate_with(element, ScalarField(10.), 10, p, nothing, wedge).peak.kink, 0); // it yields
+  }
+}
+
+TEST(RecoveredEstimate, KnowsWhatJumpsOfDataLeaveOpen)
+{
+  const auto nothing = [](double) { return 0.; };
+  for (const auto &element : plane_elements()) {
+    SCOPED_TRACE(text_of(element));
+    // A yield stress that jumps from 3 to 12 within a facet of the length h, reached on the left.
+    const auto yields = [](const double x) { return x < 0.6 ? 3. : 10.; };
+    const auto yield_jump = estimate_with(element, step(0.6, 3, 12), 10, yields, nothing);
+    EXPECT_NEAR(yield_jump.jumped_force, (10 - 3) * Squeezed::h / 2, 1e-12);
+    EXPECT_EQ(yield_jump.jumped_energy, 0);
+    const auto below = [](const double x) { return x < 0.6 ? 2. : 10.; }; // not reached
+    EXPECT_EQ(estimate_with(element, step(0.6, 3, 12), 10, below, nothing).jumped_force, 0);
+    // Contact that ends at a jump of the gap, and at a smooth end.
+    const auto p = [](const double x) { return x < 0.6 ? 10. : 0.; };
+    const auto opens = [](const double x) { return x < 0.6 ? 0. : -1.; };
+    const auto gap_jump = estimate_with(element, ScalarField(99.), 10, p, opens);
+    EXPECT_EQ(gap_jump.jumped_force, 0);
+    EXPECT_NEAR(gap_jump.jumped_energy, 10 * 10 * Squeezed::h * Squeezed::h / (2 * Squeezed::stiffness()), 1e-12);
+    const auto hardly = [](const double x) { return x < 0.6 ? 0. : -1e-4; };
+    EXPECT_EQ(estimate_with(element, ScalarField(99.), 10, p, hardly).jumped_energy, 0);
+    // A part that yields up to it: its edge is as uncertain, and there is no singularity.
+    const auto to_the_edge = estimate_with(element, step(0.6, 10, 99), 10, p, opens);
+    EXPECT_NEAR(to_the_edge.jumped_force, 10 * Squeezed::h / 2, 1e-12);
+    EXPECT_EQ(to_the_edge.jumped_energy, 0);
+  }
+  // A slope is no jump where middle nodes show it.
+  const ScalarField slope("test", [](const Point &x) { return 3 + 4 * x[0]; });
+  const auto along = [](const double x) { return 3 + 4 * x; };
+  for (const auto &element : plane_elements())
+    EXPECT_EQ(estimate_with(element, slope, 11, along, nothing).jumped_force == 0, element.order == 2);
 }
 
 TEST(RecoveredEstimate, KnowsWhereTheMeshDoesNotTellTheEndOfContact)

@@ -16,12 +16,14 @@ struct Cycle {
   std::size_t dofs = 0;
   double estimate = 0;               ///< of the error in the energy norm, over that of the solution
   double energy = 0;                 ///< J [J], in 2D per m
+  double energy_norm_squared = 0;    ///< a(u, u) [J], in 2D per m
   contact::ContactSums contact;      ///< of all sides
   double pressure_change = 0;        ///< of the contact pressure since the mesh before, over its norm, both in L2
   double recovered_pressure = 0;     ///< |contact pressure - that of the recovered stress| / |contact pressure|, in L2
   double recovered_max_pressure = 0; ///< largest difference of the two where the pressure is near its maximum [Pa]
   PressurePeak peak;
-  double contact_ends = 0; ///< of facets that are partly open, half of them [m]
+  double contact_ends = 0;                    ///< of facets that are partly open, half of them [m]
+  double jumped_force = 0, jumped_energy = 0; ///< see ErrorEstimate [N], [J], in 2D per m
   int newton_iterations = 0;
   std::vector<int> linear_iterations; ///< per solve
   double seconds = 0;

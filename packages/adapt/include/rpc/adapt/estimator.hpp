@@ -17,6 +17,9 @@ struct PressurePeak {
       0; ///< by how much the pressure falls within a facet whose highest is 0.98 of it, over the largest pressure
   bool yield_jump = false; ///< a part that yields borders on a higher yield stress: the pressure is singular in between
   bool gap_jump = false;   ///< contact ends where the gap jumps: the pressure is singular there
+  bool friction_jump = false; ///< the traction of a body that slips jumps: the pressure is singular there
+  double kink =
+      0; ///< of the gap in contact: how much the pressure grows while the distance to it falls to 1/e, over the largest pressure
 
   /// Why there is no bar; empty if there is one.
   std::string unknown() const;
@@ -42,6 +45,10 @@ struct ErrorEstimate {
   PressurePeak peak;
   double contact_ends =
       0; ///< half of the facets that are partly open: the mesh does not tell where contact ends [m^(dim-1)]
+
+  // What the mesh leaves open where data of the contact law jump between nodes:                                  (10.7b)
+  double jumped_force = 0;  ///< tractions that jump, over half of the facets on which they do [N], in 2D per m
+  double jumped_energy = 0; ///< what contact that ends half a facet further in would release [J], in 2D per m
 
   double part(const std::string &key) const; ///< [J], in 2D per m
   double total() const;                      ///< eta^2

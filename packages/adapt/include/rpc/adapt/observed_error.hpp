@@ -12,6 +12,20 @@ namespace rpc::adapt
 /// @return NaN for fewer than two meshes
 double observed_error(const std::vector<double> &change, const std::vector<double> &eta);
 
+/// The same from all meshes whose estimate is at most `span` times that of the last one: what small steps show together, while
+/// each by itself shows little more than chance.                                                      (10.7)
+/// @param distance  |Q_n - Q_k| for all meshes k but the last, n   @param eta  of all meshes, one more, > 0
+/// @return 0 where there is no such mesh
+double error_over_span(const std::vector<double> &distance, const std::vector<double> &eta);
+
+/// Whether the estimate has fallen by so little over all meshes that their changes tell nothing of what is left.  (10.7)
+bool hardly_finer(const std::vector<double> &eta);
+
+/// Whether the last value is the largest and the values grow at a power of the estimate below 1/2: by more than `resolved` over the
+/// second half of its fall, on a logarithmic scale, and by no less than such a power leaves of the first half. So do values without a
+/// limit, as log(1/eta). Not told by fewer than three meshes.                                                (10.8)
+bool grows_without_limit(const std::vector<double> &value, const std::vector<double> &eta, double resolved);
+
 /// Whether the last change is larger than the one before it, or half of it where the estimate has fallen by more than half:
 /// then the sequence does not settle, and nothing bounds its error. A change up to `resolved` is no matter.        (10.8)
 bool unsettled(const std::vector<double> &change, const std::vector<double> &eta, double resolved);

@@ -1,0 +1,90 @@
+#include "jumps.hpp"
+
+#include "rpc/fem/surface.hpp"
+
+namespace rpc::adapt
+{
+namespace
+{
+
+/// Slopes of the gap along the facets at their ends, by node: where a facet begins, where one ends.
+struct Slopes {
+  ContactTerms terms;            // in
+  DeviceView<double *> from, to; // (overlap nodes) out
+  DeviceView<LO *> after,
+      before; // (overlap nodes) next nodes at the other ends of these facets, -1 where there is none, out
+
+  KOKKOS_FUNCTION void operator()(const LO f) const
+  {
+    const LO a = terms.facets(f, 0), b = terms.facets(f, 1);
+    const double length = terms.size(f), g = terms.field(a, int(gap)), h = terms.field(b, int(gap));
+    const bool quadratic = terms.facets.extent(1) == 3;
+    const double middle = quadratic ? terms.field(terms.facets(f, 2), int(gap)) : (g + h) / 2;
+    from(a) = (4 * middle - 3 * g - h) / length;
+    to(b) = (3 * h + g - 4 * middle) / length;
+    after(a) = b;
+    before(b) = a;
+  }
+};
+
+/// By how much the slope of the gap grows at owned nodes, on all nodes of the facets around them: (overlap nodes; 1).
+RCP<const MultiVector> kinks(const fem::Discretization &d, const Slopes &slopes)
+{
+  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, 1));
+  {
+    const auto to = owned->getLocalViewDevice(Tpetra::Access::ReadWrite);
+    const auto coords = d.mesh->coords;
+    const bool axisymmetric = d.axisymmetric();
+    Kokkos::parallel_for(
+        "rpc::adapt::kinks", device_range(static_cast<LO>(to.extent(0))), KOKKOS_LAMBDA(const LO n) {
+          const bool begins = slopes.after(n) >= 0, ends = slopes.before(n) >= 0;
+          if (begins && ends)
+            to(n, 0) = slopes.from(n) - slopes.to(n);
+          else if (axisymmetric && coords(n, 0) == 0) // the gap goes on beyond the axis as its mirror image
+            to(n, 0) = begins ? 2 * slopes.from(n) : ends ? -2 * slopes.to(n) : 0;
+        });
+    Kokkos::fence();
+  }
+  return fem::nodes_on_overlap(d, owned);
+}
+
+} // namespace
+
+double pressure_of_kinks(const fem::Discretization &d, const ContactTerms &terms)
+{
+  constexpr double high = 0.5, twice_pi = 6.28318530717958647692;
+  if (d.mesh->dim() != 2) return 0;
+  const std::size_t n = terms.field.extent(0);
+  const Slopes slopes{terms, DeviceView<double *>("rpc::adapt::slope_from", n),
+                      DeviceView<double *>("rpc::adapt::slope_to", n), DeviceView<LO *>("rpc::adapt::node_after", n),
+                      DeviceView<LO *>("rpc::adapt::node_before", n)};
+  Kokkos::deep_copy(slopes.after, -1);
+  Kokkos::deep_copy(slopes.before, -1);
+  const auto facets = device_range(static_cast<LO>(terms.facets.extent(0)));
+  Kokkos::parallel_for("rpc::adapt::slopes", facets, slopes);
+  Kokkos::fence();
+  const auto at_nodes = kinks(d, slopes);
+  const auto kink = at_nodes->getLocalViewDevice(Tpetra::Access::ReadOnly);
+  const LO num_owned = d.mesh->num_owned_nodes();
+  double most = 0;
+  Kokkos::parallel_reduce(
+      "rpc::adapt::pressure_of_kinks", facets,
+      KOKKOS_LAMBDA(const LO f, double &largest) {
+        const int of = terms.block(terms.cell(f));
+        const double modulus = terms.lame(of, 0) + 2 * terms.lame(of, 1);
+        for (int a = 0; a < 2; ++a) {
+          const LO node = terms.facets(f, a);
+          const double p = node < num_owned ? terms.field(node, int(pressure)) : 0;
+          if (!(p > 0 && p >= high * terms.highest) || p >= contact::yield_limit(terms.law_at(f, a))) continue;
+          // A curved gap has as much at the neighbours: what they have too is no kink.
+          double beside = 0;
+          if (slopes.after(node) >= 0) beside = math::fmax(beside, kink(slopes.after(node), 0));
+          if (slopes.before(node) >= 0) beside = math::fmax(beside, kink(slopes.before(node), 0));
+          largest = math::fmax(largest, modulus * (kink(node, 0) - beside) / (twice_pi * terms.highest));
+        }
+      },
+      Kokkos::Max<double>(most));
+  return math::fmax(0., most);
+}
+
+} // namespace rpc::adapt
