@@ -11,6 +11,7 @@
 #include <MueLu_FactoryManager.hpp>
 #include <MueLu_SingleLevelFactoryBase.hpp>
 #include <MueLu_SmootherFactory.hpp>
+#include <algorithm>
 #include <exception>
 
 namespace rpc::solver
@@ -122,6 +123,24 @@ RCP<CoarseSolver> coarse_solver(const CrsMatrix &A, const Teuchos::ParameterList
   return rcp(new GuardedSolver(MueLu::DirectSolver<double, LO, GO, Node>().Copy()));
 }
 
+using MueLusInterpreter = MueLu::ParameterListInterpreter<double, LO, GO, Node>;
+
+/// MueLu's reading of a list, but for the patterns of matrix products, which hierarchies that reuse parts do not keep: MueLu leaves
+/// exact zeros of a matrix out of them. Where such an entry is none any more, the rank that owns it would throw, and the others wait
+/// for it.
+class Interpreter : public MueLusInterpreter
+{
+public:
+  Interpreter(Teuchos::ParameterList &list, const RCP<const Comm> &comm) : MueLusInterpreter(list, comm)
+  {
+    for (auto &[level, kept] : keep_)
+      kept.erase(std::remove_if(
+                     kept.begin(), kept.end(),
+                     [](const auto &data) { return data.first == "AP reuse data" || data.first == "RAP reuse data"; }),
+                 kept.end());
+  }
+};
+
 /// A Tpetra multivector of the "user data" as MueLu takes it.
 void wrap(Teuchos::ParameterList &user_data, const std::string &name)
 {
@@ -140,7 +159,7 @@ RCP<Multigrid> make_multigrid(const RCP<CrsMatrix> &A, Teuchos::ParameterList li
   wrap(list.sublist("user data"), "Nullspace");
   Teuchos::ParameterList plain, user_data;
   MueLu::ExtractNonSerializableData(list, plain, user_data);
-  MueLu::ParameterListInterpreter<double, LO, GO, Node> interpreter(plain, A->getComm());
+  Interpreter interpreter(plain, A->getComm());
   for (std::size_t level = 0; level < interpreter.getNumFactoryManagers(); ++level) {
     auto &manager = *Teuchos::rcp_dynamic_cast<MueLu::FactoryManager<double, LO, GO, Node>>(
         interpreter.GetFactoryManager(static_cast<int>(level)), true);

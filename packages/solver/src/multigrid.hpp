@@ -17,9 +17,8 @@ using Multigrid = MueLu::TpetraOperator<double, LO, GO, Node>;
 /// @param list  of MueLu; its "user data" are Tpetra's
 RCP<Multigrid> make_multigrid(const RCP<CrsMatrix> &A, Teuchos::ParameterList list);
 
-/// The same hierarchy for other values of the matrix, as far as "reuse: type" keeps it; collective.
-/// @param[in,out] multigrid  null where that fails, for MueLu leaves it half-cleared: such as where reused prolongators do not fit a
-///                           pattern without its zeros
+/// The same hierarchy for other values of the matrix, zeros among them, as far as "reuse: type" keeps it; collective.
+/// @param[in,out] multigrid  null where that fails, for MueLu leaves it half-cleared
 /// @return whether it could be done
 bool renew_multigrid(const RCP<CrsMatrix> &A, RCP<Multigrid> &multigrid);
 
