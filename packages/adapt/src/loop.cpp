@@ -15,6 +15,12 @@ namespace rpc::adapt
 namespace
 {
 
+/// a(u, u) of the solution, with what unseen contact would add: without any contact that is seen there may be nothing else [J]. (10.4a)
+double estimated_energy(const Solution &s)
+{
+  return s.energy_norm_squared + s.estimate->unseen();
+}
+
 /// A run on one mesh whose solution gets its error estimate, and what the loop reads of its pressures. Collective.
 /// @param run  with the listener that it is given
 template <class Run>
@@ -114,7 +120,7 @@ std::optional<analysis::MadeMesh> next_mesh(MeshPlanner &planner, const Solution
 {
   const RCP<const Comm> comm = s.discretization.mesh->owned_nodes->getComm();
   Forecast forecast;
-  auto options = planner.next(s.discretization, *s.estimate, s.energy_norm_squared, forecast, reason);
+  auto options = planner.next(s.discretization, *s.estimate, estimated_energy(s), forecast, reason);
   if (options && listener.forecast) {
     forecast.seconds = seconds_for(forecast, last);
     listener.forecast(forecast);
@@ -269,13 +275,13 @@ Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &li
 
 bool only_rounding(const Solution &s)
 {
-  return s.estimate && s.energy_norm_squared <= s.estimate->rounding;
+  return s.estimate && std::max(s.energy_norm_squared, s.estimate->unseen()) <= s.estimate->rounding;
 }
 
 double relative_estimate(const Solution &s)
 {
   const double squared = s.estimate->total();
-  return squared == 0 || only_rounding(s) ? 0 : std::sqrt(squared / s.energy_norm_squared);
+  return squared == 0 || only_rounding(s) ? 0 : std::sqrt(squared / estimated_energy(s));
 }
 
 double exact_error(const Task &task, const Solution &s)

@@ -5,6 +5,7 @@
 #include "rpc/analysis/active_set.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/same_active_set.hpp"
+#include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/energies.hpp"
 #include "rpc/core/timed.hpp"
 
@@ -251,6 +252,9 @@ void read_results(const Problem &problem, StepSolution &s)
 {
   s.contact = contact::contact_result(problem.discretization(), problem.contact_sides(), s.step.contact, s.state,
                                       contact::has_friction(problem.model().contact));
+  contact::look_between_nodes(problem.discretization(), problem.contact_sides(),
+                              problem.model().seen_at(s.step.time).contact, s.step.contact, problem.model().materials,
+                              *s.state.displacement, s.contact); // (3.15)
   s.energy_norm_squared = s.uzawa.residuals.internal.energy_norm_squared;
   const double elastic = 0.5 * s.energy_norm_squared - s.step.elastic.applied_load->dot(*s.state.displacement); // (1.2)
   s.energy = contact::energy(elastic, s.step.contact, s.state); // paper (6); (5.14)

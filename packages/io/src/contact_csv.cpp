@@ -150,9 +150,9 @@ void append(std::string &text, const double value)
 void append(std::string &text, const Row &row, const int dim, const std::string &side, const bool friction)
 {
   static const std::array<const char *, 3> slip_states = {"none", "sticks", "slips"};
-  static const std::array<const char *, 3> states = {"open", "closed", "yielding"};
-  RPC_REQUIRE_CODE(row.state >= 0 && row.state < 3, ExitCode::internal_error,
-                   "output: the contact state of node " << row.id << " must be 0, 1 or 2, got " << row.state);
+  static const std::array<const char *, 4> states = {"open", "closed", "yielding", "unseen"};
+  RPC_REQUIRE_CODE(row.state >= 0 && row.state < static_cast<int>(states.size()), ExitCode::internal_error,
+                   "output: the contact state of node " << row.id << " must be 0 to 3, got " << row.state);
   for (const double value : {row.x[0], row.x[1], dim == 2 ? row.s : row.x[2]}) append(text, value);
   if (dim == 3) append(text, row.area);
   for (const double value : {row.u_nu, row.gap, row.pressure}) append(text, value);

@@ -196,6 +196,8 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.squared = recovered.squared_difference();
   const auto squared = estimate.squared;
   const double highest = of.result.total.max_pressure;
+  const contact::BetweenNodes &unseen = of.result.between;
+  if (unseen.unseen.depth > 0) estimate.sees = unseen.unseen.width / (2 * unseen.unseen.facet);
   estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_bound(mesh.comm(), of.contact);
   constexpr int num_sums = 12;
   double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0; // Kokkos' maximum over no facets is -DBL_MAX
@@ -223,6 +225,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
     const auto facets = device_range(static_cast<LO>(side.facets.extent(0)));
     Kokkos::parallel_reduce("rpc::adapt::contact_terms", facets, terms, of_side[0], of_side[1], of_side[2]);
     add_to_cells(side, terms.squared, squared);
+    if (!unseen.unseen_squared.empty()) add_to_cells(side, unseen.unseen_squared[k], squared);
     Kokkos::parallel_reduce("rpc::adapt::nodal_pressures", facets, NodalPressures{terms, highest},
                             Kokkos::Max<double>(drop_of_side), of_side[3], of_side[4], of_side[5]);
     drop = std::max(drop, drop_of_side);
@@ -239,7 +242,10 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   }
   double all[num_sums];
   Teuchos::reduceAll(mesh.comm(), Teuchos::REDUCE_SUM, num_sums, sums, all);
-  estimate.parts = {{"recovery", all[0]}, {"contact_equilibrium", all[1]}, {"contact_complementarity", all[2]}};
+  estimate.parts = {{"recovery", all[0]},
+                    {"contact_equilibrium", all[1]},
+                    {"contact_complementarity", all[2]},
+                    {ErrorEstimate::unseen_contact, 2 * of.result.total.unseen_energy}};
   estimate.rounding = fem::rounding_energy(d, materials, of.u);
   estimate.pressure = std::sqrt(all[3]);
   // In space the recovered stress is poor at single points of unstructured meshes: the mean tells more there.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rpc/contact/contact_state.hpp"
+#include "rpc/core/point.hpp"
 #include "rpc/core/quantity.hpp"
 
 #include <array>
@@ -29,12 +30,16 @@ struct ContactSums {
   double stick_length = 0;      ///< sum of weights where friction acts, |q| < s
   double slip_length = 0;       ///< the same with |q| = s
   double friction_work = 0;     ///< sum of w s |e| of this step
+  // Between the contact points, see look_between_nodes():
+  double max_penetration_between_nodes = 0; ///< largest e                                                        (3.15)
+  double unseen_penetration = 0;            ///< the same on facets of which no contact point bears a pressure
+  double unseen_energy = 0;                 ///< what it would take to push these out of the foundation           (3.16)
 
   ContactSums &operator+=(const ContactSums &other);
 };
 
 /// The numbers of ContactSums, in the order of the summary. Energies are shown as sums over the steps, by analysis.
-inline constexpr std::array<Quantity<ContactSums>, 14> contact_quantities{{
+inline constexpr std::array<Quantity<ContactSums>, 17> contact_quantities{{
     {&ContactSums::max_pressure,
      "max_pressure",
      unit::pressure,
@@ -91,17 +96,47 @@ inline constexpr std::array<Quantity<ContactSums>, 14> contact_quantities{{
      "slip_area",
      Needs::friction},
     {&ContactSums::friction_work, "friction_work", unit::energy, Combine::sum, {true}, nullptr, Needs::friction},
+    {&ContactSums::max_penetration_between_nodes,
+     "max_penetration_between_nodes",
+     unit::length,
+     Combine::maximum,
+     {true, 0, "between nodes", "penetration at most ", true}},
+    {&ContactSums::unseen_penetration,
+     "unseen_penetration",
+     unit::length,
+     Combine::maximum,
+     {true, 0, "between nodes", "where no node touches ", true}},
+    {&ContactSums::unseen_energy, "unseen_energy", unit::energy, Combine::sum, {true}},
 }};
 static_assert(sizeof(ContactSums) == sizeof(GO) + (3 + contact_quantities.size()) * sizeof(double),
               "a number of ContactSums has no line in the table");
 
+/// A place on a contact side where the body lies in the foundation between the contact points.
+struct PlaceBetweenNodes {
+  double depth = 0; ///< e [m]; 0: there is none                                                                (3.15)
+  Point place{};    ///< of the undeformed body [m]
+  int side = 0;     ///< which contact side
+  double width = 0; ///< how far the part of its facet that lies in the foundation reaches [m]
+  double facet = 0; ///< the same of the facet [m]
+};
+
+/// What samples between the contact points show.
+struct BetweenNodes {
+  PlaceBetweenNodes deepest, unseen; ///< of all facets, and of those of which no contact point bears a pressure
+  std::vector<DeviceView<double *>> unseen_squared; ///< (sides; facets) the part of each in twice `unseen_energy` [J]
+};
+
 /// What a user reads off the contact sides: values at this rank's contact nodes, and sums over all ranks.
 struct ContactResult {
+  /// A fourth state, of a point without weight that bears no pressure and lies in the foundation: nothing holds it. look_between_nodes() finds
+  /// such points.
+  static constexpr int unseen = 3;
+
   DeviceView<double *> normal_displacement; ///< (n) u_nu [m]
   DeviceView<double *> penetration;         ///< (n) u_nu - g [m], below the surface without dents
   DeviceView<double *> dent;                ///< (n) w >= 0 [m], that of this step included                       (3.13)
   DeviceView<double *> pressure;            ///< (n) [Pa] >= 0
-  DeviceView<int *> state;                  ///< (n) State: open where p = 0, yielded where p >= xi, else closed
+  DeviceView<int *> state; ///< (n) State: open where p = 0, yielded where p >= xi, else closed; or `unseen`
   // Friction; empty where there is none:
   DeviceView<double **> traction; ///< (n, dim) q, of the body on the foundation [Pa]
   DeviceView<double **> slip;     ///< (n, dim) e of this step [m], 0 where no friction acts
@@ -110,6 +145,7 @@ struct ContactResult {
 
   std::vector<ContactSums> sides; ///< in the order of the contact sides
   ContactSums total;
+  BetweenNodes between;
 };
 
 /// Reads a state's displacement and multipliers, see completed_pressure(); collective.

@@ -22,7 +22,7 @@ struct ContactTable {
   HostView<double *> gap;       ///< (nodes)                           [m]
   HostView<double *> pressure;  ///< (nodes) compression is > 0        [Pa]
   HostView<double *> dent;      ///< (nodes) of the foundation         [m]
-  HostView<int *> state;        ///< (nodes) 0 open, 1 closed, 2 yielding
+  HostView<int *> state;        ///< (nodes) 0 open, 1 closed, 2 yielding, 3 unseen
   bool friction = false;        ///< whether the file has the columns of friction, which follow: the same on all ranks
   HostView<double **> traction; ///< (nodes, dim) of the body on the foundation, along the side [Pa]
   HostView<double **> slip;     ///< (nodes, dim) of the step          [m]

@@ -1,0 +1,164 @@
+#include "rpc/contact/between_nodes.hpp"
+
+#include "touching_box.hpp"
+
+#include <cmath>
+
+namespace between_nodes_test
+{
+namespace
+{
+
+using namespace rpc;
+using namespace rpc::test;
+using contact::ContactResult;
+
+constexpr fem::Material steel{2000, 0.3};
+
+/// What is found on a body of 2 x 1 (x 1) m of 4 x 2 (x 2) cells at a displacement of its own, with multipliers that are 0.
+struct Looked {
+  fem::Discretization d;
+  std::vector<contact::ContactOptions> options;
+  contact::ContactNodes points;
+  RCP<Vector> u;
+  ContactResult result;
+
+  Looked(const mesh::Element &element, const contact::ContactOptions &side, const double pressure = 0)
+      : d(body(element)), options{side}, points(nodes_of(d, options)), u(rcp(new Vector(d.owned_dofs)))
+  {
+    contact::ContactState state;
+    state.displacement = u;
+    state.multiplier.normal = DeviceView<double *>("pressure", points.size());
+    Kokkos::deep_copy(state.multiplier.normal, pressure);
+    const auto sides = contact::contact_sides(*d.mesh, options);
+    result = contact::contact_result(d, sides, points, state);
+    contact::look_between_nodes(d, sides, options, points, steel, *u, result);
+  }
+  std::string note(const double energy_norm_squared) const
+  {
+    return contact::unseen_contact_note(result, options, d.dim(), energy_norm_squared);
+  }
+};
+
+/// A gap of `depth` below 0 at x = 0.7 in a parabola of half width b, and 1 beyond twice that.
+contact::ContactOptions bump(const double depth, const double b)
+{
+  auto options = touching("bottom");
+  options.gap = ScalarField("bump", [=](const Point &x) {
+    const double s = (x[0] - 0.7) / b;
+    return std::min(1., depth * (s * s - 1));
+  });
+  return options;
+}
+
+TEST(BetweenNodes, ABumpBetweenTwoNodesIsUnseenAndItsDepthPlaceAndWidthAreTold)
+{
+  // Nodes at 0.5 and 1.
+  const Looked looked({2, 1}, bump(0.02, 0.1));
+  const auto &at = looked.result.between.unseen;
+  EXPECT_NEAR(at.depth, 0.02, 1e-5);
+  EXPECT_NEAR(at.place[0], 0.7, 1e-3);
+  EXPECT_EQ(at.place[1], 0);
+  EXPECT_NEAR(at.width, 0.2, 1e-3);
+  EXPECT_NEAR(at.facet, 0.5, 1e-12);
+  EXPECT_EQ(looked.result.total.unseen_penetration, at.depth);
+  EXPECT_EQ(looked.result.total.max_penetration_between_nodes, at.depth);
+}
+
+TEST(BetweenNodes, EnergyIsThatOfALayerAsDeepAsThePartIsWide)
+{
+  // (3.16): lambda + 2 mu over b times half of the integral of e^2, 16/15 depth^2 b / 2.
+  const double modulus = steel.lambda() + 2 * steel.mu(), integral = 16. / 15 * 0.02 * 0.02 * 0.1;
+  const Looked rigid({2, 1}, bump(0.02, 0.1));
+  EXPECT_NEAR(rigid.result.total.unseen_energy / (0.5 * modulus / 0.2 * integral), 1, 3e-3);
+  auto on_springs = bump(0.02, 0.1);
+  on_springs.stiffness = ScalarField(modulus / 0.2); // as stiff as the layer
+  EXPECT_NEAR(Looked({2, 1}, on_springs).result.total.unseen_energy / (0.25 * modulus / 0.2 * integral), 1, 3e-3);
+  auto soft = bump(0.02, 0.1);
+  soft.yield_stress = ScalarField(1e-3); // gives way at once: xi times 4/3 depth b
+  EXPECT_NEAR(Looked({2, 1}, soft).result.total.unseen_energy / (1e-3 * 4. / 3 * 0.02 * 0.1), 1, 3e-3);
+  double of_facets = 0;
+  const auto squared = to_host(rigid.result.between.unseen_squared.at(0));
+  const auto cell = to_host(rigid.d.mesh->side("bottom", "test").cell);
+  for (std::size_t f = 0; f < squared.extent(0); ++f)
+    if (cell(f) < rigid.d.mesh->num_owned_cells) of_facets += squared(f);
+  EXPECT_NEAR(sum_all(rigid.d.mesh->comm(), of_facets), 2 * rigid.result.total.unseen_energy, 1e-12);
+}
+
+TEST(BetweenNodes, AFacetThatBearsAPressureIsSeen)
+{
+  const Looked looked({2, 1}, bump(0.02, 0.1), 1);
+  EXPECT_NEAR(looked.result.total.max_penetration_between_nodes, 0.02, 1e-5);
+  EXPECT_EQ(looked.result.total.unseen_penetration, 0);
+  EXPECT_EQ(looked.result.total.unseen_energy, 0);
+  EXPECT_EQ(looked.note(0), "");
+}
+
+TEST(BetweenNodes, ASphereBelowAVertexOfQuadraticTrianglesIsUnseenAndTheVertexIsNotOpen)
+{
+  // Vertices have no weight; the sphere reaches the vertex (1, 0.5, 0) and none of the middle nodes.
+  auto side = touching("back");
+  side.normal = contact::Normal::fixed;
+  side.direction = {0, 0, -1};
+  side.obstacle = {contact::Sphere{0.7}, {1, 0.5, -0.69}};
+  const Looked looked({3, 2, mesh::Shape::simplex}, side);
+  EXPECT_NEAR(looked.result.between.unseen.depth, 0.01, 1e-12);
+  EXPECT_NEAR(looked.result.between.unseen.place[0], 1, 1e-12);
+  EXPECT_NEAR(looked.result.between.unseen.place[1], 0.5, 1e-12);
+  const auto state = to_host(looked.result.state);
+  const auto v = to_host(looked.result.penetration);
+  GO unseen = 0, inside_but_open = 0;
+  for (std::size_t i = 0; i < state.extent(0); ++i) {
+    unseen += state(i) == ContactResult::unseen ? 1 : 0;
+    inside_but_open += state(i) == 0 && v(i) > 1e-9 ? 1 : 0;
+  }
+  EXPECT_EQ(sum_all(looked.d.mesh->comm(), unseen), 1);
+  EXPECT_EQ(sum_all(looked.d.mesh->comm(), inside_but_open), 0);
+}
+
+TEST(BetweenNodes, NothingIsFoundOnAPlaneOrInFrontOfASphereThatIsAway)
+{
+  for (const mesh::Element element :
+       {mesh::Element{2, 1}, mesh::Element{2, 2}, mesh::Element{2, 2, mesh::Shape::simplex}, mesh::Element{3, 1},
+        mesh::Element{3, 2}, mesh::Element{3, 2, mesh::Shape::simplex}}) {
+    auto side = touching(element.dim == 2 ? "bottom" : "back");
+    EXPECT_EQ(Looked(element, side).result.total.max_penetration_between_nodes, 0); // gap 0 everywhere
+    side.obstacle = {contact::Sphere{3}, {1, element.dim == 2 ? -3.001 : 0.5, element.dim == 2 ? 0 : -3.001}};
+    EXPECT_EQ(Looked(element, side).result.total.max_penetration_between_nodes, 0);
+    side.obstacle.point[element.dim - 1] = -2.999;
+    EXPECT_NEAR(Looked(element, side).result.total.max_penetration_between_nodes, 1e-3, 1e-6);
+  }
+}
+
+TEST(BetweenNodes, DisplacementAndDentsCount)
+{
+  // Moved down by 0.03 as a whole, over a gap of 0.05 that the bump makes 0.02 smaller: 0.02 + 0.03 - 0.05 = 0 inside; by 0.04: 0.01.
+  auto side = touching("bottom");
+  side.gap = ScalarField("bump", [](const Point &x) { return std::abs(x[0] - 0.7) < 0.05 ? 0.03 : 0.05; });
+  Looked looked({2, 1}, side);
+  for (const double down : {0.029, 0.04}) {
+    const auto u = looked.u->getLocalViewHost(Tpetra::Access::ReadWrite);
+    for (std::size_t i = 1; i < u.extent(0); i += 2) u(i, 0) = -down;
+    contact::ContactState state;
+    state.displacement = looked.u;
+    state.multiplier.normal = DeviceView<double *>("pressure", looked.points.size());
+    const auto sides = contact::contact_sides(*looked.d.mesh, looked.options);
+    looked.result = contact::contact_result(looked.d, sides, looked.points, state);
+    contact::look_between_nodes(looked.d, sides, looked.options, looked.points, steel, *looked.u, looked.result);
+    EXPECT_NEAR(looked.result.total.unseen_penetration, std::max(0., down - 0.03), 1e-12);
+  }
+}
+
+TEST(BetweenNodes, TheNoteNamesPlaceDepthAndTheSizeThatWouldSee)
+{
+  const Looked looked({2, 1}, bump(0.02, 0.1));
+  for (const std::string part :
+       {"side \"bottom\" lies 0.02 [m] inside the foundation", "at (0.7", "0.5 [m] long", "cells of 0.1"})
+    EXPECT_NE(looked.note(0).find(part), std::string::npos) << looked.note(0);
+  const double squared = 2 * looked.result.total.unseen_energy;
+  EXPECT_NE(looked.note(399 * squared), "");
+  EXPECT_EQ(looked.note(401 * squared), ""); // below a twentieth of the solution in the energy norm
+}
+
+} // namespace
+} // namespace between_nodes_test
