@@ -15,7 +15,7 @@ namespace rpc::adapt
 namespace
 {
 
-/// a(u, u) of the solution, with what unseen contact would add: without any contact that is seen there may be nothing else [J]. (10.4a)
+/// a(u, u) of the solution, with what unseen contact would add: without any contact that is seen there may be nothing else [J]. (10.4b)
 double estimated_energy(const Solution &s)
 {
   return s.energy_norm_squared + s.estimate->unseen();

@@ -44,7 +44,7 @@ struct ErrorEstimate {
       0; ///< at points with 0.9 of the largest pressure, on facets that have not all yielded: the most, in space the root mean square [Pa]
   PressurePeak peak;
   double sees =
-      0; ///< the size of cells that would see unseen contact, over that of the cell where it is deepest; 0: there is none (10.4a)
+      0; ///< the size of cells that would see unseen contact, over that of the cell where it is deepest; 0: there is none (10.4b)
   double contact_ends =
       0; ///< half of the facets that are partly open: the mesh does not tell where contact ends [m^(dim-1)]
 
@@ -54,7 +54,7 @@ struct ErrorEstimate {
 
   double part(const std::string &key) const; ///< [J], in 2D per m
   double total() const;                      ///< eta^2
-  /// Of contact that no contact point sees, twice the energy that it takes [J], in 2D per m.                      (10.4a)
+  /// Of contact that no contact point sees, twice the energy that it takes [J], in 2D per m.                      (10.4b)
   double unseen() const { return part(unseen_contact); }
   static constexpr const char *unseen_contact = "unseen_contact";
 };
