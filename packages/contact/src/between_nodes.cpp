@@ -1,11 +1,10 @@
 #include "rpc/contact/between_nodes.hpp"
 
-#include "rpc/contact/law/judgement.hpp"
+#include "facet_samples.hpp"
+#include "gap_search.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
-#include "rpc/fem/surface.hpp"
 #include "rpc/mesh/geometry.hpp"
-#include "rpc/mesh/shape_functions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,244 +25,85 @@ struct Density {
   static constexpr int fewest_parts = 4;
   /// Of those sides facets are left out that lie further from the foundation than so many times what the penetration varies within them.
   static constexpr double reach = 2;
+  /// Parts of faces in space in which a search by bounds looks for what the samples miss, of a side: some 1 microsecond each.
+  static constexpr int searched = 1 << 15;
 };
 // Of the body's diameter: what lies less deep is rounding of places.
 constexpr double rounding = 1e-12;
 // Unseen contact that changes the solution by less, in the energy norm, is below what any mesh of engineers resolves.
 constexpr double notable = 0.05;
 
-/// Samples of a facet: a lattice of its reference cell, the vertices among them.
-struct Lattice {
-  int nodes = 0, dim = 0;           // of the facet
-  std::vector<double> value, slope; // (samples, nodes), (samples, nodes, dim)
-
-  int size() const { return nodes > 0 ? static_cast<int>(value.size()) / nodes : 0; }
+/// What the samples of a facet show.
+struct Found {
+  double deepest = 0; // e [m]
+  Point place{};
+  double width = 0;   // of the part in the foundation [m]
+  double squared = 0; // of an unseen facet, its part in twice the energy [J]
 };
 
-template <class Shape>
-Lattice lattice_of(const Shape &shape, const int parts)
+/// Twice the energy per area that it takes to push a part of a facet out of the foundation: a layer of the body as deep as the part is wide
+/// gives way, in series with the foundation. (3.16)
+/// @param modulus  lambda + 2 mu of the body [Pa]
+double pushed_out(const ContactOptions &options, const double depth, const double modulus, const double width,
+                  const Point &x)
 {
-  constexpr int dim = Shape::dim, nodes = Shape::nodes;
-  Lattice lattice{nodes, dim, {}, {}};
-  int total = 1;
-  for (int k = 0; k < dim; ++k) total *= parts + 1;
-  for (int s = 0; s < total; ++s) {
-    double X[dim], N[nodes], dN[nodes][dim], sum = 0;
-    for (int k = 0, rest = s; k < dim; ++k, rest /= parts + 1) {
-      X[k] = double(rest % (parts + 1)) / parts;
-      sum += X[k];
-      if (!Shape::simplex) X[k] = 2 * X[k] - 1;
-    }
-    if (Shape::simplex && sum > 1 + 1e-9) continue;
-    shape.evaluate(X, N, dN);
-    for (int a = 0; a < nodes; ++a) {
-      lattice.value.push_back(N[a]);
-      for (int k = 0; k < dim; ++k) lattice.slope.push_back(dN[a][k]);
-    }
-  }
-  return lattice;
+  const double stiffness = 1 / (width / modulus + 1 / options.stiffness(x)), yield = options.yield_stress(x);
+  if (stiffness * depth <= yield) return stiffness * depth * depth;
+  return 2 * yield * depth - yield * yield / stiffness;
 }
 
-Lattice lattice_of(const mesh::Element &facet, const int parts)
-{
-  Lattice lattice;
-  mesh::with_shape_functions(facet, [&](const auto &shape) { lattice = lattice_of(shape, parts); });
-  return lattice;
-}
+/// One side and its foundation.
+struct SideSamples {
+  const ContactOptions &options;
+  const FacetRows &rows;
+  const std::vector<FacetShape> &lattice;
+  bool axisymmetric;
 
-/// What a contact point does for its facets.
-enum Bearing : int { weightless = -1, open = 0, bears = 1 };
-enum Column { allowed, bearing, excess_at_node, num_columns };
-
-/// (overlap nodes; Column) of one side: how deep a point has been pressed in [m], whether it bears a pressure, and how much deeper it lies
-/// [m]. A node from which the normal misses the obstacle is open, and may be near.
-RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const ContactNodes &points,
-                                        const ContactResult &result, const int side)
-{
-  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, num_columns));
-  const ContactNodes c = points;
-  const auto v = result.penetration, p = result.pressure;
-  {
-    const auto to = owned->getLocalViewDevice(Tpetra::Access::ReadWrite);
-    Kokkos::parallel_for(
-        "rpc::contact::bearing_points",
-        Kokkos::RangePolicy<ExecutionSpace, LO>(points.first(side), points.first(side + 1)), KOKKOS_LAMBDA(const LO i) {
-          const bool weighs = c.weight(i) > 0, pressed = weighs && (p(i) > 0 || c.fixed(i));
-          double deep = c.dent(i);
-          if (pressed && v(i) > deep) deep = v(i);
-          to(c.node(i), int(allowed)) = weighs && deep > 0 ? deep : 0;
-          to(c.node(i), int(bearing)) = !weighs ? weightless : pressed ? bears : open;
-          to(c.node(i), int(excess_at_node)) = v(i) - (deep > 0 ? deep : 0);
-        });
-    Kokkos::fence();
-  }
-  return fem::nodes_on_overlap(d, owned);
-}
-
-/// Facets of a side on the host, each with what its nodes have: (facets; nodes * (place, displacement, Column)).
-struct FacetRows {
-  HostView<double **> row;
-  HostView<LO *> cell;           // (facets)
-  HostView<double *> size, area; // (facets) [m], [m^(dim-1), axisymmetric: m^2]
-  int nodes = 0, dim = 0;
-
-  int width() const { return 2 * dim + num_columns; }
-  const double *at(const LO f, const int a) const { return &row(f, a * width()); }
-};
-
-FacetRows facet_rows(const fem::Discretization &d, const mesh::Side &side, const RCP<const MultiVector> &columns,
-                     const Vector &u)
-{
-  FacetRows rows;
-  rows.dim = d.dim();
-  rows.nodes = static_cast<int>(side.facets.extent(1));
-  const int dim = rows.dim, nodes = rows.nodes, width = rows.width();
-  const LO num_facets = static_cast<LO>(side.facets.extent(0));
-  const DeviceView<double **> row("rpc::contact::facet_rows", num_facets, nodes * width);
-  const DeviceView<double *> area("rpc::contact::facet_area", num_facets);
-  const auto on_overlap = fem::on_overlap(d, u);
-  const auto x = device_read(*on_overlap);
-  const auto column = columns->getLocalViewDevice(Tpetra::Access::ReadOnly);
-  const auto coords = d.mesh->coords;
-  const auto facets = side.facets;
-  const auto measure = fem::facet_measure(d, side);
-  const int points = num_facets > 0 ? static_cast<int>(measure.extent(0)) / num_facets : 0;
-  Kokkos::parallel_for(
-      "rpc::contact::facet_rows", device_range(num_facets), KOKKOS_LAMBDA(const LO f) {
-        for (int q = 0; q < points; ++q) area(f) += measure(f * points + q);
-        for (int a = 0; a < nodes; ++a) {
-          const LO node = facets(f, a);
-          for (int k = 0; k < dim; ++k) {
-            row(f, a * width + k) = coords(node, k);
-            row(f, a * width + dim + k) = x(rpc::dof(dim, node, k));
-          }
-          for (int k = 0; k < num_columns; ++k) row(f, a * width + 2 * dim + k) = column(node, k);
-        }
-      });
-  rows.row = to_host(row);
-  rows.area = to_host(area);
-  rows.size = to_host(fem::facet_size(d, side));
-  rows.cell = to_host(side.cell);
-  return rows;
-}
-
-/// The facets of one side against its foundation.
-class SideSamples
-{
-public:
-  SideSamples(const ContactOptions &options, const FacetRows &rows, const Lattice &lattice, const bool axisymmetric)
-      : options_(options), rows_(rows), lattice_(lattice), axisymmetric_(axisymmetric)
-  {
-  }
-
-  /// What the samples of a facet show.
-  struct Found {
-    double deepest = 0; // e [m]
-    Point place{};
-    bool unseen = false; // no contact point of the facet bears a pressure
-    double width = 0;    // of the part in the foundation [m]
-    double squared = 0;  // of an unseen facet, the part in twice the energy [J]
-  };
   /// @param modulus  lambda + 2 mu of the cell [Pa]   @param least  what is no more than rounding [m]
   Found look(const LO f, const double modulus, const double least) const
   {
     Found found;
-    std::vector<double> depth(lattice_.size()), radius(lattice_.size());
-    std::vector<Point> place(lattice_.size());
-    double highest = 0; // what weightless points take for allowed: they are not held by themselves
-    found.unseen = true;
-    for (int a = 0; a < rows_.nodes; ++a) {
-      highest = std::max(highest, column(f, a, allowed));
-      found.unseen &= !(column(f, a, bearing) > 0);
+    const double most_allowed = rows.most_allowed(f);
+    std::vector<std::pair<double, Point>> inside; // depths and places
+    double radii = 0;                             // in axisymmetry the samples count by them
+    for (const FacetShape &shape : lattice) {
+      const FacetSample sample = sample_at(rows, f, shape, options, most_allowed);
+      const double depth = excess_at(sample, options);
+      radii += axisymmetric ? sample.place[0] : 1;
+      if (depth > least) inside.emplace_back(depth, sample.place);
+      if (!(depth > std::max(least, found.deepest))) continue;
+      found.deepest = depth;
+      found.place = sample.place;
     }
-    int inside = 0;
-    for (int s = 0; s < lattice_.size(); ++s) {
-      depth[s] = excess(f, s, highest, place[s]);
-      radius[s] = axisymmetric_ ? place[s][0] : 1;
-      if (!(depth[s] > least)) continue;
-      ++inside;
-      if (depth[s] <= found.deepest) continue;
-      found.deepest = depth[s];
-      found.place = place[s];
-    }
-    if (inside == 0) return found;
-    found.width = rows_.size(f) * std::pow(double(inside) / lattice_.size(), 1. / (rows_.dim - 1));
-    if (!found.unseen) return found;
-    double sum = 0, weights = 0;
-    for (int s = 0; s < lattice_.size(); ++s) {
-      weights += radius[s];
-      if (depth[s] > least) sum += radius[s] * pushed_out(depth[s], modulus, found.width, place[s]);
-    }
-    if (weights > 0) found.squared = rows_.area(f) * sum / weights;
+    if (inside.empty()) return found;
+    const double share = double(inside.size()) / static_cast<double>(lattice.size());
+    found.width = rows.size(f) * std::pow(share, 1. / (rows.dim - 1));
+    for (const auto &[depth, place] : inside)
+      found.squared += (axisymmetric ? place[0] : 1) * pushed_out(options, depth, modulus, found.width, place);
+    found.squared *= radii > 0 ? rows.area(f) / radii : 0;
     return found;
   }
 
   /// Whether a facet may reach into the foundation: its nodes tell, if what they show varies little.
   bool is_near(const LO f) const
   {
-    double most = column(f, 0, excess_at_node), least = most;
-    for (int a = 1; a < rows_.nodes; ++a) {
-      most = std::max(most, column(f, a, excess_at_node));
-      least = std::min(least, column(f, a, excess_at_node));
+    double most = rows.column(f, 0, FacetRows::excess), least = most;
+    for (int a = 1; a < rows.nodes; ++a) {
+      most = std::max(most, rows.column(f, a, FacetRows::excess));
+      least = std::min(least, rows.column(f, a, FacetRows::excess));
     }
     return most + Density::reach * (most - least) >= 0;
   }
-
-private:
-  double column(const LO f, const int a, const Column which) const { return rows_.at(f, a)[2 * rows_.dim + which]; }
-
-  /// e at a sample (3.15); minus infinity where the normal misses the obstacle. @param[out] x  its place
-  double excess(const LO f, const int s, const double weightless_allowed, Point &x) const
-  {
-    const int dim = rows_.dim;
-    Point u{}, tangent[2] = {};
-    double room = 0;
-    x = {};
-    for (int a = 0; a < rows_.nodes; ++a) {
-      const double N = lattice_.value[s * rows_.nodes + a], *const at = rows_.at(f, a);
-      for (int k = 0; k < dim; ++k) {
-        x[k] += N * at[k];
-        u[k] += N * at[dim + k];
-        for (int g = 0; g < dim - 1; ++g)
-          tangent[g][k] += lattice_.slope[(s * rows_.nodes + a) * lattice_.dim + g] * at[k];
-      }
-      room += N * (column(f, a, bearing) < 0 ? weightless_allowed : column(f, a, allowed));
-    }
-    Point nu = dim == 2 ? Point{tangent[0][1], -tangent[0][0], 0} : cross(tangent[0], tangent[1]);
-    nu = scaled(1 / length(nu), nu);
-    const double outside = -std::numeric_limits<double>::infinity();
-    if (options_.normal == Normal::fixed) nu = options_.direction;
-    double gap = 0;
-    if (options_.obstacle.exists()) {
-      if (options_.normal == Normal::foundation) {
-        const auto into = direction_into(options_.obstacle, x);
-        if (!into) return outside;
-        nu = *into;
-      }
-      const auto distance = distance_along(options_.obstacle, x, nu);
-      if (!distance) return outside;
-      gap = *distance;
-    } else {
-      gap = options_.gap(x);
-    }
-    const double e = inner(u, nu) - gap - std::max(room, 0.);
-    return std::isfinite(e) ? e : outside;
-  }
-
-  /// Twice the energy per area that it takes to push a part of a facet out of the foundation: a layer of the body as deep as the part is wide
-  /// gives way, in series with the foundation. (3.16)
-  double pushed_out(const double depth, const double modulus, const double width, const Point &x) const
-  {
-    const double stiffness = 1 / (width / modulus + 1 / options_.stiffness(x)), yield = options_.yield_stress(x);
-    if (stiffness * depth <= yield) return stiffness * depth * depth;
-    return 2 * yield * depth - yield * yield / stiffness;
-  }
-
-  const ContactOptions &options_;
-  const FacetRows &rows_;
-  const Lattice &lattice_;
-  bool axisymmetric_;
 };
+
+/// What is hidden between the samples of a face in space. It is taken for a paraboloid.
+Found found_in(const HiddenPart &hidden, const ContactOptions &options, const double modulus)
+{
+  const double area = 0.25 * 3.14159265358979 * hidden.width[0] * hidden.width[1];
+  const double width = std::sqrt(hidden.width[0] * hidden.width[1]);
+  return {hidden.depth, hidden.place, width,
+          area / 3 * pushed_out(options, hidden.depth, modulus, width, hidden.place)};
+}
 
 /// Into how many parts the edges of a side's facets are divided.
 /// @param num_facets  over all ranks
@@ -301,26 +141,39 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
 {
   const mesh::Mesh &mesh = *d.mesh;
   const mesh::Element facet = mesh.element.facet();
-  const FacetRows rows = facet_rows(d, side, at_overlap_nodes(d, points, result, k), u);
-  const LO num_facets = static_cast<LO>(rows.cell.extent(0));
-  GO owned = 0;
-  for (LO f = 0; f < num_facets; ++f) owned += rows.cell(f) < mesh.num_owned_cells ? 1 : 0;
-  const int parts = parts_of(facet, sum_all(mesh.comm(), owned));
-  const Lattice lattice = lattice_of(facet, parts);
-  const SideSamples samples(options, rows, lattice, d.axisymmetric());
+  const FacetRows rows = facet_rows(d, side, points, result, k, u);
+  std::vector<LO> owned;
+  GO bearing_nothing = 0;
+  for (LO f = 0; f < rows.num_facets(); ++f) {
+    if (rows.cell(f) >= mesh.num_owned_cells) continue;
+    owned.push_back(f);
+    bearing_nothing += rows.bears_nothing(f) ? 1 : 0;
+  }
+  const int parts = parts_of(facet, sum_all(mesh.comm(), GO(owned.size())));
+  const auto lattice = lattice_of(facet, parts);
+  const SideSamples samples{options, rows, lattice, d.axisymmetric()};
+  const bool searches = facet.dim == 2 && !options.obstacle.exists() && options.gap.bounds;
+  const GO all_bearing_nothing = std::max(GO(1), sum_all(mesh.comm(), bearing_nothing));
+  const int most_searched = searches ? static_cast<int>(Density::searched / all_bearing_nothing) : 0; // of each facet
+  const EvaluateShape shape = shape_of(facet);
   const auto block = to_host(mesh.block);
   const auto lame = to_host(fem::lame_table(d, materials));
-  std::vector<double> squared(num_facets, 0.);
+  std::vector<double> squared(rows.num_facets(), 0.);
   double sum = 0;
-  for (LO f = 0; f < num_facets; ++f) {
-    if (rows.cell(f) >= mesh.num_owned_cells) continue;
-    if (parts == Density::fewest_parts && !samples.is_near(f)) continue;
-    const int of = block(rows.cell(f));
-    const auto found = samples.look(f, lame(of, 0) + 2 * lame(of, 1), least);
-    sum += squared[f] = found.squared;
+  for (const LO f : owned) {
+    const double modulus = lame(block(rows.cell(f)), 0) + 2 * lame(block(rows.cell(f)), 1);
+    const bool unseen = rows.bears_nothing(f);
+    Found found;
+    if (parts > Density::fewest_parts || samples.is_near(f)) found = samples.look(f, modulus, least);
+    if (unseen && most_searched > 0 && !(found.deepest > 0))
+      if (const auto hidden =
+              find_hidden_part(rows, f, shape, options, facet.shape == mesh::Shape::simplex, least, most_searched))
+        found = found_in(*hidden, options, modulus);
     const PlaceBetweenNodes place{found.deepest, found.place, k, found.width, rows.size(f)};
     if (place.depth > mine.deepest.depth) mine.deepest = place;
-    if (found.unseen && place.depth > mine.unseen.depth) mine.unseen = place;
+    if (!unseen) continue;
+    sum += squared[f] = found.squared;
+    if (place.depth > mine.unseen.depth) mine.unseen = place;
   }
   result.between.unseen_squared.push_back(device_values(squared, "rpc::contact::unseen_squared"));
   return sum;

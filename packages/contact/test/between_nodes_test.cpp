@@ -130,6 +130,45 @@ TEST(BetweenNodes, NothingIsFoundOnAPlaneOrInFrontOfASphereThatIsAway)
   }
 }
 
+/// A pit of the gap of 1/1000 of the side, as deep as `depth`, with bounds on it.
+ScalarField narrow_pit(const double depth)
+{
+  const double b = 0.001;
+  const Point at{0.7123, 0.3087, 0};
+  ScalarField gap("pit", [=](const Point &x) {
+    const double dx = (x[0] - at[0]) / b, dy = (x[1] - at[1]) / b;
+    return std::min(1e-3, depth * (dx * dx + dy * dy - 1));
+  });
+  gap.bounds = [=](const Box &box, double) {
+    double nearest = 0, farthest = 0;
+    for (int k = 0; k < 2; ++k) {
+      const double left = (box.low[k] - at[k]) / b, right = (box.high[k] - at[k]) / b;
+      const double near = left > 0 ? left : right < 0 ? right : 0, far = std::max(std::abs(left), std::abs(right));
+      nearest += near * near;
+      farthest += far * far;
+    }
+    return Interval{std::min(1e-3, depth * (nearest - 1)), std::min(1e-3, depth * (farthest - 1))};
+  };
+  return gap;
+}
+
+TEST(BetweenNodes, APitOfTheGapOfAThousandthOfAFaceIsFoundByBounds)
+{
+  for (const mesh::Element element : {mesh::Element{3, 1}, mesh::Element{3, 1, mesh::Shape::simplex},
+                                      mesh::Element{3, 2}, mesh::Element{3, 2, mesh::Shape::simplex}}) {
+    auto side = touching("back");
+    side.gap = narrow_pit(1e-4);
+    const Looked looked(element, side);
+    const auto &at = looked.result.between.unseen;
+    EXPECT_NEAR(at.depth, 1e-4, 2e-5);
+    EXPECT_NEAR(at.place[0], 0.7123, 5e-4);
+    EXPECT_NEAR(at.place[1], 0.3087, 5e-4);
+    EXPECT_NEAR(at.width, 0.002, 4e-4);
+    side.gap.bounds = nullptr; // samples alone miss it
+    EXPECT_EQ(Looked(element, side).result.total.unseen_penetration, 0);
+  }
+}
+
 TEST(BetweenNodes, DisplacementAndDentsCount)
 {
   // Moved down by 0.03 as a whole, over a gap of 0.05 that the bump makes 0.02 smaller: 0.02 + 0.03 - 0.05 = 0 inside; by 0.04: 0.01.

@@ -1,5 +1,6 @@
 #include "rpc/io/expression.hpp"
 
+#include "expression_bounds.hpp"
 #include "rpc/core/error.hpp"
 
 #include <cctype>
@@ -85,6 +86,18 @@ std::string reason_of(const mu::ParserError &error)
   return reason;
 }
 
+/// Whether muParser and the bounds read an expression alike, as far as some points tell.
+bool agree(const ExpressionBounds &bounds, Expression &expression)
+{
+  for (const double s : {-1.3, 0., 0.17, 0.71, 2.9}) {
+    const Point at{s, 0.6 - s, 0.3 * s};
+    const double value = expression(at, s), rounding = 1e-9 * (1 + std::abs(value));
+    const Interval bound = bounds({at, at}, s);
+    if (!std::isnan(value) && !(bound.low - rounding <= value && value <= bound.high + rounding)) return false;
+  }
+  return true;
+}
+
 } // namespace
 
 ScalarField parse_field(const std::string &text, const std::string &parameter)
@@ -103,7 +116,9 @@ ScalarField parse_field(const std::string &text, const std::string &parameter)
                 refused(text, parameter, "it has several values, separated by commas"));
     RPC_REQUIRE(!expression->assigns(), refused(text, parameter, "\"=\" assigns; to compare, write \"==\""));
     if (expression->parser.GetUsedVar().empty()) return constant(at_origin);
-    return ScalarField(text, [expression](const Point &x, const double t) { return (*expression)(x, t); });
+    ScalarField field(text, [expression](const Point &x, const double t) { return (*expression)(x, t); });
+    if (const auto bounds = ExpressionBounds::of(text); bounds && agree(*bounds, *expression)) field.bounds = *bounds;
+    return field;
   } catch (const mu::ParserError &error) {
     throw Error(ExitCode::bad_input, refused(text, parameter, reason_of(error)));
   }

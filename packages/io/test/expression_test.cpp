@@ -6,6 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <random>
 
 namespace expression_test
 {
@@ -21,6 +22,47 @@ void expect_refusal(const std::string &text, const std::string &part)
   expect_error(ExitCode::bad_input, "\"Contact->Yield Stress\" = \"" + text + "\"",
                [&] { parse_field(text, "Contact->Yield Stress"); });
   expect_error(ExitCode::bad_input, part, [&] { parse_field(text, "Contact->Yield Stress"); });
+}
+
+TEST(ExpressionBounds, HoldAllValuesInABoxAndAreExactAtPoints)
+{
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> places(-2, 2), shares(0, 1);
+  for (const std::string text :
+       {"0.19 - sqrt(0.04 - min((x - 0.3125)^2, 0.039))", "x < 0.65 ? 0 : 1", "0.35*max(abs(x - 0.5), abs(y)) - t",
+        "1 - 2*exp(-((x - 0.6)/0.05)^2 - y^2)", "-x^2 + 2^-x", "x*x - y*y*x", "sin(3*x)*cos(2*y - 1) + tanh(x/y)",
+        "(x - 1)^3/(y^2 + 1)", "x > 0 && y < 1 || z == 0 ? ln(abs(x) + 1) : exp(-y)", "abs(x)^1.5 - atan(y)/pi",
+        "1 - 0.01*t*(t <= 1) + 1*(t > 1)", "2*(x != y) + (x >= y)", "-2^2*x", "x - -y", "sum(x, y, log(z^2))"}) {
+    const auto field = parse_field(text, "Gap");
+    ASSERT_TRUE(field.bounds) << text;
+    for (int k = 0; k < 2000; ++k) {
+      rpc::Box box;
+      for (int i = 0; i < 3; ++i) {
+        box.low[i] = places(random);
+        box.high[i] = box.low[i] + (k % 3 == 0 ? 0 : k % 3 == 1 ? 1e-3 : 0.5) * shares(random);
+      }
+      const double t = places(random);
+      const rpc::Interval bound = field.bounds(box, t);
+      for (int m = 0; m < 5; ++m) {
+        rpc::Point at{};
+        for (int i = 0; i < 3; ++i) at[i] = box.low[i] + shares(random) * (box.high[i] - box.low[i]);
+        const double value = field.at(at, t), rounding = 1e-12 * (1 + std::abs(value));
+        if (std::isnan(value)) continue;
+        ASSERT_GE(value, bound.low - rounding) << text;
+        ASSERT_LE(value, bound.high + rounding) << text;
+        if (k % 3 == 0) {
+          ASSERT_NEAR(bound.low, bound.high, rounding) << text;
+        }
+      }
+    }
+  }
+}
+
+TEST(ExpressionBounds, ThereAreNoneOfWhatIsNotKnown)
+{
+  for (const std::string text : {"rint(x)", "avg(x, y)", "x > 0 ? rint(y) : 1"})
+    EXPECT_FALSE(parse_field(text, "Gap").bounds);
+  EXPECT_FALSE(parse_field("2*pi", "Gap").bounds); // a constant
 }
 
 TEST(Expression, TextWithoutVariablesIsAConstant)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rpc/core/point.hpp"
+#include "rpc/core/interval.hpp"
 
 #include <functional>
 #include <string>
@@ -16,7 +16,9 @@ struct ScalarField {
   std::string text;                                ///< as the user wrote it, for messages
   double constant = 0;                             ///< the value where at() is empty
   std::function<double(const Point &, double)> at; ///< of place and time; empty for a constant
-  double time = 1;                                 ///< at which it is seen
+  std::function<Interval(const Box &, double)>
+      bounds;      ///< on its values in a box, of box and time; empty: not known, or a constant
+  double time = 1; ///< at which it is seen
 
   ScalarField() = default;
   explicit ScalarField(const double value) : text(std::to_string(value)), constant(value) {}

@@ -1,0 +1,176 @@
+#include "facet_samples.hpp"
+
+#include "rpc/fem/surface.hpp"
+#include "rpc/mesh/shape_functions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rpc::contact
+{
+
+EvaluateShape shape_of(const mesh::Element &facet)
+{
+  EvaluateShape evaluate;
+  mesh::with_shape_functions(facet, [&](const auto &shape) {
+    using Shape = std::decay_t<decltype(shape)>;
+    if constexpr (Shape::dim <= FacetShape::most_dim && Shape::nodes <= FacetShape::most_nodes)
+      evaluate = [shape](const double *const at, FacetShape &to) {
+        double X[Shape::dim], N[Shape::nodes], dN[Shape::nodes][Shape::dim];
+        std::copy_n(at, Shape::dim, X);
+        shape.evaluate(X, N, dN);
+        for (int a = 0; a < Shape::nodes; ++a) {
+          to.value[a] = N[a];
+          std::copy_n(dN[a], Shape::dim, to.slope[a]);
+        }
+      };
+  });
+  return evaluate;
+}
+
+std::vector<FacetShape> lattice_of(const mesh::Element &facet, const int parts)
+{
+  const EvaluateShape evaluate = shape_of(facet);
+  const bool triangle = facet.dim == 2 && facet.shape == mesh::Shape::simplex;
+  std::vector<FacetShape> lattice;
+  const int rows = facet.dim == 2 ? parts : 0;
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= (triangle ? parts - j : parts); ++i) {
+      double X[2] = {double(i) / parts, double(j) / parts};
+      for (double &x : X) x = triangle ? x : 2 * x - 1;
+      evaluate(X, lattice.emplace_back());
+    }
+  return lattice;
+}
+
+bool FacetRows::bears_nothing(const LO f) const
+{
+  for (int a = 0; a < nodes; ++a)
+    if (column(f, a, bearing) > 0) return false;
+  return true;
+}
+
+double FacetRows::most_allowed(const LO f) const
+{
+  double most = 0;
+  for (int a = 0; a < nodes; ++a) most = std::max(most, column(f, a, allowed));
+  return most;
+}
+
+namespace
+{
+
+/// (overlap nodes; FacetRows::Column) of one side.
+RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const ContactNodes &points,
+                                        const ContactResult &result, const int side)
+{
+  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, FacetRows::num_columns));
+  const ContactNodes c = points;
+  const auto v = result.penetration, p = result.pressure;
+  {
+    const auto to = owned->getLocalViewDevice(Tpetra::Access::ReadWrite);
+    Kokkos::parallel_for(
+        "rpc::contact::bearing_points",
+        Kokkos::RangePolicy<ExecutionSpace, LO>(points.first(side), points.first(side + 1)), KOKKOS_LAMBDA(const LO i) {
+          const bool weighs = c.weight(i) > 0, pressed = weighs && (p(i) > 0 || c.fixed(i));
+          double deep = c.dent(i);
+          if (pressed && v(i) > deep) deep = v(i);
+          to(c.node(i), int(FacetRows::allowed)) = weighs && deep > 0 ? deep : 0;
+          to(c.node(i), int(FacetRows::bearing)) = !weighs ? -1 : pressed ? 1 : 0;
+          to(c.node(i), int(FacetRows::excess)) = v(i) - (deep > 0 ? deep : 0);
+        });
+    Kokkos::fence();
+  }
+  return fem::nodes_on_overlap(d, owned);
+}
+
+} // namespace
+
+FacetRows facet_rows(const fem::Discretization &d, const mesh::Side &facets, const ContactNodes &points,
+                     const ContactResult &result, const int side, const Vector &u)
+{
+  FacetRows rows;
+  rows.dim = d.dim();
+  rows.nodes = static_cast<int>(facets.facets.extent(1));
+  const int dim = rows.dim, nodes = rows.nodes, width = rows.width();
+  const LO num_facets = static_cast<LO>(facets.facets.extent(0));
+  const DeviceView<double **> row("rpc::contact::facet_rows", num_facets, nodes * width);
+  const DeviceView<double *> area("rpc::contact::facet_area", num_facets);
+  const auto on_overlap = fem::on_overlap(d, u);
+  const auto x = device_read(*on_overlap);
+  const auto columns = at_overlap_nodes(d, points, result, side);
+  const auto column = columns->getLocalViewDevice(Tpetra::Access::ReadOnly);
+  const auto coords = d.mesh->coords;
+  const auto node_of = facets.facets;
+  const auto measure = fem::facet_measure(d, facets);
+  const int quadrature = num_facets > 0 ? static_cast<int>(measure.extent(0)) / num_facets : 0;
+  Kokkos::parallel_for(
+      "rpc::contact::facet_rows", device_range(num_facets), KOKKOS_LAMBDA(const LO f) {
+        for (int q = 0; q < quadrature; ++q) area(f) += measure(f * quadrature + q);
+        for (int a = 0; a < nodes; ++a) {
+          const LO node = node_of(f, a);
+          for (int k = 0; k < dim; ++k) {
+            row(f, a * width + k) = coords(node, k);
+            row(f, a * width + dim + k) = x(rpc::dof(dim, node, k));
+          }
+          for (int k = 0; k < FacetRows::num_columns; ++k) row(f, a * width + 2 * dim + k) = column(node, k);
+        }
+      });
+  rows.row = HostView<double **>("rpc::contact::facet_rows", num_facets, nodes * width);
+  const auto copy = to_host(row);
+  for (LO f = 0; f < num_facets; ++f)
+    for (int k = 0; k < nodes * width; ++k) rows.row(f, k) = copy(f, k);
+  rows.area = to_host(area);
+  rows.size = to_host(fem::facet_size(d, facets));
+  rows.cell = to_host(facets.cell);
+  return rows;
+}
+
+FacetSample sample_at(const FacetRows &rows, const LO f, const FacetShape &shape, const ContactOptions &options,
+                      const double most_allowed)
+{
+  FacetSample sample;
+  Point u{}, tangent[2] = {};
+  for (int a = 0; a < rows.nodes; ++a) {
+    const double N = shape.value[a];
+    for (int k = 0; k < rows.dim; ++k) {
+      sample.place[k] += N * rows.place(f, a)[k];
+      u[k] += N * rows.displacement(f, a)[k];
+      for (int g = 0; g < rows.dim - 1; ++g) tangent[g][k] += shape.slope[a][g] * rows.place(f, a)[k];
+    }
+    const bool weightless = rows.column(f, a, FacetRows::bearing) < 0;
+    sample.allowed += N * (weightless ? most_allowed : rows.column(f, a, FacetRows::allowed));
+  }
+  sample.allowed = std::max(sample.allowed, 0.);
+  if (options.normal == Normal::fixed) {
+    sample.normal = options.direction;
+  } else if (options.normal == Normal::foundation) {
+    const auto into = direction_into(options.obstacle, sample.place);
+    sample.has_normal = into.has_value();
+    if (into) sample.normal = *into;
+  } else {
+    const Point nu = rows.dim == 2 ? Point{tangent[0][1], -tangent[0][0], 0} : cross(tangent[0], tangent[1]);
+    sample.normal = scaled(1 / length(nu), nu);
+  }
+  sample.along = inner(u, sample.normal);
+  return sample;
+}
+
+double excess_at(const FacetSample &sample, const ContactOptions &options)
+{
+  constexpr double outside = -std::numeric_limits<double>::infinity();
+  if (!sample.has_normal) return outside;
+  double gap = 0;
+  if (options.obstacle.exists()) {
+    const auto distance = distance_along(options.obstacle, sample.place, sample.normal);
+    if (!distance) return outside;
+    gap = *distance;
+  } else {
+    gap = options.gap(sample.place);
+  }
+  const double e = sample.along - gap - sample.allowed;
+  return std::isfinite(e) ? e : outside;
+}
+
+} // namespace rpc::contact

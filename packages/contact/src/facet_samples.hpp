@@ -1,0 +1,71 @@
+#pragma once
+
+#include "rpc/contact/contact_nodes.hpp"
+#include "rpc/contact/contact_options.hpp"
+#include "rpc/contact/result.hpp"
+#include "rpc/fem/discretization.hpp"
+
+#include <functional>
+#include <vector>
+
+/// Facets of a contact side on the host, and what the foundation does to them at any of their points. User's expressions and obstacles are
+/// evaluated there.
+namespace rpc::contact
+{
+
+/// The shape functions of a facet at one of its points.
+struct FacetShape {
+  static constexpr int most_nodes = 9, most_dim = 2;
+  double value[most_nodes], slope[most_nodes][most_dim];
+};
+using EvaluateShape = std::function<void(const double *X, FacetShape &)>;
+EvaluateShape shape_of(const mesh::Element &facet);
+
+/// A lattice of points of a facet's reference cell, the vertices among them.
+/// @param parts  into which the lattice divides an edge
+std::vector<FacetShape> lattice_of(const mesh::Element &facet, int parts);
+
+/// Facets of a side, each with what its nodes have: the place [m], the displacement [m], and the columns.
+struct FacetRows {
+  /// How deep the contact points have been pressed in [m]; whether they bear a pressure (1), are open (0), or have no weight (-1); how much
+  /// deeper they lie [m]. A node from which the normal misses the obstacle is open, and may be near.
+  enum Column { allowed, bearing, excess, num_columns };
+
+  HostView<double **> row;       // (facets; nodes * width())
+  HostView<LO *> cell;           // (facets)
+  HostView<double *> size, area; // (facets) [m], [m^(dim-1), axisymmetric: m^2]
+  int nodes = 0, dim = 0;        // of a facet, of the body
+
+  LO num_facets() const { return static_cast<LO>(cell.extent(0)); }
+  int width() const { return 2 * dim + num_columns; }
+  const double *place(const LO f, const int a) const { return &row(f, a * width()); }
+  const double *displacement(const LO f, const int a) const { return place(f, a) + dim; }
+  double column(const LO f, const int a, const Column which) const { return place(f, a)[2 * dim + which]; }
+
+  /// Whether no contact point of a facet bears a pressure.
+  bool bears_nothing(LO f) const;
+  /// How deep the contact points of a facet have been pressed in, at most [m]: points without weight, which nothing holds, count as that.
+  double most_allowed(LO f) const;
+};
+
+/// Collective. @param side  which of the contact sides   @param u  (owned dofs) [m]
+FacetRows facet_rows(const fem::Discretization &d, const mesh::Side &facets, const ContactNodes &points,
+                     const ContactResult &result, int side, const Vector &u);
+
+/// A point of a facet.
+struct FacetSample {
+  Point place{};          // of the undeformed body [m]
+  Point normal{};         // along which penetration is measured
+  double along = 0;       // u_nu [m]
+  double allowed = 0;     // [m]
+  bool has_normal = true; // else it is at the centre of an obstacle
+};
+
+/// @param most_allowed  of the facet, see FacetRows
+FacetSample sample_at(const FacetRows &rows, LO f, const FacetShape &shape, const ContactOptions &options,
+                      double most_allowed);
+
+/// e of (3.15) at a sample [m]; minus infinity where the normal misses the obstacle.
+double excess_at(const FacetSample &sample, const ContactOptions &options);
+
+} // namespace rpc::contact
