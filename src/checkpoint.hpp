@@ -22,6 +22,8 @@ public:
   /// What the run goes on from, on its mesh, which is made anew; none from the first step. Collective.
   /// @throws rpc::Error (bad_input) on every rank if the file is damaged, or belongs to another mesh, deck or version
   std::optional<analysis::HistoryState> resume(const RCP<const Comm> &comm);
+  /// Whether the run goes on from a checkpoint.
+  bool goes_on() const { return restarts_; }
   /// The checkpoint that the run has gone on from; empty: none.
   const std::string &source() const { return restart_; }
   /// Writes a checkpoint. Collective.

@@ -224,7 +224,7 @@ Usage: rpc --input=DECK [options]
                        e.g. --set="Contact->Yield Stress=16" --set="Mesh->Cells={80, 16}"
   --restart            goes on after the newest checkpoint in the output folder
   --restart=FILE       goes on after a checkpoint, see "Steps->Checkpoint Every"
-  --check              only reads and checks the deck
+  --check              does all that a run does before its first solve, and writes nothing
   --print-parameters   prints every parameter of a deck: type, default, meaning, unit
   --version            prints the version
   --help, -h           prints this text

@@ -19,8 +19,8 @@ struct CommandLine {
   bool print_parameters = false;
   bool version = false;
 
-  /// Whether a scene is to be solved: texts, and the check of a deck, need no kernels and so no GPU.
-  bool solves() const { return !help && !version && !print_parameters && !check; }
+  /// Whether there is a scene to be solved or checked: texts need no kernels and so no GPU.
+  bool solves() const { return !help && !version && !print_parameters; }
 };
 
 /// The arguments, those for Kokkos apart: Kokkos must not see the others, or it answers to --help and --threads too.

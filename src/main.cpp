@@ -2,6 +2,7 @@
 #include "command_line.hpp"
 #include "gpu.hpp"
 #include "host_program.hpp"
+#include "notes.hpp"
 #include "output/paths.hpp"
 #include "output/results.hpp"
 #include "report.hpp"
@@ -144,8 +145,12 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   RPC_REQUIRE(!line.input.empty(), "command line: --input=DECK is missing. See rpc --help.");
   const std::string deck = rpc::io::find_deck(line.input, *comm);
   const rpc::Scene scene = rpc::read_scene(deck, line.assignments, *comm);
+  RPC_REQUIRE(!line.restarts || scene.has_steps(),
+              "command line: --restart goes with load steps; the deck has none, see \"Steps->Times\"");
+  rpc::Checkpoints checkpoints(scene, line.restarts, line.restart, line.output);
   if (line.check) {
-    out << deck << ": nothing wrong with it\n";
+    const std::string found = rpc::check(scene, comm, out, checkpoints);
+    out << deck << ": nothing wrong with it" << (found.empty() ? "" : ": ") << found << '\n';
     return ExitCode::converged;
   }
   rpc::require_writable_results(scene, line.output, *comm);
@@ -162,9 +167,6 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   if (scene.output.timers) Teuchos::TimeMonitor::setStackedTimer(timers);
   int cycle = 0;
   rpc::StepFiles steps;
-  RPC_REQUIRE(!line.restarts || scene.has_steps(),
-              "command line: --restart goes with load steps; the deck has none, see \"Steps->Times\"");
-  rpc::Checkpoints checkpoints(scene, line.restarts, line.restart, line.output);
   const auto keep = [&](const rpc::Scene &of, rpc::Solution &solution) {
     rpc::Scene named = of;
     named.name = rpc::cycle_name(of, ++cycle);
@@ -175,6 +177,8 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     steps.add(of, solution, line.output);
   };
   rpc::Solution solution = rpc::solve(scene, comm, out, keep, keep_step, &checkpoints);
+  const std::vector<std::string> notes = rpc::notes_on_results(solution);
+  solution.notes.insert(solution.notes.end(), notes.begin(), notes.end());
   std::vector<std::string> files;
   try {
     files = rpc::write_results(scene, solution, line.output, start, steps);
@@ -182,7 +186,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     if (!solution.failure) throw;
   }
   if (!steps.film.note().empty()) out << "note: " << steps.film.note() << '\n';
-  rpc::print_summary(out, scene, solution, files);
+  rpc::print_summary(out, scene, solution, notes, files);
   if (scene.output.timers) {
     timers->stopBaseTimer();
     Teuchos::StackedTimer::OutputOptions options;

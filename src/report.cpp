@@ -8,16 +8,12 @@
 #include <cstdarg>
 #include <cstdio>
 #include <numeric>
+#include <utility>
 
 namespace rpc
 {
 namespace
 {
-
-// Of a step's energies.
-constexpr double notable_imbalance = 0.01;
-// Beyond it the terms that small strains leave out are a fifth of those that count.
-constexpr double notable_strain = 0.2;
 
 /// printf into a stream.
 [[gnu::format(printf, 2, 3)]] void print(std::ostream &out, const char *format, ...)
@@ -125,44 +121,17 @@ void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, co
     out << "    no error of " << adapt::error_bar_name(key, scope) << ": " << reason << '\n';
 }
 
-/// Steps whose work does not fit their energies.
-void print_balance(std::ostream &out, const std::vector<analysis::StepRecord> &history)
+/// In lines of its own, below each other.
+void print_note(std::ostream &out, const std::string &note)
 {
-  int count = 0;
-  double most = 0, at = 0;
-  analysis::Energies before;
-  for (const auto &step : history) {
-    const double share = analysis::relative_imbalance(before, step.energies);
-    before = step.energies;
-    if (!(share > notable_imbalance)) continue;
-    ++count;
-    if (share <= most) continue;
-    most = share;
-    at = step.time;
+  constexpr std::size_t width = 110;
+  std::string rest = note, heading = "    note              ";
+  while (!rest.empty()) {
+    const std::size_t blank = rest.size() > width ? rest.rfind(' ', width) : std::string::npos;
+    out << heading << rest.substr(0, blank) << '\n';
+    rest = blank == std::string::npos ? "" : rest.substr(blank + 1);
+    heading.assign(heading.size(), ' ');
   }
-  if (count > 0)
-    print(out,
-          "    note              in %d of %zu steps work and energies differ by more than 1 %% (%.2g %% at t = %g): "
-          "contact opens or "
-          "closes\n                      within a step; \"Steps->Energy Tolerance\" divides such steps\n",
-          count, history.size(), 100 * most, at);
-}
-
-/// Strains that are not small, of all steps.
-void print_large_strains(std::ostream &out, const Solution &s)
-{
-  double most = s.body.strain;
-  std::string when;
-  for (const auto &step : s.history) {
-    if (!(step.body.strain >= most && step.body.strain > notable_strain)) continue;
-    most = step.body.strain;
-    when = " at t = " + number_text("%g", step.time);
-  }
-  if (most > notable_strain)
-    print(out,
-          "    note              strains reach %.2g%s: small strains are assumed, and results where strains exceed %g "
-          "are\n                      rough\n",
-          most, when.c_str(), notable_strain);
 }
 
 } // namespace
@@ -181,21 +150,16 @@ void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const
         kinematics.c_str(), static_cast<long long>(d.owned_dofs->getGlobalNumElements()),
         static_cast<long long>(contact.num_total), sides.c_str(), mesh.comm().getSize(),
         mesh.comm().getSize() == 1 ? "" : "s", ExecutionSpace::name());
-  if (contact.num_fixed > 0)
-    print(out_,
-          "note: the normal displacement of %lld contact nodes is prescribed by \"Dirichlet\", which wins over contact "
-          "there\n",
-          static_cast<long long>(contact.num_fixed));
-  if (contact.num_missing > 0)
-    print(out_, "note: from %lld nodes of the contact sides the normal misses the obstacle: they never touch\n",
-          static_cast<long long>(contact.num_missing));
-  for (const std::string &note :
-       {fem::locking_note(d, scene.model.materials), fem::incompressibility_note(d, scene.model.materials),
-        fem::bending_note(d, scene.model.materials)})
-    if (!note.empty()) print(out_, "note: %s\n", note.c_str());
+  out_ << std::flush;
+  heads_due_ = !scene.has_steps() || load_steps_ == 0;
+}
+
+void ConsoleTable::heads(const Scene &scene)
+{
+  if (!std::exchange(heads_due_, false)) return;
   if (!scene.has_steps())
     print(out_, "uzawa newton   |F|/|b|     step    open  closed  yields krylov   time [s]\n");
-  else if (load_steps_ == 0)
+  else
     print(out_, "    step         t      |force|     max. p    max. dent    dissipated parts Newton krylov   time [s]  "
                 "left [s]\n");
   out_ << std::flush;
@@ -244,7 +208,8 @@ void print_estimate(std::ostream &out, const Scene &scene, const Solution &s)
   out << std::endl;
 }
 
-void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &files)
+void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &notes,
+                   const std::vector<std::string> &files)
 {
   const int dim = s.discretization.dim();
   const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
@@ -291,8 +256,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
     print(out, "    predicted by      %zu dofs: %d Newton, %d linear iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
   if (s.adaptation) print_adaptation(out, *s.adaptation, scope);
-  print_balance(out, s.history);
-  print_large_strains(out, s);
+  for (const auto &note : notes) print_note(out, note);
   for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
   print_lines(out, lines(analysis::phase_seconds, s.seconds, scope, "%.3f"));
   for (const auto &file : files) print(out, "  wrote %s\n", file.c_str());

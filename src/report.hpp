@@ -13,7 +13,10 @@ class ConsoleTable
 public:
   explicit ConsoleTable(std::ostream &out);
 
+  /// A line on a mesh.
   void scene(const Scene &scene, const fem::Discretization &d, const contact::ContactNodes &contact);
+  /// The heads of the columns, once for each table: before its first line.
+  void heads(const Scene &scene);
   /// @param uzawa  number of the Uzawa iteration
   void newton(int uzawa, const solver::NewtonStep &step, const contact::StateCounts &states);
   void uzawa(const analysis::UzawaResult &result);
@@ -23,14 +26,16 @@ public:
 private:
   std::ostream &out_;
   double start_;
-  int load_steps_ = 0; // of this run
+  int load_steps_ = 0;     // of this run
+  bool heads_due_ = false; // of the table that begins
 };
 
 /// A line on the error that a mesh is estimated to leave.
 void print_estimate(std::ostream &out, const Scene &scene, const Solution &solution);
 
+/// @param notes  that the console has not told yet
 /// @param files  what was written
 void print_summary(std::ostream &out, const Scene &scene, const Solution &solution,
-                   const std::vector<std::string> &files);
+                   const std::vector<std::string> &notes, const std::vector<std::string> &files);
 
 } // namespace rpc

@@ -112,6 +112,10 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.output = {exodus != "none", output.get<bool>("CSV"), output.get<bool>("JSON"),
                   exodus == "split" ? io::ExodusFiles::split : io::ExodusFiles::joined, output.get<bool>("Timers")};
   adapt::require_adaptable(scene);
+  for (const char *const part : {"Dirichlet", "Traction"})
+    if (!deck.getEntry(part).isDefault() && deck.sublist(part).numParams() == 0)
+      scene.notes.push_back("\"" + std::string(part) + "\" of the deck has no entries: nothing is " +
+                            (part == std::string("Dirichlet") ? "held" : "loaded") + " by it");
   return scene;
 }
 

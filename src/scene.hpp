@@ -22,6 +22,7 @@ struct OutputOptions {
 struct Scene : adapt::Task {
   std::string name; ///< of the deck's file, without folder and extension
   OutputOptions output;
+  std::vector<std::string> notes; ///< on the deck, for the user
   /// What a checkpoint must agree with, part by part of the deck.
   std::vector<std::pair<std::string, std::string>> identity;
 };

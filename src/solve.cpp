@@ -1,6 +1,7 @@
 #include "solve.hpp"
 
 #include "checkpoint.hpp"
+#include "notes.hpp"
 #include "report.hpp"
 
 #include <algorithm>
@@ -14,13 +15,23 @@ namespace rpc
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
                const std::function<void(const Scene &, Solution &)> &keep,
                const std::function<void(const Scene &, const analysis::Solution &)> &keep_step,
-               Checkpoints *const checkpoints)
+               Checkpoints *const checkpoints,
+               const std::function<void(const analysis::Problem &, const analysis::Step &)> &ready)
 {
   std::optional<ConsoleTable> table; // of one mesh
+  Notes notes(console);
+  SeldomMeant seldom_meant(scene, checkpoints && checkpoints->goes_on(), notes);
+  for (const std::string &note : scene.notes) notes.add(note);
   adapt::Listener listener;
   listener.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &contact) {
     if (!table || !scene.has_steps()) table.emplace(console);
     table->scene(scene, d, contact);
+    for (const std::string &note : notes_on_mesh(scene, d, contact)) notes.add(note);
+  };
+  listener.step.start = [&](const analysis::Problem &problem, const analysis::Step &step) {
+    seldom_meant.before(problem, step);
+    if (ready) ready(problem, step);
+    table->heads(scene);
   };
   const bool several_steps = scene.has_steps(); // a line for each is enough then
   if (!several_steps)
@@ -36,25 +47,57 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     else
       console << "in about " << std::max(1LL, std::llround(forecast.seconds)) << " s" << std::endl;
   };
-  listener.note = [&](const std::string &note) { console << "note: " << note << std::endl; };
+  listener.note = [&](const std::string &note) { notes.add(note); };
   listener.load_step = [&](const analysis::Solution &solution) {
+    seldom_meant.after(solution);
     if (keep_step) keep_step(scene, solution); // what the table tells is on disk
     table->load_step(scene, solution);
   };
   if (checkpoints) {
     listener.resume = [&] {
       auto state = checkpoints->resume(comm);
-      if (state)
+      if (state) // of this run, not of its results: those of an uninterrupted one are the same
         console << "note: goes on after \"" << checkpoints->source() << "\", t = " << state->last.time << std::endl;
       return state;
     };
     listener.checkpoint = [&](const analysis::HistoryState &state) { checkpoints->write(state); };
   }
-  if (keep) listener.cycle = [&](Solution &solution) { keep(scene, solution); };
+  if (keep)
+    listener.cycle = [&](Solution &solution) {
+      solution.notes = notes.all();
+      keep(scene, solution);
+    };
   Solution solution = adapt::solve(scene, comm, listener);
+  if (!several_steps) seldom_meant.after(solution);
+  seldom_meant.at_end(solution);
+  solution.notes = notes.all();
   if (!scene.output.exodus) solution.skipped.push_back("stress recovery and nodal fields: no Exodus file");
   if (!scene.output.csv && !scene.model.contact.empty()) solution.skipped.push_back("contact tables: no CSV file");
   return solution;
+}
+
+namespace
+{
+
+/// Ends a run before its first solve.
+struct Ready {
+  GO dofs, contact_points;
+};
+
+} // namespace
+
+std::string check(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console, Checkpoints &checkpoints)
+{
+  const auto stop = [](const analysis::Problem &problem, const analysis::Step &step) {
+    throw Ready{static_cast<GO>(problem.discretization().owned_dofs->getGlobalNumElements()), step.contact.num_total};
+  };
+  std::ostringstream found;
+  try {
+    solve(scene, comm, console, {}, {}, &checkpoints, stop);
+  } catch (const Ready &ready) { // on all ranks
+    found << ready.dofs << " dofs, " << ready.contact_points << " contact points";
+  }
+  return found.str();
 }
 
 Error failure_of(const Solution &solution)

@@ -149,6 +149,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["matrix_assemblies"] = s.matrix_assemblies;
   if (!s.history.empty()) add_steps(json, s, scope);
   add_errors(json, scene, s);
+  json["notes"] = s.notes;
   json["skipped"] = s.skipped;
   json["levels"] = nlohmann::ordered_json::array();
   for (const auto &level : s.levels)

@@ -49,6 +49,7 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
   std::optional<PredictedBy> predicted;                        // nothing: no coarser mesh predicts the start
   const auto counts_before = state.linear().counts();
   solver::check_nox_parameters(iterate, state.linear(), u, options.newton);
+  if (progress.start) progress.start(problem, step);
   {
     const Timed timer("prediction", s.prediction_seconds);
     Prediction prediction = predict(iterate, *u, starts); // (5.11), (11.5)

@@ -36,6 +36,8 @@ struct StepOptions {
 
 /// Reports while a step is solved; empty functions are not called.
 struct Progress {
+  /// A step is about to be solved: all that needs no solve has been done. What this throws, on all ranks, ends the run.
+  std::function<void(const Problem &, const Step &)> start;
   /// @param uzawa  number of the Uzawa iteration, from 1
   std::function<void(int uzawa, const solver::NewtonStep &, const contact::StateCounts &)> newton;
   std::function<void(const UzawaResult &)> uzawa;

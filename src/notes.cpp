@@ -1,0 +1,159 @@
+#include "notes.hpp"
+
+#include "rpc/contact/clearance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace rpc
+{
+namespace
+{
+
+// Of a step's energies.
+constexpr double notable_imbalance = 0.01;
+// Beyond it the terms that small strains leave out are a fifth of those that count.
+constexpr double notable_strain = 0.2;
+
+/// Steps whose work does not fit their energies.
+std::string balance_note(const std::vector<analysis::StepRecord> &history)
+{
+  int count = 0;
+  double most = 0, at = 0;
+  analysis::Energies before;
+  for (const auto &step : history) {
+    const double share = analysis::relative_imbalance(before, step.energies);
+    before = step.energies;
+    if (!(share > notable_imbalance)) continue;
+    ++count;
+    if (share <= most) continue;
+    most = share;
+    at = step.time;
+  }
+  if (count == 0) return "";
+  std::ostringstream note;
+  note << "in " << count << " of " << history.size() << " steps work and energies differ by more than 1 % ("
+       << std::setprecision(2) << 100 * most << std::setprecision(6) << " % at t = " << at
+       << "): contact opens or closes within a step; \"Steps->Energy Tolerance\" divides such steps";
+  return note.str();
+}
+
+/// Strains that are not small, of all steps.
+std::string strain_note(const analysis::Solution &s)
+{
+  double most = s.body.strain;
+  std::ostringstream when;
+  for (const auto &step : s.history) {
+    if (!(step.body.strain >= most && step.body.strain > notable_strain)) continue;
+    most = step.body.strain;
+    when.str("");
+    when << " at t = " << step.time;
+  }
+  if (!(most > notable_strain)) return "";
+  std::ostringstream note;
+  note << "strains reach " << std::setprecision(2) << most << when.str()
+       << ": small strains are assumed, and results where strains exceed " << notable_strain << " are rough";
+  return note.str();
+}
+
+bool touches(const analysis::Solution &s)
+{
+  return s.contact.total.contact_length > 0 ||
+         std::any_of(s.history.begin(), s.history.end(),
+                     [](const analysis::StepRecord &step) { return step.contact.contact_length > 0; });
+}
+
+} // namespace
+
+void Notes::add(const std::string &note)
+{
+  if (note.empty() || std::find(all_.begin(), all_.end(), note) != all_.end()) return;
+  all_.push_back(note);
+  console_ << "note: " << note << std::endl;
+}
+
+SeldomMeant::SeldomMeant(const Scene &scene, const bool goes_on, Notes &notes)
+    : scene_(scene), notes_(notes), loaded_(goes_on), overlaps_(scene.model.contact.size(), 0)
+{
+}
+
+void SeldomMeant::before(const analysis::Problem &problem, const analysis::Step &step)
+{
+  const Comm &comm = problem.discretization().mesh->comm();
+  loaded_ = loaded_ || contact::is_loaded(comm, step.elastic, step.contact);
+  note_overlaps(problem, step);
+  if (scene_.has_steps()) return;
+  if (!loaded_) notes_.add("no load, no prescribed displacement but 0 and no initial penetration: nothing happens");
+  if (loaded_ && step.contact.friction.anywhere)
+    notes_.add(
+        "friction depends on the path of the load, of which one step knows the end alone: \"Steps->Times\" follow it");
+}
+
+/// A body that no displacement holds may have given way to an obstacle that has moved since the first step.
+void SeldomMeant::note_overlaps(const analysis::Problem &problem, const analysis::Step &step)
+{
+  const bool first = !scene_.has_steps() || step.time <= scene_.steps.times.front();
+  for (std::size_t k = 0; k < overlaps_.size(); ++k) {
+    if (overlaps_[k]) continue;
+    const auto found =
+        contact::overlap(problem.discretization(), step.contact, static_cast<int>(k), step.elastic.dirichlet);
+    if (!(found.depth > found.thickness && (found.held || first))) continue;
+    overlaps_[k] = 1;
+    const contact::ContactOptions &side = scene_.model.contact[k];
+    const std::string unit = " [" + scene_.model.units.of(unit::length, false) + "]";
+    std::ostringstream note;
+    note << (scene_.has_steps() ? analysis::at_time(step.time) : "") << "the "
+         << (side.obstacle.exists() ? "obstacle" : "foundation") << " of \"" << side.path << "\" overlaps the body by "
+         << found.depth << unit << ", more than the body is thick along the contact normal (" << found.thickness << unit
+         << "): does it lie where it should?";
+    notes_.add(note.str());
+  }
+}
+
+void SeldomMeant::after(const analysis::Solution &s)
+{
+  smallest_gap_ =
+      std::min(smallest_gap_, contact::smallest_gap(s.discretization.mesh->comm(), s.step.contact, s.contact));
+}
+
+void SeldomMeant::at_end(const analysis::Solution &s)
+{
+  if (!s.uzawa.converged || s.failure) return;
+  if (!loaded_ && scene_.has_steps())
+    notes_.add("no step has a load, a prescribed displacement but 0 or an initial penetration: nothing happens");
+  if (!loaded_ || s.step.contact.num_total == 0 || touches(s)) return;
+  std::ostringstream note;
+  note << (smallest_gap_ > 0 ? "no point touches" : "no point is pressed on the foundation")
+       << (scene_.has_steps() ? " at any step" : "") << ": the smallest gap that is left is " << smallest_gap_ << " ["
+       << scene_.model.units.of(unit::length, false) << "]";
+  notes_.add(note.str());
+}
+
+std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretization &d,
+                                       const contact::ContactNodes &contact)
+{
+  std::vector<std::string> notes;
+  if (contact.num_fixed > 0)
+    notes.push_back("the normal displacement of " + std::to_string(contact.num_fixed) +
+                    " contact nodes is prescribed by \"Dirichlet\", which wins over contact there");
+  if (contact.num_missing > 0)
+    notes.push_back("from " + std::to_string(contact.num_missing) +
+                    " nodes of the contact sides the normal misses the obstacle: they never touch");
+  const fem::Materials &materials = scene.model.materials;
+  for (const std::string &note :
+       {fem::locking_note(d, materials), fem::incompressibility_note(d, materials), fem::bending_note(d, materials)})
+    if (!note.empty()) notes.push_back(note);
+  return notes;
+}
+
+std::vector<std::string> notes_on_results(const analysis::Solution &s)
+{
+  std::vector<std::string> notes;
+  for (const std::string &note : {balance_note(s.history), strain_note(s)})
+    if (!note.empty()) notes.push_back(note);
+  return notes;
+}
+
+} // namespace rpc

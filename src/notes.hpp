@@ -1,0 +1,60 @@
+#pragma once
+
+#include "solve.hpp"
+
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace rpc
+{
+
+/// What the user should know of results besides their numbers. A note goes to the console as soon as it is known, and into the summary, once
+/// however often it is given.
+class Notes
+{
+public:
+  explicit Notes(std::ostream &console) : console_(console) {}
+  /// @param note  empty: none
+  void add(const std::string &note);
+  const std::vector<std::string> &all() const { return all_; }
+
+private:
+  std::ostream &console_;
+  std::vector<std::string> all_;
+};
+
+/// Notes on scenes that are right and seldom meant: nothing loads the body, nothing touches, a foundation reaches through the body, friction
+/// gets the whole load in one step.
+class SeldomMeant
+{
+public:
+  /// @param goes_on  the run goes on after a checkpoint: what went before it is not known
+  SeldomMeant(const Scene &scene, bool goes_on, Notes &notes);
+
+  /// A step is about to be solved. Collective.
+  void before(const analysis::Problem &problem, const analysis::Step &step);
+  /// One of several steps, or the only one, is solved. Collective.
+  void after(const analysis::Solution &s);
+  /// @param s  the result of the run
+  void at_end(const analysis::Solution &s);
+
+private:
+  void note_overlaps(const analysis::Problem &problem, const analysis::Step &step);
+
+  const Scene &scene_;
+  Notes &notes_;
+  bool loaded_;                                                   // at any step
+  std::vector<char> overlaps_;                                    // sides whose foundations have been said to
+  double smallest_gap_ = std::numeric_limits<double>::infinity(); // of all steps [m]
+};
+
+/// What the user should know of a body on its mesh.
+std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretization &d,
+                                       const contact::ContactNodes &contact);
+
+/// What the user should know of results: steps whose work does not fit their energies, and strains that are not small.
+std::vector<std::string> notes_on_results(const analysis::Solution &s);
+
+} // namespace rpc

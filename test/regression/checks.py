@@ -1,0 +1,138 @@
+"""What a run says of decks that are right and seldom meant, on the console and in the summary; and what --check finds without a solve."""
+
+import json
+import unittest
+
+from rpc_run import RANKS, SMALL, RpcTestCase, errors, files
+
+BODY = """
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [4, 4]}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Output: {Exodus: false, CSV: false}
+"""
+PRESSED = BODY + "  Dirichlet: {top: {X: 0.0, Y: -0.01}}\n"
+HELD = BODY + "  Dirichlet: {top: {X: 0.0, Y: 0.0}}\n"
+RISING = '  Contact: {Side: bottom, Obstacle: {Type: plane, Point: ["0", "3*(t - 1)"], Normal: [0.0, 1.0]}}\n  Steps: {Times: [1.0, 1.1, 2.0, 3.0]}\n'
+NOTHING = "nothing happens"
+OVERLAP, PATH = "overlaps the body by", "friction depends on the path"
+
+
+class Seldom(RpcTestCase):
+    def notes(self, text, *arguments):
+        """Those of a deck's run, each of which the console has told once too; the check of the deck tells those that need no solve."""
+        (self.folder / "deck.yaml").write_text("deck:" + text)
+        result = self.rpc("--input=deck.yaml", "--output=out", *arguments)
+        notes = json.loads((self.folder / "out" / "deck.json").read_text())["notes"]
+        told = [line for line in result.stdout.splitlines() if line.startswith("note: ")]
+        for line in told:
+            self.assertIn(line[len("note: "):], notes)
+        self.assertEqual(len(told), len(set(told)))
+        checked = self.rpc("--check", "--input=deck.yaml", *arguments).stdout
+        for line in checked.splitlines():
+            if line.startswith("note: "):
+                self.assertIn(line, told)
+        self.told, self.checked = told, checked
+        return notes
+
+    def test_nothing_touches(self):
+        self.assertEqual(self.notes(PRESSED + "  Contact: {Side: bottom, Gap: 1.0}\n"), ["no point touches: the smallest gap that is left is 0.99 [m]"])
+        self.assertEqual(len(self.told), 1)
+        self.assertEqual(self.notes(PRESSED + "  Contact: {Side: bottom, Gap: 1.0}\n  Units: {Length: mm, Force: N}\n"),
+                         ["no point touches: the smallest gap that is left is 0.99 [mm]"])
+        self.assertEqual(self.notes(PRESSED + "  Contact: {Side: bottom, Gap: 0.005}\n"), [])
+
+    def test_nothing_touches_at_any_of_several_steps(self):
+        steps = "  Contact: {Side: bottom, Gap: GAP}\n  Steps: {Times: [1.0, 2.0, 3.0]}\n"
+        down_and_up = BODY + '  Dirichlet: {top: {X: 0.0, Y: "-0.01*(2 - abs(t - 2))"}}\n' + steps
+        self.assertIn("no point touches at any step: the smallest gap that is left is 0.08 [m]", self.notes(down_and_up.replace("GAP", "0.1")))
+        self.assertNotIn("no point touches", str(self.notes(down_and_up.replace("GAP", "0.015"))))  # the second step does
+
+    def test_nothing_loads_the_body(self):
+        for gap in ("0.1", "0.0"):
+            notes = self.notes(HELD + f"  Contact: {{Side: bottom, Gap: {gap}}}\n  Traction: {{right: {{X: 0.0}}}}\n")
+            self.assertEqual(notes, ["no load, no prescribed displacement but 0 and no initial penetration: nothing happens"])
+            self.assertIn(NOTHING, self.checked)
+        notes = self.notes(HELD + '  Contact: {Side: bottom}\n  Body Force: {Y: "0*t"}\n  Steps: {Times: [1.0, 2.0]}\n')
+        self.assertEqual(len(notes), 1)
+        self.assertIn(NOTHING, notes[0])
+        for loaded in ("  Contact: {Side: bottom, Gap: -0.001}\n", "  Contact: {Side: bottom}\n  Body Force: {Y: -1.0}\n",
+                       '  Contact: {Side: bottom}\n  Traction: {left: {X: "t - 1"}}\n  Steps: {Times: [1.0, 2.0]}\n'):
+            self.assertNotIn(NOTHING, str(self.notes(HELD + loaded)))
+
+    def test_an_obstacle_reaches_through_the_body(self):
+        plane = "  Contact: {Side: bottom, Obstacle: {Type: plane, Point: [0.0, HEIGHT], Normal: [0.0, 1.0]}}\n"
+        notes = self.notes(HELD + plane.replace("HEIGHT", "5.0"))
+        self.assertEqual([note for note in notes if OVERLAP in note],
+                         ['the obstacle of "Contact" overlaps the body by 5 [m], more than the body is thick along the contact normal (1 [m]): '
+                          "does it lie where it should?"])
+        self.assertIn(OVERLAP, self.checked)
+        self.assertNotIn(OVERLAP, str(self.notes(HELD + plane.replace("HEIGHT", "0.9"))))
+        self.assertIn('the foundation of "Contact" overlaps the body by 1.5 [m]', str(self.notes(HELD + "  Contact: {Side: bottom, Gap: -1.5}\n")))
+
+    def test_an_obstacle_that_moves_reaches_through_the_body_at_one_of_the_steps(self):
+        notes = [note for note in self.notes(HELD + RISING) if OVERLAP in note]
+        self.assertEqual(len(notes), 1)
+        self.assertTrue(notes[0].startswith('at t = 2: the obstacle of "Contact" overlaps the body by 3 [m]'), notes)
+        lifted = BODY + '  Dirichlet: {top: {X: 0.0, Y: "3*(t - 1) - 0.001"}}\n' + RISING
+        self.assertNotIn(OVERLAP, str(self.notes(lifted)))
+
+    def test_one_step_does_not_know_the_path_of_friction(self):
+        for law in ("Friction Coefficient: 0.3", "Friction Bound: 0.1"):
+            contact = f"  Contact: {{Side: bottom, {law}}}\n"
+            notes = self.notes(PRESSED + contact)
+            self.assertEqual(len(notes), 1)
+            self.assertIn(PATH, notes[0])
+            self.assertIn('"Steps->Times"', notes[0])
+            self.assertEqual(self.notes(PRESSED + contact + "  Steps: {Times: [0.5, 1.0]}\n"), [])
+        self.assertEqual(self.notes(PRESSED + "  Contact: {Side: bottom}\n"), [])
+
+    def test_a_list_of_conditions_has_none(self):
+        notes = self.notes(BODY + "  Dirichlet: {}\n  Traction: {}\n  Contact: {Side: bottom, Stiffness: 1.0e+5, Friction Bound: 1.0}\n"
+                           "  Body Force: {Y: -1.0}\n")
+        self.assertIn('"Dirichlet" of the deck has no entries: nothing is held by it', notes)
+        self.assertIn('"Traction" of the deck has no entries: nothing is loaded by it', notes)
+
+    def test_other_notes_are_in_the_summary_too(self):
+        body = PRESSED.replace("Cells: [4, 4]", "Cells: [4, 4], Element: P1").replace("0.3", "0.45").replace("-0.01", "-0.5")
+        notes = self.notes(body + "  Contact: {Side: bottom, Yield Stress: 1.0e+4}\n")
+        for part in ("P1 triangles lock", "strains reach"):
+            self.assertIn(part, str(notes))
+
+
+class Check(RpcTestCase):
+    def expect(self, found, *arguments, code=0):
+        result = self.rpc("--check", *arguments, "--output=out", code=code)
+        self.assertIn(f"nothing wrong with it: {found}\n", result.stdout)
+        self.assertNotIn("newton", result.stdout)
+        self.assertNotIn("Newton", result.stdout)
+        self.assertEqual(files(self.folder), [])
+
+    def test_it_tells_what_there_is_to_solve(self):
+        self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL)
+        self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Steps->Times={1,2}")
+        self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Adapt->Target Relative Error=0.1")
+        self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Adapt->Target Relative Error=0.1", "--set=Steps->Times={1,2}")
+        self.expect("210 dofs, 0 contact points", "--input=beam.xml", SMALL, "--set=Contact->Side=")
+
+    def test_it_leaves_a_run_and_its_results_alone(self):
+        self.solve("--set=Steps->Times={1,2}", "--set=Steps->Checkpoint Every=1")
+        before = {file: (self.folder / "out" / file).stat().st_mtime_ns for file in files(self.folder / "out")}
+        more = ["--input=beam.xml", SMALL, "--output=out", "--set=Steps->Times={1,2,3}", "--set=Steps->Checkpoint Every=1", "--restart"]
+        result = self.rpc("--check", *more)
+        self.assertIn("note: goes on after ", result.stdout)
+        self.assertIn("nothing wrong with it: 210 dofs, 21 contact points", result.stdout)
+        other = self.rpc("--check", *more, "--set=Material->Young's Modulus=2001", code=2)
+        self.assertIn("Material->Young's Modulus", errors(other)[0])
+        after = {file: (self.folder / "out" / file).stat().st_mtime_ns for file in files(self.folder / "out")}
+        self.assertEqual(after, before)
+
+    @unittest.skipIf(RANKS > 1, "needs one rank: rank 0 reads the file")
+    def test_it_makes_the_mesh(self):
+        (self.folder / "body.geo").write_text('Rectangle(1) = {0, 0, 0, 1, 1}; Physical Surface("body") = {1};\n')
+        (self.folder / "deck.yaml").write_text("deck:\n  Mesh: {Type: gmsh, File: body.geo}\n  Material: {Young's Modulus: 1.0, Poisson's Ratio: 0.3}\n")
+        asked, checked = self.rpc("--input=deck.yaml", code=3), self.rpc("--check", "--input=deck.yaml", code=3)
+        self.assertEqual(errors(asked), errors(checked))
+
+
+if __name__ == "__main__":
+    unittest.main()
