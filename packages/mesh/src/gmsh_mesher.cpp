@@ -165,14 +165,27 @@ void set_field_options(const GmshRequest &request)
   }
 }
 
+struct EntityElements {
+  std::vector<int> types;
+  std::vector<std::vector<std::size_t>> tags, nodes;
+};
+
+EntityElements elements_of(const int dim, const int entity)
+{
+  EntityElements elements;
+  gmsh::model::mesh::getElements(elements.types, elements.tags, elements.nodes, dim, entity);
+  return elements;
+}
+
 /// @param asked  tags of curves
-/// @return the tag of another one, 0 if there is none but copies of others
+/// @return the tag of another one that is divided, 0 if there is none but copies of others
 int curve_that_asked_for_no_size(const std::set<int> &asked)
 {
   gmsh::vectorpair curves;
   gmsh::model::getEntities(curves, 1);
   for (const auto &[dim, curve] : curves) {
-    if (asked.count(curve)) continue;
+    if (asked.count(curve) || elements_of(1, curve).types.empty())
+      continue; // the latter is a point, such as a sphere's pole
     int master = curve;
     std::vector<std::size_t> nodes, master_nodes;
     std::vector<double> transformation;
@@ -324,18 +337,6 @@ void add_box(const GmshRequest &request)
     add_plane_box(request);
   else
     add_box_in_space(request);
-}
-
-struct EntityElements {
-  std::vector<int> types;
-  std::vector<std::vector<std::size_t>> tags, nodes;
-};
-
-EntityElements elements_of(const int dim, const int entity)
-{
-  EntityElements elements;
-  gmsh::model::mesh::getElements(elements.types, elements.tags, elements.nodes, dim, entity);
-  return elements;
 }
 
 /// Adds a group with the elements on some entities.

@@ -271,5 +271,16 @@ TEST(SizeFieldInSpace, Refusals)
   });
 }
 
+TEST(SizeFieldInSpace, ReachesBodiesWithCurvesWithoutLength)
+{
+  const std::string kernel = "SetFactory(\"OpenCASCADE\");\n";
+  for (const std::string body : {"Sphere(1) = {0, 0, 0, 1};\n", "Cone(1) = {0, 0, 0, 0, 0, 1, 0.5, 0};\n"}) {
+    const ScratchFile file("poles.geo", kernel + body + "MeshSize{:} = 1;\n");
+    const auto coarse = made(GmshOptions{file.path(), 1, 1}, constant(.5));
+    const auto fine = made(GmshOptions{file.path(), 1, 1}, constant(.25));
+    EXPECT_GT(fine.num_cells(), 4 * coarse.num_cells()) << body;
+  }
+}
+
 } // namespace
 } // namespace size_field_in_space_test
