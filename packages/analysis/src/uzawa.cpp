@@ -1,5 +1,6 @@
 #include "rpc/analysis/uzawa.hpp"
 
+#include "rpc/core/causes.hpp"
 #include "rpc/core/interrupt.hpp"
 
 #include <cmath>
@@ -10,8 +11,9 @@ namespace rpc::analysis
 namespace
 {
 
-constexpr double fast = 0.1;           // an update that leaves more of the largest residual calls for a higher penalty
-constexpr double near_solution = 1e-3; // residuals below it can be rounding
+constexpr double fast = 0.1; // an update that leaves more of the largest residual calls for a higher penalty
+constexpr double of_rounding =
+    10; // forces out of balance by so many times what rounding makes are rounding; doc/robustness.md
 constexpr double fast_with_bounds = 0.8; // the same of some updates of friction's bounds
 
 std::string verdict(const UzawaResult &result, const UzawaOptions &options)
@@ -28,29 +30,41 @@ std::string verdict(const UzawaResult &result, const UzawaOptions &options)
 } // namespace
 
 bool is_over(UzawaResult &result, const Minimization &found, const double previous, const UzawaOptions &options,
-             const Comm &comm, const std::function<bool()> &raise_penalty)
+             const Comm &comm, const std::function<bool()> &raise_penalty, const std::function<double()> &rounding)
 {
-  const auto ends = [&](const bool converged, const std::string &reason) {
+  const auto ends = [&](const bool converged, const std::string &cause) {
     result.converged = converged;
-    result.reason = reason.empty() ? verdict(result, options) : reason;
+    result.friction_unsettled = !converged && found.bounds_follow;
+    result.reason = verdict(result, options);
+    if (!cause.empty()) result.reason += ": " + cause;
+    return true;
+  };
+  const auto ends_with = [&](const Cause &cause) {
+    ends(false, because(cause));
+    if (!found.converged && !found.reason.empty()) result.reason = found.reason;
     return true;
   };
   const bool holds = result.residuals.holds(options.tolerance);
   const bool changes = result.multiplier_change >= options.tolerance;
   if (holds && (options.test == UzawaTest::optimality || !changes)) return ends(true, "");
   const bool last = result.iterations == options.max_iterations;
-  if (holds) return last && ends(false, "");
-  if (interrupted(comm))
-    return ends(false, interruption() + " in Uzawa iteration " + std::to_string(result.iterations));
+  if (holds) return last && ends(false, because(causes::uzawa_iterations));
+  if (interrupted(comm)) {
+    result.reason = interruption() + " in Uzawa iteration " + std::to_string(result.iterations);
+    return true;
+  }
   const double worst = result.residuals.worst();
-  const bool slow = result.iterations > 1 && !(worst <= (found.bounds_follow ? fast_with_bounds : fast) * previous);
+  const double good = found.bounds_follow ? fast_with_bounds : fast;
+  const bool slow = result.iterations > 1 && !(worst <= good * previous && std::isfinite(worst));
   const bool raised = slow && !found.bounds_follow && raise_penalty(); // (5.12)
   // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from, while that helps.
-  if ((slow && !raised) || std::isnan(worst))
-    return ends(false, found.converged ? verdict(result, options) + ": more iterations do not help" +
-                                             (worst < near_solution ? ", what remains is rounding" : "")
-                                       : found.reason);
-  return last && ends(false, "");
+  if ((slow && !raised) || std::isnan(worst)) {
+    const double unbalanced = result.residuals.equilibrium_residual;
+    if (unbalanced > options.tolerance && unbalanced <= of_rounding * rounding())
+      return ends(false, because(causes::rounding));
+    return ends_with(found.bounds_follow ? causes::stuck_by_friction : causes::stuck);
+  }
+  return last && ends_with(causes::uzawa_iterations);
 }
 
 } // namespace rpc::analysis

@@ -1,6 +1,7 @@
 #include "rpc/analysis/uzawa.hpp"
 
 #include "foundation_scene.hpp"
+#include "rpc/core/causes.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -31,6 +32,8 @@ struct Stubbed {
   Scene scene{given_penalty};
   RCP<Vector> u = scene.vector(0, 0), step = scene.vector(0.05, 0.4);
   UzawaOptions options;
+  double unbalanced = 0;
+  double rounding = 0;           ///< the equilibrium residual that it makes
   std::vector<double> penalties; ///< the largest one at each minimization
 
   UzawaResult run(const Residuals &residuals, const Minimization &inner)
@@ -44,10 +47,12 @@ struct Stubbed {
       const double previous = result.residuals.worst();
       result.residuals.kkt_residual =
           penalties.size() <= residuals.size() ? residuals[penalties.size() - 1] : residuals.back();
+      result.residuals.equilibrium_residual = unbalanced;
       result.newton_iterations.push_back(inner.steps);
       ++result.iterations;
-      over = analysis::is_over(result, inner, previous, options, scene.d.mesh->comm(),
-                               [&] { return iterate.raise_penalty(*u); });
+      over = analysis::is_over(
+          result, inner, previous, options, scene.d.mesh->comm(), [&] { return iterate.raise_penalty(*u); },
+          [&] { return rounding; });
     }
     return result;
   }
@@ -129,6 +134,29 @@ TEST(Uzawa, EndsAtOnceWhereNumbersAreNotFinite)
   EXPECT_FALSE(result.converged);
   EXPECT_EQ(result.reason, at_rounding.reason);
   EXPECT_EQ(result.iterations, 1);
+}
+
+TEST(Uzawa, ResidualsWithoutBoundAreNoHeadway)
+{
+  Stubbed stubbed;
+  const auto result = stubbed.run({std::numeric_limits<double>::infinity()}, at_rounding);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.reason, at_rounding.reason);
+  EXPECT_LT(result.iterations, 10);
+}
+
+TEST(Uzawa, SaysRoundingWhereItIsMeasured)
+{
+  for (const double rounding : {1e-4, 1e-6}) {
+    Stubbed stubbed;
+    stubbed.rounding = rounding;
+    stubbed.unbalanced = 1e-4;
+    const auto result = stubbed.run({1e-3}, converged);
+    EXPECT_FALSE(result.converged);
+    const Cause &cause = rounding < 1e-5 ? causes::stuck : causes::rounding;
+    for (const char *const part : {cause.said, cause.remedy})
+      EXPECT_NE(result.reason.find(part), std::string::npos) << result.reason;
+  }
 }
 
 TEST(Uzawa, ThePapersTestAsksForMultipliersAtRestAsWell)

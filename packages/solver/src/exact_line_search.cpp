@@ -1,5 +1,6 @@
 #include "rpc/solver/exact_line_search.hpp"
 
+#include "rpc/core/causes.hpp"
 #include "rpc/solver/newton_group.hpp"
 
 #include <NOX_Solver_Generic.H>
@@ -107,8 +108,7 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
     if (directions.size() > most_earlier_) directions.erase(directions.begin());
     earlier_ = std::move(directions);
   }
-  if (!(step > 0) && context.failure.empty())
-    context.failure = "the functional does not fall along the Newton direction";
+  if (!(step > 0) && context.failure.empty()) context.failure = because(causes::no_descent);
   return step > 0;
 }
 

@@ -1,113 +1,40 @@
 #include "rpc/solver/newton.hpp"
 
+#include "nox_line_search.hpp"
+#include "rpc/core/causes.hpp"
 #include "rpc/core/error.hpp"
-#include "rpc/core/interrupt.hpp"
 #include "rpc/core/message.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/solver/exact_line_search.hpp"
 #include "rpc/solver/sweep_direction.hpp"
+#include "status_tests.hpp"
 
 #include <NOX.H>
 #include <NOX_Abstract_PrePostOperator.H>
 #include <NOX_Solver_LineSearchBased.H>
-#include <NOX_StatusTest_Factory.H>
 #include <Teuchos_TimeMonitor.hpp>
 #include <Teuchos_oblackholestream.hpp>
 #include <algorithm>
+#include <array>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace rpc::solver
 {
 namespace
 {
 
+/// Methods that a deck may choose. NOX's other directions want the transpose or the inverse of a Jacobian, or creep without a
+/// preconditioner; its other line searches want vectors, which no deck has.
+constexpr std::array directions{"Active Set", "Sweep", "Newton"};
+constexpr std::array line_searches{"Exact", "Full Step", "Backtrack", "Polynomial", "More'-Thuente", "NonlinearCG"};
+
 constexpr const char *passed_to_nox[] = {"Line Search", "Direction", "Printing", "Solver Options", "Status Tests"};
 
 // So many steps are ordinary. Each direction takes a vector, and a product with K for each step after that. With five a slender
 // body takes 75 steps instead of 53; twenty add nothing.
 constexpr int most_earlier_directions = 9;
-
-/// The stopping test of the paper's section 4, |full Newton step| / |u| < tolerance. The full step, not the one that the line search
-/// shortened: a short step is no sign of convergence.
-class StepTest : public NOX::StatusTest::Generic
-{
-public:
-  StepTest(RCP<NewtonContext> context, const double tolerance) : context_(std::move(context)), tolerance_(tolerance) {}
-
-  NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic &solver, NOX::StatusTest::CheckType) override
-  {
-    status_ = NOX::StatusTest::Unconverged;
-    if (solver.getNumIterations() > 0) {
-      ratio_ = context_->direction_norm / context_->functional.size(tpetra(solver.getSolutionGroup().getX()));
-      if (ratio_ < tolerance_) status_ = NOX::StatusTest::Converged;
-    }
-    return status_;
-  }
-  NOX::StatusTest::StatusType getStatus() const override { return status_; }
-  std::ostream &print(std::ostream &out, const int indent) const override
-  {
-    return out << std::string(indent, ' ') << status_ << "|step|/|u| = " << ratio_ << " < " << tolerance_ << "\n";
-  }
-
-private:
-  RCP<NewtonContext> context_;
-  double tolerance_, ratio_ = 0;
-  NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
-};
-
-/// Stops where rounding ends Newton's progress: two more full steps on the same piece, and the residual does not fall.
-class StagnationTest : public NOX::StatusTest::Generic
-{
-public:
-  explicit StagnationTest(RCP<NewtonContext> context) : context_(std::move(context)) {}
-
-  NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic &solver, NOX::StatusTest::CheckType) override
-  {
-    const auto &group = solver.getSolutionGroup();
-    const auto piece = context_->functional.piece(tpetra(group.getX()));
-    const bool falls = solver.getNumIterations() == 0 || group.getNormF() < 0.9 * least_residual_;
-    const bool same = piece == piece_ && context_->step_length > 0.5;
-    idle_steps_ = same && !falls ? idle_steps_ + 1 : 0;
-    status_ = idle_steps_ >= 2 ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
-    least_residual_ = falls || !same ? group.getNormF() : std::min(least_residual_, group.getNormF());
-    piece_ = piece;
-    if (status_ == NOX::StatusTest::Failed && context_->failure.empty())
-      context_->failure = "the residual stagnates: the scene is too ill-conditioned for this accuracy";
-    return status_;
-  }
-  NOX::StatusTest::StatusType getStatus() const override { return status_; }
-  std::ostream &print(std::ostream &out, const int indent) const override
-  {
-    return out << std::string(indent, ' ') << status_ << "residual falls, or the piece changes\n";
-  }
-
-private:
-  RCP<NewtonContext> context_;
-  double least_residual_ = 0; // since the piece last changed
-  std::uint64_t piece_ = 0;
-  int idle_steps_ = 0;
-  NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
-};
-
-/// Fails as soon as the run is to stop.
-class InterruptTest : public NOX::StatusTest::Generic
-{
-public:
-  NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic &solver, NOX::StatusTest::CheckType) override
-  {
-    const auto &u = tpetra(solver.getSolutionGroup().getX());
-    status_ = interrupted(*u.getMap()->getComm()) ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
-    return status_;
-  }
-  NOX::StatusTest::StatusType getStatus() const override { return status_; }
-  std::ostream &print(std::ostream &out, const int indent) const override
-  {
-    return out << std::string(indent, ' ') << status_ << "no interrupt\n";
-  }
-
-private:
-  NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
-};
 
 /// Tells the console about each step.
 class Reporter : public NOX::Abstract::PrePostOperator
@@ -141,37 +68,54 @@ private:
   NewtonReport report_;
 };
 
-/// "Direction" -> "Method" of the deck's list for NOX.
-std::string direction_method(const Teuchos::ParameterList &nox)
+/// "Method" of the deck's list `name` for NOX, "" if it is no text; the first of `methods` is the default.
+template <std::size_t N>
+std::string method_of(const Teuchos::ParameterList &nox, const char *const name,
+                      const std::array<const char *, N> &methods)
 {
-  if (!nox.isSublist("Direction")) return "Active Set";
-  const Teuchos::ParameterList &direction = nox.sublist("Direction");
-  if (!direction.isParameter("Method")) return "Active Set";
-  return direction.isType<std::string>("Method") ? direction.get<std::string>("Method") : "";
+  if (!nox.isSublist(name) || !nox.sublist(name).isParameter("Method")) return methods[0];
+  const Teuchos::ParameterList &list = nox.sublist(name);
+  return list.isType<std::string>("Method") ? list.get<std::string>("Method") : "";
 }
 
-RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
-                                     const RCP<NOX::Abstract::PrePostOperator> &reporter)
+/// @throws rpc::Error (bad_input) if a method of the deck cannot be used
+template <std::size_t N>
+void require_method(const Teuchos::ParameterList &nox, const char *const name,
+                    const std::array<const char *, N> &methods, const char *const why)
+{
+  const std::string method = method_of(nox, name, methods);
+  RPC_REQUIRE(std::find(methods.begin(), methods.end(), method) != methods.end(),
+              "deck: \"NOX->" << name << "->Method\" must be one of "
+                              << join(std::vector<std::string>(methods.begin(), methods.end())) << ", got \"" << method
+                              << "\": " << why);
+}
+
+/// What NOX is given.
+struct NoxLists {
+  RCP<Teuchos::ParameterList> all, line_search; ///< that is read from the latter
+};
+
+NoxLists nox_lists(const Teuchos::ParameterList &user, const RCP<NOX::Abstract::PrePostOperator> &reporter)
 {
   const auto list = Teuchos::parameterList("NOX");
   list->set("Nonlinear Solver", "Line Search Based");
   list->sublist("Printing").set("Output Information", 0);
   list->sublist("Printing")
       .set<RCP<std::ostream>>("Output Stream", rcp(new Teuchos::oblackholestream)); // else it warns
-  list->sublist("Line Search").set("Method", "Exact");
-  list->sublist("Direction").set("Method", "Active Set");
+  list->sublist("Line Search").set("Method", line_searches[0]);
+  list->sublist("Direction").set("Method", directions[0]);
   if (user.isSublist("Printing")) list->remove("Printing");
   list->setParameters(user);
   list->remove("Status Tests", false);
-  const std::string method = direction_method(*list);
-  const bool own_direction = method == "Active Set" || method == "Sweep";
-  Teuchos::ParameterList &search = list->sublist("Line Search");
-  if (search.isType<std::string>("Method") && search.get<std::string>("Method") == "Exact") {
-    search.set("Method", "User Defined");
-    search.set<RCP<NOX::LineSearch::UserDefinedFactory>>(
-        "User Defined Line Search Factory",
-        rcp(new ExactLineSearchFactory(own_direction ? most_earlier_directions : 0)));
-  }
+  const std::string method = method_of(*list, "Direction", directions);
+  const bool own_direction = method != "Newton";
+  const auto read = Teuchos::parameterList(list->sublist("Line Search"));
+  RCP<NOX::LineSearch::UserDefinedFactory> search = rcp(new NoxLineSearchFactory(read));
+  if (method_of(*list, "Line Search", line_searches) == "Exact")
+    search = rcp(new ExactLineSearchFactory(own_direction ? most_earlier_directions : 0));
+  list->sublist("Line Search").set("Method", "User Defined");
+  list->sublist("Line Search")
+      .set<RCP<NOX::LineSearch::UserDefinedFactory>>("User Defined Line Search Factory", search);
   Teuchos::ParameterList &direction = list->sublist("Direction");
   RCP<NOX::Direction::UserDefinedFactory> factory;
   if (method == "Active Set") factory = rcp(new StagedDirectionFactory);
@@ -181,27 +125,9 @@ RCP<Teuchos::ParameterList> nox_list(const Teuchos::ParameterList &user,
     direction.set<RCP<NOX::Direction::UserDefinedFactory>>("User Defined Direction Factory", factory);
   }
   list->sublist("Solver Options").set("User Defined Pre/Post Operator", reporter);
-  return list;
-}
-
-RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const RCP<NewtonContext> &context)
-{
-  using namespace NOX::StatusTest;
-  const RCP<Combo> tests = rcp(new Combo(Combo::OR));
-  tests->addStatusTest(rcp(new FiniteValue));
-  tests->addStatusTest(rcp(new InterruptTest));
-  if (options.nox.isSublist("Status Tests")) { // the user's, instead of ours
-    Teuchos::ParameterList list = options.nox.sublist("Status Tests");
-    tests->addStatusTest(buildStatusTests(list, NOX::Utils()));
-    return tests;
-  }
-  const RCP<Combo> newton = rcp(new Combo(Combo::OR));
-  newton->addStatusTest(rcp(new NormF(context->target_residual, NOX::Abstract::Vector::TwoNorm, NormF::Unscaled)));
-  newton->addStatusTest(rcp(new StepTest(context, options.step_tolerance)));
-  newton->addStatusTest(rcp(new StagnationTest(context)));
-  tests->addStatusTest(rcp(new StagedTest(context, newton)));
-  tests->addStatusTest(rcp(new MaxIters(options.max_iterations)));
-  return tests;
+  list->sublist("Solver Options")
+      .set<RCP<NOX::MeritFunction::Generic>>("User Defined Merit Function", rcp(new FunctionalMerit));
+  return {list, read};
 }
 
 /// NOX passes over names that it does not know: they stay unread.
@@ -221,14 +147,17 @@ void require_read(const Teuchos::ParameterList &given, const Teuchos::ParameterL
 
 /// @throws rpc::Error (bad_input) if NOX refuses the user's parameters
 RCP<NOX::Solver::Generic> build_solver(const RCP<NewtonGroup> &group, const NewtonOptions &options,
-                                       const RCP<NewtonContext> &context, const RCP<Teuchos::ParameterList> &list)
+                                       const RCP<NewtonContext> &context, const NoxLists &lists)
 {
   std::string reason;
   try {
-    const auto solver = NOX::Solver::buildSolver(group, status_tests(options, context), list);
-    for (const char *name : {"Line Search", "Direction", "Printing", "Solver Options"})
+    const auto solver = NOX::Solver::buildSolver(group, status_tests(options, context), lists.all);
+    for (const char *name : {"Line Search", "Direction", "Printing", "Solver Options"}) {
+      const bool searches = name == std::string("Line Search");
       if (options.nox.isSublist(name))
-        require_read(options.nox.sublist(name), list->sublist(name), std::string("NOX->") + name);
+        require_read(options.nox.sublist(name), searches ? *lists.line_search : lists.all->sublist(name),
+                     std::string("NOX->") + name);
+    }
     return solver;
   } catch (const Error &) {
     throw;
@@ -239,6 +168,28 @@ RCP<NOX::Solver::Generic> build_solver(const RCP<NewtonGroup> &group, const Newt
     reason = failure;
   }
   throw Error(ExitCode::bad_input, "deck: \"NOX\": " + reason);
+}
+
+/// What has failed, by the table of causes.
+std::string why(const NewtonContext &context, const NewtonOptions &options, const Teuchos::ParameterList &search)
+{
+  const std::string method = method_of(options.nox, "Line Search", line_searches);
+  std::ostringstream figures;
+  figures << "\"NOX->Line Search->Method\" = " << method;
+  if (context.failed_searches > 0) {
+    figures << ", in " << context.failed_searches << " of " << context.searches << " searches";
+    const Teuchos::ParameterList none;
+    const Teuchos::ParameterList &read = search.isSublist(method) ? search.sublist(method) : none;
+    for (const char *const name : {"Minimum Step", "Recovery Step"})
+      if (read.isType<double>(name)) figures << ", " << name << " " << read.get<double>(name);
+    return because(causes::no_lower_step, figures.str());
+  }
+  if (method != "Exact" && context.returns > 0) {
+    figures << ", " << context.returns << " returns";
+    return because(causes::circles, figures.str());
+  }
+  if (context.stagnates) return because(causes::stagnation);
+  return because(options.nox.isSublist("Status Tests") ? causes::status_tests : causes::newton_steps);
 }
 
 } // namespace
@@ -255,12 +206,13 @@ Teuchos::ParameterList valid_newton_parameters()
         std::string("Handed to NOX as it is.") +
             (name == std::string("Line Search")
                  ? " `Method` = `Exact` (default) minimizes the functional along the step exactly, with `Active Set` "
-                   "and `Sweep` from the second step on also within the span of the last ten directions; `Full Step` "
-                   "and NOX's others work as in NOX."
+                   "and `Sweep` from the second step on also within the span of the last ten directions. `Full Step`, "
+                   "`Backtrack`, `Polynomial`, `More'-Thuente` and `NonlinearCG` are NOX's; what they lower is the "
+                   "functional. Steps of the active set are full."
              : name == std::string("Direction")
                  ? " `Method` = `Active Set` (default): steps of the primal-dual active-set iteration, then "
                    "those of `Sweep`, Newton's directions, each after a nonlinear sweep over the contact "
-                   "nodes. `Newton` and NOX's others work as in NOX."
+                   "nodes. `Newton` works as in NOX; NOX's others cannot be used."
                  : ""));
   return valid;
 }
@@ -276,6 +228,10 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
               "deck: \"NOX->Residual Tolerance\" must be > 0, got " << options.residual_tolerance);
   RPC_REQUIRE(options.max_iterations > 0,
               "deck: \"NOX->Maximum Iterations\" must be > 0, got " << options.max_iterations);
+  require_method(list, "Direction", directions,
+                 "NOX's other methods need the transpose or the inverse of a Jacobian, or do not get far without one");
+  require_method(list, "Line Search", line_searches,
+                 "NOX's other line searches need a vector, which a deck cannot give");
   for (const char *name : passed_to_nox)
     if (list.isSublist(name) && list.sublist(name).numParams() > 0) options.nox.sublist(name) = list.sublist(name);
   return options;
@@ -283,7 +239,7 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
 
 bool takes_first_stage(const NewtonOptions &options)
 {
-  return direction_method(options.nox) == "Active Set";
+  return method_of(options.nox, "Direction", directions) == "Active Set";
 }
 
 void check_nox_parameters(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
@@ -292,7 +248,7 @@ void check_nox_parameters(ConvexFunctional &functional, LinearSolver &linear_sol
   if (options.nox.numParams() == 0) return;
   const auto context = rcp(new NewtonContext{functional, linear_solver});
   const auto reporter = rcp(new Reporter(context, 1, [](const NewtonStep &, const Vector &) {}));
-  build_solver(rcp(new NewtonGroup(context, u)), options, context, nox_list(options.nox, reporter));
+  build_solver(rcp(new NewtonGroup(context, u)), options, context, nox_lists(options.nox, reporter));
 }
 
 MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
@@ -303,13 +259,13 @@ MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solve
   const auto context = rcp(new NewtonContext{functional, linear_solver, options.residual_tolerance * scale});
   if (takes_first_stage(options)) context->stage = stage;
   const auto reporter = rcp(new Reporter(context, scale, report));
-  const auto list = nox_list(options.nox, reporter);
+  const auto lists = nox_lists(options.nox, reporter);
   const auto group = rcp(new NewtonGroup(context, u));
 
   MinimizeResult result;
   try {
     group->computeF(); // so that the start is reported with its residual
-    const auto solver = build_solver(group, options, context, list);
+    const auto solver = build_solver(group, options, context, lists);
     const auto status = solver->solve();
     u->assign(tpetra(solver->getSolutionGroup().getX()));
     result.steps = context->steps > 0 ? context->steps : solver->getNumIterations();
@@ -327,10 +283,11 @@ MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solve
   if (!result.converged) {
     std::ostringstream reason;
     reason << "Newton did not converge in " << result.steps << (result.steps == 1 ? " step" : " steps");
-    if (!context->failure.empty())
-      reason << "; " << context->failure;
-    else if (!result.reason.empty())
-      reason << "; " << result.reason;
+    for (const std::string &cause : {context->failure, result.reason, why(*context, options, *lists.line_search)})
+      if (!cause.empty()) {
+        reason << "; " << cause;
+        break;
+      }
     result.reason = reason.str();
   }
   return result;

@@ -1,5 +1,6 @@
 #include "rpc/solver/newton_group.hpp"
 
+#include "rpc/core/causes.hpp"
 #include "rpc/core/finite.hpp"
 
 #include <algorithm>
@@ -25,6 +26,7 @@ NewtonGroup::NewtonGroup(const NewtonGroup &source, const NOX::CopyType type)
 void NewtonGroup::invalidate()
 {
   has_F_ = has_jacobian_ = has_newton_ = false;
+  step_ = 0;
 }
 
 NOX::Abstract::Group &NewtonGroup::operator=(const NOX::Abstract::Group &source)
@@ -54,6 +56,7 @@ void NewtonGroup::computeX(const NOX::Abstract::Group &from, const NOX::Abstract
 {
   invalidate();
   u_.update(1., from.getX(), step, d, 0.);
+  context_->step_length = step_ = step; // of a line search the last one
 }
 
 NOX::Abstract::Group::ReturnType NewtonGroup::computeF()
@@ -86,7 +89,9 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
                                           std::max(rough, 0.1 * context_->target_residual / norm_F_));
   ++context_->steps;
   newton_->scale(-1.);
-  context_->failure = result.reason;
+  const bool has_cause = !result.interrupted && std::isfinite(context_->direction_norm);
+  context_->failure =
+      result.reason.empty() || !has_cause ? result.reason : because(causes::linear_solver, result.reason);
   has_newton_ = true;
   return std::isfinite(context_->direction_norm) && !result.broken ? (result.converged ? Ok : NotConverged) : Failed;
 }

@@ -1,7 +1,9 @@
 #include "rpc/solver/newton.hpp"
 
+#include "../src/nox_line_search.hpp"
 #include "beam.hpp"
 #include "kinked_line.hpp"
+#include "rpc/core/causes.hpp"
 #include "rpc/solver/exact_line_search.hpp"
 
 #include <Tpetra_Core.hpp>
@@ -80,9 +82,93 @@ TEST(Newton, FullStepsCycleWhereExactStepsConverge)
     }
     EXPECT_FALSE(with_full.converged);
     EXPECT_EQ(with_full.steps, 30);
+    EXPECT_NE(with_full.reason.find(causes::circles.said), std::string::npos) << with_full.reason;
+    EXPECT_NE(with_full.reason.find("Full Step"), std::string::npos) << with_full.reason;
     EXPECT_GT(std::count(states.begin(), states.end(), states.back()), 1)
         << "the states of the last step came before: a cycle";
   }
+}
+
+TEST(Newton, LineSearchesOfNoxLowerTheFunctional)
+{
+  for (const char *const method : {"Backtrack", "Polynomial", "More'-Thuente"}) {
+    Beam beam({}, below(ScalarField(16.), 1e8)), exact({}, below(ScalarField(16.), 1e8));
+    solver::NewtonOptions options;
+    options.nox.sublist("Direction").set("Method", "Newton");
+    Teuchos::ParameterList &search = options.nox.sublist("Line Search");
+    search.set("Method", method);
+    if (method == std::string("Backtrack"))
+      search.sublist(method)
+          .set("Minimum Step", 1e-4)
+          .set("Recovery Step", 1e-4); // as lists for other problems have it
+    for (int uzawa = 0; uzawa < 4; ++uzawa) {
+      const auto result = minimize(beam, options);
+      EXPECT_TRUE(result.converged) << method << ": " << result.reason;
+      EXPECT_LE(result.steps, 20) << method;
+      minimize(exact);
+      const double least = exact.iterate->value(*exact.u);
+      EXPECT_NEAR(beam.iterate->value(*beam.u), least, 1e-10 * std::abs(least)) << method;
+      beam.iterate->update_multipliers(*beam.u);
+      exact.iterate->update_multipliers(*exact.u);
+    }
+  }
+}
+
+TEST(Newton, ALineSearchThatFindsNothingIsTheReason)
+{
+  Beam beam({}, below(ScalarField(16.), 1e8));
+  solver::NewtonOptions options;
+  options.nox.sublist("Direction").set("Method", "Newton");
+  options.nox.sublist("Line Search").set("Method", "Backtrack");
+  options.nox.sublist("Line Search").sublist("Backtrack").set("Minimum Step", 0.9).set("Recovery Step", 1e-6);
+  options.max_iterations = 5;
+  solver::MinimizeResult result;
+  for (int uzawa = 0; uzawa < 4; ++uzawa) {
+    result = minimize(beam, options);
+    if (!result.converged) break;
+    beam.iterate->update_multipliers(*beam.u);
+  }
+  EXPECT_FALSE(result.converged);
+  for (const char *const part :
+       {causes::no_lower_step.said, causes::no_lower_step.remedy, "Minimum Step 0.9", "Recovery Step 1e-06"})
+    EXPECT_NE(result.reason.find(part), std::string::npos) << result.reason;
+}
+
+TEST(Newton, MethodsThatCannotBeUsedAreRefused)
+{
+  const auto refused = [](const char *const list, const char *const method, const char *const usable) {
+    Teuchos::ParameterList deck = solver::valid_newton_parameters();
+    deck.sublist(list).set("Method", method);
+    try {
+      solver::newton_options(deck);
+      ADD_FAILURE() << method;
+    } catch (const Error &error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      for (const char *const part : {list, method, usable})
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  for (const char *const method : {"Broyden", "Steepest Descent", "NonlinearCG", "User Defined", "newton"})
+    refused("Direction", method, "Active Set, Sweep, Newton");
+  for (const char *const method : {"Safeguarded Step", "User Defined"})
+    refused("Line Search", method, "Backtrack, Polynomial");
+}
+
+TEST(Rise, IsTheIntegralOfTheSlope)
+{
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const Line line(1 + seed % 5, seed);
+    const auto model = line.model(-0.01 * (seed + 1), 2);
+    constexpr int parts = 100000;
+    double sum = 0, most = 0;
+    for (int k = 0; k < parts; ++k) {
+      const double slope = model->at((k + 0.5) / parts).slope;
+      sum += slope / parts;
+      most += std::abs(slope) / parts;
+    }
+    EXPECT_NEAR(solver::rise(*model, 0, 1), sum, 2e-3 * most) << seed;
+  }
+  EXPECT_NEAR(solver::rise(*Line(0, 0).model(-3, 3), 0, 0.5), -3 * 0.5 + 3 * 0.125, 1e-15);
 }
 
 TEST(Newton, FunctionalFallsAtEveryExactStep)

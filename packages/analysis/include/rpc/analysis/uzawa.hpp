@@ -48,6 +48,7 @@ struct Minimization {
 struct UzawaResult {
   bool converged = false; ///< the optimality residuals are small enough
   std::string reason;
+  bool friction_unsettled = false; ///< it ended while friction's bounds followed the pressures, without convergence
   int iterations = 0;
   std::vector<int> newton_iterations; ///< per Uzawa iteration
   double multiplier_change = 0;       ///< of the last one, relative
@@ -60,7 +61,8 @@ struct UzawaResult {
 /// @param previous  largest residual of the iteration before, or of some iterations before where friction's bounds follow; infinite: there
 ///                  was none
 /// @param raise_penalty  asked for where an iteration was slow; returns whether anything could be raised. Collective
+/// @param rounding       asked for where nothing helps: see contact::residual_of_rounding(). Collective
 bool is_over(UzawaResult &result, const Minimization &found, double previous, const UzawaOptions &options,
-             const Comm &comm, const std::function<bool()> &raise_penalty);
+             const Comm &comm, const std::function<bool()> &raise_penalty, const std::function<double()> &rounding);
 
 } // namespace rpc::analysis

@@ -6,6 +6,7 @@
 
 #include <NOX_Abstract_Group.H>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace rpc::solver
@@ -39,9 +40,16 @@ struct NewtonContext {
   double direction_norm = 0; ///< |d|_2 of the full step
   double step_length = 1;
   bool full_step = false; ///< the line search takes the direction as it is
+  std::unique_ptr<LineFunction> searched =
+      {}; ///< while a line search of NOX's is at work: the functional along its direction
   int linear_iterations = 0;
   GO changes = 0;           ///< places where the last Hessian changed
   std::string failure = {}; ///< of the linear solver or the line search
+
+  // All steps
+  int searches = 0, failed_searches = 0; ///< by a line search of NOX's
+  int returns = 0;                       ///< steps to a piece of the functional that had been left
+  bool stagnates = false;                ///< full steps on one piece of the functional no longer lower the residual
 };
 
 /// A point of the Newton iteration: u, F(u) and the Newton direction. NOX holds two of them. doc/theory.md (4.2)
@@ -74,10 +82,14 @@ public:
   RCP<const NOX::Abstract::Vector> getXPtr() const override { return Teuchos::rcpFromRef(u_); }
   RCP<const NOX::Abstract::Vector> getFPtr() const override { return Teuchos::rcpFromRef(F_); }
   RCP<const NOX::Abstract::Vector> getNewtonPtr() const override { return newton_; }
+  ReturnType computeGradient() override { return computeF(); }
+  bool isGradient() const override { return has_F_; }
   RCP<const NOX::Abstract::Vector> getGradientPtr() const override { return getFPtr(); }
   RCP<NOX::Abstract::Group> clone(NOX::CopyType type) const override;
 
   NewtonContext &context() const { return *context_; }
+  /// Where the point lies on the line of the last computeX(); 0 after all else that sets it.
+  double step() const { return step_; }
 
 private:
   void invalidate();
@@ -85,7 +97,7 @@ private:
   RCP<NewtonContext> context_;
   NoxVector u_, F_;
   RCP<NoxVector> newton_; // null until it is asked for
-  double norm_F_ = 0;
+  double norm_F_ = 0, step_ = 0;
   bool has_F_ = false, has_jacobian_ = false, has_newton_ = false;
 };
 
