@@ -168,7 +168,9 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
                                            const std::function<void(const Problem &, const Step &)> &now)
 {
   const Remembered before = kept_;
-  StepSolution s = solve(t, options_, progress, now);
+  StepOptions options = options_;
+  options.low_penalties = left.failures == 0; // what else could be tried is to halve the step
+  StepSolution s = solve(t, options, progress, now);
   const double from = before.memory ? before.memory->time : 0; // the body is at rest at t = 0
   const double half = 0.5 * (from + t);
   Halvings then = left;

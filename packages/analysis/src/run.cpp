@@ -273,7 +273,9 @@ Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const 
       from.predict = [&] { // the coarser scenes go before the finest one is solved
         return Predictor(coarser, task.step, task.linear_solver).predict(*problem, step, nullptr);
       };
-    static_cast<StepSolution &>(s) = solve_step(*problem, step, state, task.step, from, listener.step);
+    StepOptions last_resort = task.step;
+    last_resort.low_penalties = true;
+    static_cast<StepSolution &>(s) = solve_step(*problem, step, state, last_resort, from, listener.step);
     s.body = fem::body_peaks(d, task.model.materials, *s.u);
   } else {
     LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver, coarser);

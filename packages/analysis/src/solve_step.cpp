@@ -7,6 +7,7 @@
 #include "rpc/analysis/same_active_set.hpp"
 #include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/energies.hpp"
+#include "rpc/core/causes.hpp"
 #include "rpc/core/timed.hpp"
 
 #include <algorithm>
@@ -22,30 +23,26 @@ using contact::Iterate;
 namespace
 {
 
-constexpr const char *in_want_of_friction =
-    "; without friction that follows the pressures the load moves the body, and no pressures were found that hold it: "
-    "raise the friction or what presses the body on the foundation, lower the load, or prescribe a displacement";
-
 Prediction predict(Iterate &iterate, Vector &u, const Starts &starts);
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
                       const StepOptions &options, int iteration, bool previous_confirmed,
                       const std::optional<PredictedBy> &predicted, const Progress &progress);
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
-                                   const contact::ContactState &now, SolverState &state);
+                                   const contact::ContactState &now, SolverState &state, double tolerance);
 void read_results(const Problem &problem, StepSolution &s);
 solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now);
+void add_work(const StepSolution &other, StepSolution &s);
 
-} // namespace
-
-StepSolution solve_step(const Problem &problem, const Step &step, SolverState &state, const StepOptions &options,
-                        const Starts &starts, const Progress &progress)
+StepSolution solve_with(const Problem &problem, const Step &step, SolverState &state, const StepOptions &options,
+                        const bool low_penalties, const Starts &starts, const Progress &progress)
 {
   StepSolution s;
   s.step = step;
   const auto u = rcp(new Vector(*step.elastic.dirichlet.value, Teuchos::Copy)); // seen from the iterate's origin
   Iterate iterate(step.elastic, step.contact, state.hessian());
   if (step.support.by_contact_only) iterate.hold_by_contact(); // (9.8)
+  if (low_penalties) iterate.lower_penalty();                  // (12.12a)
   std::optional<PredictedBy> predicted;                        // nothing: no coarser mesh predicts the start
   const auto counts_before = state.linear().counts();
   solver::check_nox_parameters(iterate, state.linear(), u, options.newton);
@@ -72,7 +69,8 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       uzawa.multiplier_change = found.active_set_confirmed ? iterate.take_active_set_pressures(*u)
                                                            : iterate.update_multipliers(*u); // paper (11), (5.1)
       s.state = iterate.state(*u);
-      uzawa.residuals = judge(problem, step, iterate, s.state, state); // paper (8); (5.2) - (5.5)
+      uzawa.residuals =
+          judge(problem, step, iterate, s.state, state, options.uzawa.tolerance); // paper (8); (5.2) - (5.5)
       uzawa.newton_iterations.push_back(found.steps);
       s.line_search_steps += found.line_search_steps;
       s.coarse_choices += found.coarse_choices;
@@ -81,16 +79,40 @@ StepSolution solve_step(const Problem &problem, const Step &step, SolverState &s
       if (progress.uzawa) progress.uzawa(uzawa);
       const double previous = residual_before(worst, found.bounds_follow);
       worst.push_back(uzawa.residuals.worst());
-      over = is_over(uzawa, found, previous, options.uzawa, problem.discretization().mesh->comm(),
-                     [&] { return iterate.raise_penalty(*u); }); // (5.12)
+      over = is_over(
+          uzawa, found, previous, options.uzawa, problem.discretization().mesh->comm(),
+          [&] { return iterate.raise_penalty(*u); }, // (5.12)
+          [&] {
+            return contact::residual_of_rounding(problem.discretization(), problem.model().materials,
+                                                 step.elastic.dirichlet, *s.state.displacement,
+                                                 uzawa.residuals.force_size);
+          });
     }
-    if (!uzawa.converged && step.support.by_coulomb_only) uzawa.reason += in_want_of_friction; // (12.10)
+    if (!uzawa.converged && step.support.by_coulomb_only)
+      uzawa.reason += "; " + because(causes::want_of_friction); // (12.10)
     s.u = s.state.displacement;
+    s.state.rest = Teuchos::null; // of the judgement alone
     read_results(problem, s);
   }
   s.linear = counts_since(counts_before, state.linear().counts());
   s.solve_seconds -= s.linear.setup_seconds;
   return s;
+}
+
+} // namespace
+
+StepSolution solve_step(const Problem &problem, const Step &step, SolverState &state, const StepOptions &options,
+                        const Starts &starts, const Progress &progress)
+{
+  StepSolution s = solve_with(problem, step, state, options, false, starts, progress);
+  if (!s.uzawa.friction_unsettled || !options.low_penalties) return s;
+  StepSolution again = solve_with(problem, step, state, options, true, starts, progress);
+  if (!again.uzawa.converged) {
+    add_work(again, s);
+    return s;
+  }
+  add_work(s, again);
+  return again;
 }
 
 namespace
@@ -180,7 +202,9 @@ Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOpt
     most = std::min(most, most_steps);
   }
   iterate.follow_bounds();
-  const auto result = run(nullptr, most);
+  auto result = run(nullptr, most);
+  if (result.steps == most && most < options.newton.max_iterations)
+    result.reason.clear(); // the bound is not the deck's
   return {result.converged, steps + result.steps, result.reason, false, result.steps, 0, true};
 }
 
@@ -232,11 +256,19 @@ double residual_before(const std::vector<double> &worst, const bool bounds_follo
 // Judge ----------------------------------------------------------------------------------------------------------------
 
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
-                                   const contact::ContactState &now, SolverState &state)
+                                   const contact::ContactState &now, SolverState &state, const double tolerance)
 {
-  return contact::optimality_residuals(problem.discretization(), problem.model().materials, step.elastic, step.contact,
-                                       now, iterate.force_scale(),
-                                       [&](const Vector &residual) { return state.linear().inverse_energy(residual); });
+  const auto of = [&](const contact::ContactState &judged) {
+    return contact::optimality_residuals(
+        problem.discretization(), problem.model().materials, step.elastic, step.contact, judged, iterate.force_scale(),
+        [&](const Vector &residual) { return state.linear().inverse_energy(residual); });
+  };
+  contact::ContactState rounded = now;
+  rounded.rest = Teuchos::null;
+  auto residuals = of(rounded);
+  if (now.rest.is_null() || residuals.holds(tolerance)) return residuals;
+  auto unrounded = of(now); // (5.2a)
+  return unrounded.worst() < residuals.worst() ? unrounded : residuals;
 }
 
 /// Forces with which the Dirichlet conditions hold the body. (2.11)
@@ -244,7 +276,7 @@ std::vector<std::array<double, 3>> reactions(const Problem &problem, const StepS
 {
   const fem::ElasticProblem &elastic = s.step.elastic;
   const fem::Discretization &d = problem.discretization();
-  Vector out_of_balance(*s.uzawa.residuals.internal.forces, Teuchos::Copy);
+  Vector out_of_balance(*s.uzawa.residuals.forces, Teuchos::Copy);
   out_of_balance.update(-1., *elastic.applied_load, -1., contact::contact_forces(d, s.step.contact, s.contact), 1.);
   return fem::reaction_forces(d, elastic.dirichlet, static_cast<int>(problem.model().dirichlet.size()), out_of_balance);
 }
@@ -260,6 +292,23 @@ void read_results(const Problem &problem, StepSolution &s)
   const double elastic = 0.5 * s.energy_norm_squared - s.step.elastic.applied_load->dot(*s.state.displacement); // (1.2)
   s.energy = contact::energy(elastic, s.step.contact, s.state); // paper (6); (5.14)
   s.reactions = reactions(problem, s);
+}
+
+/// s <- what another attempt at the same step took, too.
+void add_work(const StepSolution &other, StepSolution &s)
+{
+  s.prediction_seconds += other.prediction_seconds;
+  s.solve_seconds += other.solve_seconds;
+  s.line_search_steps += other.line_search_steps;
+  s.coarse_choices += other.coarse_choices;
+  s.uzawa.iterations += other.uzawa.iterations;
+  s.uzawa.newton_iterations.insert(s.uzawa.newton_iterations.end(), other.uzawa.newton_iterations.begin(),
+                                   other.uzawa.newton_iterations.end());
+  s.linear.iterations.insert(s.linear.iterations.end(), other.linear.iterations.begin(), other.linear.iterations.end());
+  s.linear.preconditioner_setups += other.linear.preconditioner_setups;
+  s.linear.local_corrections += other.linear.local_corrections;
+  s.linear.setup_seconds += other.linear.setup_seconds;
+  s.linear.solve_seconds += other.linear.solve_seconds;
 }
 
 /// What the linear solver has done since.

@@ -122,6 +122,21 @@ void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &
   Kokkos::fence();
 }
 
+/// What rounding leaves out of the sum a + b, exactly: D. Knuth's two-sum.
+RCP<const Vector> rest_of_sum(const Vector &a, const Vector &b, const Vector &sum)
+{
+  const auto rest = rcp(new Vector(sum.getMap()));
+  const auto x = device_read(a), y = device_read(b), s = device_read(sum);
+  const auto to = device_write(*rest);
+  Kokkos::parallel_for(
+      "rpc::contact::rest_of_sum", device_range(static_cast<LO>(sum.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
+        const double of_y = s(dof) - x(dof), of_x = s(dof) - of_y;
+        to(dof) = (x(dof) - of_x) + (y(dof) - of_y);
+      });
+  Kokkos::fence();
+  return rest;
+}
+
 /// This rank's (|change|^2, |lambda|^2) of lambda <- the nearest admissible p.
 std::pair<double, double> replace(const ContactNodes &c, const DeviceView<double *> &p,
                                   const DeviceView<double *> &lambda)
@@ -309,6 +324,11 @@ bool Iterate::raise_penalty(const Vector &u)
   return raised;
 }
 
+void Iterate::lower_penalty()
+{
+  lower_penalties(points_, penalty());
+}
+
 void Iterate::start_from(const ContactState &state, Vector &u)
 {
   multipliers_given_ = true;
@@ -356,6 +376,7 @@ ContactState Iterate::state(const Vector &u) const
   ContactState state{from_0, multipliers().copy(),
                      DeviceView<State *>("rpc::contact::active_set", active_.state.extent(0))};
   Kokkos::deep_copy(state.active_set, active_.state);
+  if (!origin_.is_null()) state.rest = rest_of_sum(*origin_, u, *from_0);
   return state;
 }
 

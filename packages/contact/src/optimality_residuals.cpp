@@ -1,10 +1,12 @@
 #include "rpc/contact/optimality_residuals.hpp"
 
 #include "rpc/contact/energies.hpp"
+#include "rpc/core/fingerprint.hpp"
 #include "rpc/fem/rigid_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rpc::contact
 {
@@ -39,6 +41,13 @@ double work(const fem::DirichletDofs &dirichlet, const bool prescribed, const Ve
   return sum_all(*u.getMap()->getComm(), sum);
 }
 
+RCP<const Vector> plus(const Vector &a, const Vector &b)
+{
+  const auto sum = rcp(new Vector(a, Teuchos::Copy));
+  sum->update(1., b, 1.);
+  return sum;
+}
+
 /// part/whole, 0 where both are 0.
 double ratio(const double part, const double whole)
 {
@@ -64,7 +73,10 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   const fem::DirichletDofs &dirichlet = elastic.dirichlet;
   OptimalityResiduals residuals;
   residuals.internal = fem::internal_work(d, materials, u);
-  const Vector &internal = *residuals.internal.forces;
+  residuals.forces = residuals.internal.forces;
+  if (!state.rest.is_null())
+    residuals.forces = plus(*residuals.forces, *fem::internal_work(d, materials, *state.rest).forces);
+  const Vector &internal = *residuals.forces;
   const double strain = residuals.internal.energy_norm_squared;
   const Vector contact = multiplier_forces(points, state.multiplier, u.getMap());
   Vector external(*elastic.applied_load, Teuchos::Copy), residual(internal, Teuchos::Copy);
@@ -74,9 +86,9 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   fem::clear_prescribed(dirichlet, residual);
 
   residuals.kkt_residual = contact_law_residual(points, state);
-  residuals.equilibrium_residual =
-      residual.norm2() / std::max({force_scale, contact.norm2(), residuals.internal.force_norm,
-                                   lifted_part * free_norm(dirichlet, *elastic.load)});
+  residuals.force_size = std::max(
+      {force_scale, contact.norm2(), residuals.internal.force_norm, lifted_part * free_norm(dirichlet, *elastic.load)});
+  residuals.equilibrium_residual = residual.norm2() / residuals.force_size;
 
   const bool at_rest = dirichlet.value->normInf() == 0; // the supports
   const Vector moved = at_rest ? Vector(u, Teuchos::View) : fem::without_rigid_motion(d, dirichlet, u);
@@ -92,6 +104,27 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   residuals.duality_gap = ratio(energy.duality_gap + 0.5 * std::max(0., residual_energy(residual)),
                                 std::max({0.5 * strain, energy.dissipated, 1e-12 * lifted}));
   return residuals;
+}
+
+double residual_of_rounding(const fem::Discretization &d, const fem::Materials &materials,
+                            const fem::DirichletDofs &dirichlet, const Vector &u, const double force_size)
+{
+  Vector rounded(u.getMap());
+  {
+    const auto map = u.getMap()->getLocalMap();
+    const auto x = device_read(u);
+    const auto to = device_write(rounded);
+    constexpr double eps = std::numeric_limits<double>::epsilon();
+    Kokkos::parallel_for(
+        "rpc::contact::rounded", device_range(static_cast<LO>(u.getLocalLength())), KOKKOS_LAMBDA(const LO dof) {
+          const bool up = splitmix64(static_cast<std::uint64_t>(map.getGlobalElement(dof))) % 2 == 0;
+          to(dof) = (up ? eps : -eps) * x(dof);
+        });
+    Kokkos::fence();
+  }
+  Vector forces(*fem::internal_work(d, materials, rounded).forces, Teuchos::Copy);
+  fem::clear_prescribed(dirichlet, forces);
+  return ratio(forces.norm2(), force_size);
 }
 
 } // namespace rpc::contact

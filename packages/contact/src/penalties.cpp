@@ -59,4 +59,14 @@ bool raise_penalties(const Comm &comm, const DeviceView<double *> &own, const De
   return sum_all(comm, GO(raised)) > 0;
 }
 
+void lower_penalties(const ContactNodes &points, const DeviceView<double *> &penalty)
+{
+  const auto scaling = points.scaling;
+  Kokkos::parallel_for(
+      "rpc::contact::lower_penalty", device_range(points.size()), KOKKOS_LAMBDA(const LO i) {
+        if (penalty(i) > scaling(i)) penalty(i) = scaling(i);
+      });
+  Kokkos::fence();
+}
+
 } // namespace rpc::contact

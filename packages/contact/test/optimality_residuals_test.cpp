@@ -358,5 +358,63 @@ TEST(OptimalityResiduals, OfABodyThatItsSupportsLiftOffAreRounding)
   EXPECT_GT(judged(1e-6).equilibrium_residual, 0.1); // no rounding
 }
 
+TEST(OptimalityResiduals, WhatRoundingLeavesOfTheDisplacementCounts)
+{
+  const Judged scene;
+  const auto u = scene.displacement(0.05, 0.4), rest = scene.vector(1e-3, 0.7);
+  scene.iterate->update_multipliers(*u);
+  auto state = judged_at(*scene.iterate, *u);
+  state.rest = rest;
+  const auto judged = [&](const contact::ContactState &at) {
+    return contact::optimality_residuals(scene.d, scene.material, scene.elastic, scene.iterate->points(), at,
+                                         scene.iterate->force_scale(),
+                                         [&](const Vector &F) { return F.dot(scene.inverse.times(F)); });
+  };
+  const auto with = judged(state);
+  state.displacement = plus(*u, 1, *rest);
+  state.rest = Teuchos::null;
+  const auto sum = judged(state);
+  EXPECT_NEAR(with.equilibrium_residual * with.force_size, sum.equilibrium_residual * sum.force_size,
+              1e-13 * sum.force_size);
+  Vector difference(*with.forces, Teuchos::Copy);
+  difference.update(-1., *sum.internal.forces, 1.);
+  EXPECT_LT(difference.norm2(), 1e-13 * sum.force_size);
+}
+
+TEST(OptimalityResiduals, AnIterateKnowsWhatRoundingLeavesOfItsDisplacement)
+{
+  const Judged scene;
+  const auto u = scene.displacement(0.05, 0.4), origin = rcp(new Vector(*u, Teuchos::Copy));
+  EXPECT_TRUE(scene.iterate->state(*u).rest.is_null());
+  scene.iterate->move_origin(*u);
+  const auto correction = scene.vector(1e-9, 0.3);
+  const auto state = scene.iterate->state(*correction);
+  ASSERT_FALSE(state.rest.is_null());
+  const auto a = origin->getLocalViewHost(Tpetra::Access::ReadOnly),
+             b = correction->getLocalViewHost(Tpetra::Access::ReadOnly),
+             sum = state.displacement->getLocalViewHost(Tpetra::Access::ReadOnly),
+             rest = state.rest->getLocalViewHost(Tpetra::Access::ReadOnly);
+  bool any = false;
+  for (std::size_t i = 0; i < a.extent(0); ++i) {
+    const double of_b = sum(i, 0) - a(i, 0); // exact, since |b| is small
+    EXPECT_EQ(b(i, 0) - of_b, rest(i, 0));
+    any = any || rest(i, 0) != 0;
+  }
+  EXPECT_TRUE(any || a.extent(0) == 0);
+}
+
+TEST(OptimalityResiduals, RoundingMakesForcesInProportionToTheDisplacement)
+{
+  const Judged scene;
+  const auto u = scene.displacement(0.05, 0.4), large = scene.displacement(0.05, 0.4);
+  large->scale(1e3);
+  const auto made = [&](const Vector &by) {
+    return contact::residual_of_rounding(scene.d, scene.material, scene.elastic.dirichlet, by, 1);
+  };
+  EXPECT_GT(made(*u), 0);
+  EXPECT_NEAR(made(*large), 1e3 * made(*u), 1e-10 * made(*large));
+  EXPECT_LT(made(*u), 1e-14 * fem::internal_work(scene.d, scene.material, *u).force_norm * 100);
+}
+
 } // namespace
 } // namespace optimality_residuals_test

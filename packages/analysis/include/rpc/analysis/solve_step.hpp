@@ -32,6 +32,8 @@ struct StepOptions {
   UzawaOptions uzawa;
   solver::NewtonOptions newton;
   PredictionOptions prediction;
+  bool low_penalties =
+      false; ///< where friction's states do not settle, the step is tried once more with low penalties (12.12a)
 };
 
 /// Reports while a step is solved; empty functions are not called.

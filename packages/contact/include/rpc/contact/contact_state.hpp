@@ -26,6 +26,8 @@ struct ContactState {
   RCP<const Vector> displacement; ///< (owned dofs) from 0 [m]
   Multipliers multiplier;
   DeviceView<State *> active_set; ///< (points); empty where it is not known
+  /// (owned dofs) What the rounding of the displacement has left out [m]: the body is where the sum of both is. Null: nothing.
+  RCP<const Vector> rest = {};
 };
 
 /// A copy in which points without weight have the pressures of their neighbours as multipliers: for interpolation. Collective.

@@ -101,6 +101,9 @@ public:
   /// @param u  where the active set was taken
   bool raise_penalty(const Vector &u);
 
+  /// Lowers them to E / diameter, before the first minimization.                                                (12.12a)
+  void lower_penalty();
+
   // Friction's bounds, where no choice of states is confirmed: Tresca problems, one after another.             (12.12)
   /// Multipliers and bounds of the functional that is minimized.
   struct Dual {

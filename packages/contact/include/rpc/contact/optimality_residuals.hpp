@@ -16,18 +16,27 @@ struct OptimalityResiduals {
   double energy_balance = 0;       ///< twice the strain energy less the work of all forces, over their sum   (5.4)
   double duality_gap = 0;          ///< primal less dual energy, over the energy at work                       (5.5)
   fem::InternalWork internal;      ///< of the displacement that was judged, for results to be read from
+  RCP<const Vector> forces = {};   ///< of the body, those of what rounding has left of the displacement included [N]
+  double force_size = 0;           ///< that the forces out of balance are compared with [N]                  (5.2)
 
   /// The largest of the four; NaN if one is.
   double worst() const;
   bool holds(const double tolerance) const { return worst() <= tolerance; }
 };
 
-/// Judges (u, lambda) by sums over cells, not by the matrix that the solution came from; collective.
+/// Judges (u, lambda) by sums over cells, not by the matrix that the solution came from; collective. Where the state has a rest, forces
+/// are in balance with it: in doubles alone a stiff body that moves far cannot say how little it is strained.
 /// @param force_scale      size of the forces at work, see Iterate::force_scale() [N]
 /// @param residual_energy  F -> an estimate of F . K^-1 F [J], for a residual F (owned dofs, 0 where prescribed) [N]
 OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem::Materials &materials,
                                          const fem::ElasticProblem &elastic, const ContactNodes &points,
                                          const ContactState &state, double force_scale,
                                          const std::function<double(const Vector &)> &residual_energy);
+
+/// The equilibrium residual that rounding alone makes: of u_i eps with signs at random, the same on any number of ranks. Forces that are
+/// out of balance by about that much cannot be brought nearer to it in double precision. Collective.
+/// @param u  (owned dofs) [m]   @param force_size  see OptimalityResiduals [N]
+double residual_of_rounding(const fem::Discretization &d, const fem::Materials &materials,
+                            const fem::DirichletDofs &dirichlet, const Vector &u, double force_size);
 
 } // namespace rpc::contact

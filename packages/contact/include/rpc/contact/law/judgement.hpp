@@ -22,6 +22,11 @@ KOKKOS_INLINE_FUNCTION double law_residual(const double v, const double p, const
 KOKKOS_INLINE_FUNCTION double duality_gap(const double v, const double p, const double most, Foundation f)
 {
   if (f.yield > most) f.yield = most;
+  const bool in_spring = f.compliance > 0 && v >= 0 && v <= elastic_limit(f) && p >= 0 && p <= f.yield;
+  if (in_spring) { // the same: rounding of the spring's energy would be seen beside a body that hardly strains
+    const double off = v - f.compliance * p;
+    return 0.5 * off * (off / f.compliance);
+  }
   return foundation_energy(v, f) + conjugate_energy(p, f) - p * v;
 }
 
