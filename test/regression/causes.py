@@ -1,0 +1,141 @@
+"""Why a step does not converge: each reason of the table in doc/robustness.md that a deck can provoke is provoked, and its remedy followed.
+Scenes that once ended with a wrong reason, and now converge."""
+
+import csv
+import json
+import re
+import unittest
+
+from rpc_run import SOURCE, RpcTestCase
+
+BEAM = """beam:
+  Mesh: {Lower: [0.0, 0.0], Upper: [5.0, 1.0], Cells: [40, 8]}
+  Material: {Young's Modulus: 2000.0, Poisson's Ratio: 0.3}
+  Dirichlet:
+    left: {X: 0.0, Y: 0.0}
+    right: {X: 0.0, Y: 0.0}
+  Traction:
+    top: {Y: "-20*sin(pi*x/5)"}
+  Contact:
+    Side: bottom
+    Yield Stress: 16.0
+  Output: {Exodus: false}
+"""
+ENERGY = -0.212873523814  # of the beam [J/m], by the default solver and by Newton's with exact line search
+FOOTING = """footing:
+  Mesh: {Lower: [0.0, 0.0], Upper: [2.0, 0.5], Cells: [16, 4], Element: Q1}
+  Material: {Young's Modulus: 1.0e15, Poisson's Ratio: 0.2}
+  Dirichlet:
+    left bottom: {X: 0.0}
+  Traction:
+    top: {Y: "-1.0e5*(1 + 0.3*(x - 1))"}
+  Contact:
+    Side: bottom
+    Stiffness: 1.0e7
+  Output: {Exodus: false}
+"""
+# A slender block is pressed, sheared to and fro, and lifted.
+SHEARED = """sheared:
+  Mesh: {Lower: [0.0, 0.0], Upper: [0.7686, 1.0], Cells: [3, 20], Element: P2}
+  Material: {Young's Modulus: 246.85, Poisson's Ratio: -0.09383}
+  Dirichlet:
+    top:
+      Y: "-0.0012661434690363976*(max(0, 1 - abs(t - 1)) + max(0, 1 - abs(t - 2)) + 0.99457*max(0, 1 - abs(t - 3)) + 0.47807*max(0, 1 - abs(t - 4)))"
+      X: "0.0011054498333261914*(0.5*max(0, 1 - abs(t - 1)) + max(0, 1 - abs(t - 2)) - 0.5*max(0, 1 - abs(t - 3)) - max(0, 1 - abs(t - 4)))"
+  Contact:
+    Side: bottom
+    Yield Stress: 0.16762
+    Friction Coefficient: 1.75
+    Gap: "0.0001435 + 0.001005*(x - 0.27)^2"
+  Steps: {From: 0.25, To: 4.0, Step: 0.25}
+  Output: {Exodus: false}
+"""
+
+
+def causes():
+    """The table of the program: {name: (measured, said, remedy)}."""
+    text = (SOURCE / "packages/core/include/rpc/core/causes.hpp").read_text()
+    table = {}
+    for entry in re.findall(r"inline constexpr Cause \w+\{(.*?)\};", text, re.DOTALL):
+        texts = ["".join(part.replace('\\"', '"') for part in re.findall(r'"((?:[^"\\]|\\.)*)"', pieces))
+                 for pieces in re.findall(r'(?:"(?:[^"\\]|\\.)*"\s*)+', entry)]
+        name, *rest = texts
+        table[name] = tuple(rest)
+    return table
+
+
+def sets(values):
+    return [f"--set={path}={value}" for path, value in values.items()]
+
+
+class Causes(RpcTestCase):
+    def summary(self, text, *arguments, code=0):
+        name = text.split(":")[0]
+        (self.folder / f"{name}.yaml").write_text(text)
+        self.rpc(f"--input={name}.yaml", "--output=out", *arguments, code=code)
+        return json.loads((self.folder / "out" / f"{name}.json").read_text())
+
+    def provoke(self, cause, provoked, remedy, text=BEAM, figures=()):
+        """A run with settings that provoke the cause, and one with the remedy's instead."""
+        measured, said, helps = causes()[cause]
+        with self.subTest(cause):
+            summary = self.summary(text, *sets(provoked), code=4)
+            for part in [said, helps, *figures]:
+                self.assertIn(part, summary["reason"])
+            cured = self.summary(text, *sets(remedy))
+            if text is BEAM:
+                self.assertAlmostEqual(cured["energy_J"], ENERGY, delta=1e-7)
+
+    def test_each_is_provoked_and_its_remedy_helps(self):
+        newton = {"NOX->Direction->Method": "Newton"}
+        search, backtrack = "NOX->Line Search->Method", "NOX->Line Search->Backtrack->"
+        krylov = {"Linear Solver->Multigrid": "algebraic", "Linear Solver->Maximum Iterations": 1}
+        self.provoke("circles", {**newton, search: "Full Step"}, newton, figures=["Full Step"])
+        self.provoke("circles", {**newton, search: "NonlinearCG"}, newton, figures=["NonlinearCG"])
+        self.provoke("no lower step", {**newton, search: "Backtrack", backtrack + "Minimum Step": 0.9, backtrack + "Recovery Step": 1e-6},
+                     newton, figures=["Backtrack", "Minimum Step 0.9", "Recovery Step 1e-06"])
+        self.provoke("no lower step", {**newton, search: "Backtrack", backtrack + "Minimum Step": 0.9, backtrack + "Recovery Step": 1e-6},
+                     {**newton, search: "Backtrack", backtrack + "Recovery Step": 1e-6})
+        self.provoke("Newton steps", {**newton, "NOX->Maximum Iterations": 1, "Uzawa->Tolerance": 1e-12},
+                     {**newton, "NOX->Maximum Iterations": 200, "Uzawa->Tolerance": 1e-12}, figures=["Newton did not converge in 1 step"])
+        self.provoke("Uzawa iterations", {**newton, "Uzawa->Maximum Iterations": 1, "Uzawa->Tolerance": 1e-12},
+                     {**newton, "Uzawa->Maximum Iterations": 50, "Uzawa->Tolerance": 1e-12})
+        self.provoke("linear solver", krylov, {}, figures=["the linear solver stopped at |r|/|b|"])
+
+    def test_table_of_the_documentation_is_that_of_the_program(self):
+        document = (SOURCE / "doc/robustness.md").read_text()
+        rows = re.findall(r"^\| (.+?) \| (.+?) \| (.+?) \| (.+?) \|$", document.split("## Random scenes")[0], re.MULTILINE)
+        self.assertEqual({name: tuple(rest) for name, *rest in rows[1:]}, causes())
+
+    def test_lists_of_nox_for_other_problems_do_as_well(self):
+        newton = {"NOX->Direction->Method": "Newton", "NOX->Direction->Newton->Forcing Term Method": "Constant",
+                  "NOX->Direction->Newton->Rescue Bad Newton Solve": "true"}
+        for method in ["Backtrack", "Polynomial", "More'-Thuente"]:
+            with self.subTest(method):
+                steps = {f"NOX->Line Search->{method}->{name}": 1e-4 for name in ("Minimum Step", "Recovery Step")}
+                summary = self.summary(BEAM, *sets({**newton, "NOX->Line Search->Method": method, **steps}))
+                self.assertAlmostEqual(summary["energy_J"], ENERGY, delta=1e-10)
+                self.assertLess(sum(summary["newton_iterations"]), 30)
+
+    def test_nearly_rigid_footing_settles_on_its_springs(self):
+        h = 1 / 8
+        c = (2 / 3) / (2 / 3 + h**2 / 3)  # of weights by the trapezoidal rule: pressures are 1e5 (1 + 0.3 c (x - 1))
+        for modulus in [1e9, 1e13, 1e15, 1e16, 1e18]:
+            with self.subTest(modulus):
+                summary = self.summary(FOOTING, f"--set=Material->Young's Modulus={modulus:g}")
+                self.assertAlmostEqual(summary["contact_force"][1], 2e5, delta=1e-3)
+                rows = list(csv.DictReader(open(self.folder / "out" / "footing.contact.csv")))
+                if modulus < 1e13:
+                    continue
+                for row in rows:
+                    self.assertAlmostEqual(float(row["pressure"]), 1e5 * (1 + 0.3 * c * (float(row["x"]) - 1)), delta=1)
+
+    def test_much_friction_settles_with_low_penalties(self):
+        for mu in [1.65, 1.75, 1.95]:
+            with self.subTest(mu):
+                summary = self.summary(SHEARED, f"--set=Contact->Friction Coefficient={mu}")
+                self.assertLess(summary["energy_J"], 1e-20)  # at t = 4 it has left its dents
+
+
+if __name__ == "__main__":
+    unittest.main()
