@@ -1,5 +1,6 @@
 #include "notes.hpp"
 
+#include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/clearance.hpp"
 
 #include <algorithm>
@@ -116,6 +117,11 @@ void SeldomMeant::after(const analysis::Solution &s)
 {
   smallest_gap_ =
       std::min(smallest_gap_, contact::smallest_gap(s.discretization.mesh->comm(), s.step.contact, s.contact));
+  const std::string unseen = contact::unseen_contact_note(s.contact, scene_.model.contact, s.discretization.dim(),
+                                                          s.energy_norm_squared, scene_.model.units);
+  if (!unseen.empty() && !has_unseen_contact_)
+    notes_.add((scene_.has_steps() ? analysis::at_time(s.time) : "") + unseen);
+  has_unseen_contact_ |= !unseen.empty();
 }
 
 void SeldomMeant::at_end(const analysis::Solution &s)
@@ -123,7 +129,7 @@ void SeldomMeant::at_end(const analysis::Solution &s)
   if (!s.uzawa.converged || s.failure) return;
   if (!loaded_ && scene_.has_steps())
     notes_.add("no step has a load, a prescribed displacement but 0 or an initial penetration: nothing happens");
-  if (!loaded_ || s.step.contact.num_total == 0 || touches(s)) return;
+  if (!loaded_ || s.step.contact.num_total == 0 || has_unseen_contact_ || touches(s)) return;
   std::ostringstream note;
   note << (smallest_gap_ > 0 ? "no point touches" : "no point is pressed on the foundation")
        << (scene_.has_steps() ? " at any step" : "") << ": the smallest gap that is left is " << smallest_gap_ << " ["

@@ -26,7 +26,7 @@ private:
 };
 
 /// Notes on scenes that are right and seldom meant: nothing loads the body, nothing touches, a foundation reaches through the body, friction
-/// gets the whole load in one step.
+/// gets the whole load in one step; and on contact that the mesh does not see.
 class SeldomMeant
 {
 public:
@@ -47,6 +47,7 @@ private:
   Notes &notes_;
   bool loaded_;                                                   // at any step
   std::vector<char> overlaps_;                                    // sides whose foundations have been said to
+  bool has_unseen_contact_ = false;                               // at any step
   double smallest_gap_ = std::numeric_limits<double>::infinity(); // of all steps [m]
 };
 

@@ -226,20 +226,21 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
 }
 
 std::string unseen_contact_note(const ContactResult &result, const std::vector<ContactOptions> &options, const int dim,
-                                const double energy_norm_squared)
+                                const double energy_norm_squared, const UnitNames &units)
 {
   const PlaceBetweenNodes &at = result.between.unseen;
   const double squared = 2 * result.total.unseen_energy;
   if (!(at.depth > 0) || !(squared > notable * notable * energy_norm_squared)) return "";
   std::ostringstream text;
+  const std::string unit = " [" + units.of(unit::length, false) + "]";
   text << std::setprecision(4) << "contact is there that the mesh does not see: at (" << at.place[0] << ", "
        << at.place[1];
   if (dim == 3) text << ", " << at.place[2];
-  text << std::setprecision(2) << ") side \"" << options[at.side].side << "\" lies " << at.depth
-       << " [m] inside the foundation, between contact points that are open, so that the contact force lacks it. The "
-          "facet is "
-       << at.facet << " [m] long there; cells of " << at.width / 2
-       << " [m] would see it. Make the mesh finer there, or give \"Adapt->Target Relative Error\".";
+  text << std::setprecision(2) << ") side \"" << options[at.side].side << "\" lies " << at.depth << unit
+       << " inside the foundation, between contact points that are open, so that the contact force lacks it. The facet "
+          "is "
+       << at.facet << unit << " long there; cells of " << at.width / 2 << unit
+       << " would see it. Make the mesh finer there, or give \"Adapt->Target Relative Error\".";
   return text.str();
 }
 

@@ -32,6 +32,6 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
 /// there is none that matters.
 /// @param energy_norm_squared  a(u, u) of the solution [J], in 2D per m
 std::string unseen_contact_note(const ContactResult &result, const std::vector<ContactOptions> &options, int dim,
-                                double energy_norm_squared);
+                                double energy_norm_squared, const UnitNames &units = {});
 
 } // namespace rpc::contact
