@@ -18,25 +18,15 @@ constexpr double notable_imbalance = 0.01;
 // Beyond it the terms that small strains leave out are a fifth of those that count.
 constexpr double notable_strain = 0.2;
 
-/// Steps whose work does not fit their energies.
-std::string balance_note(const std::vector<analysis::StepRecord> &history)
+/// Steps whose work does not fit their energies, where the deck does not say how well it is to.
+std::string balance_note(const Solution &s)
 {
-  int count = 0;
-  double most = 0, at = 0;
-  analysis::Energies before;
-  for (const auto &step : history) {
-    const double share = analysis::relative_imbalance(before, step.energies);
-    before = step.energies;
-    if (!(share > notable_imbalance)) continue;
-    ++count;
-    if (share <= most) continue;
-    most = share;
-    at = step.time;
-  }
-  if (count == 0) return "";
+  if (s.out_of_balance) return "";
+  const analysis::OutOfBalance off = analysis::out_of_balance(s.history, notable_imbalance);
+  if (off.steps == 0) return "";
   std::ostringstream note;
-  note << "in " << count << " of " << history.size() << " steps work and energies differ by more than 1 % ("
-       << std::setprecision(2) << 100 * most << std::setprecision(6) << " % at t = " << at
+  note << "in " << off.steps << " of " << s.history.size() << " steps work and energies differ by more than 1 % ("
+       << std::setprecision(2) << 100 * off.share << std::setprecision(6) << " % at t = " << off.at
        << "): contact opens or closes within a step; \"Steps->Energy Tolerance\" divides such steps";
   return note.str();
 }
@@ -154,10 +144,10 @@ std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretiza
   return notes;
 }
 
-std::vector<std::string> notes_on_results(const analysis::Solution &s)
+std::vector<std::string> notes_on_results(const Solution &s)
 {
   std::vector<std::string> notes;
-  for (const std::string &note : {balance_note(s.history), strain_note(s)})
+  for (const std::string &note : {balance_note(s), strain_note(s)})
     if (!note.empty()) notes.push_back(note);
   return notes;
 }

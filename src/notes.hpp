@@ -56,6 +56,6 @@ std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretiza
                                        const contact::ContactNodes &contact);
 
 /// What the user should know of results: steps whose work does not fit their energies, and strains that are not small.
-std::vector<std::string> notes_on_results(const analysis::Solution &s);
+std::vector<std::string> notes_on_results(const Solution &s);
 
 } // namespace rpc

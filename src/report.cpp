@@ -134,6 +134,14 @@ void print_note(std::ostream &out, const std::string &note)
   }
 }
 
+/// Steps whose work does not fit their energies as well as the deck asks for.
+void print_balance(std::ostream &out, const Scene &scene, const Solution &s)
+{
+  if (!s.out_of_balance) return;
+  const std::string reason = analysis::not_kept(*s.out_of_balance, scene.steps.energy_tolerance, s.history.size());
+  if (!reason.empty()) out << "  energy balance      NOT TO THE TOLERANCE: " << reason << '\n';
+}
+
 } // namespace
 
 ConsoleTable::ConsoleTable(std::ostream &out) : out_(out), start_(Teuchos::Time::wallTime()) {}
@@ -256,6 +264,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
     print(out, "    predicted by      %zu dofs: %d Newton, %d linear iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
   if (s.adaptation) print_adaptation(out, *s.adaptation, scope);
+  print_balance(out, scene, s);
   for (const auto &note : notes) print_note(out, note);
   for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
   print_lines(out, lines(analysis::phase_seconds, s.seconds, scope, "%.3f"));

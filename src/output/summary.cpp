@@ -58,6 +58,20 @@ void add_steps(nlohmann::ordered_json &json, const Solution &s, const ResultScop
   }
 }
 
+void add_balance(nlohmann::ordered_json &json, const Scene &scene, const Solution &s)
+{
+  if (!s.out_of_balance) return;
+  const analysis::OutOfBalance &off = *s.out_of_balance;
+  const double tolerance = scene.steps.energy_tolerance;
+  json["energy_tolerance"] = {{"tolerance", tolerance},
+                              {"kept", off.steps == 0},
+                              {"reason", analysis::not_kept(off, tolerance, s.history.size())}};
+  if (off.steps == 0) return;
+  json["energy_tolerance"]["steps"] = off.steps;
+  json["energy_tolerance"]["largest"] = off.share;
+  json["energy_tolerance"]["at"] = off.at;
+}
+
 /// A number that may be unknown: null then.
 nlohmann::ordered_json maybe(const double value)
 {
@@ -148,6 +162,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["solver_path"] = solver::solver_path(s.linear);
   json["matrix_assemblies"] = s.matrix_assemblies;
   if (!s.history.empty()) add_steps(json, s, scope);
+  add_balance(json, scene, s);
   add_errors(json, scene, s);
   json["notes"] = s.notes;
   json["skipped"] = s.skipped;

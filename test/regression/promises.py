@@ -1,4 +1,5 @@
-"""What a deck asks for is met, or refused with what was reached: the most unknowns of adapted meshes, times without a load."""
+"""What a deck asks for is met, or refused with what was reached: the most unknowns of adapted meshes, the energy tolerance of load steps,
+times without a load."""
 
 import json
 import unittest
@@ -33,6 +34,16 @@ PYRAMID = """pyramid:
   Dirichlet: {front: {X: 0.0, Y: 0.0, Z: 0.0}}
   Contact: {Side: back, Gap: "0.35*max(abs(x - 0.5), abs(y - 0.5)) - 0.05"}
   """ + STEEL + "\n"
+# Pressed by a rigid plate and lifted off by 1 m, at once or gradually.
+LIFT = """lift:
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [16, 16], Element: Q1}
+  Dirichlet: {bottom: {X: 0.0, Y: 0.0}}
+  Contact:
+    Side: top
+    Obstacle: {Type: plane, Point: [0.0, "1 - 0.01*t*(t <= 1) + HEIGHT*(t > 1)"], Normal: [0.0, -1.0]}
+  Steps: {Times: [0.5, 1.0, 2.0]}
+  """ + STEEL + "\n"
+AT_ONCE, GRADUAL = LIFT.replace("HEIGHT", "1"), LIFT.replace("HEIGHT", "(1.01*(t - 1) - 0.01)")
 # Held by contact alone, with a load that rises from 0 at t = 0.
 RAMP = """ramp:
   Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [4, 4]}
@@ -85,6 +96,45 @@ class Promises(RpcTestCase):
             self.assertEqual(result.returncode, CONVERGED, summary["adaptation"]["reason"])
             self.assertTrue(summary["adaptation"]["reached"])
             self.assertLessEqual(summary["dofs"], 30000)
+
+    def test_an_energy_tolerance_that_is_not_kept_ends_with_code_4_and_says_where(self):
+        tolerance = ["--set=Steps->Energy Tolerance=0.001"]
+        (at_once, off), (gradual, kept), (_, free) = self.runs([(AT_ONCE, tolerance), (GRADUAL, tolerance), (AT_ONCE, [])])
+        self.assertEqual((at_once.returncode, gradual.returncode), (NOT_TO_THE_TARGET, CONVERGED))
+        self.assertEqual(kept["energy_tolerance"], {"tolerance": 0.001, "kept": True, "reason": ""})
+        found = off["energy_tolerance"]
+        self.assertFalse(found["kept"])
+        self.assertEqual((found["steps"], found["at"]), (1, 2))
+        self.assertGreater(found["largest"], 0.9)
+        for part in ['"Steps->Energy Tolerance" = 0.001', "at t = 2", f"{off['steps'][2]['parts']} parts", "jumps in t"]:
+            self.assertIn(part, found["reason"])
+        self.assertIn("NOT TO THE TOLERANCE: " + found["reason"], at_once.stdout)
+        self.assertNotIn("NOT TO THE TOLERANCE", gradual.stdout)
+        self.assertTrue(off["converged"])  # as with Adapt: the states are solutions
+        self.assertEqual([step["converged"] for step in off["steps"]], [True] * 3)
+        self.assertLess(abs(kept["steps"][2]["work"]), 0.002 * kept["steps"][1]["work"])
+        self.assertNotIn("energy_tolerance", free)
+
+    def test_a_body_that_only_moves_keeps_an_energy_tolerance(self):
+        moved = AT_ONCE.replace("bottom: {X: 0.0, Y: 0.0}", 'bottom: {X: "0.3*t", Y: "-0.7*t"}').replace("0.01*t*(t <= 1)", "0*t")
+        for result, summary in self.runs([(moved, ["--set=Steps->Energy Tolerance=1e-9"])]):
+            self.assertEqual(result.returncode, CONVERGED, summary["energy_tolerance"])
+            self.assertTrue(summary["energy_tolerance"]["kept"])
+
+    def test_adapted_meshes_keep_an_energy_tolerance_or_end_with_code_4(self):
+        adapted = ["--set=Adapt->Target Relative Error=0.3", "--set=Steps->Energy Tolerance=0.001", "--set=Output->Exodus=none"]
+        (at_once, off), (gradual, kept) = self.runs([(AT_ONCE, adapted), (GRADUAL, adapted)])
+        self.assertEqual((at_once.returncode, gradual.returncode), (NOT_TO_THE_TARGET, CONVERGED))
+        self.assertEqual([off["energy_tolerance"]["kept"], kept["energy_tolerance"]["kept"]], [False, True])
+
+    def test_max_halvings_bounds_all_halvings_where_it_is_given(self):
+        tolerance = ["--set=Steps->Energy Tolerance=1e-4"]
+        jobs = [(GRADUAL, [*tolerance, *(["--set=Steps->Max Halvings=" + most] if most else [])]) for most in ["", "0", "2"]]
+        parts = [[step["parts"] for step in summary["steps"]] for _, summary in self.runs(jobs)]
+        self.assertGreater(max(parts[0]), 4)
+        self.assertEqual(parts[1], [1, 1, 1])
+        self.assertLessEqual(max(parts[2]), 4)
+        self.assertGreater(max(parts[2]), 1)
 
     def test_a_time_without_a_load_is_named_with_its_load_and_its_remedy_helps(self):
         (self.folder / "ramp.yaml").write_text(RAMP)

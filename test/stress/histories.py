@@ -134,7 +134,8 @@ def run(options, scene, folder, complain, *settings):
     results = folder / "scene.json"
     if code == 4 and results.exists() and at_rounding(scene, json.loads(results.read_text()), folder):
         raise AtRounding
-    if code != 0 or not results.exists():
+    off_balance = code == 4 and results.exists() and json.loads(results.read_text()).get("energy_tolerance", {}).get("kept") is False
+    if (code != 0 and not off_balance) or not results.exists():
         lines = (stderr or stdout).strip().splitlines()
         reason = json.loads(results.read_text())["reason"] if results.exists() else lines[-1] if lines else ""
         complain(f"{folder.name}: exit {code}: {reason[:300]}")

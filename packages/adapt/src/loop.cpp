@@ -243,6 +243,7 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
       if (met_by_signal && !(succeeded(s) && t == task.steps.times.back())) keep();
       seconds += s.seconds;
       s.seconds = seconds;
+      s.energy_rounding = std::max(earlier ? earlier->energy_rounding : 0, analysis::energy_rounding(task, s));
       earlier = std::move(s);
       solved = true;
       if (listener.load_step) listener.load_step(*earlier);
@@ -258,6 +259,7 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
     checkpoint_due |= every > 0 && earlier->history.size() % every == 0;
     if (checkpoint_due && !met_by_signal) checkpoint_due = !keep();
   }
+  analysis::judge_balance(task, *earlier);
   return std::move(*earlier);
 }
 
@@ -291,7 +293,8 @@ double exact_error(const Task &task, const Solution &s)
 
 bool succeeded(const Solution &s)
 {
-  return s.uzawa.converged && (!s.adaptation || s.adaptation->reached);
+  return s.uzawa.converged && (!s.adaptation || s.adaptation->reached) &&
+         (!s.out_of_balance || s.out_of_balance->steps == 0);
 }
 
 } // namespace rpc::adapt

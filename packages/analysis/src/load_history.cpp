@@ -3,6 +3,7 @@
 #include "rpc/analysis/quantities.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/fem/rounding.hpp"
 #include "step_dents.hpp"
 #include "step_energies.hpp"
 
@@ -48,8 +49,6 @@ int newton_steps(const StepSolution &s)
   return std::accumulate(s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end(), 0);
 }
 
-// Of a step for its energy balance: what remains is a millionth of it.
-constexpr int most_halvings_for_balance = 20;
 // A half that misses less than this share of what the whole misses is nearer to balance. Errors of opposite sign can hide in a whole;
 // but what stays through so many halvings is rounding.
 constexpr double helpful = 0.9;
@@ -139,8 +138,9 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   double tolerance = energy_tolerance_, least = std::numeric_limits<double>::infinity();
   for (int attempt = 1;; ++attempt) {
     last_.parts = 0; // counted as they are solved
-    s = advance_in_parts(t, {max_halvings_, most_halvings_for_balance, tolerance}, progress, now);
-    const double off = s.uzawa.converged ? relative_imbalance(energies_before, kept_.memory->energies) : 0;
+    s = advance_in_parts(t, {max_halvings_, balance_halvings_, std::max(max_halvings_, balance_halvings_), tolerance},
+                         progress, now);
+    const double off = s.uzawa.converged ? share_missed(energies_before, s, energy_tolerance_) : 0;
     const bool in_vain = attempt == most_attempts || last_.parts == 1 || off > helpful * least;
     if (!(off > energy_tolerance_) || in_vain) break;
     least = off;
@@ -159,6 +159,16 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   return s;
 }
 
+/// relative_imbalance() of a step that is remembered; 0 where one above the tolerance is rounding of the energies.
+double LoadHistory::share_missed(const Energies &before, const StepSolution &s, const double tolerance) const
+{
+  const Energies &now = kept_.memory->energies;
+  const double share = relative_imbalance(before, now);
+  if (!(share > tolerance)) return share;
+  const double rounding = fem::rounding_energy(problem_->discretization(), problem_->model().materials, *s.u);
+  return std::abs(now.imbalance - before.imbalance) > rounding ? share : 0;
+}
+
 StepRecord LoadHistory::broken_off(const std::string &reason) const
 {
   return analysis::broken_off(problem_->model(), last_, tried_, reason);
@@ -174,14 +184,16 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
   const double from = before.memory ? before.memory->time : 0; // the body is at rest at t = 0
   const double half = 0.5 * (from + t);
   Halvings then = left;
+  const bool may_halve = then.all-- > 0;
   if (s.uzawa.converged) {
     const Energies start = before.memory ? before.memory->energies : Energies{}, &end = kept_.memory->energies;
     const double missed = std::abs(end.imbalance - start.imbalance);
     then.in_vain = missed < helpful * left.missed ? 0 : left.in_vain + 1;
     then.missed = std::min(missed, left.missed);
-    const bool out_of_balance = relative_imbalance(start, end) > left.tolerance;
-    if (!out_of_balance || then.in_vain > most_in_vain || then.balance-- == 0) return s;
-  } else if (then.failures-- == 0 || interrupted(problem_->discretization().mesh->comm())) {
+    if (!(share_missed(start, s, left.tolerance) > left.tolerance) || !may_halve || then.in_vain > most_in_vain ||
+        then.balance-- == 0)
+      return s;
+  } else if (!may_halve || then.failures-- == 0 || interrupted(problem_->discretization().mesh->comm())) {
     return s;
   }
   if (!(half > from && half < t)) return s;

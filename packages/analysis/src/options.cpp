@@ -86,11 +86,15 @@ Teuchos::ParameterList valid_steps_parameters()
   valid.set("To", unset, "Last of them, > `From`.");
   valid.set("Step", unset, "Their distance, > 0. The last may be shorter.");
   valid.set("Write Every", 1, "Every N-th of the times goes into the Exodus file, and the last one; N > 0.");
-  valid.set("Max Halvings", 6, "A step that does not converge is halved, and its halves, so many times at most, >= 0.");
-  valid.set("Energy Tolerance", unset,
-            "A step is halved where work less energies changes in it by more than this share of the largest energy, > "
-            "0: the work is "
-            "wrong where contact opens or closes within a step. nan, which is to leave it out: no step is.");
+  valid.set("Max Halvings", 6,
+            "A step that does not converge is halved, and its halves, so many times at most, >= 0. Where it is given, "
+            "halvings for `Energy Tolerance` count too; else these are 20 at most.");
+  valid.set(
+      "Energy Tolerance", unset,
+      "A step is halved where work less energies changes in it by more than this share of the largest energy, > "
+      "0: the work is "
+      "wrong where contact opens or closes within a step. A run that does not keep it to the end of a step goes on, "
+      "and ends with exit code 4. nan, which is to leave it out: no step is.");
   valid.set("Checkpoint Every", 0,
             "After every N-th step a checkpoint is written, <deck>.checkpoint-NUMBER.e, from which --restart goes on; "
             "0: none.");
@@ -143,6 +147,7 @@ StepsOptions steps_options(const Teuchos::ParameterList &list)
     RPC_REQUIRE(tolerance > 0, "deck: \"Steps->Energy Tolerance\" must be > 0, got " << tolerance);
     options.energy_tolerance = tolerance;
   }
+  if (!list.getEntryPtr("Max Halvings")->isDefault()) options.balance_halvings = options.max_halvings;
   RPC_REQUIRE(options.checkpoint_every >= 0,
               "deck: \"Steps->Checkpoint Every\" must be >= 0, got " << options.checkpoint_every);
   return options;

@@ -4,7 +4,10 @@
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
 #include "rpc/fem/interpolation.hpp"
+#include "rpc/fem/rounding.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -101,6 +104,21 @@ MadeMesh made_mesh(const mesh::MeshOptions &options, const RCP<const Comm> &comm
   return {options, std::move(mesh), seconds.mesh};
 }
 
+double energy_rounding(const Task &task, const Solution &s)
+{
+  if (!std::isfinite(task.steps.energy_tolerance) || !s.uzawa.converged) return 0;
+  double largest = 0;
+  for (const StepRecord &step : s.history)
+    if (step.converged) largest = std::max(largest, step.energies.largest());
+  return task.step.uzawa.tolerance * largest + fem::rounding_energy(s.discretization, task.model.materials, *s.u);
+}
+
+void judge_balance(const Task &task, Solution &s)
+{
+  if (std::isfinite(task.steps.energy_tolerance))
+    s.out_of_balance = out_of_balance(s.history, task.steps.energy_tolerance, s.energy_rounding);
+}
+
 Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
   return task.has_steps() ? solve_steps(task, comm, listener)
@@ -190,8 +208,9 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
   const auto problem = make_problem(first, mesh, seconds);
   LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver,
                       coarser_meshes(first, task.mesh, comm));
-  history.balance_energies_to(task.steps.energy_tolerance);
+  history.balance_energies(task.steps);
   std::vector<StepRecord> records;
+  double rounding = 0;
   int assemblies_before = 0;
   if (from) {
     records = from->records;
@@ -215,6 +234,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     try {
       Solution next = solve_one_of_steps(task, t, history, assemblies_before, records, seconds, listener);
       seconds = next.seconds;
+      next.energy_rounding = rounding = std::max(rounding, energy_rounding(task, next));
       s = std::move(next);
       solved = true;
       if (listener.load_step) listener.load_step(s);
@@ -235,6 +255,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     checkpoint_due = !keep_last(task, history, records, s.matrix_assemblies, listener);
     if (t < task.steps.times.back()) history.start_anew();
   }
+  judge_balance(task, s);
   return s;
 }
 
@@ -279,7 +300,7 @@ Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const 
     s.body = fem::body_peaks(d, task.model.materials, *s.u);
   } else {
     LoadHistory history(problem, task.step, task.steps.max_halvings, task.linear_solver, coarser);
-    history.balance_energies_to(task.steps.energy_tolerance);
+    history.balance_energies(task.steps);
     if (earlier)
       history.go_on_from(made.mesh == earlier->discretization.mesh
                              ? *earlier->memory

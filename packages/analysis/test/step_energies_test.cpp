@@ -49,7 +49,9 @@ TEST(LoadHistory, StepsAreDividedUntilTheirEnergiesBalance)
     std::vector<int> parts;
     for (const double tolerance : {std::numeric_limits<double>::infinity(), 1e-2, 1e-4}) {
       auto history = history_of(uneven(law, there_and_back), {}, 0, 1);
-      history.balance_energies_to(tolerance);
+      analysis::StepsOptions balanced;
+      balanced.energy_tolerance = tolerance;
+      history.balance_energies(balanced);
       analysis::Energies before;
       missed.push_back(0);
       parts.push_back(0);

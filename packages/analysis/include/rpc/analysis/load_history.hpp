@@ -20,6 +20,7 @@ struct StepsOptions {
   int write_every = 1;       ///< every so many of the times one goes into the results, and the last; > 0
   int max_halvings = 6;      ///< of a step that does not converge, >= 0
   int checkpoint_every = 0;  ///< a checkpoint after every so many steps; 0: none
+  int balance_halvings = 20; ///< of a step for its energy balance, >= 0
   /// A step whose energy balance is off by more than this share of the energies is halved, > 0.
   double energy_tolerance = std::numeric_limits<double>::infinity();
 };
@@ -73,9 +74,13 @@ public:
   void go_on_from(Memory memory, std::optional<Memory> before = std::nullopt);
   /// Another state from which the next step may start, beside those of the steps before.
   void offer(contact::ContactState start) { offered_.push_back(std::move(start)); }
-  /// Has steps halved whose relative_imbalance() is larger, and their halves, a million times finer at most, until that of the whole step
-  /// is no larger either.
-  void balance_energies_to(const double tolerance) { energy_tolerance_ = tolerance; }
+  /// Has steps halved whose relative_imbalance() is larger than the energy tolerance, and their halves, until that of the whole step is no
+  /// larger either, or halves are no better than the whole.
+  void balance_energies(const StepsOptions &options)
+  {
+    energy_tolerance_ = options.energy_tolerance;
+    balance_halvings_ = options.balance_halvings;
+  }
   /// Makes multigrid anew, so that what follows depends on memory() and before() alone, bit for bit.
   void start_anew();
 
@@ -101,7 +106,7 @@ public:
 private:
   /// How often a part may be halved: where it does not converge, and for its energy balance.
   struct Halvings {
-    int failures, balance;
+    int failures, balance, all;
     double tolerance; // of a part's energy balance
     // The least that a part around this one misses in its energy balance [J], and how often it has been halved since.
     double missed = std::numeric_limits<double>::infinity();
@@ -115,6 +120,7 @@ private:
   };
   StepSolution advance_in_parts(double t, Halvings left, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
+  double share_missed(const Energies &before, const StepSolution &s, double tolerance) const;
   Starts starts_of(const Step &step);
   void remember(double t, const std::vector<contact::ContactOptions> &sides, const Step &step, StepSolution &s);
 
@@ -128,6 +134,7 @@ private:
   std::vector<contact::ContactState> offered_;
   StepRecord last_;
   double energy_tolerance_ = std::numeric_limits<double>::infinity();
+  int balance_halvings_ = 0;
   double tried_ = 0; // t of the last (part of a) step that was begun
 };
 

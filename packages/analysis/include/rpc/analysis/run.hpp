@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rpc/analysis/energy_tolerance.hpp"
 #include "rpc/analysis/load_history.hpp"
 #include "rpc/analysis/quantities.hpp"
 #include "rpc/core/error.hpp"
@@ -53,6 +54,8 @@ struct Solution : StepSolution {
   std::optional<Failure> failure;
   int matrix_assemblies = 0;
   PhaseSeconds seconds;
+  double energy_rounding = 0;                 ///< see energy_rounding(); largest of the steps so far
+  std::optional<OutOfBalance> out_of_balance; ///< of a run with an energy tolerance, at its end
 };
 
 /// All that the next load step needs.
@@ -91,6 +94,12 @@ std::string at_time(double t);
 /// The error of a load step that ends a run without results, as the user gets to see it.
 /// @param first  whether no step went before: then what is wrong with the deck or the mesh has no time, a load has
 Error error_at(double t, const Error &error, bool first);
+
+/// What differences of the energies of a step that is solved may be without a meaning, by rounding and the accuracy of solves [J], in 2D
+/// per m; 0 without an energy tolerance. Collective.
+double energy_rounding(const Task &task, const Solution &solution);
+/// Tells which steps have not kept the energy tolerance, if there is one.
+void judge_balance(const Task &task, Solution &solution);
 
 /// Mesh, assembly and solve_step(), for each load step: from a task to its solution. Collective on comm.
 /// @throws rpc::Error on every rank if the model does not fit its mesh; failing to converge is in the result
