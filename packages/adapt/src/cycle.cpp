@@ -27,7 +27,9 @@ double shown_error(const std::vector<Cycle> &cycles, const std::vector<double> &
 {
   std::vector<double> to_last;
   for (std::size_t k = 0; k + 1 < cycles.size(); ++k) to_last.push_back(distance(cycles[k], cycles.back()));
-  return std::max(observed_error(changes(cycles, distance), eta), error_over_span(to_last, eta));
+  const auto change = changes(cycles, distance);
+  const double error = std::max(observed_error(change, eta), error_over_span(to_last, eta));
+  return unsettled(change, eta, 0) ? std::max(error, change.back()) : error; // no limit is in sight yet
 }
 
 /// Why the largest pressure of the last mesh has no error bar; empty if it has one.
@@ -51,7 +53,8 @@ std::string unknown_max_pressure(const std::vector<Cycle> &cycles, const std::ve
 void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, ObservedErrors &errors)
 {
   const auto &f = last.contact.force;
-  const double force = std::hypot(f[0], f[1], f[2]), squared = last.estimate * last.estimate;
+  constexpr double caution = 2; // the estimate may be 0.7 of the error
+  const double force = std::hypot(f[0], f[1], f[2]), squared = caution * last.estimate * last.estimate;
   const double moved = force > 0 ? last.energy_norm_squared / force : 0; // in the mean, by the force
   errors.energy =
       std::max(errors.energy, squared * last.energy_norm_squared / 2 + last.jumped_energy + last.jumped_force * moved);
