@@ -147,8 +147,8 @@ TEST(FrictionInvariance, TopMovedOneWayIsTheFoundationMovedTheOther)
   const Assignments scene =
       joined(free_sides, {"Contact->Obstacle->Type=plane", "Contact->Obstacle->Normal={0, 1}", "Steps->Times={1, 2, 3}",
                           "Contact->Yield Stress=12", "Contact->Friction Coefficient=0.3"});
-  // To and fro, and part of the way down.
-  const std::string x = "(t < 2.5 ? 0.01*(t-1) : 0.0015)", y = "0.001*(t-1)";
+  // To and fro, and part of the way down, from t = 0 on.
+  const std::string x = "(t < 2.5 ? 0.005*t : 0.0015)", y = "0.001*t";
   expect_same(moved(joined(scene, {"Dirichlet->top->X=" + x, "Dirichlet->top->Y=-0.01-" + y,
                                    "Contact->Obstacle->Point={0, 0}"})),
               moved(joined(scene, {"Dirichlet->top->X=0", "Dirichlet->top->Y=-0.01",
@@ -160,11 +160,68 @@ TEST(FrictionInvariance, TopMovedOneWayIsASlantedFoundationMovedTheOtherInSpace)
   const Assignments scene =
       joined(block_in_space, {"Contact->Obstacle->Type=plane", "Contact->Obstacle->Normal={-0.003, 0.002, 1}",
                               "Contact->Friction Coefficient=0.3"});
-  const std::string x = "(t < 2.5 ? 0.004*(t-1) : 0.002)", y = "0.002*(t-1)^2", z = "0.0005*(t-1)";
+  // The first step is pressed only: a gap that the foundation closes is no work, and one that the body closes is.
+  const std::string x = "(t < 2.5 ? 0.004*max(0, t-1) : 0.002)", y = "0.002*max(0, t-1)^2", z = "0.0005*max(0, t-1)";
   expect_same(moved(joined(scene, {"Dirichlet->top->X=" + x, "Dirichlet->top->Y=" + y, "Dirichlet->top->Z=-0.01-" + z,
                                    "Contact->Obstacle->Point={0, 0, 0}"})),
               moved(joined(scene, {"Dirichlet->top->X=0", "Dirichlet->top->Y=0", "Dirichlet->top->Z=-0.01",
                                    "Contact->Obstacle->Point={-" + x + ", -" + y + ", " + z + "}"})));
+}
+
+/// A column that is free at its sides, on a plane. Pressed and moved by (0.02, -0.01) by t = 1.
+Assignments pressed_and_moved(const bool body, const Assignments &steps)
+{
+  return joined(joined(free_sides, steps), {"Contact->Obstacle->Type=plane", "Contact->Obstacle->Normal={0, 1}",
+                                            "Contact->Obstacle->Point=" + std::string(body ? "{0, 0}" : "{-0.02*t, 0}"),
+                                            "Dirichlet->top->X=" + std::string(body ? "0.02*t" : "0"),
+                                            "Dirichlet->top->Y=-0.01*t", "Contact->Friction Coefficient=0.3"});
+}
+
+TEST(FrictionInvariance, FirstStepCountsTheFoundationsMotionSinceTheBodyWasAtRest)
+{
+  for (const char *times : {"{1}", "{0.5, 1}", "{0.001, 1}", "{}"}) {
+    SCOPED_TRACE(times);
+    const Assignments steps = {std::string("Steps->Times=") + times};
+    const Solution body = solved("loop", joined(tight, pressed_and_moved(true, steps))),
+                   foundation = solved("loop", joined(tight, pressed_and_moved(false, steps)));
+    const auto &a = body.contact.total, &b = foundation.contact.total;
+    EXPECT_LT(a.force[0], -6);
+    for (int k = 0; k < 2; ++k) EXPECT_NEAR(b.force[k], a.force[k], 1e-9 * a.force[1]) << k;
+    EXPECT_NEAR(b.max_slip, a.max_slip, 1e-8 * a.max_slip);
+    EXPECT_NEAR(b.friction_work, a.friction_work, 1e-8 * a.friction_work);
+    if (body.history.empty()) continue;
+    const auto &x = body.history.back().energies, &y = foundation.history.back().energies;
+    EXPECT_NEAR(y.work, x.work, 1e-8 * x.work);
+    EXPECT_NEAR(y.friction, x.friction, 1e-8 * x.friction);
+  }
+}
+
+TEST(FrictionInvariance, FirstStepInPartsCountsTheFoundationsMotionOnce)
+{
+  // It yields on the way, and its energies do not balance in one part.
+  const Assignments divided =
+      joined(tight, {"Steps->Times={1}", "Steps->Energy Tolerance=1e-3", "Contact->Yield Stress=15"});
+  const Solution body = solved("loop", pressed_and_moved(true, divided)),
+                 foundation = solved("loop", pressed_and_moved(false, divided));
+  EXPECT_GT(body.history.back().parts, 1);
+  EXPECT_EQ(foundation.history.back().parts, body.history.back().parts);
+  const auto &a = body.contact.total, &b = foundation.contact.total;
+  for (int k = 0; k < 2; ++k) EXPECT_NEAR(b.force[k], a.force[k], 1e-9 * a.force[1]) << k;
+}
+
+TEST(FrictionInvariance, StepsBeforeAndAtZeroStartWhereTheFirstOneEnds)
+{
+  // t = 0 has no special place in a history that begins before it.
+  const auto shifted = [](const std::string &t, const std::string &times) {
+    return solved("loop",
+                  joined(joined(tight, free_sides),
+                         {"Contact->Obstacle->Type=plane", "Contact->Obstacle->Normal={0, 1}",
+                          "Contact->Obstacle->Point={-0.01*max(0, " + t + "), 0}", "Dirichlet->top->X=0",
+                          "Dirichlet->top->Y=-0.01", "Contact->Friction Coefficient=0.3", "Steps->Times=" + times}));
+  };
+  const Solution late = shifted("t-1", "{1, 2, 3}"), early = shifted("t+2", "{-2, -1, 0}");
+  for (int k = 0; k < 2; ++k) EXPECT_NEAR(early.contact.total.force[k], late.contact.total.force[k], 1e-9) << k;
+  EXPECT_GT(std::abs(late.contact.total.force[0]), 1);
 }
 
 // Mirrors -------------------------------------------------------------------------------------------------------------

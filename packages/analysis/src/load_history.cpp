@@ -181,7 +181,7 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
   StepOptions options = options_;
   options.low_penalties = left.failures == 0; // what else could be tried is to halve the step
   StepSolution s = solve(t, options, progress, now);
-  const double from = before.memory ? before.memory->time : 0; // the body is at rest at t = 0
+  const double from = before.memory ? before.memory->time : time_at_rest(t);
   const double half = 0.5 * (from + t);
   Halvings then = left;
   const bool may_halve = then.all-- > 0;

@@ -98,6 +98,11 @@ std::vector<Point> foundations_moved(const Model &model, const double from, cons
   return motion;
 }
 
+double time_at_rest(const double first)
+{
+  return std::min(0., first);
+}
+
 Model Model::seen_at(const double t) const
 {
   Model model = *this;
@@ -152,9 +157,11 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
   const fem::Discretization &d = discretization();
   const Model now = model_.seen_at(t);
   auto dirichlet = prescribed_of(d, now);
+  const Vector at_rest(d.owned_dofs);
   std::optional<contact::SlipStart> slip_start;
-  if (before && has_friction(now.contact))
-    slip_start.emplace(contact::SlipStart{*before->displacement, foundations_moved(model_, before->time, t)});
+  if (has_friction(now.contact))
+    slip_start.emplace(contact::SlipStart{before ? *before->displacement : at_rest,
+                                          foundations_moved(model_, before ? before->time : time_at_rest(t), t)});
   Step step{
       t,
       {},

@@ -82,8 +82,18 @@ void note_skipped(const Task &task, Solution &s)
 
 void set_obstacle_origins(Task &task)
 {
-  if (!task.has_steps()) return;
-  for (auto &side : task.model.contact) side.obstacle.origin = side.obstacle.seen_at(task.steps.times.front()).point;
+  for (auto &side : task.model.contact) {
+    contact::Obstacle &obstacle = side.obstacle;
+    if (!obstacle.exists()) continue;
+    obstacle.origin = obstacle.seen_at(0).point;
+    if (!side.has_friction() && side.dents_move_with != contact::DentsMoveWith::foundation) continue;
+    for (const double coordinate : obstacle.origin)
+      RPC_REQUIRE(std::isfinite(coordinate),
+                  "deck: \"" << side.path
+                             << "->Obstacle\": the motion along the side counts from t = 0, and a coordinate of its \""
+                             << contact::point_name(obstacle) << "\" is " << coordinate
+                             << " [m] there. Give an expression that is finite at t = 0.");
+  }
 }
 
 PhaseSeconds &PhaseSeconds::operator+=(const PhaseSeconds &other)

@@ -146,6 +146,11 @@ std::string no_direction_at(const Obstacle &obstacle)
   return std::visit([](const auto &surface) { return surface.no_direction_at; }, obstacle.surface.value());
 }
 
+std::string point_name(const Obstacle &obstacle)
+{
+  return std::visit([](const auto &surface) { return std::string(surface.kind().point); }, obstacle.surface.value());
+}
+
 bool lies_in(const Obstacle &obstacle, const Point &x)
 {
   return std::visit([&](const auto &surface) { return surface.lies_in(difference(x, obstacle.point)); },

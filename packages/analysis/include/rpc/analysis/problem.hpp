@@ -32,6 +32,10 @@ struct Model {
   Model seen_at(double t) const;
 };
 
+/// When body and foundation are at rest as they are given, before a first step: at t = 0, for the step begins there; or when it ends, if
+/// that is not later.
+/// @param first  time of the first step
+double time_at_rest(double first);
 /// How far each side's foundation moves from one time to another [m].
 std::vector<Point> foundations_moved(const Model &model, double from, double to);
 
@@ -57,7 +61,7 @@ public:
 
   /// Loads, prescribed displacements and contact nodes at one time. Collective.
   /// @param dents   that earlier steps have left, (owned nodes; sides) [m]; null: none
-  /// @param before  what the step before has left, from which slip counts; null: the body was at rest
+  /// @param before  what the step before has left, from which slip counts; null: body and foundation were at rest
   /// @throws rpc::Error bad_input as above; no_solution where nothing holds the body, see contact::check_support()
   Step step(double t, const MultiVector *dents = nullptr, const Memory *before = nullptr) const;
   fem::DirichletDofs dirichlet(double t) const; ///< of step(t), alone

@@ -28,7 +28,8 @@ struct Task {
   bool has_steps() const { return !steps.times.empty(); }
 };
 
-/// The motion of obstacles counts from the first load step, whatever mesh or checkpoint a run is on.
+/// The motion of obstacles along the side counts from where they are at t = 0, whatever mesh or checkpoint a run is on.
+/// @throws rpc::Error (bad_input) where that is nowhere and something depends on it: friction, or dents that move with the foundation
 void set_obstacle_origins(Task &task);
 
 /// What has ended a run with load steps before its last time.

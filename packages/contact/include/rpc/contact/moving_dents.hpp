@@ -11,7 +11,7 @@
 /// Where "Dents Move With" = foundation, the dents of a side lie where the body stood when it pressed them in, seen from the foundation,
 /// which is where it was at the first step: point i stands at
 ///
-///     y_i = x_i + u_i - (motion of the obstacle since the first step).
+///     y_i = x_i + u_i - (motion of the obstacle since t = 0).
 ///
 /// The foundation keeps the side as it stood in each step that has dented it, a sheet with what the step has added to the dents: it
 /// remembers what lies beyond the side's present place. A point meets the sum of what all sheets have where the line through y_i along
@@ -31,8 +31,8 @@ struct DentSheet {
 
 /// What a side's foundation remembers. Plain data.
 struct FoundationDents {
-  std::vector<std::shared_ptr<const DentSheet>> sheets; ///< from the oldest
-  double deepest = 0;                                   ///< of the whole foundation [m]
+  std::vector<std::shared_ptr<const DentSheet>> sheets; ///< from the oldest; none where dents move with the body
+  double deepest = 0;                                   ///< that any step has pressed in [m]
   double volume = 0; ///< that all steps have pressed in, sum of w times what is added [m^3], in the plane [m^2]
 };
 

@@ -29,7 +29,7 @@ struct Obstacle {
   Point point{}; ///< of a plane, the centre of a sphere, or one on the axis of a cylinder [m]
   std::array<ScalarField, 3> path =
       {};         ///< coordinates of `point` that change with time [m]; constant ones are not read
-  Point origin{}; ///< where `point` is at the first of several steps [m]
+  Point origin{}; ///< where `point` is at t = 0 [m]
 
   bool exists() const { return surface.has_value(); }
   bool moves() const; ///< with time
@@ -51,6 +51,9 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, int dim, const std
 std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x);
 /// The parameter that says where there is no such normal, "Centre" or "Axis".
 std::string no_direction_at(const Obstacle &obstacle);
+
+/// The parameter that says where it is, "Point" or "Centre".
+std::string point_name(const Obstacle &obstacle);
 
 /// Whether x lies in the foundation, deeper than rounding.
 bool lies_in(const Obstacle &obstacle, const Point &x);
