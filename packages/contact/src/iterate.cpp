@@ -57,6 +57,19 @@ void take_admissible(const ContactNodes &c, const DeviceView<double *> &from, co
   Kokkos::fence();
 }
 
+/// (points, dim) The parts of vectors along the side. Normals may be others where the vectors come from: on another mesh, of another
+/// place of an obstacle.
+DeviceView<double **> all_along_side(const ContactNodes &points, const DeviceView<double **> &q)
+{
+  const ContactNodes c = points;
+  const DeviceView<double **> along("rpc::contact::along_side", c.size(), c.dim);
+  Kokkos::parallel_for(
+      "rpc::contact::along_side", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i) { set_row(along, i, along_side(c, i, row(q, i))); });
+  Kokkos::fence();
+  return along;
+}
+
 /// Tangential multipliers <- the nearest to q that friction admits at the pressures p; the bounds of the functional's friction follow p.
 /// @return this rank's (|change|^2, |multipliers|^2)
 std::pair<double, double> replace_tangential(const SmoothedPoints &points, const DeviceView<double *> &p,
@@ -341,7 +354,7 @@ void Iterate::start_from(const ContactState &state, Vector &u)
   if (!functional_.points().has_friction()) return;
   const DeviceView<double **> none("rpc::contact::no_traction", points_.size(), points_.dim);
   replace_tangential(functional_.points(), multipliers().normal,
-                     state.multiplier.has_tangential() ? state.multiplier.tangential : none);
+                     state.multiplier.has_tangential() ? all_along_side(points_, state.multiplier.tangential) : none);
 }
 
 void Iterate::move_origin(Vector &u)

@@ -174,7 +174,7 @@ void complete_friction(const fem::Discretization &d, const mesh::Side &side, con
                        const LO end, const ContactResult &result)
 {
   const auto p = result.pressure, used = result.used;
-  const auto q = result.traction;
+  const auto q = result.traction, e = result.slip;
   const auto state = result.slip_state;
   const DeviceView<double *> bound("rpc::contact::lent_bound", c.size());
   for (const auto &vectors : {result.traction, result.slip})
@@ -190,7 +190,8 @@ void complete_friction(const fem::Discretization &d, const mesh::Side &side, con
       KOKKOS_LAMBDA(const LO i) {
         if (c.weight(i) > 0 || !c.friction.exists()) return;
         if (!(p(i) > 0)) bound(i) = math::fmin(bound(i), friction_bound(p(i), c.friction(i))); // it may lie clear
-        const Along borne = admissible_friction(row(q, i), bound(i));
+        set_row(e, i, along_side(c, i, row(e, i))); // neighbours of curved sides have other normals
+        const Along borne = admissible_friction(along_side(c, i, row(q, i)), bound(i));
         set_row(q, i, borne);
         used(i) = bound(i) > 0 ? borne.length() / bound(i) : 0;
         state(i) = !(bound(i) > 0) ? 0 : used(i) >= slips_from ? 2 : 1;

@@ -86,4 +86,14 @@ KOKKOS_INLINE_FUNCTION Along slip(const ContactNodes &c, const LO i, const U &u)
   return moved;
 }
 
+/// (I - nu_i nu_i^T) x, the part of a vector along the side at one node, for kernels.
+KOKKOS_INLINE_FUNCTION Along along_side(const ContactNodes &c, const LO i, const Along &x)
+{
+  Along along = x;
+  double normal = 0;
+  for (int k = 0; k < c.dim; ++k) normal += c.normal(i, k) * x(k);
+  for (int k = 0; k < c.dim; ++k) along.x[k] -= normal * c.normal(i, k);
+  return along;
+}
+
 } // namespace rpc::contact
