@@ -56,10 +56,9 @@ void remember_dents(const Problem &problem, const std::vector<contact::ContactOp
   if (before) keep_dents_elsewhere(points, *before->dent, *with_body);
   memory.dent = with_body;
   if (before) memory.foundations = before->foundations;
-  if (contact::any_moves_with_foundation(sides))
-    contact::press_in(d, sides, *contact::node_columns(points, added_dents(points, s.contact), owned_nodes), *now, *s.u,
-                      memory.foundations);
-  contact::take_all_dents(d, sides, *with_body, memory.foundations, s.contact);
+  contact::press_in(d, sides, *contact::node_columns(points, added_dents(points, s.contact), owned_nodes), *now, *s.u,
+                    memory.foundations);
+  contact::take_all_dents(sides, memory.foundations, s.contact);
 }
 
 Vector moved_along(const Problem &problem, const double t, const Vector &u)

@@ -308,6 +308,27 @@ TEST(LoadHistory, WhatIsRememberedGoesToOtherMeshesByInterpolation)
   EXPECT_LT(again.contact.total.dissipated, 0.1 * history.last().energies.dissipated); // the dents are there already
 }
 
+TEST(LoadHistory, DentsOfTheFoundationNeitherRiseNorFallOnAnotherMesh)
+{
+  // The deepest dent lies at a node that the other mesh does not have.
+  auto model = column(laws[0], [](const double t) { return t == 2 ? -0.01 : 0.06; });
+  model.contact[0].gap = in_time([](const Point &x, double) { return 0.02 * std::abs(x[0] - 13. / 12); });
+  auto fine = history_of(model, close(), 0, 1, 2), coarse = history_of(model);
+  const contact::ContactSums before = advance(fine, 1).contact.total;
+  EXPECT_GT(before.max_dent, 1e-3);
+  coarse.go_on_from(
+      analysis::interpolated(*fine.memory(), fine.problem().discretization(), coarse.problem().discretization()));
+  EXPECT_LT(coarse.memory()->dent->getVector(0)->normInf(), 0.99 * before.max_dent);
+  const contact::ContactSums lifted = advance(coarse, 2).contact.total;
+  EXPECT_EQ(lifted.max_dent, before.max_dent);
+  EXPECT_EQ(lifted.dent_volume, before.dent_volume);
+  const contact::ContactSums again = advance(coarse, 3).contact.total;
+  EXPECT_GE(again.max_dent, before.max_dent);
+  EXPECT_GE(again.dent_volume, before.dent_volume);
+  const double dissipated = coarse.last().energies.dissipated;
+  EXPECT_NEAR(laws[0].yield * again.dent_volume, dissipated, 1e-9 * dissipated);
+}
+
 TEST(Steps, TimesMustRiseAndNumbersBeInRange)
 {
   const auto read = [](const Teuchos::Array<double> &times, const int every, const int halvings) {

@@ -246,32 +246,28 @@ void press_in(const fem::Discretization &d, const std::vector<ContactOptions> &o
   const Comm &comm = d.mesh->comm();
   foundations.resize(options.size());
   for (std::size_t k = 0; k < options.size(); ++k) {
-    if (!moves_with_foundation(options[k]) || all_zero(added, k)) continue;
+    if (!options[k].remembers || all_zero(added, k)) continue;
     FoundationDents &foundation = foundations[k];
-    const Standing nodes = standing(d, options[k], u);
-    foundation.sheets.push_back(
-        std::make_shared<DentSheet>(sheet_of(d, options[k], nodes, added, static_cast<int>(k))));
-    if (foundation.sheets.size() > most_sheets) join_two(comm, foundation.sheets);
+    if (moves_with_foundation(options[k])) {
+      foundation.sheets.push_back(
+          std::make_shared<DentSheet>(sheet_of(d, options[k], standing(d, options[k], u), added, static_cast<int>(k))));
+      if (foundation.sheets.size() > most_sheets) join_two(comm, foundation.sheets);
+    }
+    const SideNodes nodes = nodes_of(fem::surface_nodes(d, side_of(d, options[k])));
     foundation.deepest = std::max(foundation.deepest, largest_of(comm, nodes, after, k));
     foundation.volume += integral_of(comm, nodes, added, k);
   }
 }
 
-void take_all_dents(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                    const MultiVector &with_body, const std::vector<FoundationDents> &foundations,
+void take_all_dents(const std::vector<ContactOptions> &options, const std::vector<FoundationDents> &foundations,
                     ContactResult &result)
 {
-  const Comm &comm = d.mesh->comm();
   result.total.max_dent = result.total.dent_volume = 0;
   for (std::size_t k = 0; k < options.size(); ++k) {
     ContactSums &sums = result.sides[k];
-    if (moves_with_foundation(options[k])) {
+    if (options[k].remembers) {
       sums.max_dent = k < foundations.size() ? foundations[k].deepest : 0;
       sums.dent_volume = k < foundations.size() ? foundations[k].volume : 0;
-    } else if (options[k].remembers) {
-      const SideNodes nodes = nodes_of(fem::surface_nodes(d, side_of(d, options[k])));
-      sums.max_dent = largest_of(comm, nodes, with_body, k);
-      sums.dent_volume = integral_of(comm, nodes, with_body, k);
     }
     result.total.max_dent = std::max(result.total.max_dent, sums.max_dent);
     result.total.dent_volume += sums.dent_volume;

@@ -34,7 +34,7 @@ struct Memory {
   Energies energies;
   RCP<const MultiVector>
       tangential; ///< (owned nodes; sides x dim) multipliers along the side [Pa]; null: the law has none
-  std::vector<contact::FoundationDents> foundations; ///< by side, of those whose dents move with the foundation
+  std::vector<contact::FoundationDents> foundations; ///< by side; empty: none has a dent
 };
 
 /// What is remembered, on another mesh of the same body: by interpolation; dents stay >= 0. Collective.

@@ -29,7 +29,7 @@ struct DentSheet {
   std::vector<LO> facet_node;   ///< (facets, nodes of a facet) numbers of the nodes above
 };
 
-/// What a side's foundation remembers. Plain data.
+/// What a side's foundation remembers, whatever meshes the body has had since. Plain data.
 struct FoundationDents {
   std::vector<std::shared_ptr<const DentSheet>> sheets; ///< from the oldest; none where dents move with the body
   double deepest = 0;                                   ///< that any step has pressed in [m]
@@ -47,7 +47,7 @@ RCP<const MultiVector> dents_met(const fem::Discretization &d, const std::vector
                                  const RCP<const MultiVector> &with_body,
                                  const std::vector<FoundationDents> &foundations, const Vector &u);
 
-/// Adds what a step has pressed into foundations that dents move with. Older dents stay as they are. Collective.
+/// Adds what a step has pressed into foundations that remember. Older dents stay as they are. Collective.
 /// @param options  seen at the time of the step
 /// @param added    (owned nodes; sides) >= 0 at nodes as they stand [m]
 /// @param after    (owned nodes; sides) the dents of contact points after the step [m]
@@ -56,11 +56,9 @@ RCP<const MultiVector> dents_met(const fem::Discretization &d, const std::vector
 void press_in(const fem::Discretization &d, const std::vector<ContactOptions> &options, const MultiVector &added,
               const MultiVector &after, const Vector &u, std::vector<FoundationDents> &foundations);
 
-/// Makes `max_dent` and `dent_volume` those of all dents: of the whole foundation where they move with it, else of all nodes of the
-/// side, though some may be no contact points now. Sides that do not remember keep theirs. Collective.
-/// @param with_body  (owned nodes; sides) after the step [m]
-void take_all_dents(const fem::Discretization &d, const std::vector<ContactOptions> &options,
-                    const MultiVector &with_body, const std::vector<FoundationDents> &foundations,
+/// Makes `max_dent` and `dent_volume` those of all dents of the foundation, though some may lie at no contact point now, or between the
+/// nodes of a new mesh. Sides that do not remember keep theirs.
+void take_all_dents(const std::vector<ContactOptions> &options, const std::vector<FoundationDents> &foundations,
                     ContactResult &result);
 
 } // namespace rpc::contact
