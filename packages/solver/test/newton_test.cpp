@@ -4,6 +4,7 @@
 #include "beam.hpp"
 #include "kinked_line.hpp"
 #include "rpc/core/causes.hpp"
+#include "rpc/core/error.hpp"
 #include "rpc/solver/exact_line_search.hpp"
 
 #include <Tpetra_Core.hpp>
