@@ -6,6 +6,7 @@
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/same_active_set.hpp"
 #include "rpc/contact/between_nodes.hpp"
+#include "rpc/contact/clearance.hpp"
 #include "rpc/contact/energies.hpp"
 #include "rpc/core/causes.hpp"
 #include "rpc/core/timed.hpp"
@@ -23,7 +24,7 @@ using contact::Iterate;
 namespace
 {
 
-Prediction predict(Iterate &iterate, Vector &u, const Starts &starts);
+Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &starts);
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
                       const StepOptions &options, int iteration, bool previous_confirmed,
                       const std::optional<PredictedBy> &predicted, const Progress &progress);
@@ -49,7 +50,7 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
   if (progress.start) progress.start(problem, step);
   {
     const Timed timer("prediction", s.prediction_seconds);
-    Prediction prediction = predict(iterate, *u, starts); // (5.11), (11.5)
+    Prediction prediction = predict(step, iterate, *u, starts); // (5.11), (11.5)
     s.not_predicted = std::move(prediction.reason);
     s.levels = std::move(prediction.work);
     if (prediction.start) predicted = std::move(prediction.by);
@@ -154,9 +155,13 @@ bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts)
 }
 
 /// @return its reason is why no coarser mesh predicted the start; empty if one did, or none was needed
-Prediction predict(Iterate &iterate, Vector &u, const Starts &starts)
+Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &starts)
 {
   Prediction prediction;
+  if (starts.states.empty() && !contact::is_loaded(*u.getMap()->getComm(), step.elastic, step.contact)) {
+    prediction.reason = "nothing loads the body"; // the start is the solution; a coarser mesh would see other gaps
+    return prediction;
+  }
   const bool near = !starts.states.empty() && start_from_nearest(iterate, u, starts);
   if (near) return prediction;
   if (starts.predict)
