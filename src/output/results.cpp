@@ -45,7 +45,6 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
   s.seconds.output = now - begin;
   s.seconds.total = now - start;
   if (!paths.json.empty()) { // last: its presence says that the others are complete and of this run
-    if (!film.note().empty()) s.notes.push_back(film.note());
     // Collective, hence outside. A deck's name may be no valid UTF-8.
     const auto json = summary(scene, s);
     const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
