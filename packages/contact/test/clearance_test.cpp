@@ -80,7 +80,7 @@ bool loaded(const contact::ContactOptions &options, const double traction, const
   return contact::is_loaded(d.mesh->comm(), elastic, contact::contact_nodes(d, {options}, dirichlet));
 }
 
-TEST(Loads, AreForcesDisplacementsAndFoundationsThatReachIntoTheBody)
+TEST(LoadedBody, IsUnderForcesDisplacementsOrFoundationsThatReachIntoIt)
 {
   const auto apart = at("bottom", ScalarField(0.1));
   EXPECT_FALSE(loaded(apart, 0, 0));
@@ -90,7 +90,7 @@ TEST(Loads, AreForcesDisplacementsAndFoundationsThatReachIntoTheBody)
   EXPECT_TRUE(loaded(at("bottom", field([](const Point &x) { return 1.9 - x[0]; })), 0, 0)); // at one point
 }
 
-TEST(Loads, AreFoundationsThatDragTheBodyAlong)
+TEST(LoadedBody, IsDraggedAlongByFoundations)
 {
   const auto d = block();
   const auto dirichlet = fem::dirichlet_dofs(d, {held("top")});

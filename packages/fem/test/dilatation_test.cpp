@@ -248,7 +248,8 @@ TEST(DilatationOption, IsReadForEachMaterialAndMisspellingsAreRefused)
   Teuchos::ParameterList list;
   list.set("Young's Modulus", 1.).set("Poisson's Ratio", 0.3);
   EXPECT_EQ(read(list).common.dilatation, Dilatation::automatic);
-  list.sublist("Blocks").sublist("rubber") = list;
+  const Teuchos::ParameterList rubber = list;
+  list.sublist("Blocks").sublist("rubber") = rubber;
   list.set("Dilatation", "full");
   list.sublist("Blocks").sublist("rubber").set("Dilatation", "projected");
   EXPECT_EQ(read(list).common.dilatation, Dilatation::full);
