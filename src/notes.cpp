@@ -76,8 +76,7 @@ void SeldomMeant::before(const analysis::Problem &problem, const analysis::Step 
   loaded_ = loaded_ || contact::is_loaded(comm, step.elastic, step.contact);
   note_overlaps(problem, step);
   if (scene_.has_steps()) return;
-  if (!loaded_) notes_.add("no load, no prescribed displacement but 0 and no initial penetration: nothing happens");
-  if (loaded_ && step.contact.friction.anywhere)
+  if (step.contact.friction.anywhere)
     notes_.add(
         "friction depends on the path of the load, of which one step knows the end alone: \"Steps->Times\" follow it");
 }
@@ -117,9 +116,13 @@ void SeldomMeant::after(const analysis::Solution &s)
 void SeldomMeant::at_end(const analysis::Solution &s)
 {
   if (!s.uzawa.converged || s.failure) return;
-  if (!loaded_ && scene_.has_steps())
-    notes_.add("no step has a load, a prescribed displacement but 0 or an initial penetration: nothing happens");
-  if (!loaded_ || s.step.contact.num_total == 0 || has_unseen_contact_ || touches(s)) return;
+  if (has_unseen_contact_) return; // something would happen, or touch
+  if (!loaded_)
+    notes_.add(
+        scene_.has_steps()
+            ? "no step has a load, a prescribed displacement but 0 or a contact point in a foundation: nothing happens"
+            : "no load, no prescribed displacement but 0 and no contact point in a foundation: nothing happens");
+  if (!loaded_ || s.step.contact.num_total == 0 || touches(s)) return;
   std::ostringstream note;
   note << (smallest_gap_ > 0 ? "no point touches" : "no point is pressed on the foundation")
        << (scene_.has_steps() ? " at any step" : "") << ": the smallest gap that is left is " << smallest_gap_ << " ["

@@ -80,6 +80,10 @@ SECTOR = """<ParameterList name="sector">
     <Parameter name="Type" type="string" value="gmsh"/>
     <Parameter name="File" type="string" value="MESH"/>
   </ParameterList>
+  <ParameterList name="Material">
+    <Parameter name="Young's Modulus" type="double" value="1"/>
+    <Parameter name="Poisson's Ratio" type="double" value="0.3"/>
+  </ParameterList>
   <ParameterList name="Dirichlet">
     <ParameterList name="straight">
       <Parameter name="X" type="double" value="0"/>
@@ -100,6 +104,10 @@ SOLID = """<ParameterList name="solid">
   <ParameterList name="Mesh">
     <Parameter name="Type" type="string" value="gmsh"/>
     <Parameter name="File" type="string" value="MESH"/>
+  </ParameterList>
+  <ParameterList name="Material">
+    <Parameter name="Young's Modulus" type="double" value="1"/>
+    <Parameter name="Poisson's Ratio" type="double" value="0.3"/>
   </ParameterList>
   <ParameterList name="Dirichlet">
     <ParameterList name="HELD">
@@ -176,6 +184,10 @@ TUBE = """<ParameterList name="tube">
     <Parameter name="Upper" type="Array(double)" value="{2, 1}"/>
     <Parameter name="Cells" type="Array(int)" value="{6, 4}"/>
     <Parameter name="Element" type="string" value="Q2"/>
+  </ParameterList>
+  <ParameterList name="Material">
+    <Parameter name="Young's Modulus" type="double" value="1"/>
+    <Parameter name="Poisson's Ratio" type="double" value="0.3"/>
   </ParameterList>
   <ParameterList name="Dirichlet">
     <ParameterList name="bottom"><Parameter name="Y" type="double" value="0"/></ParameterList>
