@@ -50,10 +50,10 @@ RCP<const MultiVector> kinks(const fem::Discretization &d, const Slopes &slopes)
 
 } // namespace
 
-double pressure_of_kinks(const fem::Discretization &d, const ContactTerms &terms)
+SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &terms)
 {
   constexpr double high = 0.5, twice_pi = 6.28318530717958647692;
-  if (d.mesh->dim() != 2) return 0;
+  if (d.mesh->dim() != 2) return {};
   const std::size_t n = terms.field.extent(0);
   const Slopes slopes{terms, DeviceView<double *>("rpc::adapt::slope_from", n),
                       DeviceView<double *>("rpc::adapt::slope_to", n), DeviceView<LO *>("rpc::adapt::node_after", n),
@@ -65,17 +65,25 @@ double pressure_of_kinks(const fem::Discretization &d, const ContactTerms &terms
   Kokkos::fence();
   const auto at_nodes = kinks(d, slopes);
   const auto kink = at_nodes->getLocalViewDevice(Tpetra::Access::ReadOnly);
+  const auto coords = d.mesh->coords;
   const LO num_owned = d.mesh->num_owned_nodes();
-  double most = 0;
+  const bool axisymmetric = d.axisymmetric();
+  SingularNodes found;
   Kokkos::parallel_reduce(
-      "rpc::adapt::pressure_of_kinks", facets,
-      KOKKOS_LAMBDA(const LO f, double &largest) {
+      "rpc::adapt::singular_nodes", facets,
+      KOKKOS_LAMBDA(const LO f, double &largest, double &edges) {
         const int of = terms.block(terms.cell(f));
         const double modulus = terms.lame(of, 0) + 2 * terms.lame(of, 1);
         for (int a = 0; a < 2; ++a) {
           const LO node = terms.facets(f, a);
           const double p = node < num_owned ? terms.field(node, int(pressure)) : 0;
           if (!(p > 0 && p >= high * terms.highest) || p >= contact::yield_limit(terms.law_at(f, a))) continue;
+          const bool at_end = slopes.after(node) < 0 || slopes.before(node) < 0;
+          if (at_end && terms.friction && !(axisymmetric && coords(node, 0) == 0)) {
+            double square = 0; // 0 by symmetry where the end lies on a plane of symmetry
+            for (int k = traction; k < traction + 3; ++k) square += terms.field(node, k) * terms.field(node, k);
+            if (math::sqrt(square) > Jumps::seen * terms.highest) edges += 1;
+          }
           // A curved gap has as much at the neighbours: what they have too is no kink.
           double beside = 0;
           if (slopes.after(node) >= 0) beside = math::fmax(beside, kink(slopes.after(node), 0));
@@ -83,8 +91,9 @@ double pressure_of_kinks(const fem::Discretization &d, const ContactTerms &terms
           largest = math::fmax(largest, modulus * (kink(node, 0) - beside) / (twice_pi * terms.highest));
         }
       },
-      Kokkos::Max<double>(most));
-  return math::fmax(0., most);
+      Kokkos::Max<double>(found.kink), found.edges);
+  found.kink = math::fmax(0., found.kink);
+  return found;
 }
 
 } // namespace rpc::adapt

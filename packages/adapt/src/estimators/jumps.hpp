@@ -83,8 +83,13 @@ struct Jumps {
   }
 };
 
-/// How much the pressure grows while the distance to a kink of the gap falls to 1/e of itself, over the largest one: the most over the
-/// nodes of a plane side that press and do not yield, with at least half of the largest pressure.                 (10.8a)
-double pressure_of_kinks(const fem::Discretization &d, const ContactTerms &terms);
+/// What makes the pressure singular at nodes of a plane side, or one of revolution, that do not yield and have at least half of the largest
+/// pressure; 0 in space.                                                                                      (10.8a)
+struct SingularNodes {
+  double kink =
+      0; ///< how much the pressure grows while the distance to a kink of the gap falls to 1/e of itself, over the largest one: the most
+  double edges = 0; ///< number of those at an end of the side, but for the axis, that bear a traction along it
+};
+SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &terms);
 
 } // namespace rpc::adapt

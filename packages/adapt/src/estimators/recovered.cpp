@@ -199,7 +199,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   const contact::BetweenNodes &unseen = of.result.between;
   if (unseen.unseen.depth > 0) estimate.sees = unseen.unseen.width / (2 * unseen.unseen.facet);
   estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_bound(mesh.comm(), of.contact);
-  constexpr int num_sums = 12;
+  constexpr int num_sums = 13;
   double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0; // Kokkos' maximum over no facets is -DBL_MAX
   Kokkos::parallel_reduce(
       "rpc::adapt::recovery", device_range(mesh.num_owned_cells),
@@ -229,7 +229,9 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
     Kokkos::parallel_reduce("rpc::adapt::nodal_pressures", facets, NodalPressures{terms, highest},
                             Kokkos::Max<double>(drop_of_side), of_side[3], of_side[4], of_side[5]);
     drop = std::max(drop, drop_of_side);
-    kink = std::max(kink, pressure_of_kinks(d, terms));
+    const SingularNodes singular = singular_nodes(d, terms);
+    kink = std::max(kink, singular.kink);
+    of_side[11] = singular.edges;
     Kokkos::parallel_reduce("rpc::adapt::jumps", facets, Jumps{terms}, of_side[8], of_side[9], of_side[10]);
     if (!estimate.peak.at_bound) {
       Kokkos::parallel_reduce("rpc::adapt::peak_difference", facets, PeakDifference{terms, highest},
@@ -256,6 +258,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.peak.gap_jump = all[5] > 0;
   estimate.contact_ends = all[6];
   estimate.peak.friction_jump = all[11] > 0;
+  estimate.peak.friction_edge = all[12] > 0;
   estimate.peak.kink = max_all(mesh.comm(), kink);
   estimate.jumped_force = all[9];
   estimate.jumped_energy = all[10];

@@ -18,6 +18,7 @@ struct PressurePeak {
   bool yield_jump = false; ///< a part that yields borders on a higher yield stress: the pressure is singular in between
   bool gap_jump = false;   ///< contact ends where the gap jumps: the pressure is singular there
   bool friction_jump = false; ///< the traction of a body that slips jumps: the pressure is singular there
+  bool friction_edge = false; ///< contact with friction reaches an end of the side, where the pressure may be singular
   double kink =
       0; ///< of the gap in contact: how much the pressure grows while the distance to it falls to 1/e, over the largest pressure
 
