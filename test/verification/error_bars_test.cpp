@@ -53,6 +53,16 @@ TEST(ErrorBars, HoldTheForceWhereFrictionJumps)
   }
 }
 
+TEST(ErrorBars, OfTheLargestPressureAreNoneWhereFrictionReachesAnEdge)
+{
+  const Solution with = adapted("/friction_jump.xml", "0.02", {"Contact->Friction Coefficient=0.3"});
+  EXPECT_TRUE(std::isnan(with.adaptation->errors.max_pressure));
+  EXPECT_NE(with.adaptation->errors.unknown.at("max_pressure").find("edge"), std::string::npos);
+  EXPECT_FALSE(std::isnan(with.adaptation->errors.contact_force));
+  const Solution without = adapted("/friction_jump.xml", "0.01", {"Contact->Friction Coefficient=0"});
+  EXPECT_FALSE(std::isnan(without.adaptation->errors.max_pressure));
+}
+
 TEST(ErrorBars, HoldEnergyAndPressureOfABodyWithReentrantCorners)
 {
   // Adapted to 0.0015, 16 528 dofs.

@@ -20,7 +20,7 @@ enum Column {
   pressure,
   penetration,
   law,
-  gap = law + contact::law_columns,
+  gap = law + contact::law_columns, // to the dents that there are
   normal,
   traction = normal + 3,
   slip = traction + 3,

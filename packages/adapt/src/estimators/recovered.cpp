@@ -77,7 +77,7 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
           const double miss = now < elastic ? elastic - now : now - elastic;
           to(node, int(penetration)) = closed && c.scaling(i) * miss <= accuracy ? elastic : now;
           contact::to_columns(f, highest_yield, LawAt<decltype(to)>{to, node});
-          to(node, int(gap)) = c.gap(i);
+          to(node, int(gap)) = c.gap(i) + c.dent(i);
           for (int j = 0; j < c.dim; ++j) to(node, normal + j) = c.normal(i, j);
         });
     Kokkos::fence();
