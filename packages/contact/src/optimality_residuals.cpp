@@ -41,13 +41,6 @@ double work(const fem::DirichletDofs &dirichlet, const bool prescribed, const Ve
   return sum_all(*u.getMap()->getComm(), sum);
 }
 
-RCP<const Vector> plus(const Vector &a, const Vector &b)
-{
-  const auto sum = rcp(new Vector(a, Teuchos::Copy));
-  sum->update(1., b, 1.);
-  return sum;
-}
-
 /// part/whole, 0 where both are 0.
 double ratio(const double part, const double whole)
 {
@@ -73,11 +66,12 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   const fem::DirichletDofs &dirichlet = elastic.dirichlet;
   OptimalityResiduals residuals;
   residuals.internal = fem::internal_work(d, materials, u);
-  residuals.forces = residuals.internal.forces;
-  if (!state.rest.is_null())
-    residuals.forces = plus(*residuals.forces, *fem::internal_work(d, materials, *state.rest).forces);
-  const Vector &internal = *residuals.forces;
-  const double strain = residuals.internal.energy_norm_squared;
+  const fem::InternalWork within =
+      state.rest.is_null() ? residuals.internal
+                           : fem::internal_work(d, materials, fem::strained_part(d, u, *state.rest)); // (5.2a)
+  residuals.forces = within.forces;
+  const Vector &internal = *within.forces;
+  const double strain = within.energy_norm_squared;
   const Vector contact = multiplier_forces(points, state.multiplier, u.getMap());
   Vector external(*elastic.applied_load, Teuchos::Copy), residual(internal, Teuchos::Copy);
   external.update(-1., contact, 1.);

@@ -95,18 +95,6 @@ DeviceView<LO *> held_nodes(const DirichletDofs &dirichlet, const int dim, const
   return nodes;
 }
 
-/// (6) How far each mode about `centre` moves a node along axis c.
-template <class Coordinates>
-KOKKOS_INLINE_FUNCTION void modes_at(const int dim, const Coordinates &coords, const LO node,
-                                     const Kokkos::Array<double, 3> &centre, const double radius, const int c,
-                                     double *out)
-{
-  double arm[3] = {0, 0, 0}, axis[3] = {0, 0, 0};
-  for (int i = 0; i < dim; ++i) arm[i] = (coords(node, i) - centre[i]) / radius;
-  axis[c] = 1;
-  along_modes(dim, arm, axis, out);
-}
-
 /// (nodes, dim + 1) 1 for prescribed components, else 0; then the node's part.
 DeviceView<int **> what_is_held(const DirichletDofs &dirichlet, const Parts &parts, const DeviceView<LO *> &nodes,
                                 const int dim)
@@ -250,76 +238,6 @@ std::vector<Resultant> resultants(const Discretization &d, const Parts &parts, c
     result[p].magnitude = all[7 * p + 6];
   }
   return result;
-}
-
-Vector without_rigid_motion(const Discretization &d, const DirichletDofs &dirichlet, const Vector &u)
-{
-  const int dim = d.dim();
-  const auto nodes = device_range(d.mesh->num_owned_nodes());
-  const auto coords = d.mesh->coords;
-  Kokkos::Array<double, 3> centre{};
-  node_coordinates(d)->meanValue(Teuchos::ArrayView<double>(centre.data(), dim));
-  const double radius = mesh::diameter(*d.mesh);
-  // Products of the six modes with each other and with u over the prescribed unknowns.
-  const DeviceView<double[6][7]> sums("rpc::fem::products_of_modes");
-  {
-    const auto fixed = dirichlet.fixed;
-    const auto x = device_read(u);
-    Kokkos::parallel_for(
-        "rpc::fem::products_of_modes", nodes, KOKKOS_LAMBDA(const LO n) {
-          for (int c = 0; c < dim; ++c) {
-            const LO i = dof(dim, n, c);
-            if (!fixed(i)) continue;
-            double along[6];
-            modes_at(dim, coords, n, centre, radius, c, along);
-            for (int k = 0; k < 6; ++k) {
-              for (int l = 0; l < 6; ++l) add_shared(sums(k, l), along[k] * along[l]);
-              add_shared(sums(k, 6), along[k] * x(i));
-            }
-          }
-        });
-  }
-  const auto host = to_host(sums);
-  std::vector<double> all(6 * 7);
-  for (int k = 0; k < 6 * 7; ++k) all[k] = host(k / 7, k % 7);
-  all = summed(d.mesh->comm(), all);
-  const auto product = [&all](const RigidMotion &a, const RigidMotion &b) {
-    double sum = 0;
-    for (int k = 0; k < 6; ++k)
-      for (int l = 0; l < 6; ++l) sum += a[k] * all[7 * k + l] * b[l];
-    return sum;
-  };
-  // Orthonormal motions over the prescribed unknowns; those that all prescribed unknowns leave free stay out.
-  RigidMotion nearest{};
-  std::vector<RigidMotion> basis;
-  for (RigidMotion motion : all_motions(dim, d.kinematics)) {
-    const double before = product(motion, motion);
-    for (const RigidMotion &unit : basis) {
-      const double part = product(motion, unit);
-      for (int k = 0; k < 6; ++k) motion[k] -= part * unit[k];
-    }
-    const double size = product(motion, motion);
-    if (!(size > 1e-12 * before)) continue;
-    for (double &entry : motion) entry /= std::sqrt(size);
-    basis.push_back(motion);
-    double part = 0;
-    for (int k = 0; k < 6; ++k) part += motion[k] * all[7 * k + 6];
-    for (int k = 0; k < 6; ++k) nearest[k] += part * motion[k];
-  }
-  Kokkos::Array<double, 6> q{};
-  std::copy(nearest.begin(), nearest.end(), q.data());
-  Vector rest(u, Teuchos::Copy);
-  const auto x = device_write(rest);
-  Kokkos::parallel_for(
-      "rpc::fem::without_rigid_motion", nodes, KOKKOS_LAMBDA(const LO n) {
-        for (int c = 0; c < dim; ++c) {
-          double along[6];
-          modes_at(dim, coords, n, centre, radius, c, along);
-          for (int k = 0; k < 6; ++k) x(dof(dim, n, c)) -= q[k] * along[k];
-        }
-      });
-  Kokkos::fence();
-  return rest;
 }
 
 std::vector<RigidMotion> readable_basis(std::vector<RigidMotion> motions, const int dim)

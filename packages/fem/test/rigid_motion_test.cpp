@@ -190,6 +190,45 @@ TEST(WithoutRigidMotion, OfAnAxisymmetricBodyIsAlongItsAxis)
       });
 }
 
+/// The forces of a body that turns by 0.3 and moves by 2 and hardly strains are those of the strain alone.
+void expect_forces_of_the_strain(const mesh::BoxOptions &box, const double strain)
+{
+  const auto d = body(box, world());
+  const int dim = d.dim();
+  const fem::Materials materials = fem::Material{1, 0.3};
+  Vector u(d.owned_dofs), rest(d.owned_dofs), strained(d.owned_dofs);
+  {
+    const auto x = to_host(d.mesh->coords);
+    const auto whole = u.getLocalViewHost(Tpetra::Access::OverwriteAll),
+               left = rest.getLocalViewHost(Tpetra::Access::OverwriteAll),
+               alone = strained.getLocalViewHost(Tpetra::Access::OverwriteAll);
+    for (LO n = 0; n < d.mesh->num_owned_nodes(); ++n) {
+      const double small[3] = {strain * x(n, 0) * x(n, 1), strain * x(n, 1), strain * x(n, 0)};
+      const long double turned[3] = {2.L - 0.3L * x(n, 1), 1.L + 0.3L * x(n, 0), 0.5L};
+      for (int c = 0; c < dim; ++c) {
+        alone(dim * n + c, 0) = small[c];
+        whole(dim * n + c, 0) = static_cast<double>(turned[c] + small[c]);
+        left(dim * n + c, 0) = static_cast<double>(turned[c] + small[c] - whole(dim * n + c, 0));
+      }
+    }
+  }
+  const auto forces = [&](const Vector &of) { return fem::internal_work(d, materials, of).forces; };
+  const auto expected = forces(strained);
+  const auto error = [&](const Vector &of) {
+    Vector difference(*forces(of), Teuchos::Copy);
+    difference.update(-1., *expected, 1.);
+    return difference.norm2() / expected->norm2();
+  };
+  EXPECT_GT(error(u), 1e-8);
+  EXPECT_LT(error(fem::strained_part(d, u, rest)), 0.05 * error(u)); // what long doubles leave
+}
+
+TEST(StrainedPart, HasTheForcesOfABodyThatMovesFar)
+{
+  expect_forces_of_the_strain(plane, 1e-10);
+  expect_forces_of_the_strain(space, 1e-10);
+}
+
 TEST(MotionInWords, NamesTheAxisOfAScrew)
 {
   fem::Part part;

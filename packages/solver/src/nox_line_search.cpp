@@ -2,6 +2,7 @@
 
 #include <NOX_LineSearch_Factory.H>
 #include <NOX_Solver_Generic.H>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -17,10 +18,16 @@ constexpr double same_slope = 1e-12; // of a slope
 double rise_between(const LineFunction &line, const double a, const LineFunction::Value &at_a, const double b,
                     const LineFunction::Value &at_b, const int halvings)
 {
-  const double of_piece = at_a.curvature * (b - a), risen = at_b.slope - at_a.slope;
+  const double width = b - a, of_piece = at_a.curvature * width, risen = at_b.slope - at_a.slope;
   const bool one_piece =
       std::abs(risen - of_piece) <= same_slope * std::max(std::abs(at_a.slope), std::abs(at_b.slope));
-  if (one_piece || halvings == 0 || !std::isfinite(risen)) return 0.5 * (at_a.slope + at_b.slope) * (b - a);
+  if (one_piece || !std::isfinite(risen)) return 0.5 * (at_a.slope + at_b.slope) * width;
+  if (halvings == 0) { // two pieces, which meet at a + x
+    const double x = (risen - at_b.curvature * width) / (at_a.curvature - at_b.curvature);
+    if (!(x > 0 && x < width)) return 0.5 * (at_a.slope + at_b.slope) * width;
+    return (at_a.slope + 0.5 * at_a.curvature * x) * x +
+           (at_b.slope - 0.5 * at_b.curvature * (width - x)) * (width - x);
+  }
   const double middle = 0.5 * (a + b);
   const auto between = line.at(middle);
   return rise_between(line, a, at_a, middle, between, halvings - 1) +

@@ -122,7 +122,7 @@ TEST(Newton, ALineSearchThatFindsNothingIsTheReason)
   options.nox.sublist("Direction").set("Method", "Newton");
   options.nox.sublist("Line Search").set("Method", "Backtrack");
   options.nox.sublist("Line Search").sublist("Backtrack").set("Minimum Step", 0.9).set("Recovery Step", 1e-6);
-  options.max_iterations = 5;
+  options.max_iterations = 30;
   solver::MinimizeResult result;
   for (int uzawa = 0; uzawa < 4; ++uzawa) {
     result = minimize(beam, options);
@@ -157,17 +157,17 @@ TEST(Newton, MethodsThatCannotBeUsedAreRefused)
 
 TEST(Rise, IsTheIntegralOfTheSlope)
 {
-  for (unsigned seed = 0; seed < 50; ++seed) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
     const Line line(1 + seed % 5, seed);
     const auto model = line.model(-0.01 * (seed + 1), 2);
-    constexpr int parts = 100000;
+    constexpr int parts = 20000;
     double sum = 0, most = 0;
     for (int k = 0; k < parts; ++k) {
       const double slope = model->at((k + 0.5) / parts).slope;
       sum += slope / parts;
       most += std::abs(slope) / parts;
     }
-    EXPECT_NEAR(solver::rise(*model, 0, 1), sum, 2e-3 * most) << seed;
+    EXPECT_NEAR(solver::rise(*model, 0, 1), sum, 5e-4 * most) << seed;
   }
   EXPECT_NEAR(solver::rise(*Line(0, 0).model(-3, 3), 0, 0.5), -3 * 0.5 + 3 * 0.125, 1e-15);
 }

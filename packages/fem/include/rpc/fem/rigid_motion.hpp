@@ -75,6 +75,11 @@ std::vector<Resultant> resultants(const Discretization &d, const Parts &parts, c
 /// @param u  (owned dofs) [m]; collective
 Vector without_rigid_motion(const Discretization &d, const DirichletDofs &dirichlet, const Vector &u);
 
+/// u + rest less the rigid motion that is nearest to u, with the error that one rounding of the result makes: a body that hardly strains
+/// and moves far has forces and strains of that alone.                                          doc/theory.md (5.2a)
+/// @param rest  (owned dofs) what the rounding of u has left out [m]; collective
+Vector strained_part(const Discretization &d, const Vector &u, const Vector &rest);
+
 /// The same motions by a basis that reads well: translations, along the axes if possible, then rotations.
 std::vector<RigidMotion> readable_basis(std::vector<RigidMotion> motions, int dim);
 
