@@ -89,9 +89,9 @@ class Causes(RpcTestCase):
     def test_each_is_provoked_and_its_remedy_helps(self):
         newton = {"NOX->Direction->Method": "Newton"}
         search, backtrack = "NOX->Line Search->Method", "NOX->Line Search->Backtrack->"
-        no_step = {**newton, search: "Backtrack", backtrack + "Minimum Step": 0.9, backtrack + "Recovery Step": 1e-6, "Contact->Penalty": 1e8}
-        self.provoke("no lower step", no_step, {**newton, "Contact->Penalty": 1e8},
-                     figures=["Backtrack", "Minimum Step 0.9", "Recovery Step 1e-06"])
+        steep = {**newton, "Contact->Penalty": 1e7}  # kinks near each other
+        no_step = {**steep, "NOX->Maximum Iterations": 20, search: "Backtrack", backtrack + "Minimum Step": 0.9, backtrack + "Recovery Step": 1e-6}
+        self.provoke("no lower step", no_step, steep, figures=["Backtrack", "Minimum Step 0.9", "Recovery Step 1e-06"])
         self.provoke("no lower step", no_step, {**no_step, backtrack + "Minimum Step": 1e-12})
         self.provoke("circles", {**newton, search: "Full Step"}, newton, figures=["Full Step"])
         self.provoke("circles", {**newton, search: "NonlinearCG"}, newton, figures=["NonlinearCG"])

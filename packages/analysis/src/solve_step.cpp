@@ -272,7 +272,8 @@ contact::OptimalityResiduals judge(const Problem &problem, const Step &step, con
   rounded.rest = Teuchos::null;
   auto residuals = of(rounded);
   if (now.rest.is_null() || residuals.holds(tolerance)) return residuals;
-  auto unrounded = of(now); // (5.2a)
+  auto unrounded = of(now);                // (5.2a)
+  residuals.internal = unrounded.internal; // the next origin's
   return unrounded.worst() < residuals.worst() ? unrounded : residuals;
 }
 

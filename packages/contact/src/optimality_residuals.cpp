@@ -65,10 +65,11 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   const Vector &u = *state.displacement;
   const fem::DirichletDofs &dirichlet = elastic.dirichlet;
   OptimalityResiduals residuals;
-  residuals.internal = fem::internal_work(d, materials, u);
-  const fem::InternalWork within =
-      state.rest.is_null() ? residuals.internal
-                           : fem::internal_work(d, materials, fem::strained_part(d, u, *state.rest)); // (5.2a)
+  const auto work_of = [&](const Vector &rest) { // (5.2a)
+    return fem::internal_work(d, materials, fem::strained_part(d, u, rest));
+  };
+  residuals.internal = state.rest.is_null() ? fem::internal_work(d, materials, u) : work_of(Vector(u.getMap()));
+  const fem::InternalWork within = state.rest.is_null() ? residuals.internal : work_of(*state.rest);
   residuals.forces = within.forces;
   const Vector &internal = *within.forces;
   const double strain = within.energy_norm_squared;
