@@ -100,5 +100,11 @@ TEST(AdaptiveRanks, GiveNestedMeshesOfThePlaneTheSame)
   expect_same_meshes("../../../input/beam_adaptive.xml", {{"Adapt->Meshes=nested"}});
 }
 
+TEST(AdaptiveRanks, GiveStepsOnSpringsThatYieldTheSameMeshes)
+{
+  // Friction fills blocks of the stiffness that are exactly 0 without it, of some ranks.
+  expect_same_meshes("springs.xml", {{}});
+}
+
 } // namespace
 } // namespace adapt_ranks_test
