@@ -32,8 +32,10 @@ std::string not_kept(const OutOfBalance &off, const double tolerance, const std:
   text << "in " << off.steps << " of " << steps << " steps work and energies differ by more than "
        << "\"Steps->Energy Tolerance\" = " << tolerance << " of the largest energy, by " << off.share
        << " at t = " << off.at << " in " << off.parts << (off.parts == 1 ? " part" : " parts")
-       << ". A field that jumps in t, such as the place of an obstacle, does so in steps of any length, and so does one that "
-          "puts the body into the foundation at the start: let it change over some time. Else give \"Steps->Times\" that are closer to each other there, more \"Steps->Max "
+       << ". A field that jumps in t, such as the place of an obstacle, does so in steps of any length, and so does "
+          "one that "
+          "puts the body into the foundation at the start: let it change over some time. Else give \"Steps->Times\" "
+          "that are closer to each other there, more \"Steps->Max "
           "Halvings\", or a larger tolerance";
   return text.str();
 }
