@@ -21,10 +21,9 @@ void add_sums(nlohmann::ordered_json &json, const contact::ContactSums &sums, co
   add_shown(json, contact::contact_quantities, sums, scope);
 }
 
-/// Where the body lies in the foundation between contact points; null: nowhere.
+/// Where the body lies in the foundation between contact points.
 nlohmann::ordered_json place_json(const Scene &scene, const contact::PlaceBetweenNodes &at, const int dim)
 {
-  if (!(at.depth > 0)) return {};
   return {{"penetration", at.depth},
           {"side", scene.model.contact[at.side].name_in_results()},
           {"place", vector_json(at.place, dim)},
@@ -143,8 +142,10 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["contact_sides"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.contact.size(); ++k)
     add_sums(json["contact_sides"][scene.model.contact[k].name_in_results()], s.contact.sides[k], scope, mesh.dim());
-  json["between_nodes"] = {{"deepest", place_json(scene, s.contact.between.deepest, mesh.dim())},
-                           {"unseen", place_json(scene, s.contact.between.unseen, mesh.dim())}};
+  auto &between = json["between_nodes"] = nlohmann::ordered_json::object();
+  if (s.contact.between.deepest.depth > 0)
+    between["deepest"] = place_json(scene, s.contact.between.deepest, mesh.dim());
+  if (s.contact.between.unseen.depth > 0) between["unseen"] = place_json(scene, s.contact.between.unseen, mesh.dim());
   json["reaction_force"] = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < scene.model.dirichlet.size(); ++k)
     json["reaction_force"][scene.model.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());

@@ -33,6 +33,10 @@ EstimatedMesh gathered(const fem::Discretization &d, const ErrorEstimate &estima
   all.coords = nodes.gather(x.data(), all.dim);
   all.cells = cells.gather(vertices.data(), all.vertices);
   all.squared = cells.gather(squared.data(), 1);
+  if (estimate.unseen() > 0) {
+    all.unseen_squared = cells.gather(to_host(estimate.unseen_squared).data(), 1);
+    all.seen_from = cells.gather(to_host(estimate.seen_from).data(), 1);
+  }
   return all;
 }
 

@@ -130,11 +130,8 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   }
   const double eta = std::sqrt(estimate.total()), target = task_.adapt.target * std::sqrt(energy_norm_squared);
   goal_ = goal(eta, target, mesh.dim());
-  // Where unseen contact is most of the error, errors elsewhere are those of another solution: cells get as small as it takes to see it.
-  if (estimate.unseen() > 0.5 * estimate.total()) {
-    goal_.bound = planned_ = eta * std::pow(std::min(0.5, estimate.sees), mesh.element.order); // (10.5)
-    goal_.growth = 1;
-  }
+  // Where unseen contact is most of the error, errors elsewhere are those of another solution: no cell grows for them.
+  if (estimate.unseen() > 0.5 * estimate.total()) goal_.growth = 1;
   const double dofs = dofs_of(mesh), cells = cells_of(mesh), ratio = made_per_planned(cells, mesh.dim());
   if (!halved_) ratio_unless_halved_ = ratio;
   if (const double relative = eta / std::sqrt(energy_norm_squared); relative < least_) {

@@ -389,6 +389,17 @@ double squared_error_of(const EstimatedMesh &mesh, const Geometry &geometry, con
   return smooth + std::min(smooth, at_singularities);
 }
 
+/// Where contact that is unseen in a cell is more by itself than the error that the next mesh is to have, its vertices get the size that
+/// sees it: the mean over the cells around them would ask for little. (10.4b)
+void see_contact(const EstimatedMesh &mesh, const double squared_error, std::vector<double> &size)
+{
+  for (std::size_t cell = 0; cell < mesh.unseen_squared.size(); ++cell)
+    for (int a = 0; a < mesh.vertices && mesh.unseen_squared[cell] > squared_error; ++a) {
+      double &at_vertex = size[mesh.vertices_of(static_cast<int>(cell))[a]];
+      at_vertex = std::min(at_vertex, mesh.seen_from[cell]);
+    }
+}
+
 } // namespace
 
 SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
@@ -407,6 +418,7 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
     std::vector<double> size = smooth_sizes(mesh, geometry, at_singularity, level, request.max_growth);
     for (int n = 0; n < mesh.num_nodes(); ++n)
       if (singular[n]) size[n] = vertex_size(mesh, geometry, n, exponent[n], singular, size, level);
+    see_contact(mesh, request.squared_error, size);
     limit_growth(mesh, geometry, size);
     const double excess =
         corrections > 0 ? request.squared_error / squared_error_of(mesh, geometry, size, exponent, singular) : 1;

@@ -22,6 +22,7 @@ struct EstimatedMesh {
   std::vector<int> cells;      ///< (cells, vertices) nodes, in the plane counter-clockwise
   std::vector<double> squared; ///< (cells) eta_T^2 [J]
   int dim = 2;                 ///< 2 or 3
+  std::vector<double> unseen_squared, seen_from; ///< (cells) see ErrorEstimate; empty: nothing is unseen
 
   int num_cells() const { return static_cast<int>(squared.size()); }
   int num_nodes() const { return static_cast<int>(coords.size()) / dim; }

@@ -158,7 +158,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
   const EvaluateShape shape = shape_of(facet);
   const auto block = to_host(mesh.block);
   const auto lame = to_host(fem::lame_table(d, materials));
-  std::vector<double> squared(rows.num_facets(), 0.);
+  std::vector<double> squared(rows.num_facets(), 0.), width(rows.num_facets(), 0.);
   double sum = 0;
   for (const LO f : owned) {
     const double modulus = lame(block(rows.cell(f)), 0) + 2 * lame(block(rows.cell(f)), 1);
@@ -173,9 +173,11 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     if (place.depth > mine.deepest.depth) mine.deepest = place;
     if (!unseen) continue;
     sum += squared[f] = found.squared;
+    width[f] = found.width;
     if (place.depth > mine.unseen.depth) mine.unseen = place;
   }
   result.between.unseen_squared.push_back(device_values(squared, "rpc::contact::unseen_squared"));
+  result.between.unseen_width.push_back(device_values(width, "rpc::contact::unseen_width"));
   return sum;
 }
 
@@ -207,8 +209,8 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
     BetweenNodes mine;
     double squared = 0;
     if (is_linear(d.mesh->element.facet(), options[k]))
-      result.between.unseen_squared.push_back(
-          DeviceView<double *>("rpc::contact::unseen_squared", sides[k]->facets.extent(0)));
+      for (auto *const none : {&result.between.unseen_squared, &result.between.unseen_width})
+        none->push_back(DeviceView<double *>("rpc::contact::nothing_unseen", sides[k]->facets.extent(0)));
     else
       squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), least, result, mine);
     const auto deepest = deepest_of_all(comm, mine.deepest), unseen = deepest_of_all(comm, mine.unseen);

@@ -93,7 +93,7 @@ bool agree(const ExpressionBounds &bounds, Expression &expression)
     const Point at{s, 0.6 - s, 0.3 * s};
     const double value = expression(at, s), rounding = 1e-9 * (1 + std::abs(value));
     const Interval bound = bounds({at, at}, s);
-    if (!std::isnan(value) && !(bound.low - rounding <= value && value <= bound.high + rounding)) return false;
+    if (std::isfinite(value) && !(bound.low - rounding <= value && value <= bound.high + rounding)) return false;
   }
   return true;
 }

@@ -68,14 +68,13 @@ private:
   NewtonReport report_;
 };
 
-/// "Method" of the deck's list `name` for NOX, "" if it is no text; the first of `methods` is the default.
+/// "Method" of the deck's list `name` for NOX, as text; the first of `methods` is the default.
 template <std::size_t N>
 std::string method_of(const Teuchos::ParameterList &nox, const char *const name,
                       const std::array<const char *, N> &methods)
 {
   if (!nox.isSublist(name) || !nox.sublist(name).isParameter("Method")) return methods[0];
-  const Teuchos::ParameterList &list = nox.sublist(name);
-  return list.isType<std::string>("Method") ? list.get<std::string>("Method") : "";
+  return Teuchos::toString(nox.sublist(name).getEntry("Method").getAny(false));
 }
 
 /// @throws rpc::Error (bad_input) if a method of the deck cannot be used

@@ -99,6 +99,20 @@ void add_to_cells(const mesh::Side &side, const DeviceView<double *> &of_facet, 
   Kokkos::fence();
 }
 
+/// Half of the smallest width among the facets of each cell, where there is one.
+void take_half_of_least(const mesh::Side &side, const DeviceView<double *> &width, const DeviceView<double *> &half)
+{
+  const auto cell = side.cell;
+  const LO num_facets = static_cast<LO>(cell.extent(0)), num_owned_cells = static_cast<LO>(half.extent(0));
+  Kokkos::parallel_for(
+      "rpc::adapt::take_half_of_least", device_range(1), KOKKOS_LAMBDA(const LO) {
+        for (LO f = 0; f < num_facets; ++f)
+          if (cell(f) < num_owned_cells && width(f) > 0 && !(half(cell(f)) > 0 && half(cell(f)) <= width(f) / 2))
+            half(cell(f)) = width(f) / 2;
+      });
+  Kokkos::fence();
+}
+
 /// How far the multiplier's pressure and that of the recovered stress lie apart where the former is near its largest value.
 struct PeakDifference {
   ContactTerms terms; // in
@@ -197,7 +211,8 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   const auto squared = estimate.squared;
   const double highest = of.result.total.max_pressure;
   const contact::BetweenNodes &unseen = of.result.between;
-  if (unseen.unseen.depth > 0) estimate.sees = unseen.unseen.width / (2 * unseen.unseen.facet);
+  estimate.unseen_squared = DeviceView<double *>("rpc::adapt::unseen_squared", squared.extent(0));
+  estimate.seen_from = DeviceView<double *>("rpc::adapt::seen_from", squared.extent(0));
   estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_bound(mesh.comm(), of.contact);
   constexpr int num_sums = 13;
   double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0; // Kokkos' maximum over no facets is -DBL_MAX
@@ -225,7 +240,11 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
     const auto facets = device_range(static_cast<LO>(side.facets.extent(0)));
     Kokkos::parallel_reduce("rpc::adapt::contact_terms", facets, terms, of_side[0], of_side[1], of_side[2]);
     add_to_cells(side, terms.squared, squared);
-    if (!unseen.unseen_squared.empty()) add_to_cells(side, unseen.unseen_squared[k], squared);
+    if (!unseen.unseen_squared.empty()) {
+      add_to_cells(side, unseen.unseen_squared[k], squared);
+      add_to_cells(side, unseen.unseen_squared[k], estimate.unseen_squared);
+      take_half_of_least(side, unseen.unseen_width[k], estimate.seen_from);
+    }
     Kokkos::parallel_reduce("rpc::adapt::nodal_pressures", facets, NodalPressures{terms, highest},
                             Kokkos::Max<double>(drop_of_side), of_side[3], of_side[4], of_side[5]);
     drop = std::max(drop, drop_of_side);

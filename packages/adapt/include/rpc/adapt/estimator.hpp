@@ -44,8 +44,8 @@ struct ErrorEstimate {
   double max_pressure =
       0; ///< at points with 0.9 of the largest pressure, on facets that have not all yielded: the most, in space the root mean square [Pa]
   PressurePeak peak;
-  double sees =
-      0; ///< the size of cells that would see unseen contact, over that of the cell where it is deepest; 0: there is none (10.4b)
+  // (owned cells) Of unseen contact: its part in eta_T^2 [J], and the size of a cell that would see it, 0 where there is none [m]. (10.4b)
+  DeviceView<double *> unseen_squared, seen_from;
   double contact_ends =
       0; ///< half of the facets that are partly open: the mesh does not tell where contact ends [m^(dim-1)]
 

@@ -124,6 +124,8 @@ struct PlaceBetweenNodes {
 struct BetweenNodes {
   PlaceBetweenNodes deepest, unseen; ///< of all facets, and of those of which no contact point bears a pressure
   std::vector<DeviceView<double *>> unseen_squared; ///< (sides; facets) the part of each in twice `unseen_energy` [J]
+  std::vector<DeviceView<double *>>
+      unseen_width; ///< (sides; facets) see PlaceBetweenNodes, 0 where nothing is unseen [m]
 };
 
 /// What a user reads off the contact sides: values at this rank's contact nodes, and sums over all ranks.
