@@ -9,8 +9,9 @@ namespace
 
 /// Slopes of the gap along the facets at their ends, by node: where a facet begins, where one ends.
 struct Slopes {
-  ContactTerms terms;            // in
-  DeviceView<double *> from, to; // (overlap nodes) out
+  ContactTerms terms;                                // in
+  DeviceView<double *> from, to;                     // (overlap nodes) out
+  DeviceView<double *> curvature_from, curvature_to; // (overlap nodes) of these facets, of order 2 [1/m] out
   DeviceView<LO *> after,
       before; // (overlap nodes) next nodes at the other ends of these facets, -1 where there is none, out
 
@@ -22,15 +23,20 @@ struct Slopes {
     const double middle = quadratic ? terms.field(terms.facets(f, 2), int(gap)) : (g + h) / 2;
     from(a) = (4 * middle - 3 * g - h) / length;
     to(b) = (3 * h + g - 4 * middle) / length;
+    curvature_from(a) = curvature_to(b) = (to(b) - from(a)) / length;
     after(a) = b;
     before(b) = a;
   }
 };
 
-/// By how much the slope of the gap grows at owned nodes, on all nodes of the facets around them: (overlap nodes; 1).
+// What a node knows of the gap beside it.
+enum Beside { kink, curvature_before, curvature_after, num_beside };
+
+/// By how much the slope of the gap grows at owned nodes, and its curvature on the facets before and after them, 0 where there is none: on
+/// all nodes of the facets around them, (overlap nodes; Beside).
 RCP<const MultiVector> kinks(const fem::Discretization &d, const Slopes &slopes)
 {
-  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, 1));
+  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, int(num_beside)));
   {
     const auto to = owned->getLocalViewDevice(Tpetra::Access::ReadWrite);
     const auto coords = d.mesh->coords;
@@ -39,9 +45,11 @@ RCP<const MultiVector> kinks(const fem::Discretization &d, const Slopes &slopes)
         "rpc::adapt::kinks", device_range(static_cast<LO>(to.extent(0))), KOKKOS_LAMBDA(const LO n) {
           const bool begins = slopes.after(n) >= 0, ends = slopes.before(n) >= 0;
           if (begins && ends)
-            to(n, 0) = slopes.from(n) - slopes.to(n);
+            to(n, int(kink)) = slopes.from(n) - slopes.to(n);
           else if (axisymmetric && coords(n, 0) == 0) // the gap goes on beyond the axis as its mirror image
-            to(n, 0) = begins ? 2 * slopes.from(n) : ends ? -2 * slopes.to(n) : 0;
+            to(n, int(kink)) = begins ? 2 * slopes.from(n) : ends ? -2 * slopes.to(n) : 0;
+          to(n, int(curvature_before)) = slopes.curvature_to(n);
+          to(n, int(curvature_after)) = slopes.curvature_from(n);
         });
     Kokkos::fence();
   }
@@ -55,8 +63,12 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
   constexpr double high = 0.5, twice_pi = 6.28318530717958647692;
   if (d.mesh->dim() != 2) return {};
   const std::size_t n = terms.field.extent(0);
-  const Slopes slopes{terms, DeviceView<double *>("rpc::adapt::slope_from", n),
-                      DeviceView<double *>("rpc::adapt::slope_to", n), DeviceView<LO *>("rpc::adapt::node_after", n),
+  const Slopes slopes{terms,
+                      DeviceView<double *>("rpc::adapt::slope_from", n),
+                      DeviceView<double *>("rpc::adapt::slope_to", n),
+                      DeviceView<double *>("rpc::adapt::curvature_from", n),
+                      DeviceView<double *>("rpc::adapt::curvature_to", n),
+                      DeviceView<LO *>("rpc::adapt::node_after", n),
                       DeviceView<LO *>("rpc::adapt::node_before", n)};
   Kokkos::deep_copy(slopes.after, -1);
   Kokkos::deep_copy(slopes.before, -1);
@@ -64,7 +76,7 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
   Kokkos::parallel_for("rpc::adapt::slopes", facets, slopes);
   Kokkos::fence();
   const auto at_nodes = kinks(d, slopes);
-  const auto kink = at_nodes->getLocalViewDevice(Tpetra::Access::ReadOnly);
+  const auto seen = at_nodes->getLocalViewDevice(Tpetra::Access::ReadOnly);
   const auto coords = d.mesh->coords;
   const LO num_owned = d.mesh->num_owned_nodes();
   const bool axisymmetric = d.axisymmetric();
@@ -86,9 +98,15 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
           }
           // A curved gap has as much at the neighbours: what they have too is no kink.
           double beside = 0;
-          if (slopes.after(node) >= 0) beside = math::fmax(beside, kink(slopes.after(node), 0));
-          if (slopes.before(node) >= 0) beside = math::fmax(beside, kink(slopes.before(node), 0));
-          largest = math::fmax(largest, modulus * (kink(node, 0) - beside) / (twice_pi * terms.highest));
+          if (slopes.after(node) >= 0) beside = math::fmax(beside, seen(slopes.after(node), int(kink)));
+          if (slopes.before(node) >= 0) beside = math::fmax(beside, seen(slopes.before(node), int(kink)));
+          // Within a facet of order 2 one shows as a curvature that the next facets do not have, twice as much if it is in the middle.
+          const LO start = terms.facets(f, 0), end = terms.facets(f, 1);
+          const double curved =
+              math::fmax(0., math::fmax(seen(start, int(curvature_before)), seen(end, int(curvature_after))));
+          const double within = (slopes.to(end) - slopes.from(start) - curved * terms.size(f)) / 2;
+          const double grows = math::fmax(within, seen(node, int(kink)) - beside);
+          largest = math::fmax(largest, modulus * grows / (twice_pi * terms.highest));
         }
       },
       Kokkos::Max<double>(found.kink), found.edges);
