@@ -11,7 +11,7 @@ namespace rpc::solver
 {
 
 /// int_a^b of a line function's slope, which is continuous, nondecreasing and piecewise linear: exact where kinks of the functional are
-/// at least 1/64 of the interval apart; collective.
+/// at least 1/1024 of the interval apart; collective.
 double rise(const LineFunction &line, double a, double b);
 
 /// What NOX's line searches are to lower: the convex functional itself. Their own choice, |F|^2/2, may rise along a Newton direction at a
