@@ -193,7 +193,7 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     options.output_fraction = options.output_minmax = true;
     timers->report(out, comm, options);
   }
-  if (solution.failure) throw rpc::failure_of(solution);
+  if (solution.failure && solution.failure->code != ExitCode::not_converged) throw rpc::failure_of(solution);
   return rpc::adapt::succeeded(solution) ? ExitCode::converged : ExitCode::not_converged;
 }
 

@@ -216,18 +216,14 @@ void print_estimate(std::ostream &out, const Scene &scene, const Solution &s)
   out << std::endl;
 }
 
-void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &notes,
-                   const std::vector<std::string> &files)
+namespace
+{
+
+/// Numbers of a solution.
+void print_results(std::ostream &out, const Scene &scene, const Solution &s, const ResultScope &scope)
 {
   const int dim = s.discretization.dim();
-  const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
   const auto unit_of = [&](const Unit &unit) { return scope.units.of(unit, scope.per_length); };
-  const bool stopped = s.failure || !s.uzawa.converged;
-  out << '\n' << (stopped ? "NOT CONVERGED: " : "");
-  if (stopped && !s.history.empty()) print(out, "at t = %g: ", s.failure ? s.failure->time : s.time);
-  out << (s.failure ? s.failure->reason : s.uzawa.reason) << '\n';
-  if (s.failure) print(out, "  results             of the last step that converged, t = %g\n", s.time);
-  print_lines(out, lines(analysis::residual_quantities, s.uzawa.residuals, scope, "%.1e"));
   print(out, "  energy J            %.9g %s\n", s.energy, unit_of(unit::energy).c_str());
   print_lines(out, lines(analysis::body_quantities, s.body, scope, "%.6g"));
   if (!scene.model.contact.empty()) {
@@ -249,6 +245,24 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
       out << ", " << line.heading << ' ' << line.numbers;
     out << '\n';
   }
+}
+
+} // namespace
+
+void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &notes,
+                   const std::vector<std::string> &files)
+{
+  const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
+  const bool stopped = s.failure || !s.uzawa.converged;
+  out << '\n' << (stopped ? "NOT CONVERGED: " : "");
+  if (stopped && !s.history.empty()) print(out, "at t = %g: ", s.failure ? s.failure->time : s.time);
+  out << (s.failure ? s.failure->reason : s.uzawa.reason) << '\n';
+  if (s.failure) print(out, "  results             of the last step that converged, t = %g\n", s.time);
+  print_lines(out, lines(analysis::residual_quantities, s.uzawa.residuals, scope, "%.1e"));
+  if (s.has_results())
+    print_results(out, scene, s, scope);
+  else
+    out << "  results             none: the last iterate is no solution\n";
   print(out,
         "  work                %d Uzawa, %d Newton, %zu linear solves, %d iterations in them, %d preconditioner "
         "set-ups\n",
@@ -263,7 +277,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
   for (const auto &level : s.levels)
     print(out, "    predicted by      %zu dofs: %d Newton, %d linear iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
-  if (s.adaptation) print_adaptation(out, *s.adaptation, scope);
+  if (s.adaptation && s.has_results()) print_adaptation(out, *s.adaptation, scope);
   print_balance(out, scene, s);
   for (const auto &note : notes) print_note(out, note);
   for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());

@@ -121,6 +121,7 @@ std::vector<std::string> older_files(const Scene &scene, const Solution &s, cons
   const int num_ranks = s.discretization.mesh->comm().getSize();
   std::vector<std::string> ours = ResultPaths(scene, folder).all();
   ours.erase(ours.begin()); // the Exodus file is the film's
+  if (!s.has_results()) ours.erase(std::remove(ours.begin(), ours.end(), ResultPaths(scene, folder).csv), ours.end());
   for (const std::string &part : film)
     for (const std::string &file : exodus_on_disk(part, scene.output.exodus_files, num_ranks)) ours.push_back(file);
   std::vector<std::string> older;

@@ -8,6 +8,7 @@
 
 #include <Teuchos_Time.hpp>
 #include <Teuchos_TimeMonitor.hpp>
+#include <algorithm>
 #include <utility>
 
 namespace rpc
@@ -32,13 +33,17 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
   const double begin = Teuchos::Time::wallTime() - film.seconds();
   const ResultPaths paths(scene, folder);
   const mesh::Mesh &mesh = *s.discretization.mesh;
-  if (!paths.exodus.empty()) film.finish(scene, s, folder);
-  if (!paths.csv.empty()) {
+  if (!paths.exodus.empty() && s.has_results()) film.finish(scene, s, folder);
+  if (!paths.csv.empty() && s.has_results()) {
     const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::contact table"));
     write_contact(paths.csv, scene, s);
   }
   if (!paths.history.empty()) steps.history.update(paths.history, scene, s);
+  // After a restart that finds no step, the files of the run before it stay.
+  const bool nothing_new = !s.has_results() && std::any_of(s.history.begin(), s.history.end(),
+                                                           [](const auto &step) { return step.converged; });
   on_root(mesh.comm(), ExitCode::internal_error, [&] {
+    if (nothing_new) return;
     for (const std::string &file : older_files(scene, s, folder, film.files())) io::remove_older(file);
   });
   const double now = Teuchos::Time::wallTime();
@@ -56,7 +61,7 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
     files.push_back(split ? file + '.' + std::to_string(mesh.comm().getSize()) + ".*" : file);
   }
   for (const std::string &path : paths.all())
-    if (!path.empty() && path != paths.exodus) files.push_back(path);
+    if (!path.empty() && path != paths.exodus && (path != paths.csv || s.has_results())) files.push_back(path);
   return files;
 }
 

@@ -132,7 +132,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["fixed_contact_nodes"] = s.step.contact.num_fixed;
   json["ranks"] = mesh.comm().getSize();
   json["execution_space"] = ExecutionSpace::name();
-  json["time"] = s.time;
+  json["time"] = s.has_results() ? nlohmann::ordered_json(s.time) : nlohmann::ordered_json();
   json["units"] = units_json(scope);
   json["energy_J"] = s.energy;
   json["strain_energy"] = 0.5 * s.energy_norm_squared;

@@ -13,7 +13,7 @@ from rpc_run import LAUNCH, PROGRAM, RANKS, RpcTestCase, errors, files, ranks_be
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM]
 NOT_CONVERGED = 4
-RESULTS = [f"out/beam.{end}" for end in ("contact.csv", "e", "json")]
+RESULTS = ["out/beam.json"]  # an iterate is no result
 LARGE = "--set=Mesh->Cells={1280,256}"  # seconds are left when the signal comes, on a busy machine too
 FACTORED = ["--set=Mesh->Cells={20,20,10}", "--set=Mesh->Upper={1,1,0.15}", "--set=Material->Poisson's Ratio=0.4999",
             "--set=Material->Dilatation=full"]  # some ten seconds
@@ -102,7 +102,8 @@ class Interrupt(RpcTestCase):
             with self.subTest(number.name):
                 summary = self.interrupt_solve(number, "    1      1")
                 self.assertGreater(summary["newton_iterations"][0], 0)
-                self.assertGreater(summary["max_penetration"], 0)
+                self.assertIsNone(summary["max_penetration"])
+                self.assertIsInstance(summary["equilibrium_residual"], float)
 
     def test_in_newton_results_are_written(self):
         self.interrupt_solve(signal.SIGTERM, "    1      1", "--set=NOX->Direction->Method=Sweep")
@@ -129,7 +130,7 @@ class Interrupt(RpcTestCase):
                 self.assertLess(time.monotonic() - sent, 5)
                 self.assertEqual(errors(result), [])
                 self.assertIn(f"NOT CONVERGED: interrupted by {number.name} in Uzawa iteration 1", result.stdout)
-                self.assertEqual(files(self.folder), ["out/block.contact.csv", "out/block.json"])
+                self.assertEqual(files(self.folder), ["out/block.json"])
                 summary = json.loads((self.folder / "out" / "block.json").read_text())
                 self.assertIn("sparse factor", summary["solver_path"])
 

@@ -1,10 +1,12 @@
 """What a deck asks for is met, or refused with what was reached: the most unknowns of adapted meshes, the energy tolerance of load steps,
-times without a load."""
+times without a load, and after a failure the results of the last step that converged, or none."""
 
+import csv
 import json
 import unittest
 
-from rpc_run import RpcTestCase, errors, run_all
+from film import Film
+from rpc_run import BEAM as INPUT_BEAM, SMALL, RpcTestCase, errors, files, run_all
 
 CONVERGED, NOT_TO_THE_TARGET, NO_SOLUTION = 0, 4, 5
 
@@ -156,6 +158,69 @@ class Promises(RpcTestCase):
         result = self.rpc("--input=ramp.yaml", "--output=out", "--set=Steps->Times={2, 3}", "--set=Contact->Yield Stress=3", code=None)
         self.expect_refusal(result, NO_SOLUTION, ["at t = 2: ", "carries at most 3 [N/m]"])
         self.assertNotIn("the load is zero", result.stderr)
+
+    # From where nothing touches to a load that takes more than one step of the iteration.
+    HARD = [SMALL, "--set=Traction->top->Y=-20*t*sin(pi*x/5)", "--set=Contact->Gap=0.004*sin(pi*x/5)", "--set=NOX->Maximum Iterations=1",
+            "--set=Uzawa->Maximum Iterations=1", "--set=Nested Iteration->Enabled=false", "--set=Steps->Max Halvings=0"]
+
+    def beam(self, output, *options, code=NOT_TO_THE_TARGET):
+        result = self.rpc(f"--input={INPUT_BEAM}", f"--output={output}", *self.HARD, *options, code=code)
+        self.assertEqual(errors(result), [])
+        return result, json.loads((self.folder / output / "beam.json").read_text())
+
+    def test_after_a_step_that_does_not_converge_all_files_have_the_one_before(self):
+        _, right = self.beam("right", "--set=Steps->Times={1e-4, 1e-3}", code=CONVERGED)
+        result, failed = self.beam("failed", "--set=Steps->Times={1e-4, 1e-3, 1}")
+        self.assertFalse(failed["converged"])
+        self.assertEqual((failed["failed_at"], failed["time"]), (1, 1e-3))
+        self.assertIn("Newton did not converge", failed["reason"])
+        for key in ["energy_J", "max_displacement", "contact_force", "reaction_force", "max_pressure", "contact_sides", "kkt_residual"]:
+            self.assertEqual(failed[key], right[key])
+        self.assertEqual([step["converged"] for step in failed["steps"]], [True, True, False])
+        self.assertEqual([step["max_displacement"] is None for step in failed["steps"]], [False, False, True])
+        self.assertEqual(Film(self.folder / "failed" / "beam.e").times, [1e-4, 1e-3])
+        self.assertEqual((self.folder / "failed" / "beam.contact.csv").read_text(), (self.folder / "right" / "beam.contact.csv").read_text())
+        row = list(csv.DictReader((self.folder / "failed" / "beam.history.csv").read_text().splitlines()))[-1]
+        self.assertEqual((row["converged"], row["max_pressure"], row["contact_force_y"]), ("0", "nan", "nan"))
+        self.assertIn("NOT CONVERGED: at t = 1: ", result.stdout)
+        self.assertIn("of the last step that converged, t = 0.001", result.stdout)
+
+    def test_where_no_step_has_converged_there_are_no_numbers_and_no_fields(self):
+        (self.folder / "out").mkdir()
+        for end in ["e", "contact.csv"]:
+            (self.folder / "out" / f"beam.{end}").write_text("of an earlier run")
+        result, failed = self.beam("out", "--set=Steps->Times={1, 2}")
+        self.assertEqual(files(self.folder / "out"), ["beam.history.csv", "beam.json"])
+        self.assertEqual(failed["failed_at"], 1)
+        for key in ["time", "energy_J", "max_displacement", "max_pressure"]:
+            self.assertIsNone(failed[key])
+        self.assertEqual(set(failed["contact_force"]), {None})
+        self.assertEqual(len(failed["steps"]), 1)
+        self.assertIsNone(failed["steps"][0]["max_pressure"])
+        self.assertIsInstance(failed["equilibrium_residual"], float)
+        self.assertIn("results             none", result.stdout)
+        self.assertNotIn("nan", result.stdout)
+
+    def test_adapted_steps_end_with_the_last_one_that_converged(self):
+        adapted = ["--set=Mesh->Element=P2", "--set=Adapt->Target Relative Error=0.5"]
+        _, failed = self.beam("out", *adapted, "--set=Steps->Times={1e-4, 1e-3, 1}")
+        self.assertEqual((failed["failed_at"], failed["time"]), (1, 1e-3))
+        self.assertEqual(Film(self.folder / "out" / "beam.e").times, [1e-4, 1e-3])
+        self.assertLess(failed["max_displacement"], 1e-3)
+        _, none = self.beam("none", *adapted, "--set=Time=1", "--set=Traction->top->Y=-20*sin(pi*x/5)")
+        self.assertEqual(files(self.folder / "none"), ["beam.json"])
+        for key in ["energy_J", "max_pressure"]:
+            self.assertIsNone(none[key])
+            self.assertIsNone(none["adaptation"]["cycles"][0][key])
+        self.assertIsNone(none["error_estimate"]["relative"])
+
+    def test_after_a_restart_that_finds_no_step_the_earlier_files_stay(self):
+        every = "--set=Steps->Checkpoint Every=1"
+        self.beam("out", every, "--set=Steps->Times={1e-4, 1e-3}", code=CONVERGED)
+        _, failed = self.beam("out", every, "--set=Steps->Times={1e-4, 1e-3, 1}", "--restart")
+        self.assertEqual((failed["failed_at"], failed["time"]), (1, None))
+        self.assertEqual([step["converged"] for step in failed["steps"]], [True, True, False])
+        self.assertEqual(Film(self.folder / "out" / "beam.e").times, [1e-4, 1e-3])
 
 
 if __name__ == "__main__":

@@ -21,6 +21,16 @@ double estimated_energy(const Solution &s)
   return s.energy_norm_squared + s.estimate->unseen();
 }
 
+/// Of what is no solution.
+ErrorEstimate unknown_estimate()
+{
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  ErrorEstimate estimate;
+  estimate.parts = {{"recovery", unknown}, {"contact_equilibrium", unknown}, {"contact_complementarity", unknown}, {ErrorEstimate::unseen_contact, unknown}};
+  estimate.rounding = estimate.pressure = estimate.max_pressure = estimate.contact_ends = unknown;
+  return estimate;
+}
+
 /// A run on one mesh whose solution gets its error estimate, and what the loop reads of its pressures. Collective.
 /// @param run  with the listener that it is given
 template <class Run>
@@ -36,6 +46,10 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
     if (found.start_pressure)
       s.pressure_change = contact::pressure_distance(comm, points, pressure, *found.start_pressure);
     if (!task.adapt.estimate) return;
+    if (!found.has_results()) {
+      s.estimate = unknown_estimate();
+      return;
+    }
     const Timed phase("estimate", found.seconds.estimate);
     const auto loads = task.model.seen_at(found.time).tractions;
     s.estimate = estimator()(
@@ -215,7 +229,7 @@ Solution step_of(analysis::HistoryState state)
   return s;
 }
 
-/// Load steps, each on meshes of its own. An interrupted run leaves a checkpoint of the last step that was solved before the signal
+/// Load steps, each on meshes of its own. Where one does not converge, the solution is the one before, with its `failure`. An interrupted run leaves a checkpoint of the last step that was solved before the signal
 /// came: a step that it meets may end in other bits, for predictions are cut short.
 Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, const Listener &listener)
 {
@@ -243,10 +257,16 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
       if (met_by_signal && !(succeeded(s) && t == task.steps.times.back())) keep();
       seconds += s.seconds;
       s.seconds = seconds;
+      if (!s.has_results() && !none_yet()) {
+        earlier->failure = analysis::Failure{s.time, s.uzawa.reason, ExitCode::not_converged};
+        earlier->history = std::move(s.history);
+        earlier->seconds = seconds;
+        break;
+      }
       s.energy_rounding = std::max(earlier ? earlier->energy_rounding : 0, analysis::energy_rounding(task, s));
       earlier = std::move(s);
       solved = true;
-      if (listener.load_step) listener.load_step(*earlier);
+      if (listener.load_step && earlier->has_results()) listener.load_step(*earlier);
     } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
       if (none_yet()) throw analysis::error_at(t, error, !earlier);
       if (!solved && interrupted(*comm)) keep();
@@ -293,7 +313,7 @@ double exact_error(const Task &task, const Solution &s)
 
 bool succeeded(const Solution &s)
 {
-  return s.uzawa.converged && (!s.adaptation || s.adaptation->reached) &&
+  return s.has_results() && !s.failure && (!s.adaptation || s.adaptation->reached) &&
          (!s.out_of_balance || s.out_of_balance->steps == 0);
 }
 

@@ -149,12 +149,15 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   }
   last_.time = s.uzawa.converged ? t : tried_;
   last_.converged = s.uzawa.converged;
-  if (!last_.converged) last_.reason = s.uzawa.reason;
-  last_.contact = s.contact.total;
-  last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
-  last_.displacements = prescribed_means(*problem_, s);
-  last_.reactions = s.reactions;
-  last_.energies = last_.converged ? kept_.memory->energies : unknown_energies();
+  if (last_.converged) {
+    last_.contact = s.contact.total;
+    last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
+    last_.displacements = prescribed_means(*problem_, s);
+    last_.reactions = s.reactions;
+    last_.energies = kept_.memory->energies;
+  } else {
+    last_ = broken_off(s.uzawa.reason);
+  }
   last_.seconds = Teuchos::Time::wallTime() - start;
   return s;
 }

@@ -188,6 +188,7 @@ Solution solve_one_of_steps(const Task &task, const double t, LoadHistory &histo
   s.seconds.prediction += s.prediction_seconds;
   s.seconds.setup += s.linear.setup_seconds;
   s.seconds.solve += s.solve_seconds;
+  if (!s.has_results()) take_back_results(s);
   if (listener.solved) listener.solved(history.problem(), s);
   note_skipped(task, s);
   return s;
@@ -245,9 +246,16 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
       Solution next = solve_one_of_steps(task, t, history, assemblies_before, records, seconds, listener);
       seconds = next.seconds;
       next.energy_rounding = rounding = std::max(rounding, energy_rounding(task, next));
-      s = std::move(next);
+      if (!next.has_results() && !s.history.empty()) {
+        s.failure = Failure{next.time, next.uzawa.reason, ExitCode::not_converged};
+        s.history = std::move(next.history);
+        s.matrix_assemblies = next.matrix_assemblies;
+        s.seconds = seconds;
+      } else {
+        s = std::move(next);
+      }
       solved = true;
-      if (listener.load_step) listener.load_step(s);
+      if (listener.load_step && s.has_results() && !s.failure) listener.load_step(s);
     } catch (const Error &error) { // on all ranks; what the steps before have found is not lost
       const StepRecord broken = history.broken_off(one_line(error.what()));
       if (s.history.empty()) throw error_at(broken.time, error, records.empty());
@@ -257,7 +265,7 @@ Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listen
     }
     const int every = task.steps.checkpoint_every;
     checkpoint_due |= every > 0 && records.size() % every == 0;
-    if (!s.uzawa.converged) {
+    if (!s.has_results() || s.failure) {
       if (interrupted(*comm)) keep_last(task, history, records, s.matrix_assemblies, listener);
       break;
     }
@@ -323,6 +331,7 @@ Solution solve_on(const Task &task, const MadeMesh &made, const Solution *const 
     s.body = history.last().body;
   }
   s.matrix_assemblies = problem->stiffness()->assemblies();
+  if (!s.has_results()) take_back_results(s);
   if (previous) s.start_pressure = starts.front().multiplier.normal;
   if (listener.solved) listener.solved(*problem, s);
   note_skipped(task, s);

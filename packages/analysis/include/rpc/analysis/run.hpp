@@ -51,13 +51,19 @@ struct Solution : StepSolution {
   std::optional<DeviceView<double *>> start_pressure;
   mesh::MeshOptions mesh_options;  ///< of its mesh
   std::vector<StepRecord> history; ///< of load steps, up to this one; after a failure that step too
-  /// An error in a later load step: the solution is that of the step before.
+  /// A later load step has not converged, or an error has ended it: the solution is that of the step before.
   std::optional<Failure> failure;
   int matrix_assemblies = 0;
   PhaseSeconds seconds;
   double energy_rounding = 0;                 ///< see energy_rounding(); largest of the steps so far
   std::optional<OutOfBalance> out_of_balance; ///< of a run with an energy tolerance, at its end
+
+  /// Whether its numbers and fields are a solution's. Else they are the last iterate, which nobody gets to see: numbers are NaN.
+  bool has_results() const { return uzawa.converged; }
 };
+
+/// Makes NaN of the numbers of a solution that has not converged, but for residuals and counts.
+void take_back_results(Solution &solution);
 
 /// All that the next load step needs.
 struct HistoryState {
@@ -106,8 +112,9 @@ void judge_balance(const Task &task, Solution &solution);
 /// @throws rpc::Error on every rank if the model does not fit its mesh; failing to converge is in the result
 Solution solve(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
 
-/// The load steps of a task on its mesh, each from the one before; the solution is the last one's, the first one's that does not
-/// converge, or where an error ends a later step the one before it, with its `failure`. An interrupted run leaves a checkpoint.
+/// The load steps of a task on its mesh, each from the one before; the solution is the last one's, or where a later step does not converge
+/// or an error ends it the one before it, with its `failure`. A first step that does not converge leaves a solution without results. An
+/// interrupted run leaves a checkpoint.
 Solution solve_steps(const Task &task, const RCP<const Comm> &comm, const Listener &listener = {});
 
 /// A mesh with the options by which it was made.

@@ -1,0 +1,30 @@
+#include "rpc/analysis/quantities.hpp"
+#include "rpc/analysis/run.hpp"
+
+#include <limits>
+
+namespace rpc::analysis
+{
+namespace
+{
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+void take_back(contact::ContactSums &sums)
+{
+  for (const auto &q : contact::contact_quantities) sums.*q.value = unknown;
+  sums.force.fill(unknown);
+}
+
+} // namespace
+
+void take_back_results(Solution &s)
+{
+  s.energy = s.energy_norm_squared = unknown;
+  for (const auto &q : body_quantities) s.body.*q.value = unknown;
+  take_back(s.contact.total);
+  for (auto &side : s.contact.sides) take_back(side);
+  for (auto &force : s.reactions) force.fill(unknown);
+}
+
+} // namespace rpc::analysis
