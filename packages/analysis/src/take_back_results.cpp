@@ -25,6 +25,7 @@ void take_back_results(Solution &s)
   take_back(s.contact.total);
   for (auto &side : s.contact.sides) take_back(side);
   for (auto &force : s.reactions) force.fill(unknown);
+  s.contact.between = {};
 }
 
 } // namespace rpc::analysis
