@@ -131,6 +131,7 @@ class Scene:
     units: tuple = (1.0, 1.0)  # of length and stress
     exodus: bool = False
     times: list = None  # of load steps; fields are InTime then
+    more: dict = dataclasses.field(default_factory=dict)  # further parameters of the deck by their list, in the deck's units
 
     def at(self, time):
         """The scene as it is at one time."""
@@ -231,6 +232,8 @@ def deck(scene, mesh_file=None):
     if scene.times:
         lists["Steps"] = {"Times": [float(t) for t in scene.times]}
     lists["Output"] = {"Exodus": scene.exodus}
+    for name, entries in scene.more.items():
+        lists[name] = {**lists.get(name, {}), **entries}
     return _list("scene", lists) + "\n"
 
 

@@ -1,0 +1,296 @@
+"""Judges one run by its files: equilibrium, laws of contact and friction at and between contact points, energies. No code of rpc's."""
+import dataclasses
+import math
+
+import numpy as np
+
+import elasticity
+import foundation
+from scene import COMPONENTS
+
+EQUAL = 1e-7  # of sums of forces and energies, relative to their largest part
+SOLVED = 1e-6  # of pressures, tractions and forces at nodes: the solver's tolerance is 1e-8 of sums
+UNSEEN = 0.25  # of the approach: a quarter of it unseen is a third of Hertz's force, which grows as its power 1.5
+TELLS = "between"  # a note about penetration between contact points has this word
+ROUNDING = 1e-12  # of |K||u|
+TINY = 1e-300
+
+
+@dataclasses.dataclass
+class State:
+    """Nodal values at one time; all 0 at rest."""
+
+    time: float
+    u: np.ndarray
+    p: np.ndarray
+    dent: np.ndarray
+    q: np.ndarray
+    forces: np.ndarray = None
+    strain_energy: float = 0.0
+    rounding: float = 0.0  # what the digits of u leave of forces
+    points: foundation.Points = None  # of the contact points
+
+
+def vector(fields, time, dim):
+    """Of a list of fields that are constant in space, at a time."""
+    return np.array([field(0.0, 0.0, 0.0) for field in fields][:dim])
+
+
+class Oracle:
+    """@param case  what was asked for (decks.Case)  @param run  what came of it (outputs.Run)"""
+
+    def __init__(self, case, run):
+        self.case, self.run, self.mesh = case, run, run.mesh
+        self.axisymmetric = case.shape.axisymmetric
+        self.side = case.side.side
+        self.nodes, self.weights, self.outward = foundation.contact_points(self.mesh, self.side, self.axisymmetric)
+        self.prescribed = self.prescribed_unknowns()
+        self.free = ~self.prescribed[self.nodes].any(axis=1)  # contact points that no Dirichlet condition holds
+        self.complaints = []
+        self.summaries = {s["time"]: s for s in run.step_summaries()}
+        self.states = [self.state(step) for step in range(len(run.times))]
+
+    # --- what the files say
+
+    def prescribed_unknowns(self):
+        held = np.zeros(self.mesh.coords.shape, dtype=bool)
+        for side, components in self.case.scene.dirichlet.items():
+            for component in components:
+                held[self.mesh.side_nodes(side), COMPONENTS.index(component)] = True
+        if self.axisymmetric:
+            held[self.mesh.coords[:, 0] <= 0, 0] = True
+        return held
+
+    def state(self, step):
+        run, fields = self.run, self.run.fields[step]
+        state = State(run.times[step], run.vector(step, "disp"), fields["contact_pressure"], fields["dent"], run.vector(step, "friction"))
+        state.forces, state.strain_energy = elasticity.internal(self.mesh, state.u, self.case.scene.material, self.axisymmetric)
+        state.rounding = ROUNDING * elasticity.largest_product(self.mesh, state.u, self.case.scene.material, self.axisymmetric)
+        state.points = foundation.seen(self.case.side.seen_at(state.time), self.mesh.coords[self.nodes], self.outward)
+        return state
+
+    def rest(self):
+        first, zero = self.states[0], np.zeros(len(self.mesh.coords))
+        still = dataclasses.replace(first.points, gap=np.maximum(first.points.gap, 0.0))
+        nothing = np.zeros_like(self.mesh.coords)
+        return State(0.0, nothing, zero, zero, nothing, nothing, points=still)
+
+    def before(self, step):
+        """The state that a step began with; None where the file does not have it."""
+        if step > 0:
+            return self.states[step - 1]
+        first = min(self.summaries)
+        return self.rest() if self.states[0].time == first else None
+
+    def nodal(self, state):
+        """Of the contact points whose normal meets the foundation: (nodes, weights, free)"""
+        k = state.points.index
+        return self.nodes[k], self.weights[k], self.free[k]
+
+    def motion(self, time):
+        """Of the obstacle since rest."""
+        side = self.case.side
+        if not side.motion:
+            return np.zeros(self.mesh.dim)
+        name = "Centre" if "Centre" in side.obstacle else "Point"
+        return np.subtract(side.moved_to(time).obstacle[name], side.obstacle[name])
+
+    def complain(self, state, text):
+        self.complaints.append(text if len(self.states) == 1 else f"t = {state.time:g}: {text}")
+
+    # --- the judgement
+
+    def judge(self):
+        """All complaints about the run."""
+        if not self.run.summary["converged"] and self.run.code == 0:
+            self.complaints.append("exit 0, not converged")
+        for step, state in enumerate(self.states):
+            self.check_equilibrium(state)
+            self.check_laws(step, state)
+            self.check_between(state)
+            self.check_energies(step, state)
+        self.check_table()
+        return self.complaints
+
+    def loads(self, time):
+        scene = self.case.scene.at(time)
+        traction = {side: vector(fields, time, self.mesh.dim) for side, fields in scene.traction.items()}
+        body = np.array(scene.body_force) if scene.body_force else None
+        return elasticity.loads(self.mesh, traction, body, self.axisymmetric)
+
+    def contact_forces(self, state):
+        """Of the body on the foundation, by node."""
+        forces = np.zeros_like(self.mesh.coords)
+        nodes, weights, _ = self.nodal(state)
+        forces[nodes] = weights[:, None] * (state.p[nodes, None] * state.points.normal + state.q[nodes])
+        return forces
+
+    def check_equilibrium(self, state):
+        load, contact = self.loads(state.time), self.contact_forces(state)
+        rest = state.forces - load + contact
+        scale = max(np.max(np.abs(load)), np.max(np.abs(contact)), np.max(np.abs(rest[self.prescribed]), initial=0.0))
+        off = np.where(self.prescribed, 0.0, np.abs(rest))
+        if np.max(off) > SOLVED * scale + state.rounding:
+            node = int(np.argmax(off.max(axis=1)))
+            self.complain(state, f"forces do not balance at {place_of(self.mesh.coords[node])}: {np.max(off):.3g} is left of {scale:.3g}")
+        reaction = np.where(self.prescribed, rest, 0.0)
+        self.check_resultants(state, load, contact, reaction)
+
+    def check_resultants(self, state, load, contact, reaction):
+        """Forces and moments of load, contact and supports, and the sums in the summary."""
+        parts = [load, -contact, reaction]
+        scale = max(max(np.sum(np.abs(part)) for part in parts), TINY)
+        moment = lambda f: np.sum(np.cross(self.mesh.coords, f), axis=0)
+        if not self.axisymmetric:
+            size = np.max(np.ptp(self.mesh.coords, axis=0))
+            if np.max(np.abs(sum(moment(part) for part in parts))) > (SOLVED * scale + len(load) * state.rounding) * size:
+                self.complain(state, f"moments do not balance: {np.max(np.abs(sum(moment(p) for p in parts))):.3g} is left of {scale * size:.3g}")
+        radial = [0.0 if self.axisymmetric else 1.0] + [1.0] * (self.mesh.dim - 1)
+        summary = self.summaries[state.time]
+        told = {"contact_force": (np.array(summary["contact_force"]), -contact)}
+        if state.time == self.run.summary["time"] and "reaction_force" in self.run.summary:
+            told["reaction_force"] = (np.sum(list(self.run.summary["reaction_force"].values()), axis=0), reaction)
+        for name, (value, mine) in told.items():
+            own = np.sum(mine, axis=0) * radial
+            if np.max(np.abs(value - own)) > SOLVED * scale + len(load) * state.rounding:
+                self.complain(state, f"{name} is {value.tolist()}, by the displacement and pressures {own.tolist()}")
+
+    def small(self, state):
+        """(pressure, length) that count as nothing: of the largest pressure, and of what it does to a facet."""
+        pressure = max(np.max(state.p), np.max(np.abs(state.q)), 0.0)
+        length = foundation.facet_size(self.mesh, self.side)
+        stiff = min([self.case.scene.material["E"]] + [E for E, _ in self.case.scene.material["blocks"].values()])
+        moved = np.max(np.abs(state.u), initial=0.0)
+        return SOLVED * pressure + TINY, SOLVED * pressure * length / stiff + 1e-9 * moved + TINY
+
+    def check_laws(self, step, state):
+        nodes, _, free = self.nodal(state)
+        points, before = chosen(state.points, free), self.before(step)
+        nodes, small = nodes[free], self.small(state)
+        v = np.einsum("kd,kd->k", state.u[nodes], points.normal) - points.gap
+        whole = before is not None and not self.several_meshes()
+        contact = self.case.side
+        found = foundation.law_violations(contact, points, state.p[nodes], v, state.dent[nodes], before.dent[nodes] if whole else None, small)
+        if contact.friction:
+            e = self.slip(state, before, nodes, points) if whole and self.parts(state) == 1 else None
+            found += foundation.friction_violations(contact.friction, points, state.p[nodes], state.q[nodes], e, small)
+        for text in found:
+            self.complain(state, text)
+
+    def slip(self, state, before, nodes, points):
+        e = state.u[nodes] - before.u[nodes] - (self.motion(state.time) - self.motion(before.time))
+        return e - np.einsum("kd,kd,ke->ke", e, points.normal, points.normal)
+
+    def parts(self, state):
+        return self.summaries[state.time].get("parts", 1)
+
+    def several_meshes(self):
+        """Whether steps may have been solved on other meshes than the file's."""
+        return self.case.target is not None and self.case.scene.times is not None
+
+    def check_between(self, state):
+        """Penetration between contact points that no word tells."""
+        samples = foundation.samples(self.mesh, self.side, state.u, state.dent)
+        contact = self.case.side.seen_at(state.time)
+        points = foundation.seen(contact, samples.place, samples.outward)
+        nodes = foundation.seen(contact, self.mesh.coords[self.nodes], self.outward)
+        normal = np.einsum("kd,kd->k", samples.u[points.index], points.normal)
+        depth = normal - points.gap - samples.dent[points.index]
+        at_nodes = np.zeros(len(self.mesh.coords))
+        known = self.nodes[nodes.index]
+        at_nodes[known] = np.maximum(0, np.einsum("kd,kd->k", state.u[known], nodes.normal) - nodes.gap - state.dent[known])
+        seen = np.array([at_nodes[some].max() for some in samples.nodes])[samples.facet[points.index]]
+        excess = depth - seen
+        approach = max(np.max(normal, initial=0.0), 0.0) + max(-np.min(points.gap, initial=0.0), 0.0)
+        if len(excess) and np.max(excess) > UNSEEN * approach + self.small(state)[1] and not self.told():
+            k = int(np.argmax(excess))
+            self.complain(state, f"penetration between contact points at {place_of(points.place[k])}: {excess[k]:.3g} of an approach of {approach:.3g}, and no word")
+
+    def told(self):
+        return self.run.code != 0 or TELLS in self.run.stdout + self.run.stderr
+
+    def check_energies(self, step, state):
+        summary = self.summaries[state.time]
+        self.equal(state, "strain_energy", summary["strain_energy"], state.strain_energy, state.strain_energy)
+        before = self.before(step)
+        if before is None or self.several_meshes() or self.parts(state) > 1:
+            return
+        nodes, weights, free = self.nodal(state)
+        contact, p, growth = self.case.side, state.p[nodes], state.dent[nodes] - before.dent[nodes]
+        if "energy_J" in summary:
+            self.check_functional(state, before, summary)
+        if "work" not in summary:
+            return
+        compliance = 0.0 if math.isinf(contact.stiffness) else 1 / contact.stiffness
+        own = {"foundation_energy": np.sum(weights * compliance * p ** 2 / 2),
+               "dissipated_energy": np.sum(weights * (p - contact.hardening * growth / 2) * growth),
+               "work": self.work(state, before)}
+        if contact.friction:
+            e = self.slip(state, before, nodes, state.points)
+            own["dissipated_by_friction"] = np.sum(weights * np.einsum("kd,kd->k", state.q[nodes] + before.q[nodes], e) / 2)
+        last = self.summaries[before.time] if before.time in self.summaries else {}
+        scale = max(abs(each.get(key, 0.0)) for key in (*own, "strain_energy") for each in (summary, last))
+        for key, value in own.items():
+            told = summary[key] - (last.get(key, 0.0) if key != "foundation_energy" else 0.0)
+            self.equal(state, f"{key} of the step", told, value, scale)
+
+    def check_functional(self, state, before, summary):
+        """J with its own integrals; not where a Dirichlet condition presses a point into the foundation."""
+        nodes, weights, free = self.nodal(state)
+        contact, dent = self.case.side, before.dent[nodes]
+        v = np.einsum("kd,kd->k", state.u[nodes], state.points.normal) - state.points.gap - dent
+        if np.any(v[~free] > 0):
+            return
+        compliance = 0.0 if math.isinf(contact.stiffness) else 1 / contact.stiffness
+        stored = sum(w * foundation.energy_of(vk, xi + (contact.hardening * d if contact.hardening else 0.0), contact.hardening, compliance)
+                     for w, vk, xi, d in zip(weights, v, state.points.xi, dent))
+        load = np.sum(self.loads(state.time) * state.u)
+        self.equal(state, "energy_J", summary["energy_J"], state.strain_energy - load + stored, max(state.strain_energy, abs(load), stored))
+
+    def work(self, state, before):
+        """Of a step, (11.3) and (12.9): of loads and supports, and of the foundation's own motion."""
+        nodes, weights, _ = self.nodal(state)
+        if not np.array_equal(state.points.index, before.points.index):
+            return math.nan
+        acting = state.forces + self.contact_forces(state) + before.forces + self.contact_forces(before)
+        work = np.sum(acting * (state.u - before.u)) / 2
+        turned = np.einsum("kd,kd->k", (state.u + before.u)[nodes] / 2, state.points.normal - before.points.normal)
+        work += np.sum(weights * (state.p + before.p)[nodes] / 2 * (turned - (state.points.gap - before.points.gap)))
+        moved = self.motion(state.time) - self.motion(before.time)
+        return work - np.sum(weights * ((state.q + before.q)[nodes] @ moved)) / 2 if self.case.side.friction else work
+
+    def equal(self, state, name, told, own, scale):
+        rest = len(self.mesh.coords) * state.rounding * np.max(np.abs(state.u), initial=0.0)
+        if not math.isnan(own) and not abs(told - own) <= EQUAL * scale + rest + TINY:
+            self.complain(state, f"{name} is {told!r}, by the oracle {own!r} (scale {scale:.3g})")
+
+    def check_table(self):
+        """The contact table has the last state, and weights in space."""
+        state, at = self.states[-1], {}
+        if state.time != self.run.summary["time"]:
+            return
+        for place, node in zip(np.round(self.mesh.coords[self.mesh.side_nodes(self.side)], 9), self.mesh.side_nodes(self.side)):
+            at[tuple(place + 0.0)] = node
+        own = {n: (w, nu, g) for n, w, nu, g in zip(*self.nodal(state)[:2], state.points.normal, state.points.gap)}
+        small = self.small(state)
+        for row in self.run.contact_rows():
+            node = at.get(tuple(np.round([row[c] for c in "xyz"[:self.mesh.dim]], 9) + 0.0))
+            if node is None or (node in self.nodes and node not in own):
+                self.complain(state, f"a row of the contact table at {place_of([row[c] for c in 'xyz'[:self.mesh.dim]])} is no contact point")
+            elif node in own:
+                weight, nu, gap = own[node]
+                pairs = [("pressure", row["pressure"], state.p[node], small[0]), ("u_nu", row["u_nu"], state.u[node] @ nu, small[1]),
+                         ("gap", row["gap"], gap, small[1] + 1e-9 * abs(gap))]
+                pairs += [("area", row["area"], weight, 1e-9 * weight)] if "area" in row else []
+                for name, told, mine, nothing in pairs:
+                    if abs(told - mine) > nothing:
+                        self.complain(state, f"{name} at {place_of(self.mesh.coords[node])} is {told!r} in the table, by the oracle {float(mine)!r}")
+                        return
+
+
+def chosen(points, mask):
+    return foundation.Points(points.place[mask], points.normal[mask], points.gap[mask], points.xi[mask], points.index[mask])
+
+
+def place_of(place):
+    return "(" + ", ".join(f"{float(x):.6g}" for x in place) + ")"
