@@ -46,7 +46,7 @@ class Oracle:
         self.nodes, self.weights, self.outward = foundation.contact_points(self.mesh, self.side, self.axisymmetric)
         self.prescribed = self.prescribed_unknowns()
         self.free = ~self.prescribed[self.nodes].any(axis=1)  # contact points that no Dirichlet condition holds
-        self.complaints = []
+        self.complaints, self.said = [], set()
         self.summaries = {s["time"]: s for s in run.step_summaries()}
         self.states = [self.state(step) for step in range(len(run.times))]
 
@@ -96,6 +96,11 @@ class Oracle:
         return np.subtract(side.moved_to(time).obstacle[name], side.obstacle[name])
 
     def complain(self, state, text):
+        """Once about what goes on from step to step."""
+        what = text.split(" at (")[0].split(" is ")[0]
+        if what in self.said:
+            return
+        self.said.add(what)
         self.complaints.append(text if len(self.states) == 1 else f"t = {state.time:g}: {text}")
 
     # --- the judgement
@@ -227,7 +232,8 @@ class Oracle:
                "work": self.work(state, before)}
         if contact.friction:
             e = self.slip(state, before, nodes, state.points)
-            own["dissipated_by_friction"] = np.sum(weights * np.einsum("kd,kd->k", state.q[nodes] + before.q[nodes], e) / 2)
+            rubs = [contact.friction.bears(pk, *map(float, x)) > 0 for pk, x in zip(p, state.points.place)]  # no slip is told of points that have left
+            own["dissipated_by_friction"] = np.sum(weights * rubs * np.einsum("kd,kd->k", state.q[nodes] + before.q[nodes], e) / 2)
         last = self.summaries[before.time] if before.time in self.summaries else {}
         scale = max(abs(each.get(key, 0.0)) for key in (*own, "strain_energy") for each in (summary, last))
         for key, value in own.items():

@@ -1,0 +1,147 @@
+"""Judges a run by others: ranks and preconditioners, a restart, a finer mesh, and what the deck has asked for."""
+import math
+
+import numpy as np
+
+SAME = 1e-8  # of energies and forces of one mesh
+SAME_FIELD = 1e-7  # of displacements, of the largest one: forces are met to 1e-8, and a body is softer in some ways than in others
+NARROW = 2  # effectivities of estimates on coarse meshes begin at a half, doc/robustness.md
+WIDE = 10  # an estimate may be so many times the change that halving all cells makes
+SPLIT = 1e-6  # of the largest energy: what sums over divided steps may differ by
+
+
+def extremes(run, state_key):
+    return [abs(step.get(state_key) or 0.0) for step in run.step_summaries()]
+
+
+def same_mesh(run, other):
+    """The order of the other's nodes as the run has them; None where meshes differ."""
+    a, b = run.mesh.coords, other.mesh.coords
+    if a.shape != b.shape:
+        return None
+    scale = np.max(np.ptp(a, axis=0))
+    key = lambda x: np.lexsort(np.round(x / scale, 7).T)
+    one, two = key(a), key(b)
+    if np.max(np.abs(a[one] - b[two])) > 1e-7 * scale:
+        return None
+    order = np.empty(len(a), dtype=int)
+    order[one] = two
+    return order
+
+
+def same(run, other, what, exact=False):
+    """Complaints about two runs of one problem. @param exact  to the last bit, as after a restart"""
+    if other.code != run.code:
+        return [f"{what}: exit {other.code} instead of {run.code}: {other.reason()[:200]}"]
+    if run.mesh is None or other.mesh is None:
+        return []
+    order = same_mesh(run, other)
+    if order is None:
+        return []  # adapted meshes, where rounding has decided on a cell
+    found, field, sums = [], 0.0 if exact else SAME_FIELD, 0.0 if exact else SAME
+    largest = max(np.max(np.abs(run.vector(step, "disp"))) for step in range(len(run.times)))
+    for step, time in enumerate(run.times):
+        if time not in other.times:
+            found.append(f"{what}: no step t = {time:g}")
+            continue
+        off = np.max(np.abs(run.vector(step, "disp") - other.vector(other.times.index(time), "disp")[order]))
+        if off > field * largest:
+            found.append(f"{what}: displacements at t = {time:g} differ by {off / largest:.2g} of the largest")
+            break
+    for key in ("strain_energy", "max_pressure"):
+        scale = max(extremes(run, key))
+        for a, b in zip(run.step_summaries(), other.step_summaries()):
+            if abs(a[key] - b[key]) > sums * scale * (10 if key == "max_pressure" else 1):
+                found.append(f"{what}: {key} is {a[key]!r} and {b[key]!r}")
+                break
+    scale = max(np.max(np.abs(step["contact_force"])) for step in run.step_summaries())
+    for a, b in zip(run.step_summaries(), other.step_summaries()):
+        if np.max(np.abs(np.subtract(a["contact_force"], b["contact_force"]))) > sums * scale:
+            found.append(f"{what}: contact_force is {a['contact_force']} and {b['contact_force']}")
+            break
+    return found
+
+
+# --- a finer mesh ------------------------------------------------------------------------------------------------------------
+
+BARS = {"energy_J": "energy_J", "contact_force": "contact_force", "max_pressure": "max_pressure", "contact_length": "contact_length",
+        "contact_area": "contact_area", "max_penetration": "max_penetration"}
+
+
+def bars(run, finer):
+    """Complaints about printed error bars that do not hold the difference to a finer mesh, with that one's own bars."""
+    found = []
+    if finer.summary is None or not finer.summary.get("converged"):
+        return [f"finer: exit {finer.code}: {finer.reason()[:200]}"] if finer.code not in (0, 4) else []
+    mine, other = (r.summary.get("adaptation", {}).get("errors", {}) for r in (run, finer))
+    for name, key in BARS.items():
+        if mine.get(name) is None or key not in run.summary:
+            continue
+        off = float(np.max(np.abs(np.subtract(run.summary[key], finer.summary[key]))))
+        bar = float(np.max(np.abs(mine[name]))) + (float(np.max(np.abs(other[name]))) if other.get(name) is not None else 0.0)
+        if off > bar:
+            found.append(f"bar of {name}: {run.summary[key]} +- {mine[name]}, a finer mesh has {finer.summary[key]}")
+    return found
+
+
+def estimate(run, finer):
+    """Complaints about an estimated error in the energy norm against the change of J from one mesh to cells of half the size."""
+    told = (run.summary.get("error_estimate") or {}).get("energy_norm")
+    if told is None or finer.code != 0:
+        return []
+    change = math.sqrt(2 * abs(run.summary["energy_J"] - finer.summary["energy_J"]))
+    norm = math.sqrt(run.summary["energy_norm_squared"])
+    if change > NARROW * told + 1e-6 * norm:
+        return [f"estimated error {told:.3g} of {norm:.3g}; to cells of half the size J changes as by an error of {change:.3g}"]
+    if told > norm and told > WIDE * max(change, 1e-6 * norm):
+        return [f"estimated error {told:.3g} is larger than the solution, {norm:.3g}; to cells of half the size J changes as by {change:.3g}"]
+    return []
+
+
+# --- what was asked for ------------------------------------------------------------------------------------------------------
+
+
+def promises(case, run):
+    """Complaints about a run with exit 0 or 4 that has not kept what its deck asks for, and does not say so."""
+    found, adaptation = [], run.summary.get("adaptation")
+    most = case.scene.more.get("Adapt", {}).get("Max Dofs")
+    if adaptation:
+        over = [c["dofs"] for c in adaptation["cycles"][1:] if c["dofs"] > most]
+        if over:
+            found.append(f"Max Dofs {most}, a mesh has {max(over)}")
+        if run.code == 0 and not adaptation["reached"]:
+            found.append("exit 0, target not reached")
+    times = [step["time"] for step in run.step_summaries()]
+    if run.code == 0 and case.scene.times and times != case.scene.times:
+        found.append(f"steps at {times} instead of {case.scene.times}")
+    if case.tolerance and run.code == 0:
+        found += energy_tolerance(case, run)
+    if case.scene.times:
+        found += memory(run)
+    return found
+
+
+def energy_tolerance(case, run):
+    """Steps whose energies miss more than the deck allows. The first one of a body that the foundation overlaps at rest does not count."""
+    keys = ("work", "strain_energy", "foundation_energy", "dissipated_energy")
+    last, overlaps = dict.fromkeys(("energy_imbalance", *keys), 0.0), run.summary["steps"][0]["max_initial_penetration"] > 0
+    for step in run.summary["steps"]:
+        if overlaps:
+            last, overlaps = step, False
+            continue
+        largest = max(abs(each[key]) for each in (step, last) for key in keys)
+        off = abs(step["energy_imbalance"] - last["energy_imbalance"])
+        if off > case.tolerance * largest * (1 + SPLIT) and largest > 0 and "Energy Tolerance" not in run.stdout + run.stderr:
+            return [f"t = {step['time']:g}: Energy Tolerance {case.tolerance:.3g}, and {off / largest:.3g} is left in {step['parts']} parts, without a word"]
+        last = step
+    return []
+
+
+def memory(run):
+    """What never falls."""
+    for key in ("max_dent", "dent_volume", "dissipated_energy"):
+        values = [step[key] for step in run.summary["steps"]]
+        for before, after in zip(values, values[1:]):
+            if after < before * (1 - 1e-6) - 1e-300:
+                return [f"{key} falls from {before!r} to {after!r}"]
+    return []
