@@ -17,7 +17,7 @@ CHECKPOINT_AFTER = 2  # steps that a run to be restarted takes before
 ORDER = {"P1": 1, "Q1": 1, "P2": 2, "Q2": 2}
 TARGETS = {("plane", 1): 0.15, ("plane", 2): 0.06, ("space", 1): 0.4, ("space", 2): 0.25}  # relative errors that few unknowns meet
 MOST_DOFS = {"plane": 6000, "space": 9000}
-TOLERANCES = (-2.0, -1.0)  # decades of Steps->Energy Tolerance
+TOLERANCES = (-1.5, -0.7)  # decades of Steps->Energy Tolerance
 HELD_BY = {"pressed": 0.7, "loaded": 0.3}
 INCOMPRESSIBLE = (0.49, 0.4999)
 

@@ -4,14 +4,13 @@ import math
 
 import numpy as np
 
+import between
 import elasticity
 import foundation
 from scene import COMPONENTS
 
 EQUAL = 1e-7  # of sums of forces and energies, relative to their largest part
 SOLVED = 1e-6  # of pressures, tractions and forces at nodes: the solver's tolerance is 1e-8 of sums
-UNSEEN = 0.25  # of the approach: a quarter of it unseen is a third of Hertz's force, which grows as its power 1.5
-TELLS = "between"  # a note about penetration between contact points has this word
 ROUNDING = 1e-12  # of |K||u|
 TINY = 1e-300
 
@@ -194,25 +193,20 @@ class Oracle:
         return self.case.target is not None and self.case.scene.times is not None
 
     def check_between(self, state):
-        """Penetration between contact points that no word tells."""
-        samples = foundation.samples(self.mesh, self.side, state.u, state.dent)
-        contact = self.case.side.seen_at(state.time)
-        points = foundation.seen(contact, samples.place, samples.outward)
-        nodes = foundation.seen(contact, self.mesh.coords[self.nodes], self.outward)
-        normal = np.einsum("kd,kd->k", samples.u[points.index], points.normal)
-        depth = normal - points.gap - samples.dent[points.index]
-        at_nodes = np.zeros(len(self.mesh.coords))
-        known = self.nodes[nodes.index]
-        at_nodes[known] = np.maximum(0, np.einsum("kd,kd->k", state.u[known], nodes.normal) - nodes.gap - state.dent[known])
-        seen = np.array([at_nodes[some].max() for some in samples.nodes])[samples.facet[points.index]]
-        excess = depth - seen
-        approach = max(np.max(normal, initial=0.0), 0.0) + max(-np.min(points.gap, initial=0.0), 0.0)
-        if len(excess) and np.max(excess) > UNSEEN * approach + self.small(state)[1] and not self.told():
-            k = int(np.argmax(excess))
-            self.complain(state, f"penetration between contact points at {place_of(points.place[k])}: {excess[k]:.3g} of an approach of {approach:.3g}, and no word")
-
-    def told(self):
-        return self.run.code != 0 or TELLS in self.run.stdout + self.run.stderr
+        """Penetration between contact points: told in the summary where it is large, and with a word where facets that matter are not seen."""
+        found = between.look(self, state)
+        if found is None or found.excess <= between.UNSEEN * found.approach + self.small(state)[1] or self.run.code != 0:
+            return
+        where = f"at {place_of(found.place)}: {found.excess:.3g} of an approach of {found.approach:.3g}"
+        summary = self.summaries[state.time]
+        words = any(word in self.run.stdout + self.run.stderr for word in between.WORDS)
+        if between.KEY in summary:
+            if summary[between.KEY] < found.excess * between.AGREES:
+                self.complain(state, f"penetration between contact points {where}, the summary has {summary[between.KEY]:.3g}")
+            elif found.unseen > between.MATTERS and not words:
+                self.complain(state, f"unseen contact {where}, with {found.unseen:.2g} of the energy norm, and no note")
+        elif not words:
+            self.complain(state, f"penetration between contact points {where}, and no word")
 
     def check_energies(self, step, state):
         summary = self.summaries[state.time]

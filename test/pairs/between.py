@@ -1,0 +1,59 @@
+"""How much deeper the side lies in the foundation between its contact points than these, at ten points a facet and more."""
+import dataclasses
+import math
+
+import numpy as np
+
+import foundation
+from elasticity import lame
+
+UNSEEN = 0.25  # of the approach: a quarter of it unseen is a third of Hertz's force, which grows as its power 1.5
+AGREES = 0.5  # samples of two programs miss the deepest place by less
+MATTERS = 0.1  # of the energy norm: twice what a run leaves unsaid, doc/theory.md (3.16)
+KEY = "max_penetration_between_nodes"  # of the summary
+WORDS = ("unseen", "between")  # of notes on the console
+
+
+@dataclasses.dataclass
+class Found:
+    excess: float  # deepest penetration beyond that of the facet's contact points [m]
+    place: np.ndarray
+    approach: float  # of the side to the foundation: the most by which it has moved towards it, and overlaps it at rest [m]
+    unseen: float  # what the worst facet without pressure would add to the energy norm, relative to it
+
+
+def look(judge, state):
+    """@param judge  the oracle of the run  @return Found, or None where no normal meets the foundation"""
+    mesh, contact = judge.mesh, judge.case.side.seen_at(state.time)
+    samples = foundation.samples(mesh, judge.side, state.u, state.dent)
+    points = foundation.seen(contact, samples.place, samples.outward)
+    if not len(points.index):
+        return None
+    nodes, _, _ = judge.nodal(state)
+    v = np.einsum("kd,kd->k", state.u[nodes], state.points.normal) - state.points.gap
+    at_nodes = np.zeros(len(mesh.coords))
+    at_nodes[nodes] = np.maximum(0, v - state.dent[nodes])
+    facet = samples.facet[points.index]
+    towards = np.einsum("kd,kd->k", samples.u[points.index], points.normal)
+    excess = towards - points.gap - samples.dent[points.index] - np.array([at_nodes[some].max() for some in samples.nodes])[facet]
+    k = int(np.argmax(excess))
+    approach = max(np.max(towards), 0.0) + max(-np.min(points.gap), 0.0)
+    return Found(float(excess[k]), points.place[k], approach, share(judge, state, samples, points, excess, facet))
+
+
+def share(judge, state, samples, points, excess, facet):
+    """Of the energy norm: what it takes to push the worst facet that bears no pressure out of the foundation. A layer of the body gives way that is
+    as deep as the part in the foundation is wide."""
+    worst, material = 0.0, judge.case.scene.material
+    lam, mu = lame(material["E"], min(material["nu"], 0.4))
+    for number, nodes in enumerate(samples.nodes):
+        mine = facet == number
+        if not mine.any() or state.p[nodes].max() > 0 or excess[mine].max() <= 0:
+            continue
+        deep, size = np.maximum(excess[mine], 0), float(np.max(np.ptp(judge.mesh.coords[nodes], axis=0)))
+        width = size * np.mean(deep > 0)
+        stiffness = 1 / (width / (lam + 2 * mu) + 1 / judge.case.side.stiffness)
+        pressure = np.minimum(stiffness * deep, points.xi[mine])
+        area = size ** (judge.mesh.dim - 1) * (2 * math.pi * np.mean(points.place[mine][:, 0]) if judge.axisymmetric else 1.0)
+        worst = max(worst, area * float(np.mean(pressure * (deep - pressure / (2 * stiffness)))))
+    return math.sqrt(worst / (state.strain_energy + worst)) if worst > 0 else 0.0

@@ -1,0 +1,296 @@
+"""The array holds all pairs, the oracle's elements are right, and the oracle sees what is wrong with a run: files that were changed fail."""
+import copy
+import itertools
+import os
+import pathlib
+import random
+import tempfile
+import types
+import unittest
+
+try:
+    import allpairspy  # noqa: F401
+    import netCDF4  # noqa: F401
+except ImportError as missing:
+    import sys
+    print(f"skipped: {missing}; what this takes: bash cmake/install_packages.sh cmake/packages.txt")
+    sys.exit(77)
+
+import numpy as np
+
+import comparisons
+import covering
+import decks
+import elasticity
+import elements
+import fields
+import outputs
+import reasons
+import rows
+import run as suite
+from oracle import Oracle
+
+BASE = {"body": "plane", "element": "Q2", "mesh": "box", "law": "xi", "friction": "coulomb", "obstacle": "smooth", "history": "unload", "shape": "well",
+        "solver": "factor", "parallel": "1 rank"}
+ROWS = {"plane": BASE,
+        "space": {**BASE, "body": "space", "element": "P2", "mesh": "msh", "law": "springs", "friction": "none", "history": "one",
+                  "obstacle": "plane"},
+        "revolution": {**BASE, "body": "axisymmetric", "element": "P1", "law": "hardening", "friction": "tresca", "obstacle": "plane"},
+        "layers": {**BASE, "element": "Q1", "mesh": "msh", "shape": "layers", "history": "one", "friction": "none"},
+        "soft": {**BASE, "body": "space", "element": "Q2", "shape": "incompressible", "history": "one", "law": "rigid"}}
+
+
+class Array(unittest.TestCase):
+    def test_holds_every_pair_that_may_stand_together(self):
+        for threads, seed in itertools.product((False, True), range(3)):
+            of = covering.factors(threads)
+            found = covering.array(seed, 60, of)
+            self.assertEqual(len(found), 60)
+            self.assertTrue(all(covering.allowed(row) and set(row) == set(of) for row in found))
+            held, wanted = covering.coverage(found, of)
+            self.assertEqual(held, wanted)
+            self.assertGreater(wanted, 650)
+
+    def test_knows_a_pair_that_is_missing(self):
+        of = covering.factors()
+        found = [row for row in covering.array(1, 60, of) if (row["element"], row["law"]) != ("P2", "springs")]
+        held, wanted = covering.coverage(found, of)
+        self.assertLess(held, wanted)
+
+    def test_is_that_of_its_seed(self):
+        of = covering.factors()
+        self.assertEqual(covering.array(3, 40, of), covering.array(3, 40, of))
+        self.assertNotEqual(covering.array(3, 40, of), covering.array(4, 40, of))
+        one, other = (decks.make(3, 5, BASE) for _ in range(2))
+        self.assertEqual(decks.scenes.deck(one.scene), decks.scenes.deck(other.scene))
+
+
+def cube(name):
+    """One element of a name, slightly turned."""
+    element = elements.Element(name)
+    coords = element.places @ (np.eye(element.dim) + 0.1 * np.arange(element.dim ** 2).reshape(element.dim, -1) / 9) + 3.0
+    sides = {"all": [(0, 0, facet) for facet in range(len(element.facets))]}
+    return outputs.Mesh(coords, [outputs.Block("body", element, np.arange(len(coords))[None])], sides)
+
+
+class Elements(unittest.TestCase):
+    def test_shape_functions_are_one_at_their_node(self):
+        for name in elements.NODES:
+            element = elements.Element(name)
+            values, slopes = element.shapes(element.places)
+            np.testing.assert_allclose(values, np.eye(len(values)), atol=1e-14)
+            np.testing.assert_allclose(slopes.sum(axis=1), 0, atol=1e-13)
+
+    def test_rules_are_exact(self):
+        for rule, degree in ((elements.triangle(2), 2), (elements.triangle(4), 4), (elements.triangle(6), 6), (elements.tetrahedron(3), 3)):
+            points, weights = rule
+            dim = points.shape[1]
+            for powers in itertools.product(range(degree + 1), repeat=dim):
+                if sum(powers) <= degree:
+                    exact = np.prod([np.math.factorial(p) for p in powers]) / np.math.factorial(sum(powers) + dim)
+                    self.assertAlmostEqual(np.sum(weights * np.prod(points ** np.array(powers), axis=1)), exact, 14)
+
+    def test_energy_of_a_linear_displacement(self):
+        material = {"E": 7.0, "nu": 0.45, "blocks": {}}
+        lam, mu = elasticity.lame(7.0, 0.45)
+        for name in elements.NODES:
+            mesh = cube(name)
+            gradient = np.random.default_rng(1).normal(size=(mesh.dim, mesh.dim))
+            forces, energy = elasticity.internal(mesh, mesh.coords @ gradient.T, material)
+            strain = (gradient + gradient.T) / 2
+            volume = np.sum(elasticity.Cells(mesh, mesh.blocks[0], False).weights)
+            self.assertAlmostEqual(energy / (volume * (lam * np.trace(strain) ** 2 / 2 + mu * np.sum(strain ** 2))), 1, 10, name)
+            np.testing.assert_allclose(forces.sum(axis=0), 0, atol=1e-10)
+            stress = lam * np.trace(strain) * np.eye(mesh.dim) + 2 * mu * strain
+            outer = np.zeros_like(mesh.coords)  # int N sigma n over all facets
+            for element, cells, facet in mesh.facets("all"):
+                points, weights = elements.triangle(6) if len(element.facets[facet]) == 3 else elements.gauss(4, mesh.dim - 1)
+                values, _, normal = elasticity.facet_geometry(mesh, element, cells, facet, points)
+                np.add.at(outer, cells, np.einsum("q,qn,fqd->fnd", weights, values, normal @ stress))
+            np.testing.assert_allclose(forces, outer, atol=1e-10)
+
+
+@unittest.skipUnless("RPC_PROGRAM" in os.environ, "RPC_PROGRAM names no program")
+class Changed(unittest.TestCase):
+    """The oracle on runs that are right, and on their files with one thing changed."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        program = rows.Program(types.SimpleNamespace(program=os.environ["RPC_PROGRAM"], openmp=None, mpiexec="", preload=None))
+        cls.cases, cls.runs = {}, {}
+        for name, row in ROWS.items():
+            case = cls.cases[name] = next(case for case in (decks.make(11, k, row) for k in range(40)) if "top" in case.scene.dirichlet)
+            folder = pathlib.Path(cls.folder.name) / name
+            rows.write(case.scene, folder)
+            cls.runs[name] = program.run(folder)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def judged(self, name, change=None, case=None):
+        run = copy.deepcopy(self.runs[name])
+        if change:
+            change(run)
+        return Oracle(case or self.cases[name], run).judge()
+
+    def pressed(self, run, step):
+        """A node of the contact side with the largest pressure."""
+        return int(np.argmax(run.fields[step]["contact_pressure"]))
+
+    def assert_found(self, name, words, change, case=None):
+        found = self.judged(name, change, case)
+        self.assertTrue(any(words in complaint for complaint in found), f"{name}: {words}: {found}")
+
+    def test_what_is_right_passes(self):
+        for name, run in self.runs.items():
+            self.assertEqual(run.code, 0, run.stderr)
+            self.assertGreater(max(np.max(f["contact_pressure"]) for f in run.fields), 0)
+            self.assertEqual(self.judged(name), [], name)
+
+    def test_a_displacement(self):
+        for name in ROWS:
+            for node in (0, len(self.runs[name].mesh.coords) // 2):
+                def shift(run):
+                    run.fields[0]["disp_x"][node] += 1e-4 * np.max(np.abs(run.fields[0]["disp_y"]))
+                self.assertTrue(self.judged(name, shift), name)
+
+    def test_a_pressure(self):
+        for name in ROWS:
+            def press(run):
+                run.fields[0]["contact_pressure"][self.pressed(run, 0)] *= 1.001
+            self.assert_found(name, "forces do not balance", press)
+
+    def test_a_pressure_at_an_open_point(self):
+        def press(run):
+            on_side = run.mesh.side_nodes("bottom")
+            open_point = on_side[np.argmin(run.fields[0]["contact_pressure"][on_side] + run.fields[0]["penetration"][on_side])]
+            run.fields[0]["contact_pressure"][open_point] = 0.1 * np.max(run.fields[0]["contact_pressure"])
+        self.assert_found("plane", "pressure without touch", press)
+
+    def test_forces(self):
+        for name in ROWS:
+            def drop(run):
+                run.summary["contact_force"] = [0.0 for _ in run.summary["contact_force"]]
+                for step in run.summary.get("steps", []):
+                    step["contact_force"] = run.summary["contact_force"]
+            self.assert_found(name, "contact_force", drop)
+
+            def drop_reaction(run):
+                run.summary["reaction_force"]["top"] = [0.0 for _ in run.summary["contact_force"]]
+            if self.runs[name].summary["max_pressure"] > 0:
+                self.assert_found(name, "reaction_force", drop_reaction)
+
+    def test_energies(self):
+        def scaled(key, factor):
+            def change(run):
+                for step in run.step_summaries():
+                    step[key] *= factor
+            return change
+        for name in ROWS:
+            self.assert_found(name, "strain_energy", scaled("strain_energy", 1 + 1e-5))
+        for name in ("space", "layers", "soft"):
+            self.assert_found(name, "energy_J", scaled("energy_J", 1 + 1e-5))
+        for key in ("work", "dissipated_energy"):
+            self.assert_found("revolution", key, scaled(key, 1.01))
+
+    def test_friction(self):
+        def more(run):
+            run.fields[0]["friction_x"] *= 1.01
+        self.assert_found("plane", "forces do not balance", more)
+        for name, words in (("plane", "friction"), ("revolution", "friction")):
+            def turned(run):
+                run.fields[0]["friction_x"] *= -1
+            self.assert_found(name, words, turned)
+
+        def upwards(run):
+            run.fields[0]["friction_y"][self.pressed(run, 0)] = 0.01 * np.max(run.fields[0]["contact_pressure"])
+        self.assert_found("plane", "friction along the normal", upwards)
+
+    def test_dents(self):
+        def shrink(run):
+            run.fields[1]["dent"] *= 0.9
+        self.assert_found("revolution", "dent", shrink)
+
+    def test_the_table(self):
+        for key, name in (("pressure", "plane"), ("u_nu", "plane"), ("gap", "space"), ("area", "space")):
+            def change(run):
+                table = run.contact_rows()
+                row = max(table, key=lambda row: (row["pressure"], row.get("area", 0.0)))
+                row[key] += 0.01 * max(abs(row[key]) for row in table) + 1e-3
+                run.contact_rows = lambda: table
+            self.assert_found(name, f"{key} at", change)
+
+    def test_a_bump_between_contact_points(self):
+        for name in ("plane", "space"):
+            case, run = self.cases[name], self.runs[name]
+            x = run.mesh.coords[run.mesh.side_nodes("bottom")]
+            xs = np.unique(np.round(x[:, 0], 9))
+            middle, width = float(xs[2] + xs[3]) / 2, float(xs[3] - xs[2]) / 8
+            bump = fields.Field("", lambda a, b, c: -0.1 * max(0.0, 1 - abs(a - middle) / width))
+            higher = copy.deepcopy(case)
+            higher.scene.contact[0].gap = case.side.gap + bump
+            self.assert_found(name, "between contact points", None, higher)
+
+    def test_other_runs(self):
+        for name, run in self.runs.items():
+            self.assertEqual(comparisons.same(run, run, "again"), [])
+            other = copy.deepcopy(run)
+            other.fields[0]["disp_y"] *= 1 + 1e-5
+            self.assertTrue(comparisons.same(run, other, "again"), name)
+            other = copy.deepcopy(run)
+            for step in other.step_summaries():
+                step["strain_energy"] *= 1 + 1e-7
+            self.assertTrue(comparisons.same(run, other, "again"), name)
+
+
+def finished(code, errors=None, stderr="", **summary):
+    """A run without files."""
+    adaptation = {"errors": errors or {}, "cycles": [{"dofs": 100}], "reached": code == 0, "reason": ""}
+    run = types.SimpleNamespace(code=code, stdout="", stderr=stderr, mesh=None, reason=lambda: stderr)
+    run.summary = {"converged": True, "energy_J": 1.0, "contact_force": [0.0, 2.0], "energy_norm_squared": 4.0, "adaptation": adaptation, **summary}
+    return run
+
+
+class Judgement(unittest.TestCase):
+    def test_bars(self):
+        run = finished(0, {"contact_force": 0.1, "energy_J": None})
+        self.assertEqual(comparisons.bars(run, finished(0, contact_force=[0.0, 2.05])), [])
+        self.assertTrue(comparisons.bars(run, finished(0, contact_force=[0.0, 2.2])))
+        self.assertEqual(comparisons.bars(run, finished(0, {"contact_force": 0.15}, contact_force=[0.0, 2.2])), [])
+
+    def test_estimates(self):
+        run = finished(0, error_estimate={"energy_norm": 0.1})
+        self.assertEqual(comparisons.estimate(run, finished(0, energy_J=1 - 0.01 / 2)), [])
+        self.assertTrue(comparisons.estimate(run, finished(0, energy_J=1 - 0.2)))
+        run = finished(0, error_estimate={"energy_norm": 20.0})
+        self.assertTrue(comparisons.estimate(run, finished(0, energy_J=1 - 0.01)))
+
+    def test_reasons(self):
+        case = decks.make(1, 0, {**BASE, "mesh": "gmsh", "history": "one"})
+        self.assertIsNone(reasons.confirmed(case, finished(0)))
+        for code in (1, 2, 3, 4, 5, 15, None):
+            self.assertIn("exit", reasons.confirmed(case, finished(code, stderr="rpc: error: something")))
+        short = finished(4, stderr='a mesh for the target would exceed "Adapt->Max Dofs" = 6000')
+        self.assertIsNotNone(reasons.confirmed(case, short))  # of 100 unknowns
+        short.summary["adaptation"]["cycles"] = [{"dofs": 5000}]
+        self.assertIsNone(reasons.confirmed(case, short))
+        self.assertIsNotNone(reasons.confirmed(case, finished(5, stderr="presses the node at (0, 0)")))  # its supports share no point with the foundation
+
+    def test_known_failures(self):
+        known = suite.Known(None)
+        known.entries = [{"features": {"law": ["xi"]}, "complaint": "a bar of", "reason": "bars"}]
+        self.assertEqual(known.reason(BASE, "a bar of force"), "bars")
+        self.assertIsNone(known.reason({**BASE, "law": "rigid"}, "a bar of force"))
+        self.assertIsNone(known.reason(BASE, "exit 15"))
+        outcome = lambda number, *complaints: types.SimpleNamespace(case=types.SimpleNamespace(row=BASE, number=number), complaints=list(complaints))
+        self.assertEqual(known.of(outcome(1, "a bar of force")), ["bars"])
+        self.assertIsNone(known.of(outcome(1, "a bar of force", "exit 15")))
+        known.lists = [{"seed": 1, "rows": 2, "fail": [0, 1]}]
+        options = types.SimpleNamespace(seed=1, rows=2, only=None)
+        self.assertEqual(suite.stale(options, [outcome(0, "a bar of force"), outcome(1)], known), [1])
+
+
+if __name__ == "__main__":
+    unittest.main()
