@@ -3,6 +3,7 @@
 Gaps and normals come from scene.ContactSide.at, closed forms and fields in Python.
 """
 import dataclasses
+import itertools
 import math
 
 import numpy as np
@@ -43,14 +44,15 @@ def nodal_rule(element, facet, axisymmetric):
         points, weights = gauss(3, 1) if corners == 2 else gauss(3, 2) if corners == 4 else (np.array([[1 / 3, 1 / 3]]), np.array([0.5]))
         return [(node, points, weights, True) for node in nodes]
     if corners == 3:
-        return [(node, place, np.array([1 / 6]), False) for node, place in zip(nodes[3:], np.array([[[0.5, 0]], [[0.5, 0.5]], [[0, 0.5]]]))]
-    line = {-1: 1 / 3, 0: 4 / 3, 1: 1 / 3}
-    lattice = [(s,) for s in line] if corners == 2 else [(s, t) for s in line for t in line]
+        lattice = {(0.5, 0.0): 1 / 6, (0.5, 0.5): 1 / 6, (0.0, 0.5): 1 / 6}
+    else:
+        line = {-1.0: 1 / 3, 0.0: 4 / 3, 1.0: 1 / 3}
+        lattice = {place: math.prod(line[c] for c in place) for place in itertools.product(line, repeat=1 if corners == 2 else 2)}
     rule = []
-    for place in lattice:
-        at = element.facet_map(facet, np.array([place], dtype=float))[0]
+    for place, weight in lattice.items():
+        at = element.facet_map(facet, np.array([place]))[0]
         node = int(np.argmin(np.linalg.norm(element.places - at, axis=1)))
-        rule.append((node, np.array([place], dtype=float), np.array([math.prod(line[c] for c in place)]), False))
+        rule.append((node, np.array([place]), np.array([weight]), False))
     return rule
 
 
