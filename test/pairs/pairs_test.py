@@ -3,7 +3,7 @@ import copy
 import itertools
 import os
 import pathlib
-import random
+import sys
 import tempfile
 import types
 import unittest
@@ -12,8 +12,7 @@ try:
     import allpairspy  # noqa: F401
     import netCDF4  # noqa: F401
 except ImportError as missing:
-    import sys
-    print(f"skipped: {missing}; what this takes: bash cmake/install_packages.sh cmake/packages.txt")
+    print(f"skipped: {missing}; what this takes: bash cmake/install_packages.sh cmake/ci_packages.txt doc/packages.txt")
     sys.exit(77)
 
 import numpy as np

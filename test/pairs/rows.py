@@ -34,7 +34,7 @@ class Outcome:
 
 
 class Program:
-    """@param options  program, openmp, mpiexec, preload"""
+    """@param options  program, openmp, one_rank, mpiexec, preload"""
 
     def __init__(self, options):
         self.options = options
@@ -121,9 +121,9 @@ class Judge:
         return found + self.finer(run)
 
     def reference(self):
-        """By the program's own choice of solver on one rank, or on two if the row is that."""
+        """By the program's own choice of solver on one rank, or on two if the row is that and the program has MPI."""
         row = self.case.row
-        plain = row["solver"] == "factor" and self.case.ranks == 1 and self.case.threads == 1
+        plain = row["solver"] == "factor" and self.case.ranks == 1 and self.case.threads == 1 and not self.program.options.one_rank
         more = {name: entries for name, entries in self.case.scene.more.items() if name != "Linear Solver"}
         return self.go("reference", dataclasses.replace(self.case.scene, more=more), 2 if plain else 1, 1)
 
