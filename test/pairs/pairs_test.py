@@ -192,6 +192,13 @@ class Changed(unittest.TestCase):
             if self.runs[name].summary["max_pressure"] > 0:
                 self.assert_found(name, "reaction_force", drop_reaction)
 
+    def test_extents(self):
+        for key, name in (("contact_length", "plane"), ("contact_area", "space"), ("dent_volume", "revolution"), ("max_pressure", "soft")):
+            def change(run):
+                for step in run.step_summaries():
+                    step[key] *= 1.001
+            self.assert_found(name, key, change)
+
     def test_energies(self):
         def scaled(key, factor):
             def change(run):

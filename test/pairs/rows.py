@@ -111,13 +111,13 @@ class Judge:
             return [refusal]
         if run.summary is None or run.mesh is None:
             return [] if run.code != 0 else ["exit 0, but files are missing"]
-        found = []
-        if run.summary["converged"]:
-            found += oracle.Oracle(case, run).judge()
+        judge = oracle.Oracle(case, run)
+        rests = judge.rests()
+        found = judge.judge() if run.summary["converged"] else []
         found += comparisons.promises(case, run)
-        found += comparisons.same(run, self.reference(), "on other ranks, by the default solver")
+        found += comparisons.same(run, self.reference(), "on other ranks, by the default solver", rests)
         if case.row["history"] == "restart":
-            found += self.restarted(run)
+            found += self.restarted(run, rests)
         return found + self.finer(run)
 
     def reference(self):
@@ -127,14 +127,14 @@ class Judge:
         more = {name: entries for name, entries in self.case.scene.more.items() if name != "Linear Solver"}
         return self.go("reference", dataclasses.replace(self.case.scene, more=more), 2 if plain else 1, 1)
 
-    def restarted(self, run):
+    def restarted(self, run, rests):
         """After the first steps alone, with the deck of all. That bits are the same, kills.py of test/stress checks."""
         scene = self.case.scene
         first = self.go("restarted", dataclasses.replace(scene, times=scene.times[:decks.CHECKPOINT_AFTER]))
         if first.code != 0:
             return [f"the first steps: exit {first.code}: {first.reason()[:200]}"] if run.code == 0 else []
         (self.outcome.folder / "restarted" / "scene.xml").write_text((self.outcome.folder / "scene.xml").read_text())
-        return comparisons.same(run, self.go("restarted", scene, None, None, "--restart"), "restarted")
+        return comparisons.same(run, self.go("restarted", scene, None, None, "--restart"), "restarted", rests)
 
     def finer(self, run):
         scene, row = self.case.scene, self.case.row
