@@ -57,23 +57,18 @@ def tetrahedron(degree):
 
 
 def two_orbits():
-    """The corners' coordinates a, b of these: s = 1/4 - a, 1/4 - b meet the moments of degree 2 and 3, s1^2 + s2^2 = 1/40, s1^3 + s2^3 = -1/160
-    up to sign, by Newton's method."""
-    s = np.array([0.15, -0.08])
-    moments = tetrahedron_moments()
-    for _ in range(50):
-        value = np.array([np.sum(s ** 2), np.sum(s ** 3)]) - moments
-        s = s - np.linalg.solve(np.array([2 * s, 3 * s ** 2]), value)
+    """The numbers a, b of two orbits (1 - 3a, a, a, a), (1 - 3b, b, b, b) of eight points with the same weight that are exact for degree 3.
+
+    With x one barycentric coordinate and s = 1/4 - a, three points of an orbit have x - 1/4 = -s and one 3 s. So the means of (x - 1/4)^2 and
+    (x - 1/4)^3 over the eight points are 12/8 and 24/8 times the sums of s^2 and s^3; they must be those over the tetrahedron.
+    """
+    mean = lambda k: 6.0 / ((k + 1) * (k + 2) * (k + 3))  # of x^k
+    second = mean(2) - mean(1) / 2 + 1 / 16
+    third = mean(3) - 3 / 4 * mean(2) + 3 / 16 * mean(1) - 1 / 64
+    s, sums = np.array([0.15, -0.08]), np.array([second * 8 / 12, third * 8 / 24])
+    for _ in range(50):  # Newton's method
+        s = s - np.linalg.solve(np.array([2 * s, 3 * s ** 2]), np.array([np.sum(s ** 2), np.sum(s ** 3)]) - sums)
     return 0.25 - s
-
-
-def tetrahedron_moments():
-    """What the sums of s^2 and s^3 must be for the integrals over the simplex of (x - 1/4)^2 and (x - 1/4)^3, x a barycentric coordinate:
-    of the four points of an orbit one has x - 1/4 = 3 s and three -s."""
-    power = lambda k: 6.0 / ((k + 1) * (k + 2) * (k + 3))  # mean of x^k
-    second = power(2) - 1 / 16
-    third = power(3) - 3 / 4 * power(2) + 3 / 16 * power(1) - 1 / 64
-    return np.array([second * 8 / 12, third * 8 / 24])
 
 
 class Element:

@@ -98,9 +98,11 @@ class Run:
         return self.step_summaries()[step].get("parts", 1)
 
     def reason(self):
-        adapted = (self.summary or {}).get("adaptation", {}).get("reason", "")
+        """Why the run has ended so: its messages, and what the summary says of the solve and of targets that were asked for."""
+        told = self.summary or {}
         words = [line for line in self.stderr.splitlines() if line.startswith("rpc:")]
-        return " ".join(words + [(self.summary or {}).get("reason", ""), adapted]).strip()
+        words += [told.get("reason", "")] + [told.get(target, {}).get("reason", "") for target in ("adaptation", "energy_tolerance")]
+        return " ".join(word for word in words if word)
 
 
 def texts(variable):

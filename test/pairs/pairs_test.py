@@ -285,6 +285,23 @@ class Judgement(unittest.TestCase):
         run = finished(0, error_estimate={"energy_norm": 20.0})
         self.assertTrue(comparisons.estimate(run, finished(0, energy_J=1 - 0.01)))
 
+    def test_a_tolerance_of_energies(self):
+        case = decks.make(1, 0, {**BASE, "history": "tolerance"})
+        zero = {"work": 0.0, "strain_energy": 0.0, "foundation_energy": 0.0, "dissipated_energy": 0.0, "energy_imbalance": 0.0, "parts": 4,
+                "max_initial_penetration": 0.0, "max_dent": 0.0, "dent_volume": 0.0}
+        steps = [{**zero, "time": time, "work": 1.0 + 0.5 * case.tolerance, "strain_energy": 1.0, "energy_imbalance": 0.5 * case.tolerance}
+                 for time in case.scene.times]
+        within = finished(0, steps=steps)
+        within.summary.pop("adaptation")
+        within.step_summaries = lambda: steps
+        self.assertEqual(comparisons.promises(case, within), [])
+        steps[2]["energy_imbalance"] += 2 * case.tolerance
+        self.assertIn("Energy Tolerance", comparisons.promises(case, within)[0])
+        within.code, within.reason = 4, lambda: '"Steps->Energy Tolerance" is not kept'
+        self.assertIsNone(reasons.confirmed(case, within))
+        steps[2]["energy_imbalance"] = steps[1]["energy_imbalance"]
+        self.assertIsNotNone(reasons.confirmed(case, within))
+
     def test_reasons(self):
         case = decks.make(1, 0, {**BASE, "mesh": "gmsh", "history": "one"})
         self.assertIsNone(reasons.confirmed(case, finished(0)))

@@ -114,7 +114,7 @@ class Judge:
         judge = oracle.Oracle(case, run)
         rests = judge.rests()
         found = judge.judge() if run.summary["converged"] else []
-        found += comparisons.promises(case, run)
+        found += comparisons.promises(case, run, rests[1])
         found += comparisons.same(run, self.reference(), "on other ranks, by the default solver", rests)
         if case.row["history"] == "restart":
             found += self.restarted(run, rests)
@@ -143,7 +143,8 @@ class Judge:
                 return []
             adapt = {**scene.more["Adapt"], "Target Relative Error": self.case.target / 2 ** decks.ORDER[row["element"]],
                      "Max Dofs": FINER_DOFS * scene.more["Adapt"]["Max Dofs"]}
-            return comparisons.bars(run, self.go("finer", dataclasses.replace(scene, more={**scene.more, "Adapt": adapt}), 1, 1))
+            finer = self.go("finer", dataclasses.replace(scene, more={**scene.more, "Adapt": adapt}), 1, 1)
+            return comparisons.bars(run, finer) + (comparisons.estimate(run, finer) if row["history"] == "one" else [])
         if row["history"] != "one" or (row["mesh"] == "geo" and self.case.shape.radius != float("inf") and decks.ORDER[row["element"]] == 1):
             return []  # or the finer mesh is of another shape
         mesh = {**scene.mesh, "Refinements": 1} if scene.file else {**scene.mesh, "Cells": tuple(2 * n for n in scene.mesh["Cells"])}

@@ -40,6 +40,7 @@ def arguments():
     parser.add_argument("--preload", help="a library for runs on several ranks that share cores")
     parser.add_argument("--keep", default="pairs", help="folder for the decks of rows that fail")
     parser.add_argument("--keep-all", action="store_true")
+    parser.add_argument("--update", action="store_true", help="writes the rows of this array that fail by known faults into the list of --known")
     parser.add_argument("--known", default=str(HERE / "known.json"))
     options = parser.parse_args()
     options.program = str(pathlib.Path(options.program).resolve())
@@ -52,7 +53,7 @@ class Known:
 
     def __init__(self, path):
         given = json.loads(pathlib.Path(path).read_text()) if path and pathlib.Path(path).exists() else {"entries": [], "lists": []}
-        self.entries, self.lists = given["entries"], given["lists"]
+        self.path, self.entries, self.lists = path, given["entries"], given["lists"]
 
     def reason(self, row, complaint):
         for entry in self.entries:
@@ -64,6 +65,15 @@ class Known:
         """Reasons of a row's complaints; None if one of them has none."""
         found = [self.reason(outcome.case.row, complaint) for complaint in outcome.complaints]
         return None if None in found else sorted(set(found))
+
+    def update(self, seed, count, outcomes):
+        """Writes the rows of an array that fail by known faults."""
+        others = [each for each in self.lists if (each["seed"], each["rows"]) != (seed, count)]
+        fail = [o.case.number for o in outcomes if o.complaints and self.of(o) is not None]
+        self.lists = others + [{"seed": seed, "rows": count, "fail": fail}]
+        entries = ",\n".join("    " + json.dumps(each) for each in self.entries)
+        lists = ",\n".join("    " + json.dumps(each) for each in self.lists)
+        pathlib.Path(self.path).write_text(f'{{\n  "entries": [\n{entries}\n  ],\n  "lists": [\n{lists}\n  ]\n}}\n')
 
     def listed(self, seed, count):
         """Rows of this array that are known to fail; None if no list is of it."""
@@ -127,6 +137,8 @@ def main():
                 print(f"{'FAILED' if reason is None else 'known'} {outcome.case.number} {', '.join(outcome.case.row.values())}: {'; '.join(outcome.complaints)}"
                       + (f" [{'; '.join(reason)}]" if reason else "") + f" -> {outcome.folder}", flush=True)
     unknown = report(options, outcomes, of, known, time.monotonic() - start)
+    if options.update and options.only is None:
+        known.update(options.seed, options.rows, outcomes)
     pass_again = stale(options, outcomes, known)
     if pass_again:
         print(f"rows {pass_again} no longer fail: take them out of {options.known}")
