@@ -16,7 +16,9 @@ import reasons
 import scene as scenes
 from outputs import Run
 
-TIME_LIMIT = 300  # of one run [s]
+TIME_LIMIT = 120  # of one run, of processor time of each rank, whatever else the machine does [s]
+GIVEN_UP = 1800  # [s]
+OUT_OF_TIME = (-signal.SIGXCPU, 128 + signal.SIGXCPU)  # a process by itself, and in mpiexec
 FINER_DOFS = 8  # a finer mesh may have so many times the unknowns
 TO_REST = {"one", "unload", "slide"}  # histories that are also run with a finer mesh where meshes adapt
 FIXED = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
@@ -50,15 +52,18 @@ class Program:
                 environment.update({name + "_tmpdir_base": session for name in ("OMPI_MCA_orte", "PRTE_MCA_prte")})
                 if self.options.preload:
                     environment["LD_PRELOAD"] = self.options.preload
+            command = ["bash", "-c", f'ulimit -St {TIME_LIMIT}; exec "$@"', "-", *command]
             start = time.monotonic()
             with subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                   errors="replace", start_new_session=True, env=environment) as process:
                 try:
-                    stdout, stderr = process.communicate(timeout=TIME_LIMIT)
+                    stdout, stderr = process.communicate(timeout=GIVEN_UP)
                     code = process.returncode
                 except subprocess.TimeoutExpired:
                     os.killpg(process.pid, signal.SIGKILL)  # with the ranks that mpiexec has started
-                    code, stdout, stderr = None, "", f"rpc: still running after {TIME_LIMIT} s"
+                    code, stdout, stderr = None, "", f"rpc: still running after {GIVEN_UP} s"
+        if code in OUT_OF_TIME:
+            code, stderr = None, f"rpc: still running after {TIME_LIMIT} s of processor time"
         (folder / "stdout.txt").write_text(stdout)
         (folder / "stderr.txt").write_text(stderr)
         return Run(folder, code, stdout, stderr, time.monotonic() - start)
