@@ -281,8 +281,11 @@ class Oracle:
         work = np.sum(acting * (state.u - before.u)) / 2
         turned = np.einsum("kd,kd->k", (state.u + before.u)[nodes] / 2, state.points.normal - before.points.normal)
         work += np.sum(weights * (state.p + before.p)[nodes] / 2 * (turned - (state.points.gap - before.points.gap)))
-        moved = self.motion(state.time) - self.motion(before.time)
-        return work - np.sum(weights * ((state.q + before.q)[nodes] @ moved)) / 2 if self.case.side.friction else work
+        if self.case.side.friction:
+            moved = self.motion(state.time) - self.motion(before.time)
+            along = moved - (state.points.normal @ moved)[:, None] * state.points.normal
+            work -= np.sum(weights[:, None] * (state.q + before.q)[nodes] * along) / 2
+        return work
 
     def equal(self, state, name, told, own, scale):
         if not math.isnan(own) and not abs(told - own) <= EQUAL * scale + self.rest(state)[1] + TINY:
