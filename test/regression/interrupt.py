@@ -140,7 +140,7 @@ class Interrupt(RpcTestCase):
         self.wait_for(process, lambda: list(self.folder.glob("out/beam.*.tmp.*")))
         os.kill(rank, signal.SIGTERM)
         self.end(process, 0)
-        self.assertEqual(files(self.folder), RESULTS)
+        self.assertEqual(files(self.folder), [f"out/beam.{end}" for end in ("contact.csv", "e", "json")])
         self.assertTrue(json.loads((self.folder / "out" / "beam.json").read_text())["converged"])
 
     @unittest.skipIf(RANKS > 1, "needs one rank: mpiexec has an exit code of its own")
