@@ -1,6 +1,6 @@
 """Features of rpc in pairs: a covering array of decks, each judged by an oracle that reads its files.
 
-    python3 run.py --program=build/rpc [--seed=1] [--rows=110] [--only=K] [--jobs=2] [--openmp=build-openmp/rpc] [--keep=DIR] [--known=FILE]
+    python3 run.py --program=build/rpc [--seed=1] [--rows=110] [--only=K,L] [--jobs=2] [--openmp=build-openmp/rpc] [--keep=DIR] [--known=FILE]
 
 Row K comes from the seed and K alone. Each two values of two factors (covering.py) that may stand together are in a row. A row is run as it is,
 on other ranks by the default solver, after a restart, on a finer mesh (rows.py), and passes if the oracle has no complaint (oracle.py,
@@ -33,7 +33,7 @@ def arguments():
     parser.add_argument("--openmp", help="a program with OpenMP; without one there are no rows of threads")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--rows", type=int, default=110)
-    parser.add_argument("--only", type=int)
+    parser.add_argument("--only", type=lambda text: [int(k) for k in text.split(",")], help="some rows, by their numbers: 3,17")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--one-rank", action="store_true", help="of a program without MPI")
     parser.add_argument("--mpiexec", default="mpirun --oversubscribe --bind-to none")
@@ -127,7 +127,7 @@ def main():
         of["parallel"] = [value for value in of["parallel"] if "ranks" not in value]
     array = list(enumerate(covering.array(options.seed, options.rows, of)))
     if options.only is not None:
-        array = [array[options.only]]
+        array = [array[k] for k in options.only]
     known, outcomes, start = Known(options.known), [], time.monotonic()
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
         for outcome in pool.map(lambda item: rows.judge(options, options.seed, *item), array):
