@@ -83,10 +83,12 @@ void require_method(const Teuchos::ParameterList &nox, const char *const name,
                     const std::array<const char *, N> &methods, const char *const why)
 {
   const std::string method = method_of(nox, name, methods);
-  RPC_REQUIRE(std::find(methods.begin(), methods.end(), method) != methods.end(),
-              "deck: \"NOX->" << name << "->Method\" must be one of "
-                              << join(std::vector<std::string>(methods.begin(), methods.end())) << ", got \"" << method
-                              << "\": " << why);
+  if (std::find(methods.begin(), methods.end(), method) != methods.end()) return;
+  std::ostringstream given;
+  nox.sublist(name).getEntry("Method").leftshift(given, false);
+  throw Error(ExitCode::bad_input, "deck: \"NOX->" + std::string(name) + "->Method\" must be one of " +
+                                       join(std::vector<std::string>(methods.begin(), methods.end())) + ", got \"" +
+                                       given.str() + "\": " + why);
 }
 
 /// What NOX is given.
