@@ -235,7 +235,7 @@ std::string unseen_contact_note(const ContactResult &result, const std::vector<C
   if (!(at.depth > 0) || !(squared > notable * notable * energy_norm_squared)) return "";
   std::ostringstream text;
   const std::string unit = " [" + units.of(unit::length, false) + "]";
-  text << std::setprecision(4) << "contact is there that the mesh does not see: at (" << at.place[0] << ", "
+  text << std::setprecision(4) << "unseen contact: at (" << at.place[0] << ", "
        << at.place[1];
   if (dim == 3) text << ", " << at.place[2];
   text << std::setprecision(2) << ") side \"" << options[at.side].side << "\" lies " << at.depth << unit
