@@ -98,7 +98,7 @@ def samples(mesh, side, u, dent):
         nodes += list(cells[:, element.facet_nodes(facet)])
         flat = lambda a: a.reshape(-1, a.shape[-1])
         parts.append((flat(place), flat(normal / np.linalg.norm(normal, axis=2, keepdims=True)),
-                      flat(np.einsum("qn,fnd->fqd", values, u[cells])), np.einsum("qn,fn->fq", values, dent[cells]).ravel(), number))
+                      flat(np.einsum("qn,fnd->fqd", values, u[cells])), np.maximum(0, np.einsum("qn,fn->fq", values, dent[cells])).ravel(), number))
     return Samples(*(np.concatenate(column) for column in zip(*parts)), nodes)
 
 

@@ -58,7 +58,7 @@ def energy_is_missed(case, run):
     """A step misses more of the energies than the deck allows, and what is told has converged."""
     if case.tolerance is None or run.summary is None or not run.summary["converged"]:
         return False
-    return max((share for _, _, share in comparisons.missed_shares(run, 0.0)), default=0.0) > case.tolerance / 2
+    return max((share for _, _, share in comparisons.missed_shares(run, 0.0, overlaps=True)), default=0.0) > case.tolerance / 2
 
 
 REASONS = {

@@ -39,7 +39,7 @@ void complete_pressure(const fem::Discretization &d, const mesh::Side &side, con
       "rpc::contact::completed_pressure", points, KOKKOS_LAMBDA(const LO i) {
         if (!c.fixed(i)) return;
         const bool rests = c.weight(i) > 0 && c.free_gap(i) == 0; // and has made no dent
-        p(i) = rests ? admissible_at_touch(from(c.node(i)), c.law(i)) : admissible(from(c.node(i)), c.law(i));
+        p(i) = rests ? admissible_at_touch(from(c.node(i)), c.law(i)) : admissible_mean(from(c.node(i)), c.law(i));
       });
 }
 

@@ -1,10 +1,12 @@
 #include "rpc/contact/result.hpp"
 
 #include "foundation_scene.hpp"
+#include "rpc/contact/law/judgement.hpp"
 
 #include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
+#include <limits>
 #include <vector>
 
 namespace result_test
@@ -33,6 +35,16 @@ struct Solved {
   }
   const contact::ContactNodes &nodes() const { return scene.iterate->points(); }
 };
+
+TEST(ContactResult, AMeanOfPressuresAtTheYieldLimitIsTheLimitButForRounding)
+{
+  const contact::Foundation f{13.545525787304639};
+  EXPECT_EQ(contact::admissible_mean(13.545525787304637, f), f.yield);
+  EXPECT_EQ(contact::admissible_mean(13.5455257, f), 13.5455257);
+  EXPECT_EQ(contact::admissible_mean(14, f), f.yield);
+  EXPECT_EQ(contact::admissible_mean(-1, f), 0);
+  EXPECT_EQ(contact::admissible_mean(1e300, contact::Foundation{std::numeric_limits<double>::infinity()}), 1e300);
+}
 
 TEST(ContactResult, FieldsFollowFromDisplacementAndPressureAtEachPoint)
 {

@@ -72,6 +72,13 @@ KOKKOS_INLINE_FUNCTION double admissible_at_touch(const double p, const Foundati
   return clamp(p, 0, f.yield);
 }
 
+/// The nearest pressure to a mean of others: that of pressures at the yield limit is the limit, but for rounding.
+KOKKOS_INLINE_FUNCTION double admissible_mean(const double p, const Foundation &f)
+{
+  constexpr double rounding = 1e-12;
+  return p < f.yield && p >= (1 - rounding) * f.yield ? f.yield : admissible(p, f);
+}
+
 /// Whether a point can be pressed in at all.
 KOKKOS_INLINE_FUNCTION bool gives_way(const Foundation &f)
 {
