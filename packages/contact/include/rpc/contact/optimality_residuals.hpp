@@ -18,6 +18,7 @@ struct OptimalityResiduals {
   fem::InternalWork internal;      ///< of the displacement that was judged, for results to be read from
   RCP<const Vector> forces = {};   ///< of the body, those of what rounding has left of the displacement included [N]
   double force_size = 0;           ///< that the forces out of balance are compared with [N]                  (5.2)
+  double energy_at_work = 0;       ///< the largest energy or work of (5.4) and (5.5) [J], in 2D per m
 
   /// The largest of the four; NaN if one is.
   double worst() const;
@@ -32,6 +33,12 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
                                          const fem::ElasticProblem &elastic, const ContactNodes &points,
                                          const ContactState &state, double force_scale,
                                          const std::function<double(const Vector &)> &residual_energy);
+
+/// Where all energies at work are no more than the accuracy of displacements alone may give them, (10.9), (5.4) and (5.5) compare rounding with
+/// rounding: they become 0, and balance and contact law alone judge a body that nothing strains. Collective.
+/// @param u  (owned dofs) [m]
+void forgive_energies_of_rounding(const fem::Discretization &d, const fem::Materials &materials, const Vector &u,
+                                  OptimalityResiduals &residuals);
 
 /// The equilibrium residual that rounding alone makes: of u_i eps with signs at random, the same on any number of ranks. Forces that are
 /// out of balance by about that much cannot be brought nearer to it in double precision. Collective.
