@@ -150,10 +150,13 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     bearing_nothing += rows.bears_nothing(f) ? 1 : 0;
   }
   const int parts = parts_of(facet, sum_all(mesh.comm(), GO(owned.size())));
-  const auto lattice = lattice_of(facet, parts);
-  const SideSamples samples{options, rows, lattice, d.axisymmetric()};
+  const auto fine = lattice_of(facet, parts), coarse = lattice_of(facet, Density::fewest_parts);
+  // A face in space that bears a pressure shows how far the gap bends within it by a few samples; what is unseen may be narrow.
+  const SideSamples samples{options, rows, fine, d.axisymmetric()}, few{options, rows, coarse, d.axisymmetric()};
   const bool searches = facet.dim == 2 && !options.obstacle.exists() && options.gap.bounds;
   const GO all_bearing_nothing = std::max(GO(1), sum_all(mesh.comm(), bearing_nothing));
+  // In space facets whose nodes are far need no samples: bounds find narrow pits there, and of obstacles nodes show at least that a normal misses them.
+  const bool sieves = parts == Density::fewest_parts || (facet.dim == 2 && (searches || options.obstacle.exists()));
   const int most_searched = searches ? static_cast<int>(Density::searched / all_bearing_nothing) : 0; // of each facet
   const EvaluateShape shape = shape_of(facet);
   const auto block = to_host(mesh.block);
@@ -164,7 +167,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     const double modulus = lame(block(rows.cell(f)), 0) + 2 * lame(block(rows.cell(f)), 1);
     const bool unseen = rows.bears_nothing(f);
     Found found;
-    if (parts > Density::fewest_parts || samples.is_near(f)) found = samples.look(f, modulus, least);
+    if (!sieves || samples.is_near(f)) found = (unseen || facet.dim == 1 ? samples : few).look(f, modulus, least);
     if (unseen && most_searched > 0 && !(found.deepest > 0))
       if (const auto hidden =
               find_hidden_part(rows, f, shape, options, facet.shape == mesh::Shape::simplex, least, most_searched))
@@ -235,8 +238,7 @@ std::string unseen_contact_note(const ContactResult &result, const std::vector<C
   if (!(at.depth > 0) || !(squared > notable * notable * energy_norm_squared)) return "";
   std::ostringstream text;
   const std::string unit = " [" + units.of(unit::length, false) + "]";
-  text << std::setprecision(4) << "unseen contact: at (" << at.place[0] << ", "
-       << at.place[1];
+  text << std::setprecision(4) << "unseen contact: at (" << at.place[0] << ", " << at.place[1];
   if (dim == 3) text << ", " << at.place[2];
   text << std::setprecision(2) << ") side \"" << options[at.side].side << "\" lies " << at.depth << unit
        << " inside the foundation, between contact points that are open, so that the contact force lacks it. The facet "

@@ -134,8 +134,12 @@ TEST(Multigrid, IsRenewedOnAllRanksWhereZerosOfOneRankFill)
         24, [](const GO unknown) { return unknown; }, true);
     auto multigrid = solver::make_multigrid(grid.A, list_for(grid, reuse));
     fill_zeros_of_last_rank(*grid.A);
-    ASSERT_TRUE(solver::renew_multigrid(grid.A, multigrid));
-    expect_falling_residuals(grid, *multigrid);
+    const bool renewed = solver::renew_multigrid(grid.A, multigrid);
+    EXPECT_EQ(renewed, !multigrid.is_null());
+    if (grid.map->getComm()->getSize() > 1) {
+      ASSERT_TRUE(renewed);
+    }
+    if (renewed) expect_falling_residuals(grid, *multigrid);
   }
 }
 
