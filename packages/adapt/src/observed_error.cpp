@@ -11,7 +11,7 @@ namespace
 
 constexpr double least_reduction = 1.1; // of the estimate: less tells nothing about a limit
 constexpr double span = 4;              // by which the estimate is planned to fall from mesh to mesh at most
-constexpr double least_exponent =
+constexpr double slowest_growth =
     0.5; // of the estimate, that values with a limit approach it with: half of the first order
 
 /// The value where the estimate first falls to a level, straight in its logarithm between meshes.
@@ -60,7 +60,7 @@ bool grows_without_limit(const std::vector<double> &value, const std::vector<dou
   if (!(fall > least_reduction)) return false;
   const double middle = value_at(std::sqrt(eta.front() * eta.back()), value, eta);
   const double first = middle - value.front(), second = value.back() - middle;
-  return second > resolved && second > std::pow(fall, -least_exponent / 2) * first;
+  return second > resolved && second > std::pow(fall, -slowest_growth / 2) * first;
 }
 
 bool unsettled(const std::vector<double> &change, const std::vector<double> &eta, const double resolved)

@@ -8,23 +8,23 @@ namespace rpc::analysis
 namespace
 {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_result = std::numeric_limits<double>::quiet_NaN();
 
 void take_back(contact::ContactSums &sums)
 {
-  for (const auto &q : contact::contact_quantities) sums.*q.value = unknown;
-  sums.force.fill(unknown);
+  for (const auto &q : contact::contact_quantities) sums.*q.value = no_result;
+  sums.force.fill(no_result);
 }
 
 } // namespace
 
 void take_back_results(Solution &s)
 {
-  s.energy = s.energy_norm_squared = unknown;
-  for (const auto &q : body_quantities) s.body.*q.value = unknown;
+  s.energy = s.energy_norm_squared = no_result;
+  for (const auto &q : body_quantities) s.body.*q.value = no_result;
   take_back(s.contact.total);
   for (auto &side : s.contact.sides) take_back(side);
-  for (auto &force : s.reactions) force.fill(unknown);
+  for (auto &force : s.reactions) force.fill(no_result);
   s.contact.between = {};
 }
 

@@ -14,11 +14,11 @@ namespace
 constexpr double finest = 1. / 4096;
 
 /// A square part of the reference cell.
-struct Part {
+struct FacePart {
   double X[2], size; // its lower corner and edge
   double bound;      // on e [m]
 
-  bool operator<(const Part &other) const { return bound < other.bound; }
+  bool operator<(const FacePart &other) const { return bound < other.bound; }
 };
 
 class Search
@@ -34,11 +34,11 @@ public:
   std::optional<HiddenPart> run(const double least, const int most_parts)
   {
     const double edge = triangle_ ? 1 : 2;
-    std::priority_queue<Part> parts;
+    std::priority_queue<FacePart> parts;
     parts.push(bounded({triangle_ ? 0. : -1, triangle_ ? 0. : -1}, edge));
     double deepest = least, at[2] = {};
     for (int looked = 0; looked < most_parts && !parts.empty() && parts.top().bound > deepest; ++looked) {
-      const Part part = parts.top();
+      const FacePart part = parts.top();
       parts.pop();
       const double centre[2] = {part.X[0] + part.size / 2, part.X[1] + part.size / 2};
       if (const double e = excess(centre); e > deepest) {
@@ -93,7 +93,7 @@ private:
   }
 
   /// A part with its bound on e: what its corners and the curvature leave for place and displacement, and the least gap in that box.
-  Part bounded(const std::array<double, 2> &X, const double size) const
+  FacePart bounded(const std::array<double, 2> &X, const double size) const
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
