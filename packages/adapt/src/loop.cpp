@@ -26,7 +26,10 @@ ErrorEstimate unknown_estimate()
 {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   ErrorEstimate estimate;
-  estimate.parts = {{"recovery", unknown}, {"contact_equilibrium", unknown}, {"contact_complementarity", unknown}, {ErrorEstimate::unseen_contact, unknown}};
+  estimate.parts = {{"recovery", unknown},
+                    {"contact_equilibrium", unknown},
+                    {"contact_complementarity", unknown},
+                    {ErrorEstimate::unseen_contact, unknown}};
   estimate.rounding = estimate.pressure = estimate.max_pressure = estimate.contact_ends = unknown;
   return estimate;
 }

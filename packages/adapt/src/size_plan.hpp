@@ -16,12 +16,12 @@ inline int cells_per_cell(const mesh::Element &element)
 
 /// A mesh with the error of each cell, whole and on the host, rows by id.
 struct EstimatedMesh {
-  int order = 1;               ///< of the elements
-  int vertices = 3;            ///< per cell: 3 or 4, in space 4 or 8
-  std::vector<double> coords;  ///< (nodes, dim) [m]; only vertices matter
-  std::vector<int> cells;      ///< (cells, vertices) nodes, in the plane counter-clockwise
-  std::vector<double> squared; ///< (cells) eta_T^2 [J]
-  int dim = 2;                 ///< 2 or 3
+  int order = 1;                                 ///< of the elements
+  int vertices = 3;                              ///< per cell: 3 or 4, in space 4 or 8
+  std::vector<double> coords;                    ///< (nodes, dim) [m]; only vertices matter
+  std::vector<int> cells;                        ///< (cells, vertices) nodes, in the plane counter-clockwise
+  std::vector<double> squared;                   ///< (cells) eta_T^2 [J]
+  int dim = 2;                                   ///< 2 or 3
   std::vector<double> unseen_squared, seen_from; ///< (cells) see ErrorEstimate; empty: nothing is unseen
 
   int num_cells() const { return static_cast<int>(squared.size()); }

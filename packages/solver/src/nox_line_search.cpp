@@ -11,7 +11,7 @@ namespace rpc::solver
 namespace
 {
 
-constexpr int most_halvings = 10;     // of an interval, in the search for the pieces of a line function
+constexpr int most_halvings = 10;    // of an interval, in the search for the pieces of a line function
 constexpr double same_slope = 1e-12; // of a slope
 
 /// int_a^b of the slope, known at both ends. @param halvings  that are left
