@@ -118,9 +118,7 @@ FacetRows facet_rows(const fem::Discretization &d, const mesh::Side &facets, con
         }
       });
   rows.row = HostView<double **>("rpc::contact::facet_rows", num_facets, nodes * width);
-  const auto copy = to_host(row);
-  for (LO f = 0; f < num_facets; ++f)
-    for (int k = 0; k < nodes * width; ++k) rows.row(f, k) = copy(f, k);
+  Kokkos::deep_copy(rows.row, to_host(row)); // whatever the layout on the device is
   rows.area = to_host(area);
   rows.size = to_host(fem::facet_size(d, facets));
   rows.cell = to_host(facets.cell);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <utility>
 
 namespace rpc::io
 {
@@ -193,62 +194,29 @@ private:
     const int no = expression();
     return step(Operation::choose, condition, yes, no);
   }
-  int disjunction()
+  int disjunction() { return from_the_left({{"||", Operation::logical_or}}, &BoundsParser::conjunction); }
+  int conjunction() { return from_the_left({{"&&", Operation::logical_and}}, &BoundsParser::comparison); }
+  int comparison() // the longer symbols first
   {
-    int left = conjunction();
-    while (known_ && take("||")) left = step(Operation::logical_or, left, conjunction());
-    return left;
+    return from_the_left({{"<=", Operation::less_or_equal},
+                          {">=", Operation::greater_or_equal},
+                          {"==", Operation::equal},
+                          {"!=", Operation::different},
+                          {"<", Operation::less},
+                          {">", Operation::greater}},
+                         &BoundsParser::sum);
   }
-  int conjunction()
+  int sum() { return from_the_left({{"+", Operation::add}, {"-", Operation::subtract}}, &BoundsParser::term); }
+  int term() { return from_the_left({{"*", Operation::multiply}, {"/", Operation::divide}}, &BoundsParser::factor); }
+  /// Operands of the next stronger kind, with any of some operators between them.
+  int from_the_left(const std::vector<std::pair<const char *, Operation>> &operators, int (BoundsParser::*operand)())
   {
-    int left = comparison();
-    while (known_ && take("&&")) left = step(Operation::logical_and, left, comparison());
-    return left;
-  }
-  int comparison()
-  {
-    int left = sum();
+    int left = (this->*operand)();
     while (known_) {
-      if (take("<="))
-        left = step(Operation::less_or_equal, left, sum());
-      else if (take(">="))
-        left = step(Operation::greater_or_equal, left, sum());
-      else if (take("=="))
-        left = step(Operation::equal, left, sum());
-      else if (take("!="))
-        left = step(Operation::different, left, sum());
-      else if (take("<"))
-        left = step(Operation::less, left, sum());
-      else if (take(">"))
-        left = step(Operation::greater, left, sum());
-      else
-        break;
-    }
-    return left;
-  }
-  int sum()
-  {
-    int left = term();
-    while (known_) {
-      if (take("+"))
-        left = step(Operation::add, left, term());
-      else if (take("-"))
-        left = step(Operation::subtract, left, term());
-      else
-        break;
-    }
-    return left;
-  }
-  int term()
-  {
-    int left = factor();
-    while (known_) {
-      if (take("*"))
-        left = step(Operation::multiply, left, factor());
-      else if (take("/"))
-        left = step(Operation::divide, left, factor());
-      else
-        break;
+      const auto found =
+          std::find_if(operators.begin(), operators.end(), [&](const auto &each) { return take(each.first); });
+      if (found == operators.end()) break;
+      left = step(found->second, left, (this->*operand)());
     }
     return left;
   }
