@@ -271,6 +271,7 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
     FieldReader reader(whole.fields ? std::move(*whole.fields) : whole.file.fields(*d.mesh), d);
     state.last.time = whole.file.time();
     state.last.energies = energies_from(text.at("energies"), scope);
+    state.last.energy_scale = text.at("energy_scale");
     state.last.displacement = reader.components();
     state.last.pressure = reader.columns(sides);
     state.last.dent = reader.columns(sides);
@@ -303,6 +304,7 @@ void Checkpoints::write(const analysis::HistoryState &state)
   const fem::Discretization &d = state.discretization;
   const ResultScope scope = analysis::result_scope(scene_.model, d);
   json text = {{"energies", kept_numbers(analysis::energy_quantities, state.last.energies, scope)},
+               {"energy_scale", state.last.energy_scale},
                {"assemblies", state.matrix_assemblies}};
   for (const auto &[name, content] : scene_.identity) text["deck"][name] = content;
   text["records"] = json::array();

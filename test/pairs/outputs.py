@@ -4,11 +4,14 @@ import dataclasses
 import json
 import pathlib
 import re
+import threading
 
 import netCDF4
 import numpy as np
 
 from elements import Element
+
+READING = threading.Lock()  # the netCDF library serves one thread at a time
 
 
 @dataclasses.dataclass
@@ -60,7 +63,7 @@ class Run:
         return files[-1] if files else None
 
     def _read(self, path):
-        with netCDF4.Dataset(path) as file:
+        with READING, netCDF4.Dataset(path) as file:
             file.set_auto_mask(False)
             variables = file.variables
             coords = np.stack([variables["coord" + axis][:] for axis in "xyz" if "coord" + axis in variables], axis=1)

@@ -142,6 +142,27 @@ class Steps(RpcTestCase):
         result = self.rpc("--input=beam.xml", SMALL, *lifted, "--output=out")
         self.assertIn("in 1 of 2 steps work and energies differ by more than 1 %", result.stdout)
 
+    def test_a_body_that_tresca_friction_has_held_comes_back_to_rest(self):
+        # At the end nothing presses the body: what the friction of earlier steps leaves in it is rounding.
+        press = "-0.005*(0.5*max(0, 1 - abs(t - 1)) + max(0, 1 - abs(t - 2)) + 0.4*max(0, 1 - abs(t - 3)))"
+        for tilt in ["-0.0003", "-0.05"]:
+            with self.subTest(tilt=tilt):
+                (self.folder / "held.yaml").write_text(f"""
+held:
+  Mesh: {{Element: Q2, Cells: [8, 4]}}
+  Material: {{"Young's Modulus": 6.4, "Poisson's Ratio": 0.385}}
+  Dirichlet: {{top: {{X: 0.0, Y: "{press}"}}}}
+  Contact: {{Side: bottom, Yield Stress: 0.0114, Friction Bound: 0.012, Obstacle: {{Type: plane, Point: [0.5, 0.0], Normal: [{tilt}, 1.0]}}}}
+  Steps: {{Times: [1.0, 2.0, 3.0, 4.0, 5.0]}}
+""")
+                self.rpc("--input=held.yaml", "--output=out")
+                steps = json.loads((self.folder / "out" / "held.json").read_text())["steps"]
+                forces = [max(map(abs, step["contact_force"])) for step in steps]
+                self.assertGreater(forces[1], 1e-3)
+                for step, force in zip(steps[3:], forces[3:]):
+                    self.assertLess(force, 1e-8 * forces[1])
+                    self.assertEqual(step["parts"], 1)
+
     def test_times_that_do_not_rise_are_refused(self):
         result = self.rpc("--input=beam.xml", SMALL, "--set=Steps->Times={1, 2, 2}", code=None)
         self.expect_refusal(result, 2, ['"Steps->Times"', "rise", "got 2 after 2"])

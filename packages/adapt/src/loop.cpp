@@ -57,6 +57,8 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
     const auto loads = task.model.seen_at(found.time).tractions;
     s.estimate = estimator()(
         {found.discretization, task.model.materials, problem.contact_sides(), loads, points, found.contact, *found.u});
+    const double tolerance = task.step.uzawa.tolerance;
+    s.estimate->rounding = std::max(s.estimate->rounding, tolerance * tolerance * found.step.energies_before); // (5.5b)
   };
   static_cast<analysis::Solution &>(s) = run(all);
   if (!task.adapt.estimate) s.skipped.push_back("error estimate: not asked for");

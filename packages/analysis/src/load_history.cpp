@@ -267,6 +267,10 @@ void LoadHistory::remember(const double t, const std::vector<contact::ContactOpt
   now.pressure = contact::node_columns(step.contact, s.contact.pressure, owned_nodes);
   now.gap = contact::node_columns(step.contact, moving_gap(*problem_, step.contact, s.contact.dent), owned_nodes);
   now.energies = energies_after(*problem_, t, s, memory(), kept_.last_forces.get(), *forces);
+  const double tolerance = options_.uzawa.tolerance,
+               rounding = fem::rounding_energy(problem_->discretization(), problem_->model().materials, *s.u);
+  now.energy_scale =
+      std::max({step.energies_before, now.energies.strain, rounding / (tolerance * tolerance)}); // (5.5b)
   if (max_all(problem_->discretization().mesh->comm(), static_cast<int>(s.state.multiplier.has_tangential())) > 0)
     now.tangential = contact::node_columns(step.contact, s.state.multiplier.tangential, owned_nodes);
   kept_.before = std::exchange(kept_.memory, std::move(now));

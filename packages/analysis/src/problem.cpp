@@ -171,6 +171,7 @@ Step Problem::step(const double t, const MultiVector *const dents, const Memory 
   require_finite(*step.elastic.load, "the forces of prescribed displacements",
                  [&d] { return fem::node_coordinates(d); });
   step.support = support_of(d, free_parts_, step, now);
+  if (before) step.energies_before = before->energy_scale;
   return step;
 }
 

@@ -266,7 +266,8 @@ contact::OptimalityResiduals judge(const Problem &problem, const Step &step, con
   const auto of = [&](const contact::ContactState &judged) {
     return contact::optimality_residuals(
         problem.discretization(), problem.model().materials, step.elastic, step.contact, judged, iterate.force_scale(),
-        [&](const Vector &residual) { return state.linear().inverse_energy(residual); });
+        [&](const Vector &residual) { return state.linear().inverse_energy(residual); },
+        tolerance * step.energies_before);
   };
   contact::ContactState rounded = now;
   rounded.rest = Teuchos::null;

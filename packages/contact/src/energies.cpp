@@ -4,6 +4,7 @@
 #include "rpc/contact/smoothed_functional.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace rpc::contact
 {
@@ -29,6 +30,23 @@ double energy_at_points(const ContactNodes &c, const DeviceView<double *> &lambd
       },
       sum);
   return sum;
+}
+
+/// By how much e_i may be off by the rounding of its dim products and its difference [m].                          (12.7)
+template <class U>
+KOKKOS_INLINE_FUNCTION double slip_rounding(const ContactNodes &c, const LO i, const U &u)
+{
+  constexpr double eps = std::numeric_limits<double>::epsilon();
+  double size = 0;
+  for (int k = 0; k < c.dim; ++k) size += math::magnitude(u(c.dof(i, k))) + math::magnitude(c.friction.from(i, k));
+  return (c.dim + 1) * eps * size;
+}
+
+/// e, shorter by what rounding may have made of it.
+KOKKOS_INLINE_FUNCTION Along beyond_rounding(const Along &e, const double rounding)
+{
+  const double length = e.length();
+  return length > rounding ? e.scaled(1 - rounding / length) : Along{};
 }
 
 /// This rank's largest violation of friction's law [Pa].                                                    (12.6)
@@ -103,7 +121,8 @@ ContactEnergy contact_energy(const ContactNodes &points, const ContactState &sta
         dissipated += c.weight(i) * taken_up(v, lambda(i), c.law(i));
         gap += c.weight(i) * duality_gap(v, lambda(i), bound, c.law(i));
         if (c.friction.exists())
-          gap += c.weight(i) * friction_gap(slip(c, i, x), row(q, i), friction_bound(lambda(i), c.friction(i)));
+          gap += c.weight(i) * friction_gap(beyond_rounding(slip(c, i, x), slip_rounding(c, i, x)), row(q, i),
+                                            friction_bound(lambda(i), c.friction(i)));
       },
       sums[0], sums[1]);
   double all[2];

@@ -61,7 +61,8 @@ double OptimalityResiduals::worst() const
 OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem::Materials &materials,
                                          const fem::ElasticProblem &elastic, const ContactNodes &points,
                                          const ContactState &state, const double force_scale,
-                                         const std::function<double(const Vector &)> &residual_energy)
+                                         const std::function<double(const Vector &)> &residual_energy,
+                                         const double least_energy)
 {
   const Vector &u = *state.displacement;
   const fem::DirichletDofs &dirichlet = elastic.dirichlet;
@@ -94,11 +95,12 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   const double lifted = std::abs(elastic.load->dot(u));
   const double at_work =
       std::max({strain, std::abs(of_load), std::abs(of_contact), std::abs(of_supports), lifted_part * lifted});
-  residuals.energy_balance = ratio(std::abs(strain - of_load + of_contact - of_supports), at_work);
+  residuals.energy_balance =
+      ratio(std::abs(strain - of_load + of_contact - of_supports), std::max(at_work, least_energy));
 
   const ContactEnergy energy = contact_energy(points, state);
   residuals.duality_gap = ratio(energy.duality_gap + 0.5 * std::max(0., residual_energy(residual)),
-                                std::max({0.5 * strain, energy.dissipated, 1e-12 * lifted}));
+                                std::max({0.5 * strain, energy.dissipated, 1e-12 * lifted, least_energy}));
   residuals.energy_at_work = std::max(at_work, energy.dissipated);
   return residuals;
 }

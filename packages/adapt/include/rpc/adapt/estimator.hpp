@@ -38,7 +38,7 @@ struct ErrorEstimate {
   DeviceView<double *> squared; ///< (owned cells) the indicators eta_T^2 [J], in 2D per m
   std::vector<ErrorPart> parts; ///< of eta^2, in the order of the summary
   double rounding =
-      0; ///< an estimate, or a strain energy, that is no larger than this is rounding [J]; see rounding_energy()
+      0; ///< an estimate, or a strain energy, that is no larger than this is rounding, or left by earlier steps [J]; see rounding_energy(), (5.5b)
   // By how much the contact pressure differs from that of the recovered stress, made admissible.
   double pressure = 0; ///< in L2 over facets that are neither all open nor all yielded [Pa m^(1/2)], in 3D [Pa m]
   double max_pressure =

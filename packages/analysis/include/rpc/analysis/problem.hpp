@@ -45,6 +45,7 @@ struct Step {
   fem::ElasticProblem elastic;   ///< loads and prescribed displacements
   contact::ContactNodes contact; ///< with the gap and the yield stress of the time
   contact::Support support;      ///< what holds the body
+  double energies_before = 0;    ///< S of (5.5b), of the steps before [J], in 2D per m
 };
 
 /// A body on its mesh: what stays from step to step, made once. Nothing of it changes while steps are solved: that is SolverState's.

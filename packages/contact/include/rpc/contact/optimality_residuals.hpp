@@ -29,10 +29,12 @@ struct OptimalityResiduals {
 /// are in balance with it: in doubles alone a stiff body that moves far cannot say how little it is strained.
 /// @param force_scale      size of the forces at work, see Iterate::force_scale() [N]
 /// @param residual_energy  F -> an estimate of F . K^-1 F [J], for a residual F (owned dofs, 0 where prescribed) [N]
+/// @param least_energy     energy balance and duality gap are shares of this at least [J], in 2D per m             (5.5b)
 OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem::Materials &materials,
                                          const fem::ElasticProblem &elastic, const ContactNodes &points,
                                          const ContactState &state, double force_scale,
-                                         const std::function<double(const Vector &)> &residual_energy);
+                                         const std::function<double(const Vector &)> &residual_energy,
+                                         double least_energy = 0);
 
 /// Where all energies at work are no more than the accuracy of displacements alone may give them, (10.9), (5.4) and (5.5) compare rounding with
 /// rounding: they become 0, and balance and contact law alone judge a body that nothing strains. Collective.
