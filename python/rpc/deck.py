@@ -124,9 +124,9 @@ def _typed(value, path):
     if isinstance(value, (list, tuple)):
         items = [_typed(item, path) for item in value]
         kinds = {kind for kind, _ in items}
-        kind = "int" if not kinds else "double" if kinds == {"int", "double"} else kinds.pop()  # an empty array of int is one of double, too
-        if kinds - {"int", "double"} or kind not in ("int", "double", "string"):
+        if kinds != {"string"} and not kinds <= {"int", "double"}:
             raise Error(f'deck: "{path}" must have items of one kind, all numbers or all texts, got {value!r}')
+        kind = "string" if "string" in kinds else "double" if "double" in kinds else "int"  # an empty array of int is one of double, too
         texts = [text for _, text in items]
         if kind == "string" and [item.strip() for item in _items(", ".join(texts))] != texts:
             raise Error(f'deck: "{path}": texts in a list must have commas within parentheses only, and no blanks around them, got {value!r}')
@@ -221,10 +221,11 @@ def _read_yaml(path, text):
         yaml_implicit_resolvers = {}
 
         def construct_mapping(self, node, deep=False):
-            names = [self.construct_object(key) for key, _ in node.value]
-            for name in names:
-                if names.count(name) > 1:
-                    raise yaml.constructor.ConstructorError(None, None, f'"{name}" is given twice', node.start_mark)
+            names = set()
+            for key, _ in node.value:
+                if key.value in names:
+                    raise yaml.constructor.ConstructorError(None, None, f'"{key.value}" is given twice', key.start_mark)
+                names.add(key.value)
             return super().construct_mapping(node, deep)
 
     number = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"

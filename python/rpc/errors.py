@@ -9,6 +9,7 @@ REMEDIES = {
     -9: "if nobody has killed it, memory has run out: take fewer cells, or more ranks on more machines",
 }
 SIGNALLED = "run it again; results of load steps before that are in its folder"
+NOT_STARTED = "rpc itself has said nothing: the launcher in $RPC_MPIRUN, by default mpirun, or the system has refused to run it"
 
 
 class Error(Exception):
@@ -27,8 +28,13 @@ class Error(Exception):
 
     def __str__(self):
         text = self.message if self.code is None else f"exit code {self.code}: {self.message}"
-        return f"{text.rstrip('.')}; remedy: {self.remedy}" if self.remedy else text
+        if not self.remedy:
+            return text
+        return f"{text if text.endswith('...') else text.removesuffix('.')}; remedy: {self.remedy}"
 
 
-def remedy_of(code):
-    return REMEDIES.get(code, SIGNALLED if code < 0 else "")
+def remedy_of(code, said):
+    """@param said  whether the program itself has said why: else a launcher or the system has not let it"""
+    if code == 0:
+        return ""
+    return REMEDIES.get(code, SIGNALLED) if code < 0 else REMEDIES.get(code, NOT_STARTED) if said else NOT_STARTED

@@ -136,7 +136,7 @@ def _read(path, reader):
         with netCDF4.Dataset(path) as file:
             file.set_auto_mask(False)
             if "qa_records" not in file.variables or _texts(file["qa_records"][0])[0] != "rpc":
-                raise Error(f'fields: "{path}" is not a file of rpc')
+                raise Error(f'fields: "{path}" is not a file of rpc, or damaged; remedy: run it again')
             return reader(file)
     except (OSError, RuntimeError, IndexError):
         raise Error(f'fields: "{path}" does not read as an Exodus file of rpc; remedy: run it again') from None

@@ -11,6 +11,7 @@ from .errors import Error, remedy_of
 from .exodus import Film
 
 TEXTS = {"state", "side", "friction_state", "reason"}  # columns of the tables
+MOST_LETTERS = 300  # of a message of others than rpc
 RECORD = ".run.json"  # behind the run's name: what the results' files do not tell
 
 
@@ -85,16 +86,15 @@ class Result:
         """Why the run has not done what was asked for, in one line; "" if it has."""
         if self.code == 0:
             return ""
-        said = re.findall(r"^rpc: (?:internal )?error: (.*)$", self.stderr, re.MULTILINE)
-        if not said and self.code in (4, None):
-            said = self._reasons()
+        said = self._said()
         if not said and self.code is not None and self.code < 0:
-            said = [f"killed by signal {-self.code} ({signal.strsignal(-self.code)})"]
-        return " ".join((" ".join(dict.fromkeys(said)) or self.stderr or "no message").split())
+            said = f"killed by signal {-self.code} ({signal.strsignal(-self.code)})"
+        words = " ".join((said or re.sub(r"^-+$", "", self.stderr, flags=re.MULTILINE)).split()) or "no message"
+        return words if said or len(words) <= MOST_LETTERS else words[:MOST_LETTERS].rstrip() + " ..."
 
     def error(self):
         """The Error of this run, whatever its code."""
-        return Error(self.message, self.code, remedy_of(self.code) if self.code else "", self)
+        return Error(self.message, self.code, remedy_of(self.code or 0, bool(self._said())), self)
 
     def record(self):
         """Keeps what the results' files do not tell, for load()."""
@@ -103,6 +103,13 @@ class Result:
         new = path.with_name(path.name + ".tmp")
         new.write_text(json.dumps(told, indent=1))
         new.replace(path)
+
+    def _said(self):
+        """What the program has said of it."""
+        said = re.findall(r"^rpc: (?:internal )?error: (.*)$", self.stderr, re.MULTILINE)
+        if not said and self.code in (4, None):
+            said = self._reasons()
+        return " ".join(dict.fromkeys(said))
 
     def _reasons(self):
         """What the summary says of the solve and of targets."""

@@ -1,0 +1,132 @@
+"""Parameter studies."""
+import contextlib
+import csv
+import io
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from support import TestCase, beam, rpc
+
+FORCE = "contact_force"
+YIELD = "Contact->Yield Stress"
+
+
+class Studies(TestCase):
+    def study(self, *arguments, **options):
+        """Results, and what was told of progress."""
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            return rpc.study(*arguments, **options), said.getvalue().splitlines()
+
+    def counted(self):
+        """A program that leaves a line for each run of it."""
+        return self.script(f"case $1 in --version) ;; *) echo run >> '{self.folder}/runs';; esac\nexec \"$RPC\" \"$@\"")
+
+    def runs(self):
+        """How many runs there were since the last call."""
+        path = self.folder / "runs"
+        count = len(path.read_text().splitlines()) if path.exists() else 0
+        path.unlink(missing_ok=True)
+        return count
+
+    def test_results_come_in_the_order_of_the_parameters(self):
+        results, said = self.study(beam(), {YIELD: [2, 4.5], "Contact->Gap": [0, "1"]}, workers=2)
+        self.assertEqual([result.settings for result in results],
+                         [{YIELD: xi, "Contact->Gap": gap} for xi in (2, 4.5) for gap in (0, "1")])
+        for result, force in zip(results, (10, 0, 22.5, 0)):
+            self.assertAlmostEqual(result.summary[FORCE][1], force, delta=1e-9)
+        self.assertEqual(len(said), 4)
+        self.assertTrue(said[-1].startswith("4/4 Contact->Yield Stress = "), said)
+        self.assertIn(": converged (", said[0])
+        self.assertIn(" s left)", said[0])
+
+    def test_a_list_is_taken_as_it_is_and_a_deck_may_be_a_file(self):
+        results, said = self.study("beam.xml", [{YIELD: 2, "Mesh->Cells": [20, 4]}, {"Mesh->Cells": [10, 2]}], progress=False)
+        self.assertEqual([result.summary["cells"] for result in results], [80, 20])
+        self.assertEqual(said, [])
+
+    def test_failures_are_kept_in_their_place(self):
+        results, said = self.study(beam(), {YIELD: [2, "x*", 4]})
+        self.assertEqual([result.code for result in results], [0, 2, 0])
+        self.assertIn('"x*" is not a number', results[1].message)
+        self.assertIn("exit code 2, deck: ", said[1])
+
+    def test_what_has_not_changed_is_not_run_again(self):
+        options = {"folder": self.folder / "study", "program": self.counted()}
+        first, _ = self.study(beam(), {YIELD: [2, 4, 4, "x*"]}, **options)
+        self.assertEqual(self.runs(), 3)  # equal rows are one run
+        again, said = self.study(beam(), {YIELD: [4, 2, "x*", 8]}, **options)
+        self.assertEqual(self.runs(), 2)  # what is new, and what was refused: it may have been the fault of a folder
+        self.assertEqual([again[k].folder for k in (0, 1)], [first[k].folder for k in (1, 0)])
+        self.assertAlmostEqual(again[1].summary[FORCE][1], 10, delta=1e-9)
+        self.assertEqual(again[1].settings, {YIELD: 2})
+        self.assertEqual(sum("kept from before" in line for line in said), 2)
+        self.study(beam(Material__Poissons_Ratio=0.2), {YIELD: [2]}, **options)
+        self.assertEqual(self.runs(), 1)
+        (again[0].folder / "deck.json").unlink()
+        self.study(beam(), {YIELD: [4]}, **options)
+        self.assertEqual(self.runs(), 1)
+        with open(self.folder / "study" / "study.csv", newline="") as file:
+            self.assertEqual(list(csv.reader(file)), [["folder", "exit_code", YIELD], [again[0].folder.name, "0", "4"]])
+
+    def test_a_run_that_was_interrupted_is_run_again(self):
+        deck, options = beam(), {"folder": self.folder / "study", "program": self.counted()}
+        large = {"Mesh->Cells": [[1600, 320]], "Output->Exodus": ["none"]}
+        stopped, _ = self.study(deck, large, timeout=0.3, **options)
+        self.assertEqual(stopped[0].code, 4, stopped[0].message)
+        self.runs()
+        self.study(deck, large, timeout=0.3, **options)
+        self.assertEqual(self.runs(), 1)
+
+    def test_a_mesh_that_has_changed_is_another_run(self):
+        mesh = self.folder / "beam.geo"
+        text = 'Point(1) = {0, 0, 0, 0.5}; out[] = Extrude {5, 0, 0} { Point{1}; }; all[] = Extrude {0, %s, 0} { Curve{1}; };\n' \
+               'Physical Surface("body") = {5}; Physical Curve("bottom") = {1}; Physical Curve("top") = {2}; Physical Curve("ends") = {3, 4};\n'
+        mesh.write_text(text % "1")
+        deck = beam(Mesh={"Type": "gmsh", "File": str(mesh)}, Dirichlet={"ends": {"X": 0, "Y": 0}})
+        options = {"folder": self.folder / "study", "program": self.counted(), "progress": False}
+        codes = [result.code for _ in range(2) for result in rpc.study(deck, {YIELD: [8]}, **options)]
+        self.assertIn(codes, ([0, 0], [2, 2]))  # 2: built without gmsh
+        self.assertEqual(self.runs(), 1 if codes == [0, 0] else 2)
+        mesh.write_text(text % "1.5")
+        rpc.study(deck, {YIELD: [8]}, **options)
+        self.assertEqual(self.runs(), 1)
+
+    def test_ctrl_c_ends_all_runs(self):
+        program = self.script(f"echo $$ >> '{self.folder}/pids'\nexec \"$RPC\" \"$@\"")
+        code = ("import rpc, sys\ndeck = rpc.with_settings(rpc.read_deck('beam.xml'), {'Mesh->Cells': [3200, 640], 'Output->Exodus': 'none'})\n"
+                f"rpc.study(deck, {{{YIELD!r}: [8, 12, 16]}}, workers=2, program={str(program)!r})")
+        process = subprocess.Popen([sys.executable, "-B", "-c", code], stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        begin = time.monotonic()
+        while not (self.folder / "pids").exists() or len((self.folder / "pids").read_text().splitlines()) < 2:
+            self.assertLess(time.monotonic() - begin, 60)
+            time.sleep(0.02)
+        time.sleep(0.2)
+        process.send_signal(signal.SIGINT)
+        _, stderr = process.communicate(timeout=60)
+        self.assertIn("KeyboardInterrupt", stderr)
+        pids = (self.folder / "pids").read_text().split()
+        self.assertEqual(len(pids), 2)  # the third has not begun
+        for pid in pids:
+            self.assertFalse(os.path.exists(f"/proc/{pid}"), pid)
+
+    def test_what_cannot_be_studied_is_refused_before_the_first_run(self):
+        program = self.counted()
+        for parameters, parts in (({YIELD: 3}, [YIELD, "a list of values"]), ({YIELD: "12"}, ["a list of values"]), ([1], ["a list of dicts"]),
+                                  ({YIELD: [1, None]}, [YIELD, "None"]), ({"Contact->Side->x": [1]}, ["leads through"])):
+            self.refused(parts, rpc.study, beam(), parameters, program=program)
+        self.refused(["workers must be an int > 0"], rpc.study, beam(), {YIELD: [1]}, workers=0, program=program)
+        self.refused(["ranks must be"], rpc.study, beam(), {YIELD: [1]}, ranks=0, program=program)
+        self.refused(["nowhere"], rpc.study, beam(), {YIELD: [1]}, program=self.folder / "nowhere")
+        (self.folder / "file").touch()
+        self.refused(["file"], rpc.study, beam(), {YIELD: [1]}, folder=self.folder / "file", program=program)
+        self.assertEqual(self.runs(), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
