@@ -28,7 +28,8 @@ def run(deck, *, ranks=1, program=None, folder=None, settings=None, check=True, 
                      and its results are deck.json, deck.e, ...; those of a file have the file's name. While the run goes on, NAME.log has its console
     @param settings  {"Contact->Yield Stress": 12, ...}, on top of the deck
     @param check     whether a run that ends with another exit code than 0 is an Error
-    @param timeout   [s] after which the run is asked to end; it writes the load steps that it has solved and ends with exit code 4
+    @param timeout   [s] after which the run is asked to end; it writes the load steps that it has solved and ends with exit code 4, or at
+                     once, -15, where there are none
     @throws Error with the program's exit code, message and remedy; with code None if nothing could be run
     """
     result = start(deck, ranks, program, folder, settings or {}, timeout, lambda process: None)
@@ -126,6 +127,7 @@ def _wait(command, log, environment, timeout, started):
             _, stderr = process.communicate()
         if not isinstance(error, subprocess.TimeoutExpired):
             raise
+        stderr += f"\nrpc: error: interrupted by timeout = {timeout:g} [s]\n"
     code = process.returncode
     return (128 - code if 128 < code < 192 else code), stderr  # a launcher tells of signal N by 128 + N
 

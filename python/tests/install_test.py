@@ -35,6 +35,16 @@ class Installed(TestCase):
         self.assertEqual((of_package, rpc.__version__), (of_program, of_program))
 
 
+class Readme(TestCase):
+    def test_its_programs_run(self):
+        programs = re.findall(r"```python\n(.*?)```", (FOLDER / "README.md").read_text(), re.DOTALL)
+        said = [subprocess.run([sys.executable, "-B", "-c", program], cwd=self.folder, capture_output=True, text=True) for program in programs]
+        self.assertEqual([(each.returncode, "Traceback" in each.stderr) for each in said], [(0, False)] * 3, [each.stderr for each in said])
+        self.assertTrue(said[0].stdout.startswith("[0.0, 60.0"), said[0].stdout)
+        self.assertIn("3/3 ", said[1].stderr)
+        self.assertIn('Did you mean "Yield Stress"?', said[2].stdout)
+
+
 class Examples(TestCase):
     def example(self, name):
         """Rows of numbers that an example prints. With matplotlib it draws its picture."""

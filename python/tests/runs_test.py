@@ -2,6 +2,7 @@
 import gc
 import os
 import shutil
+import signal
 import time
 import unittest
 
@@ -77,9 +78,10 @@ class Runs(TestCase):
 
     def test_time_can_run_out(self):
         begin = time.monotonic()
-        error = self.refused(["interrupted by SIGTERM"], rpc.run, beam(), settings=LARGE, timeout=0.3, code=4)
-        self.assertLess(time.monotonic() - begin, 30)
-        self.assertFalse(error.result.ok)
+        result = rpc.run(beam(), settings=LARGE, timeout=0.3, check=False)
+        self.assertIn(result.code, (4, -signal.SIGTERM))  # the latter if the program has not got so far as to look for signals
+        self.assertIn("interrupted by timeout = 0.3 [s]", result.message)
+        self.assertLess(time.monotonic() - begin, 60)
 
     def test_a_missing_program_is_refused(self):
         nowhere = self.folder / "nowhere"

@@ -9,7 +9,7 @@ import sys
 import time
 import unittest
 
-from support import TestCase, beam, rpc
+from support import LARGE, TestCase, beam, rpc
 
 FORCE = "contact_force"
 YIELD = "Contact->Yield Stress"
@@ -74,12 +74,13 @@ class Studies(TestCase):
             self.assertEqual(list(csv.reader(file)), [["folder", "exit_code", YIELD], [again[0].folder.name, "0", "4"]])
 
     def test_a_run_that_was_interrupted_is_run_again(self):
-        deck, options = beam(), {"folder": self.folder / "study", "program": self.counted()}
-        large = {"Mesh->Cells": [[1600, 320]], "Output->Exodus": ["none"]}
-        stopped, _ = self.study(deck, large, timeout=0.3, **options)
-        self.assertEqual(stopped[0].code, 4, stopped[0].message)
-        self.runs()
-        self.study(deck, large, timeout=0.3, **options)
+        logs = f"'{self.folder}'/study/run-*/deck.log"
+        stopping = self.script(f'case $1 in --version) exec "$RPC" "$@";; esac\n"$RPC" "$@" &\nuntil grep -q uzawa {logs}; do sleep 0.02; done\n'
+                               "kill -TERM $!\nwait $!", "stopping.sh")
+        deck = rpc.with_settings(beam(), LARGE)
+        stopped, _ = self.study(deck, {YIELD: [8]}, folder=self.folder / "study", program=stopping)
+        self.assertEqual((stopped[0].code, stopped[0].message[:22]), (4, "interrupted by SIGTERM"))
+        self.study(deck, {YIELD: [8]}, folder=self.folder / "study", program=self.counted(), timeout=0.3)
         self.assertEqual(self.runs(), 1)
 
     def test_a_mesh_that_has_changed_is_another_run(self):
