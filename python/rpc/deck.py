@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -56,6 +57,8 @@ def with_settings(deck, settings):
 
     @throws Error if a path leads through a parameter
     """
+    if not isinstance(deck, Mapping):
+        raise Error(f"deck: must be a dict, got {type(deck).__name__}; read_deck(path) makes one of a file")
     result = copy.deepcopy(dict(deck))
     for path, value in settings.items():
         names = [name.strip() for name in path.split("->")] if isinstance(path, str) else []
@@ -72,6 +75,8 @@ def with_settings(deck, settings):
 
 def xml_of(deck, name="deck"):
     """A deck as a text in XML."""
+    if not isinstance(deck, Mapping):
+        raise Error(f"deck: must be a dict, got {type(deck).__name__}")
     root = _element(deck, name, "")
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"

@@ -115,8 +115,10 @@ class Result:
         """What the summary says of the solve and of targets."""
         if f"{self.name}.json" not in self.files:
             return []
-        lists = [self.summary.get(key) or {} for key in ("adaptation", "energy_tolerance")]
-        return [self.summary.get("reason", "")] if not self.summary.get("converged") else [each["reason"] for each in lists if each.get("reason")]
+        if not self.summary.get("converged"):
+            return [self.summary.get("reason", "")]
+        targets = [(self.summary.get(name) or {}, met) for name, met in (("adaptation", "reached"), ("energy_tolerance", "kept"))]
+        return [target.get("reason", "") for target, met in targets if not target.get(met, True)]
 
     def _file(self, suffix, parameter):
         if self.name + suffix not in self.files:
@@ -152,7 +154,7 @@ def load(path):
     if not files:
         raise Error(f'load: there are no results "{path.with_name(name)}.*"; remedy: give one of a run\'s files, such as its JSON file')
     result = Result(path.parent, name, files=files)
-    if f"{name}.json" in files and not any(result._reasons()):
+    if f"{name}.json" in files and not result._reasons():
         result.code = 0
     return result
 

@@ -18,11 +18,11 @@ from .result import RECORD, Result, result_files
 GRACE = 60  # [s] that a run gets to write its results after SIGTERM
 
 
-def run(deck, *, ranks=1, program=None, folder=None, settings=None, check=True, timeout=None):
+def run(deck, *, ranks=1, program=None, folder=None, settings=None, check=True, timeout=None, restart=False):
     """Solves a deck. Returns when the process has ended: a Result.
 
     @param deck      a dict, see read_deck(); or the name of a file, which the program reads itself and looks for among its own decks
-    @param ranks     MPI ranks; more than 1 are started by `mpirun`, or what $RPC_MPIRUN has in its place, such as "mpirun --oversubscribe" or "srun"
+    @param ranks     MPI ranks; more than 1 are started by `mpirun`, or what $RPC_MPIRUN has in its place, such as "mpirun --oversubscribe"
     @param program   path of rpc, see find_program()
     @param folder    for the results, made if it is missing; None: a temporary one, which goes with the Result. A dict is written into it as deck.xml,
                      and its results are deck.json, deck.e, ...; those of a file have the file's name. While the run goes on, NAME.log has its console
@@ -30,15 +30,16 @@ def run(deck, *, ranks=1, program=None, folder=None, settings=None, check=True, 
     @param check     whether a run that ends with another exit code than 0 is an Error
     @param timeout   [s] after which the run is asked to end; it writes the load steps that it has solved and ends with exit code 4, or at
                      once, -15, where there are none
+    @param restart   whether to go on after the newest checkpoint in `folder`, see "Steps->Checkpoint Every"
     @throws Error with the program's exit code, message and remedy; with code None if nothing could be run
     """
-    result = start(deck, ranks, program, folder, settings or {}, timeout, lambda process: None)
+    result = start(deck, ranks, program, folder, settings or {}, timeout, restart)
     if check and not result.ok:
         raise result.error()
     return result
 
 
-def start(deck, ranks, program, folder, settings, timeout, started):
+def start(deck, ranks, program, folder, settings, timeout, restart=False, started=lambda process: None):
     """run() without check; started(process) is told of the process."""
     program = find_program(program)
     command = launcher(ranks) + [str(program)]
@@ -53,7 +54,7 @@ def start(deck, ranks, program, folder, settings, timeout, started):
             log = open(folder / f"{name}.log", "wb")
         begin = time.monotonic()
         with log, _environment(ranks) as environment:
-            code, stderr = _wait(command + arguments + [f"--output={folder}"], log, environment, timeout, started)
+            code, stderr = _wait(command + arguments + [f"--output={folder}"] + restart * ["--restart"], log, environment, timeout, started)
     except BaseException:
         if temporary:
             shutil.rmtree(folder, ignore_errors=True)
@@ -96,16 +97,21 @@ def launcher(ranks):
 
 @contextlib.contextmanager
 def _environment(ranks):
-    """Of a process on several ranks: a folder of Open MPI's for it alone, or those of two runs that start or end at once collide."""
-    names = ("OMPI_MCA_orte_tmpdir_base", "PRTE_MCA_prte_tmpdir_base")  # of Open MPI 4, and later ones
+    """Variables of the process. If mpirun has started Python, the run is no rank of that job. A run on several ranks gets a folder of Open MPI's for
+    itself, or those of two runs that start or end at once collide."""
+    given = dict(os.environ)
+    if "OMPI_COMM_WORLD_SIZE" in given:
+        kept = ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_MCA_rmaps_base_oversubscribe")  # what the user says of the machine
+        given = {name: value for name, value in given.items() if name.startswith(kept) or not name.startswith(("OMPI_", "PMIX_", "PRTE_"))}
     if ranks == 1:
-        yield None
+        yield given
         return
-    base = next((os.environ[name] for name in names if name in os.environ), None)
+    names = ("OMPI_MCA_orte_tmpdir_base", "PRTE_MCA_prte_tmpdir_base")  # of Open MPI 4, and later ones
+    base = next((given[name] for name in names if name in given), None)
     if base:
         os.makedirs(base, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="rpc_mpi_", dir=base, ignore_cleanup_errors=True) as session:
-        yield {**os.environ, **dict.fromkeys(names, session)}
+        yield {**given, **dict.fromkeys(names, session)}
 
 
 def _wait(command, log, environment, timeout, started):

@@ -58,7 +58,7 @@ def study(deck, parameters, *, folder=None, workers=1, progress=True, ranks=1, p
 
     def one(key, of, settings):
         kept = _kept(folders[key])
-        result = kept or start(of, ranks, program, folders[key], {}, timeout, started)
+        result = kept or start(of, ranks, program, folders[key], {}, timeout, started=started)
         result.settings = settings
         show(result, kept is not None)
         return result

@@ -83,6 +83,8 @@ class Decks(TestCase):
         for value, part in ((None, "NoneType"), (2**31, "2147483648.0"), ("a\nb", "of one line"), ([1, "a"], "of one kind"), ([True], "of one kind"),
                             ([[1, 2]], "of one kind"), (["a,b"], "commas"), (1j, "complex"), (np.ones((2, 2)), "of one kind")):
             self.refused(['"A->B"', part], rpc.write_deck, {"A": {"B": value}}, self.folder / "deck.xml")
+        self.refused(["must be a dict", "str"], rpc.write_deck, "beam.xml", self.folder / "deck.xml")
+        self.refused(["must be a dict", "read_deck"], rpc.with_settings, "beam.xml", {})
         self.refused(["names must be texts", "3"], rpc.write_deck, {3: 1}, self.folder / "deck.xml")
         self.refused(["deck.yaml", "deck.xml"], rpc.write_deck, {}, self.folder / "deck.yaml")
         deep = {}

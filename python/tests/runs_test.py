@@ -1,8 +1,11 @@
 """Runs of the program, and how they end."""
 import gc
 import os
+import shlex
 import shutil
 import signal
+import subprocess
+import sys
 import time
 import unittest
 
@@ -83,6 +86,15 @@ class Runs(TestCase):
         self.assertIn("interrupted by timeout = 0.3 [s]", result.message)
         self.assertLess(time.monotonic() - begin, 60)
 
+    def test_load_steps_go_on_after_a_checkpoint(self):
+        settings = {"Mesh->Cells": [24, 12], "Steps->Checkpoint Every": 1}
+        rpc.run("shear.xml", folder=self.folder, settings={**settings, "Steps->Times": [0.5, 1]})
+        result = rpc.run("shear.xml", folder=self.folder, settings={**settings, "Steps->Times": [0.5, 1, 1.125]}, restart=True)
+        self.assertIn("goes on after", result.console)
+        self.assertEqual(result.history()["time"].tolist(), [0.5, 1, 1.125])
+        self.assertEqual(result.times.tolist(), [0.5, 1, 1.125])
+        self.refused(["--restart"], rpc.run, "beam.xml", folder=self.folder, restart=True, code=2)
+
     def test_a_missing_program_is_refused(self):
         nowhere = self.folder / "nowhere"
         self.refused([f'program = "{nowhere}"', "remedy"], rpc.run, beam(), program=nowhere)
@@ -101,8 +113,6 @@ class Runs(TestCase):
         (self.folder / "checkout" / "CMakeLists.txt").touch()
         (self.folder / "bin").mkdir()
         self.environment(RPC_PROGRAM=None, PATH=self.folder / "bin")
-        import subprocess
-        import sys
         paths = [path for path in sys.path if path != str(SOURCE / "python")]
 
         def found():
@@ -143,6 +153,13 @@ class Runs(TestCase):
         os.remove(self.folder / "deck.e.2.1")
         lost = rpc.load(self.folder / "deck")
         self.refused(["does not read"], lost.fields)
+
+    @unittest.skipUnless(HAS_MPI, "needs MPI")
+    def test_a_python_that_mpirun_has_started_runs_programs_of_its_own(self):
+        code = "import rpc; print(rpc.run('beam.xml', settings={'Mesh->Cells': [20, 4]}).summary['ranks'])"
+        launcher = shlex.split(os.environ.get("RPC_MPIRUN", "mpirun --oversubscribe"))
+        result = subprocess.run([*launcher, "-n", "2", sys.executable, "-B", "-c", code], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
+        self.assertEqual((result.returncode, result.stdout.split()), (0, ["1", "1"]), result.stderr)
 
     @unittest.skipUnless(HAS_MPI, "needs MPI")
     def test_messages_and_exit_codes_come_from_two_ranks(self):
