@@ -1,5 +1,6 @@
 """Many runs of one deck with other parameters."""
 import concurrent.futures
+import copy
 import csv
 import hashlib
 import itertools
@@ -77,7 +78,7 @@ def study(deck, parameters, *, folder=None, workers=1, progress=True, ranks=1, p
                     process.terminate()
             pool.shutdown(cancel_futures=True)
             raise
-    found = [results[key] for key in keys]
+    found = [_of_row(results[key], row) for key, row in zip(keys, rows)]
     if folder is not None:
         _index(pathlib.Path(folder) / "study.csv", rows, found)
     return found
@@ -94,6 +95,15 @@ def _rows(parameters):
         if isinstance(values, (str, bytes, Mapping)) or not hasattr(values, "__iter__"):
             raise Error(f'study: "{path}" must have a list of values, got {values!r}')
     return [dict(zip(parameters, values)) for values in itertools.product(*parameters.values())]
+
+
+def _of_row(result, row):
+    """The result of a run, for one of the rows that have it."""
+    if result.settings == row:
+        return result
+    result = copy.copy(result)
+    result.settings = row
+    return result
 
 
 def _key(deck, ranks, version):

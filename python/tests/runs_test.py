@@ -72,6 +72,7 @@ class Runs(TestCase):
     def test_a_run_that_is_killed_is_an_error_with_the_signal(self):
         self.refused(["killed by signal 9", "memory"], rpc.run, beam(), program=self.script("kill -9 $$"), code=-9)
         self.refused(["killed by signal 11"], rpc.run, beam(), program=self.script("kill -11 $$"), code=-11)
+        self.refused(["killed by signal 9"], rpc.run, beam(), program=self.script("exit 137"), code=-9)  # as launchers tell
 
     def test_what_others_than_rpc_say_is_told_as_theirs(self):
         self.refused(["a library is missing", "rpc itself has said nothing"], rpc.run, beam(), program=self.script("echo a library is missing >&2; exit 127"),

@@ -59,6 +59,10 @@ class Studies(TestCase):
         options = {"folder": self.folder / "study", "program": self.counted()}
         first, _ = self.study(beam(), {YIELD: [2, 4, 4, "x*"]}, **options)
         self.assertEqual(self.runs(), 3)  # equal rows are one run
+        self.assertEqual([result.settings[YIELD] for result in first], [2, 4, 4, "x*"])
+        same, _ = self.study(beam(), [{YIELD: 2}, {YIELD: 2, "Mesh->Cells": [20, 4]}], **options)
+        self.assertEqual([len(result.settings) for result in same], [1, 2])  # two ways to say the same
+        self.assertEqual(self.runs(), 0)
         again, said = self.study(beam(), {YIELD: [4, 2, "x*", 8]}, **options)
         self.assertEqual(self.runs(), 2)  # what is new, and what was refused: it may have been the fault of a folder
         self.assertEqual([again[k].folder for k in (0, 1)], [first[k].folder for k in (1, 0)])
@@ -98,9 +102,8 @@ class Studies(TestCase):
         self.assertEqual(self.runs(), 1)
 
     def test_ctrl_c_ends_all_runs(self):
-        program = self.script(f"echo $$ >> '{self.folder}/pids'\nexec \"$RPC\" \"$@\"")
-        code = ("import rpc, sys\ndeck = rpc.with_settings(rpc.read_deck('beam.xml'), {'Mesh->Cells': [3200, 640], 'Output->Exodus': 'none'})\n"
-                f"rpc.study(deck, {{{YIELD!r}: [8, 12, 16]}}, workers=2, program={str(program)!r})")
+        program = self.script(f"echo $$ >> '{self.folder}/pids'\nexec sleep 600")
+        code = f"import rpc; rpc.study('beam.xml', {{{YIELD!r}: [8, 12, 16]}}, workers=2, program={str(program)!r})"
         process = subprocess.Popen([sys.executable, "-B", "-c", code], stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
         begin = time.monotonic()
