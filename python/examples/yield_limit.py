@@ -2,7 +2,7 @@
 
     python3 yield_limit.py [--plot=yield_limit.png] [--folder=study]
 
-With --folder the runs are kept: what is there is not run again. Takes 5 s.
+With --folder the runs are kept: what is there is not run again. Takes 3 s.
 """
 import argparse
 import sys
@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import rpc
 
-LIMITS = [1, 2, 4, 8, 12, 14, 16, 17, 18, 19, 20, 22]  # xi [Pa]
+LIMITS = [2, 4, 8, 12, 14, 16, 18, 20, 22]  # xi [Pa]
 
 
 def main(plot, folder):

@@ -77,17 +77,15 @@ def _facets(text):
     return [[int(node) for node in facet.split()] for facet in text.split(",")]
 
 
-# Nodes of the facets of each element, in Exodus' order and from 0.
+# Nodes of the facets of each element, in Exodus' order and from 0; corners first.
 FACETS = {
-    "TRI3": _facets("0 1, 1 2, 2 0"),
     "TRI6": _facets("0 1 3, 1 2 4, 2 0 5"),
-    "QUAD4": _facets("0 1, 1 2, 2 3, 3 0"),
     "QUAD9": _facets("0 1 4, 1 2 5, 2 3 6, 3 0 7"),
-    "TETRA4": _facets("0 1 3, 1 2 3, 0 3 2, 0 2 1"),
     "TETRA10": _facets("0 1 3 4 8 7, 1 2 3 5 9 8, 0 3 2 7 9 6, 0 2 1 6 5 4"),
-    "HEX8": _facets("0 1 5 4, 1 2 6 5, 2 3 7 6, 0 4 7 3, 0 3 2 1, 4 5 6 7"),
     "HEX27": _facets("0 1 5 4 8 13 16 12 25, 1 2 6 5 9 14 17 13 24, 2 3 7 6 10 15 18 14 26, 0 4 7 3 12 19 15 11 23, 0 3 2 1 11 10 9 8 21, 4 5 6 7 16 17 18 19 22"),
 }
+FACETS |= {linear: [facet[:corners] for facet in FACETS[quadratic]]
+           for linear, quadratic, corners in (("TRI3", "TRI6", 2), ("QUAD4", "QUAD9", 2), ("TETRA4", "TETRA10", 3), ("HEX8", "HEX27", 4))}
 
 
 class Film:

@@ -50,7 +50,7 @@ class Result:
         """The JSON file as a dict, see `<deck>.json` in doc/input.md; null is None.  @throws Error if the run has written none"""
         if self._summary is None:
             try:
-                self._summary = json.loads(self._file(".json", "Output->JSON").read_text())
+                self._summary = json.loads(self._file(".json", '"Output->JSON"').read_text())
             except ValueError:
                 raise Error(f'summary: "{self.folder / self.name}.json" is damaged; remedy: run it again') from None
         return self._summary
@@ -63,14 +63,14 @@ class Result:
 
         @throws Error if the run has written none
         """
-        return _table(self._file(".contact.csv", "Output->CSV"))
+        return _table(self._file(".contact.csv", '"Contact" and "Output->CSV"'))
 
     def history(self):
         """`<deck>.history.csv` as a structured array, one row per load step, see doc/input.md for its columns.
 
         @throws Error if the run has written none, as without "Steps"
         """
-        return _table(self._file(".history.csv", "Steps->Times"))
+        return _table(self._file(".history.csv", '"Steps->Times"'))
 
     @property
     def times(self):
@@ -120,9 +120,9 @@ class Result:
         targets = [(self.summary.get(name) or {}, met) for name, met in (("adaptation", "reached"), ("energy_tolerance", "kept"))]
         return [target.get("reason", "") for target, met in targets if not target.get(met, True)]
 
-    def _file(self, suffix, parameter):
+    def _file(self, suffix, parameters):
         if self.name + suffix not in self.files:
-            why = f"the run ended with exit code {self.code}: {self.message}" if self.code else f'see "{parameter}" of the deck'
+            why = f"the run ended with exit code {self.code}: {self.message}" if self.code else f"see {parameters} of the deck"
             raise Error(f'results: the run has written no "{self.folder / self.name}{suffix}"; {why}', self.code or None, result=self)
         return self.folder / (self.name + suffix)
 
@@ -131,7 +131,7 @@ class Result:
             pattern = re.compile(re.escape(self.name) + r"\.e(-s\d+)?(\.\d+\.\d+)?")
             paths = [self.folder / file for file in self.files if pattern.fullmatch(file)]
             if not paths:
-                self._file(".e", "Output->Exodus")
+                self._file(".e", '"Output->Exodus"')
             self._film = Film(paths)
         return self._film
 

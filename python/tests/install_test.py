@@ -64,7 +64,7 @@ class Examples(TestCase):
 
     def test_yield_limit(self):
         rows = self.example("yield_limit")
-        self.assertEqual(len(rows), 12)
+        self.assertEqual(len(rows), 9)
         for xi, force, touching, yielded, _ in rows:
             self.assertAlmostEqual(touching, 5, delta=1e-3)
             if xi <= 12:

@@ -57,8 +57,7 @@ class Results(TestCase):
 
     def test_sides_have_their_nodes_whatever_the_element(self):
         places = {"left": (0, 0), "right": (0, 1), "bottom": (1, 0), "top": (1, 1), "back": (2, 0), "front": (2, 1)}
-        for dim, element, name in ((2, "Q1", "QUAD4"), (2, "Q2", "QUAD9"), (2, "P1", "TRI3"), (2, "P2", "TRI6"),
-                                   (3, "Q1", "HEX8"), (3, "Q2", "HEX27"), (3, "P1", "TETRA4"), (3, "P2", "TETRA10")):
+        for dim, element, name in ((2, "Q2", "QUAD9"), (2, "P2", "TRI6"), (3, "Q2", "HEX27"), (3, "P2", "TETRA10"), (3, "P1", "TETRA4")):
             held = dict.fromkeys("XYZ"[:dim], 0.0)
             fields = rpc.run({"Mesh": {"Lower": [0.0] * dim, "Upper": [1.0] * dim, "Cells": [3, 2, 2][:dim], "Element": element},
                               "Material": {"Young's Modulus": 1.0, "Poisson's Ratio": 0.3}, "Dirichlet": {"top": {**held, "Y": -0.1}},

@@ -63,11 +63,14 @@ class Runs(TestCase):
         self.assertFalse(error.result.summary["converged"])
         self.refused(['"Adapt->Max Cycles" = 1'], rpc.run, "beam_adaptive.xml", settings={"Adapt->Max Cycles": 1}, code=4)
 
-    def test_no_solution_is_exit_code_5(self):
-        deck = beam()
-        deck["Dirichlet"] = {"left": {"X": 0.0}}
-        error = self.refused(["the foundation carries at most"], rpc.run, deck, settings={"Contact->Yield Stress": 0.1}, code=5)
+    def test_no_solution_is_exit_code_5_and_the_steps_before_are_there(self):
+        deck = beam(Dirichlet={"left": {"X": 0.0}}, Steps={"Times": [0.2, 0.5, 1.0]}, Traction={"top": {"Y": "-10*t"}})
+        error = self.refused(["at t = 1", "the foundation carries at most 30"], rpc.run, deck, settings={"Contact->Yield Stress": 6}, code=5)
         self.assertIn("lower the load", error.remedy)
+        history = error.result.history()
+        self.assertEqual(history["converged"].tolist(), [1, 1, 0])
+        self.assertIn("the foundation carries at most 30", history["reason"][2])
+        self.assertEqual(error.result.times.tolist(), [0.2, 0.5])
 
     def test_a_run_that_is_killed_is_an_error_with_the_signal(self):
         self.refused(["killed by signal 9", "memory"], rpc.run, beam(), program=self.script("kill -9 $$"), code=-9)
