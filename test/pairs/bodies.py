@@ -50,7 +50,10 @@ def cells(row, of):
     base = (FEW if row["solver"] == "factor" else MORE)["space" if of.dim == 3 else "plane"]
     order = int(row["element"][1])
     shares = SHARES.get(row["shape"], (1.0,) * 3)
-    return tuple(max(2, round(n * share / order)) for n, share in zip(base, shares))
+    number = [max(2, round(n * share / order)) for n, share in zip(base, shares)]
+    if row["parallel"] == "3 ranks":
+        number[0] = max(3, number[0])  # two halves of a box cannot be divided among three ranks
+    return tuple(number)
 
 
 def body(rng, row, of):
