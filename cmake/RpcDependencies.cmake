@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Everything outside this project, and what to do when it is missing. Also installed, for rpcConfig.cmake.
 include_guard()
 include(${CMAKE_CURRENT_LIST_DIR}/RpcTrilinos.cmake)

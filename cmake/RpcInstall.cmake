@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # What find_package(rpc) needs of an install tree; each package and the program install themselves.
 include(CMakePackageConfigHelpers)
 set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/rpc)
@@ -11,3 +12,6 @@ install(FILES ${PROJECT_BINARY_DIR}/rpcConfig.cmake ${PROJECT_BINARY_DIR}/rpcCon
         DESTINATION ${destination})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/input/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rpc/input
         FILES_MATCHING PATTERN *.xml PATTERN *.yaml PATTERN *.geo)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/NOTICE ${PROJECT_SOURCE_DIR}/CITATION.cff
+              ${PROJECT_SOURCE_DIR}/doc/licences.md
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # rpc_add_package(<name> HEADERS a.hpp SOURCES a.cpp DEPENDS rpc::core [PRIVATE_DEPENDS lib])
 # One package: headers in include/rpc/<name>/, sources in src/, target rpc::<name>, installed and exported.
 function(rpc_add_package name)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # rpc_add_test(<package> <name> [LABEL unit] [NP 1 2 3] [LIBRARIES libs] [TIMEOUT seconds])
 # The GoogleTests of <name>_test.cpp, linked to rpc::<package> where there is such a target; one CTest entry
 # <package>.<name>.np<k> per number of ranks. LABEL is unit, verification, regression or performance. What the sources of all tests of

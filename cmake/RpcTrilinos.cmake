@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The target rpc::trilinos: all that this project uses of Trilinos. Trilinos 13.2 exports variables, later versions export targets
 # with all that belongs to them, and nothing outside this file needs to know. Also installed, for rpcConfig.cmake.
 # Sets RPC_TRILINOS_HAS_MPI, and FindMPI's MPIEXEC_EXECUTABLE where there is MPI.

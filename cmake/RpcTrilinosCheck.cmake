@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # What rpc asks of a Trilinos: refuses one that cannot work, with what is missing and the remedy, and says in a line or two what there
 # is. Reads what Trilinos exports: CMake variables and the macros of its configuration headers. Also installed, for rpcConfig.cmake.
 

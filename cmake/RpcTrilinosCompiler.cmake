@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Before project(): takes the compilers from the Trilinos that -DTrilinos_ROOT=DIR (or CMAKE_PREFIX_PATH) names: a Kokkos with
 # the CUDA backend has to be compiled with its own nvcc_wrapper. Compilers that the user chose (-DCMAKE_CXX_COMPILER, $CXX) stand.
 # Debian's Trilinos is not visible at this point yet; it needs no certain compiler, RpcTrilinos.cmake links MPI by itself.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Sourced by setup.sh and trilinos.sh: messages, logs and the number of jobs.
 # Environment: RPC_VERBOSE=1 shows all output; CMAKE_BUILD_PARALLEL_LEVEL sets the number of jobs.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Installs those Debian packages of some lists that are missing, as root or through sudo:
 #   bash cmake/install_packages.sh [list ...]     default: cmake/packages.txt
 # Silent, and without network, if none is.

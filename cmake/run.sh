@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Installs what is missing, builds, and runs the program: bash cmake/run.sh --input=beam.xml [more options of rpc]
 # Environment: NP=2 runs on 2 MPI ranks; see also common.sh.
 set -euo pipefail

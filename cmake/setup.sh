@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Sourced by run.sh, test.sh and test/gpu.sh: packages, configuration and build, with a line of progress each.
 # Environment: RPC_PRESET=openmp | cuda | ... takes a preset of CMakePresets.json and its folder build-<preset> instead of build; for
 # more see common.sh.

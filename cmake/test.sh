@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Installs what is missing, builds everything and runs the tests: bash cmake/test.sh [more options of ctest]
 # Environment: RPC_TEST_THREADS=2 gives each rank two OpenMP threads; see also setup.sh.
 set -euo pipefail

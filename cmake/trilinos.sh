@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Builds the Trilinos that rpc takes for threads or for a GPU (Debian's own runs Kokkos Serial): --help says how.
 # A run that was interrupted goes on where it stood. No step is marked as done: the source tree gets its name when it is whole and
 # patched, CMake and Ninja know by themselves what is left, and the installation is made aside before it is copied to its place.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Puts what rpc --print-parameters says into doc/input.md: bash doc/update_input.sh [--check] [<rpc>]    default: build/rpc
 # --check changes nothing and fails, with the differences, if doc/input.md says something else.
 set -euo pipefail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "host_program.hpp"
 
 #include "command_line.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "notes.hpp"
 
 #include "rpc/contact/between_nodes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "report.hpp"
 
 #include "rpc/core/quantity.hpp"

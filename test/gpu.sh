@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # The everyday tests on an NVIDIA GPU, built in build-cuda/ with the Trilinos that RPC_TRILINOS_CUDA names (cmake/trilinos.sh
 # --backend=cuda makes one):
 #

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # README's two commands on another Debian, from its smallest installation:
 #
 #   bash test/systems.sh SYSTEM [--short] [--sudo] [--keep]

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
 # The CPU image under Apptainer, with the Open MPI of the cluster outside: sbatch doc/batch/container.sh
 #SBATCH --job-name=rpc-sif
 #SBATCH --nodes=1

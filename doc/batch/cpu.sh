@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Two nodes of 64 cores, a rank a core: sbatch doc/batch/cpu.sh
 # --mpi=pmix: without it, and where the cluster's MpiDefault is none, Open MPI of Debian ends in MPI_Init.
 #SBATCH --job-name=rpc

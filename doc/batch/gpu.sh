@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Two nodes of four GPUs, a rank a GPU: sbatch doc/batch/gpu.sh
 #SBATCH --job-name=rpc-gpu
 #SBATCH --nodes=2

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Four ranks on one GPU, under CUDA's multi-process service: without it they take turns. sbatch doc/batch/gpu_shared.sh
 #SBATCH --job-name=rpc-mps
 #SBATCH --nodes=1

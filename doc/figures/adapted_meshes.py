@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes that adaptive runs ended with: the beam's, its transition from closed to yielding, and the half cylinder's contact.
 
     python3 adapted_meshes.py adapted_meshes.png beam_adaptive.e beam_adaptive.contact.csv hertz_adaptive.e hertz_adaptive.contact.csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pressure over the distance from the axis of input/ball.xml, rigid and with xi = 100, beside Hertz's: ball_pressure.py OUT.png RIGID YIELDING
 
 RIGID and YIELDING are the folders of the results. Hertz's radius and largest pressure follow from the force: a^3 = 3 F R / (4 E*),

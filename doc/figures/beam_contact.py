@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Normal displacement and pressure along the beam's contact side for several yield stresses (the paper's Fig. 3).
 
     python3 beam_contact.py beam_contact.png 12=xi12.contact.csv 16=xi16.contact.csv ...

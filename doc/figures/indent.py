@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Body, foundation and pressures at four steps of input/indent.xml: indent.py OUT.png PLASTIC HARDENING SPRINGS
 
 The arguments are the Exodus files of the deck as it stands, with "Hardening" = 200 and with "Stiffness" = 1000. Debian packages: doc/packages.txt.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Error against time of uniform, graded and adaptive meshes in space and of revolution.
 
     python3 space_accuracy.py space_accuracy.png build/rpc

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Body, foundation and pressure at four steps of input/track.xml: track.py OUT.png TRACK.e. Debian packages: doc/packages.txt."""
 import sys
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Tables 1 and 2 and Figures 2, 3, 4, 6 and 7 of Namm and Tsoy (2025) with rpc; started by reproduce.sh.
 
 Fills README.md.in to README.md and writes the pictures next to it. The paper's numbers and those of independent codes are in

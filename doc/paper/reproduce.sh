@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # The paper's tables and figures with rpc: bash doc/paper/reproduce.sh [--build=DIR] [--long]
 #   --build=DIR  folder with the program; default: build, then the source tree's root
 #   --long       also meshes 1/256 and 1/512 of the beam, and a mesh of the half cylinder as fine as the paper's
@@ -12,7 +13,7 @@ for argument in "$@"; do
   case $argument in
     --build=*) rpc=${argument#--build=}/rpc ;;
     --long) long=(--long) ;;
-    *) sed -n '2,5s/^# //p' "$0"; [ "$argument" = --help ] && exit 0; exit 2 ;;
+    *) sed -n '3,6s/^# //p' "$0"; [ "$argument" = --help ] && exit 0; exit 2 ;;
   esac
 done
 for candidate in "$root/build/rpc" "$root/rpc"; do

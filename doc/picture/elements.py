@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Cells of rpc's Exodus files: their faces, how they are divided for drawing. Node orders as Exodus has them."""
 import numpy as np
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The picture: body, foundation, axes, colour bars, title."""
 import dataclasses
 import io

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Friction on the contact sides: arrows of its traction, of the body on the foundation, and the zones that stick and slip."""
 import numpy as np
 

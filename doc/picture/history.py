@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The load steps of one or several runs as a diagram: force against displacement, of friction too, and the energies of a single run."""
 import csv
 import io

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Triangles and lines with hidden parts removed, pixel by pixel: neither a display nor a GPU is needed.
 
 Positions are in pixels: x to the right, y upwards, depth away from the viewer; pixel (row, column) has its centre at

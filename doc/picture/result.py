@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Reads the Exodus files that rpc writes."""
 import os
 import re

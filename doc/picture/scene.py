@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a picture shows of a result: triangles with the field, lines, the foundation."""
 import dataclasses
 

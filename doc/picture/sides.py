@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The contact sides of a body, each with the foundation that it meets.
 
 A result names its sides. A node of two contact sides shows the values of one of them, see doc/input.md; on the other side they are

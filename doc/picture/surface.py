@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Faces of a mesh as triangles to draw: boundary, contact side, foundation, cuts.
 
 Faces come as arrays of node numbers (faces, nodes per face) of one kind, see elements. A vertex of a triangle is a row: its place,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "output/history.hpp"
 
 #include "output/quantities.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "output/summary.hpp"
 
 #include "output/quantities.hpp"

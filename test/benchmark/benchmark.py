@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The tables of doc/benchmarks.md, with pass or fail.
 
     python3 benchmark.py --rpc=build/rpc --output=build/benchmark [--only=cg,peers] [--quick] [--largest=128]

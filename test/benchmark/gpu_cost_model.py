@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """What a V cycle on P GPUs takes, by its bytes, messages and launches: doc/portability.md, "A model of the cost".
 
     python3 test/benchmark/gpu_cost_model.py            the measured cycles beside the model, and the tables for 8, 64 and 512 GPUs

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Times of the kernels that a solve consists of, those of multigrid's cycle among them, beside the memory bandwidth that a STREAM
 /// triad reaches in the same run.
 ///

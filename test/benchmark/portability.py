@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The same scenes by programs of different backends: do they agree, and how fast are they?
 
     python3 portability.py run --output=DIR [--hertz-mesh=hertz.msh] [--repeats=N] [--set=PATH=VALUE ...] NAME=COMMAND ...

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Where a run's time goes, by Teuchos' timers and Kokkos' labels: a library that Kokkos loads when a program starts.
 ///
 ///     KOKKOS_PROFILE_LIBRARY=build/test/benchmark/librpc_profiler.so build/rpc --input=beam.xml --set="Output->Timers=true"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The configuration step takes the Trilinos of the build, and refuses it with the right message once something is missing of it.
 cmake_minimum_required(VERSION 3.23)
 file(REMOVE_RECURSE ${work_dir})

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes small Exodus files as rpc's: boxes of each element, for tests of what reads them."""
 import itertools
 

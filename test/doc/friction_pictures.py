@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """doc/picture.sh with friction: arrows of its traction, zones that stick and slip, loops of force against displacement."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """doc/picture.sh: pictures of results of the program, and of each element; what it refuses."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Every key and column of the files that a run writes is in doc/input.md, and the other way round."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random scenes by family whose contact states are wanted: open, closed and yielding. Bodies that Dirichlet conditions hold, loads
 and gaps of the size of each other, yield stresses of the size of the pressures.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the generator promises: scenes come from seed and number alone, and all are held, with yield stresses > 0; and that the bars
 can fail."""
 import math

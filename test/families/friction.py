@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The families of families.py with friction: loads along the foundation besides those on it, so that points stick and slip.
 
 A body, its press, gap and yield stress are those of the family. Each contact side has Coulomb's law, Tresca's or both, at times with a

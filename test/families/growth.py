@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Steps over the mesh: a cantilever in the plane and a block in space, both with three states; at most one step more a halving.
 
     python3 growth.py --rpc=build/rpc [--plane=256] [--space=32]       # the finest 1/h of each

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random scenes by family on which multigrid has the hardest work: thin plates, strips, discs and shells, slender beams, layers of much
 different stiffness, nearly incompressible and stretched bodies, brackets; of all elements, in the plane, of revolution and in space.
 

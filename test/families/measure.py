@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random scenes by family: contact over the elastic solve of the same mesh, steps, CG iterations, set-ups, residuals.
 
     python3 measure.py --rpc=build/rpc [--seed=1] [--scenes=200] [--size=full] [--only=K] [--family=NAME,...] [--kind=hard] [--csv=FILE]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Cost of contact over the number of contact points: python3 plot.py families.csv writes families.png beside it."""
 import csv
 import math

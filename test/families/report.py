@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Statistics of measured scenes, the bars that they must stay under, and tables of both."""
 import csv
 import dataclasses

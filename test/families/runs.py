@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs a scene three ways: with contact from a coarser mesh's solution, with contact cold, and without contact."""
 import collections
 import dataclasses

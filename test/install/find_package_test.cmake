@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Installs the build tree to a scratch prefix, builds the consumer against it and runs both the consumer and the program.
 cmake_minimum_required(VERSION 3.23)
 file(REMOVE_RECURSE ${work_dir})
@@ -39,6 +40,11 @@ foreach(line IN ITEMS "t = 0.5: contact force 10 N/m" "t = 1: contact force 20 N
   endif()
 endforeach()
 
+foreach(file IN ITEMS LICENSE NOTICE CITATION.cff licences.md)
+  if(NOT EXISTS ${prefix}/share/doc/rpc/${file})
+    message(FATAL_ERROR "No ${file} in ${prefix}/share/doc/rpc")
+  endif()
+endforeach()
 file(GLOB decks ${prefix}/share/rpc/input/*.xml)
 if(NOT decks)
   message(FATAL_ERROR "No deck in ${prefix}/share/rpc/input")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """How much deeper the side lies in the foundation between its contact points than these, at ten points a facet and more."""
 import dataclasses
 import math

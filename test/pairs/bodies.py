@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Bodies of a row: rectangles, their revolutions and blocks with the side `bottom` below, flat or round, at y = 0 or from there up.
 
 A body is a dict of arguments for scene.Scene; what follows from it for the foundation is in `Shape`.

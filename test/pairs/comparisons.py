@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Judges a run by others: ranks and preconditioners, a restart, a finer mesh, and what the deck has asked for."""
 import math
 

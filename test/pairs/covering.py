@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Covering arrays of rpc's features: every pair of values of every two factors that may stand together is in at least one row."""
 import itertools
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The scene of a row: sizes, fields and positions from a seed; what one feature is has one function each."""
 import dataclasses
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Internal forces, energies and loads of a displacement: isotropic small strains on the cells of the file, by the oracle's own integration.
 
 The laws are doc/theory.md's: (2.4), (2.4a) of revolution, (2.6) the projected dilatation of nearly incompressible blocks, (2.5) loads.

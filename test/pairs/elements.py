@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Lagrange elements of Exodus: shape functions, rules of integration and facets, for an oracle that shares no code with rpc.
 
 Reference coordinates run over [-1, 1] in quadrilaterals and hexahedra, over the unit simplex in triangles and tetrahedra.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The contact side: its points, weights and normals by doc/theory.md (2.7), gaps from the scene's own fields, and the laws at points.
 
 Gaps and normals come from scene.ContactSide.at, closed forms and fields in Python.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Judges one run by its files: equilibrium, laws of contact and friction at and between contact points, energies. No code of rpc's."""
 import dataclasses
 import math

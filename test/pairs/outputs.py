@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a run has written: Exodus, contact table and summary, as arrays."""
 import csv
 import dataclasses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The array holds all pairs, the oracle's elements are right, and the oracle sees what is wrong with a run: files that were changed fail."""
 import copy
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Which refusals and unfinished runs the oracle confirms: for each exit code the reasons that it accepts, and what must hold then.
 
 A run that ends with another exit code than 0 and no confirmed reason fails its row.

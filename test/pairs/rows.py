@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs the program on a row, as it is and in other ways, and collects what is wrong."""
 import dataclasses
 import os

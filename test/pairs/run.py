@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Features of rpc in pairs: a covering array of decks, each judged by an oracle that reads its files.
 
     python3 run.py --program=build/rpc [--seed=1] [--rows=110] [--only=K,L] [--jobs=2] [--openmp=build-openmp/rpc] [--keep=DIR] [--known=FILE]

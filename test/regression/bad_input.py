@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Whatever is wrong with the input: one message that names the parameter, the value and the rule, the right exit code,
 and no file left. On several ranks only what has to be agreed upon among them."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Why a step does not converge: each reason of the table in doc/robustness.md that a deck can provoke is provoked, and its remedy followed.
 Scenes that once ended with a wrong reason, and now converge."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a run says of decks that are right and seldom meant, on the console and in the summary; and what --check finds without a solve."""
 
 import json

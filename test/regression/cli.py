@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The command line, the deck's forms, and the files that a run leaves."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Reads what rpc writes with the Exodus library, without it."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Foundations that move, that several of touch one side, and that remember what the body has left behind; bodies held at points."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """SIGINT and SIGTERM: the run stops with what it has found so far; a second signal ends it at once. On several ranks the
 signal goes to the last one alone."""
 

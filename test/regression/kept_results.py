@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a run with load steps has computed is on disk: after an error in a later step, a full disk, a signal and kill -9; and a restart
 goes on with the same files."""
 

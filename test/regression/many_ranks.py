@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """More ranks than cores: the answers of one rank, and memory that is shared out."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes of files whose groups have names, numbers or nothing."""
 
 import json

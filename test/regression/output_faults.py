@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Results that cannot be written: one message with the file and the system's reason, the right exit code, nothing
 half-written and nothing left behind."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a deck asks for is met, or refused with what was reached: the most unknowns of adapted meshes, the energy tolerance of load steps,
 times without a load, and after a failure the results of the last step that converged, or none."""
 

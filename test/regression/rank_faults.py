@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What happens to one of several ranks ends all of them: soon, with one message and an exit code."""
 
 import os

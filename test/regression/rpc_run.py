@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Starts rpc as a user would, each run in a folder of its own. What to start comes from the environment, set by CTest."""
 
 import concurrent.futures

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """`Output->Exodus` = `split`: a file a rank, in the place of the joined one, in load steps and restarts too."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Load steps as a user gets them: their summary, table and film, and the same on several ranks."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Newton steps on thin bodies, where bending turns choices of states by pressures over: bounded scene by scene. Iterations of linear solves
 on nearly incompressible bodies of stretched cells, with and without friction. Beside them a well-shaped body."""
 

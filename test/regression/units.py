@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The names of units in all that a run prints, and the body's largest numbers."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random bodies in space and of revolution that ask for an error: none fails, and error bars hold the true error.
 
     python3 adaptive.py --rpc=build/rpc [--kind=space|axisymmetric] [--meshes=automatic|gmsh|nested] [--seed=1] [--scenes=100] [--only=K] [--jobs=2] [--np=1] [--keep=DIR]

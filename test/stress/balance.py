@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """`Steps->Energy Tolerance` on random load histories in which contact opens and closes: work and energies must balance.
 
     python3 balance.py --rpc=build/rpc [--seed=1] [--scenes=100] [--only=K] [--jobs=2] [--np=1] [--keep=DIR]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random scenes whose error bars theory does not promise: the bars hold the true values, or are null with a reason.
 
     python3 bars.py --rpc=build/rpc [--seed=1] [--scenes=100] [--only=K] [--kind=NAME] [--jobs=2] [--np=1] [--keep=DIR]

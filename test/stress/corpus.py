@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Small scenes to start mutations from: a deck, with the mesh or geometry that it names."""
 
 import dataclasses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Faults thrown into random load histories: what has been computed before must be on disk.
 
     python3 faults.py --rpc=build/rpc [--seed=1] [--scenes=300] [--only=K] [--jobs=2] [--np=1] [--keep=DIR]

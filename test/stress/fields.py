@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Fields of a deck: one expression as muParser's text and as a Python function, in base units of a scene."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random load histories with friction, judged as histories.py has it: to and fro, pressed, lifted off and pressed again.
 
     python3 friction_histories.py --rpc=build/rpc [--seed=1] [--scenes=200] [--only=K] [--jobs=2] [--np=1] [--keep=DIR]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random scenes by family. A generator draws all it needs from a random.Random and returns a Scene in base units, in which
 bodies have a size of about 1; `make` gives it units."""
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random load histories against rpc: each step must be solved, and what the foundation remembers must follow its law.
 
     python3 histories.py --rpc=build/rpc [--seed=1] [--scenes=500] [--only=K] [--jobs=2] [--np=1] [--keep=DIR]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """kill -9 at random moments of a history of 40 steps: a restart must end as the run without a break.
 
     python3 kills.py --rpc=build/rpc [--seed=1] [--scenes=50] [--only=K] [--jobs=2] [--np=1] [--keep=DIR]

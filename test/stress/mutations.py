@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Damages decks and meshes at random and expects of rpc, whatever they hold by then: an end in good time and memory, not by a
 signal nor as an internal error, one message that names what is wrong, and no half of a result.
 

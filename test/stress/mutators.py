@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Kinds of damage to a scene. Each is a function of a random generator, a scene and its other files' texts."""
 
 import re

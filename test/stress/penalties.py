@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The paper's beam over yield stresses and penalties: the iteration may cost more, the solution must not change.
 
     python3 penalties.py --rpc=build/rpc [--n=32] [--out=FILE] [--jobs=2] [--input=beam.xml]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Plane and axisymmetric bodies from mapped grids: their sides, contact nodes and loads as doc/theory.md (2.1), (2.7), (2.7a) has them, and
 the .msh file of bodies of any dimension. An implementation apart from rpc's, for what a scene must do."""
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A scene in base units, its deck in scaled ones, and whether it has a solution: known from the data alone, without rpc."""
 import dataclasses
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random scenes against rpc: each must be solved, or refused for the right reason.
 
     python3 scenes.py --rpc=build/rpc [--seed=1] [--scenes=510] [--first=0] [--only=K] [--family=NAME] [--jobs=2] [--np=1] [--keep=DIR]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Bodies in space from mapped grids, as plane.py has them in the plane: sides, contact nodes, loads and cells in gmsh's order. An
 implementation apart from rpc's, for what a scene must do."""
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random scenes in space and of bodies of revolution, as generate.py has them in the plane; y is up and contact below, on the side bottom,
 unless a scene says otherwise."""
 import math

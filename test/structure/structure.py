@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The arrows between packages: what the code includes and what CMake links, against the table below.
 
     python3 structure.py [<root of the sources>]
@@ -5,7 +6,12 @@
 Prints each arrow that is not allowed, each line of the program that launches a kernel or works on a matrix, each name that differs
 between Trilinos versions outside VERSION_HEADERS, each parameter of a contact law that is read outside its folder, each kernel in a
 private member function, which nvcc refuses, each source file that is longer than MOST_LINES, each file of GoogleTests outside a
-namespace of its own, and each constant that two sources of a package define; the exit code is 1 if there is one.
+namespace of its own, each constant that two sources of a package define, each source, script and CMake file without the line that
+names its licence, and each place that names another version of the program than CMakeLists.txt, and each use of gmsh outside the program rpc_gmsh; the exit code is 1 if there is one.
+
+    python3 structure.py --add-licence [<root of the sources>]
+
+puts that line into the files that lack it, and prints their names.
 """
 
 import pathlib
@@ -68,6 +74,12 @@ MEMBER = re.compile(r"^\S[^\n]*?\b(\w+)::(~?\w+)\((?:[^\n]*\n)+?\{\n(.*?)^\}", r
 
 CONSTANT = re.compile(r"^(?:static |inline )*constexpr [^\n;({]*;", re.MULTILINE)
 NAME_OF_CONSTANT = re.compile(r"(\w+)(?:\[\w*\])? = ")
+
+LICENCE = "SPDX-License-Identifier: BSD-3-Clause"  # of LICENSE; within the first two lines, behind the marks of a comment
+COMMENTS = {".cpp": "//", ".hpp": "//", ".c": "//", ".py": "#", ".sh": "#", ".cmake": "#", ".in": "#", ".def": "#"}
+LICENSED_NAMES = {"CMakeLists.txt", "Dockerfile", ".ci/run"}  # that COMMENTS does not tell: # in all of them
+LICENSED_FOLDERS = ("packages", "src", "test", "cmake", "doc", "python", ".ci")
+VERSION = re.compile(r"^project\(rpc VERSION ([0-9.]+)", re.MULTILINE)
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 PACKAGE = re.compile(r"rpc_add_package\(\s*(\w+)(.*?)\)", re.DOTALL)
@@ -140,6 +152,22 @@ def check_versions(root):
                     yield f"{file.relative_to(root)}:{number}: {GMSH_VERSION_NAME} differs between gmsh's versions: it belongs into {GMSH_VERSION_HEADER}"
 
 
+def check_gmsh(root):
+    """gmsh is GPL: what includes its header belongs to the program rpc_gmsh alone, and no package links it (doc/licences.md)."""
+    users = {file for file in code(root / "packages") + code(root / "src") if "gmsh.h" in [header for _, header in includes(file)]}
+    users |= {file for file in code(root / "packages") if {header for _, header in includes(file)} & {user.name for user in users}}
+    for file in sorted(root.glob("packages/*/CMakeLists.txt")):
+        for name, text in PACKAGE.findall(re.sub(r"#.*", "", file.read_text())):
+            for user in sorted(users):
+                if user.is_relative_to(file.parent) and re.search(rf"(?<!\S){re.escape(user.name)}(?!\S)", text):
+                    yield f"{user.relative_to(root)}: {name} includes gmsh.h, which rpc_gmsh alone may"
+            if "GMSH" in text:
+                yield f"{file.relative_to(root)}: {name} links gmsh, which rpc_gmsh alone may"
+    for user in sorted(users):
+        if not user.is_relative_to(root / "packages/mesh/src"):
+            yield f"{user.relative_to(root)}: gmsh.h outside the sources of rpc_gmsh"
+
+
 def check_law(root):
     for top in ("packages", "src"):
         for file in code(root / top):
@@ -196,6 +224,44 @@ def check_constants(root):
                     yield f"{file.relative_to(root)}: {name} is also a constant of {other.relative_to(root)}"
 
 
+def licensed(root):
+    """Each file that names its licence, with the mark of its comments."""
+    files = [root / "CMakeLists.txt", *(path for top in LICENSED_FOLDERS for path in sorted((root / top).rglob("*")))]
+    for file in files:
+        name = str(file.relative_to(root))
+        if file.is_file() and (file.name in LICENSED_NAMES or name in LICENSED_NAMES or file.suffix in COMMENTS) and file.suffixes[-2:] != [".md", ".in"]:
+            yield file, COMMENTS.get(file.suffix, "#")
+
+
+def unlicensed(root):
+    for file, mark in licensed(root):
+        if f"{mark} {LICENCE}" not in file.read_text().splitlines()[:2]:
+            yield file, mark
+
+
+def check_licences(root):
+    for file, mark in unlicensed(root):
+        yield (f"{file.relative_to(root)}: the line \"{mark} {LICENCE}\" is not among the first two; "
+               "remedy: python3 test/structure/structure.py --add-licence")
+
+
+def add_licences(root):
+    for file, mark in list(unlicensed(root)):
+        lines = file.read_text().splitlines(keepends=True)
+        lines.insert(1 if lines and lines[0].startswith("#!") else 0, f"{mark} {LICENCE}\n")
+        file.write_text("".join(lines))
+        yield str(file.relative_to(root))
+
+
+def check_version(root):
+    """CITATION.cff cites the version that CMakeLists.txt builds."""
+    if (root / "CITATION.cff").exists():
+        built = VERSION.findall((root / "CMakeLists.txt").read_text())
+        cited = re.findall(r"^version: *([0-9.]+)", (root / "CITATION.cff").read_text(), re.MULTILINE)
+        if built != cited:
+            yield f"CITATION.cff: version {' '.join(cited) or 'missing'}, but CMakeLists.txt builds {' '.join(built)}"
+
+
 def violations(root):
     folders = sorted(path.parent for path in root.glob("packages/*/CMakeLists.txt"))
     for folder in folders:
@@ -207,15 +273,23 @@ def violations(root):
     yield from check_links(root)
     yield from check_program(root)
     yield from check_versions(root)
+    yield from check_gmsh(root)
     yield from check_law(root)
     yield from check_kernels(root)
     yield from check_lengths(root)
     yield from check_namespaces_of_tests(root)
     yield from check_constants(root)
+    yield from check_licences(root)
+    yield from check_version(root)
 
 
 def main():
-    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parents[2]).resolve()
+    arguments = [argument for argument in sys.argv[1:] if argument != "--add-licence"]
+    root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parents[2]).resolve()
+    if "--add-licence" in sys.argv:
+        for name in add_licences(root):
+            print(name)
+        return 0
     found = list(violations(root))
     for line in found:
         print(line)

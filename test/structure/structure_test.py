@@ -1,5 +1,7 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """structure.py finds what it is there to find, in small trees, and nothing in this project."""
 
+import contextlib
 import pathlib
 import tempfile
 import unittest
@@ -15,8 +17,9 @@ def test_file(text="", stem="a_test"):
 
 
 class Structure(unittest.TestCase):
-    def violations(self, **files):
-        """Of a tree of mesh, contact and the program, and these files: names with / written as __."""
+    @contextlib.contextmanager
+    def tree(self, **files):
+        """The root of a tree of mesh, contact and the program, and these files: names with / written as __."""
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             tree = {"packages/mesh/CMakeLists.txt": "rpc_add_package(mesh DEPENDS rpc::core)",
@@ -26,7 +29,12 @@ class Structure(unittest.TestCase):
                 path = root / name
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(text)
-            return list(structure.violations(root))
+            yield root
+
+    def violations(self, **files):
+        """Of such a tree, whose files do not name their licence."""
+        with self.tree(**files) as root:
+            return [each for each in structure.violations(root) if "SPDX" not in each]
 
     def test_of_this_project_is_sound(self):
         self.assertGreater(len(structure.code(SOURCE / "packages")), 100)
@@ -78,6 +86,18 @@ class Structure(unittest.TestCase):
         line = "gmsh::model::mesh::setSizeCallback(size);"
         self.assertEqual(len(self.violations(**{"packages__mesh__src__a.cpp": line})), 1)
         self.assertEqual(self.violations(**{"packages__mesh__src__gmsh_size_callback.hpp": line}), [])
+
+    def test_finds_gmsh_outside_its_program(self):
+        files = {"packages__mesh__CMakeLists.txt": "add_executable(rpc_gmsh src/a.cpp src/b.cpp)\nrpc_add_package(mesh SOURCES c.cpp)\n",
+                 "packages__mesh__src__a.cpp": "#include <gmsh.h>\n", "packages__mesh__src__callback.hpp": "#include <gmsh.h>\n",
+                 "packages__mesh__src__b.cpp": '#include "callback.hpp"\n', "packages__mesh__src__c.cpp": "\n"}
+        self.assertEqual(self.violations(**files), [])
+        for name in ("a", "b"):
+            files["packages__mesh__CMakeLists.txt"] = f"rpc_add_package(mesh\n  SOURCES c.cpp {name}.cpp)\n"
+            self.assertEqual(self.violations(**files), [f"packages/mesh/src/{name}.cpp: mesh includes gmsh.h, which rpc_gmsh alone may"])
+        files["packages__mesh__CMakeLists.txt"] = "rpc_add_package(mesh SOURCES c.cpp PRIVATE_DEPENDS ${GMSH_LIBRARY})\n"
+        self.assertEqual(self.violations(**files), ["packages/mesh/CMakeLists.txt: mesh links gmsh, which rpc_gmsh alone may"])
+        self.assertEqual(len(self.violations(**{"src__a.cpp": "#include <gmsh.h>\n"})), 1)
 
     def test_takes_other_names_for_those_of_any_version(self):
         for line in ("start_kokkos(arguments)", "num_local(map)", "getNodeSmootherComplexity()", "x; // MueLu::GraphBase is gone"):
@@ -131,6 +151,24 @@ class Structure(unittest.TestCase):
         self.assertEqual(self.violations(**files), ["packages/mesh/src/sub/b.cpp: tiny is also a constant of packages/mesh/src/a.cpp"])
         files["packages__mesh__src__sub__b.cpp"] = "void f()\n{\n  constexpr double tiny = 1e-3;\n}\n"
         self.assertEqual(self.violations(**files), [])
+
+    def test_finds_a_file_that_does_not_name_its_licence_and_adds_the_line(self):
+        line = structure.LICENCE
+        files = {"src__main.cpp": f"// {line}\nint main()\n", "packages__mesh__CMakeLists.txt": "rpc_add_package(mesh)\n",
+                 "packages__contact__CMakeLists.txt": f"# {line}\n", "cmake__a.sh": "#!/bin/bash\nls\n", "doc__a.md.in": "",
+                 "cmake__b.sh": f"#!/bin/bash\n# {line}\n", "doc__a.py": f'"""Text."""\n\n# {line}\n', "test__a.hpp": f"# {line}\n"}
+        with self.tree(**files) as root:
+            lack = [each.split(":")[0] for each in structure.violations(root) if "SPDX" in each]
+            self.assertEqual(lack, ["packages/mesh/CMakeLists.txt", "test/a.hpp", "cmake/a.sh", "doc/a.py"])
+            self.assertEqual(list(structure.add_licences(root)), lack)
+            self.assertEqual(list(structure.unlicensed(root)), [])
+            self.assertEqual((root / "cmake/a.sh").read_text(), f"#!/bin/bash\n# {line}\nls\n")
+            self.assertEqual((root / "packages/mesh/CMakeLists.txt").read_text(), f"# {line}\nrpc_add_package(mesh)\n")
+
+    def test_finds_a_citation_of_another_version(self):
+        for version, wrong in (("1.2.3", 0), ("1.2.2", 1)):
+            found = self.violations(**{"CMakeLists.txt": "project(rpc VERSION 1.2.3 LANGUAGES CXX)\n", "CITATION.cff": f"version: {version}\n"})
+            self.assertEqual(len(found), wrong, found)
 
 
 if __name__ == "__main__":

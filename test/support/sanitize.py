@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """CTest's tests under NVIDIA's compute-sanitizer, from a build folder:
 
     python3 sanitize.py --tool=memcheck|racecheck [--jobs=N] -- [options of ctest that choose tests]

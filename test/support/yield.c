@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Preloaded in tests on several ranks: MPI's ranks call sched_yield() while they wait for each other, which on a busy machine leaves
 // them running all the same, while the rank that they wait for does not run. Here they sleep once a wait is long or once another
 // program was seen on their core. Short waits on an idle machine cost no more than before.

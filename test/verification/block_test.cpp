@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "larger.hpp"
 #include "run_scene.hpp"
 

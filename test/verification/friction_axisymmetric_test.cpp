@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "friction_scene.hpp"
 
 // A cylinder of radius 1 and height 1 that is pressed on the foundation and grows wider upwards: u_r = r (alpha + c z),

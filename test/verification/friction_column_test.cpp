@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "friction_scene.hpp"
 
 // A column pressed on a foundation and sheared to and fro: stresses are uniform, and exact with all elements. In the plane its top

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "friction_scene.hpp"
 #include "judged.hpp"
 #include "rpc/contact/energies.hpp"

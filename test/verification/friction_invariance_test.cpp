@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "friction_scene.hpp"
 
 // The solution belongs to the scene: to no way of writing it down.

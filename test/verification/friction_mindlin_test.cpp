@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "friction_scene.hpp"
 
 // Cattaneo (1938) and Mindlin (1949): a body is pressed on a cylinder by P and then pushed along by Q < mu P. With a the half width of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "friction_reference.hpp"
 #include "friction_scene.hpp"
 

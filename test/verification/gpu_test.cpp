@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "gpu.hpp"
 
 #include "rpc/core/halo.hpp"

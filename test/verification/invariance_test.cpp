@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The solution belongs to the scene, not to the units, the axes or the numbers that it is written down in.
 
 #include "larger.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/solve_step.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/fem/stress.hpp"

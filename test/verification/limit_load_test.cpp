@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bodies that contact alone holds, just inside and just outside of what the foundation carries.
 
 #include "expect_error.hpp"

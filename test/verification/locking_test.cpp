@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "larger.hpp"
 #include "rpc/fem/stress.hpp"
 #include "run_scene.hpp"

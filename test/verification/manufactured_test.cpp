@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "energy_of_difference.hpp"
 #include "run_scene.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/adapt/estimator.hpp"
 
 #include "rpc/adapt/estimators/recovered.hpp"

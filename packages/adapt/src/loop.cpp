@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "next_mesh.hpp"
 #include "rpc/adapt/solve.hpp"
 #include "rpc/core/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/adapt/new_sizes.hpp"
 
 #include "rpc/core/error.hpp"

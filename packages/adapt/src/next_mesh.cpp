@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "next_mesh.hpp"
 
 #include "rpc/adapt/new_sizes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/adapt/options.hpp"
 
 #include "rpc/core/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/algebra/repeated_rows.hpp"
 
 #include "row_products.hpp"

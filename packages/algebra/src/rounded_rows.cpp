@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/algebra/rounded_rows.hpp"
 
 #include "rpc/core/dofs.hpp"

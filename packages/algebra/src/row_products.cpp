@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "row_products.hpp"
 
 #include "rpc/core/dofs.hpp"

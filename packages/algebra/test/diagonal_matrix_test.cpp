@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/algebra/diagonal_matrix.hpp"
 
 #include <Tpetra_Core.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/coarse_choice.hpp"
 
 #include "rpc/core/device_values.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/coarse_model.hpp"
 
 #include "rpc/solver/exact_line_search.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/coarse_model.hpp"
 #include "rpc/contact/law/interior.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/memory.hpp"
 
 #include "rpc/contact/node_columns.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/nested_mesh.hpp"
 
 #include "rpc/fem/interpolation.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/problem.hpp"
 
 #include "rpc/analysis/mesh_levels.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/same_active_set.hpp"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// The algorithm: solve_step() is the loop, with the number of each line's equation beside it, in the paper or in doc/theory.md; the
 /// functions that it calls follow.
 #include "rpc/analysis/solve_step.hpp"

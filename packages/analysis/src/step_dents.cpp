@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "step_dents.hpp"
 
 #include "rpc/contact/node_columns.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/stiffness.hpp"
 
 #include "rpc/analysis/mesh_levels.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/quantities.hpp"
 #include "rpc/analysis/run.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/uzawa.hpp"
 
 #include "rpc/core/causes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Choices of contact states by a coarser mesh, on thin bodies that a coarser mesh predicts.
 #include "rpc/analysis/coarse_choice.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// The model of a coarse mesh on problems so small that all combinations of states can be tried, and on rough gaps.
 #include "rpc/analysis/coarse_model.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/mesh_multigrid.hpp"
 
 #include "clamped_block.hpp"

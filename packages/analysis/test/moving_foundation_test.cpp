@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Load histories of a foundation that moves.
 #include "load_scenes.hpp"
 #include "rpc/core/parallel.hpp"

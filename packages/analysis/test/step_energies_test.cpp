@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// The balance of energies along a load history.
 #include "load_scenes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// What the steps of a load history cost, and what becomes of those that fail.
 #include "load_scenes.hpp"
 

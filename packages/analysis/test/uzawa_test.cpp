@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/uzawa.hpp"
 
 #include "foundation_scene.hpp"

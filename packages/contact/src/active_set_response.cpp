@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/active_set.hpp"
 
 // What the branches of an active set answer: blocks and tractions.

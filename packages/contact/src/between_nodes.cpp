@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/between_nodes.hpp"
 
 #include "facet_samples.hpp"

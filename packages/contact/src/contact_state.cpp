@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/contact_state.hpp"
 
 #include "rpc/contact/node_columns.hpp"

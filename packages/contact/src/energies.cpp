@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/energies.hpp"
 
 #include "rpc/contact/law/judgement.hpp"

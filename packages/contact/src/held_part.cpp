@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "held_part.hpp"
 
 #include "rpc/contact/law/judgement.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/interior_path.hpp"
 
 #include "rpc/core/math.hpp"

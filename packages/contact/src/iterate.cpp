@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/iterate.hpp"
 
 #include "rpc/algebra/along_points.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/optimality_residuals.hpp"
 
 #include "rpc/contact/energies.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/penalties.hpp"
 
 #include "rpc/core/math.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/smoothed_functional.hpp"
 
 #include "rpc/contact/line_models.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/stored_dents.hpp"
 
 #include "rpc/core/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/contact_nodes.hpp"
 
 #include "drawn_mesh.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "expect_error.hpp"
 #include "rpc/contact/contact_nodes.hpp"
 #include "rpc/core/parameters.hpp"

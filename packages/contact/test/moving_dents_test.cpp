@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/moving_dents.hpp"
 
 #include "blocks.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/nearest_point.hpp"
 
 #include <cmath>

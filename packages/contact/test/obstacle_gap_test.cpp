@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "expect_error.hpp"
 #include "touching_box.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// The smoothed functional of foundations that harden, are elastic, or both.
 #include "functional_checks.hpp"
 #include "rpc/contact/iterate.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/support.hpp"
 
 #include "drawn_mesh.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A pool under Kokkos' memory on NVIDIA GPUs, which Kokkos 3.4 takes from CUDA and gives back to it view by view. MueLu's and
 // Tpetra's views come and go by the thousand; with managed memory each fresh one costs a page fault for every piece that a kernel
 // touches first: two thirds of the GPU's time in a set-up of multigrid. Here freed blocks wait for the next view of their size.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/on_root.hpp"
 
 #include "expect_error.hpp"

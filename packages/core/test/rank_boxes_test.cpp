@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/rank_boxes.hpp"
 
 #include <Tpetra_Core.hpp>

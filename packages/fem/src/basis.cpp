@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/fem/basis.hpp"
 
 #include "rpc/mesh/shape_functions.hpp"

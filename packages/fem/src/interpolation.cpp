@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/fem/interpolation.hpp"
 
 #include "interpolation_in_box.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "around_nodes.hpp"
 #include "component_name.hpp"
 #include "kernels.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Displacements less the rigid motion that is nearest to them.
 #include "rpc/core/parallel.hpp"
 #include "rpc/fem/rigid_motion.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/fem/order_one.hpp"
 
 #include "interpolation_matrix.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/fem/parts.hpp"
 
 #include "point_text.hpp"

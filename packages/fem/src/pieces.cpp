@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "pieces.hpp"
 
 #include "pinched_nodes.hpp"

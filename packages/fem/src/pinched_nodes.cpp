@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "pinched_nodes.hpp"
 
 #include "rpc/core/fingerprint.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/fem/rounding.hpp"
 
 #include "elastic_cells.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/fem/soft_dilatation.hpp"
 
 #include "elastic_cells.hpp"

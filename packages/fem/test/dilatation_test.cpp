@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bodies.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/fem/dirichlet.hpp"

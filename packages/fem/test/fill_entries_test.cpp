@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "fill_entries.hpp"
 
 #include "rpc/core/device_values.hpp"

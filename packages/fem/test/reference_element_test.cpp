@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/fem/reference_element.hpp"
 
 #include <cmath>

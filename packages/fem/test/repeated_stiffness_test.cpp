@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bodies.hpp"
 #include "rpc/algebra/along_points.hpp"
 #include "rpc/algebra/updated_operator.hpp"

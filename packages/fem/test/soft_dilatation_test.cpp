@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bodies.hpp"
 #include "rpc/fem/dirichlet.hpp"
 #include "rpc/fem/soft_dilatation.hpp"

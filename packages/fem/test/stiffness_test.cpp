@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The stiffness of all elements, of single cells and of patches of them.
 
 #include "block_mesh.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/io/checkpoint.hpp"
 
 #include "exodus_reader.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "expression_bounds.hpp"
 
 #include <algorithm>

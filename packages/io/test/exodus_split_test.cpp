@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exodus_content.hpp"
 #include "rpc/io/exodus.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/io/exodus.hpp"
 
 #include "exodus_content.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/box_patches.hpp"
 
 #include "rpc/mesh/box_grid.hpp"

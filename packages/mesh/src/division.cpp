@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "division.hpp"
 
 #include "rpc/core/error.hpp"

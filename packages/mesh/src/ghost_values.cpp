@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/ghost_values.hpp"
 
 #include <algorithm>

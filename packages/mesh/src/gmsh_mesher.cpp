@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "gmsh_mesher.hpp"
 
 #include "gmsh_boundary.hpp"

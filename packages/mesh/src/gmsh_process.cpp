@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "gmsh_process.hpp"
 
 #include "gmsh_wire.hpp"

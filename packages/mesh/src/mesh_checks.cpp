@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "mesh_checks.hpp"
 
 #include "rpc/core/error.hpp"

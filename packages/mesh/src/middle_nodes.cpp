@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "middle_nodes.hpp"
 
 #include "rpc/mesh/topology.hpp"

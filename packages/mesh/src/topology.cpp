@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/topology.hpp"
 
 #include "sorted_lists.hpp"

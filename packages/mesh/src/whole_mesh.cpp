@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "whole_mesh.hpp"
 
 #include "refine/local_mesh.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "expect_error.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parameters.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "box_lattice.hpp"
 #include "expect_error.hpp"
 #include "rpc/core/parallel.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshing .geo files with volumes.
 
 #include "expect_error.hpp"

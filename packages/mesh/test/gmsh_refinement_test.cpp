@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Refined meshes of .geo files: new nodes lie on the geometry.
 
 #include "expect_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Triangles and tetrahedra that are halved where a field of sizes asks for it.
 
 #include "expect_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "expect_error.hpp"
 #include "rpc/mesh/box.hpp"
 #include "rpc/mesh/shape_functions.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reading .msh files of bodies in space: needs no gmsh.
 
 #include "expect_error.hpp"

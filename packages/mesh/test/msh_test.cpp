@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reading .msh files: needs no gmsh.
 
 #include "expect_error.hpp"

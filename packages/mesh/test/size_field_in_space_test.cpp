@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes of bodies in space with cell sizes from a field.
 
 #include "expect_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes with cell sizes from a field: what is asked for against what is made.
 
 #include "expect_error.hpp"

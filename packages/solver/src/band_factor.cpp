@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "band_factor.hpp"
 
 #include "rpc/core/graph.hpp"

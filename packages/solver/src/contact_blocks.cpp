@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "contact_blocks.hpp"
 
 #include "host_rows.hpp"

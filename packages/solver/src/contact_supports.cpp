@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "contact_supports.hpp"
 
 #include "host_rows.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "direct_solver.hpp"
 
 #include "band_factor.hpp"

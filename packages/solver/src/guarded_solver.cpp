@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "guarded_solver.hpp"
 #include "rpc/core/message.hpp"
 

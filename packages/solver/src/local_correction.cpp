@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "local_correction.hpp"
 
 #include "rpc/algebra/bounded_update.hpp"

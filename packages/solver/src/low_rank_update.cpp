@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "low_rank_update.hpp"
 
 #include <Teuchos_BLAS.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "matrix_changes.hpp"
 
 #include "rpc/algebra/jacobi.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "muelu_defaults.hpp"
 
 #include "gathered_solver.hpp"

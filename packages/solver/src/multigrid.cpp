@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "multigrid.hpp"
 
 #include "gathered_solver.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "mumps_factor.hpp"
 
 #include "interrupted.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "node_interpolation.hpp"
 
 #include "rpc/core/dofs.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "nox_line_search.hpp"
 
 #include <NOX_LineSearch_Factory.H>

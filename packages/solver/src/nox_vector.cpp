@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/nox_vector.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "one_thread_aggregates.hpp"
 
 #include <MueLu_SingleLevelFactoryBase.hpp>

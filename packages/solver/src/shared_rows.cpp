@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "shared_rows.hpp"
 
 #include "rpc/core/kokkos.hpp"

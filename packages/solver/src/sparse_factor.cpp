@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/sparse_factor.hpp"
 
 #include "band_factor.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "status_tests.hpp"
 
 #include "rpc/core/interrupt.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/sweep_direction.hpp"
 
 #include "rpc/solver/newton_group.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "../src/coarse_contact.hpp"
 
 #include "../src/contact_supports.hpp"

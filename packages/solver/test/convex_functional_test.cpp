@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/algebra/convex_functional.hpp"
 
 #include "rpc/solver/exact_line_search.hpp"

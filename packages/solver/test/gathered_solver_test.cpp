@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "../src/gathered_solver.hpp"
 #include "../src/guarded_solver.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "../src/krylov.hpp"
 
 #include "grid.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/linear_solver.hpp"
 
 #include "supported_grid.hpp"

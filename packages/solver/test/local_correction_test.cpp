@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "../src/local_correction.hpp"
 
 #include "beam.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "../src/low_rank_update.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>

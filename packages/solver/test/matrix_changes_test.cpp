@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "../src/matrix_changes.hpp"
 
 #include "../src/direct_solver.hpp"

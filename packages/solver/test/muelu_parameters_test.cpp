@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "../src/muelu_parameters.hpp"
 
 #include "expect_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/newton.hpp"
 
 #include "../src/nox_line_search.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "../src/band_factor.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/solver/sparse_factor.hpp"

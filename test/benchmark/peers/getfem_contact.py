@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A scene on a rigid foundation (xi = inf) in GetFEM: python3 getfem_contact.py SCENE N
 
 Its contact brick: the augmented Lagrangian of Alart and Curnier, with a force as multiplier at each node of the contact side, r = E h;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What every peer reports, as JSON on standard output."""
 import json
 import os

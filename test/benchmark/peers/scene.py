@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Scenes in scikit-fem, and the semismooth Newton method that their peers share.
 
 Q1 on a uniform mesh with 1/h = N: `beam`, the paper's, in the plane; `block`, that of input/block.xml, in space. Nodal quadrature of

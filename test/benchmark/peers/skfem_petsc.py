@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A scene with scikit-fem and PETSc: python3 skfem_petsc.py SCENE N XI mumps|hypre|gamg
 
 mumps: Cholesky factorization in every Newton step. hypre, gamg: CG with algebraic multigrid that knows the rigid body modes, with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A scene with scikit-fem, condensed to its contact unknowns by MUMPS: python3 skfem_schur.py SCENE N XI
 
 One factorization gives the Schur complement; Newton works on that dense matrix. petsc4py does not wrap PETSc's functions for it,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A scene with scikit-fem and SciPy's SuperLU: python3 skfem_superlu.py SCENE N XI"""
 import sys
 

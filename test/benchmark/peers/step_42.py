@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """deal.II's step-42, made elastic: python3 step_42.py FOLDER LEVEL
 
 A ball pressed into a cube of 8³, 16³, ... (2^LEVEL)³ cells, each mesh starting from the solution of the one before; one thread. The

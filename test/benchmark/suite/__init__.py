@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Tables of doc/benchmarks.md: a module for each kind."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Run time against error: element types, families of meshes, adaptive meshes, peers."""
 import csv
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What adaptive meshes reach, and how much faster than uniform ones and peers."""
 import math
 import statistics

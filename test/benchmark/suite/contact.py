@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What contact costs beyond elasticity."""
 import os
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random scenes by family, and steps over the mesh: test/families."""
 import argparse
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Kernels against the memory bandwidth of a STREAM triad in the same run."""
 import json
 

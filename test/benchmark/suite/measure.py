@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs one process and leaves its peak memory, in KiB, its duration and its CPU time, in s, in a file of its own.
 
     mpirun -n 2 python3 measure.py FOLDER rpc --input=beam.xml

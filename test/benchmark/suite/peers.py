@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The same problem by what a user might take instead, in the same run."""
 import glob
 import itertools

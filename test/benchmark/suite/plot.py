@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Error over run time, log-log, a picture for each scene: python3 plot.py accuracy.csv writes accuracy.png beside it."""
 import csv
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs rpc, and other programs, and measures them."""
 import glob
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Time and memory over mesh size and ranks; CG iterations."""
 import math
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """deal.II's step-42: the same contact in space by a tutorial program that many start from."""
 import json
 import math

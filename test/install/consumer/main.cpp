@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A block pressed onto a rigid-plastic foundation, from C++: contact force and pressures.
 #include <Tpetra_Core.hpp>
 #include <iostream>

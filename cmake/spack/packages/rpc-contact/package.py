@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """rpc for Spack: spack repo add cmake/spack && spack install rpc-contact (doc/portability.md says what was checked).
 
 The name rpc is taken: in Spack it is a virtual package, that of remote procedure calls.
@@ -11,6 +12,8 @@ class RpcContact(CMakePackage, CudaPackage):
 
     homepage = "https://example.org/rpc"
     # From a checkout: spack install rpc-contact@main with  spack develop --path=CHECKOUT rpc-contact@main
+
+    license("BSD-3-Clause")
 
     version("main")
 
@@ -47,6 +50,7 @@ class RpcContact(CMakePackage, CudaPackage):
     def cmake_args(self):
         return [
             self.define("RPC_BUILD_TESTS", False),
+            self.define_from_variant("RPC_USE_GMSH", "gmsh"),
             self.define_from_variant("RPC_USE_MUMPS", "mumps"),
             self.define("Trilinos_ROOT", self.spec["trilinos"].prefix),
         ]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "jumps.hpp"
 
 #include "rpc/fem/surface.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/adapt/estimators/recovered.hpp"
 
 #include "jumps.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/surface/facets.hpp"
 
 #include "rpc/core/exchange.hpp"

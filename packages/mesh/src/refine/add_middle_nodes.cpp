@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "add_middle_nodes.hpp"
 
 #include "boundary_places.hpp"

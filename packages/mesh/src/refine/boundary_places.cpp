@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "boundary_places.hpp"
 
 #include "../gmsh_nearest.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "divide_cells.hpp"
 
 #include "children.hpp"

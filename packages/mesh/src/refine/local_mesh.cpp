@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "local_mesh.hpp"
 
 #include "../device_tables.hpp"

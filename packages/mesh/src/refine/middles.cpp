@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "middles.hpp"
 
 #include "../sorted_lists.hpp"

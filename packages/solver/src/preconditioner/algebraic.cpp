@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "preconditioner/algebraic.hpp"
 
 #include "muelu_defaults.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "preconditioner/factor.hpp"
 
 #include "direct_solver.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "preconditioner/meshes.hpp"
 
 #include "direct_solver.hpp"

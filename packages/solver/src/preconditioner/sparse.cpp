@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "preconditioner/sparse.hpp"
 
 #include "rpc/algebra/bounded_update.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 /// Whether kernels on the host may be written with the vector types of GCC, for the processor at hand.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The Trilinos of the build with what the file ${edit} changes.
 include(${trilinos}/TrilinosConfig.cmake)
 
