@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The contact sides of a body, each with the foundation that it meets.
 
-A result names its sides. A node of two contact sides shows the values of one of them, see doc/input.md; on the other side they are
+A result names its sides. A node of two contact sides shows the values of one of them, see doc/input/results.md; on the other side they are
 continued from the nodes around.
 """
 import dataclasses

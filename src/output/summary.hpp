@@ -9,7 +9,7 @@
 namespace rpc
 {
 
-/// The summary of a run as doc/input.md lists it. A value that is not a number (a limit of inf, say) is null.
+/// The summary of a run as doc/input/results.md lists it. A value that is not a number (a limit of inf, say) is null.
 nlohmann::ordered_json summary(const Scene &scene, const Solution &solution);
 
 } // namespace rpc

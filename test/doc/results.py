@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every key and column of the files that a run writes is in doc/input.md, and the other way round."""
+"""Every key and column of the files that a run writes is in doc/input/results.md, and the other way round."""
 
 import csv
 import json
@@ -20,8 +20,8 @@ STEPPED = {"beam", "shear"}  # their runs write a history
 
 
 def section(title):
-    text = (SOURCE / "doc" / "input.md").read_text()
-    return text.split(f"### `{title}`\n")[1].split("\n### ")[0]
+    text = (SOURCE / "doc" / "input" / "results.md").read_text()
+    return text.split(f"\n## `{title}`\n")[1].split("\n## ")[0]
 
 
 def code_words(text):
