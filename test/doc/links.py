@@ -4,6 +4,7 @@
 import os
 import pathlib
 import re
+import tempfile
 import unittest
 
 SOURCE = pathlib.Path(os.environ.get("RPC_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
@@ -42,7 +43,18 @@ def broken(root):
 class Links(unittest.TestCase):
     def test_of_this_project_lead_somewhere(self):
         self.assertGreater(len(pages(SOURCE)), 10)
-        self.assertEqual(list(broken(SOURCE)), [])
+        found = list(broken(SOURCE))
+        self.assertFalse(found, "\n" + "\n".join(found))
+
+    def test_finds_a_link_that_leads_nowhere(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "doc").mkdir()
+            (root / "a.md").write_text("# One\n[a](doc/b.md), [b](doc/b.md#two-three), [c](#one), [d](http://x.y/z.md), `[e](gone.md)`\n```\n[f](gone.md)\n```\n")
+            (root / "doc" / "b.md").write_text("## Two, three\n")
+            self.assertEqual(list(broken(root)), [])
+            (root / "doc" / "b.md").write_text("## Two\n[g](../c.md)\n")
+            self.assertEqual([each.split(": there")[0] for each in broken(root)], ["a.md: doc/b.md#two-three", "doc/b.md: ../c.md"])
 
     def test_headings_become_anchors(self):
         self.assertEqual(anchor("`<deck>.contact.csv`"), "deckcontactcsv")
