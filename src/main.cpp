@@ -128,23 +128,10 @@ int leave(const ExitCode code)
   return static_cast<int>(code);
 }
 
-ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm, std::ostream &out)
+ExitCode run_deck(const rpc::CommandLine &line, const std::string &deck, const rpc::RCP<const rpc::Comm> &comm,
+                  std::ostream &out)
 {
   const double start = Teuchos::Time::wallTime();
-  if (line.help) {
-    out << rpc::help_text();
-    return ExitCode::converged;
-  }
-  if (line.version) {
-    out << "rpc " RPC_VERSION " (Kokkos " << rpc::ExecutionSpace::name() << ")\n";
-    return ExitCode::converged;
-  }
-  if (line.print_parameters) {
-    rpc::print_parameters(out, rpc::valid_deck());
-    return ExitCode::converged;
-  }
-  RPC_REQUIRE(!line.input.empty(), "command line: --input=DECK is missing. See rpc --help.");
-  const std::string deck = rpc::io::find_deck(line.input, *comm);
   const rpc::Scene scene = rpc::read_scene(deck, line.assignments, *comm);
   RPC_REQUIRE(!line.restarts || scene.has_steps(),
               "command line: --restart goes with load steps; the deck has none, see \"Steps->Times\"");
@@ -196,6 +183,30 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   }
   if (solution.failure && solution.failure->code != ExitCode::not_converged) throw rpc::failure_of(solution);
   return rpc::adapt::succeeded(solution) ? ExitCode::converged : ExitCode::not_converged;
+}
+
+ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm, std::ostream &out)
+{
+  if (line.help) {
+    out << rpc::help_text();
+    return ExitCode::converged;
+  }
+  if (line.version) {
+    out << "rpc " RPC_VERSION " (Kokkos " << rpc::ExecutionSpace::name() << ")\n";
+    return ExitCode::converged;
+  }
+  if (line.print_parameters) {
+    rpc::print_parameters(out, rpc::valid_deck());
+    return ExitCode::converged;
+  }
+  RPC_REQUIRE(!line.input.empty(), "command line: --input=DECK is missing. See rpc --help.");
+  const std::string deck = rpc::io::find_deck(line.input, *comm);
+  try {
+    return run_deck(line, deck, comm, out);
+  } catch (const rpc::Error &error) { // on all ranks; one of them prints it
+    if (comm->getRank() != 0) throw;
+    throw rpc::Error(error.code(), rpc::io::with_place(error.what(), deck, line.assignments));
+  }
 }
 
 /// In one piece, or the launcher's lines and other ranks' could come between; without memory of its own, which may have run out.

@@ -49,7 +49,7 @@ Teuchos::ParameterList valid_deck()
 {
   Teuchos::ParameterList valid("rpc");
   valid.set("Time", 1., "t at which the scene is solved: fields may be expressions of x, y, z and t.");
-  valid.set("Kinematics", "plane strain",
+  set_words(valid, "Kinematics", {"plane strain", "plane stress", "axisymmetric"},
             "What body a plane mesh is a section of: `plane strain`, a long one; `plane stress`, a thin sheet; "
             "`axisymmetric`, "
             "a body of revolution, where x is the radius and y runs along the axis. Bodies in space have no choice.");

@@ -2,6 +2,7 @@
 #include "rpc/adapt/options.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
 
 #include <cmath>
 #include <limits>
@@ -19,7 +20,7 @@ Teuchos::ParameterList valid_adapt_parameters()
       "Bound on the estimated error in the energy norm over that of the solution, in (0, 1): meshes are refined where "
       "the error is until it holds. 0: one mesh, as \"Mesh\" gives it.");
   valid.set("Max Dofs", 2000000, "Unknowns that no mesh but the first is to exceed, > 0.");
-  valid.set("Meshes", "automatic",
+  set_words(valid, "Meshes", {"automatic", "gmsh", "nested"},
             "Who makes the meshes after the first one: `gmsh`, anew; `nested`: cells of the first one are halved, each "
             "rank its own, to triangles or tetrahedra whose coarser meshes are multigrid's. `automatic`: nested for "
             "a .msh, which gmsh cannot mesh anew, else gmsh.");

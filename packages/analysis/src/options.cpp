@@ -2,6 +2,7 @@
 #include "rpc/analysis/active_set.hpp"
 #include "rpc/analysis/load_history.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
 
 #include <Teuchos_Array.hpp>
 #include <algorithm>
@@ -29,8 +30,8 @@ Teuchos::ParameterList valid_uzawa_parameters()
       "active-set iteration accepts errors of the pressures up to 10 x Tolerance, relative to the largest "
       "pressure.");
   valid.set("Maximum Iterations", 50, "Multiplier updates at most, > 0.");
-  valid.set(
-      "Stopping Test", "optimality",
+  set_words(
+      valid, "Stopping Test", {"optimality", "multiplier change"},
       "`optimality`: stop as soon as contact law and equilibrium hold; `multiplier change`: the paper's test too, "
       "|change of l|/|l| < Tolerance.");
   return valid;

@@ -66,11 +66,11 @@ void add_side_parameters(Teuchos::ParameterList &valid)
             "obstacle), or a fixed one as numbers, `0, -1`. Default: `foundation` with an obstacle, else `surface`.");
   valid.sublist("Obstacle", false, "Surface of the foundation, from which the gap follows.") =
       valid_obstacle_parameters();
-  valid.set("Remembers", "auto",
+  set_words(valid, "Remembers", {"auto", "true", "false"},
             "Whether the foundation keeps its dents from one of `Steps` to the next: `auto` (it does), `true`, or "
             "`false` for a law "
             "that is reversible.");
-  valid.set("Dents Move With", "body",
+  set_words(valid, "Dents Move With", {"body", "foundation"},
             "Where dents stay if the body slides or the obstacle moves along itself, between `Steps`: `body`, at the "
             "body's points (small motions), or `foundation`, where they lie: a point meets the dents at its place.");
   set_field(valid, "Penalty", "auto",

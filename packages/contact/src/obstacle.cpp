@@ -78,7 +78,10 @@ std::array<ScalarField, 3> path_of(const Teuchos::ParameterList &list, const std
 Teuchos::ParameterList valid_obstacle_parameters()
 {
   Teuchos::ParameterList valid("Obstacle");
-  valid.set("Type", "none",
+  std::vector<std::string> types{"none"};
+  for (const Choice &c : choices())
+    for (const std::string &name : c.kind.types) types.push_back(name);
+  set_words(valid, "Type", types,
             "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`, or "
             "`none`: see Gap.");
   set_fields(valid, "Point", "plane: a point on it; cylinder: a point on its axis [m]. Numbers, or expressions of t.");

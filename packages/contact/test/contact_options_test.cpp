@@ -28,7 +28,7 @@ ScalarField parse_constant(const std::string &text, const std::string &)
 
 std::vector<ContactOptions> read(ParameterList list, const int dim = 2)
 {
-  validate(list, contact::valid_contact_parameters());
+  validate(list, contact::valid_contact_parameters(), "Contact");
   return contact::contact_options(list, dim, parse_constant);
 }
 
@@ -233,7 +233,7 @@ TEST(ContactOptions, SayWhatDentsMoveWith)
   expect_refused(list, {"Contact->Dents Move With", "foundation", "Contact->Remembers", "false"});
   list = bottom();
   list.set("Dents Move With", "obstacle");
-  expect_refused(list, {"Contact->Dents Move With", "body or foundation", "obstacle"});
+  expect_refused(list, {"Contact->Dents Move With", "body, foundation", "obstacle"});
 }
 
 TEST(ContactOptions, HardeningIsFiniteAndNotNegative)

@@ -31,7 +31,8 @@ std::string nearest_name(const std::string &name, const std::vector<std::string>
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   for (const auto &candidate : candidates) {
     const std::size_t d = distance(name, candidate);
-    const bool abbreviated = !name.empty() && d == candidate.size() - name.size();
+    const bool abbreviated = !name.empty() && d == candidate.size() - name.size() &&
+                             distance(name.substr(0, 1), candidate.substr(0, 1)) == 0;
     if (!abbreviated && 2 * d > std::max(name.size(), candidate.size())) continue; // no likeness at all
     if (d < best_distance) {
       best = candidate;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/parameters.hpp"
 
+#include "parameter_kinds.hpp"
+#include "rpc/core/remedies.hpp"
+#include "unknown_name.hpp"
+
 #include <Teuchos_Array.hpp>
 #include <Teuchos_ParameterEntryValidator.hpp>
 #include <algorithm>
@@ -14,83 +18,9 @@ namespace rpc
 namespace
 {
 
-using Teuchos::Array;
-using Teuchos::ParameterEntry;
-using Teuchos::ParameterList;
-
-constexpr const char *any_entry = "*";     // template of user-named sublists
-constexpr const char *pass_through = "**"; // content is read by a library
-
-/// Marks a parameter as a field. Teuchos asks a validator for more than its rule; the rule itself is in validate().
-class FieldValidator : public Teuchos::ParameterEntryValidator
-{
-public:
-  const std::string getXMLTypeName() const override { return "field"; }
-  void printDoc(const std::string &doc, std::ostream &out) const override { out << doc; }
-  ValidStringsList validStringValues() const override { return Teuchos::null; }
-  void validate(const ParameterEntry &, const std::string &, const std::string &) const override {}
-};
-
-/// Marks a parameter as a choice among words; true and false stand for the first and the last.
-class ChoiceValidator : public Teuchos::ParameterEntryValidator
-{
-public:
-  explicit ChoiceValidator(std::vector<std::string> words) : words_(std::move(words)) {}
-  const std::string getXMLTypeName() const override { return "choice"; }
-  void printDoc(const std::string &doc, std::ostream &out) const override { out << doc; }
-  ValidStringsList validStringValues() const override { return Teuchos::null; }
-  void validate(const ParameterEntry &, const std::string &, const std::string &) const override {}
-
-  const std::vector<std::string> &words() const { return words_; }
-  /// The word that is meant; none if it is not among them.
-  std::optional<std::string> word_of(const std::string &text) const
-  {
-    if (text == "true") return words_.front();
-    if (text == "false") return words_.back();
-    if (std::find(words_.begin(), words_.end(), text) == words_.end()) return std::nullopt;
-    return text;
-  }
-
-private:
-  std::vector<std::string> words_;
-};
-
-const ChoiceValidator *choice_of(const ParameterEntry &entry)
-{
-  return dynamic_cast<const ChoiceValidator *>(entry.validator().get());
-}
-
-bool has_field_validator(const ParameterEntry &entry)
-{
-  return dynamic_cast<const FieldValidator *>(entry.validator().get()) != nullptr;
-}
-bool is_fields(const ParameterEntry &entry)
-{
-  return has_field_validator(entry) && entry.isType<Array<std::string>>();
-}
-bool is_field(const ParameterEntry &entry)
-{
-  return has_field_validator(entry) && !is_fields(entry);
-}
-
 std::string quoted(const std::string &path, const std::string &name)
 {
   return "\"" + (path.empty() ? name : path + "->" + name) + "\"";
-}
-
-std::string type_name(const ParameterEntry &entry)
-{
-  if (entry.isList()) return "sublist";
-  if (is_field(entry)) return "number or expression";
-  if (is_fields(entry)) return "array of numbers or expressions";
-  if (entry.isType<int>()) return "int";
-  if (entry.isType<double>()) return "double";
-  if (entry.isType<bool>()) return "bool";
-  if (entry.isType<std::string>()) return "string";
-  if (entry.isType<Array<int>>()) return "array of int";
-  if (entry.isType<Array<double>>()) return "array of double";
-  if (entry.isType<Array<std::string>>()) return "array of string";
-  return entry.getAny(false).typeName();
 }
 
 /// `value` as an entry of the same type as `model`, where C++ and XML habits make that harmless: 1 for 1.0.
@@ -101,7 +31,7 @@ std::optional<ParameterEntry> converted(const ParameterEntry &value, const Param
     return std::nullopt;
   }
   if (const ChoiceValidator *const choice = choice_of(model)) {
-    const bool is_bool = value.isType<bool>();
+    const bool is_bool = value.isType<bool>(); // YAML makes one of true and false
     if (!is_bool && !value.isType<std::string>()) return std::nullopt;
     const auto word = choice->word_of(is_bool ? (Teuchos::getValue<bool>(value) ? "true" : "false")
                                               : Teuchos::getValue<std::string>(value));
@@ -221,21 +151,72 @@ std::string rule_of(const ParameterEntry &model)
   return "a " + type_name(model);
 }
 
-/// A default as a deck would have it.
-std::string text_of(const ParameterEntry &entry)
+/// What to write instead of a value that does not fit.
+std::string remedy_for(const std::string &text, const ParameterEntry &model)
 {
-  if (entry.isType<bool>()) return Teuchos::getValue<bool>(entry) ? "true" : "false";
-  if (!entry.isType<Array<double>>()) return Teuchos::toString(entry.getAny(false));
-  std::ostringstream text; // Teuchos writes all the digits
-  text << "{";
-  for (const double value : Teuchos::getValue<Array<double>>(entry)) text << (text.tellp() > 1 ? ", " : "") << value;
-  return text.str() + "}";
+  if (const ChoiceValidator *const choice = choice_of(model)) {
+    const std::string meant = did_you_mean(text, choice->words());
+    return meant.empty() ? " " + model.docString() : meant;
+  }
+  if (model.isType<double>()) return number_remedy(text);
+  if (model.isType<int>()) return integer_remedy(text);
+  if (model.isType<bool>()) return bool_remedy(text);
+  if (model.isType<Array<int>>() || model.isType<Array<double>>() || is_fields(model)) return array_remedy(text);
+  return "";
 }
 
-std::string unknown_name_message(const std::string &path, const std::string &name, const ParameterList &valid)
+/// The same of a value of another type, as a deck in XML or YAML has it.
+std::string remedy_for(const ParameterEntry &value, const ParameterEntry &model)
 {
-  const auto names = names_of(valid);
-  return unknown_parameter(path, name, names).what() + std::string(" Valid here: ") + join(names) + ".";
+  if (model.isList())
+    return value.isList() ? "" : " In XML write <ParameterList name=\"...\"> with <Parameter .../> in it.";
+  if (value.isList()) return "";
+  const std::string text = text_of(value);
+  const auto read = read_entry(text, &model);
+  if (!read || choice_of(model)) return remedy_for(text, model);
+  const std::string type = model.isType<Array<int>>()           ? "Array(int)"
+                           : model.isType<Array<double>>()      ? "Array(double)"
+                           : model.isType<Array<std::string>>() ? "Array(string)"
+                                                                : type_name(model);
+  return " Its type is to be " + type + ": in XML type=\"" + type + "\"" +
+         (model.isType<std::string>() ? "; in YAML it needs quotes." : "; in YAML it stands without quotes.");
+}
+
+/// A value that does not fit, with its type where that may be why.
+std::string given_text(const ParameterEntry &value, const ParameterEntry &model)
+{
+  if (value.isList()) return "a sublist";
+  if (choice_of(model)) return "\"" + text_of(value) + "\"";
+  return text_of(value) + " (" + type_name(value) + ")";
+}
+
+/// @param root  what the whole deck may have
+void validate_list(ParameterList &list, const ParameterList &valid, const std::string &path, const ParameterList &root)
+{
+  if (valid.isParameter(pass_through)) return;
+  const bool named_entries = valid.isSublist(any_entry);
+  for (const std::string &name : names_of(list)) {
+    if (!named_entries && !valid.isParameter(name)) throw unknown_name(path, name, valid, root);
+    const ParameterEntry &model = valid.getEntry(named_entries ? any_entry : name);
+    ParameterEntry &entry = list.getEntry(name);
+    if (entry.isList() && model.isList()) continue;
+    const auto value = entry.isList() || model.isList() ? std::nullopt : converted(entry, model);
+    RPC_REQUIRE(value, "deck: " << quoted(path, name) << " must be " << rule_of(model) << ", got "
+                                << given_text(entry, model) << "." << remedy_for(entry, model));
+    list.setEntry(name, *value);
+  }
+  const auto full = [&](const std::string &name) { return path.empty() ? name : path + "->" + name; };
+  if (named_entries) {
+    for (const std::string &name : names_of(list))
+      validate_list(list.sublist(name), valid.sublist(any_entry), full(name), root);
+    return;
+  }
+  for (const std::string &name : names_of(valid)) {
+    const ParameterEntry &model = valid.getEntry(name);
+    if (!list.isParameter(name))
+      list.setEntry(name, model.isList() ? ParameterEntry(ParameterList(name), true, true) : unread(model, true));
+    if (model.isList()) validate_list(list.sublist(name), valid.sublist(name), full(name), root);
+  }
 }
 
 } // namespace
@@ -300,7 +281,13 @@ std::vector<std::string> field_texts(const ParameterList &list, const std::strin
 void set_choice(ParameterList &valid, const std::string &name, const std::vector<std::string> &words,
                 const std::string &doc)
 {
-  valid.set(name, words.front(), doc, Teuchos::rcp(new ChoiceValidator(words)));
+  valid.set(name, words.front(), doc, Teuchos::rcp(new ChoiceValidator(words, true)));
+}
+
+void set_words(ParameterList &valid, const std::string &name, const std::vector<std::string> &words,
+               const std::string &doc)
+{
+  valid.set(name, words.front(), doc, Teuchos::rcp(new ChoiceValidator(words, false)));
 }
 
 void set_pass_through(ParameterList &valid, const std::string &name, const std::string &doc)
@@ -316,30 +303,7 @@ void set_named_entries(ParameterList &valid, const std::string &name, const Para
 
 void validate(ParameterList &list, const ParameterList &valid, const std::string &path)
 {
-  if (valid.isParameter(pass_through)) return;
-  const bool named_entries = valid.isSublist(any_entry);
-  for (const std::string &name : names_of(list)) {
-    if (!named_entries && !valid.isParameter(name))
-      throw Error(ExitCode::bad_input, unknown_name_message(path, name, valid));
-    const ParameterEntry &model = valid.getEntry(named_entries ? any_entry : name);
-    ParameterEntry &entry = list.getEntry(name);
-    if (entry.isList() && model.isList()) continue;
-    const auto value = entry.isList() || model.isList() ? std::nullopt : converted(entry, model);
-    RPC_REQUIRE(value, "deck: " << quoted(path, name) << " must be " << rule_of(model) << ", got "
-                                << (entry.isList() ? "a sublist" : text_of(entry) + " (" + type_name(entry) + ")"));
-    list.setEntry(name, *value);
-  }
-  if (named_entries) {
-    for (const std::string &name : names_of(list))
-      validate(list.sublist(name), valid.sublist(any_entry), path.empty() ? name : path + "->" + name);
-    return;
-  }
-  for (const std::string &name : names_of(valid)) {
-    const ParameterEntry &model = valid.getEntry(name);
-    if (!list.isParameter(name))
-      list.setEntry(name, model.isList() ? ParameterEntry(ParameterList(name), true, true) : unread(model, true));
-    if (model.isList()) validate(list.sublist(name), valid.sublist(name), path.empty() ? name : path + "->" + name);
-  }
+  validate_list(list, valid, path, valid);
 }
 
 void assign(ParameterList &list, const ParameterList &valid, const std::string &assignment)
@@ -358,7 +322,7 @@ void assign(ParameterList &list, const ParameterList &valid, const std::string &
     rest = rest.substr(arrow + 2);
     if (model && !model->isParameter(pass_through)) {
       const std::string key = model->isSublist(any_entry) ? any_entry : name;
-      RPC_REQUIRE(model->isParameter(key), unknown_name_message(path, name, *model));
+      if (!model->isParameter(key)) throw unknown_name(path, name, *model, valid);
       RPC_REQUIRE(model->isSublist(key), "--set: " << quoted(path, name) << " is a parameter, not a sublist");
       model = &model->sublist(key);
     }
@@ -372,10 +336,10 @@ void assign(ParameterList &list, const ParameterList &valid, const std::string &
   RPC_REQUIRE(unread || (!named_entries && !model->isSublist(rest)) || rest.empty(),
               "--set: " << quoted(path, rest) << " is a sublist. Set one of its parameters: \""
                         << (path.empty() ? "" : path + "->") << rest << "->Parameter=value\"");
-  RPC_REQUIRE(unread || model->isParameter(rest), unknown_name_message(path, rest, *model));
+  if (!unread && !model->isParameter(rest)) throw unknown_name(path, rest, *model, valid);
   const auto value = read_entry(text, unread ? nullptr : &model->getEntry(rest));
   RPC_REQUIRE(value, "--set: " << quoted(path, rest) << " must be " << rule_of(model->getEntry(rest)) << ", got \""
-                               << text << "\"");
+                               << text << "\"." << remedy_for(text, model->getEntry(rest)));
   target->setEntry(rest, *value);
 }
 
@@ -388,9 +352,7 @@ std::vector<std::string> names_of(const ParameterList &list)
 
 Error unknown_parameter(const std::string &path, const std::string &name, const std::vector<std::string> &candidates)
 {
-  const std::string nearest = nearest_name(name, candidates);
-  return {ExitCode::bad_input, "deck: unknown parameter " + quoted(path, name) + "." +
-                                   (nearest.empty() ? "" : " Did you mean \"" + nearest + "\"?")};
+  return {ExitCode::bad_input, "deck: unknown parameter " + quoted(path, name) + "." + did_you_mean(name, candidates)};
 }
 
 void require_known(const ParameterList &given, const std::vector<std::string> &known, const std::string &path)

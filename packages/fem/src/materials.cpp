@@ -2,6 +2,7 @@
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/core/remedies.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/mesh/box.hpp"
 
@@ -33,6 +34,16 @@ bool is_given(const Teuchos::ParameterList &list, const char *const name)
   return !list.getEntry(name).isDefault();
 }
 
+/// What to write in place of a Poisson's ratio that no elastic body has.
+const char *ratio_remedy(const double ratio)
+{
+  if (ratio >= 0.5 && ratio < 0.51)
+    return ". For a body that keeps its volume write 0.4999, and take elements that do not lock: \"Mesh->Element\" = "
+           "Q2 or Q1, of gmsh those of order 2";
+  if (ratio > 1 && ratio < 50) return ". It is a ratio, not a percentage: 0.3 for steel";
+  return "";
+}
+
 Material one_material(const Teuchos::ParameterList &list, const std::string &path)
 {
   const auto require_given = [&](const char *const name, const char *const rule) {
@@ -47,7 +58,8 @@ Material one_material(const Teuchos::ParameterList &list, const std::string &pat
   RPC_REQUIRE(material.youngs_modulus > 0 && std::isfinite(material.youngs_modulus),
               "deck: \"" << path << "->Young's Modulus\" must be > 0 and finite [Pa], got " << material.youngs_modulus);
   RPC_REQUIRE(material.poissons_ratio > -1 && material.poissons_ratio < 0.5,
-              "deck: \"" << path << "->Poisson's Ratio\" must be in (-1, 0.5), got " << material.poissons_ratio);
+              "deck: \"" << path << "->Poisson's Ratio\" must be in (-1, 0.5), got " << material.poissons_ratio
+                         << ratio_remedy(material.poissons_ratio));
   material.dilatation = parse_dilatation(list.get<std::string>("Dilatation"), path);
   return material;
 }
@@ -73,7 +85,7 @@ void require_blocks(const mesh::Mesh &mesh, const Materials &materials)
   for (const auto &[name, material] : materials.block)
     RPC_REQUIRE(std::find(mesh.blocks.begin(), mesh.blocks.end(), name) != mesh.blocks.end(),
                 "deck: \"Material->Blocks->" << name << "\" names a block that the mesh does not have. Its blocks: "
-                                             << join(mesh.blocks) << ".");
+                                             << join(mesh.blocks) << "." << did_you_mean(name, mesh.blocks));
   for (const std::string &name : mesh.blocks)
     RPC_REQUIRE(!materials.only_blocks || materials.block.count(name) > 0,
                 "deck: \"Material->" << modulus_name << "\" must be given, > 0 and finite [Pa], and \"Material->"
@@ -99,8 +111,8 @@ Teuchos::ParameterList valid_material_parameters()
   Teuchos::ParameterList valid("Material");
   valid.set(modulus_name, no_default, "E > 0 [Pa]; must be given.");
   valid.set(ratio_name, no_default, "nu, in (-1, 0.5); must be given.");
-  valid.set(
-      "Dilatation", "auto",
+  set_words(
+      valid, "Dilatation", {"auto", "full", "projected"},
       "What counts as div u in a cell: `full`, itself; `projected`, its L2 projection on constants (Q1, P2) or linear "
       "functions (Q2), which does not lock as nu nears 0.5; `auto`: projected where nu > 0.4 (P2: 0.48). All the same "
       "for P1. Plane stress does not lock: `full` there.");

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/io/deck.hpp"
 
+#include "deck_text.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
+#include "rpc/core/remedies.hpp"
+#include "xml_deck.hpp"
+#include "yaml_deck.hpp"
 
 #include <Teuchos_StringInputSource.hpp>
 #include <Teuchos_XMLObject.hpp>
@@ -16,6 +20,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <regex>
@@ -31,13 +36,6 @@ namespace
 using Teuchos::ParameterList;
 using Teuchos::XMLObject;
 
-std::string trimmed(const std::string &text)
-{
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
 std::string read_text(const std::string &path)
 {
   const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "rb"), std::fclose);
@@ -46,6 +44,7 @@ std::string read_text(const std::string &path)
   char buffer[1 << 14];
   while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, count);
   RPC_REQUIRE(!std::ferror(file.get()), "deck: cannot read \"" << path << "\": " << std::strerror(errno));
+  if (text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3); // a mark that some editors put before the text
   RPC_REQUIRE(!trimmed(text).empty(), "deck: \"" << path << "\" is empty");
   return text;
 }
@@ -112,95 +111,26 @@ std::vector<std::string> lines_of(const std::string &text)
   throw Error(ExitCode::bad_input, "deck: \"" + path + "\"" + where + ": " + reason);
 }
 
-std::optional<double> read_double(const std::string &text)
+/// A double inf or nan becomes a string.
+void write_infinities_as_strings(const XMLObject &xml)
 {
-  char *end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0') return std::nullopt;
-  return value;
-}
-
-bool reads_as_integer(const std::string &text)
-{
-  errno = 0;
-  char *end = nullptr;
-  const long long value = std::strtoll(text.c_str(), &end, 10);
-  return !text.empty() && *end == '\0' && errno == 0 && value == static_cast<int>(value);
-}
-
-bool reads_as_bool(std::string text)
-{
-  std::transform(text.begin(), text.end(), text.begin(), [](const unsigned char c) { return std::tolower(c); });
-  static const std::set<std::string> words = {"true", "false", "yes", "no", "1", "0"};
-  return words.count(text) > 0;
-}
-
-/// Whether the text is of the Teuchos type; types other than numbers and bool are left to Teuchos.
-bool reads_as(const std::string &type, const std::string &text)
-{
-  if (type == "int") return reads_as_integer(text);
-  if (type == "double" || type == "float") {
-    const auto value = read_double(text);
-    return value && std::isfinite(*value);
-  }
-  if (type == "bool") return reads_as_bool(text);
-  return true;
-}
-
-bool array_reads_as(const std::string &type, const std::string &text)
-{
-  if (text.size() < 2 || text.front() != '{' || text.back() != '}') return false;
-  const std::string inside = trimmed(text.substr(1, text.size() - 2));
-  if (inside.empty()) return true;
-  std::istringstream in(inside + ",");
-  for (std::string item; std::getline(in, item, ',');)
-    if (!reads_as(type, trimmed(item))) return false;
-  return true;
-}
-
-/// Checks a parameter's value against its type; a double inf or nan becomes a string.
-void check_value(XMLObject &xml, const std::string &file, const std::string &path)
-{
-  if (!xml.hasAttribute("type") || !xml.hasAttribute("value")) return; // Teuchos names what is missing
-  const std::string type = xml.getAttribute("type");
-  const std::string value = trimmed(xml.getAttribute("value"));
-  if (type == "double") {
-    const auto number = read_double(value);
-    if (number && !std::isfinite(*number)) {
-      xml.addAttribute("type", "string");
-      return;
-    }
-  }
-  static const std::regex array(R"(Array\((.*)\))");
-  std::smatch item;
-  const bool good = std::regex_match(type, item, array) ? array_reads_as(item[1], value) : reads_as(type, value);
-  RPC_REQUIRE(good, "deck: \"" << file << "\": \"" << path << "\" = \"" << value << "\" does not read as " << type);
-}
-
-void check_list(const XMLObject &xml, const std::string &file, const std::string &path)
-{
-  std::set<std::string> names;
   for (int n = 0; n < xml.numChildren(); ++n) {
     XMLObject child = xml.getChild(n);
-    const bool is_list = child.getTag() == "ParameterList";
-    if ((!is_list && child.getTag() != "Parameter") || !child.hasAttribute("name")) continue;
-    const std::string name = child.getAttribute("name");
-    const std::string full = path.empty() ? name : path + "->" + name;
-    RPC_REQUIRE(names.insert(name).second, "deck: \"" << file << "\": \"" << full << "\" is given twice");
-    if (is_list)
-      check_list(child, file, full);
-    else
-      check_value(child, file, full);
+    if (child.getTag() == "Parameter" && child.hasAttribute("type") && child.hasAttribute("value") &&
+        child.getAttribute("type") == "double" && is_infinite(trimmed(child.getAttribute("value"))))
+      child.addAttribute("type", "string");
+    write_infinities_as_strings(child);
   }
 }
 
 ParameterList read_xml(const std::string &path, const std::string &text)
 {
   check_depth(path, text, false);
+  check_xml_deck(path, read_xml_elements(path, text));
   try {
     Teuchos::StringInputSource source(text);
     const XMLObject xml = source.getObject();
-    check_list(xml, path, "");
+    write_infinities_as_strings(xml);
     return Teuchos::XMLParameterListReader().toParameterList(xml);
   } catch (const Error &) {
     throw;
@@ -265,6 +195,7 @@ ParameterList read_yaml(const std::string &path, const std::string &given)
 {
   const std::string whole = with_infinities(given);
   check_depth(path, whole, true);
+  read_yaml_lines(path, whole);
   const std::vector<std::string> lines = lines_of(whole);
   // Teuchos wants one name at the outermost level, and loses parameters without a word if there are more.
   const bool anonymous = count_root_names(lines) > 1;
@@ -292,6 +223,20 @@ std::filesystem::path program_folder()
   return error ? std::filesystem::path(RPC_INSTALL_BIN_DIR) : program.parent_path();
 }
 
+/// Decks in a folder; none if it cannot be read.
+std::vector<std::string> decks_in(const std::filesystem::path &folder)
+{
+  std::vector<std::string> names;
+  std::error_code failed;
+  for (std::filesystem::directory_iterator at(folder.empty() ? "." : folder, failed), end; !failed && at != end;
+       at.increment(failed)) {
+    const std::string name = at->path().filename().string();
+    if (is_yaml(name) || at->path().extension() == ".xml") names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 std::string find_file(const std::string &name)
 {
   namespace fs = std::filesystem;
@@ -304,11 +249,42 @@ std::string find_file(const std::string &name)
     places.push_back(fs::path(RPC_SOURCE_INPUT_DIR) / name);
   }
   std::string searched;
+  std::vector<std::string> others;
   for (const auto &place : places) {
     if (fs::exists(place, error) && !fs::is_directory(place, error)) return place.string();
     searched += (searched.empty() ? "" : ", ") + place.string();
+    for (const std::string &other : decks_in(place.parent_path())) others.push_back(other);
   }
-  throw Error(ExitCode::bad_input, "deck: there is no file \"" + name + "\"; searched: " + searched);
+  throw Error(ExitCode::bad_input, "deck: there is no file \"" + name + "\"; searched: " + searched + "." +
+                                       did_you_mean(fs::path(name).filename().string(), others));
+}
+
+/// Lines of the lists and parameters of an XML deck.
+void add_lines(const XmlElement &list, const std::string &path, std::map<std::string, int> &lines)
+{
+  for (const XmlElement &child : list.children) {
+    const std::string *const name = child.attribute("name");
+    if (!name) continue;
+    const std::string full = path.empty() ? *name : path + "->" + *name;
+    lines.emplace(full, child.line);
+    add_lines(child, full, lines);
+  }
+}
+
+std::map<std::string, int> lines_in(const std::string &path)
+{
+  const std::string text = read_text(path);
+  if (is_yaml(path)) return read_yaml_lines(path, text);
+  std::map<std::string, int> lines;
+  add_lines(read_xml_elements(path, text), "", lines);
+  return lines;
+}
+
+/// Whether a path is another one, or of a list above it or of something in it.
+bool are_related(const std::string &a, const std::string &b)
+{
+  const std::string shorter = a.size() < b.size() ? a : b, longer = a.size() < b.size() ? b : a;
+  return longer == shorter || longer.rfind(shorter + "->", 0) == 0;
 }
 
 } // namespace
@@ -316,6 +292,33 @@ std::string find_file(const std::string &name)
 std::string find_deck(const std::string &name, const Teuchos::Comm<int> &comm)
 {
   return text_of_root(comm, ExitCode::bad_input, [&] { return find_file(name); });
+}
+
+std::string with_place(const std::string &message, const std::string &path, const std::vector<std::string> &assignments)
+{
+  const std::string start = "deck: ";
+  const std::size_t open = message.find('"'), close = message.find('"', open == std::string::npos ? open : open + 1);
+  if (message.rfind(start, 0) != 0 || close == std::string::npos) return message;
+  std::string parameter = message.substr(open + 1, close - open - 1);
+  if (parameter == path || message.rfind("deck: there is no file", 0) == 0) return message;
+  for (const std::string &assignment : assignments)
+    if (are_related(parameter, assignment.substr(0, assignment.find('=')))) return message;
+  std::string where = "\"" + path + "\"";
+  try {
+    const std::map<std::string, int> lines = lines_in(path);
+    for (;;) {
+      if (const auto found = lines.find(parameter); found != lines.end()) {
+        where += ", line " + std::to_string(found->second);
+        break;
+      }
+      const std::size_t arrow = parameter.rfind("->");
+      if (arrow == std::string::npos) break;
+      parameter.resize(arrow);
+    }
+  } catch (const Error &) { // it is gone, or was never read
+    return message;
+  }
+  return start + where + ": " + message.substr(start.size());
 }
 
 ParameterList read_deck(const std::string &path, const Teuchos::Comm<int> &comm)

@@ -2,6 +2,7 @@
 #include "rpc/io/expression.hpp"
 
 #include "expression_bounds.hpp"
+#include "expression_remedy.hpp"
 #include "rpc/core/error.hpp"
 
 #include <cctype>
@@ -72,8 +73,8 @@ std::optional<double> read_number(const std::string &text)
 
 std::string refused(const std::string &text, const std::string &parameter, const std::string &reason)
 {
-  return "deck: \"" + parameter + "\" = \"" + text + "\" is not a number or an expression: " + reason + ". " +
-         known_names;
+  return "deck: \"" + parameter + "\" = \"" + text + "\" is not a number or an expression: " + reason + "." +
+         expression_remedy(text) + " " + known_names;
 }
 
 /// muParser's words, without its own and not always present 0-based position.

@@ -136,18 +136,21 @@ TEST_F(Deck, AnyTruncatedXmlIsRefused)
   for (std::size_t length = 0; length <= end; length += 7) expect_refusal("t.xml", whole.substr(0, length), ": ");
   expect_refusal("t.xml", whole.substr(0, end), ": ");
   expect_refusal("t.xml", whole.substr(0, whole.find("  <ParameterList name=\"Contact\"")),
-                 "line 8: file ended before closing element");
+                 "line 8: the file ends while <ParameterList name=\"rpc\"> of line 1 is open");
 }
 
 TEST_F(Deck, MalformedXmlIsRefusedWithItsLine)
 {
-  expect_refusal("m.xml", replaced(good_xml, "</ParameterList>", "</ParamList>"), "line 7: document not well-formed");
-  expect_refusal("m.xml", std::string(good_xml) + "<ParameterList/>", "more than one root element");
+  expect_refusal("m.xml", replaced(good_xml, "</ParameterList>", "</ParamList>"),
+                 "line 7: </ParamList> does not close what is open");
+  expect_refusal("m.xml", std::string(good_xml) + "<ParameterList/>",
+                 "behind the end of the deck, which is one <ParameterList>");
   expect_refusal("m.xml", "hello", "line 1");
-  expect_refusal("m.xml", "<Foo/>", "expected tag ParameterList, found Foo");
-  expect_refusal("m.xml", replaced(good_xml, "<Parameter ", "<Paramete "), "found Paramete tag");
-  expect_refusal("m.xml", replaced(good_xml, " value=\"box\"", ""), "must have a value attribute Bad Parameter: Type");
-  expect_refusal("m.xml", replaced(good_xml, " type=\"string\"", " type=\"strin\""), "type: strin");
+  expect_refusal("m.xml", "<Foo/>", "line 1: expected tag ParameterList first, got <Foo>");
+  expect_refusal("m.xml", replaced(good_xml, "<Parameter ", "<Paramete "), "line 4: a deck has no tag <Paramete>");
+  expect_refusal("m.xml", replaced(good_xml, " value=\"box\"", ""), "line 4: \"Mesh->Type\" has no value=");
+  expect_refusal("m.xml", replaced(good_xml, " type=\"string\"", " type=\"strin\""),
+                 "\"Mesh->Type\" has the unknown type \"strin\"");
 }
 
 TEST_F(Deck, ValueMustReadAsItsType)
@@ -201,10 +204,10 @@ TEST_F(Deck, NameGivenTwiceIsRefused)
   expect_refusal("d.xml", replaced(good_xml, type, type + type), "\"Mesh->Type\" is given twice");
   expect_refusal("d.xml", replaced(good_xml, "\"Contact\"", "\"Mesh\""), "\"Mesh\" is given twice");
   expect_refusal("d.yaml", replaced(good_yaml, "    Type: box\n", "    Type: box\n    Type: box\n"),
-                 "\"Type\" already exists");
-  expect_refusal("d.yaml", replaced(good_yaml, "Contact", "Mesh"), "\"Mesh\" already exists");
+                 "line 5: \"Mesh->Type\" is given twice, first in line 4");
+  expect_refusal("d.yaml", replaced(good_yaml, "Contact", "Mesh"), "\"Mesh\" is given twice");
   const std::string twice = unindented(replaced(good_yaml, "Contact", "Mesh"));
-  expect_refusal("d.yaml", twice, "\"Mesh\" already exists");
+  expect_refusal("d.yaml", twice, "\"Mesh\" is given twice");
   EXPECT_EQ(std::string(error_of([&] { read_deck(file("d.yaml", twice)); }).what()).find("ANONYMOUS"),
             std::string::npos);
 }
@@ -228,8 +231,8 @@ TEST_F(Deck, ListsWithinListsHaveABound)
 TEST_F(Deck, MalformedYamlIsRefusedWithItsLine)
 {
   const std::string bad = replaced(good_yaml, "[160, 32]", "[160, 32");
-  expect_refusal("m.yaml", bad, "line 7: Expected one of {',', ]}");
-  expect_refusal("m.yaml", unindented(bad), "line 6: Expected one of");
+  expect_refusal("m.yaml", bad, "line 6: the \"[\" of \"Mesh->Cells\" is not closed");
+  expect_refusal("m.yaml", unindented(bad), "line 5: the \"[\" of \"Mesh->Cells\" is not closed");
   expect_refusal("m.yaml", replaced(good_yaml, "\"x < 1 ? 2 : inf\"", "x > 1 ? 2 : inf"), "needs quotes");
   for (const char *text : {"", " \n"}) expect_refusal("m.yaml", text, "is empty");
   expect_refusal("m.yaml", "- 1\n- 2\n", "line ");

@@ -237,8 +237,8 @@ void add_box_parameters(Teuchos::ParameterList &valid)
   valid.set("Upper", Array<double>(Teuchos::tuple(1., 1.)),
             "Upper corner of the box, above the lower one in each direction [m].");
   valid.set("Cells", Array<int>(Teuchos::tuple(8, 8)), "Number of cells in each direction, > 0.");
-  valid.set(
-      "Element", "Q1",
+  set_words(
+      valid, "Element", {"Q1", "Q2", "P1", "P2"},
       "Element of the box: `Q1`, `Q2` (quadrilaterals, in 3D hexahedra), `P1`, `P2` (two triangles to a cell, in 3D "
       "six tetrahedra).");
 }
@@ -256,7 +256,8 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
   RPC_REQUIRE(dim == 2 || dim == 3, "deck: \"Mesh->Lower\" must hold 2 or 3 numbers, got " << dim);
   RPC_REQUIRE(options.upper.size() == dim && options.cells.size() == dim,
               "deck: \"Mesh->Lower\", \"Upper\" and \"Cells\" must be of one length, got "
-                  << dim << ", " << options.upper.size() << " and " << options.cells.size());
+                  << dim << ", " << options.upper.size() << " and " << options.cells.size()
+                  << ". Write 2 numbers for each, in space 3, with decimal points and commas between them");
   double nodes = 1;
   options.element = parse_element(list.get<std::string>("Element"), static_cast<int>(dim));
   for (std::size_t d = 0; d < dim; ++d) {
@@ -301,10 +302,12 @@ std::optional<std::string> memory_refusal(const GO nodes, const double bytes, co
 Mesh make_box(const BoxOptions &options, const RCP<const Comm> &comm)
 {
   const std::size_t dim = options.element.dim;
-  RPC_REQUIRE(options.lower.size() == dim && options.upper.size() == dim && options.cells.size() == dim,
-              "mesh: a box of " << dim << "D elements needs " << dim
-                                << " lower and upper coordinates and numbers of cells, got " << options.lower.size()
-                                << ", " << options.upper.size() << " and " << options.cells.size());
+  RPC_REQUIRE(
+      options.lower.size() == dim && options.upper.size() == dim && options.cells.size() == dim,
+      "mesh: a box of " << dim << "D elements needs " << dim
+                        << " lower and upper coordinates and numbers of cells, got " << options.lower.size() << ", "
+                        << options.upper.size() << " and " << options.cells.size()
+                        << ". Write 2 numbers for each, in space 3, with decimal points and commas between them");
   const Grid grid(options, comm->getSize());
   const int rank = comm->getRank();
   Numbering numbering;

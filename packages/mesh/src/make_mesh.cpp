@@ -5,6 +5,7 @@
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/core/remedies.hpp"
 #include "rpc/mesh/distribute.hpp"
 #include "rpc/mesh/refinement.hpp"
 #include "whole_mesh.hpp"
@@ -39,20 +40,50 @@ void add_gmsh_parameters(Teuchos::ParameterList &valid)
             "those of multigrid and nested iteration.");
 }
 
+/// Names of files for gmsh in the deck's folder and in the current one.
+std::vector<std::string> mesh_files(const std::string &folder)
+{
+  std::vector<std::string> names;
+  for (const std::string &place : {folder, std::string(".")}) {
+    std::error_code failed;
+    for (std::filesystem::directory_iterator at(place.empty() ? "." : place, failed), end; !failed && at != end;
+         at.increment(failed)) {
+      const auto extension = at->path().extension();
+      const std::string name = at->path().filename().string();
+      if ((extension == ".geo" || extension == ".msh") && std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 /// The file beside the deck, or in the current folder.
 std::string found_file(const std::string &name, const std::string &folder)
 {
   const auto beside_deck = std::filesystem::path(folder) / name;
   std::error_code ignored;
   if (std::filesystem::exists(beside_deck, ignored)) return beside_deck.string();
-  RPC_REQUIRE(std::filesystem::exists(name, ignored), "deck: \"Mesh->File\": there is no file \""
-                                                          << name << "\" in \"" << folder
-                                                          << "\" or in the current folder");
+  RPC_REQUIRE(std::filesystem::exists(name, ignored),
+              "deck: \"Mesh->File\": there is no file \""
+                  << name << "\" in " << (folder.empty() ? "" : "\"" + folder + "\" or in ") << "the current folder."
+                  << did_you_mean(name, mesh_files(folder)));
   return name;
 }
 
 /// Each makes four or eight times as many cells.
 constexpr int most_refinements = 12;
+
+/// How gmsh takes a file of another format.
+std::string other_format_remedy(const std::string &file, const std::string &extension)
+{
+  for (const char *const shape : {".step", ".stp", ".iges", ".igs", ".brep", ".STEP", ".STP"})
+    if (extension == shape)
+      return " Write a .geo beside it that reads it: Merge \"" + file +
+             "\"; with Physical Volume and Physical Surface for body and sides; rpc --new=own-mesh writes one to start "
+             "from.";
+  return " gmsh turns many formats into its own: gmsh \"" + file + "\" -save -o body.msh";
+}
 
 GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &folder, const Comm &comm)
 {
@@ -62,8 +93,9 @@ GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &
   options.order = list.get<int>("Order");
   RPC_REQUIRE(!options.file.empty(), "deck: \"Mesh->File\" must name a .geo or .msh for a mesh of type gmsh, got none");
   const std::string extension = std::filesystem::path(options.file).extension().string();
-  RPC_REQUIRE(extension == ".geo" || extension == ".msh",
-              "deck: \"Mesh->File\" must end in .geo or .msh, got \"" << options.file << "\"");
+  RPC_REQUIRE(extension == ".geo" || extension == ".msh", "deck: \"Mesh->File\" must end in .geo or .msh, got \""
+                                                              << options.file << "\"."
+                                                              << other_format_remedy(options.file, extension));
   RPC_REQUIRE(options.size_factor > 0 && std::isfinite(options.size_factor),
               "deck: \"Mesh->Size Factor\" must be > 0 and finite, got " << options.size_factor);
   RPC_REQUIRE(options.order >= 0 && options.order <= 2,
@@ -132,7 +164,7 @@ Mesh make_nested(const GmshOptions &options, const RCP<const Comm> &comm)
 Teuchos::ParameterList valid_parameters()
 {
   Teuchos::ParameterList valid("Mesh");
-  valid.set("Type", "box", "Kind of mesh: `box`, or `gmsh` for a geometry or mesh file.");
+  set_words(valid, "Type", {"box", "gmsh"}, "Kind of mesh: `box`, or `gmsh` for a geometry or mesh file.");
   add_box_parameters(valid);
   add_gmsh_parameters(valid);
   return valid;
@@ -153,7 +185,9 @@ MeshOptions mesh_options(const Teuchos::ParameterList &list, const std::string &
   }();
   for (auto it = others.begin(); it != others.end(); ++it)
     RPC_REQUIRE(list.getEntry(others.name(it)).isDefault(),
-                "deck: \"Mesh->" << others.name(it) << "\" does not go with \"Mesh->Type\" = " << type);
+                "deck: \"Mesh->" << others.name(it) << "\" does not go with \"Mesh->Type\" = " << type
+                                 << (box ? ": with a file of gmsh write \"Mesh->Type\" = gmsh"
+                                         : ": the file gives it. Remove it, or write \"Mesh->Type\" = box"));
   if (box) return box_options(list);
   return gmsh_options(list, folder, comm);
 }

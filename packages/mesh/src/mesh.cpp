@@ -3,6 +3,7 @@
 
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/core/remedies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,11 +24,11 @@ const Part *find(const std::vector<Part> &parts, const std::string &name)
 }
 
 template <class Part>
-std::string names_of(const std::vector<Part> &parts)
+std::vector<std::string> names_of(const std::vector<Part> &parts)
 {
   std::vector<std::string> names;
   for (const Part &part : parts) names.push_back(part.name);
-  return join(names);
+  return names;
 }
 
 } // namespace
@@ -36,7 +37,8 @@ const Side &Mesh::side(const std::string &name, const std::string &user) const
 {
   if (const Side *const found = find(sides, name)) return *found;
   throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
-                                       "\", which the mesh does not have. Its sides: " + names_of(sides) + ".");
+                                       "\", which the mesh does not have. Its sides: " + join(names_of(sides)) + "." +
+                                       did_you_mean(name, names_of(sides)));
 }
 
 RCP<const Map> Mesh::overlap_nodes() const
@@ -52,11 +54,14 @@ RCP<const Map> Mesh::overlap_nodes() const
 std::vector<LO> Mesh::nodes_of(const std::string &name, const std::string &user) const
 {
   if (!find(sides, name)) {
+    std::vector<std::string> both = names_of(sides);
+    const std::vector<std::string> of_points = names_of(points);
+    both.insert(both.end(), of_points.begin(), of_points.end());
     if (const PointSet *const set = find(points, name)) return set->node;
     if (!points.empty())
       throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
-                                           "\", which the mesh does not have. Its sides: " + names_of(sides) +
-                                           "; its points: " + names_of(points) + ".");
+                                           "\", which the mesh does not have. Its sides: " + join(names_of(sides)) +
+                                           "; its points: " + join(of_points) + "." + did_you_mean(name, both));
   }
   const auto facets = to_host(side(name, user).facets);
   std::vector<LO> nodes;

@@ -47,15 +47,15 @@ Teuchos::ParameterList valid_linear_solver_parameters()
             "then GMRES takes the place of methods that need that.");
   valid.set("Tolerance", 1e-11, "|r|/|b| of a linear solve at least, in (0, 1): most need not be as good.");
   valid.set("Maximum Iterations", 500, "of a linear solve, > 0.");
-  valid.set(
-      "Multigrid", "auto",
+  set_words(
+      valid, "Multigrid", {"auto", "mesh", "algebraic"},
       "`mesh`: on coarser meshes of the same body, where there are some: of order 1 for order 2, coarser boxes, "
       "and those "
       "that a mesh was refined from; "
       "`algebraic`: by MueLu from the matrix; `auto`: `mesh` unless `MueLu` is given. With `mesh` and `auto` nearly "
       "incompressible bodies of order 2, and of Q1, have pressures as unknowns of their own, and BiCGStab (theory, "
       "4.14).");
-  valid.set("Reuse", "tP",
+  set_words(valid, "Reuse", {"tP", "none", "RP"},
             "What of an algebraic hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
             "tentative prolongator), `RP` (transfer operators).");
   set_pass_through(valid, "Belos", "Handed to Belos as it is.");

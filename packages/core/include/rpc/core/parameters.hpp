@@ -37,6 +37,10 @@ std::vector<std::string> field_texts(const Teuchos::ParameterList &list, const s
 void set_choice(Teuchos::ParameterList &valid, const std::string &name, const std::vector<std::string> &words,
                 const std::string &doc);
 
+/// Declares `name` as one of some words, of which the first is the default.
+void set_words(Teuchos::ParameterList &valid, const std::string &name, const std::vector<std::string> &words,
+               const std::string &doc);
+
 /// Declares a sublist whose content is handed on to a library unread.
 void set_pass_through(Teuchos::ParameterList &valid, const std::string &name, const std::string &doc);
 
@@ -70,8 +74,8 @@ void require_known(const Teuchos::ParameterList &given, const std::vector<std::s
 /// Names of a list's parameters and sublists, in its order.
 std::vector<std::string> names_of(const Teuchos::ParameterList &list);
 
-/// The name among `candidates` with the least edit distance to `name`, or of which it is an abbreviation; empty if none
-/// bears any likeness.
+/// The name among `candidates` with the least edit distance to `name`, or of which it is an abbreviation with
+/// the same first letter; empty if none bears any likeness.
 std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates);
 
 /// "a, b, c"

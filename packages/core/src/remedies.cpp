@@ -1,0 +1,228 @@
+#include "rpc/core/remedies.hpp"
+
+#include "rpc/core/parameters.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <regex>
+#include <sstream>
+
+namespace rpc
+{
+namespace
+{
+
+/// A unit in terms of N and m: N^force m^length times the factor.
+struct WrittenUnit {
+  const char *name;
+  double factor;
+  int force, length;
+};
+
+constexpr WrittenUnit units_of_others[] = {
+    {"Pa", 1, 1, -2},          {"kPa", 1e3, 1, -2},     {"MPa", 1e6, 1, -2},
+    {"GPa", 1e9, 1, -2},       {"N/m^2", 1, 1, -2},     {"N/m2", 1, 1, -2},
+    {"kN/m^2", 1e3, 1, -2},    {"kN/m2", 1e3, 1, -2},   {"MN/m^2", 1e6, 1, -2},
+    {"MN/m2", 1e6, 1, -2},     {"N/mm^2", 1e6, 1, -2},  {"N/mm2", 1e6, 1, -2},
+    {"kN/mm^2", 1e9, 1, -2},   {"kN/mm2", 1e9, 1, -2},  {"kN/cm^2", 1e7, 1, -2},
+    {"kN/cm2", 1e7, 1, -2},    {"bar", 1e5, 1, -2},     {"psi", 6894.757, 1, -2},
+    {"ksi", 6894757, 1, -2},   {"m", 1, 0, 1},          {"km", 1e3, 0, 1},
+    {"cm", 1e-2, 0, 1},        {"mm", 1e-3, 0, 1},      {"um", 1e-6, 0, 1},
+    {"nm", 1e-9, 0, 1},        {"in", 0.0254, 0, 1},    {"inch", 0.0254, 0, 1},
+    {"ft", 0.3048, 0, 1},      {"N", 1, 1, 0},          {"kN", 1e3, 1, 0},
+    {"MN", 1e6, 1, 0},         {"lbf", 4.448222, 1, 0}, {"kgf", 9.80665, 1, 0},
+    {"N/m", 1, 1, -1},         {"kN/m", 1e3, 1, -1},    {"N/mm", 1e3, 1, -1},
+    {"N/m^3", 1, 1, -3},       {"N/m3", 1, 1, -3},      {"kN/m^3", 1e3, 1, -3},
+    {"kN/m3", 1e3, 1, -3},     {"MN/m^3", 1e6, 1, -3},  {"MN/m3", 1e6, 1, -3},
+    {"N/mm^3", 1e9, 1, -3},    {"N/mm3", 1e9, 1, -3},   {"Pa/m", 1, 1, -3},
+    {"kPa/m", 1e3, 1, -3},     {"MPa/m", 1e6, 1, -3},   {"MPa/mm", 1e9, 1, -3},
+    {"deg", M_PI / 180, 0, 0}, {"%", 0.01, 0, 0},       {"percent", 0.01, 0, 0},
+    {"rad", 1, 0, 0},
+};
+
+void replace_all(std::string &text, const std::string &from, const std::string &to)
+{
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+std::string without_ends(const std::string &text, const char *const ends)
+{
+  const auto first = text.find_first_not_of(ends);
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(ends) - first + 1);
+}
+
+/// Plain characters for those that word processors and web pages put in their place.
+std::string plain(std::string text)
+{
+  for (const char *const minus : {"\u2212", "\u2013", "\u2014"}) replace_all(text, minus, "-");
+  for (const char *const blank : {"\u00a0", "\u202f", "\u2009"}) replace_all(text, blank, " ");
+  for (const char *const times : {"\u00d7", "\u00b7"}) replace_all(text, times, "*");
+  replace_all(text, "\u00b0", "deg");
+  replace_all(text, "\u00b5m", "um");
+  replace_all(text, "\u00b2", "^2");
+  replace_all(text, "\u00b3", "^3");
+  return without_ends(text, " \t\r\n\"';");
+}
+
+/// Whether all parts but the first have three digits, as between thousands.
+bool stand_between_thousands(const std::string &digits, const char mark)
+{
+  std::size_t at = digits.find(mark);
+  if (at == 0 || at > 3) return false;
+  while (at != std::string::npos) {
+    const std::size_t next = digits.find(mark, at + 1);
+    const std::size_t end = std::min(next, digits.find_first_not_of("0123456789", at + 1));
+    if (std::min(end, digits.size()) - at != 4) return false;
+    at = next;
+  }
+  return true;
+}
+
+void remove(std::string &text, const char mark)
+{
+  text.erase(std::remove(text.begin(), text.end(), mark), text.end());
+}
+
+/// Digits with a point alone, of digits with points, commas, blanks, apostrophes or underscores; none of a list.
+std::optional<std::string> digits_of(std::string digits)
+{
+  for (const char mark : {' ', '\'', '_'}) {
+    if (digits.find(mark) == std::string::npos) continue;
+    if (!stand_between_thousands(digits, mark)) return std::nullopt;
+    remove(digits, mark);
+  }
+  const auto points = std::count(digits.begin(), digits.end(), '.');
+  const auto commas = std::count(digits.begin(), digits.end(), ',');
+  if (points > 0 && commas > 0) {
+    const char thousands = digits.rfind('.') > digits.rfind(',') ? ',' : '.';
+    if (!stand_between_thousands(digits, thousands) || std::min(points, commas) > 1) return std::nullopt;
+    remove(digits, thousands);
+  } else if (points > 1 || commas > 1) {
+    const char thousands = points > 1 ? '.' : ',';
+    if (!stand_between_thousands(digits, thousands)) return std::nullopt;
+    remove(digits, thousands);
+  }
+  std::replace(digits.begin(), digits.end(), ',', '.');
+  return digits;
+}
+
+std::string with_brackets(const std::vector<std::string> &items)
+{
+  return " Write {" + join(items) + "} (in YAML [" + join(items) + "]).";
+}
+
+} // namespace
+
+std::optional<WrittenNumber> written_number(const std::string &text)
+{
+  static const std::regex number(
+      R"(([-+]?)\s*(\d(?:[\d .,'_]*\d)?[.,]?|[.,]\d+)(?:\s*[eEdD]\s*([-+]?\d+)|\s*[*x]\s*10\s*(?:\^|\*\*)?\s*\(?([-+]?\d+)\)?)?\s*([^\d\s].*)?)");
+  std::smatch found;
+  const std::string given = plain(text);
+  if (!std::regex_match(given, found, number)) return std::nullopt;
+  const auto digits = digits_of(found[2]);
+  if (!digits) return std::nullopt;
+  const std::string exponent = found[3].matched ? found[3].str() : found[4].str();
+  const std::string whole = found[1].str() + *digits + (exponent.empty() ? "" : "e" + exponent);
+  return WrittenNumber{std::strtod(whole.c_str(), nullptr), found[5].str()};
+}
+
+std::string number_text(const double value)
+{
+  std::ostringstream text;
+  for (int digits = 6; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
+    text.str("");
+    text.precision(digits);
+    text << value;
+    if (std::strtod(text.str().c_str(), nullptr) == value) break;
+  }
+  return text.str();
+}
+
+std::string number_remedy(const std::string &text)
+{
+  const auto number = written_number(text);
+  if (!number) return "";
+  const auto rounded = [](const double value) { // of a product: its last digits are rounding
+    std::ostringstream out;
+    out.precision(10);
+    out << value;
+    return out.str();
+  };
+  if (number->unit.empty()) {
+    std::string other;
+    static const std::regex ambiguous(R"([-+]?[1-9]\d{0,2},\d{3})");
+    if (std::regex_match(plain(text), ambiguous))
+      other = ", or " + number_text(1000 * number->value) + " if the comma stands between thousands";
+    const bool comma = text.find(',') != std::string::npos;
+    return " Write " + number_text(number->value) + other + (comma ? ": decks have a decimal point." : ".");
+  }
+  const auto unit = std::find_if(std::begin(units_of_others), std::end(units_of_others),
+                                 [&](const WrittenUnit &each) { return number->unit == each.name; });
+  const std::string alone = " Write the number alone, without \"" + number->unit + "\"";
+  static const std::regex word(R"([A-Za-z%/^\d\s.]+)");
+  if (!std::regex_match(number->unit, word)) return "";
+  if (unit == std::end(units_of_others)) return alone + ": it counts in the deck's units, see \"Units\".";
+  const double value = number->value * unit->factor;
+  if (unit->force == 0 && unit->length == 0) return alone + ": " + rounded(value) + ".";
+  return alone + ", in the deck's units (see \"Units\"): " + rounded(value) + " with m and N, " +
+         rounded(value * std::pow(1000., unit->length)) + " with mm and N.";
+}
+
+std::string integer_remedy(const std::string &text)
+{
+  const auto number = written_number(text);
+  if (!number || !number->unit.empty()) return number_remedy(text);
+  if (std::abs(number->value) > std::numeric_limits<int>::max())
+    return " Write at most " + std::to_string(std::numeric_limits<int>::max()) + ".";
+  return std::floor(number->value) == number->value
+             ? " Write " + std::to_string(std::lround(number->value)) + "."
+             : " Write a whole number, such as " + std::to_string(std::lround(number->value)) + ".";
+}
+
+std::string array_remedy(const std::string &text)
+{
+  std::string inside = plain(text);
+  inside = without_ends(inside, "{}[]()<> ");
+  static const std::regex between_products(R"((\d)\s*x\s*(?=\d))");
+  inside = std::regex_replace(inside, between_products, "$1;");
+  // Commas are decimal ones where something else stands between the numbers.
+  static const std::regex with_comma(R"(\d,\d)"), other_mark(R"([;|]|\d\s+[-+]?\d)");
+  const bool commas_within = std::regex_search(inside, with_comma) && std::regex_search(inside, other_mark);
+  std::replace_if(
+      inside.begin(), inside.end(), [](const char c) { return c == ';' || c == '|' || c == '\t'; }, ' ');
+  if (!commas_within) std::replace(inside.begin(), inside.end(), ',', ' ');
+  std::istringstream in(inside);
+  std::vector<std::string> items;
+  for (std::string item; in >> item;) {
+    while (!item.empty() && item.back() == ',') item.pop_back();
+    const auto number = written_number(item);
+    if (!number || !number->unit.empty()) return number_remedy(text);
+    items.push_back(number_text(number->value));
+  }
+  return items.empty() ? "" : with_brackets(items);
+}
+
+std::string bool_remedy(const std::string &text)
+{
+  std::string word = plain(text);
+  std::transform(word.begin(), word.end(), word.begin(), [](const unsigned char c) { return std::tolower(c); });
+  for (const char *const yes : {"on", "y", "t", "oui", "ja", ".true.", "enabled", "true", "yes", "1", "1.0"})
+    if (word == yes) return " Write true.";
+  for (const char *const no :
+       {"off", "n", "f", "non", "nein", ".false.", "disabled", "none", "false", "no", "0", "0.0"})
+    if (word == no) return " Write false.";
+  return "";
+}
+
+std::string did_you_mean(const std::string &name, const std::vector<std::string> &candidates)
+{
+  const std::string nearest = nearest_name(name, candidates);
+  return nearest.empty() ? "" : " Did you mean \"" + nearest + "\"?";
+}
+
+} // namespace rpc

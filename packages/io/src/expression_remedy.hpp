@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace rpc::io
+{
+
+/// What to write instead of a text that is no expression: " Did you mean "sin"?", " Powers are written ^."; empty if nothing is known.
+std::string expression_remedy(const std::string &text);
+
+} // namespace rpc::io
