@@ -25,7 +25,7 @@ namespace rpc
 namespace
 {
 
-constexpr std::array options_with_value{"--input", "--output", "--restart", "--set"};
+constexpr std::array options_with_value{"--input", "--new", "--output", "--restart", "--set"};
 constexpr std::array flags{"--check", "--print-parameters", "--version", "--help"};
 
 bool is_one_of(const std::string &text, const std::vector<std::string> &names)
@@ -46,7 +46,7 @@ std::vector<std::string> joined(const std::vector<char *> &arguments)
     const auto equals = text.find('=');
     const std::string name = text.substr(0, equals);
     const bool has_value = equals != std::string::npos && equals + 1 < text.size();
-    const bool newest = text == "--restart"; // of the output folder
+    const bool newest = text == "--restart" || text == "--new"; // checkpoint of the output folder; menu of templates
     RPC_REQUIRE(i == 0 || has_value || newest || !is_one_of(name, valued),
                 "command line: " << name << " needs a value, as in " << name << "="
                                  << (name == "--set" ? "\"Sublist->Parameter=value\"" : "NAME") << ". See rpc --help.");
@@ -93,6 +93,8 @@ std::string refusal(const std::string &message)
   std::vector<std::string> names(options_with_value.begin(), options_with_value.end());
   names.insert(names.end(), flags.begin(), flags.end());
   const std::string nearest = nearest_name(argument.substr(0, argument.find('=')), names);
+  if (argument[0] != '-')
+    return "command line: unknown option \"" + argument + "\". A deck is named by --input=" + argument + ".";
   return "command line: unknown option \"" + argument + "\"." +
          (nearest.empty() ? "" : " Did you mean " + nearest + "?");
 }
@@ -118,10 +120,11 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   CommandLine line;
   line.assignments = take_assignments(arguments);
   line.help = take_flag(arguments, "--help") | take_flag(arguments, "-h");
-  const bool newest = take_flag(arguments, "--restart");
+  const bool newest = take_flag(arguments, "--restart"), menu = take_flag(arguments, "--new");
 
   CommandLineProcessor parser(false, true, false);
   parser.setOption("input", &line.input, "");
+  parser.setOption("new", &line.new_deck, "");
   parser.setOption("output", &line.output, "");
   parser.setOption("restart", &line.restart, "");
   parser.setOption("check", "run", &line.check, "");
@@ -132,6 +135,7 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   std::ostringstream text;
   const auto status = parser.parse(static_cast<int>(pointers.size()), pointers.data(), &text);
   RPC_REQUIRE(status == CommandLineProcessor::PARSE_SUCCESSFUL, refusal(text.str()) << " See rpc --help.");
+  line.writes_template = menu || !line.new_deck.empty();
   line.restarts = newest || !line.restart.empty();
   RPC_REQUIRE(!newest || line.restart.empty(),
               "command line: --restart stands twice, once with a file and once without. See rpc --help.");
@@ -215,11 +219,14 @@ std::string help_text()
 {
   return R"(Contact of an elastic body with a rigid-plastic foundation.
 
-Usage: rpc --input=DECK [options]
+Usage: rpc --new=NAME
+       rpc --input=DECK [options]
        mpirun -n RANKS rpc --input=DECK [options]
 
   --input=DECK         the problem, in Teuchos XML or, by its extension .yaml or .yml, in YAML;
                        looked up as given, then among the decks that come with rpc
+  --new                lists commented decks to start from
+  --new=NAME           writes one of them, NAME.xml, and never over a file that is there
   --output=DIR         folder for the results, made if missing; default: the current one
   --set="A->B=VALUE"   sets a parameter of the deck, any number of times,
                        e.g. --set="Contact->Yield Stress=16" --set="Mesh->Cells={80, 16}"

@@ -16,12 +16,14 @@ struct CommandLine {
   std::string restart;                  ///< the checkpoint; empty: the newest one in the output folder
   std::vector<std::string> assignments; ///< of --set, in order
   bool check = false;
+  bool writes_template = false; ///< a deck to start from
+  std::string new_deck;         ///< its name; empty or help: the menu of them
   bool help = false;
   bool print_parameters = false;
   bool version = false;
 
   /// Whether there is a scene to be solved or checked: texts need no kernels and so no GPU.
-  bool solves() const { return !help && !version && !print_parameters; }
+  bool solves() const { return !help && !version && !print_parameters && !writes_template; }
 };
 
 /// The arguments, those for Kokkos apart: Kokkos must not see the others, or it answers to --help and --threads too.

@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 #include "gpu.hpp"
 #include "host_program.hpp"
+#include "new_deck.hpp"
 #include "notes.hpp"
 #include "output/paths.hpp"
 #include "output/results.hpp"
@@ -199,7 +200,12 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
     rpc::print_parameters(out, rpc::valid_deck());
     return ExitCode::converged;
   }
-  RPC_REQUIRE(!line.input.empty(), "command line: --input=DECK is missing. See rpc --help.");
+  if (line.writes_template) {
+    rpc::on_root(*comm, ExitCode::bad_input, [&] { out << rpc::new_deck(line.new_deck, line.output); });
+    return ExitCode::converged;
+  }
+  RPC_REQUIRE(!line.input.empty(),
+              "command line: --input=DECK is missing. See rpc --help; rpc --new lists decks to start from.");
   const std::string deck = rpc::io::find_deck(line.input, *comm);
   try {
     return run_deck(line, deck, comm, out);

@@ -67,7 +67,7 @@ class CommandLine(RpcTestCase):
     def test_texts_need_no_kernels(self):
         """Kokkos does not start, which on a machine without a GPU it could not; nor with this."""
         refused = {"KOKKOS_NUM_THREADS": "many"}
-        for options in (["--help"], ["--version"], ["--print-parameters"]):
+        for options in (["--help"], ["--version"], ["--print-parameters"], ["--new"]):
             self.rpc(*options, environment=refused)
         for options in (["--input=beam.xml", SMALL], ["--check", "--input=beam.xml", SMALL]):
             self.rpc(*options, environment=refused, code=1)
@@ -82,7 +82,7 @@ class CommandLine(RpcTestCase):
         cases = [(["--inpt=beam.xml"], ['"--inpt=beam.xml"', "Did you mean --input?", "rpc --help"]),
                  (["--chekc"], ['"--chekc"', "Did you mean --check?"]),
                  (["--threads=2", "--input=beam.xml"], ['unknown option "--threads=2"']),
-                 (["beam.xml"], ['unknown option "beam.xml"']),
+                 (["beam.xml"], ['unknown option "beam.xml"', "--input=beam.xml"]),
                  ([], ["--input=DECK is missing"]),
                  (["--input="], ["--input needs a value"]),
                  (["--input"], ["--input needs a value"]),

@@ -244,9 +244,7 @@ std::string find_file(const std::string &name)
   RPC_REQUIRE(!fs::is_directory(name, error), "deck: \"" << name << "\" is a folder; there is no file of that name");
   std::vector<fs::path> places = {name};
   if (!fs::path(name).is_absolute()) {
-    if (const char *folder = std::getenv("RPC_INPUT_DIR")) places.push_back(fs::path(folder) / name);
-    places.push_back((program_folder() / RPC_INPUT_FROM_BIN / name).lexically_normal());
-    places.push_back(fs::path(RPC_SOURCE_INPUT_DIR) / name);
+    for (const std::string &folder : deck_folders()) places.push_back(fs::path(folder) / name);
   }
   std::string searched;
   std::vector<std::string> others;
@@ -288,6 +286,15 @@ bool are_related(const std::string &a, const std::string &b)
 }
 
 } // namespace
+
+std::vector<std::string> deck_folders()
+{
+  std::vector<std::string> folders;
+  if (const char *folder = std::getenv("RPC_INPUT_DIR")) folders.push_back(folder);
+  folders.push_back((program_folder() / RPC_INPUT_FROM_BIN).lexically_normal().string());
+  folders.push_back(RPC_SOURCE_INPUT_DIR);
+  return folders;
+}
 
 std::string find_deck(const std::string &name, const Teuchos::Comm<int> &comm)
 {

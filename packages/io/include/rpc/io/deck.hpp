@@ -9,6 +9,9 @@
 namespace rpc::io
 {
 
+/// Folders in which decks are looked for that are not where they are named: see find_deck().
+std::vector<std::string> deck_folders();
+
 /// Path of a deck: `name` as given, else in the folder that the environment variable RPC_INPUT_DIR names, in the
 /// share/rpc/input next to the running program's bin/ (so that an install tree can be moved), or in the source tree's
 /// input/. Rank 0 looks for it on its disk; collective.
