@@ -4,6 +4,7 @@
 #include "checkpoint.hpp"
 #include "notes.hpp"
 #include "report.hpp"
+#include "understood.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +90,8 @@ struct Ready {
 
 std::string check(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console, Checkpoints &checkpoints)
 {
-  const auto stop = [](const analysis::Problem &problem, const analysis::Step &step) {
+  const auto stop = [&](const analysis::Problem &problem, const analysis::Step &step) {
+    print_understood(console, scene, problem, step);
     throw Ready{static_cast<GO>(problem.discretization().owned_dofs->getGlobalNumElements()), step.contact.num_total};
   };
   std::ostringstream found;

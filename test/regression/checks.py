@@ -114,6 +114,58 @@ class Check(RpcTestCase):
         self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Adapt->Target Relative Error=0.1", "--set=Steps->Times={1,2}")
         self.expect("210 dofs, 0 contact points", "--input=beam.xml", SMALL, "--set=Contact->Side=")
 
+    def understood(self, text, *arguments):
+        """The lines of the block that --check prints, without the blanks at their ends."""
+        (self.folder / "deck.yaml").write_text("deck:" + text)
+        lines = self.rpc("--check", "--input=deck.yaml", *arguments).stdout.splitlines()
+        return [line.strip() for line in lines[next(k for k, line in enumerate(lines) if line.startswith("  body")):-1]]
+
+    def test_it_tells_what_it_understood_in_the_plane(self):
+        self.assertEqual(self.understood("""
+  Mesh: {Lower: [-1.0, 2.0], Upper: [3.0, 4.0], Cells: [8, 4]}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Units: {Length: mm, Force: N}
+  Dirichlet: {left: {X: 0.0}, right bottom: {X: "0.1*t", Y: -0.25}}
+  Traction: {top: {Y: "-3*x*t"}, right: {X: 5.0, Y: 1.0}, shear: {Side: top, X: 2.0}}
+  Body Force: {Y: -0.5}
+  Contact: {Side: bottom, Gap: 0.01, Yield Stress: 16.0, Stiffness: 500.0, Friction Coefficient: 0.3}
+  Steps: {Times: [0.5, 1.0, 2.0]}
+"""), ["body        32 cells of Q1, plane strain; x from -1 to 3, y from 2 to 4 mm", "area 8 mm^2",
+       "material    E = 1000 MPa, nu = 0.3",
+       'sides       "left": length 2 mm, normal (-1, 0); held: X = 0',
+       '"right": length 2 mm, normal (1, 0); loaded',
+       '"bottom": length 4 mm, normal (0, -1); contact',
+       '"top": length 4 mm, normal (0, 1); loaded; loaded',
+       'points      "right bottom": held: X = "0.1*t", Y = -0.25',
+       'loads       "top": in all (0, -6) N/mm at t = 0.5, (0, -24) N/mm at t = 2',
+       '"right": in all (10, 2) N/mm', '"top": in all (8, 0) N/mm', "body force: in all (0, -4) N/mm",
+       'foundation  "bottom": springs of 500 MPa/mm until it yields at 16 MPa; friction: coefficient 0.3; gap 0.01 mm',
+       "steps       3, t = 0.5 to 2", "unknowns    90, 9 contact points",
+       "a run takes less than 1 s of one core and about 0.1 GB; thin and nearly incompressible bodies take several times as long"])
+
+    def test_it_tells_what_it_understood_of_other_bodies(self):
+        told = self.understood("""
+  Mesh: {Lower: [0.0, 0.0, 0.0], Upper: [2.0, 3.0, 1.0], Cells: [2, 3, 4], Element: P2}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Dirichlet: {back: {X: 0.0, Y: 0.0, Z: 0.0}}
+  Traction: {front: {Z: -2.0}}
+""")
+        for line in ("volume 6 m^3", '"left": area 3 m^2, normal (-1, 0, 0); free', '"front": area 6 m^2, normal (0, 0, 1); loaded',
+                     'loads       "front": in all (0, 0, -12) N', "foundation  none: nothing touches"):
+            self.assertIn(line, [each.replace("sides       ", "") for each in told])
+        told = self.understood("""
+  Kinematics: axisymmetric
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 2.0], Cells: [2, 4], Element: Q2}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Traction: {top: {Y: -1.0}}
+  Contact: {Side: bottom, Yield Stress: "10 + x"}
+  Adapt: {Target Relative Error: 0.01, Max Dofs: 5000}
+""")
+        for line in ("volume 6.28319 m^3 of the whole body of revolution", '"right": area 12.5664 m^2, normal (1, 0); free',
+                     'loads       "top": in all (0, -3.14159) N', 'foundation  "bottom": rigid until it yields at "10 + x" Pa; no friction',
+                     "then meshes are refined until the relative error is below 0.01, to at most 5000 unknowns"):
+            self.assertIn(line, told)
+
     def test_it_leaves_a_run_and_its_results_alone(self):
         self.solve("--set=Steps->Times={1,2}", "--set=Steps->Checkpoint Every=1")
         before = {file: (self.folder / "out" / file).stat().st_mtime_ns for file in files(self.folder / "out")}

@@ -3,6 +3,8 @@
 
 #include "around_nodes.hpp"
 #include "kernels.hpp"
+#include "rpc/core/parallel.hpp"
+#include "rpc/fem/measure.hpp"
 
 namespace rpc::fem
 {
@@ -91,6 +93,30 @@ DeviceView<double *> facet_size(const Discretization &d, const mesh::Side &side)
         if (dim == 3) size(facet) = math::sqrt(size(facet));
       });
   return size;
+}
+
+SideMeasure side_measure(const Discretization &d, const mesh::Side &side)
+{
+  const FacetPoints rule = facet_points(d, side, d.reference.facet);
+  const int points = rule.num_points();
+  const LO num_owned_cells = d.mesh->num_owned_cells;
+  const auto cell = side.cell;
+  std::vector<double> sums(5, 0.); // area, area in the mesh, normals times that
+  for (int k = 0; k < 5; ++k)
+    Kokkos::parallel_reduce(
+        "rpc::fem::side_measure", device_range(static_cast<LO>(side.facets.extent(0))),
+        KOKKOS_LAMBDA(const LO facet, double &sum) {
+          if (cell(facet) >= num_owned_cells) return; // another rank has it
+          for (int q = 0; q < points; ++q) {
+            const auto normal = rule.in_mesh(facet, q);
+            sum += k == 0 ? norm(normal) * rule.across(facet, q) : k == 1 ? norm(normal) : normal[k - 2];
+          }
+        },
+        sums[k]);
+  sums = summed(d.mesh->comm(), sums);
+  SideMeasure measure{sums[0]};
+  for (int c = 0; c < 3; ++c) measure.normal[c] = sums[1] > 0 ? sums[2 + c] / sums[1] : 0;
+  return measure;
 }
 
 SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side)
