@@ -25,7 +25,7 @@ namespace rpc
 namespace
 {
 
-constexpr std::array options_with_value{"--input", "--new", "--output", "--restart", "--set"};
+constexpr std::array options_with_value{"--input", "--new", "--output", "--print-schema", "--restart", "--set"};
 constexpr std::array flags{"--check", "--print-parameters", "--version", "--help"};
 
 bool is_one_of(const std::string &text, const std::vector<std::string> &names)
@@ -46,7 +46,7 @@ std::vector<std::string> joined(const std::vector<char *> &arguments)
     const auto equals = text.find('=');
     const std::string name = text.substr(0, equals);
     const bool has_value = equals != std::string::npos && equals + 1 < text.size();
-    const bool newest = text == "--restart" || text == "--new"; // checkpoint of the output folder; menu of templates
+    const bool newest = text == "--restart" || text == "--new" || text == "--print-schema"; // they go without
     RPC_REQUIRE(i == 0 || has_value || newest || !is_one_of(name, valued),
                 "command line: " << name << " needs a value, as in " << name << "="
                                  << (name == "--set" ? "\"Sublist->Parameter=value\"" : "NAME") << ". See rpc --help.");
@@ -121,11 +121,13 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   line.assignments = take_assignments(arguments);
   line.help = take_flag(arguments, "--help") | take_flag(arguments, "-h");
   const bool newest = take_flag(arguments, "--restart"), menu = take_flag(arguments, "--new");
+  const bool schema = take_flag(arguments, "--print-schema");
 
   CommandLineProcessor parser(false, true, false);
   parser.setOption("input", &line.input, "");
   parser.setOption("new", &line.new_deck, "");
   parser.setOption("output", &line.output, "");
+  parser.setOption("print-schema", &line.schema, "");
   parser.setOption("restart", &line.restart, "");
   parser.setOption("check", "run", &line.check, "");
   parser.setOption("print-parameters", "no-print-parameters", &line.print_parameters, "");
@@ -136,6 +138,11 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   const auto status = parser.parse(static_cast<int>(pointers.size()), pointers.data(), &text);
   RPC_REQUIRE(status == CommandLineProcessor::PARSE_SUCCESSFUL, refusal(text.str()) << " See rpc --help.");
   line.writes_template = menu || !line.new_deck.empty();
+  if (schema && line.schema.empty()) line.schema = "json";
+  line.prints_schema = !line.schema.empty();
+  RPC_REQUIRE(!line.prints_schema || line.schema == "json" || line.schema == "relaxng",
+              "command line: --print-schema must be one of json, relaxng, got \"" << line.schema
+                                                                                  << "\". See rpc --help.");
   line.restarts = newest || !line.restart.empty();
   RPC_REQUIRE(!newest || line.restart.empty(),
               "command line: --restart stands twice, once with a file and once without. See rpc --help.");
@@ -234,6 +241,9 @@ Usage: rpc --new=NAME
   --restart=FILE       goes on after a checkpoint, see "Steps->Checkpoint Every"
   --check              does all that a run does before its first solve, and writes nothing
   --print-parameters   prints every parameter of a deck: type, default, meaning, unit
+  --print-schema       prints the JSON Schema of decks in YAML, for editors
+  --print-schema=relaxng
+                       prints the RELAX NG schema of decks in XML, for editors
   --version            prints the version
   --help, -h           prints this text
   --kokkos-...         goes to Kokkos, e.g. --kokkos-threads=4; --kokkos-help lists them

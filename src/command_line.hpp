@@ -20,10 +20,12 @@ struct CommandLine {
   std::string new_deck;         ///< its name; empty or help: the menu of them
   bool help = false;
   bool print_parameters = false;
+  bool prints_schema = false;
+  std::string schema; ///< json or relaxng
   bool version = false;
 
   /// Whether there is a scene to be solved or checked: texts need no kernels and so no GPU.
-  bool solves() const { return !help && !version && !print_parameters && !writes_template; }
+  bool solves() const { return !help && !version && !print_parameters && !prints_schema && !writes_template; }
 };
 
 /// The arguments, those for Kokkos apart: Kokkos must not see the others, or it answers to --help and --threads too.

@@ -13,6 +13,7 @@
 #include "rpc/core/message.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/core/schema.hpp"
 #include "rpc/io/atomic_file.hpp"
 #include "rpc/io/deck.hpp"
 #include "rpc/io/run_lock.hpp"
@@ -198,6 +199,10 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   }
   if (line.print_parameters) {
     rpc::print_parameters(out, rpc::valid_deck());
+    return ExitCode::converged;
+  }
+  if (line.prints_schema) {
+    out << (line.schema == "json" ? rpc::json_schema(rpc::valid_deck()) : rpc::relax_ng_schema(rpc::valid_deck()));
     return ExitCode::converged;
   }
   if (line.writes_template) {

@@ -67,7 +67,7 @@ class CommandLine(RpcTestCase):
     def test_texts_need_no_kernels(self):
         """Kokkos does not start, which on a machine without a GPU it could not; nor with this."""
         refused = {"KOKKOS_NUM_THREADS": "many"}
-        for options in (["--help"], ["--version"], ["--print-parameters"], ["--new"]):
+        for options in (["--help"], ["--version"], ["--print-parameters"], ["--print-schema"], ["--new"]):
             self.rpc(*options, environment=refused)
         for options in (["--input=beam.xml", SMALL], ["--check", "--input=beam.xml", SMALL]):
             self.rpc(*options, environment=refused, code=1)
