@@ -10,6 +10,7 @@ namespace
 {
 
 constexpr int most_digits = 9;                           // of a value; a bar that asks for more stands by itself
+constexpr double rounding = 1e-11;                       // of a value
 constexpr double least_plain = 1e-4, beyond_plain = 1e6; // numbers in between need no power of ten
 
 std::string formatted(const char *const format, const double value)
@@ -89,6 +90,7 @@ std::string text_of(const double value, const double size, const double bar, con
   if (!std::isfinite(value)) return "unknown";
   if (std::isnan(bar)) return formatted("%.6g", value) + in;
   if (bar == 0) return formatted("%.6g", value) + in + " (exact)";
+  if (bar <= rounding * size) return formatted("%.6g", value) + in + " (to rounding)";
   if (!std::isfinite(bar) || !follows(size, bar))
     return formatted("%.9g", value) + " ± " + formatted("%.1e", bar) + in + share(size, bar);
   const Style style = style_of(size, bar);

@@ -62,9 +62,15 @@ TEST(ErrorBar, ThatIsZeroSaysExact)
   EXPECT_EQ(with_error_bar(16, 0, "Pa"), "16 Pa (exact)");
 }
 
+TEST(ErrorBar, ThatIsRoundingSaysSo)
+{
+  EXPECT_EQ(with_error_bar(5, 5e-12, "m"), "5 m (to rounding)");
+  EXPECT_EQ(with_error_bar({3., -4.}, 1e-12, "N"), "5 N (to rounding), components (3, -4)");
+}
+
 TEST(ErrorBar, BelowNineDigitsStandsByItself)
 {
-  EXPECT_EQ(with_error_bar(5, 5e-12, "m"), "5 ± 5.0e-12 m (1e-10 %)");
+  EXPECT_EQ(with_error_bar(5, 5e-9, "m"), "5 ± 5.0e-09 m (1e-07 %)");
   EXPECT_EQ(with_error_bar(5, 1.2e-7, "m"), "5.00000000 ± 0.00000012 m (2.4e-06 %)");
 }
 
@@ -88,7 +94,7 @@ TEST(ErrorBar, OfAVectorHoldsForItsComponents)
 TEST(ErrorBar, OfAVectorMayBeMissingOrTiny)
 {
   EXPECT_EQ(with_error_bar({1e-14, 64.93234}, none, "N/m"), "64.9323 N/m, components (0, 64.9323)");
-  EXPECT_EQ(with_error_bar({3., 4.}, 1e-12, "N"), "5 ± 1.0e-12 N (2e-11 %), components (3, 4)");
+  EXPECT_EQ(with_error_bar({3., 4.}, 1e-9, "N"), "5 ± 1.0e-09 N (2e-08 %), components (3, 4)");
   EXPECT_EQ(with_error_bar({0., 0.}, none, "N"), "0 N");
   EXPECT_EQ(with_error_bar({0., 0.}, 0.1, "N"), "0.00 ± 0.10 N");
   EXPECT_EQ(with_error_bar({none, 4.}, 0.1, "N"), "unknown");

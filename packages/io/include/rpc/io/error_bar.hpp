@@ -10,7 +10,7 @@ namespace rpc::io
 ///
 ///     "64.9323 ± 0.0077 N/m (0.012 %)", "(6.40 ± 0.25)e+08 Pa (3.9 %)", "0.8 ± 4.7 m (larger than the value)"
 ///
-/// A bar of 0 reads "(exact)"; without a bar there are six digits: "64.9349 N/m". A number that is not finite is "unknown".
+/// A bar of 0 reads "(exact)", one of rounding "(to rounding)"; without a bar there are six digits: "64.9349 N/m". A number that is not finite is "unknown".
 /// @param bar   >= 0; NaN: there is none
 /// @param unit  may be empty
 std::string with_error_bar(double value, double bar, const std::string &unit);
