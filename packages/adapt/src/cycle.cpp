@@ -50,15 +50,23 @@ std::string unknown_max_pressure(const std::vector<Cycle> &cycles, const std::ve
   return "";
 }
 
+constexpr double caution = 2; // the estimate may be 0.7 of the error
+
+/// By how much the load of a mesh moves in the mean, by the contact force [m].                                    (10.7b)
+double moved_by(const Cycle &cycle)
+{
+  const auto &f = cycle.contact.force;
+  const double force = std::hypot(f[0], f[1], f[2]);
+  return force > 0 ? cycle.energy_norm_squared / force : 0;
+}
+
 /// No less than what the last mesh leaves open: its estimated error, and data that jump between its nodes.      (10.7a), (10.7b)
 void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, ObservedErrors &errors)
 {
   const auto &f = last.contact.force;
-  constexpr double caution = 2; // the estimate may be 0.7 of the error
   const double force = std::hypot(f[0], f[1], f[2]), squared = caution * last.estimate * last.estimate;
-  const double moved = force > 0 ? last.energy_norm_squared / force : 0; // in the mean, by the force
-  errors.energy =
-      std::max(errors.energy, squared * last.energy_norm_squared / 2 + last.jumped_energy + last.jumped_force * moved);
+  const double moved = moved_by(last);
+  errors.energy = std::max(errors.energy, energy_left(last));
   errors.contact_force = std::max(errors.contact_force, squared * force + last.jumped_force +
                                                             (moved > 0 ? 2 * last.jumped_energy / moved : 0));
   // The largest penetration may be that of a corner.
@@ -71,6 +79,12 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
 }
 
 } // namespace
+
+double energy_left(const Cycle &cycle)
+{
+  const double squared = caution * cycle.estimate * cycle.estimate;
+  return squared * cycle.energy_norm_squared / 2 + cycle.jumped_energy + cycle.jumped_force * moved_by(cycle);
+}
 
 std::string error_bar_name(const std::string &key, const ResultScope &scope)
 {

@@ -51,7 +51,7 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
       s.pressure_change = contact::pressure_distance(comm, points, pressure, *found.start_pressure);
     if (!task.adapt.estimate) return;
     if (!found.has_results()) {
-      s.estimate = unknown_estimate();
+      if (!s.estimate) s.estimate = unknown_estimate(); // else that of the step before, whose results these are
       return;
     }
     const Timed phase("estimate", found.seconds.estimate);
@@ -310,6 +310,28 @@ double relative_estimate(const Solution &s)
 {
   const double squared = s.estimate->total();
   return squared == 0 || only_rounding(s) ? 0 : std::sqrt(squared / estimated_energy(s));
+}
+
+ObservedErrors errors_of(const Task &task, const Solution &s)
+{
+  if (s.adaptation && std::isfinite(s.adaptation->errors.energy)) return s.adaptation->errors;
+  ObservedErrors errors;
+  std::string reason = "not estimated: set \"Adapt->Target Relative Error\"";
+  if (!s.has_results())
+    reason = "there is no solution";
+  else if (s.estimate && only_rounding(s))
+    reason = "the strain energy is at rounding level";
+  else if (s.estimate)
+    reason = task.adapt.adapts() ? "one mesh shows no change"
+                                 : "one mesh shows no change: set \"Adapt->Target Relative Error\"";
+  for (const auto &q : error_bars) {
+    errors.*q.value = std::numeric_limits<double>::quiet_NaN();
+    errors.unknown[q.key] = reason;
+  }
+  if (!s.has_results() || !s.estimate || only_rounding(s)) return errors;
+  errors.energy = energy_left(cycle_of(s, 0));
+  errors.unknown.erase("energy_J");
+  return errors;
 }
 
 double exact_error(const Task &task, const Solution &s)

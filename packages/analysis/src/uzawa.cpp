@@ -5,6 +5,7 @@
 #include "rpc/core/interrupt.hpp"
 
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 namespace rpc::analysis
@@ -21,10 +22,11 @@ std::string verdict(const UzawaResult &result, const UzawaOptions &options)
 {
   std::ostringstream text;
   const contact::OptimalityResiduals &r = result.residuals;
-  text << (result.converged ? "converged" : std::to_string(result.iterations) + " Uzawa iterations were not enough")
+  text << std::setprecision(2)
+       << (result.converged ? "converged" : std::to_string(result.iterations) + " Uzawa iterations were not enough")
        << ": KKT residual " << r.kkt_residual << ", equilibrium residual " << r.equilibrium_residual
        << ", energy balance " << r.energy_balance << ", duality gap " << r.duality_gap << ", tolerance "
-       << options.tolerance;
+       << std::setprecision(6) << options.tolerance;
   return text.str();
 }
 
@@ -37,12 +39,16 @@ bool is_over(UzawaResult &result, const Minimization &found, const double previo
     result.converged = converged;
     result.friction_unsettled = !converged && found.bounds_follow;
     result.reason = verdict(result, options);
+    result.reason_has_residuals = true;
     if (!cause.empty()) result.reason += ": " + cause;
     return true;
   };
   const auto ends_with = [&](const Cause &cause) {
     ends(false, because(cause));
-    if (!found.converged && !found.reason.empty()) result.reason = found.reason;
+    if (!found.converged && !found.reason.empty()) {
+      result.reason = found.reason;
+      result.reason_has_residuals = false;
+    }
     return true;
   };
   const bool holds = result.residuals.holds(options.tolerance);

@@ -43,25 +43,12 @@ struct ObservedErrors {
 };
 
 inline constexpr std::array<Quantity<ObservedErrors>, 6> error_bars{{
-    {&ObservedErrors::energy, "energy_J", unit::energy, Combine::maximum, {true, 0, "", "J "}},
-    {&ObservedErrors::contact_force, "contact_force", unit::force, Combine::maximum, {true, 0, "", "contact force "}},
-    {&ObservedErrors::max_pressure, "max_pressure", unit::pressure, Combine::maximum, {true, 0, "", "max. pressure "}},
-    {&ObservedErrors::contact_pressure,
-     "contact_pressure_l2_relative",
-     unit::none,
-     Combine::maximum,
-     {true, 0, "", "pressure in L2 "}},
-    {&ObservedErrors::contact_length,
-     "contact_length",
-     unit::extent,
-     Combine::maximum,
-     {true, 0, "", "in contact "},
-     "contact_area"},
-    {&ObservedErrors::max_penetration,
-     "max_penetration",
-     unit::length,
-     Combine::maximum,
-     {true, 0, "", "max. penetration "}},
+    {&ObservedErrors::energy, "energy_J", unit::energy, Combine::maximum, {true}},
+    {&ObservedErrors::contact_force, "contact_force", unit::force, Combine::maximum, {true}},
+    {&ObservedErrors::max_pressure, "max_pressure", unit::pressure, Combine::maximum, {true}},
+    {&ObservedErrors::contact_pressure, "contact_pressure_l2_relative", unit::none, Combine::maximum, {true}},
+    {&ObservedErrors::contact_length, "contact_length", unit::extent, Combine::maximum, {true}, "contact_area"},
+    {&ObservedErrors::max_penetration, "max_penetration", unit::length, Combine::maximum, {true}},
 }};
 static_assert(sizeof(ObservedErrors) == error_bars.size() * sizeof(double) + sizeof(std::map<std::string, std::string>),
               "an error bar has no line in the table");
@@ -69,6 +56,9 @@ static_assert(sizeof(ObservedErrors) == error_bars.size() * sizeof(double) + siz
 /// The name in the files of the number that an error bar belongs to.
 /// @param key  of error_bars
 std::string error_bar_name(const std::string &key, const ResultScope &scope);
+
+/// What one mesh by itself leaves open of J: no bar is smaller [J], in 2D per m.                     doc/theory.md (10.7a), (10.7b)
+double energy_left(const Cycle &cycle);
 
 /// Error bars of the last of several meshes.
 ObservedErrors observed_errors(const std::vector<Cycle> &cycles);

@@ -49,6 +49,9 @@ bool succeeded(const Solution &solution);
 bool only_rounding(const Solution &solution);
 /// The estimated error in the energy norm over that of the solution, where there is an estimate; 0 where only_rounding().
 double relative_estimate(const Solution &solution);
+/// Errors of the results: as the sequence of meshes shows them, or of one mesh with an estimate that of J alone. Without an estimate all
+/// are NaN. `unknown` tells why.
+ObservedErrors errors_of(const Task &task, const Solution &solution);
 /// The true relative error, sqrt(2 |J_h - J| / a(u_h, u_h)), where the deck has the exact J; else NaN.
 double exact_error(const Task &task, const Solution &solution);
 

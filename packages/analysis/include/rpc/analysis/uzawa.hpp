@@ -49,7 +49,8 @@ struct Minimization {
 struct UzawaResult {
   bool converged = false; ///< the optimality residuals are small enough
   std::string reason;
-  bool friction_unsettled = false; ///< it ended while friction's bounds followed the pressures, without convergence
+  bool reason_has_residuals = false; ///< the reason tells the residuals
+  bool friction_unsettled = false;   ///< it ended while friction's bounds followed the pressures, without convergence
   int iterations = 0;
   std::vector<int> newton_iterations; ///< per Uzawa iteration
   double multiplier_change = 0;       ///< of the last one, relative
