@@ -26,7 +26,7 @@ namespace
 {
 
 constexpr std::array options_with_value{"--input", "--new", "--output", "--print-schema", "--restart", "--set"};
-constexpr std::array flags{"--check", "--print-parameters", "--version", "--help"};
+constexpr std::array flags{"--check", "--print-parameters", "--verbose", "--version", "--help"};
 
 bool is_one_of(const std::string &text, const std::vector<std::string> &names)
 {
@@ -120,6 +120,7 @@ CommandLine parse_command_line(const std::vector<char *> &argument_pointers)
   CommandLine line;
   line.assignments = take_assignments(arguments);
   line.help = take_flag(arguments, "--help") | take_flag(arguments, "-h");
+  line.verbose = take_flag(arguments, "--verbose");
   const bool newest = take_flag(arguments, "--restart"), menu = take_flag(arguments, "--new");
   const bool schema = take_flag(arguments, "--print-schema");
 
@@ -240,6 +241,8 @@ Usage: rpc --new=NAME
   --restart            goes on after the newest checkpoint in the output folder
   --restart=FILE       goes on after a checkpoint, see "Steps->Checkpoint Every"
   --check              does all that a run does before its first solve, and writes nothing
+  --verbose            the console also tells what parts of the algorithm the run skipped, and the
+                       residuals of every Uzawa iteration
   --print-parameters   prints every parameter of a deck: type, default, meaning, unit
   --print-schema       prints the JSON Schema of decks in YAML, for editors
   --print-schema=relaxng

@@ -23,6 +23,7 @@ struct CommandLine {
   bool prints_schema = false;
   std::string schema; ///< json or relaxng
   bool version = false;
+  bool verbose = false; ///< the console tells what was skipped too
 
   /// Whether there is a scene to be solved or checked: texts need no kernels and so no GPU.
   bool solves() const { return !help && !version && !print_parameters && !prints_schema && !writes_template; }

@@ -134,7 +134,8 @@ ExitCode run_deck(const rpc::CommandLine &line, const std::string &deck, const r
                   std::ostream &out)
 {
   const double start = Teuchos::Time::wallTime();
-  const rpc::Scene scene = rpc::read_scene(deck, line.assignments, *comm);
+  rpc::Scene scene = rpc::read_scene(deck, line.assignments, *comm);
+  scene.output.verbose = line.verbose;
   RPC_REQUIRE(!line.restarts || scene.has_steps(),
               "command line: --restart goes with load steps; the deck has none, see \"Steps->Times\"");
   rpc::Checkpoints checkpoints(scene, line.restarts, line.restart, line.output);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.hpp"
 
+#include "output/result_list.hpp"
 #include "rpc/core/quantity.hpp"
 
 #include <Teuchos_Time.hpp>
@@ -32,14 +33,6 @@ std::string number_text(const char *format, const double value)
   char text[60];
   std::snprintf(text, sizeof text, format, value);
   return text;
-}
-
-/// A vector in its components.
-std::string vector_text(const std::array<double, 3> &v, const int dim)
-{
-  std::string text;
-  for (int c = 0; c < dim; ++c) text += (c > 0 ? ", " : "(") + number_text("%.6g", v[c]);
-  return text + ")";
 }
 
 /// A line of numbers with one heading.
@@ -83,50 +76,39 @@ void print_lines(std::ostream &out, const std::vector<Line> &lines)
   }
 }
 
-/// An error bar, or that there is none.
-std::string bar_text(const double value, const std::string &unit)
-{
-  if (std::isnan(value)) return "unknown";
-  return number_text("%.1e", value) + (unit.empty() ? "" : " " + unit);
-}
-
 int sum(const std::vector<int> &values)
 {
   return std::accumulate(values.begin(), values.end(), 0);
 }
 
-void print_adaptation(std::ostream &out, const adapt::Adaptation &adaptation, const ResultScope &scope)
+/// The meshes of an adaptive run.
+void print_meshes(std::ostream &out, const adapt::Adaptation &adaptation)
 {
-  const std::string outcome = !adaptation.reached         ? "NOT TO THE TARGET: " + adaptation.reason
-                              : adaptation.reason.empty() ? "the error is what was asked for"
-                                                          : adaptation.reason;
-  out << "  adapted             " << outcome << "\n";
-  print(out, "    cycle     dofs    error            J    max. p  Newton  krylov  time [s]\n");
+  print(out, "    mesh      dofs    error            J    max. p  Newton  krylov  time [s]\n");
   for (std::size_t k = 0; k < adaptation.cycles.size(); ++k) {
     const adapt::Cycle &c = adaptation.cycles[k];
     print(out, "    %5zu %8zu %8.2e %12.6g %9.4g %7d %7d %9.3f\n", k + 1, c.dofs, c.estimate, c.energy,
           c.contact.max_pressure, c.newton_iterations, sum(c.linear_iterations), c.seconds);
   }
-  const auto &e = adaptation.errors;
-  if (std::isnan(e.energy)) {
-    print(out, "    errors by the sequence: unknown, for these are the results of the first mesh\n");
-    return;
-  }
-  const char *separator = "    errors by the sequence: ";
-  for (const auto &q : defined_numbers(adapt::error_bars, scope)) {
-    out << separator << q.shown.label << bar_text(e.*q.value, q.unit_name(scope));
-    separator = ", ";
-  }
-  out << '\n';
-  for (const auto &[key, reason] : e.unknown)
-    out << "    no error of " << adapt::error_bar_name(key, scope) << ": " << reason << '\n';
 }
 
-/// In lines of its own, below each other.
-void print_note(std::ostream &out, const std::string &note)
+/// @param format  of a number
+std::string estimate_text(const Scene &scene, const Solution &s, const char *const format)
+{
+  std::string text = number_text(format, relative_estimate(s)) + " of the energy norm";
+  if (scene.adapt.adapts()) text += ", asked for: " + number_text(format, scene.adapt.target);
+  const double exact = exact_error(scene, s);
+  if (!std::isnan(exact)) text += "; by the exact energy " + number_text(format, exact);
+  if (only_rounding(s)) text += ". The strain energy is at rounding level; the estimate is meaningless.";
+  return text;
+}
+
+/// A heading with its text, in lines below each other.
+void print_text(std::ostream &out, const std::string &what, const std::string &text)
 {
   constexpr std::size_t width = 110;
-  std::string rest = note, heading = "    note              ";
+  std::string rest = text,
+              heading = "  " + what + std::string(std::max<std::size_t>(20, what.size() + 1) - what.size(), ' ');
   while (!rest.empty()) {
     const std::size_t blank = rest.size() > width ? rest.rfind(' ', width) : std::string::npos;
     out << heading << rest.substr(0, blank) << '\n';
@@ -145,7 +127,10 @@ void print_balance(std::ostream &out, const Scene &scene, const Solution &s)
 
 } // namespace
 
-ConsoleTable::ConsoleTable(std::ostream &out) : out_(out), start_(Teuchos::Time::wallTime()) {}
+ConsoleTable::ConsoleTable(std::ostream &out, const bool verbose)
+    : out_(out), verbose_(verbose), start_(Teuchos::Time::wallTime())
+{
+}
 
 void ConsoleTable::scene(const Scene &scene, const fem::Discretization &d, const contact::ContactNodes &contact)
 {
@@ -176,6 +161,7 @@ void ConsoleTable::heads(const Scene &scene)
 
 void ConsoleTable::newton(const int uzawa, const solver::NewtonStep &step, const contact::StateCounts &n)
 {
+  out_ << std::exchange(residuals_, "");
   print(out_, "%5d %6d  %8.2e", uzawa, step.iteration, step.residual);
   if (step.iteration == 0)
     print(out_, "         ");
@@ -188,8 +174,9 @@ void ConsoleTable::newton(const int uzawa, const solver::NewtonStep &step, const
 
 void ConsoleTable::uzawa(const analysis::UzawaResult &result)
 {
-  print(out_, "%5d     -- ", result.iterations);
-  out_ << lines(analysis::residual_quantities, result.residuals, {}, "%.1e").front().numbers << std::endl;
+  residuals_ = number_text("%5.0f     -- ", result.iterations) +
+               lines(analysis::residual_quantities, result.residuals, {}, "%.1e").front().numbers + '\n';
+  if (verbose_) out_ << std::exchange(residuals_, "") << std::flush;
 }
 
 void ConsoleTable::load_step(const Scene &scene, const analysis::Solution &s)
@@ -209,61 +196,97 @@ void ConsoleTable::load_step(const Scene &scene, const analysis::Solution &s)
 
 void print_estimate(std::ostream &out, const Scene &scene, const Solution &s)
 {
-  print(out, "estimated error %.3e of the energy norm", relative_estimate(s));
-  if (scene.adapt.adapts()) print(out, ", asked for: %.3e", scene.adapt.target);
-  const double exact = exact_error(scene, s);
-  if (!std::isnan(exact)) print(out, "; by the exact energy %.3e", exact);
-  if (only_rounding(s)) print(out, ". The strain energy is at rounding level; the estimate is meaningless.");
-  out << std::endl;
+  out << "estimated error " << estimate_text(scene, s, "%.3e") << std::endl;
 }
 
 namespace
 {
 
-/// Numbers of a solution.
-void print_results(std::ostream &out, const Scene &scene, const Solution &s, const ResultScope &scope)
+std::string place_text(const Scene &scene, const contact::PlaceBetweenNodes &at, const int dim)
 {
-  const int dim = s.discretization.dim();
-  const auto unit_of = [&](const Unit &unit) { return scope.units.of(unit, scope.per_length); };
-  print(out, "  energy J            %.9g %s\n", s.energy, unit_of(unit::energy).c_str());
-  print_lines(out, lines(analysis::body_quantities, s.body, scope, "%.6g"));
-  if (!scene.model.contact.empty()) {
-    print(out, "  contact force       %s %s\n", vector_text(s.contact.total.force, dim).c_str(),
-          unit_of(unit::force).c_str());
-    print_lines(out, lines(contact::contact_quantities, s.contact.total, scope, "%.6g"));
-    const auto last =
-        std::find_if(s.history.rbegin(), s.history.rend(), [](const auto &step) { return step.converged; });
-    if (last != s.history.rend()) print_lines(out, lines(analysis::energy_quantities, last->energies, scope, "%.6g"));
-  }
-  if (s.estimate) {
-    print(out, "  ");
-    print_estimate(out, scene, s);
-  }
-  for (std::size_t k = 0; k < scene.model.contact.size() && scene.model.contact.size() > 1; ++k) {
-    const contact::ContactSums &side = s.contact.sides[k];
-    out << "    on \"" << scene.model.contact[k].name_in_results() << "\": force " << vector_text(side.force, dim);
-    for (const Line &line : lines(contact::contact_quantities, side, scope, "%.6g"))
-      out << ", " << line.heading << ' ' << line.numbers;
-    out << '\n';
-  }
+  std::string text = "at ";
+  for (int c = 0; c < dim; ++c) text += (c > 0 ? ", " : "(") + number_text("%.4g", at.place[c]);
+  return text + ") on \"" + scene.model.contact[at.side].name_in_results() + "\"";
 }
 
-} // namespace
+/// What lies between the nodes of the contact sides.
+std::string missed(const Scene &scene, const Solution &s, const ResultScope &scope)
+{
+  const auto in = [&](const Unit &unit) { return " " + scope.units.of(unit, scope.per_length); };
+  const contact::ContactSums &sums = s.contact.total;
+  const contact::BetweenNodes &between = s.contact.between;
+  const int dim = s.discretization.dim();
+  if (sums.num_nodes == 0) return "no node of the contact sides faces the foundation: there is no contact";
+  if (!(between.deepest.depth > 0)) return "no penetration between the nodes";
+  std::string text = "between nodes the body lies " + number_text("%.3g", sums.max_penetration_between_nodes) +
+                     in(unit::length) + " deeper in the foundation, " + place_text(scene, between.deepest, dim);
+  if (between.unseen.depth > 0)
+    text += "; contact that no node has, " + number_text("%.3g", sums.unseen_penetration) + in(unit::length) +
+            " deep " + place_text(scene, between.unseen, dim) + ", of an energy of " +
+            number_text("%.2g", sums.unseen_energy) + in(unit::energy);
+  return text;
+}
 
-void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &notes,
-                   const std::vector<std::string> &files)
+/// Results, those of one heading on one line. Reasons for missing error bars stand behind the numbers that have one of their own.
+std::vector<Line> result_lines(const std::vector<Result> &results)
+{
+  std::vector<Line> all;
+  for (const Result &result : results) {
+    if (result.line.empty()) continue;
+    if (all.empty() || all.back().heading != result.line)
+      all.push_back({result.line, ""});
+    else
+      all.back().numbers += ", ";
+    all.back().numbers += result.label + text_of(result);
+    if (result.tells_why) all.back().numbers += " (no error bar: " + result.no_bar + ")";
+  }
+  return all;
+}
+
+/// Where error bars come from, or how to have them.
+void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
+{
+  if (!s.estimate) {
+    print_text(out, "errors",
+               "not estimated: add \"Adapt->Target Relative Error\", such as 0.01, for error bars on meshes that are "
+               "adapted, or \"Adapt->Estimate Error\" = true for that of J on this mesh");
+    return;
+  }
+  const adapt::ObservedErrors errors = adapt::errors_of(scene, s);
+  std::string text = estimate_text(scene, s, "%.1e");
+  if (std::isfinite(errors.contact_pressure) && !scene.model.contact.empty())
+    text += "; of the contact pressure " + number_text("%.1e", errors.contact_pressure) + " in L2";
+  print_text(out, "estimated error", text);
+  if (!s.adaptation)
+    print_text(out, "errors", "of J alone: add \"Adapt->Target Relative Error\", such as 0.01, for further error bars");
+  else if (const auto reason = errors.unknown.find("contact_force"); reason != errors.unknown.end())
+    print_text(out, "errors", (std::isfinite(errors.energy) ? "of J alone: " : "not known: ") + reason->second);
+  else
+    print_text(out, "errors", "of numbers without an error bar are not estimated");
+}
+
+/// Numbers of a solution.
+void print_results(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &notes)
 {
   const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
-  const bool stopped = s.failure || !s.uzawa.converged;
-  out << '\n' << (stopped ? "NOT CONVERGED: " : "");
-  if (stopped && !s.history.empty()) print(out, "at t = %g: ", s.failure ? s.failure->time : s.time);
-  out << (s.failure ? s.failure->reason : s.uzawa.reason) << '\n';
-  if (s.failure) print(out, "  results             of the last step that converged, t = %g\n", s.time);
-  print_lines(out, lines(analysis::residual_quantities, s.uzawa.residuals, scope, "%.1e"));
-  if (s.has_results())
-    print_results(out, scene, s, scope);
-  else
-    out << "  results             none: the last iterate is no solution\n";
+  print_lines(out, result_lines(result_list(scene, s)));
+  const auto &sides = scene.model.contact;
+  for (std::size_t k = 0; k < sides.size() && sides.size() > 1; ++k) {
+    std::string text;
+    for (const Line &line : result_lines(side_results(scene, s, k)))
+      text += (text.empty() ? "" : "; ") + line.heading + ' ' + line.numbers;
+    print_text(out, "on \"" + sides[k].name_in_results() + "\"", text);
+  }
+  print_accuracy(out, scene, s);
+  if (!sides.empty()) print_text(out, "mesh misses", missed(scene, s, scope));
+  for (const auto &note : notes) print_text(out, "note", note);
+  if (const std::size_t told = s.notes.size() - notes.size(); told > 0)
+    print(out, "  notes               %zu above, in %s \"note:\"\n", told,
+          told == 1 ? "the line that begins with" : "lines that begin with");
+}
+
+void print_work(std::ostream &out, const Solution &s)
+{
   print(out,
         "  work                %d Uzawa, %d Newton, %zu linear solves, %d iterations in them, %d preconditioner "
         "set-ups\n",
@@ -278,11 +301,43 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
   for (const auto &level : s.levels)
     print(out, "    predicted by      %zu dofs: %d Newton, %d linear iterations, %.3f s\n", level.dofs,
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
-  if (s.adaptation && s.has_results()) print_adaptation(out, *s.adaptation, scope);
+}
+
+} // namespace
+
+void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &notes,
+                   const std::vector<std::string> &files)
+{
+  const bool stopped = s.failure || !s.uzawa.converged;
+  out << '\n' << (stopped ? "NOT CONVERGED: " : "");
+  if (stopped && !s.history.empty()) print(out, "at t = %g: ", s.failure ? s.failure->time : s.time);
+  out << (s.failure ? s.failure->reason : s.uzawa.reason) << '\n';
+  if (s.adaptation && s.has_results()) {
+    const adapt::Adaptation &a = *s.adaptation;
+    print_text(out, "adapted",
+               !a.reached         ? "NOT TO THE TARGET: " + a.reason
+               : a.reason.empty() ? "the error is what was asked for"
+                                  : a.reason);
+  }
   print_balance(out, scene, s);
-  for (const auto &note : notes) print_note(out, note);
-  for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
-  print_lines(out, lines(analysis::phase_seconds, s.seconds, scope, "%.3f"));
+  if (s.failure)
+    print(out, "  results             of the last step that converged, t = %g\n", s.time);
+  else if (s.has_results() && !s.history.empty())
+    print(out, "  results             at t = %g, the last of %zu step%s\n", s.time, s.history.size(),
+          s.history.size() == 1 ? "" : "s");
+  if (s.failure || !s.uzawa.reason_has_residuals) {
+    for (const Line &line : lines(analysis::residual_quantities, s.uzawa.residuals, {}, "%.1e"))
+      print(out, "  residuals           %s, tolerance %g\n", line.numbers.c_str(), scene.step.uzawa.tolerance);
+  }
+  if (s.has_results())
+    print_results(out, scene, s, notes);
+  else
+    out << "  results             none: the last iterate is no solution\n";
+  print_work(out, s);
+  if (s.adaptation && s.has_results()) print_meshes(out, *s.adaptation);
+  if (scene.output.verbose)
+    for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
+  print_lines(out, lines(analysis::phase_seconds, s.seconds, {}, "%.3f"));
   for (const auto &file : files) print(out, "  wrote %s\n", file.c_str());
 }
 

@@ -17,6 +17,7 @@ struct OutputOptions {
   bool exodus = true, csv = true, json = true;
   io::ExodusFiles exodus_files = io::ExodusFiles::joined;
   bool timers = false;
+  bool verbose = false; ///< of the command line: the console tells more
 };
 
 /// A deck, read and checked: all that a run needs to know.

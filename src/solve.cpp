@@ -26,7 +26,7 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   for (const std::string &note : scene.notes) notes.add(note);
   adapt::Listener listener;
   listener.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &contact) {
-    if (!table || !scene.has_steps()) table.emplace(console);
+    if (!table || !scene.has_steps()) table.emplace(console, scene.output.verbose);
     table->scene(scene, d, contact);
     for (const std::string &note : notes_on_mesh(scene, d, contact)) notes.add(note);
   };

@@ -2,6 +2,7 @@
 #include "output/summary.hpp"
 
 #include "output/quantities.hpp"
+#include "output/result_list.hpp"
 
 #include <cmath>
 
@@ -42,6 +43,35 @@ nlohmann::ordered_json units_json(const ResultScope &scope)
           {"energy", name(unit::energy)}};
 }
 
+/// A number that may be unknown: null then.
+nlohmann::ordered_json maybe(const double value)
+{
+  return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+}
+
+/// Each result by its key, those of a list's entries by their names.
+nlohmann::ordered_json results_json(const std::vector<Result> &results)
+{
+  auto json = nlohmann::ordered_json::object();
+  for (const Result &result : results) {
+    nlohmann::ordered_json entry;
+    entry["value"] = result.is_vector ? nlohmann::ordered_json(result.value) : nlohmann::ordered_json(result.value[0]);
+    entry["unit"] = result.unit.empty() ? "1" : result.unit;
+    entry["error_bar"] = maybe(result.error_bar);
+    if (std::isnan(result.error_bar)) entry["reason"] = result.no_bar;
+    (result.entry.empty() ? json[result.key] : json[result.key][result.entry]) = entry;
+  }
+  return json;
+}
+
+void add_results(nlohmann::ordered_json &json, const Scene &scene, const Solution &s)
+{
+  json["results"] = results_json(result_list(scene, s));
+  const auto &sides = scene.model.contact;
+  for (std::size_t k = 0; k < sides.size() && sides.size() > 1; ++k)
+    json["results"]["contact_sides"][sides[k].name_in_results()] = results_json(side_results(scene, s, k));
+}
+
 void add_steps(nlohmann::ordered_json &json, const Solution &s, const ResultScope &scope)
 {
   auto &steps = json["steps"] = nlohmann::ordered_json::array();
@@ -70,12 +100,6 @@ void add_balance(nlohmann::ordered_json &json, const Scene &scene, const Solutio
   json["energy_tolerance"]["steps"] = off.steps;
   json["energy_tolerance"]["largest"] = off.share;
   json["energy_tolerance"]["at"] = off.at;
-}
-
-/// A number that may be unknown: null then.
-nlohmann::ordered_json maybe(const double value)
-{
-  return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
 }
 
 nlohmann::ordered_json cycle_json(const adapt::Cycle &c, const ResultScope &scope, const int dim)
@@ -135,6 +159,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["execution_space"] = ExecutionSpace::name();
   json["time"] = s.has_results() ? nlohmann::ordered_json(s.time) : nlohmann::ordered_json();
   json["units"] = units_json(scope);
+  add_results(json, scene, s);
   json["energy_J"] = s.energy;
   json["strain_energy"] = 0.5 * s.energy_norm_squared;
   json["energy_norm_squared"] = s.energy_norm_squared;
@@ -151,6 +176,7 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   for (std::size_t k = 0; k < scene.model.dirichlet.size(); ++k)
     json["reaction_force"][scene.model.dirichlet[k].name] = vector_json(s.reactions[k], mesh.dim());
   add_shown(json, analysis::residual_quantities, s.uzawa.residuals, scope);
+  json["residual_tolerance"] = scene.step.uzawa.tolerance;
   json["multiplier_change"] = s.uzawa.multiplier_change;
   json["uzawa_iterations"] = s.uzawa.iterations;
   json["newton_iterations"] = s.uzawa.newton_iterations;

@@ -1,0 +1,113 @@
+#include "output/result_list.hpp"
+
+#include "rpc/io/error_bar.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace rpc
+{
+namespace
+{
+
+constexpr const char *no_bar_at_all = "no error of this number is estimated";
+
+Result vector_result(const std::string &key, const std::array<double, 3> &v, const int dim, const std::string &unit)
+{
+  Result result;
+  result.key = key;
+  result.value.assign(v.begin(), v.begin() + dim);
+  result.is_vector = true;
+  result.unit = unit;
+  result.no_bar = no_bar_at_all;
+  return result;
+}
+
+/// The numbers of a record that the summary shows. A line of the console none of whose numbers is > 0 may be left out.
+template <class Table, class Record>
+void add_results(std::vector<Result> &all, const Table &table, const Record &record, const ResultScope &scope)
+{
+  const auto numbers = defined_numbers(table, scope);
+  const auto heading = [](const auto &q) { return std::string(q.shown.heading ? q.shown.heading : ""); };
+  for (const auto &q : numbers) {
+    if (!q.shown.summary) continue;
+    Result result;
+    result.key = q.name(scope);
+    const bool shown = std::any_of(numbers.begin(), numbers.end(), [&](const auto &other) {
+      return heading(other) == heading(q) && (!other.shown.only_positive || record.*other.value > 0);
+    });
+    if (shown) result.line = heading(q);
+    result.label = q.shown.label;
+    result.value = {record.*q.value};
+    result.unit = q.unit_name(scope);
+    result.no_bar = no_bar_at_all;
+    all.push_back(result);
+  }
+}
+
+std::vector<Result> contact_results(const contact::ContactSums &sums, const ResultScope &scope, const int dim)
+{
+  Result force = vector_result("contact_force", sums.force, dim, scope.units.of(unit::force, scope.per_length));
+  force.line = "contact force";
+  std::vector<Result> all{force};
+  add_results(all, contact::contact_quantities, sums, scope);
+  return all;
+}
+
+/// Gives results that have an error bar theirs, and the others of those that may have one their reasons.
+void add_error_bars(std::vector<Result> &all, const adapt::ObservedErrors &errors, const ResultScope &scope,
+                    const bool told)
+{
+  for (const auto &q : defined_numbers(adapt::error_bars, scope))
+    for (Result &result : all) {
+      if (result.key != q.name(scope)) continue;
+      result.error_bar = errors.*q.value;
+      const auto reason = errors.unknown.find(q.key);
+      result.no_bar = reason == errors.unknown.end() ? "" : reason->second;
+      result.tells_why = told && std::isnan(result.error_bar);
+    }
+}
+
+} // namespace
+
+std::vector<Result> result_list(const Scene &scene, const Solution &s)
+{
+  const ResultScope scope = analysis::result_scope(scene.model, s.discretization);
+  const int dim = s.discretization.dim();
+  std::vector<Result> all;
+  if (!scene.model.contact.empty()) all = contact_results(s.contact.total, scope, dim);
+  for (std::size_t k = 0; k < scene.model.dirichlet.size() && k < s.reactions.size(); ++k) {
+    Result reaction =
+        vector_result("reaction_force", s.reactions[k], dim, scope.units.of(unit::force, scope.per_length));
+    reaction.entry = scene.model.dirichlet[k].name;
+    reaction.line = "reaction at \"" + reaction.entry + "\"";
+    all.push_back(reaction);
+  }
+  add_results(all, analysis::body_quantities, s.body, scope);
+  Result energy;
+  energy.key = "energy_J";
+  energy.line = "energy J";
+  energy.value = {s.energy};
+  energy.unit = scope.units.of(unit::energy, scope.per_length);
+  all.push_back(energy);
+  const auto last = std::find_if(s.history.rbegin(), s.history.rend(), [](const auto &step) { return step.converged; });
+  if (s.has_results() && last != s.history.rend()) add_results(all, analysis::energy_quantities, last->energies, scope);
+  // Of a sequence of meshes each number has its own reason, else one holds for all.
+  add_error_bars(all, adapt::errors_of(scene, s), scope, s.adaptation && std::isfinite(s.adaptation->errors.energy));
+  return all;
+}
+
+std::vector<Result> side_results(const Scene &scene, const Solution &s, const std::size_t side)
+{
+  return contact_results(s.contact.sides[side], analysis::result_scope(scene.model, s.discretization),
+                         s.discretization.dim());
+}
+
+std::string text_of(const Result &result)
+{
+  return result.is_vector ? io::with_error_bar(result.value, result.error_bar, result.unit)
+                          : io::with_error_bar(result.value.front(), result.error_bar, result.unit);
+}
+
+} // namespace rpc

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "scene.hpp"
+#include "solve.hpp"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace rpc
+{
+
+/// A number of the results, or a vector, with its error bar: what the console shows of it and the summary lists.
+struct Result {
+  std::string key;           ///< in the summary
+  std::string entry;         ///< of the deck's list that it belongs to: the name of a support; else empty
+  std::string line;          ///< heading of its line on the console, shared by results of one heading; empty: no line
+  std::string label;         ///< on that line, before the number
+  std::vector<double> value; ///< one number, or one for each direction of space
+  bool is_vector = false;
+  std::string unit; ///< may be empty
+  double error_bar = std::numeric_limits<double>::quiet_NaN();
+  std::string no_bar;     ///< why there is no error bar, if there is none
+  bool tells_why = false; ///< it has a reason of its own, which its line tells
+};
+
+/// The results of a run in the order in which an engineer reads them: forces, contact, supports, body, energies. Without
+/// a solution all are NaN.
+std::vector<Result> result_list(const Scene &scene, const Solution &solution);
+
+/// Those of one of several contact sides, without error bars.
+std::vector<Result> side_results(const Scene &scene, const Solution &solution, std::size_t side);
+
+/// Value, error bar and unit as text.
+std::string text_of(const Result &result);
+
+} // namespace rpc
