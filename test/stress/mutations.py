@@ -110,6 +110,8 @@ def strict_json(text):
 def nulls(value, path=""):
     """Where a JSON value holds a null, which stands for a number that is not finite, unless it is one that the deck must ask for."""
     items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else []
+    if isinstance(value, dict) and value.get("reason"):  # that there is no error bar
+        items = [item for item in items if item[0] != "error_bar"]
     return [path] if value is None and path not in OPTIONAL else [found for key, item in items for found in nulls(item, f"{path}/{key}")]
 
 
