@@ -288,10 +288,10 @@ void print_results(std::ostream &out, const Scene &scene, const Solution &s, con
 void print_work(std::ostream &out, const Solution &s)
 {
   print(out,
-        "  work                %d Uzawa, %d Newton, %zu linear solves, %d iterations in them, %d preconditioner "
+        "  work                %s%d Uzawa, %d Newton, %zu linear solves, %d iterations in them, %d preconditioner "
         "set-ups\n",
-        s.uzawa.iterations, sum(s.uzawa.newton_iterations), s.linear.iterations.size(), sum(s.linear.iterations),
-        s.linear.preconditioner_setups);
+        s.history.size() > 1 ? "of the last step: " : "", s.uzawa.iterations, sum(s.uzawa.newton_iterations),
+        s.linear.iterations.size(), sum(s.linear.iterations), s.linear.preconditioner_setups);
   out << "    linear solver     " << solver::chosen_solver(s.linear) << '\n';
   if (s.coarse_choices > 0)
     print(out, "    %d of the Newton steps to states that the coarser mesh chose\n", s.coarse_choices);
