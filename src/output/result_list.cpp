@@ -69,6 +69,19 @@ void add_error_bars(std::vector<Result> &all, const adapt::ObservedErrors &error
     }
 }
 
+/// Those of supports, which are unknown where that of the contact force is.
+void add_reaction_bars(std::vector<Result> &all, const adapt::ObservedErrors &errors)
+{
+  const auto reason = errors.unknown.find("contact_force");
+  std::size_t k = 0;
+  for (Result &result : all) {
+    if (result.key != "reaction_force") continue;
+    result.no_bar = reason == errors.unknown.end() ? "" : reason->second;
+    if (result.no_bar.empty()) result.error_bar = errors.reactions[k];
+    ++k;
+  }
+}
+
 } // namespace
 
 std::vector<Result> result_list(const Scene &scene, const Solution &s)
@@ -94,7 +107,9 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
   const auto last = std::find_if(s.history.rbegin(), s.history.rend(), [](const auto &step) { return step.converged; });
   if (s.has_results() && last != s.history.rend()) add_results(all, analysis::energy_quantities, last->energies, scope);
   // Of a sequence of meshes each number has its own reason, else one holds for all.
-  add_error_bars(all, adapt::errors_of(scene, s), scope, s.adaptation && std::isfinite(s.adaptation->errors.energy));
+  const adapt::ObservedErrors errors = adapt::errors_of(scene, s);
+  add_reaction_bars(all, errors);
+  add_error_bars(all, errors, scope, s.adaptation && std::isfinite(s.adaptation->errors.energy));
   return all;
 }
 

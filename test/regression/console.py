@@ -136,6 +136,11 @@ class Told(ConsoleTestCase):
         bars = dict(self.summary["adaptation"]["errors"])
         relative = bars.pop("contact_pressure_l2_relative")
         self.assertEqual({key: result["error_bar"] for key, result in results.items() if result.get("error_bar") is not None}, bars)
+        for name, reaction in results["reaction_force"].items():
+            exact = (5.5090 if name == "left" else -5.5090, -0.6352)  # adapted to 0.0005
+            error = sum((a - b) ** 2 for a, b in zip(reaction["value"], exact)) ** 0.5
+            self.assertLess(error, reaction["error_bar"])
+            self.assertLess(reaction["error_bar"], 0.2)  # it is of use
         self.assertIn(f"of the contact pressure {relative:.1e} in L2", self.end["estimated error"])
         self.assertRegex(self.end["contact force"], r"^\S+ ± \S+ N/m \(\S+ %\), components \(\S+, \S+\)$")
         self.assertEqual(self.end["largest pressure"], "16 Pa (exact)")

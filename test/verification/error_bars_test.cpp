@@ -49,6 +49,9 @@ TEST(ErrorBars, HoldTheForceWhereFrictionJumps)
     const auto &errors = s.adaptation->errors;
     EXPECT_LT(std::hypot(force[0] + 9.257, force[1] - 47.942), errors.contact_force);
     EXPECT_LT(errors.contact_force, 2); // it is of use
+    ASSERT_EQ(errors.reactions.size(), s.reactions.size());
+    EXPECT_LT(std::hypot(s.reactions[0][0] - 9.257, s.reactions[0][1] + 47.942), errors.reactions[0]);
+    EXPECT_LT(errors.reactions[0], 2);
     EXPECT_LT(std::abs(s.energy - 0.5417), errors.energy);
     EXPECT_TRUE(std::isnan(errors.max_pressure));
   }

@@ -52,23 +52,34 @@ std::string unknown_max_pressure(const std::vector<Cycle> &cycles, const std::ve
 
 constexpr double caution = 2; // the estimate may be 0.7 of the error
 
+double length_of(const std::array<double, 3> &v)
+{
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+double difference_of(const std::array<double, 3> &a, const std::array<double, 3> &b)
+{
+  return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+}
+
 /// By how much the load of a mesh moves in the mean, by the contact force [m].                                    (10.7b)
 double moved_by(const Cycle &cycle)
 {
-  const auto &f = cycle.contact.force;
-  const double force = std::hypot(f[0], f[1], f[2]);
+  const double force = length_of(cycle.contact.force);
   return force > 0 ? cycle.energy_norm_squared / force : 0;
 }
 
 /// No less than what the last mesh leaves open: its estimated error, and data that jump between its nodes.      (10.7a), (10.7b)
 void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, ObservedErrors &errors)
 {
-  const auto &f = last.contact.force;
-  const double force = std::hypot(f[0], f[1], f[2]), squared = caution * last.estimate * last.estimate;
+  const double force = length_of(last.contact.force), squared = caution * last.estimate * last.estimate;
   const double moved = moved_by(last);
   errors.energy = std::max(errors.energy, energy_left(last));
-  errors.contact_force = std::max(errors.contact_force, squared * force + last.jumped_force +
-                                                            (moved > 0 ? 2 * last.jumped_energy / moved : 0));
+  const double jumped = last.jumped_force + (moved > 0 ? 2 * last.jumped_energy / moved : 0);
+  errors.contact_force = std::max(errors.contact_force, squared * force + jumped);
+  double largest = force;
+  for (const auto &reaction : last.reactions) largest = std::max(largest, length_of(reaction));
+  for (double &bar : errors.reactions) bar = std::max(bar, squared * largest + jumped);
   // The largest penetration may be that of a corner.
   errors.max_penetration = std::max(errors.max_penetration, last.estimate * last.contact.max_penetration);
   if (hardly_finer(eta)) errors.max_pressure = std::max(errors.max_pressure, last.estimate * last.contact.max_pressure);
@@ -99,10 +110,11 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
   const auto error = [&](const auto &distance) { return shown_error(cycles, eta, distance); };
   ObservedErrors errors;
   errors.energy = error([](const Cycle &a, const Cycle &b) { return std::abs(b.energy - a.energy); });
-  errors.contact_force = error([](const Cycle &a, const Cycle &b) {
-    const auto &f = a.contact.force, &g = b.contact.force;
-    return std::hypot(g[0] - f[0], g[1] - f[1], g[2] - f[2]);
-  });
+  errors.contact_force =
+      error([](const Cycle &a, const Cycle &b) { return difference_of(a.contact.force, b.contact.force); });
+  for (std::size_t k = 0; k < cycles.back().reactions.size(); ++k)
+    errors.reactions.push_back(
+        error([k](const Cycle &a, const Cycle &b) { return difference_of(a.reactions[k], b.reactions[k]); }));
   errors.max_pressure =
       error([](const Cycle &a, const Cycle &b) { return std::abs(b.contact.max_pressure - a.contact.max_pressure); });
   errors.contact_pressure = observed_error( // of which only that from one mesh to the next is known

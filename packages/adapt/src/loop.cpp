@@ -83,6 +83,7 @@ Cycle cycle_of(const Solution &s, const double seconds)
   cycle.energy = s.energy;
   cycle.energy_norm_squared = s.energy_norm_squared;
   cycle.contact = s.contact.total;
+  cycle.reactions = s.reactions;
   cycle.pressure_change = s.pressure_norm > 0 ? s.pressure_change / s.pressure_norm : 0;
   for (const int steps : s.uzawa.newton_iterations) cycle.newton_iterations += steps;
   cycle.linear_iterations = s.linear.iterations;

@@ -53,6 +53,22 @@ TEST(ErrorBars, AreNoLessThanWhatTheLastMeshLeavesOpen)
   EXPECT_NEAR(errors.energy, 0.02 * 0.02 * 2 + 0.01, 1e-15);
 }
 
+TEST(ErrorBars, OfReactionsAreThoseOfForces)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
+  cycles[0].reactions = {{3, -4, 0}, {0, 1, 0}};
+  cycles[1].reactions = {{3, -4, 0}, {0.3, 1.4, 0}};
+  auto errors = observed_errors(cycles);
+  ASSERT_EQ(errors.reactions.size(), 2U);
+  EXPECT_NEAR(errors.reactions[0], 2 * 0.02 * 0.02 * 10, 1e-15); // by the largest force at work, that of contact
+  EXPECT_NEAR(errors.reactions[1], 0.5 / (0.1 / 0.02 - 1), 1e-12);
+  cycles[1].jumped_force = cycles[0].jumped_force = 0.3;
+  cycles[1].reactions[0] = cycles[0].reactions[0] = {0, 50, 0};
+  errors = observed_errors(cycles);
+  EXPECT_NEAR(errors.reactions[0], 2 * 0.02 * 0.02 * 50 + 0.3, 1e-12);
+  EXPECT_NEAR(errors.contact_force, 2 * 0.02 * 0.02 * 10 + 0.3, 1e-12);
+}
+
 TEST(ErrorBars, OfMeshesThatAreHardlyFinerAreWide)
 {
   const auto errors = observed_errors({mesh(0.1, 10, 30), mesh(0.08, 10.01, 30.1)});

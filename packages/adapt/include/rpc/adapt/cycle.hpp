@@ -15,10 +15,11 @@ namespace rpc::adapt
 /// One mesh of an adaptive run.
 struct Cycle {
   std::size_t dofs = 0;
-  double estimate = 0;               ///< of the error in the energy norm, over that of the solution
-  double energy = 0;                 ///< J [J], in 2D per m
-  double energy_norm_squared = 0;    ///< a(u, u) [J], in 2D per m
-  contact::ContactSums contact;      ///< of all sides
+  double estimate = 0;                          ///< of the error in the energy norm, over that of the solution
+  double energy = 0;                            ///< J [J], in 2D per m
+  double energy_norm_squared = 0;               ///< a(u, u) [J], in 2D per m
+  contact::ContactSums contact;                 ///< of all sides
+  std::vector<std::array<double, 3>> reactions; ///< of each Dirichlet condition on the body [N], in 2D per m
   double pressure_change = 0;        ///< of the contact pressure since the mesh before, over its norm, both in L2
   double recovered_pressure = 0;     ///< |contact pressure - that of the recovered stress| / |contact pressure|, in L2
   double recovered_max_pressure = 0; ///< largest difference of the two where the pressure is near its maximum [Pa]
@@ -39,6 +40,8 @@ struct ObservedErrors {
   double contact_pressure = 0; ///< L2 norm over the contact sides, over that of the pressure
   double contact_length = 0;
   double max_penetration = 0;
+  std::vector<double>
+      reactions; ///< of the force of each Dirichlet condition, 2-norm; where that of the contact force is known
   std::map<std::string, std::string> unknown; ///< why, by the key in the table below, for those that are NaN
 };
 
@@ -50,7 +53,8 @@ inline constexpr std::array<Quantity<ObservedErrors>, 6> error_bars{{
     {&ObservedErrors::contact_length, "contact_length", unit::extent, Combine::maximum, {true}, "contact_area"},
     {&ObservedErrors::max_penetration, "max_penetration", unit::length, Combine::maximum, {true}},
 }};
-static_assert(sizeof(ObservedErrors) == error_bars.size() * sizeof(double) + sizeof(std::map<std::string, std::string>),
+static_assert(sizeof(ObservedErrors) == error_bars.size() * sizeof(double) + sizeof(std::vector<double>) +
+                                            sizeof(std::map<std::string, std::string>),
               "an error bar has no line in the table");
 
 /// The name in the files of the number that an error bar belongs to.
