@@ -4,8 +4,8 @@
     result = rpc.run("beam.xml", settings={"Contact->Yield Stress": 12})
     result.summary["contact_force"], result.contact()["pressure"], result.fields()["von_mises"]
 
-A deck is a dict of dicts with the names of doc/input.md, or the name of a file. Each run is a process of its own. Units are those of the deck:
-rpc converts none; where docstrings name m, N and Pa, other consistent units stand for them. Signs are those of doc/input.md: pressure >= 0 is
+A deck is a dict of dicts with the names of doc/input/parameters.md, or the name of a file. Each run is a process of its own. Units are those of the deck:
+rpc converts none; where docstrings name m, N and Pa, other consistent units stand for them. Signs are those of doc/input/README.md: pressure >= 0 is
 compression, a gap < 0 is initial penetration, stresses are positive in tension, contact forces act on the body.
 
     read_deck, write_deck, with_settings    a deck as a dict

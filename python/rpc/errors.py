@@ -15,7 +15,7 @@ NOT_STARTED = "rpc itself has said nothing: the launcher in $RPC_MPIRUN, by defa
 class Error(Exception):
     """A run without the result that was asked for, or input that this module refuses before there is a run.
 
-    code     exit code of the program, see doc/input.md: 1 internal error, 2 bad input, 3 bad mesh, 4 not converged, 5 no solution; -9 and the like
+    code     exit code of the program, see doc/input/results.md: 1 internal error, 2 bad input, 3 bad mesh, 4 not converged, 5 no solution; -9 and the like
              where a signal has ended it; None where nothing was run
     message  what the program said, in one line without its name, or what is wrong with the input
     remedy   what helps in general after such an end; "" where the message says it

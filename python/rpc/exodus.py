@@ -26,7 +26,7 @@ class Block:
 
 @dataclasses.dataclass
 class Fields:
-    """Mesh and nodal fields of one time step. fields["von_mises"] is the field of that name, see `<deck>.e` in doc/input.md.
+    """Mesh and nodal fields of one time step. fields["von_mises"] is the field of that name, see `<deck>.e` in doc/input/results.md.
 
     time    t of the step
     points  (nodes, dim) [m] of the undeformed body; dim 2 or 3; x is the radius of a body of revolution

@@ -47,7 +47,7 @@ class Result:
 
     @property
     def summary(self):
-        """The JSON file as a dict, see `<deck>.json` in doc/input.md; null is None.  @throws Error if the run has written none"""
+        """The JSON file as a dict, see `<deck>.json` in doc/input/results.md; null is None.  @throws Error if the run has written none"""
         if self._summary is None:
             try:
                 self._summary = json.loads(self._file(".json", '"Output->JSON"').read_text())
@@ -66,7 +66,7 @@ class Result:
         return _table(self._file(".contact.csv", '"Contact" and "Output->CSV"'))
 
     def history(self):
-        """`<deck>.history.csv` as a structured array, one row per load step, see doc/input.md for its columns.
+        """`<deck>.history.csv` as a structured array, one row per load step, see doc/input/results.md for its columns.
 
         @throws Error if the run has written none, as without "Steps"
         """
