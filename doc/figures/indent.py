@@ -13,9 +13,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 sys.path.append(str(pathlib.Path(__file__).parents[1] / "picture"))
-from figure import REST  # noqa: E402
 from result import Result  # noqa: E402
-from view import GROUND  # noqa: E402
+from style import LIGHT  # noqa: E402
 
 STEPS = ((1, "pressed"), (1.25, "on the way up"), (2, "lifted"), (3, "pressed deeper"))
 LAWS = (("perfectly plastic", "#1b6ca8"), ("hardening", "#d1495b"), ("on springs", "#2e933c"))
@@ -39,11 +38,11 @@ def main(target, *paths):
     figure, panels = plt.subplots(2, len(STEPS), figsize=(12, 4.6), layout="constrained", sharex=True, sharey="row", height_ratios=(1.25, 1))
     for (time, what), (above, below) in zip(STEPS, panels.T):
         x, moved, body, ground, _ = along_contact(paths[0], time)
-        above.fill_between(x, ground, -0.22, color=GROUND, lw=0, label="foundation")
+        above.fill_between(x, ground, -0.22, color=LIGHT.ground, lw=0, label="foundation")
         above.fill_between(moved, body, 0.22, color=BODY, lw=0, label="body")
         above.plot(x, ground, color="0.2", lw=1.2)
         above.plot(moved, body, color="#1b6ca8", lw=1)
-        above.plot(x, 0 * x, **{**REST, "linestyle": ":"}, label="foundation at first")
+        above.plot(x, 0 * x, **{**LIGHT.rest, "linestyle": ":"}, label="foundation at first")
         above.set_title(f"{what}, t = {time:g}", fontsize=10)
         for (law, colour), path in zip(LAWS, paths):
             x, _, _, _, pressure = along_contact(path, time)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads the Exodus files that rpc writes."""
+import difflib
 import os
 import re
 
@@ -10,11 +11,19 @@ import elements
 
 
 MOST_LISTED = 12  # times in a message
+BEYOND = 1e100  # are no places, displacements, gaps
 UNITS = {"length": "m", "force": "N", "stress": "Pa"}  # of files that do not name theirs
 
 
 class PictureError(Exception):
     """What the user has to mend, as one sentence."""
+
+
+def suggestion(name, known):
+    """" (did you mean ...?)" for a misspelt name, or nothing."""
+    by_lower = {one.lower(): one for one in reversed(known)}
+    nearest = difflib.get_close_matches(name.lower(), by_lower, 1)
+    return f" (did you mean {by_lower[nearest[0]]}?)" if nearest else ""
 
 
 class Result:
@@ -54,7 +63,8 @@ class Result:
             if name not in elements.CELLS:
                 raise PictureError(f'"{path}": cells must be {", ".join(elements.CELLS)}, got {name}')
             self.blocks.append((name, np.asarray(file[f"connect{k}"][:], dtype=np.int64) - 1))
-        self.side_sets = side_sets(file)
+        self._require_mesh()
+        self.side_sets = side_sets(file, self.num_cells())
         self.nodal = {name: np.asarray(file[f"vals_nod_var{n}"][step], dtype=float)
                       for n, name in enumerate(names(file, "name_nod_var"), 1)}
         self.cell = {name: np.concatenate([cell_values(file, n, k, step) for k in numbers])
@@ -65,6 +75,25 @@ class Result:
         missing = [name for name in wanted if name not in self.nodal]
         if missing:
             raise PictureError(f'"{path}" has no field {missing[0]}; remedy: run this version of rpc again')
+        for name in wanted:
+            if not (abs(self.nodal[name]) < BEYOND).all():
+                raise ValueError(f"{name} has entries that are no numbers, or beyond {BEYOND:g}")
+
+    def _require_mesh(self):
+        """Numbers of a mesh must fit each other. @throws ValueError"""
+        if self.dim not in (2, 3) or not self.blocks or not (abs(self.positions) < BEYOND).all():
+            raise ValueError("its mesh has no cells, or nodes without a place")
+        for name, cells in self.blocks:
+            if cells.ndim != 2 or cells.shape[1] != int(name.lstrip("TRIQUADEHX")):
+                raise ValueError(f"cells of {name} have another number of nodes")
+            if cells.size and not (0 <= cells.min() and cells.max() < len(self.positions)):
+                raise ValueError("a cell has a node that the mesh has not")
+            if name.startswith(("TETRA", "HEX")) != (self.dim == 3):
+                raise ValueError(f"cells of {name} in {self.dim} dimensions")
+
+    def num_cells(self):
+        """Of all blocks."""
+        return sum(len(cells) for _, cells in self.blocks)
 
     def vector_names(self, stem):
         """Names of a vector's components."""
@@ -84,6 +113,20 @@ class Result:
     def peak(self, name):
         """Largest size of a field at all times; 0 where no file has it."""
         return max(read(part, lambda file, _: largest_of(file, name)) for part in self.parts)
+
+    def cell_sizes(self):
+        """(cells of all blocks,) root of the area, in space cube root of the volume, between a cell's vertices."""
+        found = []
+        for name, cells in self.blocks:
+            kind = elements.CELLS[name][0]
+            if self.dim == 2:
+                x, y, _ = np.moveaxis(self.positions[cells[:, : elements.VERTICES[kind]]], 2, 0)
+                area = 0.5 * (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1)
+                found.append(np.sqrt(abs(area)))
+            else:
+                corner = self.positions[cells[:, elements.tetrahedra(name)]]
+                found.append(np.cbrt(abs(np.linalg.det(corner[:, :, 1:] - corner[:, :, :1])).sum(axis=1) / 6))
+        return np.concatenate(found)
 
     def size(self):
         """Largest extent of the undeformed body [m]."""
@@ -118,6 +161,13 @@ def read(path, reader):
             return reader(file, path)
     except (OSError, RuntimeError):
         raise PictureError(f'"{path}" is not an Exodus file') from None
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        raise PictureError(f'"{path}" is damaged: {first_line(error)}; remedy: run rpc again') from None
+
+
+def first_line(error):
+    """Of what an exception says."""
+    return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 def film(path):
@@ -160,7 +210,7 @@ def rule_of(times, time):
     return f"one of {len(times)} times from {times.min():g} to {times.max():g}, nearest {nearest[0]:g} and {nearest[1]:g}"
 
 
-def side_sets(file):
+def side_sets(file, num_cells):
     """{name: (facets, 2)} cell and place of the facets of each side, see Result."""
     if "ss_names" not in file.variables:
         return {}
@@ -168,6 +218,8 @@ def side_sets(file):
     for n, name in enumerate(texts(file["ss_names"][:]), 1):
         if f"elem_ss{n}" in file.variables:
             columns = [np.asarray(file[f"{stem}_ss{n}"][:], dtype=np.int64) - 1 for stem in ("elem", "side")]
+            if columns[0].size and not (0 <= columns[0].min() and columns[0].max() < num_cells and 0 <= columns[1].min() and columns[1].max() < 6):
+                raise ValueError(f"side {name or n} has a facet of a cell that the mesh has not")
             found[name or f"side {n}"] = np.stack(columns, axis=1)
     return found
 

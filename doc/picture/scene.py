@@ -7,13 +7,17 @@ import numpy as np
 import friction
 import sides
 import surface
-from result import PictureError
+from fields import is_category, is_signed
+from result import PictureError, suggestion
 from surface import LEVELS, PLACE
 
 CONTACT_FIELDS = sides.FIELDS
 THICKNESS = 0.08  # of the foundation as it is drawn, of the size of what is drawn of the body
 DIAGRAM = 0.85  # height of the largest value in the plane, of that thickness
 BEHIND = -5e-3  # z of the foundation in the plane, of the body's size
+APART = 5e-3  # of that size: so far from the enlarged body, or as far as from the true one, the foundation is drawn where they do not touch
+MOST, LEAST = 1000, 1e-6  # of the body's size: what can be shown of it
+CELL_SIZE = "cell_size"  # a field that no file has: the root of a cell's area, in space the cube root of its volume
 
 
 @dataclasses.dataclass
@@ -43,22 +47,28 @@ class Scene:
 
     def __init__(self, result, field=None, scale=None, cut=None, window=None):
         """@param field  None: the contact pressure where there is contact, else the von Mises stress
-        @param scale  factor of displacements and gaps; None: see automatic_scale
+        @param scale  factor of displacements, not of gaps; None: see automatic_scale
         @param cut    surface.Cut, in space only
         @param window (2, dim) lowest and highest place [m]: in the plane of what is drawn, in space of the undeformed body
         """
-        self.result, self.cut, self.window = result, cut, window
+        self.result, self.cut = result, cut
         self.contact = result.contact_nodes()
-        self.field = field or ("von_mises" if self.contact is None else "contact_pressure")
-        known = {**result.nodal, **result.cell}
+        self.field = ("von_mises" if self.contact is None else "contact_pressure") if field is None else field
+        known = [*result.nodal, *result.cell, CELL_SIZE]
         if self.field not in known:
-            raise PictureError(f'--field must be one of {", ".join(known)}, got "{self.field}"')
+            raise PictureError(f'"{result.path}": --field must be one of {", ".join(known)}, got "{self.field}"{suggestion(self.field, known)}')
         self.contact_field = self.field if self.field in CONTACT_FIELDS else None
         self.body_field = "von_mises" if self.contact_field else self.field
         self.scale = automatic_scale(result) if scale is None else scale
+        require_moderate(result, self.scale, window)
         self.places = result.positions + self.scale * result.vector("disp_")
-        self.size = result.size() if window is None else np.ptp(window, axis=0).max()
         boxed = window is not None and result.dim == 3
+        if boxed:  # no further than the body goes
+            window = np.clip(window, result.positions.min(axis=0) - result.size(), result.positions.max(axis=0) + result.size())
+            self.size = min(np.ptp(window, axis=0).max(), result.size())
+        else:
+            self.size = result.size() if window is None else np.ptp(window, axis=0).max()
+        self.window = window
         self.cuts = ([cut] if cut else []) + (surface.box(*window) if boxed else [])
         self.levels = np.array([plane.levels(result.positions) for plane in self.cuts]).reshape(-1, len(result.positions)).T
         self.layers, self.lines, self.normal, self.rest = {}, [], np.zeros(3), None
@@ -94,8 +104,8 @@ class Scene:
             if self.contact_field:
                 values = side.fields[self.contact_field]
                 top[:, 2] /= 2
-                heights = DIAGRAM * depth * np.maximum(values, 0) / largest
-                diagrams.append(surface.band(edges, top, side.normals, heights, values))
+                heights = DIAGRAM * depth * self._heights(values) / largest
+                diagrams.append(surface.band(edges, top, side.normals, heights, values, is_category(self.contact_field)))
             if self.shear and "traction" in side.fields:
                 top += below[:, None] * side.normals
                 for name, parts in zones.items():
@@ -119,11 +129,24 @@ class Scene:
         normals = np.broadcast_to(normals, places.shape)[nodes]
         return friction.arrows(places[nodes], side.fields["traction"][nodes], normals, self.size, self.result.dim, self.shear)
 
+    def _heights(self, values):
+        """Of the diagram in the plane: sizes where the sign says a direction, the same everywhere for categories."""
+        if is_category(self.contact_field):
+            return np.full(len(values), 0.5)
+        return abs(values) if is_signed(self.contact_field) else np.maximum(values, 0)
+
     def _largest_contact_value(self):
-        """Of the field that the contact sides show; a number > 0."""
-        if not self.contact_field:
+        """Height of the diagram before it is scaled; a number > 0."""
+        if not self.contact_field or is_category(self.contact_field):
             return 1.0
-        return max((side.fields[self.contact_field][side.nodes()].max() for side in self.sides), default=0) or 1e-300
+        return max((self._heights(side.fields[self.contact_field][side.nodes()]).max() for side in self.sides), default=0) or 1e-300
+
+    def states(self, field):
+        """Numbers of a category that occur on the contact sides."""
+        if not is_category(field):
+            return []
+        found = np.unique(np.concatenate([side.fields[field][side.nodes()] for side in self.sides])).astype(int)
+        return [state for state in found if state >= 0]
 
     def _add_space(self, faces):
         bearing = np.zeros((sum(len(cells) for _, cells in self.result.blocks), 6), dtype=bool)
@@ -136,7 +159,8 @@ class Scene:
             layer.append(surface.cells_section(self.result, plane, self.levels, self.places, self._values(self.body_field)))
         self._add_layer("body", layer)
         if self.contact_field:
-            self._add_layer("contact", [rows for side in self.sides for rows in self._body(side.faces, side.fields[self.contact_field])])
+            self._add_layer("contact", [rows for side in self.sides for rows in
+                                        self._body(side.faces, side.fields[self.contact_field], is_category(self.contact_field))])
         self._add_lines("body", surface.distinct(surface.all_edges(faces)), self.places, 0.4, fades=True)
         self._add_lines("body", surface.sharp(faces, self.places), self.places, 0.8)
         if self.shear:
@@ -175,18 +199,30 @@ class Scene:
         self._add_layer("foundation", walls)
 
     def _foundation(self, side):
-        """Where the foundation's surface is drawn, (nodes, 3); of use at the side's nodes."""
-        gap = max(self.scale, 1) * side.fields["gap"] + self.scale * sunk_of(side)
-        return self.result.positions + gap[:, None] * side.normals
+        """Where the foundation's surface is drawn, (nodes, 3); of use at the side's nodes.
+
+        Gaps are those of the undeformed body, dents and what has been pressed in are enlarged as displacements are. Where the enlarged
+        body would reach into it, the foundation gives way to it: they touch in the picture exactly where they touch.
+        """
+        gap, sunk, scale = side.fields["gap"], sunk_of(side), self.scale
+        away = gap + scale * sunk
+        if scale > 1:
+            moved = ((self.places - self.result.positions) * side.normals).sum(axis=1)
+            between = np.maximum(gap + sunk - moved / scale, 0)  # of the true body and the true foundation
+            overlap = np.minimum(gap, 0)  # of the undeformed body, which displacements undo
+            away = np.maximum(away + (scale - 1) * overlap, moved + np.minimum(between, APART * self.size))
+        return self.result.positions + away[:, None] * side.normals
 
     def _values(self, name):
+        if name == CELL_SIZE:
+            return self.result.cell_sizes()
         return self.result.nodal[name] if name in self.result.nodal else self.result.cell[name]
 
-    def _body(self, faces, values=None):
+    def _body(self, faces, values=None, category=False):
         values = self._values(self.body_field) if values is None else values
         nodal = len(values) == len(self.levels)
         return [surface.triangles(face, self.places, self.levels, values[face.nodes] if nodal else
-                                  np.broadcast_to(values[face.cell][:, None], face.nodes.shape)) for face in faces]
+                                  np.broadcast_to(values[face.cell][:, None], face.nodes.shape), category) for face in faces]
 
     def _add_layer(self, name, rows):
         """What the planes leave of triangles, and lines along which they cut."""
@@ -204,9 +240,27 @@ class Scene:
         if dim == 2:
             self.layers = {name: rows[overlapping(rows, self.window)] for name, rows in self.layers.items()}
         if not sum(len(self.layers.get(name, ())) for name in body):
-            places = self.places if dim == 2 else self.result.positions
+            places, unit = self.places if dim == 2 else self.result.positions, self.result.units["length"]
             raise PictureError(f'"{self.result.path}": --window must show a part of the body, which is drawn in '
-                               f"{ranges(places, dim)}, got {ranges(self.window, dim)}; remedy: without --window the axes tell places")
+                               f"{ranges(places, dim, unit)}, got {ranges(self.window, dim, unit)}; remedy: without --window the axes tell places")
+
+
+def require_moderate(result, scale, window):
+    """Of what is enlarged beyond all measure nothing can be seen."""
+    size, displacement = result.size(), largest_displacement(result)
+    if scale > 1 and scale * displacement > MOST * size:
+        raise PictureError(f'"{result.path}": --scale must be at most {MOST * size / displacement:.3g}, which moves the body by {MOST} times '
+                           f"its size, got {scale:g}")
+    if window is not None and result.dim == 2:
+        extent = np.ptp(window, axis=0)
+        if extent.max() > MOST * size or extent.min() < LEAST * size or extent.max() > MOST * extent.min():
+            raise PictureError(f'"{result.path}": --window must have sides between {LEAST * size:.3g} and {MOST * size:.3g} {result.units["length"]}, '
+                               f"one at most {MOST} times as long as the other, got {extent[0]:g} and {extent[1]:g}")
+
+
+def largest_displacement(result):
+    """Of all nodes."""
+    return np.linalg.norm(result.vector("disp_"), axis=1).max()
 
 
 def sunk_of(side):
@@ -220,18 +274,18 @@ def overlapping(rows, window):
     return ((low <= window[1]) & (high >= window[0])).all(axis=1)
 
 
-def ranges(places, dim):
+def ranges(places, dim, unit):
     """The extent of places as a text."""
-    return ", ".join(f"{places[:, d].min():g} <= {'xyz'[d]} <= {places[:, d].max():g}" for d in range(dim)) + " m"
+    return ", ".join(f"{places[:, d].min():g} <= {'xyz'[d]} <= {places[:, d].max():g}" for d in range(dim)) + f" {unit}"
 
 
 def automatic_scale(result):
     """1, 2, 5, 10, ..., but no more than what makes the largest displacement or gap a twentieth of the body's size.
 
-    Enlarged gaps bend the foundation: 1 if one is larger than a hundredth of that size.
+    Where a body has closed gaps, the foundation gives way to its enlarged displacements: 1 if a gap is larger than a hundredth of that size.
     """
     size, gap = result.size(), largest_gap(result)
-    displacement = np.linalg.norm(result.vector("disp_"), axis=1).max()
+    displacement = largest_displacement(result)
     if gap > 0.01 * size or displacement == 0:
         return 1.0
     wanted = 0.05 * size / max(displacement, gap)

@@ -9,10 +9,12 @@ import dataclasses
 import numpy as np
 
 import surface
+from fields import is_category
 from surface import unit
 
-FIELDS = ("contact_pressure", "gap", "dent", "penetration", "contact_status")
-FRICTION = ("traction", "sticks", "slips")
+OF_FRICTION = ("friction_used", "friction_status", *(f"{stem}_{axis}" for stem in ("friction", "slip") for axis in "xyz"))
+FIELDS = ("contact_pressure", "gap", "dent", "penetration", "contact_status", *OF_FRICTION)
+FRICTION = ("traction", "sticks", "slips", *OF_FRICTION)
 SAME_DIRECTION = 1e-3  # 1 - cosine up to which two normals are those of one side
 NEIGHBOURS = {2: 2, 3: 9}  # nodes from which values are continued, by the dimension of space
 
@@ -106,7 +108,7 @@ def side_of(result, name, faces, shared):
     if result.dim == 3:
         side.normals = surface.completed(side.normals, contact, faces)
         bare = vertices_of_quadratic_triangles(faces, len(contact))
-        side.fields = {name: surface.completed(values, contact & ~bare if name in FRICTION else contact, faces)
+        side.fields = {name: surface.completed(values, contact & ~bare if name in FRICTION else contact, faces, is_category(name))
                        for name, values in fields.items()}
     return side
 

@@ -130,14 +130,18 @@ def on_contact_side(faces, contact):
     return contact[nodes].all(axis=1)
 
 
-def completed(values, contact, faces):
-    """Contact values (nodes, ...) with, at nodes of contact faces that are no contact nodes, the mean of their neighbours."""
+def completed(values, contact, faces, category=False):
+    """Contact values (nodes, ...) with, at nodes of contact faces that are no contact nodes, the mean of their neighbours; of a category
+    one of theirs."""
     values = values.copy()
     total, count = np.zeros_like(values), np.zeros(len(values))
     for face in faces:
         for edge in elements.face_edges(face.kind):
             middles = face.nodes[:, edge[-1]]
             for end in edge[:2]:
+                if category:
+                    total[face.nodes[:, end]], count[face.nodes[:, end]] = values[middles], 1
+                    continue
                 np.add.at(total, face.nodes[:, end], values[middles])
                 np.add.at(count, face.nodes[:, end], 1)
     missing = ~contact & (count > 0)
@@ -145,23 +149,24 @@ def completed(values, contact, faces):
     return values
 
 
-def pieces(faces):
-    """Into how many pieces edges are divided: curved faces into more, a great number of faces into fewer."""
-    wanted = 4 if faces.kind in elements.QUADRATIC else 1 if elements.is_triangle(faces.kind) else 2
+def pieces(faces, category=False):
+    """Into how many pieces edges are divided: curved faces and those of categories into more, a great number of faces into fewer."""
+    wanted = 8 if category else 4 if faces.kind in elements.QUADRATIC else 1 if elements.is_triangle(faces.kind) else 2
     least = 2 if faces.kind in elements.QUADRATIC else 1
     while wanted > least and 2 * wanted**2 * len(faces.nodes) > MOST_TRIANGLES:
         wanted //= 2
     return wanted
 
 
-def triangles(faces, places, levels, values):
+def triangles(faces, places, levels, values, category=False):
     """Divides faces: (triangles, 3, 7 + planes).
 
-    @param places  (nodes, 3) where the nodes are drawn
-    @param levels  (nodes, planes)
-    @param values  (faces, nodes per face) of the field
+    @param places    (nodes, 3) where the nodes are drawn
+    @param levels    (nodes, planes)
+    @param values    (faces, nodes per face) of the field
+    @param category  whether each triangle has the value of the node next to it: there is nothing between categories
     """
-    points, corner = elements.division(faces.kind, pieces(faces))
+    points, corner = elements.division(faces.kind, pieces(faces, category))
     shape = elements.shape(faces.kind, points)
     at_nodes = places[faces.nodes]
     rows = np.empty((len(faces.nodes), len(points), LEVELS + levels.shape[1]))
@@ -173,7 +178,10 @@ def triangles(faces, places, levels, values):
     rows[..., NORMAL] = unit(np.cross(*tangents))
     rows[..., LEVELS:] = shape @ levels[faces.nodes]
     rows[..., VALUE] = values @ elements.hats(faces.kind, points).T
-    return rows[:, corner].reshape(-1, 3, rows.shape[2])
+    rows = rows[:, corner]
+    if category:
+        rows[..., VALUE] = values[:, elements.hats(faces.kind, points[corner].mean(axis=1)).argmax(axis=1), None]
+    return rows.reshape(-1, 3, rows.shape[3])
 
 
 def unit(vectors):
@@ -196,10 +204,10 @@ def segments(edges, places, levels):
     return np.stack([rows[:, :-1], rows[:, 1:]], axis=2).reshape(-1, 2, rows.shape[2])
 
 
-def band(edges, places, directions, heights, values):
+def band(edges, places, directions, heights, values, category=False):
     """Between edges in the plane and what lies `heights` (nodes,) from them in `directions` (nodes, 3): triangles (n, 3, 7).
 
-    Heights and values are linear from node to node.
+    Heights and values are linear from node to node; of a category each piece has the value of the node next to it.
     """
     x = np.linspace(0, 1, 9)
     shape, hats = (f(x, edges.shape[1] == 3) for f in (elements.shape_1d, elements.hat_1d))
@@ -208,7 +216,11 @@ def band(edges, places, directions, heights, values):
     rows[:, 1, :, PLACE] = rows[:, 0, :, PLACE] + (hats @ heights[edges].T).T[..., None] * (shape @ directions[edges])
     rows[..., VALUE] = (hats @ values[edges].T).T[:, None]
     a, b, c, d = rows[:, 0, :-1], rows[:, 0, 1:], rows[:, 1, 1:], rows[:, 1, :-1]
-    return np.concatenate([np.stack(corner, axis=2).reshape(-1, 3, LEVELS) for corner in ((a, b, c), (a, c, d))])
+    found = np.stack([np.stack(corner, axis=2) for corner in ((a, b, c), (a, c, d))])  # (2, edges, pieces, 3, 7)
+    if category:
+        nearest = elements.hat_1d(0.5 * (x[:-1] + x[1:]), edges.shape[1] == 3).argmax(axis=1)
+        found[..., VALUE] = values[edges][:, nearest, None]
+    return found.reshape(-1, 3, LEVELS)
 
 
 class Cut:

@@ -19,6 +19,7 @@ from result import Result
 from rpc_run import SOURCE, RpcTestCase
 from scene import Scene
 from surface import PLACE
+from table import Table
 
 PLANE, SPACE = ("TRI3", "TRI6", "QUAD4", "QUAD9"), ("TETRA4", "HEX8", "HEX27")
 TRACTION = np.array([3.0, 4.0, 0.0])  # on the lowest side in space; in the plane its first component
@@ -166,17 +167,18 @@ class Loops(RpcTestCase):
     def table(self, name="a", **columns):
         columns = {"dissipated_by_friction": (0, 1, 2), "contact_force_x": (0, -3, 2), **columns}
         picture.history_file(self.folder / f"{name}.history.csv", **columns)
-        return history.History(str(self.folder / f"{name}.history.csv"))
+        return Table(str(self.folder / f"{name}.history.csv"))
 
-    def panels(self, *histories):
+    def panels(self, *tables):
         """Axes that the diagram has."""
-        figure_of = history.compose([("", one) for one in histories])
+        figure_of = history.compose(tables)
         self.addCleanup(history.plt.close, figure_of)
         return figure_of.axes
 
     def test_friction_is_drawn_over_the_displacement_along_it(self):
         table = self.table()
-        self.assertEqual((table.axis, table.shear(), table.moved("x")), ("y", "x", [0, 5, 0]))
+        told = history.History(table)
+        self.assertEqual((told.axis, told.shear(), told.moved("x")), ("y", "x", [0, 5, 0]))
         force, loop, energies = self.panels(table)
         self.assertEqual(loop.get_xlabel(), "prescribed displacement in x [m]")
         self.assertEqual(loop.lines[0].get_xydata().tolist(), [[0, 0], [0, 0], [5, 3], [0, -2]])  # of the body on the foundation
@@ -189,10 +191,10 @@ class Loops(RpcTestCase):
 
     def test_no_loop_without_friction(self):
         picture.history_file(self.folder / "plain.history.csv")
-        plain = history.History(str(self.folder / "plain.history.csv"))
+        plain = Table(str(self.folder / "plain.history.csv"))
         still = self.table(contact_force_x=(0, 1e-9, 0))
         for table in (plain, still):
-            self.assertIsNone(table.shear())
+            self.assertIsNone(history.History(table).shear())
             self.assertEqual(len(self.panels(table)), 2)
         names = [text.get_text() for text in self.panels(plain)[1].get_legend().get_texts()]
         self.assertEqual(names, ["dissipated", "elastic, in the body", "work"])
@@ -205,7 +207,7 @@ class Loops(RpcTestCase):
 
     def test_of_the_program(self):
         self.rpc("--input=shear.xml", "--set=Mesh->Cells={24, 12}", "--output=out")
-        table = history.History(str(self.folder / "out" / "shear.history.csv"))
+        table = history.History(Table(str(self.folder / "out" / "shear.history.csv")))
         moved, force = table.moved("x"), [-value for value in table.columns["contact_force_x"]]
         self.assertAlmostEqual(max(moved), 0.02, delta=1e-12)
         area = sum(0.5 * (a + b) * (y - x) for x, y, a, b in zip(moved, moved[1:], force, force[1:]))

@@ -1,0 +1,179 @@
+"""Reads the tables that rpc writes: RESULT.contact.csv along the contact sides, RESULT.history.csv of load steps."""
+import csv
+import os
+import re
+
+import numpy as np
+
+from result import PictureError, suggestion
+
+HEADING = re.compile(r"(.*?)(?: \[([^\]]*)\])?", re.DOTALL)  # name and unit of a column
+KINDS = {"contact": ("pressure", "state", "u_nu"), "history": ("time", "work")}  # columns that tell them
+WORDS = ("state", "friction_state", "side", "reason")  # columns that have no numbers
+ORDERED = ("none", "open", "closed", "yielding", "unseen", "sticks", "slips")  # of categories
+MOST_CATEGORIES = 12
+RADIUS = "radius"
+# Names and units of columns where the headings have none; of history files {force}: N/m, {energy}: J/m in the plane.
+MEANING = [
+    ("[xyz]", "{0}", "m"), ("s", "length along the surface", "m"), ("radius", "{radius}", "m"), ("area", "area of a point", "m^2"),
+    ("u_nu", r"normal displacement $u_\nu$", "m"), ("pressure", "contact pressure", "Pa"), ("gap|dent|penetration", "{0}", "m"),
+    ("friction", "friction", "Pa"), ("q_([xyz])", "friction in {1}", "Pa"), ("slip_([xyz])", "slip in {1}", "m"),
+    ("friction_used", "friction over what it can be", ""), ("time", "t", ""), ("contact_force_([xyz])", "contact force in {1}", "{force}"),
+    (".*_displacement_[xyz]|max_(displacement|penetration|dent|slip)", "{0}", "m"), (".*_reaction_[xyz]", "{0}", "{force}"),
+    ("max_(pressure|shear|von_mises)", "{0}", "Pa"), (".*_length", "{0}", "m"), (".*_area", "{0}", "m^2"),
+    ("dent_volume", "{0}", "{volume}"), ("seconds", "wall-clock time", "s"),
+    ("work|dissipated_by_friction|.*_energy|energy_imbalance", "{0}", "{energy}")]
+
+
+class Table:
+    """A file's columns, {name: (rows,) numbers or texts}, and their units where the headings have some, {name: unit}.
+
+    kind   one of KINDS
+    label  what a legend says of it
+    """
+
+    def __init__(self, path, label=""):
+        self.path, self.label = path, label
+        names, rows = self._read()
+        self.kind = next((kind for kind, needed in KINDS.items() if set(needed) <= set(names)), None)
+        if not self.kind:
+            raise PictureError(f'"{path}" is no table of rpc: it must have the columns {" or ".join(", ".join(some) for some in KINDS.values())}'
+                               f'; those that can be drawn are *.contact.csv and *.history.csv')
+        if self.kind == "history" and "converged" in names:  # of a step that failed there are no numbers
+            rows = [row for row in rows if row[names.index("converged")] != "0"]
+        if not rows:
+            raise PictureError(f'"{path}" has no rows' + (" of steps that have converged" if self.kind == "history" else "") +
+                               ": there is nothing to draw")
+        self.columns = {name: self._values(name, column) for name, column in zip(names, zip(*rows))}
+        self._add_derived()
+
+    def _read(self):
+        """Names of the columns, and the rows as texts."""
+        try:
+            with open(self.path, newline="", encoding="utf-8") as file:
+                lines = [row for row in csv.reader(file, strict=True) if row]
+        except OSError as error:
+            what = "no such file" if isinstance(error, FileNotFoundError) else error.strerror
+            raise PictureError(f'"{self.path}": {what}; rpc writes *.contact.csv where there is contact, '
+                               "and *.history.csv for decks with Steps->Times") from None
+        except (csv.Error, UnicodeDecodeError) as error:
+            raise PictureError(f'"{self.path}" is no table: {error}') from None
+        if not lines:
+            raise PictureError(f'"{self.path}" is empty')
+        headings = [HEADING.fullmatch(heading).groups() for heading in lines[0]]
+        for number, row in enumerate(lines[1:], 2):
+            if len(row) != len(headings):
+                raise PictureError(f'"{self.path}", row {number}: a row must have {len(headings)} entries, as many as there are columns, '
+                                   f"got {len(row)}; remedy: run rpc again")
+        self.units = {name: unit for name, unit in headings if unit}
+        return [name for name, _ in headings], lines[1:]
+
+    def _values(self, name, entries):
+        """Of a column: numbers, or texts."""
+        if name in WORDS:
+            return np.array(entries, dtype=str)
+        try:
+            return np.array([float(entry) for entry in entries])
+        except ValueError:
+            wrong = next(entry for entry in entries if not is_number(entry))
+            raise PictureError(f'"{self.path}", column {name}: entries must be numbers, got "{wrong[:40]}"; remedy: run rpc again') from None
+
+    def _add_derived(self):
+        """Columns that follow from others: penetration, size of the friction."""
+        if self.kind != "contact":
+            return
+        for derived, needed, of in (("penetration", ("u_nu", "gap"), lambda u, gap: u - gap),
+                                    ("friction", [f"q_{axis}" for axis in "xyz" if f"q_{axis}" in self.columns],
+                                     lambda *q: np.sqrt(sum(part**2 for part in q)))):
+            if needed and all(name in self.columns for name in needed):
+                self.columns[derived] = of(*(self.columns[name] for name in needed))
+                if needed[0] in self.units:
+                    self.units[derived] = self.units[needed[0]]
+
+    def is_text(self, name):
+        """Whether a column is one of words, each of them a category."""
+        return self.columns[name].dtype.kind == "U"
+
+    def names(self, option="columns"):
+        """Of all columns that an option can name."""
+        more = [RADIUS] if option == "over" and self.kind == "contact" else []
+        return [name for name in self.columns if name != "reason" and (option != "over" or not self.is_text(name))] + more
+
+    def column(self, name, option):
+        """A column. @param option  that names it, without --"""
+        names = self.names(option)
+        if name in names:
+            return self.columns[name]
+        wanted = "a column of numbers" if option == "over" else "columns of the table"
+        raise PictureError(f'"{self.path}": --{option} must name {wanted}, got "{name}"{suggestion(name, names)}; there are {", ".join(names)}')
+
+    def radius_axes(self):
+        """The axes across which --over=radius measures: all but the one along which the points that bear a pressure extend least."""
+        axes = [axis for axis in "xyz" if axis in self.columns]
+        bearing = self.columns["pressure"] > 0
+        extents = [np.ptp(self.column(axis, "over")[bearing if bearing.any() else slice(None)]) for axis in axes]
+        return [axis for k, axis in enumerate(axes) if k != int(np.argmin(extents))]
+
+    def name_of(self, name, axes=""):
+        """What an axis says of a column. @param axes  those of a radius"""
+        plane = "contact_length" in self.columns
+        units = {"force": "N/m" if plane else "N", "energy": "J/m" if plane else "J", "volume": "m^2" if plane else "m^3"}
+        radius = rf"radius $\sqrt{{{' + '.join(axis + '^2' for axis in axes)}}}$" if len(axes) > 1 else f"radius |{''.join(axes)}|"
+        for pattern, text, unit in MEANING:
+            match = re.fullmatch(pattern, name)
+            if match:
+                text = text.format(name, *match.groups(), radius=radius)
+                text = text if "$" in text else text.replace("_", " ")
+                unit = self.units.get("x" if name == RADIUS else name, unit.format(**units))
+                return f"{text} [{unit}]" if unit else text
+        return name.replace("_", " ")
+
+
+def is_number(text):
+    """Whether a text is a number."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def categories(tables, name):
+    """The words of a column of texts, in their order."""
+    found = list(dict.fromkeys(word for table in tables for word in table.columns[name].tolist()))
+    if len(found) > MOST_CATEGORIES:
+        raise PictureError(f'"{tables[0].path}": --columns must name columns of numbers, or of at most {MOST_CATEGORIES} words, '
+                           f'got "{name}" with {len(found)}')
+    return [word for word in ORDERED if word in found] + [word for word in found if word not in ORDERED]
+
+
+def tables_of(arguments, most):
+    """[Table] of files, each named FILE or LABEL=FILE; the same kind and units. @param most  files of one picture"""
+    if len(arguments) > most:
+        raise PictureError(f"at most {most} files go into one picture, got {len(arguments)}")
+    named = [(text[: -len(path_of(text))].rstrip("="), path_of(text)) for text in arguments]
+    if len(named) > 1:
+        named = [(label or own, path) for (label, path), own in zip(named, own_names([path for _, path in named]))]
+    tables = [Table(path, label) for label, path in named]
+    for table in tables[1:]:
+        if table.kind != tables[0].kind:
+            raise PictureError(f'"{table.path}": files of one picture must be of one kind, got *.{table.kind}.csv beside *.{tables[0].kind}.csv')
+        for name in set(table.columns) & set(tables[0].columns):
+            found, wanted = table.name_of(name), tables[0].name_of(name)
+            if found != wanted and name != RADIUS:
+                raise PictureError(f'"{table.path}": files of one picture must have the same units, got {found} beside {wanted}')
+    return tables
+
+
+def path_of(argument):
+    """The file of FILE or LABEL=FILE."""
+    return argument if os.path.isfile(argument) else argument.rsplit("=", 1)[-1]
+
+
+def own_names(paths):
+    """What tells files apart: their names without what all end in, or with their folders where names are the same."""
+    stems = [re.sub(r"\.(contact|history)?\.?csv$", "", os.path.basename(path)) for path in paths]
+    if len(set(stems)) == len(stems):
+        return stems
+    shared = os.path.commonpath([os.path.dirname(os.path.abspath(path)) for path in paths])
+    return [re.sub(r"\.csv$", "", os.path.relpath(path, shared)) for path in paths]
