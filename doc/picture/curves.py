@@ -24,7 +24,8 @@ def compose(tables, columns, over, span, style):
     @param over     name of the column to the right, or "radius"; None: chosen
     @param span     (least, largest) of it that is shown; None: all
     """
-    columns, over = columns or chosen_columns(tables), over or chosen_axis(tables[0])
+    columns = chosen_columns(tables) if columns is None else columns
+    over = chosen_axis(tables[0]) if over is None else over
     if len(columns) > MOST_PANELS:
         raise PictureError(f"--columns must name at most {MOST_PANELS} columns, got {len(columns)}")
     axes_of_radius = tables[0].radius_axes() if over == RADIUS and tables[0].kind == "contact" else ()
@@ -47,7 +48,7 @@ def compose(tables, columns, over, span, style):
             panels[-1, 0].set_xlim(span)
             for panel in panels[:, 0]:
                 fit_height(panel, span)
-        if len(tables) > 1:
+        if any(table.label for table in tables):
             panels[0, 0].legend(frameon=False, markerscale=1.5, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=min(len(tables), 3))
     return figure
 

@@ -13,7 +13,7 @@ import view  # noqa: E402
 from axes_of_space import AxesOfSpace  # noqa: E402
 from fields import CATEGORIES, coloring, is_category, label  # noqa: E402
 from panels import is_seen, level_directions, panels, upwards  # noqa: E402, F401
-from style import LIGHT  # noqa: E402
+from style import LIGHT, STYLES  # noqa: E402
 from surface import VALUE  # noqa: E402
 from text import GAP, SMALL, TITLE, in_lines, width_of  # noqa: E402
 
@@ -71,8 +71,13 @@ class Layout:
         return self.place(figure, left, self.below + 0.08 * self.middle, 0.16, 0.84 * self.middle)
 
 
-def compose(scene, direction=None, style=LIGHT):
-    """The picture as a figure. @param direction  in space, from the body to the viewer; None: chosen"""
+def compose(scene, direction=None, style=None):
+    """The picture as a figure.
+
+    @param direction  in space, from the body to the viewer; None: chosen
+    @param style      None: light
+    """
+    style = style or STYLES["light"]
     with plt.rc_context(style.rc()):
         return composed(scene, direction, style)
 

@@ -2,6 +2,8 @@
 import io
 import os
 
+import matplotlib
+
 from result import PictureError
 
 FORMATS = ("png", "pdf", "svg")
@@ -19,7 +21,8 @@ def write(path, figure, style):
     pixels."""
     kind = format_of(path)
     picture = io.BytesIO()
-    figure.savefig(picture, format=kind, dpi=style.dpi, metadata=UNDATED[kind])
+    with matplotlib.rc_context(style.rc()):
+        figure.savefig(picture, format=kind, dpi=style.dpi, metadata=UNDATED[kind])
     temporary = path + ".part"
     try:
         with open(temporary, "wb") as file:

@@ -95,7 +95,7 @@ class Scene:
         self.rest = surface.lines(outline, self.result.positions)
         largest, ground, diagrams, zones, arrows = self._largest_contact_value(), [], [], {name: [] for name in friction.ZONES}, []
         for k, side in enumerate(self.sides):
-            edges, top, sunk = side.edges(), self._foundation(side), self.scale * sunk_of(side)
+            edges, top, sunk = side.edges(), self._foundation(side), self._away(side) - side.fields["gap"]
             top[:, 2] = BEHIND * self.result.size() * (1 + k / len(self.sides))  # where sides meet, one covers the other
             depth, ribbon = THICKNESS * self.size, friction.RIBBON * self.size * (self.shear > 0)
             below = depth + sunk[side.nodes()].max() - sunk
@@ -199,7 +199,11 @@ class Scene:
         self._add_layer("foundation", walls)
 
     def _foundation(self, side):
-        """Where the foundation's surface is drawn, (nodes, 3); of use at the side's nodes.
+        """Where the foundation's surface is drawn, (nodes, 3); of use at the side's nodes."""
+        return self.result.positions + self._away(side)[:, None] * side.normals
+
+    def _away(self, side):
+        """(nodes,) how far from the undeformed body the foundation's surface is drawn.
 
         Gaps are those of the undeformed body, dents and what has been pressed in are enlarged as displacements are. Where the enlarged
         body would reach into it, the foundation gives way to it: they touch in the picture exactly where they touch.
@@ -211,7 +215,7 @@ class Scene:
             between = np.maximum(gap + sunk - moved / scale, 0)  # of the true body and the true foundation
             overlap = np.minimum(gap, 0)  # of the undeformed body, which displacements undo
             away = np.maximum(away + (scale - 1) * overlap, moved + np.minimum(between, APART * self.size))
-        return self.result.positions + away[:, None] * side.normals
+        return away
 
     def _values(self, name):
         if name == CELL_SIZE:

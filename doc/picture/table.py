@@ -158,7 +158,7 @@ def tables_of(arguments, most):
     for table in tables[1:]:
         if table.kind != tables[0].kind:
             raise PictureError(f'"{table.path}": files of one picture must be of one kind, got *.{table.kind}.csv beside *.{tables[0].kind}.csv')
-        for name in set(table.columns) & set(tables[0].columns):
+        for name in [name for name in tables[0].columns if name in table.columns]:
             found, wanted = table.name_of(name), tables[0].name_of(name)
             if found != wanted and name != RADIUS:
                 raise PictureError(f'"{table.path}": files of one picture must have the same units, got {found} beside {wanted}')

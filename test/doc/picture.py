@@ -643,7 +643,7 @@ def covers(box, axes, renderer):
     if not overlap(box, frame):
         return False
     if not axes.images:
-        return True
+        return axes.axison  # the names of states stand within axes that are not drawn
     image = np.asarray(axes.images[0].get_array())
     rows, columns = image.shape[:2]
     left, right = ((x - frame.x0) / frame.width * columns for x in (box.x0, box.x1))

@@ -1,0 +1,195 @@
+"""doc/picture.sh of tables: contact sides, columns of load steps, several files; what it refuses; how they look."""
+
+import dataclasses
+import math
+import unittest
+
+import picture  # skips where Debian's modules are missing; finds those of doc/picture
+
+import command_line
+import curves
+import numpy as np
+import references
+import style
+from rpc_run import RpcTestCase
+from table import Table
+
+style.STYLES |= {name: dataclasses.replace(one, dpi=40) for name, one in style.STYLES.items()}
+PICTURE, REFUSAL = picture.Pictures.picture, picture.Pictures.expect_refusal_of
+N = 41
+
+
+def contact_file(path, reach=0.5, yields=math.inf, units=False, sides=("bottom",), **more):
+    """Points along the plane, -1 <= x <= 1, under Hertz's pressure where |x| < reach."""
+    rows = []
+    for side in sides:
+        for k in range(N):
+            x = -1 + 2 * k / (N - 1)
+            p = min(10 * math.sqrt(max(1 - (x / reach) ** 2, 0)), yields)
+            state = "open" if p == 0 else "yielding" if p == yields else "closed"
+            rows.append({"x": x, "y": 0, "s": x + 1, "u_nu": 0.1, "gap": 0.4 * x * x, "pressure": p, "state": state, "side": side, "dent": 0} |
+                        {name: value(x) for name, value in more.items()})
+    heading = {"x": "x [mm]", "gap": "gap [mm]", "pressure": "pressure [MPa]"} if units else {}
+    lines = [",".join(heading.get(name, name) for name in rows[0])] + [",".join(map(str, row.values())) for row in rows]
+    path.write_text("\n".join(lines) + "\n")
+    return Table(str(path))
+
+
+def space_file(path):
+    """Points of a quarter of the plane z = 0, of which some have no weight."""
+    lines = ["x,y,z,area,u_nu,gap,pressure,state,side,dent,q_x,q_y,q_z,friction_state"]
+    for x in np.linspace(0, 1, 9):
+        for y in np.linspace(0, 1, 9):
+            p = max(1 - x * x - y * y, 0)
+            lines.append(f"{x},{y},{0.01 * x * x},{int(x > 0)},0,0,{p},{'closed' if p else 'open'},skin,0,{0.3 * p},{0.4 * p},0,{'sticks' if p else 'none'}")
+    path.write_text("\n".join(lines) + "\n")
+    return Table(str(path))
+
+
+class Diagrams(RpcTestCase):
+    """What they show."""
+
+    picture = PICTURE
+
+    def compose(self, tables, columns=None, over=None, span=None, kind=style.LIGHT):
+        drawn = curves.compose(tables, columns, over, span, kind)
+        self.addCleanup(curves.plt.close, drawn)
+        return drawn
+
+    def test_pressure_and_state_along_the_surface(self):
+        pressure, state = self.compose([contact_file(self.folder / "a.contact.csv", yields=8)]).axes
+        self.assertEqual((pressure.get_ylabel(), state.get_xlabel()), ("contact pressure [Pa]", "length along the surface [m]"))
+        self.assertEqual(pressure.lines[0].get_ydata().max(), 8)
+        self.assertEqual([label.get_text() for label in state.get_yticklabels()], ["open", "closed", "yielding"])
+        self.assertEqual(sorted(set(state.lines[0].get_ydata())), [0, 1, 2])
+        self.assertIsNone(pressure.get_legend())
+
+    def test_over_a_coordinate_or_the_radius(self):
+        table = contact_file(self.folder / "a.contact.csv")
+        (axes,) = self.compose([table], ["pressure"], "x").axes
+        self.assertEqual((axes.get_xlabel(), axes.lines[0].get_xdata().min()), ("x [m]", -1))
+        (axes,) = self.compose([table], ["pressure"], "radius").axes
+        self.assertEqual((axes.get_xlabel(), axes.lines[0].get_xdata().min()), ("radius |x| [m]", 0))
+        (axes,) = self.compose([space_file(self.folder / "b.contact.csv")], ["friction"]).axes
+        self.assertEqual(axes.get_xlabel(), r"radius $\sqrt{x^2 + y^2}$ [m]")
+        x, friction = axes.lines[0].get_data()
+        self.assertEqual(len(x), 72)  # points without weight are left out
+        self.assertLess(abs(friction - 0.5 * np.maximum(1 - x**2, 0)).max(), 1e-12)
+        self.assertEqual(axes.lines[0].get_linestyle(), "None")
+
+    def test_derived_columns(self):
+        table = contact_file(self.folder / "a.contact.csv", units=True, q_x=lambda x: -x)
+        self.assertLess(abs(table.columns["penetration"] - 0.1 + table.columns["gap"]).max(), 1e-12)
+        self.assertEqual(table.columns["friction"].tolist(), abs(table.columns["x"]).tolist())
+        self.assertEqual((table.name_of("pressure"), table.name_of("radius", ("x",))), ("contact pressure [MPa]", "radius |x| [mm]"))
+
+    def test_sides_are_lines_of_their_own(self):
+        table = contact_file(self.folder / "a.contact.csv", sides=("left", "right"))
+        axes = self.compose([table]).axes[0]
+        self.assertEqual([len(line.get_xdata()) for line in axes.lines], [N, N])
+        self.assertEqual(axes.get_xlabel() or self.compose([table]).axes[-1].get_xlabel(), "x [m]")
+
+    def test_a_range_fills_the_panel(self):
+        axes = self.compose([contact_file(self.folder / "a.contact.csv")], ["gap"], "x", (-0.5, 0)).axes[0]
+        self.assertEqual(axes.get_xlim(), (-0.5, 0))
+        self.assertAlmostEqual(axes.get_ylim()[1], 1.05 * 0.1, delta=1e-9)
+
+    def test_columns_of_load_steps(self):
+        picture.history_file(self.folder / "a.history.csv", max_dent=(0, 0.1, 0.1), reason=("", "", ""))
+        table = Table(str(self.folder / "a.history.csv"))
+        dent, force = self.compose([table], ["max_dent", "contact_force_y"]).axes
+        self.assertEqual((dent.get_ylabel(), force.get_ylabel(), force.get_xlabel()), ("max dent [m]", "contact force in y [N/m]", "t"))
+        self.assertEqual(dent.lines[0].get_data()[1].tolist(), [0, 0.1, 0.1])
+        (axes,) = self.compose([table], ["work"], "max_dent").axes
+        self.assertEqual((axes.get_ylabel(), axes.get_xlabel()), ("work [J/m]", "max dent [m]"))
+
+    def test_several_files_have_a_legend(self):
+        (self.folder / "one").mkdir()
+        for name in ("one/a", "b", "c=d"):
+            contact_file(self.folder / f"{name}.contact.csv")
+        contact_file(self.folder / "a.contact.csv")
+        for arguments, names in ((["one/a.contact.csv", "b.contact.csv"], ["a", "b"]), (["a.contact.csv", "one/a.contact.csv"], ["a.contact", "one/a.contact"]),
+                                 (["E = 2=a.contact.csv", "b.contact.csv", "c=d.contact.csv"], ["E = 2", "b", "c=d"])):
+            with picture.contextlib.chdir(self.folder):
+                drawn = command_line.diagram_of(command_line.options(arguments))
+            self.addCleanup(curves.plt.close, drawn)
+            self.assertEqual([text.get_text() for text in drawn.axes[0].get_legend().get_texts()], names)
+
+    def test_files_that_are_written(self):
+        contact_file(self.folder / "a.contact.csv")
+        picture.history_file(self.folder / "b.history.csv")
+        for arguments, name, begin in ((["a.contact.csv"], "a.contact.png", b"\x89PNG"), (["x=b.history.csv"], "b.history.png", b"\x89PNG"),
+                                       (["b.history.csv", "--columns=work", "--output=c.svg", "--style=dark"], "c.svg", b"<?xml")):
+            self.assertEqual(self.picture(*arguments), (0, f"wrote {name}\n", ""))
+            self.assertTrue((self.folder / name).read_bytes().startswith(begin))
+
+    def test_how_they_look(self):
+        rigid, soft = contact_file(self.folder / "a.contact.csv"), contact_file(self.folder / "b.contact.csv", reach=0.7, yields=6)
+        space = space_file(self.folder / "c.contact.csv")
+        picture.history_file(self.folder / "d.history.csv")
+        steps = Table(str(self.folder / "d.history.csv"))
+        for name, tables, columns, over, span in (("sides", [rigid, soft], ["pressure", "state"], "x", None), ("radius", [space], None, None, (0, 0.8)),
+                                                  ("steps", [steps], ["work", "contact_force_y"], None, None)):
+            for kind in (style.LIGHT, style.PRINT if name == "sides" else style.DARK):
+                references.expect_like(self, references.without_texts(self.compose(tables, columns, over, span, kind)), f"{name}_{kind.name}")
+
+
+class Refusals(RpcTestCase):
+    """One line, exit code 2, no picture."""
+
+    picture = PICTURE
+    expect_refusal_of = REFUSAL
+
+    def setUp(self):
+        super().setUp()
+        contact_file(self.folder / "a.contact.csv")
+        picture.history_file(self.folder / "a.history.csv")
+
+    def test_of_options(self):
+        self.expect_refusal_of(["a.history.csv", "--columns=wrok"], '"a.history.csv": --columns must name columns of the table', 'got "wrok"',
+                               "(did you mean work?)", "there are time, strain_energy")
+        self.expect_refusal_of(["a.contact.csv", "--columns=pressure,Gap"], 'got "Gap" (did you mean gap?)')
+        self.expect_refusal_of(["a.contact.csv", "--over=radus"], '--over must name a column of numbers, got "radus" (did you mean radius?)')
+        self.expect_refusal_of(["a.contact.csv", "--over=state"], '--over must name a column of numbers, got "state"')
+        self.expect_refusal_of(["a.history.csv", "--over=radius"], '"a.history.csv": --over must name', 'got "radius"')
+        for text in ("", ",", "pressure,,gap"):
+            self.expect_refusal_of(["a.contact.csv", f"--columns={text}"], "--columns must be names of columns, such as", f'got "{text}"')
+        self.expect_refusal_of(["a.contact.csv", "--over="], '--over must name', 'got ""')
+        for text in ("", "1", "1,0", "0,0", "a,b", "0,nan", "0,1,2", "0,1e999"):
+            self.expect_refusal_of(["a.contact.csv", f"--range={text}"], "--range must be two numbers", f'got "{text}"')
+        self.expect_refusal_of(["a.contact.csv", "--range=5,6"], '"a.contact.csv": --range must hold points of s, which goes from 0 to 2, got 5,6')
+        for option in ("field=gap", "scale=1", "time=1", "window=0,0,1,1", "cut=x=0", "view=0,0,1"):
+            for name in ("a.contact.csv", "a.history.csv"):
+                self.expect_refusal_of([name, f"--{option}"], f'"{name}": --{option.split("=")[0]} does not go with it, but with RESULT.e')
+        self.expect_refusal_of(["a.history.csv", "--columns=time,work,strain_energy,foundation_energy,dissipated_energy,contact_length,"
+                                "contact_force_x,contact_force_y,left_displacement_y"], "at most 8 columns, got 9")
+
+    def test_of_several_files(self):
+        contact_file(self.folder / "mm.contact.csv", units=True)
+        self.expect_refusal_of(["a.contact.csv", "a.history.csv"], '"a.history.csv": files of one picture must be of one kind')
+        self.expect_refusal_of(["a.contact.csv", "mm.contact.csv"], '"mm.contact.csv": files of one picture must have the same units', "[mm] beside ")
+        self.expect_refusal_of(["a.contact.csv"] * 7, "at most 6 files", "got 7")
+        self.expect_refusal_of(["a.contact.csv", "a.e"], 'of one kind, got "a.e" beside "a.contact.csv"')
+        self.expect_refusal_of(["a.contact.csv", "x=none.contact.csv"], '"none.contact.csv": no such file')
+
+    def test_of_files(self):
+        text = (self.folder / "a.contact.csv").read_text()
+        for name, content, *parts in (
+                ("none", None, "no such file", "Steps->Times"), ("empty", "", "is empty"), ("blank", "\n\n", "is empty"),
+                ("header", text.splitlines()[0] + "\n", "has no rows"), ("other", "a,b\n1,2\n", "is no table of rpc: it must have the columns"),
+                ("short", text[: len(text) // 2].rsplit(",", 3)[0] + "\n", "a row must have 9 entries", "got "),
+                ("long", text + "1,2,3,4,5,6,7,8,9,10\n", f"row {N + 2}: a row must have 9 entries", "got 10"),
+                ("words", text.replace(",0.1,", ",much,"), "column u_nu: entries must be numbers", 'got "much"'),
+                ("nan", text.replace("-1.0,0,", "nan,0,"), None), ("picture", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe", "is no table"),
+                ("quote", text + '"', "is no table: "), ("failed", "time,work,converged\n1,nan,0\n", "has no rows of steps that have converged")):
+            if content is not None:
+                (self.folder / f"{name}.csv").write_bytes(content.encode() if isinstance(content, str) else content)
+            if parts[0]:
+                self.expect_refusal_of([f"{name}.csv"], f'"{name}.csv"', *parts)
+        self.expect_refusal_of(["nan.csv", "--over=x"], '"nan.csv", column x: --over must name a column of finite numbers')
+        (self.folder / "folder.csv").mkdir()
+        self.expect_refusal_of(["folder.csv"], '"folder.csv": Is a directory')
+
+
+if __name__ == "__main__":
+    unittest.main()
