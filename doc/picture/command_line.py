@@ -23,7 +23,7 @@ EPILOG = """Fields of the contact are drawn on the contact side, in the plane as
 von Mises stress. Default: contact_pressure if there is contact, else von_mises. cell_size shows where a mesh is fine. RESULT.e stands for
 all files of the run, RESULT.e-s0002 and so on too: one for each mesh of its load steps. RESULT.contact.csv gives the pressure, the friction
 and the state along the contact sides; RESULT.history.csv, of load steps, force against displacement and the energies, or with --columns any
-of its columns. Several tables of one kind, each as FILE or LABEL=FILE, go into one picture. doc/pictures.md has an example of each."""
+of its columns; RESULT.json the estimated error over the adapted meshes. Several tables of one kind, each as FILE or LABEL=FILE, go into one picture. doc/pictures.md has an example of each."""
 OF_BODIES = ("field", "scale", "time", "window", "cut", "view")
 OF_TABLES = ("columns", "over", "range")
 
@@ -112,7 +112,7 @@ def options(arguments):
     """The command line, checked as far as that goes without the result."""
     parser = Parser(prog="bash doc/picture.sh", description="Makes a picture of results of rpc: of a body, in the plane or in space, or of tables.",
                     epilog=EPILOG, allow_abbrev=False)
-    parser.add_argument("results", metavar="RESULT", nargs="+", help="RESULT.e, or one or several of RESULT.contact.csv or RESULT.history.csv")
+    parser.add_argument("results", metavar="RESULT", nargs="+", help="RESULT.e, or one or several of RESULT.contact.csv, of RESULT.history.csv or of RESULT.json")
     parser.add_argument("--output", metavar="FILE", help="FILE.png, FILE.pdf or FILE.svg; default: RESULT.png beside RESULT")
     parser.add_argument("--style", metavar="NAME", default="light", help="light, dark, or print: greys and line patterns; default: light")
     body = parser.add_argument_group("pictures of a body, RESULT.e")
@@ -123,7 +123,7 @@ def options(arguments):
                       "a box of the undeformed body, and what lies outside is not drawn")
     body.add_argument("--cut", metavar="x=0", help="in space: takes away what lies on this side of a plane across an axis")
     body.add_argument("--view", metavar="X,Y,Z", help="in space: direction from the body to the viewer; default: chosen")
-    tables = parser.add_argument_group("diagrams of tables, RESULT.contact.csv and RESULT.history.csv")
+    tables = parser.add_argument_group("diagrams of tables, RESULT.contact.csv, RESULT.history.csv and RESULT.json")
     tables.add_argument("--columns", metavar="NAME,...", help="columns, one panel for each; of contact sides also friction, the size of q, and "
                         "penetration, u_nu - gap; default: chosen")
     tables.add_argument("--over", metavar="NAME", help="column to the right; of contact sides x, y, z, s (the length along the surface), or "
@@ -141,25 +141,31 @@ def options(arguments):
     found.range = parsed(span, "range", found.range, "two numbers, such as 0,0.5, the lower one first")
     found.tables = are_tables(found)
     first = found.results[0]
-    found.output = found.output or os.path.splitext(table.path_of(first) if found.tables else first)[0] + ".png"
+    found.output = found.output or output_beside(table.path_of(first) if found.tables else first)
     if not output.format_of(found.output):
         kinds = [f".{kind}" for kind in output.FORMATS]
         raise PictureError(f'--output must end in {", ".join(kinds[:-1])} or {kinds[-1]}, got "{found.output}"')
     return found
 
 
+def output_beside(path):
+    """Where a picture goes by default; that of RESULT.json not where that of RESULT.e goes."""
+    stem, ending = os.path.splitext(path)
+    return stem + (".adaptation.png" if ending.lower() == ".json" else ".png")
+
+
 def are_tables(found):
     """Whether the results are tables, which go with other options than a body does."""
-    tables = [text.lower().endswith(".csv") for text in found.results]
+    tables = [text.lower().endswith((".csv", ".json")) for text in found.results]
     if any(tables) and not all(tables):
         raise PictureError(f'results of one picture must be of one kind, got "{found.results[tables.index(False)]}" beside '
                            f'"{found.results[tables.index(True)]}"; see --help')
     if not any(tables) and len(tables) > 1:
-        raise PictureError(f"pictures of bodies are made one at a time, got {len(tables)} files; several tables, *.contact.csv or "
-                           "*.history.csv, go into one picture")
+        raise PictureError(f"pictures of bodies are made one at a time, got {len(tables)} files; several of *.contact.csv, "
+                           "of *.history.csv or of *.json go into one picture")
     for name in OF_BODIES if any(tables) else OF_TABLES:
         if getattr(found, name) is not None:
-            wanted = "RESULT.e" if any(tables) else "*.contact.csv and *.history.csv"
+            wanted = "RESULT.e" if any(tables) else "*.contact.csv, *.history.csv and *.json"
             raise PictureError(f'"{found.results[0]}": --{name} does not go with it, but with {wanted}; see --help')
     return any(tables)
 

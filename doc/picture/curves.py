@@ -1,4 +1,4 @@
-"""Columns of tables over another one: pressures along contact sides, results of load steps."""
+"""Columns of tables over another one: pressures along contact sides, results of load steps, errors of adapted meshes."""
 import matplotlib
 
 matplotlib.use("Agg")
@@ -7,12 +7,13 @@ import numpy as np  # noqa: E402
 from matplotlib import ticker  # noqa: E402
 
 from result import PictureError  # noqa: E402
-from table import RADIUS, categories  # noqa: E402
+from table import RADIUS, categories, require_same_units  # noqa: E402
 
 RC = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3}
 WIDTH, PANEL, FLAT = 7.5, 2.6, 0.45  # inches: of the picture; height of a panel; of a panel for each category
 MOST_PANELS = 8
 MOST_MARKERS = 60  # of a curve that has them
+LOGARITHMIC = ("dofs", "relative_estimate")
 FROM_ZERO = ("pressure", "friction", "max_pressure", "friction_used")
 
 
@@ -34,6 +35,7 @@ def compose(tables, columns, over, span, style):
     for table in tables:
         for name in columns:
             table.column(name, "columns")
+    require_same_units(tables, [*columns, "x" if over == RADIUS else over])
     words = {name: categories(tables, name) for name in columns if any(table.is_text(name) for table in tables)}
     with plt.rc_context({**RC, **style.rc()}):
         heights = [0.5 + FLAT * len(words[name]) if name in words else PANEL for name in columns]
@@ -43,6 +45,10 @@ def compose(tables, columns, over, span, style):
             for table, x, look in zip(tables, along, style.curves):
                 add_curve(panel, table, x, name, words.get(name), look)
             finish(panel, tables[0], name, words.get(name))
+            if name == "relative_estimate":
+                add_targets(panel, tables, style)
+        if over in LOGARITHMIC:
+            panels[-1, 0].set_xscale("log")
         panels[-1, 0].set_xlabel(tables[0].name_of(over, axes_of_radius))
         if span is not None:
             panels[-1, 0].set_xlim(span)
@@ -54,17 +60,21 @@ def compose(tables, columns, over, span, style):
 
 
 def chosen_columns(tables):
-    """Of contact sides the pressure, the friction and the state; of load steps the contact force and the largest pressure."""
-    names = tables[0].names()
+    """Of contact sides the pressure, the friction and the state; of load steps the contact force and the largest pressure; of adapted meshes
+    the estimated error."""
+    names = [name for name in tables[0].names() if all(name in table.columns for table in tables)]
     if tables[0].kind == "contact":
         return [name for name in ("pressure", "friction", "state") if name in names]
+    if tables[0].kind == "adaptation":
+        return ["relative_estimate"]
     return [name for name in names if name.startswith("contact_force_")] + [name for name in ("max_pressure",) if name in names]
 
 
 def chosen_axis(table):
-    """In the plane the length along the surface, or x where there are several; in space the radius; of load steps the time."""
-    if table.kind == "history":
-        return "time"
+    """In the plane the length along the surface, or x where there are several; in space the radius; of load steps the time; of
+    adapted meshes the number of degrees of freedom."""
+    if table.kind != "contact":
+        return "time" if table.kind == "history" else "dofs"
     if "s" not in table.columns:
         return RADIUS
     return "s" if len(parts(table)) == 1 else "x"
@@ -132,10 +142,22 @@ def finish(panel, table, name, words):
         panel.set_ylim(-0.5, len(words) - 0.5)
         panel.set_ylabel(name.replace("_", " "))
         return
+    if name in LOGARITHMIC:
+        panel.set_yscale("log")
+        return
     panel.yaxis.set_major_formatter(ticker.ScalarFormatter(useMathText=True))
     panel.ticklabel_format(axis="y", scilimits=(-3, 5))
-    if name in FROM_ZERO:
-        panel.set_ylim(bottom=0)
+    if name in FROM_ZERO and table.kind != "adaptation":
+        most = np.nanmax(np.concatenate([[0], *(line.get_ydata() for line in panel.lines)]))
+        panel.set_ylim(0, 1.05 * most or 1)
+
+
+def add_targets(panel, tables, style):
+    """Where runs would have ended."""
+    for target in sorted({table.target for table in tables}):
+        panel.axhline(target, color=style.faint, linestyle="--", linewidth=0.9)
+        panel.annotate(f"target {target:g}", (1, target), xycoords=("axes fraction", "data"), xytext=(0, 2), textcoords="offset points",
+                       ha="right", va="bottom", fontsize=9, color=style.faint)
 
 
 def fit_height(panel, span):
@@ -146,6 +168,9 @@ def fit_height(panel, span):
     shown = np.concatenate(shown)
     shown = shown[np.isfinite(shown)]
     if not len(shown) or np.ptp(shown) == 0:
+        return
+    if panel.get_yscale() == "log":
+        panel.set_ylim(0.8 * shown.min(), 1.25 * shown.max())
         return
     margin = 0.05 * np.ptp(shown)
     bottom = 0 if panel.get_ylim()[0] == 0 else shown.min() - margin

@@ -8,6 +8,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from curves import RC  # noqa: E402
 from result import PictureError  # noqa: E402
 from style import LIGHT  # noqa: E402
+from table import require_same_units  # noqa: E402
 
 ENERGIES = (("dissipated_energy", "dissipated"), ("strain_energy", "elastic, in the body"), ("foundation_energy", "elastic, in the foundation"))
 WITH_FRICTION = (("dissipated_by_friction", "dissipated by friction"), ("dissipated_energy", "dissipated by yielding"), *ENERGIES[1:])
@@ -65,6 +66,7 @@ def spread(values):
 def compose(tables, style=LIGHT):
     """The diagram as a figure. @param tables  [table.Table] of load steps"""
     histories = [History(table) for table in tables]
+    require_same_units(tables, ("contact_force_x", "work", "max_dent"))
     alone = len(histories) == 1
     sheared = len({history.shear() for history in histories} - {None}) == 1
     number = 1 + sheared + alone

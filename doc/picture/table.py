@@ -1,14 +1,17 @@
-"""Reads the tables that rpc writes: RESULT.contact.csv along the contact sides, RESULT.history.csv of load steps."""
+"""Reads the tables that rpc writes: RESULT.contact.csv along the contact sides, RESULT.history.csv of load steps, and of RESULT.json that
+of the adapted meshes."""
 import csv
 import os
 import re
 
 import numpy as np
 
+import summary
 from result import PictureError, suggestion
 
 HEADING = re.compile(r"(.*?)(?: \[([^\]]*)\])?", re.DOTALL)  # name and unit of a column
 KINDS = {"contact": ("pressure", "state", "u_nu"), "history": ("time", "work")}  # columns that tell them
+NAMES = {"contact": "*.contact.csv", "history": "*.history.csv", "adaptation": "*.json"}
 WORDS = ("state", "friction_state", "side", "reason")  # columns that have no numbers
 ORDERED = ("none", "open", "closed", "yielding", "unseen", "sticks", "slips")  # of categories
 MOST_CATEGORIES = 12
@@ -20,6 +23,7 @@ MEANING = [
     ("friction", "friction", "Pa"), ("q_([xyz])", "friction in {1}", "Pa"), ("slip_([xyz])", "slip in {1}", "m"),
     ("friction_used", "friction over what it can be", ""), ("time", "t", ""), ("contact_force_([xyz])", "contact force in {1}", "{force}"),
     (".*_displacement_[xyz]|max_(displacement|penetration|dent|slip)", "{0}", "m"), (".*_reaction_[xyz]", "{0}", "{force}"),
+    ("relative_estimate", "estimated relative error", ""), ("dofs", "degrees of freedom", ""),
     ("max_(pressure|shear|von_mises)", "{0}", "Pa"), (".*_length", "{0}", "m"), (".*_area", "{0}", "m^2"),
     ("dent_volume", "{0}", "{volume}"), ("seconds", "wall-clock time", "s"),
     ("work|dissipated_by_friction|.*_energy|energy_imbalance", "{0}", "{energy}")]
@@ -28,12 +32,16 @@ MEANING = [
 class Table:
     """A file's columns, {name: (rows,) numbers or texts}, and their units where the headings have some, {name: unit}.
 
-    kind   one of KINDS
-    label  what a legend says of it
+    kind    one of KINDS, or "adaptation"
+    label   what a legend says of it
+    target  of adapted meshes: that of the relative estimate; else None
     """
 
     def __init__(self, path, label=""):
-        self.path, self.label = path, label
+        self.path, self.label, self.target = path, label, None
+        if path.lower().endswith(".json"):
+            self.kind, (self.columns, self.units, self.target) = "adaptation", summary.meshes(path)
+            return
         names, rows = self._read()
         self.kind = next((kind for kind, needed in KINDS.items() if set(needed) <= set(names)), None)
         if not self.kind:
@@ -148,7 +156,7 @@ def categories(tables, name):
 
 
 def tables_of(arguments, most):
-    """[Table] of files, each named FILE or LABEL=FILE; the same kind and units. @param most  files of one picture"""
+    """[Table] of files, each named FILE or LABEL=FILE; of one kind. @param most  files of one picture"""
     if len(arguments) > most:
         raise PictureError(f"at most {most} files go into one picture, got {len(arguments)}")
     named = [(text[: -len(path_of(text))].rstrip("="), path_of(text)) for text in arguments]
@@ -157,12 +165,17 @@ def tables_of(arguments, most):
     tables = [Table(path, label) for label, path in named]
     for table in tables[1:]:
         if table.kind != tables[0].kind:
-            raise PictureError(f'"{table.path}": files of one picture must be of one kind, got *.{table.kind}.csv beside *.{tables[0].kind}.csv')
-        for name in [name for name in tables[0].columns if name in table.columns]:
-            found, wanted = table.name_of(name), tables[0].name_of(name)
-            if found != wanted and name != RADIUS:
-                raise PictureError(f'"{table.path}": files of one picture must have the same units, got {found} beside {wanted}')
+            raise PictureError(f'"{table.path}": files of one picture must be of one kind, got {NAMES[table.kind]} beside {NAMES[tables[0].kind]}')
     return tables
+
+
+def require_same_units(tables, names):
+    """Of columns that are drawn together."""
+    for table in tables[1:]:
+        for name in names:
+            found, wanted = table.name_of(name), tables[0].name_of(name)
+            if name in table.columns and found != wanted:
+                raise PictureError(f'"{table.path}": files of one picture must have the same units, got {found} beside {wanted}')
 
 
 def path_of(argument):
@@ -172,8 +185,8 @@ def path_of(argument):
 
 def own_names(paths):
     """What tells files apart: their names without what all end in, or with their folders where names are the same."""
-    stems = [re.sub(r"\.(contact|history)?\.?csv$", "", os.path.basename(path)) for path in paths]
+    stems = [re.sub(r"(\.contact|\.history)?\.(csv|json)$", "", os.path.basename(path)) for path in paths]
     if len(set(stems)) == len(stems):
         return stems
     shared = os.path.commonpath([os.path.dirname(os.path.abspath(path)) for path in paths])
-    return [re.sub(r"\.csv$", "", os.path.relpath(path, shared)) for path in paths]
+    return [re.sub(r"\.(csv|json)$", "", os.path.relpath(path, shared)) for path in paths]

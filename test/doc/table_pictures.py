@@ -1,6 +1,7 @@
 """doc/picture.sh of tables: contact sides, columns of load steps, several files; what it refuses; how they look."""
 
 import dataclasses
+import json
 import math
 import unittest
 
@@ -44,6 +45,15 @@ def space_file(path):
             lines.append(f"{x},{y},{0.01 * x * x},{int(x > 0)},0,0,{p},{'closed' if p else 'open'},skin,0,{0.3 * p},{0.4 * p},0,{'sticks' if p else 'none'}")
     path.write_text("\n".join(lines) + "\n")
     return Table(str(path))
+
+
+def summary_file(path, **more):
+    """Of a run with two meshes."""
+    meshes = [{"dofs": dofs, "relative_estimate": error, "energy_J": 2, "contact_force": [0, force], "max_pressure": None, "linear_iterations": [1, 2],
+               "seconds": 0.5} for dofs, error, force in ((100, 0.1, 3), (1000, 0.02, 4))]
+    path.write_text(json.dumps({"rpc_version": "1", "units": {"length": "mm", "force": "N/mm", "stress": "MPa", "energy": "mJ/mm"},
+                                "adaptation": {"target": 0.03, "cycles": meshes}, **more}))
+    return Table(str(path)) if not more else None
 
 
 class Diagrams(RpcTestCase):
@@ -103,6 +113,28 @@ class Diagrams(RpcTestCase):
         (axes,) = self.compose([table], ["work"], "max_dent").axes
         self.assertEqual((axes.get_ylabel(), axes.get_xlabel()), ("work [J/m]", "max dent [m]"))
 
+    def test_estimated_errors_over_the_meshes(self):
+        table = summary_file(self.folder / "a.json")
+        (axes,) = self.compose([table]).axes
+        self.assertEqual((axes.get_xscale(), axes.get_yscale(), axes.get_ylabel()), ("log", "log", "estimated relative error"))
+        self.assertEqual(axes.lines[0].get_xydata().tolist(), [[100, 0.1], [1000, 0.02]])
+        self.assertEqual(list(axes.lines[1].get_ydata()), [0.03, 0.03])
+        (axes,) = self.compose([table], ["contact_force_y"], "seconds").axes
+        self.assertEqual((axes.get_ylabel(), axes.get_xlabel()), ("contact force in y [N/mm]", "wall-clock time [s]"))
+        self.assertEqual(self.picture("a.json"), (0, "wrote a.adaptation.png\n", ""))
+
+    def test_of_the_program(self):
+        self.rpc("--input=shear.xml", "--set=Mesh->Cells={12, 6}", "--output=out")
+        self.rpc("--input=beam_adaptive.xml", "--set=Adapt->Target Relative Error=0.02", "--output=out")
+        for name in ("shear.contact.csv", "shear.history.csv", "beam_adaptive.contact.csv", "beam_adaptive.json"):
+            self.assertEqual(self.picture(f"out/{name}", "--output=a.png"), (0, "wrote a.png\n", ""))
+        self.assertEqual(self.picture("out/shear.contact.csv", "out/beam_adaptive.contact.csv", "--over=x", "--output=a.png")[0], 0)
+        for name in ("shear.contact.csv", "shear.history.csv", "beam_adaptive.json"):  # units are told of all but of numbers
+            table = Table(str(self.folder / "out" / name))
+            bare = [column for column in table.names() if not table.is_text(column) and "[" not in table.name_of(column)]
+            self.assertEqual(set(bare) - {"friction_used", "time", "newton_iterations", "linear_iterations", "parts", "converged", "max_strain",
+                                          "dofs", "relative_estimate"}, set(), name)
+
     def test_several_files_have_a_legend(self):
         (self.folder / "one").mkdir()
         for name in ("one/a", "b", "c=d"):
@@ -131,7 +163,8 @@ class Diagrams(RpcTestCase):
         for name, tables, columns, over, span in (("sides", [rigid, soft], ["pressure", "state"], "x", None), ("radius", [space], None, None, (0, 0.8)),
                                                   ("steps", [steps], ["work", "contact_force_y"], None, None)):
             for kind in (style.LIGHT, style.PRINT if name == "sides" else style.DARK):
-                references.expect_like(self, references.without_texts(self.compose(tables, columns, over, span, kind)), f"{name}_{kind.name}")
+                references.expect_like(self, references.without_texts(self.compose(tables, columns, over, span, kind)), f"{name}_{kind.name}",
+                                       references.DIAGRAM)
 
 
 class Refusals(RpcTestCase):
@@ -167,7 +200,7 @@ class Refusals(RpcTestCase):
     def test_of_several_files(self):
         contact_file(self.folder / "mm.contact.csv", units=True)
         self.expect_refusal_of(["a.contact.csv", "a.history.csv"], '"a.history.csv": files of one picture must be of one kind')
-        self.expect_refusal_of(["a.contact.csv", "mm.contact.csv"], '"mm.contact.csv": files of one picture must have the same units', "[mm] beside ")
+        self.expect_refusal_of(["a.contact.csv", "mm.contact.csv"], '"mm.contact.csv": files of one picture must have the same units', "[MPa] beside ")
         self.expect_refusal_of(["a.contact.csv"] * 7, "at most 6 files", "got 7")
         self.expect_refusal_of(["a.contact.csv", "a.e"], 'of one kind, got "a.e" beside "a.contact.csv"')
         self.expect_refusal_of(["a.contact.csv", "x=none.contact.csv"], '"none.contact.csv": no such file')
@@ -186,6 +219,15 @@ class Refusals(RpcTestCase):
                 (self.folder / f"{name}.csv").write_bytes(content.encode() if isinstance(content, str) else content)
             if parts[0]:
                 self.expect_refusal_of([f"{name}.csv"], f'"{name}.csv"', *parts)
+        for name, told, part in (("plain", {"adaptation": None}, 'is damaged: "adaptation" is not what rpc writes'), ("none", {"adaptation": {}}, "is damaged"),
+                                 ("empty", {"adaptation": {"target": 1, "cycles": []}}, "is damaged"), ("units", {"units": []}, "is damaged")):
+            summary_file(self.folder / f"{name}.json", **told)
+            self.expect_refusal_of([f"{name}.json"], f'"{name}.json" {part}', "remedy: run rpc again")
+        for name, content, part in (("text", "{", '"text.json" is no JSON'), ("list", "[]", "is not a summary of rpc"),
+                                    ("fixed", '{"rpc_version": "1"}', "tells of no adapted meshes"), ("binary", "\0", "is no JSON")):
+            (self.folder / f"{name}.json").write_text(content)
+            self.expect_refusal_of([f"{name}.json"], part)
+        self.expect_refusal_of(["missing.json"], '"missing.json": no such file')
         self.expect_refusal_of(["nan.csv", "--over=x"], '"nan.csv", column x: --over must name a column of finite numbers')
         (self.folder / "folder.csv").mkdir()
         self.expect_refusal_of(["folder.csv"], '"folder.csv": Is a directory')
