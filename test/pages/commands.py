@@ -19,6 +19,8 @@ NOT_RUN = [
     (r"(bash cmake/run\.sh|\S*rpc) .*Mesh->Refinements=3", "takes 800 000 unknowns"),
 ]
 MOST_RANKS = 2
+PASSED_ON = ("Linear Solver->MueLu", "NOX")  # lists whose parameters are those of other packages
+PLACEHOLDERS = ("Path", "A->B", "List->Parameter", "Sublist->Parameter")
 PROGRAMS = ("rpc", "./rpc", "build/rpc")
 PICTURE = "doc/picture.sh"
 WITHOUT_GMSH = "this rpc was built without gmsh"
@@ -63,7 +65,7 @@ def parameters_of(text):
             folder = heading[1].strip() + "->"
         elif entry:
             patterns.append(re.escape(folder + entry[1]).replace("<any\\ name>", "[^>]+").replace("<any name>", "[^>]+"))
-    return [re.compile(pattern) for pattern in patterns] + [re.compile(r"Linear Solver->MueLu->.+")]
+    return [re.compile(pattern) for pattern in patterns] + [re.compile(path + "->.+") for path in PASSED_ON]
 
 
 def commands_of(lines):
@@ -125,12 +127,15 @@ def as_run(command):
     return re.sub(r"(?:\bNP=(\d+) )?bash cmake/run\.sh", program, command)
 
 
-def faults_of(command, tools):
-    """Files and options that the command names and that do not exist."""
+def faults_of(command, tools, folder):
+    """Files and options that the command names and that do not exist.
+
+    @param folder  where it would run, with the decks of the page
+    """
     for part in parts_of(as_run(command)):
         names = [n for n, word in enumerate(part) if word in PROGRAMS or word.endswith("/rpc")]
         if names and (names[0] == 0 or part[0] in ("mpirun", "mpiexec", "srun")):
-            yield from faults_of_arguments(part[names[0] + 1:], tools)
+            yield from faults_of_arguments(part[names[0] + 1:], tools, folder)
         elif part[:2] == ["bash", PICTURE]:
             known = tools.picture_options
             yield from (f"{PICTURE} has no option {word}" for word in part[2:]
@@ -140,7 +145,7 @@ def faults_of(command, tools):
                 yield f"there is no {word}"
 
 
-def faults_of_arguments(arguments, tools):
+def faults_of_arguments(arguments, tools, folder):
     for word in arguments:
         option, _, value = word.partition("=")
         placeholder = re.fullmatch(r"[A-Z_]+(\.\w+)?", value)
@@ -149,9 +154,9 @@ def faults_of_arguments(arguments, tools):
         if option not in tools.options:
             yield f"rpc has no option {option}"
         elif option == "--input" and value and not placeholder:
-            if not any((folder / value).exists() for folder in (tools.source, tools.source / "input")):
+            if not any((place / value).exists() for place in (folder, tools.source, tools.source / "input")):
                 yield f"there is no deck {value}"
-        elif option == "--set" and "=" in value and value.split("=")[0] not in ("Path", "A->B", "Sublist->Parameter"):
-            path = re.split(r"=", value)[0].strip()
-            if not any(pattern.fullmatch(path) for pattern in tools.parameters):
+        elif option == "--set" and "=" in value:
+            path = value.split("=")[0].strip()
+            if path not in PLACEHOLDERS and not any(pattern.fullmatch(path) for pattern in tools.parameters):
                 yield f'a deck has no parameter "{path}"'

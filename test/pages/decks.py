@@ -19,6 +19,13 @@ def is_whole(text, language):
     return len(lists) == 1 and any(child.get("name") in ("Mesh", "Material") for child in lists[0])
 
 
+def name_of(text, language):
+    """Of a whole deck: that of its root list."""
+    if language == "yaml":
+        return re.search(r"^([^\s#][^:\n]*):", text, re.MULTILINE)[1]
+    return parsed(text)[0].get("name")
+
+
 def parsed(text):
     try:
         return list(ET.fromstring(f"<page>{text}</page>"))

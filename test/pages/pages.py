@@ -24,9 +24,10 @@ from page import MARKS, Page
 
 SOURCE = pathlib.Path(os.environ.get("RPC_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 GROUPS = {"readme": ["README.md"], "tutorial": ["doc/tutorial/*.md"], "gallery": ["doc/gallery/*.md", "doc/gallery/*/*.md"],
-          "input": ["doc/input.md", "doc/input/*.md", "doc/pictures.md"]}
+          "input": ["doc/input.md", "doc/input/*.md", "doc/commands.md", "doc/pictures.md"]}
 GMSH = "4.8"  # with whose meshes the numbers of the pages were made: Debian 12's
 TIMEOUT = 300  # s, of a command
+MPI_OF_A_TEST = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 VERSION_OF_GMSH = """<ParameterList name="version">
   <ParameterList name="Mesh">
     <Parameter name="Type" type="string" value="gmsh"/>
@@ -58,6 +59,7 @@ class Checker:
             if self.page.unclosed:
                 self.fault(self.page.unclosed, "the block has no end")
             self._check_links()
+            self._save_decks()
             self._check_spans()
             printed = None
             for block in self.page.blocks:
@@ -89,6 +91,18 @@ class Checker:
                 if mesh.suffix in (".geo", ".msh", ".step", ".stp") and not (self.decks / mesh.name).exists():
                     (self.decks / mesh.name).symlink_to(mesh)
 
+    def _save_decks(self):
+        """Whole decks of the page, under their names, for its commands."""
+        for block in self.page.blocks:
+            if block.language in ("xml", "yaml") and not {"from", "part of", "not run"} & set(block.marks):
+                try:
+                    if decks.is_whole(block.text, block.language):
+                        file = self.folder / f"{decks.name_of(block.text, block.language)}.{block.language}"
+                        if not file.exists():
+                            file.write_text(block.text)
+                except decks.DeckFault:
+                    pass  # _check_deck tells
+
     def _check_marks(self, block):
         for mark in block.marks:
             if mark in MARKS and mark != "output" and not block.marks[mark]:
@@ -117,7 +131,7 @@ class Checker:
 
     def _check_names(self, line, command):
         try:
-            found = list(commands.faults_of(re.sub(r"[\[\]]|\.\.\.", " ", command), self.tools))
+            found = list(commands.faults_of(re.sub(r"[\[\]]|\.\.\.", " ", command), self.tools, self.folder))
         except ValueError as error:
             found = [f"it is no command: {error}"]
         for text in found:
@@ -146,15 +160,15 @@ class Checker:
         except ValueError as error:
             return self.fault(line, f"it is no command: {error}")
         if reason:
-            self.skipped.append((line, f"not run, it {reason}: {command}"))
+            self.skipped.append((line, f"not run ({reason}): {command}"))
             return None
         path = f"{self.folder}{os.pathsep}{os.environ['PATH']}"
-        run = subprocess.run(["bash", "-uo", "pipefail", "-c", commands.as_run(command)], cwd=self.folder, env={**os.environ, "PATH": path},
+        run = subprocess.run(["bash", "-uo", "pipefail", "-c", commands.as_run(command)], cwd=self.folder, env={**MPI_OF_A_TEST, **os.environ, "PATH": path},
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, errors="replace",
                              timeout=TIMEOUT)
         if run.returncode != expected:
             if commands.WITHOUT_GMSH in run.stdout:
-                self.skipped.append((line, f"not run, it takes gmsh: {command}"))
+                self.skipped.append((line, f"not run (takes gmsh): {command}"))
                 return None
             tail = "".join(f"\n    {text}" for text in run.stdout.splitlines()[-8:])
             return self.fault(line, f"exit code {run.returncode}, not {expected}, of {command}{tail}")

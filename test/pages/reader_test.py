@@ -154,6 +154,11 @@ class Pages(Checked):
                           "Contact", "Sied")
         self.expect_fault("```yaml\nbeam:\n  Mesh: {Cells: [2, 2]}\n  Material: {Young's Modulus: -1.0, Poisson's Ratio: 0.3}\n```\n", "beam:", "refused")
 
+    def test_decks_of_a_page_are_there_for_its_commands(self):
+        page = "Run `rpc --input=press.xml`.\n\n```xml\n" + DECK.replace('name="beam"', 'name="press"') + f"```\n\n```sh\nrpc --input=press.xml {SMALL}\n```\n"
+        self.assertEqual(self.checked(page)[1], [])
+        self.expect_fault(page.replace("`rpc --input=press", "`rpc --input=push"), "push", "no deck push.xml")
+
     def test_excerpts(self):
         self.expect_fault("<!-- from: input/beam.xml -->\n```xml\n<Parameter name=\"Yield Stress\" type=\"double\" value=\"17\"/>\n```\n", "17", "not a line")
         self.expect_fault("<!-- from: input/nothing.xml -->\n```xml\n<A/>\n```\n", "<A/>", "nothing.xml")
