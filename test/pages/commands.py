@@ -115,6 +115,8 @@ def reason_not_to_run(command, tools):
                 return "there is no mpirun"
             if not any(word in PROGRAMS for word in part):
                 return "takes another build"
+        if part[0] == "gmsh" and not shutil.which("gmsh"):
+            return "gmsh's program is missing"
         if PICTURE in part and not tools.pictures:
             return "matplotlib or netCDF4 is missing"
     return ""

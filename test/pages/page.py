@@ -29,6 +29,7 @@ class Block:
     lines: list
     line: int  # number of its first line in the page, from 1
     marks: dict
+    indent: int = 0
 
     @property
     def text(self):
@@ -71,7 +72,7 @@ class Page:
 
     def _add(self, language, top, begin, end, indent):
         lines = [line[indent:] if not line[:indent].strip() else line for line in self.lines[begin:end]]
-        self.blocks.append(Block(language, lines, begin + 1, self._marks_above(top)))
+        self.blocks.append(Block(language, lines, begin + 1, self._marks_above(top), indent))
         self.outside[top:end + 1] = [""] * len(self.outside[top:end + 1])
 
     def _marks_above(self, n):
@@ -114,8 +115,9 @@ class Page:
         return found
 
     def replace(self, block, lines):
-        """New lines for a block that stands at the margin. Blocks further up keep their places."""
-        self.lines[block.line - 1:block.line - 1 + len(block.lines)] = lines
+        """New lines for a block; those below it move."""
+        margin = " " * block.indent
+        self.lines[block.line - 1:block.line - 1 + len(block.lines)] = [margin + line if line else "" for line in lines]
         grown = len(lines) - len(block.lines)
         for other in self.blocks:
             if other.line > block.line:

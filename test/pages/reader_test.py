@@ -170,10 +170,10 @@ class Pages(Checked):
 
     def test_update_writes_what_commands_print(self):
         text = f"```sh\nrpc --input=beam.xml {SMALL}\necho end 3\n```\n\n<!-- output -->\n```text\nbeam: 81 Q1 cells, plane strain\n...\nend 2\n```\n\n" \
-               "```sh\necho 1\necho 2\n```\n\n<!-- output -->\n```text\n```\n"
+               "1. Item\n\n   ```sh\n   echo 1\n   echo 2\n   ```\n\n   <!-- output -->\n   ```text\n   ```\n"
         self.assertEqual(self.checked(text, update=True)[1], [])
         new = (self.folder / "README.md").read_text()
-        self.assertRegex(new, r"(?s)```text\nbeam: 80 Q1 cells, [^\n]*\n\.\.\.\nend 3\n```\n.*```text\n1\n2\n```\n$")
+        self.assertRegex(new, r"(?s)```text\nbeam: 80 Q1 cells, [^\n]*\n\.\.\.\nend 3\n```\n.* {3}```text\n {3}1\n {3}2\n {3}```\n$")
         self.assertEqual(self.checked(new)[1], [])
         lost = new.replace("...\nend 3", "...\nnothing that is printed")
         _, faults = self.checked(lost, update=True)
@@ -201,7 +201,8 @@ class Outputs(unittest.TestCase):
                                           ("  time   mesh 0.1, solve 2", "  time   mesh 3, solve 7", False),
                                           ("n  time [s]  left [s]\n1 2 3\n\n1 2", "n  time [s]  left [s]\n1 5 6\n\n1 2", False),
                                           ("n  time [s]  left [s]\n1 2 3", "n  time [s]  left [s]\n2 2 3", True),
-                                          ("n  time [s]\n1 2\n\n1 2", "n  time [s]\n1 2\n\n1 3", True)]:
+                                          ("n  time [s]\n1 2\n\n1 2", "n  time [s]\n1 2\n\n1 3", True),
+                                          ("n  time [s]\narea 3 mm^2", "n  time [s]\narea 4 mm^2", True)]:
             self.assertEqual(self.differs(expected, actual), differs, (expected, actual))
 
     def test_dots_stand_for_lines_and_for_words(self):
@@ -216,6 +217,7 @@ class Outputs(unittest.TestCase):
                 ("one 1\n...\nlast 4", "one 2\ntwo 3\nthree 4\nlast 5", "one 2\n...\nlast 5"),
                 ("...\nfirst line 1\nan old line\nlast line 2\n...", "head\nfirst line 3\nnew lines\nof another kind\nlast line 4\nend",
                  "...\nfirst line 3\nnew lines\nof another kind\nlast line 4\n..."),
+                ("row 1 of 3\n...\nrow 3 of 3\n...", "row 1 of 3\nrow 2 of 3\nrow 3 of 3\nend", "row 1 of 3\n...\nrow 3 of 3\n..."),
                 ("force ... N\n...", "force 1 2 N\nb", "force ... N\n..."), ("a 1\nb 2", "a 3\nb 4\nc 5", "a 3\nb 4\nc 5")]:
             self.assertEqual("\n".join(outputs.updated(expected.splitlines(), actual.splitlines())), new)
         with self.assertRaises(LookupError):
