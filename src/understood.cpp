@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "understood.hpp"
 
 #include "rpc/fem/measure.hpp"

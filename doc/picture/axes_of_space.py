@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Axes of a picture in space."""
 import numpy as np
 from matplotlib import ticker

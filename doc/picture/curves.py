@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Columns of tables over another one: pressures along contact sides, results of load steps, errors of adapted meshes."""
 import matplotlib
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What fields are called, which of them are categories, and their colours."""
 import re
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Picture files: PNG, PDF or SVG, by the ending of their names."""
 import io
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """From where a body is seen."""
 import dataclasses
 

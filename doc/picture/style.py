@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Colours, lines and resolution of pictures: light for the screen, dark for dark slides, print for paper without colours."""
 import dataclasses
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Reads of a run's summary, RESULT.json, what it tells of the meshes that it has adapted."""
 import json
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Reads the tables that rpc writes: RESULT.contact.csv along the contact sides, RESULT.history.csv of load steps, and of RESULT.json that
 of the adapted meshes."""
 import csv

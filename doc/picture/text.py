@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Sizes of texts in pictures."""
 from matplotlib import textpath
 

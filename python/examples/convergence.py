@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The beam on meshes that are refined where the error is: estimated error over unknowns, and results with their error bars.
 
     python3 convergence.py [--plot=convergence.png]

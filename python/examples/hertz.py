@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Force against indentation of half a ball on a rigid plane, beside Hertz's closed form.
 
     python3 hertz.py [--plot=hertz.png]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The paper's beam on foundations of different yield limits: force, width in contact and width that yields.
 
     python3 yield_limit.py [--plot=yield_limit.png] [--folder=study]

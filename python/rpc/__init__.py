@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs rpc, contact of an elastic body with a rigid-plastic foundation, and reads its results as arrays.
 
     import rpc

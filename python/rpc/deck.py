@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Decks as dicts: sublists are dicts, parameters are int, float, bool, str and lists of these."""
 import copy
 import numbers

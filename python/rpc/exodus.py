@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Exodus files of rpc: mesh and fields of a time step, from one file or from one a rank, of one mesh or of several."""
 import dataclasses
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a run has left: exit code, messages, and its files as arrays."""
 import csv
 import json

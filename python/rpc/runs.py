@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """One run of the program, as a process of its own."""
 import contextlib
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Many runs of one deck with other parameters."""
 import concurrent.futures
 import copy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The module as a package of pip, without a network; its examples."""
 import importlib.util
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What all tests of the module share. CTest tells of program and launcher by $RPC_PROGRAM and $RPC_MPIRUN, which is empty where there is no MPI."""
 import os
 import pathlib

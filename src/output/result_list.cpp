@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "output/result_list.hpp"
 
 #include "rpc/io/error_bar.hpp"

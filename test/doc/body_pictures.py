@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """doc/picture.sh of bodies: views along axes, enlarged displacements, states, styles, PDF and SVG, damaged files; how they look."""
 
 import dataclasses

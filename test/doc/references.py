@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Compares pictures with those in references/, without their texts: letters differ between versions of fonts.
 
 RPC_WRITE_REFERENCES=1 in the environment writes them anew; look at them before they are committed.

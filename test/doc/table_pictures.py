@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """doc/picture.sh of tables: contact sides, columns of load steps, several files; what it refuses; how they look."""
 
 import dataclasses

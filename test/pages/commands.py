@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Commands of a page: which are run, and how; of those that are not, whether the files and options that they name exist."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Decks in pages: whole ones, and lists of parameters that go into one."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a page says that a command prints, against what it prints: the same words, and numbers to 1e-3.
 
 A line `...` stands for any number of lines, a word `...` for any words of its line. Numbers below 1e-6 are rounding and count as 0. Times

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A Markdown page: its fenced blocks with the marks above them, its links, its headings.
 
 A mark is an HTML comment of one line, `<!-- name: value -->`, right above a block or above another mark:

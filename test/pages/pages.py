@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Commands, decks, outputs, pictures and links of Markdown pages, against the program and the source tree.
 
     RPC_PROGRAM=build/rpc python3 pages.py [--update] readme|tutorial|gallery|input|PAGE.md ...
@@ -24,7 +25,7 @@ from page import MARKS, Page
 
 SOURCE = pathlib.Path(os.environ.get("RPC_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 GROUPS = {"readme": ["README.md"], "tutorial": ["doc/tutorial/*.md"], "gallery": ["doc/gallery/*.md", "doc/gallery/*/*.md"],
-          "input": ["doc/input.md", "doc/input/*.md", "doc/commands.md", "doc/pictures.md"]}
+          "input": ["doc/input/*.md", "doc/commands.md", "doc/pictures.md"]}
 GMSH = "4.8"  # with whose meshes the numbers of the pages were made: Debian 12's
 TIMEOUT = 300  # s, of a command
 MPI_OF_A_TEST = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pages.py passes a sound page and finds each kind of fault, at its line."""
 
 import pathlib

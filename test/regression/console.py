@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the console ends with: how the run ended, its results with their error bars, work. The summary has the same numbers."""
 
 import json

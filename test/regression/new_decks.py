@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """rpc --new: its menu, and each of its decks, which a newcomer gets to start from: written once, understood and solved."""
 
 import re

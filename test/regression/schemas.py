@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """rpc --print-schema: every deck that comes with rpc fits, typing errors do not."""
 
 import copy

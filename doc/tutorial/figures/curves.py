@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Diagrams of the lessons: python3 curves.py FOLDER-OF-RESULTS FOLDER-OF-PICTURES; make.sh has the runs."""
 
 import csv

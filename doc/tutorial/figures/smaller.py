@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures of fewer pixels and colours: python3 smaller.py PICTURE ..."""
 
 import sys

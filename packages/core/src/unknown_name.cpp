@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "unknown_name.hpp"
 
 #include "rpc/core/parameters.hpp"

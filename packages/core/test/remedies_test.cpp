@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/remedies.hpp"
 
 #include "rpc/core/parameters.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "deck_text.hpp"
 
 #include "rpc/core/error.hpp"

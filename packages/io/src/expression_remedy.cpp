@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "expression_remedy.hpp"
 
 #include "rpc/core/remedies.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "xml_deck.hpp"
 
 #include "deck_text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "yaml_deck.hpp"
 
 #include "deck_text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/io/deck.hpp"
 
 #include "rpc/core/error.hpp"

@@ -43,9 +43,10 @@ struct Failure {
 /// What a run on one mesh has found.
 struct Solution : StepSolution {
   fem::Discretization discretization;
-  std::vector<std::string> skipped; ///< parts of the algorithm that this run skipped, with reasons, see doc/input/results.md
-  std::vector<std::string> notes;   ///< what the user should know of it besides its numbers, see doc/input/results.md
-  double time = 1;                  ///< at which it is the solution
+  std::vector<std::string>
+      skipped; ///< parts of the algorithm that this run skipped, with reasons, see doc/input/results.md
+  std::vector<std::string> notes; ///< what the user should know of it besides its numbers, see doc/input/results.md
+  double time = 1;                ///< at which it is the solution
   fem::BodyPeaks body;
   std::optional<Memory> memory; ///< what the next load step starts from, where there are several and it converged
   /// (contact points) Pressure that the solution on the previous mesh gave as a start [Pa]; none without a previous mesh.
