@@ -276,6 +276,8 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
   Kokkos::parallel_reduce(
       "rpc::contact::result_maxima", points,
       KOKKOS_LAMBDA(const LO i, double &most, double &deep, double &overlap, double &dented) {
+        const bool on_axis = c.dim == 2 && !(c.weight(i) > 0); // of revolution, where pressures are often largest
+        if (on_axis && p(i) > most) most = p(i);
         if (!(c.weight(i) > 0)) return; // the contact law does not hold there
         if (dent(i) > dented) dented = dent(i);
         if (p(i) > most) most = p(i);

@@ -197,13 +197,16 @@ void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &
   const int nodes = static_cast<int>(facets.extent(1));
   const mesh::Element facet = mesh.element.facet();
   const bool quadratic_triangles = facet.dim == 2 && facet.shape == mesh::Shape::simplex && facet.order == 2;
+  const bool quadratic_edges = facet.dim == 1 && facet.order == 2;
+  const double axis = d.axisymmetric() ? d.on_axis : -1; // nodes with r up to this lie on it
+  const auto coords = mesh.coords;
   const NodeToCells node_to_facets = around_nodes(facets, num_owned);
   const auto out = device_write(value);
   Kokkos::parallel_for(
       "rpc::fem::extend", device_range(num_owned), KOKKOS_LAMBDA(const LO n) {
         if (k(n, 0) != 0) return;
-        double sum = 0, linear = 0;
-        int count = 0, triangles = 0;
+        double sum = 0, through = 0;
+        int count = 0, functions = 0;
         for (std::size_t m = node_to_facets.row(n); m < node_to_facets.row(n + 1); ++m) {
           const LO f = node_to_facets.cell(m);
           for (int b = 0; b < nodes; ++b) {
@@ -212,17 +215,23 @@ void extend_to_unknown(const Discretization &d, const mesh::Side &side, Vector &
             sum += v(other, 0);
             ++count;
           }
-          if (!quadratic_triangles) continue;
           const int a = place_in(facets, f, n);
+          if (quadratic_edges && a < 2 && k(facets(f, 2), 0) != 0 && k(facets(f, 1 - a), 0) != 0) {
+            const double middle = v(facets(f, 2), 0), far = v(facets(f, 1 - a), 0);
+            // On the axis a smooth function has no slope.
+            through += coords(n, 0) <= axis ? (4 * middle - far) / 3 : 2 * middle - far;
+            ++functions;
+          }
+          if (!quadratic_triangles) continue;
           if (a >= 3) continue; // a middle node
           // Middle node 3 + a lies between vertices a and a + 1.
           const LO beside = facets(f, 3 + a), before = facets(f, 3 + (a + 2) % 3),
                    opposite = facets(f, 3 + (a + 1) % 3);
           if (k(beside, 0) == 0 || k(before, 0) == 0 || k(opposite, 0) == 0) continue;
-          linear += v(beside, 0) + v(before, 0) - v(opposite, 0);
-          ++triangles;
+          through += v(beside, 0) + v(before, 0) - v(opposite, 0);
+          ++functions;
         }
-        out(n) = triangles > 0 ? linear / triangles : count > 0 ? sum / count : 0;
+        out(n) = functions > 0 ? through / functions : count > 0 ? sum / count : 0;
       });
   Kokkos::fence();
 }

@@ -202,6 +202,24 @@ TEST(ExtendToUnknown, UnknownNodesGetTheMeanOfTheirKnownNeighbours)
   EXPECT_EQ(std::vector<double>(all.begin(), all.begin() + 7), (std::vector<double>{1, 1, 4, 10, 16, 25, 25}));
 }
 
+TEST(ExtendToUnknown, EndsOfQuadraticEdgesGetTheLineThroughTheOtherNodes)
+{
+  for (const auto shape : {mesh::Shape::tensor, mesh::Shape::simplex}) {
+    // Bottom nodes 0 .. 6, of three edges; 0, 4 and, in the middle of the last edge, 5 are unknown.
+    const auto d = body({{0, 0}, {3, 1}, {3, 1}, {2, 2, shape}}, world());
+    const auto all = extended(d, {1, 2, 3, 6}, [](const GO id) { return 3. - double(id); });
+    EXPECT_EQ(std::vector<double>(all.begin(), all.begin() + 7), (std::vector<double>{3, 2, 1, 0, -1, -3, -3}));
+  }
+}
+
+TEST(ExtendToUnknown, TheAxisGetsTheParabolaWithoutSlope)
+{
+  const auto d = body({{0, 0}, {3, 1}, {3, 1}, {2, 2}}, world(), {}, fem::Kinematics::axisymmetric);
+  const auto all = extended(d, {1, 2, 3, 4, 5}, [](const GO id) { return 8. - double(id * id); });
+  EXPECT_NEAR(all[0], 8, 1e-14);
+  EXPECT_NEAR(all[6], 2 * (8 - 25) - (8 - 16), 1e-13); // the other end: the line
+}
+
 TEST(ExtendToUnknown, NodesWithoutKnownNeighboursGetZero)
 {
   const auto d = body({{0, 0}, {6, 1}, {6, 1}, {2, 1}}, world());

@@ -32,7 +32,8 @@ SurfaceNodes surface_nodes(const Discretization &d, const mesh::Side &side);
 
 /// For each node of a side that `known` leaves out, the mean over the known nodes with which it shares a facet; 0 if
 /// there are none. A vertex of quadratic triangles whose middle nodes are known takes the value of the linear function through
-/// these, the mean over such triangles: it is exact for linear functions.
+/// these, an end of quadratic edges that of the linear function through the other two nodes, the mean over such facets: both are
+/// exact for linear functions. On the axis of a body of revolution it is the parabola without slope there.
 ///
 /// Serves contact nodes to which the contact law gives no pressure: those whose normal displacement is prescribed, and those
 /// without weight. doc/theory.md (3.5)
