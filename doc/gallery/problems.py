@@ -52,7 +52,7 @@ class Problem:
         return self.runs[0].name
 
 
-NO_BAR_OF = "the program prints no bar for it"
+NO_BAR_OF = "the program prints none for it"
 E_STAR = 2000 / (1 - 0.3**2)  # [Pa] of the half spaces
 AREA = "contact_area"
 
@@ -103,7 +103,7 @@ def hertz_ball():
         "The body is one of revolution, of which the mesh is the section. It ends at a spheroid, where it is given the exact displacement of the half space.",
         f"{HERTZ}; {JOHNSON}, (4.22) to (4.24)",
         "F = 4/3 E* R^½ d^(3/2), p₀ = 2 E* a/(πR), a² = R d",
-        [Run("hertz_ball.yaml", coarse=0.02)],
+        [Run("hertz_ball.yaml", coarse=0.004)],
         [Quantity("force", "N", hertz_force(a, R), vertical(), (0, "contact_force")),
          Quantity("largest pressure", "Pa", hertz_pressure(a, R), result("max_pressure"), (0, "max_pressure")),
          Quantity("area in contact, πa²", "m^2", math.pi * a**2, result(AREA), (0, AREA))],
@@ -189,4 +189,5 @@ def mindlin():
          Quantity("width that sticks, 2c", "m", 2 * c, result("stick_length"), NO_BAR_OF, 3),
          Quantity("largest pressure", "Pa", 2000 / (1 - nu**2) * a / (2 * R), result("max_pressure"), (0, "max_pressure"), 2)],
         ["--window=-1.6,-0.6,1.6,1"],
-        remark="The bar of the force is that of the vector, and counts for both components.")
+        remark="The bar of the force is that of the vector, and counts for both components. The gap does not jump here: what the program says of the largest pressure misjudges "
+               "nearly incompressible bodies, whose surface beside a contact opens by more than λ + 2μ lets expect.")
