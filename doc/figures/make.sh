@@ -54,4 +54,14 @@ done
 bash "$root/doc/picture.sh" "$work/shear.e" --time=1.5 --output="$here/shear.png"
 bash "$root/doc/picture.sh" "$work/shear.history.csv" --output="$here/shear_force.png"
 bash "$root/doc/picture.sh" "$work/ball_friction.e" --window=-0.25,0,-0.01,0.25,0.25,0.15 --output="$here/ball_friction.png"
-ls -l "$here"/*.png
+
+# doc/pictures.md, by its own commands.
+page="$work/page"
+for deck in beam hertz block shear indent ball_friction hertz_adaptive beam_adaptive; do
+  more=()
+  [ $deck = ball_friction ] && more=(--set="Mesh->Size Factor=1.5")
+  "$rpc" --input="$root/input/$deck.xml" --output="$page" "${more[@]}" >"$work/log" || { cat "$work/log" >&2; exit 1; }
+done
+"$rpc" --input="$root/input/beam.xml" --output="$page/rigid" --set="Contact->Yield Stress=inf" >"$work/log" || { cat "$work/log" >&2; exit 1; }
+/usr/bin/python3 -B "$here/pictures.py" "$page"
+ls -l "$here"/*.png "$here"/pictures/*.png

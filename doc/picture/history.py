@@ -120,7 +120,7 @@ def add_energies(axes, history, style):
     shown = [entry for entry in known if reach(history.columns[entry[0]]) > 0]
     if shown:
         axes.stackplot(time, [rest + history.columns[name] for name, _ in shown], labels=[label for _, label in shown],
-                       colors=[style.energies[name] for name, _ in shown], alpha=0.75 if style is LIGHT else 1)
+                       colors=[style.energies[name] for name, _ in shown], alpha=0.75)
     axes.plot(time, rest + history.columns["work"], "--", color=style.text, lw=1.2, label="work")
     axes.set(xlabel="t", ylabel=f"energy since the start [{history.energy_unit}]", xlim=(min(time), max(time) if len(time) > 1 else None))
     axes.legend(frameon=False, loc="upper left")

@@ -24,7 +24,7 @@ MEANING = [
     ("friction", "friction", "Pa"), ("q_([xyz])", "friction in {1}", "Pa"), ("slip_([xyz])", "slip in {1}", "m"),
     ("friction_used", "friction over what it can be", ""), ("time", "t", ""), ("contact_force_([xyz])", "contact force in {1}", "{force}"),
     (".*_displacement_[xyz]|max_(displacement|penetration|dent|slip)", "{0}", "m"), (".*_reaction_[xyz]", "{0}", "{force}"),
-    ("relative_estimate", "estimated relative error", ""), ("dofs", "degrees of freedom", ""),
+    ("energy_J", "energy", "{energy}"), ("relative_estimate", "estimated relative error", ""), ("dofs", "degrees of freedom", ""),
     ("max_(pressure|shear|von_mises)", "{0}", "Pa"), (".*_length", "{0}", "m"), (".*_area", "{0}", "m^2"),
     ("dent_volume", "{0}", "{volume}"), ("seconds", "wall-clock time", "s"),
     ("work|dissipated_by_friction|.*_energy|energy_imbalance", "{0}", "{energy}")]
@@ -134,8 +134,10 @@ class Table:
                 text = text.format(name, *match.groups(), radius=radius)
                 text = text if "$" in text else text.replace("_", " ")
                 unit = self.units.get("x" if name == RADIUS else name, unit.format(**units))
-                return f"{text} [{unit}]" if unit else text
-        return name.replace("_", " ")
+                break
+        else:
+            text, unit = name.replace("_", " "), self.units.get(name)
+        return f"{text} [{unit}]" if unit else text
 
 
 def is_number(text):
@@ -186,8 +188,9 @@ def path_of(argument):
 
 def own_names(paths):
     """What tells files apart: their names without what all end in, or with their folders where names are the same."""
-    stems = [re.sub(r"(\.contact|\.history)?\.(csv|json)$", "", os.path.basename(path)) for path in paths]
-    if len(set(stems)) == len(stems):
-        return stems
     shared = os.path.commonpath([os.path.dirname(os.path.abspath(path)) for path in paths])
-    return [re.sub(r"\.(csv|json)$", "", os.path.relpath(path, shared)) for path in paths]
+    for names in ([os.path.basename(path) for path in paths], [os.path.relpath(path, shared) for path in paths]):
+        stems = [re.sub(r"(\.contact|\.history)?\.(csv|json)$", "", name) for name in names]
+        if len(set(stems)) == len(stems):
+            return stems
+    return paths

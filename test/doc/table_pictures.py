@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """doc/picture.sh of tables: contact sides, columns of load steps, several files; what it refuses; how they look."""
 
+import contextlib
 import dataclasses
+import importlib.util
+import io
 import json
 import math
+import re
 import unittest
 
 import picture  # skips where Debian's modules are missing; finds those of doc/picture
@@ -13,9 +17,12 @@ import curves
 import numpy as np
 import references
 import style
-from rpc_run import RpcTestCase
+from rpc_run import SOURCE, RpcTestCase
 from table import Table
 
+SPEC = importlib.util.spec_from_file_location("page", SOURCE / "doc" / "figures" / "pictures.py")
+page = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(page)
 style.STYLES |= {name: dataclasses.replace(one, dpi=40) for name, one in style.STYLES.items()}
 PICTURE, REFUSAL = picture.Pictures.picture, picture.Pictures.expect_refusal_of
 N = 41
@@ -141,9 +148,9 @@ class Diagrams(RpcTestCase):
         for name in ("one/a", "b", "c=d"):
             contact_file(self.folder / f"{name}.contact.csv")
         contact_file(self.folder / "a.contact.csv")
-        for arguments, names in ((["one/a.contact.csv", "b.contact.csv"], ["a", "b"]), (["a.contact.csv", "one/a.contact.csv"], ["a.contact", "one/a.contact"]),
+        for arguments, names in ((["one/a.contact.csv", "b.contact.csv"], ["a", "b"]), (["a.contact.csv", "one/a.contact.csv"], ["a", "one/a"]),
                                  (["E = 2=a.contact.csv", "b.contact.csv", "c=d.contact.csv"], ["E = 2", "b", "c=d"])):
-            with picture.contextlib.chdir(self.folder):
+            with contextlib.chdir(self.folder):
                 drawn = command_line.diagram_of(command_line.options(arguments))
             self.addCleanup(curves.plt.close, drawn)
             self.assertEqual([text.get_text() for text in drawn.axes[0].get_legend().get_texts()], names)
@@ -166,6 +173,25 @@ class Diagrams(RpcTestCase):
             for kind in (style.LIGHT, style.PRINT if name == "sides" else style.DARK):
                 references.expect_like(self, references.without_texts(self.compose(tables, columns, over, span, kind)), f"{name}_{kind.name}",
                                        references.DIAGRAM)
+
+
+class Page(unittest.TestCase):
+    """doc/pictures.md."""
+
+    def test_its_commands_are_understood_and_have_a_picture_each(self):
+        found = page.commands((SOURCE / "doc" / "pictures.md").read_text())
+        self.assertGreater(len(found), 12)
+        for arguments, image in found:
+            command_line.options(arguments)
+            self.assertTrue((SOURCE / "doc" / image).is_file(), image)
+        self.assertLess(sum(path.stat().st_size for path in (SOURCE / "doc" / "figures" / "pictures").iterdir()), 400_000)
+
+    def test_it_tells_of_all_options(self):
+        text = (SOURCE / "doc" / "pictures.md").read_text()
+        with contextlib.redirect_stdout(io.StringIO()) as told, self.assertRaises(SystemExit):
+            command_line.options(["--help"])
+        for option in sorted(set(re.findall(r"--(\w+)", told.getvalue())) - {"help"}):
+            self.assertIn(f"--{option}", text)
 
 
 class Refusals(RpcTestCase):
