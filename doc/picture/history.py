@@ -78,7 +78,7 @@ def compose(tables, style=LIGHT):
         if alone:
             add_energies(panels[0][-1], histories[0], style)
         for axes in panels[0]:
-            axes.locator_params(axis="x", nbins=5)  # numbers that do not meet
+            axes.locator_params(axis="x", nbins=6, steps=[1, 2, 5, 10])  # numbers that do not meet
     return figure
 
 

@@ -19,7 +19,6 @@ import panels
 import references
 import scene as scenes
 import style
-import surface
 import view
 from result import PictureError, Result
 from rpc_run import RpcTestCase
