@@ -11,18 +11,20 @@ namespace rpc
 
 std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates)
 {
-  const auto distance = [](const std::string &a, const std::string &b) { // Levenshtein, case ignored
-    std::vector<std::size_t> row(b.size() + 1);
+  // Levenshtein's, case ignored, where two letters that have changed places count as one slip.
+  const auto distance = [](const std::string &a, const std::string &b) {
+    const auto same = [&](const std::size_t i, const std::size_t j) {
+      return std::tolower(static_cast<unsigned char>(a[i - 1])) == std::tolower(static_cast<unsigned char>(b[j - 1]));
+    };
+    std::vector<std::size_t> before, last, row(b.size() + 1);
     std::iota(row.begin(), row.end(), 0);
     for (std::size_t i = 1; i <= a.size(); ++i) {
-      std::size_t diagonal = row[0];
+      before = last;
+      last = row;
       row[0] = i;
       for (std::size_t j = 1; j <= b.size(); ++j) {
-        const bool same =
-            std::tolower(static_cast<unsigned char>(a[i - 1])) == std::tolower(static_cast<unsigned char>(b[j - 1]));
-        const std::size_t replaced = diagonal + (same ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+        row[j] = std::min({last[j - 1] + (same(i, j) ? 0 : 1), last[j] + 1, row[j - 1] + 1});
+        if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j)) row[j] = std::min(row[j], before[j - 2] + 1);
       }
     }
     return row.back();

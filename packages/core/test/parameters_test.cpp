@@ -373,6 +373,8 @@ TEST(NearestName, IsTheOneOfLeastEditDistanceWithoutRegardToCase)
 {
   EXPECT_EQ(rpc::nearest_name("yeild stress", {"Side", "Yield Stress", "Gap"}), "Yield Stress");
   EXPECT_EQ(rpc::nearest_name("ga", {"Side", "Gap", "Gab Gap"}), "Gap");
+  EXPECT_EQ(rpc::nearest_name("Gpa", {"Side", "Gap"}), "Gap");
+  EXPECT_EQ(rpc::nearest_name("nu", {"Young's Modulus", "Blocks"}), "");
   EXPECT_EQ(rpc::nearest_name("Gap", {}), "");
 }
 

@@ -53,6 +53,24 @@ std::string remedy_of_name(const std::string &name)
   return "";
 }
 
+/// A number with a decimal comma, with a point for it: digits at both sides of a comma that separates no arguments; empty if there is none.
+std::string decimal_comma(const std::string &text)
+{
+  int depth = 0;
+  const auto is_digit = [&](const std::size_t n) {
+    return n < text.size() && std::isdigit(static_cast<unsigned char>(text[n]));
+  };
+  for (std::size_t n = 1; n < text.size(); ++n) {
+    depth += (text[n - 1] == '(') - (text[n - 1] == ')');
+    if (depth > 0 || text[n] != ',' || !is_digit(n - 1) || !is_digit(n + 1)) continue;
+    std::size_t begin = n, end = n + 1;
+    while (begin > 0 && is_digit(begin - 1)) --begin;
+    while (is_digit(end)) ++end;
+    return text.substr(begin, n - begin) + "." + text.substr(n + 1, end - n - 1);
+  }
+  return "";
+}
+
 } // namespace
 
 std::string expression_remedy(const std::string &text)
@@ -70,10 +88,8 @@ std::string expression_remedy(const std::string &text)
   std::smatch found;
   if (std::regex_search(text, found, module)) return " Leave out \"" + found[1].str() + found[2].str() + "\".";
   static const std::regex missing_product(R"(\d\s*(x|y|z|t|pi)\b|\)\s*\(|\d\s*\()");
-  static const std::regex comma(R"((^|[^\d.,])(\d+),(\d+))");
-  static const std::regex function_of_two(R"(\b(min|max|sum|avg|atan2)\s*\()");
-  if (std::regex_search(text, found, comma) && !std::regex_search(text, function_of_two))
-    return " For a decimal comma write a point: " + found[2].str() + "." + found[3].str() + ".";
+  if (const std::string number = decimal_comma(text); !number.empty())
+    return " For a decimal comma write a point: " + number + ".";
   static const std::regex name(R"([A-Za-z_]\w*)");
   for (auto at = std::sregex_iterator(text.begin(), text.end(), name); at != std::sregex_iterator(); ++at) {
     const std::string given = at->str();

@@ -99,8 +99,9 @@ private:
                                "\" type=\"string\" value=\"" + words + "\"/>.");
     }
     refuse(line_, "\"" + words +
-                      "\" stands between tags, where nothing is read. A value stands in value=\"...\", a comment in "
-                      "<!-- -->.");
+                      "\" stands between tags, where nothing is read. Write a value as value=\"...\", a comment as "
+                      "<!-- ... -->, or "
+                      "remove it.");
   }
 
   std::string read_name()

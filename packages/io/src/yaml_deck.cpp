@@ -74,11 +74,17 @@ private:
       if (const auto tab = text_.find('\t', at_); tab < first)
         refuse(line_, "a tab stands before \"" + content + "\". YAML is indented by blanks: write two for each level.");
       const int indent = static_cast<int>(first - at_);
-      if (skipped_indent_ >= 0 && indent > skipped_indent_) // of a text in several lines, or of items
+      if (skipped_indent_ >= 0 && indent > skipped_indent_) { // of a text in several lines, or of items
+        if (skipped_is_plain_ && colon(first, end) != std::string::npos)
+          refuse(line_, "\"" + content + "\" is indented by " + std::to_string(indent) +
+                            " blanks, more than the value above it, which is no list. "
+                            "Give all entries of a list the same indentation.");
         return next_line(end);
+      }
       skipped_indent_ = -1;
       if (content[0] == '-' && (content.size() == 1 || content[1] == ' ')) {
         skipped_indent_ = indent;
+        skipped_is_plain_ = false;
         return next_line(end);
       }
       at_ = first;
@@ -128,11 +134,15 @@ private:
     const std::size_t value = text_.find_first_not_of(" \t\r", at_);
     if (value < end && (text_[value] == '{' || text_[value] == '[')) {
       at_ = value;
+      skipped_indent_ = indent;
+      skipped_is_plain_ = true;
       return read_flow(full);
     }
     const std::string rest = value < end ? trimmed(text_.substr(value, end - value)) : "";
     if (!rest.empty() && rest[0] != '#') {
       skipped_indent_ = indent;
+      const bool quoted = rest[0] == '"' || rest[0] == '\'';
+      skipped_is_plain_ = quoted ? rest.find(rest[0], 1) != std::string::npos : !std::strchr("|>&*!", rest[0]);
       if ((rest[0] == '"' || rest[0] == '\'') && rest.find(rest[0], 1) == std::string::npos &&
           !closes_below(rest[0], end))
         refuse(line_, "the quote of \"" + shown(full) + "\" = " + rest + " does not close. Write " + rest[0] +
@@ -149,10 +159,11 @@ private:
   [[noreturn]] void refuse_without_colon(const std::string &content) const
   {
     static const std::regex tight(R"(([A-Za-z][A-Za-z' ]*):(\S.*))"), equals(R"(([A-Za-z][A-Za-z' ]*?)\s*=\s*(.*))");
-    static const std::regex value(R"(([A-Za-z][A-Za-z' ]*?)\s+([-+\d.\[{"].*))");
+    static const std::regex value(R"(([A-Za-z][A-Za-z' ]*?)\s+([-+\d.\[{"].*))"),
+        words(R"(([A-Za-z][A-Za-z' ]*)\s+(\S+))");
     std::smatch found;
     if (std::regex_match(content, found, tight) || std::regex_match(content, found, equals) ||
-        std::regex_match(content, found, value))
+        std::regex_match(content, found, value) || std::regex_match(content, found, words))
       refuse(line_, "\"" + content + "\" lacks a colon with a blank behind it. Write " + found[1].str() + ": " +
                         found[2].str());
     refuse(line_, "\"" + content + "\" is no entry, which is a name, a colon, a blank and a value. " +
@@ -268,7 +279,8 @@ private:
   const bool has_root_;
   std::size_t at_ = 0;
   int line_ = 1;
-  int skipped_indent_ = -1; // lines that are indented by more go on with a value; -1: none do
+  int skipped_indent_ = -1;       // lines that are indented by more go on with a value; -1: none do
+  bool skipped_is_plain_ = false; // a value that ends on its line or holds no colon
   std::vector<OpenList> open_ = {OpenList{}};
   std::map<std::string, int> lines_;
 };

@@ -118,12 +118,14 @@ TEST_F(Refusal, OfYamlNamesTheLine)
 {
   expect_yaml("    Cells", "\tCells", 3, "a tab stands before \"Cells: [160, 32]   # a comment\"");
   expect_yaml("    Lower", "   Lower", 4, "\"Lower\" is indented by 3 blanks, the entries above it in \"Mesh\" by 4");
+  expect_yaml("    Lower", "     Lower", 4, "\"Lower: [0.0,\" is indented by 5 blanks, more than the value above it");
   expect_yaml("Cells: [", "Cells [", 3, "lacks a colon with a blank behind it. Write Cells: [160, 32]");
   expect_yaml("Cells: [", "Cells:[", 3, "Write Cells: [160, 32]");
   expect_yaml("Cells: [160, 32]", "Cells = 160", 3, "Write Cells: 160");
   expect_yaml("32]", "32", 3, "the \"[\" of \"Mesh->Cells\" is not closed");
   expect_yaml("32]", "32}", 3, "\"}\" does not close what is open, the \"[\" of \"Mesh->Cells\" of line 3. Write ].");
   expect_yaml("Gap: \"x, y: {1\"", "Gap: 0,3", 6, "For a decimal comma write a point: 0.3.");
+  expect_yaml("Contact: {Side: bottom, Gap: \"x, y: {1\"}", "Element P2", 6, "Write Element: P2");
   expect_yaml("beam:", "<ParameterList>\nbeam:", 1, "name the file .xml");
 }
 
