@@ -161,7 +161,8 @@ std::string remedy_for(const std::string &text, const ParameterEntry &model)
   if (model.isType<double>()) return number_remedy(text);
   if (model.isType<int>()) return integer_remedy(text);
   if (model.isType<bool>()) return bool_remedy(text);
-  if (model.isType<Array<int>>() || model.isType<Array<double>>() || is_fields(model)) return array_remedy(text);
+  if (model.isType<Array<int>>() || model.isType<Array<double>>() || is_fields(model))
+    return array_remedy(text, model.isType<Array<int>>());
   return "";
 }
 

@@ -111,9 +111,10 @@ std::optional<std::string> digits_of(std::string digits)
   return digits;
 }
 
-std::string with_brackets(const std::vector<std::string> &items)
+std::string with_brackets(const std::vector<std::string> &items, const bool were_whole)
 {
-  return " Write {" + join(items) + "} (in YAML [" + join(items) + "]).";
+  return std::string(were_whole ? " Write {" : " Write whole numbers, such as {") + join(items) + "} (in YAML [" +
+         join(items) + "]).";
 }
 
 } // namespace
@@ -185,7 +186,7 @@ std::string integer_remedy(const std::string &text)
              : " Write a whole number, such as " + std::to_string(std::lround(number->value)) + ".";
 }
 
-std::string array_remedy(const std::string &text)
+std::string array_remedy(const std::string &text, const bool whole)
 {
   std::string inside = plain(text);
   inside = without_ends(inside, "{}[]()<> ");
@@ -199,13 +200,16 @@ std::string array_remedy(const std::string &text)
   if (!commas_within) std::replace(inside.begin(), inside.end(), ',', ' ');
   std::istringstream in(inside);
   std::vector<std::string> items;
+  bool were_whole = true;
   for (std::string item; in >> item;) {
     while (!item.empty() && item.back() == ',') item.pop_back();
     const auto number = written_number(item);
     if (!number || !number->unit.empty()) return number_remedy(text);
-    items.push_back(number_text(number->value));
+    const double value = whole ? std::round(number->value) : number->value;
+    were_whole &= value == number->value;
+    items.push_back(number_text(value));
   }
-  return items.empty() ? "" : with_brackets(items);
+  return items.empty() ? "" : with_brackets(items, were_whole);
 }
 
 std::string bool_remedy(const std::string &text)

@@ -132,6 +132,8 @@ std::string other_place(const std::string &path, const std::string &name, const 
   std::vector<std::string> places;
   if (!word.empty()) find_lists(root, "", word, places);
   if (places.empty() || places.size() > 3) return "";
+  if (places.front().find("->") == std::string::npos)
+    return " It belongs to the outermost list, as \"" + places.front() + "\".";
   std::string text;
   for (const std::string &place : places) text += (text.empty() ? "\"" : " or \"") + place + "\"";
   return " It is a parameter of another list: " + text + ".";

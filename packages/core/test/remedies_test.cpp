@@ -74,6 +74,7 @@ TEST(ArrayRemedy, WritesListsOfOtherPrograms)
     EXPECT_EQ(rpc::array_remedy(text), good) << text;
   EXPECT_EQ(rpc::array_remedy("{5,0; 1,5}"), " Write {5, 1.5} (in YAML [5, 1.5]).");
   EXPECT_EQ(rpc::array_remedy("0,5 1,5 2"), " Write {0.5, 1.5, 2} (in YAML [0.5, 1.5, 2]).");
+  EXPECT_EQ(rpc::array_remedy("{20.5, 4}", true), " Write whole numbers, such as {21, 4} (in YAML [21, 4]).");
   EXPECT_EQ(rpc::array_remedy("{zero, 1}"), "");
   EXPECT_EQ(rpc::array_remedy(""), "");
 }

@@ -197,7 +197,7 @@ private:
       std::string whole = value + text_.substr(at_, text_.find(quote, at_) - at_);
       for (auto mark = whole.find('<'); mark != std::string::npos; mark = whole.find('<'))
         whole.replace(mark, 1, "&lt;");
-      refuse(line, "\"<\" in the value of " + name + "= is written &lt; in XML. Write " + name + "=\"" + whole + "\".");
+      refuse(line, "in a value of XML \"<\" is written &lt;. Write " + name + "=\"" + whole + "\".");
     }
     refuse(line,
            "the quote of " + name + "=" + quote + first + " does not close. Write " + quote + " behind the value.");
@@ -359,7 +359,7 @@ void check_parameter(const std::string &file, const XmlElement &element, const s
     if (!array_reads_as(item[1], value))
       refuse_line(file, element.line,
                   what + " = \"" + value + "\" does not read as " + type + ", such as {0, 1}." +
-                      (item[1] == "string" ? "" : array_remedy(value)));
+                      (item[1] == "string" ? "" : array_remedy(value, item[1] == "int")));
     return;
   }
   if (type == "double" && is_infinite(value)) return;

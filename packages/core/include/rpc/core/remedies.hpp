@@ -23,7 +23,8 @@ std::string number_text(double value);
 std::string number_remedy(const std::string &text);
 
 /// For a text that is to be an array of numbers: " Write {160, 32} (in YAML [160, 32])."; empty if it is nothing like one.
-std::string array_remedy(const std::string &text);
+/// @param whole  the numbers are to be whole ones
+std::string array_remedy(const std::string &text, bool whole = false);
 
 /// For a text that is to be a whole number.
 std::string integer_remedy(const std::string &text);
