@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Solves the problems of the gallery and makes doc/gallery/README.md and its pictures: bash doc/gallery.sh [--program=RPC] [options of gallery.py]
 #   --program=RPC   the program; default: build/rpc, then rpc in the source tree's root
 # Exit codes: 0; 1 a value lies outside its error bar, or a run has failed; 2 bad command line. --help names all options.

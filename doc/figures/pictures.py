@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Makes the pictures of doc/pictures.md by its own commands, small, from results in a folder: pictures.py FOLDER
 
 Each picture of the page in figures/pictures is that of the command before it; of two commands in a block they are in their order.

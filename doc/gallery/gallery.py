@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The gallery: classical and published problems, each solved by rpc and compared with what is right; started by ../gallery.sh.
 
 Runs the decks of this folder, reads their JSON files, and writes README.md and the pictures. Formulas: problems.py, problems_soil.py.

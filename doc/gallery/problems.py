@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The problems of the gallery: what is asked, and what is right by formulas that have nothing to do with the program."""
 import dataclasses
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Problems of the gallery on foundations that give way, and published ones with friction."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Each right value of the gallery lies within the error bar that the program prints, at coarser targets than those of the page; and the gallery would
 tell if one did not."""
 

@@ -14,7 +14,7 @@ NOT_RUN = [
     (r"git (clone|pull|push)", "takes a network"),
     (r"(docker|podman|apptainer|singularity|sbatch|srun) ", "takes a container or a batch system"),
     (r"(cmake|ctest|ninja|make) ", "builds or tests the program"),
-    (r"bash (cmake/(test|trilinos|install_packages)|\.ci/run|test/\S+|doc/(figures|gallery|tutorial)/\S*make|doc/(paper/reproduce|update_\w+))",
+    (r"bash (cmake/(test|trilinos|install_packages)|\.ci/run|test/\S+|doc/((figures|tutorial)/\S*make|gallery\.sh)|doc/(paper/reproduce|update_\w+))",
      "builds, tests or makes pictures"),
     (r"(\S*/)?build-\S+/rpc", "takes another build"),
     (r"(bash cmake/run\.sh|\S*rpc) .*Mesh->Refinements=3", "takes 800 000 unknowns"),
@@ -128,6 +128,12 @@ def as_run(command):
     def program(found):
         return f"mpirun -np {found[1]} ./rpc" if found[1] else "./rpc"
     return re.sub(r"(?:\bNP=(\d+) )?bash cmake/run\.sh", program, command)
+
+
+def as_checked(command):
+    """The command with runs of the program as checks of their decks; "" if it is none."""
+    parts = parts_of(command)
+    return f"{command.split(' #')[0].rstrip()} --check" if len(parts) == 1 and parts[0][0] in PROGRAMS else ""
 
 
 def faults_of(command, tools, folder):

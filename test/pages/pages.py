@@ -13,6 +13,7 @@ import argparse
 import os
 import pathlib
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -26,6 +27,7 @@ from page import MARKS, Page
 SOURCE = pathlib.Path(os.environ.get("RPC_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 GROUPS = {"readme": ["README.md"], "tutorial": ["doc/tutorial/*.md"], "gallery": ["doc/gallery/*.md", "doc/gallery/*/*.md"],
           "input": ["doc/input/*.md", "doc/commands.md", "doc/pictures.md"]}
+CHECKED = "doc/gallery"  # whose test solves its decks, to coarser targets: here they are checked only
 GMSH = "4.8"  # with whose meshes the numbers of the pages were made: Debian 12's
 TIMEOUT = 300  # s, of a command
 MPI_OF_A_TEST = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
@@ -48,6 +50,8 @@ class Checker:
 
     def __init__(self, page, tools, update=False, compares=True):
         self.page, self.tools, self.update, self.compares = Page(page), tools, update, compares
+        self.checks_only = (tools.source / CHECKED).resolve() in self.page.path.resolve().parents
+        self.seconds = []  # (processor time, line) of each command
         self.faults, self.skipped, self.num_commands, self.num_decks, self.changed = [], [], 0, 0, False
 
     def fault(self, line, text):
@@ -163,17 +167,26 @@ class Checker:
         if reason:
             self.skipped.append((line, f"not run ({reason}): {command}"))
             return None
+        text = commands.as_run(command)
+        if self.checks_only:
+            text = commands.as_checked(text)
+            if not text:
+                self.skipped.append((line, f"not run (its results are not made here): {command}"))
+                return None
         path = f"{self.folder}{os.pathsep}{os.environ['PATH']}"
-        run = subprocess.run(["bash", "-uo", "pipefail", "-c", commands.as_run(command)], cwd=self.folder, env={**MPI_OF_A_TEST, **os.environ, "PATH": path},
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        run = subprocess.run(["bash", "-uo", "pipefail", "-c", text], cwd=self.folder, env={**MPI_OF_A_TEST, **os.environ, "PATH": path},
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, errors="replace",
                              timeout=TIMEOUT)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.seconds.append((after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, line))
         if run.returncode != expected:
             if commands.WITHOUT_GMSH in run.stdout:
                 self.skipped.append((line, f"not run (takes gmsh): {command}"))
                 return None
             tail = "".join(f"\n    {text}" for text in run.stdout.splitlines()[-8:])
             return self.fault(line, f"exit code {run.returncode}, not {expected}, of {command}{tail}")
-        return run.stdout
+        return None if self.checks_only else run.stdout
 
     def _check_output(self, block, printed):
         if "output" not in block.marks or printed is None or not self.compares:
@@ -243,6 +256,7 @@ def shown(path):
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--update", action="store_true", help="write what commands print into the pages")
+    options.add_argument("--times", action="store_true", help="print the processor time of each command")
     options.add_argument("pages", nargs="+", help=f"files, or groups of them: {', '.join(GROUPS)}")
     arguments = options.parse_args()
     program = pathlib.Path(os.environ.get("RPC_PROGRAM", SOURCE / "build" / "rpc")).resolve()
@@ -256,9 +270,12 @@ def main():
         for line, text in checker.check():
             print(f"{shown(path)}:{line}: {text}")
             failed = True
+        for seconds, line in sorted(checker.seconds, reverse=True) if arguments.times else []:
+            print(f"{shown(path)}:{line}: {seconds:.1f} s")
         for line, text in checker.skipped:
             print(f"{shown(path)}:{line}: {text}")
-        print(f"{shown(path)}: {checker.num_commands} commands, {checker.num_decks} decks, {len(checker.faults)} faults")
+        print(f"{shown(path)}: {checker.num_commands} commands, {checker.num_decks} decks, {len(checker.faults)} faults, "
+              f"{sum(seconds for seconds, _ in checker.seconds):.1f} s of processor time")
     return 1 if failed else 0
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Decks as people get them wrong: slips of the finger, decimal commas, units, lists and words of other programs, tags that do not
 close. Each is to be refused with exit code 2 in one line, which names place, value, rule and remedy.
 
