@@ -23,7 +23,7 @@ EPILOG = """Fields of the contact are drawn on the contact side, in the plane as
 von Mises stress. Default: contact_pressure if there is contact, else von_mises. cell_size shows where a mesh is fine. RESULT.e stands for
 all files of the run, RESULT.e-s0002 and so on too: one for each mesh of its load steps. RESULT.contact.csv gives the pressure, the friction
 and the state along the contact sides; RESULT.history.csv, of load steps, force against displacement and the energies, or with --columns any
-of its columns; RESULT.json the estimated error over the adapted meshes. Several tables of one kind, each as FILE or LABEL=FILE, go into one picture. doc/pictures.md has an example of each."""
+of its columns; RESULT.json the estimated error over the adapted meshes. Several tables of one kind, each as FILE or LABEL=FILE, go into one picture. doc/pictures.md has examples."""
 OF_BODIES = ("field", "scale", "time", "window", "cut", "view")
 OF_TABLES = ("columns", "over", "range")
 

@@ -18,8 +18,7 @@ def format_of(path):
 
 
 def write(path, figure, style):
-    """Replaces the file at once: an older picture stays if that fails. Letters of PDF and SVG are text, lines are lines; bodies are
-    pixels."""
+    """Replaces the file at once: an older picture stays if that fails. Letters and lines of PDF and SVG are sharp; bodies are pixels."""
     kind = format_of(path)
     picture = io.BytesIO()
     with matplotlib.rc_context(style.rc()):

@@ -160,7 +160,7 @@ def read(path, reader):
                 raise PictureError(f'"{path}" is not a file of rpc: its QA record names another program, or none')
             return reader(file, path)
     except (OSError, RuntimeError):
-        raise PictureError(f'"{path}" is not an Exodus file') from None
+        raise PictureError(f'"{path}" is not an Exodus file; pictures are made of RESULT.e, *.contact.csv, *.history.csv and *.json') from None
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         raise PictureError(f'"{path}" is damaged: {first_line(error)}; remedy: run rpc again') from None
 

@@ -31,7 +31,7 @@ class Style:
         """What it sets in Matplotlib."""
         edges = {name: self.text for name in ("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color")}
         faces = {name: self.background for name in ("figure.facecolor", "savefig.facecolor", "axes.facecolor")}
-        return {**edges, **faces, "pdf.fonttype": 42, "svg.hashsalt": "rpc"}  # letters as text; the same picture is the same file
+        return {**edges, **faces, "pdf.fonttype": 42, "svg.hashsalt": "rpc"}  # fonts that editors take; the same picture is the same file
 
     def map_of(self, which):
         """(name, first, last) of a colour map: "body", "contact" or "signed"."""
