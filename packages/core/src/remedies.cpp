@@ -172,7 +172,8 @@ std::string number_remedy(const std::string &text)
   const double value = number->value * unit->factor;
   if (unit->force == 0 && unit->length == 0) return alone + ": " + rounded(value) + ".";
   return alone + ", in the deck's units (see \"Units\"): " + rounded(value) + " with m and N, " +
-         rounded(value * std::pow(1000., unit->length)) + " with mm and N.";
+         rounded(value * std::pow(1000., unit->length)) + " with mm and N" +
+         (unit->force == 0 ? "" : ", " + rounded(value / 1000) + " with m and kN") + ".";
 }
 
 std::string integer_remedy(const std::string &text)
