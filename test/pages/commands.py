@@ -36,6 +36,7 @@ class Tools:
 
     def __init__(self, program, source):
         self.program, self.source = pathlib.Path(program), pathlib.Path(source)
+        self.version = self._ask(self.program, "--version")
         self.options = options_of(self._ask(self.program, "--help"))
         self.parameters = parameters_of(self._ask(self.program, "--print-parameters"))
         self.pictures = self._modules("matplotlib", "netCDF4")

@@ -261,9 +261,9 @@ def main():
     arguments = options.parse_args()
     program = pathlib.Path(os.environ.get("RPC_PROGRAM", SOURCE / "build" / "rpc")).resolve()
     tools = commands.Tools(program, SOURCE)
-    compares = same_gmsh(program)
+    compares = same_gmsh(program) and "Serial" in tools.version
     if not compares:
-        print(f"outputs are not compared: their numbers are of meshes by gmsh {GMSH}")
+        print(f"outputs are not compared: the pages have those of the backend Serial with meshes by gmsh {GMSH}")
     failed = False
     for path in pages_of(arguments.pages):
         checker = Checker(path, tools, arguments.update, compares)
