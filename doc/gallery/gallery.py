@@ -173,7 +173,7 @@ def section(solved_problem):
         commands.append(" ".join(["rpc --input=" + path] + ['--set="%s=%s"' % change for change in run.changes.items()])
                         + ("    # refused" if run.refused else ""))
     parts = ["## " + problem.title, problem.statement, "![%s](%s.png)" % (problem.title, problem.name),
-             "Source: %s. Right: %s." % (problem.source, problem.equation), "```sh\n%s\n```" % "\n".join(commands),
+             "Source: %s. Right: %s." % (problem.source, problem.equation), ("<!-- exit code: %d -->\n" % REFUSED if problem.runs[-1].refused else "") + "```sh\n%s\n```" % "\n".join(commands),
              table(["quantity", "right", "rpc", "inside"], rows)]
     if problem.remark:
         parts.append(problem.remark)
@@ -189,7 +189,7 @@ Classical and published problems, solved by rpc and compared with what is right 
 bash doc/gallery.sh
 ```
 
-A value of rpc stands with the error bar that the program prints itself, `adaptation->errors` of its JSON file ([input.md](../input.md)); where it prints none, the table says why. "Inside" is whether the right value lies
+A value of rpc stands with the error bar that the program prints itself, `adaptation->errors` of its JSON file ([results.md](../input/results.md)); where it prints none, the table says why. "Inside" is whether the right value lies
 within the bar. Times are those of the runs on one core, and vary. `ctest -R gallery` solves the same problems to coarser targets.
 
 Half planes and half spaces are infinite, meshes are not: the bodies end at an ellipse, whose foci are the ends of the contact, and there they are given the exact displacement of the infinite body. So the formulas hold for the finite ones.
