@@ -243,7 +243,7 @@ TEST(AutomaticDilatation, IsChosenBlockByBlock)
 TEST(DilatationOption, IsReadForEachMaterialAndMisspellingsAreRefused)
 {
   const auto read = [](Teuchos::ParameterList list) {
-    validate(list, fem::valid_material_parameters());
+    validate(list, fem::valid_material_parameters(), "Material");
     return fem::material_options(list);
   };
   Teuchos::ParameterList list;

@@ -30,7 +30,7 @@ using Teuchos::tuple;
 /// What a deck gives, read as the program does.
 MeshOptions read(ParameterList list, const std::string &folder = ".")
 {
-  rpc::validate(list, rpc::mesh::valid_parameters());
+  rpc::validate(list, rpc::mesh::valid_parameters(), "Mesh");
   return rpc::mesh::mesh_options(list, folder, Teuchos::SerialComm<int>());
 }
 BoxOptions read_box(const ParameterList &list)
@@ -137,7 +137,7 @@ TEST(GmshOptions, FileIsLookedForOnTheDiskOfRankZero)
   const auto comm = Tpetra::getDefaultComm();
   const Folder folder("body.geo");
   ParameterList list = gmsh_deck("body.geo");
-  rpc::validate(list, rpc::mesh::valid_parameters());
+  rpc::validate(list, rpc::mesh::valid_parameters(), "Mesh");
   const std::string where = comm->getRank() == 0 ? folder.path.string() : "no such folder";
   const auto options = std::get<GmshOptions>(rpc::mesh::mesh_options(list, where, *comm));
   EXPECT_EQ(options.file, rpc::text_of_rank(*comm, 0, (folder.path / "body.geo").string()));
