@@ -177,10 +177,8 @@ void receive_part(const Comm &comm, Part &part)
   });
 }
 
-Part deal(const MeshData &whole, const Comm &comm, const std::vector<double> &weights)
+Part deal(const MeshData &whole, const Comm &comm, const Division &division)
 {
-  Division division;
-  on_root(comm, ExitCode::internal_error, [&] { division = divide(whole, comm.getSize(), weights); });
   Part part;
   std::vector<std::string> sides, points;
   if (comm.getRank() == 0) {
@@ -210,7 +208,14 @@ Part deal(const MeshData &whole, const Comm &comm, const std::vector<double> &we
 
 Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const std::vector<double> &weights)
 {
-  const Part part = deal(whole, *comm, weights);
+  Division division;
+  on_root(*comm, ExitCode::internal_error, [&] { division = divide(whole, comm->getSize(), weights); });
+  return distribute(whole, comm, division);
+}
+
+Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const Division &division)
+{
+  const Part part = deal(whole, *comm, division);
   Mesh mesh;
   mesh.element = part.mesh.element;
   const GO invalid = Teuchos::OrdinalTraits<GO>::invalid();

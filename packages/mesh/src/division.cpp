@@ -16,8 +16,29 @@ namespace rpc::mesh
 namespace
 {
 
-/// A part of the mesh for each cell, none of them empty.
-std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts, const std::vector<double> &weights)
+/// For each node those of the same owner that share a cell with it, without itself.
+Lists neighbours(const MeshData &whole, const Lists &cells_at, const std::vector<int> &owner)
+{
+  const int width = whole.element.num_nodes();
+  Lists graph;
+  std::vector<int> seen_by(owner.size(), -1);
+  for (int node = 0; node < whole.num_nodes(); ++node) {
+    seen_by[node] = node;
+    for (const int *cell = cells_at.first(node); cell != cells_at.last(node); ++cell)
+      for (int a = 0; a < width; ++a) {
+        const int other = whole.cells[std::size_t(width) * *cell + a];
+        if (seen_by[other] == node || owner[other] != owner[node]) continue;
+        seen_by[other] = node;
+        graph.value.push_back(other);
+      }
+    graph.begin.push_back(graph.value.size());
+  }
+  return graph;
+}
+
+} // namespace
+
+std::vector<int> ranks_of_cells(const MeshData &whole, const int num_parts, const std::vector<double> &weights)
 {
   const int num_cells = whole.num_cells(), width = whole.element.num_nodes();
   RPC_REQUIRE_CODE(num_cells >= num_parts, ExitCode::bad_mesh,
@@ -61,32 +82,15 @@ std::vector<int> parts_of_cells(const MeshData &whole, const int num_parts, cons
   return part;
 }
 
-/// For each node those of the same owner that share a cell with it, without itself.
-Lists neighbours(const MeshData &whole, const Lists &cells_at, const std::vector<int> &owner)
-{
-  const int width = whole.element.num_nodes();
-  Lists graph;
-  std::vector<int> seen_by(owner.size(), -1);
-  for (int node = 0; node < whole.num_nodes(); ++node) {
-    seen_by[node] = node;
-    for (const int *cell = cells_at.first(node); cell != cells_at.last(node); ++cell)
-      for (int a = 0; a < width; ++a) {
-        const int other = whole.cells[std::size_t(width) * *cell + a];
-        if (seen_by[other] == node || owner[other] != owner[node]) continue;
-        seen_by[other] = node;
-        graph.value.push_back(other);
-      }
-    graph.begin.push_back(graph.value.size());
-  }
-  return graph;
-}
-
-} // namespace
-
 Division divide(const MeshData &whole, const int num_ranks, const std::vector<double> &weights)
 {
+  return divide_by(whole, num_ranks, ranks_of_cells(whole, num_ranks, weights));
+}
+
+Division divide_by(const MeshData &whole, const int num_ranks, const std::vector<int> &part,
+                   const std::vector<int> &given_order)
+{
   Division division;
-  const std::vector<int> part = parts_of_cells(whole, num_ranks, weights);
   division.cells = sorted_into_lists(part, num_ranks);
   const Lists cells_at = node_to_cells(whole.element, whole.cells, whole.num_nodes());
   auto &owner = division.node_owner;
@@ -97,7 +101,8 @@ Division divide(const MeshData &whole, const int num_ranks, const std::vector<do
   }
 
   // No edge of the graph leads from rank to rank: one call orders the nodes of each.
-  const std::vector<int> order = reverse_cuthill_mckee(neighbours(whole, cells_at, owner));
+  const std::vector<int> order =
+      given_order.empty() ? reverse_cuthill_mckee(neighbours(whole, cells_at, owner)) : given_order;
   std::vector<int> owner_in_order;
   for (const int node : order) owner_in_order.push_back(owner[node]);
   division.nodes = sorted_into_lists(owner_in_order, num_ranks);

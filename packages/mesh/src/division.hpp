@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/core/graph.hpp"
+#include "rpc/mesh/mesh.hpp"
 #include "rpc/mesh/mesh_data.hpp"
 
 #include <vector>
@@ -23,5 +24,17 @@ struct Division {
 /// @throws rpc::Error (bad_mesh) if there are fewer cells than ranks
 /// @param weights  (cells) what each counts for, > 0; empty: all the same
 Division divide(const MeshData &whole, int num_ranks, const std::vector<double> &weights = {});
+
+/// METIS' cut alone: a rank for each cell, none without cells.
+std::vector<int> ranks_of_cells(const MeshData &whole, int num_ranks, const std::vector<double> &weights = {});
+
+/// The division that gives each cell to a rank.
+/// @param rank   (cells)
+/// @param order  (nodes) in which each rank numbers its own; empty: so that neighbours lie close in memory
+Division divide_by(const MeshData &whole, int num_ranks, const std::vector<int> &rank,
+                   const std::vector<int> &order = {});
+
+/// Deals the mesh out by a division, which is read on rank 0 only; collective on comm.
+Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const Division &division);
 
 } // namespace rpc::mesh

@@ -8,6 +8,7 @@
 #include "rpc/core/remedies.hpp"
 #include "rpc/mesh/distribute.hpp"
 #include "rpc/mesh/refinement.hpp"
+#include "rpc/mesh/structured.hpp"
 #include "whole_mesh.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
@@ -124,7 +125,7 @@ std::shared_ptr<const Mesh> dealt(const GmshOptions &options, const RCP<const Co
 {
   MeshData whole;
   on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(options); });
-  return std::make_shared<Mesh>(distribute(whole, comm));
+  return distribute_with_parents(std::move(whole), comm);
 }
 
 /// A field of rank 0 on all ranks; collective.

@@ -38,10 +38,10 @@ struct Mesh;
 /// dimension are 0.
 using ChildVertices = std::vector<std::vector<std::array<double, 3>>>;
 
-/// The mesh that another one was refined from, see refined().
+/// The mesh that another one was refined from, see refined(), or of joined cells, see distribute_with_parents().
 struct Parents {
   std::shared_ptr<const Mesh> mesh;
-  std::vector<LO> cell;   ///< (local cells) the parent's local cell
+  std::vector<LO> cell;   ///< (local cells) the parent's local cell; others' may be -1: not here
   std::vector<int> kind;  ///< (local cells) which kind of child of it this is
   ChildVertices vertices; ///< of each kind
 };
@@ -68,7 +68,7 @@ struct Mesh {
   std::shared_ptr<const BoxOptions> box; ///< of which the mesh was made; null if it is no evenly divided box
   std::vector<BoundaryPart> geometry;    ///< what facets lie on, as far as it is known: those of a side would be listed
   std::string geometry_file;             ///< the .geo by which gmsh tells points of shapes without closed formulas
-  std::shared_ptr<const Parents> parents; ///< null if the mesh was not refined
+  std::shared_ptr<const Parents> parents; ///< null if it has no coarser one
 
   int dim() const { return element.dim; }
   LO num_owned_nodes() const { return num_local(*owned_nodes); }

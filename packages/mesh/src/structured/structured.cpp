@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rpc/mesh/structured.hpp"
+
+#include "../division.hpp"
+#include "rpc/core/on_root.hpp"
+#include "rpc/core/parallel.hpp"
+#include "rpc/mesh/distribute.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+// Unknowns below which no coarser mesh is made: multigrid factors as many in no time.
+constexpr int few_2d = 800, few_3d = 400;
+// A coarser mesh with more than this part of the nodes is not worth its levels.
+constexpr double most_nodes_kept = 0.7;
+// On fewer cells than this for each rank of the coarsest mesh, ranks cannot have alike many of the finest one.
+constexpr int least_cells_of_rank = 16;
+
+/// The meshes from the finest to the coarsest, each with its division; on rank 0.
+struct Levels {
+  std::vector<MeshData> mesh;
+  std::vector<CoarserMesh> link; ///< without their meshes: what leads from a mesh to the next one
+  std::vector<std::vector<int>> order;
+  std::vector<Division> division;
+};
+
+Levels levels_of(MeshData whole, const int num_ranks)
+{
+  Levels levels;
+  levels.mesh.push_back(std::move(whole));
+  for (;;) {
+    const MeshData &fine = levels.mesh.back();
+    const int dim = fine.element.dim, few = dim == 2 ? few_2d : few_3d;
+    if (dim * fine.num_nodes() <= few) break;
+    LayeredMesh found = layered(fine);
+    if (!found.coarser || found.coarser->mesh.num_nodes() > most_nodes_kept * fine.num_nodes() ||
+        found.coarser->mesh.num_cells() < least_cells_of_rank * num_ranks)
+      break;
+    levels.mesh.push_back(std::exchange(found.coarser->mesh, {}));
+    levels.link.push_back(std::move(*found.coarser));
+    levels.order.push_back(std::move(found.order));
+  }
+  levels.order.emplace_back();
+  return levels;
+}
+
+/// Ranks have about as many of the finest cells; children are on the rank of their parent.
+void divide(Levels &levels, const int num_ranks)
+{
+  const std::size_t num_levels = levels.mesh.size();
+  std::vector<double> weight(levels.mesh.front().num_cells(), 1.);
+  for (std::size_t k = 0; k + 1 < num_levels; ++k) {
+    std::vector<double> of_parents(levels.mesh[k + 1].num_cells(), 0.);
+    for (std::size_t c = 0; c < weight.size(); ++c) of_parents[levels.link[k].parent[c]] += weight[c];
+    weight = std::move(of_parents);
+  }
+  std::vector<int> rank = ranks_of_cells(levels.mesh.back(), num_ranks, weight);
+  levels.division.resize(num_levels);
+  for (std::size_t k = num_levels; k-- > 0;) {
+    levels.division[k] = divide_by(levels.mesh[k], num_ranks, rank, levels.order[k]);
+    if (k == 0) break;
+    std::vector<int> of_children;
+    for (const int parent : levels.link[k - 1].parent) of_children.push_back(rank[parent]);
+    rank = std::move(of_children);
+  }
+}
+
+/// Of each kind its vertices, of rank 0 on all ranks.
+ChildVertices broadcast(const Comm &comm, const Element &element, const ChildVertices &vertices)
+{
+  std::vector<double> flat;
+  for (const auto &kind : vertices)
+    for (const auto &X : kind) flat.insert(flat.end(), X.begin(), X.end());
+  flat = gathered_by_all(comm, flat);
+  const std::size_t width = element.num_vertices();
+  ChildVertices all(flat.size() / (3 * width));
+  for (std::size_t k = 0; k < all.size(); ++k)
+    for (std::size_t v = 0; v < width; ++v) {
+      const double *const X = &flat[3 * (width * k + v)];
+      all[k].push_back({X[0], X[1], X[2]});
+    }
+  return all;
+}
+
+/// @param link  read on rank 0 only
+std::shared_ptr<const Parents> parents_of(const Mesh &fine, const std::shared_ptr<const Mesh> &coarse,
+                                          const CoarserMesh &link)
+{
+  const Comm &comm = fine.comm();
+  Parents parents;
+  parents.mesh = coarse;
+  parents.vertices = broadcast(comm, fine.element, link.vertices);
+  const auto ids = fine.cell_id.list(), coarse_ids = coarse->cell_id.list();
+  const std::vector<GO> wanted(ids.data(), ids.data() + ids.extent(0));
+  const std::vector<int> parent = scattered_from_root(comm, link.parent, wanted);
+  parents.kind = scattered_from_root(comm, link.kind, wanted);
+  std::unordered_map<GO, LO> lid;
+  for (std::size_t c = 0; c < coarse_ids.extent(0); ++c) lid.emplace(coarse_ids(c), static_cast<LO>(c));
+  for (const int id : parent) parents.cell.push_back(lid.at(id));
+  parents.cell.resize(fine.num_cells(), -1); // an owned node has an owned cell, which tells its place
+  parents.kind.resize(fine.num_cells(), 0);
+  return std::make_shared<const Parents>(std::move(parents));
+}
+
+} // namespace
+
+std::shared_ptr<const Mesh> distribute_with_parents(MeshData whole, const RCP<const Comm> &comm)
+{
+  Levels levels;
+  on_root(*comm, ExitCode::internal_error, [&] { levels = levels_of(std::move(whole), comm->getSize()); });
+  const GO num_levels = sum_all(*comm, static_cast<GO>(levels.mesh.size()));
+  levels.mesh.resize(num_levels); // empty ones on other ranks
+  if (num_levels == 1) return std::make_shared<Mesh>(distribute(levels.mesh.front(), comm));
+  levels.link.resize(num_levels - 1);
+  levels.division.resize(num_levels);
+  on_root(*comm, ExitCode::internal_error, [&] { divide(levels, comm->getSize()); });
+  std::shared_ptr<Mesh> coarse;
+  for (GO k = num_levels; k-- > 0;) {
+    auto mesh = std::make_shared<Mesh>(distribute(levels.mesh[k], comm, levels.division[k]));
+    if (coarse) mesh->parents = parents_of(*mesh, coarse, levels.link[k]);
+    coarse = std::move(mesh);
+  }
+  return coarse;
+}
+
+} // namespace rpc::mesh
