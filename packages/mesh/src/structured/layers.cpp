@@ -13,7 +13,7 @@ namespace rpc::mesh
 namespace
 {
 
-constexpr double stretched = 1.7; // as for coarser boxes
+constexpr double equally_thin = 1.7; // as for coarser boxes
 constexpr int shortest_ring = 6;  // sheets: half as many cells around a hole are still cells
 
 /// What lies beyond one side of a sheet.
@@ -237,11 +237,11 @@ std::vector<char> joined_stacks(const Sheets &sheets, const Neighbours &neighbou
         if (own == crossed) joined[own] = a == b ? joined[own] : 0; // a stack that crosses itself has no two directions
         if (can_be[crossed]) least[own] = std::min(least[own], thickness[crossed]);
         const bool bends =
-            a != b && neighbours.is_all_of_body(sheet) && thickness[crossed] < stretched * thickness[own];
+            a != b && neighbours.is_all_of_body(sheet) && thickness[crossed] < equally_thin * thickness[own];
         if (bends) joined[own] = 0;
       }
   for (std::size_t s = 0; s < stacks.size(); ++s)
-    if (!(thickness[s] <= stretched * least[s])) joined[s] = 0;
+    if (!(thickness[s] <= equally_thin * least[s])) joined[s] = 0;
   return joined;
 }
 
