@@ -36,8 +36,11 @@ std::vector<std::string> names_of(const std::vector<Part> &parts)
 const Side &Mesh::side(const std::string &name, const std::string &user) const
 {
   if (const Side *const found = find(sides, name)) return *found;
+  const std::string others =
+      sides.empty() ? "It has no sides; name them, in gmsh by Physical Curve, of bodies in space by Physical Surface"
+                    : "Its sides: " + join(names_of(sides));
   throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
-                                       "\", which the mesh does not have. Its sides: " + join(names_of(sides)) + "." +
+                                       "\", which the mesh does not have. " + others + "." +
                                        did_you_mean(name, names_of(sides)));
 }
 
