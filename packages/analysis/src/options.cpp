@@ -58,7 +58,7 @@ Teuchos::ParameterList valid_prediction_parameters()
   Teuchos::ParameterList valid("Nested Iteration");
   valid.set("Enabled", true,
             "Whether a solution on a coarser mesh, itself predicted by one on a still coarser mesh, is the start: for "
-            "boxes, .geo files and refined meshes of 500 nodes and more.");
+            "boxes, .geo files, refined meshes and structured grids of 500 nodes and more.");
   valid.set("Coarsening", 4.,
             "Ratio of cell lengths from one mesh to the next, in [1.5, 100]. Boxes of order 1 are halved until the "
             "direction with most cells has so few; refined meshes go to their parents, in space by half of it.");

@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr double equally_thin = 1.7; // as for coarser boxes
-constexpr int shortest_ring = 6;  // sheets: half as many cells around a hole are still cells
+constexpr int shortest_ring = 6;     // sheets: half as many cells around a hole are still cells
 
 /// What lies beyond one side of a sheet.
 struct Beyond {

@@ -68,7 +68,7 @@ public:
   Step step(double t, const MultiVector *dents = nullptr, const Memory *before = nullptr) const;
   fem::DirichletDofs dirichlet(double t) const; ///< of step(t), alone
   /// The same scene on one of the boxes that this one leads to: the first that has at most a `factor`-th of its cells along the direction
-  /// with most; of a refined mesh the first parent with cells `factor` times as long, in space half of that, or the coarsest. Null where there is none, and for boxes
+  /// with most; of a mesh with parents the first one with cells `factor` times as long, in space half of that, or the coarsest. Null where there is none, and for boxes
   /// of order 2: linear elements, too stiff in bending, predict worse. Collective.
   std::shared_ptr<const Problem> coarser(double factor, double t) const;
 
