@@ -39,7 +39,7 @@ std::string refusal(const ScalarField &field, const std::string &parameter, cons
   return message.str();
 }
 
-std::string text_of(const Point &x, const std::size_t dim)
+std::string place_text(const Point &x, const std::size_t dim)
 {
   std::ostringstream text;
   text << " at (";
@@ -64,7 +64,7 @@ HostView<double *> evaluate(const ScalarField &field, const HostPoints &points, 
       const Point x = point_at(points, n);
       values(n) = field(x);
       if (!message && !is_allowed(values(n), allow_infinite))
-        message = refusal(field, parameter, values(n), allow_infinite, text_of(x, points.extent(1)));
+        message = refusal(field, parameter, values(n), allow_infinite, place_text(x, points.extent(1)));
     }
   }
   throw_if_any(comm, ExitCode::bad_input, message);
