@@ -200,8 +200,10 @@ private:
     };
     add(edges_of(linear, corners), element.edges());
     if (dim_ == 3) add(facets_of(linear, corners), element.facets());
-    for (int c = 0; c < num_cells; ++c)
-      *std::find(&mesh.cells[std::size_t(width_) * c], &mesh.cells[std::size_t(width_) * (c + 1)], -1) = next++;
+    for (int c = 0; c < num_cells; ++c) {
+      const auto first = mesh.cells.begin() + std::ptrdiff_t(width_) * c;
+      *std::find(first, first + width_, -1) = next++;
+    }
     mesh.coords.resize(std::size_t(dim_) * next);
     std::vector<char> placed(next, 0);
     with_static_extents(element, [&](const auto dim, const auto nodes) {
