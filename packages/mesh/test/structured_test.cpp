@@ -339,6 +339,19 @@ TEST(Structured, BlocksAroundAPointGoDownToOneCellEach)
   EXPECT_EQ(chain(shuffled(three_around_a_point(4)), 1e-9), (std::vector<int>{48, 12, 3}));
 }
 
+TEST(Structured, BlocksThatShareNoNodesGoTheirOwnWay)
+{
+  MeshData both = rpc::test::block(q1, {8, 8, 1});
+  const auto beside = moved(rpc::test::block(q1, {6, 6, 1}), [](const Point &x) { // 8 high too
+    return Point{8 + x[0] * 8 / 6, x[1] * 8 / 6, 0};
+  });
+  const int first = both.num_nodes();
+  both.coords.insert(both.coords.end(), beside.coords.begin(), beside.coords.end());
+  for (const int node : beside.cells) both.cells.push_back(first + node);
+  both.block.resize(64 + 36, 0);
+  EXPECT_EQ(chain(shuffled(both)), (std::vector<int>{64 + 36, 16 + 9, 4 + 1, 1 + 1}));
+}
+
 TEST(Structured, OtherMeshesHaveNoCoarserOnes)
 {
   EXPECT_FALSE(layered(rpc::test::block({2, 1, Shape::simplex}, {8, 8, 1})).coarser);

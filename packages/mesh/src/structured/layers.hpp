@@ -19,9 +19,9 @@ struct Layers {
   std::vector<signed char> sign; ///< (sheets) 1 where the edges are directed along the stack, else -1
   std::vector<int> length;       ///< (stacks)
   std::vector<int> group;        ///< (sheets) joined ones have the same number
-  std::vector<double> begin,
-      end;              ///< (sheets) part of the group's thickness at which the sheet begins and ends, along the stack
-  bool coarser = false; ///< whether any are joined
+  std::vector<double> begin;     ///< (sheets) part of the group's thickness at which the sheet begins, along the stack
+  std::vector<double> end;       ///< (sheets) and at which it ends
+  bool coarser = false;          ///< whether any are joined
 };
 
 /// Joins two sheets each, of an odd number the last three, in the stacks in which cells are thinnest, up to 1.7 times the least thickness of those
