@@ -229,7 +229,11 @@ class Oracle:
         nodes, weights, _ = self.nodal(state)
         summary, touches = self.summaries[state.time], state.p[nodes] > 0
         extent = "contact_area" if "contact_area" in summary else "contact_length"
-        own = {extent: np.sum(weights[touches]), "max_pressure": np.max(state.p[nodes], initial=0.0)}
+        counts = nodes
+        if self.axisymmetric:  # the axis, without weight, has the pressure that it is lent
+            side = self.mesh.side_nodes(self.side)
+            counts = np.concatenate([nodes, side[self.mesh.coords[side, 0] <= 0]])
+        own = {extent: np.sum(weights[touches]), "max_pressure": np.max(state.p[counts], initial=0.0)}
         if not self.several_meshes():
             own["dent_volume"] = np.sum(weights * state.dent[nodes])
         for key, value in own.items():
