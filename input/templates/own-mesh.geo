@@ -19,3 +19,5 @@ Physical Surface("foot") = {foot()};
 Physical Surface("top") = {top()};
 
 Mesh.MeshSizeMax = 2.5;  // of the cells
+// Finer where a small contact is expected:
+// MeshSize{ PointsOf{ Surface{foot()}; } } = 0.5;
