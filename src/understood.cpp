@@ -196,7 +196,9 @@ std::string law_text(const contact::ContactOptions &side, const UnitNames &units
     friction.push_back("coefficient " + field_words(law("Friction Coefficient")));
   if (!law("Friction Bound").is_zero()) friction.push_back("bound " + field_words(law("Friction Bound")) + stress);
   text += friction.empty() ? "; no friction" : "; friction: " + joined_by(friction, ", ");
-  if (!side.obstacle.exists() && !side.gap.is_zero()) text += "; gap " + field_words(side.gap) + " " + units.length;
+  if (!side.obstacle.exists())
+    text += side.gap.is_zero() ? "; gap 0: it has the shape of the side"
+                               : "; gap " + field_words(side.gap) + " " + units.length;
   return text;
 }
 

@@ -162,7 +162,7 @@ class Check(RpcTestCase):
   Adapt: {Target Relative Error: 0.01, Max Dofs: 5000}
 """)
         for line in ("volume 6.28319 m^3 of the whole body of revolution", '"right": area 12.5664 m^2, normal (1, 0); free',
-                     'loads       "top": in all (0, -3.14159) N', 'foundation  "bottom": rigid until it yields at "10 + x" Pa; no friction',
+                     'loads       "top": in all (0, -3.14159) N', 'foundation  "bottom": rigid until it yields at "10 + x" Pa; no friction; gap 0: it has the shape of the side',
                      "then meshes are refined until the relative error is below 0.01, to at most 5000 unknowns"):
             self.assertIn(line, told)
 
