@@ -276,11 +276,11 @@ ContactSums sums_of(const Comm &comm, const ContactNodes &c, const ContactResult
   Kokkos::parallel_reduce(
       "rpc::contact::result_maxima", points,
       KOKKOS_LAMBDA(const LO i, double &most, double &deep, double &overlap, double &dented) {
-        const bool on_axis = c.dim == 2 && !(c.weight(i) > 0); // of revolution, where pressures are often largest
-        if (on_axis && p(i) > most) most = p(i);
-        if (!(c.weight(i) > 0)) return; // the contact law does not hold there
+        const bool weightless = !(c.weight(i) > 0); // the contact law does not hold there
+        // In the plane only the axis of revolution has no weight, and pressures are often largest there.
+        if ((!weightless || c.dim == 2) && p(i) > most) most = p(i);
+        if (weightless) return;
         if (dent(i) > dented) dented = dent(i);
-        if (p(i) > most) most = p(i);
         if (v(i) > deep) deep = v(i);
         if (-c.gap(i) > overlap) overlap = -c.gap(i);
       },
