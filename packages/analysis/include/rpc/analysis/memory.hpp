@@ -33,7 +33,7 @@ struct Memory {
   RCP<const MultiVector> gap;  ///< (owned nodes; sides) g, to the surface without dents; where points move along dents,
                                ///< to the surface with those that they stand on [m]
   Energies energies;
-  double energy_scale = 0; ///< S of (5.5b): what the energies of all steps so far are known to [J], in 2D per m
+  double energy_scale = 0; ///< S of (5.5b): later energies are judged as shares of it [J], in 2D per m
   RCP<const MultiVector>
       tangential; ///< (owned nodes; sides x dim) multipliers along the side [Pa]; null: the law has none
   std::vector<contact::FoundationDents> foundations; ///< by side; empty: none has a dent
