@@ -5,14 +5,11 @@ import dataclasses
 import json
 import pathlib
 import re
-import threading
 
 import netCDF4
 import numpy as np
 
 from elements import Element
-
-READING = threading.Lock()  # the netCDF library serves one thread at a time
 
 
 @dataclasses.dataclass
@@ -64,7 +61,7 @@ class Run:
         return files[-1] if files else None
 
     def _read(self, path):
-        with READING, netCDF4.Dataset(path) as file:
+        with netCDF4.Dataset(path) as file:
             file.set_auto_mask(False)
             variables = file.variables
             coords = np.stack([variables["coord" + axis][:] for axis in "xyz" if "coord" + axis in variables], axis=1)

@@ -29,7 +29,8 @@ FIXED = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "
 
 @dataclasses.dataclass
 class Outcome:
-    case: decks.Case
+    number: int
+    row: dict
     folder: pathlib.Path
     seconds: float = 0.0
     runs: int = 0
@@ -83,7 +84,7 @@ def write(scene, folder):
 def judge(options, seed, number, row):
     """The outcome of a row; its folder stays if something is wrong."""
     case = decks.make(seed, number, row)
-    outcome = Outcome(case, pathlib.Path(options.keep) / f"seed{seed}" / case.name)
+    outcome = Outcome(number, row, pathlib.Path(options.keep) / f"seed{seed}" / case.name)
     shutil.rmtree(outcome.folder, ignore_errors=True)
     start = time.monotonic()
     try:

@@ -11,6 +11,7 @@ and rows that it names, a row that no longer fails is a failure of the list. The
 import argparse
 import collections
 import concurrent.futures
+import itertools
 import json
 import pathlib
 import re
@@ -64,13 +65,13 @@ class Known:
 
     def of(self, outcome):
         """Reasons of a row's complaints; None if one of them has none."""
-        found = [self.reason(outcome.case.row, complaint) for complaint in outcome.complaints]
+        found = [self.reason(outcome.row, complaint) for complaint in outcome.complaints]
         return None if None in found else sorted(set(found))
 
     def update(self, seed, count, outcomes):
         """Writes the rows of an array that fail by known faults."""
         others = [each for each in self.lists if (each["seed"], each["rows"]) != (seed, count)]
-        fail = [o.case.number for o in outcomes if o.complaints and self.of(o) is not None]
+        fail = [o.number for o in outcomes if o.complaints and self.of(o) is not None]
         self.lists = others + [{"seed": seed, "rows": count, "fail": fail}]
         entries = ",\n".join("    " + json.dumps(each) for each in self.entries)
         lists = ",\n".join("    " + json.dumps(each) for each in self.lists)
@@ -89,25 +90,25 @@ def kind(complaint):
 
 def by_pairs(outcomes):
     """{kind of failure: (rows, pairs of features that its rows share most often, against how often they stand in the array)}"""
-    in_array = collections.Counter(pair for o in outcomes for pair in covering.pairs_of(o.case.row))
+    in_array = collections.Counter(pair for o in outcomes for pair in covering.pairs_of(o.row))
     failing = collections.defaultdict(list)
     for outcome in outcomes:
         for each in {kind(complaint) for complaint in outcome.complaints}:
             failing[each].append(outcome)
     for each, some in sorted(failing.items(), key=lambda item: -len(item[1])):
-        counts = collections.Counter(pair for o in some for pair in covering.pairs_of(o.case.row))
+        counts = collections.Counter(pair for o in some for pair in covering.pairs_of(o.row))
         ranked = sorted(counts, key=lambda pair: (-counts[pair] / len(some) - counts[pair] / in_array[pair], pair))[:MOST_PAIRS]
         yield each, some, [(pair, counts[pair], in_array[pair]) for pair in ranked]
 
 
 def report(options, outcomes, of, known, seconds):
     failed = [o for o in outcomes if o.complaints]
-    held, wanted = covering.coverage([o.case.row for o in outcomes], of)
+    held, wanted = covering.coverage([o.row for o in outcomes], of)
     for each, some, pairs in by_pairs(outcomes):
-        print(f"{len(some):4d} x {each}: rows {', '.join(str(o.case.number) for o in some[:12])}{', ...' if len(some) > 12 else ''}")
+        print(f"{len(some):4d} x {each}: rows {', '.join(str(o.number) for o in some[:12])}{', ...' if len(some) > 12 else ''}")
         for ((a, b), (c, d)), count, total in pairs:
             print(f"          {a} {b} x {c} {d}: {count} of {total} rows")
-    unknown = [o.case.number for o in failed if known.of(o) is None]
+    unknown = [o.number for o in failed if known.of(o) is None]
     print(f"seed {options.seed}: {len(outcomes)} rows, {sum(o.runs for o in outcomes)} runs in {seconds:.0f} s; pairs of features: {held} of {wanted}; "
           f"{len(failed)} rows failed, {len(failed) - len(unknown)} of them by known faults")
     return unknown
@@ -118,7 +119,7 @@ def stale(options, outcomes, known):
     listed = known.listed(options.seed, options.rows)
     if listed is None or options.only is not None:
         return []
-    return sorted(listed - {o.case.number for o in outcomes if o.complaints})
+    return sorted(listed - {o.number for o in outcomes if o.complaints})
 
 
 def main():
@@ -130,12 +131,13 @@ def main():
     if options.only is not None:
         array = [array[k] for k in options.only]
     known, outcomes, start = Known(options.known), [], time.monotonic()
-    with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for outcome in pool.map(lambda item: rows.judge(options, options.seed, *item), array):
+    # processes, not threads: neither netCDF nor every BLAS serves several threads at once
+    with concurrent.futures.ProcessPoolExecutor(max_workers=options.jobs) as pool:
+        for outcome in pool.map(rows.judge, itertools.repeat(options), itertools.repeat(options.seed), *zip(*array)):
             outcomes.append(outcome)
             if outcome.complaints:
                 reason = known.of(outcome)
-                print(f"{'FAILED' if reason is None else 'known'} {outcome.case.number} {', '.join(outcome.case.row.values())}: {'; '.join(outcome.complaints)}"
+                print(f"{'FAILED' if reason is None else 'known'} {outcome.number} {', '.join(outcome.row.values())}: {'; '.join(outcome.complaints)}"
                       + (f" [{'; '.join(reason)}]" if reason else "") + f" -> {outcome.folder}", flush=True)
     unknown = report(options, outcomes, of, known, time.monotonic() - start)
     if options.update and options.only is None:
