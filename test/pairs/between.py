@@ -12,8 +12,8 @@ UNSEEN = 0.25  # of the approach: a quarter of it unseen is a third of Hertz's f
 AGREES = 0.5  # samples of two programs miss the deepest place by less
 MATTERS = 0.1  # of the energy norm: twice what a run leaves unsaid, doc/theory.md (3.16)
 KEY = "max_penetration_between_nodes"  # of the summary
-NOTE = "unseen"  # a note about contact that no point sees has this word
-WORDS = (NOTE, "between")  # of notes on the console, where the summary has no such number
+NOTES = ("unseen", "contact that no node has")  # words of a note, or of what the mesh misses, about contact that no point sees
+WORDS = (*NOTES, "between")  # of notes on the console, where the summary has no such number
 
 
 @dataclasses.dataclass

@@ -219,7 +219,7 @@ class Oracle:
         if between.KEY in summary:
             if summary[between.KEY] < found.excess * between.AGREES:
                 self.complain(state, f"penetration between contact points {where}, the summary has {summary[between.KEY]:.3g}")
-            elif found.unseen > between.MATTERS and between.NOTE not in console:
+            elif found.unseen > between.MATTERS and not any(word in console for word in between.NOTES):
                 self.complain(state, f"unseen contact {where}, with {found.unseen:.2g} of the energy norm, and no note")
         elif not any(word in console for word in between.WORDS):
             self.complain(state, f"penetration between contact points {where}, and no word")

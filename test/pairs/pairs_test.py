@@ -320,7 +320,7 @@ class Judgement(unittest.TestCase):
         self.assertEqual(known.reason(BASE, "a bar of force"), "bars")
         self.assertIsNone(known.reason({**BASE, "law": "rigid"}, "a bar of force"))
         self.assertIsNone(known.reason(BASE, "exit 15"))
-        outcome = lambda number, *complaints: types.SimpleNamespace(case=types.SimpleNamespace(row=BASE, number=number), complaints=list(complaints))
+        outcome = lambda number, *complaints: types.SimpleNamespace(row=BASE, number=number, complaints=list(complaints))
         self.assertEqual(known.of(outcome(1, "a bar of force")), ["bars"])
         self.assertIsNone(known.of(outcome(1, "a bar of force", "exit 15")))
         known.lists = [{"seed": 1, "rows": 2, "fail": [0, 1]}]
