@@ -19,8 +19,8 @@ constexpr double aim = 0.95, aim_in_space = 0.88; // another mesh costs more the
 constexpr double aim_near_nested = 0.7;
 // The estimate falls by no more from one mesh to the next: a coarse mesh knows little of where a fine one is to be fine.
 constexpr double greatest_reduction = 4;
-// Near the target the next plan makes up for the excess of the last estimate over its plan, up to a factor. Cells hardly
-// grow there, so that no accuracy is lost.
+// Near the target the next plan makes up for the excess of the estimates over their plans since then, up to a factor: an
+// excess that stays asks for more each time. Cells hardly grow there, so that no accuracy is lost.
 constexpr double near = 2, near_in_space = 1.3, greatest_correction = 3, growth_near = 1.25, growth = 2.5;
 // A mesh has no more than so many times the cells that the order of the elements asks for: where a coarse mesh asks for
 // many more, its estimate is not reliable.
@@ -78,9 +78,9 @@ MeshPlanner::Goal MeshPlanner::goal(const double eta, const double target, const
   const bool is_near = eta < (dim == 2 || nested ? near : near_in_space) * far;
   const double wanted = is_near && nested ? aim_near_nested * target : far;
   const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
-  const double missed = is_near && !nested ? std::clamp(eta / planned_, 1., greatest_correction) : 1;
+  missed_ = is_near && !nested ? std::clamp(missed_ * eta / planned_, 1., greatest_correction) : 1;
   planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
-  return {planned_ / missed, is_near ? growth_near : growth, std::max(1, static_cast<int>(meshes)), wanted};
+  return {planned_ / missed_, is_near ? growth_near : growth, std::max(1, static_cast<int>(meshes)), wanted};
 }
 
 mesh::MeshOptions MeshPlanner::options_for(const Sizes &sizes, const mesh::Mesh &mesh)

@@ -55,7 +55,8 @@ private:
   std::string least_estimate() const;
 
   const Task &task_;
-  Goal goal_;                                                // of the mesh that was planned last
+  Goal goal_;         // of the mesh that was planned last
+  double missed_ = 1; // estimates near the target over those that were planned, multiplied
   double planned_ = std::numeric_limits<double>::infinity(); // estimate that the present mesh was to have
   double predicted_cells_ = 0;                               // of the present mesh; 0: it was not planned
   bool planned_at_limit_ = false; // the present mesh, for fewer cells than the target asked for
