@@ -264,7 +264,7 @@ class Oracle:
         scale = max(abs(each.get(key, 0.0)) for key in (*own, "strain_energy") for each in (summary, last))
         for key, value in own.items():
             told = summary[key] - (last.get(key, 0.0) if key != "foundation_energy" else 0.0)
-            self.equal(state, f"{key} of the step", told, value, scale)
+            self.equal(state, f"{key} of the step", told, value, scale, before)
 
     def check_functional(self, state, before, summary):
         """J with its own integrals; not where a Dirichlet condition presses a point into the foundation."""
@@ -294,8 +294,10 @@ class Oracle:
             work -= np.sum(weights[:, None] * (state.q + before.q)[nodes] * along) / 2
         return work
 
-    def equal(self, state, name, told, own, scale):
-        if not math.isnan(own) and not abs(told - own) <= EQUAL * scale + self.rest(state)[1] + TINY:
+    def equal(self, state, name, told, own, scale, *others):
+        """@param others  states whose rounding is in the value too"""
+        rest = sum(self.rest(each)[1] for each in (state, *others))
+        if not math.isnan(own) and not abs(told - own) <= EQUAL * scale + rest + TINY:
             self.complain(state, f"{name} is {told!r}, by the oracle {own!r} (scale {scale:.3g})")
 
     def check_table(self):
