@@ -3,7 +3,6 @@
 
 #include "rpc/algebra/diagonal_matrix.hpp"
 #include "rpc/fem/interpolation.hpp"
-#include "rpc/mesh/box_patches.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -21,9 +20,8 @@ constexpr GO few_2d = 800, few_3d = 400;
 // Unknowns of a coarsest mesh that is still factored, where there is no coarser one.
 constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
 
-// Above these ratios, of order 2 and of order 1, a mixed form, and smoothers on stars, take less time than smoothers of single nodes, by
-// measurement in space; on cells that are stretched more than that stars take too many iterations.          (4.7f), (4.13)
-constexpr double nearly_incompressible_of_order_one = 0.485, most_stretched_of_stars = 5;
+// Above this ratio, of order 1, a mixed form takes less time than smoothers of single nodes, by measurement in space.       (4.13)
+constexpr double nearly_incompressible_of_order_one = 0.485;
 
 /// Which components of which sides are prescribed, whatever their values.
 std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondition> conditions)
@@ -95,68 +93,6 @@ std::string thin_text(const mesh::BoxOptions &box, const int direction)
   return text + " cells";
 }
 
-/// The patches of a box of which the other one is the next coarser one.
-solver::PatchesOfMesh patches_between(const mesh::Mesh &fine, const mesh::BoxOptions &coarse)
-{
-  const Comm &comm = fine.comm();
-  solver::PatchesOfMesh patches;
-  for (LO n = 0; n < fine.num_local_nodes(); ++n) patches.columns.push_back(fine.node_gid(n));
-  patches.stars = mesh::vertex_stars(*fine.box, comm);
-  patches.interiors = mesh::inside_cells_of(coarse, *fine.box, comm);
-  return patches;
-}
-
-GO num_unknowns(const mesh::BoxOptions &box)
-{
-  GO nodes = 1;
-  for (int d = 0; d < box.element.dim; ++d) nodes *= box.intervals(d) + 1;
-  return num_dofs(box.element.dim, nodes);
-}
-
-/// Boxes of the same element, down to one that is factored: it has few unknowns, or its cells are too stretched for stars. None where such a
-/// box has too many unknowns, or there is none.
-std::vector<mesh::BoxOptions> coarser_on_stars(mesh::BoxOptions box)
-{
-  const GO few = box.element.dim == 2 ? few_2d : few_3d;
-  const GO most = box.element.dim == 2 ? most_factored_2d : most_factored_3d;
-  std::vector<mesh::BoxOptions> coarser;
-  while (coarser.empty() || num_unknowns(box) > few) {
-    if (mesh::stretch(box) > most_stretched_of_stars) {
-      if (num_unknowns(box) > most) coarser.clear();
-      return coarser;
-    }
-    const auto next = mesh::halved(box);
-    if (!next) return {};
-    coarser.push_back(*next);
-    box = *next;
-  }
-  return coarser;
-}
-
-/// Levels of order 2 for nearly incompressible boxes.                                                               (4.7f)
-solver::MeshLevels levels_of_stars(const fem::Discretization &finest, const Model &model,
-                                   const DeviceView<char *> &prescribed)
-{
-  solver::MeshLevels levels;
-  levels.prescribed = prescribed;
-  levels.order = 2;
-  levels.down_to_few = true;
-  levels.remark = "on stars of vertices";
-  const auto held = held_sides(model.dirichlet);
-  fem::Discretization fine = finest;
-  solver::PatchesOfMesh *patches = &levels.patches;
-  for (const mesh::BoxOptions &box : coarser_on_stars(*finest.mesh->box)) {
-    auto coarse = coarser_box(fine, box);
-    *patches = patches_between(*fine.mesh, *coarse.mesh->box);
-    levels.level.push_back(
-        level_on(coarse, model, fem::dirichlet_dofs(coarse, held).fixed, fem::interpolation(coarse, fine)));
-    patches = &levels.level.back().patches;
-    fine = std::move(coarse);
-  }
-  assemble(levels.level.back());
-  return levels;
-}
-
 } // namespace
 
 double largest_ratio(const fem::Discretization &d, const fem::Materials &materials)
@@ -170,12 +106,6 @@ bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials
 {
   const double least = d.mesh->element.order == 1 ? nearly_incompressible_of_order_one : nearly_incompressible;
   return d.kinematics != fem::Kinematics::plane_stress && largest_ratio(d, materials) > least;
-}
-
-bool smooths_on_stars(const fem::Discretization &d, const fem::Materials &materials)
-{
-  return d.mesh->box && d.mesh->element.name() == "Q2" && is_nearly_incompressible(d, materials) &&
-         !coarser_on_stars(*d.mesh->box).empty();
 }
 
 solver::Body body_of(const fem::Discretization &d)
@@ -196,8 +126,6 @@ solver::Body body_of(const fem::Discretization &d)
 
 solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, const DeviceView<char *> &prescribed)
 {
-  if (smooths_on_stars(finest.discretization(), model.materials))
-    return levels_of_stars(finest.discretization(), model, prescribed);
   solver::MeshLevels levels;
   levels.prescribed = prescribed;
   const int dim = finest.discretization().dim();

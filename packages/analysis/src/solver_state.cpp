@@ -12,10 +12,10 @@ namespace rpc::analysis
 namespace
 {
 
-// The iterations to 1e-8 that are expected on stars of vertices, (4.7f), and of the mixed form, (4.14): too few to think of a sparse factor,
-// whose symbolic factorization alone takes as much time and memory as some of them.
-constexpr int expected_of_mixed = 30, expected_on_stars = 15;
-// There a sparse factor is considered later: stars take up to 32 iterations with contact.
+// The iterations to 1e-8 that are expected of the mixed form, (4.14): too few to think of a sparse factor, whose symbolic factorization alone
+// takes as much time and memory as some of them.
+constexpr int expected_of_mixed = 30;
+// There a sparse factor is considered later.
 constexpr int first_iterations = 40;
 // A step of the polynomial (4.15b), which the mixed form of order 1 has beside each cycle, takes so much of a CG iteration.
 constexpr double cost_of_step = 0.035;
@@ -59,8 +59,8 @@ solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Pro
   if (d.kinematics == fem::Kinematics::plane_stress) return options; // nothing is nearly incompressible
   const double nu = largest_ratio(d, materials);
   options.expected_iterations = expected_iterations(*d.mesh, nu);
-  if (is_mixed || smooths_on_stars(d, materials)) {
-    options.expected_iterations = is_mixed ? expected_of_mixed_form(*d.mesh, nu) : expected_on_stars;
+  if (is_mixed) {
+    options.expected_iterations = expected_of_mixed_form(*d.mesh, nu);
     options.first_iterations = std::max(options.first_iterations, first_iterations);
   }
   options.rough_part = rough_part(nu);

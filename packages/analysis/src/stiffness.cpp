@@ -56,7 +56,6 @@ solver::MakeMixedForm mixed_form(const std::shared_ptr<const NestedMesh> &finest
   const bool simplex = element.shape == mesh::Shape::simplex;
   if (simplex && element.order == 1) return {}; // it locks: most of its pressures move nothing
   if (!is_nearly_incompressible(d, model.materials)) return {};
-  if (model.contact.empty() && smooths_on_stars(d, model.materials)) return {};
   const Split split = split_of(element, largest_ratio(d, model.materials));
   const auto soft = fem::softened(d, model.materials, split.ratio);
   if (!soft || is_nearly_incompressible(d, *soft)) return {}; // a block with its full dilatation would stay as it is

@@ -101,63 +101,6 @@ TEST(MeshMultigrid, FollowsTheStatesExactly)
     }
 }
 
-/// Boxes of order 2 at nu -> 1/2, also of stretched cells: smoothers on stars of vertices.                         (4.7f)
-TEST(MeshMultigrid, TakesNearlyIncompressibleBodies)
-{
-  using fem::Kinematics;
-  struct Body {
-    mesh::Element element;
-    std::vector<double> upper;
-    Kinematics kinematics = Kinematics::plane_strain;
-  };
-  for (const auto &[element, upper, kinematics] : std::vector<Body>{{{2, 2}, {2, 1, 1}},
-                                                                    {{2, 2}, {2, 1, 1}, Kinematics::axisymmetric},
-                                                                    {{2, 2}, {8, 1, 1}},
-                                                                    {{3, 2}, {2, 1, 1}},
-                                                                    {{3, 2}, {6, 1, 1}},
-                                                                    {{3, 2}, {2, 1, 4}}})
-    for (const double nu : {0.49, 0.499, 0.49999}) {
-      const Block block(element, some_cells(element), true, upper, nu, kinematics);
-      const auto solver = block.solver();
-      const Vector b = block.vector(9);
-      Vector x(b.getMap()), r(b.getMap()), error(b.getMap());
-      for (const bool closed : {false, true}) {
-        if (closed) block.close_half();
-        const auto result = solver->solve(b, x, 1e-8);
-        EXPECT_TRUE(result.converged) << result.reason;
-        EXPECT_LE(result.iterations, closed ? 25 : 12)
-            << text_of(element) << ", nu " << nu << ", " << upper[0] << " x " << upper[1] << " x " << upper[2];
-        block.H->apply(x, r); // its norm is that of rounding here, its energy tells
-        r.update(1., b, -1.);
-        EXPECT_TRUE(solver->solve(r, error, 1e-2).converged);
-        EXPECT_LT(std::sqrt(r.dot(error) / b.dot(x)), 1e-5);
-      }
-      EXPECT_NE(solver->counts().description.find("stars of vertices"), std::string::npos);
-      EXPECT_EQ(solver->counts().preconditioner_setups, 1);
-      EXPECT_EQ(solver->counts().fallback, "");
-    }
-}
-
-/// Where single nodes do, or stars would not.
-TEST(MeshMultigrid, SmoothsOnStarsOfNearlyIncompressibleBoxesOfOrderTwoOnly)
-{
-  const auto stars = [](const mesh::Element &element, const double nu, const std::vector<double> &upper) {
-    return Block(element, some_cells(element), true, upper, nu).levels().patches.stars.size() > 0;
-  };
-  EXPECT_TRUE(stars({2, 2}, 0.49, {2, 1, 1}));
-  EXPECT_FALSE(stars({2, 2}, 0.47, {2, 1, 1}));
-  EXPECT_FALSE(stars({2, 2}, 0.49, {20, 1, 1}));
-  EXPECT_TRUE(Block({2, 2}, {8, 8}, true, {1, 1, 1}, 0.49).levels().level.size() == 1) << "few unknowns";
-  // One cell across: halving stretches its cells, which ends at a factor or is not done at all.
-  const auto plate = [](const int n, const double thickness) {
-    return Block({3, 2}, {n, n, 1}, true, {1, 1, thickness / n}, 0.49).levels();
-  };
-  EXPECT_EQ(plate(24, 1).level.size(), 3U);
-  EXPECT_EQ(plate(40, 0.25).patches.stars.size(), 0);
-  EXPECT_FALSE(stars({2, 1}, 0.49, {2, 1, 1}));
-  EXPECT_FALSE(stars({2, 2, mesh::Shape::simplex}, 0.49, {2, 1, 1}));
-}
-
 TEST(MeshMultigrid, IterationsDoNotGrowWithTheMesh)
 {
   std::vector<int> iterations;

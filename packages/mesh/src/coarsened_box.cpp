@@ -85,20 +85,6 @@ std::optional<BoxOptions> coarsened(const BoxOptions &options)
   return thin_direction(across) ? across : coarse;
 }
 
-std::optional<BoxOptions> halved(const BoxOptions &options)
-{
-  const int dim = options.element.dim;
-  double shortest = std::numeric_limits<double>::infinity();
-  for (int d = 0; d < dim; ++d)
-    if (options.cells[d] > 1) shortest = std::min(shortest, options.node_distance(d));
-  if (!std::isfinite(shortest)) return std::nullopt;
-  BoxOptions coarse = options;
-  coarse.last.resize(dim, 1.);
-  for (int d = 0; d < dim; ++d)
-    if (options.cells[d] > 1 && options.node_distance(d) <= stretched * shortest) halve(d, options, coarse);
-  return coarse;
-}
-
 std::optional<int> thin_direction(const BoxOptions &options)
 {
   const double shortest = shortest_distance(options);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "contact_supports.hpp"
-#include "patch_matrices.hpp"
 #include "rpc/algebra/rounded_rows.hpp"
 #include "rpc/core/halo.hpp"
 #include "rpc/solver/mesh_levels.hpp"
@@ -57,8 +56,6 @@ public:
 
   /// The matrix without contact.
   const RepeatedRows &rows() const { return rows_; }
-  /// What contact adds to it.
-  AddedBlocks added() const { return {row_, column_, added_}; }
   /// (n) Owned nodes with entries that change, ascending.
   const DeviceView<LO *> &nodes() const { return nodes_; }
   /// (owned nodes, dim, dim) The diagonal blocks of all nodes, as long as no contact is written.

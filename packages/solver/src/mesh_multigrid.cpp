@@ -5,7 +5,6 @@
 #include "contact_supports.hpp"
 #include "node_interpolation.hpp"
 #include "node_smoother.hpp"
-#include "patch_solver.hpp"
 #include "rpc/algebra/bounded_update.hpp"
 #include "rpc/core/math.hpp"
 
@@ -18,14 +17,12 @@ namespace rpc::solver
 namespace
 {
 
-// By measurement: the least time, and no more than 15 iterations to 1e-8 in the plane, 20 in space; on stars no more than 12 without contact.
-constexpr NodeSmoother::Options order_one{3, 10}, order_two{3, 16}, on_stars{4, 14};
+// By measurement: the least time, and no more than 15 iterations to 1e-8 in the plane, 20 in space.
+constexpr NodeSmoother::Options order_one{3, 10}, order_two{3, 16};
 
 // Bound of the largest eigenvalue of D^-1 C for contact C alone: it is that of an interpolation's mass on a facet, (3/2)^2 on
 // quadrilaterals, 2 on triangles, 3/2 on edges.                                                                  (4.7c)
 constexpr double largest_of_contact = 2.25;
-// The largest eigenvalue on stars of vertices: they have so many colours, and stars of one colour do not touch each other.   (4.7f)
-constexpr double largest_on_stars_2d = 4, largest_on_stars_3d = 8;
 // The update of a node counts on coarse meshes as so many times its own stiffness. With a quarter or four times that, CG takes a fourth more
 // iterations.                                                                                                    (4.7b)
 constexpr double most_on_coarse_meshes = 1;
@@ -160,30 +157,11 @@ void take_values(const DeviceView<LO *> &node, const Vector &v, const DeviceView
 struct MeshMultigrid::Level {
   RCP<const Operator> A;
   std::unique_ptr<NodeSmoother> smoother;
-  std::shared_ptr<PatchSolver> stars; // null: the smoother takes single nodes
-  /// Of the next coarser mesh's cells; null: its functions are taken as they are.
-  std::unique_ptr<PatchSolver> interiors;
   std::unique_ptr<NodeInterpolation> interpolation; // from the next coarser mesh
   RCP<CoarseContact> coarse;                        // the matrix of the next coarser mesh
   /// This mesh's blocks of contact, of which the coarser one's are made; null: these are made of contact nodes' own.
   RCP<const Map> blocks;
   RCP<Vector> coarse_residual, correction;
-  RCP<Vector> fine_correction, product, inside; // where there are interiors
-
-  /// r <- (I - A Q) r, Q the exact solves inside the coarse cells.                                                (4.7g)
-  void without_interiors(Vector &r) const
-  {
-    interiors->apply(r, *inside);
-    A->apply(*inside, *product);
-    r.update(-1., *product, 1.);
-  }
-  /// y <- (I - Q A) y
-  void extend_into_interiors(Vector &y) const
-  {
-    A->apply(y, *product);
-    interiors->apply(*product, *inside);
-    y.update(-1., *inside, 1.);
-  }
 
   /// @param fine_prescribed  (owned dofs, at least) of this mesh
   void add_transfers(const MeshLevel &coarse, const int dim, const DeviceView<char *> &fine_prescribed)
@@ -235,35 +213,19 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
   if (!coarsest_) throw std::runtime_error(not_definite);
 }
 
-/// With patches, where the mesh has some, also for the transfers.
 void MeshMultigrid::add_smoother(const MeshLevels &levels, const std::size_t l)
 {
   const bool is_finest = l == 0;
   Level &level = *levels_[l];
   const CoarseContact *const contact = is_finest ? nullptr : levels_[l - 1]->coarse.get();
-  const PatchesOfMesh &patches = is_finest ? levels.patches : levels.level[l - 1].patches;
-  const auto nodes = levels.level[l].interpolation->getRangeMap();
-  const int dim = H_->dofs_per_node(), order = is_finest ? levels.order : levels.level[l - 1].order;
+  const int order = is_finest ? levels.order : levels.level[l - 1].order;
   const auto block = is_finest ? H_->base().diagonal_blocks() : contact->base_blocks();
   const auto changing = is_finest ? contact_node_ : contact->nodes();
-  const auto make = [&](const double largest, const NodeSmoother::Options &options) {
-    level.smoother = std::make_unique<NodeSmoother>(level.A, block, changing, largest, options);
-  };
-  if (max_all(*nodes->getComm(), patches.stars.size()) == 0) {
-    const Rounded without_contact(H_, false);
-    const double largest =
-        largest_eigenvalue(is_finest ? static_cast<const Operator &>(without_contact) : *level.A, block);
-    return make(std::max(largest, largest_of_contact), order == 2 ? order_two : order_one);
-  }
-  make(dim == 3 ? largest_on_stars_3d : largest_on_stars_2d, on_stars);
-  const RepeatedRows &rows = is_finest ? H_->base().rows() : contact->rows();
-  const AddedBlocks added = is_finest ? AddedBlocks{contact_node_, contact_node_, H_->update()} : contact->added();
-  level.stars = std::make_shared<PatchSolver>(rows, nodes, patches.columns, patches.stars, added);
-  level.interiors = std::make_unique<PatchSolver>(rows, nodes, patches.columns, patches.interiors,
-                                                  AddedBlocks{}); // contact is at sides, which no interior has nodes of
-  level.smoother->use(level.stars);
-  for (RCP<Vector> *const v : {&level.fine_correction, &level.product, &level.inside})
-    *v = rcp(new Vector(level.A->getDomainMap()));
+  const Rounded without_contact(H_, false);
+  const double largest =
+      largest_eigenvalue(is_finest ? static_cast<const Operator &>(without_contact) : *level.A, block);
+  level.smoother = std::make_unique<NodeSmoother>(level.A, block, changing, std::max(largest, largest_of_contact),
+                                                  order == 2 ? order_two : order_one);
 }
 
 MeshMultigrid::~MeshMultigrid() = default;
@@ -277,14 +239,10 @@ DeviceView<double ***> MeshMultigrid::write_contact()
     const auto &blocks = levels_[l]->blocks;
     levels_[l]->coarse->write(blocks.is_null() ? packed : levels_[l - 1]->coarse->packed_sums(blocks));
   }
-  levels_[0]->smoother->set_blocks(contact_node_, H_->blocks()); // truncation asks for them, on stars too
-  if (levels_[0]->stars) levels_[0]->stars->set_added(H_->update());
+  levels_[0]->smoother->set_blocks(contact_node_, H_->blocks());
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const CoarseContact &contact = *levels_[l - 1]->coarse;
-    if (levels_[l]->stars)
-      levels_[l]->stars->set_added(contact.added().block);
-    else
-      levels_[l]->smoother->set_blocks(contact.nodes(), contact.blocks());
+    levels_[l]->smoother->set_blocks(contact.nodes(), contact.blocks());
   }
   return update;
 }
@@ -314,18 +272,9 @@ void MeshMultigrid::cycle(const std::size_t l, const Vector &b, Vector &x) const
   Vector &residual = level.smoother->work();
   level.A->apply(x, residual);
   residual.update(1., b, -1.);
-  if (level.interiors) level.without_interiors(residual);
   if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), true, at_rest_, residual);
   level.interpolation->restrict_to(residual, *level.coarse_residual);
   cycle(l + 1, *level.coarse_residual, *level.correction);
-  if (level.interiors) {
-    Vector &fine = *level.fine_correction;
-    level.interpolation->prolong(*level.correction, fine, NodeInterpolation::Write::replace);
-    if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), false, at_rest_, fine);
-    level.extend_into_interiors(fine);
-    x.update(1., fine, 1.);
-    return level.smoother->improve(b, x);
-  }
   if (finest) take_values(contact_node_, x, kept_);
   level.interpolation->prolong(*level.correction, x, NodeInterpolation::Write::add);
   if (finest) truncate(contact_node_, contact_base_, level.smoother->inverse_blocks(), false, kept_, x);

@@ -2,7 +2,6 @@
 #include "node_smoother.hpp"
 
 #include "chebyshev.hpp"
-#include "patch_solver.hpp"
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/core/math.hpp"
@@ -237,12 +236,6 @@ NodeSmoother::NodeSmoother(RCP<const Operator> A, const NodeBlocks &D, const Dev
 {
 }
 
-void NodeSmoother::use(std::shared_ptr<const PatchSolver> B)
-{
-  patches_ = std::move(B);
-  patch_move_ = rcp(new Vector(A_->getDomainMap()));
-}
-
 void NodeSmoother::set_blocks(const DeviceView<LO *> &node, const DeviceView<double ***> &block)
 {
   const NodeBlocks inverse = inverse_;
@@ -255,19 +248,8 @@ void NodeSmoother::set_blocks(const DeviceView<LO *> &node, const DeviceView<dou
   invert(*A_->getDomainMap()->getComm(), place, block, inverse.block);
 }
 
-/// A step of the polynomial with the patches' B in the place of D^-1.
-void NodeSmoother::step_on_patches(const Vector &b, const double keep, const double add, const bool at_zero,
-                                   Vector &x) const
-{
-  product_->update(1., b, at_zero ? 0. : -1.);
-  patches_->apply(*product_, *patch_move_);
-  move_->update(add, *patch_move_, keep);
-  x.update(1., *move_, at_zero ? 0. : 1.);
-}
-
 void NodeSmoother::step(const Vector &b, const double keep, const double add, const bool at_zero, Vector &x) const
 {
-  if (patches_) return step_on_patches(b, keep, add, at_zero, x);
   const auto from = device_read(b);
   const auto product = device_read(*product_);
   const auto move = device_write(*move_);

@@ -10,8 +10,6 @@
 namespace rpc::solver
 {
 
-class PatchSolver;
-
 /// The largest eigenvalue of D^-1 A, by some steps of Lanczos' method and with a margin for its error; the same on any number of
 /// ranks up to rounding. Collective.
 /// @param D  its blocks
@@ -35,13 +33,10 @@ public:
   /// @param A        what it smooths for
   /// @param D        its blocks
   /// @param changing (n) owned nodes at which D may change
-  /// @param largest  upper bound of the eigenvalues of D^-1 A, also when both change, or of B A, see use(). Collective.
+  /// @param largest  upper bound of the eigenvalues of D^-1 A, also when both change. Collective.
   /// @throws std::runtime_error on all ranks if D is not positive definite
   NodeSmoother(RCP<const Operator> A, const NodeBlocks &D, const DeviceView<LO *> &changing, double largest,
                const Options &options);
-
-  /// Takes B, the sum of exact solves on patches, in the place of D^-1. B follows A by itself.                       (4.7f)
-  void use(std::shared_ptr<const PatchSolver> B);
 
   /// D changes at some nodes; collective.
   /// @param node   (n) some of those at which it may change
@@ -59,16 +54,13 @@ public:
 
 private:
   void step(const Vector &b, double keep, double add, bool at_zero, Vector &x) const;
-  void step_on_patches(const Vector &b, double keep, double add, bool at_zero, Vector &x) const;
   void polynomial(const Vector &b, bool at_zero, Vector &x) const;
 
   RCP<const Operator> A_;
   Options options_;
   NodeBlocks inverse_; // of D
   double largest_;
-  RCP<Vector> move_, product_;                 // of the last step; A x
-  std::shared_ptr<const PatchSolver> patches_; // null: D^-1 is taken
-  RCP<Vector> patch_move_;                     // B (b - A x); null without patches
+  RCP<Vector> move_, product_; // of the last step; A x
 };
 
 } // namespace rpc::solver

@@ -23,8 +23,8 @@ struct Stiffness {
 /// @throws rpc::Error (bad_input) where numbers overflow, (bad_mesh) for a cell with a Jacobian <= 0
 Stiffness stiffness_of(const NestedMesh &mesh, const fem::Materials &materials, const DeviceView<char *> &prescribed);
 
-/// Splits K of a nearly incompressible body of order 2 for a solver that has pressures as unknowns of their own; null for other bodies, for
-/// boxes that nothing touches and that stars of vertices suit, and where there is no coarser mesh. doc/theory.md (4.13)
+/// Splits K of a nearly incompressible body of order 2 for a solver that has pressures as unknowns of their own; null for other bodies
+/// and where there is no coarser mesh. doc/theory.md (4.13)
 solver::MakeMixedForm mixed_form(const std::shared_ptr<const NestedMesh> &finest, const Model &model,
                                  const DeviceView<char *> &prescribed);
 

@@ -51,10 +51,6 @@ std::optional<BoxOptions> coarsened(const BoxOptions &options);
 /// The longest node distance over the shortest one.
 double stretch(const BoxOptions &options);
 
-/// Half as many cells of the same element in the directions in which nodes are closest, up to 1.7 times the shortest distance, and which have
-/// more than one; of an odd number the last three become one. None where no direction has more than one cell.
-std::optional<BoxOptions> halved(const BoxOptions &options);
-
 /// The same box in as many blocks as there are ranks, or in fewer, so that each has at least so many nodes on average; in one where it has
 /// not that many.
 BoxOptions divided(BoxOptions options, int num_ranks, GO least_nodes);

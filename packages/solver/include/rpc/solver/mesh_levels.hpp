@@ -2,7 +2,6 @@
 #pragma once
 
 #include "rpc/algebra/stiffness_operator.hpp"
-#include "rpc/core/node_patches.hpp"
 #include "rpc/solver/body.hpp"
 
 #include <functional>
@@ -13,14 +12,6 @@
 namespace rpc::solver
 {
 
-/// Patches of nodes on which the smoother of a mesh solves, for nearly incompressible bodies; no stars: it takes single nodes.
-/// doc/theory.md (4.7f)
-struct PatchesOfMesh {
-  std::vector<GO> columns; ///< gids of the nodes of the matrix's columns
-  NodePatches stars;       ///< each vertex with the nodes inside the cells around it
-  NodePatches interiors;   ///< the nodes inside each cell of the next coarser mesh
-};
-
 /// A coarser mesh of the same body, for multigrid.
 struct MeshLevel {
   /// K of this mesh, prescribed unknowns eliminated; multigrid writes contact into it. Null where `unassembled` stands for it.
@@ -29,7 +20,6 @@ struct MeshLevel {
   DeviceView<char *> prescribed;      ///< (columns of K) 1 where the displacement is prescribed
   Body body;                          ///< on this mesh
   int order = 1;                      ///< of its elements; 2 too where that is so in some directions alone
-  PatchesOfMesh patches = {};         ///< of this mesh
   /// K where most of its rows repeat, or null. The coarsest mesh always has a matrix: its solver takes one.
   std::shared_ptr<const UnassembledMatrix> unassembled = nullptr;
   RCP<const Map> columns = Teuchos::null; ///< of `unassembled`
@@ -43,7 +33,6 @@ struct MeshLevels {
   int order = 1; ///< of the finest mesh, which is none of the levels
   /// (owned dofs, at least) of the finest mesh: 1 where the displacement is prescribed
   DeviceView<char *> prescribed;
-  PatchesOfMesh patches; ///< of the finest mesh
   /// The coarsest is solved directly: it has few unknowns, or multigrid has to end there. Otherwise algebraic multigrid follows.
   bool down_to_few = false;
   /// Why multigrid ends where it does, "thin in z: factored at 48 x 48 x 1 cells", or what else is particular about it; empty where there is
