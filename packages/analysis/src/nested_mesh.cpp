@@ -27,6 +27,14 @@ std::optional<fem::Discretization> next_coarser_box(const fem::Discretization &d
   return coarser_box(d, *options);
 }
 
+/// Of nodal values to those of the mesh that has a coarse one as its parents.
+RCP<const CrsMatrix> from_parents(const fem::Discretization &coarse, const fem::Discretization &fine,
+                                  const mesh::Parents &parents)
+{
+  if (!parents.nested) return fem::interpolation(coarse, fine);
+  return fem::interpolation_from_parents(*coarse.mesh, *fine.mesh, parents);
+}
+
 /// Interpolations one after the other.
 class Steps : public Operator
 {
@@ -87,7 +95,7 @@ std::shared_ptr<const NestedMesh> NestedMesh::parent() const
   const mesh::Parents &parents = *family_->parents;
   if (!made) made = std::make_shared<NestedMesh>(fem::discretize(parents.mesh, discretization_.kinematics));
   if (made->to_finer_.is_null() && discretization_.mesh->parents)
-    made->to_finer_ = fem::interpolation_from_parents(*parents.mesh, *discretization_.mesh, parents);
+    made->to_finer_ = from_parents(made->discretization(), discretization_, parents);
   return made;
 }
 
@@ -96,8 +104,7 @@ std::shared_ptr<NestedMesh> NestedMesh::order_one_of_parent() const
 {
   const auto lower = parent()->coarser();
   auto made = std::make_shared<NestedMesh>(lower->discretization());
-  made->to_finer_ =
-      fem::interpolation_from_parents(*lower->discretization().mesh, *discretization_.mesh, *family_->parents);
+  made->to_finer_ = from_parents(lower->discretization(), discretization_, *family_->parents);
   made->family_ = lower->family_;
   return made;
 }

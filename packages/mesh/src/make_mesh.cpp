@@ -6,6 +6,7 @@
 #include "rpc/core/parallel.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/core/remedies.hpp"
+#include "rpc/mesh/contracted.hpp"
 #include "rpc/mesh/distribute.hpp"
 #include "rpc/mesh/refinement.hpp"
 #include "rpc/mesh/structured.hpp"
@@ -125,7 +126,10 @@ std::shared_ptr<const Mesh> dealt(const GmshOptions &options, const RCP<const Co
 {
   MeshData whole;
   on_root(*comm, ExitCode::bad_mesh, [&] { whole = read_gmsh(options); });
-  return distribute_with_parents(std::move(whole), comm);
+  const bool contracts = !can_be_meshed(options) && whole.element.shape == Shape::simplex;
+  const bool is_root = comm->getRank() == 0;
+  return sum_all(*comm, GO(is_root && contracts ? 1 : 0)) > 0 ? distribute_with_contracted(std::move(whole), comm)
+                                                              : distribute_with_parents(std::move(whole), comm);
 }
 
 /// A field of rank 0 on all ranks; collective.

@@ -38,12 +38,14 @@ struct Mesh;
 /// dimension are 0.
 using ChildVertices = std::vector<std::vector<std::array<double, 3>>>;
 
-/// The mesh that another one was refined from, see refined(), or of joined cells, see distribute_with_parents().
+/// The mesh that another one was refined from, see refined(), of joined cells, see distribute_with_parents(), or of contracted edges, see
+/// distribute_with_contracted().
 struct Parents {
   std::shared_ptr<const Mesh> mesh;
   std::vector<LO> cell;   ///< (local cells) the parent's local cell; others' may be -1: not here
   std::vector<int> kind;  ///< (local cells) which kind of child of it this is
   ChildVertices vertices; ///< of each kind
+  bool nested = true;     ///< whether cells are parts of its cells; else only `mesh` is known, and a search tells where nodes lie in it
 };
 
 /// One rank's part of a mesh.
