@@ -58,10 +58,12 @@ Teuchos::ParameterList valid_prediction_parameters()
   Teuchos::ParameterList valid("Nested Iteration");
   valid.set("Enabled", true,
             "Whether a solution on a coarser mesh, itself predicted by one on a still coarser mesh, is the start: for "
-            "boxes, .geo files, refined meshes and structured grids of 500 nodes and more.");
+            "boxes, files of gmsh and refined meshes of 500 nodes and more, but for quadrilaterals and hexahedra of a "
+            ".msh that do not lie in layers.");
   valid.set("Coarsening", 4.,
             "Ratio of cell lengths from one mesh to the next, in [1.5, 100]. Boxes of order 1 are halved until the "
-            "direction with most cells has so few; refined meshes go to their parents, in space by half of it.");
+            "direction with most cells has so few; refined meshes and those of a .msh go to their parents, in space by "
+            "half of it.");
   valid.set("Tolerance", 1e-4, "Bound on |F|_2/|load|_2 on the coarser meshes, in (0, 1).");
   return valid;
 }

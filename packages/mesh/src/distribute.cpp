@@ -7,6 +7,8 @@
 #include "rpc/core/parallel.hpp"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -77,17 +79,25 @@ Part part_of(const MeshData &whole, const Division &division, const int rank)
   for (const int gid : part.gid)
     for (int d = 0; d < dim; ++d) part.mesh.coords.push_back(whole.coords[std::size_t(dim) * nodes.value[gid] + d]);
 
+  const int num_sorted = std::min(4, whole.element.num_vertices());
   std::vector<int> cell_lid(whole.num_cells(), -1);
   int num_cells = 0;
   for (const Lists *cells : {&division.cells, &division.halo}) {
-    std::vector<std::pair<int, int>> by_node; // lowest node lid, cell: in the order of the nodes
+    std::vector<std::pair<std::array<int, 4>, int>>
+        by_node; // lowest node lid, others', cell: in the order of the nodes
     for (const int *cell = cells->first(rank); cell != cells->last(rank); ++cell) {
       int lowest = lid_of(*nodes_of(*cell));
       for (int a = 1; a < width; ++a) lowest = std::min(lowest, lid_of(nodes_of(*cell)[a]));
-      by_node.emplace_back(lowest, *cell);
+      std::array<int, 4> lids{lowest, 0, 0, 0};
+      if (division.sorts_cells) {
+        lids.fill(std::numeric_limits<int>::max());
+        for (int v = 0; v < num_sorted; ++v) lids[v] = lid_of(nodes_of(*cell)[v]);
+        std::sort(lids.begin(), lids.end());
+      }
+      by_node.emplace_back(lids, *cell);
     }
     std::sort(by_node.begin(), by_node.end());
-    for (const auto &[lowest, cell] : by_node) {
+    for (const auto &[lids, cell] : by_node) {
       cell_lid[cell] = num_cells++;
       if (cells == &division.cells) part.cell_id.push_back(cell);
       part.mesh.block.push_back(whole.block[cell]);

@@ -18,6 +18,8 @@ struct Division {
   Lists nodes;                 // of each rank, by gid
   Lists cells;                 // of each rank
   Lists halo;                  // of each rank: cells of others that touch its nodes
+  bool sorts_cells =
+      false; // those with the same lowest node by their other vertices: cells around alike nodes are alike in order
 };
 
 /// METIS' cut, and the order of each rank's nodes; on one rank by itself.

@@ -18,30 +18,39 @@ namespace
 
 // A coarser mesh with more than this part of the vertices is not worth its levels.
 constexpr double most_vertices_kept = 0.7;
-// Cubes of the least quality of a cell, 1 for an equilateral one, and of the part of what cells around it had that is enough.
-constexpr double least_quality_3 = 0.2 * 0.2 * 0.2;
+// Cube of the quality that new cells must have, unless one around the vertex has less: 1 for an equilateral cell.
+constexpr double least_quality_3 = 0.3 * 0.3 * 0.3;
 // The least cosine of the angle by which a facet of the boundary may turn.
 constexpr double least_cosine = 0.8;
 constexpr int most_sweeps = 3;
 
 /// The mesh while edges are contracted.
+template <int dim>
 class Contraction
 {
 public:
   Contraction(const MeshData &mesh, const Features &features)
-      : mesh_(mesh), features_(features), dim_(mesh.element.dim), facets_(features.facets),
-        next_edge_(features.next_edge), cells_at_(mesh.num_nodes()), facets_at_(mesh.num_nodes())
+      : mesh_(mesh), features_(features), facets_(features.facets), next_edge_(features.next_edge),
+        cells_at_(mesh.num_nodes()), facets_at_(mesh.num_nodes()), seen_by_(mesh.num_nodes(), -1)
   {
+    cells_.reserve(mesh.num_cells());
     for (int c = 0; c < mesh.num_cells(); ++c) {
-      std::array<int, 4> cell{-1, -1, -1, -1};
-      for (int k = 0; k <= dim_; ++k) cells_at_[cell[k] = mesh.cells[std::size_t(dim_ + 1) * c + k]].push_back(c);
+      std::array<int, dim + 1> cell;
+      for (int k = 0; k <= dim; ++k) cells_at_[cell[k] = mesh.cells[std::size_t(dim + 1) * c + k]].push_back(c);
       cells_.push_back(cell);
     }
     for (std::size_t f = 0; f < facets_.size(); ++f)
-      for (int k = 0; k < dim_; ++k) facets_at_[facets_[f].vertex[k]].push_back(static_cast<int>(f));
+      for (int k = 0; k < dim; ++k) facets_at_[facets_[f].vertex[k]].push_back(static_cast<int>(f));
   }
 
-  void contract(const std::vector<char> &kept)
+  MeshData made(const std::vector<char> &kept)
+  {
+    contract_all_but(kept);
+    return result();
+  }
+
+private:
+  void contract_all_but(const std::vector<char> &kept)
   {
     std::vector<int> left;
     for (const auto rank : {Features::Rank::edge, Features::Rank::face, Features::Rank::inside})
@@ -56,7 +65,7 @@ public:
     }
   }
 
-  MeshData made() const
+  MeshData result() const
   {
     MeshData coarse;
     coarse.element = mesh_.element;
@@ -65,12 +74,12 @@ public:
     for (int v = 0; v < mesh_.num_nodes(); ++v) {
       if (cells_at_[v].empty()) continue;
       number[v] = coarse.num_nodes();
-      coarse.coords.insert(coarse.coords.end(), &mesh_.coords[std::size_t(dim_) * v],
-                           &mesh_.coords[std::size_t(dim_) * v] + dim_);
+      coarse.coords.insert(coarse.coords.end(), &mesh_.coords[std::size_t(dim) * v],
+                           &mesh_.coords[std::size_t(dim) * v] + dim);
     }
     for (std::size_t c = 0; c < cells_.size(); ++c) {
       if (cells_[c][0] < 0) continue;
-      for (int k = 0; k <= dim_; ++k) coarse.cells.push_back(number[cells_[c][k]]);
+      for (int k = 0; k <= dim; ++k) coarse.cells.push_back(number[cells_[c][k]]);
       coarse.block.push_back(mesh_.block[c]);
     }
     for (const SideData &side : mesh_.sides) coarse.sides.push_back({side.name, {}, {}});
@@ -78,7 +87,7 @@ public:
     for (const FeatureFacet &facet : facets_) {
       if (facet.label < 0 || features_.sides[facet.label].empty()) continue;
       std::vector<int> vertices;
-      for (int k = 0; k < dim_; ++k) vertices.push_back(number[facet.vertex[k]]);
+      for (int k = 0; k < dim; ++k) vertices.push_back(number[facet.vertex[k]]);
       const auto f = facets.find(vertices);
       for (const int side : features_.sides[facet.label]) {
         coarse.sides[side].cell.push_back(facets.cell(*f, 0));
@@ -92,7 +101,6 @@ public:
     return coarse;
   }
 
-private:
   static bool has(const std::vector<int> &list, const int v)
   {
     return std::find(list.begin(), list.end(), v) != list.end();
@@ -101,20 +109,20 @@ private:
   {
     return std::find(vertices, vertices + count, v) != vertices + count;
   }
-  const double *x(const int v) const { return &mesh_.coords[std::size_t(dim_) * v]; }
+  const double *x(const int v) const { return &mesh_.coords[std::size_t(dim) * v]; }
 
   /// The cube of 1 for an equilateral cell, 0 for a flat one, negative for an inverted one.
-  double quality_3(const std::array<int, 4> &cell) const
+  double quality_3(const std::array<int, dim + 1> &cell) const
   {
     double edge[3][3], sum = 0;
-    for (int k = 0; k < dim_; ++k)
-      for (int d = 0; d < dim_; ++d) edge[k][d] = x(cell[k + 1])[d] - x(cell[0])[d];
-    for (int k = 0; k < dim_; ++k)
-      for (int d = 0; d < dim_; ++d) {
+    for (int k = 0; k < dim; ++k)
+      for (int d = 0; d < dim; ++d) edge[k][d] = x(cell[k + 1])[d] - x(cell[0])[d];
+    for (int k = 0; k < dim; ++k)
+      for (int d = 0; d < dim; ++d) {
         sum += edge[k][d] * edge[k][d];
         for (int l = 0; l < k; ++l) sum += (edge[k][d] - edge[l][d]) * (edge[k][d] - edge[l][d]);
       }
-    if (dim_ == 2) {
+    if (dim == 2) {
       const double q = 2 * 1.7320508075688772 * (edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0]) / sum;
       return q * q * q;
     }
@@ -127,21 +135,22 @@ private:
   }
 
   /// Neighbours onto which a vertex may move as far as the boundary is concerned.
-  std::vector<int> neighbours_of(const int v) const
+  const std::vector<int> &neighbours_of(const int v)
   {
-    if (features_.rank[v] == Features::Rank::edge && dim_ == 3) return next_edge_[v];
-    std::vector<int> found;
+    if (features_.rank[v] == Features::Rank::edge && dim == 3) return next_edge_[v];
+    around_.clear();
     const auto add = [&](const int *const vertices, const int count) {
       for (int k = 0; k < count; ++k)
-        if (vertices[k] != v) found.push_back(vertices[k]);
+        if (std::exchange(seen_by_[vertices[k]], v) != v) around_.push_back(vertices[k]);
     };
+    seen_by_[v] = v;
     if (features_.rank[v] == Features::Rank::inside)
-      for (const int c : cells_at_[v]) add(cells_[c].data(), dim_ + 1);
+      for (const int c : cells_at_[v]) add(cells_[c].data(), dim + 1);
     else
-      for (const int f : facets_at_[v]) add(facets_[f].vertex.data(), dim_);
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    return found;
+      for (const int f : facets_at_[v]) add(facets_[f].vertex.data(), dim);
+    seen_by_[v] = -1;
+    for (const int w : around_) seen_by_[w] = -1;
+    return around_;
   }
 
   /// The least quality of the cells that the contraction of v onto w would leave around v; none where it is worse than `best`.
@@ -149,8 +158,8 @@ private:
   {
     double least = 1;
     for (const int c : cells_at_[v]) {
-      std::array<int, 4> cell = cells_[c];
-      if (has(cell.data(), dim_ + 1, w)) continue;
+      std::array<int, dim + 1> cell = cells_[c];
+      if (has(cell.data(), dim + 1, w)) continue;
       *std::find(cell.begin(), cell.end(), v) = w;
       least = std::min(least, quality_3(cell));
       if (!(least > best)) return std::nullopt;
@@ -165,7 +174,7 @@ private:
     std::vector<int> around_v, around_w;
     int shared = 0;
     const auto add = [&](std::vector<int> &around, const int f) {
-      for (int k = 0; k < dim_; ++k) {
+      for (int k = 0; k < dim; ++k) {
         const int other = facets_[f].vertex[k];
         if (other != v && other != w) around.push_back(other);
       }
@@ -173,7 +182,7 @@ private:
     for (const int f : facets_at_[v]) {
       add(around_v, f);
       std::array<int, 3> vertex = facets_[f].vertex;
-      if (has(vertex.data(), dim_, w)) {
+      if (has(vertex.data(), dim, w)) {
         ++shared;
         continue;
       }
@@ -193,7 +202,7 @@ private:
     around_v.erase(std::unique(around_v.begin(), around_v.end()), around_v.end());
     int common = 0;
     for (const int other : around_v) common += has(around_w, other) ? 1 : 0;
-    if (dim_ == 2) return shared == 1 && common == 0;
+    if (dim == 2) return shared == 1 && common == 0;
     if (common != shared) return false;
     if (features_.rank[v] != Features::Rank::edge) return true;
     for (const int other : next_edge_[v]) // an edge around a hole keeps three parts
@@ -203,10 +212,12 @@ private:
 
   bool contract(const int v, const std::vector<char> &kept)
   {
-    const std::vector<int> neighbours = neighbours_of(v);
+    const std::vector<int> &neighbours = neighbours_of(v);
     int onto = -1;
+    double enough = least_quality_3;
+    for (const int c : cells_at_[v]) enough = std::min(enough, quality_3(cells_[c]));
     for (const bool to_kept : {true, false}) {
-      double best = least_quality_3;
+      double best = enough;
       for (const int w : neighbours) {
         if ((kept[w] != 0) != to_kept || !keeps_boundary(v, w)) continue;
         const auto quality = quality_after(v, w, best);
@@ -224,9 +235,9 @@ private:
   void move(const int v, const int w)
   {
     for (const int c : cells_at_[v]) {
-      std::array<int, 4> &cell = cells_[c];
-      if (has(cell.data(), dim_ + 1, w)) {
-        for (int k = 0; k <= dim_; ++k)
+      std::array<int, dim + 1> &cell = cells_[c];
+      if (has(cell.data(), dim + 1, w)) {
+        for (int k = 0; k <= dim; ++k)
           if (cell[k] != v) erase(cells_at_[cell[k]], c);
         cell[0] = -1;
       } else {
@@ -237,8 +248,8 @@ private:
     cells_at_[v] = {};
     for (const int f : facets_at_[v]) {
       FeatureFacet &facet = facets_[f];
-      if (has(facet.vertex.data(), dim_, w)) {
-        for (int k = 0; k < dim_; ++k)
+      if (has(facet.vertex.data(), dim, w)) {
+        for (int k = 0; k < dim; ++k)
           if (facet.vertex[k] != v) erase(facets_at_[facet.vertex[k]], f);
         facet.label = -1;
       } else {
@@ -266,10 +277,10 @@ private:
 
   const MeshData &mesh_;
   const Features &features_;
-  const int dim_;
-  std::vector<std::array<int, 4>> cells_; // vertices; the first is -1 once it is gone
-  std::vector<FeatureFacet> facets_;      // the label is -1 once it is gone
+  std::vector<std::array<int, dim + 1>> cells_;                    // vertices; the first is -1 once it is gone
+  std::vector<FeatureFacet> facets_;                               // the label is -1 once it is gone
   std::vector<std::vector<int>> next_edge_, cells_at_, facets_at_; // (vertices)
+  std::vector<int> around_, seen_by_;                              // of neighbours_of()
 };
 
 /// The vertices and straight cells of a mesh of order 2; of order 1 itself.
@@ -308,11 +319,12 @@ std::optional<MeshData> contracted(const MeshData &mesh)
 {
   if (mesh.element.shape != Shape::simplex) return std::nullopt;
   const MeshData linear = of_order_one(mesh);
+  for (std::size_t s = 0; s < mesh.points.size(); ++s)
+    if (linear.points[s].node.size() < mesh.points[s].node.size()) return std::nullopt; // a middle node has a name
   const Features features = features_of(linear);
   const std::vector<char> kept = kept_vertices(linear, features);
-  Contraction contraction(linear, features);
-  contraction.contract(kept);
-  MeshData coarse = contraction.made();
+  MeshData coarse = linear.element.dim == 2 ? Contraction<2>(linear, features).made(kept)
+                                            : Contraction<3>(linear, features).made(kept);
   if (coarse.num_nodes() > most_vertices_kept * linear.num_nodes()) return std::nullopt;
   return coarse;
 }

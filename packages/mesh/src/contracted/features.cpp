@@ -2,12 +2,12 @@
 #include "features.hpp"
 
 #include "../sorted_lists.hpp"
-#include "rpc/mesh/topology.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace rpc::mesh
@@ -28,15 +28,70 @@ double cosine(const std::array<double, 3> &a, const std::array<double, 3> &b)
   return ab / std::sqrt(aa * bb);
 }
 
-/// (facets) The sides that each belongs to.
-std::vector<std::vector<int>> sides_at(const MeshData &mesh, const Entities &facets)
+/// A facet of the boundary, or between two blocks.
+struct Found {
+  int cell, ordinal, beyond; ///< the block beyond; -1: none
+};
+
+/// In the order of their lowest vertices. What lies beyond a facet is found among those with the same lowest vertex, which are few.
+std::vector<Found> feature_facets(const MeshData &mesh)
 {
-  std::vector<std::vector<int>> sides(facets.size());
+  const int dim = mesh.element.dim, width = mesh.element.num_nodes(), per_cell = dim + 1;
+  const auto &facets = mesh.element.facets();
+  std::vector<std::array<int, 3>> key; // (cells, facets) vertices, ascending
+  std::vector<int> lowest;
+  for (int c = 0; c < mesh.num_cells(); ++c)
+    for (int f = 0; f < per_cell; ++f) {
+      std::array<int, 3> vertices;
+      vertices.fill(std::numeric_limits<int>::max());
+      for (int k = 0; k < dim; ++k) vertices[k] = mesh.cells[std::size_t(width) * c + facets[f][k]];
+      std::sort(vertices.begin(), vertices.end());
+      key.push_back(vertices);
+      lowest.push_back(vertices[0]);
+    }
+  const Lists at = sorted_into_lists(lowest, mesh.num_nodes());
+  std::vector<Found> found;
+  std::vector<int> open; // facets with one cell so far
+  for (int v = 0; v < mesh.num_nodes(); ++v) {
+    open.clear();
+    const std::size_t first = found.size();
+    for (const int *f = at.first(v); f != at.last(v); ++f) {
+      const auto same = std::find_if(open.begin(), open.end(), [&](const int g) { return key[g] == key[*f]; });
+      if (same == open.end()) {
+        open.push_back(*f);
+        continue;
+      }
+      const int here = mesh.block[*same / per_cell], beyond = mesh.block[*f / per_cell];
+      if (here != beyond) found.push_back({*same / per_cell, *same % per_cell, beyond});
+      *same = open.back();
+      open.pop_back();
+    }
+    for (const int f : open) found.push_back({f / per_cell, f % per_cell, -1});
+    std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
+              [](const Found &a, const Found &b) { return std::tie(a.cell, a.ordinal) < std::tie(b.cell, b.ordinal); });
+  }
+  return found;
+}
+
+/// (cells, facets) A number for the list of sides that each facet belongs to; 0: none.
+std::vector<int> sides_at(const MeshData &mesh, std::vector<std::vector<int>> &lists)
+{
+  const int per_cell = mesh.element.dim + 1;
+  std::vector<int> list(std::size_t(per_cell) * mesh.num_cells(), 0);
+  std::map<std::pair<int, int>, int> longer; // by a list, and the side that is added to it
+  lists = {{}};
   for (std::size_t s = 0; s < mesh.sides.size(); ++s)
-    for (std::size_t f = 0; f < mesh.sides[s].cell.size(); ++f)
-      sides[facets.of_cell[std::size_t(facets.per_cell) * mesh.sides[s].cell[f] + mesh.sides[s].ordinal[f]]].push_back(
-          static_cast<int>(s));
-  return sides;
+    for (std::size_t f = 0; f < mesh.sides[s].cell.size(); ++f) {
+      int &here = list[std::size_t(per_cell) * mesh.sides[s].cell[f] + mesh.sides[s].ordinal[f]];
+      const auto [at, is_new] =
+          longer.emplace(std::make_pair(here, static_cast<int>(s)), static_cast<int>(lists.size()));
+      if (is_new) {
+        lists.push_back(lists[here]);
+        lists.back().push_back(static_cast<int>(s));
+      }
+      here = at->second;
+    }
+  return list;
 }
 
 /// Finds edges and corners among the facets.
@@ -81,8 +136,7 @@ private:
   bool go_on(const int f, const int g) const
   {
     const FeatureFacet &a = features_.facets[f], &b = features_.facets[g];
-    return a.label == b.label &&
-           cosine(facet_normal(mesh_, a.vertex), facet_normal(mesh_, b.vertex)) > cos_of_edge;
+    return a.label == b.label && cosine(facet_normal(mesh_, a.vertex), facet_normal(mesh_, b.vertex)) > cos_of_edge;
   }
   void find_edges()
   {
@@ -165,21 +219,19 @@ std::array<double, 3> facet_normal(const MeshData &mesh, const std::array<int, 3
 
 Features features_of(const MeshData &mesh)
 {
-  const Entities facets = facets_of(mesh.element, mesh.cells);
-  const auto sides = sides_at(mesh, facets);
-  const int width = mesh.element.num_nodes();
+  std::vector<std::vector<int>> lists;
+  const std::vector<int> sides = sides_at(mesh, lists);
+  const int width = mesh.element.num_nodes(), per_cell = mesh.element.dim + 1;
   Features features;
-  using Kind = std::pair<std::vector<int>, std::pair<int, int>>; // sides, blocks
-  std::map<Kind, int> labels;
-  for (int f = 0; f < facets.size(); ++f) {
-    const int cell = facets.cell(f, 0), block = mesh.block[cell];
-    const int beyond = facets.num_cells_at(f) == 1 ? -1 : mesh.block[facets.cell(f, 1)];
-    if (beyond == block) continue;
-    const auto [label, is_new] = labels.emplace(Kind{sides[f], {block, beyond}}, static_cast<int>(labels.size()));
-    if (is_new) features.sides.push_back(sides[f]);
+  std::map<std::array<int, 3>, int> labels; // by the list of sides, and the blocks
+  for (const Found &found : feature_facets(mesh)) {
+    const int list = sides[std::size_t(per_cell) * found.cell + found.ordinal];
+    const auto [label, is_new] =
+        labels.emplace(std::array<int, 3>{list, mesh.block[found.cell], found.beyond}, static_cast<int>(labels.size()));
+    if (is_new) features.sides.push_back(lists[list]);
     FeatureFacet facet{{-1, -1, -1}, label->second};
     for (int k = 0; k < mesh.element.dim; ++k)
-      facet.vertex[k] = mesh.cells[std::size_t(width) * cell + mesh.element.facets()[facets.ordinal(f, 0)][k]];
+      facet.vertex[k] = mesh.cells[std::size_t(width) * found.cell + mesh.element.facets()[found.ordinal][k]];
     features.facets.push_back(facet);
   }
   Ranks(mesh, features).find();

@@ -11,12 +11,12 @@
 namespace rpc::mesh
 {
 
-/// A mesh of the same body with cells about twice as long: of its vertices those are kept of which no two share an edge, and each other one is
-/// moved onto a neighbour, with which its cells shrink to nothing or are stretched. Vertices are some of the finer ones; blocks, sides and named
-/// points are the same, and edges and corners of the boundary stay. No cell is inverted. Of order 2, middle nodes lie in the middle of straight
-/// edges, on the boundary where the finer boundary is nearest to it.
-/// @param mesh  of triangles or tetrahedra, of order 1 or 2
-/// @return none of other cells, or where more than 70 % of the vertices would stay
+/// A mesh of the same body with cells about twice as long, of order 1. Of the vertices those are kept of which no two share an edge, and each other
+/// one is moved onto a neighbour: cells with both are gone, others are stretched. A vertex stays where all neighbours would invert or flatten a cell,
+/// or turn a facet of the boundary by more than 37 degrees. Vertices are some of the finer ones; blocks, sides and named points are the same, and
+/// edges and corners of the boundary stay.
+/// @param mesh  of order 1 or 2; of the latter, cells between the vertices are taken for straight
+/// @return none of quadrilaterals and hexahedra, where more than 70 % of the vertices would stay, or where a middle node has a name
 std::optional<MeshData> contracted(const MeshData &mesh);
 
 /// Deals a mesh out as distribute() does, with the coarser meshes that contraction gives, down to a few hundred unknowns: Mesh::parents leads to
