@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "krylov.hpp"
 
+#include "belos_method.hpp"
 #include "convergence.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/message.hpp"
 
-#include <BelosLinearProblem.hpp>
-#include <BelosSolverFactory.hpp>
-#include <BelosStatusTest.hpp>
-#include <BelosTpetraAdapter.hpp>
+#include <BelosTypes.hpp>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace rpc::solver
 {
@@ -25,11 +21,6 @@ namespace
 constexpr double small_error = 1e-4;
 // A solve that may leave such an error in energy needs no residual of what an exact preconditioner answers.
 constexpr double large_error = 1e-2;
-// Iterations after which GMRES restarts, each of which keeps a vector: with multigrid it takes fewer.
-constexpr int gmres_vectors = 50;
-
-constexpr const char *gmres = "Pseudoblock GMRES";
-
 /// Thrown through Belos where an iteration is given up.
 struct GivenUp {
 };
@@ -37,20 +28,6 @@ struct GivenUp {
 /// The same where the error is small enough.
 struct Enough {
 };
-
-using LinearProblem = Belos::LinearProblem<double, MultiVector, Operator>;
-using SolverManager = Belos::SolverManager<double, MultiVector, Operator>;
-using SolverFactory = Belos::SolverFactory<double, MultiVector, Operator>;
-using StatusTest = Belos::StatusTest<double, MultiVector, Operator>;
-
-/// Of Belos' names: methods that break down, or go wrong, where H is not symmetric.
-bool needs_symmetry(std::string method)
-{
-  std::transform(method.begin(), method.end(), method.begin(),
-                 [](const unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const auto has = [&method](const char *part) { return method.find(part) != std::string::npos; };
-  return (has("CG") && !has("BICG")) || has("PCPG") || has("MINRES");
-}
 
 /// |x - H^-1 b|_H / |H^-1 b|_H; the preconditioner stands for H^-1. NaN where it breaks down.
 /// @param residual  b - H x
@@ -67,29 +44,6 @@ double energy_error(const Preconditioner &B, const Vector &b, const Vector &resi
 }
 
 } // namespace
-
-/// GivesUp for GMRES, which applies its preconditioner to no residual. It ends nothing but by an exception.
-class AsksWhetherToGoOn : public StatusTest
-{
-public:
-  Belos::StatusType checkStatus(Belos::Iteration<double, MultiVector, Operator> *const at) override
-  {
-    if (!gives_up) return Belos::Undefined;
-    std::vector<double> norm(1);
-    const auto residual = at->getNativeResiduals(&norm);
-    if (residual != Teuchos::null) residual->norm2(norm);
-    iterations = at->getNumIters();
-    if (gives_up(iterations, norm[0] / norm_of_right_side)) throw GivenUp();
-    return Belos::Undefined;
-  }
-  Belos::StatusType getStatus() const override { return Belos::Undefined; }
-  void reset() override {}
-  void print(std::ostream &, int) const override {}
-
-  GivesUp gives_up; // null: never
-  double norm_of_right_side = 1;
-  int iterations = 0;
-};
 
 /// The preconditioner as Belos applies it: to residuals of CG, or to any vectors. Now and then it looks whether the run is to stop:
 /// the solves of a big scene take minutes.
@@ -147,34 +101,25 @@ struct Krylov::Method {
   Method(const std::string &name, const int max_iterations, const Teuchos::ParameterList &list,
          const RCP<const Operator> &H)
       : needs_symmetric_H(needs_symmetry(name)), is_cg(name == LinearSolverOptions().method),
-        stops_by_residual(list.numParams() == 0 && is_cg), preconditioner(rcp(new Applied(H->getDomainMap()))),
-        problem(rcp(new LinearProblem(H, Teuchos::null, Teuchos::null)))
+        stops_by_residual(list.numParams() == 0 && is_cg), preconditioner(rcp(new Applied(H->getDomainMap())))
   {
-    const auto belos = Teuchos::parameterList("Belos");
-    belos->set("Verbosity", static_cast<int>(Belos::Errors));
-    belos->set("Maximum Iterations", max_iterations);
-    belos->setParameters(list);
-    problem->setRightPrec(preconditioner);
-    manager = SolverFactory().create(name, belos);
-    if (name == gmres) {
-      asks = rcp(new AsksWhetherToGoOn);
-      manager->setDebugStatusTest(asks);
-    }
-    manager->setProblem(problem);
+    const auto all = Teuchos::parameterList("Belos");
+    all->set("Verbosity", static_cast<int>(Belos::Errors));
+    all->set("Maximum Iterations", max_iterations);
+    all->setParameters(list);
+    belos = belos_method(name, all, H, preconditioner);
   }
 
   bool needs_symmetric_H;
   bool is_cg;             // preconditions residuals
   bool stops_by_residual; // at |r| <= tolerance |b|, as Belos' CG does unless the deck says otherwise
   RCP<Applied> preconditioner;
-  RCP<LinearProblem> problem;
-  RCP<SolverManager> manager;
-  RCP<AsksWhetherToGoOn> asks; // of GMRES; else null
+  std::unique_ptr<BelosMethod> belos;
 };
 
 Krylov::Krylov(const LinearSolverOptions &options, const RCP<const Operator> &H)
-    : options_(options), H_(H),
-      of_deck_(std::make_unique<Method>(options.method, options.max_iterations, options.belos, H))
+    : options_(options), H_(H), of_deck_(std::make_unique<Method>(options.method, options.max_iterations,
+                                                                  entries_for(options.method, options.belos), H))
 {
 }
 
@@ -189,32 +134,31 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
   const Preconditioner::Start start = is_symmetric ? B.start(b) : Preconditioner::Start();
   const RCP<const Vector> rest = start.rest.is_null() ? Teuchos::rcpFromRef(b) : RCP<const Vector>(start.rest);
   const double left = start.rest.is_null() ? 1 : rest->norm2() / b.norm2();
-  const auto list = Teuchos::parameterList();
   const double least = std::min(1., wanted.residual / left);
-  list->set("Convergence Tolerance", least);
-  method.manager->setParameters(list);
   constexpr double surely = 1 - 1e-12; // Belos divides by |rest|
   method.preconditioner->enough = method.stops_by_residual ? surely * least * rest->norm2() : 0;
   method.preconditioner->to_residuals = is_symmetric;
   method.preconditioner->B = &B;
   method.preconditioner->gives_up = method.is_cg ? gives_up : GivesUp();
-  if (!method.asks.is_null()) {
-    method.asks->gives_up = gives_up;
-    method.asks->norm_of_right_side = b.norm2();
-  }
-  method.preconditioner->norm_of_right_side = b.norm2();
+  const double norm_of_b = b.norm2();
+  int asked_after = 0;
+  method.belos->before_iteration = nullptr;
+  if (gives_up)
+    method.belos->before_iteration = [&](const int iterations, const double residual) {
+      asked_after = iterations;
+      if (gives_up(iterations, residual / norm_of_b)) throw GivenUp();
+    };
+  method.preconditioner->norm_of_right_side = norm_of_b;
   method.preconditioner->iterations = 0;
   method.preconditioner->wanted = by_error ? wanted : Accuracy(wanted.residual);
   method.preconditioner->solution = &x;
   method.preconditioner->right_side = rest.get();
   method.preconditioner->energy_of_start = by_error && !start.x.is_null() ? start.x->dot(b) : 0;
   method.preconditioner->error = EnergyError(wanted.energy > 0 ? rate_ : 1);
-  x.putScalar(0);
-  method.problem->setProblem(Teuchos::rcpFromRef<MultiVector>(x), RCP<const MultiVector>(rest));
   try {
-    result.converged = method.manager->solve() == Belos::Converged;
-    result.iterations = method.manager->getNumIters();
-    result.residual = left * method.manager->achievedTol();
+    result.converged = method.belos->solve(least, *rest, x);
+    result.iterations = method.belos->iterations();
+    result.residual = left * method.belos->achieved();
     if (!result.converged)
       result.reason = "the linear solver stopped at |r|/|b| = " + std::to_string(result.residual) + " after " +
                       std::to_string(result.iterations) + " iterations";
@@ -224,7 +168,7 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
     result.residual = method.preconditioner->left;
   } catch (const GivenUp &) {
     result.given_up = true;
-    result.iterations = method.asks.is_null() ? method.preconditioner->iterations : method.asks->iterations;
+    result.iterations = method.is_cg ? method.preconditioner->iterations : asked_after;
     result.reason =
         "given up after " + std::to_string(result.iterations) + (is_symmetric ? " CG" : " GMRES") + " iterations";
   } catch (const std::exception &failure) { // such as an indefinite or singular matrix; the same on all ranks
@@ -276,12 +220,8 @@ Krylov::Method &Krylov::for_any_matrix()
 {
   if (!of_deck_->needs_symmetric_H) return *of_deck_;
   if (gmres_) return *gmres_;
-  Teuchos::ParameterList list;
-  list.set("Num Blocks", std::min(gmres_vectors, options_.max_iterations));
-  list.set("Maximum Restarts", options_.max_iterations);
-  const auto known = SolverFactory().create(gmres, Teuchos::parameterList())->getValidParameters();
-  for (auto it = options_.belos.begin(); it != options_.belos.end(); ++it)
-    if (known->isParameter(it->first)) list.setEntry(it->first, it->second);
+  Teuchos::ParameterList list = gmres_defaults(options_.max_iterations);
+  list.setParameters(entries_for(gmres, options_.belos));
   gmres_ = std::make_unique<Method>(gmres, options_.max_iterations, list, H_);
   return *gmres_;
 }

@@ -175,15 +175,70 @@ TEST(Krylov, KeepsTheDecksMethodWhereItTakesAnyMatrix)
   EXPECT_GT(result.iterations, many) << "restarts after three iterations make it slower";
 }
 
-TEST(Krylov, HandsToGmresWhatItKnowsOfTheListForCG)
+TEST(Krylov, HandsToEachMethodWhatItKnowsOfTheList)
 {
   Case of;
   LinearSolverOptions options;
   options.belos.set("Maximum Iterations", 5);
   options.belos.set("Assert Positive Definiteness", false); // GMRES knows no such name
-  const auto result = of.solve(options);
-  EXPECT_FALSE(result.converged);
-  EXPECT_EQ(result.iterations, 5);
+  options.belos.set("Orthogonalization", "DGKS");           // nor CG this one
+  for (const bool is_symmetric : {false, true}) {
+    const auto result = of.solve(options, is_symmetric);
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.iterations, 5);
+  }
+  options.belos.set("Orthogonalization", "none of Belos'");
+  EXPECT_ANY_THROW(of.solve(options)) << "GMRES has got it";
+}
+
+/// H, which counts its products.
+class Counting : public Operator
+{
+public:
+  explicit Counting(RCP<const Operator> of) : of_(std::move(of)) {}
+  RCP<const Map> getDomainMap() const override { return of_->getDomainMap(); }
+  RCP<const Map> getRangeMap() const override { return of_->getRangeMap(); }
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, const double alpha,
+             const double beta) const override
+  {
+    ++products;
+    of_->apply(x, y, Teuchos::NO_TRANS, alpha, beta);
+  }
+
+  mutable int products = 0;
+
+private:
+  RCP<const Operator> of_;
+};
+
+/// The diagonal, which counts too.
+class CountingDiagonal : public Diagonal
+{
+public:
+  using Diagonal::Diagonal;
+  void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
+             double beta = 0) const override
+  {
+    ++products;
+    Diagonal::apply(x, y, mode, alpha, beta);
+  }
+
+  mutable int products = 0;
+};
+
+TEST(Krylov, TakesOneProductWithTheMatrixAndThePreconditionerAnIteration)
+{
+  Case of;
+  const CountingDiagonal B(*of.grid.A);
+  for (const bool is_symmetric : {false, true}) {
+    SCOPED_TRACE(is_symmetric);
+    const auto H = rcp(new Counting(is_symmetric ? RCP<const Operator>(of.grid.A) : of.H));
+    B.products = 0;
+    const auto result = Krylov({}, H).solve(B, is_symmetric, of.b, of.x, 1e-3);
+    EXPECT_TRUE(result.converged) << result.reason;
+    EXPECT_EQ(H->products, result.iterations);
+    EXPECT_EQ(B.products, result.iterations);
+  }
 }
 
 TEST(Krylov, SolvesOnceForCGAndOnceForGmresWithOneObject)
