@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/linear_solver_options.hpp"
 
+#include "belos_method.hpp"
 #include "muelu_parameters.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
@@ -9,13 +10,15 @@
 #include <BelosSolverFactory.hpp>
 #include <BelosTpetraAdapter.hpp>
 #include <set>
+#include <vector>
 
 namespace rpc::solver
 {
 namespace
 {
 
-/// Belos refuses values by itself, but passes over names that it does not know.
+/// Belos refuses values by itself, but passes over names that it does not know. Of a method that needs symmetry GMRES may take the place,
+/// and takes what it knows of the list.
 void check_belos(const std::string &method, const Teuchos::ParameterList &user)
 {
   Belos::SolverFactory<double, MultiVector, Operator> factory;
@@ -24,9 +27,17 @@ void check_belos(const std::string &method, const Teuchos::ParameterList &user)
   RPC_REQUIRE(factory.isSupported(method), "deck: \"Linear Solver->Method\" must be one that Belos knows, got \""
                                                << method << "\". It knows: " << join({sorted.begin(), sorted.end()}));
   try {
-    const auto list = Teuchos::parameterList("Linear Solver->Belos");
-    list->setParameters(user);
-    require_known(user, names_of(*factory.create(method, list)->getValidParameters()), "Linear Solver->Belos");
+    std::vector<std::string> takers{method};
+    if (needs_symmetry(method)) takers.emplace_back(gmres);
+    std::set<std::string> known;
+    for (const std::string &taker : takers)
+      for (const std::string &name : names_of(*belos_parameters(taker))) known.insert(name);
+    require_known(user, {known.begin(), known.end()}, "Linear Solver->Belos");
+    for (const std::string &taker : takers) {
+      const auto list = Teuchos::parameterList("Linear Solver->Belos");
+      list->setParameters(entries_for(taker, user));
+      factory.create(taker, list);
+    }
     RPC_REQUIRE(!user.isParameter("Convergence Tolerance"),
                 "deck: \"Linear Solver->Belos->Convergence Tolerance\" is set by rpc for each solve; give the bound as "
                 "\"Linear Solver->Tolerance\"");
@@ -44,7 +55,7 @@ Teuchos::ParameterList valid_linear_solver_parameters()
   Teuchos::ParameterList valid("Linear Solver");
   valid.set("Method", LinearSolverOptions().method,
             "Krylov method by its name in Belos; the matrix is symmetric positive definite. With friction it is not: "
-            "then GMRES takes the place of methods that need that.");
+            "then `Block GMRES` takes the place of methods that need that.");
   valid.set("Tolerance", 1e-11, "|r|/|b| of a linear solve at least, in (0, 1): most need not be as good.");
   valid.set("Maximum Iterations", 500, "of a linear solve, > 0.");
   set_words(
@@ -58,7 +69,10 @@ Teuchos::ParameterList valid_linear_solver_parameters()
   set_words(valid, "Reuse", {"tP", "none", "RP"},
             "What of an algebraic hierarchy survives a change of contact states: `none`, `tP` (aggregates and "
             "tentative prolongator), `RP` (transfer operators).");
-  set_pass_through(valid, "Belos", "Handed to Belos as it is.");
+  set_pass_through(valid, "Belos",
+                   "Handed to Belos: to `Method`, and with friction to the GMRES in its place, to each what it knows. "
+                   "`Num Blocks` iterations of GMRES keep two vectors each, one with `Flexible Gmres` = `false`, which "
+                   "takes two products with the preconditioner more for each solve.");
   set_pass_through(valid, "MueLu",
                    "Handed to MueLu as it is, on top of smoothed aggregation with Chebyshev smoothing. Without it, a "
                    "sparse factor takes over "
