@@ -37,6 +37,12 @@ PYRAMID = """pyramid:
   Dirichlet: {front: {X: 0.0, Y: 0.0, Z: 0.0}}
   Contact: {Side: back, Gap: "0.35*max(abs(x - 0.5), abs(y - 0.5)) - 0.05"}
   """ + STEEL + "\n"
+# Touched by a ball between the nodes of its coarse mesh, where the size that sees the contact has more unknowns than the limit.
+BALL = """ball:
+  Mesh: {Lower: [0.0, 0.0, 0.0], Upper: [1.0, 1.0, 1.0], Cells: [2, 2, 2], Element: P2}
+  Dirichlet: {top: {X: 0.0, Y: -0.003, Z: 0.0}}
+  Contact: {Side: bottom, Obstacle: {Type: sphere, Centre: [0.6, -1.7, 0.4], Radius: 1.7}}
+  """ + STEEL + "\n"
 # Pressed by a rigid plate and lifted off by 1 m, at once or gradually.
 LIFT = """lift:
   Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [16, 16], Element: Q1}
@@ -93,6 +99,15 @@ class Promises(RpcTestCase):
         for (deck, meshes, limit), (_, summary) in zip(limits, self.runs([(deck, adapt(1e-5, limit, meshes)) for deck, meshes, limit in limits])):
             with self.subTest(deck=deck.split(":")[0], meshes=meshes):
                 self.assertGreater(summary["adaptation"]["cycles"][-1]["dofs"], limit / 2)
+
+    def test_contact_that_nodes_miss_is_looked_for_with_the_unknowns_that_are_allowed(self):
+        limits = [("nested", 3000), ("gmsh", 3000), ("nested", 4000)]
+        for (meshes, limit), (_, summary) in zip(limits, self.runs([(BALL, adapt(0.25, limit, meshes)) for meshes, limit in limits])):
+            with self.subTest(meshes=meshes, limit=limit):
+                dofs = [cycle["dofs"] for cycle in summary["adaptation"]["cycles"]]
+                self.assertGreater(max(dofs), limit / 2)
+                self.assertLessEqual(max(dofs), limit)
+                self.assertIn("the target is not reached within", summary["adaptation"]["reason"])
 
     def test_a_target_within_the_limit_is_reached_though_first_estimates_do_not_fall(self):
         for result, summary in self.runs([(PYRAMID, adapt(0.3, 30000))]):

@@ -151,7 +151,8 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
              least_estimate();
     return std::nullopt;
   }
-  if (at_limit) sizes = new_sizes(d, estimate, {squared_error, allowed, growth});
+  // Cells that see contact are small in few places only: the first try has one of them for each that is planned.
+  if (at_limit) sizes = new_sizes(d, estimate, {squared_error, allowed, growth, ratio * allowed});
   before_ = planned_at_limit_ ? Before{eta, dofs} : Before{};
   planned_at_limit_ = at_limit;
   tries_ = 1;
@@ -180,7 +181,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::smaller(const fem::Discretization 
       halves_ = false;
       allowed = most * cells_of(*d.mesh) / dofs_of(*d.mesh) / ratio_unless_halved_;
     }
-    return options_for(new_sizes(d, estimate, {goal_.bound * goal_.bound, allowed, growth}), *d.mesh);
+    return options_for(new_sizes(d, estimate, {goal_.bound * goal_.bound, allowed, growth, allowed}), *d.mesh);
   }
   std::ostringstream text;
   text << "no next mesh within \"Adapt->Max Dofs\" = " << task_.adapt.max_dofs << " was found in " << tries_

@@ -392,13 +392,18 @@ double squared_error_of(const EstimatedMesh &mesh, const Geometry &geometry, con
 
 /// Where contact that is unseen in a cell is more by itself than the error that the next mesh is to have, its vertices get the size that
 /// sees it: the mean over the cells around them would ask for little. (10.4b)
-void see_contact(const EstimatedMesh &mesh, const double squared_error, std::vector<double> &size)
+/// @param times  that size, where a mesh that sees the contact would have too many cells
+/// @return whether a size is smaller for it
+bool see_contact(const EstimatedMesh &mesh, const double squared_error, const double times, std::vector<double> &size)
 {
+  bool smaller = false;
   for (std::size_t cell = 0; cell < mesh.unseen_squared.size(); ++cell)
     for (int a = 0; a < mesh.vertices && mesh.unseen_squared[cell] > squared_error; ++a) {
       double &at_vertex = size[mesh.vertices_of(static_cast<int>(cell))[a]];
-      at_vertex = std::min(at_vertex, mesh.seen_from[cell]);
+      smaller = smaller || times * mesh.seen_from[cell] < at_vertex;
+      at_vertex = std::min(at_vertex, times * mesh.seen_from[cell]);
     }
+  return smaller;
 }
 
 } // namespace
@@ -414,12 +419,12 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
     for (const int cell : geometry.around[n])
       if (singular[n]) at_singularity[cell] = 1;
   }
-  double level = level_for(mesh, at_singularity, request);
+  double level = level_for(mesh, at_singularity, request), seen_times = 1;
   for (int corrections = mesh.dim == 2 ? 0 : most_corrections;; --corrections) {
     std::vector<double> size = smooth_sizes(mesh, geometry, at_singularity, level, request.max_growth);
     for (int n = 0; n < mesh.num_nodes(); ++n)
       if (singular[n]) size[n] = vertex_size(mesh, geometry, n, exponent[n], singular, size, level);
-    see_contact(mesh, request.squared_error, size);
+    const bool sees = see_contact(mesh, request.squared_error, seen_times, size);
     limit_growth(mesh, geometry, size);
     const double excess =
         corrections > 0 ? request.squared_error / squared_error_of(mesh, geometry, size, exponent, singular) : 1;
@@ -431,9 +436,11 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
     SizePlan plan{FieldMaker(mesh, size, exponent).make(singular), 0};
     plan.cells = mesh::expected_cells(plan.field) / (mesh.dim == 3 || mesh.simplices() ? 1 : 4 / std::sqrt(3.));
     const double least = mesh.num_cells() * mesh.cells_per_cell() / std::pow(request.max_growth, mesh.dim) * 1.0001;
-    if (plan.cells <= request.max_cells || predict(mesh, at_singularity, level, request.max_growth).cells <= least)
-      return plan;
-    level *= 1.5; // grading adds cells, which the prediction leaves out
+    const bool coarsest = predict(mesh, at_singularity, level, request.max_growth).cells <= least;
+    if (plan.cells <= request.max_cells || (coarsest && (!sees || plan.cells <= request.most_cells))) return plan;
+    constexpr double step = 1.5;
+    level *= step; // grading adds cells, which the prediction leaves out
+    if (plan.cells > request.most_cells) seen_times *= std::pow(step, 1. / (2 * mesh.order + mesh.dim)); // as (10.5)
   }
 }
 

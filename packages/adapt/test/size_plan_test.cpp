@@ -95,6 +95,23 @@ TEST(SizePlan, KeepsToTheNumberOfCells)
   EXPECT_GT(plan_sizes(mesh, {1e-12, 1e9}).cells, 5000);
 }
 
+TEST(SizePlan, SizesThatSeeContactGrowUntilTheMeshHasTheCellsThatAreAllowed)
+{
+  auto mesh = square(8, 2, 3);
+  std::fill(mesh.squared.begin(), mesh.squared.end(), 1.);
+  mesh.unseen_squared.assign(mesh.squared.size(), 0);
+  mesh.unseen_squared[60] = 1000;
+  mesh.seen_from.assign(mesh.squared.size(), 1e-3);
+  const double freely = plan_sizes(mesh, {sum(mesh.squared), 120}).cells;
+  for (const double allowed : {40., 80., 120.}) {
+    const SizePlan plan = plan_sizes(mesh, {sum(mesh.squared), allowed, 2.5, allowed});
+    EXPECT_LE(plan.cells, allowed);
+    EXPECT_GT(plan.cells, allowed / 2);
+    EXPECT_GT(freely, 2 * allowed);
+  }
+  EXPECT_EQ(plan_sizes(mesh, {sum(mesh.squared), 120, 2.5, 2 * freely}).cells, freely);
+}
+
 TEST(SizePlan, SizesGrowByNoMoreThanHalfTheDistance)
 {
   auto mesh = square(10, 1, 3);

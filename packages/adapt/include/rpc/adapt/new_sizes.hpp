@@ -4,6 +4,7 @@
 #include "rpc/adapt/estimator.hpp"
 #include "rpc/mesh/size_field.hpp"
 
+#include <limits>
 #include <memory>
 
 namespace rpc::adapt
@@ -14,6 +15,8 @@ struct SizeRequest {
   double squared_error = 0; ///< bound on eta^2 [J], > 0
   double max_cells = 0;     ///< of the new mesh, see Sizes; takes precedence
   double max_growth = 2.5;  ///< of a cell's size from one mesh to the next, > 1
+  double most_cells =
+      std::numeric_limits<double>::infinity(); ///< where contact that is unseen asks for more than max_cells
 };
 
 /// Cell sizes that bring the squared error estimate to a bound with the fewest cells.                 doc/theory.md (10.5)
