@@ -11,6 +11,13 @@ from rpc_run import BEAM, SMALL, SOURCE, RpcTestCase
 DECKS = SOURCE / "test" / "regression" / "decks"
 TRACK = SOURCE / "input" / "track.xml"
 BAD_INPUT = 2
+# Its foundation hardens little, so that pressures tell little of dents.
+SOFT = """soft:
+  Mesh: {Lower: [0.0, 0.0, 0.0], Upper: [1.0, 1.0, 1.0], Cells: [4, 2, 4], Element: P2}
+  Material: {Young's Modulus: 20.0, Poisson's Ratio: 0.3}
+  Dirichlet: {top: {X: 0.0, Y: -0.001, Z: 0.0}}
+  Contact: {Side: bottom, Gap: "0.008*((x - 0.54)^2 + (z - 0.7)^2)", Yield Stress: "0.012 + 0.003*x", Hardening: 1.0}
+"""
 
 
 def rows(path):
@@ -89,6 +96,15 @@ class Foundations(RpcTestCase):
                 self.assertAlmostEqual(steps[5][key] / one[key], 2, delta=near, msg=(shift, key))
                 self.assertAlmostEqual(both[key] / one[key], 2, delta=near, msg=(shift, key))
             self.assertAlmostEqual(both["max_dent"] / one["max_dent"], 1, delta=near)
+
+    def test_vertices_without_weight_have_dents_as_those_of_the_points_around_them(self):
+        (self.folder / "soft.yaml").write_text(SOFT)
+        summary = self.summary_of(self.folder / "soft.yaml")
+        table = [{key: float(row[key]) for key in ["area", "dent", "pressure"]} for row in rows(self.folder / "out" / "soft.contact.csv")]
+        for key in ["dent", "pressure"]:
+            most = max(row[key] for row in table if row["area"] > 0)
+            self.assertEqual(most, summary[f"max_{key}"])
+            self.assertLess(max(row[key] for row in table if row["area"] == 0), 1.3 * most)
 
     def test_a_restart_knows_the_dents_that_the_body_has_left_behind(self):
         arguments = [f"--input={TRACK}", "--set=Mesh->Size Factor=6", "--set=Dirichlet->top->X=3 * min(1, max(0, t - 2))"]

@@ -2,6 +2,7 @@
 #include "rpc/contact/result.hpp"
 
 #include "rpc/contact/law/judgement.hpp"
+#include "rpc/contact/law/lent.hpp"
 #include "rpc/contact/smoothed_points.hpp"
 #include "rpc/core/math.hpp"
 #include "rpc/core/parallel.hpp"
@@ -95,10 +96,7 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
         for (int k = 0; k < c.dim; ++k) u_nu(i) += c.normal(i, k) * x(c.dof(i, k));
         v(i) = u_nu(i) - c.gap(i);
         const Foundation f = c.law(i);
-        // Points without weight have the pressures of their neighbours, and the dents that go with them.
-        const bool lent = !(c.weight(i) > 0) && hardens(f);
-        // (11.2)
-        dent(i) = c.dent(i) + (lent ? dent_of_pressure(p(i), f) : new_dent(v(i) - c.dent(i), p(i), f));
+        dent(i) = c.dent(i) + new_dent(v(i) - c.dent(i), p(i), f); // (11.2)
         s(i) = static_cast<int>(state_of_pressure(p(i), f));
       });
   Kokkos::fence();
@@ -153,7 +151,7 @@ void lend_to_weightless(const fem::Discretization &d, const mesh::Side &side, co
     const auto to = device_write(value);
     const auto flag = device_write(known);
     Kokkos::parallel_for(
-        "rpc::contact::known_friction", points, KOKKOS_LAMBDA(const LO i) {
+        "rpc::contact::known_values", points, KOKKOS_LAMBDA(const LO i) {
           if (c.weight(i) > 0)
             to(c.node(i)) = get(i);
           else
@@ -164,10 +162,25 @@ void lend_to_weightless(const fem::Discretization &d, const mesh::Side &side, co
   fem::extend_to_unknown(d, side, value, known);
   const auto from = device_read(value);
   Kokkos::parallel_for(
-      "rpc::contact::lent_friction", points, KOKKOS_LAMBDA(const LO i) {
+      "rpc::contact::lent_values", points, KOKKOS_LAMBDA(const LO i) {
         if (!(c.weight(i) > 0)) set(i, from(c.node(i)));
       });
   Kokkos::fence();
+}
+
+/// New dents at points without weight of a foundation that hardens, as their pressures. Collective.
+void complete_dents(const fem::Discretization &d, const mesh::Side &side, const ContactNodes &c, const LO begin,
+                    const LO end, const ContactResult &result)
+{
+  const auto dent = result.dent, p = result.pressure;
+  lend_to_weightless(
+      d, side, c, begin, end, KOKKOS_LAMBDA(const LO i) { return dent(i) - c.dent(i); },
+      KOKKOS_LAMBDA(const LO i, const double value) {
+        if (!hardens(c.law(i))) return;
+        const Lent own = lent(p(i), value, c.law(i));
+        dent(i) = c.dent(i) + own.dent;
+        p(i) = own.pressure;
+      });
 }
 
 /// Friction at points without weight, as their pressures, but no more than what they bear; collective.
@@ -335,6 +348,8 @@ ContactResult contact_result(const fem::Discretization &d, const std::vector<con
   for (int k = 0; k < c.num_sides() && c.num_weightless > 0; ++k)
     release_where_clear(d, *sides[k], c, c.first(k), c.first(k + 1), *state.displacement, result.pressure);
   fill_fields(c, *state.displacement, result);
+  for (int k = 0; k < c.num_sides() && c.num_weightless > 0; ++k)
+    complete_dents(d, *sides[k], c, c.first(k), c.first(k + 1), result);
   if (with_friction || c.friction.anywhere) make_room_for_friction(c, result);
   if (c.friction.exists() && state.multiplier.has_tangential()) fill_friction(c, state, result);
   for (int k = 0; k < c.num_sides() && c.friction.anywhere && c.num_weightless > 0; ++k)

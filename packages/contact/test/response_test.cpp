@@ -3,6 +3,7 @@
 
 #include "rpc/contact/law/interpolated.hpp"
 #include "rpc/contact/law/judgement.hpp"
+#include "rpc/contact/law/lent.hpp"
 #include "rpc/contact/law/states.hpp"
 
 #include <algorithm>
@@ -151,8 +152,18 @@ TEST(Judgement, AnswersWhatALawCanBear)
   EXPECT_EQ(state_of_pressure(0, {3, 0, 0}), State::open);
   EXPECT_EQ(state_of_pressure(1, {3, 0, 0}), State::closed);
   EXPECT_EQ(state_of_pressure(3, {3, 0, 0}), State::yielding);
-  EXPECT_NEAR(dent_of_pressure(4.8, {3, 9, 0}), 0.2, 1e-15);
-  EXPECT_EQ(dent_of_pressure(2, {3, 9, 0}), 0);
+}
+
+TEST(Lent, DentsAreMadeAtTheYieldLimitAndBoundThePressure)
+{
+  const Foundation f{3, 9, 0};
+  EXPECT_EQ(lent(2, 0.1, f).pressure, 2);
+  EXPECT_EQ(lent(2, 0.1, f).dent, 0);
+  EXPECT_EQ(lent(4, 0.2, f).pressure, 4);
+  EXPECT_EQ(lent(4, 0.2, f).dent, 0.2);
+  EXPECT_NEAR(lent(9, 0.2, f).pressure, 4.8, 1e-15);
+  EXPECT_EQ(lent(9, -0.2, f).pressure, 3);
+  EXPECT_EQ(lent(9, -0.2, f).dent, 0);
 }
 
 TEST(Interpolated, LawComesBackFromItsColumnsAndInterpolantsBelowZeroAreNone)

@@ -51,12 +51,6 @@ KOKKOS_INLINE_FUNCTION State state_of_pressure(const double p, const Foundation 
   return p >= f.yield ? State::yielding : (p > 0 ? State::closed : State::open);
 }
 
-/// The new dent that follows from a pressure beyond the yield limit by hardening; 0 without hardening [m].
-KOKKOS_INLINE_FUNCTION double dent_of_pressure(const double p, const Foundation &f)
-{
-  const double dent = f.hardening > 0 ? (p - f.yield) / f.hardening : 0;
-  return dent > 0 ? dent : 0;
-}
 KOKKOS_INLINE_FUNCTION bool hardens(const Foundation &f)
 {
   return f.hardening > 0;

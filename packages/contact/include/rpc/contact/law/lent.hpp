@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/contact/law/foundation.hpp"
+#include "rpc/core/math.hpp"
+
+namespace rpc::contact
+{
+
+/// What a point without weight has of its neighbours' pressures and new dents on a foundation that hardens.                 doc/theory.md, 3.4
+struct Lent {
+  double pressure = 0; ///< [Pa]
+  double dent = 0;     ///< new [m]
+};
+
+/// A dent where the pressure reaches the yield limit, and no more pressure than the limit with that dent. The dent that the pressure alone
+/// would tell, (p - xi)/H, makes much of little where H is small.
+/// @param pressure, dent  that the neighbours' make at the point
+KOKKOS_INLINE_FUNCTION Lent lent(const double pressure, const double dent, const Foundation &f)
+{
+  const double made = pressure >= f.yield && dent > 0 ? dent : 0;
+  return {math::fmin(pressure, f.yield + f.hardening * made), made};
+}
+
+} // namespace rpc::contact
