@@ -161,6 +161,7 @@ held:
                 forces = [max(map(abs, step["contact_force"])) for step in steps]
                 self.assertGreater(forces[1], 1e-3)
                 self.assertLess(max(forces[3:]), 1e-8 * forces[1])
+                self.assertEqual([step["parts"] for step in steps], [1] * 5)
 
     def test_times_that_do_not_rise_are_refused(self):
         result = self.rpc("--input=beam.xml", SMALL, "--set=Steps->Times={1, 2, 2}", code=None)

@@ -50,6 +50,19 @@ KOKKOS_INLINE_FUNCTION Along beyond_rounding(const Along &e, const double roundi
   return length > rounding ? e.scaled(1 - rounding / length) : Along{};
 }
 
+/// This rank's largest |q_i| [Pa].
+double largest_traction(const ContactNodes &points, const Multipliers &multiplier)
+{
+  double largest = 0;
+  if (!points.friction.exists() || !multiplier.has_tangential()) return largest;
+  const auto q = multiplier.tangential;
+  Kokkos::parallel_reduce(
+      "rpc::contact::largest_traction", device_range(points.size()),
+      KOKKOS_LAMBDA(const LO i, double &most) { most = math::larger(most, row(q, i).length()); },
+      Kokkos::Max<double>(largest));
+  return std::max(0., largest); // a maximum over no nodes is -DBL_MAX
+}
+
 /// This rank's largest violation of friction's law [Pa].                                                    (12.6)
 double largest_friction_residual(const ContactNodes &points, const ContactState &state)
 {
@@ -113,6 +126,7 @@ ContactEnergy contact_energy(const ContactNodes &points, const ContactState &sta
       "rpc::contact::largest_multiplier", device_range(c.size()),
       KOKKOS_LAMBDA(const LO i, double &most) { most = math::larger(most, lambda(i)); }, Kokkos::Max<double>(largest));
   const double bound = 2 * max_all(comm_of(state), std::max(0., largest));
+  const double bound_of_friction = 2 * max_all(comm_of(state), largest_traction(points, state.multiplier));
   double sums[2] = {0, 0};
   Kokkos::parallel_reduce(
       "rpc::contact::contact_energy", device_range(c.size()),
@@ -123,7 +137,7 @@ ContactEnergy contact_energy(const ContactNodes &points, const ContactState &sta
         gap += c.weight(i) * duality_gap(v, lambda(i), bound, c.law(i));
         if (c.friction.exists())
           gap += c.weight(i) * friction_gap(beyond_rounding(slip(c, i, x), slip_rounding(c, i, x)), row(q, i),
-                                            friction_bound(lambda(i), c.friction(i)));
+                                            math::fmin(friction_bound(lambda(i), c.friction(i)), bound_of_friction));
       },
       sums[0], sums[1]);
   double all[2];

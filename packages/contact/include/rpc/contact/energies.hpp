@@ -16,7 +16,7 @@ struct ContactEnergy {
          ///< have taken up; perfectly plastic: lambda_i v_i+                                                     (3.14)
   double duality_gap =
       0; ///< sum_i w_i (psi_i(v_i) + psi_i*(lambda_i) - lambda_i v_i) [J], friction's s |e| - q . e included, each term >= 0: what the contact
-         ///< law misses, with twice the largest multiplier in place of any higher xi               (5.5)
+         ///< law misses, with twice the largest multiplier in place of any higher xi or s          (5.5)
 };
 
 /// Energy of the problem, J(u) = Pi(u) + sum_i w_i psi_i(v_i) [J], computed as Pi(u) + sum_i w_i (lambda_i v_i -
