@@ -268,7 +268,7 @@ def finished(code, errors=None, stderr="", **summary):
     """A run without files."""
     adaptation = {"errors": errors or {}, "cycles": [{"dofs": 100}], "reached": code == 0, "reason": ""}
     run = types.SimpleNamespace(code=code, stdout="", stderr=stderr, mesh=None, reason=lambda: stderr)
-    run.summary = {"converged": True, "energy_J": 1.0, "contact_force": [0.0, 2.0], "energy_norm_squared": 4.0, "adaptation": adaptation, **summary}
+    run.summary = {"converged": True, "time": 1.0, "energy_J": 1.0, "contact_force": [0.0, 2.0], "energy_norm_squared": 4.0, "adaptation": adaptation, **summary}
     return run
 
 
@@ -278,6 +278,7 @@ class Judgement(unittest.TestCase):
         self.assertEqual(comparisons.bars(run, finished(0, contact_force=[0.0, 2.05])), [])
         self.assertTrue(comparisons.bars(run, finished(0, contact_force=[0.0, 2.2])))
         self.assertEqual(comparisons.bars(run, finished(0, {"contact_force": 0.15}, contact_force=[0.0, 2.2])), [])
+        self.assertEqual(comparisons.bars(run, finished(0, contact_force=[0.0, 2.2], time=2.0)), [])  # a step that the run has not reached
 
     def test_estimates(self):
         run = finished(0, error_estimate={"energy_norm": 0.1})
@@ -285,6 +286,16 @@ class Judgement(unittest.TestCase):
         self.assertTrue(comparisons.estimate(run, finished(0, energy_J=1 - 0.2)))
         run = finished(0, error_estimate={"energy_norm": 20.0})
         self.assertTrue(comparisons.estimate(run, finished(0, energy_J=1 - 0.01)))
+
+    def test_estimates_where_data_jump_between_nodes(self):
+        run = finished(0, error_estimate={"energy_norm": 0.1}, results={"energy_J": {"error_bar": 0.15}})
+        self.assertEqual(comparisons.estimate(run, finished(0, energy_J=1 - 0.1)), [])
+        self.assertTrue(comparisons.estimate(run, finished(0, energy_J=1 - 0.2)))
+
+    def test_estimates_of_rounding(self):
+        run = finished(0, error_estimate={"energy_norm": 1e-12, "relative": 0}, energy_J=1e-24, energy_norm_squared=1e-24)
+        self.assertEqual(comparisons.estimate(run, finished(0, error_estimate={"relative": 0}, energy_J=2e-23)), [])
+        self.assertTrue(comparisons.estimate(run, finished(0, error_estimate={"relative": 0.1}, energy_J=2e-23)))
 
     def test_a_tolerance_of_energies(self):
         case = decks.make(1, 0, {**BASE, "history": "tolerance"})

@@ -150,7 +150,8 @@ class Judge:
                 return []
             adapt = {**scene.more["Adapt"], "Target Relative Error": self.case.target / 2 ** decks.ORDER[row["element"]],
                      "Max Dofs": FINER_DOFS * scene.more["Adapt"]["Max Dofs"]}
-            finer = self.go("finer", dataclasses.replace(scene, more={**scene.more, "Adapt": adapt}), 1, 1)
+            times = scene.times and [t for t in scene.times if t <= run.summary["time"]]  # to where this one has come
+            finer = self.go("finer", dataclasses.replace(scene, times=times, more={**scene.more, "Adapt": adapt}), 1, 1)
             return comparisons.bars(run, finer) + (comparisons.estimate(run, finer) if row["history"] == "one" else [])
         if row["history"] != "one" or (row["mesh"] == "geo" and self.case.shape.radius != float("inf") and decks.ORDER[row["element"]] == 1):
             return []  # or the finer mesh is of another shape
