@@ -289,6 +289,7 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
     if (const auto *const dents = array_of(whole.file, "foundation_dents"))
       state.last.foundations = contact::dents_from(d.mesh->comm(), *dents);
     state.matrix_assemblies = text.at("assemblies");
+    state.largest_estimate = text.at("largest_estimate");
   } catch (const json::exception &) { // on all ranks: they read the same text
     throw Error(ExitCode::bad_input, "restart: \"" + path +
                                          "\" is damaged: its text is not what was written. Take an older one, "
@@ -306,7 +307,8 @@ void Checkpoints::write(const analysis::HistoryState &state)
   const ResultScope scope = analysis::result_scope(scene_.model, d);
   json text = {{"energies", kept_numbers(analysis::energy_quantities, state.last.energies, scope)},
                {"energy_scale", state.last.energy_scale},
-               {"assemblies", state.matrix_assemblies}};
+               {"assemblies", state.matrix_assemblies},
+               {"largest_estimate", state.largest_estimate}};
   for (const auto &[name, content] : scene_.identity) text["deck"][name] = content;
   text["records"] = json::array();
   for (const StepRecord &record : state.records) text["records"].push_back(to_json(record, scope));

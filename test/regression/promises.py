@@ -61,6 +61,14 @@ RAMP = """ramp:
   Contact: {Side: bottom}
   """ + STEEL + "\n"
 
+# Leaves a dent and is lifted a little.
+DENT = """dent:
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [6, 4], Element: P2}
+  Dirichlet: {top: {X: 0.0, Y: "t < 2.5 ? -0.002*t : -0.0035"}}
+  Contact: {Side: bottom, Gap: "0.008*(x - 0.3)^2", Yield Stress: 2.0, Hardening: 200.0}
+  Steps: {Times: [1.0, 2.0, 3.0]}
+  """ + STEEL + "\n"
+
 
 def adapt(target, max_dofs, meshes="gmsh"):
     return ["--set=Output->Exodus=none", f"--set=Adapt->Target Relative Error={target}", f"--set=Adapt->Max Dofs={max_dofs}",
@@ -114,6 +122,24 @@ class Promises(RpcTestCase):
             self.assertEqual(result.returncode, CONVERGED, summary["adaptation"]["reason"])
             self.assertTrue(summary["adaptation"]["reached"])
             self.assertLessEqual(summary["dofs"], 30000)
+
+    def test_error_bars_of_the_last_step_count_what_meshes_of_earlier_steps_have_left(self):
+        coarse, fine = (each for _, each in self.runs([(DENT, adapt(0.03, 20000)), (DENT, adapt(0.004, 20000))]))
+        bars = coarse["adaptation"]["errors"]
+        self.assertEqual(len(coarse["adaptation"]["cycles"]), 1)  # which alone shows no change
+        for key, value in (("energy_J", lambda s: s["energy_J"]), ("contact_force", lambda s: s["contact_force"][1])):
+            error = abs(value(coarse) - value(fine))
+            self.assertLess(error, bars[key])
+            self.assertLess(bars[key], 20 * error)
+        floor = 2 * coarse["error_estimate"]["relative"]**2 * coarse["contact_force"][1]  # of the last step by itself
+        self.assertGreater(abs(coarse["contact_force"][1] - fine["contact_force"][1]), 5 * floor)
+
+    def test_error_bars_are_none_where_no_mesh_shows_what_earlier_steps_have_left(self):
+        (_, summary), = self.runs([(DENT, ["--set=Mesh->Cells={1,1}", *adapt(0.9, 20000)])])
+        self.assertEqual(set(summary["adaptation"]["errors"].values()), {None})
+        for key in ("energy_J", "contact_force"):
+            self.assertIn("what the meshes of earlier steps have left is not known: ", summary["adaptation"]["errors_unknown"][key])
+            self.assertIn("has no coarser one", summary["results"][key]["reason"])
 
     def test_an_energy_tolerance_that_is_not_kept_ends_with_code_4_and_says_where(self):
         tolerance = ["--set=Steps->Energy Tolerance=0.001"]

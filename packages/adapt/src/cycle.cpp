@@ -12,6 +12,16 @@ namespace rpc::adapt
 namespace
 {
 
+double length_of(const std::array<double, 3> &v)
+{
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+double difference_of(const std::array<double, 3> &a, const std::array<double, 3> &b)
+{
+  return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+}
+
 /// Changes of a quantity from mesh to mesh.
 template <class Change>
 std::vector<double> changes(const std::vector<Cycle> &cycles, const Change &change)
@@ -52,16 +62,6 @@ std::string unknown_max_pressure(const std::vector<Cycle> &cycles, const std::ve
 
 constexpr double caution = 2; // the estimate may be 0.7 of the error
 
-double length_of(const std::array<double, 3> &v)
-{
-  return std::hypot(v[0], v[1], v[2]);
-}
-
-double difference_of(const std::array<double, 3> &a, const std::array<double, 3> &b)
-{
-  return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-}
-
 /// By how much the load of a mesh moves in the mean, by the contact force [m].                                    (10.7b)
 double moved_by(const Cycle &cycle)
 {
@@ -87,6 +87,33 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
   errors.contact_pressure = std::max(errors.contact_pressure, last.recovered_pressure);
   // Sums of weights are rounded.
   errors.contact_length = std::max({errors.contact_length, last.contact_ends, 1e-12 * last.contact.contact_length});
+}
+
+void make_unknown(ObservedErrors &errors, const std::string &reason)
+{
+  for (const auto &q : error_bars) {
+    errors.*q.value = std::numeric_limits<double>::quiet_NaN();
+    errors.unknown[q.key] = reason;
+  }
+}
+
+/// What the meshes of earlier steps leave comes to what those of the last one do.                              (10.7c)
+void add_what_earlier_steps_leave(const CoarserHistory &coarser, const Cycle &last, const EarlierSteps &earlier,
+                                  ObservedErrors &errors)
+{
+  const Cycle &other = coarser.last;
+  const double eta = earlier.largest_estimate, squared = eta * eta;
+  const auto shown = [&](const double distance) {
+    return error_of_history(std::abs(distance), coarser.largest_estimate, eta);
+  };
+  const double of_force = earlier.moved_by > 0 ? caution * squared / earlier.moved_by : 0;
+  errors.energy += std::max(shown(last.energy - other.energy), caution * squared / 2);
+  errors.contact_force += std::max(shown(difference_of(last.contact.force, other.contact.force)), of_force);
+  for (std::size_t k = 0; k < errors.reactions.size(); ++k)
+    errors.reactions[k] += std::max(shown(difference_of(last.reactions[k], other.reactions[k])), of_force);
+  errors.max_pressure += shown(last.contact.max_pressure - other.contact.max_pressure);
+  errors.contact_length += shown(last.contact.contact_length - other.contact.contact_length);
+  errors.max_penetration += shown(last.contact.max_penetration - other.contact.max_penetration);
 }
 
 } // namespace
@@ -126,7 +153,7 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
   errors.max_penetration = error(
       [](const Cycle &a, const Cycle &b) { return std::abs(b.contact.max_penetration - a.contact.max_penetration); });
   if (cycles.size() < 2) {
-    for (const auto &q : error_bars) errors.unknown[q.key] = "one mesh shows no change";
+    make_unknown(errors, one_mesh);
     return errors;
   }
   add_what_a_mesh_leaves(cycles.back(), eta, errors);
@@ -139,6 +166,24 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
     errors.contact_length = std::numeric_limits<double>::quiet_NaN();
     errors.unknown["contact_length"] = "the length in contact does not settle from mesh to mesh";
   }
+  return errors;
+}
+
+ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &coarser, const EarlierSteps &earlier)
+{
+  const bool alone = cycles.size() < 2;
+  if (!earlier.matter && (!alone || !coarser.missing.empty())) return observed_errors(cycles);
+  ObservedErrors errors;
+  if (!coarser.missing.empty()) {
+    make_unknown(errors, "what the meshes of earlier steps have left is not known: " + coarser.missing);
+    return errors;
+  }
+  if (alone) cycles.insert(cycles.begin(), coarser.last);
+  errors = observed_errors(cycles);
+  errors.contact_pressure = std::numeric_limits<double>::quiet_NaN();
+  errors.unknown["contact_pressure_l2_relative"] =
+      alone ? one_mesh : "what the meshes of earlier steps have left of it is not known";
+  if (earlier.matter) add_what_earlier_steps_leave(coarser, cycles.back(), earlier, errors);
   return errors;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "earlier_steps.hpp"
 #include "next_mesh.hpp"
 #include "rpc/adapt/solve.hpp"
 #include "rpc/core/error.hpp"
@@ -60,6 +61,7 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
         {found.discretization, task.model.materials, problem.contact_sides(), loads, points, found.contact, *found.u});
     const double tolerance = task.step.uzawa.tolerance;
     s.estimate->rounding = std::max(s.estimate->rounding, tolerance * tolerance * found.step.energies_before); // (5.5b)
+    s.largest_estimate = std::max(s.largest_estimate, std::sqrt(s.estimate->total()));
   };
   static_cast<analysis::Solution &>(s) = run(all);
   if (!task.adapt.estimate) s.skipped.push_back("error estimate: not asked for");
@@ -221,7 +223,8 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
 /// What a step leaves for the next one, which reads nothing else of it.
 analysis::HistoryState state_of(const Solution &s)
 {
-  return {s.discretization, s.mesh_options, *s.memory, std::nullopt, s.history, s.matrix_assemblies};
+  return {s.discretization, s.mesh_options,      *s.memory,         std::nullopt,
+          s.history,        s.matrix_assemblies, s.largest_estimate};
 }
 /// The step that left it, without its solution.
 Solution step_of(analysis::HistoryState state)
@@ -233,7 +236,62 @@ Solution step_of(analysis::HistoryState state)
   s.memory = std::move(state.last);
   s.history = std::move(state.records);
   s.matrix_assemblies = state.matrix_assemblies;
+  s.largest_estimate = state.largest_estimate;
   return s;
+}
+
+/// The load steps up to a solution, or where earlier ones do not matter its own alone, on a mesh with larger cells. Collective.
+/// @param[inout] seconds  of phases: those that it takes are added
+CoarserHistory coarser_history(const Task &task, const Solution &s, const bool earlier_matter,
+                               const RCP<const Comm> &comm, analysis::PhaseSeconds &seconds)
+{
+  CoarserHistory coarser;
+  const std::string none = "the mesh has no coarser one, on which the same steps would show it";
+  const auto options = with_larger_cells(s.mesh_options);
+  if (!options) {
+    coarser.missing = none;
+    return coarser;
+  }
+  Task again = task;
+  again.mesh = *options;
+  auto &times = again.steps.times;
+  times.erase(std::remove_if(times.begin(), times.end(),
+                             [&](const double t) { return t > s.time || (t < s.time && !earlier_matter); }),
+              times.end());
+  again.steps.checkpoint_every = 0;
+  Listener quiet;
+  quiet.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &) {
+    if (d.owned_dofs->getGlobalNumElements() >= s.discretization.owned_dofs->getGlobalNumElements())
+      throw Error(ExitCode::bad_mesh, none); // a .geo may divide its curves by numbers
+  };
+  try {
+    const Solution found = with_estimate(
+        again, quiet, [&](const analysis::Listener &all) { return analysis::solve_steps(again, comm, all); });
+    seconds += found.seconds;
+    if (!found.has_results() || found.failure) {
+      coarser.missing = "the same steps have no solution on a coarser mesh: " +
+                        (found.failure ? found.failure->reason : found.uzawa.reason);
+    } else {
+      coarser.last = cycle_of(found, 0);
+      coarser.largest_estimate = found.largest_estimate;
+    }
+  } catch (const Error &failure) { // on all ranks
+    coarser.missing = interrupted(*comm) ? interruption() : one_line(failure.what());
+  }
+  return coarser;
+}
+
+/// Error bars of the last of several load steps count what the meshes of earlier ones have left. Collective.   doc/theory.md (10.7c)
+void count_earlier_steps(const Task &task, Solution &s, const RCP<const Comm> &comm)
+{
+  const bool first = std::none_of(s.history.begin(), s.history.end(),
+                                  [&](const auto &step) { return step.converged && step.time < s.time; });
+  if (first || !s.adaptation || !s.has_results() || only_rounding(s)) return;
+  const EarlierSteps earlier = earlier_steps(task, s);
+  const auto &all = s.adaptation->cycles;
+  const std::vector<Cycle> cycles(all.begin(), all.begin() + best_of(all) + 1);
+  if (!earlier.matter && cycles.size() > 1) return;
+  s.adaptation->errors = observed_errors(cycles, coarser_history(task, s, earlier.matter, comm, s.seconds), earlier);
 }
 
 /// Load steps, each on meshes of its own. Where one does not converge, the solution is the one before, with its `failure`. An interrupted run leaves a checkpoint of the last step that was solved before the signal
@@ -271,6 +329,7 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
         break;
       }
       s.energy_rounding = std::max(earlier ? earlier->energy_rounding : 0, analysis::energy_rounding(task, s));
+      s.largest_estimate = std::max(earlier ? earlier->largest_estimate : 0, s.largest_estimate);
       earlier = std::move(s);
       solved = true;
       if (listener.load_step && earlier->has_results()) listener.load_step(*earlier);
@@ -286,6 +345,7 @@ Solution solve_steps_adaptively(const Task &task, const RCP<const Comm> &comm, c
     checkpoint_due |= every > 0 && earlier->history.size() % every == 0;
     if (checkpoint_due && !met_by_signal) checkpoint_due = !keep();
   }
+  count_earlier_steps(task, *earlier, comm);
   analysis::judge_balance(task, *earlier);
   return std::move(*earlier);
 }
@@ -315,7 +375,11 @@ double relative_estimate(const Solution &s)
 
 ObservedErrors errors_of(const Task &task, const Solution &s)
 {
-  if (s.adaptation && std::isfinite(s.adaptation->errors.energy)) return s.adaptation->errors;
+  if (s.adaptation) {
+    const auto &seen = s.adaptation->errors;
+    const auto reason = seen.unknown.find("energy_J");
+    if (reason == seen.unknown.end() || reason->second != one_mesh) return seen;
+  }
   ObservedErrors errors;
   std::string reason = "not estimated: set \"Adapt->Target Relative Error\"";
   if (!s.has_results())
@@ -323,8 +387,7 @@ ObservedErrors errors_of(const Task &task, const Solution &s)
   else if (s.estimate && only_rounding(s))
     reason = "the strain energy is at rounding level";
   else if (s.estimate)
-    reason = task.adapt.adapts() ? "one mesh shows no change"
-                                 : "one mesh shows no change: set \"Adapt->Target Relative Error\"";
+    reason = std::string(one_mesh) + (task.adapt.adapts() ? "" : ": set \"Adapt->Target Relative Error\"");
   for (const auto &q : error_bars) {
     errors.*q.value = std::numeric_limits<double>::quiet_NaN();
     errors.unknown[q.key] = reason;

@@ -48,6 +48,11 @@ double error_over_span(const std::vector<double> &distance, const std::vector<do
   return error;
 }
 
+double error_of_history(const double distance, const double eta_other, const double eta)
+{
+  return distance / std::max(least_reduction - 1, std::abs(eta_other / eta - 1));
+}
+
 bool hardly_finer(const std::vector<double> &eta)
 {
   constexpr double half = 0.5;

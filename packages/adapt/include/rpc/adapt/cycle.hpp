@@ -64,8 +64,28 @@ std::string error_bar_name(const std::string &key, const ResultScope &scope);
 /// What one mesh by itself leaves open of J: no bar is smaller [J], in 2D per m.                     doc/theory.md (10.7a), (10.7b)
 double energy_left(const Cycle &cycle);
 
+inline constexpr const char *one_mesh = "one mesh shows no change"; ///< a reason in `unknown`
+
 /// Error bars of the last of several meshes.
 ObservedErrors observed_errors(const std::vector<Cycle> &cycles);
+
+/// All load steps up to the last one on a mesh with larger cells: what the meshes of earlier steps have left shows by how much the results of the
+/// two differ.                                                                                            doc/theory.md (10.7c)
+struct CoarserHistory {
+  Cycle last;                  ///< of the last step
+  double largest_estimate = 0; ///< of its steps, of the error in the energy norm [J^(1/2)]
+  std::string missing;         ///< why there is none; else empty
+};
+
+/// What counts of the load steps up to one.
+struct EarlierSteps {
+  bool matter = false;         ///< they have left dents or slip
+  double largest_estimate = 0; ///< of all steps, of the error in the energy norm [J^(1/2)]
+  double moved_by = 0;         ///< by how much the load moved in the mean, where it moved most [m]
+};
+
+/// The same for the last of several load steps.
+ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &coarser, const EarlierSteps &earlier);
 
 /// What became of "Adapt".
 struct Adaptation {

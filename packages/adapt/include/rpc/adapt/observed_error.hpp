@@ -19,6 +19,11 @@ double observed_error(const std::vector<double> &change, const std::vector<doubl
 /// @return 0 where there is no such mesh
 double error_over_span(const std::vector<double> &distance, const std::vector<double> &eta);
 
+/// Error of a quantity at the end of a history, as another one on other meshes shows it: as if it was C eta in both, eta the largest of all
+/// steps. Meshes of earlier steps may be the coarser ones.                                                    (10.7c)
+/// @param distance  of the quantity in the two   @param eta_other, eta  of the other history and of this one, > 0
+double error_of_history(double distance, double eta_other, double eta);
+
 /// Whether the estimate has fallen by so little over all meshes that their changes tell nothing of what is left.  (10.7)
 bool hardly_finer(const std::vector<double> &eta);
 

@@ -75,6 +75,7 @@ struct HistoryState {
   std::optional<Memory> before; ///< displacement and pressure of the step before the last one
   std::vector<StepRecord> records;
   int matrix_assemblies = 0;
+  double largest_estimate = 0; ///< of errors in the energy norm, of all steps on adapted meshes [J^(1/2)], in 2D per m
 };
 
 /// Reports during the run; empty functions are not called. All are called on all ranks.

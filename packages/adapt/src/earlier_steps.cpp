@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "earlier_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <variant>
+
+namespace rpc::adapt
+{
+
+std::optional<mesh::MeshOptions> with_larger_cells(const mesh::MeshOptions &options)
+{
+  constexpr double twice = 2;
+  const auto *const gmsh = std::get_if<mesh::GmshOptions>(&options);
+  if (!gmsh) return mesh::coarser(options, twice);
+  mesh::GmshOptions larger = *gmsh;
+  if (gmsh->refinements > 0) {
+    --larger.refinements;
+  } else if (gmsh->nested) {
+    if (gmsh->sizes) { // on rank 0
+      auto sizes = std::make_shared<mesh::SizeField>(*gmsh->sizes);
+      for (double &size : sizes->size) size *= twice;
+      larger.sizes = sizes;
+    }
+    if (larger.box) { // the first mesh, too
+      larger.box = std::get<mesh::BoxOptions>(*mesh::coarser(*larger.box, twice));
+      larger.base = nullptr;
+    }
+  } else {
+    const auto coarse = mesh::coarser(options, twice);
+    if (!coarse) return coarse;
+    larger.size_factor = std::get<mesh::GmshOptions>(*coarse).size_factor;
+  }
+  return larger;
+}
+
+EarlierSteps earlier_steps(const Task &task, const Solution &s)
+{
+  EarlierSteps earlier;
+  earlier.matter = contact::has_friction(task.model.contact);
+  earlier.largest_estimate = s.largest_estimate;
+  for (const analysis::StepRecord &step : s.history) {
+    if (!step.converged || step.time > s.time) continue;
+    const auto &force = step.contact.force;
+    const double size = std::hypot(force[0], force[1], force[2]);
+    if (size > 0) earlier.moved_by = std::max(earlier.moved_by, 2 * step.energies.strain / size);
+    if (step.time < s.time && step.contact.max_dent > 0) earlier.matter = true;
+  }
+  return earlier;
+}
+
+} // namespace rpc::adapt

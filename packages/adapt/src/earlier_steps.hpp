@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/adapt/cycle.hpp"
+#include "rpc/adapt/options.hpp"
+#include "rpc/adapt/solve.hpp"
+
+#include <optional>
+
+namespace rpc::adapt
+{
+
+/// The options of a mesh of the same body with cells about twice as long; none if there is none to be had: for a .msh.
+std::optional<mesh::MeshOptions> with_larger_cells(const mesh::MeshOptions &options);
+
+/// What counts of the load steps up to a solution, for its error bars.                                 doc/theory.md (10.7c)
+EarlierSteps earlier_steps(const Task &task, const Solution &s);
+
+} // namespace rpc::adapt
