@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random scenes whose error bars theory does not promise: the bars hold the true values, or are null with a reason.
 
-    python3 bars.py --rpc=build/rpc [--seed=1] [--scenes=100] [--only=K] [--kind=NAME] [--jobs=2] [--np=1] [--keep=DIR]
+    python3 bars.py --rpc=build/rpc [--seed=1] [--scenes=100] [--only=K] [--kind=NAME] [--histories=1] [--jobs=2] [--np=1] [--keep=DIR]
 
 Scene K comes from the seed and K alone: a body in the plane or of revolution, pressed on a foundation with one of the features of KINDS: a smooth
 gap, one with a tip or a step, a friction coefficient or a yield stress with a step, a body with re-entrant corners; or with two of them. The target
 for the error in the energy norm is a loose one. The true values are those of the same scene from a first mesh with cells a quarter as long, of order
 2, and a target a sixth as large. A bar holds where the true value lies within it and within the bar of the reference, if there is one; a scene whose
-reference is known no better than its own bar allows is not judged, and counted. For each quantity and each kind are told how many bars hold, how
+reference is known no better than its own bar allows is not judged, and counted. With --histories=1 each scene has load steps, which press, unload,
+load again or slide, on foundations of which most remember; the reference is the whole history on the finer meshes, and the last step is judged. For each quantity and each kind are told how many bars hold, how
 many are null, and the median of bar over true error. The exit code is 1 if a run failed or the force's bars held in less than 95 of 100.
 """
 import concurrent.futures
@@ -29,6 +30,7 @@ KINDS = ["smooth", "tip", "gap step", "mu step", "xi step", "corner", "two"]
 TARGETS = [0.05, 0.03, 0.02, 0.01]
 FINER, FINER_CELLS = 6, 4  # of references: target and first mesh
 MOST_DOFS = 60000  # of references
+MOST_DOFS_IN_STEPS = 25000
 KNOWN = 0.5  # a reference's bar is at most so much of the one that is judged
 HELD = 0.95
 YOUNG = 1000.0
@@ -73,6 +75,32 @@ def gap_of(rng, features, width, depth, revolution):
     if rng.random() < 0.3:
         return "0"
     return f"{steepness / width * log_uniform(rng, -0.5, 0.7)!r}*(x - {0.0 if revolution else place!r})^2"
+
+
+def press_and_slide(rng):
+    """[(share of the approach, share of the motion along the side)] of load steps."""
+    steps = rng.randint(2, 5)
+    along = sorted(rng.random() for _ in range(steps)) if rng.random() < 0.5 else [rng.random() for _ in range(steps)]
+    kind = rng.choice(["press", "unload", "again", "slide", "any"])
+    down = {"press": [(k + 1) / steps for k in range(steps)],
+            "unload": [1.0] + [1.0 - rng.uniform(0.1, 0.9) * (k + 1) / steps for k in range(steps - 1)],
+            "again": [(1.0, rng.uniform(0.1, 0.7), rng.uniform(0.9, 1.2))[k % 3] for k in range(steps)],
+            "slide": [1.0] * steps,
+            "any": [rng.uniform(0.2, 1) for _ in range(steps)]}[kind]
+    return list(zip(down, along))
+
+
+def in_steps(rng, lists):
+    """The deck as a history: its top by hat functions of t, of most a foundation that remembers."""
+    path, contact, top = press_and_slide(rng), lists["Contact"], lists["Dirichlet"]["top"]
+    hats = lambda factors: "(" + " + ".join(f"({f!r})*max(0, 1 - abs(t - {k + 1}))" for k, f in enumerate(factors)) + ")"
+    mean = -YOUNG * float(top["Y"])
+    if "Yield Stress" not in contact and rng.random() < 0.6:
+        contact["Yield Stress"] = repr(mean * log_uniform(rng, -0.4, 0.6))
+    if "Yield Stress" in contact and rng.random() < 0.4:
+        contact["Hardening"] = YOUNG * log_uniform(rng, -1, 1)
+    lists["Steps"] = {"Times": [k + 1.0 for k in range(len(path))]}
+    lists["Dirichlet"] = {"top": {"X": f"({top['X']})*{hats([along for _, along in path])}", "Y": f"({top['Y']})*{hats([down for down, _ in path])}"}}
 
 
 def deck(rng, kind):
@@ -122,7 +150,8 @@ class Outcome:
 
 def finer(lists):
     mesh = lists["Mesh"]
-    changes = {"Adapt->Target Relative Error": lists["Adapt"]["Target Relative Error"] / FINER, "Adapt->Max Dofs": MOST_DOFS}
+    changes = {"Adapt->Target Relative Error": lists["Adapt"]["Target Relative Error"] / FINER,
+               "Adapt->Max Dofs": MOST_DOFS_IN_STEPS if "Steps" in lists else MOST_DOFS}
     if mesh["Type"] == "box":
         changes["Mesh->Cells"] = "{" + ", ".join(str(FINER_CELLS * n) for n in mesh["Cells"]) + "}"
         changes["Mesh->Element"] = mesh["Element"][0] + "2"
@@ -154,6 +183,8 @@ def judge(options, number):
     rng = random.Random(f"{options.seed}/bars/{number}")
     kind = options.kind or KINDS[number % len(KINDS)]
     lists, geo, size = deck(rng, kind)
+    if options.histories:
+        in_steps(random.Random(f"{options.seed}/steps/{number}"), lists)
     outcome = Outcome(number, kind)
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bars_{number}_"))
     try:
@@ -189,7 +220,7 @@ def shares(outcomes, key):
 
 
 def main():
-    options = scenes.arguments(__doc__, 100, ("--kind", {"choices": KINDS}), ("--meshes", {"choices": ["automatic", "gmsh", "nested"], "default": "automatic"}))
+    options = scenes.arguments(__doc__, 100, ("--kind", {"choices": KINDS}), ("--histories", {"type": int, "default": 0}), ("--meshes", {"choices": ["automatic", "gmsh", "nested"], "default": "automatic"}))
     numbers = [options.only] if options.only is not None else range(options.scenes)
     outcomes = []
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
