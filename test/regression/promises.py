@@ -68,6 +68,12 @@ DENT = """dent:
   Contact: {Side: bottom, Gap: "0.008*(x - 0.3)^2", Yield Stress: 2.0, Hardening: 200.0}
   Steps: {Times: [1.0, 2.0, 3.0]}
   """ + STEEL + "\n"
+# Sizes for the targets below hardly change its first mesh.
+STEP = """step:
+  Mesh: {Lower: [0.0, 0.0], Upper: [8.7, 1.0], Cells: [24, 4], Element: Q2}
+  Dirichlet: {top: {X: 0.0, Y: -0.003}}
+  Contact: {Side: bottom, Gap: "x < 4.4 ? 0.005 : 0.0018", Yield Stress: 2.1}
+  """ + STEEL.replace("0.3", "0.1") + "\n"
 
 
 def adapt(target, max_dofs, meshes="gmsh"):
@@ -122,6 +128,11 @@ class Promises(RpcTestCase):
             self.assertEqual(result.returncode, CONVERGED, summary["adaptation"]["reason"])
             self.assertTrue(summary["adaptation"]["reached"])
             self.assertLessEqual(summary["dofs"], 30000)
+
+    def test_nested_meshes_for_which_sizes_ask_for_too_little_reach_their_target(self):
+        for result, summary in self.runs([(STEP, adapt(target, 6000, "nested")) for target in (0.085, 0.077)]):
+            self.assertEqual(result.returncode, CONVERGED, summary["adaptation"]["reason"])
+            self.assertLess(len(summary["adaptation"]["cycles"]), 8)
 
     def test_error_bars_of_the_last_step_count_what_meshes_of_earlier_steps_have_left(self):
         coarse, fine = (each for _, each in self.runs([(DENT, adapt(0.03, 20000)), (DENT, adapt(0.004, 20000))]))

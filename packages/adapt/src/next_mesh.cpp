@@ -30,7 +30,7 @@ constexpr double greatest_excess = 1.5;
 constexpr double share_of_max_dofs = 0.75, share_again = 0.9;
 // A mesh that has so much of the unknowns that were planned is one at the limit.
 constexpr double filled = 0.9;
-// At the limit an estimate that falls by less ends the run.
+// An estimate that falls by less is no better: at the limit that ends the run.
 constexpr double hardly_less = 0.97;
 // So many meshes are made after a solution, each with larger cells, until one is not too large.
 constexpr int most_tries = 5;
@@ -131,11 +131,15 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   }
   const double eta = std::sqrt(estimate.total()), target = task_.adapt.target * std::sqrt(energy_norm_squared);
   goal_ = goal(eta, target, mesh.dim());
+  // Sizes that ask for too little leave nested cells as they are, or halve others: then they ask for more.
+  const double relative = eta / std::sqrt(energy_norm_squared);
+  if (nests(task_.mesh, task_.adapt) && relative > hardly_less * least_) no_better_ *= aim_near_nested;
+  goal_.bound *= no_better_;
   // Where unseen contact is most of the error, errors elsewhere are those of another solution: no cell grows for them.
   if (estimate.unseen() > 0.5 * estimate.total()) goal_.growth = 1;
   const double dofs = dofs_of(mesh), cells = cells_of(mesh), ratio = made_per_planned(cells, mesh.dim());
   if (!halved_) ratio_unless_halved_ = ratio;
-  if (const double relative = eta / std::sqrt(energy_norm_squared); relative < least_) {
+  if (relative < least_) {
     least_ = relative;
     least_dofs_ = dofs;
   }

@@ -59,6 +59,7 @@ private:
   double missed_ = 1; // estimates near the target over those that were planned, multiplied
   double planned_ = std::numeric_limits<double>::infinity(); // estimate that the present mesh was to have
   double predicted_cells_ = 0;                               // of the present mesh; 0: it was not planned
+  double no_better_ = 1;          // share of the goal that nested meshes are planned for, after one that was no better
   bool planned_at_limit_ = false; // the present mesh, for fewer cells than the target asked for
   /// The mesh before the present one, where that was planned at the limit too.
   struct Before {
