@@ -6,7 +6,7 @@ import json
 import math
 import unittest
 
-from rpc_run import BEAM, SMALL, SOURCE, RpcTestCase
+from rpc_run import BEAM, RANKS, SMALL, SOURCE, RpcTestCase
 
 DECKS = SOURCE / "test" / "regression" / "decks"
 TRACK = SOURCE / "input" / "track.xml"
@@ -33,7 +33,7 @@ class Foundations(RpcTestCase):
         return [{k: float(v) for k, v in row.items() if k != "reason"} for row in rows(self.folder / output / f"{deck.stem}.history.csv")]
 
     def test_a_roller_comes_from_beside_the_body_and_leaves_it(self):
-        for normal in ["0, 1", "surface", "foundation"]:
+        for normal in ["0, 1", "surface", "foundation"] if RANKS == 1 else ["surface"]:
             summary = self.summary_of(DECKS / "roller.xml", f"--set=Contact->Normal={normal}")
             self.assertTrue(summary["converged"])
             table = self.history_of(DECKS / "roller.xml")
@@ -84,7 +84,8 @@ class Foundations(RpcTestCase):
 
     def test_dents_that_the_body_has_left_behind_are_met_again(self):
         # Pressed at x = 0, moved by `shift` and pressed, moved back and pressed as before. Meshes that adapt need not be the same again.
-        for shift, mesh, near in [(3, [], 1e-9), (4.5, [], 1e-9), (3, ["--set=Adapt->Target Relative Error=0.02"], 1e-3)]:
+        cases = [(3, [], 1e-9), (3, ["--set=Adapt->Target Relative Error=0.02"], 1e-3), (4.5, [], 1e-9)]
+        for shift, mesh, near in cases if RANKS == 1 else cases[:1]:  # verification.track has adapted meshes on several ranks
             summary = self.summary_of(
                 TRACK, "--set=Mesh->Size Factor=6", f"--set=Dirichlet->top->X={shift} * max(0, min(1, min(t - 2, 6 - t)))",
                 "--set=Dirichlet->top->Y=-0.1 * max(0, max(max(1 - abs(t - 1), 1 - abs(t - 4)), 1 - abs(t - 7)))",

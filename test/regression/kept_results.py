@@ -68,12 +68,14 @@ class KeptResults(RpcTestCase):
         self.assertIn("at t = 3: ", errors(result)[0])
         self.expect_steps([1, 2], 3, "nan")
 
+    @unittest.skipIf(RANKS > 1, "needs one rank: bad_input.py has such expressions on several")
     def test_an_expression_that_fails_in_the_first_step_leaves_nothing(self):
         result = self.rpc("--input=beam.xml", SMALL, "--output=out", "--set=Traction->top->Y=-20*sqrt(0.5-t)", "--set=Steps->Times={1,2}",
                           code=BAD_INPUT)
         self.assertEqual(len(errors(result)), 1)
         self.assertEqual(files(self.folder / "out"), [])
 
+    @unittest.skipIf(RANKS > 1, "needs one rank: the summary does not depend on their number")
     def test_a_step_that_does_not_converge_has_no_energies(self):
         self.rpc("--input=beam.xml", SMALL, "--output=out", f"--set=Traction->top->Y={TO_AND_FRO}", "--set=Steps->Times={1,4}",
                  "--set=Steps->Max Halvings=1", "--set=NOX->Maximum Iterations=1", "--set=Uzawa->Maximum Iterations=1",
@@ -106,7 +108,7 @@ class KeptResults(RpcTestCase):
         self.rpc("--input=beam.xml", "--set=Mesh->Cells={40,8}", "--output=whole", f"--set=Traction->top->Y={TO_AND_FRO}", *TWENTY)
         whole = Film(self.out("e", "whole"))
         size = self.out("e", "whole").stat().st_size
-        for share in [0.6, 0.75, 0.9]:
+        for share in [0.6, 0.75, 0.9] if RANKS == 1 else [0.75]:
             shutil.rmtree(self.folder / "out", ignore_errors=True)
             result = self.limited(int(share * size))
             with self.subTest(share):
@@ -189,17 +191,17 @@ class KeptResults(RpcTestCase):
                 self.assertEqual([name for name in files(self.folder / "out") if ".tmp." in name or "lock" in name], [])
 
     def test_after_kill_a_restart_ends_as_the_run_without_a_break(self):
-        self.expect_same_end_after_kill(self.HISTORY, "beam", 6 if RANKS == 1 else 2)
+        self.expect_same_end_after_kill(self.HISTORY, "beam", 4 if RANKS == 1 else 1)
 
     def test_after_kill_a_restart_on_adapted_meshes_ends_as_the_run_without_a_break(self):
-        self.expect_same_end_after_kill(self.ADAPTED, "beam_adaptive", 3 if RANKS == 1 else 1)
+        self.expect_same_end_after_kill(self.ADAPTED, "beam_adaptive", 2 if RANKS == 1 else 1)
         self.assertGreater(len(self.parts("whole", "beam_adaptive")), 3)
 
     def test_after_a_signal_a_restart_on_adapted_meshes_ends_as_the_run_without_a_break(self):
         plain = [argument for argument in self.ADAPTED if "Checkpoint" not in argument]
         self.run_whole(self.ADAPTED, "beam_adaptive")  # checkpoints change nothing
         random.seed(31)
-        for number, after in [(signal.SIGTERM, 5), (signal.SIGINT, 21)]:
+        for number, after in [(signal.SIGTERM, 5), (signal.SIGINT, 21)][:2 if RANKS == 1 else 1]:
             shutil.rmtree(self.folder / "out", ignore_errors=True)
             code, text = self.stopped(number, after, plain, "beam_adaptive")
             with self.subTest(number.name):
@@ -210,6 +212,7 @@ class KeptResults(RpcTestCase):
                 self.rpc("--input=beam_adaptive.xml", *plain, "--output=out", "--restart")
                 self.expect_equal_runs("whole", "out", "beam_adaptive")
 
+    @unittest.skipIf(RANKS > 1, "needs one rank: on several, restarts after kill -9 take over films")
     def test_an_older_checkpoint_on_an_adapted_mesh_takes_over_the_film_up_to_it(self):
         self.run_whole(self.ADAPTED, "beam_adaptive")
         shorter = [argument.replace("To=10", "To=2.5") for argument in self.ADAPTED]
@@ -220,6 +223,7 @@ class KeptResults(RpcTestCase):
         times = [t for path in self.parts("out", "beam_adaptive") for t in Film(path).times]
         self.assertEqual(times, [0.25 * k for k in range(1, 41)])
 
+    @unittest.skipIf(RANKS == 1, "needs several ranks, on which meshes in space are dealt out anew")
     def test_a_checkpoint_on_an_adapted_mesh_in_space_goes_on_as_the_run_without_a_break(self):
         deck = "block_adaptive"
         steps = ["--set=Traction->front->Z=-20*t", "--set=Adapt->Target Relative Error=0.08", "--set=Steps->Checkpoint Every=1"]
@@ -229,6 +233,7 @@ class KeptResults(RpcTestCase):
         self.assertIn("t = 0.8", result.stdout)
         self.expect_equal_runs("whole", "out", deck)
 
+    @unittest.skipIf(RANKS > 1, "needs one rank: every rank reads the deck")
     def test_a_checkpoint_on_an_adapted_mesh_wants_a_deck_that_adapts(self):
         shorter = [argument.replace("To=10", "To=1.5") for argument in self.ADAPTED]
         self.rpc("--input=beam_adaptive.xml", *shorter, "--output=out")
@@ -254,6 +259,7 @@ class KeptResults(RpcTestCase):
         self.assertEqual(len(rows(self.out("history.csv"))), 40)
         self.assertTrue((self.folder / "out" / "beam.checkpoint-000039.e").is_file())
 
+    @unittest.skipIf(RANKS > 1, "needs one rank: on several, restarts after kill -9 take the newest")
     def test_restart_takes_the_newest_whole_checkpoint(self):
         result = self.rpc("--input=beam.xml", *self.HISTORY, "--output=out", "--restart", code=BAD_INPUT)
         self.expect_refusal(result, BAD_INPUT, ["there is no checkpoint", '"out"', "--restart=FILE"])
@@ -286,6 +292,7 @@ class KeptResults(RpcTestCase):
                           code=BAD_INPUT)
         self.expect_refusal(result, BAD_INPUT, ["Material->Young's Modulus"])
 
+    @unittest.skipIf(RANKS > 1, "needs one rank: every rank reads the deck")
     def test_names_of_conditions_may_change_and_their_order_may_not(self):
         three = [argument.replace("To=10", "To=0.75") for argument in self.HISTORY]
         self.rpc("--input=beam.xml", *three, "--output=out")
@@ -307,7 +314,7 @@ class KeptResults(RpcTestCase):
         self.expect_refusal(result, BAD_INPUT, ['"Dirichlet->right->Side"', '"right"', '"left"'])
 
     def test_two_runs_of_one_name_in_one_folder(self):
-        process = self.start("--set=Mesh->Cells={640,128}", f"--set=Traction->top->Y={TO_AND_FRO}", *TWENTY)
+        process = self.start("--set=Mesh->Cells={320,64}", f"--set=Traction->top->Y={TO_AND_FRO}", *TWENTY)
         for line in process.stdout:
             if line.startswith("   1/"):
                 break

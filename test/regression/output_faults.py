@@ -78,7 +78,8 @@ class OutputFaults(RpcTestCase):
         sizes = {name: self.page_count(disk / name) for name in NAMES}
         for name in NAMES:
             (disk / name).unlink()
-        for blocks in range(1, sum(sizes.values()) + 1):
+        enough_for_all = sum(sizes.values())
+        for blocks in [*range(1, enough_for_all, 1 if RANKS == 1 else max(1, enough_for_all // 3)), enough_for_all]:
             subprocess.run(["mount", "-o", f"remount,size={4 * blocks}k", disk], check=True)
             with self.subTest(blocks):
                 result = self.rpc("--input=beam.xml", SMALL, "--output=out", code=None)
@@ -104,7 +105,7 @@ class OutputFaults(RpcTestCase):
         self.assertEqual(files(self.folder), [])
 
     def test_folder_in_place_of_a_file_is_refused_before_the_run(self):
-        for name in NAMES:
+        for name in NAMES[:3 if RANKS == 1 else 1]:
             with self.subTest(name):
                 (self.folder / "out" / name).mkdir(parents=True)
                 result = self.rpc("--input=beam.xml", SMALL, "--output=out", code=BAD_INPUT)
@@ -115,7 +116,7 @@ class OutputFaults(RpcTestCase):
 
     def test_what_is_no_file_is_refused_before_the_run(self):
         (self.folder / "out").mkdir()
-        for name in NAMES:
+        for name in NAMES[:3 if RANKS == 1 else 1]:
             with self.subTest(name):
                 place = self.folder / "out" / name
                 os.mkfifo(place)
@@ -126,7 +127,7 @@ class OutputFaults(RpcTestCase):
                 place.unlink()
 
     def test_name_too_long_for_the_file_system_is_refused_before_the_run(self):
-        for length in [237, 250]:  # with .json and what is appended meanwhile; the deck itself fits
+        for length in [237, 250][:2 if RANKS == 1 else 1]:  # with .json and what is appended meanwhile; the deck itself fits
             deck = self.folder / ("n" * length + ".xml")
             shutil.copy(SOURCE / "input" / "beam.xml", deck)
             result = self.rpc(f"--input={deck}", SMALL, "--output=out", code=BAD_INPUT)
@@ -134,6 +135,7 @@ class OutputFaults(RpcTestCase):
             self.assertNotIn("newton", result.stdout)
             self.assertEqual(files(self.folder / "out"), [])
 
+    @unittest.skipIf(RANKS > 1, "needs one rank: rank 0 looks at all files in the same way")
     def test_results_of_all_meshes_are_thought_of_before_the_run(self):
         adaptive = ["--input=beam_adaptive.xml", "--output=out", "--set=Adapt->Max Cycles=3"]
         (self.folder / "out" / "beam_adaptive.cycle3.e").mkdir(parents=True)

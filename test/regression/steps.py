@@ -24,6 +24,9 @@ def rows(path):
     return [{k: float(v) for k, v in row.items() if k != "reason"} for row in csv.DictReader(path.read_text().splitlines())]
 
 
+ONE_RANK = unittest.skipIf(RANKS > 1, "needs one rank: histories of several are compared with its own")
+
+
 class Steps(RpcTestCase):
     def expect_near(self, a, b, scale, name):
         for x, y in zip(a if isinstance(a, list) else [a], b if isinstance(b, list) else [b]):
@@ -68,18 +71,21 @@ class Steps(RpcTestCase):
         last = rows_of_contact(self.folder / "out" / "beam.contact.csv")
         self.assertAlmostEqual(max(row["dent"] for row in last), dents[-1], delta=1e-15)
 
+    @ONE_RANK
     def test_not_every_step_need_be_in_the_film(self):
         for every, times in [(2, [1, 3, 4]), (3, [2, 4]), (9, [4])]:
             summary = self.solve(*LOADED, f"--set=Steps->Write Every={every}")
             self.assertEqual(len(summary["steps"]), 5)
             self.assertEqual(Film(self.folder / "out" / "beam.e").times, times)
 
+    @ONE_RANK
     def test_without_steps_there_is_no_history(self):
         summary = self.solve()
         self.assertNotIn("steps", summary)
         self.assertEqual(files(self.folder / "out"), ["beam.contact.csv", "beam.e", "beam.json"])
         self.assertEqual(Film(self.folder / "out" / "beam.e").times, [1])
 
+    @ONE_RANK
     def test_one_step_is_the_run_without_steps(self):
         for law in LAWS.values():
             whole = self.solve(*law)
@@ -87,6 +93,7 @@ class Steps(RpcTestCase):
             for key in ["energy_J", "contact_force", "max_pressure", "max_dent", "newton_iterations", "linear_iterations"]:
                 self.assertEqual(step[key], whole[key], key)
 
+    @ONE_RANK
     def test_a_foundation_that_forgets_is_that_of_its_last_step(self):
         alone = self.solve(*LOADED, "--set=Steps->Times={4}")
         forgets = self.solve(*LOADED, "--set=Contact->Remembers=false")
@@ -126,6 +133,7 @@ class Steps(RpcTestCase):
         self.assertEqual(rows(self.folder / "out" / "beam.history.csv")[0]["parts"], halved["steps"][0]["parts"])
         self.assertEqual(Film(self.folder / "out" / "beam.e").times, [1])
 
+    @ONE_RANK
     def test_an_energy_tolerance_divides_the_step_in_which_contact_opens(self):
         # A floor presses the beam and goes far away: all work comes back.
         lifted = ["--set=Traction->top->Y=0", "--set=Contact->Yield Stress=inf", "--set=Steps->Times={1, 2}",
@@ -163,6 +171,7 @@ held:
                 self.assertLess(max(forces[3:]), 1e-8 * forces[1])
                 self.assertEqual([step["parts"] for step in steps], [1] * 5)
 
+    @ONE_RANK
     def test_times_that_do_not_rise_are_refused(self):
         result = self.rpc("--input=beam.xml", SMALL, "--set=Steps->Times={1, 2, 2}", code=None)
         self.expect_refusal(result, 2, ['"Steps->Times"', "rise", "got 2 after 2"])
