@@ -10,6 +10,7 @@
 #include "rpc/contact/clearance.hpp"
 #include "rpc/contact/energies.hpp"
 #include "rpc/core/causes.hpp"
+#include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
 
 #include <algorithm>
@@ -32,6 +33,7 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state, double tolerance);
+void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem);
 void read_results(const Problem &problem, StepSolution &s);
 solver::LinearSolverCounts counts_since(const solver::LinearSolverCounts &before, solver::LinearSolverCounts now);
 void add_work(const StepSolution &other, StepSolution &s);
@@ -90,8 +92,7 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
                                                  uzawa.residuals.force_size);
           });
     }
-    if (!uzawa.converged && step.support.by_coulomb_only)
-      uzawa.reason += "; " + because(causes::want_of_friction); // (12.10)
+    if (!uzawa.converged && step.support.by_coulomb_only) tell_want_of_friction(uzawa, problem);
     s.u = s.state.displacement;
     s.state.rest = Teuchos::null; // of the judgement alone
     read_results(problem, s);
@@ -283,6 +284,17 @@ contact::OptimalityResiduals judge(const Problem &problem, const Step &step, con
     contact::forgive_energies_of_rounding(problem.discretization(), problem.model().materials, *now.displacement,
                                           residuals); // (5.5a)
   return residuals;
+}
+
+/// The reason of a step without convergence where friction that follows the pressures must hold the body. What ended the last minimization is
+/// then no reason. (12.10)
+void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem)
+{
+  if (interrupted(problem.discretization().mesh->comm())) return;
+  const std::string ended =
+      uzawa.friction_unsettled ? std::to_string(uzawa.iterations) + " Uzawa iterations were not enough" : uzawa.reason;
+  uzawa.reason = ended + "; " + because(causes::want_of_friction);
+  if (uzawa.friction_unsettled) uzawa.reason_has_residuals = false;
 }
 
 /// Forces with which the Dirichlet conditions hold the body. (2.11)

@@ -91,8 +91,9 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
   ++context_->steps;
   newton_->scale(-1.);
   const bool has_cause = !result.interrupted && std::isfinite(context_->direction_norm);
-  context_->failure =
-      result.reason.empty() || !has_cause ? result.reason : because(causes::linear_solver, result.reason);
+  context_->failure = result.reason;
+  if (has_cause && !result.reason.empty())
+    context_->failure = because(result.broken ? causes::breakdown : causes::linear_solver, result.reason);
   has_newton_ = true;
   return std::isfinite(context_->direction_norm) && !result.broken ? (result.converged ? Ok : NotConverged) : Failed;
 }

@@ -21,9 +21,14 @@ namespace causes
 {
 
 // Of one minimization.
-inline constexpr Cause linear_solver{"linear solver", "a linear solve stopped before its tolerance, or broke down",
+inline constexpr Cause linear_solver{"linear solver", "a linear solve stopped before its tolerance",
                                      "the linear solver gave no direction that Newton's method can take",
                                      "leave the list \"Linear Solver\" out, or raise its \"Maximum Iterations\""};
+inline constexpr Cause breakdown{
+    "breakdown", "a linear solve, or the set-up of its preconditioner, broke down",
+    "the matrix is singular but for rounding, or the linear solver does not suit it",
+    "leave the list \"Linear Solver\" out; without one, bring the stiffnesses of the body and of its springs nearer to "
+    "each other: double precision holds ratios of up to about 1e15"};
 inline constexpr Cause no_descent{
     "no descent", "the functional's slope along Newton's direction is not negative",
     "the functional does not fall along Newton's direction",
@@ -44,7 +49,8 @@ inline constexpr Cause circles{
 inline constexpr Cause stagnation{
     "stagnation", "two more full steps in the same contact states have not lowered the residual",
     "full steps in the same contact states no longer lower the residual",
-    "raise \"Uzawa->Tolerance\" above the residuals that are left, and leave the list \"Linear Solver\" out"};
+    "leave the list \"Linear Solver\" out, whose solves must be good enough, or raise \"Uzawa->Tolerance\" above the "
+    "residuals that are left"};
 
 // Of the Uzawa iteration.
 inline constexpr Cause uzawa_iterations{"Uzawa iterations",
@@ -61,15 +67,16 @@ inline constexpr Cause stuck{
 inline constexpr Cause stuck_by_friction{
     "stuck by friction", "six of friction's problems with given bounds left more than 0.8 of the largest residual",
     "more iterations do not help, for friction's states do not settle",
-    "take smaller load steps (\"Steps->Times\"), or less friction: much of it may leave no equilibrium, or several"};
+    "take less friction, for so much of it may leave no equilibrium, or several; or other load steps "
+    "(\"Steps->Times\")"};
 inline constexpr Cause want_of_friction{
     "want of friction", "nothing but friction that follows the pressures holds the body, and no equilibrium was found",
     "without friction that follows the pressures the load moves the body, and no pressures were found that hold it",
     "raise the friction or what presses the body on the foundation, lower the load, or prescribe a displacement"};
 
-inline constexpr std::array all{linear_solver, no_descent, newton_steps,      status_tests,
-                                no_lower_step, circles,    stagnation,        uzawa_iterations,
-                                rounding,      stuck,      stuck_by_friction, want_of_friction};
+inline constexpr std::array all{linear_solver, breakdown,         no_descent,      newton_steps,     status_tests,
+                                no_lower_step, circles,           stagnation,      uzawa_iterations, rounding,
+                                stuck,         stuck_by_friction, want_of_friction};
 
 } // namespace causes
 
