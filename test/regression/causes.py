@@ -166,6 +166,17 @@ class Causes(RpcTestCase):
             self.provoke("want of friction", {}, remedy, PRESS_FIT)
         self.assertEqual(self.provoked | NEVER_SEEN, set(causes()))
 
+    @ONE_RANK
+    def test_a_step_that_is_divided_in_vain_tells_what_it_ended_with_as_a_whole(self):
+        divided = LIGHT.replace(", Max Halvings: 0", "")  # the lighter the load, the more rounding counts
+        reason = self.summary(divided, code=4)["reason"]
+        part, whole = reason.split("; undivided, the step to t = 1 ended nearer to a solution: ")
+        of = lambda text: float(text.split("KKT residual ")[1].split(",")[0])
+        self.assertLess(of(whole), of(part))
+        for helps in causes()["stuck"][1:]:
+            self.assertIn(helps, whole)
+        self.summary(divided, f"--set=Uzawa->Tolerance={5 * of(whole)}")
+
     @unittest.skipIf(RANKS == 1, "needs several ranks")
     def test_reasons_are_those_of_one_rank(self):
         newton, search = {"NOX->Direction->Method": "Newton"}, "NOX->Line Search->Method"

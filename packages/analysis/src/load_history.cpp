@@ -13,6 +13,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <sstream>
 #include <utility>
 
 namespace rpc::analysis
@@ -178,6 +180,21 @@ StepRecord LoadHistory::broken_off(const std::string &reason) const
   return analysis::broken_off(problem_->model(), last_, tried_, reason);
 }
 
+namespace
+{
+
+/// Where a step to time t was divided in vain, and had come nearer to a solution as a whole than its part that failed, the reasons of both: the
+/// remedy of the former may be the better one.
+void tell_what_came_nearer(const UzawaResult &undivided, const double t, UzawaResult &part)
+{
+  if (!(undivided.residuals.worst() < part.residuals.worst())) return;
+  std::ostringstream reason;
+  reason << part.reason << "; undivided, the step to t = " << t << " ended nearer to a solution: " << undivided.reason;
+  part.reason = reason.str();
+}
+
+} // namespace
+
 StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, const Progress &progress,
                                            const std::function<void(const Problem &, const Step &)> &now)
 {
@@ -205,8 +222,13 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
     --last_.parts;
     kept_ = before; // as if what came after had not been tried
   }
+  std::optional<UzawaResult> undivided;
+  if (!s.uzawa.converged && left.failures == max_halvings_) undivided = s.uzawa;
   s = advance_in_parts(half, then, progress, now);
-  return s.uzawa.converged ? advance_in_parts(t, then, progress, now) : s;
+  if (s.uzawa.converged) s = advance_in_parts(t, then, progress, now);
+  if (undivided && !s.uzawa.converged && !interrupted(problem_->discretization().mesh->comm()))
+    tell_what_came_nearer(*undivided, t, s.uzawa);
+  return s;
 }
 
 StepSolution LoadHistory::solve(const double t, const StepOptions &options, const Progress &progress,
