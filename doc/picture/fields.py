@@ -8,6 +8,8 @@ from matplotlib import colors
 
 ROUNDING = 1e-6  # of the largest value of a film: less is drawn as 0
 CATEGORIES = {"contact_status": ("open", "closed", "yielding", "unseen"), "friction_status": ("none", "sticks", "slips")}
+ERROR = "error_energy_norm"
+DECADES = 3  # of a field on a logarithmic scale: less than its largest value over 10^DECADES has the lowest colour
 NOT_NEGATIVE = ("contact_pressure", "von_mises", "dent", "penetration", "friction_used")
 
 
@@ -18,6 +20,9 @@ def label(name, units):
         return f"{name} [{units['length']}]"
     if name == "cell_size":
         return f"size of the cells [{units['length']}]"
+    if name == ERROR:
+        energy = units["energy"]
+        return f"estimated error of the cells [\u221a{energy if energy.isalpha() else f'({energy})'}]"
     if name.startswith("disp_"):
         return f"displacement in {axes} [{units['length']}]"
     if name.startswith("slip_"):
@@ -57,6 +62,8 @@ def coloring(name, values, contact, style, peak=lambda: 0.0):
     low, high = (values.min(), values.max()) if len(values) else (0.0, 1.0)
     if name == "cell_size" and high > 4 * low > 0:
         return colors.LogNorm(low, high), color_map(style, "body")
+    if name == ERROR and high > 4 * low and high > 0:
+        return colors.LogNorm(max(low, high / 10**DECADES), high, clip=True), color_map(style, "body")
     if name in NOT_NEGATIVE:
         low, high = 0.0, max(high, 0.0)
         most = peak()

@@ -12,7 +12,7 @@ import elements
 
 MOST_LISTED = 12  # times in a message
 BEYOND = 1e100  # are no places, displacements, gaps
-UNITS = {"length": "m", "force": "N", "stress": "Pa"}  # of files that do not name theirs
+UNITS = {"length": "m", "force": "N", "stress": "Pa", "energy": "J"}  # of files that do not name theirs
 
 
 class PictureError(Exception):
@@ -34,7 +34,7 @@ class Result:
     blocks    [(element's name, (cells, nodes per cell))], nodes from 0
     side_sets {name: (facets, 2)} cell and the facet's place in it, both from 0
     nodal     {name: (nodes,)}, cell {name: (cells of all blocks,)}
-    units     {"length": name, "force": name, "stress": name}
+    units     {"length": name, "force": name, "stress": name, "energy": name}
     """
 
     def __init__(self, path, time=None):
@@ -50,7 +50,7 @@ class Result:
 
     def _read(self, file, path, step):
         self.title = getattr(file, "title", "")
-        records = [re.fullmatch(r"unit of (\w+): (\S+)", text) for text in names(file, "info_records")]
+        records = [re.fullmatch(r"unit of (\w+): (.+)", text) for text in names(file, "info_records")]
         self.units = UNITS | {record[1]: record[2] for record in records if record}
         self.dim = len(file.dimensions["num_dim"])
         self.positions = np.zeros((len(file.dimensions["num_nodes"]), 3))

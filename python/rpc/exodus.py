@@ -9,7 +9,7 @@ import numpy as np
 
 from .errors import Error
 
-UNITS = {"length": "m", "force": "N", "stress": "Pa"}  # of files that do not name theirs
+UNITS = {"length": "m", "force": "N", "stress": "Pa", "energy": "J"}  # of files that do not name theirs
 
 
 @dataclasses.dataclass
@@ -27,14 +27,15 @@ class Block:
 
 @dataclasses.dataclass
 class Fields:
-    """Mesh and nodal fields of one time step. fields["von_mises"] is the field of that name, see `<deck>.e` in doc/input/results.md.
+    """Mesh and fields of one time step. fields["von_mises"] is the field of that name, see `<deck>.e` in doc/input/results.md.
 
     time    t of the step
     points  (nodes, dim) [m] of the undeformed body; dim 2 or 3; x is the radius of a body of revolution
     blocks  [Block]
     sides   {name: (facets, 2)} cell, counted over all blocks, and Exodus' number of the facet in it, both from 0
     nodal   {name: (nodes,)}: displacement [m], stress [Pa] (> 0 in tension), contact_pressure [Pa] (>= 0), gap, dent, penetration [m], ...
-    units   {"length": "m", "force": "N", "stress": "Pa"}, as the deck has them
+    cell    {name: (cells,)} of all blocks, one after the other: with "Adapt" error_energy_norm [J^1/2], in 2D per m^1/2
+    units   {"length": "m", "force": "N", "stress": "Pa", "energy": "J"}, as the deck has them
     title   the deck's name
     """
     time: float
@@ -42,14 +43,16 @@ class Fields:
     blocks: list
     sides: dict
     nodal: dict
+    cell: dict
     units: dict
     title: str
 
     def __getitem__(self, name):
-        """(nodes,)  @throws Error that lists the names if there is no such field"""
-        if name not in self.nodal:
-            raise Error(f'fields: there is no field "{name}"; there are {", ".join(sorted(self.nodal))}')
-        return self.nodal[name]
+        """(nodes,), of a field of cells (cells,)  @throws Error that lists the names if there is no such field"""
+        fields = {**self.nodal, **self.cell}
+        if name not in fields:
+            raise Error(f'fields: there is no field "{name}"; there are {", ".join(sorted(fields))}')
+        return fields[name]
 
     def vector(self, stem):
         """(nodes, dim) of the fields stem_x, stem_y, ...: "disp", "contact_normal", "friction", "slip"."""
@@ -129,6 +132,11 @@ class _Part:
     node: np.ndarray
     cells_of: list
 
+    def of_cells(self, name, block):
+        """Of a field, (cells of blocks[block],)."""
+        start = sum(len(cells) for cells in self.cells_of[:block])
+        return self.fields.cell[name][start:start + len(self.cells_of[block])]
+
 
 def _read(path, reader):
     try:
@@ -160,26 +168,29 @@ def _size(file, name):
 
 def _part(file, step):
     node = _numbers(file, "node_num_map", _size(file, "num_nodes"))
-    cell = _numbers(file, "elem_num_map", _size(file, "num_elem"))
+    number = _numbers(file, "elem_num_map", _size(file, "num_elem"))
     blocks, cells_of, start = [], [], 0
     for k, name in enumerate(_names(file, "eb_names"), 1):
         cells, element = np.empty((0, 0), dtype=np.int64), ""
         if f"connect{k}" in file.variables:
             cells, element = np.array(file[f"connect{k}"][:], dtype=np.int64) - 1, file[f"connect{k}"].elem_type
         blocks.append(Block(name, element, node[cells]))
-        cells_of.append(cell[start:start + len(cells)])
+        cells_of.append(number[start:start + len(cells)])
         start += len(cells)
     sides = {}
     for k, name in enumerate(_names(file, "ss_names"), 1):
         columns = np.empty((0, 2), dtype=np.int64)
         if f"elem_ss{k}" in file.variables:
-            columns = np.stack([cell[np.array(file[f"elem_ss{k}"][:], dtype=np.int64) - 1], np.array(file[f"side_ss{k}"][:], dtype=np.int64) - 1], axis=1)
+            columns = np.stack([number[np.array(file[f"elem_ss{k}"][:], dtype=np.int64) - 1], np.array(file[f"side_ss{k}"][:], dtype=np.int64) - 1], axis=1)
         sides[name or f"side {k}"] = columns
     points = [np.array(file["coord" + axis][:], dtype=float) for axis in "xyz"[:_size(file, "num_dim")] if "coord" + axis in file.variables]
     nodal = {name: np.array(file[f"vals_nod_var{k}"][step], dtype=float) if len(node) else np.empty(0) for k, name in enumerate(_names(file, "name_nod_var"), 1)}
-    records = [re.fullmatch(r"unit of (\w+): (\S+)", text) for text in _names(file, "info_records")]
+    cell = {name: np.concatenate([np.empty(0)] + [np.array(file[values][step], dtype=float) for block in range(1, len(blocks) + 1)
+                                                  if (values := f"vals_elem_var{k}eb{block}") in file.variables])
+            for k, name in enumerate(_names(file, "name_elem_var"), 1)}
+    records = [re.fullmatch(r"unit of (\w+): (.+)", text) for text in _names(file, "info_records")]
     units = {**UNITS, **{record[1]: record[2] for record in records if record}}
-    fields = Fields(float(file["time_whole"][step]), np.stack(points, axis=1) if points else np.empty((0, _size(file, "num_dim"))), blocks, sides, nodal,
+    fields = Fields(float(file["time_whole"][step]), np.stack(points, axis=1) if points else np.empty((0, _size(file, "num_dim"))), blocks, sides, nodal, cell,
                     units, getattr(file, "title", ""))
     return _Part(fields, node, cells_of)
 
@@ -191,11 +202,13 @@ def _joined(parts):
     node = np.concatenate([part.node for part in parts])
     _, first = np.unique(node, return_index=True)  # sorted: row n is node n
     of = parts[0].fields
-    blocks = []
+    blocks, cell = [], {name: [np.empty(0)] for name in of.cell}
     for k, block in enumerate(of.blocks):
         own = [part for part in parts if len(part.cells_of[k])]
         cells = np.concatenate([part.fields.blocks[k].cells for part in own]) if own else block.cells
-        order = np.argsort(np.concatenate([part.cells_of[k] for part in own])) if own else []
+        order = np.argsort(np.concatenate([part.cells_of[k] for part in own])) if own else np.empty(0, dtype=np.int64)
+        for name, values in cell.items():
+            values.append(np.concatenate([np.empty(0)] + [part.of_cells(name, k) for part in own])[order])
         blocks.append(Block(block.name, own[0].fields.blocks[k].element if own else block.element, cells[order] if own else cells))
     sides = {}
     for name in of.sides:
@@ -203,4 +216,5 @@ def _joined(parts):
         sides[name] = rows[np.lexsort((rows[:, 1], rows[:, 0]))]
     nodal = {name: np.concatenate([part.fields.nodal[name] for part in parts])[first] for name in of.nodal}
     points = np.concatenate([part.fields.points for part in parts])[first]
-    return Fields(of.time, points, blocks, sides, nodal, of.units, of.title)
+    cell = {name: np.concatenate(values) for name, values in cell.items()}
+    return Fields(of.time, points, blocks, sides, nodal, cell, of.units, of.title)

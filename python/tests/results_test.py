@@ -55,6 +55,12 @@ class Results(TestCase):
             self.assertLess(sizes[0], sizes[2])
             self.assertEqual(2 * sizes[2], result.summary["dofs"])
             self.assertEqual([result.fields(step).time for step in range(3)], [0.2, 0.6, 1.0])
+            for step in range(3):  # as many as there are cells, in every file of the film
+                fields = result.fields(step)
+                self.assertEqual(fields["error_energy_norm"].shape, (sum(len(block.cells) for block in fields.blocks),))
+            estimate = result.summary["error_estimate"]["energy_norm"]
+            self.assertAlmostEqual(np.linalg.norm(result.fields()["error_energy_norm"]), estimate, delta=1e-12 * estimate)
+            self.assertEqual(result.fields().units["energy"], "J/m")
 
     def test_sides_have_their_nodes_whatever_the_element(self):
         places = {"left": (0, 0), "right": (0, 1), "bottom": (1, 0), "top": (1, 1), "back": (2, 0), "front": (2, 1)}

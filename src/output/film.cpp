@@ -9,6 +9,7 @@
 #include "rpc/io/atomic_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <numeric>
@@ -18,6 +19,8 @@ namespace rpc
 {
 namespace
 {
+
+constexpr const char *error_field = "error_energy_norm";
 
 HostView<double *> column(const MultiVector &v, const int stride, const int offset, const LO n, const int col)
 {
@@ -87,10 +90,21 @@ std::vector<io::NodalField> nodal_fields(const Scene &scene, const analysis::Sol
   return fields;
 }
 
-/// The units of the file's numbers as pictures read them.
-std::vector<std::string> unit_records(const UnitNames &units)
+/// What cells have: the estimated error of each in the energy norm, where there is an estimate.
+std::vector<io::CellField> cell_fields(const Scene &scene, const analysis::Solution &s)
 {
-  return {"unit of length: " + units.length, "unit of force: " + units.force, "unit of stress: " + units.stress()};
+  if (!scene.adapt.estimate) return {};
+  const auto squared = to_host(s.squared_errors);
+  HostView<double *> error("rpc::output::error", squared.extent(0));
+  for (std::size_t c = 0; c < squared.extent(0); ++c) error(c) = std::sqrt(std::max(0., squared(c)));
+  return {{error_field, error}};
+}
+
+/// The units of the file's numbers as pictures read them.
+std::vector<std::string> unit_records(const UnitNames &units, const bool per_length)
+{
+  return {"unit of length: " + units.length, "unit of force: " + units.force, "unit of stress: " + units.stress(),
+          "unit of energy: " + units.of(unit::energy, per_length)};
 }
 
 /// The number of the step whose solution this is; after a failure the history has one more.
@@ -161,11 +175,14 @@ void end_parts(const FilmOnDisk &film, const int parts, const double last)
 
 } // namespace
 
-std::unique_ptr<io::ExodusFile> Film::opened(const Scene &scene, const std::string &path,
+std::unique_ptr<io::ExodusFile> Film::opened(const Scene &scene, const analysis::Solution &s, const std::string &path,
                                              const std::vector<std::string> &fields) const
 {
-  return std::make_unique<io::ExodusFile>(path, scene.name, *mesh_, fields, unit_records(scene.model.units),
-                                          std::vector<io::NamedArray>(), scene.output.exodus_files);
+  std::vector<std::string> cell_names;
+  if (scene.adapt.estimate) cell_names.emplace_back(error_field);
+  return std::make_unique<io::ExodusFile>(path, scene.name, *mesh_, fields,
+                                          unit_records(scene.model.units, s.discretization.per_length()),
+                                          std::vector<io::NamedArray>(), scene.output.exodus_files, cell_names);
 }
 
 /// Takes over the parts that a run before has left, as far as it is gone on from, and removes the others. Opens the last one if it is of
@@ -179,7 +196,7 @@ void Film::go_on(const Scene &scene, const analysis::Solution &s, const std::str
   const int parts = static_cast<int>(found.size());
   int taken = 0;
   if (parts > 0) {
-    file_ = opened(scene, film_part(first, parts), fields);
+    file_ = opened(scene, s, film_part(first, parts), fields);
     taken = file_->take_times(film_part(first, parts), before);
     if (taken == 0) file_.reset();
   }
@@ -209,10 +226,10 @@ void Film::write(const Scene &scene, const analysis::Solution &s, const std::str
     if (files_.empty() && scene.has_steps()) go_on(scene, s, first, names);
     if (!file_) {
       files_.push_back(film_part(first, static_cast<int>(files_.size()) + 1));
-      file_ = opened(scene, files_.back(), names);
+      file_ = opened(scene, s, files_.back(), names);
     }
   }
-  file_->write(s.time, fields);
+  file_->write(s.time, fields, cell_fields(scene, s));
   if (scene.has_steps()) file_->publish();
   written_ = number_of(s);
 }

@@ -27,8 +27,8 @@ public:
 
 private:
   void write(const Scene &scene, const analysis::Solution &solution, const std::string &folder);
-  std::unique_ptr<io::ExodusFile> opened(const Scene &scene, const std::string &path,
-                                         const std::vector<std::string> &fields) const;
+  std::unique_ptr<io::ExodusFile> opened(const Scene &scene, const analysis::Solution &solution,
+                                         const std::string &path, const std::vector<std::string> &fields) const;
   void go_on(const Scene &scene, const analysis::Solution &solution, const std::string &first,
              const std::vector<std::string> &fields);
 

@@ -215,6 +215,21 @@ class States(RpcTestCase):
         scene = Scene(Result(str(self.folder / "box.e")), "cell_size")
         self.assertAlmostEqual(scene.layers["body"][..., VALUE].min(), sizes[0], delta=1e-12)
 
+    def test_the_error_of_the_cells(self):
+        for element in ("TRI6", "HEX8"):
+            _, cells = picture.box_file(self.folder / "plain.e", element, n=2, shape=lambda x: x)
+            error = 10.0 ** -np.arange(len(cells))
+            picture.box_file(self.folder / "box.e", element, n=2, shape=lambda x: x, cell={fields.ERROR: error})
+            result = Result(str(self.folder / "box.e"))
+            scene = Scene(result, fields.ERROR)
+            rows = scene.layers["body"]
+            self.assertEqual(len(np.unique(rows[..., VALUE], axis=0)), len(np.unique(rows[:, :1, VALUE])))  # one value a cell
+            self.assertEqual(set(np.unique(rows[..., VALUE])), set(error), element)
+            norm, _ = figure.colorings(scene)["body"]
+            self.assertEqual((norm.vmin, norm.vmax), (1e-3, 1))  # decades below have the lowest colour
+            self.assertEqual(norm(error[-1]), 0)
+            self.assertEqual(fields.label(fields.ERROR, result.units), "estimated error of the cells [\u221aJ]")
+
 
 class Files(RpcTestCase):
     """What is written, what is refused."""

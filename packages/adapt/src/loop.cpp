@@ -62,6 +62,7 @@ Solution with_estimate(const Task &task, const Listener &listener, const Run &ru
     const double tolerance = task.step.uzawa.tolerance;
     s.estimate->rounding = std::max(s.estimate->rounding, tolerance * tolerance * found.step.energies_before); // (5.5b)
     s.largest_estimate = std::max(s.largest_estimate, std::sqrt(s.estimate->total()));
+    found.squared_errors = s.estimate->squared;
   };
   static_cast<analysis::Solution &>(s) = run(all);
   if (!task.adapt.estimate) s.skipped.push_back("error estimate: not asked for");

@@ -31,7 +31,7 @@ std::size_t longest_name(const mesh::Mesh &mesh)
 
 /// Collective.
 void require_names(const mesh::Mesh &mesh, const std::vector<std::string> &fields,
-                   const std::vector<NamedArray> &arrays)
+                   const std::vector<std::string> &cell_fields, const std::vector<NamedArray> &arrays)
 {
   std::optional<std::string> message;
   const auto check_name = [&](const std::string &name, const std::size_t longest) {
@@ -41,26 +41,30 @@ void require_names(const mesh::Mesh &mesh, const std::vector<std::string> &field
   };
   for (const auto &side : mesh.sides) check_name(side.name, mesh::longest_name);
   for (const auto &block : mesh.blocks) check_name(block, mesh::longest_name);
-  for (const auto &field : fields) check_name(field, MAX_NAME_LENGTH);
+  for (const auto *const names : {&fields, &cell_fields})
+    for (const auto &field : *names) check_name(field, MAX_NAME_LENGTH);
   for (const auto &array : arrays) check_name(array.name, MAX_NAME_LENGTH);
   throw_if_any(mesh.comm(), ExitCode::internal_error, message);
 }
 
 /// Collective.
-void require_fields(const mesh::Mesh &mesh, const std::vector<std::string> &names,
-                    const std::vector<NodalField> &fields)
+/// @param what    has a value of each field: "nodes"
+/// @param number  of those that this rank owns
+template <class Field>
+void require_fields(const mesh::Mesh &mesh, const std::vector<std::string> &names, const std::vector<Field> &fields,
+                    const char *const what, const LO number)
 {
   std::optional<std::string> message;
   if (fields.size() != names.size())
     message =
         "output: each time must have " + std::to_string(names.size()) + " fields, got " + std::to_string(fields.size());
   for (std::size_t f = 0; f < fields.size() && !message; ++f) {
-    const NodalField &field = fields[f];
+    const Field &field = fields[f];
     if (field.name != names[f])
       message = "output: the fields must be the same at all times, \"" + names[f] + "\", got \"" + field.name + "\"";
-    if (static_cast<LO>(field.values.extent(0)) != mesh.num_owned_nodes())
-      message = "output: the field \"" + field.name + "\" must have a value for each of " +
-                std::to_string(mesh.num_owned_nodes()) + " owned nodes, got " + std::to_string(field.values.extent(0));
+    if (static_cast<LO>(field.values.extent(0)) != number)
+      message = "output: the field \"" + field.name + "\" must have a value for each of " + std::to_string(number) +
+                " owned " + what + ", got " + std::to_string(field.values.extent(0));
   }
   throw_if_any(mesh.comm(), ExitCode::internal_error, message);
 }
@@ -133,10 +137,11 @@ std::vector<std::string> names_of(const std::vector<NodalField> &fields)
 
 struct ExodusFile::Impl {
   RCP<const Comm> comm;
-  std::vector<std::string> names;            // of the fields
-  std::unique_ptr<ExodusWriter> writer;      // on ranks that write
-  std::optional<mesh::CanonicalOrder> nodes; // joined
-  std::unique_ptr<const ExodusPart> part;    // split
+  std::vector<std::string> names;                   // of the fields
+  std::vector<std::string> cell_names;              // of those that cells have
+  std::unique_ptr<ExodusWriter> writer;             // on ranks that write
+  std::optional<mesh::CanonicalOrder> nodes, cells; // joined
+  std::unique_ptr<const ExodusPart> part;           // split
   int steps = 0;
 };
 
@@ -148,12 +153,13 @@ std::string exodus_file_of(const std::string &path, const int num_ranks, const i
 
 ExodusFile::ExodusFile(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
                        const std::vector<std::string> &fields, const std::vector<std::string> &info,
-                       const std::vector<NamedArray> &arrays, const ExodusFiles files)
+                       const std::vector<NamedArray> &arrays, const ExodusFiles files,
+                       const std::vector<std::string> &cell_fields)
     : mesh_(mesh)
 {
-  require_names(mesh, fields, arrays);
-  impl_.reset(new Impl{mesh.owned_nodes->getComm(), fields, nullptr, std::nullopt, nullptr});
-  const ExodusHeader header{title, info, fields, mesh.element, mesh.blocks, {}, 0, 0};
+  require_names(mesh, fields, cell_fields, arrays);
+  impl_.reset(new Impl{mesh.owned_nodes->getComm(), fields, cell_fields, nullptr, std::nullopt, std::nullopt, nullptr});
+  const ExodusHeader header{title, info, fields, cell_fields, mesh.element, mesh.blocks, {}, 0, 0};
   if (files == ExodusFiles::joined)
     begin_joined(path, header, arrays);
   else
@@ -167,11 +173,11 @@ void ExodusFile::begin_joined(const std::string &path, const ExodusHeader &commo
 {
   const Comm &comm = *impl_->comm;
   impl_->nodes.emplace(impl_->comm, mesh_.node_id, "node");
-  const mesh::CanonicalOrder cells(impl_->comm, mesh_.cell_id, "cell");
+  impl_->cells.emplace(impl_->comm, mesh_.cell_id, "cell");
   ExodusHeader header = common;
   header.block_sizes = block_sizes(mesh_);
   header.num_nodes = impl_->nodes->size();
-  header.num_cells = cells.size();
+  header.num_cells = impl_->cells->size();
   std::vector<SideSet> sides;
   for (const auto &side : mesh_.sides) sides.push_back(gather_side(mesh_, side));
   auto &writer = impl_->writer;
@@ -183,8 +189,8 @@ void ExodusFile::begin_joined(const std::string &path, const ExodusHeader &commo
     impl_->nodes->in_pieces<double>(
         owned_coordinate(mesh_, d).data(), 1,
         [&](const GO first, const std::vector<double> &piece) { writer->put_coordinate(d, first, piece); });
-  cells.in_pieces<int>(owned_connectivity(mesh_).data(), mesh_.element.num_nodes(),
-                       [&](const GO first, const std::vector<int> &piece) { writer->put_cells(first, piece); });
+  impl_->cells->in_pieces<int>(owned_connectivity(mesh_).data(), mesh_.element.num_nodes(),
+                               [&](const GO first, const std::vector<int> &piece) { writer->put_cells(first, piece); });
 }
 
 void ExodusFile::begin_split(const std::string &path, const ExodusHeader &common)
@@ -215,12 +221,9 @@ void ExodusFile::on_writers(const std::function<void()> &work)
     on_root(*impl_->comm, ExitCode::internal_error, work);
 }
 
-void ExodusFile::write(const double time, const std::vector<NodalField> &fields)
+void ExodusFile::write_fields(const int step, const std::vector<NodalField> &fields)
 {
-  require_fields(mesh_, impl_->names, fields);
-  const int step = ++impl_->steps;
   auto &writer = impl_->writer;
-  on_writers([&] { writer->put_time(step, time); });
   for (int f = 0; f < static_cast<int>(fields.size()); ++f) {
     const HostView<double *> &values = fields[f].values;
     if (impl_->part) {
@@ -232,6 +235,34 @@ void ExodusFile::write(const double time, const std::vector<NodalField> &fields)
       });
     }
   }
+}
+
+void ExodusFile::write_cell_fields(const int step, const std::vector<CellField> &fields)
+{
+  auto &writer = impl_->writer;
+  for (int f = 0; f < static_cast<int>(fields.size()); ++f) {
+    const HostView<double *> &values = fields[f].values;
+    if (impl_->part) {
+      const auto mine = impl_->part->at_cells(values);
+      on_writers([&] { writer->put_cell_field(step, f, 0, mine); });
+    } else {
+      impl_->cells->in_pieces<double>(values.data(), 1, [&](const GO first, const std::vector<double> &piece) {
+        writer->put_cell_field(step, f, first, piece);
+      });
+    }
+  }
+}
+
+void ExodusFile::write(const double time, const std::vector<NodalField> &fields,
+                       const std::vector<CellField> &cell_fields)
+{
+  require_fields(mesh_, impl_->names, fields, "nodes", mesh_.num_owned_nodes());
+  require_fields(mesh_, impl_->cell_names, cell_fields, "cells", mesh_.num_owned_cells);
+  const int step = ++impl_->steps;
+  auto &writer = impl_->writer;
+  on_writers([&] { writer->put_time(step, time); });
+  write_fields(step, fields);
+  write_cell_fields(step, cell_fields);
   on_writers([&] { writer->flush_time(); });
   if (writer) writer->keep_time();
 }
@@ -240,7 +271,8 @@ void ExodusFile::write(const double time, const std::vector<NodalField> &fields)
 bool ExodusFile::is_of_this_mesh(const ExodusReader *const file)
 {
   const GO num_nodes = impl_->part ? impl_->part->num_nodes() : impl_->nodes->size();
-  bool same = file && file->num_nodes() == num_nodes && file->field_names() == impl_->names;
+  bool same = file && file->num_nodes() == num_nodes && file->field_names(EX_NODAL) == impl_->names &&
+              file->field_names(EX_ELEM_BLOCK) == impl_->cell_names;
   for (int d = 0; d < mesh_.dim(); ++d) {
     if (impl_->part)
       same = same && file->coordinate(d, 0, num_nodes) == impl_->part->coordinate(d);
@@ -272,15 +304,22 @@ int ExodusFile::take_times(const std::string &older, const std::vector<double> &
     on_writers([&] {
       const int from = static_cast<int>(std::find(times.begin(), times.end(), time) - times.begin()) + 1;
       impl_->writer->put_time(step, time);
+      const auto require_read = [&](const bool read) {
+        RPC_REQUIRE(read, "restart: \"" << path
+                                        << "\" cannot be read. Remove it; the times before the restart are lost then.");
+      };
       for (int f = 0; f < static_cast<int>(impl_->names.size()); ++f)
         for (GO first = 0; first < file->num_nodes(); first += at_once) {
           const GO count = std::min(at_once, file->num_nodes() - first);
           const auto values = file->field(from, f, first, count);
-          RPC_REQUIRE(static_cast<GO>(values.size()) == count,
-                      "restart: \"" << path
-                                    << "\" cannot be read. Remove it; the times before the restart are lost then.");
+          require_read(static_cast<GO>(values.size()) == count);
           impl_->writer->put_field(step, f, first, values);
         }
+      for (int f = 0; f < static_cast<int>(impl_->cell_names.size()); ++f) {
+        const auto values = file->cell_field(from, f);
+        require_read(static_cast<GO>(values.size()) == impl_->writer->num_cells());
+        impl_->writer->put_cell_field(step, f, 0, values);
+      }
       impl_->writer->flush_time();
     });
     if (impl_->writer) impl_->writer->keep_time();
@@ -333,7 +372,7 @@ void end_exodus_after(const std::string &path, const int number, const Comm &com
 void write_exodus(const std::string &path, const std::string &title, const mesh::Mesh &mesh, const double time,
                   const std::vector<NodalField> &fields, const std::vector<std::string> &info, const ExodusFiles files)
 {
-  require_fields(mesh, names_of(fields), fields); // before there is a file
+  require_fields(mesh, names_of(fields), fields, "nodes", mesh.num_owned_nodes()); // before there is a file
   ExodusFile file(path, title, mesh, names_of(fields), info, {}, files);
   file.write(time, fields);
   file.commit();

@@ -119,4 +119,12 @@ std::vector<double> ExodusPart::at_nodes(const HostView<double *> &owned) const
   return values;
 }
 
+std::vector<double> ExodusPart::at_cells(const HostView<double *> &owned) const
+{
+  std::vector<double> values;
+  values.reserve(cell_.size());
+  for (const LO c : cell_) values.push_back(owned(c));
+  return values;
+}
+
 } // namespace rpc::io

@@ -28,6 +28,9 @@ public:
   /// @param owned  (owned nodes)
   /// @return at the file's nodes; collective
   std::vector<double> at_nodes(const HostView<double *> &owned) const;
+  /// @param owned  (owned cells)
+  /// @return at the file's cells
+  std::vector<double> at_cells(const HostView<double *> &owned) const;
 
 private:
   /// What the constructor finds before it asks other ranks.

@@ -54,14 +54,15 @@ public:
       values.clear();
     return values;
   }
-  std::vector<std::string> field_names() const
+  /// @param kind  EX_NODAL, or EX_ELEM_BLOCK for those that cells have
+  std::vector<std::string> field_names(const ex_entity_type kind) const
   {
     int count = 0;
-    if (ex_get_variable_param(id_, EX_NODAL, &count) < 0) return {};
+    if (ex_get_variable_param(id_, kind, &count) < 0) return {};
     std::vector<std::vector<char>> buffers(count, std::vector<char>(MAX_STR_LENGTH + 1, '\0'));
     std::vector<char *> pointers;
     for (auto &buffer : buffers) pointers.push_back(buffer.data());
-    if (count > 0 && ex_get_variable_names(id_, EX_NODAL, count, pointers.data()) < 0) return {};
+    if (count > 0 && ex_get_variable_names(id_, kind, count, pointers.data()) < 0) return {};
     return {pointers.begin(), pointers.end()};
   }
   /// At some nodes. @param step  from 1   @param index  of the field   @param first  node, from 0
@@ -71,6 +72,22 @@ public:
     if (count > 0 && ex_get_partial_var(id_, step, EX_NODAL, index + 1, 1, first + 1, count, values.data()) < 0)
       values.clear();
     return values;
+  }
+  /// At all cells, block by block. @param step  from 1   @param index  of the field
+  std::vector<double> cell_field(const int step, const int index) const
+  {
+    std::vector<double> all;
+    for (int block = 1; block <= ex_inquire_int(id_, EX_INQ_ELEM_BLK); ++block) {
+      ex_block of{};
+      of.id = block;
+      of.type = EX_ELEM_BLOCK;
+      if (ex_get_block_param(id_, &of) < 0) return {};
+      if (of.num_entry == 0) continue;
+      std::vector<double> values(of.num_entry);
+      if (ex_get_var(id_, step, EX_ELEM_BLOCK, index + 1, block, of.num_entry, values.data()) < 0) return {};
+      all.insert(all.end(), values.begin(), values.end());
+    }
+    return all;
   }
   /// @param index  of the array among those that ExodusFile was given
   std::optional<std::vector<double>> array(const int index) const

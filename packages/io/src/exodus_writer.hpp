@@ -32,7 +32,7 @@ struct SideSet {
 /// What the file's header fixes.
 struct ExodusHeader {
   std::string title;
-  std::vector<std::string> info, field_names;
+  std::vector<std::string> info, field_names, cell_field_names;
   mesh::Element element;
   std::vector<std::string> blocks;
   std::vector<GO> block_sizes; // cells in each
@@ -139,20 +139,28 @@ public:
   /// @param first  cell, from 0; they run block by block   @param nodes  (cells, nodes per cell)
   void put_cells(const GO first, const std::vector<int> &nodes)
   {
-    const GO end = first + static_cast<GO>(nodes.size()) / nodes_per_cell_;
-    GO block_begin = 0;
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const GO from = std::max(first, block_begin), to = std::min(end, block_begin + blocks_[b]);
-      if (from < to) {
-        const std::array start = {static_cast<std::size_t>(from - block_begin), std::size_t(0)};
-        const std::array count = {static_cast<std::size_t>(to - from), static_cast<std::size_t>(nodes_per_cell_)};
-        check_netcdf(nc_put_vara_int(netcdf_, cells_[b], start.data(), count.data(),
-                                     nodes.data() + (from - first) * nodes_per_cell_),
-                     "write the cells of");
-      }
-      block_begin += blocks_[b];
-    }
+    in_blocks(first, static_cast<GO>(nodes.size()) / nodes_per_cell_,
+              [&](const std::size_t block, const std::size_t begin, const std::size_t number, const GO offset) {
+                const std::array start = {begin, std::size_t(0)};
+                const std::array count = {number, static_cast<std::size_t>(nodes_per_cell_)};
+                check_netcdf(nc_put_vara_int(netcdf_, cells_[block], start.data(), count.data(),
+                                             nodes.data() + offset * nodes_per_cell_),
+                             "write the cells of");
+              });
   }
+  /// @param first  cell, from 0; they run block by block
+  void put_cell_field(const int step, const int index, const GO first, const std::vector<double> &values)
+  {
+    in_blocks(first, static_cast<GO>(values.size()),
+              [&](const std::size_t block, const std::size_t begin, const std::size_t number, const GO offset) {
+                const std::array start = {static_cast<std::size_t>(step - 1), begin};
+                const std::array count = {std::size_t(1), number};
+                check_netcdf(nc_put_vara_double(netcdf_, cell_fields_[index][block], start.data(), count.data(),
+                                                values.data() + offset),
+                             "write a field of");
+              });
+  }
+  GO num_cells() const { return std::accumulate(blocks_.begin(), blocks_.end(), GO(0)); }
   /// @param step  from 1
   void put_time(const int step, const double time)
   {
@@ -192,6 +200,21 @@ public:
   void commit() { file_.publish(); }
 
 private:
+  /// Calls `put` with the parts of cells first .. first + number - 1 that lie in each block: the block, the first cell in it, how many there
+  /// are, and how many cells lie between `first` and them.
+  template <class Put>
+  void in_blocks(const GO first, const GO number, const Put &put) const
+  {
+    const GO end = first + number;
+    GO block_begin = 0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const GO from = std::max(first, block_begin), to = std::min(end, block_begin + blocks_[b]);
+      if (from < to)
+        put(b, static_cast<std::size_t>(from - block_begin), static_cast<std::size_t>(to - from), from - first);
+      block_begin += blocks_[b];
+    }
+  }
+
   static constexpr std::size_t room_for_file = 1 << 14; // bytes
 
   /// Leaves free bytes between the header, with which the file begins, and the first array. Exodus defines a file in steps, each of which
@@ -210,7 +233,8 @@ private:
     std::string program = "rpc", version = RPC_VERSION, date, time;
     char *qa[1][4] = {{program.data(), version.data(), date.data(), time.data()}};
     check(ex_put_qa(id_, 1, qa), "define");
-    leave_room(header.blocks.size() + sides.size() + arrays.size() + header.field_names.size());
+    leave_room(header.blocks.size() * (1 + header.cell_field_names.size()) + sides.size() + arrays.size() +
+               header.field_names.size());
     const auto &element = header.element;
     check(ex_put_init(id_, header.title.substr(0, MAX_LINE_LENGTH).c_str(), element.dim, header.num_nodes,
                       header.num_cells, static_cast<int64_t>(header.blocks.size()), static_cast<int64_t>(arrays.size()),
@@ -232,6 +256,13 @@ private:
     }
     if (!header.field_names.empty())
       check(ex_put_variable_param(id_, EX_NODAL, static_cast<int>(header.field_names.size())), "define");
+    if (!header.cell_field_names.empty()) {
+      const int number = static_cast<int>(header.cell_field_names.size());
+      check(ex_put_variable_param(id_, EX_ELEM_BLOCK, number), "define");
+      std::vector<int> has; // (blocks, fields)
+      for (const GO cells : blocks_) has.insert(has.end(), number, cells > 0 ? 1 : 0);
+      check(ex_put_truth_table(id_, EX_ELEM_BLOCK, static_cast<int>(blocks_.size()), number, has.data()), "define");
+    }
   }
 
   /// Blocks and sides of the whole mesh.
@@ -248,7 +279,8 @@ private:
 
   void put_names(const ExodusHeader &header, const std::vector<SideSet> &sides, const std::vector<NamedArray> &arrays)
   {
-    std::vector<std::string> coordinates = {"x", "y", "z"}, fields = header.field_names;
+    std::vector<std::string> coordinates = {"x", "y", "z"}, fields = header.field_names,
+                             cell_fields = header.cell_field_names;
     check(ex_put_coord_names(id_, pointers(coordinates).data()), "name the coordinates of");
     for (std::size_t b = 0; b < header.blocks.size(); ++b)
       check(ex_put_name(id_, EX_ELEM_BLOCK, b + 1, header.blocks[b].c_str()), "name the blocks of");
@@ -259,6 +291,10 @@ private:
     if (!fields.empty())
       check(ex_put_variable_names(id_, EX_NODAL, static_cast<int>(fields.size()), pointers(fields).data()),
             "name the fields of");
+    if (!cell_fields.empty())
+      check(
+          ex_put_variable_names(id_, EX_ELEM_BLOCK, static_cast<int>(cell_fields.size()), pointers(cell_fields).data()),
+          "name the fields of");
   }
 
   void put_sides(const std::vector<SideSet> &sides)
@@ -314,6 +350,12 @@ private:
     time_ = variable("time_whole");
     for (std::size_t f = 0; f < header.field_names.size() && header.num_nodes > 0; ++f)
       fields_.push_back(variable("vals_nod_var" + std::to_string(f + 1)));
+    for (std::size_t f = 0; f < header.cell_field_names.size(); ++f) {
+      const std::string stem = "vals_elem_var" + std::to_string(f + 1) + "eb";
+      cell_fields_.emplace_back();
+      for (std::size_t b = 0; b < blocks_.size(); ++b)
+        cell_fields_.back().push_back(blocks_[b] > 0 ? variable(stem + std::to_string(b + 1)) : -1);
+    }
   }
 
   void check(const int status, const char *action) const
@@ -348,7 +390,8 @@ private:
   int id_ = -1;     // the file's number while Exodus writes, else -1
   int netcdf_ = -1; // its number while NetCDF writes, else -1
   std::array<int, 3> coordinates_ = {-1, -1, -1};
-  std::vector<int> cells_, fields_; // by block and by field; these four are NetCDF's numbers of arrays
+  std::vector<int> cells_, fields_;           // by block and by field
+  std::vector<std::vector<int>> cell_fields_; // (fields, blocks); these five are NetCDF's numbers of arrays
   int time_ = -1;
   int begun_ = 0, whole_ = 0; // times that are begun, and whole
   bool published_ = false;

@@ -76,6 +76,7 @@ struct Content {
     block_name = name;
     read_sides(id);
     read_fields(id, step);
+    read_cell_fields(id, step);
     const int steps = static_cast<int>(ex_inquire_int(id, EX_INQ_TIME));
     times.resize(steps);
     if (steps > 0) {
@@ -117,14 +118,36 @@ struct Content {
     }
   }
 
+  void read_cell_fields(const int id, const int step)
+  {
+    int count = 0;
+    EXPECT_EQ(ex_get_variable_param(id, EX_ELEM_BLOCK, &count), 0);
+    for (int f = 1; f <= count; ++f) {
+      char name[256] = {};
+      EXPECT_EQ(ex_get_variable_name(id, EX_ELEM_BLOCK, f, name), 0);
+      cell_field_names.push_back(name);
+      cell_fields.emplace_back();
+      for (int b = 1; b <= blocks; ++b) {
+        ex_block block{};
+        block.id = b;
+        block.type = EX_ELEM_BLOCK;
+        EXPECT_EQ(ex_get_block_param(id, &block), 0);
+        if (block.num_entry == 0) continue;
+        std::vector<double> values(block.num_entry);
+        EXPECT_EQ(ex_get_var(id, step, EX_ELEM_BLOCK, f, b, block.num_entry, values.data()), 0);
+        cell_fields.back().insert(cell_fields.back().end(), values.begin(), values.end());
+      }
+    }
+  }
+
   std::string title, topology, block_name;
   int dim = 0, nodes = 0, cells = 0, blocks = 0, node_sets = 0, side_sets = 0, nodes_per_cell = 0, num_info = 0;
   std::vector<double> times;
   std::array<std::vector<double>, 3> coords;
   std::vector<int> conn;
-  std::vector<std::string> side_names, field_names;
+  std::vector<std::string> side_names, field_names, cell_field_names;
   std::vector<std::vector<int>> side_cells, side_ordinals;
-  std::vector<std::vector<double>> fields;
+  std::vector<std::vector<double>> fields, cell_fields;
 };
 
 /// Of tests of Exodus files.

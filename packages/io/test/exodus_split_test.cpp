@@ -158,6 +158,60 @@ TEST_F(ExodusSplit, SplitFilesGrowTogetherAndTakeTimesOfOlderOnes)
   EXPECT_EQ(joined.take_times(older, {0.5, 1, 2}), 0);
 }
 
+/// A box of two blocks; the first 10 cells are the first one.
+Mesh two_blocks(const rpc::RCP<const rpc::Comm> &comm)
+{
+  Mesh mesh = box({2, 1}, comm);
+  mesh.blocks = {"low", "high"};
+  const auto block = rpc::to_host(mesh.block);
+  for (rpc::LO c = 0; c < mesh.num_owned_cells; ++c) block(c) = mesh.cell_id(c) < 10 ? 0 : 1;
+  Kokkos::deep_copy(mesh.block, block);
+  return mesh;
+}
+
+/// Each cell has its number, times a factor.
+std::vector<rpc::io::CellField> cell_numbers(const Mesh &mesh, const double factor)
+{
+  rpc::HostView<double *> values("values", mesh.num_owned_cells);
+  for (rpc::LO c = 0; c < mesh.num_owned_cells; ++c) values(c) = factor * static_cast<double>(mesh.cell_id(c));
+  return {{"error_energy_norm", values}};
+}
+
+TEST_F(ExodusSplit, CellsHaveTheirFieldsInJoinedAndInSplitFiles)
+{
+  const Mesh mesh = two_blocks(comm_);
+  const std::vector<std::string> names = {"disp_x", "contact_pressure"};
+  for (const auto files : {rpc::io::ExodusFiles::joined, rpc::io::ExodusFiles::split}) {
+    const bool split = files == rpc::io::ExodusFiles::split;
+    const std::string older = scratch_.path("cells.e"), path = scratch_.path("more_cells.e");
+    {
+      rpc::io::ExodusFile file(older, "cells", mesh, names, {}, {}, files, {"error_energy_norm"});
+      EXPECT_THROW(file.write(0.25, fields_of(mesh)), rpc::Error); // lacks the cells' field
+      for (const double t : {0.5, 1.}) file.write(t, fields_of(mesh), cell_numbers(mesh, t));
+      file.commit();
+    }
+    {
+      rpc::io::ExodusFile file(path, "cells", mesh, names, {}, {}, files, {"error_energy_norm"});
+      EXPECT_EQ(file.take_times(older, {1}), 1);
+      file.write(3, fields_of(mesh), cell_numbers(mesh, 3));
+      file.commit();
+      rpc::io::ExodusFile other(scratch_.path("none.e"), "cells", mesh, names, {}, {}, files);
+      EXPECT_EQ(other.take_times(older, {1}), 0); // the older one has a field more
+    }
+    if (!split && !root_) continue;
+    const std::string mine = split ? rpc::io::exodus_file_of(path, comm_->getSize(), comm_->getRank()) : path;
+    for (const int step : {1, 2}) {
+      const Content file(mine, step);
+      EXPECT_EQ(file.cell_field_names, std::vector<std::string>{"error_energy_norm"});
+      ASSERT_EQ(file.cell_fields.size(), 1u);
+      ASSERT_EQ(static_cast<int>(file.cell_fields[0].size()), file.cells);
+      const auto number = split ? numbers_of(mine, EX_ELEM_MAP, file.cells) : std::vector<int>();
+      for (int c = 0; c < file.cells; ++c)
+        EXPECT_EQ(file.cell_fields[0][c], (step == 1 ? 1 : 3) * (split ? number[c] : c)) << c;
+    }
+  }
+}
+
 TEST_F(ExodusSplit, AFileThatOneRankCannotWriteIsAnErrorOnAllOfThem)
 {
   const Mesh mesh = box({2, 1}, comm_);

@@ -48,6 +48,8 @@ struct Solution : StepSolution {
   std::vector<std::string> notes; ///< what the user should know of it besides its numbers, see doc/input/results.md
   double time = 1;                ///< at which it is the solution
   fem::BodyPeaks body;
+  /// (owned cells) Squares of the estimated error in the energy norm [J], in 2D per m; empty where it is not asked for. `solved` adds them.
+  DeviceView<double *> squared_errors;
   std::optional<Memory> memory; ///< what the next load step starts from, where there are several and it converged
   /// (contact points) Pressure that the solution on the previous mesh gave as a start [Pa]; none without a previous mesh.
   std::optional<DeviceView<double *>> start_pressure;

@@ -21,6 +21,12 @@ struct NodalField {
   HostView<double *> values; ///< (owned nodes)
 };
 
+/// A variable of an output file that each cell has one value of.
+struct CellField {
+  std::string name;          ///< at most 32 characters
+  HostView<double *> values; ///< (owned cells)
+};
+
 /// Numbers of an output file that belong to no node, as many as there are.
 struct NamedArray {
   std::string name;           ///< at most 32 characters; the same on all ranks
@@ -50,17 +56,19 @@ public:
   /// @param fields  names, the same at all times
   /// @param info    information records, each cut at 80 characters
   /// @param arrays  those of rank 0 are written; readers see node sets. None with split files
+  /// @param cell_fields  names of those that cells have, the same at all times
   /// @throws rpc::Error on every rank: bad_input for a folder that cannot be written to, internal_error for a name that is too
   ///         long or a failed write
   ExodusFile(const std::string &path, const std::string &title, const mesh::Mesh &mesh,
              const std::vector<std::string> &fields, const std::vector<std::string> &info = {},
-             const std::vector<NamedArray> &arrays = {}, ExodusFiles files = ExodusFiles::joined);
+             const std::vector<NamedArray> &arrays = {}, ExodusFiles files = ExodusFiles::joined,
+             const std::vector<std::string> &cell_fields = {});
   /// Removes the file unless commit() has run.
   ~ExodusFile();
 
   /// Adds a time, larger than those before it, with its fields.
   /// @throws rpc::Error (internal_error) on every rank for other fields, one of the wrong length or a failed write
-  void write(double time, const std::vector<NodalField> &fields);
+  void write(double time, const std::vector<NodalField> &fields, const std::vector<CellField> &cell_fields = {});
   /// Adds times of an older file of the same mesh and fields, in their order; nothing if it is not such a file, joined or split as this.
   /// @param wanted  rising; those that the older file has too are added
   /// @return how many were
@@ -75,6 +83,8 @@ private:
   void begin_joined(const std::string &path, const ExodusHeader &header, const std::vector<NamedArray> &arrays);
   void begin_split(const std::string &path, const ExodusHeader &header);
   void on_writers(const std::function<void()> &work);
+  void write_fields(int step, const std::vector<NodalField> &fields);
+  void write_cell_fields(int step, const std::vector<CellField> &fields);
   bool is_of_this_mesh(const ExodusReader *file);
   const mesh::Mesh &mesh_;
   std::unique_ptr<Impl> impl_;
