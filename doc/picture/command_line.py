@@ -25,7 +25,7 @@ all files of the run, RESULT.e-s0002 and so on too: one for each mesh of its loa
 and the state along the contact sides; RESULT.history.csv, of load steps, force against displacement and the energies, or with --columns any
 of its columns; RESULT.json the estimated error over the adapted meshes. Several tables of one kind, each as FILE or LABEL=FILE, go into one picture. doc/pictures.md has examples."""
 OF_BODIES = ("field", "scale", "time", "window", "cut", "view")
-OF_TABLES = ("columns", "over", "range")
+OF_TABLES = ("columns", "over", "range", "centre")
 
 
 class Parser(argparse.ArgumentParser):
@@ -83,6 +83,11 @@ def span(text):
     return low, high
 
 
+def numbers(text):
+    """Numbers between commas."""
+    return [number(part) for part in text.split(",")]
+
+
 def words(text):
     """Names between commas."""
     found = [part.strip() for part in text.split(",")]
@@ -129,6 +134,8 @@ def options(arguments):
     tables.add_argument("--over", metavar="NAME", help="column to the right; of contact sides x, y, z, s (the length along the surface), or "
                         "radius; default: chosen")
     tables.add_argument("--range", metavar="LOW,HIGH", help="part of it that is shown; default: all")
+    tables.add_argument("--centre", metavar="X,Y", help="where the radius is 0, in the directions across which it is measured; default: the middle of "
+                        "what bears a pressure, or the plane of symmetry at which that ends")
     found = parser.parse_args(arguments)
     found.style = parsed(style_of, "style", found.style, "light, dark or print")
     found.scale = parsed(factor, "scale", found.scale, "a number >= 0")
@@ -139,6 +146,7 @@ def options(arguments):
     found.view = parsed(vector, "view", found.view, "three numbers that are not all 0, such as 1,-1,0.5")
     found.columns = parsed(words, "columns", found.columns, "names of columns, such as pressure,gap")
     found.range = parsed(span, "range", found.range, "two numbers, such as 0,0.5, the lower one first")
+    found.centre = parsed(numbers, "centre", found.centre, "a number for each direction of the radius, such as 1.5,0")
     found.tables = are_tables(found)
     first = found.results[0]
     found.output = found.output or output_beside(table.path_of(first) if found.tables else first)
@@ -201,7 +209,7 @@ def diagram_of(found):
     tables = table.tables_of(found.results, len(found.style.curves))
     if tables[0].kind == "history" and all(getattr(found, name) is None for name in OF_TABLES):
         return history.compose(tables, found.style)
-    return curves.compose(tables, found.columns, found.over, found.range, found.style)
+    return curves.compose(tables, found.columns, found.over, found.range, found.style, found.centre)
 
 
 def main(arguments):

@@ -18,20 +18,26 @@ LOGARITHMIC = ("dofs", "relative_estimate")
 FROM_ZERO = ("pressure", "friction", "max_pressure", "friction_used")
 
 
-def compose(tables, columns, over, span, style):
+def compose(tables, columns, over, span, style, centre=None):
     """A panel for each column, one above the other, as a figure.
 
     @param tables   [Table] of one kind
     @param columns  names; None: chosen
     @param over     name of the column to the right, or "radius"; None: chosen
     @param span     (least, largest) of it that is shown; None: all
+    @param centre   where the radius is 0, a number for each of the directions across which it is measured; None: chosen
     """
     columns = chosen_columns(tables) if columns is None else columns
     over = chosen_axis(tables[0]) if over is None else over
     if len(columns) > MOST_PANELS:
         raise PictureError(f"--columns must name at most {MOST_PANELS} columns, got {len(columns)}")
     axes_of_radius = tables[0].radius_axes() if over == RADIUS and tables[0].kind == "contact" else ()
-    along = [places(table, over, axes_of_radius) for table in tables]
+    if centre is not None and len(centre) != len(axes_of_radius):
+        where = f"of {' and '.join(axes_of_radius)}, across which the radius is measured" if axes_of_radius else "no numbers without --over=radius"
+        raise PictureError(f'"{tables[0].path}": --centre must be {len(axes_of_radius)} number{"s" * (len(axes_of_radius) != 1)} {where}, got {len(centre)}')
+    if centre is None and axes_of_radius:
+        centre = tables[0].radius_centre(axes_of_radius)
+    along = [places(table, over, axes_of_radius, centre) for table in tables]
     require_something(tables, along, over, span)
     for table in tables:
         for name in columns:
@@ -50,7 +56,7 @@ def compose(tables, columns, over, span, style):
                 add_targets(panel, tables, style)
         if over in LOGARITHMIC:
             panels[-1, 0].set_xscale("log")
-        panels[-1, 0].set_xlabel(tables[0].name_of(over, axes_of_radius))
+        panels[-1, 0].set_xlabel(tables[0].name_of(over, axes_of_radius, centre))
         if span is not None:
             panels[-1, 0].set_xlim(span)
             for panel in panels[:, 0]:
@@ -81,10 +87,10 @@ def chosen_axis(table):
     return "s" if len(parts(table)) == 1 else "x"
 
 
-def places(table, over, axes):
-    """(rows,) where points lie. @param axes  of a radius"""
+def places(table, over, axes, centre):
+    """(rows,) where points lie. @param axes, centre  of a radius"""
     if over == RADIUS and table.kind == "contact":
-        found = np.sqrt(sum(table.column(axis, "over") ** 2 for axis in axes))
+        found = np.sqrt(sum((table.column(axis, "over") - at) ** 2 for axis, at in zip(axes, centre)))
     else:
         found = table.column(over, "over")
     if not np.isfinite(found).all():

@@ -17,6 +17,7 @@ WORDS = ("state", "friction_state", "side", "reason")  # columns that have no nu
 ORDERED = ("none", "open", "closed", "yielding", "unseen", "sticks", "slips")  # of categories
 MOST_CATEGORIES = 12
 RADIUS = "radius"
+NEAR = 1e-6  # of the extent of a side: places are the same
 # Names and units of columns where the headings have none; of history files {force}: N/m, {energy}: J/m in the plane.
 MEANING = [
     ("[xyz]", "{0}", "m"), ("s", "length along the surface", "m"), ("radius", "{radius}", "m"), ("area", "area of a point", "m^2"),
@@ -123,11 +124,31 @@ class Table:
         extents = [np.ptp(self.column(axis, "over")[bearing if bearing.any() else slice(None)]) for axis in axes]
         return [axis for k, axis in enumerate(axes) if k != int(np.argmin(extents))]
 
-    def name_of(self, name, axes=""):
-        """What an axis says of a column. @param axes  those of a radius"""
+    def radius_centre(self, axes):
+        """(axes,) where the radius is 0: in each direction the middle of what bears a pressure. Where that ends at one end of the side alone,
+        or at both and one of them is 0, a plane of symmetry is taken to be there."""
+        bearing = self.columns["pressure"] > 0
+        bearing = bearing if bearing.any() else np.ones(len(bearing), dtype=bool)
+        centre = []
+        for axis in axes:
+            side = self.column(axis, "over")
+            pressed, near = side[bearing], NEAR * np.ptp(side)
+            ends = [end for end, last in ((side.min(), pressed.min()), (side.max(), pressed.max())) if abs(end - last) <= near]
+            planes = ends if len(ends) == 1 else [end for end in ends if abs(end) <= near]
+            middle = planes[0] if planes else 0.5 * (pressed.min() + pressed.max())
+            centre.append(0.0 if abs(middle) <= near else float(middle))
+        return centre
+
+    def name_of(self, name, axes="", centre=()):
+        """What an axis says of a column. @param axes, centre  those of a radius"""
         plane = "contact_length" in self.columns
         units = {"force": "N/m" if plane else "N", "energy": "J/m" if plane else "J", "volume": "m^2" if plane else "m^3"}
-        radius = rf"radius $\sqrt{{{' + '.join(axis + '^2' for axis in axes)}}}$" if len(axes) > 1 else f"radius |{''.join(axes)}|"
+        away = [f"{axis} {'-' if at > 0 else '+'} {abs(at):.4g}" if at else axis for axis, at in zip(axes, centre or [0] * len(axes))]
+        if len(axes) > 1:
+            squares = " + ".join(f"({text})^2" if " " in text else f"{text}^2" for text in away)
+            radius = rf"radius $\sqrt{{{squares}}}$"
+        else:
+            radius = f"radius |{''.join(away)}|"
         for pattern, text, unit in MEANING:
             match = re.fullmatch(pattern, name)
             if match:

@@ -95,6 +95,32 @@ class Diagrams(RpcTestCase):
         self.assertLess(abs(friction - 0.5 * np.maximum(1 - x**2, 0)).max(), 1e-12)
         self.assertEqual(axes.lines[0].get_linestyle(), "None")
 
+    def test_the_radius_begins_where_contact_has_its_middle(self):
+        def pressed(low, high, at, reach):
+            """A square of points, pressed within `reach` of a point."""
+            lines = ["x,y,z,area,u_nu,gap,pressure,state,side"]
+            for x in np.linspace(low, high, 21):
+                for y in np.linspace(low, high, 21):
+                    lines.append(f"{x},{y},0,1,0,0,{max(1 - ((x - at[0])**2 + (y - at[1])**2) / reach**2, 0)},closed,skin")
+            (self.folder / "a.contact.csv").write_text("\n".join(lines) + "\n")
+            return Table(str(self.folder / "a.contact.csv"))
+        for low, high, at, reach in ((0, 2, (1, 1), 0.45),    # a whole body aside of the origin
+                                     (0, 2, (0, 0), 0.45),    # a quarter
+                                     (3, 5, (3, 4), 0.45),    # half of one, aside of the origin
+                                     (-1, 1, (0, 0), 9),      # all is pressed
+                                     (0, 1, (0, 0), 9)):      # all of a quarter
+            table = pressed(low, high, at, reach)
+            np.testing.assert_allclose(table.radius_centre(table.radius_axes()), at, atol=1e-12, err_msg=f"{low} {at} {reach}")
+        table = pressed(0, 2, (1, 1), 0.45)
+        (axes,) = self.compose([table], ["pressure"], "radius").axes
+        self.assertEqual(axes.get_xlabel(), r"radius $\sqrt{(x - 1)^2 + (y - 1)^2}$ [m]")
+        points = axes.collections[0].get_offsets() if axes.collections else axes.lines[0].get_xydata()
+        self.assertAlmostEqual(points[np.argmax(points[:, 1]), 0], 0, delta=1e-12)
+        (axes,) = curves.compose([table], ["pressure"], "radius", None, style.LIGHT, [0.5, 0]).axes
+        self.assertEqual(axes.get_xlabel(), r"radius $\sqrt{(x - 0.5)^2 + y^2}$ [m]")
+        curves.plt.close(axes.figure)
+        self.assertEqual(self.picture("a.contact.csv", "--centre=0.9,-1", "--output=a.png"), (0, "wrote a.png\n", ""))
+
     def test_derived_columns(self):
         table = contact_file(self.folder / "a.contact.csv", units=True, q_x=lambda x: -x)
         self.assertLess(abs(table.columns["penetration"] - 0.1 + table.columns["gap"]).max(), 1e-12)
@@ -203,6 +229,7 @@ class Refusals(RpcTestCase):
     def setUp(self):
         super().setUp()
         contact_file(self.folder / "a.contact.csv")
+        space_file(self.folder / "b.contact.csv")
         picture.history_file(self.folder / "a.history.csv")
 
     def test_of_options(self):
@@ -212,6 +239,10 @@ class Refusals(RpcTestCase):
         self.expect_refusal_of(["a.contact.csv", "--over=radus"], '--over must name a column of numbers, got "radus" (did you mean radius?)')
         self.expect_refusal_of(["a.contact.csv", "--over=state"], '--over must name a column of numbers, got "state"')
         self.expect_refusal_of(["a.history.csv", "--over=radius"], '"a.history.csv": --over must name', 'got "radius"')
+        self.expect_refusal_of(["b.contact.csv", "--centre=1"], '"b.contact.csv": --centre must be 2 numbers of x and y, across which', "got 1")
+        self.expect_refusal_of(["a.contact.csv", "--over=x", "--centre=1"], "no numbers without --over=radius", "got 1")
+        self.expect_refusal_of(["b.contact.csv", "--centre=1,two"], "--centre must be a number for each direction", '"1,two"')
+        self.expect_refusal_of(["a.e", "--centre=1,2"], "--centre does not go with it")
         for text in ("", ",", "pressure,,gap"):
             self.expect_refusal_of(["a.contact.csv", f"--columns={text}"], "--columns must be names of columns, such as", f'got "{text}"')
         self.expect_refusal_of(["a.contact.csv", "--over="], '--over must name', 'got ""')
