@@ -190,5 +190,4 @@ def mindlin():
          Quantity("width that sticks, 2c", "m", 2 * c, result("stick_length"), NO_BAR_OF, 3),
          Quantity("largest pressure", "Pa", 2000 / (1 - nu**2) * a / (2 * R), result("max_pressure"), (0, "max_pressure"), 2)],
         ["--window=-1.6,-0.6,1.6,1"],
-        remark="The bar of the force is that of the vector, and counts for both components. The gap does not jump here: what the program says of the largest pressure misjudges "
-               "nearly incompressible bodies, whose surface beside a contact opens by more than λ + 2μ lets expect.")
+        remark="The bar of the force is that of the vector, and counts for both components.")

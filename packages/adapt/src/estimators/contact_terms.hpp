@@ -86,6 +86,20 @@ struct ContactTerms {
     return contact::from_columns(column);
   }
 
+  /// Whether the foundation gives way by as much as a layer of the body that is as deep as the facet is long: then pressures are bounded.
+  KOKKOS_FUNCTION bool on_springs(const LO f, const std::size_t a) const
+  {
+    const int of = block(cell(f));
+    return contact::resting_penetration(lame(of, 0) + 2 * lame(of, 1), law_at(f, a)) >= size(f);
+  }
+
+  /// E/(1 - nu^2), in plane stress E: of what the surface gives way under a pressure [Pa].
+  KOKKOS_FUNCTION double surface_modulus(const LO f) const
+  {
+    const double lambda = lame(block(cell(f)), 0), mu = lame(block(cell(f)), 1);
+    return 4 * mu * (lambda + mu) / (lambda + 2 * mu);
+  }
+
   /// The state of the contact law at the nodes of a facet, or mixed: then the state between the nodes is not known.
   enum class FacetState { open = 1, closed = 2, yielding = 4, mixed };
   KOKKOS_FUNCTION FacetState state_of(const LO f) const

@@ -85,8 +85,7 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
   Kokkos::parallel_reduce(
       "rpc::adapt::singular_nodes", facets,
       KOKKOS_LAMBDA(const LO f, double &largest, double &edges) {
-        const int of = terms.block(terms.cell(f));
-        const double modulus = terms.lame(of, 0) + 2 * terms.lame(of, 1);
+        const double modulus = terms.surface_modulus(f);
         for (int a = 0; a < 2; ++a) {
           const LO node = terms.facets(f, a);
           const double p = node < num_owned ? terms.field(node, int(pressure)) : 0;
@@ -97,6 +96,7 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
             for (int k = traction; k < traction + 3; ++k) square += terms.field(node, k) * terms.field(node, k);
             if (math::sqrt(square) > Jumps::seen * terms.highest) edges += 1;
           }
+          if (terms.on_springs(f, a)) continue;
           // A curved gap has as much at the neighbours: what they have too is no kink.
           double beside = 0;
           if (slopes.after(node) >= 0) beside = math::fmax(beside, seen(slopes.after(node), int(kink)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/adapt/estimators/recovered.hpp"
 
+#include "gap_slopes.hpp"
 #include "jumps.hpp"
 #include "rpc/fem/rounding.hpp"
 #include "rpc/fem/stress.hpp"
@@ -153,6 +154,8 @@ struct PeakDifference {
 /// What the nodes of the facets tell of the largest pressure and of the ends of contact.                          (10.8)
 struct NodalPressures {
   ContactTerms terms; // in
+  GapSlopes slopes;   // in
+  ReadColumns around; // see gap_slopes()  in
   double highest = 0; // pressure  [Pa]  in
   static constexpr double near_peak = 0.98;
   static constexpr double jump = 0.1; // of the yield stress between nodes of a facet, over the lower one
@@ -171,6 +174,7 @@ struct NodalPressures {
     double area = 0;
     for (int q = 0; q < points; ++q) area += terms.measure(f * points + q);
     const double smooth = terms.smooth_opening(f);
+    const bool at_once = rises_at_once(slopes, around, f, smooth);
     double most = at(f, 0, pressure), least = most;
     for (int a = 0; a < nodes; ++a) {
       const double p = at(f, a, pressure), xi = contact::yield_limit(terms.law_at(f, a));
@@ -179,7 +183,9 @@ struct NodalPressures {
       for (int b = 0; b < nodes; ++b) {
         const double other = at(f, b, pressure), other_xi = contact::yield_limit(terms.law_at(f, b));
         if (p >= xi && other < other_xi && other_xi > highest && other_xi > (1 + jump) * xi) yield_jumps += 1;
-        if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) > smooth) gap_jumps += 1;
+        if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) > smooth && at_once &&
+            !terms.on_springs(f, a))
+          gap_jumps += 1;
       }
     }
     if (most >= near_peak * highest) drop = math::fmax(drop, (most - least) / highest);
@@ -246,8 +252,13 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
       add_to_cells(side, unseen.unseen_squared[k], estimate.unseen_squared);
       take_half_of_least(side, unseen.unseen_width[k], estimate.seen_from);
     }
-    Kokkos::parallel_reduce("rpc::adapt::nodal_pressures", facets, NodalPressures{terms, highest},
-                            Kokkos::Max<double>(drop_of_side), of_side[3], of_side[4], of_side[5]);
+    const GapSlopes slopes{
+        terms, mesh.coords, mesh.element.facet().num_vertices(),
+        DeviceView<double **>("rpc::adapt::steepest_gap", terms.field.extent(0), int(GapSlopes::num_around))};
+    const auto around = gap_slopes(d, slopes);
+    const NodalPressures nodal{terms, slopes, around->getLocalViewDevice(Tpetra::Access::ReadOnly), highest};
+    Kokkos::parallel_reduce("rpc::adapt::nodal_pressures", facets, nodal, Kokkos::Max<double>(drop_of_side), of_side[3],
+                            of_side[4], of_side[5]);
     drop = std::max(drop, drop_of_side);
     const SingularNodes singular = singular_nodes(d, terms);
     kink = std::max(kink, singular.kink);

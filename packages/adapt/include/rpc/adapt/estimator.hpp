@@ -17,7 +17,8 @@ struct PressurePeak {
   double drop =
       0; ///< by how much the pressure falls within a facet whose highest is 0.98 of it, over the largest pressure
   bool yield_jump = false; ///< a part that yields borders on a higher yield stress: the pressure is singular in between
-  bool gap_jump = false;   ///< contact ends where the gap jumps: the pressure is singular there
+  bool gap_jump =
+      false; ///< contact ends on a rigid foundation where the gap jumps, or has a kink: the pressure is singular there
   bool friction_jump = false; ///< the traction of a body that slips jumps: the pressure is singular there
   bool friction_edge = false; ///< contact with friction reaches an end of the side, where the pressure may be singular
   double kink =
