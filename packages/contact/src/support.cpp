@@ -3,6 +3,7 @@
 
 #include "held_part.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/point.hpp"
 #include "rpc/fem/hinges.hpp"
 
 #include <Teuchos_TimeMonitor.hpp>
@@ -85,6 +86,33 @@ std::vector<int> carrying_sides(const Context &context, const HeldPart &held, co
   refuse(message.str());
 }
 
+/// "the resultant of the load, 10 [N/m] along (0, -1), passes through (3.5, 0.5)" of a load that presses a part on the foundation: that it
+/// turns the part is a matter of where it acts. Empty for others. Collective.
+std::string where_it_presses(const Context &context, const HeldPart &held, const fem::Resultant &load)
+{
+  const int dim = context.d.dim();
+  RigidMotion along{};
+  std::copy_n(load.force.begin(), dim, along.begin());
+  const double size = std::sqrt(dot(along, along));
+  if (!(size > 1e-6 * load.magnitude)) return "";
+  for (double &entry : along) entry /= size;
+  const std::vector<double> q = held.coordinates(along);
+  const RigidMotion left = held.motion(q); // less than all of it where displacements are prescribed against it
+  const Furthest against = held.furthest(q);
+  double resisted = 0;
+  for (std::size_t j = 0; j < q.size(); ++j) resisted += against.at[j] * q[j];
+  if (!(dot(left, along) > 1 - 1e-9) || !(resisted > 0)) return "";
+  const fem::Part &part = context.parts.part[held.part()];
+  const RigidMotion &f = load.force;
+  const Point force{f[0], f[1], dim == 3 ? f[2] : 0.};
+  const Point moment{dim == 3 ? part.radius * f[5] : 0., dim == 3 ? -part.radius * f[4] : 0.,
+                     part.radius * f[dim == 3 ? 3 : 2]}; // about the centre
+  const Point arm = scaled(1 / (size * size), cross(force, moment));
+  const auto words = context.words(along, held.part());
+  return "the resultant of the load, " + context.amount(size, words) + ' ' + words.where + ", passes through " +
+         fem::place_in_words({part.centre[0] + arm[0], part.centre[1] + arm[1], part.centre[2] + arm[2]}, part, dim);
+}
+
 /// The load along `motion` is more than the foundation does against it; collective.
 [[noreturn]] void refuse_load(const Context &context, const HeldPart &held, const RigidMotion &motion,
                               const fem::Resultant &load)
@@ -93,6 +121,7 @@ std::vector<int> carrying_sides(const Context &context, const HeldPart &held, co
   const double pushed = dot(load.force, motion), carried = dot(held.carried(motion), motion);
   const std::string name = context.name(held.part());
   const std::string resultant = context.amount(pushed / words.size, words);
+  const std::string presses = words.rotates ? where_it_presses(context, held, load) : "";
   std::ostringstream message;
   if (carried > 1e-6 * pushed) {
     std::vector<std::string> names;
@@ -105,7 +134,10 @@ std::vector<int> carrying_sides(const Context &context, const HeldPart &held, co
       message << "the load pushes " << name << " against " << sides_text(names) << " with a resultant of " << resultant
               << " " << words.where << "; ";
     message << "the foundation " << (words.rotates ? "of " + sides_text(names) + " " : "") << "carries at most "
-            << context.amount(carried / words.size, words) << ", where all of it yields. Lower the load, or raise";
+            << context.amount(carried / words.size, words) << ", where all of it yields. "
+            << (presses.empty()
+                    ? std::string("Lower the load, or raise")
+                    : "T" + presses.substr(1) + ". Lower the load, move it to where more is carried, or raise");
     for (std::size_t k = 0; k < sides.size(); ++k)
       message << (k > 0 ? ", \"" : " \"") << context.options[sides[k]].path << "->Yield Stress\"";
     message << ".";
@@ -116,9 +148,12 @@ std::vector<int> carrying_sides(const Context &context, const HeldPart &held, co
     else
       message << "the load pulls " << name << " away from the foundation: its resultant is " << resultant << " "
               << words.where;
-    message
-        << ", and nothing holds against it. Change the load, or prescribe a displacement in \"Dirichlet\" that stops "
-           "this motion.";
+    message << ", and nothing holds against it";
+    if (presses.empty())
+      message << ". Change the load";
+    else
+      message << "; " << presses << ". Move the load to where the foundation holds it";
+    message << ", or prescribe a displacement in \"Dirichlet\" that stops this motion.";
   }
   refuse(message.str());
 }

@@ -257,11 +257,13 @@ TEST(Support, OfAnEccentricLoadIsAMatterOfItsMoment)
   EXPECT_TRUE(overhanging(inf, 0.5).check().by_contact_only);
   EXPECT_TRUE(overhanging(inf, 1.5).check().by_contact_only);
   overhanging(inf, 3.5).refuses(
-      {"turns the body away from the foundation: about (2, 0), clockwise, its moment is 15 [N m/m]"});
+      {"turns the body away from the foundation: about (2, 0), clockwise, its moment is 15 [N m/m]",
+       "the resultant of the load, 10 [N/m] along (0, -1), passes through (3.5, 0.5). Move the load"});
   EXPECT_TRUE(overhanging(20, 0.5).check().by_contact_only);
   // 2.6 + 5.2 + 2.6 N at 0, 1, 2 m would carry 10 N, though not at 0.5 m
   overhanging(5.2, 0.5).refuses({"the load turns the body about (", "), counterclockwise, with a moment of", "[N m/m]",
-                                 "the foundation of side \"a bottom\" carries at most"});
+                                 "the foundation of side \"a bottom\" carries at most",
+                                 "The resultant of the load, 10 [N/m] along (0, -1), passes through (0.5, 0.5)"});
 }
 
 TEST(Support, OfABodyThatMaySlideIsNone)

@@ -10,7 +10,17 @@
 namespace rpc::fem
 {
 
-/// "(1, 0.5)" for messages; numbers at the rounding of `scale` are 0.
+/// "(1, 0.5)" for messages.
+/// @param rounding  numbers are multiples of it
+inline std::string rounded_point_text(const Point &x, const int dim, const double rounding)
+{
+  std::ostringstream text;
+  for (int c = 0; c < dim; ++c) text << (c > 0 ? ", " : "(") << std::round(x[c] / rounding) * rounding + 0.; // no -0
+  text << ")";
+  return text.str();
+}
+
+/// The same; numbers at the rounding of `scale` are 0.
 inline std::string point_text(const Point &x, const int dim, const double scale)
 {
   std::ostringstream text;

@@ -13,6 +13,9 @@ namespace rpc::fem
 namespace
 {
 
+// Searches for motions end with so much of a part's radius between them and what is meant, such as (8e-6, -1, 0).
+constexpr double known_to = 1e-4;
+
 double norm(const RigidMotion &a)
 {
   return std::sqrt(dot(a, a));
@@ -269,6 +272,11 @@ std::vector<RigidMotion> readable_basis(std::vector<RigidMotion> motions, const 
   return motions;
 }
 
+std::string place_in_words(const Point &x, const Part &part, const int dim)
+{
+  return rounded_point_text(x, dim, std::pow(10, std::floor(std::log10(known_to * part.radius))));
+}
+
 MotionInWords in_words(const RigidMotion &q, const Part &part, const int dim)
 {
   const Point t{q[0], q[1], dim == 3 ? q[2] : 0.};
@@ -277,19 +285,19 @@ MotionInWords in_words(const RigidMotion &q, const Part &part, const int dim)
   words.rotates = length(omega) * part.radius > 1e-6 * length(t);
   words.size = words.rotates ? length(omega) : length(t);
   if (!words.rotates) {
-    words.where = "along " + point_text(scaled(1 / words.size, t), dim, 1);
+    words.where = "along " + rounded_point_text(scaled(1 / words.size, t), dim, known_to);
     return words;
   }
   // r = 0 at centre + omega x t / |omega|^2, in 3D up to the advance along the axis
   const Point offset = scaled(1 / (words.size * words.size), cross(omega, t));
   const Point at{part.centre[0] + offset[0], part.centre[1] + offset[1], part.centre[2] + offset[2]};
-  const std::string place = point_text(at, dim, part.radius);
+  const std::string place = place_in_words(at, part, dim);
   if (dim == 2) {
     words.where = "about " + place + (omega[2] > 0 ? ", counterclockwise" : ", clockwise");
     return words;
   }
   const Point axis = scaled(1 / words.size, omega);
-  words.where = "about the axis through " + place + " along " + point_text(axis, dim, 1);
+  words.where = "about the axis through " + place + " along " + rounded_point_text(axis, dim, known_to);
   const double advance = (t[0] * axis[0] + t[1] * axis[1] + t[2] * axis[2]) / words.size;
   if (std::abs(advance) > 1e-6 * part.radius) {
     std::ostringstream screw;

@@ -242,5 +242,16 @@ TEST(MotionInWords, NamesTheAxisOfAScrew)
   EXPECT_EQ(words.where, "about the axis through (1, 4, 3) along (0, 0, 1) that advances 0.5 m per radian");
 }
 
+TEST(MotionInWords, RoundsWhatSearchesLeave)
+{
+  fem::Part part;
+  part.centre = {1, 2, 3};
+  part.radius = 2;
+  EXPECT_EQ(fem::in_words({7.98598e-06, -1, -1e-7}, part, 3).where, "along (0, -1, 0)");
+  EXPECT_EQ(fem::in_words({0.6, -0.8}, part, 2).where, "along (0.6, -0.8)");
+  EXPECT_EQ(fem::in_words({1, 0, 0.25, 1, 1e-5, 0}, part, 3).where.substr(0, 52),
+            "about the axis through (1, 4, 3) along (0, 0, 1) tha");
+}
+
 } // namespace
 } // namespace rigid_motion_test

@@ -94,5 +94,7 @@ struct MotionInWords {
   std::string text() const { return (rotates ? "rotation " : "translation ") + where; }
 };
 MotionInWords in_words(const RigidMotion &q, const Part &part, int dim);
+/// "(2, 0)": a place beside a part, to as many digits as searches for motions know.
+std::string place_in_words(const Point &x, const Part &part, int dim);
 
 } // namespace rpc::fem
