@@ -107,8 +107,9 @@ void SeldomMeant::after(const analysis::Solution &s)
 {
   smallest_gap_ =
       std::min(smallest_gap_, contact::smallest_gap(s.discretization.mesh->comm(), s.step.contact, s.contact));
-  const std::string unseen = contact::unseen_contact_note(s.contact, scene_.model.contact, s.discretization.dim(),
-                                                          s.energy_norm_squared, scene_.model.units);
+  const std::string unseen =
+      contact::unseen_contact_note(s.contact, scene_.model.contact, s.discretization.dim(), s.energy_norm_squared,
+                                   scene_.model.units, scene_.adapt.adapts());
   if (!unseen.empty() && !has_unseen_contact_)
     notes_.add((scene_.has_steps() ? analysis::at_time(s.time) : "") + unseen);
   has_unseen_contact_ |= !unseen.empty();

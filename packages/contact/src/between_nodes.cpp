@@ -232,7 +232,7 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
 }
 
 std::string unseen_contact_note(const ContactResult &result, const std::vector<ContactOptions> &options, const int dim,
-                                const double energy_norm_squared, const UnitNames &units)
+                                const double energy_norm_squared, const UnitNames &units, const bool adapts)
 {
   const PlaceBetweenNodes &at = result.between.unseen;
   const double squared = 2 * result.total.unseen_energy;
@@ -245,7 +245,8 @@ std::string unseen_contact_note(const ContactResult &result, const std::vector<C
        << " inside the foundation, between contact points that are open, so that the contact force lacks it. The facet "
           "is "
        << at.facet << unit << " long there; cells of " << at.width / 2 << unit
-       << " would see it. Make the mesh finer there, or give \"Adapt->Target Relative Error\".";
+       << " would see it. Make the mesh finer there, or " << (adapts ? "lower" : "give")
+       << " \"Adapt->Target Relative Error\".";
   return text.str();
 }
 

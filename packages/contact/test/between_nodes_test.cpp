@@ -35,9 +35,9 @@ struct Looked {
     result = contact::contact_result(d, sides, points, state);
     contact::look_between_nodes(d, sides, options, points, steel, *u, result);
   }
-  std::string note(const double energy_norm_squared) const
+  std::string note(const double energy_norm_squared, const bool adapts = false) const
   {
-    return contact::unseen_contact_note(result, options, d.dim(), energy_norm_squared);
+    return contact::unseen_contact_note(result, options, d.dim(), energy_norm_squared, {}, adapts);
   }
 };
 
@@ -195,6 +195,8 @@ TEST(BetweenNodes, TheNoteNamesPlaceDepthAndTheSizeThatWouldSee)
   for (const std::string part :
        {"side \"bottom\" lies 0.02 [m] inside the foundation", "at (0.7", "0.5 [m] long", "cells of 0.1"})
     EXPECT_NE(looked.note(0).find(part), std::string::npos) << looked.note(0);
+  EXPECT_NE(looked.note(0).find("or give \"Adapt->Target Relative Error\""), std::string::npos);
+  EXPECT_NE(looked.note(0, true).find("or lower \"Adapt->Target Relative Error\""), std::string::npos);
   const double squared = 2 * looked.result.total.unseen_energy;
   EXPECT_NE(looked.note(399 * squared), "");
   EXPECT_EQ(looked.note(401 * squared), ""); // below a twentieth of the solution in the energy norm
