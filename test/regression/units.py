@@ -49,12 +49,28 @@ class Units(RpcTestCase):
 
     def test_console_and_messages_about_loads_use_them(self):
         text = self.rpc("--input=beam.xml", SMALL, "--output=out", *self.IN_MM).stdout
-        for part in (" mJ/mm\n", " N/mm, components (", "16 MPa\n", " mm^2\n"):
+        for part in (" mJ/mm\n", " N/mm, components (", "16 MPa at (", " mm and ", " mm^2\n"):
             self.assertIn(part, text)
         self.assertNotRegex(text, r"[0-9] (Pa|J/m|N/m|m)\b")
         block = SOURCE / "test" / "verification" / "decks" / "block.xml"
         refused = self.rpc(f"--input={block}", "--set=Traction->top->Y=-10.1", "--output=out", *self.IN_MM, code=5)
         self.assertIn("10.1 [N/mm]", refused.stderr)
+
+    def test_moduli_of_no_material_are_told(self):
+        def notes(*assignments):
+            checked = self.rpc("--input=beam.xml", "--check", *(f"--set={assignment}" for assignment in assignments)).stdout
+            return [line for line in checked.splitlines() if "Young's Modulus" in line and line.startswith("note:")]
+        in_mm = ("Units->Length=mm", "Units->Force=N")
+        modulus = "Material->Young's Modulus="
+        self.assertEqual(notes(*in_mm, modulus + "2.1e11"),
+                         ["note: \"Material->Young's Modulus\" = 2.1e+11 [MPa] is 2.1e+17 Pa, more than any known material has (diamond "
+                          "1.2e+12 Pa): is it in the deck's units? Steel has 210000 [MPa]"])
+        (soft,) = notes(*in_mm, modulus + "2.1e-5")
+        self.assertIn("is 21 Pa, less than any known material has (brain tissue 100 Pa)", soft)
+        self.assertEqual(len(notes(modulus + "2.1e17")), 1)
+        for quiet in ((*in_mm, modulus + "2.1e5"), (modulus + "2.1e11",), (modulus + "1",),  # which may have no dimension
+                      ("Units->Length=in", "Units->Force=lbf", modulus + "3e18")):
+            self.assertEqual(notes(*quiet), [], quiet)
 
     def test_may_change_at_a_restart(self):
         every = ["--set=Steps->Checkpoint Every=1"]

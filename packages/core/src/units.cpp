@@ -2,8 +2,10 @@
 #include "rpc/core/units.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/pascals.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -65,6 +67,13 @@ std::string checked_unit(const Teuchos::ParameterList &list, const std::string &
 std::string UnitNames::stress() const
 {
   return si_name(*this, -2, "Pa").value_or(force + "/" + power(length, 2));
+}
+
+std::optional<double> pascals(const UnitNames &units)
+{
+  const auto of_force = power_of_ten(units.force, "N"), of_length = power_of_ten(units.length, "m");
+  if (!of_force || !of_length) return std::nullopt;
+  return std::pow(10., *of_force - 2 * *of_length);
 }
 
 std::string UnitNames::energy() const

@@ -2,6 +2,7 @@
 #include "rpc/core/units.hpp"
 
 #include "expect_error.hpp"
+#include "rpc/core/pascals.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,6 +35,15 @@ TEST(UnitNames, StressAndEnergyFollowFromLengthAndForce)
     EXPECT_EQ(units.stress(), c.stress);
     EXPECT_EQ(units.energy(), c.energy);
   }
+}
+
+TEST(UnitNames, OfMetresAndNewtonsAreSoManyPascals)
+{
+  EXPECT_EQ(pascals({}), 1);
+  EXPECT_NEAR(pascals(given("mm", "N")).value(), 1e6, 1e-9);
+  EXPECT_NEAR(pascals(given("cm", "kN")).value(), 1e7, 1e-8);
+  EXPECT_FALSE(pascals(given("in", "lbf")));
+  EXPECT_FALSE(pascals(given("in", "N")));
 }
 
 TEST(UnitNames, NumbersOfAPlaneBodyArePerLength)
