@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "output/result_list.hpp"
 
+#include "rpc/contact/highest_pressure.hpp"
 #include "rpc/io/error_bar.hpp"
+#include "rpc/mesh/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 
 namespace rpc
@@ -64,6 +67,7 @@ void add_error_bars(std::vector<Result> &all, const adapt::ObservedErrors &error
     for (Result &result : all) {
       if (result.key != q.name(scope)) continue;
       result.error_bar = errors.*q.value;
+      if (result.key == "contact_force" && result.error_bar == 0) result.more = ", fixed by the load";
       const auto reason = errors.unknown.find(q.key);
       result.no_bar = reason == errors.unknown.end() ? "" : reason->second;
       result.tells_why = told && std::isnan(result.error_bar);
@@ -81,6 +85,36 @@ void add_reaction_bars(std::vector<Result> &all, const adapt::ObservedErrors &er
     if (result.no_bar.empty()) result.error_bar = errors.reactions[k];
     ++k;
   }
+}
+
+/// "(0.5, 0) m"
+std::string place_text(const std::vector<double> &place, const double size, const std::string &unit)
+{
+  std::string text;
+  for (const double coordinate : place) {
+    char number[40];
+    std::snprintf(number, sizeof number, "%.6g", std::abs(coordinate) > 1e-9 * size ? coordinate : 0);
+    text += (text.empty() ? "(" : ", ") + std::string(number);
+  }
+  return text + ") " + unit;
+}
+
+/// Tells where the largest pressure is. Collective.
+void add_place(std::vector<Result> &all, const Scene &scene, const Solution &s)
+{
+  const auto pressure =
+      std::find_if(all.begin(), all.end(), [](const Result &result) { return result.key == "max_pressure"; });
+  if (pressure == all.end() || !s.has_results()) return;
+  const auto highest = contact::highest_pressure(s.discretization, s.step.contact, s.contact);
+  if (highest.num_places == 0) return;
+  pressure->num_places = highest.num_places;
+  pressure->place.assign(highest.place.begin(), highest.place.begin() + s.discretization.dim());
+  pressure->more =
+      " at " + place_text(pressure->place, mesh::diameter(*s.discretization.mesh), scene.model.units.length);
+  if (scene.model.contact.size() > 1)
+    pressure->more += " on \"" + scene.model.contact[highest.side].name_in_results() + "\"";
+  if (const GO others = highest.num_places - 1; others > 0)
+    pressure->more += " and " + std::to_string(others) + " other node" + (others > 1 ? "s" : "");
 }
 
 } // namespace
@@ -109,6 +143,7 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
   if (s.has_results() && last != s.history.rend()) add_results(all, analysis::energy_quantities, last->energies, scope);
   // Of a sequence of meshes each number has its own reason, else one holds for all.
   const adapt::ObservedErrors errors = adapt::errors_of(scene, s);
+  add_place(all, scene, s);
   add_reaction_bars(all, errors);
   add_error_bars(all, errors, scope, s.adaptation && std::isfinite(s.adaptation->errors.energy));
   return all;
@@ -122,8 +157,9 @@ std::vector<Result> side_results(const Scene &scene, const Solution &s, const st
 
 std::string text_of(const Result &result)
 {
-  return result.is_vector ? io::with_error_bar(result.value, result.error_bar, result.unit)
-                          : io::with_error_bar(result.value.front(), result.error_bar, result.unit);
+  const std::string number = result.is_vector ? io::with_error_bar(result.value, result.error_bar, result.unit)
+                                              : io::with_error_bar(result.value.front(), result.error_bar, result.unit);
+  return number + result.more;
 }
 
 } // namespace rpc

@@ -23,10 +23,14 @@ struct Result {
   double error_bar = std::numeric_limits<double>::quiet_NaN();
   std::string no_bar;     ///< why there is no error bar, if there is none
   bool tells_why = false; ///< it has a reason of its own, which its line tells
+  // Of the largest pressure:
+  std::vector<double> place; ///< where it is [length]; else empty
+  GO num_places = 0;         ///< nodes that have it; the place is that of the first
+  std::string more;          ///< what follows the number on the console: the same as text, or why it is exact
 };
 
 /// The results of a run in the order in which an engineer reads them: forces, contact, supports, body, energies. Without
-/// a solution all are NaN.
+/// a solution all are NaN. Collective.
 std::vector<Result> result_list(const Scene &scene, const Solution &solution);
 
 /// Those of one of several contact sides, without error bars.

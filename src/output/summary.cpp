@@ -59,6 +59,10 @@ nlohmann::ordered_json results_json(const std::vector<Result> &results)
     entry["unit"] = result.unit.empty() ? "1" : result.unit;
     entry["error_bar"] = maybe(result.error_bar);
     if (std::isnan(result.error_bar)) entry["reason"] = result.no_bar;
+    if (!result.place.empty()) {
+      entry["place"] = result.place;
+      entry["nodes"] = result.num_places;
+    }
     (result.entry.empty() ? json[result.key] : json[result.key][result.entry]) = entry;
   }
   return json;

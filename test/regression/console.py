@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the console ends with: how the run ended, its results with their error bars, work. The summary has the same numbers."""
 
+import csv
 import json
 import re
 import unittest
@@ -17,12 +18,21 @@ LINES = {"contact force": ["contact_force"], "largest pressure": ["max_pressure"
 NUMBER = r"-?[\d.]+(?:e[-+]\d+)?"
 VALUE = re.compile(rf"(?P<open>\()?(?P<value>{NUMBER})(?: ± (?P<bar>{NUMBER}))?\)?(?P<ten>e[-+]\d+)?(?P<unit> [^\s(,;]+)?"
                    r"(?: \((?P<note>[^()]*)\))?(?:, components \((?P<components>[^)]*)\)(?P<power>e[-+]\d+)?)?")
+PLACE = re.compile(r' at \(([^)]*)\) (\S+)(?: on "([^"]*)")?(?: and (\d+) other nodes?)?')
 TWO_SIDES = """deck:
   Mesh: {Lower: [0.0, 0.0], Upper: [2.0, 1.0], Cells: [8, 4]}
   Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
   Dirichlet: {left: {X: 0.0}}
   Traction: {top: {Y: -2.0}, right: {X: 1.0}}
   Contact: {Side: bottom, Yield Stress: 5.0, Sides: {right: {Gap: 0.0001}}}
+"""
+FOOT = """deck:
+  Units: {Length: mm, Force: N}
+  Mesh: {Lower: [0.0, 0.0], Upper: [2.0, 1.0], Cells: [8, 4]}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Dirichlet: {left: {X: 0.0}}
+  Traction: {top: {Y: "-1 - x/2"}}
+  Contact: {Side: bottom, Yield Stress: inf, Gap: "0.01*(x - 1.1)^2"}
 """
 NO_CONTACT = """deck:
   Mesh: {Lower: [0.0, 0.0], Upper: [2.0, 1.0], Cells: [4, 4]}
@@ -90,6 +100,14 @@ class ConsoleTestCase(RpcTestCase):
                 shown += found["power"] or ""
                 self.assertAlmostEqual(float(shown), component, delta=0.51 * max(last_digit(shown), 2e-6 * value), msg=f"{what}: {text}")
 
+    def check_place(self, found, pressure):
+        """Where the largest pressure is."""
+        self.assertTrue(found)
+        for shown, coordinate in zip(found[1].split(", "), pressure["place"], strict=True):
+            self.assertAlmostEqual(float(shown), coordinate, delta=1e-5)
+        self.assertEqual(found[2], self.summary["units"]["length"])
+        self.assertEqual(int(found[4] or 0) + 1, pressure["nodes"])
+
     def check_block(self, results, end):
         """Lines against results; their number."""
         checked = 0
@@ -98,6 +116,9 @@ class ConsoleTestCase(RpcTestCase):
                 self.check_number(text, results["reaction_force"][heading.split('"')[1]], heading)
                 checked += 1
                 continue
+            if heading == "largest pressure" and "place" in results["max_pressure"]:
+                self.check_place(PLACE.search(text), results["max_pressure"])
+                text = PLACE.sub("", text)
             keys = [key for key in LINES.get(heading, []) if key in results]
             if heading == "contact force" or len(keys) == 1:
                 parts = [text.partition(" (no error bar: ")[0]]
@@ -144,15 +165,32 @@ class Told(ConsoleTestCase):
             self.assertLess(reaction["error_bar"], 0.2)  # it is of use
         self.assertIn(f"of the contact pressure {relative:.1e} in L2", self.end["estimated error"])
         self.assertRegex(self.end["contact force"], r"^\S+ ± \S+ N/m \(\S+ %\), components \(\S+, \S+\)$")
-        self.assertEqual(self.end["largest pressure"], "16 Pa (exact)")
+        self.assertRegex(self.end["largest pressure"], r"^16 Pa \(exact\) at \([\d.]+, 0\) m and \d+ other nodes$")  # all that yields
         self.assertEqual(self.end["adapted"], "the error is what was asked for")
 
     def test_what_has_no_error_bar_says_why_in_its_line(self):
         results = self.run_deck("--set=Adapt->Target Relative Error=0.02", "--set=Contact->Yield Stress=x < 2.5 ? 3 : inf", deck="beam_adaptive.xml")
         reason = self.summary["adaptation"]["errors_unknown"]["max_pressure"]
         self.assertEqual((results["max_pressure"]["error_bar"], results["max_pressure"]["reason"]), (None, reason))
-        self.assertRegex(self.end["largest pressure"], rf"^\S+ Pa \(no error bar: {re.escape(reason)}\)$")
+        self.assertRegex(self.end["largest pressure"], rf"^\S+ Pa at \(\S+, 0\) m \(no error bar: {re.escape(reason)}\)$")
         self.assertIn("±", self.end["contact force"])
+
+    def test_where_the_largest_pressure_is_and_what_the_load_alone_fixes(self):
+        results = self.run_deck("--set=Adapt->Target Relative Error=0.1", deck=FOOT)
+        rows = list(csv.DictReader((self.folder / "out" / "deck.contact.csv").read_text().splitlines()))
+        most = max(rows, key=lambda row: float(row["pressure [MPa]"]))
+        pressure = results["max_pressure"]
+        self.assertEqual((pressure["nodes"], pressure["place"]), (1, [float(most["x [mm]"]), float(most["y [mm]"])]))
+        self.assertIn(f" at ({float(most['x [mm]']):.6g}, 0) mm", self.end["largest pressure"])
+        # No displacement is held along y: the contact force is the load to rounding, though the mesh is coarse.
+        self.assertEqual(results["contact_force"]["error_bar"], 0)
+        self.assertAlmostEqual(results["contact_force"]["value"][1], 3, delta=1e-7)
+        self.assertRegex(self.end["contact force"], r"^3 N/mm \(exact\), components \(0, 3\), fixed by the load$")
+        held = self.run_deck("--set=Adapt->Target Relative Error=0.1", "--set=Dirichlet->left->Y=0", deck=FOOT)
+        self.assertGreater(held["contact_force"]["error_bar"], 0)
+        self.assertNotIn("fixed by the load", self.stdout)
+        self.run_deck(deck=TWO_SIDES)
+        self.assertRegex(self.end["largest pressure"], r' m on "(bottom|right)"')
 
     def test_without_an_estimate_one_line_tells_how_to_have_error_bars(self):
         results = self.run_deck(SMALL)

@@ -116,6 +116,18 @@ void add_what_earlier_steps_leave(const CoarserHistory &coarser, const Cycle &la
   errors.max_penetration += shown(last.contact.max_penetration - other.contact.max_penetration);
 }
 
+/// Whether the load alone fixes the contact force: it has no component along prescribed displacements on any mesh.
+bool is_fixed(const std::vector<Cycle> &cycles, const FixedByLoad &fixed)
+{
+  constexpr double rounding = 1e-12;
+  for (const Cycle &cycle : cycles) {
+    const double length = length_of(cycle.contact.force);
+    for (int c = 0; c < 3; ++c)
+      if (!fixed[c] && !(length > 0 && std::abs(cycle.contact.force[c]) <= rounding * length)) return false;
+  }
+  return true;
+}
+
 } // namespace
 
 double energy_left(const Cycle &cycle)
@@ -130,7 +142,7 @@ std::string error_bar_name(const std::string &key, const ResultScope &scope)
   return found == error_bars.end() ? key : found->name(scope);
 }
 
-ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
+ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLoad &fixed, const double tolerance)
 {
   std::vector<double> eta;
   for (const auto &cycle : cycles) eta.push_back(cycle.estimate);
@@ -156,7 +168,10 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
     make_unknown(errors, one_mesh);
     return errors;
   }
+  const double shown = errors.contact_force;
   add_what_a_mesh_leaves(cycles.back(), eta, errors);
+  if (is_fixed(cycles, fixed))
+    errors.contact_force = shown > tolerance * length_of(cycles.back().contact.force) ? shown : 0;
   const std::string reason = unknown_max_pressure(cycles, eta);
   if (!reason.empty()) {
     errors.max_pressure = std::numeric_limits<double>::quiet_NaN();
@@ -169,21 +184,24 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles)
   return errors;
 }
 
-ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &coarser, const EarlierSteps &earlier)
+ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &coarser, const EarlierSteps &earlier,
+                               const FixedByLoad &fixed, const double tolerance)
 {
   const bool alone = cycles.size() < 2;
-  if (!earlier.matter && (!alone || !coarser.missing.empty())) return observed_errors(cycles);
+  if (!earlier.matter && (!alone || !coarser.missing.empty())) return observed_errors(cycles, fixed, tolerance);
   ObservedErrors errors;
   if (!coarser.missing.empty()) {
     make_unknown(errors, "what the meshes of earlier steps have left is not known: " + coarser.missing);
     return errors;
   }
   if (alone) cycles.insert(cycles.begin(), coarser.last);
-  errors = observed_errors(cycles);
+  errors = observed_errors(cycles, fixed, tolerance);
   errors.contact_pressure = std::numeric_limits<double>::quiet_NaN();
   errors.unknown["contact_pressure_l2_relative"] =
       alone ? one_mesh : "what the meshes of earlier steps have left of it is not known";
+  const double force_on_meshes = errors.contact_force;
   if (earlier.matter) add_what_earlier_steps_leave(coarser, cycles.back(), earlier, errors);
+  if (is_fixed(cycles, fixed)) errors.contact_force = force_on_meshes;
   return errors;
 }
 

@@ -112,6 +112,14 @@ std::string nothing_strained(const Solution &s, const UnitNames &units)
   return reason.str();
 }
 
+FixedByLoad fixed_by_load(const analysis::Model &model)
+{
+  FixedByLoad fixed = {true, true, true};
+  for (const auto &condition : model.dirichlet)
+    for (int c = 0; c < 3; ++c) fixed[c] = fixed[c] && !condition.displacement[c];
+  return fixed;
+}
+
 /// The mesh with the least estimate; with the target met that is the last one.
 std::size_t best_of(const std::vector<Cycle> &cycles)
 {
@@ -215,7 +223,8 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
     mesh = next_mesh(planner, *last, cycles.back(), listener, seconds, adaptation.reason);
   }
   if (!adaptation.reached && !hint.empty() && !interrupted(*comm)) adaptation.reason += ". " + hint;
-  adaptation.errors = observed_errors({cycles.begin(), cycles.begin() + best_of(cycles) + 1});
+  adaptation.errors = observed_errors({cycles.begin(), cycles.begin() + best_of(cycles) + 1}, fixed_by_load(task.model),
+                                      task.step.uzawa.tolerance);
   best->adaptation = std::move(adaptation);
   best->seconds = seconds;
   return std::move(*best);
@@ -292,7 +301,8 @@ void count_earlier_steps(const Task &task, Solution &s, const RCP<const Comm> &c
   const auto &all = s.adaptation->cycles;
   const std::vector<Cycle> cycles(all.begin(), all.begin() + best_of(all) + 1);
   if (!earlier.matter && cycles.size() > 1) return;
-  s.adaptation->errors = observed_errors(cycles, coarser_history(task, s, earlier.matter, comm, s.seconds), earlier);
+  s.adaptation->errors = observed_errors(cycles, coarser_history(task, s, earlier.matter, comm, s.seconds), earlier,
+                                         fixed_by_load(task.model), task.step.uzawa.tolerance);
 }
 
 /// Load steps, each on meshes of its own. Where one does not converge, the solution is the one before, with its `failure`. An interrupted run leaves a checkpoint of the last step that was solved before the signal

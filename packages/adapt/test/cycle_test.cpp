@@ -53,6 +53,22 @@ TEST(ErrorBars, AreNoLessThanWhatTheLastMeshLeavesOpen)
   EXPECT_NEAR(errors.energy, 0.02 * 0.02 * 2 + 0.01, 1e-15);
 }
 
+TEST(ErrorBars, OfAContactForceThatTheLoadFixesAreWhatItChanges)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10 + 1e-9, 30)};
+  const adapt::FixedByLoad free = {true, true, true}, held_across = {false, true, true}, held = {true, false, true};
+  constexpr double tolerance = 1e-8;
+  EXPECT_EQ(observed_errors(cycles, free, tolerance).contact_force, 0);
+  EXPECT_EQ(observed_errors(cycles, held_across, tolerance).contact_force, 0); // no force that way
+  EXPECT_NEAR(observed_errors(cycles, held, tolerance).contact_force, 2 * 0.02 * 0.02 * 10, 1e-8);
+  cycles[1].contact.force[1] = 10.4; // of a load on a curved side, which the meshes take as longer and longer
+  EXPECT_NEAR(observed_errors(cycles, free, tolerance).contact_force, 0.4 / (0.1 / 0.02 - 1), 1e-12);
+  cycles[0].contact.force[0] = 1;
+  EXPECT_GT(observed_errors(cycles, held_across, tolerance).contact_force, 1. / 4);
+  const std::vector<Cycle> open = {mesh(0.1, 0, 0), mesh(0.02, 0, 0)};
+  EXPECT_EQ(observed_errors(open, free, tolerance).contact_force, 0);
+}
+
 TEST(ErrorBars, OfReactionsAreThoseOfForces)
 {
   std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};

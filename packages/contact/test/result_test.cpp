@@ -2,10 +2,12 @@
 #include "rpc/contact/result.hpp"
 
 #include "foundation_scene.hpp"
+#include "rpc/contact/highest_pressure.hpp"
 #include "rpc/contact/law/judgement.hpp"
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <gtest/gtest.h>
 #include <limits>
 #include <vector>
@@ -123,6 +125,32 @@ TEST(ContactResult, TotalIsTheSumOverTheSides)
   }
   EXPECT_GT(total.yielded_length, 0);
   EXPECT_GT(total.max_pressure, 0);
+}
+
+TEST(HighestPressure, IsWhereTheLargestPressureIsOnAnyNumberOfRanks)
+{
+  Solved solved;
+  const auto &c = solved.nodes();
+  const auto x = fem::node_positions(*solved.scene.d.mesh, c.node);
+  const auto p = to_host(solved.result.pressure);
+  const auto highest = [&] { return contact::highest_pressure(solved.scene.d, c, solved.result); };
+  const auto set = [&](const std::function<double(double, double)> &pressure) {
+    double most = 0;
+    for (LO i = 0; i < c.size(); ++i) most = std::max(most, p(i) = pressure(x(i, 0), x(i, 1)));
+    Kokkos::deep_copy(solved.result.pressure, p);
+    solved.result.total.max_pressure = max_all(solved.scene.d.mesh->comm(), most);
+  };
+  // The bottom is y = 0, the right side x = 2: their corner is one node.
+  set([](const double at, const double height) { return height == 0 ? 1 + at : 0.5; });
+  EXPECT_EQ(highest().num_places, 1);
+  EXPECT_EQ(highest().place, (Point{2, 0, 0}));
+  set([](const double at, const double) { return at == 2 ? 3 * (1 + 1e-8) : at > 0.6 ? 3. : 1.; });
+  EXPECT_EQ(highest().side, 0);
+  EXPECT_NEAR(highest().place[0], 2. / 3, 1e-12);
+  EXPECT_EQ(highest().place[1], 0);
+  EXPECT_GT(highest().num_places, 2);
+  set([](double, double) { return 0.; });
+  EXPECT_EQ(highest().num_places, 0);
 }
 
 TEST(ContactResult, IsEmptyWithoutSides)

@@ -66,8 +66,13 @@ double energy_left(const Cycle &cycle);
 
 inline constexpr const char *one_mesh = "one mesh shows no change"; ///< a reason in `unknown`
 
+/// Which components of the contact force the load alone fixes: those along which no displacement is prescribed.
+using FixedByLoad = std::array<bool, 3>;
+
 /// Error bars of the last of several meshes.
-ObservedErrors observed_errors(const std::vector<Cycle> &cycles);
+/// @param fixed      a contact force that has no other components has but the error that the meshes show
+/// @param tolerance  of its equilibrium, relative: less is rounding, and the bar 0
+ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLoad &fixed = {}, double tolerance = 0);
 
 /// All load steps up to the last one on a mesh with larger cells: what the meshes of earlier steps have left shows by how much the results of the
 /// two differ.                                                                                            doc/theory.md (10.7c)
@@ -85,7 +90,8 @@ struct EarlierSteps {
 };
 
 /// The same for the last of several load steps.
-ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &coarser, const EarlierSteps &earlier);
+ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &coarser, const EarlierSteps &earlier,
+                               const FixedByLoad &fixed = {}, double tolerance = 0);
 
 /// What became of "Adapt".
 struct Adaptation {
