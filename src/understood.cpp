@@ -168,7 +168,7 @@ void print_loads(Block &block, const Scene &scene, const fem::Discretization &d)
   };
   for (std::size_t k = 0; k < scene.model.tractions.size(); ++k) {
     const auto &load = scene.model.tractions[k];
-    tell("\"" + load.side + "\"", changes(load.traction),
+    tell("\"" + load.side + "\"", changes(load.traction) || changes(load.force),
          [&](const analysis::Model &model) { return fem::resultant(d, model.tractions[k]); });
   }
   const auto &force = scene.model.body_force;

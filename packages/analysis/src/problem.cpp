@@ -34,7 +34,8 @@ RCP<Vector> loads_of(const fem::Discretization &d, const Model &model)
   require_finite(*load, "the forces of \"Body Force\"", coordinates);
   for (const auto &traction : model.tractions) {
     const std::string path = "Traction->" + traction.name;
-    fem::add_traction(d, d.mesh->side(traction.side, path + "->Side"), traction.traction, path, *load);
+    const mesh::Side &side = d.mesh->side(traction.side, path + "->Side");
+    fem::add_traction(d, side, fem::force_per_area(d, side, traction), path, *load);
     require_finite(*load, "the forces of \"" + path + "\"", coordinates);
   }
   return load;
@@ -49,7 +50,10 @@ std::vector<std::string> varying_loads(const Model &model)
       names.push_back('"' + name + '"');
   };
   add(model.body_force, "Body Force");
-  for (const auto &load : model.tractions) add(load.traction, "Traction->" + load.name);
+  for (const auto &load : model.tractions) {
+    add(load.traction, "Traction->" + load.name);
+    add(load.force, "Traction->" + load.name);
+  }
   return names;
 }
 
@@ -110,7 +114,10 @@ Model Model::seen_at(const double t) const
   for (auto &condition : model.dirichlet)
     for (auto &component : condition.displacement)
       if (component) component = component->seen_at(t);
-  for (auto &load : model.tractions) load.traction = analysis::seen_at(load.traction, t);
+  for (auto &load : model.tractions) {
+    load.traction = analysis::seen_at(load.traction, t);
+    load.force = analysis::seen_at(load.force, t);
+  }
   model.body_force = analysis::seen_at(model.body_force, t);
   for (auto &side : model.contact) {
     side.yield_stress = side.yield_stress.seen_at(t);

@@ -6,9 +6,11 @@
 #include "rpc/core/evaluate.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/fem/elasticity.hpp"
+#include "rpc/fem/measure.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace rpc::fem
@@ -16,13 +18,17 @@ namespace rpc::fem
 namespace
 {
 
+/// Begins the names of the components of a force on a whole side.
+const std::string force_prefix = "Force ";
+
+/// @param prefix  of the names X, Y, Z
 VectorField vector_field(const Teuchos::ParameterList &list, const int dim, const std::string &path,
-                         const FieldParser &parse)
+                         const FieldParser &parse, const std::string &prefix = "")
 {
   VectorField field;
   for (int c = 0; c < 3; ++c) {
-    const std::string parameter = path + "->" + component_name[c];
-    field[c] = parse(field_text(list, component_name[c]), parameter);
+    const std::string name = prefix + component_name[c], parameter = path + "->" + name;
+    field[c] = parse(field_text(list, name), parameter);
     RPC_REQUIRE(c < dim || field[c].is_zero(),
                 "deck: \"" << parameter << "\" must be 0 in " << dim << "D, got " << field[c].text);
   }
@@ -43,6 +49,27 @@ DeviceView<double **> evaluate_vector(const VectorField &field, const DeviceView
   }
   Kokkos::deep_copy(result, host);
   return result;
+}
+
+/// Whether a deck gives a component.
+bool is_given(const Teuchos::ParameterList &list, const std::string &prefix)
+{
+  return std::any_of(std::begin(component_name), std::end(component_name),
+                     [&](const char *const c) { return !list.getEntry(prefix + c).isDefault(); });
+}
+
+/// Refuses a force that depends on the place, as far as some points tell.
+void require_of_time_alone(const VectorField &force, const std::string &path)
+{
+  for (int c = 0; c < 3; ++c)
+    for (const double t : {0.37, 1., 2.3}) {
+      const ScalarField now = force[c].seen_at(t);
+      const double here = now({0, 0, 0}), there = now({0.7, 1.3, 2.1});
+      RPC_REQUIRE(here == there || (std::isnan(here) && std::isnan(there)),
+                  "deck: \"" << path << "->" << force_prefix << component_name[c]
+                             << "\" must not depend on x, y or z, for it is the force on the whole side, got "
+                             << force[c].text << ". Write a force per area as " << component_name[c] << ".");
+    }
 }
 
 bool is_zero(const VectorField &field, const int dim)
@@ -106,6 +133,13 @@ DeviceView<double *> cell_measure(const Discretization &d, const BasisTable &tab
   return measure;
 }
 
+/// @param area  of the side, or of a part of it
+void require_area(const double area, const mesh::Side &side, const std::string &parameter)
+{
+  RPC_REQUIRE(area > 0, "deck: \"" << parameter << "\" acts nowhere: the side \"" << side.name
+                                   << "\" lies on the axis, where it has no area. Name another side");
+}
+
 /// load(ai) += sum over entities (cells or facets) and their points q, measure_q N_a(q) f_i(q).
 /// @param node_to_entities  those around the owned nodes
 /// @param f  (entities * points, dim)
@@ -140,6 +174,11 @@ Teuchos::ParameterList valid_traction_parameters()
   entry.set("Side", "", "Side of the mesh; by default the side that the entry is named after.");
   for (const char *name : component_name)
     set_field(entry, name, "0", std::string("Force per area in ") + name + " [Pa], a number or an expression.");
+  for (const char *name : component_name)
+    set_field(entry, force_prefix + name, "0",
+              std::string("Force in ") + name +
+                  " on the whole side [N], in the plane per m, axisymmetric on the whole circumference; spread evenly "
+                  "over the side. A number or an expression of t. Instead of X, Y, Z.");
   set_named_entries(parent, "Traction", entry, "Surface loads, any number of entries with names of your choice.");
   return parent.sublist("Traction");
 }
@@ -159,10 +198,18 @@ std::vector<TractionLoad> traction_options(const Teuchos::ParameterList &list, c
     const std::string &name = list.name(it);
     const Teuchos::ParameterList &entry = list.sublist(name);
     const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
-    loads.push_back({name, side, vector_field(entry, dim, "Traction->" + name, parse)});
-    RPC_REQUIRE(std::any_of(std::begin(component_name), std::end(component_name),
-                            [&](const char *const c) { return !entry.getEntry(c).isDefault(); }),
-                "deck: \"Traction->" << name << "\" has no force. Give X, Y or Z [Pa].");
+    const std::string path = "Traction->" + name;
+    const bool per_area = is_given(entry, ""), in_all = is_given(entry, force_prefix);
+    RPC_REQUIRE(per_area || in_all, "deck: \"" << path
+                                               << "\" has no force. Give X, Y or Z [Pa], or a force on the whole side, "
+                                                  "Force X, Force Y or Force Z [N].");
+    RPC_REQUIRE(!per_area || !in_all,
+                "deck: \"" << path
+                           << "\" must have X, Y, Z [Pa] or Force X, Force Y, Force Z [N], got some of both. Write two "
+                              "entries with one \"Side\": they add up.");
+    loads.push_back(
+        {name, side, vector_field(entry, dim, path, parse), vector_field(entry, dim, path, parse, force_prefix)});
+    require_of_time_alone(loads.back().force, path);
   }
   return loads;
 }
@@ -182,6 +229,27 @@ void add_body_force(const Discretization &d, const VectorField &force, const std
   add_load(mesh.cells, d.node_to_cells, table.value, cell_measure(d, table), f, load); // paper (1), (2.5)
 }
 
+VectorField force_per_area(const Discretization &d, const mesh::Side &side, const TractionLoad &load)
+{
+  VectorField sum = load.traction;
+  if (is_zero(load.force, d.dim())) return sum;
+  const std::string path = "Traction->" + load.name;
+  const double area = side_measure(d, side).area;
+  require_area(area, side, path);
+  for (int c = 0; c < d.dim(); ++c) {
+    const double force = load.force[c]({});
+    RPC_REQUIRE(std::isfinite(force), "deck: \"" << path << "->" << force_prefix << component_name[c]
+                                                 << "\" must be finite, got " << force << " from " << load.force[c].text
+                                                 << " at t = " << load.force[c].time);
+    const ScalarField own = sum[c];
+    if (own.is_constant())
+      sum[c] = ScalarField(own.constant + force / area);
+    else if (force != 0)
+      sum[c] = ScalarField(own.text, [own, force, area](const Point &x, double) { return own(x) + force / area; });
+  }
+  return sum;
+}
+
 DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &side,
                                     const std::vector<TractionLoad> &loads)
 {
@@ -190,8 +258,10 @@ DeviceView<double ***> tractions_on(const Discretization &d, const mesh::Side &s
   const int points = table.num_points(), dim = d.dim();
   const DeviceView<double ***> sum("rpc::fem::tractions_on", side.facets.extent(0), points, dim);
   for (const auto &load : loads) {
-    if (load.side != side.name || is_zero(load.traction, dim)) continue;
-    const auto t = evaluate_vector(load.traction, quadrature_points(mesh.coords, side.facets, table.value),
+    if (load.side != side.name) continue;
+    const VectorField traction = force_per_area(d, side, load);
+    if (is_zero(traction, dim)) continue;
+    const auto t = evaluate_vector(traction, quadrature_points(mesh.coords, side.facets, table.value),
                                    "Traction->" + load.name, mesh.comm());
     Kokkos::parallel_for(
         "rpc::fem::add_tractions", device_range(static_cast<LO>(side.facets.extent(0))), KOKKOS_LAMBDA(const LO f) {
@@ -230,9 +300,7 @@ void add_traction(const Discretization &d, const mesh::Side &side, const VectorF
   const auto t = evaluate_vector(traction, points, parameter, mesh.comm());
   const NodeToCells node_to_facets = around_nodes(side.facets, mesh.num_owned_nodes());
   const auto measure = facet_measure(d, side);
-  RPC_REQUIRE(max_all(mesh.comm(), largest_of(measure)) > 0,
-              "deck: \"" << parameter << "\" acts nowhere: the side \"" << side.name
-                         << "\" lies on the axis, where it has no area. Name another side");
+  require_area(max_all(mesh.comm(), largest_of(measure)), side, parameter);
   add_load(side.facets, node_to_facets, table.value, measure, t, load); // paper (3), (2.5)
 }
 

@@ -57,7 +57,8 @@ Point resultant(const Discretization &d, const TractionLoad &load)
 {
   Vector force(d.owned_dofs);
   const std::string path = "Traction->" + load.name;
-  add_traction(d, d.mesh->side(load.side, path + "->Side"), load.traction, path, force);
+  const mesh::Side &side = d.mesh->side(load.side, path + "->Side");
+  add_traction(d, side, force_per_area(d, side, load), path, force);
   return force_sum(d, force);
 }
 

@@ -96,6 +96,97 @@ TEST(Traction, LoadsOnlyTheNodesOfItsSide)
   }
 }
 
+/// Nodal forces of a load on a side.
+RCP<Vector> nodal_forces(const fem::Discretization &d, const fem::TractionLoad &load)
+{
+  const auto forces = rcp(new Vector(d.owned_dofs));
+  const mesh::Side &side = d.mesh->side(load.side, "test");
+  fem::add_traction(d, side, fem::force_per_area(d, side, load), "T", *forces);
+  return forces;
+}
+
+const fem::VectorField none;
+
+TEST(TotalForce, IsSpreadEvenlyOverTheSide)
+{
+  const mesh::BoxOptions box = small_box({2, 1}); // the right side is of length 1, in 3 cells
+  const auto d = body(box, world());
+  const auto forces =
+      by_node_id(d, *nodal_forces(d, {"push", "right", none, {ScalarField(-12.), ScalarField(6.), ScalarField(0.)}}));
+  for (int y = 0; y <= 3; ++y) {
+    const double share = y == 0 || y == 3 ? 1. / 6 : 1. / 3;
+    EXPECT_NEAR(forces[2 * (4 + 5 * y)], -12 * share, 1e-14);
+    EXPECT_NEAR(forces[2 * (4 + 5 * y) + 1], 6 * share, 1e-14);
+  }
+}
+
+TEST(TotalForce, IsTheSumOfNodalForcesOnFlatAndCurvedSides)
+{
+  const Point force{3, -20, 7};
+  for (const auto &element : elements())
+    for (const bool curved : {false, true}) {
+      SCOPED_TRACE(text_of(element) + (curved ? ", curved" : ""));
+      const auto arch = [](const Point &x) { return Point{x[0], x[1] + 0.2 * x[0] * x[0], x[2]}; };
+      const auto d = body(small_box(element), world(), curved ? Deformation(arch) : Deformation());
+      const Point sum =
+          resultant(d, *nodal_forces(d, {"press", "top", none, {ScalarField(3.), ScalarField(-20.), ScalarField(7.)}}));
+      for (int c = 0; c < d.dim(); ++c) EXPECT_NEAR(sum[c], force[c], 2e-14 * 20);
+    }
+}
+
+TEST(TotalForce, OfABodyOfRevolutionIsThatOfTheWholeCircumference)
+{
+  for (const auto &element : elements()) {
+    if (element.dim == 3) continue;
+    SCOPED_TRACE(text_of(element));
+    const auto d = body({{1, 0}, {3, 2}, {4, 4}, element}, world(), {}, fem::Kinematics::axisymmetric);
+    const auto top = nodal_forces(d, {"press", "top", none, {ScalarField(0.), ScalarField(-2.), ScalarField(0.)}});
+    EXPECT_NEAR(resultant(d, *top)[1], -2, 1e-14);
+    Vector pressed(d.owned_dofs); // by the same force over the area of the ring
+    fem::add_traction(d, d.mesh->side("top", "test"),
+                      {ScalarField(0.), ScalarField(-2 / (M_PI * (9 - 1))), ScalarField(0.)}, "T", pressed);
+    pressed.update(-1., *top, 1.);
+    EXPECT_LT(pressed.normInf(), 1e-14);
+    // Radial: what acts towards the axis from all around.
+    const auto shrunk =
+        nodal_forces(d, {"shrink", "right", none, {ScalarField(-5.), ScalarField(0.), ScalarField(0.)}});
+    EXPECT_NEAR(resultant(d, *shrunk)[0], -5, 1e-13);
+  }
+}
+
+TEST(TotalForce, FollowsTimeAndAddsToAForcePerArea)
+{
+  const auto d = body(small_box({2, 1}), world());
+  fem::TractionLoad load{
+      "press", "right", {ScalarField(4.), field([](const Point &x) { return x[1]; }), ScalarField(0.)}};
+  load.force = {ScalarField("8*t", [](const Point &, const double t) { return 8 * t; }), ScalarField(3.),
+                ScalarField(0.)};
+  load.force[0] = load.force[0].seen_at(0.25);
+  const Point sum = resultant(d, *nodal_forces(d, load));
+  EXPECT_NEAR(sum[0], 4 + 2, 1e-13);
+  EXPECT_NEAR(sum[1], 2.5 + 3, 1e-13);
+  const auto on_side = fem::tractions_on(d, d.mesh->side("right", "test"), {load});
+  if (on_side.extent(0) > 0) {
+    double first = 0;
+    Kokkos::deep_copy(first, Kokkos::subview(on_side, 0, 0, 0));
+    EXPECT_NEAR(first, 6, 1e-13);
+  }
+}
+
+TEST(TotalForce, ThatIsNotFiniteOrHasNoAreaIsRefusedOnEveryRank)
+{
+  const auto d = body(small_box({2, 1}), world());
+  const fem::VectorField bad{ScalarField(0.), ScalarField("1/t", [](const Point &, double) { return INFINITY; }),
+                             ScalarField(0.)};
+  expect_error(ExitCode::bad_input, {"\"Traction->push->Force Y\" must be finite, got inf from 1/t"}, [&] {
+    nodal_forces(d, {"push", "right", none, bad});
+  });
+  const auto ring = body({{0, 0}, {1, 1}, {2, 2}, {2, 1}}, world(), {}, fem::Kinematics::axisymmetric);
+  expect_error(ExitCode::bad_input, {"\"Traction->push\" acts nowhere", "\"left\" lies on the axis"}, [&] {
+    nodal_forces(ring, {"push", "left", none, {ScalarField(0.), ScalarField(1.), ScalarField(0.)}});
+  });
+}
+
 TEST(Loads, AddUpAndAreTheSameOnAnyNumberOfRanks)
 {
   for (const auto &element : elements()) {
@@ -158,10 +249,33 @@ TEST(TractionOptions, EntryWithoutAForceIsRefused)
 {
   ParameterList list, zero;
   list.sublist("top").set("Side", "left");
-  expect_error(ExitCode::bad_input, {"\"Traction->top\" has no force", "Give X, Y or Z [Pa]"},
+  expect_error(ExitCode::bad_input, {"\"Traction->top\" has no force", "Give X, Y or Z [Pa]", "Force X"},
                [&] { fem::traction_options(completed(list, fem::valid_traction_parameters()), 2, parse_constant); });
   zero.sublist("top").set("Y", 0);
   EXPECT_EQ(fem::traction_options(completed(zero, fem::valid_traction_parameters()), 2, parse_constant).size(), 1u);
+}
+
+TEST(TractionOptions, ForceOnTheWholeSideIsOfTimeAloneAndStandsByItself)
+{
+  const auto options = [](const ParameterList &list, const FieldParser &parse = parse_constant) {
+    return fem::traction_options(completed(list, fem::valid_traction_parameters()), 2, parse);
+  };
+  ParameterList good, mixed, third, of_place;
+  good.sublist("top").set("Force Y", -500);
+  EXPECT_EQ(options(good)[0].force[1].constant, -500);
+  EXPECT_TRUE(options(good)[0].traction[1].is_zero());
+  mixed.sublist("top").set("Force Y", -500).set("X", 1);
+  expect_error(ExitCode::bad_input, {"\"Traction->top\" must have X, Y, Z [Pa] or Force X", "they add up"},
+               [&] { options(mixed); });
+  third.sublist("top").set("Force Z", 1);
+  expect_error(ExitCode::bad_input, {"\"Traction->top->Force Z\" must be 0 in 2D"}, [&] { options(third); });
+  of_place.sublist("top").set("Force Y", "x");
+  const auto parse_x = [](const std::string &text, const std::string &parameter) {
+    return text == "x" ? ScalarField("x", [](const Point &x) { return x[0]; }) : parse_constant(text, parameter);
+  };
+  expect_error(ExitCode::bad_input,
+               {"\"Traction->top->Force Y\" must not depend on x, y or z", "got x", "force per area as Y"},
+               [&] { options(of_place, parse_x); });
 }
 
 TEST(LoadOptions, ThirdComponentIn2dIsRefusedByName)

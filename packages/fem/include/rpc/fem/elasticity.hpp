@@ -75,11 +75,13 @@ std::string order_note(const Discretization &d, const Materials &materials);
 
 using VectorField = std::array<ScalarField, 3>;
 
-/// A force per area on one side.
+/// What acts on one side: a force per area, or a force in all that is spread evenly over the side's area.
 struct TractionLoad {
   std::string name; ///< of the entry in the deck, for messages
   std::string side;
   VectorField traction; ///< [Pa]
+  VectorField force =
+      {}; ///< [N], in the plane per m, of the whole body of revolution in axisymmetry; fields of time alone
 };
 
 /// Parameters of the deck's `Traction` and `Body Force` sublists.
@@ -117,6 +119,10 @@ InternalWork internal_work(const Discretization &d, const Materials &materials, 
 /// paper (1), (2.5)
 /// @param parameter  deck path for messages; collective
 void add_body_force(const Discretization &d, const VectorField &force, const std::string &parameter, Vector &load);
+
+/// A load per area, its force over the area of the mesh's side included [Pa]; collective.
+/// @throws rpc::Error (bad_input) where there is a force and the side has no area, or the force is not finite
+VectorField force_per_area(const Discretization &d, const mesh::Side &side, const TractionLoad &load);
 
 /// The sum of those of some tractions that act on a side, at the points of ReferenceElement::facet: (facets, points, dim)
 /// [Pa]; collective.
