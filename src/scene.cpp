@@ -108,7 +108,7 @@ Teuchos::ParameterList read_parameters(const std::string &deck_path, const std::
                                        const Comm &comm)
 {
   const Teuchos::ParameterList valid = valid_deck();
-  Teuchos::ParameterList deck = io::read_deck(deck_path, comm);
+  Teuchos::ParameterList deck = io::read_deck(deck_path, comm, valid);
   for (const auto &assignment : assignments) assign(deck, valid, assignment);
   validate(deck, valid);
   return deck;
@@ -117,6 +117,11 @@ Teuchos::ParameterList read_parameters(const std::string &deck_path, const std::
 Scene read_scene(const std::string &deck_path, const std::vector<std::string> &assignments, const Comm &comm)
 {
   Teuchos::ParameterList deck = read_parameters(deck_path, assignments, comm);
+  RPC_REQUIRE(
+      !deck.getEntry("Mesh").isDefault(),
+      "deck: \"Mesh\" is missing, which gives the body its shape. Write the list \"Mesh\": of a box with Lower, "
+      "Upper and Cells, of a mesh or geometry file with Type = gmsh and File");
+  const FieldParser parse = io::field_parser(valid_deck());
   Scene scene;
   scene.name = std::filesystem::path(deck_path).stem().string();
   scene.mesh = mesh::mesh_options(deck.sublist("Mesh"), std::filesystem::path(deck_path).parent_path().string(), comm);
@@ -126,10 +131,10 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.model.kinematics = fem::kinematics_option(deck.get<std::string>("Kinematics"), dim);
   scene.model.units = units_options(deck.sublist("Units"));
   scene.model.materials = fem::material_options(deck.sublist("Material"));
-  scene.model.dirichlet = fem::dirichlet_options(deck.sublist("Dirichlet"), dim, io::parse_field);
-  scene.model.tractions = fem::traction_options(deck.sublist("Traction"), dim, io::parse_field);
-  scene.model.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, io::parse_field);
-  scene.model.contact = contact::contact_options(deck.sublist("Contact"), dim, io::parse_field);
+  scene.model.dirichlet = fem::dirichlet_options(deck.sublist("Dirichlet"), dim, parse);
+  scene.model.tractions = fem::traction_options(deck.sublist("Traction"), dim, parse);
+  scene.model.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, parse);
+  scene.model.contact = contact::contact_options(deck.sublist("Contact"), dim, parse);
   scene.step.prediction = analysis::prediction_options(deck.sublist("Nested Iteration"));
   scene.identity.emplace_back("Kinematics", deck.get<std::string>("Kinematics"));
   for (const char *const part : {"Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact"})

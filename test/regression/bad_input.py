@@ -49,7 +49,7 @@ ASSIGNMENTS = [
     (["Mesh->Cells={0,4}"], ['"Mesh->Cells" must be > 0', "got 0 in direction 1"]),
     (["Mesh->Cells={20,-4}"], ['"Mesh->Cells" must be > 0', "got -4 in direction 2"]),
     (["Mesh->Cells={2000000000,2000000000}"], ['"Mesh->Cells"', "nodes; at most"]),
-    (["Mesh->Cells={20}"], ['"Mesh->Lower", "Upper" and "Cells" must be of one length, got 2, 2 and 1']),
+    (["Mesh->Cells={20}"], ['"Mesh->Cells" must hold as many numbers as "Lower" and "Upper", 2, got {20}']),
     (["Mesh->Upper={0,1}"], ['"Mesh->Upper" must be above "Mesh->Lower"', "0 and 0 in direction 1"]),
     (["Mesh->Upper={1e308,1}"], ['"Mesh->Upper" must be above "Mesh->Lower" by 1e-50 to 1e+50 [m]', "got 1e+308"]),
     (["Mesh->Lower={1e10,0}", "Mesh->Upper={10000000000.001,1}"], ['"Mesh->Cells": nodes must be at least 1e-12 times']),

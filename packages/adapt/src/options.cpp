@@ -3,6 +3,8 @@
 
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
+#include "rpc/core/remedies.hpp"
+#include "rpc/mesh/has_gmsh.hpp"
 
 #include <cmath>
 #include <limits>
@@ -11,6 +13,16 @@
 
 namespace rpc::adapt
 {
+namespace
+{
+
+std::string percent_remedy(const double target)
+{
+  if (!(target >= 1 && target < 100)) return "";
+  return ". Write " + number_text(target / 100) + " for " + number_text(target) + " %";
+}
+
+} // namespace
 
 Teuchos::ParameterList valid_adapt_parameters()
 {
@@ -23,7 +35,7 @@ Teuchos::ParameterList valid_adapt_parameters()
   set_words(valid, "Meshes", {"automatic", "gmsh", "nested"},
             "Who makes the meshes after the first one: `gmsh`, anew; `nested`: cells of the first one are halved, each "
             "rank its own, to triangles or tetrahedra whose coarser meshes are multigrid's. `automatic`: nested for "
-            "a .msh, which gmsh cannot mesh anew, else gmsh.");
+            "a .msh, which gmsh cannot mesh anew, and of an rpc that was built without gmsh; else gmsh.");
   valid.set("Max Cycles", 12, "Meshes, > 0.");
   valid.set("Estimate Error", false, "Estimate the error without refining; with a target that is done anyway.");
   valid.set("Exact Energy", std::numeric_limits<double>::quiet_NaN(),
@@ -49,7 +61,8 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list)
                    : meshes == "nested" ? NextMeshes::nested
                                         : NextMeshes::automatic;
   RPC_REQUIRE(options.target >= 0 && options.target < 1,
-              "deck: \"Adapt->Target Relative Error\" must be in (0, 1), or 0 for none, got " << options.target);
+              "deck: \"Adapt->Target Relative Error\" must be in (0, 1), or 0 for none, got "
+                  << options.target << percent_remedy(options.target));
   RPC_REQUIRE(options.max_dofs > 0, "deck: \"Adapt->Max Dofs\" must be > 0, got " << options.max_dofs);
   RPC_REQUIRE(options.max_cycles > 0, "deck: \"Adapt->Max Cycles\" must be > 0, got " << options.max_cycles);
   RPC_REQUIRE(!std::isinf(options.exact_energy),
@@ -60,7 +73,7 @@ AdaptOptions adapt_options(const Teuchos::ParameterList &list)
 bool nests(const mesh::MeshOptions &first, const AdaptOptions &adapt)
 {
   if (adapt.meshes != NextMeshes::automatic) return adapt.meshes == NextMeshes::nested;
-  return !mesh::with_sizes(first, nullptr);
+  return !mesh::has_gmsh() || !mesh::with_sizes(first, nullptr);
 }
 
 std::optional<mesh::MeshOptions> sized(const mesh::MeshOptions &first, const AdaptOptions &adapt,
@@ -72,6 +85,9 @@ std::optional<mesh::MeshOptions> sized(const mesh::MeshOptions &first, const Ada
 
 void require_adaptable(const Task &task)
 {
+  RPC_REQUIRE(
+      !task.adapt.adapts() || nests(task.mesh, task.adapt) || mesh::has_gmsh(),
+      "deck: \"Adapt->Meshes\" = gmsh needs gmsh, and this rpc was built without it. Write nested, or automatic.");
   RPC_REQUIRE(!task.adapt.adapts() || sized(task.mesh, task.adapt, nullptr, 0),
               "deck: \"Adapt->Meshes\" = gmsh goes with a box or a .geo, which can be meshed anew; the mesh is a .msh. "
               "Its cells can be halved: nested.");

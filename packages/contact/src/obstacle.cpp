@@ -36,6 +36,14 @@ struct Choice {
   }
 };
 
+/// "Centre, Radius, Encloses Body"
+std::string names_with(const Choice &choice)
+{
+  std::string names = choice.kind.point;
+  for (const auto &name : choice.kind.parameters) names += ", " + std::string(name);
+  return names;
+}
+
 template <class Shape>
 Surface read_surface(const Teuchos::ParameterList &list, const int dim, const std::string &path)
 {
@@ -115,7 +123,11 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
                          << choice->kind.in_the_plane << " in the plane");
   for (const std::string &name : parameters_of_types)
     RPC_REQUIRE(choice->has(name) || list.getEntry(name).isDefault(),
-                "deck: \"" << path << "->" << name << "\" does not go with \"" << path << "->Type\" = " << type);
+                "deck: \"" << path << "->" << name << "\" does not go with \"" << path << "->Type\" = " << type
+                           << ", which has " << names_with(*choice)
+                           << (name == "Point" || name == "Centre"
+                                   ? ". Write \"" + std::string(choice->kind.point) + "\" for \"" + name + "\""
+                                   : ". Remove it, or change the type"));
   Obstacle obstacle;
   obstacle.path = path_of(list, choice->kind.point, dim, path, parse);
   obstacle.surface = choice->read(list, dim, path);

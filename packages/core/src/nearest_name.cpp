@@ -5,9 +5,36 @@
 #include <cctype>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 namespace rpc
 {
+namespace
+{
+
+std::string small_letters(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(), [](const unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+std::vector<std::string> sorted_words(const std::string &text)
+{
+  std::istringstream in(small_letters(text));
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  std::sort(words.begin(), words.end());
+  return words;
+}
+
+/// "Filename" for "File", "Output File" for "Output".
+bool begins_with(const std::string &name, const std::string &candidate)
+{
+  constexpr std::size_t fewest_letters = 3;
+  return candidate.size() >= fewest_letters && small_letters(name).rfind(small_letters(candidate), 0) == 0;
+}
+
+} // namespace
 
 std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates)
 {
@@ -32,10 +59,13 @@ std::string nearest_name(const std::string &name, const std::vector<std::string>
   std::string best;
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   for (const auto &candidate : candidates) {
-    const std::size_t d = distance(name, candidate);
-    const bool abbreviated = !name.empty() && d == candidate.size() - name.size() &&
+    const bool same_words = sorted_words(name) == sorted_words(candidate);
+    const std::size_t d = same_words ? 0 : distance(name, candidate);
+    const bool abbreviated = name.size() > 1 && d == candidate.size() - name.size() &&
                              distance(name.substr(0, 1), candidate.substr(0, 1)) == 0;
-    if (!abbreviated && 2 * d > std::max(name.size(), candidate.size())) continue; // no likeness at all
+    const std::size_t longer = std::max(name.size(), candidate.size());
+    const bool slipped = 3 * d <= longer || (d == 1 && longer > 1);
+    if (!slipped && !abbreviated && !begins_with(name, candidate)) continue; // no likeness
     if (d < best_distance) {
       best = candidate;
       best_distance = d;

@@ -151,30 +151,46 @@ std::string rule_of(const ParameterEntry &model)
   return "a " + type_name(model);
 }
 
+/// Numbers of an array's default; 0 for anything else.
+std::size_t length_of(const ParameterEntry &model)
+{
+  if (model.isType<Array<int>>()) return Teuchos::getValue<Array<int>>(model).size();
+  return model.isType<Array<double>>() ? Teuchos::getValue<Array<double>>(model).size() : 0;
+}
+
 /// What to write instead of a value that does not fit.
-std::string remedy_for(const std::string &text, const ParameterEntry &model)
+std::string remedy_for(const std::string &text, const ParameterEntry &model, const Wanted &wanted)
 {
   if (const ChoiceValidator *const choice = choice_of(model)) {
-    const std::string meant = did_you_mean(text, choice->words());
+    const std::string meant = word_remedy(text, choice->words());
     return meant.empty() ? " " + model.docString() : meant;
   }
-  if (model.isType<double>()) return number_remedy(text);
+  if (model.isType<double>()) {
+    const std::string number = number_remedy(text, wanted);
+    return number.empty() ? " Write a number: this parameter takes no expressions." : number;
+  }
   if (model.isType<int>()) return integer_remedy(text);
   if (model.isType<bool>()) return bool_remedy(text);
-  if (model.isType<Array<int>>() || model.isType<Array<double>>() || is_fields(model))
-    return array_remedy(text, model.isType<Array<int>>());
+  if (model.isType<Array<int>>() || model.isType<Array<double>>() || is_fields(model)) {
+    const std::string axis = axis_remedy(text), for_each = one_for_each_remedy(text, length_of(model));
+    return !axis.empty() ? axis : !for_each.empty() ? for_each : array_remedy(text, model.isType<Array<int>>());
+  }
   return "";
 }
 
 /// The same of a value of another type, as a deck in XML or YAML has it.
-std::string remedy_for(const ParameterEntry &value, const ParameterEntry &model)
+std::string remedy_for(const ParameterEntry &value, const ParameterEntry &model, const Wanted &wanted)
 {
   if (model.isList())
     return value.isList() ? "" : " In XML write <ParameterList name=\"...\"> with <Parameter .../> in it.";
+  if (model.isType<std::string>() && value.isType<Array<std::string>>() && !choice_of(model) &&
+      !Teuchos::getValue<Array<std::string>>(value).empty())
+    return " It takes one text, such as \"" + Teuchos::getValue<Array<std::string>>(value).front() +
+           "\": write another entry for each further one.";
   if (value.isList()) return "";
   const std::string text = text_of(value);
   const auto read = read_entry(text, &model);
-  if (!read || choice_of(model)) return remedy_for(text, model);
+  if (!read || choice_of(model)) return remedy_for(text, model, wanted);
   const std::string type = model.isType<Array<int>>()           ? "Array(int)"
                            : model.isType<Array<double>>()      ? "Array(double)"
                            : model.isType<Array<std::string>>() ? "Array(string)"
@@ -191,6 +207,16 @@ std::string given_text(const ParameterEntry &value, const ParameterEntry &model)
   return text_of(value) + " (" + type_name(value) + ")";
 }
 
+/// Of a parameter in a list whose entries are to be lists.
+std::string entry_remedy(const std::string &path, const std::string &name, const ParameterList &valid)
+{
+  const bool of_sides = valid.sublist(any_entry).isParameter("Side");
+  const std::string example = of_sides ? "top" : "body";
+  return " The entries of \"" + path + "\" are lists, each named after a " + (of_sides ? "side" : "block") +
+         ", with parameters in them: write <ParameterList name=\"" + example + "\"> around it, in YAML " + example +
+         ": {" + name + ": ...}.";
+}
+
 /// @param root  what the whole deck may have
 void validate_list(ParameterList &list, const ParameterList &valid, const std::string &path, const ParameterList &root)
 {
@@ -203,7 +229,9 @@ void validate_list(ParameterList &list, const ParameterList &valid, const std::s
     if (entry.isList() && model.isList()) continue;
     const auto value = entry.isList() || model.isList() ? std::nullopt : converted(entry, model);
     RPC_REQUIRE(value, "deck: " << quoted(path, name) << " must be " << rule_of(model) << ", got "
-                                << given_text(entry, model) << "." << remedy_for(entry, model));
+                                << given_text(entry, model) << "."
+                                << (named_entries ? entry_remedy(path, name, valid)
+                                                  : remedy_for(entry, model, wanted_of(valid, name))));
     list.setEntry(name, *value);
   }
   const auto full = [&](const std::string &name) { return path.empty() ? name : path + "->" + name; };
@@ -340,7 +368,7 @@ void assign(ParameterList &list, const ParameterList &valid, const std::string &
   if (!unread && !model->isParameter(rest)) throw unknown_name(path, rest, *model, valid);
   const auto value = read_entry(text, unread ? nullptr : &model->getEntry(rest));
   RPC_REQUIRE(value, "--set: " << quoted(path, rest) << " must be " << rule_of(model->getEntry(rest)) << ", got \""
-                               << text << "\"." << remedy_for(text, model->getEntry(rest)));
+                               << text << "\"." << remedy_for(text, model->getEntry(rest), wanted_of(*model, rest)));
   target->setEntry(rest, *value);
 }
 

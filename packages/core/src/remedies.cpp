@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/remedies.hpp"
 
+#include "other_words.hpp"
 #include "rpc/core/parameters.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <regex>
 #include <sstream>
@@ -111,6 +113,65 @@ std::optional<std::string> digits_of(std::string digits)
   return digits;
 }
 
+const WrittenUnit *unit_named(const std::string &name)
+{
+  const auto unit = std::find_if(std::begin(units_of_others), std::end(units_of_others),
+                                 [&](const WrittenUnit &each) { return name == each.name; });
+  return unit == std::end(units_of_others) ? nullptr : &*unit;
+}
+
+std::string rounded(const double value) // of a product: its last digits are rounding
+{
+  std::ostringstream out;
+  out.precision(10);
+  out << value;
+  return out.str();
+}
+
+/// "a pressure"; empty where there is no word for it.
+std::string quantity_of(const WrittenUnit &unit)
+{
+  const std::string name = unit.name;
+  if (unit.force == 1 && unit.length == -2) return "a pressure";
+  if (unit.force == 0 && unit.length == 1) return "a length";
+  if (unit.force == 1 && unit.length == 0) return "a force";
+  if (unit.force == 1 && unit.length == -1) return "a force per length";
+  if (unit.force == 1 && unit.length == -3)
+    return name.find("Pa") == std::string::npos ? "a force per volume" : "a pressure per length";
+  return "";
+}
+
+/// Whether two units are of one quantity. A force of a plane body is one per length.
+bool agree(const WrittenUnit &given, const WrittenUnit &wanted)
+{
+  const bool force_in_the_plane = wanted.force == 1 && wanted.length == 0 && given.force == 1 && given.length == -1;
+  return force_in_the_plane || (given.force == wanted.force && given.length == wanted.length);
+}
+
+/// Where a number has the unit of another quantity than its parameter; empty where it does not.
+std::string other_quantity(const WrittenNumber &number, const WrittenUnit &unit, const Wanted &wanted)
+{
+  const WrittenUnit *const own = unit_named(wanted.unit);
+  if (!own || agree(unit, *own) || quantity_of(unit).empty()) return "";
+  std::string text = " \"" + number.unit + "\" is a unit of " + quantity_of(unit).substr(2) + ", where " +
+                     quantity_of(*own) + " is wanted [" + wanted.unit + "].";
+  for (const auto &[name, unit_of_other] : wanted.siblings) { // "Force Y" beside "Y"
+    const WrittenUnit *const other = unit_named(unit_of_other);
+    const std::string shorter =
+        std::min(name, wanted.name, [](const auto &a, const auto &b) { return a.size() < b.size(); });
+    const std::string longer = shorter == name ? wanted.name : name;
+    const std::string ending = " " + shorter;
+    const bool of_one_component =
+        longer.size() > ending.size() && longer.compare(longer.size() - ending.size(), ending.size(), ending) == 0;
+    if (other && of_one_component && agree(unit, *other))
+      return text + " For " + quantity_of(unit) + " write \"" + name + "\" instead of \"" + wanted.name +
+             "\", and the number alone, in the deck's units (see \"Units\").";
+  }
+  const bool displacement = own->length == 1 && own->force == 0 && wanted.name.size() == 1;
+  if (displacement && number.value != 0) return text + " Forces and pressures belong into \"Traction\".";
+  return text + (number.value == 0 ? " Write 0." : " Write the number alone, in the deck's units (see \"Units\").");
+}
+
 std::string with_brackets(const std::vector<std::string> &items, const bool were_whole)
 {
   return std::string(were_whole ? " Write {" : " Write whole numbers, such as {") + join(items) + "} (in YAML [" +
@@ -145,16 +206,17 @@ std::string number_text(const double value)
   return text.str();
 }
 
-std::string number_remedy(const std::string &text)
+std::string number_remedy(const std::string &text, const Wanted &wanted)
 {
   const auto number = written_number(text);
+  const auto value_of_expression = number && number->unit.empty() ? std::nullopt : arithmetic(text);
+  if (value_of_expression)
+    return " Write its value, " + rounded(*value_of_expression) + ": " +
+           (!wanted.expression ? "only parameters of the kind \"number or expression\" take an expression, in XML with "
+                                 "type=\"string\"."
+            : *wanted.expression ? "or in XML type=\"string\", for it is an expression."
+                                 : "this parameter takes a number, not an expression.");
   if (!number) return "";
-  const auto rounded = [](const double value) { // of a product: its last digits are rounding
-    std::ostringstream out;
-    out.precision(10);
-    out << value;
-    return out.str();
-  };
   if (number->unit.empty()) {
     std::string other;
     static const std::regex ambiguous(R"([-+]?[1-9]\d{0,2},\d{3})");
@@ -163,12 +225,12 @@ std::string number_remedy(const std::string &text)
     const bool comma = text.find(',') != std::string::npos;
     return " Write " + number_text(number->value) + other + (comma ? ": decks have a decimal point." : ".");
   }
-  const auto unit = std::find_if(std::begin(units_of_others), std::end(units_of_others),
-                                 [&](const WrittenUnit &each) { return number->unit == each.name; });
+  const WrittenUnit *const unit = unit_named(number->unit);
   const std::string alone = " Write the number alone, without \"" + number->unit + "\"";
   static const std::regex word(R"([A-Za-z%/^\d\s.]+)");
   if (!std::regex_match(number->unit, word)) return "";
-  if (unit == std::end(units_of_others)) return alone + ": it counts in the deck's units, see \"Units\".";
+  if (!unit) return alone + ": it counts in the deck's units, see \"Units\".";
+  if (const std::string other = other_quantity(*number, *unit, wanted); !other.empty()) return other;
   const double value = number->value * unit->factor;
   if (unit->force == 0 && unit->length == 0) return alone + ": " + rounded(value) + ".";
   return alone + ", in the deck's units (see \"Units\"): " + rounded(value) + " with m and N, " +
@@ -205,9 +267,10 @@ std::string array_remedy(const std::string &text, const bool whole)
   for (std::string item; in >> item;) {
     while (!item.empty() && item.back() == ',') item.pop_back();
     const auto number = written_number(item);
-    if (!number || !number->unit.empty()) return number_remedy(text);
-    const double value = whole ? std::round(number->value) : number->value;
-    were_whole &= value == number->value;
+    const auto product = arithmetic(item);
+    if (!product && (!number || !number->unit.empty())) return number_remedy(text);
+    const double given = product ? *product : number->value, value = whole ? std::round(given) : given;
+    were_whole &= value == given;
     items.push_back(number_text(value));
   }
   return items.empty() ? "" : with_brackets(items, were_whole);
@@ -222,6 +285,51 @@ std::string bool_remedy(const std::string &text)
   for (const char *const no :
        {"off", "n", "f", "non", "nein", ".false.", "disabled", "none", "false", "no", "0", "0.0"})
     if (word == no) return " Write false.";
+  return "";
+}
+
+std::string one_for_each_remedy(const std::string &text, const std::size_t length)
+{
+  const auto number = written_number(text);
+  if (!number || !number->unit.empty() || length < 2) return "";
+  const std::string one = number_text(number->value), two = one + ", " + one;
+  return " Write one for each direction: {" + two + "} in the plane, {" + two + ", " + one + "} in space (in YAML [" +
+         two + "]).";
+}
+
+std::string axis_remedy(const std::string &text)
+{
+  static const std::regex axis(R"(\{?\s*([-+]?)(?:e_?)?([xyzXYZ])\s*\}?)");
+  std::smatch found;
+  constexpr std::size_t longest = 20;
+  const std::string given = plain(text);
+  if (given.size() > longest || !std::regex_match(given, found, axis)) return "";
+  const int direction = std::tolower(static_cast<unsigned char>(found[2].str()[0])) - 'x';
+  const auto unit_vector = [&](const int dim) {
+    std::string vector;
+    for (int c = 0; c < dim; ++c)
+      vector += (c > 0 ? ", " : "") + std::string(c == direction ? (found[1] == "-" ? "-1" : "1") : "0");
+    return vector;
+  };
+  const std::string in_space = unit_vector(3), in_plane = unit_vector(2);
+  return " Write {" + in_space + "}" + (direction < 2 ? " in space, {" + in_plane + "} in the plane" : "") +
+         " (in YAML [" + in_space + "]).";
+}
+
+std::string word_remedy(const std::string &text, const std::vector<std::string> &words)
+{
+  const std::string meant = found_word(words_for_words, letters(text));
+  if (std::find(words.begin(), words.end(), meant) != words.end()) return " For \"" + text + "\" write " + meant + ".";
+  return did_you_mean(text, words);
+}
+
+std::string file_remedy(const std::string &name, const std::vector<std::string> &files)
+{
+  if (const std::string meant = did_you_mean(name, files); !meant.empty()) return meant;
+  const auto stem = [](const std::string &file) { return std::filesystem::path(file).stem().string(); };
+  for (const std::string &file : files)
+    if (nearest_name(stem(name), {stem(file)}) == stem(file) && !stem(name).empty())
+      return " Did you mean \"" + file + "\"?";
   return "";
 }
 

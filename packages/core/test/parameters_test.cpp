@@ -376,6 +376,13 @@ TEST(NearestName, IsTheOneOfLeastEditDistanceWithoutRegardToCase)
   EXPECT_EQ(rpc::nearest_name("Gpa", {"Side", "Gap"}), "Gap");
   EXPECT_EQ(rpc::nearest_name("nu", {"Young's Modulus", "Blocks"}), "");
   EXPECT_EQ(rpc::nearest_name("Gap", {}), "");
+  EXPECT_EQ(rpc::nearest_name("Filename", {"Type", "File"}), "File");
+  EXPECT_EQ(rpc::nearest_name("bottom left", {"left", "left bottom"}), "left bottom");
+  // Far: more than a third of the letters.
+  EXPECT_EQ(rpc::nearest_name("Name", {"Time", "Mesh"}), "");
+  EXPECT_EQ(rpc::nearest_name("Refine", {"File"}), "");
+  EXPECT_EQ(rpc::nearest_name("Shear Modulus", {"Young's Modulus"}), "");
+  EXPECT_EQ(rpc::nearest_name("P", {"Penalty"}), "");
 }
 
 TEST(Join, PutsCommasBetween)

@@ -123,10 +123,10 @@ void write_infinities_as_strings(const XMLObject &xml)
   }
 }
 
-ParameterList read_xml(const std::string &path, const std::string &text)
+ParameterList read_xml(const std::string &path, const std::string &text, const ParameterList &valid)
 {
   check_depth(path, text, false);
-  check_xml_deck(path, read_xml_elements(path, text));
+  check_xml_deck(path, read_xml_elements(path, text), valid);
   try {
     Teuchos::StringInputSource source(text);
     const XMLObject xml = source.getObject();
@@ -254,7 +254,7 @@ std::string find_file(const std::string &name)
     for (const std::string &other : decks_in(place.parent_path())) others.push_back(other);
   }
   throw Error(ExitCode::bad_input, "deck: there is no file \"" + name + "\"; searched: " + searched + "." +
-                                       did_you_mean(fs::path(name).filename().string(), others));
+                                       file_remedy(fs::path(name).filename().string(), others));
 }
 
 /// Lines of the lists and parameters of an XML deck.
@@ -328,10 +328,10 @@ std::string with_place(const std::string &message, const std::string &path, cons
   return start + where + ": " + message.substr(start.size());
 }
 
-ParameterList read_deck(const std::string &path, const Teuchos::Comm<int> &comm)
+ParameterList read_deck(const std::string &path, const Teuchos::Comm<int> &comm, const ParameterList &valid)
 {
   const std::string text = text_of_root(comm, ExitCode::bad_input, [&] { return read_text(path); });
-  return is_yaml(path) ? read_yaml(path, text) : read_xml(path, text);
+  return is_yaml(path) ? read_yaml(path, text) : read_xml(path, text, valid);
 }
 
 } // namespace rpc::io

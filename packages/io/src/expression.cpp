@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/io/expression.hpp"
 
+#include "deck_text.hpp"
 #include "expression_bounds.hpp"
 #include "expression_remedy.hpp"
 #include "rpc/core/error.hpp"
@@ -14,6 +15,7 @@
 #include <muParser.h>
 #include <optional>
 #include <regex>
+#include <utility>
 
 namespace rpc::io
 {
@@ -71,10 +73,11 @@ std::optional<double> read_number(const std::string &text)
   return value;
 }
 
-std::string refused(const std::string &text, const std::string &parameter, const std::string &reason)
+std::string refused(const std::string &text, const std::string &parameter, const std::string &reason,
+                    const Wanted &wanted)
 {
   return "deck: \"" + parameter + "\" = \"" + text + "\" is not a number or an expression: " + reason + "." +
-         expression_remedy(text) + " " + known_names;
+         expression_remedy(text, wanted) + " " + known_names;
 }
 
 /// muParser's words, without its own and not always present 0-based position.
@@ -83,6 +86,10 @@ std::string reason_of(const mu::ParserError &error)
   static const std::regex position("( found)? at (expression )?position -?[0-9]+");
   std::string reason = std::regex_replace(error.GetMsg(), position, "");
   while (!reason.empty() && (reason.back() == '.' || reason.back() == ' ')) reason.pop_back();
+  if (!reason.empty() && reason.back() == '"') { // behind blanks that muParser adds
+    reason.pop_back();
+    reason = trimmed(reason) + '"';
+  }
   if (error.GetPos() >= 0 && error.GetPos() != std::numeric_limits<int>::max())
     reason += " at character " + std::to_string(error.GetPos() + 1);
   return reason;
@@ -102,7 +109,7 @@ bool agree(const ExpressionBounds &bounds, Expression &expression)
 
 } // namespace
 
-ScalarField parse_field(const std::string &text, const std::string &parameter)
+ScalarField parse_field(const std::string &text, const std::string &parameter, const Wanted &wanted)
 {
   const auto constant = [&](const double value) {
     RPC_REQUIRE(!std::isnan(value), "deck: \"" << parameter << "\" = \"" << text << "\" is not a number (nan)");
@@ -115,15 +122,22 @@ ScalarField parse_field(const std::string &text, const std::string &parameter)
     const auto expression = std::make_shared<Expression>(text);
     const double at_origin = (*expression)(Point{}, 1);
     RPC_REQUIRE(expression->parser.GetNumResults() == 1,
-                refused(text, parameter, "it has several values, separated by commas"));
-    RPC_REQUIRE(!expression->assigns(), refused(text, parameter, "\"=\" assigns; to compare, write \"==\""));
+                refused(text, parameter, "it has several values, separated by commas", wanted));
+    RPC_REQUIRE(!expression->assigns(), refused(text, parameter, "\"=\" assigns; to compare, write \"==\"", wanted));
     if (expression->parser.GetUsedVar().empty()) return constant(at_origin);
     ScalarField field(text, [expression](const Point &x, const double t) { return (*expression)(x, t); });
     if (const auto bounds = ExpressionBounds::of(text); bounds && agree(*bounds, *expression)) field.bounds = *bounds;
     return field;
   } catch (const mu::ParserError &error) {
-    throw Error(ExitCode::bad_input, refused(text, parameter, reason_of(error)));
+    throw Error(ExitCode::bad_input, refused(text, parameter, reason_of(error), wanted));
   }
+}
+
+FieldParser field_parser(Teuchos::ParameterList valid)
+{
+  return [valid = std::move(valid)](const std::string &text, const std::string &parameter) {
+    return parse_field(text, parameter, wanted_of(valid, parameter));
+  };
 }
 
 } // namespace rpc::io

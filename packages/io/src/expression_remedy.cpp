@@ -73,11 +73,11 @@ std::string decimal_comma(const std::string &text)
 
 } // namespace
 
-std::string expression_remedy(const std::string &text)
+std::string expression_remedy(const std::string &text, const Wanted &wanted)
 {
   if (text.find_first_not_of(" \t") == std::string::npos)
     return " Write a number or an expression, or remove the parameter.";
-  if (const std::string remedy = number_remedy(text); !remedy.empty()) return remedy;
+  if (const std::string remedy = number_remedy(text, wanted); !remedy.empty()) return remedy;
   if (text.find("**") != std::string::npos) return " Powers are written ^.";
   for (const char *const minus : {"\u2212", "\u2013", "\u2014"})
     if (text.find(minus) != std::string::npos)

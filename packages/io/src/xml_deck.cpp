@@ -41,13 +41,15 @@ public:
       if (text_[at_] != '<')
         read_words();
       else if (starts("<!--"))
-        skip("-->", "comment");
+        skip_comment();
       else if (starts("<![CDATA["))
         skip("]]>", "CDATA section");
       else if (starts("<?"))
         skip("?>", "declaration");
-      else if (starts("<!"))
+      else if (starts("<!DOCTYPE"))
         skip(">", "declaration");
+      else if (starts("<!"))
+        refuse_broken_comment();
       else if (starts("</"))
         read_closing();
       else
@@ -83,6 +85,25 @@ private:
     if (found == std::string::npos)
       refuse(line_, "the " + what + " that begins here does not end. Write " + end + " behind it.");
     advance(found + std::strlen(end) - at_);
+  }
+
+  /// A comment that is not ended would reach to the end of the next one, and the lists between would be lost.
+  void skip_comment()
+  {
+    const std::size_t end = text_.find("-->", at_ + 4), next = text_.find("<!--", at_ + 4);
+    if (next < end) {
+      const auto lines = std::count(text_.begin() + at_, text_.begin() + next, '\n');
+      refuse(line_, "the comment that begins here does not end before the next one, of line " +
+                        std::to_string(line_ + lines) + ". Write --> behind it.");
+    }
+    skip("-->", "comment");
+  }
+
+  [[noreturn]] void refuse_broken_comment() const
+  {
+    const std::size_t end = std::min(text_.find_first_of("\n>", at_), text_.size());
+    const std::string given = text_.substr(at_, end - at_) + (end < text_.size() && text_[end] == '>' ? ">" : "");
+    refuse(line_, "\"" + given + "\" is no comment and no tag. Write a comment as <!-- ... -->.");
   }
 
   /// Between tags there are to be blanks only.
@@ -331,7 +352,8 @@ std::string example_type(const std::string &value)
 }
 
 /// What a parameter's tag needs, and its value's type.
-void check_parameter(const std::string &file, const XmlElement &element, const std::string &path)
+void check_parameter(const std::string &file, const XmlElement &element, const std::string &path,
+                     const Teuchos::ParameterList &valid)
 {
   const std::string what = path.empty() ? "the parameter" : "\"" + path + "\"";
   for (const std::string &needed : deck_attributes) {
@@ -359,16 +381,21 @@ void check_parameter(const std::string &file, const XmlElement &element, const s
     if (!array_reads_as(item[1], value))
       refuse_line(file, element.line,
                   what + " = \"" + value + "\" does not read as " + type + ", such as {0, 1}." +
-                      (item[1] == "string" ? "" : array_remedy(value, item[1] == "int")));
+                      (item[1] == "string"          ? ""
+                       : axis_remedy(value).empty() ? array_remedy(value, item[1] == "int")
+                                                    : axis_remedy(value)));
     return;
   }
   if (type == "double" && is_infinite(value)) return;
   if (reads_as(type, value)) return;
+  const Wanted wanted = wanted_of(valid, path);
+  const bool only_number = wanted.expression && !*wanted.expression;
   const std::string remedy = type == "int"    ? integer_remedy(value)
                              : type == "bool" ? bool_remedy(value)
-                                              : number_remedy(value);
+                                              : number_remedy(value, wanted);
   static const std::regex words(R"([A-Za-z_][A-Za-z_ ]*)"), list(R"(\{.*\})");
   const std::string other = std::regex_match(value, list)    ? " For a list write type=\"Array(" + type + ")\"."
+                            : only_number && !value.empty()  ? " Write a number: this parameter takes no expressions."
                             : std::regex_match(value, words) ? " For a word write type=\"string\"."
                             : value.empty()                  ? " Write a value, or remove the parameter."
                             : remedy.empty()                 ? " For an expression write type=\"string\"."
@@ -377,7 +404,8 @@ void check_parameter(const std::string &file, const XmlElement &element, const s
               what + " = \"" + value + "\" does not read as " + type + "." + (remedy.empty() ? other : remedy));
 }
 
-void check_elements(const std::string &file, const XmlElement &list, const std::string &path)
+void check_elements(const std::string &file, const XmlElement &list, const std::string &path,
+                    const Teuchos::ParameterList &valid)
 {
   std::set<std::string> names;
   for (const XmlElement &child : list.children) {
@@ -385,7 +413,7 @@ void check_elements(const std::string &file, const XmlElement &list, const std::
     check_tags(file, child, false);
     const std::string *const name = child.attribute("name");
     if (!name) {
-      if (child.tag == "Parameter") check_parameter(file, child, "");
+      if (child.tag == "Parameter") check_parameter(file, child, "", valid);
       refuse_line(file, child.line,
                   "<ParameterList> in " + (path.empty() ? "the deck" : "\"" + path + "\"") +
                       " has no name. Write <ParameterList name=\"...\">.");
@@ -394,14 +422,14 @@ void check_elements(const std::string &file, const XmlElement &list, const std::
     if (!names.insert(*name).second)
       refuse_line(file, child.line, "\"" + full + "\" is given twice. Remove one of them.");
     if (child.tag == "ParameterList")
-      check_elements(file, child, full);
+      check_elements(file, child, full, valid);
     else if (!child.children.empty())
       refuse_line(file, child.line,
                   "\"" + full +
                       "\" is a <Parameter> with tags in it. End it with \"/>\", or write "
                       "<ParameterList> for a list.");
     else
-      check_parameter(file, child, full);
+      check_parameter(file, child, full, valid);
   }
 }
 
@@ -419,10 +447,10 @@ XmlElement read_xml_elements(const std::string &path, const std::string &text)
   return XmlReader(path, text).read();
 }
 
-void check_xml_deck(const std::string &path, const XmlElement &root)
+void check_xml_deck(const std::string &path, const XmlElement &root, const Teuchos::ParameterList &valid)
 {
   check_tags(path, root, true);
-  check_elements(path, root, "");
+  check_elements(path, root, "", valid);
 }
 
 } // namespace rpc::io

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Teuchos_ParameterList.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,7 +26,8 @@ struct XmlElement {
 XmlElement read_xml_elements(const std::string &path, const std::string &text);
 
 /// Checks tags, attributes, names that are given twice, and values against their types.
+/// @param valid  what the deck may have; empty: that is not known
 /// @throws rpc::Error (bad_input) with path, line, the parameter's name, its value and what to write
-void check_xml_deck(const std::string &path, const XmlElement &root);
+void check_xml_deck(const std::string &path, const XmlElement &root, const Teuchos::ParameterList &valid);
 
 } // namespace rpc::io

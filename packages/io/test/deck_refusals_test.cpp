@@ -2,6 +2,7 @@
 #include "rpc/io/deck.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
 #include "rpc/io/expression.hpp"
 #include "scratch.hpp"
 
@@ -85,6 +86,10 @@ TEST_F(Refusal, OfTagsSaysWhatIsOpen)
   expect_xml("</ParameterList>\n</ParameterList>", "</ParameterList>\n</ParameterList>\n<ParameterList/>", 12,
              "begins behind the end");
   expect_xml("<!-- a beam -->", "<!-- a beam", 2, "the comment that begins here does not end. Write -->");
+  for (const std::string broken : {"<!- a beam ->", "<!- a beam -->", "<! -- a beam -->", "<!a beam>"})
+    expect_xml("<!-- a beam -->", broken, 2, "is no comment and no tag. Write a comment as <!-- ... -->.");
+  expect_xml("<!-- a beam -->", "<!-- a beam ->\n<!-- more -->", 2,
+             "the comment that begins here does not end before the next one, of line 3. Write -->");
   expect_xml("<Parameter name=\"Side\"", "<Paramter name=\"Side\"", 8, "Did you mean \"Parameter\"?");
   expect_xml("<Parameter name=\"Side\" type=\"string\" value=\"bottom\"/>", "<Side>bottom</Side>", 8,
              "Write <Parameter name=\"Side\" type=\"string\" value=\"bottom\"/>.");
@@ -112,6 +117,29 @@ TEST_F(Refusal, OfAttributesSaysWhatToWrite)
   expect_xml("type=\"string\" value=\"0.1\"", "type=\"double\" value=\"x^2\"", 9,
              "For an expression write type=\"string\".");
   expect_xml("value=\"{160, 32}\"", "value=\"160 32\"", 5, "Write {160, 32}");
+}
+
+TEST_F(Refusal, OfAValueKnowsWhatIsWanted)
+{
+  Teuchos::ParameterList valid("deck");
+  valid.sublist("Contact").set("Side", "", "Side.");
+  rpc::set_field(valid.sublist("Contact"), "Gap", "0", "Gap [m].");
+  valid.sublist("Contact").set("Penalty", 1., "r > 0 [Pa/m].");
+  const auto refused = [&](const std::string &parameter, const std::string &part) {
+    SCOPED_TRACE(parameter);
+    scratch_.write("a.xml", "<ParameterList><ParameterList name=\"Contact\">\n" + parameter +
+                                "\n</ParameterList></ParameterList>");
+    expect_error(ExitCode::bad_input, {"line 2: ", part},
+                 [&] { rpc::io::read_deck(scratch_.path("a.xml"), *Tpetra::getDefaultComm(), valid); });
+  };
+  refused(R"(<Parameter name="Gap" type="double" value="5 N"/>)",
+          "\"N\" is a unit of force, where a length is wanted [m]");
+  refused(R"(<Parameter name="Gap" type="double" value="1/3"/>)", "0.3333333333: or in XML type=\"string\"");
+  refused(R"(<Parameter name="Penalty" type="double" value="1/3"/>)",
+          "this parameter takes a number, not an expression");
+  refused(R"(<Parameter name="Penalty" type="double" value="x^2"/>)", "this parameter takes no expressions");
+  expect_error(ExitCode::bad_input, {"\"Contact->Gap\"", "a unit of force, where a length is wanted"},
+               [&] { rpc::io::field_parser(valid)("5 N", "Contact->Gap"); });
 }
 
 TEST_F(Refusal, OfYamlNamesTheLine)

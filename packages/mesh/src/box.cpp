@@ -254,10 +254,18 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
   options.cells.assign(cells.begin(), cells.end());
   const std::size_t dim = options.lower.size();
   RPC_REQUIRE(dim == 2 || dim == 3, "deck: \"Mesh->Lower\" must hold 2 or 3 numbers, got " << dim);
-  RPC_REQUIRE(options.upper.size() == dim && options.cells.size() == dim,
-              "deck: \"Mesh->Lower\", \"Upper\" and \"Cells\" must be of one length, got "
-                  << dim << ", " << options.upper.size() << " and " << options.cells.size()
-                  << ". Write 2 numbers for each, in space 3, with decimal points and commas between them");
+  const auto require_length = [&](const char *const name, const std::size_t given, const char *const others,
+                                  const std::size_t wanted) {
+    RPC_REQUIRE(given == wanted, "deck: \"Mesh->" << name << "\" must hold as many numbers as " << others << ", "
+                                                  << wanted << ", got "
+                                                  << Teuchos::toString(list.getEntry(name).getAny(false))
+                                                  << ". Write 2 numbers for each, in space 3, with decimal points and "
+                                                     "commas between them");
+  };
+  if (options.upper.size() == options.cells.size())
+    require_length("Lower", dim, "\"Upper\" and \"Cells\"", options.upper.size());
+  require_length("Upper", options.upper.size(), "\"Lower\"", dim);
+  require_length("Cells", options.cells.size(), "\"Lower\" and \"Upper\"", dim);
   double nodes = 1;
   options.element = parse_element(list.get<std::string>("Element"), static_cast<int>(dim));
   for (std::size_t d = 0; d < dim; ++d) {

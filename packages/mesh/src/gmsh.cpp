@@ -8,6 +8,7 @@
 #include "middle_nodes.hpp"
 #include "msh_reader.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/remedies.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -15,6 +16,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <utility>
 
 namespace rpc::mesh
@@ -74,6 +76,66 @@ void check_number_of_cells(const std::string &where, const SizeField &field, con
                          << " are made");
 }
 
+/// A line of a .geo without comment and blanks around it.
+std::string code_of(const std::string &line)
+{
+  const std::string code = line.substr(0, line.find("//"));
+  const auto first = code.find_first_not_of(" \t\r");
+  return first == code.npos ? "" : code.substr(first, code.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// Whether a line, which is not empty, lacks the ";" of its command; what ends with "}" may be one of several lines unless it assigns.
+bool needs_end(const std::string &code)
+{
+  return code.back() == '}' ? code.find('=') != code.npos : !std::strchr(";{,", code.back());
+}
+
+/// What to do about an error in a .geo: sentences behind gmsh's own words; empty if nothing is known.
+std::string complaint_remedy(const std::string &file, const std::string &complaint)
+{
+  static const std::regex syntax(R"(line (\d+): syntax error \((.*)\).*)"), variable(R"(.*Unknown variable '(.*)'.*)"),
+      unknown(R"(.*Unknown .*)"), no_file(R"(.*Unable to open file.*)");
+  std::smatch found;
+  if (std::regex_match(complaint, found, variable))
+    return ". Write " + found[1].str() + " = ...; before it is used, or correct the name";
+  if (std::regex_match(complaint, no_file))
+    return ". Files are looked for beside the .geo: name this one, or its whole path";
+  if (std::regex_match(complaint, unknown)) return ". Define it in a line before that one, or correct its number";
+  if (!std::regex_match(complaint, found, syntax)) return "";
+  std::ifstream in(file);
+  const int wrong = std::stoi(found[1]);
+  std::string text, line, before;
+  int number_before = 0;
+  for (int number = 1; number <= wrong && std::getline(in, line); ++number) {
+    if (number == wrong) text = line;
+    if (number == wrong || code_of(line).empty()) continue;
+    before = line;
+    number_before = number;
+  }
+  static const std::vector<std::string> commands = {"Point",        "Line",
+                                                    "Circle",       "Ellipse",
+                                                    "Spline",       "BSpline",
+                                                    "Curve",        "Surface",
+                                                    "Volume",       "Physical",
+                                                    "Loop",         "Plane",
+                                                    "Field",        "Background",
+                                                    "Merge",        "SetFactory",
+                                                    "Extrude",      "Transfinite",
+                                                    "Recombine",    "Rectangle",
+                                                    "Disk",         "Box",
+                                                    "Sphere",       "Cylinder",
+                                                    "Cone",         "BooleanDifference",
+                                                    "BooleanUnion", "DefineConstant"};
+  const std::string word = found[2], meant = did_you_mean(word, commands);
+  const auto quoted = [](const std::string &of) { return '"' + code_of(of).substr(0, 60) + '"'; };
+  const bool first_in_line = text.find(word) == text.find_first_not_of(" \t");
+  if (first_in_line && number_before > 0 && needs_end(code_of(before)))
+    return ". Write \";\" at the end of line " + std::to_string(number_before) + ", " + quoted(before);
+  const bool known = std::find(commands.begin(), commands.end(), word) != commands.end();
+  return " in " + quoted(text) + "." +
+         (known || meant.empty() ? " Look for a bracket, a comma or a \";\" that is missing there or before" : meant);
+}
+
 /// @param[out] again  whether another attempt may do better where this one fails
 GmshContents answer_of_gmsh(const std::string &where, const GmshOptions &options, const GmshRequest &request,
                             bool &again)
@@ -82,7 +144,8 @@ GmshContents answer_of_gmsh(const std::string &where, const GmshOptions &options
   again = contents.again || contents.complaint.empty();
   const std::string file = "'" + options.file + "', "; // which the message has named
   if (contents.complaint.compare(0, file.size(), file) == 0) contents.complaint.erase(0, file.size());
-  RPC_REQUIRE_CODE(contents.complaint.empty(), ExitCode::bad_mesh, where << "gmsh: " << contents.complaint);
+  RPC_REQUIRE_CODE(contents.complaint.empty(), ExitCode::bad_mesh,
+                   where << "gmsh: " << contents.complaint << complaint_remedy(options.file, contents.complaint));
   return contents;
 }
 

@@ -4,6 +4,7 @@
 #include "gmsh_wire.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/mesh/gmsh.hpp"
+#include "rpc/mesh/has_gmsh.hpp"
 
 #ifdef RPC_GMSH_PROGRAM
 #include <array>
@@ -139,6 +140,11 @@ std::string Program::answer(const std::string &request, std::optional<int> &stat
 
 } // namespace
 
+bool has_gmsh()
+{
+  return true;
+}
+
 void start_gmsh_early()
 {
   Program::instance().start();
@@ -161,6 +167,11 @@ GmshContents run_gmsh(const std::string &where, const GmshRequest &request)
   return unpacked_contents(bytes);
 }
 #else
+bool has_gmsh()
+{
+  return false;
+}
+
 void start_gmsh_early() {}
 
 GmshContents run_gmsh(const std::string &where, const GmshRequest &)

@@ -42,11 +42,11 @@ void add_gmsh_parameters(Teuchos::ParameterList &valid)
             "those of multigrid and nested iteration.");
 }
 
-/// Names of files for gmsh in the deck's folder and in the current one.
-std::vector<std::string> mesh_files(const std::string &folder)
+/// Names of files for gmsh in some folders.
+std::vector<std::string> mesh_files(const std::vector<std::string> &folders)
 {
   std::vector<std::string> names;
-  for (const std::string &place : {folder, std::string(".")}) {
+  for (const std::string &place : folders) {
     std::error_code failed;
     for (std::filesystem::directory_iterator at(place.empty() ? "." : place, failed), end; !failed && at != end;
          at.increment(failed)) {
@@ -66,11 +66,21 @@ std::string found_file(const std::string &name, const std::string &folder)
   const auto beside_deck = std::filesystem::path(folder) / name;
   std::error_code ignored;
   if (std::filesystem::exists(beside_deck, ignored)) return beside_deck.string();
-  RPC_REQUIRE(std::filesystem::exists(name, ignored),
-              "deck: \"Mesh->File\": there is no file \""
-                  << name << "\" in " << (folder.empty() ? "" : "\"" + folder + "\" or in ") << "the current folder."
-                  << did_you_mean(name, mesh_files(folder)));
-  return name;
+  if (std::filesystem::exists(name, ignored)) return name;
+  const std::filesystem::path own_folder = std::filesystem::path(name).parent_path();
+  std::vector<std::string> folders = {own_folder.string()};
+  std::string where;
+  if (std::filesystem::path(name).is_relative()) {
+    folders = {(std::filesystem::path(folder) / own_folder).string(), own_folder.string()};
+    where = std::string(" in ") + (folder.empty() ? "" : "\"" + folder + "\" or in ") + "the current folder";
+  }
+  std::string text = "deck: \"Mesh->File\": there is no file \"" + name + "\"" + where + ".";
+  bool has_folder = false;
+  for (const std::string &each : folders) has_folder |= each.empty() || std::filesystem::is_directory(each, ignored);
+  if (!has_folder) text += " There is no folder \"" + own_folder.string() + "\".";
+  const std::string meant = file_remedy(std::filesystem::path(name).filename().string(), mesh_files(folders));
+  throw Error(ExitCode::bad_input,
+              text + (meant.empty() ? " Write its path as seen from the deck, or in full." : meant));
 }
 
 /// Each makes four or eight times as many cells.

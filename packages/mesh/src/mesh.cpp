@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <regex>
 
 namespace rpc::mesh
 {
@@ -31,6 +32,41 @@ std::vector<std::string> names_of(const std::vector<Part> &parts)
   return names;
 }
 
+/// @param user  path of the parameter: of an entry "Traction->top->Side" that may have its side by its name
+std::string no_such_side(const std::string &user, const std::string &name)
+{
+  const std::string own_name = "->" + name + "->Side";
+  const bool by_its_name =
+      user.size() > own_name.size() && user.compare(user.size() - own_name.size(), own_name.size(), own_name) == 0;
+  const std::string which = "\" names the side \"" + name + "\", which the mesh does not have. ";
+  if (!by_its_name) return "deck: \"" + user + which;
+  const std::string entry = user.substr(0, user.rfind("->"));
+  return "deck: \"" + entry + which + "Name the entry after a side, or write the side into it as \"Side\". ";
+}
+
+/// What is meant, or where there are several names in one.
+std::string side_remedy(const std::string &user, const std::string &name, const std::vector<std::string> &known)
+{
+  static const std::regex mark(R"([,;|+&{}\[\]]|\sand\s)"), blank(R"(\s)");
+  for (const std::regex *const between : {&mark, &blank}) {
+    std::vector<std::string> found;
+    std::size_t parts = 0;
+    for (auto at = std::sregex_token_iterator(name.begin(), name.end(), *between, -1);
+         at != std::sregex_token_iterator(); ++at) {
+      const auto first = at->str().find_first_not_of(" \""), last = at->str().find_last_not_of(" \"");
+      if (first == std::string::npos) continue;
+      ++parts;
+      const std::string part = at->str().substr(first, last - first + 1);
+      const std::string nearest = nearest_name(part, known);
+      if (!nearest.empty()) found.push_back("\"" + nearest + "\"");
+    }
+    if (parts < 2 || found.empty() || (between == &blank && found.size() < parts)) continue;
+    return " One entry has one side: write an entry each for " + join(found) +
+           (user.rfind("Contact", 0) == 0 ? ", in \"Contact->Sides\"." : ".");
+  }
+  return did_you_mean(name, known);
+}
+
 } // namespace
 
 const Side &Mesh::side(const std::string &name, const std::string &user) const
@@ -39,9 +75,7 @@ const Side &Mesh::side(const std::string &name, const std::string &user) const
   const std::string others =
       sides.empty() ? "It has no sides; name them, in gmsh by Physical Curve, of bodies in space by Physical Surface"
                     : "Its sides: " + join(names_of(sides));
-  throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
-                                       "\", which the mesh does not have. " + others + "." +
-                                       did_you_mean(name, names_of(sides)));
+  throw Error(ExitCode::bad_input, no_such_side(user, name) + others + "." + side_remedy(user, name, names_of(sides)));
 }
 
 RCP<const Map> Mesh::overlap_nodes() const
@@ -62,9 +96,8 @@ std::vector<LO> Mesh::nodes_of(const std::string &name, const std::string &user)
     both.insert(both.end(), of_points.begin(), of_points.end());
     if (const PointSet *const set = find(points, name)) return set->node;
     if (!points.empty())
-      throw Error(ExitCode::bad_input, "deck: \"" + user + "\" names the side \"" + name +
-                                           "\", which the mesh does not have. Its sides: " + join(names_of(sides)) +
-                                           "; its points: " + join(of_points) + "." + did_you_mean(name, both));
+      throw Error(ExitCode::bad_input, no_such_side(user, name) + "Its sides: " + join(names_of(sides)) +
+                                           "; its points: " + join(of_points) + "." + side_remedy(user, name, both));
   }
   const auto facets = to_host(side(name, user).facets);
   std::vector<LO> nodes;

@@ -12,7 +12,7 @@ namespace rpc::adapt
 
 /// Who makes the meshes after the first one.
 enum class NextMeshes {
-  automatic, ///< nested for a .msh, else gmsh
+  automatic, ///< nested for a .msh and without gmsh, else gmsh
   gmsh,      ///< anew, by a field of sizes
   nested     ///< cells of the first one are halved where a field of sizes asks for it
 };

@@ -74,8 +74,8 @@ void require_known(const Teuchos::ParameterList &given, const std::vector<std::s
 /// Names of a list's parameters and sublists, in its order.
 std::vector<std::string> names_of(const Teuchos::ParameterList &list);
 
-/// The name among `candidates` with the least edit distance to `name`, or of which it is an abbreviation with
-/// the same first letter; empty if none bears any likeness.
+/// The name among `candidates` nearest to `name`: by edit distance, up to a third of the letters, as an abbreviation with the same first
+/// letter, as what `name` begins with, or by the same words in another order; empty if none bears any likeness.
 std::string nearest_name(const std::string &name, const std::vector<std::string> &candidates);
 
 /// "a, b, c"

@@ -23,8 +23,10 @@ std::string find_deck(const std::string &name, const Teuchos::Comm<int> &comm);
 /// A value must read as the type that the deck gives it (Teuchos alone takes "abc" for the double 0), and a name may be
 /// given once. A deck that is no well-formed XML or YAML is refused with the line, what is open there and what to write. A double inf or nan arrives as a string, as YAML has it: only fields know what to do with one. Rank 0
 /// reads the file and hands its text to all; collective.
+/// @param valid  what the deck may have, from which refusals of values take what is wanted; empty: that is not known
 /// @throws rpc::Error (bad_input) on every rank with path, line where known, and reason
-Teuchos::ParameterList read_deck(const std::string &path, const Teuchos::Comm<int> &comm);
+Teuchos::ParameterList read_deck(const std::string &path, const Teuchos::Comm<int> &comm,
+                                 const Teuchos::ParameterList &valid = {});
 
 /// A refusal of a parameter, `deck: "A->B" must ...`, with the file and the line of the parameter, or of the list that should have it:
 /// `deck: "beam.xml", line 12: "A->B" must ...`. Other messages, and those on parameters that --set has given, stay as they are.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/core/field.hpp"
+#include "rpc/core/remedies.hpp"
 
 #include <string>
 
@@ -12,8 +13,12 @@ namespace rpc::io
 ///
 /// A text without variables becomes a constant. The function is not thread safe: copies share one parser.
 /// @param parameter  deck path for messages, "Contact->Yield Stress"
+/// @param wanted     what the parameter is to hold, for messages
 /// @throws rpc::Error (bad_input) if the text does not parse, assigns to a variable, has several values, or is a
 /// constant NaN
-ScalarField parse_field(const std::string &text, const std::string &parameter);
+ScalarField parse_field(const std::string &text, const std::string &parameter, const Wanted &wanted = {});
+
+/// parse_field() for the parameters of a deck.
+FieldParser field_parser(Teuchos::ParameterList valid);
 
 } // namespace rpc::io
