@@ -16,6 +16,7 @@ struct CommandLine {
   std::string restart;                  ///< the checkpoint; empty: the newest one in the output folder
   std::vector<std::string> assignments; ///< of --set, in order
   bool check = false;
+  std::string mesh;             ///< a geometry or mesh that is to be told about
   bool writes_template = false; ///< a deck to start from
   std::string new_deck;         ///< its name; empty or help: the menu of them
   bool help = false;
@@ -26,7 +27,10 @@ struct CommandLine {
   bool verbose = false; ///< the console tells what was skipped too
 
   /// Whether there is a scene to be solved or checked: texts need no kernels and so no GPU.
-  bool solves() const { return !help && !version && !print_parameters && !prints_schema && !writes_template; }
+  bool solves() const
+  {
+    return !help && !version && !print_parameters && !prints_schema && !writes_template && mesh.empty();
+  }
 };
 
 /// The arguments, those for Kokkos apart: Kokkos must not see the others, or it answers to --help and --threads too.

@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 #include "gpu.hpp"
 #include "host_program.hpp"
+#include "mesh_info.hpp"
 #include "new_deck.hpp"
 #include "notes.hpp"
 #include "output/paths.hpp"
@@ -208,6 +209,10 @@ ExitCode run(const rpc::CommandLine &line, const rpc::RCP<const rpc::Comm> &comm
   }
   if (line.writes_template) {
     rpc::on_root(*comm, ExitCode::bad_input, [&] { out << rpc::new_deck(line.new_deck, line.output); });
+    return ExitCode::converged;
+  }
+  if (!line.mesh.empty()) {
+    rpc::on_root(*comm, ExitCode::bad_mesh, [&] { out << rpc::mesh_info(line.mesh); });
     return ExitCode::converged;
   }
   RPC_REQUIRE(!line.input.empty(),

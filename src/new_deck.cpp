@@ -87,8 +87,10 @@ std::vector<std::string> write_template(const std::string &name, const std::stri
   fs::create_directories(to, error);
   std::vector<std::string> written;
   const auto path_in = [&](const std::string &file) { return folder == "." ? fs::path(file) : to / file; };
-  const std::string deck = name + ".xml", geometry = name + ".geo";
-  if (fs::exists(from / geometry, error)) {
+  const std::string deck = name + ".xml";
+  for (const char *const ending : {".geo", ".step"}) {
+    const std::string geometry = name + ending;
+    if (!fs::exists(from / geometry, error)) continue;
     copy_new(from / geometry, path_in(geometry));
     written.push_back(path_in(geometry).string());
   }

@@ -28,6 +28,7 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
   listener.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &contact) {
     if (!table || !scene.has_steps()) table.emplace(console, scene.output.verbose);
     table->scene(scene, d, contact);
+    for (const std::string &note : d.mesh->notes) notes.add("mesh: " + note);
     for (const std::string &note : notes_on_mesh(scene, d, contact)) notes.add(note);
   };
   listener.step.start = [&](const analysis::Problem &problem, const analysis::Step &step) {

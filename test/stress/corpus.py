@@ -220,6 +220,31 @@ class Scene:
     files: dict  # name -> bytes, the deck among them
 
 
+# Of the square: the name of the mesh, and more of the list of the mesh.
+SQUARE = """square:
+  Mesh: {Type: gmsh, File: MESHMORE}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Dirichlet:
+    top: {X: 0.0, Y: -0.01}
+  Contact: {Side: bottom}
+"""
+PLANES = ', Sides: {bottom: {Plane: "y = 0"}, top: {Plane: "y = 1"}}'
+SQUARES = SQUARE.replace("top: ", "right: ").replace("Side: bottom", "Side: floor")
+BRICK = SQUARE.replace("Y: -0.01", "Y: 0.0, Z: -0.01")
+BOX = BRICK.replace("MORE", ', Order: 1, Size: 0.7, Sides: {bottom: {Plane: "z = 0"}, top: {Near: [0.5, 0.5, 1.0]}}')
+PIN = BRICK.replace("MORE", ", Order: 1, Size: 6, Sides: {bottom: {Surfaces: [2]}, top: {Surfaces: [3]}}")
+
+
+def stl_of_box():
+    """The surface of the unit cube in 12 triangles."""
+    corner = [(k & 1, k >> 1 & 1, k >> 2) for k in range(8)]
+    text = "solid box\n"
+    for a, b, c, d in [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]:
+        for triangle in ((a, b, c), (a, c, d)):
+            text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex %g %g %g\n" % corner[k] for k in triangle) + "endloop\nendfacet\n"
+    return text + "endsolid box\n"
+
+
 def replaced(text, *changes):
     """The text after (pattern, replacement) pairs, each of which must fit."""
     for pattern, replacement in changes:
@@ -270,7 +295,15 @@ def scenes(source):
         name = f"curved_{element}.msh"
         body = Body(Bricks((2, 2, 2) if element[1] == "2" else (3, 2, 3), element, cap(1.2, 1.0, 1.0)))
         texts[f"curved_{element}.xml"] = [CURVED.replace("MESH", name), (name, body.msh(1.0))]
+    for mesh, deck, more in (("square_41.msh", SQUARE, ""), ("square_partitioned_41.msh", SQUARE, ""), ("square.unv", SQUARE, ""),
+                             ("square.inp", SQUARE, ""), ("square.vtu", SQUARE, PLANES), ("two_squares.exo", SQUARES, ""),
+                             ("two_squares_4.exo", SQUARES, ""), ("brick_20.exo", BRICK, "")):
+        texts[f"{mesh.replace('.', '_')}.yaml"] = [deck.replace("MESH", mesh).replace("MORE", more), data / mesh]
+    texts["pin_step.yaml"] = [PIN.replace("MESH", "pin.step"), source / "doc/tutorial/pin.step"]
+    texts["box_stl.yaml"] = [BOX.replace("MESH", "box.stl"), ("box.stl", stl_of_box())]
     for mesh in sorted([*data.glob("*.msh"), *data.glob("*.geo")]):
+        if mesh.name.startswith("square"):
+            continue
         name = f"{mesh.stem}_geo.xml" if mesh.suffix == ".geo" else f"{mesh.stem}.xml"
         texts[name] = [mesh_decks[mesh.name.partition("_")[0].partition(".")[0]].replace("MESH", mesh.name), mesh]
     file = lambda given: (given.name, given.read_bytes()) if isinstance(given, pathlib.Path) else (given[0], given[1].encode())

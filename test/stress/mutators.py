@@ -374,6 +374,14 @@ def msh_byte_order(rng, data, pool):
     return data
 
 
+def exodus_number(rng, data, pool):
+    """Another number of 4 bytes in NetCDF's order, in the header or in the arrays."""
+    if len(data) < 8:
+        return data
+    at = rng.randrange(len(data) // 4) * 4
+    return data[:at] + struct.pack(">i", rng.choice([0, -1, 1, 2, 7, 33, 1000000, 2**31 - 1, -2**31])) + data[at + 4:]
+
+
 ANY = {"flip": flip_bytes, "insert": insert_bytes, "delete": delete_bytes, "truncate": truncate, "lines": lines,
        "number": number, "token": token}
 DECK = {"xml type": xml_type, "xml string": xml_string, "xml value": xml_value, "xml name": xml_name,
@@ -382,6 +390,7 @@ DECK = {"xml type": xml_type, "xml string": xml_string, "xml value": xml_value, 
 MSH = {"msh node number": msh_node_number, "msh inverted": msh_inverted, "msh extra": msh_extra,
        "msh coordinate": msh_coordinate, "msh byte order": msh_byte_order, "msh kind": msh_kind, "msh turned": msh_turned,
        "msh inside": msh_inside, "msh places": msh_places}
+EXODUS = {"exodus number": exodus_number}
 # gmsh's language can start programs: only words of the corpus in new places, and no new ones.
 GEO = {"geo lines": lines, "geo number": number, "geo token": token, "geo truncate": truncate}
 
@@ -391,8 +400,9 @@ def kinds_for(name):
     if name.endswith(".geo"):
         return {kind: 2 for kind in GEO} | {"geo number": 4}
     weights = {kind: 2 for kind in ANY} | {"empty": 0.5, "missing": 0.5, "folder": 0.5}
-    own = MSH if name.endswith(".msh") else DECK if name.endswith(".xml") else {"xml cells": xml_cells}
+    own = MSH if name.endswith(".msh") else DECK if name.endswith(".xml") else EXODUS if name.endswith(".exo") else \
+        {"xml cells": xml_cells} if name.endswith(".yaml") else {}
     return weights | {kind: 5 for kind in own} | ({"xml extreme": 12, "xml nested": 1, "xml kinematics": 2} if own is DECK else {})
 
 
-ALL = ANY | DECK | MSH | GEO
+ALL = ANY | DECK | MSH | EXODUS | GEO

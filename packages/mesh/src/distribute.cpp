@@ -244,6 +244,7 @@ Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const Divisi
   for (const PointData &set : part.mesh.points) mesh.points.push_back({set.name, {set.node.begin(), set.node.end()}});
   mesh.geometry = part.mesh.geometry;
   mesh.geometry_file = part.mesh.geometry_file;
+  if (comm->getRank() == 0) mesh.notes = whole.notes;
   Kokkos::fence();
   return mesh;
 }

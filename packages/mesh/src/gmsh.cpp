@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/gmsh.hpp"
 
+#include "exodus_mesh.hpp"
 #include "gmsh_mesh.hpp"
 #include "gmsh_nearest.hpp"
 #include "gmsh_process.hpp"
 #include "mesh_checks.hpp"
+#include "mesh_formats.hpp"
+#include "meshio.hpp"
 #include "middle_nodes.hpp"
 #include "msh_reader.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/parameters.hpp"
 #include "rpc/core/remedies.hpp"
+#include "side_places.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -17,6 +22,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <sstream>
 #include <utility>
 
 namespace rpc::mesh
@@ -32,12 +38,12 @@ std::string where_of(const GmshOptions &options)
   return "mesh: \"" + options.file + "\": ";
 }
 
-/// Or else a .msh.
-bool is_geo(const std::string &where, const GmshOptions &options)
+MeshFormat known_format(const std::string &where, const GmshOptions &options)
 {
-  const std::string extension = fs::path(options.file).extension().string();
-  RPC_REQUIRE(extension == ".geo" || extension == ".msh", where << "must end in .geo or .msh");
-  return extension == ".geo";
+  const MeshFormat format = format_of(options.file);
+  RPC_REQUIRE(format != MeshFormat::unknown,
+              where << "its name must end in one of " << join(known_endings()) << ", which tells the format");
+  return format;
 }
 
 std::string read_text(const std::string &where, const std::string &path)
@@ -159,6 +165,33 @@ MeshData attempt(const std::string &where, const GmshOptions &options, const Gms
   return mesh_of_gmsh(where, std::move(contents), true);
 }
 
+/// Whether a side is chosen by a surface of the geometry.
+bool by_surfaces(const std::vector<SidePlace> &sides)
+{
+  return std::any_of(sides.begin(), sides.end(),
+                     [](const SidePlace &side) { return !side.surfaces.empty() || !side.near.empty(); });
+}
+
+/// What a file of shapes has been taken for.
+std::string note_on_unit(const MeshData &mesh, const std::string &file)
+{
+  const bool has_unit = extension_of(file) != ".stl" && extension_of(file) != ".brep";
+  const int dim = mesh.element.dim;
+  std::ostringstream note;
+  note << "\"" << fs::path(file).filename().string() << "\": the body is ";
+  for (int d = 0; d < dim; ++d) {
+    double low = mesh.coords[d], high = low;
+    for (std::size_t n = d; n < mesh.coords.size(); n += dim) {
+      low = std::min(low, mesh.coords[n]);
+      high = std::max(high, mesh.coords[n]);
+    }
+    note << (d > 0 ? " x " : "") << high - low;
+  }
+  note << (has_unit ? " in the file's mm" : " in the file's unit of length, which it does not tell")
+       << "; the deck's unit of length counts: see \"Units\"";
+  return note.str();
+}
+
 GmshRequest request_for(const GmshOptions &options)
 {
   GmshRequest request;
@@ -173,7 +206,8 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
   GmshRequest request = request_for(options);
   request.size_factor = options.size_factor;
   request.order = options.order == 0 ? 2 : options.order;
-  request.geometry = options.needs_geometry();
+  request.geometry = options.needs_geometry() || options.list_surfaces || by_surfaces(options.sides);
+  request.size = options.size;
   request.straight_where_bent = options.straight_where_bent;
   if (options.box) {
     const mesh::Element &element = options.box->element;
@@ -202,23 +236,33 @@ MeshData made_by_gmsh(const std::string &where, const GmshOptions &options)
   }
 }
 
-MeshData meshed_geo(const std::string &where, const GmshOptions &options)
+MeshData meshed_geometry(const std::string &where, const GmshOptions &options)
 {
-  check_last_line(where, read_text(where, options.file));
-  return made_by_gmsh(where, options);
+  const std::string text = read_text(where, options.file);
+  if (format_of(options.file) == MeshFormat::geo) check_last_line(where, text);
+  MeshData mesh = made_by_gmsh(where, options);
+  if (format_of(options.file) == MeshFormat::shapes) mesh.notes.push_back(note_on_unit(mesh, options.file));
+  return mesh;
 }
 
-/// The file's text takes much memory, and is gone on return.
-GmshContents contents_of_msh(const std::string &where, const GmshOptions &options)
+/// What a file that has a mesh contains. Its text takes much memory, and is gone on return.
+GmshContents contents_of_mesh(const std::string &where, const GmshOptions &options)
 {
-  return read_msh(where, read_text(where, options.file));
+  const MeshFormat format = format_of(options.file);
+  if (format == MeshFormat::msh) return read_msh(where, read_text(where, options.file));
+  read_text(where, options.file); // whether it can be opened
+  if (format == MeshFormat::exodus) return read_exodus_mesh(where, options.file);
+  if (format == MeshFormat::meshio) return read_by_meshio(where, options.file);
+  bool unused = false;
+  return answer_of_gmsh(where, options, request_for(options), unused);
 }
 
-MeshData read_msh_file(const std::string &where, const GmshOptions &options)
+MeshData read_mesh_file(const std::string &where, const GmshOptions &options)
 {
   try {
-    return mesh_of_gmsh(where, contents_of_msh(where, options), false);
+    return mesh_of_gmsh(where, contents_of_mesh(where, options), false);
   } catch (const BentCell &refused) {
+    if (format_of(options.file) != MeshFormat::msh) throw;
     throw Error(refused.code(), std::string(refused.what()) + ", or set Mesh.HighOrderOptimize = 1 in gmsh");
   }
 }
@@ -237,9 +281,12 @@ MeshData read_box(const GmshOptions &options)
 int gmsh_dimension(const GmshOptions &options)
 {
   if (options.box) return options.box->element.dim;
-  const std::string where = where_of(options), text = read_text(where, options.file);
-  if (!is_geo(where, options)) return dimension_of_msh(where, text);
-  check_last_line(where, text);
+  const std::string where = where_of(options);
+  const MeshFormat format = known_format(where, options);
+  if (format == MeshFormat::msh) return dimension_of_msh(where, read_text(where, options.file));
+  if (!is_geometry(format)) return contents_of_mesh(where, options).dim;
+  const std::string text = read_text(where, options.file);
+  if (format == MeshFormat::geo) check_last_line(where, text);
   GmshRequest request = request_for(options);
   request.dimension_only = true;
   bool unused = false;
@@ -262,15 +309,17 @@ MeshData read_gmsh(const GmshOptions &options)
 {
   if (options.box) return read_box(options);
   const std::string where = where_of(options);
-  const bool make = is_geo(where, options);
+  const bool make = is_geometry(known_format(where, options));
   RPC_REQUIRE(make || options.size_factor == 1,
-              where << "a size factor only goes with a .geo, got " << options.size_factor);
-  RPC_REQUIRE(make || !options.sizes, where << "cell sizes only go with a .geo");
-  MeshData mesh = make ? meshed_geo(where, options) : read_msh_file(where, options);
-  if (make && options.needs_geometry()) mesh.geometry_file = options.file;
+              where << "a size factor only goes with a geometry, such as a .geo, got " << options.size_factor);
+  RPC_REQUIRE(make || !options.sizes, where << "cell sizes only go with a geometry, such as a .geo");
+  MeshData mesh = make ? meshed_geometry(where, options) : read_mesh_file(where, options);
+  add_sides(options.sides, mesh);
+  if (!options.list_surfaces && !(options.needs_geometry() && keeps_geometry(options.file))) mesh.geometry.clear();
+  if (options.needs_geometry() && keeps_geometry(options.file)) mesh.geometry_file = options.file;
   RPC_REQUIRE(options.order == 0 || options.order == mesh.element.order,
               where << "its cells are of order " << mesh.element.order << ", which \"Order\" = " << options.order
-                    << " does not change; that only goes with a .geo");
+                    << " does not change; that only goes with a geometry, such as a .geo");
   return mesh;
 }
 

@@ -14,7 +14,7 @@ namespace rpc::mesh
 
 // What read_gmsh() and the program rpc_gmsh tell each other. The program knows nothing else of rpc.
 
-/// A body to be meshed: a .geo, or where `file` is empty a box.
+/// A body to be meshed: a .geo or a file of shapes, or where `file` is empty a box. Or a mesh that gmsh reads.
 struct GmshRequest {
   std::string folder; ///< in which relative paths begin
   std::string file;
@@ -22,6 +22,7 @@ struct GmshRequest {
   std::array<double, 3> lower{}, upper{}; ///< of the box
   bool quadrilaterals = false;            ///< in a plane box; a .geo has its own kind
   double size_factor = 1;                 ///< of all cell sizes
+  double size = 0;                        ///< of cells, of a file of shapes; 0: a tenth of the body
   int order = 2;
   int attempt = 0; ///< later ones than 0 straighten curved cells; by a field of sizes each breaks ties in another way
   bool straight_where_bent = false; ///< later attempts make all cells straight
@@ -66,8 +67,12 @@ struct GmshContents {
   std::vector<GmshGroup> groups; ///< of dimensions dim - 1 and dim, and of points with a name; by dimension, then tag
   std::vector<GmshElements> elements; ///< by group, then entity tag
   std::vector<std::size_t> node_tags;
-  std::vector<double> coords;               ///< (nodes, 3) in the order of node_tags; or the points that were asked for
-  std::vector<GmshBoundary> boundary;       ///< by tag, where it was asked for
+  std::vector<double> coords;         ///< (nodes, 3) in the order of node_tags; or the points that were asked for
+  std::vector<GmshBoundary> boundary; ///< by tag, where it was asked for
+  std::vector<std::string> notes;     ///< what the user should know of how the file was read
+  /// What messages call groups of points, curves, surfaces and volumes.
+  std::array<std::string, 4> kind = {"physical point", "physical curve", "physical surface", "physical volume"};
+  bool node_sets = false;                   ///< groups of points are sets of any nodes: those of whole facets are sides
   std::vector<std::size_t> ungrouped_nodes; ///< of a .msh: tags of the nodes of cells that are not part of the body
 };
 

@@ -2,7 +2,10 @@
 #include "gmsh_mesher.hpp"
 
 #include "gmsh_boundary.hpp"
+#include "gmsh_box.hpp"
+#include "gmsh_shapes.hpp"
 #include "gmsh_size_callback.hpp"
+#include "mesh_formats.hpp"
 #include "size_tree.hpp"
 
 #include <algorithm>
@@ -21,19 +24,6 @@ namespace rpc::mesh
 {
 namespace
 {
-
-/// The first error in gmsh's log; those after it tend to follow from it. That curved cells could not all be straightened is none: whether
-/// one is inverted is looked at later.
-std::string first_error()
-{
-  std::vector<std::string> log;
-  gmsh::logger::get(log);
-  const std::string mark = "Error: ";
-  for (const auto &line : log)
-    if (line.compare(0, mark.size(), mark) == 0 && line.find("critical value") == line.npos)
-      return line.substr(mark.size());
-  return "";
-}
 
 double number_option(const char *name)
 {
@@ -100,10 +90,13 @@ void mesh_surfaces_and_volumes()
 }
 
 /// By cell sizes of the .geo's own. @return whether those on curves have an end
-bool mesh_by_own_sizes(const double body, const double factor, const int dim)
+/// @param again  whether curves can be meshed more than once: those of an STL are lost then
+bool mesh_by_own_sizes(const double body, const double factor, const int dim, const bool again)
 {
   gmsh::option::setNumber("Mesh.MeshSizeFactor", factor);
-  if (!mesh_curves(body, factor)) return false;
+  constexpr double most_cells_along = 1e4; // of a body whose curves are meshed once
+  if (again ? !mesh_curves(body, factor) : body > most_cells_along * factor * number_option("Mesh.MeshSizeMax"))
+    return false;
   if (dim == 3)
     mesh_surfaces_and_volumes();
   else
@@ -259,104 +252,14 @@ std::string make_mesh(const GmshRequest &request, const int dim)
   if (all_cells) gmsh::option::setNumber("Mesh.SecondOrderLinear", 1);
   if (field)
     complaint << mesh_by_field(request, dim);
-  else if (!mesh_by_own_sizes(body, factor, dim))
+  else if (!mesh_by_own_sizes(body, factor, dim, request.file.empty() || keeps_geometry(request.file)))
     complaint << "cell sizes are too small for a body of size " << body
               << " [m]: its curves would have more than 100000 nodes";
   return complaint.str();
 }
 
-/// A name of a group, and the entity that is the group.
-using NamedEntities = std::vector<std::pair<std::string, int>>;
-
-void add_groups(const int dim, const NamedEntities &groups)
-{
-  for (const auto &[name, entity] : groups)
-    gmsh::model::setPhysicalName(dim, gmsh::model::addPhysicalGroup(dim, {entity}), name);
-}
-
-void add_plane_box(const GmshRequest &request)
-{
-  namespace geo = gmsh::model::geo;
-  const double left = request.lower[0], bottom = request.lower[1], right = request.upper[0], top = request.upper[1];
-  geo::addPoint(left, bottom, 0, 0, 1);
-  geo::addPoint(right, bottom, 0, 0, 2);
-  geo::addPoint(right, top, 0, 0, 3);
-  geo::addPoint(left, top, 0, 0, 4);
-  for (int line = 1; line <= 4; ++line) geo::addLine(line, line % 4 + 1, line);
-  geo::addCurveLoop({1, 2, 3, 4}, 1);
-  geo::addPlaneSurface({1}, 1);
-  geo::synchronize();
-  add_groups(1, {{"left", 4}, {"right", 2}, {"bottom", 1}, {"top", 3}});
-  add_groups(0, {{"left bottom", 1}, {"right bottom", 2}, {"left top", 4}, {"right top", 3}});
-  add_groups(2, {{"body", 1}});
-}
-
-/// Points are 1 + x + 2 y + 4 z, where x, y, z are 1 at the upper corner and 0 at the lower one.
-void add_box_in_space(const GmshRequest &request)
-{
-  namespace geo = gmsh::model::geo;
-  const char *const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
-  NamedEntities corners, sides;
-  std::map<std::pair<int, int>, int> lines; // by their ends
-  for (int corner = 0; corner < 8; ++corner) {
-    double x[3];
-    std::string name;
-    for (int d = 0; d < 3; ++d) {
-      const int upper = (corner >> d) % 2;
-      x[d] = upper ? request.upper[d] : request.lower[d];
-      name += (d > 0 ? " " : "") + std::string(names[d][upper]);
-    }
-    geo::addPoint(x[0], x[1], x[2], 0, 1 + corner);
-    corners.emplace_back(name, 1 + corner);
-  }
-  for (int corner = 0; corner < 8; ++corner)
-    for (int d = 0; d < 3; ++d)
-      if ((corner >> d) % 2 == 0) {
-        const int from = 1 + corner, to = from + (1 << d);
-        lines[{from, to}] = geo::addLine(from, to);
-        lines[{to, from}] = -lines[{from, to}];
-      }
-  std::vector<int> surfaces;
-  for (int d = 0; d < 3; ++d)
-    for (const int upper : {0, 1}) {
-      const int e = 1 << ((d + 1) % 3), f = 1 << ((d + 2) % 3), first = 1 + (upper << d);
-      const int around[4] = {first, first + e, first + e + f, first + f};
-      std::vector<int> loop;
-      for (int k = 0; k < 4; ++k) loop.push_back(lines.at({around[k], around[(k + 1) % 4]}));
-      surfaces.push_back(geo::addPlaneSurface({geo::addCurveLoop(loop)}));
-      sides.emplace_back(names[d][upper], surfaces.back());
-    }
-  const int volume = geo::addVolume({geo::addSurfaceLoop(surfaces)});
-  geo::synchronize();
-  add_groups(2, sides);
-  add_groups(0, corners);
-  add_groups(3, {{"body", volume}});
-}
-
-/// The box, its block, its sides and corners, as make_box() names and orders them.
-void add_box(const GmshRequest &request)
-{
-  gmsh::model::add("box");
-  if (request.box_dim == 2)
-    add_plane_box(request);
-  else
-    add_box_in_space(request);
-}
-
-/// Adds a group with the elements on some entities.
-void take_group(const GmshGroup &group, const std::vector<int> &entities, GmshContents &contents)
-{
-  contents.groups.push_back(group);
-  for (const int entity : entities) {
-    EntityElements elements = elements_of(group.dim, entity);
-    for (std::size_t t = 0; t < elements.types.size(); ++t)
-      contents.elements.push_back({static_cast<int>(contents.groups.size()) - 1, elements.types[t],
-                                   std::move(elements.tags[t]), std::move(elements.nodes[t])});
-  }
-}
-
 /// Without groups of the body's dimension all entities of that dimension are the body.
-void take_mesh(GmshContents &contents)
+void take_groups(GmshContents &contents)
 {
   gmsh::vectorpair groups;
   gmsh::model::getPhysicalGroups(groups);
@@ -380,6 +283,10 @@ void take_mesh(GmshContents &contents)
     for (const auto &[dim, entity] : all) entities.push_back(entity);
     take_group({contents.dim, 0, whole_body}, entities, contents);
   }
+}
+
+void take_nodes(GmshContents &contents)
+{
   std::vector<double> parametric;
   gmsh::model::mesh::getNodes(contents.node_tags, contents.coords, parametric, -1, -1, false, false);
 }
@@ -390,23 +297,58 @@ void load(const GmshRequest &request, GmshContents &contents)
   if (request.file.empty())
     add_box(request);
   else
-    gmsh::open(request.file);
-  contents.complaint = first_error();
+    contents.complaint = open_file(request);
+  const std::string error = first_error();
+  if (!error.empty()) contents.complaint = with_remedy(error);
   if (!contents.complaint.empty()) return;
   contents.dim = std::max(2, gmsh::model::getDimension());
   if (!request.near_tags.empty()) return take_nearest_points(request, contents);
   const bool sizes_elsewhere = !request.sizes.simplices.empty() && contents.dim != request.sizes.dim;
   if (request.dimension_only || sizes_elsewhere) return;
+  const MeshFormat format = format_of(request.file);
+  if (format == MeshFormat::by_gmsh) {
+    take_groups(contents);
+    return take_nodes(contents);
+  }
+  const bool shapes = format == MeshFormat::shapes;
+  if (shapes) set_own_size(request);
   const std::string absurdity = make_mesh(request, contents.dim);
   contents.complaint = first_error();
   contents.again = !contents.complaint.empty();
   if (contents.complaint.empty()) contents.complaint = absurdity;
   if (!contents.complaint.empty()) return;
-  take_mesh(contents);
+  if (shapes)
+    take_shapes(contents);
+  else
+    take_groups(contents);
+  contents.complaint = why_no_cells(contents);
+  take_nodes(contents);
   if (request.geometry) take_boundary(contents);
 }
 
 } // namespace
+
+std::string first_error()
+{
+  std::vector<std::string> log;
+  gmsh::logger::get(log);
+  const std::string mark = "Error: ";
+  for (const auto &line : log)
+    if (line.compare(0, mark.size(), mark) == 0 && line.find("critical value") == line.npos)
+      return line.substr(mark.size());
+  return "";
+}
+
+void take_group(const GmshGroup &group, const std::vector<int> &entities, GmshContents &contents)
+{
+  contents.groups.push_back(group);
+  for (const int entity : entities) {
+    EntityElements elements = elements_of(group.dim, entity);
+    for (std::size_t t = 0; t < elements.types.size(); ++t)
+      contents.elements.push_back({static_cast<int>(contents.groups.size()) - 1, elements.types[t],
+                                   std::move(elements.tags[t]), std::move(elements.nodes[t])});
+  }
+}
 
 void start_gmsh()
 {

@@ -20,4 +20,10 @@ const GmshType *gmsh_type(const int number)
   return number >= 1 && number <= static_cast<int>(std::size(types)) ? &types[number - 1] : nullptr;
 }
 
+std::string name_of_gmsh_type(const int number)
+{
+  const GmshType *const type = gmsh_type(number);
+  return type ? type->name() : std::to_string(number);
+}
+
 } // namespace rpc::mesh

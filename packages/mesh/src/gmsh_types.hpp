@@ -17,4 +17,7 @@ struct GmshType {
 /// nullptr for a number that is none, or rare.
 const GmshType *gmsh_type(int number);
 
+/// "Triangle 3", or the number of one that is unknown.
+std::string name_of_gmsh_type(int number);
+
 } // namespace rpc::mesh

@@ -52,13 +52,21 @@ public:
       array(values);
     else {
       (*this)(values.size());
-      for (const T &value : values) each_part(value, *this);
+      for (const T &value : values) part(value);
     }
   }
 
   std::string bytes;
 
 private:
+  template <class T>
+  void part(const T &value)
+  {
+    if constexpr (std::is_same_v<T, std::string>)
+      array(value);
+    else
+      each_part(value, *this);
+  }
   template <class Array>
   void array(const Array &values)
   {
@@ -86,11 +94,19 @@ public:
       array(values);
     else {
       values.resize(count(1));
-      for (T &value : values) each_part(value, *this);
+      for (T &value : values) part(value);
     }
   }
 
 private:
+  template <class T>
+  void part(T &value)
+  {
+    if constexpr (std::is_same_v<T, std::string>)
+      array(value);
+    else
+      each_part(value, *this);
+  }
   /// A number of items of at least `size` bytes each that may still come.
   std::size_t count(const std::size_t size)
   {
@@ -136,6 +152,7 @@ void each_part(Request &request, Each &each)
     for (auto &x : *corner) each(x);
   each(request.quadrilaterals);
   each(request.size_factor);
+  each(request.size);
   each(request.order);
   each(request.attempt);
   each(request.straight_where_bent);
@@ -188,6 +205,7 @@ void each_part(Contents &contents, Each &each)
   each(contents.node_tags);
   each(contents.coords);
   each(contents.boundary);
+  each(contents.notes);
 }
 
 template <class T>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/make_mesh.hpp"
 
+#include "mesh_formats.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
@@ -16,6 +17,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <regex>
+#include <sstream>
 #include <utility>
 
 namespace rpc::mesh
@@ -27,22 +30,32 @@ void add_gmsh_parameters(Teuchos::ParameterList &valid)
 {
   valid.set(
       "File", "",
-      "gmsh: a .geo to be meshed or a .msh (2.2 or 4.1), looked for in the deck's folder, then in the current one. "
-      "Its physical surfaces become blocks, its physical curves sides, by their names or numbers; with volumes in it, "
-      "which makes "
-      "a "
-      "mesh in space, physical volumes and surfaces.");
-  valid.set("Size Factor", 1., "gmsh: factor on all cell sizes that a .geo asks for, > 0.");
+      "gmsh: a geometry to be meshed (.geo, .step, .iges, .brep, .stl) or a mesh (.msh, .e, .exo, .g, .unv, .vtk, "
+      ".vtu, .med, .inp), looked for in the deck's folder, then in the current one. Of gmsh's files physical surfaces "
+      "become blocks, physical curves sides, by their names or numbers; with volumes in it, which makes a mesh in "
+      "space, physical volumes and surfaces.");
+  valid.set("Size Factor", 1., "gmsh: factor on all cell sizes that a geometry asks for, > 0.");
+  valid.set("Size", 0., "gmsh: size of the cells of a STEP, IGES, BREP or STL file [m], > 0; 0: a tenth of the body.");
   valid.set(
       "Order", 0,
-      "gmsh: order of the elements that a .geo is meshed with, 1 or 2 (curved); 0: 2 for a .geo, for a .msh what it "
-      "has.");
+      "gmsh: order of the elements that a geometry is meshed with, 1 or 2 (curved); 0: 2 for a geometry, for a mesh "
+      "what it has.");
   valid.set("Refinements", 0,
             "gmsh: how often each cell of gmsh's mesh is halved in all directions, >= 0. The meshes on the way are "
             "those of multigrid and nested iteration.");
+  Teuchos::ParameterList side;
+  side.set("Surfaces", Teuchos::Array<int>(),
+           "Numbers of surfaces of a geometry, in the plane of curves; `rpc --mesh-info=FILE` lists them.");
+  side.set("Near", Teuchos::Array<double>(), "A point [m]: the surface of a geometry that is nearest to it.");
+  side.set("Plane", "", "`x = 1`, `y = 0` or `z = -2.5` [m]: all facets of the boundary in that plane.");
+  side.set("Box", Teuchos::Array<double>(),
+           "Lower and upper corner [m]: all facets of the boundary within; 4 numbers, in space 6.");
+  set_named_entries(valid, "Sides", side,
+                    "gmsh: sides besides those that the file has, by number or place. Each has a name of your choice "
+                    "and one of `Surfaces`, `Near`, `Plane`, `Box`.");
 }
 
-/// Names of files for gmsh in some folders.
+/// Names of files with a body in some folders.
 std::vector<std::string> mesh_files(const std::vector<std::string> &folders)
 {
   std::vector<std::string> names;
@@ -50,9 +63,8 @@ std::vector<std::string> mesh_files(const std::vector<std::string> &folders)
     std::error_code failed;
     for (std::filesystem::directory_iterator at(place.empty() ? "." : place, failed), end; !failed && at != end;
          at.increment(failed)) {
-      const auto extension = at->path().extension();
       const std::string name = at->path().filename().string();
-      if ((extension == ".geo" || extension == ".msh") && std::find(names.begin(), names.end(), name) == names.end())
+      if (format_of(name) != MeshFormat::unknown && std::find(names.begin(), names.end(), name) == names.end())
         names.push_back(name);
     }
   }
@@ -86,15 +98,41 @@ std::string found_file(const std::string &name, const std::string &folder)
 /// Each makes four or eight times as many cells.
 constexpr int most_refinements = 12;
 
-/// How gmsh takes a file of another format.
-std::string other_format_remedy(const std::string &file, const std::string &extension)
+/// "z = -2.5".
+SidePlace::Plane plane_of(const std::string &where, const std::string &text)
 {
-  for (const char *const shape : {".step", ".stp", ".iges", ".igs", ".brep", ".STEP", ".STP"})
-    if (extension == shape)
-      return " Write a .geo beside it that reads it: Merge \"" + file +
-             "\"; with Physical Volume and Physical Surface for body and sides; rpc --new=own-mesh writes one to start "
-             "from.";
-  return " gmsh turns many formats into its own: gmsh \"" + file + "\" -save -o body.msh";
+  static const std::regex form(R"(\s*([xyzXYZ])\s*=\s*(\S+)\s*)");
+  std::smatch part;
+  double at = 0;
+  bool good = std::regex_match(text, part, form);
+  if (good) {
+    std::istringstream number(part[2]);
+    good = (number >> at) && number.peek() == std::char_traits<char>::eof() && std::isfinite(at);
+  }
+  RPC_REQUIRE(good, where << "->Plane\" must be an axis and a number, such as \"z = 0\", got \"" << text << "\"");
+  return {std::tolower(static_cast<unsigned char>(part[1].str()[0])) - 'x', at};
+}
+
+std::vector<SidePlace> side_places(const Teuchos::ParameterList &list)
+{
+  std::vector<SidePlace> places;
+  for (const std::string &name : names_of(list)) {
+    const Teuchos::ParameterList &entry = list.sublist(name);
+    const std::string where = "deck: \"Mesh->Sides->" + name;
+    SidePlace place;
+    place.name = name;
+    place.surfaces = entry.get<Teuchos::Array<int>>("Surfaces").toVector();
+    place.near = entry.get<Teuchos::Array<double>>("Near").toVector();
+    place.box = entry.get<Teuchos::Array<double>>("Box").toVector();
+    const auto &plane = entry.get<std::string>("Plane");
+    if (!plane.empty()) place.plane = plane_of(where, plane);
+    const int given = !place.surfaces.empty() + !place.near.empty() + !place.box.empty() + !plane.empty();
+    RPC_REQUIRE(given == 1, where << "\" must have one of \"Surfaces\", \"Near\", \"Plane\" and \"Box\", got "
+                                  << (given == 0 ? "none" : std::to_string(given)));
+    RPC_REQUIRE(name.size() <= longest_name, where << "\" must have at most " << longest_name << " characters");
+    places.push_back(place);
+  }
+  return places;
 }
 
 GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &folder, const Comm &comm)
@@ -103,11 +141,23 @@ GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &
   options.file = list.get<std::string>("File");
   options.size_factor = list.get<double>("Size Factor");
   options.order = list.get<int>("Order");
-  RPC_REQUIRE(!options.file.empty(), "deck: \"Mesh->File\" must name a .geo or .msh for a mesh of type gmsh, got none");
-  const std::string extension = std::filesystem::path(options.file).extension().string();
-  RPC_REQUIRE(extension == ".geo" || extension == ".msh", "deck: \"Mesh->File\" must end in .geo or .msh, got \""
-                                                              << options.file << "\"."
-                                                              << other_format_remedy(options.file, extension));
+  options.size = list.get<double>("Size");
+  options.sides = side_places(list.sublist("Sides"));
+  RPC_REQUIRE(
+      !options.file.empty(),
+      "deck: \"Mesh->File\" must name a geometry or a mesh for a mesh of type gmsh, such as a .geo or .msh, got none");
+  const MeshFormat format = format_of(options.file);
+  RPC_REQUIRE(format != MeshFormat::unknown, "deck: \"Mesh->File\" must end in one of "
+                                                 << join(known_endings()) << ", which tells the format, got \""
+                                                 << options.file << "\". meshio converts many others: meshio convert \""
+                                                 << options.file << "\" body.vtu");
+  RPC_REQUIRE(options.size >= 0 && std::isfinite(options.size),
+              "deck: \"Mesh->Size\" must be > 0 and finite, or 0 for the default, got " << options.size);
+  RPC_REQUIRE(options.size == 0 || format == MeshFormat::shapes,
+              "deck: \"Mesh->Size\" goes with a STEP, IGES, BREP or STL file, got \""
+                  << options.file << "\"; "
+                  << (format == MeshFormat::geo ? "a .geo has sizes of its own: \"Size Factor\" scales them"
+                                                : "a mesh has its cells already"));
   RPC_REQUIRE(options.size_factor > 0 && std::isfinite(options.size_factor),
               "deck: \"Mesh->Size Factor\" must be > 0 and finite, got " << options.size_factor);
   RPC_REQUIRE(options.order >= 0 && options.order <= 2,
@@ -122,7 +172,7 @@ GmshOptions gmsh_options(const Teuchos::ParameterList &list, const std::string &
 /// By gmsh, as often as one likes.
 bool can_be_meshed(const GmshOptions &options)
 {
-  return options.box || std::filesystem::path(options.file).extension() == ".geo";
+  return options.box || keeps_geometry(options.file);
 }
 
 std::shared_ptr<const Mesh> halved_in_all_directions(std::shared_ptr<const Mesh> mesh, const int times)

@@ -67,6 +67,12 @@ std::string side_remedy(const std::string &user, const std::string &name, const 
   return did_you_mean(name, known);
 }
 
+/// What to do where a file has no such side: a box has its own.
+std::string remedy_for_sides(const Mesh &mesh)
+{
+  return mesh.box ? "" : "; \"Mesh->Sides\" chooses others by place or number";
+}
+
 } // namespace
 
 const Side &Mesh::side(const std::string &name, const std::string &user) const
@@ -75,7 +81,8 @@ const Side &Mesh::side(const std::string &name, const std::string &user) const
   const std::string others =
       sides.empty() ? "It has no sides; name them, in gmsh by Physical Curve, of bodies in space by Physical Surface"
                     : "Its sides: " + join(names_of(sides));
-  throw Error(ExitCode::bad_input, no_such_side(user, name) + others + "." + side_remedy(user, name, names_of(sides)));
+  throw Error(ExitCode::bad_input, no_such_side(user, name) + others + remedy_for_sides(*this) + "." +
+                                       side_remedy(user, name, names_of(sides)));
 }
 
 RCP<const Map> Mesh::overlap_nodes() const
@@ -97,7 +104,8 @@ std::vector<LO> Mesh::nodes_of(const std::string &name, const std::string &user)
     if (const PointSet *const set = find(points, name)) return set->node;
     if (!points.empty())
       throw Error(ExitCode::bad_input, no_such_side(user, name) + "Its sides: " + join(names_of(sides)) +
-                                           "; its points: " + join(of_points) + "." + side_remedy(user, name, both));
+                                           "; its points: " + join(of_points) + remedy_for_sides(*this) + "." +
+                                           side_remedy(user, name, both));
   }
   const auto facets = to_host(side(name, user).facets);
   std::vector<LO> nodes;

@@ -251,6 +251,13 @@ void check_middle_nodes(const TaggedMesh &draft, const Entities &entities, const
 
 } // namespace
 
+int find_node(const TaggedMesh &draft, const std::size_t tag)
+{
+  if (!draft.node_of_tag.empty()) return tag < draft.node_of_tag.size() ? draft.node_of_tag[tag] : -1;
+  const auto it = std::lower_bound(draft.node_tag.begin(), draft.node_tag.end(), tag);
+  return it == draft.node_tag.end() || *it != tag ? -1 : static_cast<int>(it - draft.node_tag.begin());
+}
+
 void check_nodes(const TaggedMesh &draft)
 {
   for (int n = 0; n < draft.mesh.num_nodes(); ++n) {

@@ -22,6 +22,9 @@ struct TaggedMesh {
   std::vector<std::size_t> cell_tag; ///< (cells)
 };
 
+/// The node with that tag, -1 if cells use none.
+int find_node(const TaggedMesh &draft, std::size_t tag);
+
 /// @throws rpc::Error (bad_mesh) if a coordinate is not finite, a node of a plane mesh is off the plane z = 0, or two are at
 ///         one place
 void check_nodes(const TaggedMesh &draft);

@@ -41,11 +41,6 @@ bool is_blank(const char c)
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
-bool is_letter(const unsigned char c)
-{
-  return std::isalpha(c) != 0;
-}
-
 /// The file from front to back.
 class Reader
 {
@@ -75,7 +70,9 @@ public:
     skip_blanks();
     if (at_ == text_.size()) return "";
     const std::string_view name = line();
-    const bool good = name.size() > 1 && name[0] == '$' && std::all_of(name.begin() + 1, name.end(), is_letter);
+    const bool good =
+        name.size() > 1 && name[0] == '$' &&
+        std::all_of(name.begin() + 1, name.end(), [](const unsigned char c) { return std::isalpha(c) != 0; });
     if (!good) refuse("a section must begin with its name, as $Nodes does, got " + in_quotes(name));
     section_ = name.substr(1);
     return section_;
@@ -162,6 +159,7 @@ struct Draft {
   std::map<std::pair<int, int>, std::string> groups;                // dimension and tag -> name
   std::map<std::pair<int, int>, std::vector<int>> groups_of_entity; // dimension and entity -> tags; 4.1
   std::map<Key, GmshElements> elements;                             // the tag 0 stands for no group
+  std::set<std::pair<int, int>> between_parts; // dimension and entity, where a mesh is divided among processors
 };
 
 /// Whether it is version 4.1.
@@ -202,16 +200,29 @@ int group_tag(const std::int64_t number)
 }
 
 /// Which physical groups the entities of a 4.1 belong to.
-void read_entities(Reader &reader, Draft &draft)
+/// @param parts  of a mesh that is divided among processors: those that an entity is divided into
+void read_entities(Reader &reader, Draft &draft, const bool parts)
 {
+  if (parts) {
+    draft.groups_of_entity.clear();
+    reader.large_integer(); // number of parts, before the list of ghosts
+    for (auto numbers = 2 * reader.large_integer(); numbers > 0; --numbers) reader.small_integer();
+  }
   std::int64_t count[4];
   for (auto &c : count) c = reader.large_integer();
   for (int dim = 0; dim < 4; ++dim)
     for (; count[dim] > 0; --count[dim]) {
       const int entity = reader.small_integer();
+      if (parts) {
+        if (reader.small_integer() != dim)
+          draft.between_parts.insert({dim, entity}); // the dimension of what is divided
+        reader.small_integer();
+        for (auto owners = reader.large_integer(); owners > 0; --owners) reader.small_integer();
+      }
       for (int x = 0; x < (dim == 0 ? 3 : 6); ++x) reader.real(); // the box around it
       for (auto groups = reader.large_integer(); groups > 0; --groups) {
         const int tag = group_tag(reader.small_integer());
+        if (draft.between_parts.count({dim, entity})) continue;
         draft.groups[{dim, tag}];
         draft.groups_of_entity[{dim, entity}].push_back(tag);
       }
@@ -328,7 +339,9 @@ void read_elements_41(Reader &reader, Draft &draft)
       reader.refuse("elements of type \"" + type.name() + "\" cannot be of dimension " + std::to_string(dim));
     auto count = reader.large_integer();
     if (count <= 0) continue;
-    Destination destination(draft, number, entity, draft.groups_of_entity[{type.dim, entity}]);
+    static const std::vector<int> none; // what lies between parts is no element of the mesh
+    Destination destination(draft, number, entity,
+                            draft.between_parts.count({dim, entity}) ? none : draft.groups_of_entity[{dim, entity}]);
     for (; count > 0; --count) {
       const auto tag = reader.large_integer();
       nodes.clear();
@@ -407,8 +420,8 @@ GmshContents read_msh(const std::string &where, const std::string &text)
     if (!seen.insert(name).second) reader.refuse("which comes twice");
     if (name == "PhysicalNames")
       read_names(reader, draft);
-    else if (name == "Entities" && version_41)
-      read_entities(reader, draft);
+    else if ((name == "Entities" || name == "PartitionedEntities") && version_41)
+      read_entities(reader, draft, name == "PartitionedEntities");
     else if (name == "Nodes")
       version_41 ? read_nodes_41(reader, draft.contents) : read_nodes_22(reader, draft.contents);
     else if (name == "Elements")

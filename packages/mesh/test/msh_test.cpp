@@ -22,6 +22,7 @@ using rpc::mesh::GmshOptions;
 using rpc::mesh::MeshData;
 using rpc::mesh::read_gmsh;
 using rpc::test::expect_error;
+using rpc::test::expect_noted;
 using rpc::test::expect_refused;
 using rpc::test::expect_same_mesh;
 using rpc::test::read_data;
@@ -136,7 +137,7 @@ TEST(Msh, CellsOutsideEveryPhysicalSurfaceAreLeftOut)
 TEST(Msh, OptionsThatOnlyGoWithAGeoAreRefused)
 {
   const std::string file = std::string(RPC_TEST_DATA_DIR) + "/sector_41.msh";
-  expect_error(ExitCode::bad_input, {"only goes with a .geo", "got 2"}, [&] { read_gmsh({file, 2, 0}); });
+  expect_error(ExitCode::bad_input, {"only goes with a geometry", "got 2"}, [&] { read_gmsh({file, 2, 0}); });
   expect_error(ExitCode::bad_input, {"order 2", "\"Order\" = 1"}, [&] { read_gmsh({file, 1, 1}); });
   EXPECT_NO_THROW(read_gmsh({file, 1, 2}));
 }
@@ -146,7 +147,7 @@ TEST(Msh, FilesThatCannotBeOpenedAreBadInput)
   expect_error(ExitCode::bad_input, {"\"none.msh\"", "cannot be opened", "No such file"}, [] {
     read_gmsh({"none.msh", 1, 0});
   });
-  expect_error(ExitCode::bad_input, ".geo or .msh", [] { read_gmsh({"none.stl", 1, 0}); });
+  expect_error(ExitCode::bad_input, "one of .geo, .step", [] { read_gmsh({"none.abc", 1, 0}); });
 }
 
 TEST(Msh, WhatIsNoMeshIsRefused)
@@ -195,8 +196,11 @@ TEST(Msh, GroupsAreNamedOnceOrNumberedAndFilled)
   expect_refused(squares_with([](Msh &msh) { msh.names[2] = std::string("2 3 \"a\0b\"", 9); }),
                  {"physical surface 3", "control character"});
   EXPECT_NO_THROW(read_text(squares_with([](Msh &msh) { msh.names[1] = "1 2 \"" + std::string(255, 'n') + "\""; })));
-  expect_refused(squares_with([](Msh &msh) { msh.names.push_back("2 5 \"air\""); }),
-                 {"physical surface \"air\"", "no elements"});
+  expect_noted(read_text(squares_with([](Msh &msh) { msh.names.push_back("2 5 \"air\""); })),
+               {"physical surface \"air\"", "no elements"});
+  const MeshData blanks = read_text(squares_with([](Msh &msh) { msh.names[1] = "1 2 \"right  \""; }));
+  EXPECT_EQ(blanks.sides[1].name, "right");
+  expect_noted(blanks, {"physical curve \"right  \" ends in blanks"});
   expect_refused(squares_with([](Msh &msh) {
                    msh.names.resize(2);
                    msh.elements.resize(2);
@@ -218,7 +222,7 @@ TEST(Msh, CellsMustBeOfOneKindThatCanBeRead)
   expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 2 2 4 0 2 3 6"; }),
                  {"one kind", "1 of type \"Quadrilateral 4\" in \"steel\"", "1 of type \"Triangle 3\" in \"rubber\""});
   expect_refused(squares_with([](Msh &msh) { msh.elements[3] = "4 16 2 4 0 2 3 6 5 1 1 1 1"; }),
-                 {"\"Quadrilateral 8\"", "\"rubber\"", "Mesh.SecondOrderIncomplete = 0"});
+                 {"one kind", "\"Quadrilateral 9\" in \"rubber\""});
   expect_refused(squares_with([](Msh &msh) { msh.elements[0] = "1 8 2 1 0 1 4 5"; }),
                  {"\"Line 3\"", "\"left\"", "order 1"});
 }
@@ -233,13 +237,17 @@ TEST(Msh, NodesMustBeInThePlaneAndApart)
   expect_refused(node_6("5 2 1 0"), {"two nodes 5"});
   expect_refused(node_6("7 2 1 0"), {"node 6", "lacks"});
   expect_refused(node_6("6 1 1.0000000000001 0"), {"node 5 at (1, 1) and node 6", "one place"});
-  expect_refused(squares_with([](Msh &msh) { msh.nodes.push_back("7 5 5 0"); }), {"no cell uses node 7 at (5, 5, 0)"});
+  const MeshData mesh = read_text(squares_with([](Msh &msh) { msh.nodes.push_back("7 5 5 0"); }));
+  EXPECT_EQ(mesh.num_nodes(), 6);
+  expect_noted(mesh, {"no cell uses node 7 at (5, 5, 0)", "left out"});
 }
 
 TEST(Msh, CellsMustBeConvexCounterclockwiseAndApart)
 {
   const auto cell_4 = [](const std::string &line) { return squares_with([&](Msh &msh) { msh.elements[3] = line; }); };
-  expect_refused(cell_4("4 3 2 4 0 2 5 6 3"), {"cell 4 of \"rubber\"", "inverted", "clockwise", "curve loop"});
+  const MeshData turned = read_text(cell_4("4 3 2 4 0 2 5 6 3"));
+  EXPECT_EQ(turned.cells, (std::vector<int>{0, 1, 4, 3, 1, 2, 5, 4}));
+  expect_noted(turned, {"nodes of 1 cell, cell 4", "wrong way round"});
   expect_refused(cell_4("4 3 2 4 0 2 3 3 5"), {"cell 4 of \"rubber\"", "node 3 at (2, 0)", "twice"});
   expect_refused(squares_with([](Msh &msh) { msh.nodes[5] = "6 1.2 0.3 0"; }),
                  {"cell 4 of \"rubber\"", "inverted", "180 degrees"});
@@ -257,9 +265,23 @@ TEST(Msh, CellsMustBeConvexCounterclockwiseAndApart)
 TEST(Msh, SidesMustLieOnTheBoundary)
 {
   const auto line_1 = [](const std::string &line) { return squares_with([&](Msh &msh) { msh.elements[0] = line; }); };
-  expect_refused(line_1("1 1 2 1 0 2 5"), {"line 1 of physical curve \"left\"", "inside the body", "cells 3 and 4"});
-  expect_refused(line_1("1 1 2 1 0 1 5"), {"line 1 of physical curve \"left\"", "nodes 1 and 5", "edge of no cell"});
-  expect_refused(line_1("1 1 2 1 0 1 99"), {"nodes 1 and 99", "edge of no cell"});
+  const auto also = [](const std::string &line) {
+    return squares_with([&](Msh &msh) { msh.elements.push_back(line); });
+  };
+  expect_refused(also("5 1 2 1 0 2 5"), {"line 5 of physical curve \"left\"", "inside the body", "cells 3 and 4"});
+  expect_refused(also("5 1 2 1 0 1 5"), {"line 5 of physical curve \"left\"", "nodes 1 and 5", "edge of no cell"});
+  expect_refused(also("5 1 2 1 0 1 99"), {"nodes 1 and 99", "edge of no cell"});
+  // A group with no facet of the boundary is no side at all.
+  const MeshData inner = read_text(line_1("1 1 2 1 0 2 5"));
+  ASSERT_EQ(inner.sides.size(), 1u);
+  ASSERT_EQ(inner.points.size(), 1u);
+  EXPECT_EQ(inner.points[0].name, "left");
+  EXPECT_EQ(inner.points[0].node, (std::vector<int>{1, 4}));
+  expect_noted(inner, {"physical curve \"left\" lies inside the body", "no side"});
+  const MeshData stray = read_text(line_1("1 1 2 1 0 1 5"));
+  EXPECT_EQ(stray.sides.size(), 1u);
+  EXPECT_TRUE(stray.points.empty());
+  expect_noted(stray, {"physical curve \"left\" belongs to no cell"});
 }
 
 TEST(Msh, MiddleNodesMustAgree)

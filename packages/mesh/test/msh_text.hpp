@@ -5,6 +5,7 @@
 #include "rpc/mesh/gmsh.hpp"
 #include "scratch_file.hpp"
 
+#include <gtest/gtest.h>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -33,6 +34,19 @@ inline void expect_refused(const std::string &text, const std::initializer_list<
 {
   expect_error(ExitCode::bad_mesh, "mesh.msh\": ", [&] { read_text(text); });
   expect_error(ExitCode::bad_mesh, parts, [&] { read_text(text); });
+}
+
+/// Whether one of a mesh's notes has all of these parts.
+inline void expect_noted(const mesh::MeshData &mesh, const std::initializer_list<std::string> &parts)
+{
+  std::string all;
+  for (const std::string &note : mesh.notes) {
+    all += note + "\n";
+    bool has = true;
+    for (const std::string &part : parts) has = has && note.find(part) != note.npos;
+    if (has) return;
+  }
+  ADD_FAILURE() << "no note says " << *parts.begin() << "; there are:\n" << all;
 }
 
 /// A .msh 2.2 from its parts, with the counts that go with them.

@@ -129,6 +129,7 @@ Mesh mesh_of(const LocalMesh &local, const std::shared_ptr<const Mesh> &coarse)
   for (const PointData &set : local.points) mesh.points.push_back({set.name, {set.node.begin(), set.node.end()}});
   mesh.geometry = local.geometry;
   mesh.geometry_file = coarse->geometry_file;
+  mesh.notes = coarse->notes;
   mesh.parents = std::make_shared<const Parents>(Parents{coarse, local.parent, local.kind, local.child_vertices});
   Kokkos::fence();
   return mesh;

@@ -8,15 +8,29 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace rpc::mesh
 {
 
-/// A mesh that gmsh makes or made.
+/// A side that a deck chooses among the facets of the boundary, by one of these.
+struct SidePlace {
+  struct Plane {
+    int axis = 0;
+    double at = 0; ///< [m]
+  };
+  std::string name;
+  std::vector<int> surfaces;                 ///< gmsh's numbers; of curves in the plane
+  std::vector<double> near;                  ///< a point [m]: the nearest surface
+  std::optional<Plane> plane = std::nullopt; ///< normal to an axis
+  std::vector<double> box;                   ///< lower and upper corner [m]
+};
+
+/// A mesh that gmsh makes or made, or that of another file.
 struct GmshOptions {
-  std::string file;       ///< .geo, meshed by gmsh, or .msh (2.2 or 4.1, ASCII or binary)
-  double size_factor = 1; ///< of all cell sizes that a .geo or `sizes` ask for, > 0
-  int order = 0;          ///< 1 or 2; 0: 2 for a .geo, for a .msh what it has
+  std::string file; ///< a geometry that gmsh meshes (.geo, .step, ...), or a mesh (.msh, .e, ...), see mesh_formats.hpp
+  double size_factor = 1; ///< of all cell sizes that a geometry or `sizes` ask for, > 0
+  int order = 0;          ///< 1 or 2; 0: 2 for a geometry, for a mesh what it has
   std::optional<BoxOptions> box =
       std::nullopt; ///< no file then; if not `nested`, meshed by `sizes`, and its cells and `order` do not count
   std::shared_ptr<const SizeField> sizes = nullptr; ///< of cells, instead of those that a .geo asks for
@@ -26,6 +40,10 @@ struct GmshOptions {
   int refinements = 0; ///< how often make_mesh() halves each cell, >= 0; with it a .geo's mesh has its geometry
   bool nested = false; ///< make_mesh() meets `sizes` by refined_to(), from base_mesh(): read_gmsh() is not to see them
   std::shared_ptr<const MeshData> base = nullptr; ///< base_mesh() of a nested one, on rank 0; null: not made yet
+
+  double size = 0;                   ///< of the cells of a STEP, IGES, BREP or STL [m]; 0: a tenth of the body
+  std::vector<SidePlace> sides = {}; ///< besides those that the file has
+  bool list_surfaces = false;        ///< the mesh is to have its geometry
 
   bool needs_geometry() const { return refinements > 0 || nested; } ///< for new nodes on curved boundaries
 };

@@ -70,6 +70,7 @@ struct Mesh {
   std::shared_ptr<const BoxOptions> box; ///< of which the mesh was made; null if it is no evenly divided box
   std::vector<BoundaryPart> geometry;    ///< what facets lie on, as far as it is known: those of a side would be listed
   std::string geometry_file;             ///< the .geo by which gmsh tells points of shapes without closed formulas
+  std::vector<std::string> notes;        ///< on rank 0: what was mended, or left out, of a file
   std::shared_ptr<const Parents> parents; ///< null if it has no coarser one
 
   int dim() const { return element.dim; }

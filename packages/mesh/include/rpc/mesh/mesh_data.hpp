@@ -44,6 +44,7 @@ struct MeshData {
   std::vector<PointData> points;
   std::vector<BoundaryPart> geometry; ///< what facets lie on, where it was asked for
   std::string geometry_file;          ///< the .geo by which gmsh tells points of shapes without closed formulas
+  std::vector<std::string> notes;     ///< what was mended, or left out, of a file
 
   int num_nodes() const { return static_cast<int>(coords.size()) / element.dim; }
   int num_cells() const { return static_cast<int>(cells.size()) / element.num_nodes(); }

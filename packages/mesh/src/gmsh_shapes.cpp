@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gmsh_shapes.hpp"
+
+#include "gmsh_mesher.hpp"
+#include "mesh_formats.hpp"
+
+#include <algorithm>
+#include <gmsh.h>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace rpc::mesh
+{
+namespace
+{
+
+constexpr const char *kind_of_entity[] = {"point", "curve", "surface", "volume"};
+
+/// Parts that touch get one common surface there, or a mesh would not hold together.
+void join_parts()
+{
+  const int dim = gmsh::model::getDimension();
+  gmsh::vectorpair parts, result;
+  gmsh::model::getEntities(parts, dim);
+  if (dim < 2 || parts.size() < 2) return;
+  std::vector<gmsh::vectorpair> map;
+  gmsh::model::occ::fragment(parts, {}, result, map);
+  gmsh::model::occ::synchronize();
+}
+
+/// Makes a body of the triangles of an STL.
+/// @return why there is none; "" if there is
+std::string fill_surface()
+{
+  constexpr double pi = 3.14159265358979323846;
+  constexpr double edge_angle =
+      40 * pi / 180; // [rad] between triangles, at edges of the body: that of gmsh's own example for STL files
+  gmsh::model::mesh::removeDuplicateNodes();
+  gmsh::model::mesh::classifySurfaces(edge_angle, true, true, pi);
+  gmsh::vectorpair surfaces, curves;
+  gmsh::model::getEntities(surfaces, 2);
+  for (const auto &[dim, tag] : surfaces) {
+    gmsh::vectorpair around;
+    gmsh::model::getBoundary({{dim, tag}}, around, false, false, false);
+    for (const auto &[of_curve, curve] : around) curves.emplace_back(of_curve, std::abs(curve));
+  }
+  std::sort(curves.begin(), curves.end());
+  for (const auto &curve : curves)
+    if (std::count(curves.begin(), curves.end(), curve) != 2)
+      return "its triangles do not bound a body: there is an open edge. An STL must be the closed surface of a body in "
+             "space; repair it in "
+             "the program that made it, or give a STEP file or a mesh with cells";
+  gmsh::model::mesh::createGeometry();
+  std::vector<int> tags;
+  for (const auto &[dim, tag] : surfaces) tags.push_back(tag);
+  gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop(tags)});
+  gmsh::model::geo::synchronize();
+  return "";
+}
+
+/// "Shapes/bracket/foot" is the "foot" of a file. What translators make up is no name.
+std::string name_in_file(const int dim, const int tag)
+{
+  std::string name;
+  gmsh::model::getEntityName(dim, tag, name);
+  name.erase(0, name.find_last_of('/') + 1);
+  return name.find("translator") == name.npos && name.find("Created by") == name.npos ? name : "";
+}
+
+/// The entities of a dimension, by name in the order of their numbers.
+std::vector<std::pair<std::string, std::vector<int>>> named_entities(const int dim, const bool boundary)
+{
+  gmsh::vectorpair all;
+  gmsh::model::getEntities(all, dim);
+  std::sort(all.begin(), all.end());
+  std::vector<std::pair<std::string, std::vector<int>>> groups;
+  for (const auto &[of_dim, tag] : all) {
+    std::vector<int> upward, downward;
+    gmsh::model::getAdjacencies(dim, tag, upward, downward);
+    if (boundary && upward.size() != 1) continue;
+    std::string name = boundary || all.size() > 1 ? name_in_file(dim, tag) : whole_body;
+    if (name.empty()) name = kind_of_entity[dim] + (" " + std::to_string(tag));
+    const auto same = std::find_if(groups.begin(), groups.end(), [&, n = name](const auto &g) { return g.first == n; });
+    if (same == groups.end())
+      groups.push_back({name, {tag}});
+    else
+      same->second.push_back(tag);
+  }
+  return groups;
+}
+
+} // namespace
+
+std::string open_file(const GmshRequest &request)
+{
+  gmsh::open(request.file);
+  if (format_of(request.file) != MeshFormat::shapes || !first_error().empty()) return "";
+  if (extension_of(request.file) == ".stl") return fill_surface();
+  gmsh::vectorpair bodies;
+  gmsh::model::getEntities(bodies, gmsh::model::getDimension());
+  if (bodies.empty() || gmsh::model::getDimension() < 2) return "there is no solid and no surface in it";
+  join_parts();
+  return "";
+}
+
+std::string with_remedy(const std::string &complaint)
+{
+  const std::size_t begin = complaint.find('\''), end = complaint.find("', line ", begin + 1);
+  if (end == complaint.npos || complaint.find("syntax error", end) == complaint.npos) return complaint;
+  const std::string file = complaint.substr(begin + 1, end - begin - 1);
+  const std::string extension = extension_of(file);
+  if (extension.empty() || extension == ".geo" || extension == ".pos" || extension == ".opt") return complaint;
+  return complaint + "; gmsh does not read this format, and took the file for a script: name it as \"Mesh->File\" "
+                     "itself, without a .geo";
+}
+
+std::string why_no_cells(const GmshContents &contents)
+{
+  for (const auto &elements : contents.elements)
+    if (contents.groups[elements.group].dim == contents.dim && !elements.tags.empty()) return "";
+  gmsh::vectorpair surfaces;
+  gmsh::model::getEntities(surfaces, contents.dim);
+  for (const auto &[dim, tag] : surfaces) {
+    std::string type;
+    gmsh::model::getType(dim, tag, type);
+    if (contents.dim != 2 || type != "Discrete surface") return "";
+  }
+  if (surfaces.empty()) return "";
+  return "there is nothing but the triangles of an STL or of a mesh, a surface that encloses no volume yet: name the "
+         "STL as "
+         "\"Mesh->File\" itself, "
+         "or go on in the .geo with ClassifySurfaces, CreateGeometry, Surface Loop and Volume";
+}
+
+void set_own_size(const GmshRequest &request)
+{
+  if (!(request.size > 0)) return;
+  for (const char *const bound : {"Mesh.MeshSizeMin", "Mesh.MeshSizeMax"}) gmsh::option::setNumber(bound, request.size);
+}
+
+void take_shapes(GmshContents &contents)
+{
+  for (const bool boundary : {true, false}) {
+    const int dim = boundary ? contents.dim - 1 : contents.dim;
+    for (const auto &[name, entities] : named_entities(dim, boundary))
+      take_group({dim, entities.front(), name}, entities, contents);
+  }
+}
+
+} // namespace rpc::mesh

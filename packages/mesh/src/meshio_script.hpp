@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace rpc::mesh
+{
+
+/// What python3 runs, with the file and the .msh to be written as arguments: meshio reads and writes. Of sets that overlap a cell belongs to
+/// the smallest one. Lines that begin with "note: " go to the user. Exit code 9: there is no meshio.
+inline constexpr const char *meshio_script = R"py(
+import contextlib
+import io
+import sys
+try:
+    import numpy
+    import meshio
+except ImportError:
+    sys.exit(9)
+path, target = sys.argv[1:3]
+TYPES = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2, "quad": 2, "quad8": 2, "quad9": 2, "tetra": 3, "tetra10": 3,
+         "hexahedron": 3, "hexahedron20": 3, "hexahedron27": 3, "wedge": 3, "wedge15": 3, "wedge18": 3, "pyramid": 3, "pyramid13": 3,
+         "pyramid14": 3}
+TAGS = ("gmsh:physical", "medit:ref", "nastran:ref", "cell_tags", "avsucd:material", "flac3d:group", "tetgen:ref")
+
+def say(text):
+    print("note:", " ".join(str(text).split()))
+
+def abaqus_keywords():
+    """(keyword, parameters, first item of the data) of an Abaqus file, whose sets meshio takes for others where they stand in certain ways."""
+    found = []
+    with open(path, errors="replace") as file:
+        for line in file:
+            if line.startswith("**") or not line.strip():
+                continue
+            if line.startswith("*"):
+                words = [word.strip() for word in line[1:].split(",")]
+                parameters = dict([part.strip() for part in word.split("=", 1)] for word in words[1:] if "=" in word)
+                found.append([words[0].upper(), {key.upper(): value for key, value in parameters.items()}, ""])
+            elif found and not found[-1][2]:
+                found[-1][2] = line.split(",")[0].strip()
+    return found
+
+keywords = abaqus_keywords() if path.lower().endswith(".inp") else []
+if keywords:
+    for word in ("INCLUDE", "NODE"):
+        if sum(each[0] == word for each in keywords) > (word == "NODE"):
+            sys.exit(f"there is more than one *{word}" if word == "NODE" else "it has *INCLUDE" + ": write the mesh into one file with one *NODE")
+    more = {"CPE3": "triangle", "CAX3": "triangle", "CPS6": "triangle6", "CAX6": "triangle6", "CPE4": "quad", "CPE4R": "quad", "CAX4": "quad",
+            "CAX4R": "quad", "CPS8": "quad8", "CPS8R": "quad8", "CPE8": "quad8", "CPE8R": "quad8", "CAX8": "quad8", "CAX8R": "quad8"}
+    try:
+        from meshio.abaqus._abaqus import abaqus_to_meshio_type
+        abaqus_to_meshio_type.update({key: value for key, value in more.items() if key not in abaqus_to_meshio_type})
+    except ImportError:
+        pass  # another version: it reads what it reads
+said = io.StringIO()
+try:
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        mesh = meshio.read(path)
+except ImportError:
+    sys.exit(9)
+except SystemExit:
+    sys.exit("; ".join(line.strip() for line in said.getvalue().splitlines() if line.strip()) or "it gives no reason")
+points = numpy.asarray(mesh.points, dtype=float)
+if points.ndim != 2 or not 1 < points.shape[1] < 4 or not len(points):
+    sys.exit("it finds no nodes in the plane or in space")
+blocks = [(block.type, numpy.asarray(block.data)) for block in mesh.cells]
+for kind, nodes in blocks:
+    if kind not in TYPES:
+        sys.exit(f"it finds cells of type {kind}, which rpc does not know")
+    if nodes.size and (nodes.min() < 0 or nodes.max() >= len(points)):
+        sys.exit(f"cells of type {kind} use node {nodes.max() + 1 if nodes.max() >= len(points) else nodes.min() + 1}; there are 1 to {len(points)}")
+body = max([TYPES[kind] for kind, nodes in blocks if len(nodes)], default=0)
+if body < 2:
+    sys.exit("it finds no triangles, quadrilaterals, tetrahedra or hexahedra")
+sets = {}  # name -> for each block the places of its cells
+for name, of_blocks in (mesh.cell_sets or {}).items():
+    sets[str(name)] = [numpy.asarray([] if cells is None else cells, dtype=int) for cells in of_blocks]
+point_sets = {str(name): numpy.asarray(nodes, dtype=int).ravel() for name, nodes in (mesh.point_sets or {}).items()}
+for word, key, of_kind in (("ELSET", "ELSET", sets), ("NSET", "NSET", point_sets)):
+    for name in sorted({each[1].get(key, "") for each in keywords if each[0] == word}):
+        same = [each for each in keywords if each[0] == word and each[1].get(key, "") == name]
+        if len(same) > 1 or not same[0][2].isdigit():
+            of_kind.pop(name, None)
+            say(f'*{word} "{name}" is left out: meshio reads sets that are given once, by numbers')
+elements = [each[1] for each in keywords if each[0] == "ELEMENT"]
+if len(elements) == len(blocks):
+    for name in {each["ELSET"] for each in elements if "ELSET" in each}:
+        sets[name] = [numpy.arange(len(nodes) if each.get("ELSET") == name else 0) for each, (kind, nodes) in zip(elements, blocks)]
+families = getattr(mesh, "cell_tags", None) or {}  # of MED
+for key in TAGS:
+    if key not in mesh.cell_data:
+        continue
+    values = [numpy.asarray(each).ravel() for each in mesh.cell_data[key]]
+    for tag in sorted({int(v) for each in values for v in each} - {0}):
+        for name in families.get(tag, [str(tag)]) if key == "cell_tags" else [str(tag)]:
+            found = [numpy.flatnonzero(each == tag) for each in values]
+            sets[name] = [numpy.union1d(a, b) for a, b in zip(sets[name], found)] if name in sets else found
+names, cells, physical = {}, [], []
+
+def add(kind, nodes, name, dim):
+    if len(nodes):
+        cells.append((kind, nodes))
+        tag = names.setdefault((name, dim), 1 + len(names))
+        physical.append(numpy.full(len(nodes), tag, dtype=int))
+
+place = {name: k for k, name in enumerate(sets)}
+by_size = sorted(sets, key=lambda name: (sum(len(c) for c in sets[name]), place[name]))  # of equal ones the first counts
+total, own = dict.fromkeys(by_size, 0), dict.fromkeys(by_size, 0)  # cells of the body in a set, and in its block
+for b, (kind, nodes) in enumerate(blocks):
+    dim = TYPES[kind]
+    if 0 < dim < body - 1:
+        say(f"{len(nodes)} cells of type {kind} are no part of a body in space: they are left out")
+    if dim < body - 1:
+        continue
+    owner = numpy.full(len(nodes), -1)
+    for k, name in enumerate(by_size):
+        at = numpy.unique(sets[name][b]) if b < len(sets[name]) else numpy.array([], dtype=int)
+        if len(at) and (at[0] < 0 or at[-1] >= len(nodes)):
+            sys.exit(f"set {name} names cells that there are not")
+        if dim < body:  # sides may have common facets
+            add(kind, nodes[at], name, dim)
+        else:
+            total[name] += len(at)
+            owner[at[owner[at] < 0]] = k
+    for k, name in enumerate(by_size if dim == body else []):
+        own[name] += numpy.count_nonzero(owner == k)
+        add(kind, nodes[owner == k], name, dim)
+    if dim == body:
+        add(kind, nodes[owner < 0], "body", dim)
+for name in by_size:
+    if total[name] > own[name]:
+        say(f'{total[name] - own[name]} of {total[name]} cells of set "{name}" belong to the block of another set that is no larger')
+families = getattr(mesh, "point_tags", None) or {}
+if "point_tags" in mesh.point_data:
+    values = numpy.asarray(mesh.point_data["point_tags"]).ravel()
+    for tag, of_tag in families.items():
+        for name in of_tag:
+            found = numpy.flatnonzero(values == tag)
+            point_sets[name] = numpy.union1d(point_sets[name], found) if name in point_sets else found
+nodes_of = {}  # of sides and blocks: a set of the same name and nodes need not be told again
+for (name, dim), tag in names.items():
+    nodes_of[name] = numpy.unique(numpy.concatenate([n.ravel() for (k, n), t in zip(cells, physical) if t[0] == tag]))
+for name, nodes in point_sets.items():
+    nodes = numpy.unique(nodes)
+    if not len(nodes) or name in nodes_of and numpy.array_equal(nodes_of[name], nodes):
+        continue
+    if nodes[0] < 0 or nodes[-1] >= len(points):
+        sys.exit(f"set {name} names nodes that there are not")
+    add("vertex", nodes.reshape(-1, 1), name, 0)
+for each in keywords:
+    if each[0] == "SURFACE":
+        say(f'*SURFACE "{each[1].get("NAME", "")}" is left out: meshio does not read it. Sides come from *NSET, and from *ELSET of facets')
+if points.shape[1] == 2:
+    points = numpy.column_stack([points, numpy.zeros(len(points))])
+data = {"gmsh:physical": physical, "gmsh:geometrical": physical}
+meshio.write(target, meshio.Mesh(points, cells, cell_data=data), file_format="gmsh22", binary=True)
+with open(target, "rb") as file:
+    text = file.read()
+lines = ""
+for (name, dim), tag in sorted(names.items(), key=lambda item: (item[0][1], item[1])):
+    printed = "".join(c if c.isprintable() and c != '"' else "?" for c in name)
+    lines += f'{dim} {tag} "{printed}"\n'
+begin = text.index(b"$Nodes")
+with open(target, "wb") as file:
+    file.write(text[:begin] + f"$PhysicalNames\n{len(names)}\n{lines}$EndPhysicalNames\n".encode() + text[begin:])
+)py";
+
+} // namespace rpc::mesh

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Geometries and meshes of other programs: what becomes of their names, and that a mesh gives the same run whatever file it comes in."""
+
+import json
+import os
+import shutil
+import subprocess
+import unittest
+
+from rpc_run import SOURCE, RpcTestCase
+
+DATA = SOURCE / "packages" / "mesh" / "test" / "data"
+FORCE = 11.3752530895  # of the square below [N/m]
+HAS_GMSH = os.environ.get("RPC_GMSH", "ON") == "ON"
+HAS_MESHIO = subprocess.run(["python3", "-c", "import meshio, h5py"], capture_output=True).returncode == 0
+
+SQUARE = """square:
+  Mesh: {{Type: gmsh, File: "{file}"{more}}}
+  Material: {{Young's Modulus: 1000.0, Poisson's Ratio: 0.3}}
+  Dirichlet:
+    top: {{X: 0.0, Y: -0.01}}
+  Contact: {{Side: bottom}}
+  Output: {{Exodus: none}}
+"""
+CUBE = """cube:
+  Mesh: {{Type: gmsh, File: "{file}", Order: 1, Sides: {{foot: {{Plane: "z = 0"}}, head: {{{head}}}}}{more}}}
+  Material: {{Young's Modulus: 1000.0, Poisson's Ratio: 0.3}}
+  Dirichlet:
+    head: {{X: 0.0, Y: 0.0, Z: -0.01}}
+  Contact: {{Side: foot}}
+  Output: {{Exodus: none}}
+"""
+
+
+def stl_of_box(x, y, z):
+    """The surface of a box in 12 triangles."""
+    corner = [(x * (k & 1), y * (k >> 1 & 1), z * (k >> 2)) for k in range(8)]
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    text = "solid box\n"
+    for a, b, c, d in faces:
+        for triangle in ((a, b, c), (a, c, d)):
+            text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex %g %g %g\n" % corner[k] for k in triangle) + "endloop\nendfacet\n"
+    return text + "endsolid box\n"
+
+
+class Formats(RpcTestCase):
+    def run_of(self, deck, name, *more):
+        (self.folder / f"{name}.yaml").write_text(deck)
+        result = self.rpc(f"--input={name}.yaml", "--output=out", *more)
+        return json.loads((self.folder / "out" / f"{name}.json").read_text()), result.stdout
+
+    def square(self, file, more=""):
+        summary, said = self.run_of(SQUARE.format(file=file, more=more), "square")
+        self.assertAlmostEqual(summary["contact_force"][1], FORCE, delta=1e-8 * FORCE)
+        return said
+
+    def test_exodus_that_rpc_has_written_gives_the_same_run(self):
+        for mesh in ("octant_22.msh", "bricks_22.msh"):
+            shutil.copy(DATA / mesh, self.folder)
+            info = self.rpc(f"--mesh-info={mesh}").stdout
+            sides = [line.split('"')[1] for line in info.splitlines() if line.strip().startswith("side ")]
+            deck = """run:
+  Mesh: {{Type: gmsh, File: {file}}}
+  Material: {{Young's Modulus: 1000.0, Poisson's Ratio: 0.3}}
+  Dirichlet:
+    held: {{Side: "{a}", X: 0.0, Y: 0.0, Z: 0.0}}
+  Body Force: {{X: 0.3, Y: -0.2, Z: -1.0}}
+  Contact: {{Side: "{b}", Gap: 0.0001, Yield Stress: 0.5}}
+"""
+            first, _ = self.run_of(deck.format(file=mesh, a=sides[0], b=sides[1]), "run")
+            shutil.copy(self.folder / "out" / "run.e", self.folder / "again.exo")
+            second, _ = self.run_of(deck.format(file="again.exo", a=sides[0], b=sides[1]), "run")
+            for key in ("energy_J", "contact_force", "unknowns", "uzawa_iterations"):
+                if key not in first:
+                    continue
+                one, two = ([each[key]] if not isinstance(each[key], list) else each[key] for each in (first, second))
+                for x, y in zip(one, two):
+                    self.assertAlmostEqual(x, y, delta=1e-12 * max(abs(v) for v in one), msg=f"{mesh}: {key}")
+
+    def test_what_is_mended_changes_nothing(self):
+        text = (DATA / "square_41.msh").read_text()
+        (self.folder / "UPPER.MSH").write_text(text)
+        self.square("UPPER.MSH")
+        shutil.copy(DATA / "square_partitioned_41.msh", self.folder)
+        self.square("square_partitioned_41.msh")
+        blanks = text.replace('"bottom"', '"bottom  "')
+        (self.folder / "blanks.msh").write_text(blanks)
+        self.assertIn("ends in blanks", self.square("blanks.msh"))
+
+    @unittest.skipUnless(HAS_GMSH, "rpc was built without gmsh")
+    def test_unv_is_the_same_mesh(self):
+        shutil.copy(DATA / "square.unv", self.folder)
+        self.square("square.unv")
+
+    @unittest.skipUnless(HAS_MESHIO, "python3 has no meshio and h5py")
+    def test_what_meshio_converts_is_the_same_mesh(self):
+        script = """import meshio, numpy, sys
+mesh = meshio.read(sys.argv[1])
+names = {int(tag): name for name, (tag, dim) in mesh.field_data.items()}
+kinds = [block.type for block in mesh.cells]
+sets = {}
+for name, (tag, dim) in mesh.field_data.items():
+    sets[name] = [numpy.flatnonzero((data == tag) & (len(block.data[0]) == dim + 1)) for block, data in zip(mesh.cells, mesh.cell_data["gmsh:physical"])]
+cells = [("triangle", numpy.concatenate([block.data for block in mesh.cells if block.type == "triangle"]))]
+points = mesh.points[:, :2] if sys.argv[2].endswith(".inp") else mesh.points
+bottom, top = (numpy.flatnonzero(mesh.points[:, 1] == y) for y in (0, 1))
+out = meshio.Mesh(points, cells, point_sets={"bottom": bottom, "top": top} if sys.argv[2].endswith(".inp") else None)
+meshio.write(sys.argv[2], out)
+"""
+        for name in ("square.inp", "square.vtu", "square.vtk", "square.med"):
+            subprocess.run(["python3", "-c", script, DATA / "square_41.msh", self.folder / name], check=True, capture_output=True)
+            more = "" if name == "square.inp" else ', Sides: {bottom: {Plane: "y = 0"}, top: {Plane: "y = 1"}}'
+            with self.subTest(name):
+                self.square(name, more)
+
+    def test_without_meshio_the_message_tells_how_to_install_it(self):
+        (self.folder / "bin").mkdir()
+        python = self.folder / "bin" / "python3"
+        python.write_text("#!/bin/sh\nexit 9\n")  # as the converter does where it finds no meshio
+        python.chmod(0o755)
+        (self.folder / "square.inp").write_text("*NODE\n1, 0, 0\n")
+        (self.folder / "square.yaml").write_text(SQUARE.format(file="square.inp", more=""))
+        path = f"{self.folder / 'bin'}:{os.environ['PATH']}"
+        result = self.rpc("--input=square.yaml", code=None, environment={"PATH": path})
+        self.expect_refusal(result, 2, ["square.inp", "apt-get install python3-meshio"])
+
+    @unittest.skipUnless(HAS_GMSH, "rpc was built without gmsh")
+    def test_a_step_file_is_a_geometry_with_sides_by_place_and_number(self):
+        shutil.copy(SOURCE / "doc" / "tutorial" / "pin.step", self.folder)
+        info = self.rpc("--mesh-info=pin.step").stdout
+        self.assertIn("  surface     3, ", info)
+        self.assertIn('block       "body": ', info)
+        self.assertIn("in the file's mm", info)
+        deck = """pin:
+  Mesh: {Type: gmsh, File: pin.step, Size: 4, Order: 1, Sides: {head: {Surfaces: [3]}}}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Units: {Length: mm}
+  Dirichlet:
+    head: {X: 0.0, Y: 0.0, Z: -0.01}
+  Contact: {Side: surface 2}
+"""
+        (self.folder / "pin.yaml").write_text(deck)
+        said = self.rpc("--input=pin.yaml", "--check").stdout
+        self.assertIn('"head": area', said)
+        self.assertIn('"surface 2": area', said)
+        (self.folder / "pin.yaml").write_text(deck.replace("surface 2", "foot"))
+        result = self.rpc("--input=pin.yaml", "--check", code=None)
+        self.expect_refusal(result, 2, ['"foot"', "surface 2", '"Mesh->Sides" chooses others by place or number'])
+
+    @unittest.skipUnless(HAS_GMSH, "rpc was built without gmsh")
+    def test_an_stl_is_filled_or_refused(self):
+        (self.folder / "box.stl").write_text(stl_of_box(1, 1, 1))
+        summary, said = self.run_of(CUBE.format(file="box.stl", head='Near: [0.5, 0.5, 1.0]', more=", Size: 0.5"), "cube")
+        self.assertGreater(summary["contact_force"][2], 9)
+        self.assertIn("unit of length, which it does not tell", said)
+        text = stl_of_box(1, 1, 1)
+        (self.folder / "open.stl").write_text(text[:text.index("facet")] + text[text.index("endfacet") + 9:])
+        (self.folder / "cube.yaml").write_text(CUBE.format(file="open.stl", head='Plane: "z = 1"', more=""))
+        self.expect_refusal(self.rpc("--input=cube.yaml", code=None), 3, ["open.stl", "there is an open edge"])
+
+
+if __name__ == "__main__":
+    unittest.main()
