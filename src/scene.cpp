@@ -26,6 +26,7 @@ Teuchos::ParameterList valid_output_parameters()
   valid.set("CSV", true, "Write <deck>.contact.csv: the contact nodes along the surface.");
   valid.set("JSON", true, "Write <deck>.json: the summary.");
   valid.set("Timers", false, "Print the timer tree at the end.");
+  add_points_parameters(valid);
   return valid;
 }
 
@@ -151,6 +152,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   const auto exodus = output.get<std::string>("Exodus");
   scene.output = {exodus != "none", output.get<bool>("CSV"), output.get<bool>("JSON"),
                   exodus == "split" ? io::ExodusFiles::split : io::ExodusFiles::joined, output.get<bool>("Timers")};
+  scene.output.points = points_options(output.sublist("Points"), dim);
   adapt::require_adaptable(scene);
   for (const char *const part : {"Dirichlet", "Traction"})
     if (!deck.getEntry(part).isDefault() && deck.sublist(part).numParams() == 0)

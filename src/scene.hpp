@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "output/points.hpp"
 #include "rpc/adapt/solve.hpp"
 #include "rpc/io/exodus.hpp"
 
@@ -18,6 +19,7 @@ struct OutputOptions {
   io::ExodusFiles exodus_files = io::ExodusFiles::joined;
   bool timers = false;
   bool verbose = false; ///< of the command line: the console tells more
+  std::vector<ResultPoints> points = {};
 };
 
 /// A deck, read and checked: all that a run needs to know.

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 namespace rpc
 {
@@ -21,12 +22,14 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
                const std::function<void(const analysis::Problem &, const analysis::Step &)> &ready)
 {
   std::optional<ConsoleTable> table; // of one mesh
+  bool points_looked_for = false;
   Notes notes(console);
   SeldomMeant seldom_meant(scene, checkpoints && checkpoints->goes_on(), notes);
   for (const std::string &note : scene.notes) notes.add(note);
   adapt::Listener listener;
   listener.mesh = [&](const fem::Discretization &d, const contact::ContactNodes &contact) {
     if (!table || !scene.has_steps()) table.emplace(console, scene.output.verbose);
+    if (!std::exchange(points_looked_for, true)) require_inside(scene.output.points, d, scene.model.units);
     table->scene(scene, d, contact);
     for (const std::string &note : d.mesh->notes) notes.add("mesh: " + note);
     for (const std::string &note : notes_on_mesh(scene, d, contact)) notes.add(note);

@@ -73,6 +73,14 @@ class Result:
         """
         return _table(self._file(".history.csv", '"Steps->Times"'))
 
+    def points(self):
+        """`<deck>.points.csv` as a structured array, one row per point and step: time, name, number, x, y, in space z, s, off, disp_x, ..., stress_xx, ...,
+        von_mises and contact_pressure, nan off the contact sides.
+
+        @throws Error if the run has written none, as without "Output->Points"
+        """
+        return _table(self._file(".points.csv", '"Output->Points"'))
+
     @property
     def times(self):
         """(steps,) t of the steps in the Exodus files."""
@@ -162,7 +170,7 @@ def load(path):
 
 def result_files(folder, name):
     """{file: what tells whether it is still the same} of all results of a name."""
-    pattern = re.compile(re.escape(name) + r"\.(?:json|(?:contact|history)\.csv|e(?:-s\d+)?(?:\.\d+\.\d+)?)")
+    pattern = re.compile(re.escape(name) + r"\.(?:json|(?:contact|history|points)\.csv|e(?:-s\d+)?(?:\.\d+\.\d+)?)")
     if not folder.is_dir():
         return {}
     stats = {path.name: path.stat() for path in folder.iterdir() if pattern.fullmatch(path.name)}

@@ -44,6 +44,18 @@ class Results(TestCase):
         self.refused(['no field "temperature"', "von_mises"], lambda: result.fields()["temperature"])
         self.refused(['no side "hinten"', "bottom"], result.fields().side_nodes, "hinten")
 
+    def test_results_at_points_are_those_of_the_fields(self):
+        result = rpc.run(beam(), settings={"Output->Points->tip->Points": "5 1; 2.5 0"})
+        rows, fields = result.points(), result.fields()
+        self.assertEqual(rows["name"].tolist(), ["tip", "tip"])
+        for row in rows:
+            node = abs(fields.points - [row["x"], row["y"]]).sum(axis=1).argmin()
+            for name in ("disp_x", "disp_y", "stress_xx", "von_mises"):
+                self.assertAlmostEqual(row[name], fields[name][node], delta=1e-9 * abs(fields[name]).max())
+        self.assertTrue(np.isnan(rows["contact_pressure"][0]))
+        self.assertEqual(rows["contact_pressure"][1], 16)
+        self.refused(["Output->Points"], rpc.run(beam()).points)
+
     def test_fields_follow_meshes_that_change(self):
         settings = {"Traction->top->Y": "-20*t*sin(pi*x/5)", "Steps->Times": [0.2, 0.6, 1.0], "Adapt->Target Relative Error": 0.02}
         results = [rpc.run("beam_adaptive.xml", settings=settings)]

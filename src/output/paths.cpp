@@ -22,13 +22,13 @@ constexpr int most_cycles = 1000;
 std::vector<std::string> all_files(const std::string &name, const std::string &folder)
 {
   const std::string stem = (std::filesystem::path(folder) / name).string();
-  return {stem + ".e", stem + ".contact.csv", stem + ".json", stem + ".history.csv"};
+  return {stem + ".e", stem + ".contact.csv", stem + ".json", stem + ".history.csv", stem + ".points.csv"};
 }
 
 /// Those that there are, joined and split Exodus files of all parts included.
 std::vector<std::string> existing_files(const std::string &name, const std::string &folder)
 {
-  static const std::regex ends(R"(\.(e(-s[0-9]+)?(\.[0-9]+\.[0-9]+)?|contact\.csv|history\.csv|json))");
+  static const std::regex ends(R"(\.(e(-s[0-9]+)?(\.[0-9]+\.[0-9]+)?|(contact|history|points)\.csv|json))");
   std::vector<std::string> found;
   std::error_code none;
   for (const auto &entry : std::filesystem::directory_iterator(folder, none)) {
@@ -73,6 +73,7 @@ ResultPaths::ResultPaths(const Scene &scene, const std::string &folder)
   if (scene.output.csv && !scene.model.contact.empty()) csv = files[1];
   if (scene.output.json) json = files[2];
   if (scene.output.csv && scene.has_steps()) history = files[3];
+  if (scene.output.csv && !scene.output.points.empty()) points = files[4];
 }
 
 std::string film_part(const std::string &exodus, const int part)
@@ -94,7 +95,7 @@ std::vector<std::string> exodus_on_disk(const std::string &exodus, const io::Exo
 bool is_result(const Scene &scene, const std::string &file)
 {
   static const std::regex ends(
-      R"(\.(cycle[0-9]+\.)?(e(-s[0-9]+)?(\.[0-9]+\.[0-9]+)?|contact\.csv|history\.csv|json|checkpoint-[0-9]+\.e))");
+      R"(\.(cycle[0-9]+\.)?(e(-s[0-9]+)?(\.[0-9]+\.[0-9]+)?|(contact|history|points)\.csv|json|checkpoint-[0-9]+\.e))");
   return file.compare(0, scene.name.size(), scene.name) == 0 &&
          std::regex_match(file.substr(std::min(file.size(), scene.name.size())), ends);
 }
@@ -122,7 +123,9 @@ std::vector<std::string> older_files(const Scene &scene, const Solution &s, cons
   const int num_ranks = s.discretization.mesh->comm().getSize();
   std::vector<std::string> ours = ResultPaths(scene, folder).all();
   ours.erase(ours.begin()); // the Exodus file is the film's
-  if (!s.has_results()) ours.erase(std::remove(ours.begin(), ours.end(), ResultPaths(scene, folder).csv), ours.end());
+  const ResultPaths paths(scene, folder);
+  for (const std::string &path : {paths.csv, paths.points})
+    if (!s.has_results()) ours.erase(std::remove(ours.begin(), ours.end(), path), ours.end());
   for (const std::string &part : film)
     for (const std::string &file : exodus_on_disk(part, scene.output.exodus_files, num_ranks)) ours.push_back(file);
   std::vector<std::string> older;

@@ -16,10 +16,10 @@ std::string cycle_name(const Scene &scene, int cycle);
 
 /// Paths of the results; empty for files that are not asked for.
 struct ResultPaths {
-  std::string exodus, csv, json, history;
+  std::string exodus, csv, json, history, points;
 
   ResultPaths(const Scene &scene, const std::string &folder);
-  std::vector<std::string> all() const { return {exodus, csv, history, json}; }
+  std::vector<std::string> all() const { return {exodus, csv, history, points, json}; }
 };
 
 /// Where a part of a film goes.

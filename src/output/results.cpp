@@ -24,6 +24,7 @@ void StepFiles::add(const Scene &scene, const analysis::Solution &s, const std::
         if (!path.empty()) io::remove_older(path);
     });
   if (!paths.history.empty()) history.update(paths.history, scene, s);
+  points.update(paths.points, scene, s);
   film.add(scene, s, folder);
 }
 
@@ -40,6 +41,7 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
     write_contact(paths.csv, scene, s);
   }
   if (!paths.history.empty()) steps.history.update(paths.history, scene, s);
+  steps.points.update(paths.points, scene, s);
   // After a restart that finds no step, the files of the run before it stay.
   const bool nothing_new = !s.has_results() && std::any_of(s.history.begin(), s.history.end(),
                                                            [](const auto &step) { return step.converged; });
@@ -62,7 +64,8 @@ std::vector<std::string> write_results(const Scene &scene, Solution &s, const st
     files.push_back(split ? file + '.' + std::to_string(mesh.comm().getSize()) + ".*" : file);
   }
   for (const std::string &path : paths.all())
-    if (!path.empty() && path != paths.exodus && (path != paths.csv || s.has_results())) files.push_back(path);
+    if (!path.empty() && path != paths.exodus && ((path != paths.csv && path != paths.points) || s.has_results()))
+      files.push_back(path);
   return files;
 }
 

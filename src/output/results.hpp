@@ -3,6 +3,7 @@
 
 #include "output/film.hpp"
 #include "output/history.hpp"
+#include "output/points.hpp"
 #include "scene.hpp"
 #include "solve.hpp"
 
@@ -16,6 +17,7 @@ namespace rpc
 struct StepFiles {
   Film film;
   HistoryFile history;
+  PointsFile points;
 
   /// Adds the solution's last step. The first time a summary and a contact table of an earlier run go: they are not of this one.
   /// Collective.

@@ -3,6 +3,7 @@
 
 #include "interpolation_in_box.hpp"
 #include "interpolation_search.hpp"
+#include "rpc/fem/at_points.hpp"
 
 namespace rpc::fem
 {
@@ -157,6 +158,58 @@ RCP<Vector> interpolated(const Operator &interpolation, const Vector &u, const i
   const auto result = rcp(new Vector(fine_dofs));
   from_columns(to, dim, *result);
   return result;
+}
+
+namespace
+{
+
+/// Points as the nodes of a mesh without cells, on rank 0.
+Discretization nodes_without_cells(const std::vector<Point> &points, const mesh::Mesh &body)
+{
+  const RCP<const Comm> comm = body.owned_nodes->getComm();
+  const std::size_t count = comm->getRank() == 0 ? points.size() : 0;
+  auto mesh = std::make_shared<mesh::Mesh>();
+  mesh->element = body.element;
+  const auto count_them = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  mesh->owned_nodes = rcp(new Map(count_them, count, 0, comm));
+  mesh->coords = DeviceView<double **>("rpc::fem::points", count, body.dim());
+  const auto coords = Kokkos::create_mirror_view(mesh->coords);
+  for (std::size_t k = 0; k < count; ++k)
+    for (int c = 0; c < body.dim(); ++c) coords(k, c) = points[k][c];
+  Kokkos::deep_copy(mesh->coords, coords);
+  Discretization d;
+  d.mesh = mesh;
+  return d;
+}
+
+} // namespace
+
+AtPoints::AtPoints(const Discretization &d, const std::vector<Point> &points)
+    : d_(d), points_(points), from_nodes_(interpolation(d, nodes_without_cells(points, *d.mesh)))
+{
+}
+
+std::vector<std::vector<double>> AtPoints::of(const MultiVector &at_nodes) const
+{
+  MultiVector at_points(from_nodes_->getRangeMap(), at_nodes.getNumVectors());
+  from_nodes_->apply(at_nodes, at_points);
+  const auto values = at_points.getLocalViewHost(Tpetra::Access::ReadOnly);
+  std::vector<std::vector<double>> rows(values.extent(0), std::vector<double>(values.extent(1)));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (std::size_t c = 0; c < rows[k].size(); ++c) rows[k][c] = values(k, c);
+  return rows;
+}
+
+std::vector<double> AtPoints::distances() const
+{
+  std::vector<double> distance;
+  for (const std::vector<double> &nearest : of(*node_coordinates(d_))) {
+    const Point &x = points_[distance.size()];
+    double square = 0;
+    for (int c = 0; c < d_.dim(); ++c) square += (x[c] - nearest[c]) * (x[c] - nearest[c]);
+    distance.push_back(std::sqrt(square));
+  }
+  return distance;
 }
 
 } // namespace rpc::fem
