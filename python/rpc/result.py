@@ -11,7 +11,7 @@ import numpy as np
 from .errors import Error, remedy_of
 from .exodus import Film
 
-TEXTS = {"state", "side", "friction_state", "reason"}  # columns of the tables
+TEXTS = {"state", "side", "friction_state", "reason", "name"}  # columns of the tables
 MOST_LETTERS = 300  # of a message of others than rpc
 RECORD = ".run.json"  # behind the run's name: what the results' files do not tell
 
