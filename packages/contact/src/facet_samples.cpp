@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "facet_samples.hpp"
 
+#include "rpc/fem/facet_area.hpp"
 #include "rpc/fem/surface.hpp"
 #include "rpc/mesh/shape_functions.hpp"
 
@@ -108,7 +109,7 @@ FacetRows facet_rows(const fem::Discretization &d, const mesh::Side &facets, con
   const int quadrature = num_facets > 0 ? static_cast<int>(measure.extent(0)) / num_facets : 0;
   Kokkos::parallel_for(
       "rpc::contact::facet_rows", device_range(num_facets), KOKKOS_LAMBDA(const LO f) {
-        for (int q = 0; q < quadrature; ++q) area(f) += measure(f * quadrature + q);
+        area(f) = fem::facet_area(measure, quadrature, f);
         for (int a = 0; a < nodes; ++a) {
           const LO node = node_of(f, a);
           for (int k = 0; k < dim; ++k) {

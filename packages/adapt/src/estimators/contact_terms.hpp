@@ -7,6 +7,7 @@
 #include "rpc/contact/law/judgement.hpp"
 #include "rpc/contact/law/states.hpp"
 #include "rpc/core/math.hpp"
+#include "rpc/fem/facet_area.hpp"
 
 #include <utility>
 
@@ -50,6 +51,11 @@ struct ContactTerms {
   // A gap that grows as at the end of a smooth contact stays below so many times the strain at the peak times the size of a facet: its
   // faces in space are longer than the root of their area, and their vertices have no weight.
   static constexpr double smooth_gap = 1, smooth_gap_in_space = 4;
+
+  KOKKOS_FUNCTION double area(const LO f) const
+  {
+    return fem::facet_area(measure, static_cast<int>(value.extent(0)), f);
+  }
 
   /// How far the nodes of a facet may lie clear of the foundation at the end of a smooth contact [m].              (10.4a)
   KOKKOS_FUNCTION double smooth_opening(const LO f) const

@@ -60,9 +60,8 @@ struct Jumps {
   {
     if (terms.cell(f) >= terms.num_owned_cells || !(terms.highest > 0)) return;
     const std::size_t nodes = terms.facets.extent(1);
-    const int points = static_cast<int>(terms.value.extent(0)), of = terms.block(terms.cell(f));
-    double area = 0;
-    for (int q = 0; q < points; ++q) area += terms.measure(f * points + q);
+    const int of = terms.block(terms.cell(f));
+    const double area = terms.area(f);
     const double depth = terms.size(f) / (terms.lame(of, 0) + 2 * terms.lame(of, 1)), smooth = terms.smooth_opening(f);
     const bool yield_jumps = jumps(f, law), friction_jumps = terms.friction && jumps(f, bearable);
     double lost = 0, sheared = 0, released = 0;

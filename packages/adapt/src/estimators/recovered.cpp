@@ -170,10 +170,8 @@ struct NodalPressures {
   KOKKOS_FUNCTION void operator()(const LO f, double &drop, double &yield_jumps, double &gap_jumps, double &ends) const
   {
     if (terms.cell(f) >= terms.num_owned_cells || !(highest > 0)) return;
-    const int nodes = static_cast<int>(terms.facets.extent(1)), points = static_cast<int>(terms.value.extent(0));
-    double area = 0;
-    for (int q = 0; q < points; ++q) area += terms.measure(f * points + q);
-    const double smooth = terms.smooth_opening(f);
+    const int nodes = static_cast<int>(terms.facets.extent(1));
+    const double area = terms.area(f), smooth = terms.smooth_opening(f);
     const bool at_once = rises_at_once(slopes, around, f, smooth);
     double most = at(f, 0, pressure), least = most;
     for (int a = 0; a < nodes; ++a) {
