@@ -2,6 +2,7 @@
 #include "friction_scene.hpp"
 
 #include <cmath>
+#include <numeric>
 
 // Friction acts along the side: its traction has no part along the normal, whatever a solution started from.
 
@@ -82,9 +83,18 @@ TEST(FrictionTangent, AfterAStepInWhichTheObstacleTurnsTheNormals)
   for (const auto &s : solved_steps(
            "loop", joined(on_a_circle, {"Steps->Times={1, 2, 3}", "Contact->Obstacle->Centre={0.8 + 0.0002*t, -2}"})))
     expect_none(s);
-  for (const auto &s : solved_steps("loop", joined(on_a_ball, {"Steps->Times={1, 2, 3}",
-                                                               "Contact->Obstacle->Centre={0.8 + 0.0002*t, 0.4, -2}"})))
+  int set_ups = 0;
+  for (const auto &s : solved_steps(
+           "loop",
+           joined(on_a_ball, {"Steps->Times={1, 2, 3}", "Contact->Obstacle->Centre={0.8 + 0.0002*t, 0.4, -2}"}))) {
     expect_none(s);
+    const auto &iterations = s.linear.iterations; // of GMRES but for the first ones
+    const int sum = std::accumulate(iterations.begin(), iterations.end(), 0);
+    EXPECT_GE(sum, 12);
+    EXPECT_LE(sum, 26);
+    set_ups += s.linear.preconditioner_setups;
+  }
+  EXPECT_EQ(set_ups, 1) << "points that change between stick and slip do not wear the preconditioner out";
 }
 
 TEST(FrictionTangent, AtPointsThatTakeTheirTractionFromNodesAround)

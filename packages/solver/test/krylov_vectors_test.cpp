@@ -39,6 +39,18 @@ std::vector<int> first(const int count)
   return index;
 }
 
+/// 1 and a little of a wave of its own.
+Vector nearly_constant(const RCP<const Map> &map, const int k, const double little)
+{
+  Vector w(map);
+  const auto values = w.getLocalViewHost(Tpetra::Access::OverwriteAll);
+  for (LO row = 0; row < num_local(*map); ++row) {
+    const double at = static_cast<double>(map->getGlobalElement(row));
+    values(row, 0) = 1 + little * std::sin(0.01 * (k + 1) * at * (1 + 0.1 * k));
+  }
+  return w;
+}
+
 /// Orthonormal vectors, one after the other, from vectors that all but depend on each other: each has little that those before lack.
 /// @param little  of the part that is new, over the vector
 RCP<KrylovVectors> orthonormal(const std::string &name, const int count, const double little, double &worst_residual)
@@ -48,12 +60,7 @@ RCP<KrylovVectors> orthonormal(const std::string &name, const int count, const d
   const auto by = manager(name);
   worst_residual = 0;
   for (int k = 0; k < count; ++k) {
-    Vector w(map);
-    const auto values = w.getLocalViewHost(Tpetra::Access::OverwriteAll);
-    for (LO row = 0; row < num_local(*map); ++row) {
-      const double at = static_cast<double>(map->getGlobalElement(row));
-      values(row, 0) = 1 + little * std::sin(0.01 * (k + 1) * at * (1 + 0.1 * k));
-    }
+    Vector w = nearly_constant(map, k, little);
     const RCP<Vectors> next = rcp(V->CloneViewNonConst({k}));
     V->vector(k)->assign(w);
     const RCP<Matrix> norm = rcp(new Matrix(1, 1)), products = rcp(new Matrix(std::max(k, 1), 1));
