@@ -105,6 +105,27 @@ class Seldom(RpcTestCase):
             self.assertIn(part, str(notes))
 
 
+class ForceOnAWholeSide(RpcTestCase):
+    def test_is_the_same_as_its_share_per_area_on_each_mesh_and_at_each_time(self):
+        results = {}
+        for name, load in (("whole", 'Force Y: "-8*t"'), ("share", 'Y: "-2*t"')):
+            (self.folder / f"{name}.yaml").write_text(f"""deck:
+  Mesh: {{Lower: [0.0, 0.0], Upper: [4.0, 1.0], Cells: [16, 4]}}
+  Material: {{Young's Modulus: 1000.0, Poisson's Ratio: 0.3}}
+  Dirichlet: {{left: {{X: 0.0, Y: 0.0}}, right: {{X: 0.0, Y: 0.0}}}}
+  Traction: {{top: {{{load}}}}}
+  Contact: {{Side: bottom, Yield Stress: 1.5}}
+  Steps: {{Times: [0.5, 1.0]}}
+  Adapt: {{Target Relative Error: 0.1, Meshes: nested}}
+  Output: {{Exodus: false, CSV: false}}
+""")
+            self.rpc(f"--input={name}.yaml", "--output=out")
+            results[name] = json.loads((self.folder / "out" / f"{name}.json").read_text())
+        whole, share = results["whole"], results["share"]
+        self.assertEqual(whole["cells"], share["cells"])
+        self.assertLess(abs(whole["energy_J"] - share["energy_J"]), 1e-11 * abs(share["energy_J"]))
+
+
 class Check(RpcTestCase):
     def expect(self, found, *arguments, code=0):
         result = self.rpc("--check", *arguments, "--output=out", code=code)
@@ -170,6 +191,14 @@ class Check(RpcTestCase):
         for line in ("volume 6.28319 m^3 of the whole body of revolution", '"right": area 12.5664 m^2, normal (1, 0); free',
                      'loads       "top": in all (0, -3.14159) N', 'foundation  "bottom": rigid until it yields at "10 + x" Pa; no friction; gap 0: it has the shape of the side',
                      "then meshes are refined until the relative error is below 0.01, to at most 5000 unknowns"):
+            self.assertIn(line, told)
+
+    def test_it_tells_forces_on_whole_sides(self):
+        told = self.understood(PRESSED + """
+  Traction: {right: {Force X: "3*t"}, left: {Force Y: -2.0}}
+  Steps: {Times: [0.5, 2.0]}
+""")
+        for line in ('loads       "right": in all (1.5, 0) N/m at t = 0.5, (6, 0) N/m at t = 2', '"left": in all (0, -2) N/m'):
             self.assertIn(line, told)
 
     def test_it_leaves_a_run_and_its_results_alone(self):

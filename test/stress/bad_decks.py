@@ -92,7 +92,7 @@ def unit(rng, text):
 def unit_in_expression(rng, text):
     m = pick(rng, text, r'name="(?:Y|X|Z|Yield Stress|Gap)" type="(?:double|string)" value="([\d.]+)"')
     new, line = put(text, m, m[1] + " MPa")
-    return new.replace('type="double" value="' + m[1] + " MPa", 'type="string" value="' + m[1] + " MPa"), line, [m[1] + " MPa", 'without "MPa"']
+    return new.replace('type="double" value="' + m[1] + " MPa", 'type="string" value="' + m[1] + " MPa"), line, [m[1] + " MPa", ('without "MPa"', '"MPa" is a unit of pressure, where')]
 
 
 def other_number(rng, text):
@@ -479,8 +479,8 @@ MESHED = """<ParameterList name="meshed">
 
 def geometry(rng, _):
     old, new, parts = rng.choice([("4) = {0, 1, 0, 0.5};", "4) = {0, 1, 0, 0.5}", ["line 5: syntax error", 'Write ";" at the end of line 4']),
-                                  ('Physical Curve("top")', 'Physcal Curve("top")', ["line 12: syntax error", 'Did you mean "Physical"?']),
-                                  ("Line(2) = {2, 3};", "Line(2) = {2, 3;", ["line 6: syntax error", "Look for a bracket"]),
+                                  ('Physical Curve("top")', 'Physcal Curve("top")', ["line 12: syntax error", 'Physcal Curve', "Look for a word, a bracket"]),
+                                  ("Line(2) = {2, 3};", "Line(2) = {2, 3;", ["line 6: syntax error", "Look for a word, a bracket"]),
                                   ("Point(3) = {1, 1, 0, 0.5};", "Point(3) = {1, 1, 0, size};", ["line 3: Unknown variable 'size'", "Write size = ...; before it is used"])])
     return MESHED % "square.geo", None, ['mesh: "square.geo": gmsh: ', *parts], {"square.geo": SQUARE.replace(old, new)}, 3
 

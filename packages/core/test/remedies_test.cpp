@@ -296,7 +296,8 @@ TEST(UnknownName, OfAnotherListIsSentThere)
 TEST(Words, AreRefusedWithTheNearestOrWithWhatTheyMean)
 {
   expect_named("Mesh->Element=q2", "must be one of Q1, Q2, got \"q2\". Did you mean \"Q2\"?");
-  expect_named("Mesh->Element=CPE4", "`Q1` is of order 1.");
+  expect_named("Mesh->Element=CPE4", "For \"CPE4\" write Q1.");
+  expect_named("Mesh->Element=spline", "`Q1` is of order 1.");
 }
 
 } // namespace

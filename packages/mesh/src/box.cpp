@@ -257,8 +257,7 @@ BoxOptions box_options(const Teuchos::ParameterList &list)
   const auto require_length = [&](const char *const name, const std::size_t given, const char *const others,
                                   const std::size_t wanted) {
     RPC_REQUIRE(given == wanted, "deck: \"Mesh->" << name << "\" must hold as many numbers as " << others << ", "
-                                                  << wanted << ", got "
-                                                  << Teuchos::toString(list.getEntry(name).getAny(false))
+                                                  << wanted << ", got " << given
                                                   << ". Write 2 numbers for each, in space 3, with decimal points and "
                                                      "commas between them");
   };

@@ -139,7 +139,9 @@ std::string complaint_remedy(const std::string &file, const std::string &complai
     return ". Write \";\" at the end of line " + std::to_string(number_before) + ", " + quoted(before);
   const bool known = std::find(commands.begin(), commands.end(), word) != commands.end();
   return " in " + quoted(text) + "." +
-         (known || meant.empty() ? " Look for a bracket, a comma or a \";\" that is missing there or before" : meant);
+         (known || meant.empty()
+              ? " Look for a word, a bracket, a comma or a \";\" that is wrong or missing there or before"
+              : meant);
 }
 
 /// @param[out] again  whether another attempt may do better where this one fails

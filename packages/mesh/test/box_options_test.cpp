@@ -87,8 +87,10 @@ TEST(BoxOptions, BadValuesAreRefusedByName)
   expect_refused(deck("Element", "Q3"), {"\"Mesh->Element\"", "\"Q3\""});
   expect_refused(deck("Lower", Array<double>(tuple(0.))), {"\"Mesh->Lower\"", "2 or 3", "got 1"});
   expect_refused(deck("Lower", Array<double>()), {"\"Mesh->Lower\"", "got 0"});
-  expect_refused(deck("Upper", Array<double>(tuple(1., 1., 1.))), {"one length", "2, 3 and 2"});
-  expect_refused(deck("Cells", Array<int>(tuple(1))), {"one length", "2, 2 and 1"});
+  expect_refused(deck("Upper", Array<double>(tuple(1., 1., 1.))),
+                 {"\"Mesh->Upper\" must hold as many numbers as \"Lower\", 2, got 3"});
+  expect_refused(deck("Cells", Array<int>(tuple(1))),
+                 {"\"Mesh->Cells\" must hold as many numbers as \"Lower\" and \"Upper\", 2, got 1"});
   expect_refused(deck("Upper", Array<double>(tuple(1., 0.))), {"\"Mesh->Upper\"", "direction 2"});
   expect_refused(deck("Upper", Array<double>(tuple(-1., 1.))), {"\"Mesh->Upper\"", "direction 1"});
   expect_refused(deck("Upper", Array<double>(tuple(inf, 1.))), {"\"Mesh->Upper\"", "inf"});

@@ -172,5 +172,20 @@ TEST(Box, UnknownSideIsRefusedWithTheListOfSides)
                [&] { made.mesh.side("floor", "Contact->Side"); });
 }
 
+TEST(Box, SideOfAnEntryByItsNameAndSidesInOneTextAreExplained)
+{
+  const Made made(boxes()[0]);
+  expect_error(
+      ExitCode::bad_input,
+      {"\"Traction->Load 1\" names the side \"Load 1\"", "Name the entry after a side", "as \"Side\". Its sides: left"},
+      [&] { made.mesh.side("Load 1", "Traction->Load 1->Side"); });
+  for (const std::string both : {"bottom, top", "bottom top", "{bottom;top}", "bottom and top"})
+    expect_error(ExitCode::bad_input,
+                 {"One entry has one side: write an entry each for \"bottom\", \"top\", in \"Contact->Sides\"."},
+                 [&] { made.mesh.side(both, "Contact->Side"); });
+  expect_error(ExitCode::bad_input, {"for \"top\"."}, [&] { made.mesh.side("pad, top", "Dirichlet->a->Side"); });
+  expect_error(ExitCode::bad_input, {"Did you mean \"bottom\"?"}, [&] { made.mesh.side("bottom,", "Contact->Side"); });
+}
+
 } // namespace
 } // namespace box_sides_test
