@@ -49,7 +49,8 @@ public:
       else if (starts("<!DOCTYPE"))
         skip(">", "declaration");
       else if (starts("<!"))
-        refuse_broken_comment();
+        refuse(line_, "\"" + text_.substr(at_, text_.find_first_of("\n>", at_) - at_) +
+                          "\" is no comment and no tag. Write a comment as <!-- ... -->.");
       else if (starts("</"))
         read_closing();
       else
@@ -97,13 +98,6 @@ private:
                         std::to_string(line_ + lines) + ". Write --> behind it.");
     }
     skip("-->", "comment");
-  }
-
-  [[noreturn]] void refuse_broken_comment() const
-  {
-    const std::size_t end = std::min(text_.find_first_of("\n>", at_), text_.size());
-    const std::string given = text_.substr(at_, end - at_) + (end < text_.size() && text_[end] == '>' ? ">" : "");
-    refuse(line_, "\"" + given + "\" is no comment and no tag. Write a comment as <!-- ... -->.");
   }
 
   /// Between tags there are to be blanks only.
