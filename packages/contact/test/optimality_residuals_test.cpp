@@ -89,7 +89,7 @@ struct Judged : Scene {
         u->update(step_along(iterate->along(*u, d, F)), d, 1.);
         if (d.normInf() < 1e-15) break;
       }
-      iterate->update_multipliers(*u);
+      if (iterate->update_multipliers(*u) < 1e-14) break;
     }
     return u;
   }
