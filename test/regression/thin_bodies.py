@@ -94,7 +94,7 @@ class Rubber(RpcTestCase):
             "of Q1": ((2, 1), (48, 96), "Q1", by_nu), "of Q1, in space": ((1, 1, 1), (10, 9, 8), "Q1", mixed)}
         for name, (upper, cells, element, path) in bodies.items():
             for nu in (0.499, 0.4999, 0.49999):
-                for friction in (0, 0.3):
+                for friction in (0, 0.3) if nu == 0.4999 else (0,) if nu == 0.499 else (0.3,):
                     with self.subTest(f"{name}, nu {nu}, friction {friction}"):
                         (self.folder / "thin.xml").write_text(deck(upper, cells, element, 1, "1e-3*x", 20, nu=nu, friction=friction))
                         self.rpc("--input=thin.xml")
