@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# rpc_add_test(<package> <name> [LABEL unit] [NP 1 2 3] [LIBRARIES libs] [TIMEOUT seconds])
+# rpc_add_test(<package> <name> [LABEL unit] [NP 1 2 3] [LIBRARIES libs] [TIMEOUT seconds] [ALONE])
 # The GoogleTests of <name>_test.cpp, linked to rpc::<package> where there is such a target; one CTest entry
-# <package>.<name>.np<k> per number of ranks. LABEL is unit, verification, regression or performance. What the sources of all tests of
+# <package>.<name>.np<k> per number of ranks. Unit tests on several ranks are one entry for each package, <package>.np<k>: to start ranks takes longer
+# than most of them. ALONE: but for those that change their process for good. LABEL is unit, verification, regression or performance. What the sources of all tests of
 # a package are compiled with belongs to the target <package>_tests.
 find_package(GTest QUIET)
 rpc_require("GoogleTest" libgtest-dev GTest_FOUND)
@@ -14,6 +15,13 @@ set(RPC_TEST_PACKAGES "" CACHE STRING "Packages and folders of test/ whose tests
 function(rpc_add_tests_of name folder)
   if(NOT RPC_TEST_PACKAGES OR name IN_LIST RPC_TEST_PACKAGES)
     add_subdirectory(${folder})
+    foreach(np IN ITEMS 2 3)
+      get_property(sources GLOBAL PROPERTY rpc_unit_tests_of_${name}_np${np})
+      if(sources)
+        list(TRANSFORM sources PREPEND --source=)
+        rpc_add_run_test(${name} ${np} LABEL unit TIMEOUT 1800 COMMAND rpc_tests ${sources})
+      endif()
+    endforeach()
   endif()
 endfunction()
 
@@ -89,7 +97,7 @@ function(rpc_add_run_test name np)
 endfunction()
 
 function(rpc_add_test package name)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "" "LABEL;TIMEOUT" "NP;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 2 arg "ALONE" "LABEL;TIMEOUT" "NP;LIBRARIES")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "rpc_add_test(${package} ${name}): unknown argument ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -114,6 +122,10 @@ function(rpc_add_test package name)
   target_link_libraries(${target} PUBLIC ${arg_LIBRARIES})
   file(RELATIVE_PATH source ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
   foreach(np IN LISTS arg_NP)
+    if(np GREATER 1 AND arg_LABEL STREQUAL "unit" AND NOT arg_ALONE)
+      set_property(GLOBAL APPEND PROPERTY rpc_unit_tests_of_${package}_np${np} ${source})
+      continue()
+    endif()
     rpc_add_run_test(${package}.${name} ${np} LABEL ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} COMMAND rpc_tests --source=${source})
   endforeach()
 endfunction()

@@ -39,7 +39,7 @@ private:
   const testing::TestInfo *test_ = nullptr;
 };
 
-/// Takes --source=PATH out of the arguments, and makes the tests of source files whose path ends so the only ones.
+/// Takes each --source=PATH out of the arguments, and makes the tests of source files whose paths end so the only ones.
 void choose_source(int &argc, char **argv)
 {
   constexpr std::string_view option = "--source=";
@@ -47,13 +47,13 @@ void choose_source(int &argc, char **argv)
     return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
   };
   int kept = 1;
+  std::string filter = "none"; // lest an empty one run all
   for (int k = 1; k < argc; ++k) {
     const std::string_view argument = argv[k];
     if (argument.substr(0, option.size()) != option) {
       argv[kept++] = argv[k];
       continue;
     }
-    std::string filter = "none"; // lest an empty one run all
     const auto &unit_test = *testing::UnitTest::GetInstance();
     for (int s = 0; s < unit_test.total_test_suite_count(); ++s)
       for (int t = 0; t < unit_test.GetTestSuite(s)->total_test_count(); ++t) {
@@ -61,8 +61,8 @@ void choose_source(int &argc, char **argv)
         if (ends(test.file(), argument.substr(option.size())))
           filter += std::string(":") + test.test_suite_name() + "." + test.name();
       }
-    testing::GTEST_FLAG(filter) = filter;
   }
+  if (kept < argc) testing::GTEST_FLAG(filter) = filter;
   argc = kept;
 }
 
