@@ -45,15 +45,15 @@ void expect_same_meshes(const std::string &deck, const std::vector<std::vector<s
   const auto alone = world->split(world->getRank(), 0);
   for (const auto &scene : scenes) {
     SCOPED_TRACE(deck + (scene.empty() ? "" : ", " + scene[0]));
-    const Meshes here(deck, scene, world), serial(deck, scene, alone);
+    const Meshes here(deck, scene, world);
+    if (world->getRank() > 0) continue; // rank 0 has the coordinates of both, and the estimate is the same on all ranks
+    const Meshes serial(deck, scene, alone);
     EXPECT_TRUE(serial.reached);
     EXPECT_GE(serial.estimate.size(), least_meshes);
     ASSERT_EQ(here.estimate.size(), serial.estimate.size());
     for (std::size_t k = 0; k < here.estimate.size(); ++k) {
       EXPECT_NEAR(here.estimate[k] / serial.estimate[k], 1, 1e-6) << "mesh " << k + 1;
-      if (world->getRank() == 0) {
-        EXPECT_EQ(here.coords[k], serial.coords[k]) << "mesh " << k + 1;
-      }
+      EXPECT_EQ(here.coords[k], serial.coords[k]) << "mesh " << k + 1;
     }
   }
 }
