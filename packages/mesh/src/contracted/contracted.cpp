@@ -18,8 +18,10 @@ namespace
 
 // A coarser mesh with more than this part of the vertices is not worth its levels.
 constexpr double most_vertices_kept = 0.7;
-// Cube of the quality that new cells must have, unless one around the vertex has less: 1 for an equilateral cell.
+// Cubes of the quality that new cells must have, 1 for an equilateral cell, and of the part of what the worst cell around a vertex had at first that is
+// enough: of stretched cells some are sheared before their neighbours follow.
 constexpr double least_quality_3 = 0.3 * 0.3 * 0.3;
+constexpr double part_kept_3 = 0.5 * 0.5 * 0.5;
 // The least cosine of the angle by which a facet of the boundary may turn.
 constexpr double least_cosine = 0.8;
 constexpr int most_sweeps = 3;
@@ -31,13 +33,18 @@ class Contraction
 public:
   Contraction(const MeshData &mesh, const Features &features)
       : mesh_(mesh), features_(features), facets_(features.facets), next_edge_(features.next_edge),
-        cells_at_(mesh.num_nodes()), facets_at_(mesh.num_nodes()), seen_by_(mesh.num_nodes(), -1)
+        cells_at_(mesh.num_nodes()), facets_at_(mesh.num_nodes()), seen_by_(mesh.num_nodes(), -1),
+        worst_3_(mesh.num_nodes(), 1)
   {
     cells_.reserve(mesh.num_cells());
     for (int c = 0; c < mesh.num_cells(); ++c) {
       std::array<int, dim + 1> cell;
       for (int k = 0; k <= dim; ++k) cells_at_[cell[k] = mesh.cells[std::size_t(dim + 1) * c + k]].push_back(c);
       cells_.push_back(cell);
+    }
+    for (const auto &cell : cells_) {
+      const double quality = quality_3(cell);
+      for (const int v : cell) worst_3_[v] = std::min(worst_3_[v], quality);
     }
     for (std::size_t f = 0; f < facets_.size(); ++f)
       for (int k = 0; k < dim; ++k) facets_at_[facets_[f].vertex[k]].push_back(static_cast<int>(f));
@@ -214,8 +221,7 @@ private:
   {
     const std::vector<int> &neighbours = neighbours_of(v);
     int onto = -1;
-    double enough = least_quality_3;
-    for (const int c : cells_at_[v]) enough = std::min(enough, quality_3(cells_[c]));
+    const double enough = std::min(least_quality_3, part_kept_3 * worst_3_[v]);
     for (const bool to_kept : {true, false}) {
       double best = enough;
       for (const int w : neighbours) {
@@ -281,6 +287,7 @@ private:
   std::vector<FeatureFacet> facets_;                               // the label is -1 once it is gone
   std::vector<std::vector<int>> next_edge_, cells_at_, facets_at_; // (vertices)
   std::vector<int> around_, seen_by_;                              // of neighbours_of()
+  std::vector<double> worst_3_; // (vertices) quality of the worst cell around at first
 };
 
 /// The vertices and straight cells of a mesh of order 2; of order 1 itself.
