@@ -11,8 +11,8 @@ namespace rpc::analysis
 {
 
 /// A mesh of a body that leads to coarser ones: of order 1 on the same cells, then of half as many cells in each direction. Those are
-/// boxes, or the parents of a refined mesh or a structured grid (Mesh::parents). Boxes of stretched cells take both steps in the directions
-/// first in which nodes are closest, see mesh::coarsened(). Other bodies from gmsh that were not refined have none but the first.
+/// boxes, or the parents of a refined mesh, a structured grid or simplices from a file (Mesh::parents). Boxes of stretched cells take both steps in the directions
+/// first in which nodes are closest, see mesh::coarsened(). Other bodies of a .geo that were not refined have none but the first.
 ///
 /// A refined mesh of order 2 also has parents of order 2, for nested iteration. What they have made is shared: their meshes of order 1 are
 /// multigrid's.
