@@ -168,9 +168,9 @@ TEST(GmshOptions, FileThatIsNotThereIsRefusedWithThePlacesLookedAt)
 
 TEST(GmshOptions, OtherExtensionsAreRefused)
 {
-  const Folder folder("body.stl");
-  expect_refused(gmsh_deck("body.stl"), {"\"Mesh->File\"", ".geo or .msh", "\"body.stl\""}, folder.path.string());
-  expect_refused(gmsh_deck("body"), {".geo or .msh"}, folder.path.string());
+  const Folder folder("body.abc");
+  expect_refused(gmsh_deck("body.abc"), {"\"Mesh->File\"", "one of .geo, .step", "\"body.abc\""}, folder.path.string());
+  expect_refused(gmsh_deck("body"), {"one of .geo, .step"}, folder.path.string());
 }
 
 TEST(GmshOptions, SizeFactorAndOrderHaveTheirRanges)

@@ -3,6 +3,7 @@
 
 #include "expect_error.hpp"
 #include "measures.hpp"
+#include "msh_text.hpp"
 #include "rpc/core/tpetra.hpp"
 #include "rpc/mesh/gmsh.hpp"
 #include "rpc/mesh/make_mesh.hpp"
@@ -24,6 +25,7 @@ using rpc::mesh::MeshData;
 using rpc::mesh::read_gmsh;
 using rpc::test::expect_alike_mesh;
 using rpc::test::expect_error;
+using rpc::test::expect_noted;
 using rpc::test::integrals;
 using rpc::test::ScratchFile;
 using rpc::test::volume;
@@ -190,14 +192,14 @@ TEST(GmshInSpace, RefusalsNameFileRuleAndRemedy)
   const std::string solid = box(lift + "};\n"), volume_named = "Physical Volume(\"body\") = {out[1]};\n";
   refused(box("out[] = Extrude {0, 0, 3} { Surface{1}; Layers{2}; Recombine; };\n") + volume_named,
           {"\"Prism 18\"", "without Recombine there are tetrahedra", "Mesh.SubdivisionAlgorithm = 2"});
-  refused(solid + volume_named +
-              "more[] = Extrude {0, 0, 1} { Surface{out[0]}; };\n"
-              "Physical Volume(\"cap\") = {more[1]}; Physical Surface(\"between\") = {out[0]};\n",
-          {"physical surface \"between\"", "inside the body"});
-  refused(solid + volume_named +
-              "Point(90) = {9, 0, 0, 1}; Line(90) = {2, 90}; s[] = Extrude {0, 0, 1} { Curve{90}; };\n"
-              "Physical Surface(\"away\") = {s[1]};\n",
-          {"physical surface \"away\"", "is a face of no cell"});
+  expect_noted(read_geo(solid + volume_named +
+                        "more[] = Extrude {0, 0, 1} { Surface{out[0]}; };\n"
+                        "Physical Volume(\"cap\") = {more[1]}; Physical Surface(\"between\") = {out[0]};\n"),
+               {"physical surface \"between\" lies inside the body"});
+  expect_noted(read_geo(solid + volume_named +
+                        "Point(90) = {9, 0, 0, 1}; Line(90) = {2, 90}; s[] = Extrude {0, 0, 1} { Curve{90}; };\n"
+                        "Physical Surface(\"away\") = {s[1]};\n"),
+               {"physical surface \"away\" belongs to no cell"});
 }
 
 TEST(GmshInSpace, GroupsWithoutNamesAreNumberedAndWithoutABlockAllIsTheBody)

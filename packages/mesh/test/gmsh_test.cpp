@@ -2,6 +2,7 @@
 // Meshing .geo files in process.
 
 #include "expect_error.hpp"
+#include "msh_text.hpp"
 #include "rpc/core/on_root.hpp"
 #include "rpc/mesh/gmsh.hpp"
 #include "same_mesh.hpp"
@@ -25,6 +26,7 @@ using rpc::mesh::MeshData;
 using rpc::mesh::read_gmsh;
 using rpc::test::expect_alike_mesh;
 using rpc::test::expect_error;
+using rpc::test::expect_noted;
 using rpc::test::expect_same_mesh;
 using rpc::test::ScratchFile;
 
@@ -159,14 +161,22 @@ TEST(Gmsh, RefusalsNameFileRuleAndRemedy)
   refused("", {"has no cells in a surface", "Physical Surface(\"body\")"});
   refused(square() + body + "Physical Surface(\"skin\") = {1};",
           {"\"body\" and \"skin\"", "each cell must belong to one"});
-  refused(square("-4, -3, -2, -1") + body, {"inverted", "clockwise", "reverse the curve loop"});
   refused(square() + body + "Translate {0, 0, 1} { Surface{1}; }\n", {"off the plane", "z must be 0"});
-  refused(square() + body + "Line(9) = {1, 3}; Curve{9} In Surface{1}; Physical Curve(\"cut\") = {9};\n",
-          {"\"cut\"", "inside the body"});
-  refused(square() + body + "Point(8) = {5, 5, 0, .5}; Line(9) = {3, 8}; Physical Curve(\"away\") = {9};\n",
-          {"\"away\"", "edge of no cell"});
   refused(square() + body + "Point(8) = {5, 5, 0}; Physical Curve(\"last\") = {3};", {"last line", "line break"});
   refused(square() + square() + body, {"gmsh: "});
+}
+
+TEST(Gmsh, WhatIsMendedIsNoted)
+{
+  expect_noted(read_geo(square("-4, -3, -2, -1") + body), {"nodes of", "run the wrong way round", "are turned"});
+  const MeshData cut =
+      read_geo(square() + body + "Line(9) = {1, 3}; Curve{9} In Surface{1}; Physical Curve(\"cut\") = {9};\n");
+  expect_noted(cut, {"\"cut\" lies inside the body"});
+  EXPECT_TRUE(cut.sides.empty());
+  ASSERT_EQ(cut.points.size(), 1u);
+  expect_noted(
+      read_geo(square() + body + "Point(8) = {5, 5, 0, .5}; Line(9) = {3, 8}; Physical Curve(\"away\") = {9};\n"),
+      {"\"away\" belongs to no cell"});
 }
 
 /// A ring that is thinner than the arcs of its cells are high: the first mesh has inverted cells, the second one is straightened. A

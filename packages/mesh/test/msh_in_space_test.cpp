@@ -26,6 +26,7 @@ using rpc::ExitCode;
 using rpc::mesh::MeshData;
 using rpc::mesh::read_gmsh;
 using rpc::test::expect_error;
+using rpc::test::expect_noted;
 using rpc::test::expect_refused;
 using rpc::test::expect_same_mesh;
 using rpc::test::integrals;
