@@ -21,6 +21,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <regex>
 #include <sstream>
 #include <utility>
@@ -180,6 +181,7 @@ std::string note_on_unit(const MeshData &mesh, const std::string &file)
   const bool has_unit = extension_of(file) != ".stl" && extension_of(file) != ".brep";
   const int dim = mesh.element.dim;
   std::ostringstream note;
+  note << std::setprecision(3); // the same for all meshes of a curved body
   note << "\"" << fs::path(file).filename().string() << "\": the body is ";
   for (int d = 0; d < dim; ++d) {
     double low = mesh.coords[d], high = low;
