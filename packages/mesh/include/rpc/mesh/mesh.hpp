@@ -45,7 +45,8 @@ struct Parents {
   std::vector<LO> cell;   ///< (local cells) the parent's local cell; others' may be -1: not here
   std::vector<int> kind;  ///< (local cells) which kind of child of it this is
   ChildVertices vertices; ///< of each kind
-  bool nested = true;     ///< whether cells are parts of its cells; else only `mesh` is known, and a search tells where nodes lie in it
+  bool nested =
+      true; ///< whether cells are parts of its cells; else only `mesh` is known, and a search tells where nodes lie in it
 };
 
 /// One rank's part of a mesh.
