@@ -133,9 +133,9 @@ ScalarField parse_field(const std::string &text, const std::string &parameter, c
   }
 }
 
-FieldParser field_parser(Teuchos::ParameterList valid)
+FieldParser field_parser(const Teuchos::ParameterList &valid)
 {
-  return [valid = std::move(valid)](const std::string &text, const std::string &parameter) {
+  return [valid](const std::string &text, const std::string &parameter) {
     return parse_field(text, parameter, wanted_of(valid, parameter));
   };
 }

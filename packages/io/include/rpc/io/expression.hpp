@@ -19,6 +19,6 @@ namespace rpc::io
 ScalarField parse_field(const std::string &text, const std::string &parameter, const Wanted &wanted = {});
 
 /// parse_field() for the parameters of a deck.
-FieldParser field_parser(Teuchos::ParameterList valid);
+FieldParser field_parser(const Teuchos::ParameterList &valid);
 
 } // namespace rpc::io
