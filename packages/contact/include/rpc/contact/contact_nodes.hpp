@@ -75,18 +75,6 @@ KOKKOS_INLINE_FUNCTION double penetration(const ContactNodes &c, const LO i, con
 /// (points) v_i at all nodes; fences [m]. @param u  (owned dofs)
 DeviceView<double *> penetrations(const ContactNodes &points, const Vector &u);
 
-/// e_i = (I - nu_i nu_i^T) u_i - from_i at one node with friction, for kernels [m].                              (12.2)
-template <class U>
-KOKKOS_INLINE_FUNCTION Along slip(const ContactNodes &c, const LO i, const U &u)
-{
-  Along moved;
-  for (int k = 0; k < c.dim; ++k) moved.x[k] = u(c.dof(i, k));
-  double normal = 0;
-  for (int k = 0; k < c.dim; ++k) normal += c.normal(i, k) * moved.x[k];
-  for (int k = 0; k < c.dim; ++k) moved.x[k] -= normal * c.normal(i, k) + c.friction.from(i, k);
-  return moved;
-}
-
 /// (I - nu_i nu_i^T) x, the part of a vector along the side at one node, for kernels.
 KOKKOS_INLINE_FUNCTION Along along_side(const ContactNodes &c, const LO i, const Along &x)
 {
@@ -95,6 +83,18 @@ KOKKOS_INLINE_FUNCTION Along along_side(const ContactNodes &c, const LO i, const
   for (int k = 0; k < c.dim; ++k) normal += c.normal(i, k) * x(k);
   for (int k = 0; k < c.dim; ++k) along.x[k] -= normal * c.normal(i, k);
   return along;
+}
+
+/// e_i = (I - nu_i nu_i^T) u_i - from_i at one node with friction, for kernels [m]. The difference is projected once more: what rounding of u_i
+/// leaves along the normal would come back from the penalty as a traction.                                        (12.2)
+template <class U>
+KOKKOS_INLINE_FUNCTION Along slip(const ContactNodes &c, const LO i, const U &u)
+{
+  Along moved;
+  for (int k = 0; k < c.dim; ++k) moved.x[k] = u(c.dof(i, k));
+  Along e = along_side(c, i, moved);
+  for (int k = 0; k < c.dim; ++k) e.x[k] -= c.friction.from(i, k);
+  return along_side(c, i, e);
 }
 
 } // namespace rpc::contact
