@@ -50,7 +50,8 @@ void expect_same_meshes(const std::string &deck, const std::vector<std::vector<s
     const Meshes serial(deck, scene, alone);
     EXPECT_TRUE(serial.reached);
     EXPECT_GE(serial.estimate.size(), least_meshes);
-    ASSERT_EQ(here.estimate.size(), serial.estimate.size());
+    EXPECT_EQ(here.estimate.size(), serial.estimate.size()); // no end of the test: other ranks go on to the next scene
+    if (here.estimate.size() != serial.estimate.size()) continue;
     for (std::size_t k = 0; k < here.estimate.size(); ++k) {
       EXPECT_NEAR(here.estimate[k] / serial.estimate[k], 1, 1e-6) << "mesh " << k + 1;
       EXPECT_EQ(here.coords[k], serial.coords[k]) << "mesh " << k + 1;
