@@ -67,6 +67,7 @@ struct ExodusBlock {
   int type = 0;
   std::int64_t first = 0, count = 0; ///< cells, from 0
   int width = 0;                     ///< nodes of a cell
+  int faces = 0;                     ///< sides that come before its edges: the two faces of shells
   Integers nodes;
 };
 
@@ -122,6 +123,7 @@ private:
   {
     num_nodes_ = count(EX_INQ_NODES, "nodes");
     const auto dim = ex_inquire_int(file_, EX_INQ_DIM);
+    in_space_ = dim == 3;
     if (dim != 2 && dim != 3) refuse("its nodes must have 2 or 3 coordinates, got " + std::to_string(dim));
     std::vector<std::vector<double>> x(3, std::vector<double>(num_nodes_, 0.));
     if (num_nodes_ > 0)
@@ -182,6 +184,7 @@ private:
         refuse(label + " has cells of type \"" + printable(type) + "\" with " + std::to_string(width) +
                " nodes, which are unknown");
       block.width = static_cast<int>(width);
+      block.faces = is_shell(type) ? 2 : 0;
       block.nodes.resize(plausible(block.count * width, "nodes of the cells of " + label));
       check(ex_get_conn(file_, EX_ELEM_BLOCK, id, block.nodes.data(), nullptr, nullptr), "the cells of " + label);
       for (std::size_t k = 0; k < block.nodes.size(); ++k)
@@ -193,6 +196,14 @@ private:
       block_ids_.push_back(id);
     }
     for (std::size_t b = 0; b < blocks_.size(); ++b) take_block(blocks_[b], block_ids_[b]);
+  }
+
+  /// Whether sides 1 and 2 are the faces: of shells, and of triangles in space.
+  bool is_shell(const std::string &type) const
+  {
+    std::string begin = type.substr(0, 3);
+    for (char &c : begin) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return begin == "SHE" || (begin == "TRI" && in_space_);
   }
 
   void take_block(const ExodusBlock &block, const std::int64_t id)
@@ -245,12 +256,14 @@ private:
     if (block == blocks_.end()) refuse(label + " names cell " + std::to_string(cell) + ", which there is not");
     const auto element = element_with(block->type);
     if (!element || element->dim != contents_.dim) return; // cells that are refused later, or are no cells of the body
-    if (side < 1 || side > element->num_facets())
-      refuse(label + " names side " + std::to_string(side) + " of cell " + std::to_string(cell) + "; there are 1 to " +
-             std::to_string(element->num_facets()));
+    const std::int64_t facet_of_cell = side - block->faces;
+    if (facet_of_cell < 1 || facet_of_cell > element->num_facets())
+      refuse(label + " names side " + std::to_string(side) + " of cell " + std::to_string(cell) + "; there are " +
+             std::to_string(block->faces + 1) + " to " + std::to_string(block->faces + element->num_facets()) +
+             (block->faces > 0 ? " beside its faces" : ""));
     const std::int64_t *const of_cell = &block->nodes[static_cast<std::size_t>(cell - 1 - block->first) * block->width];
     Integers nodes;
-    for (const int local : element->facets()[side - 1])
+    for (const int local : element->facets()[facet_of_cell - 1])
       if (local < block->width) nodes.push_back(of_cell[local]);
     constexpr int quadrilateral_8 = 16;
     const Element facet = element->facet();
@@ -294,6 +307,7 @@ private:
   int file_ = -1, name_length_ = MAX_STR_LENGTH;
   double most_ = 0; ///< numbers that the file has room for
   std::int64_t num_nodes_ = 0;
+  bool in_space_ = false; ///< nodes have three coordinates
   std::vector<ExodusBlock> blocks_;
   Integers block_ids_;
   GmshContents contents_;
@@ -329,7 +343,10 @@ GmshContents read_exodus_mesh(const std::string &where, const std::string &path)
   RPC_REQUIRE(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) == 0,
               where << "cannot be read: there is no socket: " << std::strerror(errno));
   const pid_t child = ::fork();
-  if (child == 0) answer_as_child(ends[1], where, path);
+  if (child == 0) {
+    ::close(ends[0]); // where the parent dies, what is sent fails
+    answer_as_child(ends[1], where, path);
+  }
   ::close(ends[1]);
   std::string bytes;
   int number = 0;

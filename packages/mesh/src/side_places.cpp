@@ -170,6 +170,8 @@ SideData on_surfaces(const SidePlace &place, const MeshData &mesh)
   require_geometry(place, "Surfaces", mesh);
   SideData side{place.name, {}, {}};
   for (const int number : place.surfaces) {
+    RPC_REQUIRE(std::count(place.surfaces.begin(), place.surfaces.end(), number) == 1,
+                path_of(place) << ": \"Surfaces\" has " << number << " more than once; name each surface once");
     const auto part = std::find_if(mesh.geometry.begin(), mesh.geometry.end(),
                                    [&](const BoundaryPart &each) { return each.shape.tag == number; });
     std::vector<std::string> numbers;

@@ -84,6 +84,16 @@ TEST(ExodusMesh, DamagedFilesAreRefused)
   refused(other, "block 3 has cells of type \"BLOB4\" with 4 nodes, which are unknown");
 }
 
+// The first two sides of a shell are its faces: side 4 is the second edge, which lies between the cells here.
+TEST(ExodusMesh, SidesOfShellsAreNumberedFromTheirFaces)
+{
+  std::ifstream in(path_of_data("two_squares.exo"), std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  text.replace(text.find("QUAD4"), 5, "SHELL"); // of the block "steel"
+  const ScratchFile file("mesh.e", text);
+  expect_noted(read_gmsh({file.path(), 1, 0}), {"side set \"left\" lies inside the body"});
+}
+
 /// Nodes of the one cell by their coordinates' index.
 std::vector<double> node(const MeshData &mesh, const int local)
 {
