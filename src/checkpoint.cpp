@@ -289,7 +289,8 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
     if (const auto *const dents = array_of(whole.file, "foundation_dents"))
       state.last.foundations = contact::dents_from(d.mesh->comm(), *dents);
     state.matrix_assemblies = text.at("assemblies");
-    state.largest_estimate = text.at("largest_estimate");
+    if (const auto largest = text.find("largest_estimate"); largest != text.end() && !largest->is_null()) // NaN is null
+      state.largest_estimate = *largest;
   } catch (const json::exception &) { // on all ranks: they read the same text
     throw Error(ExitCode::bad_input, "restart: \"" + path +
                                          "\" is damaged: its text is not what was written. Take an older one, "

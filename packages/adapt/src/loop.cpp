@@ -256,6 +256,10 @@ CoarserHistory coarser_history(const Task &task, const Solution &s, const bool e
                                const RCP<const Comm> &comm, analysis::PhaseSeconds &seconds)
 {
   CoarserHistory coarser;
+  if (earlier_matter && !std::isfinite(s.largest_estimate)) {
+    coarser.missing = "the run before the restart was on one mesh";
+    return coarser;
+  }
   const std::string none = "the mesh has no coarser one, on which the same steps would show it";
   const auto options = with_larger_cells(s.mesh_options);
   if (!options) {

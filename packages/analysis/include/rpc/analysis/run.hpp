@@ -8,6 +8,7 @@
 #include "rpc/mesh/make_mesh.hpp"
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -77,7 +78,8 @@ struct HistoryState {
   std::optional<Memory> before; ///< displacement and pressure of the step before the last one
   std::vector<StepRecord> records;
   int matrix_assemblies = 0;
-  double largest_estimate = 0; ///< of errors in the energy norm, of all steps on adapted meshes [J^(1/2)], in 2D per m
+  /// Of errors in the energy norm, of all steps on adapted meshes [J^(1/2)], in 2D per m; NaN of a run on one mesh, which keeps none.
+  double largest_estimate = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Reports during the run; empty functions are not called. All are called on all ranks.
