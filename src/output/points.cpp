@@ -80,17 +80,19 @@ std::vector<Point> all_places(const std::vector<ResultPoints> &points)
   return places;
 }
 
-/// (owned nodes; 2) the contact pressure, and 1 at nodes of contact sides, else 0.
+/// (owned nodes; 2 for each contact side) the pressure at its nodes, and 1 there, else 0. A cell may have all its nodes on two sides together.
 RCP<MultiVector> pressures(const analysis::Solution &s)
 {
-  const auto columns = Teuchos::rcp(new MultiVector(s.discretization.mesh->owned_nodes, 2));
+  const contact::ContactNodes &contact = s.step.contact;
+  const auto columns = Teuchos::rcp(new MultiVector(s.discretization.mesh->owned_nodes, 2 * contact.num_sides()));
   const auto to = columns->getLocalViewHost(Tpetra::Access::ReadWrite);
-  const auto node = to_host(s.step.contact.node);
+  const auto node = to_host(contact.node);
   const auto pressure = to_host(s.contact.pressure);
-  for (LO i = 0; i < s.step.contact.size(); ++i) { // of a node of two sides the higher one, as in the Exodus file
-    to(node(i), 0) = std::max(to(node(i), 0), pressure(i));
-    to(node(i), 1) = 1;
-  }
+  for (int side = 0; side < contact.num_sides(); ++side)
+    for (LO i = contact.first(side); i < contact.first(side + 1); ++i) {
+      to(node(i), 2 * side) = pressure(i);
+      to(node(i), 2 * side + 1) = 1;
+    }
   return columns;
 }
 
@@ -212,8 +214,12 @@ PointValues values_at(const std::vector<ResultPoints> &points, const Scene &scen
   const auto pressure = at_points.of(*pressures(s));
   values.names.emplace_back("contact_pressure");
   constexpr double on_side = 1 - 1e-9; // sums of weights are rounded
-  for (std::size_t k = 0; k < pressure.size(); ++k)
-    values.rows[k].push_back(pressure[k][1] >= on_side ? pressure[k][0] : std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < pressure.size(); ++k) {
+    double highest = std::numeric_limits<double>::quiet_NaN(); // of two sides the higher one, as in the Exodus file
+    for (std::size_t column = 0; column < pressure[k].size(); column += 2)
+      if (pressure[k][column + 1] >= on_side) highest = std::fmax(highest, pressure[k][column]);
+    values.rows[k].push_back(highest);
+  }
   return values;
 }
 

@@ -67,7 +67,8 @@ void add_error_bars(std::vector<Result> &all, const adapt::ObservedErrors &error
     for (Result &result : all) {
       if (result.key != q.name(scope)) continue;
       result.error_bar = errors.*q.value;
-      if (result.key == "contact_force" && result.error_bar == 0) result.more = ", fixed by the load";
+      const bool any = std::any_of(result.value.begin(), result.value.end(), [](const double x) { return x != 0; });
+      if (result.key == "contact_force" && result.error_bar == 0 && any) result.more = ", fixed by the load";
       const auto reason = errors.unknown.find(q.key);
       result.no_bar = reason == errors.unknown.end() ? "" : reason->second;
       result.tells_why = told && std::isnan(result.error_bar);
