@@ -15,7 +15,7 @@ namespace
 // The iterations to 1e-8 that are expected of the mixed form, (4.14): too few to think of a sparse factor, whose symbolic factorization alone
 // takes as much time and memory as some of them.
 constexpr int expected_of_mixed = 30;
-// There a sparse factor is considered later.
+// The mixed form has a sparse factor considered after so many iterations.
 constexpr int first_iterations = 40;
 // A step of the polynomial (4.15b), which the mixed form of order 1 has beside each cycle, takes so much of a CG iteration.
 constexpr double cost_of_step = 0.035;

@@ -54,8 +54,6 @@ public:
   /// Collective. @param update  U, packed_blocks() [N/m]
   void write(const MultiVector &update);
 
-  /// The matrix without contact.
-  const RepeatedRows &rows() const { return rows_; }
   /// (n) Owned nodes with entries that change, ascending.
   const DeviceView<LO *> &nodes() const { return nodes_; }
   /// (owned nodes, dim, dim) The diagonal blocks of all nodes, as long as no contact is written.

@@ -221,7 +221,10 @@ Krylov::Method &Krylov::for_any_matrix()
   if (!of_deck_->needs_symmetric_H) return *of_deck_;
   if (gmres_) return *gmres_;
   Teuchos::ParameterList list = gmres_defaults(options_.max_iterations);
-  list.setParameters(entries_for(gmres, options_.belos));
+  const Teuchos::ParameterList own = entries_for(gmres, options_.belos);
+  if (own.isParameter("Explicit Residual Test"))
+    list.set("Flexible Gmres", false); // whose test would precondition updates twice
+  list.setParameters(own);
   gmres_ = std::make_unique<Method>(gmres, options_.max_iterations, list, H_);
   return *gmres_;
 }
