@@ -11,8 +11,8 @@
 namespace rpc::solver
 {
 
-/// A Krylov method of Belos for one operator, with a preconditioner on the right; its solver manager is made once. Methods that keep
-/// many vectors work with KrylovVectors, the others with Tpetra's. All members are collective.
+/// A Krylov method of Belos for one operator, with a preconditioner on the right; its solver manager is made once. GMRES, by
+/// the names that is_gmres() knows, works with KrylovVectors, other methods with Tpetra's. All members are collective.
 class BelosMethod
 {
 public:
