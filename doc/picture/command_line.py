@@ -131,7 +131,7 @@ def options(arguments):
     tables = parser.add_argument_group("diagrams of tables, RESULT.contact.csv, RESULT.history.csv and RESULT.json")
     tables.add_argument("--columns", metavar="NAME,...", help="columns, one panel for each; of contact sides also friction, the size of q, and "
                         "penetration, u_nu - gap; default: chosen")
-    tables.add_argument("--over", metavar="NAME", help="column to the right; of contact sides x, y, z, s (the length along the surface), or "
+    tables.add_argument("--over", metavar="NAME", help="column to the right; of contact sides x (of a body of revolution its radius), y, z, s (the length along the surface), or "
                         "radius; default: chosen")
     tables.add_argument("--range", metavar="LOW,HIGH", help="part of it that is shown; default: all")
     tables.add_argument("--centre", metavar="X,Y", help="where the radius is 0, in the directions across which it is measured; default: the middle of "
