@@ -125,8 +125,10 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   const mesh::Mesh &mesh = *d.mesh;
   if (nests(task_.mesh, task_.adapt) && mesh.element.shape != mesh::Shape::simplex &&
       !std::holds_alternative<mesh::BoxOptions>(task_.mesh)) {
-    reason = "only triangles and tetrahedra are halved, and the mesh has " + mesh.element.name() +
-             " cells; a .geo can be meshed anew, \"Adapt->Meshes\" = gmsh";
+    reason =
+        "only triangles and tetrahedra are halved, and the mesh has " + mesh.element.name() +
+        " cells; a geometry can be meshed anew, \"Adapt->Meshes\" = gmsh. Of a file of such cells compare the results "
+        "of \"Mesh->Refinements\" = 0 and 1";
     return std::nullopt;
   }
   const double eta = std::sqrt(estimate.total()), target = task_.adapt.target * std::sqrt(energy_norm_squared);

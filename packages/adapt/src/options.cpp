@@ -88,9 +88,10 @@ void require_adaptable(const Task &task)
   RPC_REQUIRE(
       !task.adapt.adapts() || nests(task.mesh, task.adapt) || mesh::has_gmsh(),
       "deck: \"Adapt->Meshes\" = gmsh needs gmsh, and this rpc was built without it. Write nested, or automatic.");
-  RPC_REQUIRE(!task.adapt.adapts() || sized(task.mesh, task.adapt, nullptr, 0),
-              "deck: \"Adapt->Meshes\" = gmsh goes with a box or a .geo, which can be meshed anew; the mesh is a .msh. "
-              "Its cells can be halved: nested.");
+  RPC_REQUIRE(
+      !task.adapt.adapts() || sized(task.mesh, task.adapt, nullptr, 0),
+      "deck: \"Adapt->Meshes\" = gmsh goes with a box or a geometry, which can be meshed anew; the mesh is a file "
+      "of cells. Its cells can be halved: nested, if they are triangles or tetrahedra.");
   const auto &contact = task.model.contact;
   for (std::size_t a = 0; a < contact.size() && task.adapt.estimate; ++a)
     for (std::size_t b = 0; b < a; ++b)
