@@ -66,9 +66,9 @@ std::array<ScalarField, 3> path_of(const Teuchos::ParameterList &list, const std
                                    const std::string &path, const FieldParser &parse)
 {
   const auto texts = field_texts(list, name);
-  RPC_REQUIRE(static_cast<int>(texts.size()) == dim, "deck: \"" << path << "->" << name << "\" must hold " << dim
-                                                                << " numbers or expressions of t, got "
-                                                                << texts.size());
+  RPC_REQUIRE(static_cast<int>(texts.size()) == dim,
+              "deck: \"" << path << "->" << name << "\" must hold " << dim << " numbers or expressions of t, got "
+                         << texts.size() << (texts.empty() ? ". It has no default: add it." : ""));
   std::array<ScalarField, 3> fields;
   for (int c = 0; c < dim; ++c) {
     fields[c] = parse(texts[c], path + "->" + name);

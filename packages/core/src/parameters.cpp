@@ -182,7 +182,9 @@ std::string remedy_for(const std::string &text, const ParameterEntry &model, con
 std::string remedy_for(const ParameterEntry &value, const ParameterEntry &model, const Wanted &wanted)
 {
   if (model.isList())
-    return value.isList() ? "" : " In XML write <ParameterList name=\"...\"> with <Parameter .../> in it.";
+    return value.isList() ? ""
+                          : " In XML write <ParameterList name=\"...\"> with <Parameter .../> in it, in YAML name: "
+                            "{parameter: value}.";
   if (model.isType<std::string>() && value.isType<Array<std::string>>() && !choice_of(model) &&
       !Teuchos::getValue<Array<std::string>>(value).empty())
     return " It takes one text, such as \"" + Teuchos::getValue<Array<std::string>>(value).front() +

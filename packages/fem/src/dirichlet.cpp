@@ -158,8 +158,9 @@ std::vector<DirichletCondition> dirichlet_options(const Teuchos::ParameterList &
     for (int c = 0; c < 3; ++c) {
       const std::string text = field_text(entry, component_name[c]);
       if (text.empty()) continue;
-      RPC_REQUIRE(c < dim, "deck: \"" << path << "->" << component_name[c] << "\" prescribes a component that a " << dim
-                                      << "D mesh does not have");
+      RPC_REQUIRE(c < dim,
+                  "deck: \"" << path << "->" << component_name[c] << "\" prescribes a component that a " << dim
+                             << "D mesh does not have. It has X and Y; of a body of revolution Y runs along the axis.");
       condition.displacement[c] = parse(text, path + "->" + component_name[c]);
       any = true;
     }
