@@ -81,8 +81,8 @@ ASSIGNMENTS = [
     (["Steps->From=1", "Steps->To=2", "Steps->Step=-1"], ['"Steps->Step" must be > 0', "got -1"]),
     (["Steps->From=1", "Steps->To=2", "Steps->Step=1", "Steps->Times={1}"], ['"Steps" has "Times" and "From"']),
     (["Contact->Penalty=0"], ['"Contact->Penalty" must be `auto` or a finite number > 0', "[Pa/m]", "got 0"]),
-    (["Dirichlet->left->Z=0"], ['"Dirichlet->left->Z"', "2D"]),
-    (["Traction->top->Z=3"], ['"Traction->top->Z" must be 0 in 2D', "got 3"]),
+    (["Dirichlet->left->Z=0"], ['"Dirichlet->left->Z"', "2D", "It has X and Y"]),
+    (["Traction->top->Z=3"], ['"Traction->top->Z" must be 0 in 2D', "got 3. A plane mesh has X and Y"]),
     # adaptive meshes
     (["Adapt->Target Relative Error=1"], ['"Adapt->Target Relative Error" must be in (0, 1), or 0 for none', "got 1"]),
     (["Adapt->Target Relative Error=-0.1"], ['"Adapt->Target Relative Error" must be in (0, 1)', "got -0.1"]),

@@ -30,7 +30,8 @@ VectorField vector_field(const Teuchos::ParameterList &list, const int dim, cons
     const std::string name = prefix + component_name[c], parameter = path + "->" + name;
     field[c] = parse(field_text(list, name), parameter);
     RPC_REQUIRE(c < dim || field[c].is_zero(),
-                "deck: \"" << parameter << "\" must be 0 in " << dim << "D, got " << field[c].text);
+                "deck: \"" << parameter << "\" must be 0 in " << dim << "D, got " << field[c].text
+                           << ". A plane mesh has X and Y; of a body of revolution Y runs along the axis.");
   }
   return field;
 }
