@@ -215,7 +215,7 @@ class Oracle:
             return
         where = f"at {place_of(found.place)}: {found.excess:.3g} of an approach of {found.approach:.3g}"
         summary = self.summaries[state.time]
-        console = self.run.stdout + self.run.stderr
+        console = " ".join((self.run.stdout + self.run.stderr).split())  # its lines are wrapped
         if between.KEY in summary:
             if summary[between.KEY] < found.excess * between.AGREES:
                 self.complain(state, f"penetration between contact points {where}, the summary has {summary[between.KEY]:.3g}")
