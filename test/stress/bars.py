@@ -148,12 +148,14 @@ class Outcome:
     note: str = ""
 
 
-def finer(lists):
+def finer(lists, target, cells, most_dofs):
+    """Arguments of the reference of a scene.
+
+    @param target, cells  by how much its target is smaller, and its first mesh finer"""
     mesh = lists["Mesh"]
-    changes = {"Adapt->Target Relative Error": lists["Adapt"]["Target Relative Error"] / FINER,
-               "Adapt->Max Dofs": MOST_DOFS_IN_STEPS if "Steps" in lists else MOST_DOFS}
+    changes = {"Adapt->Target Relative Error": lists["Adapt"]["Target Relative Error"] / target, "Adapt->Max Dofs": most_dofs}
     if mesh["Type"] == "box":
-        changes["Mesh->Cells"] = "{" + ", ".join(str(FINER_CELLS * n) for n in mesh["Cells"]) + "}"
+        changes["Mesh->Cells"] = "{" + ", ".join(str(cells * n) for n in mesh["Cells"]) + "}"
         changes["Mesh->Element"] = mesh["Element"][0] + "2"
     else:
         changes["Mesh->Order"] = 2
@@ -189,7 +191,8 @@ def judge(options, number):
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bars_{number}_"))
     try:
         results = []
-        for output, factor, more in (("out", 1, []), ("fine", FINER_CELLS, finer(lists))):
+        reference = finer(lists, FINER, FINER_CELLS, MOST_DOFS_IN_STEPS if "Steps" in lists else MOST_DOFS)
+        for output, factor, more in (("out", 1, []), ("fine", FINER_CELLS, reference)):
             (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
             if geo:
                 (folder / "body.geo").write_text(f"S = {size / factor!r};\n" + geo)

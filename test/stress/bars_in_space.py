@@ -84,17 +84,6 @@ def deck(rng, kind):
     return lists, geo, size
 
 
-def finer(lists):
-    mesh = lists["Mesh"]
-    changes = {"Adapt->Target Relative Error": lists["Adapt"]["Target Relative Error"] / FINER, "Adapt->Max Dofs": MOST_DOFS_OF_REFERENCE}
-    if mesh["Type"] == "box":
-        changes["Mesh->Cells"] = "{" + ", ".join(str(FINER_CELLS * n) for n in mesh["Cells"]) + "}"
-        changes["Mesh->Element"] = mesh["Element"][0] + "2"
-    else:
-        changes["Mesh->Order"] = 2
-    return [f"--set={key}={value}" for key, value in changes.items()]
-
-
 def complaint_of(result, summary, most):
     """What is wrong with a run, or nothing."""
     if summary is None or summary.get("adaptation") is None or not summary["converged"]:
@@ -115,7 +104,8 @@ def judge(options, number):
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rpc_bars_in_space_{number}_"))
     try:
         results = []
-        for output, factor, most, more in (("out", 1, lists["Adapt"]["Max Dofs"], []), ("fine", FINER_CELLS, MOST_DOFS_OF_REFERENCE, finer(lists))):
+        reference = bars.finer(lists, FINER, FINER_CELLS, MOST_DOFS_OF_REFERENCE)
+        for output, factor, most, more in (("out", 1, lists["Adapt"]["Max Dofs"], []), ("fine", FINER_CELLS, MOST_DOFS_OF_REFERENCE, reference)):
             (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
             if geo:
                 (folder / "body.geo").write_text(f"S = {size / factor!r};\n" + geo)
