@@ -23,6 +23,7 @@ MEANING = [
     ("[xyz]", "{0}", "m"), ("s", "length along the surface", "m"), ("radius", "{radius}", "m"), ("area", "area of a point", "m^2"),
     ("u_nu", r"normal displacement $u_\nu$", "m"), ("pressure", "contact pressure", "Pa"), ("gap|dent|penetration", "{0}", "m"),
     ("friction", "friction", "Pa"), ("q_([xyz])", "friction in {1}", "Pa"), ("slip_([xyz])", "slip in {1}", "m"),
+    ("u_t_([xyz])", "displacement along the side in {1}", "m"), ("force_([xyz])", "nodal force in {1}", ""),
     ("friction_used", "friction over what it can be", ""), ("time", "t", ""), ("contact_force_([xyz])", "contact force in {1}", "{force}"),
     (".*_displacement_[xyz]|max_(displacement|penetration|dent|slip)", "{0}", "m"), (".*_reaction_[xyz]", "{0}", "{force}"),
     ("energy_J", "energy", "{energy}"), ("relative_estimate", "estimated relative error", ""), ("dofs", "degrees of freedom", ""),

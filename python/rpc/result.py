@@ -60,7 +60,7 @@ class Result:
         """`<deck>.contact.csv` as a structured array, one row per contact node: contact()["pressure"] is (nodes,).
 
         Fields: x, y, in space z [m]; s [m] along the side in the plane, or area [m^2]; u_nu, gap, dent [m]; pressure [Pa] >= 0; state: "open", "closed",
-        "yielding", "unseen"; side, a text; with friction q_x, ... [Pa] of the body on the foundation, slip_x, ... [m], friction_used, friction_state.
+        "yielding", "unseen"; side, a text; with friction q_x, ... [Pa] of the body on the foundation, slip_x, ... [m], friction_used, friction_state; u_t_x, ... [m] along the side; force_x, ... [N or N/m] on the body.
 
         @throws Error if the run has written none
         """

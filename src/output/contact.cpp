@@ -38,6 +38,8 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
   const mesh::Mesh &mesh = *s.discretization.mesh;
   const auto &contact = s.step.contact;
   const HostPoints position = fem::node_positions(mesh, contact.node);
+  const auto along = contact::tangential_displacements(contact, *s.u);
+  const auto force = contact::point_forces(contact, s.contact);
   const bool in_order = mesh.dim() == 2; // along the side, for which its facets are needed
   const auto node_ids = in_order ? mesh::overlap_node_ids(mesh) : HostView<GO *>();
   std::vector<io::ContactTable> tables;
@@ -58,6 +60,8 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
     table.pressure = part_of(s.contact.pressure, begin, end);
     table.dent = part_of(s.contact.dent, begin, end);
     table.state = part_of(s.contact.state, begin, end);
+    table.along = rows_of(along, begin, end);
+    table.force = rows_of(force, begin, end);
     table.friction = contact::has_friction(scene.model.contact);
     if (end > begin && table.friction) {
       table.traction = rows_of(s.contact.traction, begin, end);
@@ -70,7 +74,7 @@ void write_contact(const std::string &path, const Scene &scene, const analysis::
           mesh, mesh.side(scene.model.contact[k].side, scene.model.contact[k].path + "->Side"), node_ids);
     tables.push_back(table);
   }
-  io::write_contact_csv(path, mesh.owned_nodes->getComm(), tables, scene.model.units);
+  io::write_contact_csv(path, mesh.owned_nodes->getComm(), tables, scene.model.units, s.discretization.per_length());
 }
 
 } // namespace rpc

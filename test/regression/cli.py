@@ -201,10 +201,12 @@ class Results(RpcTestCase):
     def test_table_is_sorted_and_agrees_with_the_summary(self):
         summary = self.solve()
         text = (self.folder / "out" / "beam.contact.csv").read_text()
-        self.assertEqual(text.splitlines()[0], "x,y,s,u_nu,gap,pressure,state,side,dent")
+        self.assertEqual(text.splitlines()[0], "x,y,s,u_nu,gap,pressure,state,side,dent,u_t_x,u_t_y,force_x,force_y")
         rows = [{k: v if k in ("state", "side") else float(v) for k, v in row.items()} for row in csv.DictReader(text.splitlines())]
         self.assertEqual(len(rows), summary["contact_nodes"])
         self.assertEqual([row["s"] for row in rows], sorted(row["s"] for row in rows))
+        for k, column in enumerate(("force_x", "force_y")):
+            self.assertAlmostEqual(sum(row[column] for row in rows), summary["contact_force"][k], delta=1e-12)
         for row in rows:
             self.assertAlmostEqual(row["s"], row["x"], delta=1e-12)
             self.assertEqual(row["y"], 0)

@@ -377,18 +377,45 @@ double pressure_distance(const Comm &comm, const ContactNodes &contact, const De
   return std::sqrt(sum_all(comm, sum));
 }
 
+DeviceView<double **> point_forces(const ContactNodes &points, const ContactResult &result)
+{
+  const ContactNodes c = points;
+  const auto p = result.pressure;
+  const auto q = result.traction;
+  const bool friction = q.extent(0) > 0;
+  const DeviceView<double **> force("rpc::contact::point_forces", c.size(), c.dim);
+  Kokkos::parallel_for(
+      "rpc::contact::point_forces", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        for (int k = 0; k < c.dim; ++k) force(i, k) = -c.weight(i) * (p(i) * c.normal(i, k) + (friction ? q(i, k) : 0));
+      });
+  Kokkos::fence();
+  return force;
+}
+
+DeviceView<double **> tangential_displacements(const ContactNodes &points, const Vector &u)
+{
+  const ContactNodes c = points;
+  const DeviceView<double **> along("rpc::contact::tangential_displacements", c.size(), c.dim);
+  const auto x = device_read(u);
+  Kokkos::parallel_for(
+      "rpc::contact::tangential_displacements", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
+        Along moved;
+        for (int k = 0; k < c.dim; ++k) moved.x[k] = x(c.dof(i, k));
+        set_row(along, i, along_side(c, i, moved));
+      });
+  Kokkos::fence();
+  return along;
+}
+
 Vector contact_forces(const fem::Discretization &d, const ContactNodes &contact, const ContactResult &result)
 {
   Vector force(d.owned_dofs);
   const ContactNodes c = contact;
-  const auto p = result.pressure;
-  const auto q = result.traction;
-  const bool friction = q.extent(0) > 0;
+  const auto of_point = point_forces(contact, result);
   const auto to = device_write(force);
   for_each_point_by_group(
       "rpc::contact::forces", c, KOKKOS_LAMBDA(const LO i) {
-        for (int k = 0; k < c.dim; ++k)
-          to(c.dof(i, k)) -= c.weight(i) * (p(i) * c.normal(i, k) + (friction ? q(i, k) : 0));
+        for (int k = 0; k < c.dim; ++k) to(c.dof(i, k)) += of_point(i, k);
       });
   Kokkos::fence();
   return force;

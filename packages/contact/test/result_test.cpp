@@ -203,6 +203,18 @@ TEST(ContactForces, SumToTheTotalForce)
   for (int c = 0; c < 2; ++c) EXPECT_NEAR(sum_all(comm, sum[c]), solved.result.total.force[c], 1e-14);
 }
 
+TEST(ContactResult, DisplacementAlongTheSideIsWhatTheNormalOneLeaves)
+{
+  const Solved solved;
+  const auto &c = solved.nodes();
+  const auto along = to_host(contact::tangential_displacements(c, *solved.u)), normal = to_host(c.normal);
+  const auto u_nu = to_host(solved.result.normal_displacement);
+  const auto u = solved.u->getLocalViewHost(Tpetra::Access::ReadOnly);
+  const auto node = to_host(c.node);
+  for (LO i = 0; i < c.size(); ++i)
+    for (int k = 0; k < 2; ++k) EXPECT_NEAR(along(i, k) + u_nu(i) * normal(i, k), u(2 * node(i) + k, 0), 1e-15);
+}
+
 TEST(ContactForces, AddUpAtANodeOfTwoSidesAndReachHeldNodes)
 {
   const Solved solved;

@@ -31,7 +31,7 @@ struct Row {
   int state;
   double area;  ///< weight in 3D [m^2]
   double s = 0; ///< arc length [m]
-  std::array<double, 3> traction{}, slip{};
+  std::array<double, 3> traction{}, slip{}, along{}, force{};
   double used = 0;
   int slip_state = 0;
 };
@@ -47,7 +47,11 @@ std::vector<Row> rows_of(const ContactTable &table, const int dim)
   for (std::size_t k = 0; k < table.id.extent(0); ++k) {
     Row row{table.id(k),    {}, table.u_nu(k), table.gap(k), table.pressure(k), table.dent(k), table.state(k),
             table.weight(k)};
-    for (int c = 0; c < dim; ++c) row.x[c] = table.position(k, c);
+    for (int c = 0; c < dim; ++c) {
+      row.x[c] = table.position(k, c);
+      row.along[c] = table.along(k, c);
+      row.force[c] = table.force(k, c);
+    }
     if (table.friction) {
       for (int c = 0; c < dim; ++c) {
         row.traction[c] = table.traction(k, c);
@@ -166,6 +170,8 @@ void append(std::string &text, const Row &row, const int dim, const std::string 
     append(text, row.used);
     text += std::string(slip_states.at(row.slip_state)) + ',';
   }
+  for (const auto &vector : {row.along, row.force})
+    for (int k = 0; k < dim; ++k) append(text, vector[k]);
   text.back() = '\n';
 }
 
@@ -176,7 +182,7 @@ std::string csv(const std::vector<Row> &rows, const int dim, const std::string &
   return text;
 }
 
-std::string heading(const int dim, const UnitNames &units, const bool friction)
+std::string heading(const int dim, const UnitNames &units, const bool per_length, const bool friction)
 {
   const std::string length = units.heading(unit::length, false);
   std::string text;
@@ -184,19 +190,26 @@ std::string heading(const int dim, const UnitNames &units, const bool friction)
   if (dim == 3) text += "area" + units.heading(unit::extent, false) + ',';
   text += "u_nu" + length + ",gap" + length + ",pressure" + units.heading(unit::pressure, false) + ",state,side,dent" +
           length;
-  const std::string axes = "xyz";
-  for (int k = 0; k < dim && friction; ++k) text += std::string(",q_") + axes[k] + units.heading(unit::pressure, false);
-  for (int k = 0; k < dim && friction; ++k) text += std::string(",slip_") + axes[k] + length;
-  return text + (friction ? ",friction_used,friction_state\n" : "\n");
+  const auto add_vector = [&](const std::string &name, const std::string &in) {
+    for (int k = 0; k < dim; ++k) text += ',' + name + std::string("xyz")[k] + in;
+  };
+  if (friction) {
+    add_vector("q_", units.heading(unit::pressure, false));
+    add_vector("slip_", length);
+    text += ",friction_used,friction_state";
+  }
+  add_vector("u_t_", length);
+  add_vector("force_", units.heading(unit::force, per_length));
+  return text + '\n';
 }
 
 void require_equal_lengths(const Comm &comm, const ContactTable &table)
 {
   const std::size_t n = table.id.extent(0);
   std::optional<std::string> message;
-  for (const std::size_t length :
-       {table.position.extent(0), table.u_nu.extent(0), table.gap.extent(0), table.weight.extent(0),
-        table.pressure.extent(0), table.dent.extent(0), table.state.extent(0)})
+  for (const std::size_t length : {table.position.extent(0), table.u_nu.extent(0), table.gap.extent(0),
+                                   table.weight.extent(0), table.pressure.extent(0), table.dent.extent(0),
+                                   table.state.extent(0), table.along.extent(0), table.force.extent(0)})
     if (length != n)
       message = "output: the contact table's columns must have a value for each of " + std::to_string(n) +
                 " nodes, got " + std::to_string(length);
@@ -268,7 +281,7 @@ std::string csv_quoted(const std::string &text)
 }
 
 void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const std::vector<ContactTable> &tables,
-                       const UnitNames &units)
+                       const UnitNames &units, const bool per_length)
 {
   std::string text;
   const bool friction =
@@ -278,7 +291,7 @@ void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, con
     const int dim = max_all(*comm, static_cast<int>(table.position.extent(1)));
     const int width = max_all(*comm, static_cast<int>(table.facets.extent(1)));
     if (dim == 3) {
-      if (text.empty()) text = heading(dim, units, friction);
+      if (text.empty()) text = heading(dim, units, per_length, friction);
       text += lines_by_id(*comm, table, dim, friction);
       continue;
     }
@@ -287,7 +300,7 @@ void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, con
     on_root(*comm, ExitCode::internal_error, [&] {
       require_unique(rows.size(), [&](const std::size_t k) { return rows[k].id; });
       rows = along_the_surface(rows, edges_of(rows, facets, width));
-      if (text.empty()) text = heading(dim, units, friction);
+      if (text.empty()) text = heading(dim, units, per_length, friction);
       text += csv(rows, dim, csv_quoted(table.side), friction);
     });
   }

@@ -44,6 +44,8 @@ ContactTable empty_table(const std::size_t n, const int dim)
   table.pressure = HostView<double *>("pressure", n);
   table.dent = HostView<double *>("dent", n);
   table.state = HostView<int *>("state", n);
+  table.along = HostView<double **>("along", n, dim);
+  table.force = HostView<double **>("force", n, dim);
   return table;
 }
 
@@ -100,7 +102,7 @@ protected:
     const auto rows = cells_of(text_of(path_));
     ASSERT_EQ(rows.size(), ids.size() + 1);
     for (std::size_t k = 0; k < ids.size(); ++k) {
-      ASSERT_EQ(rows[k + 1].size(), 9u);
+      ASSERT_EQ(rows[k + 1].size(), 13u);
       EXPECT_EQ(std::stod(rows[k + 1][5]), ids[k]) << "row " << k;
       EXPECT_NEAR(std::stod(rows[k + 1][2]), lengths[k], 1e-14) << "row " << k;
     }
@@ -122,11 +124,13 @@ TEST_F(ContactCsv, WritesOneRowPerNodeExactly)
     dealt.pressure(k) = 2. / 3 * id;
     dealt.dent(k) = 0.7 * id;
     dealt.state(k) = id;
+    dealt.along(k, 0) = 0.3 * id;
+    dealt.force(k, 1) = -0.9 * id;
   }
   write_contact_csv(path_, comm_, {dealt});
   comm_->barrier();
   const std::string text = text_of(path_);
-  EXPECT_EQ(text.substr(0, text.find('\n')), "x,y,s,u_nu,gap,pressure,state,side,dent");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "x,y,s,u_nu,gap,pressure,state,side,dent,u_t_x,u_t_y,force_x,force_y");
   const auto rows = cells_of(text);
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(std::stod(rows[2][0]), 1. / 3);
@@ -134,6 +138,8 @@ TEST_F(ContactCsv, WritesOneRowPerNodeExactly)
   EXPECT_EQ(std::stod(rows[2][4]), M_PI);
   EXPECT_EQ(std::stod(rows[2][5]), 2. / 3);
   EXPECT_EQ(std::stod(rows[2][8]), 0.7);
+  EXPECT_EQ(std::stod(rows[2][9]), 0.3);
+  EXPECT_EQ(std::stod(rows[2][12]), -0.9);
   EXPECT_EQ(rows[1][0], "0.1");
   EXPECT_EQ(rows[1][6], "open");
   EXPECT_EQ(rows[2][6], "closed");
@@ -183,11 +189,11 @@ TEST_F(ContactCsv, SidesFollowEachOtherUnderTheirNames)
   left.side = "left, or \"west\"";
   write_contact_csv(path_, comm_, {left, bottom});
   comm_->barrier();
-  EXPECT_EQ(text_of(path_), "x,y,s,u_nu,gap,pressure,state,side,dent\n"
-                            "0,0,0,0,0,0,open,\"left, or \"\"west\"\"\",0\n"
-                            "0,1,1,0,0,1,open,\"left, or \"\"west\"\"\",0\n"
-                            "0,0,0,0,0,0,open,side,0\n"
-                            "1,0,1,0,0,2,open,side,0\n");
+  EXPECT_EQ(text_of(path_), "x,y,s,u_nu,gap,pressure,state,side,dent,u_t_x,u_t_y,force_x,force_y\n"
+                            "0,0,0,0,0,0,open,\"left, or \"\"west\"\"\",0,0,0,0,0\n"
+                            "0,1,1,0,0,1,open,\"left, or \"\"west\"\"\",0,0,0,0,0\n"
+                            "0,0,0,0,0,0,open,side,0,0,0,0,0\n"
+                            "1,0,1,0,0,2,open,side,0,0,0,0,0\n");
 }
 
 TEST_F(ContactCsv, EmptyTableGivesAHeaderOnly)
@@ -234,8 +240,8 @@ TEST_F(ContactCsv, In3dRowsComeById)
   }
   write_contact_csv(path_, comm_, {table});
   comm_->barrier();
-  EXPECT_EQ(text_of(path_),
-            "x,y,z,area,u_nu,gap,pressure,state,side,dent\n0,0,8,0.25,0,0,0,open,side,0\n0,0,9,0,0,0,0,open,side,0\n");
+  EXPECT_EQ(text_of(path_), "x,y,z,area,u_nu,gap,pressure,state,side,dent,u_t_x,u_t_y,u_t_z,force_x,force_y,force_z\n"
+                            "0,0,8,0.25,0,0,0,open,side,0,0,0,0,0,0,0\n0,0,9,0,0,0,0,open,side,0,0,0,0,0,0,0\n");
 }
 
 TEST_F(ContactCsv, BadTableIsRefusedOnEveryRank)

@@ -165,7 +165,13 @@ DeviceView<double *> completed_pressure(const fem::Discretization &d, const std:
 double pressure_distance(const Comm &comm, const ContactNodes &c, const DeviceView<double *> &p,
                          const DeviceView<double *> &q);
 
-/// Nodal forces of the foundation on the body, -w (p normal + q) (owned dofs, [N]), prescribed components included.
+/// (n, dim) Force of the foundation on the body at each point, -w (p normal + q) [N], in the plane per m.
+DeviceView<double **> point_forces(const ContactNodes &points, const ContactResult &result);
+
+/// (n, dim) (I - nu nu^T) u, the displacement along the side at each point [m]. @param u  from 0 (owned dofs)
+DeviceView<double **> tangential_displacements(const ContactNodes &points, const Vector &u);
+
+/// Nodal forces of the foundation on the body, the sum of point_forces() at each node (owned dofs, [N]), prescribed components included.
 Vector contact_forces(const fem::Discretization &d, const ContactNodes &contact, const ContactResult &result);
 
 } // namespace rpc::contact

@@ -24,6 +24,8 @@ struct ContactTable {
   HostView<double *> pressure;  ///< (nodes) compression is > 0        [Pa]
   HostView<double *> dent;      ///< (nodes) of the foundation         [m]
   HostView<int *> state;        ///< (nodes) 0 open, 1 closed, 2 yielding, 3 unseen
+  HostView<double **> along;    ///< (nodes, dim) displacement along the side [m]
+  HostView<double **> force;    ///< (nodes, dim) of the foundation on the body [N]
   bool friction = false;        ///< whether the file has the columns of friction, which follow: the same on all ranks
   HostView<double **> traction; ///< (nodes, dim) of the body on the foundation, along the side [Pa]
   HostView<double **> slip;     ///< (nodes, dim) of the step          [m]
@@ -40,12 +42,13 @@ struct ContactTable {
 /// then y, and s is the length of the way from there, straight from node to node [m]. Several chains follow each other
 /// by their first point, each with its own s; a closed one starts at its point with the smallest x, then y. 3D: columns
 /// x, y, z, area, u_nu, gap, pressure, state, side, dent, with the weight of the node as area [m^2]; rows by id. With friction in any table the columns q_x, q_y (, q_z), slip_x, slip_y (, slip_z), friction_used, friction_state
-/// follow, 0 and none where a table has none. Numbers read back as the same doubles; the file does not depend on
+/// follow, 0 and none where a table has none. The last columns are u_t_x, u_t_y (, u_t_z), force_x, force_y (, force_z). Numbers read back as the same doubles; the file does not depend on
 /// the number of ranks. Units other than m and N stand behind the names of columns, "gap [mm]".
+/// @param per_length  whether forces are per length, as of a plane body
 /// @throws rpc::Error on every rank: bad_input for a folder that cannot be written to, internal_error for a failed
 /// write, columns
 ///         of different lengths, an id that comes twice or a state that does not exist
 void write_contact_csv(const std::string &path, const RCP<const Comm> &comm, const std::vector<ContactTable> &tables,
-                       const UnitNames &units = {});
+                       const UnitNames &units = {}, bool per_length = false);
 
 } // namespace rpc::io
