@@ -2,7 +2,7 @@
 #include "host_program.hpp"
 
 #include "command_line.hpp"
-#include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/analysis/rules.hpp"
 #include "rpc/io/deck.hpp"
 #include "rpc/mesh/box_grid.hpp"
 #include "scene.hpp"
@@ -73,7 +73,7 @@ std::optional<Teuchos::ParameterList> deck_of(const int argc, char *argv[])
 bool may_be_nearly_incompressible(const fem::Materials &materials)
 {
   const auto is = [](const fem::Material &material) {
-    return material.poissons_ratio > analysis::nearly_incompressible;
+    return material.poissons_ratio > analysis::linear_rules.mixed_order_two;
   };
   return is(materials.common) || std::any_of(materials.block.begin(), materials.block.end(),
                                              [&is](const auto &block) { return is(block.second); });

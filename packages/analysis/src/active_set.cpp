@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/active_set.hpp"
 
+#include "rpc/analysis/rules.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,53 +15,7 @@ using solver::NewtonGroup;
 namespace
 {
 
-// Choices of states that make no headway; then Newton needs fewer steps, or the interior-point method. The numbers down to
-// few_changes are from thin bodies whose choices were followed to their end; half or twice as large they cost 0 to 3 % more steps.
-constexpr int most_idle = 6;
-constexpr int most_changes = 10;         // with friction, whether they make headway or not
-constexpr int most_changes_tried = 3;    // where a Tresca problem has just been solved
-constexpr int most_changes_resumed = 30; // where it creeps: on slender bodies the choices get there in the end
-constexpr int most_visits = 3; // of a choice with friction in space, whose directions of slip have turned meanwhile
-// A choice makes headway if at most so many more would follow if the number of changes went on to fall as it has, or the way that edges
-// still have to creep. This shows after some choices.
-constexpr double most_left = 10, most_left_creeping = 4;
-constexpr int fewest_to_tell = 4;
-// Forces that the law does not admit over those that it does. Bodies of equal sides stay below much; a choice with much counts twice.
-constexpr double much = 0.5;
-// Choices end at once where they are far_too_much and more than few points change, but for the first one where nothing predicts the start.
-constexpr double far_too_much = 1, far_too_much_of_rubber = 10; // of bodies that are nearly incompressible
-constexpr GO few_changes = 5;
-// A coarser mesh chooses where a choice has much overshoot, and from the patience-th on where more than about one would follow.
-constexpr int patience = 4;
-constexpr double one_more = 1;
-// Newton stands at kinks after so many short steps. Newton creeps where k steps, two or more, leave more than left_per_step^k of the way.
-constexpr int most_short_steps = 3;
-constexpr double left_per_step = 0.5;
-constexpr int most_confirmations = 5; // of states where Newton has settled
-// While the active set changes, solves bring the residual below this part of what it was, and of the load, or the error in energy below
-// rough_error: two to five CG iterations. With a residual of 1e-1 pressures are too rough to choose by, 1e-4 saves no step, and an error of
-// 1e-2 costs thin bodies half a step. On these the residual needs up to twice the iterations of the error. What the multipliers of
-// the last rough solve miss, the penalty leaves a part of, k/r, in the final pressures: some 1e-8 of them.
-constexpr double forcing = 5e-3, rough_error = 2e-4;
-constexpr double coarse_error = 1e-8; // the same where a coarser mesh chooses: it would learn what a solve leaves
-constexpr int most_updates = 2;       // of multipliers at the end, even if pressures miss their tolerance then
-// Steps of a confirmed active set that leave more than half of F, one after the other, while slip in space turns.
-constexpr int most_idle_turns = 4;
-constexpr double enough = 0.3;      // of the tolerance: recomputed residuals are a little larger than CG's
-constexpr double negligible = 1e-3; // of the tolerance of pressures: violations that change no state
-constexpr double rounding = 1e-13;  // of the largest pressure: the same, where tolerances are tighter
-
-constexpr int most_path_steps = 50;
-// What the path's linear solves leave: of the error in energy, or of their right sides. With an error of 0.03 no step less; the right side
-// tells nothing of how far a thin body has bent.
-constexpr double path_error = 0.1, path_forcing = 1e-2;
-// Steps shorter than long_enough are centred, and once more where that makes them longer by least_gain.             (5.19a)
-constexpr int most_centerings = 2;
-constexpr double long_enough = 0.9, least_gain = 0.03;
-// The states that the path leads to are tried below the first gap if they have settled, after a trial below so much of its gap, and
-// below the last gap in any case. So many changes without headway may follow.
-constexpr double first_trial = 1e-2, next_trial = 1e-2, last_gap = 1e-8;
-constexpr int trial_changes = 2;
+constexpr double rounding = 1e-13; // of the largest pressure: violations below change no state
 
 } // namespace
 
@@ -68,15 +24,17 @@ constexpr int trial_changes = 2;
 ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, const Then then)
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
       pressure_tolerance_(tolerances.pressure),
-      most_overshoot_(tolerances.nearly_incompressible ? far_too_much_of_rubber : far_too_much),
+      most_overshoot_(tolerances.nearly_incompressible ? choice_rules.far_too_much_of_rubber
+                                                       : choice_rules.far_too_much),
       start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
-      rubs_(iterate_.points().friction.anywhere), then_(then), most_idle_(most_idle), trial_gap_(first_trial)
+      rubs_(iterate_.points().friction.anywhere), then_(then), most_idle_(choice_rules.most_idle),
+      trial_gap_(path_rules.first_trial)
 {
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
-  most_idle_ = then == Then::nothing ? most_changes_tried : most_changes;
+  most_idle_ = then == Then::nothing ? choice_rules.most_changes_tried : choice_rules.most_changes;
 }
 
 void ActiveSetStage::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
@@ -96,19 +54,19 @@ FoundBy ActiveSetStage::found_by() const
 bool ActiveSetStage::resume(const NewtonGroup &from, const solver::NewtonProgress &newton)
 {
   const Vector &u = solver::tpetra(from.getX());
-  if (newton.settled && !rubs_ && confirmations_ < most_confirmations) {
+  if (newton.settled && !rubs_ && confirmations_ < choice_rules.most_confirmations) {
     ++confirmations_;
-    take_over(u, trial_changes);
+    take_over(u, path_rules.trial_changes);
     return true;
   }
-  const bool stands = newton.short_steps >= most_short_steps;
-  const bool creeps = newton.steps > 1 && newton.left > std::pow(left_per_step, newton.steps);
+  const bool stands = newton.short_steps >= choice_rules.most_short_steps;
+  const bool creeps = newton.steps > 1 && newton.left > std::pow(choice_rules.left_per_step, newton.steps);
   if (path_ == Path::ahead && (stands || creeps)) {
     take_path(u);
     return true;
   }
   if (!stands || std::exchange(resumed_, true)) return false;
-  take_over(u, most_changes_resumed);
+  take_over(u, choice_rules.most_changes_resumed);
   return true;
 }
 
@@ -148,19 +106,20 @@ void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, 
 /// What becomes of the iteration at a point, after the step that led there.
 ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
 {
-  choice_ = iterate_.choose_active_set(u, std::max(negligible * pressure_tolerance_, rounding)); // (5.8)
+  choice_ = iterate_.choose_active_set(u, std::max(choice_rules.negligible * pressure_tolerance_, rounding)); // (5.8)
   // The active set does not change at first: one accurate solve, which keeps the energy balance to rounding.
   if (choice_->changes == 0 && steps_ == 0) rough_ = false;
   if (choice_->confirmed) {
     const bool solved_well = norm_ <= target_;
-    confirmed_ =
-        solved_well && (iterate_.pressure_error(u) <= pressure_tolerance_ || ++updates_ > most_updates); // (5.10)
+    confirmed_ = solved_well && (iterate_.pressure_error(u) <= pressure_tolerance_ ||
+                                 ++updates_ > choice_rules.most_updates); // (5.10)
     // Rounding may end progress below: where the foundation's forces are many times the load, F grows and falls with each step.
-    const bool idle = steps_ > 0 && !rough_ && !solved_well && !(norm_ < 0.5 * std::min(before_, confirmed_norm_));
+    const bool idle = steps_ > 0 && !rough_ && !solved_well &&
+                      !(norm_ < choice_rules.idle_residual * std::min(before_, confirmed_norm_));
     idle_steps_ = idle ? idle_steps_ + 1 : 0;
     if (!rough_) confirmed_norm_ = norm_;
     if (confirmed_) return Verdict::converged;
-    if (idle_steps_ > (turns_ ? most_idle_turns : 0)) return Verdict::over;
+    if (idle_steps_ > (turns_ ? choice_rules.most_idle_turns : 0)) return Verdict::over;
     rough_ = false;
   } else if (coarse_) {
     if (!choose_by_coarse_mesh(u)) return give_up(u);
@@ -185,8 +144,8 @@ bool ActiveSetStage::is_new_choice()
     seen_ = {{choice_->fingerprint, 1}};
     return true;
   }
-  if (turns_ && visits < most_visits) return true;
-  for (const double part : {0.5, 1.}) {
+  if (turns_ && visits < choice_rules.most_visits) return true;
+  for (const double part : {double(choice_rules.first_part), 1.}) {
     choice_ = iterate_.largest_changes(*choice_, part);
     if (choice_->changes > 0 && seen_[choice_->fingerprint]++ == 0) return true;
   }
@@ -202,17 +161,17 @@ bool ActiveSetStage::may_settle()
   const double overshoot = choice_->overshoot, infinity = std::numeric_limits<double>::infinity();
   const double lever = overshoot < 1 ? overshoot / (1 - overshoot) : infinity;
   const bool creeps = lever > 0 && lever < levers_[1] && levers_[0] < levers_[2];
-  const bool is_near = creeps && 2 * lever <= most_left_creeping * (levers_[1] - lever);
+  const bool is_near = creeps && 2 * lever <= choice_rules.most_left_creeping * (levers_[1] - lever);
   levers_ = {lever, levers_[0], levers_[1]};
   if (before == 0) return true; // not by a solve, but by where it starts
   const auto number = static_cast<double>(changes), fewest = static_cast<double>(fewest_changes_);
   left_ = number < fewest ? std::log(number) / std::log(fewest / number) : infinity;
-  const bool contracts = left_ <= most_left;
+  const bool contracts = left_ <= choice_rules.most_left;
   fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
   const bool tells = predicted_ || before > 1;
-  if (tells && changes > few_changes && overshoot > most_overshoot_) return false;
-  if (creeps && !is_near && !contracts && before >= fewest_to_tell) return false;
-  if (!contracts && !is_near) idle_ += overshoot > much ? 2 : 1;
+  if (tells && changes > choice_rules.few_changes && overshoot > most_overshoot_) return false;
+  if (creeps && !is_near && !contracts && before >= choice_rules.fewest_to_tell) return false;
+  if (!contracts && !is_near) idle_ += overshoot > choice_rules.much ? 2 : 1;
   return idle_ <= most_idle_;
 }
 
@@ -220,7 +179,8 @@ bool ActiveSetStage::may_settle()
 bool ActiveSetStage::is_for_coarse_mesh() const
 {
   const bool was_needed = predicted_ && *predicted_ != FoundBy::choices; // more than choices by pressures, there
-  return was_needed || (steps_ >= patience && left_ > one_more) || choice_->overshoot > much * most_overshoot_;
+  return was_needed || (steps_ >= choice_rules.steps_before_coarse && left_ > choice_rules.one_more) ||
+         choice_->overshoot > choice_rules.much * most_overshoot_;
 }
 
 /// From here on a coarser mesh chooses, if there is one that can. @return whether it has chosen
@@ -276,11 +236,11 @@ ActiveSetStage::Step ActiveSetStage::leave_to_newton(NewtonGroup &group)
 bool ActiveSetStage::leaves_path()
 {
   const auto &path = iterate_.interior_path();
-  const bool ends = path.gap() <= last_gap || path_steps_ >= most_path_steps;
+  const bool ends = path.gap() <= path_rules.last_gap || path_steps_ >= path_rules.most_steps;
   if (!ends && !(path.settled() && path.gap() <= trial_gap_)) return false;
   path_ = ends ? Path::behind : Path::tried;
-  trial_gap_ = next_trial * path.gap();
-  start_over(iterate_.end_of_interior_path(), trial_changes); // (5.20)
+  trial_gap_ = path_rules.next_trial * path.gap();
+  start_over(iterate_.end_of_interior_path(), path_rules.trial_changes); // (5.20)
   return true;
 }
 
@@ -306,7 +266,7 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
 {
   double energy = 0; // of the predictor
   const auto solve = [&](const Vector &F, Vector &d, const double tolerance) {
-    const auto solved = solver::solve_for_direction(context, F, d, {tolerance, path_error, energy});
+    const auto solved = solver::solve_for_direction(context, F, d, {tolerance, path_rules.error, energy});
     energy = solved.energy;
     return !solved.broken && !solved.interrupted && std::isfinite(context.direction_norm);
   };
@@ -315,7 +275,7 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
     Vector lacking(u.getMap());
     iterate_.hessian()->apply(d, lacking);
     lacking.update(1., F, 1.);
-    const double wanted = path_forcing * F.norm2(), missing = lacking.norm2();
+    const double wanted = path_rules.forcing * F.norm2(), missing = lacking.norm2();
     if (missing <= wanted) return true;
     const int iterations = context.linear_iterations;
     Vector correction(u.getMap());
@@ -326,12 +286,12 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
   };
   Vector F(u.getMap());
   iterate_.linearize_interior(u, F);
-  if (!solve(F, direction, path_forcing)) return false;
+  if (!solve(F, direction, path_rules.forcing)) return false;
   direction.scale(-1.);
   iterate_.correct_interior(u, direction, F);
   if (!improve(F, direction)) return false;
   double t = iterate_.longest_interior_step(u, direction);
-  for (int times = 0; times < most_centerings && t < long_enough; ++times) {
+  for (int times = 0; times < path_rules.most_centerings && t < path_rules.long_enough; ++times) {
     iterate_.center_interior(u, direction, F);
     Vector centered(direction, Teuchos::Copy);
     const double longer = improve(F, centered) ? iterate_.longest_interior_step(u, centered) : 0;
@@ -339,7 +299,7 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
       direction.assign(centered);
     else
       iterate_.take_back_interior();
-    if (longer < t + least_gain) break;
+    if (longer < t + path_rules.least_gain) break;
     t = longer;
   }
   return true;
@@ -349,12 +309,12 @@ bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector
 solver::Accuracy ActiveSetStage::wanted() const
 {
   double rough = 0;
-  if (rough_ && coarse_) return {enough * target_ / norm_, coarse_error};
+  if (rough_ && coarse_) return {choice_rules.enough * target_ / norm_, choice_rules.coarse_error};
   if (rough_)
-    rough = forcing * std::min(scale_, norm_);
+    rough = choice_rules.forcing * std::min(scale_, norm_);
   else if (turns_)
-    rough = std::min(forcing, norm_ / scale_) * norm_;
-  return {std::max(enough * target_, rough) / norm_, rough_ ? rough_error : 0};
+    rough = std::min<double>(choice_rules.forcing, norm_ / scale_) * norm_;
+  return {std::max(choice_rules.enough * target_, rough) / norm_, rough_ ? choice_rules.rough_error : 0.};
 }
 
 ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/coarse_choice.hpp"
 
+#include "rpc/analysis/rules.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
@@ -16,10 +17,6 @@ namespace rpc::analysis
 {
 namespace
 {
-
-// Choices end after most_choices, or where more than most_idle_choices on end have not fewer changes than all before.
-constexpr int most_choices = 25, most_idle_choices = 3;
-constexpr Tpetra::global_size_t most_unknowns = 60'000; // of the coarse mesh, whose stiffness rank 0 holds
 
 /// What each rank gives of its points, or all of it on rank 0.
 struct PointRows {
@@ -146,7 +143,8 @@ CoarseChoice::CoarseChoice(RCP<const Comm> comm, std::vector<LO> points, std::op
 
 bool CoarseChoice::is_small(const Problem &coarse)
 {
-  return coarse.discretization().owned_dofs->getGlobalNumElements() <= most_unknowns;
+  return coarse.discretization().owned_dofs->getGlobalNumElements() <=
+         static_cast<Tpetra::global_size_t>(choice_rules.most_coarse_unknowns);
 }
 
 std::unique_ptr<CoarseChoice> CoarseChoice::make(const Problem &coarse, const fem::DirichletDofs &dirichlet,
@@ -179,7 +177,7 @@ bool CoarseChoice::may_settle(const contact::ActiveSetChoice &present)
   const bool gains = choices_ < 2 || present.changes < fewest_changes_;
   in_vain_ = gains ? 0 : in_vain_ + 1;
   if (gains) fewest_changes_ = present.changes;
-  return choices_++ < most_choices && in_vain_ <= most_idle_choices;
+  return choices_++ < choice_rules.most_coarse && in_vain_ <= choice_rules.most_idle_coarse;
 }
 
 std::optional<contact::ActiveSetChoice> CoarseChoice::choose(const contact::Iterate &iterate,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/coarse_model.hpp"
 
+#include "rpc/analysis/rules.hpp"
 #include "rpc/solver/exact_line_search.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
@@ -18,18 +19,6 @@ using contact::State;
 
 namespace
 {
-
-// A factor, of which a choice makes three to ten, may take so many seconds, and so many times what a solve of the fine mesh takes by its
-// constants. On a GPU these constants leave out coarse levels that are factored on the host: a thin body's solves take about ten times as long.
-constexpr double most_seconds = 1, most_solves = on_gpu ? 10 : 1;
-constexpr std::size_t most_pairs = 30'000'000;
-// A change teaches nothing where the model misses less than this part of its energy: rough solves leave as much.
-constexpr double least_missing = 1e-2;
-// s is this part of the least that a change shows, so that s P K^-1 P^T stays below what the fine mesh has: only so can updates add to it.
-constexpr double part_of_scale = 0.25;
-// Most steps of Newton's method, before the path and after it. Ten are needed in the mean, but many more where gaps are noise from point to
-// point: there the path follows.
-constexpr int first_steps = 20, last_steps = 20;
 
 double dot(const std::vector<double> &a, const std::vector<double> &b)
 {
@@ -84,7 +73,7 @@ CoarseModel::CoarseModel(const int size, const solver::SymmetricEntries &K, solv
                          std::vector<ModelPoint> data)
     : size_(size), K_(sorted(K)), matrix_(K_.value), points_(std::move(points)), data_(std::move(data)), first_{0}
 {
-  if (count_pairs(points_) > most_pairs) return;
+  if (count_pairs(points_) > static_cast<std::size_t>(choice_rules.most_pairs)) return;
   std::vector<std::size_t> row(size_ + 1); // where its entries begin
   for (int i = 0; i <= size_; ++i) row[i] = std::lower_bound(K_.row.begin(), K_.row.end(), i) - K_.row.begin();
   bool all_found = true; // the unknowns of a point are those of one cell
@@ -104,7 +93,8 @@ CoarseModel::CoarseModel(const int size, const solver::SymmetricEntries &K, solv
 
 bool CoarseModel::is_cheap(const double solve_seconds) const
 {
-  return factor_ && factor_->cost().seconds < std::min(most_seconds, most_solves * solve_seconds);
+  return factor_ && factor_->cost().seconds <
+                        std::min<double>(choice_rules.model_seconds, choice_rules.model_solves * solve_seconds);
 }
 
 void CoarseModel::Unknowns::move(const double t, const Unknowns &d)
@@ -200,7 +190,7 @@ void CoarseModel::update()
     const double coarse = dot(change.forces, change.coarse);
     if (coarse > 0) least = std::min(least, dot(change.forces, change.moved) / coarse);
   }
-  const double scale = std::isfinite(least) ? std::max(1., part_of_scale * least) : 1;
+  const double scale = std::isfinite(least) ? std::max(1., choice_rules.part_of_scale * least) : 1;
   is_elastic_ = is_elastic_ && scale == scale_;
   scale_ = scale;
   learnt_.clear();
@@ -209,7 +199,7 @@ void CoarseModel::update()
     add(-scale_, change.coarse, missing);
     for (const auto &c : learnt_) add(-dot(c, change.forces), c, missing);
     const double missed = dot(missing, change.forces);
-    if (!(missed > least_missing * std::abs(dot(change.moved, change.forces)))) continue;
+    if (!(missed > choice_rules.least_missing * std::abs(dot(change.moved, change.forces)))) continue;
     for (double &c : missing) c /= std::sqrt(missed);
     learnt_.push_back(std::move(missing));
   }
@@ -336,8 +326,8 @@ std::optional<ModelStates> CoarseModel::choose()
 {
   Unknowns x{std::vector<double>(size_, 0.), std::vector<double>(learnt_.size(), 0.)};
   ModelStates found;
-  Ends ends = follow_newton(first_steps, x, found);
-  if (ends == Ends::goes_on && follow_path(x)) ends = follow_newton(last_steps, x, found);
+  Ends ends = follow_newton(choice_rules.model_steps, x, found);
+  if (ends == Ends::goes_on && follow_path(x)) ends = follow_newton(choice_rules.model_steps, x, found);
   if (ends != Ends::settled) return {};
   return found;
 }

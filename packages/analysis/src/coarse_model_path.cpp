@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/coarse_model.hpp"
+
+#include "rpc/analysis/rules.hpp"
 #include "rpc/contact/law/interior.hpp"
 
 #include <algorithm>
@@ -7,16 +9,6 @@
 
 namespace rpc::analysis
 {
-namespace
-{
-
-constexpr int most_steps_on_path = 40; // ten to eighteen are needed
-// The path begins with so many times the mean pressure. It ends where the gap is below end_of_path, or below early_end_of_path if the last step
-// has changed no state.
-constexpr double start_load = 3, end_of_path = 3e-6, early_end_of_path = 3e-5;
-
-} // namespace
-
 /// The interior path of the model: a point has v = v_i + moved - (p - p_i)/k on it.             (5.15) to (5.20), (5.8f)
 class CoarseModel::Path
 {
@@ -36,7 +28,7 @@ public:
       force_there += weight * model_.pressure(i, moved_[i]);
       length_ = std::max(length_, std::abs(model_.v_[i] + moved_[i]));
     }
-    load_ = start_load * (force > 0 ? force : force_there) / area_;
+    load_ = path_rules.start_load * (force > 0 ? force : force_there) / area_;
   }
 
   /// @return whether it has come near the solution
@@ -44,11 +36,11 @@ public:
   {
     if (!(load_ > 0 && length_ > 0)) return false;
     join();
-    for (int step = 0, short_steps = 0; step < most_steps_on_path; ++step) {
+    for (int step = 0, short_steps = 0; step < path_rules.model_steps; ++step) {
       const double t = advance();
       if (!(t > 0)) return false;
       const double gap = products_ / (load_ * area_ * length_);
-      if (gap <= end_of_path || (settled_ && gap <= early_end_of_path)) return true;
+      if (gap <= path_rules.model_gap || (settled_ && gap <= path_rules.early_model_gap)) return true;
       short_steps = t < contact::short_step ? short_steps + 1 : 0;
       if (short_steps < contact::many_short_steps) continue;
       short_steps = 0;

@@ -2,6 +2,7 @@
 #include "rpc/analysis/load_history.hpp"
 
 #include "rpc/analysis/quantities.hpp"
+#include "rpc/analysis/rules.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/fem/rounding.hpp"
@@ -21,10 +22,6 @@ namespace rpc::analysis
 {
 namespace
 {
-
-// Solves of a step for the dents that points meet where it leads them, each from the one before: the dents' slopes are small, so that
-// two to four do.
-constexpr int most_searches = 8;
 
 /// Means of the prescribed displacements over the nodes of each Dirichlet condition; 0 for components that are free.
 std::vector<std::array<double, 3>> prescribed_means(const Problem &problem, const StepSolution &s)
@@ -52,11 +49,6 @@ int newton_steps(const StepSolution &s)
   return std::accumulate(s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end(), 0);
 }
 
-// A half that misses less than this share of what the whole misses is nearer to balance. Errors of opposite sign can hide in a whole;
-// but what stays through so many halvings is rounding.
-constexpr double helpful = 0.9;
-constexpr int most_in_vain = 5;
-constexpr int most_attempts = 5; // at a step, each with a lower tolerance of its parts
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Energies unknown_energies()
@@ -144,11 +136,11 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
     s = advance_in_parts(t, {max_halvings_, balance_halvings_, std::max(max_halvings_, balance_halvings_), tolerance},
                          progress, now);
     const double off = s.uzawa.converged ? share_missed(energies_before, s, energy_tolerance_) : 0;
-    const bool in_vain = attempt == most_attempts || last_.parts == 1 || off > helpful * least;
+    const bool in_vain = attempt == step_rules.most_attempts || last_.parts == 1 || off > step_rules.helpful * least;
     if (!(off > energy_tolerance_) || in_vain) break;
     least = off;
-    tolerance *= 0.5 * energy_tolerance_ / off; // what parts miss adds up
-    kept_ = before;                             // as if what came after had not been tried
+    tolerance *= step_rules.part_of_tolerance * energy_tolerance_ / off; // what parts miss adds up
+    kept_ = before;                                                      // as if what came after had not been tried
   }
   last_.time = s.uzawa.converged ? t : tried_;
   last_.converged = s.uzawa.converged;
@@ -209,10 +201,10 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
   if (s.uzawa.converged) {
     const Energies start = before.memory ? before.memory->energies : Energies{}, &end = kept_.memory->energies;
     const double missed = std::abs(end.imbalance - start.imbalance);
-    then.in_vain = missed < helpful * left.missed ? 0 : left.in_vain + 1;
+    then.in_vain = missed < step_rules.helpful * left.missed ? 0 : left.in_vain + 1;
     then.missed = std::min(missed, left.missed);
-    if (!(share_missed(start, s, left.tolerance) > left.tolerance) || !may_halve || then.in_vain > most_in_vain ||
-        then.balance-- == 0)
+    if (!(share_missed(start, s, left.tolerance) > left.tolerance) || !may_halve ||
+        then.in_vain > step_rules.most_in_vain || then.balance-- == 0)
       return s;
   } else if (!may_halve || then.failures-- == 0 || interrupted(problem_->discretization().mesh->comm())) {
     return s;
@@ -252,7 +244,7 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
     ++last_.solves;
     add_work(s, last_);
     if (!s.uzawa.converged) return s;
-    if (!on_foundation || search == most_searches) break;
+    if (!on_foundation || search == step_rules.most_searches) break;
     const auto next = met_at(*s.u);
     if (settled(*met, *next, kept_.memory->foundations)) break;
     met = next;

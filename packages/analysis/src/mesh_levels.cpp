@@ -2,6 +2,7 @@
 #include "rpc/analysis/mesh_levels.hpp"
 
 #include "rpc/algebra/diagonal_matrix.hpp"
+#include "rpc/analysis/rules.hpp"
 #include "rpc/fem/interpolation.hpp"
 
 #include <algorithm>
@@ -14,14 +15,6 @@ namespace rpc::analysis
 {
 namespace
 {
-
-// Unknowns that boxes are halved down to: a factor of theirs takes no time, though each change of states asks for one.
-constexpr GO few_2d = 800, few_3d = 400;
-// Unknowns of a coarsest mesh that is still factored, where there is no coarser one.
-constexpr GO most_factored_2d = 2800, most_factored_3d = 5200;
-
-// Above this ratio, of order 1, a mixed form takes less time than smoothers of single nodes, by measurement in space.       (4.13)
-constexpr double nearly_incompressible_of_order_one = 0.485;
 
 /// Which components of which sides are prescribed, whatever their values.
 std::vector<fem::DirichletCondition> held_sides(std::vector<fem::DirichletCondition> conditions)
@@ -104,7 +97,7 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 
 bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials)
 {
-  const double least = d.mesh->element.order == 1 ? nearly_incompressible_of_order_one : nearly_incompressible;
+  const double least = d.mesh->element.order == 1 ? linear_rules.mixed_order_one : linear_rules.mixed_order_two;
   return d.kinematics != fem::Kinematics::plane_stress && largest_ratio(d, materials) > least;
 }
 
@@ -130,7 +123,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   levels.prescribed = prescribed;
   const int dim = finest.discretization().dim();
   levels.order = finest.discretization().mesh->element.order;
-  const GO few = dim == 2 ? few_2d : few_3d;
+  const GO few = dim == 2 ? linear_rules.few_2d : linear_rules.few_3d;
   const auto held = held_sides(model.dirichlet);
   const auto num_unknowns = [](const NestedMesh &mesh) {
     return static_cast<GO>(mesh.discretization().owned_dofs->getGlobalNumElements());
@@ -155,7 +148,8 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   }
   if (!levels.level.empty()) assemble(levels.level.back());
   if (thin && num_unknowns(*mesh) > few) levels.remark = thin_text(*mesh->discretization().mesh->box, *thin);
-  levels.down_to_few = thin || num_unknowns(*mesh) <= (dim == 2 ? most_factored_2d : most_factored_3d);
+  levels.down_to_few =
+      thin || num_unknowns(*mesh) <= (dim == 2 ? linear_rules.most_factored_2d : linear_rules.most_factored_3d);
   return levels;
 }
 

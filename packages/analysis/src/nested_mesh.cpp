@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/nested_mesh.hpp"
 
+#include "rpc/analysis/rules.hpp"
 #include "rpc/fem/interpolation.hpp"
 #include "rpc/fem/order_one.hpp"
 #include "rpc/fem/parent_interpolation.hpp"
@@ -14,9 +15,6 @@ namespace rpc::analysis
 {
 namespace
 {
-
-// Nodes below which one more rank takes longer for its messages than it saves, in the set-up and in a cycle; by measurement.
-constexpr GO least_nodes_of_rank = on_gpu ? 200'000 : 2000;
 
 /// The next coarser box.
 std::optional<fem::Discretization> next_coarser_box(const fem::Discretization &d)
@@ -72,9 +70,9 @@ bool goes_to_order_one(const mesh::Mesh &mesh)
 fem::Discretization coarser_box(const fem::Discretization &d, const mesh::BoxOptions &options)
 {
   const auto comm = d.mesh->owned_nodes->getComm();
-  return fem::discretize(
-      std::make_shared<mesh::Mesh>(mesh::make_box(mesh::divided(options, comm->getSize(), least_nodes_of_rank), comm)),
-      d.kinematics);
+  return fem::discretize(std::make_shared<mesh::Mesh>(mesh::make_box(
+                             mesh::divided(options, comm->getSize(), linear_rules.least_nodes_of_rank), comm)),
+                         d.kinematics);
 }
 
 NestedMesh::NestedMesh(fem::Discretization d) : discretization_(std::move(d))

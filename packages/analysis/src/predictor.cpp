@@ -2,6 +2,7 @@
 #include "rpc/analysis/predictor.hpp"
 
 #include "rpc/analysis/load_history.hpp"
+#include "rpc/analysis/rules.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/fem/interpolation.hpp"
 
@@ -15,27 +16,21 @@ namespace rpc::analysis
 namespace
 {
 
-// Below, a solution costs about as much as its prediction.
-constexpr std::size_t least_nodes_predicted = 500;
-// Steps on a coarser mesh: with rough solves there they cost no more than a few elastic solves of the finer one, and what they
-// lead to is a start in any case.
-constexpr int most_steps_predicting = 40;
-// On meshes with fewer contact points choices of states settle or not by chance.
-constexpr GO fewest_points_telling = 50;
-
 /// Why no coarser mesh is to predict a step on this one; empty if one is.
 std::string no_prediction(const fem::Discretization &d, const contact::ContactNodes &contact, const bool enabled)
 {
   if (contact.num_total == contact.num_fixed) return "no node can touch";
   if (!enabled) return "switched off";
-  if (d.mesh->owned_nodes->getGlobalNumElements() < least_nodes_predicted) return "the mesh is small";
+  if (d.mesh->owned_nodes->getGlobalNumElements() <
+      static_cast<Tpetra::global_size_t>(step_rules.least_nodes_predicted))
+    return "the mesh is small";
   return "";
 }
 
 StepOptions rough(StepOptions options)
 {
   options.newton.residual_tolerance = options.uzawa.tolerance = options.prediction.tolerance;
-  options.newton.max_iterations = std::min(options.newton.max_iterations, most_steps_predicting);
+  options.newton.max_iterations = std::min<int>(options.newton.max_iterations, step_rules.most_steps_predicting);
   return options;
 }
 
@@ -117,7 +112,8 @@ PredictedBy told_by(const StepSolution &solution, const std::shared_ptr<const Pr
                     const Problem &fine)
 {
   PredictedBy by;
-  if (level == 1 && solution.step.contact.num_total >= fewest_points_telling) by.found_by = solution.found_by;
+  if (level == 1 && solution.step.contact.num_total >= step_rules.fewest_points_telling)
+    by.found_by = solution.found_by;
   if (scene)
     by.coarse_choice = [scene, time = solution.step.time, &fine](const contact::Iterate &iterate,
                                                                  const double solve_seconds) {

@@ -2,6 +2,7 @@
 #include "rpc/analysis/problem.hpp"
 
 #include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/stiffness.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
@@ -198,9 +199,8 @@ std::shared_ptr<const Problem> Problem::coarser(const double factor, const doubl
     };
     // Times as long as the cells of a mesh with so many nodes; near a boundary there are more of them.
     const auto longer = [&](const NestedMesh &than) { return std::pow(nodes(*mesh_) / nodes(than), 1. / own.dim()); };
-    constexpr double boundary = 0.65;
     auto mesh = mesh_->parent();
-    while (longer(*mesh) < boundary * wanted && mesh->discretization().mesh->parents) mesh = mesh->parent();
+    while (longer(*mesh) < step_rules.boundary * wanted && mesh->discretization().mesh->parents) mesh = mesh->parent();
     return std::make_shared<Problem>(mesh, model_, t);
   }
   if (!own.box || own.element.order == 2) return nullptr;

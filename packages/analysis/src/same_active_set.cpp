@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/same_active_set.hpp"
 
+#include "rpc/analysis/rules.hpp"
+
 #include <utility>
 
 namespace rpc::analysis
 {
-
-namespace
-{
-
-constexpr double most_left_by_rounding = 1e-3; // of the residual, for a step that rounding ends
-constexpr double same_residual = 0.1;          // so much of it is not of the active set's piece at most
-
-} // namespace
 
 SameActiveSet::Verdict SameActiveSet::judge(const solver::NewtonGroup &at)
 {
@@ -22,8 +16,8 @@ SameActiveSet::Verdict SameActiveSet::judge(const solver::NewtonGroup &at)
   Vector G(F.getMap());
   iterate_.active_set_gradient(solver::tpetra(at.getX()), F, G); // (5.6)
   G.update(-1., F, 1.);
-  const bool is_enough =
-      at.getNormF() <= most_left_by_rounding * norm_before_ && G.norm2() <= same_residual * at.getNormF();
+  const bool is_enough = at.getNormF() <= choice_rules.ended_by_rounding * norm_before_ &&
+                         G.norm2() <= choice_rules.same_residual * at.getNormF();
   return is_enough ? Verdict::converged : Verdict::over;
 }
 
@@ -34,8 +28,8 @@ SameActiveSet::Step SameActiveSet::propose(solver::NewtonGroup &group, Vector &d
   Vector G(F.getMap());
   iterate_.active_set_gradient(solver::tpetra(group.getX()), F, G); // (5.6)
   norm_before_ = G.norm2();
-  const auto solved =
-      solver::solve_for_direction(group.context(), G, direction, 0.1 * group.context().target_residual / norm_before_);
+  const auto solved = solver::solve_for_direction(
+      group.context(), G, direction, choice_rules.beside_target * group.context().target_residual / norm_before_);
   if (!solved.converged || !(direction.dot(F) > 0)) return Step::none;
   direction.scale(-1.);
   ++group.context().steps;

@@ -5,6 +5,7 @@
 
 #include "rpc/analysis/active_set.hpp"
 #include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/same_active_set.hpp"
 #include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/clearance.hpp"
@@ -123,10 +124,6 @@ namespace
 
 // Predict: the nearest of the given states, or what coarser meshes say ----------------------------------------------------
 
-// A start out of balance by less than this part of the load, and off the contact law by less than this part of the pressure, needs
-// no coarser mesh: states hardly change from there.
-constexpr double near_equilibrium = 1e-7;
-
 /// Starts from the state whose displacement and multipliers are nearest to equilibrium.
 /// @return whether that is so near that a prediction would be no better
 bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts)
@@ -152,8 +149,9 @@ bool start_from_nearest(Iterate &iterate, Vector &u, const Starts &starts)
     nearest = k;
   }
   if (nearest + 1 < states.size()) take(states[nearest]);
-  return !starts.predict || (least <= near_equilibrium * std::max(iterate.force_scale(), most) &&
-                             contact::contact_law_residual(iterate.points(), iterate.state(u)) <= near_equilibrium);
+  return !starts.predict ||
+         (least <= step_rules.near_equilibrium * std::max(iterate.force_scale(), most) &&
+          contact::contact_law_residual(iterate.points(), iterate.state(u)) <= step_rules.near_equilibrium);
 }
 
 /// @return its reason is why no coarser mesh predicted the start; empty if one did, or none was needed
@@ -181,11 +179,10 @@ Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &
 /// @return the number of solves
 int refine(const Iterate &iterate, Vector &u, SolverState &state)
 {
-  constexpr double tolerance = 1e-4;
   Vector F(u.getMap()), G(u.getMap()), move(u.getMap());
   iterate.gradient(u, F);
   iterate.active_set_gradient(u, F, G); // (5.6)
-  if (!(G.norm2() > 0) || !state.linear().solve(G, move, tolerance).converged) return 0;
+  if (!(G.norm2() > 0) || !state.linear().solve(G, move, double(step_rules.refinement)).converged) return 0;
   u.update(-1., move, 1.);
   return 1;
 }
@@ -195,7 +192,6 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
 Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options,
                                       const std::function<solver::MinimizeResult(solver::FirstStage *, int)> &run)
 {
-  constexpr int most_steps = 20; // short ones, where all points slip: the coupled choices get further from there
   int steps = 0, most = options.newton.max_iterations;
   if (solver::takes_first_stage(options.newton)) {
     const Vector start(u, Teuchos::Copy);
@@ -206,7 +202,7 @@ Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOpt
     steps = tried.steps;
     u.assign(start);
     iterate.take_dual(dual);
-    most = std::min(most, most_steps);
+    most = std::min<int>(most, step_rules.most_steps_of_bounds);
   }
   iterate.follow_bounds();
   auto result = run(nullptr, most);
@@ -255,8 +251,7 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
 /// accelerated sequences do not fall at each step.
 double residual_before(const std::vector<double> &worst, const bool bounds_follow)
 {
-  constexpr std::size_t patience = 6;
-  const std::size_t back = bounds_follow ? patience : 1;
+  const std::size_t back = bounds_follow ? static_cast<std::size_t>(step_rules.iterations_back) : 1;
   return worst.size() < back ? std::numeric_limits<double>::infinity() : worst[worst.size() - back];
 }
 

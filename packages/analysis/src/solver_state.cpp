@@ -2,6 +2,7 @@
 #include "rpc/analysis/solver_state.hpp"
 
 #include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/analysis/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +13,6 @@ namespace rpc::analysis
 namespace
 {
 
-// The iterations to 1e-8 that are expected of the mixed form, (4.14): too few to think of a sparse factor, whose symbolic factorization alone
-// takes as much time and memory as some of them.
-constexpr int expected_of_mixed = 30;
-// The mixed form has a sparse factor considered after so many iterations.
-constexpr int first_iterations = 40;
-// A step of the polynomial (4.15b), which the mixed form of order 1 has beside each cycle, takes so much of a CG iteration.
-constexpr double cost_of_step = 0.035;
-
 /// The CG iterations to 1e-8 that multigrid takes at least on a body of the largest nu of its blocks: smoothers of single nodes see no
 /// functions without divergence.                                                                                 (4.10b)
 ///
@@ -27,18 +20,21 @@ constexpr double cost_of_step = 0.035;
 double expected_iterations(const mesh::Mesh &mesh, const double nu)
 {
   const double to_go = 1 - 2 * nu;
-  if (mesh.element.order > 1 || mesh.element.shape != mesh::Shape::simplex) return 4 * std::pow(to_go, -0.5);
-  const double square = 6 * std::pow(to_go, -0.5);
-  constexpr double stretched = 1.7; // as for coarser boxes
-  return mesh.box && mesh::stretch(*mesh.box) > stretched ? std::max(square, 3 * std::pow(to_go, -0.75)) : square;
+  if (mesh.element.order > 1 || mesh.element.shape != mesh::Shape::simplex)
+    return linear_rules.expected * std::pow(to_go, -0.5);
+  const double square = linear_rules.expected_of_p1 * std::pow(to_go, -0.5);
+  return mesh.box && mesh::stretch(*mesh.box) > linear_rules.stretched
+             ? std::max(square, linear_rules.expected_of_stretched * std::pow(to_go, -0.75))
+             : square;
 }
 
 /// The iterations of the mixed form. Of order 1, in the plane and on meshes from files, CG iterations are counted that take the same time: a
 /// sparse factor may take less.                                                                                  (4.10d)
 double expected_of_mixed_form(const mesh::Mesh &mesh, const double nu)
 {
-  if (mesh.element.order == 2 || (mesh.dim() == 3 && mesh.box)) return expected_of_mixed;
-  return expected_of_mixed * (1 + cost_of_step * solver::degree_for_pressures(1 / (1 - 2 * nu)));
+  if (mesh.element.order == 2 || (mesh.dim() == 3 && mesh.box)) return linear_rules.expected_of_mixed;
+  return linear_rules.expected_of_mixed *
+         (1 + linear_rules.cost_of_step * solver::degree_for_pressures(1 / (1 - 2 * nu)));
 }
 
 /// Of what rough solves may leave: pressures err by more than displacements do where a body is nearly incompressible, and states are chosen
@@ -47,7 +43,7 @@ double expected_of_mixed_form(const mesh::Mesh &mesh, const double nu)
 ///     ((1 - 2 nu) / 0.002)^(1/2),  1 at most
 double rough_part(const double nu)
 {
-  return std::min(1., std::sqrt((1 - 2 * nu) / 0.002));
+  return std::min(1., std::sqrt((1 - 2 * nu) / linear_rules.rough_incompressible));
 }
 
 /// Prolongators of quadratic elements want more smoothing: 32 to 35 instead of 34 to 37 iterations on the beam (P2).
@@ -55,13 +51,13 @@ solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Pro
 {
   const fem::Discretization &d = problem.discretization();
   const fem::Materials &materials = problem.model().materials;
-  if (d.mesh->element.order == 2) options.damping = 1.6;
+  if (d.mesh->element.order == 2) options.damping = linear_rules.damping_order_two;
   if (d.kinematics == fem::Kinematics::plane_stress) return options; // nothing is nearly incompressible
   const double nu = largest_ratio(d, materials);
   options.expected_iterations = expected_iterations(*d.mesh, nu);
   if (is_mixed) {
     options.expected_iterations = expected_of_mixed_form(*d.mesh, nu);
-    options.first_iterations = std::max(options.first_iterations, first_iterations);
+    options.first_iterations = std::max<int>(options.first_iterations, linear_rules.first_iterations);
   }
   options.rough_part = rough_part(nu);
   return options;

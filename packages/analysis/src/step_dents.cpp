@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step_dents.hpp"
 
+#include "rpc/analysis/rules.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/parallel.hpp"
 
@@ -8,8 +9,6 @@ namespace rpc::analysis
 {
 namespace
 {
-
-constexpr double dents_settled = 1e-7; // of the deepest dent
 
 /// Dents of nodes that are no contact points now, since their normals miss the obstacle, stay as they are.
 void keep_dents_elsewhere(const contact::ContactNodes &contact, const MultiVector &before, MultiVector &now)
@@ -94,7 +93,7 @@ bool settled(const MultiVector &used, const MultiVector &met, const std::vector<
   MultiVector change(met, Teuchos::Copy);
   change.update(-1., used, 1.);
   for (std::size_t k = 0; k < foundations.size(); ++k)
-    if (change.getVector(k)->normInf() > dents_settled * foundations[k].deepest) return false;
+    if (change.getVector(k)->normInf() > step_rules.dents_settled * foundations[k].deepest) return false;
   return true;
 }
 

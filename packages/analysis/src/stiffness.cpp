@@ -2,6 +2,7 @@
 #include "rpc/analysis/stiffness.hpp"
 
 #include "rpc/analysis/mesh_levels.hpp"
+#include "rpc/analysis/rules.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/fem/soft_dilatation.hpp"
 
@@ -22,9 +23,9 @@ struct Split {
 /// constant in tetrahedra. In tetrahedra equations for alternating pressures pay where nu is above 0.495 only.       (4.13)
 Split split_of(const mesh::Element &element, const double nu)
 {
-  constexpr double soft = 0.4, soft_tetrahedra = 0.47, pays_above = 0.495, softer_tetrahedra = 0.45;
-  if (element.dim == 2 || element.shape != mesh::Shape::simplex) return {soft, element.order == 1};
-  return nu > pays_above ? Split{softer_tetrahedra, true} : Split{soft_tetrahedra, false};
+  if (element.dim == 2 || element.shape != mesh::Shape::simplex) return {linear_rules.soft, element.order == 1};
+  return nu > linear_rules.pays_above ? Split{linear_rules.softer_tetrahedra, true}
+                                      : Split{linear_rules.soft_tetrahedra, false};
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/uzawa.hpp"
 
+#include "rpc/analysis/rules.hpp"
 #include "rpc/core/causes.hpp"
 #include "rpc/core/interrupt.hpp"
 
@@ -12,11 +13,6 @@ namespace rpc::analysis
 {
 namespace
 {
-
-constexpr double fast = 0.1; // an update that leaves more of the largest residual calls for a higher penalty
-constexpr double of_rounding =
-    10; // forces out of balance by so many times what rounding makes are rounding; doc/robustness.md
-constexpr double fast_with_bounds = 0.8; // the same of some updates of friction's bounds
 
 std::string verdict(const UzawaResult &result, const UzawaOptions &options)
 {
@@ -61,13 +57,13 @@ bool is_over(UzawaResult &result, const Minimization &found, const double previo
     return true;
   }
   const double worst = result.residuals.worst();
-  const double good = found.bounds_follow ? fast_with_bounds : fast;
+  const double good = found.bounds_follow ? step_rules.fast_with_bounds : step_rules.fast;
   const bool slow = result.iterations > 1 && !(worst <= good * previous && std::isfinite(worst));
   const bool raised = slow && !found.bounds_follow && raise_penalty(); // (5.12)
   // A minimization that stopped at the rounding of an ill-conditioned scene is good enough to go on from, while that helps.
   if ((slow && !raised) || std::isnan(worst)) {
     const double unbalanced = result.residuals.equilibrium_residual;
-    if (unbalanced > options.tolerance && unbalanced <= of_rounding * rounding())
+    if (unbalanced > options.tolerance && unbalanced <= step_rules.of_rounding * rounding())
       return ends(false, because(causes::rounding));
     return ends_with(found.bounds_follow ? causes::stuck_by_friction : causes::stuck);
   }

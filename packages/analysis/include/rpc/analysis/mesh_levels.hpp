@@ -16,10 +16,7 @@ solver::Body body_of(const fem::Discretization &d);
 /// The largest Poisson's ratio of the blocks.
 double largest_ratio(const fem::Discretization &d, const fem::Materials &materials);
 
-/// Poisson's ratio of nearly incompressible bodies, above which they have solvers of their own.                (4.13)
-constexpr double nearly_incompressible = 0.48;
-
-/// Whether some block has a Poisson's ratio above that, for order 1 above 0.485, outside plane stress.        (4.13)
+/// Whether some block has a Poisson's ratio from which bodies have solvers of their own, by `LinearRules`, outside plane stress.    (4.13)
 bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials);
 
 /// Levels of multigrid on the meshes that a mesh leads to, down to a few hundred unknowns; the mesh itself where it leads to none. Collective.

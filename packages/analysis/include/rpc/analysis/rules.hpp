@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/core/kokkos.hpp"
+#include "rpc/core/rule.hpp"
+
+namespace rpc::analysis
+{
+
+// A rule, a line:
+// clang-format off
+
+/// How states of contact are chosen, when their choice goes over to another method, and how well the solves between choices are made.
+/// A choice is an update of the active set; overshoot is the ratio of inadmissible to admissible contact forces. doc/theory.md (5.7) to (5.9)
+struct ChoiceRules {
+  // When choices by pressures end
+  Rule<int> most_idle{6, "choice.most_idle", "choices without progress [-]", "theory.md (5.8a): 417 random thin bodies"};
+  Rule<int> most_changes{10, "choice.most_changes", "choices with friction, with progress or not [-]", "not measured"};
+  Rule<int> most_changes_tried{3, "choice.most_changes_tried", "the same after a Tresca problem [-]", "not measured"};
+  Rule<int> most_changes_resumed{30, "choice.most_changes_resumed",
+                                 "choices without progress after Newton's steps were blocked at kinks [-]",
+                                 "not measured; slender bodies need them"};
+  Rule<int> most_visits{3, "choice.most_visits", "visits of one active set, friction in space: slip has turned meanwhile [-]", "not measured"};
+  Rule<double> first_part{0.5, "choice.first_part", "part of the changes that is tried first where an active set with friction came back [-]",
+                          "not measured"};
+  Rule<double> most_left{10, "choice.most_left", "predicted changes to go that count as progress [choices]",
+                         "theory.md (5.8a): 417 random thin bodies"};
+  Rule<double> most_left_creeping{4, "choice.most_left_creeping", "the same by the speed at which the contact edge moves [choices]",
+                                  "theory.md (5.8a): 417 random thin bodies"};
+  Rule<int> fewest_to_tell{4, "choice.fewest_to_tell", "choices before a slow edge may end them [-]", "theory.md (5.8a): 417 random thin bodies"};
+  Rule<double> much{0.5, "choice.much", "overshoot with which a choice without progress counts twice, and a coarser mesh chooses [-]",
+                    "theory.md (5.8a): bodies of equal sides stay below"};
+  Rule<double> far_too_much{1, "choice.far_too_much", "overshoot that ends choices [-]", "theory.md (5.8a): 417 random thin bodies"};
+  Rule<double> far_too_much_of_rubber{10, "choice.far_too_much_of_rubber", "the same of nearly incompressible bodies [-]", "not measured"};
+  Rule<GO> few_changes{5, "choice.few_changes", "changed points up to which overshoot ends nothing [-]", "theory.md (5.8a): 417 random thin bodies"};
+  // Where an active set is confirmed
+  Rule<int> most_updates{2, "choice.most_updates", "multiplier updates at the end, even if pressures miss their tolerance then [-]", "not measured"};
+  Rule<double> idle_residual{0.5, "choice.idle_residual", "residual over the least before: a step that leaves more is idle [-]", "not measured"};
+  Rule<int> most_idle_turns{4, "choice.most_idle_turns", "idle steps in a row, friction in space [-]", "not measured"};
+  Rule<double> negligible{1e-3, "choice.negligible", "violations that change no state, over the tolerance of pressures [-]", "not measured"};
+  // When a coarser mesh chooses
+  Rule<int> steps_before_coarse{4, "choice.steps_before_coarse", "steps before a coarser mesh chooses without overshoot [-]", "not measured"};
+  Rule<double> one_more{1, "choice.one_more", "predicted changes to go above which it does [choices]", "not measured"};
+  Rule<int> most_coarse{25, "choice.most_coarse", "choices by a coarser mesh [-]", "not measured"};
+  Rule<int> most_idle_coarse{3, "choice.most_idle_coarse", "of these in a row without fewer changes than before [-]", "not measured"};
+  Rule<GO> most_coarse_unknowns{60'000, "choice.most_coarse_unknowns", "unknowns of the coarser mesh, whose stiffness rank 0 holds [-]",
+                                "not measured"};
+  Rule<GO> most_pairs{30'000'000, "choice.most_pairs", "pairs of unknowns of the coarser mesh's points, for memory [-]", "not measured"};
+  Rule<double> model_seconds{1, "choice.model_seconds", "time of a factor of the coarser mesh [s]", "not measured"};
+  Rule<double> model_solves{
+      on_gpu ? 10. : 1., "choice.model_solves",
+      "the same, over a solve of the fine mesh by the cost model; a GPU's model leaves out levels on the host [-]",
+      "measured on thin bodies on a GPU, not recorded"};
+  Rule<double> least_missing{1e-2, "choice.least_missing", "energy that the model misses of a change, over all of it, to learn from [-]",
+                             "theory.md (5.8d): what inexact solves leave"};
+  Rule<double> part_of_scale{0.25, "choice.part_of_scale", "scale of the coarser mesh's compliance over the least observed one [-]",
+                             "theory.md (5.8d)"};
+  Rule<int> model_steps{20, "choice.model_steps", "Newton steps of the model before its interior path, and after it [-]",
+                        "theory.md (5.8f): ten in the mean"};
+  // When Newton's method hands over
+  Rule<int> most_short_steps{3, "choice.most_short_steps", "Newton steps that ended at a kink at once: blocked [-]", "not measured"};
+  Rule<double> left_per_step{0.5, "choice.left_per_step", "part of the way that a Newton step may leave in the mean, else it is slow [-]",
+                             "theory.md (5.9a)"};
+  Rule<int> most_confirmations{5, "choice.most_confirmations", "returns from Newton's method to choices [-]", "not measured"};
+  Rule<double> ended_by_rounding{1e-3, "choice.ended_by_rounding",
+                                 "residual over that before the step for the last active set: the step is enough [-]", "not measured"};
+  Rule<double> same_residual{0.1, "choice.same_residual", "part of that residual that other states make [-]", "not measured"};
+  // Inexact solves
+  Rule<double> forcing{5e-3, "choice.forcing", "residual of a solve while states change, over that before and the load [-]",
+                       "theory.md (5.9): 1e-1 is too rough to choose by, 1e-4 saves no step"};
+  Rule<double> rough_error{2e-4, "choice.rough_error", "error in energy that is enough instead [-]",
+                           "theory.md (5.9): 1e-2 costs thin bodies half a step"};
+  Rule<double> coarse_error{1e-8, "choice.coarse_error", "the same where a coarser mesh chooses, which would learn the error [-]", "not measured"};
+  Rule<double> enough{0.3, "choice.enough", "last solve's residual over the tolerance: recomputed it is larger [-]", "not measured"};
+  Rule<double> beside_target{0.1, "choice.beside_target", "the same of the step for the last active set, over Newton's tolerance [-]",
+                             "not measured"};
+};
+inline constexpr_rules ChoiceRules choice_rules;
+
+/// The interior-point method, on the body and on the coarser mesh that chooses states. doc/theory.md (5.15) to (5.20), (5.8f)
+struct PathRules {
+  Rule<int> most_steps{50, "path.most_steps", "steps on the body [-]", "not measured"};
+  Rule<double> error{0.1, "path.error", "error in energy of a linear solve [-]",
+                     "0.03 saves no step; a residual tells nothing of how far a thin body has bent"};
+  Rule<double> forcing{1e-2, "path.forcing", "residual of a linear solve over its right side [-]", "not measured"};
+  Rule<int> most_centerings{2, "path.most_centerings", "corrections that centre a step (5.19a) [-]", "not measured"};
+  Rule<double> long_enough{0.9, "path.long_enough", "length from which a step is not centred [-]", "not measured"};
+  Rule<double> least_gain{0.03, "path.least_gain", "length gained from which a step is centred once more [-]", "not measured"};
+  Rule<double> first_trial{1e-2, "path.first_trial", "complementarity gap, relative, below which settled states are tried [-]", "not measured"};
+  Rule<double> next_trial{1e-2, "path.next_trial", "the same after a trial, over the gap of that [-]", "not measured"};
+  Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
+  Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
+  Rule<int> model_steps{40, "path.model_steps", "steps on the coarser mesh [-]", "ten to eighteen are needed"};
+  Rule<double> start_load{3, "path.start_load", "pressure at the start over the mean pressure [-]", "theory.md (5.16)"};
+  Rule<double> model_gap{3e-6, "path.model_gap", "gap that ends the path on the coarser mesh [-]", "not measured"};
+  Rule<double> early_model_gap{3e-5, "path.early_model_gap", "the same where the last step has changed no state [-]", "not measured"};
+};
+inline constexpr_rules PathRules path_rules;
+
+/// Uzawa's iteration, load steps and their halvings, predictions on coarser meshes.
+struct StepRules {
+  // Uzawa's iteration
+  Rule<double> fast{0.1, "step.fast", "worst residual over the one before; above, penalties rise [-]",
+                    "theory.md (5.12)"};
+  Rule<double> fast_with_bounds{0.8, "step.fast_with_bounds", "the same of step.iterations_back iterations, friction's bounds follow [-]",
+                                "not measured"};
+  Rule<int> iterations_back{6, "step.iterations_back",
+                            "iterations back to compare with where friction's bounds follow [-]",
+                            "accelerated sequences do not fall at each step; not measured"};
+  Rule<double> of_rounding{10, "step.of_rounding", "unbalanced forces over what rounding makes: the end is due to it [-]", "robustness.md"};
+  Rule<int> most_steps_of_bounds{20, "step.most_steps_of_bounds", "Newton steps with given bounds of friction [-]", "not measured"};
+  Rule<double> refinement{1e-4, "step.refinement", "residual of the solve that refines [-]", "not measured"};
+  // Load steps
+  Rule<int> most_searches{8, "step.most_searches", "solves for the dents that points meet [-]", "two to four are needed"};
+  Rule<double> dents_settled{1e-7, "step.dents_settled", "change of dents over the deepest that ends them [-]", "not measured"};
+  Rule<double> helpful{0.9, "step.helpful",
+                       "energy missed by a half over that of the whole; above, halving is in vain [-]", "not measured"};
+  Rule<int> most_in_vain{5, "step.most_in_vain", "halvings in vain in a row [-]", "not measured"};
+  Rule<int> most_attempts{5, "step.most_attempts", "attempts at a step, each with a lower tolerance of its parts [-]", "not measured"};
+  Rule<double> part_of_tolerance{0.5, "step.part_of_tolerance", "of the tolerance that the parts of the next attempt aim at [-]", "not measured"};
+  // Predictions
+  Rule<double> near_equilibrium{1e-7, "step.near_equilibrium",
+                                "unbalanced forces over the load, residual of the contact law: no prediction is needed [-]", "not measured"};
+  Rule<GO> least_nodes_predicted{500, "step.least_nodes_predicted", "nodes below which a prediction costs as much as a solution [-]", "not measured"};
+  Rule<int> most_steps_predicting{40, "step.most_steps_predicting", "Newton steps on a coarser mesh [-]", "not measured"};
+  Rule<GO> fewest_points_telling{50, "step.fewest_points_telling", "contact points of a coarser mesh that tells which method to begin with [-]",
+                                 "theory.md (5.11)"};
+  Rule<double> boundary{0.65, "step.boundary", "growth of cells over that by numbers of nodes: boundaries have more [-]", "not measured"};
+};
+inline constexpr_rules StepRules step_rules;
+
+/// What a body's kind tells its linear solver: coarse meshes, mixed form, iterations to expect.
+struct LinearRules {
+  // Coarse meshes
+  Rule<GO> few_2d{800, "linear.few_2d", "unknowns that coarser boxes end at, in the plane [-]", "not measured"};
+  Rule<GO> few_3d{400, "linear.few_3d", "the same in space [-]", "not measured"};
+  Rule<GO> most_factored_2d{2800, "linear.most_factored_2d", "unknowns of a coarsest mesh that is factored, in the plane [-]", "not measured"};
+  Rule<GO> most_factored_3d{5200, "linear.most_factored_3d", "the same in space [-]", "not measured"};
+  Rule<GO> least_nodes_of_rank{on_gpu ? 200'000 : 2000, "linear.least_nodes_of_rank", "nodes of a coarse box on each of its ranks [-]",
+                               "measured, not recorded"};
+  // Nearly incompressible bodies
+  Rule<double> mixed_order_one{0.485, "linear.mixed_order_one", "Poisson's ratio above which order 1 takes the mixed form [-]",
+                               "theory.md (4.13), in space"};
+  Rule<double> mixed_order_two{0.48, "linear.mixed_order_two", "the same of order 2 [-]", "theory.md (4.13)"};
+  Rule<double> soft{0.4, "linear.soft", "Poisson's ratio of the soft part of K [-]", "theory.md (4.13)"};
+  Rule<double> soft_tetrahedra{0.47, "linear.soft_tetrahedra", "the same in tetrahedra [-]", "theory.md (4.13)"};
+  Rule<double> pays_above{0.495, "linear.pays_above", "Poisson's ratio above which tetrahedra have equations for alternating pressures [-]",
+                          "theory.md (4.15a)"};
+  Rule<double> softer_tetrahedra{0.45, "linear.softer_tetrahedra", "the soft part's where they have [-]", "theory.md (4.15a)"};
+  // Iterations to expect, to 1e-8
+  Rule<double> expected_of_mixed{30, "linear.expected_of_mixed", "of the mixed form [CG iterations]", "theory.md (4.10d)"};
+  Rule<double> cost_of_step{0.035, "linear.cost_of_step", "step of the polynomial for pressures [CG iterations]", "theory.md (4.10d)"};
+  Rule<int> first_iterations{40, "linear.first_iterations", "iterations of the mixed form before a sparse factor is considered [-]", "not measured"};
+  Rule<double> expected{4, "linear.expected", "of other bodies, times (1 - 2 nu)^(-1/2) [CG iterations]", "theory.md (4.10b)"};
+  Rule<double> expected_of_p1{6, "linear.expected_of_p1", "the same of P1 [CG iterations]", "theory.md (4.10b)"};
+  Rule<double> expected_of_stretched{3, "linear.expected_of_stretched", "of stretched P1, times (1 - 2 nu)^(-3/4) [CG iterations]",
+                                     "theory.md (4.10b)"};
+  Rule<double> stretched{1.7, "linear.stretched", "ratio of cell lengths from which cells are stretched [-]", "as for coarser boxes"};
+  Rule<double> rough_incompressible{0.002, "linear.rough_incompressible", "1 - 2 nu below which solves while states change are better [-]",
+                                    "theory.md (5.9b)"};
+  Rule<double> damping_order_two{1.6, "linear.damping_order_two", "damping of MueLu's prolongators at order 2 [-]",
+                                 "the beam of P2: 32 to 35 iterations, 34 to 37 without"};
+};
+inline constexpr_rules LinearRules linear_rules;
+
+} // namespace rpc::analysis
