@@ -17,6 +17,12 @@ namespace
 
 constexpr double rounding = 1e-13; // of the largest pressure: violations below change no state
 
+/// Choices, of which so many may make no progress.
+Headway within(const int most)
+{
+  return Headway({1, Headway::unlimited, most});
+}
+
 } // namespace
 
 // The active set: chosen by the last pressures, until a choice confirms itself --------------------------------------------
@@ -28,13 +34,14 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
                                                        : choice_rules.far_too_much),
       start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
-      rubs_(iterate_.points().friction.anywhere), then_(then), most_idle_(choice_rules.most_idle),
-      trial_gap_(path_rules.first_trial)
+      rubs_(iterate_.points().friction.anywhere), then_(then), headway_(within(choice_rules.most_idle)),
+      confirmed_headway_({choice_rules.idle_residual, 0}), trial_gap_(path_rules.first_trial)
 {
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
-  most_idle_ = then == Then::nothing ? choice_rules.most_changes_tried : choice_rules.most_changes;
+  confirmed_headway_ = Headway({choice_rules.idle_residual, turns_ ? choice_rules.most_idle_turns : 0});
+  headway_ = within(then == Then::nothing ? choice_rules.most_changes_tried : choice_rules.most_changes);
 }
 
 void ActiveSetStage::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
@@ -92,10 +99,8 @@ void ActiveSetStage::take_over(const Vector &u, const int most)
 void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, const int most)
 {
   choice_ = std::move(choice);
-  seen_.clear();
   choices_ = 1; // the first one of all has no solve before it
-  idle_ = 0;
-  most_idle_ = most;
+  headway_ = within(most);
   fewest_changes_ = 0;
   left_ = std::numeric_limits<double>::infinity();
   levers_ = {};
@@ -114,12 +119,12 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
     confirmed_ = solved_well && (iterate_.pressure_error(u) <= pressure_tolerance_ ||
                                  ++updates_ > choice_rules.most_updates); // (5.10)
     // Rounding may end progress below: where the foundation's forces are many times the load, F grows and falls with each step.
-    const bool idle = steps_ > 0 && !rough_ && !solved_well &&
-                      !(norm_ < choice_rules.idle_residual * std::min(before_, confirmed_norm_));
-    idle_steps_ = idle ? idle_steps_ + 1 : 0;
+    const bool tells = steps_ > 0 && !rough_ && !solved_well;
+    const auto answer =
+        tells ? confirmed_headway_.add(norm_, std::min(before_, confirmed_norm_)) : confirmed_headway_.take(true);
     if (!rough_) confirmed_norm_ = norm_;
     if (confirmed_) return Verdict::converged;
-    if (idle_steps_ > (turns_ ? choice_rules.most_idle_turns : 0)) return Verdict::over;
+    if (answer == Headway::Answer::stuck) return Verdict::over;
     rough_ = false;
   } else if (coarse_) {
     if (!choose_by_coarse_mesh(u)) return give_up(u);
@@ -136,18 +141,18 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
 /// Whether the choice has not been taken before. With friction a part of the changes may be new where all of them are not.
 bool ActiveSetStage::is_new_choice()
 {
-  const int visits = seen_[choice_->fingerprint]++;
-  if (visits == 0) return true;
+  using Answer = Headway::Answer;
+  if (headway_.visit(choice_->fingerprint, turns_ ? choice_rules.most_visits : 1) != Answer::cycle) return true;
   if (!rubs_) { // what rough solves leave may decide; by good ones hardly a point goes to and fro
     if (!rough_) return false;
     rough_ = false;
-    seen_ = {{choice_->fingerprint, 1}};
+    headway_.forget_visits();
+    headway_.visit(choice_->fingerprint);
     return true;
   }
-  if (turns_ && visits < choice_rules.most_visits) return true;
   for (const double part : {double(choice_rules.first_part), 1.}) {
     choice_ = iterate_.largest_changes(*choice_, part);
-    if (choice_->changes > 0 && seen_[choice_->fingerprint]++ == 0) return true;
+    if (choice_->changes > 0 && headway_.visit(choice_->fingerprint) == Answer::progress) return true;
   }
   return false;
 }
@@ -156,7 +161,7 @@ bool ActiveSetStage::is_new_choice()
 bool ActiveSetStage::may_settle()
 {
   const int before = choices_++;
-  if (rubs_) return ++idle_ <= most_idle_;
+  if (rubs_) return headway_.take(false) != Headway::Answer::stuck;
   const GO changes = choice_->changes;
   const double overshoot = choice_->overshoot, infinity = std::numeric_limits<double>::infinity();
   const double lever = overshoot < 1 ? overshoot / (1 - overshoot) : infinity;
@@ -171,8 +176,7 @@ bool ActiveSetStage::may_settle()
   const bool tells = predicted_ || before > 1;
   if (tells && changes > choice_rules.few_changes && overshoot > most_overshoot_) return false;
   if (creeps && !is_near && !contracts && before >= choice_rules.fewest_to_tell) return false;
-  if (!contracts && !is_near) idle_ += overshoot > choice_rules.much ? 2 : 1;
-  return idle_ <= most_idle_;
+  return headway_.take(contracts || is_near, overshoot > choice_rules.much ? 2 : 1) != Headway::Answer::stuck;
 }
 
 /// Whether it is time for choices by a coarser mesh.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/coarse_choice.hpp"
 
-#include "rpc/analysis/rules.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/on_root.hpp"
@@ -171,19 +170,12 @@ std::unique_ptr<CoarseChoice> CoarseChoice::make(const Problem &coarse, const fe
   return std::unique_ptr<CoarseChoice>(new CoarseChoice(comm, std::move(points), std::move(model)));
 }
 
-/// Whether choices may come to an end soon. What pressures would change before the first of them does not tell.
-bool CoarseChoice::may_settle(const contact::ActiveSetChoice &present)
-{
-  const bool gains = choices_ < 2 || present.changes < fewest_changes_;
-  in_vain_ = gains ? 0 : in_vain_ + 1;
-  if (gains) fewest_changes_ = present.changes;
-  return choices_++ < choice_rules.most_coarse && in_vain_ <= choice_rules.most_idle_coarse;
-}
-
 std::optional<contact::ActiveSetChoice> CoarseChoice::choose(const contact::Iterate &iterate,
                                                              const contact::ActiveSetChoice &present, const Vector &u)
 {
-  if (!may_settle(present)) return {};
+  // What pressures would change before the first choice does not tell.
+  const auto answer = headway_.count() == 0 ? headway_.take(true) : headway_.add(static_cast<double>(present.changes));
+  if (answer == Headway::Answer::stuck) return {};
   const auto v = to_host(contact::penetrations(iterate.functional().points().points, u)), p = to_host(present.pressure);
   const auto picked = [&](const auto &values) {
     std::vector<double> mine;

@@ -3,6 +3,7 @@
 
 #include "rpc/analysis/rules.hpp"
 #include "rpc/contact/law/interior.hpp"
+#include "rpc/core/headway.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,14 +37,14 @@ public:
   {
     if (!(load_ > 0 && length_ > 0)) return false;
     join();
-    for (int step = 0, short_steps = 0; step < path_rules.model_steps; ++step) {
+    Headway lengths({1, contact::many_short_steps - 1});
+    for (int step = 0; step < path_rules.model_steps; ++step) {
       const double t = advance();
       if (!(t > 0)) return false;
       const double gap = products_ / (load_ * area_ * length_);
       if (gap <= path_rules.model_gap || (settled_ && gap <= path_rules.early_model_gap)) return true;
-      short_steps = t < contact::short_step ? short_steps + 1 : 0;
-      if (short_steps < contact::many_short_steps) continue;
-      short_steps = 0;
+      if (lengths.take(!(t < contact::short_step)) != Headway::Answer::stuck) continue;
+      lengths.start_over();
       load_ *= contact::more_pressure;
       join();
     }

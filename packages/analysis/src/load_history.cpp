@@ -2,7 +2,6 @@
 #include "rpc/analysis/load_history.hpp"
 
 #include "rpc/analysis/quantities.hpp"
-#include "rpc/analysis/rules.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/fem/rounding.hpp"
@@ -130,15 +129,14 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   const Remembered before = kept_;
   const Energies energies_before = kept_.memory ? kept_.memory->energies : Energies{};
   StepSolution s;
-  double tolerance = energy_tolerance_, least = std::numeric_limits<double>::infinity();
-  for (int attempt = 1;; ++attempt) {
+  double tolerance = energy_tolerance_;
+  Headway attempts({step_rules.helpful, 0, Headway::unlimited, step_rules.most_attempts - 1});
+  while (true) {
     last_.parts = 0; // counted as they are solved
     s = advance_in_parts(t, {max_halvings_, balance_halvings_, std::max(max_halvings_, balance_halvings_), tolerance},
                          progress, now);
     const double off = s.uzawa.converged ? share_missed(energies_before, s, energy_tolerance_) : 0;
-    const bool in_vain = attempt == step_rules.most_attempts || last_.parts == 1 || off > step_rules.helpful * least;
-    if (!(off > energy_tolerance_) || in_vain) break;
-    least = off;
+    if (!(off > energy_tolerance_) || last_.parts == 1 || attempts.add(off) == Headway::Answer::stuck) break;
     tolerance *= step_rules.part_of_tolerance * energy_tolerance_ / off; // what parts miss adds up
     kept_ = before;                                                      // as if what came after had not been tried
   }
@@ -200,11 +198,9 @@ StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, 
   const bool may_halve = then.all-- > 0;
   if (s.uzawa.converged) {
     const Energies start = before.memory ? before.memory->energies : Energies{}, &end = kept_.memory->energies;
-    const double missed = std::abs(end.imbalance - start.imbalance);
-    then.in_vain = missed < step_rules.helpful * left.missed ? 0 : left.in_vain + 1;
-    then.missed = std::min(missed, left.missed);
-    if (!(share_missed(start, s, left.tolerance) > left.tolerance) || !may_halve ||
-        then.in_vain > step_rules.most_in_vain || then.balance-- == 0)
+    const auto answer = then.headway.add(std::abs(end.imbalance - start.imbalance));
+    if (!(share_missed(start, s, left.tolerance) > left.tolerance) || !may_halve || answer == Headway::Answer::stuck ||
+        then.balance-- == 0)
       return s;
   } else if (!may_halve || then.failures-- == 0 || interrupted(problem_->discretization().mesh->comm())) {
     return s;
@@ -239,12 +235,13 @@ StepSolution LoadHistory::solve(const double t, const StepOptions &options, cons
   Starts starts = starts_of(step);
   ++last_.parts;
   StepSolution s;
-  for (int search = 1;; ++search) {
+  Headway searches({1, Headway::unlimited, Headway::unlimited, step_rules.most_searches - 1});
+  while (true) {
     s = solve_step(*problem_, step, *state_, options, starts, progress);
     ++last_.solves;
     add_work(s, last_);
     if (!s.uzawa.converged) return s;
-    if (!on_foundation || search == step_rules.most_searches) break;
+    if (!on_foundation || searches.take(true) == Headway::Answer::stuck) break;
     const auto next = met_at(*s.u);
     if (settled(*met, *next, kept_.memory->foundations)) break;
     met = next;

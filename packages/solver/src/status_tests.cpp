@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "status_tests.hpp"
 
+#include "rpc/core/headway.hpp"
 #include "rpc/core/interrupt.hpp"
 
 #include <NOX.H>
 #include <NOX_StatusTest_Factory.H>
-#include <algorithm>
-#include <set>
 #include <utility>
 
 namespace rpc::solver
@@ -53,12 +52,10 @@ public:
   {
     const auto &group = solver.getSolutionGroup();
     const auto piece = context_->functional.piece(tpetra(group.getX()));
-    const bool falls = solver.getNumIterations() == 0 || group.getNormF() < 0.9 * least_residual_;
-    const bool same = piece == piece_ && context_->step_length > 0.5;
-    idle_steps_ = same && !falls ? idle_steps_ + 1 : 0;
-    status_ = idle_steps_ >= 2 ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
-    least_residual_ = falls || !same ? group.getNormF() : std::min(least_residual_, group.getNormF());
-    if (piece != piece_ && !seen_.insert(piece).second) ++context_->returns;
+    if (solver.getNumIterations() == 0 || piece != piece_ || !(context_->step_length > 0.5)) headway_.start_over();
+    const bool stuck = headway_.add(group.getNormF()) == Headway::Answer::stuck;
+    status_ = stuck ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
+    if (piece != piece_ && headway_.visit(piece) != Headway::Answer::progress) ++context_->returns;
     piece_ = piece;
     context_->stagnates = status_ == NOX::StatusTest::Failed;
     return status_;
@@ -71,10 +68,8 @@ public:
 
 private:
   RCP<NewtonContext> context_;
-  double least_residual_ = 0; // since the piece last changed
   std::uint64_t piece_ = 0;
-  std::set<std::uint64_t> seen_;
-  int idle_steps_ = 0;
+  Headway headway_{{0.9, 1}}; // of residuals, since the piece last changed
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 

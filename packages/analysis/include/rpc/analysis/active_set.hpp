@@ -4,12 +4,11 @@
 #include "rpc/analysis/coarse_choice.hpp"
 #include "rpc/analysis/solve_step.hpp"
 #include "rpc/contact/iterate.hpp"
+#include "rpc/core/headway.hpp"
 #include "rpc/solver/first_stage.hpp"
 
 #include <array>
-#include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
 
 namespace rpc::analysis
@@ -81,7 +80,6 @@ private:
   double scale_, target_;                          // of forces, and |F|_2 that is small enough [N]
   double pressure_tolerance_;                      // over the largest pressure
   double most_overshoot_;                          // of forces, before choices end
-  std::map<std::uint64_t, int> seen_;              // fingerprints of active sets
   std::optional<contact::ActiveSetChoice> choice_; // at the present point
   Vector start_;                                   // to go back to, with
   contact::Iterate::Dual start_dual_;              // its multipliers
@@ -103,11 +101,11 @@ private:
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set
   double solve_seconds_ = 0;   // about what the last solve took
   int steps_ = 0;
-  int updates_ = 0;          // of the multipliers alone, the active set being confirmed
-  int idle_steps_ = 0;       // of a confirmed active set, one after the other, that left more than half of F
-  int choices_ = 0;          // since the start, or since the path
-  int idle_ = 0, most_idle_; // of these, that make no headway; those with much overshoot count twice
-  GO fewest_changes_ = 0;    // fewest points that one of them has changed; 0: there was none
+  int updates_ = 0;           // of the multipliers alone, the active set being confirmed
+  int choices_ = 0;           // since the start, or since the path
+  Headway headway_;           // of these; those with much overshoot count twice
+  Headway confirmed_headway_; // of steps of a confirmed active set
+  GO fewest_changes_ = 0;     // fewest points that one of them has changed; 0: there was none
   double left_ = std::numeric_limits<double>::infinity(); // so many more would follow at this rate
   std::array<double, 3> levers_{}; // of the last ones, the last one first: overshoot o as o / (1 - o)
   enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method

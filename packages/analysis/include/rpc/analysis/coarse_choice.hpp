@@ -3,7 +3,9 @@
 
 #include "rpc/analysis/coarse_model.hpp"
 #include "rpc/analysis/problem.hpp"
+#include "rpc/analysis/rules.hpp"
 #include "rpc/contact/iterate.hpp"
+#include "rpc/core/headway.hpp"
 
 #include <functional>
 #include <memory>
@@ -35,13 +37,11 @@ public:
 private:
   CoarseChoice(RCP<const Comm> comm, std::vector<LO> points, std::optional<CoarseModel> model);
 
-  bool may_settle(const contact::ActiveSetChoice &present);
-
   RCP<const Comm> comm_;
   std::vector<LO> points_;           // that take part, of this rank
   std::optional<CoarseModel> model_; // on rank 0
-  int choices_ = 0, in_vain_ = 0;    // that were asked for, and of these on end without headway
-  GO fewest_changes_ = 0;            // that pressures would make after one of them
+  Headway headway_{
+      {1, choice_rules.most_idle_coarse, Headway::unlimited, choice_rules.most_coarse}}; // of changes by pressures
 };
 
 /// By a coarser mesh, see make(). Collective.

@@ -3,7 +3,9 @@
 
 #include "rpc/analysis/memory.hpp"
 #include "rpc/analysis/predictor.hpp"
+#include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/solve_step.hpp"
+#include "rpc/core/headway.hpp"
 #include "rpc/fem/peaks.hpp"
 
 #include <functional>
@@ -109,9 +111,8 @@ private:
   struct Halvings {
     int failures, balance, all;
     double tolerance; // of a part's energy balance
-    // The least that a part around this one misses in its energy balance [J], and how often it has been halved since.
-    double missed = std::numeric_limits<double>::infinity();
-    int in_vain = 0;
+    Headway headway{
+        {step_rules.helpful, step_rules.most_in_vain}}; // of what the parts around this one miss of the balance [J]
   };
   /// What is remembered between steps.
   struct Remembered {
