@@ -23,9 +23,10 @@ EPILOG = """Fields of the contact are drawn on the contact side, in the plane as
 von Mises stress. Default: contact_pressure if there is contact, else von_mises. cell_size shows where a mesh is fine. RESULT.e stands for
 all files of the run, RESULT.e-s0002 and so on too: one for each mesh of its load steps. RESULT.contact.csv gives the pressure, the friction
 and the state along the contact sides; RESULT.history.csv, of load steps, force against displacement and the energies, or with --columns any
-of its columns; RESULT.json the estimated error over the adapted meshes. Several tables of one kind, each as FILE or LABEL=FILE, go into one picture. doc/pictures.md has examples."""
+of its columns; RESULT.points.csv results along lines, and at points over the time; RESULT.json the estimated error over the adapted meshes. Several tables of one kind, each as FILE or LABEL=FILE, go into one picture. doc/pictures.md has examples."""
 OF_BODIES = ("field", "scale", "time", "window", "cut", "view")
 OF_TABLES = ("columns", "over", "range", "centre")
+OF_POINTS = ".points.csv"
 
 
 class Parser(argparse.ArgumentParser):
@@ -117,18 +118,18 @@ def options(arguments):
     """The command line, checked as far as that goes without the result."""
     parser = Parser(prog="bash doc/picture.sh", description="Makes a picture of results of rpc: of a body, in the plane or in space, or of tables.",
                     epilog=EPILOG, allow_abbrev=False)
-    parser.add_argument("results", metavar="RESULT", nargs="+", help="RESULT.e, or one or several of RESULT.contact.csv, of RESULT.history.csv or of RESULT.json")
+    parser.add_argument("results", metavar="RESULT", nargs="+", help="RESULT.e, or one or several of RESULT.contact.csv, of RESULT.history.csv, of RESULT.points.csv or of RESULT.json")
     parser.add_argument("--output", metavar="FILE", help="FILE.png, FILE.pdf or FILE.svg; default: RESULT.png beside RESULT")
     parser.add_argument("--style", metavar="NAME", default="light", help="light, dark, or print: greys and line patterns; default: light")
     body = parser.add_argument_group("pictures of a body, RESULT.e")
     body.add_argument("--field", metavar="NAME", help="a field of the file, or cell_size")
     body.add_argument("--scale", metavar="FACTOR", help="of the displacements, not of the gaps; default: one that makes them visible")
-    body.add_argument("--time", metavar="T", help="time of the step to draw; default: the last one")
+    body.add_argument("--time", metavar="T", help="time of the step to draw, of RESULT.points.csv too; default: the last one")
     body.add_argument("--window", metavar="X0,Y0,X1,Y1", help="enlarges this rectangle of the picture; in space X0,Y0,Z0,X1,Y1,Z1, "
                       "a box of the undeformed body, and what lies outside is not drawn")
     body.add_argument("--cut", metavar="x=0", help="in space: takes away what lies on this side of a plane across an axis")
     body.add_argument("--view", metavar="X,Y,Z", help="in space: direction from the body to the viewer; default: chosen")
-    tables = parser.add_argument_group("diagrams of tables, RESULT.contact.csv, RESULT.history.csv and RESULT.json")
+    tables = parser.add_argument_group("diagrams of tables, RESULT.contact.csv, RESULT.history.csv, RESULT.points.csv and RESULT.json")
     tables.add_argument("--columns", metavar="NAME,...", help="columns, one panel for each; of contact sides also friction, the size of q, and "
                         "penetration, u_nu - gap; default: chosen")
     tables.add_argument("--over", metavar="NAME", help="column to the right; of contact sides x (of a body of revolution its radius), y, z, s (the length along the surface), or "
@@ -170,10 +171,11 @@ def are_tables(found):
                            f'"{found.results[tables.index(True)]}"; see --help')
     if not any(tables) and len(tables) > 1:
         raise PictureError(f"pictures of bodies are made one at a time, got {len(tables)} files; several of *.contact.csv, "
-                           "of *.history.csv or of *.json go into one picture")
+                           "of *.history.csv, of *.points.csv or of *.json go into one picture")
     for name in OF_BODIES if any(tables) else OF_TABLES:
-        if getattr(found, name) is not None:
-            wanted = "RESULT.e" if any(tables) else "*.contact.csv, *.history.csv and *.json"
+        of_points = name == "time" and all(text.lower().endswith(OF_POINTS) for text in found.results)
+        if getattr(found, name) is not None and not of_points:
+            wanted = "RESULT.e" if any(tables) else "*.contact.csv, *.history.csv, *.points.csv and *.json"
             raise PictureError(f'"{found.results[0]}": --{name} does not go with it, but with {wanted}; see --help')
     return any(tables)
 
@@ -209,7 +211,7 @@ def diagram_of(found):
     tables = table.tables_of(found.results, len(found.style.curves))
     if tables[0].kind == "history" and all(getattr(found, name) is None for name in OF_TABLES):
         return history.compose(tables, found.style)
-    return curves.compose(tables, found.columns, found.over, found.range, found.style, found.centre)
+    return curves.compose(tables, found.columns, found.over, found.range, found.style, found.centre, found.time)
 
 
 def main(arguments):

@@ -5,6 +5,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+import point_curves  # noqa: E402
 from matplotlib import ticker  # noqa: E402
 
 from result import PictureError  # noqa: E402
@@ -18,7 +19,7 @@ LOGARITHMIC = ("dofs", "relative_estimate")
 FROM_ZERO = ("pressure", "friction", "max_pressure", "friction_used")
 
 
-def compose(tables, columns, over, span, style, centre=None):
+def compose(tables, columns, over, span, style, centre=None, time=None):
     """A panel for each column, one above the other, as a figure.
 
     @param tables   [Table] of one kind
@@ -26,15 +27,18 @@ def compose(tables, columns, over, span, style, centre=None):
     @param over     name of the column to the right, or "radius"; None: chosen
     @param span     (least, largest) of it that is shown; None: all
     @param centre   where the radius is 0, a number for each of the directions across which it is measured; None: chosen
+    @param time     of results at points: that of the rows; None: the last one
     """
+    if tables[0].kind == "points":
+        tables, over = point_curves.curves_of(tables, over, time, len(style.curves))
     columns = chosen_columns(tables) if columns is None else columns
     over = chosen_axis(tables[0]) if over is None else over
     if len(columns) > MOST_PANELS:
         raise PictureError(f"--columns must name at most {MOST_PANELS} columns, got {len(columns)}")
     axes_of_radius = tables[0].radius_axes() if over == RADIUS and tables[0].kind == "contact" else ()
     if centre is not None and len(centre) != len(axes_of_radius):
-        where = f"of {' and '.join(axes_of_radius)}, across which the radius is measured" if axes_of_radius else "no numbers without --over=radius"
-        raise PictureError(f'"{tables[0].path}": --centre must be {len(axes_of_radius)} number{"s" * (len(axes_of_radius) != 1)} {where}, got {len(centre)}')
+        where = f"must be {len(axes_of_radius)} number{'s' * (len(axes_of_radius) != 1)} of {' and '.join(axes_of_radius)}, across which the radius is measured"
+        raise PictureError(f'"{tables[0].path}": --centre {where if axes_of_radius else "goes with --over=radius"}, got {len(centre)} number{"s" * (len(centre) != 1)}')
     if centre is None and axes_of_radius:
         centre = tables[0].radius_centre(axes_of_radius)
     along = [places(table, over, axes_of_radius, centre) for table in tables]
@@ -68,10 +72,12 @@ def compose(tables, columns, over, span, style, centre=None):
 
 def chosen_columns(tables):
     """Of contact sides the pressure, the friction and the state; of load steps the contact force and the largest pressure; of adapted meshes
-    the estimated error."""
+    the estimated error; at points the contact pressure and von Mises' stress."""
     names = [name for name in tables[0].names() if all(name in table.columns for table in tables)]
     if tables[0].kind == "contact":
         return [name for name in ("pressure", "friction", "state") if name in names]
+    if tables[0].kind == "points":
+        return point_curves.chosen_columns(tables)
     if tables[0].kind == "adaptation":
         return ["relative_estimate"]
     return [name for name in names if name.startswith("contact_force_")] + [name for name in ("max_pressure",) if name in names]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads the tables that rpc writes: RESULT.contact.csv along the contact sides, RESULT.history.csv of load steps, and of RESULT.json that
-of the adapted meshes."""
+"""Reads the tables that rpc writes: RESULT.contact.csv along the contact sides, RESULT.history.csv of load steps, RESULT.points.csv at points,
+and of RESULT.json that of the adapted meshes."""
 import csv
 import os
 import re
@@ -11,16 +11,16 @@ import summary
 from result import PictureError, suggestion
 
 HEADING = re.compile(r"(.*?)(?: \[([^\]]*)\])?", re.DOTALL)  # name and unit of a column
-KINDS = {"contact": ("pressure", "state", "u_nu"), "history": ("time", "work")}  # columns that tell them
-NAMES = {"contact": "*.contact.csv", "history": "*.history.csv", "adaptation": "*.json"}
-WORDS = ("state", "friction_state", "side", "reason")  # columns that have no numbers
+KINDS = {"contact": ("pressure", "state", "u_nu"), "history": ("time", "work"), "points": ("time", "name", "number", "off")}  # columns that tell them
+NAMES = {"contact": "*.contact.csv", "history": "*.history.csv", "points": "*.points.csv", "adaptation": "*.json"}
+WORDS = ("state", "friction_state", "side", "reason", "name")  # columns that have no numbers
 ORDERED = ("none", "open", "closed", "yielding", "unseen", "sticks", "slips")  # of categories
 MOST_CATEGORIES = 12
 RADIUS = "radius"
 NEAR = 1e-6  # of the extent of a side: places are the same
 # Names and units of columns where the headings have none; of history files {force}: N/m, {energy}: J/m in the plane.
 MEANING = [
-    ("[xyz]", "{0}", "m"), ("s", "length along the surface", "m"), ("radius", "{radius}", "m"), ("area", "area of a point", "m^2"),
+    ("[xyz]|off", "{0}", "m"), ("disp_([xyz])", "displacement in {1}", "m"), ("von_mises", "von Mises stress", "Pa"), ("contact_pressure|stress_.*", "{0}", "Pa"), ("s", "length along the surface", "m"), ("radius", "{radius}", "m"), ("area", "area of a point", "m^2"),
     ("u_nu", r"normal displacement $u_\nu$", "m"), ("pressure", "contact pressure", "Pa"), ("gap|dent|penetration", "{0}", "m"),
     ("friction", "friction", "Pa"), ("q_([xyz])", "friction in {1}", "Pa"), ("slip_([xyz])", "slip in {1}", "m"),
     ("u_t_([xyz])", "displacement along the side in {1}", "m"), ("force_([xyz])", "nodal force in {1}", ""),
@@ -49,7 +49,7 @@ class Table:
         self.kind = next((kind for kind, needed in KINDS.items() if set(needed) <= set(names)), None)
         if not self.kind:
             raise PictureError(f'"{path}" is no table of rpc: it must have the columns {" or ".join(", ".join(some) for some in KINDS.values())}'
-                               f'; those that can be drawn are *.contact.csv and *.history.csv')
+                               f'; those that can be drawn are *.contact.csv, *.history.csv and *.points.csv')
         if self.kind == "history" and "converged" in names:  # of a step that failed there are no numbers
             rows = [row for row in rows if row[names.index("converged")] != "0"]
         if not rows:
@@ -66,7 +66,7 @@ class Table:
         except OSError as error:
             what = "no such file" if isinstance(error, FileNotFoundError) else error.strerror
             raise PictureError(f'"{self.path}": {what}; rpc writes *.contact.csv where there is contact, '
-                               "and *.history.csv for decks with Steps->Times") from None
+                               "*.history.csv for decks with Steps->Times, and *.points.csv for those with Output->Points") from None
         except (csv.Error, UnicodeDecodeError) as error:
             raise PictureError(f'"{self.path}" is no table: {error}') from None
         if not lines:
@@ -108,7 +108,7 @@ class Table:
     def names(self, option="columns"):
         """Of all columns that an option can name."""
         more = [RADIUS] if option == "over" and self.kind == "contact" else []
-        return [name for name in self.columns if name != "reason" and (option != "over" or not self.is_text(name))] + more
+        return [name for name in self.columns if name not in ("reason", "name") and (option != "over" or not self.is_text(name))] + more
 
     def column(self, name, option):
         """A column. @param option  that names it, without --"""
@@ -154,6 +154,7 @@ class Table:
             match = re.fullmatch(pattern, name)
             if match:
                 text = text.format(name, *match.groups(), radius=radius)
+                text = "length along the line" if name == "s" and self.kind == "points" else text
                 text = text if "$" in text else text.replace("_", " ")
                 unit = self.units.get("x" if name == RADIUS else name, unit.format(**units))
                 break
@@ -212,7 +213,7 @@ def own_names(paths):
     """What tells files apart: their names without what all end in, or with their folders where names are the same."""
     shared = os.path.commonpath([os.path.dirname(os.path.abspath(path)) for path in paths])
     for names in ([os.path.basename(path) for path in paths], [os.path.relpath(path, shared) for path in paths]):
-        stems = [re.sub(r"(\.contact|\.history)?\.(csv|json)$", "", name) for name in names]
+        stems = [re.sub(r"(\.contact|\.history|\.points)?\.(csv|json)$", "", name) for name in names]
         if len(set(stems)) == len(stems):
             return stems
     return paths

@@ -64,6 +64,16 @@ def summary_file(path, **more):
     return Table(str(path)) if not more else None
 
 
+def points_file(path, points, times=(1, 2)):
+    """Results at points on x, {name: [x, ...]}, along the plane's side y = 0 where |x| < 1."""
+    lines = ["time,name,number,x [mm],y [mm],s [mm],off [mm],disp_x [mm],disp_y [mm],von_mises [MPa],contact_pressure [MPa]"]
+    for time in times:
+        for name, places in points.items():
+            lines += [f"{time},{name},{k + 1},{x},0,{x - places[0]},0,0,{-time * x},{5 + x},{time * x if x < 1 else 'nan'}" for k, x in enumerate(places)]
+    path.write_text("\n".join(lines) + "\n")
+    return Table(str(path))
+
+
 class Diagrams(RpcTestCase):
     """What they show."""
 
@@ -126,6 +136,26 @@ class Diagrams(RpcTestCase):
         self.assertLess(abs(table.columns["penetration"] - 0.1 + table.columns["gap"]).max(), 1e-12)
         self.assertEqual(table.columns["friction"].tolist(), abs(table.columns["x"]).tolist())
         self.assertEqual((table.name_of("pressure"), table.name_of("radius", ("x",))), ("contact pressure [MPa]", "radius |x| [mm]"))
+
+    def test_points_along_lines_at_a_time(self):
+        table = points_file(self.folder / "a.points.csv", {"left": np.linspace(0, 0.5, 11), "far": np.linspace(2, 3, 5)})
+        pressure, stress = self.compose([table]).axes
+        self.assertEqual((pressure.get_ylabel(), stress.get_ylabel(), stress.get_xlabel()),
+                         ("contact pressure [MPa]", "von Mises stress [MPa]", "length along the line [mm]"))
+        self.assertEqual(pressure.lines[0].get_ydata()[-1], 1)  # of the last time
+        self.assertTrue(np.isnan(pressure.lines[1].get_ydata()).all())
+        self.assertEqual([text.get_text() for text in pressure.get_legend().get_texts()], ["left", "far"])
+        first = curves.compose([table], ["disp_y"], None, None, style.LIGHT, time=1)
+        self.assertEqual(first.axes[0].lines[0].get_ydata()[-1], -0.5)
+        curves.plt.close(first)
+        self.assertEqual(self.picture("a.points.csv", "--time=1", "--output=a.png"), (0, "wrote a.png\n", ""))
+
+    def test_points_over_the_time(self):
+        table = points_file(self.folder / "a.points.csv", {"tip": [0.25], "heel": [0.75]}, (1, 2, 3))
+        pressure, stress = self.compose([table]).axes
+        self.assertEqual((stress.get_xlabel(), pressure.lines[0].get_ydata().tolist(), len(pressure.lines)), ("t", [0.25, 0.5, 0.75], 2))
+        table = points_file(self.folder / "b.points.csv", {"tip": [0.25, 2]}, (1,))
+        self.assertEqual(self.compose([table], over="time").axes[0].lines[1].get_label(), "tip 2")
 
     def test_sides_are_lines_of_their_own(self):
         table = contact_file(self.folder / "a.contact.csv", sides=("left", "right"))
@@ -240,7 +270,7 @@ class Refusals(RpcTestCase):
         self.expect_refusal_of(["a.contact.csv", "--over=state"], '--over must name a column of numbers, got "state"')
         self.expect_refusal_of(["a.history.csv", "--over=radius"], '"a.history.csv": --over must name', 'got "radius"')
         self.expect_refusal_of(["b.contact.csv", "--centre=1"], '"b.contact.csv": --centre must be 2 numbers of x and y, across which', "got 1")
-        self.expect_refusal_of(["a.contact.csv", "--over=x", "--centre=1"], "no numbers without --over=radius", "got 1")
+        self.expect_refusal_of(["a.contact.csv", "--over=x", "--centre=1"], "--centre goes with --over=radius", "got 1 number")
         self.expect_refusal_of(["b.contact.csv", "--centre=1,two"], "--centre must be a number for each direction", '"1,two"')
         self.expect_refusal_of(["a.e", "--centre=1,2"], "--centre does not go with it")
         for text in ("", ",", "pressure,,gap"):
@@ -249,6 +279,10 @@ class Refusals(RpcTestCase):
         for text in ("", "1", "1,0", "0,0", "a,b", "0,nan", "0,1,2", "0,1e999"):
             self.expect_refusal_of(["a.contact.csv", f"--range={text}"], "--range must be two numbers", f'got "{text}"')
         self.expect_refusal_of(["a.contact.csv", "--range=5,6"], '"a.contact.csv": --range must hold points of s, which goes from 0 to 2, got 5,6')
+        points_file(self.folder / "a.points.csv", {"left": [0, 0.5, 1]})
+        for arguments, got in ((["--time=1.5"], "--time must be one of 1, 2, got 1.5"), (["--over=time", "--time=1"], "--time does not go with --over=time"),
+                               (["--columns=disp_z"], 'got "disp_z"'), (["--over=radius"], 'got "radius"'), (["--scale=1"], "--scale does not go with it")):
+            self.expect_refusal_of(["a.points.csv", *arguments], '"a.points.csv"', got)
         for option in ("field=gap", "scale=1", "time=1", "window=0,0,1,1", "cut=x=0", "view=0,0,1"):
             for name in ("a.contact.csv", "a.history.csv"):
                 self.expect_refusal_of([name, f"--{option}"], f'"{name}": --{option.split("=")[0]} does not go with it, but with RESULT.e')
