@@ -20,7 +20,7 @@ public:
   /// @param folder    for new checkpoints
   Checkpoints(const Scene &scene, bool restarts, std::string restart, const std::string &folder);
 
-  /// What the run goes on from, on its mesh, which is made anew; none from the first step. Collective.
+  /// What the run goes on from, on its mesh, which is rebuilt; none from the first step. Collective.
   /// @throws rpc::Error (bad_input) on every rank if the file is damaged, or belongs to another mesh, deck or version
   std::optional<analysis::HistoryState> resume(const RCP<const Comm> &comm);
   /// Whether the run goes on from a checkpoint.

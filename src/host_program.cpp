@@ -99,7 +99,7 @@ GO foreseen_unknowns(const Teuchos::ParameterList &deck)
 GO most_unknowns_of_host(const int threads, const bool nearly_incompressible)
 {
   constexpr double of_one_thread = 50000, power = 0.75, most_threads = 16; // measured, doc/portability.md
-  constexpr double work = 10; // of nearly incompressible bodies, for one thread
+  constexpr double work = 10; // nearly incompressible bodies count so many times their unknowns
   const double unknowns = of_one_thread * std::pow(std::clamp<double>(threads, 1, most_threads), power);
   return static_cast<GO>(nearly_incompressible ? unknowns / work : unknowns);
 }

@@ -17,7 +17,7 @@ std::string host_program();
 /// @throws rpc::Error (bad_input) on a box or an adaptation with a value out of range
 GO foreseen_unknowns(const Teuchos::ParameterList &deck);
 
-/// Unknowns up to which a host with so many threads takes less time than a GPU, start and end of the process included.
+/// Largest number of unknowns for which a host with this many threads is faster than a GPU, start and end of the process included.
 /// @param nearly_incompressible  the body is, which takes several times the work
 GO most_unknowns_of_host(int threads, bool nearly_incompressible);
 

@@ -12,8 +12,8 @@ namespace rpc::contact
 namespace
 {
 
-// Weight of penetration against pressure in the first choice of states, in E / diameter: where a coarser mesh predicts u and
-// lambda, either may be the better known one.
+// Weight of penetration against pressure in the first active set, in E / diameter: of the u and lambda that a coarser mesh predicts,
+// either may be the more accurate one.
 constexpr double first_weight = 10;
 
 /// This rank's largest pressure, as far as the law allows it [Pa].
@@ -77,7 +77,7 @@ void choose_next(const ContactNodes &c, const Vector &u, const DeviceView<State 
   Kokkos::fence();
 }
 
-/// What tells two friction states apart: 0 sticks, 1 and 2 slips, in the plane by its direction.
+/// Code of a friction state, for fingerprints: 0 sticks, 1 and 2 slips, in the plane by its direction.
 KOKKOS_INLINE_FUNCTION int kind_of_slip(const Slip slip, const Along &h, const int dim)
 {
   if (slip == Slip::stick) return 0;
@@ -214,7 +214,7 @@ std::uint64_t fingerprint_of(const Comm &comm, const DeviceView<State *> &state)
   return sum_of_bits(comm, sum);
 }
 
-/// The choice with its number of changes and its fingerprint; collective.
+/// The update with its number of changes and its fingerprint; collective.
 ActiveSetChoice counted(const Comm &comm, ActiveSetChoice choice, const ActiveSet &present, const bool with_friction)
 {
   const bool friction = choice.slip.extent(0) > 0;
@@ -309,7 +309,7 @@ ActiveSetChoice largest_changes(const SmoothedFunctional &functional, const Acti
 namespace
 {
 
-/// Takes the choice's friction states; points that come to stick are moved back to where their slip is 0.
+/// Takes the update's friction states; points that begin to stick are moved back to where their slip is 0.
 void take_slip(const ActiveSetChoice &choice, const SmoothedPoints &points, const ActiveSet &active, Vector &u)
 {
   const SmoothedPoints s = points;

@@ -24,7 +24,7 @@ struct Density {
   static constexpr double in_plane = 4096, in_space = 16384;
   /// Parts of an edge of a facet, of sides with more facets than that.
   static constexpr int fewest_parts = 4;
-  /// Of those sides facets are left out that lie further from the foundation than so many times what the penetration varies within them.
+  /// On those sides facets are skipped whose distance from the foundation exceeds this multiple of the variation of penetration within them.
   static constexpr double reach = 2;
   /// Parts of faces in space in which a search by bounds looks for what the samples miss, of a side: some 1 microsecond each.
   static constexpr int searched = 1 << 15;

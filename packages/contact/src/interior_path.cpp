@@ -12,7 +12,7 @@ namespace rpc::contact
 namespace
 {
 
-constexpr double longer_by = 0.3; // than what can be taken is the step that center() is for
+constexpr double longer_by = 0.3; // center() aims for a step longer by this than the longest feasible one
 
 /// 1/(D + 1/r) of a point [Pa/m].                                                                              (5.18)
 KOKKOS_INLINE_FUNCTION double linear_stiffness(const SmoothedPoints &s, const LO i, const InteriorPoint &at)

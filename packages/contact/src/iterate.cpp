@@ -20,10 +20,10 @@ namespace
 
 // In units of E/diameter: weak enough not to slow Newton down once nodes close, strong against the rounding of K.
 constexpr double weak_spring = 1e-4, weakest_spring = 1e-10, weaken = 1e-2;
-constexpr double long_step = 1.1; // the step of a quadratic is 1
-// Multiple of the mean pressure, load over contact area, above which a yield limit counts as out of reach at the start.
+constexpr double long_step = 1.1; // longer line-search steps weaken the springs; a quadratic's step is 1
+// A yield stress above so many times the mean pressure, load over contact area, is treated as infinite at the start.
 constexpr double beyond_reach = 100;
-// The interior path starts with the load's pressure, or with so many times the mean pressure of a start if that is more.
+// The interior path starts with the mean pressure of the load, or with this multiple of the mean start pressure if that is more.
 constexpr double above_start = 3;
 
 void start_multipliers(const ContactNodes &c, const double pressure_bound, const DeviceView<double *> &lambda)
@@ -136,7 +136,7 @@ void take_free(const fem::DirichletDofs &dirichlet, const Vector &from, Vector &
   Kokkos::fence();
 }
 
-/// What rounding leaves out of the sum a + b, exactly: D. Knuth's two-sum.
+/// The rounding error of the sum a + b, exactly: D. Knuth's two-sum.
 RCP<const Vector> rest_of_sum(const Vector &a, const Vector &b, const Vector &sum)
 {
   const auto rest = rcp(new Vector(sum.getMap()));

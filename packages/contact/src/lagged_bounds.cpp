@@ -13,7 +13,7 @@ namespace rpc::contact
 namespace
 {
 
-constexpr int mixing_depth = 4;       // of the acceleration
+constexpr int mixing_depth = 4;       // of Anderson's acceleration
 constexpr double mixing_rank = 1e-10; // of singular values: differences below are rounding
 
 DeviceView<double *> bound_difference(const DeviceView<double *> &a, const DeviceView<double *> &b)

@@ -65,7 +65,7 @@ DeviceView<double *> size_around(const fem::Discretization &d, const mesh::Side 
 void release_where_clear(const fem::Discretization &d, const mesh::Side &side, const ContactNodes &c, const LO begin,
                          const LO end, const Vector &u, const DeviceView<double *> &p)
 {
-  // So many times the strain of the pressure over a facet's length is more than the end of a smooth contact opens, see (10.8).
+  // A smooth contact opens on the first open facet by less than so many times p h/E, see (10.8).
   constexpr double smooth_gap = 4;
   const double diameter = mesh::diameter(*d.mesh);
   const auto size = size_around(d, side);

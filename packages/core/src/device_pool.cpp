@@ -108,7 +108,7 @@ private:
     return off;
   }
 
-  /// More than that the pool does not keep: managed memory beyond the card's own would be moved to and fro.
+  /// The pool keeps no more than that: managed memory beyond the card's own would be paged in and out.
   static std::size_t limit()
   {
     static const std::size_t limit = [] {

@@ -66,7 +66,7 @@ struct ElasticCells {
   DeviceView<double **> lame;      // (blocks; lambda, mu)  [Pa]  in
   DeviceView<int *> projected;     // (blocks) 0 or 1             in
   bool plane_stress;               // no stress across the plane  in
-  // Of congruent cells, (kinds, points): gradients [1/m], and what a point stands for [m^Dim]. Empty: cells differ.
+  // Of congruent cells, (kinds, points): gradients [1/m], and integration weights [m^Dim]. Empty: cells differ.
   DeviceView<signed char *> kind; // (cells)                            in
   DeviceView<double **[Nodes][columns]> kind_gradient;
   DeviceView<double **> kind_volume;
@@ -132,7 +132,7 @@ struct ElasticCells {
     return sum;
   }
 
-  /// Calls work(q, volume, dN, dilatation) at each quadrature point: what the point stands for [m^Dim, axisymmetric: m^3], the
+  /// Calls work(q, volume, dN, dilatation) at each quadrature point: its integration weight [m^Dim, axisymmetric: m^3], the
   /// gradients dN, and the dilatation D(ai), that of dN or projected.
   /// @return false if the Jacobian is <= 0 somewhere; points from there on have been left out
   template <class Work>

@@ -91,7 +91,7 @@ KOKKOS_INLINE_FUNCTION void position(const CellCoords<Dim, Nodes> &cell, const D
   }
 }
 
-/// What a point of an axisymmetric mesh stands for across the plane: the circle that it describes [m]. A rounding of the axis
+/// Length of the circle that a point of an axisymmetric mesh describes [m]. A rounding of the axis
 /// beyond it is 0.
 KOKKOS_INLINE_FUNCTION double circle(const double r)
 {

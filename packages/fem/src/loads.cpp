@@ -96,7 +96,7 @@ DeviceView<double **> quadrature_points(const DeviceView<double **> &coords, con
   return x;
 }
 
-/// measure(cell * points + q) = weight * Jacobian determinant (* 2 pi r): what a quadrature point stands for [m^Dim, axisymmetric:
+/// measure(cell * points + q) = weight * Jacobian determinant (* 2 pi r): integration weight [m^Dim, axisymmetric:
 /// m^3].
 template <int Dim, int Nodes>
 struct CellMeasure {

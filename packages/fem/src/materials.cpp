@@ -69,7 +69,7 @@ bool is_p2(const mesh::Element &element)
   return element.shape == mesh::Shape::simplex && element.order == 2;
 }
 
-/// Whether the projection stands for the dilatation.
+/// Whether the dilatation is replaced by its projection.
 bool projects(const Discretization &d, const Material &material)
 {
   if (d.kinematics == Kinematics::plane_stress) return false; // lambda stays finite as nu nears 0.5

@@ -72,7 +72,7 @@ struct FitPatch {
   static constexpr int nodes_per_call = takes_over ? 256 : 1;
   static constexpr int along = 2 * StaticElement<Dim, Nodes>::order + 1; // nodes of two cells, in a row
   static constexpr int most = along * along * (Dim == 3 ? along : 1);
-  /// Places of nodes are known to so many times their rounding errors.
+  /// Accuracy of node positions, in multiples of their rounding errors.
   static constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
   using Patch = std::conditional_t<takes_over, KnownPatch<Dim, Terms::size, most>, PatchGeometry<Dim, Terms::size>>;
 

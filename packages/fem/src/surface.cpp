@@ -11,7 +11,7 @@ namespace rpc::fem
 namespace
 {
 
-/// What a point of a facet stands for by the rule's weight: its share of the area, times 2 pi r in axisymmetry.
+/// Integration weight of a facet's point: the rule's weight times the area element, times 2 pi r in axisymmetry.
 struct FacetPoints {
   DeviceView<double **> coords;    // (overlap nodes, dim)          [m]  in
   DeviceView<LO **> facets;        // (facets, nodes)                    in

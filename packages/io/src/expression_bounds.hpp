@@ -14,7 +14,7 @@ namespace rpc::io
 /// Bounds on an expression of a deck over a box, by interval arithmetic: every value that muParser gives in the box lies within, up to
 /// rounding. They are exact for boxes that are points, and too wide by a multiple of the box's size else.
 ///
-/// Reads muParser's grammar anew, for muParser evaluates points only. It knows muParser's operators and functions but for those without bounds
+/// Parses muParser's grammar itself, for muParser evaluates points only. It knows muParser's operators and functions but for those without bounds
 /// of their own; an expression with anything else has no bounds.
 class ExpressionBounds
 {

@@ -18,8 +18,8 @@ namespace
 
 // A coarser mesh with more than this part of the vertices is not worth its levels.
 constexpr double most_vertices_kept = 0.7;
-// Cubes of the quality that new cells must have, 1 for an equilateral cell, and of the part of what the worst cell around a vertex had at first that is
-// enough: of stretched cells some are sheared before their neighbours follow.
+// Cubes of the least quality of new cells, 1 for an equilateral cell, and of the part of the worst quality around the vertex on the finer mesh that is
+// enough too: in anisotropic meshes some cells are sheared before their neighbours follow.
 constexpr double least_quality_3 = 0.3 * 0.3 * 0.3;
 constexpr double part_kept_3 = 0.8 * 0.8 * 0.8;
 // The least cosine of the angle by which a facet of the boundary may turn.

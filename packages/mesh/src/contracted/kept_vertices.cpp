@@ -59,7 +59,7 @@ Lists neighbours(const MeshData &mesh, const Features &features, const Rank rank
   return lists;
 }
 
-/// Without edges that are much longer than the shortest ones at both ends: of stretched cells only the short directions become coarser.
+/// Without edges that are much longer than the shortest ones at both ends: anisotropic cells become coarser in their short directions only.
 Lists without_long_edges(const MeshData &mesh, const Lists &next)
 {
   const int dim = mesh.element.dim, num_nodes = mesh.num_nodes();

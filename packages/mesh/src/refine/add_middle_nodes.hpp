@@ -12,7 +12,7 @@ namespace rpc::mesh
 using NewPlaces = std::function<void(int cell, int node, double *x)>;
 
 /// Adds the nodes in the middle of edges, faces and cells that make a mesh of order 1 one of order 2, in the same cells. Those of the
-/// boundary go to its shape, where it is curved. Nodes are numbered anew, as cells meet them, so that neighbours lie close in memory; ids
+/// boundary go to its shape, where it is curved. Nodes are renumbered in the order of the cells, so that neighbours lie close in memory; ids
 /// of nodes stay, those of new ones follow them. Collective.
 /// @param kinds  those that get nodes, see middles_of(); a cell has -1 in the place of the others
 /// @param place  empty: in the middle of the vertices

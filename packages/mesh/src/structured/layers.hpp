@@ -25,7 +25,7 @@ struct Layers {
 };
 
 /// Joins two sheets each, of an odd number the last three, in the stacks in which cells are thinnest, up to 1.7 times the least thickness of those
-/// that they cross and that have more than one sheet. So stretched cells become square ones first. Not where the body is one cell thick and no
+/// that they cross and that have more than one sheet. So anisotropic cells become square ones first. Not where the body is one cell thick and no
 /// thicker than 1.7 times the cells' length: a coarser mesh would be too stiff when it bends.
 /// @param facets  of the mesh's cells
 Layers layers_of(const MeshData &mesh, const Entities &facets, const Sheets &sheets);

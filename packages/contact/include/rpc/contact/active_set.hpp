@@ -17,29 +17,29 @@ struct ActiveSetChoice {
   DeviceView<double *> violation = {};  ///< (contact nodes) of the law by points whose state is to change, else 0 [Pa]
   DeviceView<double **> traction = {};  ///< (contact nodes, dim) along the side that slip was chosen by [Pa]
   GO changes = 0;                       ///< points on all ranks whose state is to change
-  double overshoot = 0;   ///< forces of closed points that the law does not admit, over those that it admits
+  double overshoot = 0;                 ///< ratio of inadmissible to admissible contact force of closed points
   bool confirmed = false; ///< no changes: u and the pressures obey the contact law, up to what the penalty leaves
   std::uint64_t fingerprint = 0; ///< of all states on all ranks: equal for equal ones
 };
 
-/// The first choice, from multipliers and penetrations, before there is an active set.                            (5.8)
+/// The first active set, from multipliers and penetrations.                                                       (5.8)
 /// @param all_close  all points close instead: only contact holds the body
 ActiveSetChoice first_choice(const SmoothedFunctional &functional, const ActiveSet &present, const Vector &u,
                              bool all_close);
 
-/// One choice of the active-set iteration at the minimum u for the present active set: a point goes from open to yielding, or
+/// One active-set update at the minimum u for the present active set: a point goes from open to yielding, or
 /// back, only by way of closed.                                                                                  (5.8)
 /// @param own         (points) stiffness of each point alone [Pa/m]
 /// @param negligible  violations up to this part of the largest pressure change no state; dimensionless, >= 0
 ActiveSetChoice next_choice(const SmoothedFunctional &functional, const ActiveSet &present, const Vector &u,
                             const DeviceView<double *> &own, double negligible);
 
-/// The choice without the changes of points that violate the law less than `part` of the one that does so most: for choices that
-/// go in circles. With friction only.
+/// The update restricted to points that violate the law by at least `part` of the largest violation: for active sets that cycle. With
+/// friction only.
 ActiveSetChoice largest_changes(const SmoothedFunctional &functional, const ActiveSet &present,
                                 const ActiveSetChoice &choice, double part);
 
-/// Takes the choice's states for the active set, its pressures for multipliers as far as the states allow. Nodes that close are
+/// Takes the update's states for the active set, its pressures for multipliers as far as the states allow. Nodes that close are
 /// moved onto the foundation: r v would make a large residual of a small distance.                              (5.7)
 void take_choice(const ActiveSetChoice &choice, const SmoothedFunctional &functional, ActiveSet &active, Vector &u);
 

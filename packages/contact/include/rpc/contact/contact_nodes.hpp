@@ -24,7 +24,7 @@ namespace rpc::contact
 /// v_i = direction_i . u_i - free_gap_i is the penetration of node i, where `direction` is the normal without its
 /// prescribed components and `free_gap` has taken these over. A node whose normal displacement is prescribed altogether
 /// has direction 0: it takes no part in the solution, and its pressure is what the law says at its v: 0 if it stays clear, xi if
-/// it is pressed in, and open to choice where a rigid foundation has v = 0.
+/// it is pressed in, and undetermined where a rigid foundation has v = 0.
 struct ContactNodes : NodePoints {    // a group is a side; `direction` is the normal, prescribed components 0
   DeviceView<double **> normal;       ///< (n, dim) unit normal nu, from the body into the foundation
   DeviceView<double *> gap;           ///< (n) g [m], to the surface without dents

@@ -11,8 +11,8 @@ namespace rpc::contact
 /// steps are as many on thin bodies as on others, for no point changes its state at once.  doc/theory.md (5.15) to (5.20)
 ///
 /// A step has two solves with one matrix (Mehrotra): (K + sum_i w_i m_i m_i^T/(D_i + 1/r_i)) d = -F, blocks() and gradient(), for
-/// mu = 0; correct() learns from it what mu can be reached and what products the linear equations leave out; then d for these. Where
-/// little of that d can be taken, center() corrects it further (Gondzio). advance() takes as much of it as keeps all points inside.
+/// mu = 0; correct() takes from it the mu that can be reached and the products that the linear equations leave out; then d for these. Where
+/// the step along d is short, center() corrects it further (Gondzio). advance() takes as much of it as keeps all points inside.
 /// All members are collective.
 class InteriorPath
 {
@@ -21,26 +21,26 @@ public:
   /// @param load  over the contact area [Pa]; 0: nothing presses the body but where it has penetrated
   InteriorPath(const SmoothedFunctional &functional, const Vector &u, double load);
 
-  /// Joins the path anew where steps stay short: with a hundred times the pressure.                                 (5.16)
+  /// Restarts the path where steps stay short: with a hundred times the pressure.                                   (5.16)
   void rejoin_where_it_creeps(const SmoothedFunctional &functional, const Vector &u);
 
   /// (points, dim, dim) What the linearized law adds to K [N/m].
   DeviceView<double ***> blocks(const SmoothedPoints &points) const;
   /// F <- Ku - b + sum_i w_i m_i (p_i + e_i/(D_i + 1/r_i)) for the present targets, which are 0 after a step     (5.18)
   void gradient(const SmoothedFunctional &functional, const Vector &u, Vector &F) const;
-  /// The targets become those of the mu that a step along `d`, for mu = 0, tells, and of what it leaves out.       (5.19)
+  /// Corrector: targets for the mu that the predictor step `d` reaches, less the products that it leaves out.      (5.19)
   /// @param F  gradient() for the targets before; then for the new ones
   void correct(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F);
   /// The part of a displacement, at most 1, with which all points stay inside.                                    (5.19)
   double longest_step(const SmoothedFunctional &functional, const Vector &u, const Vector &d) const;
-  /// The targets become those of products that let more of a step like `d` be taken. F as in correct().           (5.19a)
+  /// Centred targets, which allow a longer step along `d`. F as in correct().                                     (5.19a)
   void center(const SmoothedFunctional &functional, const Vector &u, const Vector &d, Vector &F);
   /// The targets become those before center().
   void take_back() { aim_ = aim_before_; }
   /// Takes a step of the points along a displacement, as long as they stay inside, at most 1. @return its length    (5.19)
   double advance(const SmoothedFunctional &functional, const Vector &u, const Vector &d);
 
-  /// sum_i w_i (p_i s_i + q_i d_i) / sum_i w_i p_i over the size of displacements: 0 where the law holds.
+  /// Complementarity gap: sum_i w_i (p_i s_i + q_i d_i) / sum_i w_i p_i over the size of displacements; 0 where the law holds.
   double gap() const { return gap_; }
   /// The last two steps lead to the same states.
   bool settled() const { return settled_; }

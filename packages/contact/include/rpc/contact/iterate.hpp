@@ -55,7 +55,7 @@ public:
   {
     return contact::largest_changes(functional_, active_, choice, part);
   }
-  /// Takes a choice, and brings hessian() to it.
+  /// Takes an updated active set, and updates hessian() for it.
   void take_active_set(const ActiveSetChoice &choice, Vector &u);
   /// @param gradient  of the functional itself at u   (5.6)
   void active_set_gradient(const Vector &u, const Vector &gradient, Vector &F) const
@@ -65,13 +65,13 @@ public:
   double pressure_error(const Vector &u) const { return contact::pressure_error(functional_, active_, u, own_); }
   StateCounts count_states(const Vector &u) const { return functional_.count_states(u); }
   /// For bodies with rigid motions that only contact can hold: keeps a weak spring at nodes that are not closed in
-  /// hessian(), so that it stays positive definite, and closes all nodes in the first choice of an active set, unless
+  /// hessian(), so that it stays positive definite, and closes all nodes in the first active set, unless
   /// multipliers were given. The functional and its gradients do not change. (9.8)
   void hold_by_contact();
 
   // The interior-point method: see interior_path.hpp.
   void start_interior_path(const Vector &u);
-  /// Brings hessian() to the linearized law, from a new start where steps are short, and sets what it is to be solved for.                            (5.18)
+  /// Updates hessian() for the linearized law, restarts the path where steps are short, and sets the right side F.                            (5.18)
   void linearize_interior(const Vector &u, Vector &F);
   /// After the step d for mu = 0, what hessian() is to be solved for instead.                                  (5.19)
   void correct_interior(const Vector &u, const Vector &d, Vector &F);
@@ -80,9 +80,9 @@ public:
   {
     return interior_->longest_step(functional_, u, d);
   }
-  /// F: what hessian() is to be solved for instead, so that more can be taken of a step like d.                (5.19a)
+  /// F: the right side with centred targets, which allow a longer step along d.                                (5.19a)
   void center_interior(const Vector &u, const Vector &d, Vector &F);
-  /// The next step is for what it was for before center_interior().
+  /// Restores the targets from before center_interior().
   void take_back_interior() { interior_->take_back(); }
   /// @return the length of the step that was taken along d                                                    (5.19)
   double advance_interior(const Vector &u, const Vector &d) { return interior_->advance(functional_, u, d); }
@@ -93,8 +93,8 @@ public:
   // Multipliers and penalties.
   /// lambda_i <- Psi_i'(v_i(u)). @return |change|_2 / |lambda|_2, over free contact nodes, 0 if nothing changed   paper (11), (5.1)
   double update_multipliers(const Vector &u);
-  /// The same with the pressures of the active set, as near as the law admits them: where it is confirmed, a rounding error of v at
-  /// an open or yielding point does not count r times.
+  /// The same with the pressures of a confirmed active set, as near as the law admits them: the penalty r does not amplify the
+  /// rounding of v at open and yielding points.
   double take_active_set_pressures(const Vector &u);
   /// Back to the multipliers of the start: xi/2 where the body touches, else 0.
   void reset_multipliers();
@@ -105,7 +105,7 @@ public:
   /// Lowers them to E / diameter, before the first minimization.                                                (12.12a)
   void lower_penalty();
 
-  // Friction's bounds, where no choice of states is confirmed: Tresca problems, one after another.             (12.12)
+  // Friction's bounds, where no active set is confirmed: Tresca problems, one after another.                   (12.12)
   /// Multipliers and bounds of the functional that is minimized.
   struct Dual {
     Multipliers multiplier;
@@ -122,10 +122,10 @@ public:
   void start_from(const ContactState &state, Vector &u);
   /// Moves the origin to where u is, and sets u to 0.                                                            (5.13)
   void move_origin(Vector &u);
-  /// The same with the forces of the body there as the cells tell them, which K tells with a larger rounding.
+  /// The same with internal forces summed over the cells, which round less than K u.
   /// @param internal  (owned dofs) fem::internal_work() [N]   @param applied  load without prescribed displacements [N]
   void move_origin(Vector &u, const Vector &internal, const Vector &applied);
-  /// Where the iterate is: displacement from 0, and copies of multipliers and states.
+  /// The present state: displacement from 0, and copies of multipliers and states.
   ContactState state(const Vector &u) const;
 
   /// |applied load|_2 on the free unknowns; without any, |contact force|_2; without that, the norm of the forces of

@@ -15,7 +15,7 @@ DeviceView<double *> chosen_penalties(const ContactNodes &points, const DeviceVi
 /// @return whether any rose, on any rank                                                                        (5.12)
 bool raise_penalties(const Comm &comm, const DeviceView<double *> &own, const DeviceView<double *> &penalty);
 
-/// Lowers penalties in place to those of the body as a whole, E / diameter: for friction whose states do not settle.  (12.12a)
+/// Lowers penalties in place to those of the body as a whole, E / diameter: for friction whose states do not converge.  (12.12a)
 void lower_penalties(const ContactNodes &points, const DeviceView<double *> &penalty);
 
 } // namespace rpc::contact

@@ -54,7 +54,7 @@ DeviceView<double **> lame_table(const Discretization &d, const Materials &mater
 DeviceView<double *> youngs_modulus_at_nodes(const Discretization &d, const Materials &materials,
                                              const DeviceView<LO *> &nodes);
 
-/// Blocks in which the projection stands for the dilatation: (blocks) 0 or 1.
+/// Blocks in which the dilatation is replaced by its projection: (blocks) 0 or 1.
 /// @throws rpc::Error (bad_input) if it is asked for in plane stress
 DeviceView<int *> projected_dilatation_table(const Discretization &d, const Materials &materials);
 

@@ -10,8 +10,8 @@
 namespace rpc::fem
 {
 
-/// The same materials with Poisson's ratios of at most `ratio`, and their shear moduli, in blocks where the projection stands for the
-/// dilatation; it stands for it there still. Nothing where no block changes.
+/// The same materials with Poisson's ratios of at most `ratio`, and their shear moduli, in blocks where the dilatation
+/// is projected; it is projected there still. Nothing where no block changes.
 /// @param ratio  in (0, 0.5)
 std::optional<Materials> softened(const Discretization &d, const Materials &materials, double ratio);
 

@@ -10,7 +10,7 @@ namespace rpc::fem
 /// (n, dim) Where nodes are [m], on the host.
 HostPoints node_positions(const mesh::Mesh &mesh, const DeviceView<LO *> &node);
 
-/// What the points of ReferenceElement::facet stand for on a side: (facets * points), facet by facet [m^(dim-1), axisymmetric:
+/// Integration weights of the points of ReferenceElement::facet on a side: (facets * points), facet by facet [m^(dim-1), axisymmetric:
 /// m^2].
 DeviceView<double *> facet_measure(const Discretization &d, const mesh::Side &side);
 /// How far the facets of a side reach, (facets) [m]: in the plane their lengths, in space the roots of their areas.

@@ -42,7 +42,7 @@ BoxOptions box_options(const Teuchos::ParameterList &list);
 
 /// The next coarser box for multigrid. In the directions in which nodes are closest, up to 1.7 times the shortest distance, order 2 becomes
 /// order 1 on the same cells; where it is 1 already, each two cells become one, and of an odd number the last three. Other directions
-/// keep what they have, so that stretched cells become square ones first. Where that makes a box thin (thin_direction()), but so it is too with only the
+/// keep what they have, so that anisotropic cells become square ones first. Where that makes a box thin (thin_direction()), but so it is too with only the
 /// directions coarsened that come down to one interval between nodes, only they are. Functions of Q1 and Q2 boxes are among those of the finer one.
 /// P2 becomes P1 where node distances are alike, else Q2 with the same nodes takes its place. None where no direction has more
 /// than one interval.

@@ -19,18 +19,18 @@ struct InteriorPoint {
   double dent;     ///< d [m]
 };
 
-// The path is joined where pairs multiply to first_mu of pressure times displacement (less is no gain: a point that has to change its state
-// starts too near to its corner), on lines that fall by start_slope times pressure over displacement.               (5.16)
+// Start of the path: mu = first_mu times pressure times displacement, on lines of slope start_slope times pressure over displacement. A smaller
+// first_mu gains nothing: points that must change their state start too close to their corner.                      (5.16)
 constexpr double first_mu = 0.1, start_slope = 10;
 constexpr double nearly =
     0.98; // of the way to the next point's corner is taken                                    (5.19)
 
-// So many steps on end that are shorter tell that points start with a pressure far below what they will bear, as where the foundation bends
-// the body and not the load: the path is joined anew, with more. A few steps are short on any path.                (5.16)
+// After many_short_steps steps in a row below short_step the path restarts with more_pressure times the pressure: points have started far
+// below the pressure that they will bear, as where the foundation bends the body and not the load.                 (5.16)
 constexpr double short_step = 0.25, more_pressure = 100;
 constexpr int many_short_steps = 3;
 
-/// What the products of the pairs are to become in a step [J/m^2].
+/// Target values of the complementarity products in a step [J/m^2].
 struct InteriorTarget {
   double opening; ///< p s
   double dent;    ///< q d
@@ -78,7 +78,7 @@ KOKKOS_INLINE_FUNCTION InteriorPoint on_path(const double z, const double mu, co
   return {p, mu / p, path_dent(p, mu, f)};
 }
 
-/// The point of the path on the line through v and a pressure, as far as the foundation bears twice that.            (5.16)
+/// The point of the path on the line through v and a pressure, at most half of the yield stress.                     (5.16)
 KOKKOS_INLINE_FUNCTION InteriorPoint join_path(const double pressure, const double v, const double mu,
                                                const double kappa, const Foundation &f)
 {

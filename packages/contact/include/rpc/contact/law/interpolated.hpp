@@ -8,7 +8,7 @@
 namespace rpc::contact
 {
 
-/// Numbers that stand for a law.
+/// Number of columns in which a law is interpolated.
 constexpr int law_columns = 3;
 
 /// @param most  takes the place of a yield stress above it, which may be infinite [Pa]   @param column  (law_columns) out
@@ -26,7 +26,7 @@ KOKKOS_INLINE_FUNCTION void to_columns_of_rigid(const double most, const Column 
   to_columns(Foundation{most, 0, 0}, most, column);
 }
 
-/// The law that interpolated columns stand for; interpolants may fall below the values that they come from.
+/// The law of interpolated columns; quadratic interpolants may be negative, and count as 0 then.
 KOKKOS_INLINE_FUNCTION Foundation from_columns(const double *const column)
 {
   return Foundation{math::fmax(0., column[0]), math::fmax(0., column[1]), math::fmax(0., column[2])};

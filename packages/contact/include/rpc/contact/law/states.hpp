@@ -10,10 +10,10 @@
 namespace rpc::contact
 {
 
-/// The multiplier that a step starts with: the paper's l = 0, half the yield limit, where the body touches. Where there is a gap, or
-/// where the yield limit is out of reach of the load, no pressure is the better guess.
+/// The multiplier that a step starts with: the paper's l = 0, half the yield limit, where the body touches; 0 where there is a gap, or
+/// where the load cannot reach the yield limit.
 /// @param free_gap        gap to the foundation [m]   @param scaling  E / diameter [Pa/m]
-/// @param pressure_bound  above which a yield limit is out of reach [Pa]
+/// @param pressure_bound  yield limits above it count as infinite [Pa]
 KOKKOS_INLINE_FUNCTION double first_multiplier(const double free_gap, const double scaling, const double pressure_bound,
                                                const Foundation &f)
 {
@@ -57,7 +57,7 @@ KOKKOS_INLINE_FUNCTION double resting_penetration(const double p, const Foundati
   return f.compliance * p;
 }
 
-/// What the penalty of a point is stretched by, (p - lambda)/r [m]; of a closed point on a rigid foundation v. 0 where the
+/// Elongation of a point's penalty spring, (p - lambda)/r [m]; of a closed point on a rigid foundation v. 0 where the
 /// state's pressure does not depend on v.                                                                         (5.10)
 KOKKOS_INLINE_FUNCTION double penalty_stretch(const State s, const double v, const double lambda, const double r,
                                               const Foundation &f)
