@@ -85,7 +85,8 @@ def solve(options, folder, deck, *settings):
     path = folder / (pathlib.Path(deck).stem + ".json")
     path.unlink(missing_ok=True)
     start = time.perf_counter()
-    code, stdout, stderr = run([*launch(options), f"--input={deck}", "--set=Output->Exodus=false", *settings], folder, options.time_limit)
+    code, stdout, stderr = run([*launch(options), f"--input={deck}", "--set=Output->Exodus=false", *settings], folder, options.time_limit,
+                               getattr(options, "environment", None))
     seconds = time.perf_counter() - start
     if code is None or not path.exists():
         lines = (stderr or stdout).strip().splitlines()

@@ -80,10 +80,10 @@ def launch(options):
     return shlex.split(options.mpiexec) + ["-n", str(options.np), options.rpc]
 
 
-def run(command, folder, limit=TIME_LIMIT):
-    """Exit code (None if out of time [s]), stdout, stderr."""
+def run(command, folder, limit=TIME_LIMIT, environment=None):
+    """Exit code (None if out of time [s]), stdout, stderr. @param environment  variables besides those of this process"""
     with subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          errors="replace", start_new_session=True) as process:
+                          errors="replace", start_new_session=True, env={**os.environ, **(environment or {})}) as process:
         try:
             stdout, stderr = process.communicate(timeout=limit)
             return process.returncode, stdout, stderr
