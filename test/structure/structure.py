@@ -6,8 +6,9 @@
 Prints each arrow that is not allowed, each line of the program that launches a kernel or works on a matrix, each name that differs
 between Trilinos versions outside VERSION_HEADERS, each parameter of a contact law that is read outside its folder, each kernel in a
 private member function, which nvcc refuses, each source file that is longer than MOST_LINES, each file of GoogleTests outside a
-namespace of its own, each constant that two sources of a package define, each source, script and CMake file without the line that
-names its licence, and each place that names another version of the program than CMakeLists.txt, and each use of gmsh outside the program rpc_gmsh; the exit code is 1 if there is one.
+namespace of its own, each constant that two sources of a package define, each number at namespace scope that is neither a rule nor has a
+subject in NO_RULES, each package with more rules (core/rule.hpp) than MOST_RULES, each source, script and CMake file without the line that
+names its licence, and each place that names another version of the program than CMakeLists.txt, and each use of gmsh outside the program rpc_gmsh; the exit code is 1 if there is one. Then the number of rules of each package.
 
     python3 structure.py --add-licence [<root of the sources>]
 
@@ -74,6 +75,42 @@ MEMBER = re.compile(r"^\S[^\n]*?\b(\w+)::(~?\w+)\((?:[^\n]*\n)+?\{\n(.*?)^\}", r
 
 CONSTANT = re.compile(r"^(?:static |inline )*constexpr [^\n;({]*;", re.MULTILINE)
 NAME_OF_CONSTANT = re.compile(r"(\w+)(?:\[\w*\])? = ")
+
+# Numbers that steer a decision are rules, in rules.hpp of their package: what else is a number at namespace scope, by subject.
+NUMBER = re.compile(r"^(?:static |inline )*constexpr (?:int|unsigned|float|double|LO|GO|std::size_t|std::u?int\d+_t) (?!\w+\()[^;({]*=[^;]*;",
+                    re.MULTILINE)
+NAME_OF_NUMBER = re.compile(r"(\w+)(?:\[\w+\])* =")
+NO_RULES = {
+    "numbers of formats and protocols: bytes, tags, types of cells": """
+        packages/core/src/exchange.cpp packages/core/src/halo.cpp packages/core/src/message.cpp packages/core/src/units.cpp
+        packages/io/src/checkpoint.cpp packages/mesh/src/gmsh_wire.cpp packages/mesh/src/gmsh_wire.hpp
+        packages/mesh/src/gmsh_size_callback.hpp packages/mesh/src/mesh_mending.cpp src/checkpoint.cpp src/output/paths.cpp""",
+    "numbers of shapes": """
+        packages/mesh/include/rpc/mesh/size_field.hpp packages/mesh/src/element.cpp packages/mesh/src/topology.cpp""",
+    "numbers that are known to mathematics, or to stand for none": """
+        packages/algebra/include/rpc/algebra/alike_nodes.hpp packages/core/src/bounds.cpp packages/core/src/finite.cpp
+        packages/core/src/memory.cpp packages/fem/src/materials.cpp packages/io/src/expression_bounds.cpp""",
+    "blocks of kernels and leaves of trees": """
+        packages/algebra/src/repeated_rows.cpp packages/algebra/src/several_vectors.cpp packages/contact/src/surface/facets.cpp
+        packages/mesh/src/canonical_order.cpp packages/mesh/src/size_tree.cpp""",
+    "what input may be": """
+        packages/contact/src/contact_nodes.cpp packages/fem/src/hinges.cpp packages/io/src/deck.cpp
+        packages/mesh/include/rpc/mesh/mesh_data.hpp packages/mesh/src/make_mesh.cpp""",
+    "what notes and results tell, and in how many digits": """
+        packages/contact/src/between_nodes.cpp packages/contact/src/gap_search.cpp packages/io/src/error_bar.cpp src/notes.cpp
+        src/output/points.cpp src/scene.cpp""",
+    "estimates of errors and what their bars cover": """
+        packages/adapt/src/cycle.cpp packages/adapt/src/observed_error.cpp packages/adapt/src/size_plan.cpp""",
+    "rounding": """
+        packages/algebra/src/updated_operator.cpp packages/fem/include/rpc/fem/rigid_motion.hpp packages/fem/src/congruent_cells.cpp
+        packages/fem/src/discretization.cpp packages/fem/src/rigid_motion.cpp packages/fem/src/rounding.cpp packages/fem/src/surface.cpp
+        packages/mesh/src/gmsh_boundary.cpp packages/mesh/src/side_places.cpp src/continuation.cpp""",
+    "contact law": """
+        packages/contact/include/rpc/contact/law/foundation.hpp packages/contact/include/rpc/contact/law/interpolated.hpp""",
+}
+NUMBERS_LEFT = ["analysis", "solver"]  # packages whose numbers are not yet rules
+RULE = re.compile(r"^ *Rule<", re.MULTILINE)
+MOST_RULES = {"algebra": 4, "mesh": 13, "contact": 23, "adapt": 32}  # of a package; 130 are wanted in all
 
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"  # of LICENSE; within the first two lines, behind the marks of a comment
 COMMENTS = {".cpp": "//", ".hpp": "//", ".c": "//", ".py": "#", ".sh": "#", ".cmake": "#", ".in": "#", ".def": "#"}
@@ -224,6 +261,30 @@ def check_constants(root):
                     yield f"{file.relative_to(root)}: {name} is also a constant of {other.relative_to(root)}"
 
 
+def check_numbers(root):
+    """Numbers that steer a decision are rules."""
+    subjects = {name for files in NO_RULES.values() for name in files.split()}
+    for folder in [*sorted(root.glob("packages/*")), root / "src"]:
+        for file in code(folder) if folder.name not in NUMBERS_LEFT else []:
+            name = str(file.relative_to(root))
+            numbers = [] if "test" in file.relative_to(folder).parts else NUMBER.findall(file.read_text())
+            if numbers and file.name != "rules.hpp" and name not in subjects:
+                yield (f"{name}: {NAME_OF_NUMBER.search(numbers[0]).group(1)} is a number at namespace scope: a rule belongs into rules.hpp of "
+                       "its package, a bound of rounding into a struct, another subject into NO_RULES of test/structure/structure.py")
+
+
+def rules(root):
+    """{package: number of its rules}"""
+    return {file.parts[-5]: len(RULE.findall(file.read_text())) for file in sorted(root.glob("packages/*/include/rpc/*/rules.hpp"))}
+
+
+def check_rules(root):
+    for package, number in rules(root).items():
+        most = MOST_RULES.get(package, 0)
+        if number > most and package not in NUMBERS_LEFT:
+            yield f"packages/{package}: {number} rules, more than the {most} of MOST_RULES: a new rule takes the place of another one"
+
+
 def licensed(root):
     """Each file that names its licence, with the mark of its comments."""
     files = [root / "CMakeLists.txt", *(path for top in LICENSED_FOLDERS for path in sorted((root / top).rglob("*")))]
@@ -279,6 +340,8 @@ def violations(root):
     yield from check_lengths(root)
     yield from check_namespaces_of_tests(root)
     yield from check_constants(root)
+    yield from check_numbers(root)
+    yield from check_rules(root)
     yield from check_licences(root)
     yield from check_version(root)
 
@@ -293,6 +356,8 @@ def main():
     found = list(violations(root))
     for line in found:
         print(line)
+    numbers = rules(root)
+    print(f"rules: {', '.join(f'{package} {number}' for package, number in numbers.items())}; in all {sum(numbers.values())}")
     return 1 if found else 0
 
 

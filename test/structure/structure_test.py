@@ -146,11 +146,37 @@ class Structure(unittest.TestCase):
             self.assertEqual(self.violations(**{where: text}), ["packages/mesh/test/a_test.cpp: is not within namespace a_test and an unnamed one"])
 
     def test_finds_a_constant_that_two_sources_define(self):
-        files = {"packages__mesh__src__a.cpp": "constexpr double tiny = 1e-9; // small\n",
-                 "packages__mesh__src__sub__b.cpp": "constexpr double huge = 1e9, tiny = 1e-3;\n"}
+        files = {"packages__mesh__src__a.cpp": "constexpr const char *tiny = \"a\"; // small\n",
+                 "packages__mesh__src__sub__b.cpp": "constexpr bool huge = true, tiny = false;\n"}
         self.assertEqual(self.violations(**files), ["packages/mesh/src/sub/b.cpp: tiny is also a constant of packages/mesh/src/a.cpp"])
         files["packages__mesh__src__sub__b.cpp"] = "void f()\n{\n  constexpr double tiny = 1e-3;\n}\n"
         self.assertEqual(self.violations(**files), [])
+
+    def test_finds_a_number_that_is_no_rule(self):
+        for line in ("constexpr double enough = 0.3;", "inline constexpr int patience =\n    4;", "static constexpr std::size_t most = 7, least = 1;"):
+            for where in ("packages__mesh__src__a.cpp", "packages__contact__include__rpc__contact__a.hpp", "src__a.cpp"):
+                found = self.violations(**{where: f"namespace\n{{\n{line}\n}}\n"})
+                self.assertEqual(len(found), 1, line)
+                self.assertIn("is a number at namespace scope", found[0])
+        for text in ("struct Rounding {\n  static constexpr double place = 1e-9;\n};\n", "void f()\n{\n  constexpr int a = 3;\n}\n",
+                     "constexpr int nodes(const int dim)\n{\n  return dim;\n}\n", "constexpr const char *name = \"a\";\n"):
+            self.assertEqual(self.violations(**{"packages__mesh__src__a.cpp": text}), [])
+        self.assertEqual(self.violations(**{"packages__mesh__test__a.hpp": "constexpr double enough = 0.3;\n"}), [])
+
+    def test_subjects_are_those_of_files_with_numbers(self):
+        self.assertEqual(self.violations(**{"packages__mesh__src__topology.cpp": "constexpr int most_vertices = 4;\n"}), [])
+        for name in " ".join(structure.NO_RULES.values()).split():
+            self.assertTrue(structure.NUMBER.search((SOURCE / name).read_text()), name)
+
+    def test_finds_a_rule_more(self):
+        rule = '  Rule<int> a{1, "mesh.a", "cells [-]", "measured"};\n'
+        for number in (structure.MOST_RULES["mesh"], structure.MOST_RULES["mesh"] + 1):
+            found = self.violations(**{"packages__mesh__include__rpc__mesh__rules.hpp": f"struct MeshRules {{\n{number * rule}}};\n"})
+            self.assertEqual(len(found), number - structure.MOST_RULES["mesh"], found)
+
+    def test_counts_the_rules_of_packages(self):
+        rules = structure.rules(SOURCE)
+        self.assertEqual({package: rules[package] for package in structure.MOST_RULES}, structure.MOST_RULES)  # fewer: the bound falls, too
 
     def test_finds_a_file_that_does_not_name_its_licence_and_adds_the_line(self):
         line = structure.LICENCE

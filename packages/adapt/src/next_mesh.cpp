@@ -2,6 +2,7 @@
 #include "next_mesh.hpp"
 
 #include "rpc/adapt/new_sizes.hpp"
+#include "rpc/adapt/rules.hpp"
 #include "size_plan.hpp"
 
 #include <algorithm>
@@ -12,35 +13,6 @@ namespace rpc::adapt
 {
 namespace
 {
-
-// A new mesh is planned for so much less than the target: predictions are right to some ten per cent.
-constexpr double aim = 0.95, aim_in_space = 0.88; // another mesh costs more there
-// Sizes of nested cells are a factor of 1.26 or 1.41 apart: near the target plans that ask for little change nothing in many places.
-constexpr double aim_near_nested = 0.7;
-// The estimate falls by no more from one mesh to the next: a coarse mesh knows little of where a fine one is to be fine.
-constexpr double greatest_reduction = 4;
-// Near the target the next plan makes up for the excess of the estimates over their plans since then, up to a factor: an
-// excess that stays asks for more each time. Cells hardly grow there, so that no accuracy is lost.
-constexpr double near = 2, near_in_space = 1.3, greatest_correction = 3, growth_near = 1.25, growth = 2.5;
-// A mesh has no more than so many times the cells that the order of the elements asks for: where a coarse mesh asks for
-// many more, its estimate is not reliable.
-constexpr double greatest_excess = 1.5;
-// At the limit of unknowns meshes are planned that much smaller than allowed, for gmsh makes more cells or fewer than it is asked for: the
-// first one, and those after it, when it is known how many it makes at about this size.
-constexpr double share_of_max_dofs = 0.75, share_again = 0.9;
-// A mesh that has so much of the unknowns that were planned is one at the limit.
-constexpr double filled = 0.9;
-// An estimate that falls by less is no better: at the limit that ends the run.
-constexpr double hardly_less = 0.97;
-// So many meshes are made after a solution, each with larger cells, until one is not too large.
-constexpr int most_tries = 5;
-// A mesh in space has up to so many times the cells that are expected: coarse ones cannot be as coarse as they may, for the body's edges.
-constexpr double excess_in_space = 2;
-// The same of nested meshes, which are no coarser than the first one and have neighbours of small cells halved.
-constexpr double excess_nested = 3.2, excess_nested_in_plane = 2;
-// In space gmsh makes cells of twice the size, which are halved: that takes an eighth of gmsh's time, and multigrid has a mesh more. Meshes of
-// fewer cells are gmsh's: halved ones could not be as coarse. In the plane gmsh is fast enough, and finer gradings pay. doc/design.md
-constexpr double least_halved = 6000;
 
 /// Cells, as those of a field of sizes count.
 double cells_of(const mesh::Mesh &mesh)
@@ -66,28 +38,30 @@ double growth_for(const double reduction, const mesh::Element &element)
 double MeshPlanner::made_per_planned(const double cells, const int dim) const
 {
   if (predicted_cells_ > 0) return cells / predicted_cells_;
-  if (!nests(task_.mesh, task_.adapt)) return dim == 2 ? 1 : excess_in_space;
-  return dim == 2 ? excess_nested_in_plane : excess_nested;
+  if (!nests(task_.mesh, task_.adapt)) return dim == 2 ? 1. : plan_rules.excess_in_space;
+  return dim == 2 ? plan_rules.excess_nested_in_plane : plan_rules.excess_nested;
 }
 
 /// @param eta, target  estimates, of the present mesh and of the last one [J^(1/2)]
 MeshPlanner::Goal MeshPlanner::goal(const double eta, const double target, const int dim)
 {
   const bool nested = nests(task_.mesh, task_.adapt);
-  const double far = (dim == 2 ? aim : aim_in_space) * target;
-  const bool is_near = eta < (dim == 2 || nested ? near : near_in_space) * far;
-  const double wanted = is_near && nested ? aim_near_nested * target : far;
-  const double meshes = std::ceil(std::log(eta / wanted) / std::log(greatest_reduction)); // in equal steps
-  missed_ = is_near && !nested ? std::clamp(missed_ * eta / planned_, 1., greatest_correction) : 1;
+  const double far = (dim == 2 ? plan_rules.aim : plan_rules.aim_in_space) * target;
+  const bool is_near = eta < (dim == 2 || nested ? plan_rules.near : plan_rules.near_in_space) * far;
+  const double wanted = is_near && nested ? plan_rules.aim_near_nested * target : far;
+  const double meshes =
+      std::ceil(std::log(eta / wanted) / std::log(double(plan_rules.greatest_reduction))); // in equal steps
+  missed_ = is_near && !nested ? std::clamp(missed_ * eta / planned_, 1., double(plan_rules.greatest_correction)) : 1;
   planned_ = eta * std::pow(wanted / eta, 1 / std::max(1., meshes));
-  return {planned_ / missed_, is_near ? growth_near : growth, std::max(1, static_cast<int>(meshes)), wanted};
+  return {planned_ / missed_, is_near ? plan_rules.growth_near : plan_rules.growth,
+          std::max(1, static_cast<int>(meshes)), wanted};
 }
 
 mesh::MeshOptions MeshPlanner::options_for(const Sizes &sizes, const mesh::Mesh &mesh)
 {
   const bool nested = nests(task_.mesh, task_.adapt);
   predicted_cells_ = sizes.predicted_cells;
-  halved_ = halves_ && !nested && mesh.dim() == 3 && sizes.predicted_cells >= least_halved;
+  halved_ = halves_ && !nested && mesh.dim() == 3 && sizes.predicted_cells >= plan_rules.least_halved;
   auto options = *sized(task_.mesh, task_.adapt, sizes.field, halved_ ? 1 : 0);
   if (nested) {
     if (sum_all(mesh.comm(), GO(base_ ? 1 : 0)) == 0) base_ = mesh::base_mesh(task_.mesh, mesh.comm());
@@ -102,11 +76,11 @@ bool MeshPlanner::nothing_gained(const double eta, const double target, const do
                                  const mesh::Element &element) const
 {
   const double most = static_cast<double>(task_.adapt.max_dofs);
-  if (!(planned_at_limit_ && dofs > filled * share_of_max_dofs * most)) return false;
+  if (!(planned_at_limit_ && dofs > plan_rules.filled * plan_rules.share_of_max_dofs * most)) return false;
   const double needed = dofs * growth_for(eta / target, element);
   const double needed_before = before_.dofs * growth_for(before_.eta / target, element);
-  return eta > hardly_less * before_.eta ||
-         (needed > most && needed > growth_for(hardly_less, element) * needed_before);
+  return eta > plan_rules.hardly_less * before_.eta ||
+         (needed > most && needed > growth_for(plan_rules.hardly_less, element) * needed_before);
 }
 
 /// The end of a message on the limit.
@@ -135,10 +109,11 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
   goal_ = goal(eta, target, mesh.dim());
   // Sizes that ask for too little leave nested cells as they are, or halve others: then they ask for more.
   const double relative = eta / std::sqrt(energy_norm_squared);
-  if (nests(task_.mesh, task_.adapt) && relative > hardly_less * least_) no_better_ *= aim_near_nested;
+  if (nests(task_.mesh, task_.adapt) && relative > plan_rules.hardly_less * least_)
+    no_better_ *= plan_rules.aim_near_nested;
   goal_.bound *= no_better_;
   // Where unseen contact is most of the error, errors elsewhere are those of another solution: no cell grows for them.
-  if (estimate.unseen() > 0.5 * estimate.total()) goal_.growth = 1;
+  if (estimate.unseen() > plan_rules.mostly_unseen * estimate.total()) goal_.growth = 1;
   const double dofs = dofs_of(mesh), cells = cells_of(mesh), ratio = made_per_planned(cells, mesh.dim());
   if (!halved_) ratio_unless_halved_ = ratio;
   if (relative < least_) {
@@ -146,9 +121,9 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
     least_dofs_ = dofs;
   }
   const double most = static_cast<double>(task_.adapt.max_dofs);
-  const double share = planned_at_limit_ ? share_again : share_of_max_dofs;
+  const double share = planned_at_limit_ ? plan_rules.share_again : plan_rules.share_of_max_dofs;
   const double allowed = share * most * cells / dofs / ratio;
-  const double sensible = greatest_excess * cells * growth_for(eta / goal_.bound, mesh.element);
+  const double sensible = plan_rules.greatest_excess * cells * growth_for(eta / goal_.bound, mesh.element);
   const double squared_error = goal_.bound * goal_.bound;
   Sizes sizes = new_sizes(d, estimate, {squared_error, sensible, goal_.growth});
   const bool at_limit = sizes.predicted_cells > allowed;
@@ -158,7 +133,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
     return std::nullopt;
   }
   // Cells that see contact are small in few places only: the first try has one of them for each that is planned.
-  if (at_limit) sizes = new_sizes(d, estimate, {squared_error, allowed, growth, ratio * allowed});
+  if (at_limit) sizes = new_sizes(d, estimate, {squared_error, allowed, plan_rules.growth, ratio * allowed});
   before_ = planned_at_limit_ ? Before{eta, dofs} : Before{};
   planned_at_limit_ = at_limit;
   tries_ = 1;
@@ -177,17 +152,19 @@ bool MeshPlanner::fits(const mesh::Mesh &mesh) const
 std::optional<mesh::MeshOptions> MeshPlanner::smaller(const fem::Discretization &d, const ErrorEstimate &estimate,
                                                       const mesh::Mesh &too_large, std::string &reason)
 {
-  const double made = dofs_of(too_large), most = share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
+  const double made = dofs_of(too_large),
+               most = plan_rules.share_of_max_dofs * static_cast<double>(task_.adapt.max_dofs);
   planned_at_limit_ = true;
-  if (made < smallest_try_ && tries_ < most_tries) {
+  if (made < smallest_try_ && tries_ < plan_rules.most_tries) {
     smallest_try_ = made;
     ++tries_;
     double allowed = predicted_cells_ * most / made;
-    if (halved_ && allowed < least_halved) { // other meshes, which have other numbers of cells
+    if (halved_ && allowed < plan_rules.least_halved) { // other meshes, which have other numbers of cells
       halves_ = false;
       allowed = most * cells_of(*d.mesh) / dofs_of(*d.mesh) / ratio_unless_halved_;
     }
-    return options_for(new_sizes(d, estimate, {goal_.bound * goal_.bound, allowed, growth, allowed}), *d.mesh);
+    return options_for(new_sizes(d, estimate, {goal_.bound * goal_.bound, allowed, plan_rules.growth, allowed}),
+                       *d.mesh);
   }
   std::ostringstream text;
   text << "no next mesh within \"Adapt->Max Dofs\" = " << task_.adapt.max_dofs << " was found in " << tries_

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "size_plan.hpp"
 
+#include "rpc/adapt/rules.hpp"
 #include "rpc/mesh/topology.hpp"
 
 #include <algorithm>
@@ -16,27 +17,13 @@ namespace rpc::adapt
 namespace
 {
 
-// From one mesh to the next a cell of a smooth solution shrinks by no more: the estimate knows no better.
-constexpr double least_ratio = 0.1;
-// The same at a singular vertex in the plane, where cells shrink towards a point and cost little.
-constexpr double least_vertex_ratio = 1e-4;
-// Growth of sizes with the distance: neighbours differ by about half.
-constexpr double gradation = 0.4;
-// Rings of cells about a vertex that tell its exponent.
-constexpr int rings = 4;
-constexpr int rings_in_space = 3; // they have many more cells
-// So often the level is corrected for the error that the sizes bring about.
-constexpr int most_corrections = 6;
-// A vertex is singular if its exponent falls that much short of the order of the elements.
-constexpr double margin = 0.25;
-// The lowest exponents of elastic bodies: cracks.
+// The lowest exponents of elastic bodies: those of cracks.
 constexpr double least_exponent = 0.5;
-// Exponents are rounded to steps of 1 over this, lest last digits decide which of two like vertices is singular.
-constexpr double exponent_steps = 256;
-// The part of the error asked for that makes no singularity.
-constexpr double negligible_share = 1e-6;
-// Sizes are rounded to steps of this factor, lest the last digits of an estimate change a mesh.
-constexpr double steps_per_octave = 64;
+// Exponents are rounded to steps of 1 over this, lest last digits decide which of two like vertices is singular; sizes to steps of 2 to the
+// power of 1 over this, lest the last digits of an estimate change a mesh; and an error below this part of what is asked for makes no singularity.
+struct SizeRounding {
+  static constexpr double exponent_steps = 256, steps_per_octave = 64, negligible_share = 1e-6;
+};
 
 /// The simplices that a cell is cut into, by its vertices.
 const std::vector<std::vector<int>> &parts_of(const EstimatedMesh &mesh)
@@ -109,7 +96,8 @@ struct Prediction {
 double ratio_of(const EstimatedMesh &mesh, const int cell, const double level, const double most)
 {
   const double squared = mesh.squared[cell];
-  return squared > 0 ? std::clamp(std::pow(level / squared, 1. / (2 * mesh.order + mesh.dim)), least_ratio, most)
+  return squared > 0 ? std::clamp(std::pow(level / squared, 1. / (2 * mesh.order + mesh.dim)),
+                                  double(size_rules.least_ratio), most)
                      : most;
 }
 
@@ -161,7 +149,7 @@ void limit_growth(const EstimatedMesh &mesh, const Geometry &geometry, std::vect
     for (const int cell : geometry.around[n])
       for (int a = 0; a < mesh.vertices; ++a) {
         const int m = mesh.vertices_of(cell)[a];
-        const double bound = least + gradation * distance(mesh, m, mesh.at(n));
+        const double bound = least + size_rules.gradation * distance(mesh, m, mesh.at(n));
         if (bound < size[m]) queue.emplace(size[m] = bound, m);
       }
   }
@@ -183,7 +171,8 @@ public:
   double slope() const
   {
     const double spread = sum_[0] * sum_[3] - sum_[1] * sum_[1];
-    return spread > 0.05 * sum_[0] * sum_[0] ? (sum_[0] * sum_[4] - sum_[1] * sum_[2]) / spread : 0;
+    return spread > size_rules.telling_spread * sum_[0] * sum_[0] ? (sum_[0] * sum_[4] - sum_[1] * sum_[2]) / spread
+                                                                  : 0;
   }
 
 private:
@@ -210,7 +199,7 @@ std::vector<double> local_exponents(const EstimatedMesh &mesh, const Geometry &g
     Fit fit;
     std::vector<int> ring = geometry.around[n];
     for (const int cell : ring) seen[cell] = n;
-    for (int k = 0; k < (mesh.dim == 2 ? rings : rings_in_space); ++k) {
+    for (int k = 0; k < (mesh.dim == 2 ? size_rules.rings : size_rules.rings_in_space); ++k) {
       std::vector<int> next;
       for (const int cell : ring) {
         const double density = mesh.squared[cell] / error_scale(mesh, geometry, cell) + least;
@@ -224,7 +213,7 @@ std::vector<double> local_exponents(const EstimatedMesh &mesh, const Geometry &g
       }
       ring = std::move(next);
     }
-    exponent[n] += std::round(fit.slope() * exponent_steps) / exponent_steps;
+    exponent[n] += std::round(fit.slope() * SizeRounding::exponent_steps) / SizeRounding::exponent_steps;
   }
   return exponent;
 }
@@ -263,7 +252,8 @@ private:
   int add(const double *x, const double size)
   {
     field_.coords.insert(field_.coords.end(), x, x + mesh_.dim);
-    field_.size.push_back(std::exp2(std::round(std::log2(size) * steps_per_octave) / steps_per_octave));
+    field_.size.push_back(
+        std::exp2(std::round(std::log2(size) * SizeRounding::steps_per_octave) / SizeRounding::steps_per_octave));
     return static_cast<int>(field_.size.size()) - 1;
   }
 
@@ -273,7 +263,7 @@ private:
     const double *const x = mesh_.at(vertex), *const y = mesh_.at(other);
     const double at[2] = {x[0] + t * (y[0] - x[0]), x[1] + t * (y[1] - x[1])};
     const double beta = 1 - exponent_[vertex] / (mesh_.order + 1);
-    const double grown = size_[vertex] + gradation * t * distance(mesh_, vertex, y);
+    const double grown = size_[vertex] + size_rules.gradation * t * distance(mesh_, vertex, y);
     return add(at, std::min(grown, std::max(size_[vertex], size_[other] * std::pow(t, beta))));
   }
 
@@ -337,7 +327,9 @@ double vertex_size(const EstimatedMesh &mesh, const Geometry &geometry, const in
   const double graded = std::exp(std::min(0., ratio / count) * (2 * mesh.order + mesh.dim) / decay);
   const double allowed = level * geometry.around[vertex].size();
   const double equal = squared > allowed ? std::pow(allowed / squared, 1 / decay) : 1;
-  return std::exp(reach / count) * std::max(std::min(graded, equal), mesh.dim == 2 ? least_vertex_ratio : least_ratio);
+  return std::exp(reach / count) * std::max<double>(std::min(graded, equal), mesh.dim == 2
+                                                                                 ? size_rules.least_vertex_ratio
+                                                                                 : size_rules.least_ratio);
 }
 
 /// Where the exponent is that of a singularity, and no vertex nearby has a lower one, or the same and a lower number. In space, where
@@ -345,15 +337,14 @@ double vertex_size(const EstimatedMesh &mesh, const Geometry &geometry, const in
 std::vector<char> singular_vertices(const EstimatedMesh &mesh, const Geometry &geometry,
                                     const std::vector<double> &exponent)
 {
-  constexpr double same_in_space = 0.2;
   std::vector<char> singular(mesh.num_nodes(), 0);
   for (int n = 0; n < mesh.num_nodes(); ++n) {
-    singular[n] = exponent[n] < mesh.order - margin;
+    singular[n] = exponent[n] < mesh.order - size_rules.margin;
     for (const int cell : geometry.around[n])
       for (int a = 0; a < mesh.vertices && singular[n]; ++a) {
         const int m = mesh.vertices_of(cell)[a];
         const bool stronger = mesh.dim == 2 ? exponent[m] < exponent[n] || (exponent[m] == exponent[n] && m < n)
-                                            : exponent[m] < exponent[n] - same_in_space;
+                                            : exponent[m] < exponent[n] - size_rules.same_in_space;
         if (stronger) singular[n] = 0;
       }
   }
@@ -411,7 +402,8 @@ bool see_contact(const EstimatedMesh &mesh, const double squared_error, const do
 SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
 {
   const Geometry geometry(mesh);
-  std::vector<double> exponent = local_exponents(mesh, geometry, negligible_share * request.squared_error);
+  std::vector<double> exponent =
+      local_exponents(mesh, geometry, SizeRounding::negligible_share * request.squared_error);
   const std::vector<char> singular = singular_vertices(mesh, geometry, exponent);
   std::vector<char> at_singularity(mesh.num_cells(), 0);
   for (int n = 0; n < mesh.num_nodes(); ++n) {
@@ -420,7 +412,7 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
       if (singular[n]) at_singularity[cell] = 1;
   }
   double level = level_for(mesh, at_singularity, request), seen_times = 1;
-  for (int corrections = mesh.dim == 2 ? 0 : most_corrections;; --corrections) {
+  for (int corrections = mesh.dim == 2 ? 0 : size_rules.most_corrections;; --corrections) {
     std::vector<double> size = smooth_sizes(mesh, geometry, at_singularity, level, request.max_growth);
     for (int n = 0; n < mesh.num_nodes(); ++n)
       if (singular[n]) size[n] = vertex_size(mesh, geometry, n, exponent[n], singular, size, level);
@@ -428,7 +420,7 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
     limit_growth(mesh, geometry, size);
     const double excess =
         corrections > 0 ? request.squared_error / squared_error_of(mesh, geometry, size, exponent, singular) : 1;
-    if (excess > 1.1 || excess < 0.95) {
+    if (excess > size_rules.most_above || excess < size_rules.most_below) {
       level *=
           std::pow(excess, 1 + mesh.dim / (2. * mesh.order)); // cells of equal errors: eta^2 ~ level^(2p / (2p + dim))
       continue;
@@ -438,7 +430,7 @@ SizePlan plan_sizes(const EstimatedMesh &mesh, const SizeRequest &request)
     const double least = mesh.num_cells() * mesh.cells_per_cell() / std::pow(request.max_growth, mesh.dim) * 1.0001;
     const bool coarsest = predict(mesh, at_singularity, level, request.max_growth).cells <= least;
     if (plan.cells <= request.max_cells || (coarsest && (!sees || plan.cells <= request.most_cells))) return plan;
-    constexpr double step = 1.5;
+    const double step = size_rules.level_step;
     level *= step; // grading adds cells, which the prediction leaves out
     if (plan.cells > request.most_cells) seen_times *= std::pow(step, 1. / (2 * mesh.order + mesh.dim)); // as (10.5)
   }

@@ -37,15 +37,15 @@ public:
   {
     if (!(load_ > 0 && length_ > 0)) return false;
     join();
-    Headway lengths({1, contact::many_short_steps - 1});
+    Headway lengths({1, contact::interior_rules.many_short_steps - 1});
     for (int step = 0; step < path_rules.model_steps; ++step) {
       const double t = advance();
       if (!(t > 0)) return false;
       const double gap = products_ / (load_ * area_ * length_);
       if (gap <= path_rules.model_gap || (settled_ && gap <= path_rules.early_model_gap)) return true;
-      if (lengths.take(!(t < contact::short_step)) != Headway::Answer::stuck) continue;
+      if (lengths.take(!(t < contact::interior_rules.short_step)) != Headway::Answer::stuck) continue;
       lengths.start_over();
-      load_ *= contact::more_pressure;
+      load_ *= contact::interior_rules.more_pressure;
       join();
     }
     return false;
@@ -58,9 +58,10 @@ private:
   /// From the present x, with the present load.                                                                     (5.16)
   void join()
   {
-    mu_ = contact::first_mu * load_ * length_;
+    mu_ = contact::interior_rules.first_mu * load_ * length_;
     for (std::size_t i = 0; i < size(); ++i)
-      at_[i] = contact::join_path(load_, model_.v_[i] + moved_[i], mu_, contact::start_slope * load_ / length_, law(i));
+      at_[i] = contact::join_path(load_, model_.v_[i] + moved_[i], mu_,
+                                  contact::interior_rules.start_slope * load_ / length_, law(i));
   }
 
   /// The changes for the targets, and the part of them that keeps all points inside.                        (5.17), (5.19)
@@ -73,13 +74,13 @@ private:
     }
     d_ = model_.direction(system_, model_.gradient(elastic_, pressure_));
     const std::vector<double> along = model_.points_moved(d_);
-    double longest = 1 / contact::nearly;
+    double longest = 1 / contact::interior_rules.to_boundary;
     for (std::size_t i = 0; i < size(); ++i) {
       const double dp = pressure_[i] - at_[i].pressure + system_.stiffness[i] * along[i];
       change_[i] = contact::linear_change(at_[i], dp, aim_[i], law(i));
       longest = std::min(longest, contact::longest_step(at_[i], change_[i], law(i)));
     }
-    return contact::nearly * longest;
+    return contact::interior_rules.to_boundary * longest;
   }
 
   /// A step, predictor and corrector. @return its length; 0: there is no factor

@@ -2,6 +2,7 @@
 #include "rpc/contact/active_set.hpp"
 
 #include "rpc/contact/law/states.hpp"
+#include "rpc/contact/rules.hpp"
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/core/math.hpp"
 
@@ -11,10 +12,6 @@ namespace rpc::contact
 {
 namespace
 {
-
-// Weight of penetration against pressure in the first active set, in E / diameter: of the u and lambda that a coarser mesh predicts,
-// either may be the more accurate one.
-constexpr double first_weight = 10;
 
 /// This rank's largest pressure, as far as the law allows it [Pa].
 double largest_pressure(const ContactNodes &c, const DeviceView<double *> &p)
@@ -30,10 +27,12 @@ double largest_pressure(const ContactNodes &c, const DeviceView<double *> &p)
 void choose_first(const SmoothedPoints &s, const Vector &u, const bool all_close, const DeviceView<State *> &next)
 {
   const auto x = device_read(u);
+  const double weight =
+      start_rules.first_weight; // where a coarser mesh predicts u and lambda, either may be the better known one
   Kokkos::parallel_for(
       "rpc::contact::first_states", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
         const ContactNodes &c = s.points;
-        const double rho = first_weight * c.scaling(i);
+        const double rho = weight * c.scaling(i);
         next(i) = c.fixed(i)  ? State::open
                   : all_close ? State::closed
                               : state(penetration(c, i, x), s.multiplier.normal(i), rho, c.law(i));
@@ -48,10 +47,11 @@ void choose_first_slip(const SmoothedPoints &s, const Vector &u, const ActiveSet
   const auto state = choice.state;
   const auto slips = choice.slip;
   const auto direction = choice.direction, traction = choice.traction;
+  const double weight = start_rules.first_weight;
   Kokkos::parallel_for(
       "rpc::contact::first_slip", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
         const ContactNodes &c = s.points;
-        const double rho = first_weight * c.scaling(i);
+        const double rho = weight * c.scaling(i);
         const Friction f = c.friction(i);
         const Motion at = motion(c, i, x);
         const Along a = row(s.multiplier.tangential, i).plus(rho, at.slip);

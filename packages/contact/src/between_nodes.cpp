@@ -3,6 +3,7 @@
 
 #include "facet_samples.hpp"
 #include "gap_search.hpp"
+#include "rounding.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/mesh/geometry.hpp"
@@ -29,8 +30,6 @@ struct Density {
   /// Parts of faces in space in which a search by bounds looks for what the samples miss, of a side: some 1 microsecond each.
   static constexpr int searched = 1 << 15;
 };
-// Of the body's diameter: what lies less deep is rounding of places.
-constexpr double rounding = 1e-12;
 // Unseen contact that changes the solution by less, in the energy norm, is below what any mesh of engineers resolves.
 constexpr double notable = 0.05;
 
@@ -207,7 +206,7 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
   const Comm &comm = d.mesh->comm();
   result.between = {};
   if (sides.empty()) return;
-  const double least = rounding * mesh::diameter(*d.mesh);
+  const double least = Rounding::depth * mesh::diameter(*d.mesh);
   if (points.num_weightless > 0) mark_unseen_points(points, least, result);
   for (std::size_t k = 0; k < sides.size(); ++k) {
     BetweenNodes mine;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/contact_nodes.hpp"
 
+#include "rounding.hpp"
 #include "rpc/contact/law/judgement.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
@@ -18,8 +19,6 @@ namespace
 {
 
 constexpr double largest_gap = 1e50; // [m], as that of meshes: squares must not overflow
-// Of the body's diameter, far below the rounding of places: the tail of an exponential is no gap, and no overlap to solve for.
-constexpr double no_gap = 1e-30;
 // Of the directions of a side, by area, that lead out of the body, against those that lead into it.
 constexpr double mostly = 0.5;
 
@@ -156,7 +155,7 @@ SideValues side_values(const ContactOptions &options, const HostPoints &points,
 
   std::optional<std::string> bad;
   for (LO i = 0; i < n && !bad; ++i) {
-    if (std::abs(values.gap(i)) <= no_gap * diameter) values.gap(i) = 0;
+    if (std::abs(values.gap(i)) <= Rounding::gap * diameter) values.gap(i) = 0;
     if (std::abs(values.gap(i)) <= largest_gap) continue;
     std::ostringstream message;
     message << "deck: \"" << options.path << "->Gap\" must be at most " << largest_gap << " [m] in size, got "

@@ -12,8 +12,6 @@ namespace rpc::contact
 namespace
 {
 
-constexpr double longer_by = 0.3; // center() aims for a step longer by this than the longest feasible one
-
 /// 1/(D + 1/r) of a point [Pa/m].                                                                              (5.18)
 KOKKOS_INLINE_FUNCTION double linear_stiffness(const SmoothedPoints &s, const LO i, const InteriorPoint &at)
 {
@@ -101,7 +99,7 @@ double longest_of_all(const Comm &comm, const SmoothedPoints &s, const DeviceVie
         if (!s.points.fixed(i)) least = math::fmin(least, longest_step(at(i), change(i), s.points.law(i)));
       },
       Kokkos::Min<double>(longest));
-  return std::min(1., nearly * min_all(comm, longest));
+  return std::min(1., interior_rules.to_boundary * min_all(comm, longest));
 }
 
 /// Over all ranks: sum_i w_i (p_i s_i + q_i d_i) [J], sum_i w_i p_i [N], and the sum of w_i times a point's number of pairs.
@@ -141,15 +139,15 @@ InteriorPath::InteriorPath(const SmoothedFunctional &functional, const Vector &u
 
 void InteriorPath::join(const SmoothedFunctional &functional, const Vector &u)
 {
-  mu_ = first_mu * pressure_ * length_;
-  join_all(functional.points().points, u, pressure_, mu_, start_slope * pressure_ / length_, at_);
+  mu_ = interior_rules.first_mu * pressure_ * length_;
+  join_all(functional.points().points, u, pressure_, mu_, interior_rules.start_slope * pressure_ / length_, at_);
 }
 
 void InteriorPath::rejoin_where_it_creeps(const SmoothedFunctional &functional, const Vector &u)
 {
-  if (short_steps_ < many_short_steps) return;
+  if (short_steps_ < interior_rules.many_short_steps) return;
   short_steps_ = 0;
-  pressure_ *= more_pressure;
+  pressure_ *= interior_rules.more_pressure;
   join(functional, u);
 }
 
@@ -219,13 +217,14 @@ void InteriorPath::center(const SmoothedFunctional &functional, const Vector &u,
 {
   const SmoothedPoints s = functional.points();
   const auto change = changes_along(s, at_, aim_, u, d);
-  const double t = std::min(1., longest_of_all(*u.getMap()->getComm(), s, change, at_) + longer_by), mu = aim_mu_;
+  const double t = std::min(1., longest_of_all(*u.getMap()->getComm(), s, change, at_) + interior_rules.longer_by),
+               mu = aim_mu_, range = interior_rules.range;
   const auto at = at_;
   const auto aim = aim_;
   const DeviceView<InteriorTarget *> next("rpc::contact::interior_target", s.size());
   Kokkos::parallel_for(
       "rpc::contact::interior_center", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
-        if (!s.points.fixed(i)) next(i) = centered_target(at(i), change(i), aim(i), t, mu, s.points.law(i));
+        if (!s.points.fixed(i)) next(i) = centered_target(at(i), change(i), aim(i), t, mu, range, s.points.law(i));
       });
   Kokkos::fence();
   add_force_of(next, aim, s, at, F);
@@ -256,7 +255,7 @@ double InteriorPath::advance(const SmoothedFunctional &functional, const Vector 
   const auto [products, force, pairs] = sums(*u.getMap()->getComm(), s.points, at_);
   mu_ = products / pairs;
   gap_ = products / (force * length_);
-  short_steps_ = t < short_step ? short_steps_ + 1 : 0;
+  short_steps_ = t < interior_rules.short_step ? short_steps_ + 1 : 0;
   Kokkos::deep_copy(aim_, InteriorTarget{0, 0});
   return t;
 }

@@ -5,6 +5,7 @@
 #include "rpc/contact/energies.hpp"
 #include "rpc/contact/law/states.hpp"
 #include "rpc/contact/penalties.hpp"
+#include "rpc/contact/rules.hpp"
 #include "rpc/core/fingerprint.hpp"
 
 #include <algorithm>
@@ -17,14 +18,6 @@ namespace rpc::contact
 // Kernels are free functions: nvcc takes no device lambda in a constructor or a private member.
 namespace
 {
-
-// In units of E/diameter: weak enough not to slow Newton down once nodes close, strong against the rounding of K.
-constexpr double weak_spring = 1e-4, weakest_spring = 1e-10, weaken = 1e-2;
-constexpr double long_step = 1.1; // longer line-search steps weaken the springs; a quadratic's step is 1
-// A yield stress above so many times the mean pressure, load over contact area, is treated as infinite at the start.
-constexpr double beyond_reach = 100;
-// The interior path starts with the mean pressure of the load, or with this multiple of the mean start pressure if that is more.
-constexpr double above_start = 3;
 
 void start_multipliers(const ContactNodes &c, const double pressure_bound, const DeviceView<double *> &lambda)
 {
@@ -183,7 +176,7 @@ Iterate::Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<Up
   applied_force_ = applied.norm2();
   prescribed_force_ = lifted.norm2();
   weight_ = sum_all(*lifted.getMap()->getComm(), weighted_sum(points_));
-  pressure_bound_ = weight_ > 0 ? beyond_reach * lifted.norm1() / weight_ : 0;
+  pressure_bound_ = weight_ > 0 ? start_rules.beyond_reach * lifted.norm1() / weight_ : 0;
   reset_multipliers();
 }
 
@@ -221,12 +214,13 @@ GO Iterate::update_stiffness(const Vector &u)
 
 void Iterate::hold_by_contact()
 {
-  spring_ = weak_spring;
+  spring_ = start_rules.spring;
 }
 
 void Iterate::step_taken(const double length)
 {
-  if (length > long_step && spring_ > 0) spring_ = std::max(weaken * spring_, weakest_spring);
+  if (length > start_rules.long_step && spring_ > 0)
+    spring_ = std::max<double>(start_rules.weaken * spring_, start_rules.least_spring);
 }
 
 ActiveSetChoice Iterate::choose_active_set(const Vector &u, const double negligible) const
@@ -243,7 +237,8 @@ void Iterate::take_active_set(const ActiveSetChoice &choice, Vector &u)
 
 void Iterate::start_interior_path(const Vector &u)
 {
-  interior_.emplace(functional_, u, std::max(pressure_bound_ / beyond_reach, above_start * start_pressure_));
+  interior_.emplace(functional_, u,
+                    std::max(pressure_bound_ / start_rules.beyond_reach, interior_rules.above_start * start_pressure_));
 }
 
 void Iterate::linearize_interior(const Vector &u, Vector &F)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/lagged_bounds.hpp"
 
+#include "rounding.hpp"
+#include "rpc/contact/rules.hpp"
 #include "rpc/core/math.hpp"
 #include "rpc/core/parallel.hpp"
 
@@ -12,9 +14,6 @@ namespace rpc::contact
 {
 namespace
 {
-
-constexpr int mixing_depth = 4;       // of Anderson's acceleration
-constexpr double mixing_rank = 1e-10; // of singular values: differences below are rounding
 
 DeviceView<double *> bound_difference(const DeviceView<double *> &a, const DeviceView<double *> &b)
 {
@@ -43,7 +42,7 @@ std::vector<double> mixing_coefficients(std::vector<double> A, std::vector<doubl
   if (m == 0) return b;
   std::vector<double> singular(m), work(10 * m + 10);
   int rank = 0, info = 0;
-  Teuchos::LAPACK<int, double>().GELSS(m, m, 1, A.data(), m, b.data(), m, singular.data(), mixing_rank, &rank,
+  Teuchos::LAPACK<int, double>().GELSS(m, m, 1, A.data(), m, b.data(), m, singular.data(), Rounding::rank, &rank,
                                        work.data(), static_cast<int>(work.size()), nullptr, &info);
   if (info != 0) std::fill(b.begin(), b.end(), 0.);
   return b;
@@ -57,7 +56,7 @@ DeviceView<double *> LaggedBounds::next(const Comm &comm, const DeviceView<doubl
   const auto residual = bound_difference(found, used);
   if (std::exchange(started_, true))
     changes_.push_back({bound_difference(residual, residual_), bound_difference(found, found_)});
-  if (static_cast<int>(changes_.size()) > mixing_depth) changes_.erase(changes_.begin());
+  if (static_cast<int>(changes_.size()) > lag_rules.mixing_depth) changes_.erase(changes_.begin());
   residual_ = residual;
   found_ = DeviceView<double *>("rpc::contact::found_bounds", found.extent(0));
   Kokkos::deep_copy(found_, found);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/moving_dents.hpp"
 
+#include "rpc/contact/rules.hpp"
 #include "rpc/contact/surface/facets.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
@@ -15,9 +16,6 @@ namespace rpc::contact
 {
 namespace
 {
-
-// Sheets of one foundation before two of them become one, by interpolation: as many steps that dent it are remembered exactly.
-constexpr std::size_t most_sheets = 64;
 
 bool moves_with_foundation(const ContactOptions &side)
 {
@@ -252,7 +250,7 @@ void press_in(const fem::Discretization &d, const std::vector<ContactOptions> &o
     if (moves_with_foundation(options[k])) {
       foundation.sheets.push_back(
           std::make_shared<DentSheet>(sheet_of(d, options[k], standing(d, options[k], u), added, static_cast<int>(k))));
-      if (foundation.sheets.size() > most_sheets) join_two(comm, foundation.sheets);
+      if (static_cast<int>(foundation.sheets.size()) > lag_rules.most_sheets) join_two(comm, foundation.sheets);
     }
     const SideNodes nodes = nodes_of(fem::surface_nodes(d, side_of(d, options[k])));
     foundation.deepest = std::max(foundation.deepest, largest_of(comm, nodes, after, k));

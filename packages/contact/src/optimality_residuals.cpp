@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/optimality_residuals.hpp"
 
+#include "rounding.hpp"
 #include "rpc/contact/energies.hpp"
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/fem/rigid_motion.hpp"
@@ -14,10 +15,6 @@ namespace rpc::contact
 {
 namespace
 {
-
-// Where forces and energies are this small against those of prescribed displacements on a body that stays behind, the body moves as a
-// whole, and what is left is rounding.
-constexpr double lifted_part = 1e-7;
 
 /// |f|_2 over the unknowns that are not prescribed [N].
 double free_norm(const fem::DirichletDofs &dirichlet, const Vector &load)
@@ -84,8 +81,8 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   fem::clear_prescribed(dirichlet, residual);
 
   residuals.kkt_residual = contact_law_residual(points, state);
-  residuals.force_size = std::max(
-      {force_scale, contact.norm2(), residuals.internal.force_norm, lifted_part * free_norm(dirichlet, *elastic.load)});
+  residuals.force_size = std::max({force_scale, contact.norm2(), residuals.internal.force_norm,
+                                   Rounding::lifted_part * free_norm(dirichlet, *elastic.load)});
   residuals.equilibrium_residual = residual.norm2() / residuals.force_size;
 
   const bool at_rest = dirichlet.value->normInf() == 0; // the supports
@@ -94,8 +91,8 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
                of_contact = work(dirichlet, false, moved, contact),
                of_supports = work(dirichlet, true, moved, internal);
   const double lifted = std::abs(elastic.load->dot(u));
-  const double at_work =
-      std::max({strain, std::abs(of_load), std::abs(of_contact), std::abs(of_supports), lifted_part * lifted});
+  const double at_work = std::max(
+      {strain, std::abs(of_load), std::abs(of_contact), std::abs(of_supports), Rounding::lifted_part * lifted});
   residuals.energy_balance =
       ratio(std::abs(strain - of_load + of_contact - of_supports), std::max(at_work, least_energy));
 

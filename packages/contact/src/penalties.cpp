@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/penalties.hpp"
 
+#include "rpc/contact/rules.hpp"
 #include "rpc/core/math.hpp"
 
 namespace rpc::contact
 {
 namespace
 {
-
-// Multiples of a point's own stiffness k. One minimization leaves |v| of about p/(gamma k) with r = gamma k; rounding of v is amplified
-// by gamma.
-constexpr double default_penalty = 1e5, largest_penalty = 1e8, penalty_raise = 100;
-// Where the direction lies along no axis, the penalty is on the diagonal of unknowns along the surface too, and smoothers
-// that go by the diagonal do too little there: 160 CG iterations instead of 30 on the half cylinder's own normals.
-constexpr double default_slanting_penalty = 1e3;
 
 /// Whether a direction lies along an axis, up to rounding.
 KOKKOS_INLINE_FUNCTION bool along_an_axis(const ContactNodes &c, const LO i)
@@ -33,12 +27,13 @@ DeviceView<double *> chosen_penalties(const ContactNodes &points, const DeviceVi
 {
   const ContactNodes c = points;
   DeviceView<double *> penalty("rpc::contact::penalty", c.size());
+  const double standard = penalty_rules.standard, slanting = penalty_rules.slanting, largest = penalty_rules.largest;
   Kokkos::parallel_for(
       "rpc::contact::choose_penalty", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         penalty(i) = c.given_penalty(i) > 0 ? c.given_penalty(i)
-                     : along_an_axis(c, i)  ? default_penalty * own(i)
-                                            : default_slanting_penalty * own(i);
-        if (own(i) > 0 && penalty(i) > largest_penalty * own(i)) penalty(i) = largest_penalty * own(i);
+                     : along_an_axis(c, i)  ? standard * own(i)
+                                            : slanting * own(i);
+        if (own(i) > 0 && penalty(i) > largest * own(i)) penalty(i) = largest * own(i);
       });
   Kokkos::fence();
   return penalty;
@@ -47,11 +42,12 @@ DeviceView<double *> chosen_penalties(const ContactNodes &points, const DeviceVi
 bool raise_penalties(const Comm &comm, const DeviceView<double *> &own, const DeviceView<double *> &penalty)
 {
   LO raised = 0;
+  const double standard = penalty_rules.standard, largest = penalty_rules.largest, raise = penalty_rules.raise;
   Kokkos::parallel_reduce(
       "rpc::contact::raise_penalty", device_range(static_cast<LO>(penalty.extent(0))),
       KOKKOS_LAMBDA(const LO i, LO &count) {
-        double next = math::larger(penalty_raise * penalty(i), default_penalty * own(i));
-        if (next > largest_penalty * own(i)) next = largest_penalty * own(i);
+        double next = math::larger(raise * penalty(i), standard * own(i));
+        if (next > largest * own(i)) next = largest * own(i);
         if (!(next > penalty(i))) return;
         penalty(i) = next;
         ++count;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/result.hpp"
 
+#include "rounding.hpp"
 #include "rpc/contact/law/judgement.hpp"
 #include "rpc/contact/law/lent.hpp"
 #include "rpc/contact/smoothed_points.hpp"
@@ -102,9 +103,6 @@ void fill_fields(const ContactNodes &c, const Vector &u, const ContactResult &re
   Kokkos::fence();
 }
 
-/// A point slips where its traction misses the bound by rounding alone.
-constexpr double slips_from = 1 - 1e-9;
-
 /// No traction, no slip.
 void make_room_for_friction(const ContactNodes &c, ContactResult &result)
 {
@@ -134,7 +132,7 @@ void fill_friction(const ContactNodes &c, const ContactState &state, const Conta
           square += lambda(i, k) * lambda(i, k);
         }
         used(i) = math::sqrt(square) / s;
-        state_of(i) = used(i) >= slips_from ? 2 : 1;
+        state_of(i) = used(i) >= Rounding::full_use ? 2 : 1;
       });
   Kokkos::fence();
 }
@@ -208,7 +206,7 @@ void complete_friction(const fem::Discretization &d, const mesh::Side &side, con
         const Along borne = admissible_friction(along_side(c, i, row(q, i)), bound(i));
         set_row(q, i, borne);
         used(i) = bound(i) > 0 ? borne.length() / bound(i) : 0;
-        state(i) = !(bound(i) > 0) ? 0 : used(i) >= slips_from ? 2 : 1;
+        state(i) = !(bound(i) > 0) ? 0 : used(i) >= Rounding::full_use ? 2 : 1;
       });
   Kokkos::fence();
 }

@@ -130,7 +130,7 @@ TEST(InteriorPath, ProductsFarFromTheirMeanAreCentred)
   const double mu = 0.2, part = 0.5;
   const InteriorTarget target{0.7, 0.6};
   const auto centered = [&](const InteriorPoint &x, const InteriorPoint &change, const Foundation &f) {
-    return centered_target(x, change, target, part, mu, f);
+    return centered_target(x, change, target, part, mu, 10, f);
   };
   const Foundation rigid{inf, 0, 0}, plastic{3, 0, 0};
   // p s = 1 * 0.5 after the step: between mu/10 and 10 mu

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/mesh/box.hpp"
 
+#include "rpc/mesh/rules.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,9 +14,6 @@ namespace
 {
 
 using Directions = std::array<bool, 3>;
-
-/// Node distances up to this many times the shortest one count as equally short.
-constexpr double stretched = 1.7;
 
 /// The least node distance of the directions with more than one interval between nodes; infinite where there is none.
 double shortest_distance(const BoxOptions &options)
@@ -68,7 +67,7 @@ std::optional<BoxOptions> coarsened(const BoxOptions &options)
   Directions closest{}, to_one{};
   bool all = true;
   for (int d = 0; d < dim; ++d) {
-    closest[d] = options.intervals(d) > 1 && options.node_distance(d) <= stretched * shortest;
+    closest[d] = options.intervals(d) > 1 && options.node_distance(d) <= coarsening_rules.equally_long * shortest;
     all = all && (closest[d] || options.intervals(d) == 1);
   }
   if (options.element.shape == Shape::simplex && options.element.order == 2) {
@@ -92,7 +91,8 @@ std::optional<int> thin_direction(const BoxOptions &options)
   const auto thickness = [&options](const int d) { return options.upper[d] - options.lower[d]; };
   for (int d = 0; d < options.element.dim; ++d)
     if (options.intervals(d) == 1 && (!thinnest || thickness(d) < thickness(*thinnest))) thinnest = d;
-  const bool is_thin = thinnest && std::isfinite(shortest) && thickness(*thinnest) < stretched * shortest;
+  const bool is_thin =
+      thinnest && std::isfinite(shortest) && thickness(*thinnest) < coarsening_rules.equally_long * shortest;
   return is_thin ? thinnest : std::nullopt;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/surface/facets.hpp"
 
+#include "../rounding.hpp"
 #include "rpc/core/exchange.hpp"
 #include "rpc/core/rank_boxes.hpp"
 
@@ -17,9 +18,8 @@ namespace rpc::contact
 namespace
 {
 
-constexpr double facet_rounding = 1e-9; // of places within a facet, relative
-constexpr double margin = 0.5;          // of a facet, beyond the edge of the surface
-constexpr std::size_t few = 4;          // facets in a box that is not divided
+constexpr double margin = 0.5; // of a facet, beyond the edge of the surface
+constexpr std::size_t few = 4; // facets in a box that is not divided
 
 /// A straight facet as weights of the nodes of the facet that it is a part of: (corners, nodes).
 using Part = std::vector<std::vector<double>>;
@@ -142,7 +142,7 @@ std::optional<InFacet> meet(const int dim, const std::array<Point, 3> &x, const 
   if (dim == 2) {
     const Point normal = {along[1], -along[0], 0}; // as long as the facet
     const double facing = inner(normal, direction);
-    if (!(facing > facet_rounding * length(along))) return std::nullopt;
+    if (!(facing > Rounding::place * length(along))) return std::nullopt;
     const Point across = {direction[1], -direction[0], 0};
     meeting.weights[1] = inner(x[0], across) / -inner(along, across);
     meeting.weights[0] = 1 - meeting.weights[1];
@@ -151,7 +151,7 @@ std::optional<InFacet> meet(const int dim, const std::array<Point, 3> &x, const 
   }
   const Point other = difference(x[2], x[0]), normal = cross(along, other);
   const double facing = inner(normal, direction);
-  if (!(facing > facet_rounding * length(normal))) return std::nullopt;
+  if (!(facing > Rounding::place * length(normal))) return std::nullopt;
   for (int k = 0; k < 3; ++k) meeting.weights[k] = inner(cross(x[(k + 1) % 3], x[(k + 2) % 3]), direction) / facing;
   meeting.distance = inner(x[0], normal) / facing;
   return meeting;
@@ -183,8 +183,8 @@ std::optional<FacetSurface::Meeting> FacetSurface::along(const Point &x, const P
       for (int c = 0; c < 3; ++c) away[c] += (meeting->weights[k] - inside[k]) * seen[k][c];
     }
     double off = length(away);
-    if (deepest > margin && off > beyond_ * (1 + facet_rounding)) return;
-    if (deepest <= facet_rounding) off = 0;
+    if (deepest > margin && off > beyond_ * (1 + Rounding::place)) return;
+    if (deepest <= Rounding::place) off = 0;
     const Meeting found{off, std::abs(meeting->distance), here};
     if (!first || found.before(*first)) first = found;
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "../rounding.hpp"
 #include "rpc/core/point.hpp"
 
 #include <Teuchos_ParameterList.hpp>
@@ -9,8 +10,6 @@
 /// Parameters that several surfaces have; private to surface/.
 namespace rpc::contact
 {
-
-constexpr double surface_rounding = 1e-9; ///< of positions and directions, relative
 
 /// Unit vector from one of any length.
 /// @param path  of the list, for messages   @throws rpc::Error (bad_input)

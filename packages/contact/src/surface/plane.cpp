@@ -13,13 +13,13 @@ std::optional<Point> Plane::direction_into(const Point &) const
 
 bool Plane::lies_in(const Point &x) const
 {
-  return inner(x, normal) < -surface_rounding * length(x);
+  return inner(x, normal) < -Rounding::place * length(x);
 }
 
 std::optional<double> Plane::distance_along(const Point &x, const Point &direction) const
 {
   const double descent = -inner(direction, normal);
-  if (!(descent > surface_rounding)) return std::nullopt;
+  if (!(descent > Rounding::place)) return std::nullopt;
   return inner(x, normal) / descent;
 }
 

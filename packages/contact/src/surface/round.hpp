@@ -21,7 +21,7 @@ inline std::optional<Point> direction_into_round(const Point &from, const bool e
 inline bool lies_in_round(const Point &from, const double radius, const bool encloses)
 {
   const double beyond = length(from) - radius;
-  return (encloses ? beyond : -beyond) > surface_rounding * radius;
+  return (encloses ? beyond : -beyond) > Rounding::place * radius;
 }
 
 /// |from + g way| = radius: the root g that crosses the surface from the body's part of space.        (3.7)
@@ -30,7 +30,7 @@ inline std::optional<double> distance_along_round(const Point &from, const Point
                                                   const bool encloses)
 {
   const double square = inner(way, way);
-  if (!(square > surface_rounding * surface_rounding)) return std::nullopt; // along the axis
+  if (!(square > Rounding::place * Rounding::place)) return std::nullopt; // along the axis
   const bool inside = lies_in_round(from, radius, encloses);
   const double along = inner(from, way);
   double discriminant = along * along - square * (inner(from, from) - radius * radius);

@@ -4,6 +4,7 @@
 #include "../sorted_lists.hpp"
 #include "features.hpp"
 #include "kept_vertices.hpp"
+#include "rpc/mesh/rules.hpp"
 #include "rpc/mesh/topology.hpp"
 
 #include <algorithm>
@@ -16,15 +17,10 @@ namespace rpc::mesh
 namespace
 {
 
-// A coarser mesh with more than this part of the vertices is not worth its levels.
-constexpr double most_vertices_kept = 0.7;
-// Cubes of the least quality of new cells, 1 for an equilateral cell, and of the part of the worst quality around the vertex on the finer mesh that is
-// enough too: in anisotropic meshes some cells are sheared before their neighbours follow.
-constexpr double least_quality_3 = 0.3 * 0.3 * 0.3;
-constexpr double part_kept_3 = 0.8 * 0.8 * 0.8;
-// The least cosine of the angle by which a facet of the boundary may turn.
-constexpr double least_cosine = 0.8;
-constexpr int most_sweeps = 3;
+double cubed(const double x)
+{
+  return x * x * x;
+}
 
 /// The mesh while edges are contracted.
 template <int dim>
@@ -63,7 +59,7 @@ private:
     for (const auto rank : {Features::Rank::edge, Features::Rank::face, Features::Rank::inside})
       for (int v = 0; v < mesh_.num_nodes(); ++v)
         if (!kept[v] && features_.rank[v] == rank) left.push_back(v);
-    for (int sweep = 0; sweep < most_sweeps && !left.empty(); ++sweep) {
+    for (int sweep = 0; sweep < contraction_rules.most_sweeps && !left.empty(); ++sweep) {
       std::vector<int> stay;
       for (const int v : left)
         if (!contract(v, kept)) stay.push_back(v);
@@ -202,7 +198,8 @@ private:
         aa += before[d] * before[d];
         bb += after[d] * after[d];
       }
-      if (!(ab > 0 && ab * ab > least_cosine * least_cosine * aa * bb)) return false;
+      if (!(ab > 0 && ab * ab > contraction_rules.least_cosine * contraction_rules.least_cosine * aa * bb))
+        return false;
     }
     for (const int f : facets_at_[w]) add(around_w, f);
     std::sort(around_v.begin(), around_v.end());
@@ -221,7 +218,8 @@ private:
   {
     const std::vector<int> &neighbours = neighbours_of(v);
     int onto = -1;
-    const double enough = std::min(least_quality_3, part_kept_3 * worst_3_[v]);
+    const double enough =
+        std::min(cubed(contraction_rules.least_quality), cubed(contraction_rules.part_kept) * worst_3_[v]);
     for (const bool to_kept : {true, false}) {
       double best = enough;
       for (const int w : neighbours) {
@@ -332,7 +330,7 @@ std::optional<MeshData> contracted(const MeshData &mesh)
   const std::vector<char> kept = kept_vertices(linear, features);
   MeshData coarse = linear.element.dim == 2 ? Contraction<2>(linear, features).made(kept)
                                             : Contraction<3>(linear, features).made(kept);
-  if (coarse.num_nodes() > most_vertices_kept * linear.num_nodes()) return std::nullopt;
+  if (coarse.num_nodes() > coarsening_rules.most_kept * linear.num_nodes()) return std::nullopt;
   return coarse;
 }
 

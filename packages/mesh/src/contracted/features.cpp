@@ -2,6 +2,7 @@
 #include "features.hpp"
 
 #include "../sorted_lists.hpp"
+#include "rpc/mesh/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,6 @@ namespace rpc::mesh
 {
 namespace
 {
-
-constexpr double cos_of_edge = 0.766; // of 40 degrees
 
 double cosine(const std::array<double, 3> &a, const std::array<double, 3> &b)
 {
@@ -136,7 +135,8 @@ private:
   bool go_on(const int f, const int g) const
   {
     const FeatureFacet &a = features_.facets[f], &b = features_.facets[g];
-    return a.label == b.label && cosine(facet_normal(mesh_, a.vertex), facet_normal(mesh_, b.vertex)) > cos_of_edge;
+    return a.label == b.label &&
+           cosine(facet_normal(mesh_, a.vertex), facet_normal(mesh_, b.vertex)) > contraction_rules.edge_cosine;
   }
   void find_edges()
   {
@@ -160,7 +160,7 @@ private:
       before[d] = x(at) - x(from);
       after[d] = x(to) - x(at);
     }
-    return !(cosine(before, after) > cos_of_edge);
+    return !(cosine(before, after) > contraction_rules.edge_cosine);
   }
   bool is_corner_in_plane(const int n) const
   {

@@ -2,6 +2,7 @@
 #include "kept_vertices.hpp"
 
 #include "../sorted_lists.hpp"
+#include "rpc/mesh/rules.hpp"
 #include "rpc/mesh/topology.hpp"
 
 #include <algorithm>
@@ -15,10 +16,6 @@ namespace
 {
 
 using Rank = Features::Rank;
-
-// Edges up to so many times as long as the shortest one join neighbours; in a cube cut into tetrahedra they are up to 1.73 times as long, and where
-// inner nodes are moved by 15 % of a cell up to 2.7 times.
-constexpr double most_stretched = 3;
 
 /// Vertices that share a cell with each.
 Lists neighbours_inside(const MeshData &mesh)
@@ -77,7 +74,8 @@ Lists without_long_edges(const MeshData &mesh, const Lists &next)
   Lists lists;
   for (int v = 0; v < num_nodes; ++v) {
     for (const int *w = next.first(v); w != next.last(v); ++w)
-      if (squared(v, *w) <= most_stretched * most_stretched * std::max(shortest[v], shortest[*w]))
+      if (squared(v, *w) <=
+          contraction_rules.most_stretched * contraction_rules.most_stretched * std::max(shortest[v], shortest[*w]))
         lists.value.push_back(*w);
     lists.begin.push_back(lists.value.size());
   }

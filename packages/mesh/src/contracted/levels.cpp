@@ -4,6 +4,7 @@
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/mesh/contracted.hpp"
+#include "rpc/mesh/rules.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -14,11 +15,6 @@ namespace rpc::mesh
 {
 namespace
 {
-
-// Unknowns below which no coarser mesh is made: multigrid factors as many in no time.
-constexpr int enough_2d = 800, enough_3d = 400;
-// Fewer cells than this for each rank are not divided.
-constexpr int least_cells_divided = 16;
 
 /// (nodes) The plane of a lattice that each lies in, by its coordinate in a direction; coordinates that differ by less than 1e-9 of all are equal.
 std::vector<int> planes_of(const MeshData &mesh, const int direction)
@@ -67,9 +63,9 @@ std::vector<MeshData> contracted_levels(MeshData whole, const int num_ranks)
   const int dim = levels.front().element.dim, order = levels.front().element.order;
   for (MeshData mesh = levels.front();;) { // of order 1 but for the first
     const int vertices = mesh.num_nodes();
-    if (dim * vertices <= (dim == 2 ? enough_2d : enough_3d)) break;
+    if (dim * vertices <= (dim == 2 ? coarsening_rules.few_2d : coarsening_rules.few_3d)) break;
     auto coarse = contracted(mesh);
-    if (!coarse || coarse->num_cells() < least_cells_divided * num_ranks) break;
+    if (!coarse || coarse->num_cells() < coarsening_rules.least_cells_of_rank * num_ranks) break;
     levels.push_back(order == 2 ? with_middle_nodes(*coarse) : *coarse);
     mesh = std::move(*coarse);
   }

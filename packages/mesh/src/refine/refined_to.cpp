@@ -4,6 +4,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/mesh/refinement.hpp"
+#include "rpc/mesh/rules.hpp"
 
 #include <algorithm>
 #include <array>
@@ -70,9 +71,8 @@ std::vector<Halving> halving_by(const SizeTree<dim> &size, const Mesh &mesh, con
 /// A level with hardly more nodes than its parent costs multigrid as much as that one, and gains little.
 bool adds_little(const Mesh &mesh)
 {
-  constexpr double least = 1.3;
   const auto nodes = [](const Mesh &of) { return static_cast<double>(of.owned_nodes->getGlobalNumElements()); };
-  return mesh.parents && nodes(mesh) < least * nodes(*mesh.parents->mesh);
+  return mesh.parents && nodes(mesh) < coarsening_rules.least_added * nodes(*mesh.parents->mesh);
 }
 
 /// A mesh's grandparents as its parents.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "layers.hpp"
 
+#include "rpc/mesh/rules.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,9 +14,6 @@ namespace rpc::mesh
 {
 namespace
 {
-
-constexpr double equally_thin = 1.7; // as for coarser boxes
-constexpr int shortest_ring = 6;     // sheets: half as many cells around a hole are still cells
 
 /// What lies beyond one side of a sheet.
 struct Beyond {
@@ -223,7 +222,7 @@ std::vector<char> joined_stacks(const Sheets &sheets, const Neighbours &neighbou
   std::vector<char> joined(stacks.size(), 0);
   for (std::size_t s = 0; s < stacks.size(); ++s) {
     for (const auto &sheet : stacks[s].sheets) thickness[s] += sheets.thickness[sheet.first] / stacks[s].size();
-    const int enough = stacks[s].closed ? shortest_ring : 2;
+    const int enough = stacks[s].closed ? coarsening_rules.shortest_ring : 2;
     joined[s] = stacks[s].size() >= enough ? 1 : 0;
     if (joined[s]) least[s] = thickness[s];
   }
@@ -236,12 +235,12 @@ std::vector<char> joined_stacks(const Sheets &sheets, const Neighbours &neighbou
         const int own = stack_of[sheets.of_cell[sheets.dim * c + a]];
         if (own == crossed) joined[own] = a == b ? joined[own] : 0; // a stack that crosses itself has no two directions
         if (can_be[crossed]) least[own] = std::min(least[own], thickness[crossed]);
-        const bool bends =
-            a != b && neighbours.is_all_of_body(sheet) && thickness[crossed] < equally_thin * thickness[own];
+        const bool bends = a != b && neighbours.is_all_of_body(sheet) &&
+                           thickness[crossed] < coarsening_rules.equally_long * thickness[own];
         if (bends) joined[own] = 0;
       }
   for (std::size_t s = 0; s < stacks.size(); ++s)
-    if (!(thickness[s] <= equally_thin * least[s])) joined[s] = 0;
+    if (!(thickness[s] <= coarsening_rules.equally_long * least[s])) joined[s] = 0;
   return joined;
 }
 

@@ -5,6 +5,7 @@
 #include "rpc/core/on_root.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/mesh/distribute.hpp"
+#include "rpc/mesh/rules.hpp"
 
 #include <algorithm>
 #include <unordered_map>
@@ -14,13 +15,6 @@ namespace rpc::mesh
 {
 namespace
 {
-
-// Unknowns below which no coarser mesh is made: multigrid factors as many in no time.
-constexpr int few_2d = 800, few_3d = 400;
-// A coarser mesh with more than this part of the nodes is not worth its levels.
-constexpr double most_nodes_kept = 0.7;
-// On fewer cells than this for each rank of the coarsest mesh, ranks cannot have alike many of the finest one.
-constexpr int least_cells_of_rank = 16;
 
 /// The meshes from the finest to the coarsest, each with its division; on rank 0.
 struct Levels {
@@ -36,11 +30,11 @@ Levels levels_of(MeshData whole, const int num_ranks)
   levels.mesh.push_back(std::move(whole));
   for (;;) {
     const MeshData &fine = levels.mesh.back();
-    const int dim = fine.element.dim, few = dim == 2 ? few_2d : few_3d;
+    const int dim = fine.element.dim, few = dim == 2 ? coarsening_rules.few_2d : coarsening_rules.few_3d;
     if (dim * fine.num_nodes() <= few) break;
     LayeredMesh found = layered(fine);
-    if (!found.coarser || found.coarser->mesh.num_nodes() > most_nodes_kept * fine.num_nodes() ||
-        found.coarser->mesh.num_cells() < least_cells_of_rank * num_ranks)
+    if (!found.coarser || found.coarser->mesh.num_nodes() > coarsening_rules.most_kept * fine.num_nodes() ||
+        found.coarser->mesh.num_cells() < coarsening_rules.least_cells_of_rank * num_ranks)
       break;
     levels.mesh.push_back(std::exchange(found.coarser->mesh, {}));
     levels.link.push_back(std::move(*found.coarser));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/adapt/estimator.hpp"
+#include "rpc/adapt/rules.hpp"
 #include "rpc/mesh/size_field.hpp"
 
 #include <limits>
@@ -12,9 +13,9 @@ namespace rpc::adapt
 
 /// What new cell sizes are to bring about.
 struct SizeRequest {
-  double squared_error = 0; ///< bound on eta^2 [J], > 0
-  double max_cells = 0;     ///< of the new mesh, see Sizes; takes precedence
-  double max_growth = 2.5;  ///< of a cell's size from one mesh to the next, > 1
+  double squared_error = 0;              ///< bound on eta^2 [J], > 0
+  double max_cells = 0;                  ///< of the new mesh, see Sizes; takes precedence
+  double max_growth = plan_rules.growth; ///< of a cell's size from one mesh to the next, > 1
   double most_cells =
       std::numeric_limits<double>::infinity(); ///< where contact that is unseen asks for more than max_cells
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "rpc/algebra/rules.hpp"
 #include "rpc/core/kokkos.hpp"
 
 #include <optional>
@@ -18,10 +19,6 @@ struct AlikeNodes {
 namespace alike_nodes
 {
 
-constexpr int most_kinds = 600;
-constexpr std::size_t enough_kinds = 30;
-constexpr double few_nodes = 0.05;
-constexpr double least_part = 0.75; // of the nodes that repeat
 constexpr int no_kind = -1;
 
 /// Nodes are taken from the middle of their numbers: inside the mesh, where most are alike.
@@ -68,7 +65,7 @@ std::optional<AlikeNodes> alike_nodes_of(const LO num_nodes, const Alike &alike)
                     {}};
   Kokkos::deep_copy(result.kind, no_kind);
   LO next = 0, repeated = 0; // the first place without a kind
-  while (next < num_nodes && static_cast<int>(result.example.size()) < most_kinds) {
+  while (next < num_nodes && static_cast<int>(result.example.size()) < kind_rules.most) {
     const TakeKind<Alike> take{alike, node_at(next, num_nodes), static_cast<int>(result.example.size()), result.kind};
     LO took = 0;
     Kokkos::parallel_reduce("rpc::core::take_kind", device_range(num_nodes), take, Kokkos::Sum<LO>(took),
@@ -77,9 +74,10 @@ std::optional<AlikeNodes> alike_nodes_of(const LO num_nodes, const Alike &alike)
     repeated += took - 1; // all but the example
     result.example.push_back(take.example);
     // Few nodes of many kinds promise a mesh without order, and each kind costs a pass over the nodes.
-    if (result.example.size() >= enough_kinds && repeated < few_nodes * num_nodes) return std::nullopt;
+    if (static_cast<int>(result.example.size()) >= kind_rules.enough && repeated < kind_rules.few_nodes * num_nodes)
+      return std::nullopt;
   }
-  if (repeated < least_part * num_nodes) return std::nullopt;
+  if (repeated < kind_rules.least_part * num_nodes) return std::nullopt;
   return result;
 }
 

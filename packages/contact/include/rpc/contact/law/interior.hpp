@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rpc/contact/law/foundation.hpp"
+#include "rpc/contact/rules.hpp"
 #include "rpc/core/math.hpp"
 
 /// The law of a contact point with its corners rounded off: the central path of an interior-point method.
@@ -18,17 +19,6 @@ struct InteriorPoint {
   double opening;  ///< s [m]
   double dent;     ///< d [m]
 };
-
-// Start of the path: mu = first_mu times pressure times displacement, on lines of slope start_slope times pressure over displacement. A smaller
-// first_mu gains nothing: points that must change their state start too close to their corner.                      (5.16)
-constexpr double first_mu = 0.1, start_slope = 10;
-constexpr double nearly =
-    0.98; // of the way to the next point's corner is taken                                    (5.19)
-
-// After many_short_steps steps in a row below short_step the path restarts with more_pressure times the pressure: points have started far
-// below the pressure that they will bear, as where the foundation bends the body and not the load.                 (5.16)
-constexpr double short_step = 0.25, more_pressure = 100;
-constexpr int many_short_steps = 3;
 
 /// Target values of the complementarity products in a step [J/m^2].
 struct InteriorTarget {
@@ -135,10 +125,10 @@ KOKKOS_INLINE_FUNCTION InteriorTarget corrected_target(const InteriorPoint &chan
 }
 
 /// The mu to aim at after a step that mu = 0 would allow a part t of.                                               (5.19)
-KOKKOS_INLINE_FUNCTION double aimed_mu(const double mu, const double t)
+inline double aimed_mu(const double mu, const double t)
 {
-  constexpr double most_part = 0.9, least_part = 1e-3;
-  return math::larger(least_part, math::fmin(most_part, (1 - t) * (1 - t))) * mu;
+  const double most = interior_rules.most_part, least = interior_rules.least_part;
+  return math::larger(least, math::fmin(most, (1 - t) * (1 - t))) * mu;
 }
 
 /// The point after a part of a change.
@@ -147,17 +137,16 @@ KOKKOS_INLINE_FUNCTION InteriorPoint moved(const InteriorPoint &x, const double 
   return {x.pressure + part * change.pressure, x.opening + part * change.opening, x.dent + part * change.dent};
 }
 
-/// The target of a change, corrected for a longer step than can be taken: products far from mu are brought to a tenth of it or ten times
-/// as much, a large one by no more than ten mu.                                                                  (5.19a)
+/// The target of a change, corrected for a longer step than can be taken: products outside [mu/range, range mu] are brought to its ends, a
+/// large one by no more than range mu.                                                                           (5.19a)
 /// @param change  what the linearized equations have for `target`   @param part  of it, which is to become a step
 KOKKOS_INLINE_FUNCTION InteriorTarget centered_target(const InteriorPoint &x, const InteriorPoint &change,
                                                       const InteriorTarget &target, const double part, const double mu,
-                                                      const Foundation &f)
+                                                      const double range, const Foundation &f)
 {
-  constexpr double far = 10;
   const auto missing = [&](const double product) {
-    const double wanted = math::larger(mu / far, math::fmin(far * mu, product));
-    return math::larger(wanted - product, -far * mu);
+    const double wanted = math::larger(mu / range, math::fmin(range * mu, product));
+    return math::larger(wanted - product, -range * mu);
   };
   const InteriorPoint next = moved(x, part, change);
   InteriorTarget centered = target;
