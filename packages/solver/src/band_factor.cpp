@@ -2,6 +2,7 @@
 #include "band_factor.hpp"
 
 #include "rpc/core/graph.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <Teuchos_ConfigDefs.hpp>
 #include <algorithm>
@@ -76,15 +77,14 @@ BandFactor::BandFactor(const int size, const SymmetricEntries &entries, std::vec
 
 FactorCost BandFactor::cost_of(const double size, const double width)
 {
-  // By measurement on one core. LAPACK works by blocks where the band is wider than 64.
-  const double operation = width > 64 ? 1.5e-11 : 1e-10;
-  constexpr double entry = 6e-9, row_in_solve = 18e-9, entry_in_solve = 1e-9;
+  const double operation = width > cost_model.wide ? cost_model.wide_band : cost_model.narrow_band;
   FactorCost cost;
   cost.operations = size * width * width;
   cost.entries = size * (width + 1);
   cost.bytes = sizeof(double) * cost.entries;
-  cost.seconds = operation * cost.operations + entry * cost.entries;
-  cost.seconds_of_solve = cost.seconds_of_column = row_in_solve * size + entry_in_solve * cost.entries;
+  cost.seconds = operation * cost.operations + cost_model.band_entry * cost.entries;
+  cost.seconds_of_solve = cost.seconds_of_column =
+      cost_model.band_row_in_solve * size + cost_model.band_entry_in_solve * cost.entries;
   return cost;
 }
 

@@ -2,6 +2,7 @@
 #include "belos_method.hpp"
 
 #include "krylov_vectors.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <BelosLinearProblem.hpp>
 #include <BelosSolverFactory.hpp>
@@ -15,9 +16,6 @@ namespace rpc::solver
 {
 namespace
 {
-
-// Iterations after which GMRES restarts: with multigrid it takes fewer.
-constexpr int gmres_vectors = 50;
 
 std::string in_capitals(std::string text)
 {
@@ -124,7 +122,7 @@ bool needs_symmetry(const std::string &method)
 Teuchos::ParameterList gmres_defaults(const int max_iterations)
 {
   Teuchos::ParameterList list;
-  list.set("Num Blocks", std::min(gmres_vectors, max_iterations));
+  list.set("Num Blocks", std::min<int>(linear_rules.gmres_vectors, max_iterations));
   list.set("Maximum Restarts", max_iterations);
   list.set("Flexible Gmres", true);
   return list;

@@ -7,6 +7,7 @@
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/math.hpp"
 #include "rpc/solver/mixed_form.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <TpetraExt_MatrixMatrix.hpp>
 #include <algorithm>
@@ -17,12 +18,6 @@ namespace rpc::solver
 {
 namespace
 {
-
-// Of the polynomial: so much of the root of the condition number takes the least time, by measurement.
-constexpr double degree_of_root = 0.7;
-constexpr int least_degree = 4, largest_degree = 40;
-// The condition number that the matrix is taken to have at most where all pressures move the body: the least degree is enough for it.
-constexpr double condition_where_all_move = 30;
 
 /// (dofs) diag(K)^(-1/2)
 Vector roots_of_softness(const StiffnessOperator &K)
@@ -143,16 +138,18 @@ Checkerboards::Checkerboards(const StiffDilatation &dilatation, const RCP<CrsMat
 {
   largest_ = largest_eigenvalue(*A, [](const Vector &r, Vector &z) { z.assign(r); });
   const double softest = largest_ / least_softness(scale_, dilatation);
-  const double condition = dilatation.alternating_ones_move ? std::min(softest, condition_where_all_move) : softest;
+  const double condition =
+      dilatation.alternating_ones_move ? std::min<double>(softest, linear_rules.condition_where_all_move) : softest;
   const double root = std::sqrt(condition);
   degree_ = degree_for_pressures(condition);
-  const double reached = std::min(root, degree_ / degree_of_root);
+  const double reached = std::min(root, degree_ / linear_rules.degree_of_root);
   smallest_ = largest_ / std::max(reached * reached, 2.);
 }
 
 int degree_for_pressures(const double condition)
 {
-  return std::clamp(static_cast<int>(std::ceil(degree_of_root * std::sqrt(condition))), least_degree, largest_degree);
+  return std::clamp<int>(static_cast<int>(std::ceil(linear_rules.degree_of_root * std::sqrt(condition))),
+                         linear_rules.least_degree, linear_rules.largest_degree);
 }
 
 /// y <- (I - F) y

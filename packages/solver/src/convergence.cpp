@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "convergence.hpp"
 
+#include "rpc/solver/rules.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace rpc::solver
 {
-namespace
-{
-
-constexpr int window = 20;      // CG stands still for ten iterations now and then, and goes on
-constexpr double slowest = 0.9; // rate of gains that is reckoned with: a stall is an error of ten gains
-
-} // namespace
-
 void Convergence::add(const double residual)
 {
   least_.push_back(std::min(least_.back(), residual));
@@ -22,7 +16,7 @@ void Convergence::add(const double residual)
 
 double Convergence::iterations_in_all(const double tolerance, const double most) const
 {
-  const int k = iterations(), w = std::min(k, window);
+  const int k = iterations(), w = std::min<int>(k, linear_rules.window);
   if (least_[k] <= tolerance) return std::min<double>(k, most);
   const double fallen = std::log(least_[k - w] / least_[k]);
   if (!(fallen > 0)) return most;
@@ -32,7 +26,7 @@ double Convergence::iterations_in_all(const double tolerance, const double most)
 void EnergyError::add(const double energy)
 {
   const double gain = std::max(energy - energy_, 0.);
-  if (gain_ >= 0) rate_ = gain_ > 0 ? std::min(gain / gain_, slowest) : slowest;
+  if (gain_ >= 0) rate_ = gain_ > 0 ? std::min<double>(gain / gain_, linear_rules.slowest) : linear_rules.slowest;
   energy_ = energy;
   gain_ = gain;
 }

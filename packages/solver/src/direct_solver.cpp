@@ -5,6 +5,7 @@
 #include "matrix_changes.hpp"
 #include "rpc/core/memory.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <algorithm>
@@ -18,21 +19,6 @@ namespace
 {
 
 constexpr const char *no_factor = "a sparse factor: the matrix is not positive definite";
-// Rows up to which each rank factors the whole matrix: a solve then takes one sum over the ranks.
-constexpr std::size_t most_rows_on_each_rank = 5200;
-// A factor that takes less time [s], or no more than so many columns, is made anew for the slightest change.
-constexpr double short_time = 5e-3, few_columns = 3;
-// New terms are solved for while they take worth_a_factor times a new factor's time at most. Where none of left_out keeps to that, they may
-// take worth_factors times the time of all factors made so far, of most_factors_worth at most: later changes are at the same places.
-constexpr double worth_a_factor = 0.7, worth_factors = 1.4;
-constexpr int most_factors_worth = 3;
-// Where all terms would take longer, those of changes up to such a part of a node's own block are left to CG.          (4.12)
-constexpr double left_out[] = {0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
-// A factor that takes the time of fewer solves is made anew rather than without slight changes.
-constexpr double few_solves = 8;
-// What an update keeps, over the entries of the factor, and over the memory that is free.
-constexpr double kept_of_factor = 2, kept_of_free = 0.25;
-
 /// The entries of this rank's rows on and below the diagonal, by gids, without values.
 /// @param lower  <- (entries) which of all of the rank's entries each is
 SymmetricEntries pattern_of(const CrsMatrix &A, std::vector<std::size_t> &lower)
@@ -74,8 +60,8 @@ DirectSolver::DirectSolver(RCP<const CrsMatrix> A, const int dofs_per_node, cons
   on_one_rank_ = max_all(*comm, static_cast<std::size_t>(num_local(*A_->getRowMap()))) == A_->getGlobalNumRows();
   const int size = static_cast<int>(A_->getGlobalNumRows());
   const SymmetricEntries mine = pattern_of(*A_, lower_);
-  if (comm->getSize() == 1 || !SparseFactor::can_be_shared || A_->getGlobalNumRows() <= most_rows_on_each_rank ||
-      is_band) {
+  if (comm->getSize() == 1 || !SparseFactor::can_be_shared ||
+      static_cast<GO>(A_->getGlobalNumRows()) <= linear_rules.most_rows_on_each_rank || is_band) {
     const SymmetricEntries all = comm->getSize() > 1 ? entries_of_all(*comm, mine) : mine;
     if (is_band)
       factor_ = BandFactor::as_numbered(size, all);
@@ -117,18 +103,21 @@ bool DirectSolver::make()
 /// than the factors that were made before.
 std::optional<CoarsestSolver::Update> DirectSolver::follow(const double slight)
 {
-  if (!may_follow_ || cost().seconds < std::max(short_time, few_columns * cost().seconds_of_column))
+  if (!may_follow_ ||
+      cost().seconds < std::max<double>(linear_rules.short_time, linear_rules.few_columns * cost().seconds_of_column))
     return std::nullopt;
   const MatrixChanges changes = changes_since(factored_, *A_, dofs_per_node_);
-  for (const double worth : {worth_a_factor, worth_factors * std::min(factors_, most_factors_worth)})
-    for (const double least : left_out) {
-      if (least > slight || (least > 0 && cost().seconds < few_solves * cost().seconds_of_solve)) continue;
+  const bool may_leave_out = cost().seconds >= linear_rules.few_solves * cost().seconds_of_solve;
+  const double of_all = linear_rules.worth_factors * std::min<int>(factors_, linear_rules.most_factors_worth);
+  for (const double worth : {double(linear_rules.worth_a_factor), of_all})
+    for (double least = 0; least <= (may_leave_out ? slight : 0);
+         least = least > 0 ? 10 * least : double(linear_rules.least_left_out)) {
       const LowRankTerms wanted = low_rank_terms(changes, least, dofs_per_node_);
       if (cost().seconds_of_column * update_.num_new(wanted.terms) > worth * cost().seconds) continue;
       const Comm &comm = *A_->getComm();
       const bool has_vectors = to_root_.is_null() || comm.getRank() == 0;
-      const double most_kept =
-          std::min(kept_of_factor * cost().entries, kept_of_free * min_all(comm, memory_left()) / sizeof(double));
+      const double most_kept = std::min(linear_rules.kept_of_factor * cost().entries,
+                                        linear_rules.kept_of_free * min_all(comm, memory_left()) / sizeof(double));
       update_.set(*factor_, static_cast<int>(A_->getGlobalNumRows()), has_vectors, wanted.terms, wanted.couplings,
                   most_kept);
       return least == 0 ? Update::exact : Update::rough;
@@ -145,7 +134,7 @@ CoarsestSolver::Update DirectSolver::update(const double slight)
 
 double DirectSolver::seconds_of_update() const
 {
-  return cost().seconds > short_time ? cost().seconds : 0;
+  return cost().seconds > linear_rules.short_time ? cost().seconds : 0;
 }
 
 void DirectSolver::apply(const Vector &b, Vector &x) const

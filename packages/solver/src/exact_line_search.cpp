@@ -3,6 +3,7 @@
 
 #include "rpc/core/causes.hpp"
 #include "rpc/solver/newton_group.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <NOX_Solver_Generic.H>
 #include <Teuchos_LAPACK.hpp>
@@ -15,8 +16,6 @@ namespace rpc::solver
 namespace
 {
 
-constexpr double rounding = 1e-12; // of a slope, below which the sums' rounding decides
-
 /// -H^-1 g; empty where rounding leaves H indefinite. Directions may be as good as dependent: with the rounding of H on its
 /// diagonal, scaled to 1, the result still leads down.
 std::vector<double> newton_direction(const SubspaceFunction::Value &value)
@@ -26,7 +25,7 @@ std::vector<double> newton_direction(const SubspaceFunction::Value &value)
   for (std::size_t k = 0; k < n; ++k) scale[k] = 1 / std::sqrt(value.curvature[n * k + k]);
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t l = 0; l < n; ++l) H[n * k + l] = scale[k] * value.curvature[n * k + l] * scale[l];
-    H[n * k + k] += rounding;
+    H[n * k + k] += rounding.sum;
     d[k] = -scale[k] * value.gradient[k];
   }
   const int size = static_cast<int>(n);
@@ -43,7 +42,7 @@ double exact_step(const LineFunction &line)
 {
   const double start = line.at(0).slope;
   if (!(start < 0)) return 0;
-  const double zero = rounding * -start;
+  const double zero = rounding.sum * -start;
   double low = 0, high = std::numeric_limits<double>::infinity();
   double t = 1, previous_width = high;
   for (int trial = 0; trial < 200; ++trial) { // 53 halvings of any bracket, and its search by doubling
@@ -67,15 +66,14 @@ double exact_step(const LineFunction &line)
 
 std::vector<double> least_within(const SubspaceFunction &function, std::vector<double> a)
 {
-  constexpr int most_steps = 50; // the rest is left to the next step
   double first = 0;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < newton_rules.most_steps_within; ++step) {
     const auto value = function.at(a);
     const auto d = newton_direction(value);
     double slope = 0;
     for (std::size_t k = 0; k < d.size(); ++k) slope += value.gradient[k] * d[k];
     if (step == 0) first = slope;
-    if (!(slope < rounding * first)) break;
+    if (!(slope < rounding.sum * first)) break;
     const double t = exact_step(*function.along(a, value, d));
     for (std::size_t k = 0; k < a.size(); ++k) a[k] += t * d[k];
   }
@@ -98,7 +96,7 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
   if (most_earlier_ > 0 && !context.full_step && step > 0) {
     auto directions = earlier_;
     directions.push_back(rcp(new rpc::Vector(tpetra(direction), Teuchos::Copy)));
-    if (!earlier_.empty() && std::abs(step - 1) > to_the_minimum) {
+    if (!earlier_.empty() && std::abs(step - 1) > newton_rules.to_the_minimum) {
       std::vector<double> a(directions.size());
       a.back() = step;
       a = least_within(*context.functional.within(tpetra(from.getX()), directions, tpetra(from.getF())), std::move(a));

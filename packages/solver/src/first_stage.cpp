@@ -2,6 +2,7 @@
 #include "rpc/solver/first_stage.hpp"
 
 #include "rpc/solver/exact_line_search.hpp"
+#include "rpc/solver/rules.hpp"
 #include "rpc/solver/sweep_direction.hpp"
 
 #include <NOX_Solver_Generic.H>
@@ -21,16 +22,13 @@ void end_stage(NewtonContext &context)
   context.newton = {};
 }
 
-/// A step leaves no less of the way to the minimum: the next direction is for another piece of the functional.
-constexpr double least_left = 0.1;
-
 /// Notes how Newton's last step went, which led here.
 void note_step(NewtonContext &context, const NewtonGroup &here)
 {
   NewtonProgress &newton = context.newton;
-  newton.left *= std::max(least_left, std::abs(1 - context.step_length));
-  newton.short_steps += context.step_length < cut_short;
-  newton.settled = std::abs(context.step_length - 1) <= to_the_minimum &&
+  newton.left *= std::max<double>(newton_rules.least_left, std::abs(1 - context.step_length));
+  newton.short_steps += context.step_length < newton_rules.cut_short;
+  newton.settled = std::abs(context.step_length - 1) <= newton_rules.to_the_minimum &&
                    context.functional.piece(tpetra(here.getX())) == context.piece;
 }
 

@@ -12,9 +12,6 @@ namespace rpc::solver
 
 using CoarseSolver = MueLu::SmootherPrototype<double, LO, GO, Node>;
 
-/// Rows to which multigrid coarsens then: their factor costs next to nothing.
-constexpr int most_gathered_rows = 300;
-
 /// MueLu's coarse solver on several ranks where there is no Zoltan2, which would bring the coarse level to one: each rank
 /// factors the whole coarse matrix. (MueLu 13.2's direct solvers are wrong on a distributed matrix, and a polynomial
 /// leaves the smoothest modes to CG.)

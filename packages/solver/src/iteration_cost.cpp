@@ -3,6 +3,7 @@
 
 #include "band_factor.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 
@@ -26,8 +27,7 @@ double num_entries(const StiffnessOperator &K)
 double with_all_ranks(const StiffnessOperator &K, const double seconds)
 {
   const double on_host = seconds / K.getDomainMap()->getComm()->getSize();
-  constexpr double faster = 50, launches = 2e-3; // of a cycle, on an H100
-  return on_gpu ? std::max(on_host / faster, launches) : on_host;
+  return on_gpu ? std::max<double>(on_host / cost_model.gpu, cost_model.launches) : on_host;
 }
 
 } // namespace
@@ -37,18 +37,20 @@ IterationSeconds seconds_of_iteration(const StiffnessOperator &K)
   const double entries = num_entries(K);
   const auto rows = static_cast<double>(K.getDomainMap()->getGlobalNumElements());
   if (min_all(*K.getDomainMap()->getComm(), K.rows().any_repeat() ? 1 : 0) == 0) {
-    const double all = with_all_ranks(K, 8e-9 * entries);
+    const double all = with_all_ranks(K, cost_model.entry * entries);
     return {all, all};
   }
   // Rows that repeat are read once. In the plane vectors count for more beside them.
-  const double counted = (K.dofs_per_node() == 3 ? 1e-9 : 2e-9) * entries;
-  return {with_all_ranks(K, counted), with_all_ranks(K, 1e-9 * entries + 70e-9 * rows)};
+  const double counted =
+      (K.dofs_per_node() == 3 ? cost_model.repeated_entry : cost_model.entry_against_factor) * entries;
+  return {with_all_ranks(K, counted),
+          with_all_ranks(K, cost_model.repeated_entry * entries + cost_model.repeated_row * rows)};
 }
 
 bool is_narrow(const double unknowns, const double width, const IterationSeconds &iteration, const int ranks)
 {
-  // Iterations that two ranks share take half as long, but bodies so slender need many, and more on two ranks than on one: measured on hosts.
-  const double few_iterations = ranks > 1 && !on_gpu ? 11 : 5.5;
+  const double few_iterations =
+      ranks > 1 && !on_gpu ? linear_rules.few_iterations_on_ranks : linear_rules.few_iterations;
   const FactorCost band = BandFactor::cost_of(unknowns, width);
   return band.seconds + band.seconds_of_solve <= few_iterations * iteration.measured;
 }

@@ -6,6 +6,7 @@
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/message.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <BelosTypes.hpp>
 #include <algorithm>
@@ -17,10 +18,6 @@ namespace rpc::solver
 namespace
 {
 
-// CG that breaks down with less of the error left, in energy, has met rounding, not a singular matrix: there most of it is left.
-constexpr double small_error = 1e-4;
-// A solve that may leave such an error in energy needs no residual of what an exact preconditioner answers.
-constexpr double large_error = 1e-2;
 /// Thrown through Belos where an iteration is given up.
 struct GivenUp {
 };
@@ -135,8 +132,8 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
   const RCP<const Vector> rest = start.rest.is_null() ? Teuchos::rcpFromRef(b) : RCP<const Vector>(start.rest);
   const double left = start.rest.is_null() ? 1 : rest->norm2() / b.norm2();
   const double least = std::min(1., wanted.residual / left);
-  constexpr double surely = 1 - 1e-12; // Belos divides by |rest|
-  method.preconditioner->enough = method.stops_by_residual ? surely * least * rest->norm2() : 0;
+  // Belos divides by |rest|.
+  method.preconditioner->enough = method.stops_by_residual ? (1 - rounding.sum) * least * rest->norm2() : 0;
   method.preconditioner->to_residuals = is_symmetric;
   method.preconditioner->B = &B;
   method.preconditioner->gives_up = method.is_cg ? gives_up : GivesUp();
@@ -190,7 +187,7 @@ KrylovResult Krylov::iterate(Method &method, const bool is_symmetric, const Prec
 KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, const Vector &b, Vector &x,
                            const Accuracy &wanted, const GivesUp &gives_up)
 {
-  if (is_symmetric && wanted.error >= large_error && B.is_exact()) {
+  if (is_symmetric && wanted.error >= linear_rules.large_error && B.is_exact()) {
     B.apply(b, x);
     KrylovResult result;
     result.converged = true;
@@ -204,7 +201,7 @@ KrylovResult Krylov::solve(const Preconditioner &B, const bool is_symmetric, con
   if (!result.broken || !is_symmetric || !std::isfinite(x.norm2())) return result;
   Vector residual(b, Teuchos::Copy);
   H_->apply(x, residual, Teuchos::NO_TRANS, -1., 1.);
-  if (!(energy_error(B, b, residual) <= small_error)) return result;
+  if (!(energy_error(B, b, residual) <= linear_rules.small_error)) return result;
   Vector move(b.getMap());
   const double rest = std::max(wanted.residual * b.norm2() / residual.norm2(), options_.tolerance);
   KrylovResult more = iterate(method, is_symmetric, B, residual, move, rest, {});

@@ -15,6 +15,7 @@
 #include "rpc/core/finite.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/message.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <Teuchos_StackedTimer.hpp>
 #include <Teuchos_TimeMonitor.hpp>
@@ -29,27 +30,10 @@ namespace rpc::solver
 namespace
 {
 
-// Rows up to which a preconditioner is made anew whenever contact changes: a factor, where it takes few multiplications, and else
-// multigrid that is nearly one.
-constexpr GO most_rows_set_up_anew = 2500;
-
-// Iterations count as lost, for a sparse factor, beyond so many of a solve to 1e-8, of rough solves beyond a part. With contact so many
-// solves are to come, by measurement of steps.
-constexpr int fair_iterations = 30, solves_with_contact = 4;
-constexpr double full_tolerance = 1e-8;
-// How many iterations a solve will take shows after such a part of the time of a factor: where layers are of unlike stiffness, CG stands
-// still at first and is fast then.
-constexpr double part_to_tell = 0.3;
-// A factor that leaves out slight changes is judged after so many.
-constexpr int first_iterations_of_factor = 3;
-
 double fair(const double tolerance)
 {
-  return fair_iterations * std::min(1., std::log(tolerance) / std::log(full_tolerance));
+  return linear_rules.fair_iterations * std::min(1., std::log(tolerance) / std::log(linear_rules.full_tolerance));
 }
-
-// Rows up to which it is thought of at all: in the plane they take gigabytes, in space more than most machines have.
-constexpr GO most_sparse_rows = 3000000;
 
 /// What is to be done about a result; nothing where it is good.
 std::optional<Outcome> outcome_of(const LinearSolver::Result &result, const bool given_up)
@@ -58,7 +42,7 @@ std::optional<Outcome> outcome_of(const LinearSolver::Result &result, const bool
   if (given_up) return dear;
   if (result.broken) return broken;
   if (!result.converged) return failed;
-  if (result.iterations > patience) return slow;
+  if (result.iterations > linear_rules.slow) return slow;
   return std::nullopt;
 }
 
@@ -120,20 +104,21 @@ struct LinearSolver::Impl {
 LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels,
                          MakeMixedForm mixed_form)
     : options(std::move(given)), H(of), body(std::move(of_body)),
-      algebraic(H, body, options, static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= most_rows_set_up_anew),
+      algebraic(H, body, options,
+                static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= linear_rules.most_rows_for_each_state),
       sparse(H), krylov(options, H)
 {
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
   const bool automatic = options.multigrid == "auto" && options.muelu.numParams() == 0;
-  const bool want_meshes = options.multigrid == "mesh" || (automatic && unknowns > few_rows);
+  const bool want_meshes = options.multigrid == "mesh" || (automatic && unknowns > linear_rules.few_rows);
   if (levels && want_meshes) meshes.emplace(H, std::move(levels), options);
-  if (automatic && unknowns <= most_rows_set_up_anew) factor.emplace(H);
+  if (automatic && unknowns <= linear_rules.most_rows_for_each_state) factor.emplace(H);
   on_meshes = meshes.has_value();
   if (mixed_form && want_meshes) mixed.emplace(H, std::move(mixed_form), options);
   on_mixed = mixed.has_value();
-  may_be_sparse = automatic && unknowns <= most_sparse_rows;
+  may_be_sparse = automatic && unknowns <= linear_rules.most_sparse_rows;
   if (sum_all(*H->getDomainMap()->getComm(), static_cast<GO>(H->nodes().extent(0))) > 0)
-    solves_to_come = solves_with_contact;
+    solves_to_come = linear_rules.solves_with_contact;
 }
 
 /// Of an iteration of CG with multigrid; collective.
@@ -162,8 +147,7 @@ bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const doubl
   if (!may_be_sparse) return false;
   const double lost =
       seconds_of_cg().counted * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair(tolerance), 0.));
-  constexpr double seconds_of_analysis = 5e-6; // a row; not worth it for less
-  if (lost < seconds_of_analysis * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
+  if (lost < cost_model.analysis_of_row * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
   const auto *const found = prospect();
   return found && found->cost.seconds < lost;
 }
@@ -172,10 +156,12 @@ bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const doubl
 bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double tolerance)
 {
   if (seen.iterations() < options.first_iterations) return false;
-  const double limit = options.max_iterations, by_far = 2 * limit;
-  if (seen.iterations() >= limit / 2 && seen.iterations_in_all(tolerance, by_far) >= by_far && prospect()) return true;
+  const double limit = options.max_iterations, by_far = linear_rules.far_beyond * limit;
+  if (seen.iterations() >= limit / linear_rules.far_beyond && seen.iterations_in_all(tolerance, by_far) >= by_far &&
+      prospect())
+    return true;
   return sparse_pays(seen.iterations_in_all(tolerance, limit), tolerance) &&
-         seen.iterations() * seconds_of_cg().measured >= part_to_tell * sparse.prospect().cost.seconds;
+         seen.iterations() * seconds_of_cg().measured >= linear_rules.part_to_tell * sparse.prospect().cost.seconds;
 }
 
 /// By the form of the body, and by the iterations that it lets expect. Where these are more than CG may take, a factor would follow anyway.
@@ -192,7 +178,7 @@ void LinearSolver::Impl::choose_before_the_first_solve()
   if (is_open && body.is_thin && take(Next::sparse, "the body is one thin layer of cells")) return;
   const double expected = options.expected_iterations;
   if (!(expected > 0)) return;
-  if (expected > options.max_iterations ? !prospect() : !sparse_pays(expected, full_tolerance)) return;
+  if (expected > options.max_iterations ? !prospect() : !sparse_pays(expected, linear_rules.full_tolerance)) return;
   take(Next::sparse, "about " + std::to_string(static_cast<int>(expected)) + " CG iterations expected");
 }
 
@@ -258,7 +244,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     const auto gives_up = [&](const int iterations, const double residual) {
       if (iterations > seen.iterations()) seen.add(residual);
       if (!on_sparse) return sparse_pays_now(seen, least);
-      return seen.iterations() >= first_iterations_of_factor &&
+      return seen.iterations() >= linear_rules.first_iterations_of_factor &&
              sparse.renewal_pays(seen.iterations_in_all(least, options.max_iterations) - seen.iterations());
     };
     const GivesUp asked = may_be_sparse ? GivesUp(gives_up) : GivesUp();
@@ -412,7 +398,7 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accur
     if (impl_->counts.path.empty() && impl_->used) impl_->record(*impl_->used, "");
     const auto outcome = outcome_of(result, impl_->given_up);
     if (!outcome) return result;
-    const Rule &rule = rule_for(impl_->used_for_policy(), *outcome);
+    const PolicyRow &rule = rule_for(impl_->used_for_policy(), *outcome);
     const std::string reason = result.converged ? std::to_string(result.iterations) + " iterations" : result.reason;
     const bool other = impl_->take(rule.next, reason) || impl_->take(rule.otherwise, reason);
     if (!other || *outcome == slow) return result;

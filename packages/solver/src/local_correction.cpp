@@ -5,6 +5,7 @@
 #include "rpc/core/math.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/core/sparse_rows.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <KokkosBlas1_axpby.hpp>
 #include <KokkosBlas1_scal.hpp>
@@ -17,13 +18,6 @@ namespace rpc::solver
 {
 namespace
 {
-
-// Layers of cells around the nodes. In the plane a second one saves up to one CG iteration in ten and costs nothing; in space
-// one saves as much, and its factor costs ten times that of none.
-constexpr int layers_2d = 2, layers_3d = 0;
-// A patch is worth its factor up to so many multiplications for each row of the matrix, a fraction of what multigrid's set-up
-// takes.
-constexpr double work_per_row = 3e3;
 
 /// Nodes where two updates differ, and the differences. Of this rank.
 struct Changes {
@@ -326,10 +320,11 @@ std::optional<LocalCorrection> LocalCorrection::around(const UpdatedOperator &H,
   if (sum_all(comm, GO(changes.size())) == 0) return std::nullopt;
   Vector place(A.getRowMap());
   mark_changed(changes, H.dofs_per_node(), place);
-  for (int layer = 0; layer < (H.dofs_per_node() == 2 ? layers_2d : layers_3d); ++layer) add_layer(A, place);
+  for (int layer = 0; layer < (H.dofs_per_node() == 2 ? linear_rules.layers_2d : linear_rules.layers_3d); ++layer)
+    add_layer(A, place);
   const LO members = count_marked(place);
   const GO size = sum_all(comm, GO(members));
-  const double most_work = work_per_row * static_cast<double>(A.getGlobalNumRows());
+  const double most_work = linear_rules.patch_work * static_cast<double>(A.getGlobalNumRows());
   int through = 0;
   Teuchos::scan(comm, Teuchos::REDUCE_SUM, static_cast<int>(members), Teuchos::outArg(through));
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "low_rank_update.hpp"
 
+#include "rpc/solver/rules.hpp"
+
 #include <Teuchos_BLAS.hpp>
 #include <Teuchos_LAPACK.hpp>
 #include <algorithm>
@@ -43,10 +45,9 @@ void add(const RankOneTerm &term, const double factor, double *const x)
 /// Whether both are parallel, up to rounding.
 bool same_direction(const RankOneTerm &a, const RankOneTerm &b)
 {
-  constexpr double rounding = 1e-12;
   double product = 0;
   for (int k = 0; k < 3; ++k) product += a.v[k] * b.v[k];
-  return std::abs(std::abs(product) - 1) <= rounding;
+  return std::abs(std::abs(product) - 1) <= rounding.sum;
 }
 
 } // namespace

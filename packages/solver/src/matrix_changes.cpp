@@ -3,6 +3,7 @@
 
 #include "rpc/algebra/jacobi.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +58,6 @@ struct OwnBlock {
 template <int Dim>
 void add_changes_of(const HostMatrix &A, const HostView<const double *> &before, const LO first, MatrixChanges &changes)
 {
-  constexpr double rounding = 1e-13; // of the node's own block
   const GO node = A.row(first);
   OwnBlock<Dim> own;
   std::vector<MatrixChanges::Between> others;
@@ -73,7 +73,7 @@ void add_changes_of(const HostMatrix &A, const HostView<const double *> &before,
         others.push_back({node + k, column, change});
       }
     }
-  const double least = rounding * own.largest(own.before), largest = own.largest(own.change);
+  const double least = rounding.block * own.largest(own.before), largest = own.largest(own.change);
   for (const auto &entry : others) {
     if (!(std::abs(entry.value) > least)) continue;
     is_coupled = true;
@@ -88,7 +88,7 @@ void add_changes_of(const HostMatrix &A, const HostView<const double *> &before,
   if (!(largest > least)) return;
   const EigenPairs<Dim> pairs = eigen_pairs(own.change);
   for (int k = 0; k < Dim; ++k) {
-    if (!(std::abs(pairs.value[k]) > std::max(least, rounding * largest))) continue;
+    if (!(std::abs(pairs.value[k]) > std::max(least, rounding.block * largest))) continue;
     RankOneTerm term;
     term.first_row = node;
     std::copy(pairs.vector[k], pairs.vector[k] + Dim, term.v);

@@ -7,6 +7,7 @@
 #include "node_smoother.hpp"
 #include "rpc/algebra/bounded_update.hpp"
 #include "rpc/core/math.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -17,15 +18,9 @@ namespace rpc::solver
 namespace
 {
 
-// By measurement: the least time, and no more than 15 iterations to 1e-8 in the plane, 20 in space.
-constexpr NodeSmoother::Options order_one{3, 10}, order_two{3, 16};
-
 // Bound of the largest eigenvalue of D^-1 C for contact C alone: it is that of an interpolation's mass on a facet, (3/2)^2 on
 // quadrilaterals, 2 on triangles, 3/2 on edges.                                                                  (4.7c)
 constexpr double largest_of_contact = 2.25;
-// The update of a node counts on coarse meshes as so many times its own stiffness. With a quarter or four times that, CG takes a fourth more
-// iterations.                                                                                                    (4.7b)
-constexpr double most_on_coarse_meshes = 1;
 
 constexpr const char *not_definite = "multigrid: the matrix of the coarsest mesh is not positive definite";
 
@@ -224,8 +219,10 @@ void MeshMultigrid::add_smoother(const MeshLevels &levels, const std::size_t l)
   const Rounded without_contact(H_, false);
   const double largest =
       largest_eigenvalue(is_finest ? static_cast<const Operator &>(without_contact) : *level.A, block);
-  level.smoother = std::make_unique<NodeSmoother>(level.A, block, changing, std::max(largest, largest_of_contact),
-                                                  order == 2 ? order_two : order_one);
+  level.smoother = std::make_unique<NodeSmoother>(
+      level.A, block, changing, std::max(largest, largest_of_contact),
+      NodeSmoother::Options{linear_rules.smoother_degree,
+                            order == 2 ? linear_rules.smoother_ratio_order_two : linear_rules.smoother_ratio});
 }
 
 MeshMultigrid::~MeshMultigrid() = default;
@@ -233,7 +230,7 @@ MeshMultigrid::~MeshMultigrid() = default;
 /// @return (contact nodes, dim, dim) what contact adds on coarse meshes                                          (4.7b)
 DeviceView<double ***> MeshMultigrid::write_contact()
 {
-  const auto update = bounded_update(*H_, most_on_coarse_meshes);
+  const auto update = bounded_update(*H_, linear_rules.most_on_coarse_meshes);
   const MultiVector packed = packed_blocks(contact_, update);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     const auto &blocks = levels_[l]->blocks;
@@ -254,11 +251,11 @@ bool MeshMultigrid::update(const bool slight_changes_too)
   const bool changes = changed_part(comm, contact_of_coarsest_, update) > coarsest_->most_change();
   if (!changes && coarsest_is_exact_) return true;
   if (!slight_changes_too &&
-      largest_change(comm, contact_base_, contact_of_coarsest_, update) <= CoarsestSolver::slight_change)
+      largest_change(comm, contact_base_, contact_of_coarsest_, update) <= linear_rules.slight_change)
     return false;
   contact_of_coarsest_ = update;
   coarsest_is_exact_ =
-      coarsest_->update(slight_changes_too ? 0 : CoarsestSolver::slight_change) != CoarsestSolver::Update::rough;
+      coarsest_->update(slight_changes_too ? 0. : linear_rules.slight_change) != CoarsestSolver::Update::rough;
   return coarsest_is_exact_;
 }
 

@@ -4,6 +4,7 @@
 #include "interrupted.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <Teuchos_DefaultMpiComm.hpp>
 #include <algorithm>
@@ -40,14 +41,6 @@ constexpr int first_more_memory = 20; // per cent of what the analysis has found
 // What MUMPS answers.
 constexpr int too_little_memory[] = {-8, -9, -14, -15, -17, -19, -20}, out_of_memory = -13, singular = -10,
               not_definite_root = -40;
-
-// By measurement on one core, of factors of 1e7 to 1e11 operations in the plane and in space: within 15 % of the measured times.
-constexpr double dense_seconds = 3.5e-11, entry_seconds = 3.1e-8, entry_seconds_in_solve = 3e-9;
-constexpr double columns_for_one = 12; // of many at contact nodes in the time of a single one; 10 to 24 by measurement
-// P ranks make a factor, and solve with it, so many times as fast as one: P to this power. By measurement on two.
-constexpr double gain = 0.6;
-// A factor that takes longer [s] is made where a request to stop can be seen meanwhile.
-constexpr double long_time = 1;
 
 MPI_Comm raw(const Comm &comm)
 {
@@ -180,15 +173,15 @@ MumpsFactor::~MumpsFactor() = default;
 FactorCost MumpsFactor::cost() const
 {
   const auto &mumps = impl_->mumps;
-  const double faster = std::pow(comm_->getSize(), gain);
+  const double faster = std::pow(comm_->getSize(), double(cost_model.gain));
   FactorCost cost;
   cost.operations = mumps.rinfog[0];
   const double entries = mumps.infog[entries_of_factor];
   cost.entries = entries < 0 ? -1e6 * entries : entries;
   cost.bytes = 1e6 * mumps.infog[megabytes];
-  cost.seconds = (dense_seconds * cost.operations + entry_seconds * cost.entries) / faster;
-  cost.seconds_of_solve = entry_seconds_in_solve * cost.entries / faster;
-  cost.seconds_of_column = cost.seconds_of_solve / columns_for_one;
+  cost.seconds = (cost_model.dense * cost.operations + cost_model.factor_entry * cost.entries) / faster;
+  cost.seconds_of_solve = cost_model.factor_entry_in_solve * cost.entries / faster;
+  cost.seconds_of_column = cost.seconds_of_solve / cost_model.columns_for_one;
   return cost;
 }
 
@@ -206,7 +199,7 @@ bool MumpsFactor::make(const std::vector<double> &value)
     const auto impl = impl_;
     if (work_goes_on()) throw Interrupted();
     const auto work = [impl] { impl->call(factorization); };
-    if (cost().seconds < long_time)
+    if (cost().seconds < linear_rules.seconds_in_background)
       work();
     else if (!ended_before_interrupt(*comm_, work))
       throw Interrupted();

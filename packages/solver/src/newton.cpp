@@ -7,6 +7,7 @@
 #include "rpc/core/message.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/solver/exact_line_search.hpp"
+#include "rpc/solver/rules.hpp"
 #include "rpc/solver/sweep_direction.hpp"
 #include "status_tests.hpp"
 
@@ -32,10 +33,6 @@ constexpr std::array directions{"Active Set", "Sweep", "Newton"};
 constexpr std::array line_searches{"Exact", "Full Step", "Backtrack", "Polynomial", "More'-Thuente", "NonlinearCG"};
 
 constexpr const char *passed_to_nox[] = {"Line Search", "Direction", "Printing", "Solver Options", "Status Tests"};
-
-// So many steps are ordinary. Each direction takes a vector, and a product with K for each step after that. With five a slender
-// body takes 75 steps instead of 53; twenty add nothing.
-constexpr int most_earlier_directions = 9;
 
 /// Tells the console about each step.
 class Reporter : public NOX::Abstract::PrePostOperator
@@ -114,7 +111,7 @@ NoxLists nox_lists(const Teuchos::ParameterList &user, const RCP<NOX::Abstract::
   const auto read = Teuchos::parameterList(list->sublist("Line Search"));
   RCP<NOX::LineSearch::UserDefinedFactory> search = rcp(new NoxLineSearchFactory(read));
   if (method_of(*list, "Line Search", line_searches) == "Exact")
-    search = rcp(new ExactLineSearchFactory(own_direction ? most_earlier_directions : 0));
+    search = rcp(new ExactLineSearchFactory(own_direction ? newton_rules.most_earlier_directions : 0));
   list->sublist("Line Search").set("Method", "User Defined");
   list->sublist("Line Search")
       .set<RCP<NOX::LineSearch::UserDefinedFactory>>("User Defined Line Search Factory", search);

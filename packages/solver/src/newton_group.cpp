@@ -3,15 +3,13 @@
 
 #include "rpc/core/causes.hpp"
 #include "rpc/core/finite.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace rpc::solver
 {
-
-// |r|/|F| of a direction while the Hessian changes.
-constexpr double forcing = 5e-3;
 
 NewtonGroup::NewtonGroup(RCP<NewtonContext> context, const RCP<rpc::Vector> &u)
     : context_(std::move(context)), u_(u), F_(u_, NOX::ShapeCopy)
@@ -83,11 +81,11 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
 {
   if (has_newton_) return Ok;
   if (!has_F_ || !has_jacobian_) return BadDependency;
-  // A tenth of the target is close enough, and while the Hessian changes a rough direction leads down as well as an exact one.
-  const double rough = context_->changes > 0 ? forcing : 0;
+  const double rough = context_->changes > 0 ? newton_rules.forcing : 0.;
   if (newton_.is_null()) newton_ = rcp(new NoxVector(u_, NOX::ShapeCopy));
-  const auto result = solve_for_direction(*context_, F_.data(), newton_->data(),
-                                          std::max(rough, 0.1 * context_->target_residual / norm_F_));
+  const auto result =
+      solve_for_direction(*context_, F_.data(), newton_->data(),
+                          std::max(rough, newton_rules.beside_target * context_->target_residual / norm_F_));
   ++context_->steps;
   newton_->scale(-1.);
   const bool has_cause = !result.interrupted && std::isfinite(context_->direction_norm);
@@ -100,9 +98,8 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
 
 LinearSolver::Result solve_for_direction(NewtonContext &context, const Vector &F, Vector &d, const Accuracy &wanted)
 {
-  constexpr double largest_residual = 0.1;
   Accuracy asked = wanted;
-  if (wanted.error == 0) asked.residual = std::min(largest_residual, wanted.residual);
+  if (wanted.error == 0) asked.residual = std::min<double>(newton_rules.largest_residual, wanted.residual);
   const auto result = context.linear_solver.solve(F, d, asked);
   context.linear_iterations = result.iterations;
   context.direction_norm = d.norm2();

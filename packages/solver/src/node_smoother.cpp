@@ -5,6 +5,7 @@
 #include "rpc/core/dofs.hpp"
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/core/math.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <Teuchos_LAPACK.hpp>
 #include <cmath>
@@ -15,10 +16,6 @@ namespace rpc::solver
 {
 namespace
 {
-
-// Lanczos steps for the largest eigenvalue: they find it to a few per cent, which the factor covers.
-constexpr int lanczos_steps = 10;
-constexpr double margin = 1.08;
 
 /// Inverts the symmetric parts of some blocks by their Cholesky factors: blocks of stiff contact have eigenvalues of very different
 /// size, and cofactors would lose the small ones.
@@ -200,10 +197,11 @@ double largest_eigenvalue(const Operator &A, const std::function<void(const Vect
   apply_inverse(r, z);
   p.update(1., z, 0.);
   double rho = r.dot(z);
-  const double enough = 1e-24 * rho; // nothing is left where there are fewer eigenvalues than steps
+  const double enough =
+      rounding.sum * rounding.sum * rho; // nothing is left where there are fewer eigenvalues than steps
   std::vector<double> diagonal, beside;
   double last_alpha = 1, last_beta = 0;
-  for (int k = 0; k < lanczos_steps && rho > enough; ++k) {
+  for (int k = 0; k < linear_rules.lanczos_steps && rho > enough; ++k) {
     A.apply(p, q);
     const double energy = p.dot(q);
     if (!(energy > 0)) throw std::runtime_error("multigrid: the matrix of a level is not positive definite");
@@ -223,7 +221,7 @@ double largest_eigenvalue(const Operator &A, const std::function<void(const Vect
   double none = 0, work = 0;
   Teuchos::LAPACK<int, double>().STEQR('N', static_cast<int>(diagonal.size()), diagonal.data(), beside.data(), &none, 1,
                                        &work, &info);
-  const double largest = margin * diagonal.back();
+  const double largest = linear_rules.lanczos_margin * diagonal.back();
   if (info != 0 || !std::isfinite(largest))
     throw std::runtime_error("multigrid: no largest eigenvalue of a level was found");
   return largest;

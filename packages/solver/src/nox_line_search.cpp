@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "nox_line_search.hpp"
 
+#include "rpc/solver/rules.hpp"
+
 #include <NOX_LineSearch_Factory.H>
 #include <NOX_Solver_Generic.H>
 #include <algorithm>
@@ -12,8 +14,7 @@ namespace rpc::solver
 namespace
 {
 
-constexpr int most_halvings = 10;    // of an interval, in the search for the pieces of a line function
-constexpr double same_slope = 1e-12; // of a slope
+constexpr int most_halvings = 10; // of an interval, in the search for the pieces of a line function
 
 /// int_a^b of the slope, known at both ends. @param halvings  that are left
 double rise_between(const LineFunction &line, const double a, const LineFunction::Value &at_a, const double b,
@@ -21,7 +22,7 @@ double rise_between(const LineFunction &line, const double a, const LineFunction
 {
   const double width = b - a, of_piece = at_a.curvature * width, risen = at_b.slope - at_a.slope;
   const bool one_piece =
-      std::abs(risen - of_piece) <= same_slope * std::max(std::abs(at_a.slope), std::abs(at_b.slope));
+      std::abs(risen - of_piece) <= rounding.sum * std::max(std::abs(at_a.slope), std::abs(at_b.slope));
   if (one_piece || !std::isfinite(risen)) return 0.5 * (at_a.slope + at_b.slope) * width;
   if (halvings == 0) { // two pieces, which meet at a + x
     const double x = (risen - at_b.curvature * width) / (at_a.curvature - at_b.curvature);

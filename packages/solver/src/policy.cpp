@@ -7,10 +7,10 @@
 namespace rpc::solver
 {
 
-const Rule &rule_for(const Used used, const Outcome outcome)
+const PolicyRow &rule_for(const Used used, const Outcome outcome)
 {
   return *std::find_if(std::begin(policy), std::prev(std::end(policy)),
-                       [=](const Rule &rule) { return rule.used == used && (rule.outcomes & outcome) != 0; });
+                       [=](const PolicyRow &rule) { return rule.used == used && (rule.outcomes & outcome) != 0; });
 }
 
 } // namespace rpc::solver

@@ -4,12 +4,9 @@
 namespace rpc::solver
 {
 
-/// CG iterations beyond which a solve is slow.
-constexpr int patience = 150;
-
 /// How a linear solve went that was not good. Values are bits.
 enum Outcome : unsigned {
-  slow = 1,   ///< it converged, in more than `patience` iterations
+  slow = 1,   ///< it converged, in more than LinearRules::slow iterations
   failed = 2, ///< it stopped before it converged
   broken = 4, ///< the set-up or the Krylov method broke down: the matrix may be singular
   dear = 8    ///< it was given up, for a sparse factor takes less time than the iterations that were left
@@ -41,7 +38,7 @@ enum class Next {
 };
 
 /// A row of the policy.
-struct Rule {
+struct PolicyRow {
   Used used;
   unsigned outcomes; ///< for which it holds
   Next next;
@@ -50,7 +47,7 @@ struct Rule {
 
 // clang-format off
 /// The whole policy of what is tried where a linear solve fails or is slow. There is one row for each case.
-constexpr Rule policy[] = {
+constexpr PolicyRow policy[] = {
     // after               that was                next          otherwise
     {Used::meshes,         dear | failed,          Next::sparse, Next::stand_in},     // coarse meshes miss what the matrix tells; it stays
     {Used::meshes,         slow,                   Next::nothing, Next::nothing},     // a factor would take longer
@@ -78,6 +75,6 @@ constexpr Rule policy[] = {
 // clang-format on
 
 /// The row for a case.
-const Rule &rule_for(Used used, Outcome outcome);
+const PolicyRow &rule_for(Used used, Outcome outcome);
 
 } // namespace rpc::solver

@@ -7,6 +7,7 @@
 #endif
 
 #include "rpc/core/parallel.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <algorithm>
@@ -46,15 +47,13 @@ std::unique_ptr<SparseFactor> SparseFactor::analyse(const RCP<const Comm> &comm,
                                                     const SymmetricEntries &entries, const int dofs_per_node)
 {
 #ifdef RPC_HAVE_MUMPS
-  // A band has no indices and no tree: it is faster where it is narrow. By measurement.
-  constexpr int most_rows_to_order = 6000, most_width = 200;
-  constexpr double most_work_of_band = 1e8;
+  // A band has no indices and no tree: it is faster where it is narrow.
   if (comm->getSize() == 1) {
-    if (size <= most_rows_to_order) {
+    if (size <= linear_rules.most_rows_to_order) {
       auto band = BandFactor::in_cuthill_mckee_order(size, entries);
-      if (band->cost().operations <= most_work_of_band) return band;
+      if (band->cost().operations <= linear_rules.most_work_of_band) return band;
     }
-    if (width_of(entries) <= most_width) return BandFactor::as_numbered(size, entries);
+    if (width_of(entries) <= linear_rules.most_width) return BandFactor::as_numbered(size, entries);
   }
   return std::make_unique<MumpsFactor>(comm, size, entries, dofs_per_node);
 #else

@@ -3,6 +3,7 @@
 
 #include "rpc/core/headway.hpp"
 #include "rpc/core/interrupt.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <NOX.H>
 #include <NOX_StatusTest_Factory.H>
@@ -41,7 +42,7 @@ private:
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
-/// Stops where rounding ends Newton's progress: two more full steps on the same piece, and the residual does not fall. Counts the
+/// Stops where rounding ends Newton's progress: some more full steps on the same piece, and the residual does not fall. Counts the
 /// steps back to a piece that had been left.
 class StagnationTest : public NOX::StatusTest::Generic
 {
@@ -52,7 +53,7 @@ public:
   {
     const auto &group = solver.getSolutionGroup();
     const auto piece = context_->functional.piece(tpetra(group.getX()));
-    if (solver.getNumIterations() == 0 || piece != piece_ || !(context_->step_length > 0.5)) headway_.start_over();
+    if (solver.getNumIterations() == 0 || piece != piece_ || !(context_->step_length > newton_rules.full_step)) headway_.start_over();
     const bool stuck = headway_.add(group.getNormF()) == Headway::Answer::stuck;
     status_ = stuck ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
     if (piece != piece_ && headway_.visit(piece) != Headway::Answer::progress) ++context_->returns;
@@ -69,7 +70,7 @@ public:
 private:
   RCP<NewtonContext> context_;
   std::uint64_t piece_ = 0;
-  Headway headway_{{0.9, 1}}; // of residuals, since the piece last changed
+  Headway headway_{{newton_rules.falls, newton_rules.most_idle - 1}}; // of residuals, since the piece last changed
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 

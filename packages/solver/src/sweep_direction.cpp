@@ -2,6 +2,7 @@
 #include "rpc/solver/sweep_direction.hpp"
 
 #include "rpc/solver/newton_group.hpp"
+#include "rpc/solver/rules.hpp"
 
 namespace rpc::solver
 {
@@ -10,7 +11,7 @@ bool SweepDirection::compute(NOX::Abstract::Vector &direction, NOX::Abstract::Gr
 {
   using Group = NOX::Abstract::Group;
   const NewtonContext &context = dynamic_cast<const NewtonGroup &>(group).context();
-  swept_ = !swept_ || context.step_length >= cut_short;
+  swept_ = !swept_ || context.step_length >= newton_rules.cut_short;
   if (swept_) {
     NoxVector moved(dynamic_cast<const NoxVector &>(group.getX()), NOX::DeepCopy);
     context.functional.sweep(moved.data());

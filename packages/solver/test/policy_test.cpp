@@ -20,9 +20,9 @@ TEST(Policy, HasOneRowForEachCase)
   for (const Used used : all_used)
     for (const Outcome outcome : all_outcomes) {
       int rows = 0;
-      for (const Rule &rule : policy) rows += rule.used == used && (rule.outcomes & outcome) != 0;
+      for (const PolicyRow &rule : policy) rows += rule.used == used && (rule.outcomes & outcome) != 0;
       EXPECT_EQ(rows, 1) << static_cast<int>(used) << " " << outcome;
-      const Rule &rule = rule_for(used, outcome);
+      const PolicyRow &rule = rule_for(used, outcome);
       EXPECT_EQ(rule.used, used);
       EXPECT_NE(rule.outcomes & outcome, 0U);
     }
@@ -46,7 +46,7 @@ TEST(Policy, EndsForEachOutcomeThatRepeats)
         Used used = first;
         int turns = 0;
         for (bool strengthened = false; turns < 10; ++turns) {
-          const Rule &rule = rule_for(used, outcome);
+          const PolicyRow &rule = rule_for(used, outcome);
           const auto can_be_had = [&](const Next next) {
             return next != Next::nothing && next != Next::meshes_back && !(next == Next::stronger && strengthened) &&
                    !(next == Next::sparse && !sparse_fits);

@@ -3,6 +3,7 @@
 
 #include "muelu_defaults.hpp"
 #include "rpc/algebra/bounded_update.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <cmath>
 #include <utility>
@@ -11,18 +12,6 @@ namespace rpc::solver
 {
 namespace
 {
-
-// Multigrid is made for closed nodes of at most so many times their own stiffness: with all of the penalty, coarse functions
-// could not move near them, and CG would take a third more iterations. The rest is left to the correction.   (4.9)
-constexpr double most_stiffness = 5;
-// Corrections have worn out where they cost a solve of so many digits more CG iterations than a set-up takes the time of. Solves
-// of few digits tell little.
-constexpr double full_digits = 8, few_digits = 2, setup_in_iterations = 12;
-// Where the patch would be too large, rough solves, of so many digits at most, leave changes up to such a part of a node's own stiffness
-// to CG.                                                                                                          (4.12)
-constexpr double most_slight = 0.1, rough_digits = 6;
-// Set-ups for changed states; then corrections go on until CG runs out of patience.
-constexpr int most_setups_for_states = 1;
 
 Teuchos::ParameterList list_for(const Map &dofs, const int dofs_per_node, const LinearSolverOptions &options)
 {
@@ -54,12 +43,12 @@ Preconditioner::Prepared Algebraic::prepare(const double tolerance)
 {
   const int revision = H_->revision();
   const bool exists = !multigrid_.is_null();
-  const bool renewal_pays = is_worn_ && excess(-std::log10(tolerance)) > setup_in_iterations;
+  const bool renewal_pays = is_worn_ && excess(-std::log10(tolerance)) > linear_rules.setup_in_iterations;
   if (exists && revision == revision_ && !renewal_pays) return Prepared::unchanged;
   if (exists && !is_worn_ && !for_each_state_) {
     is_fresh_ = false;
-    const bool is_rough = -std::log10(tolerance) <= rough_digits;
-    for (const double slight : {0., most_slight}) {
+    const bool is_rough = -std::log10(tolerance) <= linear_rules.rough_digits;
+    for (const double slight : {0., double(linear_rules.slight_change)}) {
       if (slight > 0 && !is_rough) continue;
       correction_ = LocalCorrection::around(*H_, *A_, written_, slight);
       const bool is_whole = !correction_ && num_changes(*H_, written_, slight) == 0; // there is nothing to correct
@@ -85,7 +74,7 @@ void Algebraic::set_up()
   correction_.reset();
   if (A_.is_null()) A_ = H_->base().copy();
   if (!for_each_state_) {
-    write(bounded_update(*H_, most_stiffness));
+    write(bounded_update(*H_, linear_rules.most_stiffness));
     correction_ = LocalCorrection::around(*H_, *A_, written_);
   }
   if (!correction_) write(bounded_update(*H_));
@@ -136,12 +125,13 @@ void Algebraic::apply_to_residual(const MultiVector &r, MultiVector &y) const
 void Algebraic::learn(const int iterations, const double residual)
 {
   const double digits = -std::log10(residual);
-  if (!(digits > few_digits)) return;
+  if (!(digits > linear_rules.few_digits)) return;
   iterations_per_digit_ = iterations / digits;
   if (is_fresh_)
     usual_iterations_ = iterations_per_digit_;
   else
-    is_worn_ = setups_for_states_ < most_setups_for_states && excess(full_digits) > setup_in_iterations;
+    is_worn_ = setups_for_states_ < linear_rules.most_setups_for_states &&
+               excess(-std::log10(linear_rules.full_tolerance)) > linear_rules.setup_in_iterations;
 }
 
 /// CG iterations that a solve of so many digits would save right after a set-up.
@@ -154,8 +144,8 @@ bool Algebraic::strengthen()
 {
   if (!may_strengthen_ || std::exchange(strengthened_, true)) return false;
   Teuchos::ParameterList &smoother = muelu_.sublist("smoother: params");
-  smoother.set("chebyshev: degree", 8);
-  smoother.set("chebyshev: ratio eigenvalue", 50.);
+  smoother.set("chebyshev: degree", int(linear_rules.strong_degree));
+  smoother.set("chebyshev: ratio eigenvalue", double(linear_rules.strong_ratio));
   forget();
   return true;
 }

@@ -3,20 +3,18 @@
 
 #include "direct_solver.hpp"
 #include "rpc/algebra/bounded_update.hpp"
+#include "rpc/solver/rules.hpp"
 
 namespace rpc::solver
 {
 namespace
 {
 
-// Multiplications. Of a mesh that one of several ranks has, the hierarchy would be set up over all of them.
-constexpr double most_work_of_factor = 1e7, most_work_on_one_of_several = 1e8;
-
 double most_work(const CrsMatrix &A)
 {
   const Comm &comm = *A.getComm();
   const bool on_one = max_all(comm, GO(num_local(*A.getRowMap()))) == static_cast<GO>(A.getGlobalNumRows());
-  return comm.getSize() > 1 && on_one ? most_work_on_one_of_several : most_work_of_factor;
+  return comm.getSize() > 1 && on_one ? linear_rules.most_work_on_one_of_several : linear_rules.most_work;
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include "direct_solver.hpp"
 #include "muelu_defaults.hpp"
 #include "multigrid.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -32,7 +33,7 @@ public:
     if (multigrid_.is_null() || !renew_multigrid(A_, multigrid_)) multigrid_ = make_multigrid(A_, list_);
     return Update::made;
   }
-  double most_change() const override { return small_change; }
+  double most_change() const override { return linear_rules.changed_part; }
   /// Two cycles: the matrix is small beside that of order 2, and one cycle costs it a third more CG iterations.
   void apply(const Vector &b, Vector &x) const override
   {
@@ -45,10 +46,6 @@ public:
   }
 
 private:
-  // By measurement: a renewal takes as long as two CG iterations. While contact has changed less, the old hierarchy costs all solves of
-  // a step together about two iterations.
-  static constexpr double small_change = 0.1;
-
   RCP<const CrsMatrix> now_; // follows the states
   RCP<CrsMatrix> A_;         // what the hierarchy was made for
   Teuchos::ParameterList list_;

@@ -3,6 +3,7 @@
 
 #include "checkerboards.hpp"
 #include "rpc/core/math.hpp"
+#include "rpc/solver/rules.hpp"
 #include "shared_rows.hpp"
 
 #include <algorithm>
@@ -30,14 +31,6 @@ struct ModeWeights {
 
 namespace
 {
-
-// BiCGStab starts again, for what is left of H x = b, after so many iterations: its own residuals are no longer those of x by then.
-constexpr int iterations_at_once = 80;
-// What a pass leaves of the residual at most, though less were enough: its own residual is a little below that of H x = b. One that leaves
-// more than `stalled` has met rounding, or stalls.
-constexpr double pass_tolerance = 0.1, stalled = 0.5;
-// Errors of products over what the largest entries would give: sums of some hundred terms.
-constexpr double rounding_of_products = 10 * std::numeric_limits<double>::epsilon();
 
 /// w of a mode is what its error is worth as a force: s |Z_m|. Collective.                                         (4.14a)
 ModeWeights weights_of(const StiffDilatation &dilatation)
@@ -90,7 +83,7 @@ LinearSolverOptions for_saddle()
 {
   LinearSolverOptions options;
   options.method = "BiCGStab";
-  options.max_iterations = iterations_at_once;
+  options.max_iterations = linear_rules.iterations_of_pass;
   return options;
 }
 
@@ -252,8 +245,8 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
   while (!result.converged && !result.given_up && result.iterations < options_.max_iterations) {
     right_side.putScalar(0);
     s.displacements(right_side)->assign(rest);
-    const KrylovResult pass =
-        s.krylov->solve(*s.triangular, false, right_side, found, std::min(enough / left, pass_tolerance));
+    const KrylovResult pass = s.krylov->solve(*s.triangular, false, right_side, found,
+                                              std::min<double>(enough / left, linear_rules.residual_of_pass));
     if (pass.broken) {
       result.broken = true;
       result.reason = pass.reason;
@@ -263,14 +256,14 @@ KrylovResult Mixed::solve(const Vector &b, Vector &x, const Accuracy &wanted, co
     rest.assign(b);
     H_->apply(x, rest, Teuchos::NO_TRANS, -1., 1.);
     const double before = std::exchange(left, rest.norm2());
-    result.converged = left <= std::max(enough, rounding_of_products * stiffest * x.norm2());
+    result.converged = left <= std::max(enough, rounding.product * stiffest * x.norm2());
     result.residual = left / norm;
     // BiCGStab does not tell its residuals: within a pass they are taken to fall evenly. The judgement on the last one counts.
     for (int k = 1; k <= pass.iterations && gives_up && !result.converged; ++k)
       result.given_up = gives_up(result.iterations + k,
                                  before / norm * std::pow(left / before, static_cast<double>(k) / pass.iterations));
     result.iterations += pass.iterations;
-    if (!(left < stalled * before)) break;
+    if (!(left < linear_rules.stalled * before)) break;
   }
   if (!result.converged)
     result.reason = (result.given_up ? "given up after " : "|r|/|b| = " + std::to_string(result.residual) + " after ") +

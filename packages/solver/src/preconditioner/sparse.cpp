@@ -3,6 +3,7 @@
 
 #include "rpc/algebra/bounded_update.hpp"
 #include "rpc/core/parallel.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <sstream>
 #include <stdexcept>
@@ -11,10 +12,6 @@ namespace rpc::solver
 {
 namespace
 {
-
-// The factor takes closed nodes for at most so many times their own stiffness: all of it would cost digits where they open again. CG
-// takes the difference in an iteration.
-constexpr double most_closed_stiffness = 1e4;
 
 /// On all ranks; collective. @param a, b  (nodes, dim, dim)
 bool are_equal(const Comm &comm, const DeviceView<double ***> &a, const DeviceView<double ***> &b)
@@ -47,11 +44,11 @@ Preconditioner::Prepared Sparse::prepare(double)
   const int revision = H_->revision();
   if (made_ && revision == revision_) return Prepared::unchanged;
   if (!prospect().obstacle.empty()) throw std::runtime_error(prospect_.obstacle);
-  const auto bounded = bounded_update(*H_, most_closed_stiffness);
+  const auto bounded = bounded_update(*H_, linear_rules.most_closed_stiffness);
   has_all_ = are_equal(*H_->getDomainMap()->getComm(), bounded, H_->update());
   write_update(*A_, *H_, bounded);
   made_ = false;
-  last_update_ = solver_->update(CoarsestSolver::slight_change);
+  last_update_ = solver_->update(linear_rules.slight_change);
   made_ = true;
   revision_ = revision;
   return last_update_ == CoarsestSolver::Update::made ? Prepared::made : Prepared::updated;

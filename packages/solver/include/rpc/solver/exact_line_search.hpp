@@ -10,9 +10,6 @@
 namespace rpc::solver
 {
 
-/// A step that differs from 1 by less has met no kink: nothing is left to gain along it.
-constexpr double to_the_minimum = 1e-6;
-
 /// The t > 0 where the slope of a piecewise quadratic functional vanishes, to rounding. doc/theory.md (4.4)
 ///
 /// The slope is continuous, nondecreasing and piecewise linear: Newton's method, kept inside a bracket and helped by

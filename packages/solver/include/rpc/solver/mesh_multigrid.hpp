@@ -22,10 +22,6 @@ public:
     rough  ///< slight changes have been left out
   };
 
-  /// Changes of a node's own block up to this part of it may be left to CG. Where a solver misses points that close, whose blocks change
-  /// by all of themselves, CG hardly converges.                                                             doc/theory.md (4.12)
-  static constexpr double slight_change = 0.1;
-
   virtual ~CoarsestSolver() = default;
   /// The matrix has changed; collective.
   /// @param slight  changes of a node's own block alone, up to this part of it, may be left out where that saves time

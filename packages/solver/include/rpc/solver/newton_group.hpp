@@ -18,7 +18,7 @@ class FirstStage;
 /// How Newton's steps have gone since the first stage was over.
 struct NewtonProgress {
   int steps = 0;
-  int short_steps = 0; ///< of these, that ended at a kink at once, below cut_short
+  int short_steps = 0; ///< of these, that ended at a kink at once, below NewtonRules::cut_short
   /// Of the way to the minimum, as if the functional had no kinks: the product of |1 - t|, at least 0.1 each.
   double left = 1;
   /// The last one met no kink and ended on the piece of the functional that its direction was for.

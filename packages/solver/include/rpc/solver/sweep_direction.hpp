@@ -7,9 +7,6 @@
 namespace rpc::solver
 {
 
-/// A step length below this has ended at a kink.
-constexpr double cut_short = 0.02;
-
 /// The Newton direction from where a nonlinear sweep of the functional leads, as a NOX direction for NewtonGroup: truncated
 /// nonsmooth Newton, after Graeser, Sander and Kornhuber. The sweep puts unknowns on the kinks of the functional, where a line
 /// search would end at the first of them. doc/theory.md (4.6)

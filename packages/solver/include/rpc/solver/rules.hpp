@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/core/kokkos.hpp"
+#include "rpc/core/rule.hpp"
+
+#include <limits>
+
+namespace rpc::solver
+{
+
+/// Which preconditioner a linear solve has, how each is made, and when the next one takes over. Equations are those of doc/theory.md.
+struct LinearRules {
+  // Choice of a preconditioner.
+  Rule<GO> few_rows{1000, "linear.few_rows", "unknowns up to which multigrid is a factor [-]",
+                    "coarser meshes save little there, and leave CG a rest"};
+  Rule<GO> most_rows_for_each_state{2500, "linear.most_rows_for_each_state",
+                                    "unknowns up to which a preconditioner is made for each choice of states [-]",
+                                    "not measured; MueLu's hierarchy of so few is nearly a factor"};
+  Rule<GO> most_sparse_rows{3000000, "linear.most_sparse_rows",
+                            "unknowns up to which a sparse factor is thought of [-]",
+                            "its memory in the plane and in space"};
+  Rule<int> first_iterations{15, "linear.first_iterations", "CG iterations before a factor is thought of [-]",
+                             "(4.10)"};
+  Rule<int> fair_iterations{30, "linear.fair_iterations", "iterations of a solve that are not lost [-]", "(4.10)"};
+  Rule<double> full_tolerance{1e-8, "linear.full_tolerance", "|r|/|b| that counts of iterations mean [-]",
+                              "a definition"};
+  Rule<int> solves_with_contact{4, "linear.solves_with_contact", "solves to come with contact [-]", "random families"};
+  Rule<double> part_to_tell{0.3, "linear.part_to_tell", "time of a factor before CG's rate is believed [-]",
+                            "CG stalls at first, and is fast then, where layers are of unlike stiffness"};
+  Rule<double> far_beyond{2, "linear.far_beyond", "predicted over allowed, and allowed over past CG iterations [-]",
+                          "not measured"};
+  Rule<double> few_iterations{5.5, "linear.few_iterations", "iterations worth a band factor [-]", "(4.10e)"};
+  Rule<double> few_iterations_on_ranks{11, "linear.few_iterations_on_ranks", "the same on several ranks of hosts [-]",
+                                       "two ranks halve an iteration, and slender bodies need more of them"};
+  Rule<int> slow{150, "linear.slow", "CG iterations of a slow solve [-]", "not measured"};
+
+  // How CG goes on.
+  Rule<int> window{20, "linear.window", "iterations that a rate is taken over [-]",
+                   "CG stands still for ten now and then, (4.10a)"};
+  Rule<double> slowest{0.9, "linear.slowest", "largest ratio of one gain in energy to the one before [-]",
+                       "a stall is an error of ten gains, (4.10c)"};
+  Rule<double> small_error{1e-4, "linear.small_error", "error at which a breakdown is that of rounding [-]",
+                           "of a singular matrix most of the error is left"};
+  Rule<double> large_error{1e-2, "linear.large_error", "error for one application of an exact factor [-]",
+                           "not measured"};
+  Rule<int> gmres_vectors{50, "linear.gmres_vectors", "GMRES iterations before a restart [-]",
+                          "with multigrid it takes fewer"};
+
+  // The mixed form, (4.14), (4.15).
+  Rule<int> iterations_of_pass{80, "linear.iterations_of_pass", "BiCGStab iterations before a restart [-]",
+                               "its own residuals are no longer those of x by then"};
+  Rule<double> residual_of_pass{0.1, "linear.residual_of_pass", "largest residual ratio that a pass is asked for [-]",
+                                "its own residual is a little below that of H x = b"};
+  Rule<double> stalled{0.5, "linear.stalled", "residual ratio of a pass that has stalled [-]", "not measured"};
+  Rule<double> degree_of_root{0.7, "linear.degree_of_root", "degree over the root of the condition number [-]",
+                              "least time"};
+  Rule<int> least_degree{4, "linear.least_degree", "degree for pressures at least [-]", "least time"};
+  Rule<int> largest_degree{40, "linear.largest_degree", "degree for pressures at most [-]", "not measured"};
+  Rule<double> condition_where_all_move{30, "linear.condition_where_all_move",
+                                        "largest condition where each pressure moves the body [-]",
+                                        "the least degree is enough for it"};
+
+  // Multigrid on meshes, (4.7a) - (4.7c).
+  Rule<int> smoother_degree{3, "linear.smoother_degree", "degree of the smoother [-]",
+                            "least time, 15 iterations to 1e-8 in the plane, 20 in space"};
+  Rule<double> smoother_ratio{10, "linear.smoother_ratio", "largest over smallest damped eigenvalue, order 1 [-]",
+                              "the same"};
+  Rule<double> smoother_ratio_order_two{16, "linear.smoother_ratio_order_two", "the same of order 2 [-]", "the same"};
+  Rule<int> lanczos_steps{10, "linear.lanczos_steps", "steps for the largest eigenvalue [-]",
+                          "they find it to a few per cent"};
+  Rule<double> lanczos_margin{1.08, "linear.lanczos_margin", "factor on the eigenvalue found [-]",
+                              "covers these per cent"};
+  Rule<double> most_on_coarse_meshes{1, "linear.most_on_coarse_meshes",
+                                     "contact on coarse meshes over own stiffness [-]",
+                                     "with 1/4 or 4 CG takes a fourth more iterations"};
+  Rule<double> slight_change{0.1, "linear.slight_change", "change over own stiffness that is left to CG [-]",
+                             "a solver that misses points that close is useless, (4.12)"};
+  Rule<double> changed_part{0.1, "linear.changed_part", "changed part of contact that renews MueLu below order 2 [-]",
+                            "a renewal takes two CG iterations, the old one costs a step about as many"};
+
+  // MueLu's hierarchy, (4.8), (4.9).
+  Rule<double> most_stiffness{5, "linear.most_stiffness", "contact in MueLu's hierarchy over own stiffness [-]",
+                              "with all of the penalty CG takes a third more iterations"};
+  Rule<double> setup_in_iterations{12, "linear.setup_in_iterations", "CG iterations in the time of a set-up [-]",
+                                   "not measured"};
+  Rule<double> few_digits{2, "linear.few_digits", "digits that tell nothing of the rate [-]", "not measured"};
+  Rule<double> rough_digits{6, "linear.rough_digits", "digits that may leave slight changes to CG [-]", "(4.12)"};
+  Rule<int> most_setups_for_states{1, "linear.most_setups_for_states", "set-ups for changed states [-]",
+                                   "not measured"};
+  Rule<int> layers_2d{2, "linear.layers_2d", "layers of a patch around changed nodes in 2D [-]",
+                      "the second saves one CG iteration in ten and costs nothing"};
+  Rule<int> layers_3d{0, "linear.layers_3d", "layers of a patch in 3D [-]",
+                      "a layer saves as much for ten times the factor"};
+  Rule<double> patch_work{3e3, "linear.patch_work", "multiplications of a patch's factor, a row of H [-]",
+                          "a fraction of a set-up"};
+  Rule<int> muelu_degree{2, "linear.muelu_degree", "degree of MueLu's smoother [-]", "not measured"};
+  Rule<double> muelu_ratio{7, "linear.muelu_ratio", "largest over least damped eigenvalue, MueLu [-]", "not measured"};
+  Rule<int> strong_degree{8, "linear.strong_degree", "degree of the stronger smoother [-]", "not measured"};
+  Rule<double> strong_ratio{50, "linear.strong_ratio", "ratio of the stronger smoother [-]", "not measured"};
+  Rule<GO> least_coarsening{4, "linear.least_coarsening", "rows over those of the last level on ranks [-]",
+                            "what is solved directly has gone to one rank"};
+  Rule<int> least_rows_of_rank{5000, "linear.least_rows_of_rank", "rows of a rank with Zoltan2 [-]", "not measured"};
+  Rule<double> most_imbalance{1.3, "linear.most_imbalance", "rows of a rank over the mean, with Zoltan2 [-]",
+                              "not measured"};
+  Rule<GO> most_gathered_rows{300, "linear.most_gathered_rows", "rows of the coarsest level without Zoltan2 [-]",
+                              "their factor costs next to nothing"};
+
+  // Factors, (4.10) - (4.12).
+  Rule<double> most_closed_stiffness{1e4, "linear.most_closed_stiffness",
+                                     "contact in a sparse factor over own stiffness [-]",
+                                     "all of it costs digits where a node opens"};
+  Rule<double> most_work{1e7, "linear.most_work", "multiplications of a factor of few unknowns [-]", "not measured"};
+  Rule<double> most_work_on_one_of_several{1e8, "linear.most_work_on_one_of_several",
+                                           "the same where one of several ranks has all rows [-]",
+                                           "the hierarchy would be set up over all of them"};
+  Rule<GO> most_rows_on_each_rank{5200, "linear.most_rows_on_each_rank",
+                                  "rows up to which each rank has the whole factor [-]",
+                                  "a solve then takes one sum over the ranks"};
+  Rule<int> first_iterations_of_factor{3, "linear.first_iterations_of_factor",
+                                       "iterations before a factor is judged [-]", "(4.12)"};
+  Rule<int> most_rows_to_order{6000, "linear.most_rows_to_order",
+                               "rows of a band in Cuthill-McKee's order, at most [-]", "times of both"};
+  Rule<double> most_work_of_band{1e8, "linear.most_work_of_band", "multiplications of such a band [-]",
+                                 "times of both"};
+  Rule<int> most_width{200, "linear.most_width", "width of a band as numbered [-]", "times of both"};
+  Rule<double> short_time{5e-3, "linear.short_time", "a factor made for the slightest change [s]", "not measured"};
+  Rule<double> few_columns{3, "linear.few_columns", "the same in solves with one column [-]", "not measured"};
+  Rule<double> few_solves{8, "linear.few_solves", "solves worth a factor that leaves nothing out [-]", "(4.12)"};
+  Rule<double> worth_a_factor{0.7, "linear.worth_a_factor", "time of an update over a factor's [-]", "(4.11)"};
+  Rule<double> worth_factors{1.4, "linear.worth_factors", "the same over all factors made so far [-]",
+                             "later changes are at the same places"};
+  Rule<int> most_factors_worth{3, "linear.most_factors_worth", "factors that count as made so far [-]", "not measured"};
+  Rule<double> least_left_out{1e-5, "linear.least_left_out", "least bound of changes left to CG, over own block [-]",
+                              "(4.12)"};
+  Rule<double> kept_of_factor{2, "linear.kept_of_factor", "entries of an update over those of the factor [-]",
+                              "not measured"};
+  Rule<double> kept_of_free{0.25, "linear.kept_of_free", "entries of an update over the free memory [-]",
+                            "not measured"};
+  Rule<double> seconds_in_background{1, "linear.seconds_in_background", "factor made where an interrupt is seen [s]",
+                                     "not measured"};
+};
+inline constexpr_rules LinearRules linear_rules;
+
+/// What things take, by constants of one core: a choice by them is the same in every run.
+struct CostModel {
+  // A CG iteration with multigrid.
+  Rule<double> entry{8e-9, "cost.entry", "an entry of K in a CG iteration [s]", "iterations on one core"};
+  Rule<double> repeated_entry{1e-9, "cost.repeated_entry", "such an entry where rows of K repeat [s]", "within a half"};
+  Rule<double> repeated_row{70e-9, "cost.repeated_row", "a row of K where rows repeat [s]", "within a half"};
+  Rule<double> entry_against_factor{2e-9, "cost.entry_against_factor", "a repeated entry against a factor in 2D [s]",
+                                    "vectors count for more there"};
+  Rule<double> gpu{50, "cost.gpu", "times as fast on a GPU as on a core [-]", "an H100"};
+  Rule<double> launches{2e-3, "cost.launches", "of a cycle on a GPU at least [s]", "an H100"};
+  // MUMPS, of 1e7 to 1e11 multiplications: within 15 % of the times.
+  Rule<double> analysis_of_row{5e-6, "cost.analysis_of_row", "of the analysis, a row [s]", "not measured"};
+  Rule<double> dense{3.5e-11, "cost.dense", "of a multiplication [s]", "factors in the plane and in space"};
+  Rule<double> factor_entry{3.1e-8, "cost.factor_entry", "of an entry of the factor [s]", "the same"};
+  Rule<double> factor_entry_in_solve{3e-9, "cost.factor_entry_in_solve", "the same in a solve [s]", "the same"};
+  Rule<double> columns_for_one{12, "cost.columns_for_one", "columns at contact nodes for one right side [-]",
+                               "10 to 24"};
+  Rule<double> gain{0.6, "cost.gain", "P ranks are P to this power times as fast [-]", "two ranks"};
+  // A band factor: LAPACK works by blocks where it is wide.
+  Rule<double> wide{64, "cost.wide", "width of a wide band [-]", "LAPACK's blocks"};
+  Rule<double> wide_band{1.5e-11, "cost.wide_band", "of a multiplication in a wide band [s]", "one core"};
+  Rule<double> narrow_band{1e-10, "cost.narrow_band", "of a multiplication in a narrow band [s]", "one core"};
+  Rule<double> band_entry{6e-9, "cost.band_entry", "of an entry of the band [s]", "one core"};
+  Rule<double> band_row_in_solve{18e-9, "cost.band_row_in_solve", "of a row in a solve [s]", "one core"};
+  Rule<double> band_entry_in_solve{1e-9, "cost.band_entry_in_solve", "of an entry in a solve [s]", "one core"};
+};
+inline constexpr_rules CostModel cost_model;
+
+/// Newton's method, (4.2) - (4.6).
+struct NewtonRules {
+  Rule<double> forcing{5e-3, "newton.forcing", "|r|/|F| while the Hessian changes [-]",
+                       "a rough direction leads down as well as an exact one"};
+  Rule<double> beside_target{0.1, "newton.beside_target", "|r| of a direction over the target of |F| [-]",
+                             "not measured"};
+  Rule<double> largest_residual{0.1, "newton.largest_residual", "|r|/|F| of any direction, at most [-]",
+                                "not measured"};
+  Rule<double> least_left{0.1, "newton.least_left", "least part of the way that a step leaves [-]",
+                          "the next direction is for another piece of the functional"};
+  Rule<double> cut_short{0.02, "newton.cut_short", "length of a step that ended at a kink [-]", "(4.6)"};
+  Rule<double> to_the_minimum{1e-6, "newton.to_the_minimum", "|1 - length| of a step that has met no kink [-]",
+                              "nothing is left to gain along it"};
+  Rule<int> most_earlier_directions{9, "newton.most_earlier_directions",
+                                    "directions to minimize within, besides the new one [-]",
+                                    "5: a slender body takes 75 steps instead of 53; 20 add nothing"};
+  Rule<int> most_steps_within{50, "newton.most_steps_within", "Newton steps within these directions [-]",
+                              "the rest is left to the next step"};
+  Rule<double> falls{0.9, "newton.falls", "ratio of a residual that falls [-]", "not measured"};
+  Rule<double> full_step{0.5, "newton.full_step", "length of a step that counts as full [-]", "not measured"};
+  Rule<int> most_idle{2, "newton.most_idle", "full steps on one piece without a fall [-]", "not measured"};
+};
+inline constexpr_rules NewtonRules newton_rules;
+
+/// Bounds of rounding errors. They steer nothing but what exact numbers would give.
+struct Rounding {
+  double sum = 1e-12;                                           ///< of sums over unknowns, relative
+  double block = 1e-13;                                         ///< of entries of a matrix, over the node's own block
+  double product = 10 * std::numeric_limits<double>::epsilon(); ///< of H x, over what the largest entry would give
+};
+inline constexpr Rounding rounding;
+
+} // namespace rpc::solver
