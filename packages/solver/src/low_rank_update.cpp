@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <type_traits>
 
 namespace rpc::solver
 {
@@ -61,16 +63,31 @@ int LowRankUpdate::column_of(const RankOneTerm &term) const
   return -1;
 }
 
+/// Of these terms, how many have no column yet.
+std::size_t LowRankUpdate::num_unknown(const std::vector<RankOneTerm> &terms) const
+{
+  return std::count_if(terms.begin(), terms.end(), [this](const RankOneTerm &term) { return column_of(term) < 0; });
+}
+
+/// Whether there would be more columns than their places have directions.
+bool LowRankUpdate::starts_anew(const std::vector<RankOneTerm> &terms) const
+{
+  std::set<long long> places;
+  for (const auto &[first_row, column] : columns_at_) places.insert(first_row);
+  for (const RankOneTerm &term : terms) places.insert(term.first_row);
+  return column_.size() + num_unknown(terms) > std::extent_v<decltype(RankOneTerm::v)> * places.size();
+}
+
 int LowRankUpdate::num_new(const std::vector<RankOneTerm> &terms) const
 {
-  return static_cast<int>(
-      std::count_if(terms.begin(), terms.end(), [this](const RankOneTerm &term) { return column_of(term) < 0; }));
+  return static_cast<int>(starts_anew(terms) ? terms.size() : num_unknown(terms));
 }
 
 void LowRankUpdate::set(const SparseFactor &factor, const int size, const bool has_vectors,
                         const std::vector<RankOneTerm> &terms, const std::vector<Coupling> &couplings,
                         const double most_kept)
 {
+  if (starts_anew(terms)) forget();
   size_ = size;
   coupling_ = couplings;
   std::vector<int> made;

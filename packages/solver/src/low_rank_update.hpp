@@ -27,11 +27,12 @@ struct Coupling {
 ///     (A + V S V^T)^-1 = A^-1 - A^-1 V C V^T A^-1,    C = (I + S V^T A^-1 V)^-1 S                    doc/theory.md (4.11)
 ///
 /// It is exact, and takes one solve with the factor while A^-1 V is kept, else two. V^T A^-1 V, and A^-1 V as long as it is not too large, are
-/// kept for all terms that there ever were, so that a change of states costs a column for each place where there was none before.
+/// kept for all terms that there ever were, so that a change of states costs a column for each place where there was none before. Slip in
+/// space turns with each step: once there are more columns than their places have directions, only those of the present terms are kept.
 class LowRankUpdate
 {
 public:
-  /// Of these terms, how many have no column yet.
+  /// How many columns set() would solve for.
   int num_new(const std::vector<RankOneTerm> &terms) const;
   /// Collective on the factor's ranks.
   /// @param size  of A   @param has_vectors  this rank does: see SparseFactor::solve   @param terms  all of them, the same on each rank
@@ -46,6 +47,8 @@ public:
 
 private:
   int column_of(const RankOneTerm &term) const;
+  std::size_t num_unknown(const std::vector<RankOneTerm> &terms) const;
+  bool starts_anew(const std::vector<RankOneTerm> &terms) const;
   std::vector<double> times_S(const std::vector<double> &x) const;
 
   int size_ = 0;

@@ -102,5 +102,26 @@ TEST_P(LowRankUpdateThatKeeps, IsExactForAnyTerms)
 // None, two of the four columns, all.
 INSTANTIATE_TEST_SUITE_P(Entries, LowRankUpdateThatKeeps, testing::Values(0, 2 * size, 4 * size));
 
+TEST(LowRankUpdate, ForgetsDirectionsOfLongAgo)
+{
+  const auto entries = chain();
+  const auto factor = SparseFactor::analyse(rpc::rcp(new Teuchos::SerialComm<int>), size, entries, 1);
+  ASSERT_TRUE(factor->make(entries.value));
+  const RankOneTerm stays{0, {1, 0, 0}, 3};
+  const auto turned = [](const int step) { return RankOneTerm{6, {std::cos(0.1 * step), std::sin(0.1 * step), 0}, 2}; };
+  LowRankUpdate update;
+  for (int step = 0; step < 12; ++step) { // two places have six directions: the stay and five turned ones, then anew
+    const std::vector<RankOneTerm> terms{stays, turned(step)};
+    EXPECT_EQ(update.num_new(terms), step % 5 == 0 ? 2 : 1) << step;
+    update.set(*factor, size, true, terms, {}, 1e9);
+    std::vector<double> x(size, 1.);
+    auto solution = product(terms, {}, x);
+    update.solve(*factor, solution.data());
+    for (int i = 0; i < size; ++i) EXPECT_NEAR(solution[i], x[i], 1e-12) << step << " " << i;
+  }
+  EXPECT_EQ(update.num_new({stays, turned(11)}), 0);
+  EXPECT_EQ(update.num_new({stays, turned(0)}), 1);
+}
+
 } // namespace
 } // namespace low_rank_update_test
