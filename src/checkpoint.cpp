@@ -291,10 +291,15 @@ analysis::HistoryState Checkpoints::state_of(Whole whole) const
     state.matrix_assemblies = text.at("assemblies");
     if (const auto largest = text.find("largest_estimate"); largest != text.end() && !largest->is_null()) // NaN is null
       state.largest_estimate = *largest;
-  } catch (const json::exception &) { // on all ranks: they read the same text
+  } catch (const json::parse_error &) { // on all ranks: they read the same text
     throw Error(ExitCode::bad_input, "restart: \"" + path +
                                          "\" is damaged: its text is not what was written. Take an older one, "
                                          "or start from the first step.");
+  } catch (const json::exception &) { // the text is whole, but not this program's
+    throw Error(ExitCode::bad_input, "restart: \"" + path + "\" was written by an earlier state of version " +
+                                         RPC_VERSION +
+                                         ", with other contents. Go on with that program, or start "
+                                         "from the first step.");
   }
   RPC_REQUIRE(scene_.steps.times.back() > state.last.time,
               "restart: \"" << path << "\" is of t = " << state.last.time

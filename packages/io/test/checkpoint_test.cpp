@@ -158,6 +158,14 @@ TEST(Checkpoint, RefusesWhatIsDamagedOrNoCheckpoint)
     ASSERT_NE(at, std::string::npos);
     other[at + 11] = '9';
     scratch.write("version.e", other);
+    std::string open = other; // the last record without its mark, as versions before 0.3.0 wrote it
+    const auto end = open.find('|', at);
+    ASSERT_NE(end, std::string::npos);
+    open[end] = ' ';
+    scratch.write("open.e", open);
+    std::string cut = good;
+    cut[cut.find('|', cut.find("\"version\":\""))] = ' ';
+    scratch.write("cut.e", cut);
     std::string flipped = good;
     flipped[flipped.size() - 20] ^= 0x10; // in the last field's values, or behind them
     scratch.write("flipped.e", flipped);
@@ -168,7 +176,9 @@ TEST(Checkpoint, RefusesWhatIsDamagedOrNoCheckpoint)
   refuses("half.e", "damaged");
   refuses("flipped.e", "damaged");
   refuses("result.e", "no checkpoint");
-  refuses("version.e", "was written by version");
+  refuses("version.e", "was written by version 9");
+  refuses("open.e", "was written by version 9");
+  refuses("cut.e", "damaged");
 }
 
 } // namespace
