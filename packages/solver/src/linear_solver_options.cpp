@@ -17,6 +17,20 @@ namespace rpc::solver
 namespace
 {
 
+constexpr const char *convergence_tolerance = "Convergence Tolerance";
+
+/// @throws rpc::Error (bad_input) for a method that takes no bound of its own, and so does not know when to end
+void require_tolerance(const std::string &method, const std::set<std::string> &methods)
+{
+  if (belos_parameters(method)->isParameter(convergence_tolerance)) return;
+  std::vector<std::string> others;
+  for (const std::string &each : methods)
+    if (belos_parameters(each)->isParameter(convergence_tolerance)) others.push_back(each);
+  throw Error(ExitCode::bad_input, "deck: \"Linear Solver->Method\" cannot be \"" + method +
+                                       "\": Belos gives this method no bound on the residual. It must be one of " +
+                                       join(others));
+}
+
 /// Belos refuses values by itself, but passes over names that it does not know. Of a method that needs symmetry GMRES may take the place,
 /// and takes what it knows of the list.
 void check_belos(const std::string &method, const Teuchos::ParameterList &user)
@@ -26,6 +40,7 @@ void check_belos(const std::string &method, const Teuchos::ParameterList &user)
   const std::set<std::string> sorted(methods.begin(), methods.end());
   RPC_REQUIRE(factory.isSupported(method), "deck: \"Linear Solver->Method\" must be one that Belos knows, got \""
                                                << method << "\". It knows: " << join({sorted.begin(), sorted.end()}));
+  require_tolerance(method, sorted);
   try {
     std::vector<std::string> takers{method};
     if (needs_symmetry(method)) takers.emplace_back(gmres);
@@ -38,7 +53,7 @@ void check_belos(const std::string &method, const Teuchos::ParameterList &user)
       list->setParameters(entries_for(taker, user));
       factory.create(taker, list);
     }
-    RPC_REQUIRE(!user.isParameter("Convergence Tolerance"),
+    RPC_REQUIRE(!user.isParameter(convergence_tolerance),
                 "deck: \"Linear Solver->Belos->Convergence Tolerance\" is set by rpc for each solve; give the bound as "
                 "\"Linear Solver->Tolerance\"");
   } catch (const Error &) {
