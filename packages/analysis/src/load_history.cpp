@@ -177,7 +177,7 @@ namespace
 /// remedy of the former may be the better one.
 void tell_what_came_nearer(const UzawaResult &undivided, const double t, UzawaResult &part)
 {
-  if (!(undivided.residuals.worst() < part.residuals.worst())) return;
+  if (!(undivided.residuals.worst() < part.residuals.worst()) || undivided.reason == part.reason) return;
   std::ostringstream reason;
   reason << part.reason << "; undivided, the step to t = " << t << " ended nearer to a solution: " << undivided.reason;
   part.reason = reason.str();
