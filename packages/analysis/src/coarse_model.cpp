@@ -316,7 +316,7 @@ CoarseModel::Ends CoarseModel::follow_newton(const int most, Unknowns &x, ModelS
     const double slope = dot(elastic.y, d.y) + dot(elastic.part, d.part),
                  curvature = dot(forces.y, d.y) + dot(forces.part, d.part);
     const double t = solver::exact_step(Line(*this, slope, curvature, moved, along));
-    if (!(t > 0)) return Ends::fails;
+    if (!(t > 0 && std::isfinite(t))) return Ends::fails;
     x.move(t, d);
   }
   return Ends::goes_on;

@@ -276,7 +276,8 @@ contact::OptimalityResiduals judge(const Problem &problem, const Step &step, con
     if (unrounded.worst() < residuals.worst()) residuals = unrounded;
   }
   if (!residuals.holds(tolerance))
-    contact::forgive_energies_of_rounding(problem.discretization(), problem.model().materials, *now.displacement,
+    contact::forgive_energies_of_rounding(problem.discretization(), problem.model().materials, step.elastic,
+                                          step.contact, now, tolerance, tolerance * step.energies_before,
                                           residuals); // (5.5a)
   return residuals;
 }

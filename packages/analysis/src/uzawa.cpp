@@ -65,7 +65,7 @@ bool is_over(UzawaResult &result, const Minimization &found, const double previo
   if ((slow && !raised) || std::isnan(worst)) {
     const double unbalanced = result.residuals.equilibrium_residual;
     if (unbalanced > options.tolerance && unbalanced <= step_rules.of_rounding * rounding())
-      return ends(false, because(causes::rounding));
+      return ends(false, because(worst < 1 ? causes::rounding : causes::breakdown)); // a tolerance is below 1
     return ends_with(found.bounds_follow ? causes::stuck_by_friction : causes::stuck);
   }
   return last && ends_with(causes::uzawa_iterations);

@@ -83,7 +83,30 @@ double largest_friction_residual(const ContactNodes &points, const ContactState 
   return violation;
 }
 
+/// This rank's sum_i w_i psi_i(v_i); infinite where a rigid foundation is penetrated.
+double energy_of_the_law(const ContactNodes &c, const Vector &u)
+{
+  const auto x = device_read(u);
+  double sum = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::energy_of_the_law", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, double &part) {
+        if (c.weight(i) > 0) part += c.weight(i) * foundation_energy(penetration(c, i, x), c.law(i));
+      },
+      sum);
+  return sum;
+}
+
 } // namespace
+
+double energy_at(const double elastic, const ContactNodes &points, const Multipliers &multiplier,
+                 const RCP<const Vector> &u)
+{
+  ContactState there;
+  there.displacement = u;
+  there.multiplier = multiplier;
+  return elastic + sum_all(comm_of(there), energy_of_the_law(points, *u)) + friction_work(points, there);
+}
 
 /// paper (6); (5.14)
 double energy(const double elastic, const ContactNodes &points, const ContactState &state)

@@ -46,6 +46,20 @@ double ratio(const double part, const double whole)
   return part == 0 ? 0 : part / whole;
 }
 
+/// Whether J(u), of strains that are rounding, is no larger than where only prescribed displacements move the body.       (5.5c)
+bool may_be_the_minimum(const fem::Discretization &d, const fem::Materials &materials,
+                        const fem::ElasticProblem &elastic, const ContactNodes &points, const ContactState &state,
+                        const double tolerance, const double least_energy)
+{
+  const RCP<const Vector> start = elastic.dirichlet.value;
+  const bool at_rest = start->normInf() == 0;
+  const double strain = at_rest ? 0 : 0.5 * fem::internal_work(d, materials, *start).energy_norm_squared;
+  const double before = energy_at(strain - elastic.applied_load->dot(*start), points, state.multiplier, start);
+  const double of_load = elastic.applied_load->dot(*state.displacement), now = energy(-of_load, points, state);
+  const double size = std::max({std::abs(of_load), std::abs(now), std::abs(before)});
+  return now <= before + std::max(tolerance * size, least_energy);
+}
+
 } // namespace
 
 double OptimalityResiduals::worst() const
@@ -103,10 +117,13 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
   return residuals;
 }
 
-void forgive_energies_of_rounding(const fem::Discretization &d, const fem::Materials &materials, const Vector &u,
+void forgive_energies_of_rounding(const fem::Discretization &d, const fem::Materials &materials,
+                                  const fem::ElasticProblem &elastic, const ContactNodes &points,
+                                  const ContactState &state, const double tolerance, const double least_energy,
                                   OptimalityResiduals &residuals)
 {
-  if (residuals.energy_at_work > fem::rounding_energy(d, materials, u)) return;
+  if (residuals.energy_at_work > fem::rounding_energy(d, materials, *state.displacement)) return;
+  if (!may_be_the_minimum(d, materials, elastic, points, state, tolerance, least_energy)) return;
   residuals.energy_balance = residuals.duality_gap = 0;
 }
 

@@ -43,7 +43,8 @@ double exact_step(const LineFunction &line)
   const double start = line.at(0).slope;
   if (!(start < 0)) return 0;
   const double zero = rounding.sum * -start;
-  double low = 0, high = std::numeric_limits<double>::infinity();
+  const double infinity = std::numeric_limits<double>::infinity();
+  double low = 0, high = infinity;
   double t = 1, previous_width = high;
   for (int trial = 0; trial < 200; ++trial) { // 53 halvings of any bracket, and its search by doubling
     const auto value = line.at(t);
@@ -61,7 +62,7 @@ double exact_step(const LineFunction &line)
     else
       t = std::isinf(high) ? 2 * t : 0.5 * (low + high);
   }
-  return t;
+  return std::isinf(high) ? infinity : t;
 }
 
 std::vector<double> least_within(const SubspaceFunction &function, std::vector<double> a)
@@ -75,6 +76,7 @@ std::vector<double> least_within(const SubspaceFunction &function, std::vector<d
     if (step == 0) first = slope;
     if (!(slope < rounding.sum * first)) break;
     const double t = exact_step(*function.along(a, value, d));
+    if (!std::isfinite(t)) break;
     for (std::size_t k = 0; k < a.size(); ++k) a[k] += t * d[k];
   }
   return a;
@@ -89,6 +91,10 @@ bool ExactLineSearch::compute(NOX::Abstract::Group &group, double &step, const N
     step = 1;
   } else {
     step = exact_step(*context.functional.along(tpetra(from.getX()), tpetra(direction), tpetra(from.getF())));
+    if (std::isinf(step)) { // but for rounding the functional of a body that is held has such a direction nowhere
+      context.failure = because(causes::breakdown, "the functional falls without end along Newton's direction");
+      step = 0;
+    }
     context.functional.step_taken(step);
   }
   context.step_length = step;

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -54,6 +55,13 @@ TEST(ExactStep, IsZeroWithoutDescent)
   const Line line(3, 7);
   EXPECT_EQ(solver::exact_step(*line.model(1, 2)), 0);
   EXPECT_EQ(solver::exact_step(*line.model(std::nan(""), 2)), 0);
+}
+
+TEST(ExactStep, IsInfiniteWhereTheFunctionalFallsWithoutEnd)
+{
+  const Line line(0, 0);
+  EXPECT_EQ(solver::exact_step(*line.model(-1, 0)), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(solver::exact_step(*line.model(-1, -1)), std::numeric_limits<double>::infinity());
 }
 
 TEST(Newton, FullStepsCycleWhereExactStepsConverge)

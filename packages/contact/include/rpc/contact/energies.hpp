@@ -25,6 +25,10 @@ struct ContactEnergy {
 /// @param elastic  Pi(u) [J]
 double energy(double elastic, const ContactNodes &points, const ContactState &state);
 
+/// Energy of the problem at any u, by the contact law itself: Pi(u) + sum_i w_i (psi_i(v_i) + s_i |e_i|) [J], with friction's bounds of the
+/// multiplier; infinite where a rigid foundation is penetrated.                                    (1.4), (12.2)
+double energy_at(double elastic, const ContactNodes &points, const Multipliers &multiplier, const RCP<const Vector> &u);
+
 /// Largest violation of the laws of contact and friction by (u, lambda), dimensionless: of w = 0 in paper (7).  (5.3), (12.6)
 double contact_law_residual(const ContactNodes &points, const ContactState &state);
 

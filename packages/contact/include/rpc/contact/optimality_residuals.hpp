@@ -38,9 +38,12 @@ OptimalityResiduals optimality_residuals(const fem::Discretization &d, const fem
                                          double least_energy = 0);
 
 /// Where all energies at work are no more than the accuracy of displacements alone may give them, (10.9), (5.4) and (5.5) compare rounding with
-/// rounding: they become 0, and balance and contact law alone judge a body that nothing strains. Collective.
-/// @param u  (owned dofs) [m]
-void forgive_energies_of_rounding(const fem::Discretization &d, const fem::Materials &materials, const Vector &u,
+/// rounding: they become 0, and balance and contact law alone judge a body that nothing strains. A displacement that does not obey (5.5c) is
+/// no minimum, and stays judged by all four. Collective.
+/// @param tolerance, least_energy  by which (5.5c) may fail
+void forgive_energies_of_rounding(const fem::Discretization &d, const fem::Materials &materials,
+                                  const fem::ElasticProblem &elastic, const ContactNodes &points,
+                                  const ContactState &state, double tolerance, double least_energy,
                                   OptimalityResiduals &residuals);
 
 /// The equilibrium residual that rounding alone makes: of u_i eps with signs at random, the same on any number of ranks. Forces that are

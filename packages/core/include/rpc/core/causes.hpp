@@ -25,14 +25,17 @@ inline constexpr Cause linear_solver{"linear solver", "a linear solve stopped be
                                      "the linear solver gave no direction that Newton's method can take",
                                      "leave the list \"Linear Solver\" out, or raise its \"Maximum Iterations\""};
 inline constexpr Cause breakdown{
-    "breakdown", "a linear solve, or the set-up of its preconditioner, broke down",
+    "breakdown",
+    "a linear solve, or the set-up of its preconditioner, broke down; or the functional falls without end along "
+    "Newton's direction; or rounding leaves a residual of 1 or more",
     "the matrix is singular but for rounding, or the linear solver does not suit it",
     "leave the list \"Linear Solver\" out; without one, bring the stiffnesses of the body and of its springs nearer to "
     "each other: double precision holds ratios of up to about 1e15"};
-inline constexpr Cause no_descent{
-    "no descent", "the functional's slope along Newton's direction is not negative",
-    "the functional does not fall along Newton's direction",
-    "leave the list \"Linear Solver\" out, whose solves must be good enough, or raise \"Uzawa->Tolerance\""};
+inline constexpr Cause no_descent{"no descent", "the functional's slope along Newton's direction is not negative",
+                                  "the functional does not fall along Newton's direction",
+                                  "leave the list \"Linear Solver\" out, whose solves must be good enough; without "
+                                  "one, raise \"Uzawa->Tolerance\" above "
+                                  "the residuals that are left"};
 inline constexpr Cause newton_steps{"Newton steps", "\"NOX->Maximum Iterations\" steps were made",
                                     "that is \"NOX->Maximum Iterations\"", "raise it, or leave the list \"NOX\" out"};
 inline constexpr Cause status_tests{"status tests", "tests of the deck's \"NOX->Status Tests\" ended the minimization",

@@ -14,7 +14,7 @@ namespace rpc::solver
 ///
 /// The slope is continuous, nondecreasing and piecewise linear: Newton's method, kept inside a bracket and helped by
 /// bisection, ends on the piece that holds the root and is then exact. Each trial evaluates the slope once.
-/// @return 0 if slope(0) >= 0: no descent; collective
+/// @return 0 if slope(0) >= 0: no descent; infinite if the slope is negative however far it goes; collective
 double exact_step(const LineFunction &line);
 
 /// Coefficients at which a piecewise quadratic functional on a subspace is least, by Newton's method with exact steps: at the
