@@ -5,6 +5,7 @@
 #include "rpc/analysis/rules.hpp"
 #include "rpc/io/deck.hpp"
 #include "rpc/mesh/box_grid.hpp"
+#include "rules.hpp"
 #include "scene.hpp"
 
 #include <algorithm>
@@ -98,10 +99,10 @@ GO foreseen_unknowns(const Teuchos::ParameterList &deck)
 
 GO most_unknowns_of_host(const int threads, const bool nearly_incompressible)
 {
-  constexpr double of_one_thread = 50000, power = 0.75, most_threads = 16; // measured, doc/portability.md
-  constexpr double work = 10; // nearly incompressible bodies count so many times their unknowns
-  const double unknowns = of_one_thread * std::pow(std::clamp<double>(threads, 1, most_threads), power);
-  return static_cast<GO>(nearly_incompressible ? unknowns / work : unknowns);
+  const HandOverRules &rules = hand_over_rules;
+  const double unknowns =
+      rules.of_one_thread * std::pow(std::clamp<double>(threads, 1, rules.most_threads), double(rules.power));
+  return static_cast<GO>(nearly_incompressible ? unknowns / rules.work : unknowns);
 }
 
 void hand_over_small_scene(const int argc, char *argv[])

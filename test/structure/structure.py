@@ -110,7 +110,7 @@ NO_RULES = {
 }
 NUMBERS_LEFT = ["analysis", "solver"]  # packages whose numbers are not yet rules
 RULE = re.compile(r"^ *Rule<", re.MULTILINE)
-MOST_RULES = {"algebra": 4, "mesh": 13, "contact": 23, "adapt": 32}  # of a package; 130 are wanted in all
+MOST_RULES = {"src": 4, "algebra": 4, "mesh": 13, "contact": 23, "adapt": 32}  # of a package; 130 are wanted in all
 
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"  # of LICENSE; within the first two lines, behind the marks of a comment
 COMMENTS = {".cpp": "//", ".hpp": "//", ".c": "//", ".py": "#", ".sh": "#", ".cmake": "#", ".in": "#", ".def": "#"}
@@ -275,7 +275,9 @@ def check_numbers(root):
 
 def rules(root):
     """{package: number of its rules}"""
-    return {file.parts[-5]: len(RULE.findall(file.read_text())) for file in sorted(root.glob("packages/*/include/rpc/*/rules.hpp"))}
+    files = {file.parts[-5]: file for file in sorted(root.glob("packages/*/include/rpc/*/rules.hpp"))}
+    files["src"] = root / "src/rules.hpp"
+    return {package: len(RULE.findall(file.read_text())) for package, file in files.items() if file.exists()}
 
 
 def check_rules(root):

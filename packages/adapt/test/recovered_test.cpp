@@ -3,6 +3,7 @@
 
 #include "bodies.hpp"
 #include "energy_of_difference.hpp"
+#include "rpc/contact/surface/sphere.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <limits>

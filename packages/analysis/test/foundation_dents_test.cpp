@@ -2,6 +2,7 @@
 #include "rpc/analysis/load_history.hpp"
 #include "rpc/contact/moving_dents.hpp"
 #include "rpc/contact/node_columns.hpp"
+#include "rpc/contact/surface/plane.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/mesh/box.hpp"
 #include "solved.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Load histories of a foundation that moves.
 #include "load_scenes.hpp"
+#include "rpc/contact/surface/plane.hpp"
+#include "rpc/contact/surface/sphere.hpp"
 #include "rpc/core/parallel.hpp"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The balance of energies along a load history.
 #include "load_scenes.hpp"
+#include "rpc/contact/surface/sphere.hpp"
 
 #include <algorithm>
 #include <cmath>

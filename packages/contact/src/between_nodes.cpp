@@ -3,7 +3,7 @@
 
 #include "facet_samples.hpp"
 #include "gap_search.hpp"
-#include "rounding.hpp"
+#include "rpc/contact/rounding.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/mesh/geometry.hpp"
@@ -117,8 +117,7 @@ int parts_of(const mesh::Element &facet, const GO num_facets)
 /// Whether nothing can lie between the nodes of flat facets: u and the gap are linear between them.
 bool is_linear(const mesh::Element &facet, const ContactOptions &options)
 {
-  const bool plane =
-      options.obstacle.exists() ? std::holds_alternative<Plane>(*options.obstacle.surface) : options.gap.is_constant();
+  const bool plane = options.obstacle.exists() ? options.obstacle.surface->is_flat : options.gap.is_constant();
   return plane && facet.order == 1;
 }
 

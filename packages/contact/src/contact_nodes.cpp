@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/contact_nodes.hpp"
 
-#include "rounding.hpp"
 #include "rpc/contact/law/judgement.hpp"
+#include "rpc/contact/rounding.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/evaluate.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/lagged_bounds.hpp"
 
-#include "rounding.hpp"
+#include "rpc/contact/rounding.hpp"
 #include "rpc/contact/rules.hpp"
 #include "rpc/core/math.hpp"
 #include "rpc/core/parallel.hpp"

@@ -3,22 +3,19 @@
 
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
+#include "shapes_of_decks.hpp" // made by CMake from its list `surfaces`
 
-#include <Teuchos_Array.hpp>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace rpc::contact
 {
 namespace
 {
-
-using Teuchos::Array;
-
-/// Parameters of obstacles other than `Type`, in the order in which those that do not go with it are refused.
-const std::vector<std::string> parameters_of_types = {"Centre", "Point", "Normal", "Axis", "Radius", "Encloses Body"};
 
 /// A kind of surface in a deck.
 struct Choice {
@@ -31,8 +28,8 @@ struct Choice {
   }
   bool has(const std::string &parameter) const
   {
-    return parameter == kind.point ||
-           std::find(kind.parameters.begin(), kind.parameters.end(), parameter) != kind.parameters.end();
+    return parameter == kind.point || std::any_of(kind.parameters.begin(), kind.parameters.end(),
+                                                  [&](const SurfaceParameter &p) { return p.name == parameter; });
   }
 };
 
@@ -40,7 +37,7 @@ struct Choice {
 std::string names_with(const Choice &choice)
 {
   std::string names = choice.kind.point;
-  for (const auto &name : choice.kind.parameters) names += ", " + std::string(name);
+  for (const SurfaceParameter &p : choice.kind.parameters) names += ", " + p.name;
   return names;
 }
 
@@ -50,15 +47,81 @@ Surface read_surface(const Teuchos::ParameterList &list, const int dim, const st
   return Shape::read(list, dim, path);
 }
 
-template <std::size_t... Which>
-std::vector<Choice> choices(std::index_sequence<Which...>)
+template <class... Shapes>
+std::vector<Choice> choices_of(const std::tuple<Shapes...> *)
 {
-  return {{std::variant_alternative_t<Which, Surface>::kind(),
-           read_surface<std::variant_alternative_t<Which, Surface>>}...};
+  return {{Shapes::kind(), read_surface<Shapes>}...};
 }
 std::vector<Choice> choices()
 {
-  return choices(std::make_index_sequence<std::variant_size_v<Surface>>());
+  return choices_of(static_cast<const ShapesOfDecks *>(nullptr));
+}
+
+/// "none, plane, sphere, circle, cylinder"
+std::string types_of(const std::vector<Choice> &choices)
+{
+  std::string types = "none";
+  for (const Choice &c : choices)
+    for (const std::string &name : c.kind.types) types += ", " + name;
+  return types;
+}
+
+/// "`plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`"
+std::string types_help(const std::vector<Choice> &choices)
+{
+  std::string text;
+  for (const Choice &c : choices) {
+    text += (text.empty() ? "" : ", ") + std::string(c.kind.in_the_plane.empty() ? "" : "in 3D ") + "`" +
+            c.kind.types.front() + "`";
+    for (std::size_t k = 1; k < c.kind.types.size(); ++k)
+      text += (k == 1 ? " (in 2D also named `" : ", `") + c.kind.types[k] + "`";
+    if (c.kind.types.size() > 1) text += ")";
+  }
+  return text;
+}
+
+/// A parameter of the list, of one kind or several.
+struct ListParameter {
+  std::string name;
+  bool is_point = false;
+  SurfaceParameter parameter;                                  // of the first kind, but for points
+  std::vector<std::pair<std::string, std::string>> kinds_help; // kinds, with a comma between them, that have one help
+
+  void add(const std::string &kind, const std::string &help)
+  {
+    if (!kinds_help.empty() && kinds_help.back().second == help)
+      kinds_help.back().first += ", " + kind;
+    else
+      kinds_help.emplace_back(kind, help);
+  }
+  /// "plane: a point on it; cylinder: a point on its axis"
+  std::string help() const
+  {
+    std::string text;
+    for (const auto &[kinds, each] : kinds_help) text += (text.empty() ? "" : "; ") + kinds + ": " + each;
+    return text;
+  }
+};
+
+/// Parameters other than `Type`, each once, in the order of the kinds.
+std::vector<ListParameter> list_parameters(const std::vector<Choice> &choices)
+{
+  std::vector<ListParameter> all;
+  const auto entry = [&](const std::string &name) -> ListParameter & {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const ListParameter &p) { return p.name == name; });
+    return found != all.end() ? *found : all.emplace_back(ListParameter{name, false, {}, {}});
+  };
+  for (const Choice &c : choices) {
+    ListParameter &point = entry(c.kind.point);
+    point.is_point = true;
+    point.add(c.kind.types.front(), c.kind.point_help);
+    for (const SurfaceParameter &p : c.kind.parameters) {
+      ListParameter &other = entry(p.name);
+      if (other.kinds_help.empty()) other.parameter = p;
+      other.add(c.kind.types.front(), p.help);
+    }
+  }
+  return all;
 }
 
 /// The coordinates of a point as functions of time alone.
@@ -86,18 +149,16 @@ std::array<ScalarField, 3> path_of(const Teuchos::ParameterList &list, const std
 Teuchos::ParameterList valid_obstacle_parameters()
 {
   Teuchos::ParameterList valid("Obstacle");
+  const std::vector<Choice> all = choices();
   std::vector<std::string> types{"none"};
-  for (const Choice &c : choices())
-    for (const std::string &name : c.kind.types) types.push_back(name);
-  set_words(valid, "Type", types,
-            "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`, or "
-            "`none`: see Gap.");
-  set_fields(valid, "Point", "plane: a point on it; cylinder: a point on its axis [m]. Numbers, or expressions of t.");
-  valid.set("Normal", Array<double>(), "plane: its normal, out of the foundation towards the body, of any length.");
-  valid.set("Axis", Array<double>(), "cylinder: the direction of its axis, of any length.");
-  set_fields(valid, "Centre", "sphere: its centre [m]. Numbers, or expressions of t.");
-  valid.set("Radius", 0., "sphere, cylinder: its radius, > 0 [m].");
-  valid.set("Encloses Body", false, "sphere, cylinder: whether the body lies inside of it and the foundation outside.");
+  for (const Choice &c : all) types.insert(types.end(), c.kind.types.begin(), c.kind.types.end());
+  set_words(valid, "Type", types, "Shape of the foundation's surface: " + types_help(all) + ", or `none`: see Gap.");
+  for (const ListParameter &p : list_parameters(all)) {
+    if (p.is_point)
+      set_fields(valid, p.name, p.help() + " [m]. Numbers, or expressions of t.");
+    else
+      std::visit([&](const auto &standard) { valid.set(p.name, standard, p.help() + "."); }, p.parameter.standard);
+  }
   return valid;
 }
 
@@ -106,13 +167,12 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
 {
   const auto &type = list.get<std::string>("Type");
   const std::vector<Choice> all = choices();
-  std::string types = "none";
-  for (const Choice &c : all)
-    for (const std::string &name : c.kind.types) types += ", " + name;
+  const std::vector<ListParameter> parameters = list_parameters(all);
+  const std::string types = types_of(all);
   if (list.getEntry("Type").isDefault())
-    for (const std::string &name : parameters_of_types)
-      RPC_REQUIRE(list.getEntry(name).isDefault(),
-                  "deck: \"" << path << "\" has a \"" << name
+    for (const ListParameter &p : parameters)
+      RPC_REQUIRE(list.getEntry(p.name).isDefault(),
+                  "deck: \"" << path << "\" has a \"" << p.name
                              << "\" and no \"Type\", so that there is no obstacle. Types: " << types);
   if (type == "none") return {}; // switches an obstacle off, whatever it was
   const auto choice = std::find_if(all.begin(), all.end(), [&](const Choice &c) { return c.is(type); });
@@ -121,13 +181,12 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
   RPC_REQUIRE(choice->kind.in_the_plane.empty() || dim == 3,
               "deck: \"" << path << "->Type\" = " << type << " goes with a body in space; use "
                          << choice->kind.in_the_plane << " in the plane");
-  for (const std::string &name : parameters_of_types)
-    RPC_REQUIRE(choice->has(name) || list.getEntry(name).isDefault(),
-                "deck: \"" << path << "->" << name << "\" does not go with \"" << path << "->Type\" = " << type
+  for (const ListParameter &p : parameters)
+    RPC_REQUIRE(choice->has(p.name) || list.getEntry(p.name).isDefault(),
+                "deck: \"" << path << "->" << p.name << "\" does not go with \"" << path << "->Type\" = " << type
                            << ", which has " << names_with(*choice)
-                           << (name == "Point" || name == "Centre"
-                                   ? ". Write \"" + std::string(choice->kind.point) + "\" for \"" + name + "\""
-                                   : ". Remove it, or change the type"));
+                           << (p.is_point ? ". Write \"" + choice->kind.point + "\" for \"" + p.name + "\""
+                                          : ". Remove it, or change the type"));
   Obstacle obstacle;
   obstacle.path = path_of(list, choice->kind.point, dim, path, parse);
   obstacle.surface = choice->read(list, dim, path);
@@ -153,31 +212,27 @@ Obstacle Obstacle::seen_at(const double t) const
 
 std::optional<Point> direction_into(const Obstacle &obstacle, const Point &x)
 {
-  return std::visit([&](const auto &surface) { return surface.direction_into(difference(x, obstacle.point)); },
-                    obstacle.surface.value());
+  return obstacle.surface.value().direction_into(difference(x, obstacle.point));
 }
 
 std::string no_direction_at(const Obstacle &obstacle)
 {
-  return std::visit([](const auto &surface) { return surface.no_direction_at; }, obstacle.surface.value());
+  return obstacle.surface.value().no_direction_at;
 }
 
 std::string point_name(const Obstacle &obstacle)
 {
-  return std::visit([](const auto &surface) { return std::string(surface.kind().point); }, obstacle.surface.value());
+  return obstacle.surface.value().point;
 }
 
 bool lies_in(const Obstacle &obstacle, const Point &x)
 {
-  return std::visit([&](const auto &surface) { return surface.lies_in(difference(x, obstacle.point)); },
-                    obstacle.surface.value());
+  return obstacle.surface.value().lies_in(difference(x, obstacle.point));
 }
 
 std::optional<double> distance_along(const Obstacle &obstacle, const Point &x, const Point &direction)
 {
-  return std::visit(
-      [&](const auto &surface) { return surface.distance_along(difference(x, obstacle.point), direction); },
-      obstacle.surface.value());
+  return obstacle.surface.value().distance_along(difference(x, obstacle.point), direction);
 }
 
 } // namespace rpc::contact

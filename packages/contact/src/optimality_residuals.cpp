@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/optimality_residuals.hpp"
 
-#include "rounding.hpp"
 #include "rpc/contact/energies.hpp"
+#include "rpc/contact/rounding.hpp"
 #include "rpc/core/fingerprint.hpp"
 #include "rpc/fem/rigid_motion.hpp"
 #include "rpc/fem/rounding.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/result.hpp"
 
-#include "rounding.hpp"
 #include "rpc/contact/law/judgement.hpp"
 #include "rpc/contact/law/lent.hpp"
+#include "rpc/contact/rounding.hpp"
 #include "rpc/contact/smoothed_points.hpp"
 #include "rpc/core/math.hpp"
 #include "rpc/core/parallel.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/between_nodes.hpp"
 
+#include "rpc/contact/surface/sphere.hpp"
 #include "touching_box.hpp"
 
 #include <cmath>

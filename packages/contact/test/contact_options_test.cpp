@@ -120,7 +120,7 @@ TEST(ContactOptions, NormalIsThatOfTheFoundationByDefaultWhereThereIsAnObstacle)
   const auto options = read(list);
   EXPECT_EQ(options[0].normal, Normal::foundation);
   ASSERT_TRUE(options[0].obstacle.exists());
-  EXPECT_EQ(std::get<contact::Plane>(*options[0].obstacle.surface).normal, (Point{0, 1, 0}));
+  EXPECT_EQ(*contact::direction_into(options[0].obstacle, {}), (Point{0, -1, 0}));
   EXPECT_EQ(read(list.set("Normal", "surface"))[0].normal, Normal::surface);
   EXPECT_EQ(read(list.set("Normal", "foundation"))[0].normal, Normal::foundation);
   EXPECT_EQ(read(list.set("Normal", "0, -1"))[0].normal, Normal::fixed);

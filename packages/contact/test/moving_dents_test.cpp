@@ -2,6 +2,8 @@
 #include "rpc/contact/moving_dents.hpp"
 
 #include "blocks.hpp"
+#include "rpc/contact/surface/plane.hpp"
+#include "rpc/contact/surface/sphere.hpp"
 #include "rpc/fem/surface.hpp"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "expect_error.hpp"
+#include "rpc/contact/surface/plane.hpp"
+#include "rpc/contact/surface/sphere.hpp"
 #include "touching_box.hpp"
 
 #include <cmath>

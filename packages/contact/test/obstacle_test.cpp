@@ -2,6 +2,7 @@
 #include "rpc/contact/obstacle.hpp"
 
 #include "expect_error.hpp"
+#include "rpc/contact/surface/plane.hpp"
 #include "rpc/core/parameters.hpp"
 
 #include <Teuchos_Array.hpp>
@@ -184,7 +185,7 @@ TEST(Sphere, IsRoundInSpace)
   EXPECT_DOUBLE_EQ(*distance_along(ball, {1, 5, 7}, {0, -0.6, -0.8}), 3);
   EXPECT_DOUBLE_EQ(*distance_along(ball, {1, 2, 9}, {0, 0, -1}), 4);
   list.set("Type", "circle"); // its older name
-  EXPECT_TRUE(std::holds_alternative<contact::Sphere>(*read(list, 3).surface));
+  expect_point(direction_into(read(list, 3), {1, 5, 7}), {0, -0.6, -0.8});
 }
 
 TEST(ObstacleOptions, RefuseWhatDoesNotFit)
@@ -210,6 +211,30 @@ TEST(ObstacleOptions, RefuseWhatDoesNotFit)
     list.set("Type", "circle");
     list.set("Centre", Numbers(Teuchos::tuple(0., 0.)));
   });
+}
+
+TEST(ObstacleOptions, KindsDescribeThemselves)
+{
+  const Teuchos::ParameterList valid = contact::valid_obstacle_parameters();
+  const auto help = [&](const std::string &name) { return valid.getEntry(name).docString(); };
+  EXPECT_EQ(help("Type"),
+            "Shape of the foundation's surface: `plane`, `sphere` (in 2D also named `circle`), in 3D `cylinder`, or "
+            "`none`: see Gap.");
+  EXPECT_EQ(help("Point"), "plane: a point on it; cylinder: a point on its axis [m]. Numbers, or expressions of t.");
+  EXPECT_EQ(help("Radius"), "sphere, cylinder: its radius, > 0 [m].");
+  for (const auto &entry : valid) { // each goes with the types that its help begins with, and is refused with others
+    const std::string &name = entry.first;
+    if (name == "Type") continue;
+    Teuchos::ParameterList list;
+    list.set("Type", help(name).find("plane") == 0 ? "circle" : "plane");
+    if (valid.isType<double>(name))
+      list.set(name, 7.);
+    else if (valid.isType<bool>(name))
+      list.set(name, true);
+    else
+      list.set(name, Numbers(Teuchos::tuple(1., 2.)));
+    expect_error(ExitCode::bad_input, "->" + name + "\" does not go with", [&] { read(list); });
+  }
 }
 
 TEST(Obstacle, PointsAndCentresMoveWithTime)

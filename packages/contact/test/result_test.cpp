@@ -4,6 +4,7 @@
 #include "foundation_scene.hpp"
 #include "rpc/contact/highest_pressure.hpp"
 #include "rpc/contact/law/judgement.hpp"
+#include "rpc/contact/surface/sphere.hpp"
 
 #include <algorithm>
 #include <array>

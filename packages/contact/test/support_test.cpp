@@ -3,6 +3,7 @@
 
 #include "drawn_mesh.hpp"
 #include "expect_error.hpp"
+#include "rpc/contact/surface/sphere.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/mesh/box.hpp"
 

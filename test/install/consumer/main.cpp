@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A block pressed onto a rigid-plastic foundation, from C++: contact force and pressures.
+// A block pressed onto a rigid-plastic foundation, and onto an obstacle of its own, from C++: contact force and pressures.
+#include "ridge.hpp"
+
 #include <Tpetra_Core.hpp>
 #include <iostream>
 #include <rpc/analysis/load_history.hpp>
@@ -35,4 +37,11 @@ int main(int argc, char **argv)
               << " m yield, pressure at the first of this rank's " << pressure.extent(0) << " contact nodes "
               << (pressure.extent(0) > 0 ? pressure(0) : 0) << " Pa" << std::endl;
   }
+
+  model.contact[0].obstacle = {Ridge{0.01}, {1, 0, 0}};
+  const auto on_ridge =
+      rpc::analysis::LoadHistory(std::make_shared<rpc::analysis::Problem>(mesh, model), {}, 6).advance(1);
+  if (!on_ridge.uzawa.converged) return 1;
+  std::cout << "on a ridge: contact force " << on_ridge.contact.total.force[1] << " N/m, on "
+            << on_ridge.contact.total.contact_length << " m" << std::endl;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/surface/facets.hpp"
 
-#include "../rounding.hpp"
+#include "rpc/contact/rounding.hpp"
 #include "rpc/core/exchange.hpp"
 #include "rpc/core/rank_boxes.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "parameters.hpp"
+#include "rpc/contact/surface/parameters.hpp"
 
 #include "rpc/core/error.hpp"
 
@@ -32,6 +32,16 @@ double radius_of(const Teuchos::ParameterList &list, const std::string &path)
   RPC_REQUIRE(radius > 0 && std::isfinite(radius),
               "deck: \"" << path << "->Radius\" must be > 0 and finite [m], got " << radius);
   return radius;
+}
+
+SurfaceParameter radius_parameter()
+{
+  return {"Radius", 0., "its radius, > 0 [m]"};
+}
+
+SurfaceParameter encloses_parameter()
+{
+  return {"Encloses Body", false, "whether the body lies inside of it and the foundation outside"};
 }
 
 } // namespace rpc::contact

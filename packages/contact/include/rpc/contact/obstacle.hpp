@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "rpc/contact/surface/cylinder.hpp"
-#include "rpc/contact/surface/plane.hpp"
-#include "rpc/contact/surface/sphere.hpp"
+#include "rpc/contact/surface/surface.hpp"
 #include "rpc/core/field.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <array>
 #include <optional>
 #include <string>
-#include <variant>
 
 namespace rpc::contact
 {
-
-/// A shape that the foundation's surface may have. Each answers for a point x, seen from the obstacle's `point`:
-///
-///     direction_into(x), lies_in(x), distance_along(x, direction)      as the functions of the same names below
-///     no_direction_at                                                  the parameter that says where it has no direction; "": nowhere
-///     kind(), read(list, dim, path)                                    how a deck describes it
-///
-/// A new one is a file in surface/, a line here, and the parameters that are new in valid_obstacle_parameters().
-using Surface = std::variant<Plane, Sphere, Cylinder>;
 
 /// The foundation's surface where it has a simple shape.
 struct Obstacle {

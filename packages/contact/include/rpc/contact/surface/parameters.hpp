@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "../rounding.hpp"
+#include "rpc/contact/surface/kind.hpp"
 #include "rpc/core/point.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <string>
 
-/// Parameters that several surfaces have; private to surface/.
+/// Parameters that several surfaces have.
 namespace rpc::contact
 {
 
@@ -17,5 +17,8 @@ Point unit_vector(const Teuchos::ParameterList &list, const std::string &name, i
 
 /// `Radius` [m]. @throws rpc::Error (bad_input) unless it is > 0 and finite
 double radius_of(const Teuchos::ParameterList &list, const std::string &path);
+
+SurfaceParameter radius_parameter();   ///< `Radius`
+SurfaceParameter encloses_parameter(); ///< `Encloses Body`
 
 } // namespace rpc::contact

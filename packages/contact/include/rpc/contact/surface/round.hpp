@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "parameters.hpp"
+#include "rpc/contact/rounding.hpp"
 #include "rpc/core/point.hpp"
 
 #include <cmath>
 #include <optional>
 
-/// What sphere and cylinder have in common, in the vectors `from` their centre or, across it, from their axis. Private to surface/.
+/// What sphere and cylinder have in common, in the vectors `from` their centre or, across it, from their axis.
 namespace rpc::contact
 {
 
