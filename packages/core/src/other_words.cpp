@@ -15,6 +15,9 @@ constexpr const char *density_sentence =
 constexpr const char *shear_sentence =
     "The material is given by \"Young's Modulus\" E and \"Poisson's Ratio\" nu: G = E/(2 (1 + nu)), K = E/(3 (1 - 2 "
     "nu)).";
+constexpr const char *size_sentence =
+    "The cells of a box are given by their number in each direction, \"Mesh->Cells\", those of a STEP file by their "
+    "\"Mesh->Size\"; of a .geo, which has sizes, \"Mesh->Size Factor\" scales them.";
 constexpr const char *name_sentence = "A deck is named by its file, and by the name of its outermost list. Remove it.";
 constexpr const char *elastic_sentence = "The body is linear elastic and at rest. Remove it.";
 
@@ -91,7 +94,6 @@ const std::vector<std::pair<std::string, std::string>> words_of_others = {
     {"path", "Mesh->File"},
     {"meshfile", "Mesh->File"},
     {"geometryfile", "Mesh->File"},
-    {"meshsize", "Mesh->Size Factor"},
     {"refine", "Mesh->Refinements"},
     {"refinement", "Mesh->Refinements"},
     {"origin", "Mesh->Lower"},
@@ -119,6 +121,10 @@ const std::vector<std::pair<std::string, std::string>> sentences_for_words = {
     {"lame", shear_sentence},
     {"frictionangle", "Coulomb's friction is \"Contact->Friction Coefficient\", the tangent of the angle of friction."},
     {"thickness", "A plane body has no thickness: forces are per length of its depth, in N/m with m and N."},
+    {"cellsize", size_sentence},
+    {"elementsize", size_sentence},
+    {"meshsize", size_sentence},
+    {"h", size_sentence},
     {"name", name_sentence},
     {"title", name_sentence},
     {"job", name_sentence},
@@ -173,6 +179,16 @@ const std::vector<std::pair<std::string, std::string>> words_for_words = {
     {"rotational", "axisymmetric"},
     {"2d", "plane strain"},
     {"plane", "plane strain"},
+    {"linear", "Q1"},
+    {"quadratic", "Q2"},
+    {"quadrilateral", "Q1"},
+    {"quads", "Q1"},
+    {"hex", "Q1"},
+    {"hexahedron", "Q1"},
+    {"tri", "P1"},
+    {"triangle", "P1"},
+    {"tet", "P1"},
+    {"tetrahedron", "P1"},
     {"quad", "Q1"},
     {"quad4", "Q1"},
     {"cpe4", "Q1"},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/core/parameters.hpp"
 
+#include "entry_remedies.hpp"
 #include "parameter_kinds.hpp"
 #include "rpc/core/remedies.hpp"
 #include "unknown_name.hpp"
@@ -166,6 +167,7 @@ std::string remedy_for(const std::string &text, const ParameterEntry &model, con
     return meant.empty() ? " " + model.docString() : meant;
   }
   if (model.isType<double>()) {
+    if (!text.empty() && text.front() == '{') return " It takes one number.";
     const std::string number = number_remedy(text, wanted);
     return number.empty() ? " Write a number: this parameter takes no expressions." : number;
   }
@@ -181,10 +183,6 @@ std::string remedy_for(const std::string &text, const ParameterEntry &model, con
 /// The same of a value of another type, as a deck in XML or YAML has it.
 std::string remedy_for(const ParameterEntry &value, const ParameterEntry &model, const Wanted &wanted)
 {
-  if (model.isList())
-    return value.isList() ? ""
-                          : " In XML write <ParameterList name=\"...\"> with <Parameter .../> in it, in YAML name: "
-                            "{parameter: value}.";
   if (model.isType<std::string>() && value.isType<Array<std::string>>() && !choice_of(model) &&
       !Teuchos::getValue<Array<std::string>>(value).empty())
     return " It takes one text, such as \"" + Teuchos::getValue<Array<std::string>>(value).front() +
@@ -209,31 +207,22 @@ std::string given_text(const ParameterEntry &value, const ParameterEntry &model)
   return text_of(value) + " (" + type_name(value) + ")";
 }
 
-/// Of a parameter in a list whose entries are to be lists.
-std::string entry_remedy(const std::string &path, const std::string &name, const ParameterList &valid)
-{
-  const bool of_sides = valid.sublist(any_entry).isParameter("Side");
-  const std::string example = of_sides ? "top" : "body";
-  return " The entries of \"" + path + "\" are lists, each named after a " + (of_sides ? "side" : "block") +
-         ", with parameters in them: write <ParameterList name=\"" + example + "\"> around it, in YAML " + example +
-         ": {" + name + ": ...}.";
-}
-
 /// @param root  what the whole deck may have
 void validate_list(ParameterList &list, const ParameterList &valid, const std::string &path, const ParameterList &root)
 {
   if (valid.isParameter(pass_through)) return;
   const bool named_entries = valid.isSublist(any_entry);
   for (const std::string &name : names_of(list)) {
-    if (!named_entries && !valid.isParameter(name)) throw unknown_name(path, name, valid, root);
+    if (!named_entries && !valid.isParameter(name)) throw unknown_name(path, name, valid, root, list.isSublist(name));
     const ParameterEntry &model = valid.getEntry(named_entries ? any_entry : name);
     ParameterEntry &entry = list.getEntry(name);
     if (entry.isList() && model.isList()) continue;
     const auto value = entry.isList() || model.isList() ? std::nullopt : converted(entry, model);
     RPC_REQUIRE(value, "deck: " << quoted(path, name) << " must be " << rule_of(model) << ", got "
                                 << given_text(entry, model) << "."
-                                << (named_entries ? entry_remedy(path, name, valid)
-                                                  : remedy_for(entry, model, wanted_of(valid, name))));
+                                << (named_entries    ? entry_remedy(path, name, valid)
+                                    : model.isList() ? list_remedy(name, text_of(entry), valid)
+                                                     : remedy_for(entry, model, wanted_of(valid, name))));
     list.setEntry(name, *value);
   }
   const auto full = [&](const std::string &name) { return path.empty() ? name : path + "->" + name; };

@@ -148,10 +148,25 @@ bool agree(const WrittenUnit &given, const WrittenUnit &wanted)
   return force_in_the_plane || (given.force == wanted.force && given.length == wanted.length);
 }
 
+/// Where a number has a unit, and its parameter, which is known, has none; empty where that is not so.
+std::string of_no_unit(const WrittenNumber &number, const WrittenUnit &unit, const Wanted &wanted)
+{
+  if (wanted.name.empty() || quantity_of(unit).empty()) return "";
+  std::string text = " \"" + wanted.name + "\" is a number without a unit: write " + number_text(number.value) + ".";
+  for (const auto &[name, unit_of_other] : wanted.siblings) {
+    const WrittenUnit *const other = unit_named(unit_of_other);
+    if (other && agree(unit, *other))
+      return text + " \"" + number.unit + "\" is a unit of " + quantity_of(unit).substr(2) + ", as of \"" + name +
+             "\".";
+  }
+  return text;
+}
+
 /// Where a number has the unit of another quantity than its parameter; empty where it does not.
 std::string other_quantity(const WrittenNumber &number, const WrittenUnit &unit, const Wanted &wanted)
 {
   const WrittenUnit *const own = unit_named(wanted.unit);
+  if (wanted.unit.empty()) return of_no_unit(number, unit, wanted);
   if (!own || agree(unit, *own) || quantity_of(unit).empty()) return "";
   std::string text = " \"" + number.unit + "\" is a unit of " + quantity_of(unit).substr(2) + ", where " +
                      quantity_of(*own) + " is wanted [" + wanted.unit + "].";
@@ -263,17 +278,20 @@ std::string array_remedy(const std::string &text, const bool whole)
   if (!commas_within) std::replace(inside.begin(), inside.end(), ',', ' ');
   std::istringstream in(inside);
   std::vector<std::string> items;
-  bool were_whole = true;
+  bool were_whole = true, has_units = false;
   for (std::string item; in >> item;) {
     while (!item.empty() && item.back() == ',') item.pop_back();
     const auto number = written_number(item);
     const auto product = arithmetic(item);
-    if (!product && (!number || !number->unit.empty())) return number_remedy(text);
+    if (!product && !number) return number_remedy(text);
+    if (!product && !number->unit.empty()) has_units = true;
     const double given = product ? *product : number->value, value = whole ? std::round(given) : given;
     were_whole &= value == given;
     items.push_back(number_text(value));
   }
-  return items.empty() ? "" : with_brackets(items, were_whole);
+  if (has_units && items.size() < 2) return number_remedy(text);
+  const std::string units = has_units ? " Write numbers alone, in the deck's units (see \"Units\")." : "";
+  return items.empty() ? "" : units + with_brackets(items, were_whole);
 }
 
 std::string bool_remedy(const std::string &text)
@@ -325,12 +343,17 @@ std::string word_remedy(const std::string &text, const std::vector<std::string> 
 
 std::string file_remedy(const std::string &name, const std::vector<std::string> &files)
 {
-  if (const std::string meant = did_you_mean(name, files); !meant.empty()) return meant;
   const auto stem = [](const std::string &file) { return std::filesystem::path(file).stem().string(); };
+  if (stem(name).empty()) return "";
+  std::vector<std::string> stems;
+  for (const std::string &file : files) stems.push_back(stem(file));
+  const std::string meant = nearest_name(stem(name), stems);
+  if (meant.empty()) return "";
+  std::vector<std::string> of_stem;
   for (const std::string &file : files)
-    if (nearest_name(stem(name), {stem(file)}) == stem(file) && !stem(name).empty())
-      return " Did you mean \"" + file + "\"?";
-  return "";
+    if (stem(file) == meant) of_stem.push_back(file);
+  const std::string by_name = nearest_name(name, of_stem);
+  return " Did you mean \"" + (by_name.empty() ? of_stem.front() : by_name) + "\"?";
 }
 
 std::string did_you_mean(const std::string &name, const std::vector<std::string> &candidates)

@@ -14,6 +14,12 @@ namespace rpc
 namespace
 {
 
+constexpr const char *steps_sentence = " Steps are given by their times, Times, or by From, To and Step: ten of them "
+                                       "to t = 1 are From 0.1, To 1, Step 0.1.";
+constexpr const char *units_sentence =
+    " Units of stress and energy follow from those of length and force, such as MPa from mm and N: write Length and "
+    "Force alone.";
+
 /// Paths of the lists that have a parameter or a list of this name, but for case and marks.
 void find_lists(const Teuchos::ParameterList &list, const std::string &path, const std::string &name,
                 std::vector<std::string> &found)
@@ -122,11 +128,21 @@ std::string nesting_remedy(const std::string &path, const std::string &name, con
   return as_entry ? close(own, around) : "";
 }
 
+/// Where a list with a name of its own may stand.
+std::string entries_place(const std::string &path, const Teuchos::ParameterList &valid)
+{
+  for (const std::string &name : names_of(valid))
+    if (valid.isSublist(name) && valid.sublist(name).isSublist(any_entry))
+      return " Lists with names of your choice stand in \"" + (path.empty() ? "" : path + "->") + name + "\".";
+  return "";
+}
+
 /// Another place for the name, as a sentence; empty if there is none.
 std::string other_place(const std::string &path, const std::string &name, const Teuchos::ParameterList &valid,
                         const Teuchos::ParameterList &root)
 {
   const std::string word = letters(name);
+  if (path == "Units" && nearest_name(name, names_of(valid)).empty()) return units_sentence;
   if (const std::string nested = nesting_remedy(path, name, root); !nested.empty()) return nested;
   if (const std::string of_path = path_remedy(path, name, valid, root); !of_path.empty()) return of_path;
   if (valid.isParameter("X") && valid.isParameter("Z")) {
@@ -156,13 +172,15 @@ std::string other_place(const std::string &path, const std::string &name, const 
 } // namespace
 
 Error unknown_name(const std::string &path, const std::string &name, const Teuchos::ParameterList &valid,
-                   const Teuchos::ParameterList &root)
+                   const Teuchos::ParameterList &root, const bool is_list)
 {
   const std::vector<std::string> names = names_of(valid);
   const std::string nearest = nearest_name(name, names);
   const bool slip = valid.isParameter("X") && nearest.size() > 1 && nearest.size() <= name.size() + 1;
   const bool near = !nearest.empty() && (letters(nearest) == letters(name) || slip);
-  const std::string place = near ? "" : other_place(path, name, valid, root);
+  std::string place = near ? "" : other_place(path, name, valid, root);
+  if (place.empty() && nearest.empty() && is_list) place = entries_place(path, valid);
+  if (place.empty() && nearest.empty() && path == "Steps") place = steps_sentence;
   const std::string full = path.empty() ? name : path + "->" + name;
   return {ExitCode::bad_input, "deck: unknown parameter \"" + full + "\"." +
                                    (place.empty() ? did_you_mean(name, names) : place) + " Valid here: " + join(names) +

@@ -17,7 +17,8 @@ constexpr const char *pass_through = "**"; // content is read by a library
 /// @param path   of the list that has it
 /// @param valid  that list's valid parameters
 /// @param root   those of the whole deck
+/// @param is_list  it is the name of a list
 Error unknown_name(const std::string &path, const std::string &name, const Teuchos::ParameterList &valid,
-                   const Teuchos::ParameterList &root);
+                   const Teuchos::ParameterList &root, bool is_list = false);
 
 } // namespace rpc

@@ -164,11 +164,29 @@ TEST(WordRemedy, KnowsWordsOfOtherPrograms)
   EXPECT_EQ(rpc::word_remedy("ball", {"box", "gmsh"}), "");
 }
 
+TEST(NumberRemedy, KnowsParametersWithoutAUnit)
+{
+  const rpc::Wanted ratio{"Poisson's Ratio", "", std::nullopt, {{"Young's Modulus", "Pa"}}};
+  EXPECT_EQ(rpc::number_remedy("0.3GPa", ratio),
+            " \"Poisson's Ratio\" is a number without a unit: write 0.3. \"GPa\" is a unit "
+            "of pressure, as of \"Young's Modulus\".");
+  EXPECT_EQ(rpc::number_remedy("0.3 mm", ratio), " \"Poisson's Ratio\" is a number without a unit: write 0.3.");
+  EXPECT_EQ(rpc::number_remedy("30 %", ratio), " Write the number alone, without \"%\": 0.3.");
+}
+
 TEST(FileRemedy, LooksAtStemsToo)
 {
   EXPECT_EQ(rpc::file_remedy("bal.geo", {"ball.geo", "x.msh"}), " Did you mean \"ball.geo\"?");
   EXPECT_EQ(rpc::file_remedy("ball.step", {"ball.geo", "x.msh"}), " Did you mean \"ball.geo\"?");
   EXPECT_EQ(rpc::file_remedy("xyz.geo", {"ball.geo", "x.msh"}), "");
+  EXPECT_EQ(rpc::file_remedy("ball.stp", {"ball.msh", "ball.step"}), " Did you mean \"ball.step\"?");
+}
+
+TEST(FileRemedy, IsNotMisledByAnEndingThatFilesShare)
+{
+  EXPECT_EQ(rpc::file_remedy("seal.yml", {"heel.xml", "shear.xml"}), "");
+  EXPECT_EQ(rpc::file_remedy("sea.msh", {"hex.msh"}), "");
+  EXPECT_EQ(rpc::file_remedy("seel.yml", {"seal.xml", "shear.xml"}), " Did you mean \"seal.xml\"?");
 }
 
 TEST(ArrayRemedy, WritesListsOfOtherPrograms)
@@ -285,6 +303,32 @@ TEST(UnknownName, OfWhatADeckDoesNotHaveIsExplained)
   expect_error(ExitCode::bad_input, {"\"Material->Shear Modulus\"", "G = E/(2 (1 + nu))"},
                [&] { rpc::assign(list, valid, "Material->Shear Modulus=1"); });
   expect_error(ExitCode::bad_input, {"\"Title\"", "named by its file"}, [&] { rpc::assign(list, valid, "Title=1"); });
+}
+
+TEST(UnknownName, OfAUnitThatFollowsFromOthersIsExplained)
+{
+  ParameterList list, valid("rpc");
+  valid.sublist("Units").set("Length", "m").set("Force", "N");
+  for (const char *const name : {"Stress", "Pressure", "Energy", "System"})
+    expect_error(ExitCode::bad_input, {name, "Units of stress and energy follow from those of length and force"},
+                 [&] { rpc::assign(list, valid, std::string("Units->") + name + "=MPa"); });
+  expect_error(ExitCode::bad_input, {"Did you mean \"Length\"?"},
+               [&] { rpc::assign(list, valid, "Units->Lenght=mm"); });
+}
+
+TEST(Entries, GivenAsATextAreSentToTheParameterForOneOfThem)
+{
+  ParameterList deck, body, valid("rpc"), entry;
+  entry.set("Side", "", "Side").set("Gap", 0., "Gap [m]");
+  valid.sublist("Contact").set("Side", "");
+  rpc::set_named_entries(valid.sublist("Contact"), "Sides", entry, "Further ones.");
+  rpc::set_named_entries(valid, "Traction", entry, "Loads.");
+  deck.sublist("Contact").set("Sides", "FOOT");
+  expect_error(ExitCode::bad_input, {"\"Contact->Sides\" must be a sublist", "A single one is \"Side\" = FOOT."},
+               [&] { rpc::validate(deck, valid); });
+  body.set("Traction", "top");
+  expect_error(ExitCode::bad_input, {"\"Traction\" must be a sublist", "in YAML Traction: {top: {Gap: ...}}"},
+               [&] { rpc::validate(body, valid); });
 }
 
 TEST(UnknownName, OfAnotherListIsSentThere)

@@ -243,16 +243,16 @@ private:
     if (at_ >= text_.size() || text_[at_] != '>') refuse(line, "</" + tag + " does not end. Write </" + tag + ">.");
     advance(1);
     if (open_.empty())
-      refuse(line, "</" + tag +
-                       "> closes nothing: all lists are closed before it. Remove it, or look for a closing tag "
-                       "too many above.");
+      refuse(line, "</" + tag + "> closes nothing. Remove it, or look for a closing tag too many above.");
     const XmlElement &last = open_.back();
     if (last.tag != tag) {
       const std::string where = opening(last) + " of line " + std::to_string(last.line);
       if (last.tag == "Parameter")
         refuse(last.line, opening(last) + " is not closed when </" + tag + "> of line " + std::to_string(line) +
                               " comes. End it with \"/>\".");
-      refuse(line, "</" + tag + "> does not close what is open, " + where + ". Write </" + last.tag + ">.");
+      const std::string meant = did_you_mean(last.tag, {tag});
+      refuse(line, "</" + tag + "> does not close what is open, " + where + "." +
+                       (meant.empty() ? " Write </" + last.tag + ">." : meant));
     }
     if (column != last.column && last.line != line && suspect_line_ == 0) { // a closing tag is missing or too many
       suspect_line_ = last.line;

@@ -2,6 +2,7 @@
 #include "yaml_deck.hpp"
 
 #include "deck_text.hpp"
+#include "rpc/core/remedies.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -82,7 +83,12 @@ private:
         return next_line(end);
       }
       skipped_indent_ = -1;
+      if (open_.size() == 1 && lines_.empty() && indent > 0)
+        refuse(line_, "\"" + content +
+                          "\" is indented, and no list is open. Write the name of the outermost list above it, "
+                          "such as deck:");
       if (content[0] == '-' && (content.size() == 1 || content[1] == ' ')) {
+        refuse_items_with_names(content);
         skipped_indent_ = indent;
         skipped_is_plain_ = false;
         return next_line(end);
@@ -118,7 +124,8 @@ private:
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     if (indent == 0 && (content[0] == '{' || content[0] == '[')) return read_flow(""); // JSON
     const std::size_t mark = colon(at_, end);
-    if (mark == std::string::npos) refuse_without_colon(content);
+    const bool quoted = content[0] == '"' || content[0] == '\'';
+    if (mark == std::string::npos || (!quoted && text_.find_first_of("{[", at_) < mark)) refuse_without_colon(content);
     const std::string name = without_quotes(trimmed(text_.substr(at_, mark - at_)));
     while (open_.back().indent >= indent) open_.pop_back();
     OpenList &list = open_.back();
@@ -141,14 +148,36 @@ private:
     const std::string rest = value < end ? trimmed(text_.substr(value, end - value)) : "";
     if (!rest.empty() && rest[0] != '#') {
       skipped_indent_ = indent;
-      const bool quoted = rest[0] == '"' || rest[0] == '\'';
-      skipped_is_plain_ = quoted ? rest.find(rest[0], 1) != std::string::npos : !std::strchr("|>&*!", rest[0]);
+      refuse_percent(rest, full, line_);
+      const bool in_quotes = rest[0] == '"' || rest[0] == '\'';
+      skipped_is_plain_ = in_quotes ? rest.find(rest[0], 1) != std::string::npos : !std::strchr("|>&*!", rest[0]);
       if ((rest[0] == '"' || rest[0] == '\'') && rest.find(rest[0], 1) == std::string::npos &&
           !closes_below(rest[0], end))
         refuse(line_, "the quote of \"" + shown(full) + "\" = " + rest + " does not close. Write " + rest[0] +
                           " behind the value.");
     }
     next_line(end);
+  }
+
+  /// "- X: 0" of a list of entries, which has no items.
+  void refuse_items_with_names(const std::string &content) const
+  {
+    static const std::regex item(R"(-\s+([A-Za-z][A-Za-z' ]*):(\s.*)?)");
+    std::smatch found;
+    if (std::regex_match(content, found, item))
+      refuse(line_, "\"" + content + "\" has a dash. A list of parameters has none: write " + found[1].str() + ":" +
+                        found[2].str());
+  }
+
+  /// YAML reads it as a mark of its own.
+  void refuse_percent(const std::string &value, const std::string &path, const int line) const
+  {
+    if (value.empty() || std::strchr("\"'", value[0]) ||
+        value.substr(0, value.find('#')).find('%') == std::string::npos)
+      return;
+    const std::string remedy = number_remedy(value);
+    refuse(line, "\"" + shown(path) + "\" = " + value + " has a %, which no deck has outside of quotes." +
+                     (remedy.empty() ? " Write a number alone, or quotes around a text." : remedy));
   }
 
   bool closes_below(const char quote, const std::size_t end) const
@@ -258,7 +287,9 @@ private:
       read_flow(full, depth + 1);
       return "";
     }
-    return read_flow_text(",}");
+    const std::string value = read_flow_text(",}");
+    refuse_percent(value, full, line);
+    return value;
   }
 
   std::map<std::string, int> without_root() const

@@ -55,7 +55,17 @@ void add_gmsh_parameters(Teuchos::ParameterList &valid)
                     "and one of `Surfaces`, `Near`, `Plane`, `Box`.");
 }
 
-/// Names of files with a body in some folders.
+/// Whether a file looks like a result of rpc: an Exodus file with a summary or a table of the same name beside it.
+bool looks_like_result(const std::filesystem::path &file)
+{
+  std::error_code ignored;
+  const auto beside = [&](const char *const ending) {
+    return std::filesystem::exists(file.parent_path() / (file.stem().string() + ending), ignored);
+  };
+  return file.extension() == ".e" && (beside(".json") || beside(".contact.csv") || beside(".history.csv"));
+}
+
+/// Names of files with a body in some folders, but for results of runs.
 std::vector<std::string> mesh_files(const std::vector<std::string> &folders)
 {
   std::vector<std::string> names;
@@ -64,8 +74,8 @@ std::vector<std::string> mesh_files(const std::vector<std::string> &folders)
     for (std::filesystem::directory_iterator at(place.empty() ? "." : place, failed), end; !failed && at != end;
          at.increment(failed)) {
       const std::string name = at->path().filename().string();
-      if (format_of(name) != MeshFormat::unknown && std::find(names.begin(), names.end(), name) == names.end())
-        names.push_back(name);
+      const bool known = format_of(name) != MeshFormat::unknown && !looks_like_result(at->path());
+      if (known && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }
   std::sort(names.begin(), names.end());

@@ -92,12 +92,29 @@ SideData on_plane(const SidePlace &place, const MeshData &mesh, const Extent &bo
   return side;
 }
 
+/// A box's corners, the lower one first: "{0, 0, 1, 1} (in YAML [0, 0, 1, 1])".
+std::string ordered(const std::vector<double> &box)
+{
+  const std::size_t dim = box.size() / 2;
+  std::ostringstream text;
+  for (std::size_t k = 0; k < box.size(); ++k) {
+    const double a = box[k % dim], b = box[dim + k % dim];
+    text << (k > 0 ? ", " : "") << (k < dim ? std::min(a, b) : std::max(a, b));
+  }
+  return "{" + text.str() + "} (in YAML [" + text.str() + "])";
+}
+
 SideData in_box(const SidePlace &place, const MeshData &mesh, const Extent &box)
 {
   const std::size_t dim = mesh.element.dim;
   RPC_REQUIRE(place.box.size() == 2 * dim, path_of(place) << ": \"Box\" must have " << 2 * dim
                                                           << " numbers, the lower corner and the upper one, got "
                                                           << place.box.size());
+  for (std::size_t d = 0; d < dim; ++d)
+    RPC_REQUIRE(place.box[d] <= place.box[dim + d],
+                path_of(place) << ": \"Box\" must have the lower corner before the upper one, got "
+                               << "xyz"[d] << " from " << place.box[d] << " to " << place.box[dim + d] << ". Write "
+                               << ordered(place.box));
   const double tolerance = on_place * box.diagonal;
   SideData side = facets_within(mesh, place.name, [&](const Place3 &x) {
     for (std::size_t d = 0; d < dim; ++d)

@@ -27,7 +27,7 @@ std::optional<double> arithmetic(const std::string &text);
 /// What a parameter is to hold, as far as remedies depend on it.
 struct Wanted {
   std::string name;                                          ///< "Y"
-  std::string unit;                                          ///< in its doc's brackets, "Pa"; empty: not known
+  std::string unit;                                          ///< in its doc's brackets, "Pa"; empty: it has none
   std::optional<bool> expression;                            ///< whether it takes expressions; none: not known
   std::vector<std::pair<std::string, std::string>> siblings; ///< other parameters of its list, with their units
 };
