@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/load_history.hpp"
 
+#include "mean_displacements.hpp"
 #include "rpc/analysis/quantities.hpp"
 #include "rpc/contact/node_columns.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -21,21 +22,6 @@ namespace rpc::analysis
 {
 namespace
 {
-
-/// Means of the prescribed displacements over the nodes of each Dirichlet condition; 0 for components that are free.
-std::vector<std::array<double, 3>> prescribed_means(const Problem &problem, const StepSolution &s)
-{
-  const fem::Discretization &d = problem.discretization();
-  const fem::DirichletDofs &dirichlet = s.step.elastic.dirichlet;
-  const int conditions = static_cast<int>(problem.model().dirichlet.size());
-  Vector ones(d.owned_dofs);
-  ones.putScalar(1);
-  auto means = fem::reaction_forces(d, dirichlet, conditions, *s.u);
-  const auto numbers = fem::reaction_forces(d, dirichlet, conditions, ones);
-  for (int k = 0; k < conditions; ++k)
-    for (int c = 0; c < 3; ++c) means[k][c] = numbers[k][c] > 0 ? means[k][c] / numbers[k][c] : 0;
-  return means;
-}
 
 /// Zero start, for solutions small against the rounding of the last step.
 contact::ContactState at_rest(const contact::ContactNodes &points, const fem::Discretization &d)
@@ -145,7 +131,8 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   if (last_.converged) {
     last_.contact = s.contact.total;
     last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
-    last_.displacements = prescribed_means(*problem_, s);
+    if (!mean_displacements_) mean_displacements_ = std::make_shared<const MeanDisplacements>(*problem_);
+    last_.displacements = (*mean_displacements_)(*s.u);
     last_.reactions = s.reactions;
     last_.energies = kept_.memory->energies;
   } else {

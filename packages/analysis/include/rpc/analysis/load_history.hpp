@@ -48,7 +48,7 @@ struct StepRecord {
   Energies energies;
   contact::ContactSums contact;
   fem::BodyPeaks body;
-  std::vector<std::array<double, 3>> displacements; ///< mean prescribed ones of each Dirichlet condition [m]
+  std::vector<std::array<double, 3>> displacements; ///< means over the place of each Dirichlet condition [m]
   std::vector<std::array<double, 3>> reactions;     ///< as in StepSolution
   int newton_iterations = 0, linear_solves = 0, linear_iterations = 0, preconditioner_setups = 0;
   double seconds = 0;
@@ -57,6 +57,8 @@ struct StepRecord {
 /// A step that an error has ended: what it took until then, and no other number.
 /// @param t  of the step, or of the part of it that failed
 StepRecord broken_off(const Model &model, StepRecord until_then, double t, const std::string &reason);
+
+class MeanDisplacements;
 
 /// Steps one after another on one mesh: each starts from the one before, on the dents that it has left. One stiffness matrix and one
 /// multigrid serve all of them, also where gaps and normals change.
@@ -135,6 +137,7 @@ private:
   Remembered kept_;
   std::vector<contact::ContactState> offered_;
   StepRecord last_;
+  std::shared_ptr<const MeanDisplacements> mean_displacements_; // made when it is asked for
   double energy_tolerance_ = std::numeric_limits<double>::infinity();
   int balance_halvings_ = 0;
   double tried_ = 0; // t of the last (part of a) step that was begun

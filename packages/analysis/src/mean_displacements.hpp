@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rpc/analysis/problem.hpp"
+
+#include <array>
+#include <vector>
+
+namespace rpc::analysis
+{
+
+/// Mean displacements of the places that the conditions of `Dirichlet` hold, in all components, free ones too: over the area of a side, of points over
+/// the points.
+class MeanDisplacements
+{
+public:
+  /// Collective.
+  explicit MeanDisplacements(const Problem &problem);
+  /// @param u  (owned dofs) [m]
+  /// @return of each condition [m]; collective
+  std::vector<std::array<double, 3>> operator()(const Vector &u) const;
+
+private:
+  struct Weight {
+    LO dof; // of this rank
+    int component;
+    double weight;
+  };
+  const Comm &comm_;
+  std::vector<std::vector<Weight>> weights_; // of each condition
+};
+
+} // namespace rpc::analysis
