@@ -141,8 +141,9 @@ ExitCode run_deck(const rpc::CommandLine &line, const std::string &deck, const r
               "command line: --restart goes with load steps; the deck has none, see \"Steps->Times\"");
   rpc::Checkpoints checkpoints(scene, line.restarts, line.restart, line.output);
   if (line.check) {
+    rpc::require_place_for_results(scene, line.output, *comm);
     const std::string found = rpc::check(scene, comm, out, checkpoints);
-    out << deck << ": nothing wrong with it" << (found.empty() ? "" : ": ") << found << '\n';
+    out << deck << ": " << found << '\n';
     return ExitCode::converged;
   }
   rpc::require_writable_results(scene, line.output, *comm);
@@ -169,7 +170,7 @@ ExitCode run_deck(const rpc::CommandLine &line, const std::string &deck, const r
     steps.add(of, solution, line.output);
   };
   rpc::Solution solution = rpc::solve(scene, comm, out, keep, keep_step, &checkpoints);
-  const std::vector<std::string> notes = rpc::notes_on_results(solution);
+  const std::vector<std::string> notes = rpc::notes_on_results(scene, solution);
   solution.notes.insert(solution.notes.end(), notes.begin(), notes.end());
   std::vector<std::string> files;
   try {

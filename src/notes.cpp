@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "notes.hpp"
 
+#include "deck_notes.hpp"
 #include "rpc/contact/between_nodes.hpp"
 #include "rpc/contact/clearance.hpp"
+#include "rpc/fem/measure.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +20,8 @@ namespace
 constexpr double notable_imbalance = 0.01;
 // Beyond it the terms that small strains leave out are a fifth of those that count.
 constexpr double notable_strain = 0.2;
+// Of the mean unit normal of a side, less than 1: the normals of a side that is as good as flat are within 5 degrees of each other.
+constexpr double notable_bend = 1e-3;
 
 /// Steps whose work does not fit their energies, where the deck does not say how well it is to.
 std::string balance_note(const Solution &s)
@@ -33,7 +37,7 @@ std::string balance_note(const Solution &s)
 }
 
 /// Strains that are not small, of all steps.
-std::string strain_note(const analysis::Solution &s)
+std::string strain_note(const Scene &scene, const analysis::Solution &s)
 {
   double most = s.body.strain;
   std::ostringstream when;
@@ -47,6 +51,7 @@ std::string strain_note(const analysis::Solution &s)
   std::ostringstream note;
   note << "strains reach " << std::setprecision(2) << most << when.str()
        << ": small strains are assumed, and results where strains exceed " << notable_strain << " are rough";
+  if (const std::string load = force_per_area_hint(scene); !load.empty()) note << ". " << load;
   return note.str();
 }
 
@@ -76,6 +81,7 @@ void SeldomMeant::before(const analysis::Problem &problem, const analysis::Step 
   const Comm &comm = problem.discretization().mesh->comm();
   loaded_ = loaded_ || contact::is_loaded(comm, step.elastic, step.contact);
   note_overlaps(problem, step);
+  note_held_loads(problem, step);
   if (scene_.has_steps()) return;
   if (step.contact.friction.anywhere)
     notes_.add(
@@ -100,6 +106,26 @@ void SeldomMeant::note_overlaps(const analysis::Problem &problem, const analysis
          << found.depth << unit << ", more than the body is thick along the contact normal (" << found.thickness << unit
          << "): does it lie where it should?";
     notes_.add(note.str());
+  }
+}
+
+/// Loads that go into supports alone.
+void SeldomMeant::note_held_loads(const analysis::Problem &problem, const analysis::Step &step)
+{
+  const mesh::Mesh &mesh = *problem.discretization().mesh;
+  const auto fixed = to_host(step.elastic.dirichlet.fixed);
+  const auto &loads = scene_.model.tractions;
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    const std::vector<LO> nodes = mesh.nodes_of(loads[k].side, "Traction->" + loads[k].name + "->Side");
+    for (int c = 0; c < mesh.dim(); ++c) {
+      if (loads[k].traction[c].is_zero() && loads[k].force[c].is_zero()) continue;
+      const bool held =
+          std::all_of(nodes.begin(), nodes.end(), [&](const LO n) { return fixed(mesh.dim() * n + c) != 0; });
+      if (sum_all(mesh.comm(), GO(held ? 0 : 1)) > 0) continue;
+      notes_.add("the load of \"Traction->" + loads[k].name + "\" along " + "XYZ"[c] +
+                 " goes into supports: \"Dirichlet\" prescribes the displacement along " + "XYZ"[c] +
+                 " of all nodes that it acts on, and the body feels nothing of it");
+    }
   }
 }
 
@@ -142,17 +168,26 @@ std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretiza
   if (contact.num_missing > 0)
     notes.push_back("from " + std::to_string(contact.num_missing) +
                     " nodes of the contact sides the normal misses the obstacle: they never touch");
+  for (const contact::ContactOptions &side : scene.model.contact) {
+    if (side.obstacle.exists() || !side.gap.is_zero()) continue;
+    if (length(fem::side_measure(d, d.mesh->side(side.side, side.path)).normal) > 1 - notable_bend) continue;
+    notes.push_back(
+        "side \"" + side.side + "\" is bent, and \"" + side.path +
+        "\" has neither an \"Obstacle\" nor a \"Gap\": the foundation has the shape of the side, and all of it "
+        "touches from the beginning. A flat one is \"Obstacle\" with Type = plane");
+  }
   const fem::Materials &materials = scene.model.materials;
+  if (scene.adapt.adapts()) notes.push_back(fem::order_note(d, materials));
   for (const std::string &note :
        {fem::locking_note(d, materials), fem::incompressibility_note(d, materials), fem::bending_note(d, materials)})
     if (!note.empty()) notes.push_back(note);
   return notes;
 }
 
-std::vector<std::string> notes_on_results(const Solution &s)
+std::vector<std::string> notes_on_results(const Scene &scene, const Solution &s)
 {
   std::vector<std::string> notes;
-  for (const std::string &note : {balance_note(s), strain_note(s)})
+  for (const std::string &note : {balance_note(s), strain_note(scene, s)})
     if (!note.empty()) notes.push_back(note);
   return notes;
 }

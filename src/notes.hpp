@@ -27,7 +27,7 @@ private:
 };
 
 /// Notes on scenes that are right and seldom meant: nothing loads the body, nothing touches, a foundation reaches through the body, friction
-/// gets the whole load in one step; and on contact that the mesh does not see.
+/// gets the whole load in one step, supports take a load; and on contact that the mesh does not see.
 class SeldomMeant
 {
 public:
@@ -43,6 +43,7 @@ public:
 
 private:
   void note_overlaps(const analysis::Problem &problem, const analysis::Step &step);
+  void note_held_loads(const analysis::Problem &problem, const analysis::Step &step);
 
   const Scene &scene_;
   Notes &notes_;
@@ -57,6 +58,6 @@ std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretiza
                                        const contact::ContactNodes &contact);
 
 /// What the user should know of results: steps whose work does not fit their energies, and strains that are not small.
-std::vector<std::string> notes_on_results(const Solution &s);
+std::vector<std::string> notes_on_results(const Scene &scene, const Solution &s);
 
 } // namespace rpc

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene.hpp"
 
+#include "deck_notes.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
-#include "rpc/core/pascals.hpp"
 #include "rpc/io/deck.hpp"
 #include "rpc/io/expression.hpp"
 
@@ -43,39 +43,6 @@ std::string text_of(const Teuchos::ParameterList &list)
       text << name << '=' << Teuchos::toString(list.entry(it).getAny(false)) << ';';
   }
   return text.str();
-}
-
-// Young's moduli of the stiffest and of the softest solids that are known [Pa]: diamond along its stiffest direction has 1.21e12 (Field, Rep. Prog.
-// Phys. 75 (2012) 126505), brain tissue 100 to 1000 (Discher, Janmey and Wang, Science 310 (2005) 1139).
-constexpr double stiffest_known = 1.3e12, softest_known = 100;
-
-/// @param path  of the material
-std::string modulus_note(const double modulus, const std::string &path, const UnitNames &units)
-{
-  const auto unit = pascals(units);
-  if (!unit) return "";
-  const double in_pascals = modulus * *unit;
-  const bool too_stiff = in_pascals > stiffest_known, too_soft = in_pascals < softest_known && !units.is_default();
-  if (!too_stiff && !too_soft) return "";
-  std::ostringstream note;
-  note << '"' << path << "->Young's Modulus\" = " << modulus << " [" << units.stress() << "] is ";
-  if (*unit != 1) note << in_pascals << " Pa, ";
-  note << (too_stiff ? "more" : "less") << " than any known material has ("
-       << (too_stiff ? "diamond 1.2e+12 Pa" : "brain tissue 100 Pa") << "): is it in the deck's units? Steel has "
-       << 2.1e11 / *unit << " [" << units.stress() << "]";
-  return note.str();
-}
-
-/// What the user should know of moduli that no known material has, which unit slips make; empty if there are none. Decks that do not name their
-/// units may have numbers without a dimension: of these those that are too large alone are told.
-std::string modulus_note(const fem::Materials &materials, const UnitNames &units)
-{
-  if (!materials.only_blocks)
-    if (const auto note = modulus_note(materials.common.youngs_modulus, "Material", units); !note.empty()) return note;
-  for (const auto &[name, material] : materials.block)
-    if (const auto note = modulus_note(material.youngs_modulus, "Material->Blocks->" + name, units); !note.empty())
-      return note;
-  return "";
 }
 
 } // namespace
@@ -154,12 +121,7 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
                   exodus == "split" ? io::ExodusFiles::split : io::ExodusFiles::joined, output.get<bool>("Timers")};
   scene.output.points = points_options(output.sublist("Points"), dim);
   adapt::require_adaptable(scene);
-  for (const char *const part : {"Dirichlet", "Traction"})
-    if (!deck.getEntry(part).isDefault() && deck.sublist(part).numParams() == 0)
-      scene.notes.push_back("\"" + std::string(part) + "\" of the deck has no entries: nothing is " +
-                            (part == std::string("Dirichlet") ? "held" : "loaded") + " by it");
-  if (const auto note = modulus_note(scene.model.materials, scene.model.units); !note.empty())
-    scene.notes.push_back(note);
+  scene.notes = notes_on_deck(deck, scene);
   return scene;
 }
 

@@ -2,6 +2,7 @@
 #include "solve.hpp"
 
 #include "checkpoint.hpp"
+#include "deck_notes.hpp"
 #include "notes.hpp"
 #include "report.hpp"
 #include "understood.hpp"
@@ -9,20 +10,34 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <utility>
 
 namespace rpc
 {
+namespace
+{
+
+/// Where there is no solution, a force per area may be meant as a force.
+std::string load_hint(const Scene &scene, const ExitCode code)
+{
+  const std::string load = code == ExitCode::no_solution ? force_per_area_hint(scene) : "";
+  return load.empty() ? "" : " " + load + ".";
+}
+
+} // namespace
 
 Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console,
                const std::function<void(const Scene &, Solution &)> &keep,
                const std::function<void(const Scene &, const analysis::Solution &)> &keep_step,
                Checkpoints *const checkpoints,
-               const std::function<void(const analysis::Problem &, const analysis::Step &)> &ready)
+               const std::function<void(const analysis::Problem &, const analysis::Step &, const Notes &)> &ready)
 {
   std::optional<ConsoleTable> table; // of one mesh
   bool points_looked_for = false;
+  std::set<std::string> told_of_meshes; // notes without their counts, which are other ones on each mesh
   Notes notes(console);
   SeldomMeant seldom_meant(scene, checkpoints && checkpoints->goes_on(), notes);
   for (const std::string &note : scene.notes) notes.add(note);
@@ -32,11 +47,12 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     if (!std::exchange(points_looked_for, true)) require_inside(scene.output.points, d, scene.model.units);
     table->scene(scene, d, contact);
     for (const std::string &note : d.mesh->notes) notes.add("mesh: " + note);
-    for (const std::string &note : notes_on_mesh(scene, d, contact)) notes.add(note);
+    for (const std::string &note : notes_on_mesh(scene, d, contact))
+      if (told_of_meshes.insert(std::regex_replace(note, std::regex("[0-9]+"), "")).second) notes.add(note);
   };
   listener.step.start = [&](const analysis::Problem &problem, const analysis::Step &step) {
     seldom_meant.before(problem, step);
-    if (ready) ready(problem, step);
+    if (ready) ready(problem, step, notes);
     table->heads(scene);
   };
   const bool several_steps = scene.has_steps(); // a line for each is enough then
@@ -73,7 +89,14 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
       solution.notes = notes.all();
       keep(scene, solution);
     };
-  Solution solution = adapt::solve(scene, comm, listener);
+  Solution solution = [&] {
+    try {
+      return adapt::solve(scene, comm, listener);
+    } catch (const Error &error) { // on all ranks
+      throw Error(error.code(), error.what() + load_hint(scene, error.code()));
+    }
+  }();
+  if (solution.failure) solution.failure->reason += load_hint(scene, solution.failure->code);
   if (!several_steps) seldom_meant.after(solution);
   seldom_meant.at_end(solution);
   solution.notes = notes.all();
@@ -88,21 +111,29 @@ namespace
 /// Ends a run before its first solve.
 struct Ready {
   GO dofs, contact_points;
+  std::size_t num_notes;
 };
 
 } // namespace
 
 std::string check(const Scene &scene, const RCP<const Comm> &comm, std::ostream &console, Checkpoints &checkpoints)
 {
-  const auto stop = [&](const analysis::Problem &problem, const analysis::Step &step) {
+  const auto stop = [&](const analysis::Problem &problem, const analysis::Step &step, const Notes &notes) {
     print_understood(console, scene, problem, step);
-    throw Ready{static_cast<GO>(problem.discretization().owned_dofs->getGlobalNumElements()), step.contact.num_total};
+    throw Ready{static_cast<GO>(problem.discretization().owned_dofs->getGlobalNumElements()), step.contact.num_total,
+                notes.all().size()};
   };
+  const std::string nothing_wrong = "nothing wrong with it";
   std::ostringstream found;
   try {
     solve(scene, comm, console, {}, {}, &checkpoints, stop);
+    return nothing_wrong;
   } catch (const Ready &ready) { // on all ranks
-    found << ready.dofs << " dofs, " << ready.contact_points << " contact points";
+    if (ready.num_notes == 0)
+      found << nothing_wrong;
+    else
+      found << "a run refuses nothing of it; see the " << (ready.num_notes == 1 ? "note" : "notes") << " above";
+    found << ": " << ready.dofs << " dofs, " << ready.contact_points << " contact points";
   }
   return found.str();
 }

@@ -117,6 +117,19 @@ void require_writable_results(const Scene &scene, const std::string &folder, con
     on_each(comm, ExitCode::bad_input, [&] { io::require_writable_folder(folder); });
 }
 
+void require_place_for_results(const Scene &scene, const std::string &folder, const Comm &comm)
+{
+  bool exists = false;
+  on_root(comm, ExitCode::bad_input, [&] {
+    std::error_code none;
+    std::filesystem::path place = std::filesystem::absolute(folder.empty() ? "." : folder, none);
+    exists = std::filesystem::exists(place, none);
+    while (!std::filesystem::exists(place, none) && place.has_relative_path()) place = place.parent_path();
+    if (!exists) io::require_writable_folder(place.string());
+  });
+  if (max_all(comm, exists ? 1. : 0.) > 0) require_writable_results(scene, folder, comm);
+}
+
 std::vector<std::string> older_files(const Scene &scene, const Solution &s, const std::string &folder,
                                      const std::vector<std::string> &film)
 {

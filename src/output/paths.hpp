@@ -37,6 +37,10 @@ bool is_result(const Scene &scene, const std::string &file);
 /// @throws rpc::Error (bad_input) on every rank
 void require_writable_results(const Scene &scene, const std::string &folder, const Comm &comm);
 
+/// The same of a run that is only checked: no folder is made for it. Collective.
+/// @throws rpc::Error (bad_input) on every rank
+void require_place_for_results(const Scene &scene, const std::string &folder, const Comm &comm);
+
 /// Files of the same name that an earlier run has left and this run does not write, those of its meshes included. One rank only.
 /// @param film  that this run has written
 std::vector<std::string> older_files(const Scene &scene, const Solution &solution, const std::string &folder,

@@ -2,9 +2,11 @@
 """What a run says of decks that are right and seldom meant, on the console and in the summary; and what --check finds without a solve."""
 
 import json
+import shutil
+import subprocess
 import unittest
 
-from rpc_run import RANKS, SMALL, RpcTestCase, errors, files
+from rpc_run import RANKS, SMALL, SOURCE, RpcTestCase, errors, files
 
 BODY = """
   Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [4, 4]}
@@ -98,6 +100,48 @@ class Seldom(RpcTestCase):
         self.assertIn('"Dirichlet" of the deck has no entries: nothing is held by it', notes)
         self.assertIn('"Traction" of the deck has no entries: nothing is loaded by it', notes)
 
+    def test_no_contact_is_asked_for(self):
+        self.assertEqual(self.notes(PRESSED), ['the deck has no "Contact": the body meets no foundation. "Contact->Side" names the side that may touch one'])
+        self.assertEqual(self.notes(PRESSED + '  Contact: {Side: ""}\n'), [])  # switched off
+
+    def test_a_foundation_yields_beyond_what_a_body_bears(self):
+        contact = "  Units: {Length: mm, Force: N}\n  Contact: {Side: bottom, Yield Stress: LIMIT}\n"
+        (note,) = self.notes(PRESSED + contact.replace("LIMIT", "80.0e+6"))
+        self.assertTrue(note.startswith('"Contact->Yield Stress" = 8e+07 [MPa] is 80000 of the body\'s Young\'s modulus, 1000 [MPa]'), note)
+        for limit in ("99.0", "inf", "'1.0e+6 + x'"):
+            self.assertEqual(self.notes(PRESSED + contact.replace("LIMIT", limit)), [])
+
+    def test_a_support_takes_the_load(self):
+        contact = "  Contact: {Side: bottom}\n"
+        held = 'the load of "Traction->top" along Y goes into supports'
+        self.assertIn(held, str(self.notes(PRESSED + "  Traction: {top: {Y: -2.0}}\n" + contact)))
+        self.assertIn(held, str(self.notes(PRESSED + "  Traction: {top: {Force Y: '-2*t'}}\n  Steps: {Times: [1.0, 2.0]}\n" + contact)))
+        self.assertEqual(self.notes(PRESSED + "  Traction: {right: {X: 2.0, Y: 1.0}}\n" + contact), [])
+        self.assertEqual(self.notes(BODY + "  Dirichlet: {top: {X: 0.0}}\n  Traction: {top: {Y: -2.0}}\n" + contact), [])
+
+    def test_a_force_per_area_that_may_be_a_force(self):
+        deck = BODY + "  Dirichlet: {left: {X: 0.0}}\n  Traction: {top: {LOAD}}\n  Contact: {Side: bottom}\n"
+        per_area = '"Traction->top->Y" = -300 [Pa] is a force per area (a force on the whole side is "Force Y")'
+        notes = self.notes(deck.replace("LOAD", "Y: -300.0"))
+        self.assertIn(per_area + ", more than a tenth of the body's Young's modulus, 1000 [Pa]: strains will not be small", notes)
+        self.assertIn("strains reach 0.27", notes[-1])
+        self.assertIn(per_area, notes[-1])
+        (note,) = self.notes(deck.replace("LOAD", "Force Y: -300.0"))
+        self.assertTrue(note.startswith("strains reach 0.27") and note.endswith("are rough"), note)
+        self.assertEqual(self.notes(deck.replace("LOAD", "Y: -99.0")), [])
+        (self.folder / "deck.yaml").write_text("deck:" + deck.replace("LOAD", "Y: -99.0").replace("Side: bottom", "Side: bottom, Yield Stress: 9.0"))
+        told = self.rpc("--check", "--input=deck.yaml", code=5).stderr
+        self.assertIn('carries at most 9 [N/m], where all of it yields. Lower the load, or raise "Contact->Yield Stress". "Traction->top->Y" = -99 [Pa]', told)
+
+    @unittest.skipIf(shutil.which("gmsh") is None, "gmsh is not there")
+    def test_a_round_foundation_for_a_round_side(self):
+        deck = PRESSED.replace("Lower: [0.0, 0.0], Upper: [1.0, 1.0], Cells: [4, 4]", f"Type: gmsh, File: {SOURCE}/input/hertz.geo, Size Factor: 9.0")
+        (note,) = self.notes(deck + "  Contact: {Side: contact}\n")
+        self.assertIn('side "contact" is bent, and "Contact" has neither an "Obstacle" nor a "Gap"', note)
+        self.assertNotIn("is bent", str(self.notes(deck + "  Contact: {Side: contact, Gap: 0.001}\n")))
+        self.assertNotIn("is bent", str(self.notes(deck + "  Contact: {Side: contact, Obstacle: {Type: plane, Point: [0.0, 0.0], Normal: [0.0, 1.0]}}\n")))
+        self.assertNotIn("is bent", str(self.notes(deck + "  Contact: {Side: top}\n")))
+
     def test_other_notes_are_in_the_summary_too(self):
         body = PRESSED.replace("Cells: [4, 4]", "Cells: [4, 4], Element: P1").replace("0.3", "0.45").replace("-0.01", "-0.5")
         notes = self.notes(body + "  Contact: {Side: bottom, Yield Stress: 1.0e+4}\n")
@@ -127,9 +171,9 @@ class ForceOnAWholeSide(RpcTestCase):
 
 
 class Check(RpcTestCase):
-    def expect(self, found, *arguments, code=0):
+    def expect(self, found, *arguments, notes=True, code=0):
         result = self.rpc("--check", *arguments, "--output=out", code=code)
-        self.assertIn(f"nothing wrong with it: {found}\n", result.stdout)
+        self.assertIn(f"{'a run refuses nothing of it; see the note above' if notes else 'nothing wrong with it'}: {found}\n", result.stdout)
         self.assertNotIn("newton", result.stdout)
         self.assertNotIn("Newton", result.stdout)
         self.assertEqual(files(self.folder), [])
@@ -139,7 +183,43 @@ class Check(RpcTestCase):
         self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Steps->Times={1,2}")
         self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Adapt->Target Relative Error=0.1")
         self.expect("210 dofs, 21 contact points", "--input=beam.xml", SMALL, "--set=Adapt->Target Relative Error=0.1", "--set=Steps->Times={1,2}")
-        self.expect("210 dofs, 0 contact points", "--input=beam.xml", SMALL, "--set=Contact->Side=")
+        self.expect("210 dofs, 0 contact points", "--input=beam.xml", SMALL, "--set=Contact->Side=", notes=False)
+
+    def test_it_sends_to_the_notes_that_it_tells(self):
+        (self.folder / "deck.yaml").write_text("deck:" + PRESSED)
+        told = self.rpc("--check", "--input=deck.yaml").stdout.splitlines()
+        self.assertIn('note: the deck has no "Contact"', told[0])
+        self.assertEqual(told[-1], "deck.yaml: a run refuses nothing of it; see the note above: 50 dofs, 0 contact points")
+
+    def test_it_looks_where_results_would_go(self):
+        (self.folder / "file").write_text("")
+        for folder in ("file", "file/below/it"):
+            told = self.rpc("--check", "--input=beam.xml", SMALL, f"--output={folder}", code=2).stderr
+            self.assertIn("output: cannot create the folder", told)
+        self.rpc("--check", "--input=beam.xml", SMALL, "--output=new/folder")
+        self.assertEqual(files(self.folder), ["file"])
+
+    @unittest.skipIf(shutil.which("gmsh") is None, "gmsh is not there")
+    def test_it_tells_that_no_mesh_can_follow_one_of_hexahedra(self):
+        (self.folder / "cube.geo").write_text("""SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 1};
+Physical Surface("bottom") = {5}; Physical Surface("top") = {6}; Physical Volume("body") = {1};
+Transfinite Curve "*" = 3; Transfinite Surface "*"; Transfinite Volume "*"; Recombine Surface "*";
+""")
+        subprocess.run(["gmsh", "-3", "cube.geo", "-o", "cube.msh"], cwd=self.folder, check=True, capture_output=True)
+        (self.folder / "deck.yaml").write_text("""deck:
+  Mesh: {Type: gmsh, File: cube.msh}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.3}
+  Dirichlet: {top: {X: 0.0, Y: 0.0, Z: -0.01}}
+  Contact: {Side: bottom}
+  Adapt: {Target Relative Error: 0.001}
+""")
+        note = '"Adapt->Target Relative Error" finds no mesh after the first one: only triangles and tetrahedra are halved'
+        told = self.rpc("--check", "--input=deck.yaml").stdout
+        self.assertIn(note, told)
+        self.assertNotIn("nothing wrong", told)
+        told = self.rpc("--input=deck.yaml", code=4).stdout
+        self.assertLess(told.index(note), told.index("newton"))  # before the solve
 
     def understood(self, text, *arguments):
         """The lines of the block that --check prints, without the blanks at their ends."""
@@ -207,7 +287,7 @@ class Check(RpcTestCase):
         more = ["--input=beam.xml", SMALL, "--output=out", "--set=Steps->Times={1,2,3}", "--set=Steps->Checkpoint Every=1", "--restart"]
         result = self.rpc("--check", *more)
         self.assertIn("note: goes on after ", result.stdout)
-        self.assertIn("nothing wrong with it: 210 dofs, 21 contact points", result.stdout)
+        self.assertIn("see the note above: 210 dofs, 21 contact points", result.stdout)
         other = self.rpc("--check", *more, "--set=Material->Young's Modulus=2001", code=2)
         self.assertIn("Material->Young's Modulus", errors(other)[0])
         after = {file: (self.folder / "out" / file).stat().st_mtime_ns for file in files(self.folder / "out")}

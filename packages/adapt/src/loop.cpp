@@ -180,6 +180,8 @@ Solution solve_adaptively(const Task &task, const Solution *const earlier, const
                                                ? analysis::MadeMesh{earlier->mesh_options, earlier->discretization.mesh}
                                                : analysis::made_mesh(task.mesh, comm);
   MeshPlanner planner(task, mesh->options);
+  if (const std::string none = planner.why_no_other(*mesh->mesh); !none.empty() && listener.note)
+    listener.note("\"Adapt->Target Relative Error\" finds no mesh after the first one: " + none);
   std::optional<Solution> last, best;
   std::string hint;
   analysis::PhaseSeconds seconds;

@@ -92,19 +92,23 @@ std::string MeshPlanner::least_estimate() const
   return text.str();
 }
 
+std::string MeshPlanner::why_no_other(const mesh::Mesh &mesh) const
+{
+  if (!nests(task_.mesh, task_.adapt) || mesh.element.shape == mesh::Shape::simplex ||
+      std::holds_alternative<mesh::BoxOptions>(task_.mesh))
+    return "";
+  return "only triangles and tetrahedra are halved, and the mesh has " + mesh.element.name() +
+         " cells; a geometry can be meshed anew, \"Adapt->Meshes\" = gmsh. Of a file of such cells compare the "
+         "results of \"Mesh->Refinements\" = 0 and 1";
+}
+
 std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d, const ErrorEstimate &estimate,
                                                    const double energy_norm_squared, Forecast &forecast,
                                                    std::string &reason)
 {
   const mesh::Mesh &mesh = *d.mesh;
-  if (nests(task_.mesh, task_.adapt) && mesh.element.shape != mesh::Shape::simplex &&
-      !std::holds_alternative<mesh::BoxOptions>(task_.mesh)) {
-    reason =
-        "only triangles and tetrahedra are halved, and the mesh has " + mesh.element.name() +
-        " cells; a geometry can be meshed anew, \"Adapt->Meshes\" = gmsh. Of a file of such cells compare the results "
-        "of \"Mesh->Refinements\" = 0 and 1";
-    return std::nullopt;
-  }
+  reason = why_no_other(mesh);
+  if (!reason.empty()) return std::nullopt;
   const double eta = std::sqrt(estimate.total()), target = task_.adapt.target * std::sqrt(energy_norm_squared);
   goal_ = goal(eta, target, mesh.dim());
   // Sizes that ask for too little leave nested cells as they are, or halve others: then they ask for more.

@@ -32,6 +32,8 @@ public:
   std::optional<mesh::MeshOptions> next(const fem::Discretization &d, const ErrorEstimate &estimate,
                                         double energy_norm_squared, Forecast &forecast, std::string &reason);
 
+  /// Why no mesh can follow one, whatever its solution; empty if one may.
+  std::string why_no_other(const mesh::Mesh &mesh) const;
   /// Whether a mesh has no more unknowns than any but the first may have. Collective.
   bool fits(const mesh::Mesh &mesh) const;
   /// The same mesh with larger cells, where the one that was planned last does not fit; none if it cannot be had. Collective.
