@@ -79,6 +79,24 @@ class Steps(RpcTestCase):
             self.assertEqual(Film(self.folder / "out" / "beam.e").times, times)
 
     @ONE_RANK
+    def test_a_support_has_its_mean_displacement_along_which_it_is_free_too(self):
+        """A column on springs: u_y = -p/k - p y/E at height y. Its left side and a corner slide."""
+        (self.folder / "deck.yaml").write_text("""deck:
+  Mesh: {Lower: [0.0, 0.0], Upper: [1.0, 2.0], Cells: [4, 6]}
+  Material: {Young's Modulus: 1000.0, Poisson's Ratio: 0.0}
+  Dirichlet: {left: {X: 0.0}, right top: {X: 0.0}}
+  Traction: {top: {Y: "-10*t"}}
+  Contact: {Side: bottom, Stiffness: 500.0}
+  Steps: {Times: [1.0, 2.0]}
+  Output: {Exodus: false}
+""")
+        self.rpc("--input=deck.yaml")
+        for row in rows(self.folder / "deck.history.csv"):
+            pressure = 10 * row["time"]
+            self.assertAlmostEqual(row["left_displacement_y"], -pressure / 500 - pressure / 1000, delta=1e-12)
+            self.assertAlmostEqual(row["right top_displacement_y"], -pressure / 500 - 2 * pressure / 1000, delta=1e-12)
+            self.assertEqual(row["left_displacement_x"], 0)
+
     def test_without_steps_there_is_no_history(self):
         summary = self.solve()
         self.assertNotIn("steps", summary)

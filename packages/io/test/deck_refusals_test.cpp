@@ -85,6 +85,9 @@ TEST_F(Refusal, OfTagsSaysWhatIsOpen)
              "closes nothing");
   expect_xml("</ParameterList>\n</ParameterList>", "</ParameterList>\n</ParameterList>\n<ParameterList/>", 12,
              "begins behind the end");
+  expect_xml(
+      "<ParameterList name=\"Contact\">", "<parameterList name=\"Contact\">", 10,
+      "does not close what is open, <parameterList name=\"Contact\"> of line 7. Did you mean \"ParameterList\"?");
   expect_xml("<!-- a beam -->", "<!-- a beam", 2, "the comment that begins here does not end. Write -->");
   for (const std::string broken : {"<!- a beam ->", "<!- a beam -->", "<! -- a beam -->", "<!a beam>"})
     expect_xml("<!-- a beam -->", broken, 2, "is no comment and no tag. Write a comment as <!-- ... -->.");
@@ -155,6 +158,13 @@ TEST_F(Refusal, OfYamlNamesTheLine)
   expect_yaml("Gap: \"x, y: {1\"", "Gap: 0,3", 6, "For a decimal comma write a point: 0.3.");
   expect_yaml("Contact: {Side: bottom, Gap: \"x, y: {1\"}", "Element P2", 6, "Write Element: P2");
   expect_yaml("beam:", "<ParameterList>\nbeam:", 1, "name the file .xml");
+  expect_yaml("beam:\n  Mesh:", "  Mesh:", 1, "Write the name of the outermost list above it, such as deck:");
+  expect_yaml("Cells: [160, 32]", "- Cells: 160", 3, "A list of parameters has none: write Cells: 160");
+  expect_yaml("Gap: \"x, y: {1\"", "Gap: 3 %", 6,
+              "\"Contact->Gap\" = 3 % has a %, which no deck has outside of quotes. Write "
+              "the number alone, without \"%\": 0.03.");
+  expect_yaml("Contact: {Side", "Contact {Side", 6,
+              "lacks a colon with a blank behind it. Write Contact: {Side: bottom");
 }
 
 TEST_F(Refusal, OfAFileOfAnotherProgramNamesTheProgram)

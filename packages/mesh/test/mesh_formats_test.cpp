@@ -186,6 +186,10 @@ TEST(SidePlaces, WhatTakesNothingIsRefused)
   place.surfaces.clear();
   place.box = {0, 0, 1};
   expect_error(ExitCode::bad_input, {"\"Box\" must have 4 numbers", "got 3"}, [&] { with_sides({place}); });
+  place.box = {3, -1, 1.5, 3};
+  expect_error(ExitCode::bad_input,
+               {"must have the lower corner before the upper one, got x from 3 to 1.5", "Write {1.5, -1, 3, 3}"},
+               [&] { with_sides({place}); });
   place.box = {0, 0, 1, 1};
   place.name = "left";
   expect_error(ExitCode::bad_input, {"the file has a side of that name"}, [&] { with_sides({place}); });
