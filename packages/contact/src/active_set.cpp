@@ -226,7 +226,7 @@ ActiveSetChoice counted(const Comm &comm, ActiveSetChoice choice, const ActiveSe
   return choice;
 }
 
-/// States of points that violate the law less than `bound` become those that they have.
+/// Points that violate the law by less than `bound` keep their present state.
 void keep_states(const ActiveSet &present, const ActiveSetChoice &choice, const double bound)
 {
   const ActiveSet now = present;

@@ -182,7 +182,7 @@ struct SubspaceSums {
   }
 };
 
-/// Where the points are once they have made a_k of each move.
+/// Penetrations and slips of the points after the moves a_k d_k.
 Places moved(const ContactNodes &c, const Places &from, const DeviceView<double **> &moves,
              const std::vector<double> &a)
 {

@@ -29,8 +29,8 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
                         const std::vector<ContactOptions> &options, const ContactNodes &points,
                         const fem::Materials &materials, const Vector &u, ContactResult &result);
 
-/// What a user is to be told of contact that the mesh does not see: where it is, how deep, and the size of cells that would see it; empty if
-/// there is none that matters.
+/// Note for the user on contact that the mesh does not see: place, depth, and the size of cells that would see it; empty if there is none
+/// that matters.
 /// @param energy_norm_squared  a(u, u) of the solution [J], in 2D per m
 /// @param adapts  whether the deck asks for meshes that are adapted
 std::string unseen_contact_note(const ContactResult &result, const std::vector<ContactOptions> &options, int dim,

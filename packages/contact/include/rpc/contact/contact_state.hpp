@@ -22,12 +22,12 @@ struct Multipliers {
   Multipliers copy() const;
 };
 
-/// Where a body and its foundation are: what one step hands to the next, and what a solution is judged by. Plain data.
+/// The state of body and foundation, displacement and multipliers: one step hands it to the next, and a solution is judged by it. Plain data.
 struct ContactState {
   RCP<const Vector> displacement; ///< (owned dofs) from 0 [m]
   Multipliers multiplier;
   DeviceView<State *> active_set; ///< (points); empty where it is not known
-  /// (owned dofs) What the rounding of the displacement has left out [m]: the body is where the sum of both is. Null: nothing.
+  /// (owned dofs) Rounding error of `displacement` [m]: the true displacement is the sum of both. Null: 0.
   RCP<const Vector> rest = {};
 };
 

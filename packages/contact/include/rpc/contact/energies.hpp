@@ -4,8 +4,8 @@
 #include "rpc/contact/contact_state.hpp"
 #include "rpc/fem/elasticity.hpp"
 
-/// What a state of body and foundation means: energies, forces, and how far it is from the contact law. Displacements are from 0; all
-/// functions are collective.
+/// Energies and forces of a state of body and foundation, and its residual in the contact law. Displacements are from 0; all functions
+/// are collective.
 namespace rpc::contact
 {
 

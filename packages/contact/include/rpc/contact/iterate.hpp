@@ -12,15 +12,15 @@
 namespace rpc::contact
 {
 
-/// What changes while a step is solved, and what NOX minimizes meanwhile: origin, multipliers, penalties, active set, springs and
+/// The variable state of a step's solve, which NOX minimizes: origin, multipliers, penalties, active set, springs and
 /// Hessian, H(u) = K + sum_i w_i Psi_i''(v_i) m_i m_i^T. The formulas are those of SmoothedFunctional.       doc/theory.md (4.2)
 ///
-/// Every u below is the displacement from the present origin, (5.13), at first 0. state() is the only way out: what results,
-/// energies and residuals are read from is a ContactState, whose displacement is from 0.
+/// Every u below is the displacement from the present origin, (5.13), at first 0. Results, energies and
+/// residuals are computed from state(), a ContactState, whose displacement is from 0.
 class Iterate : public ConvexFunctional
 {
 public:
-  /// @param hessian  K with an update at the contact nodes, which is this iterate's from here on
+  /// @param hessian  K with an update at the contact nodes; the iterate changes it from here on
   Iterate(const fem::ElasticProblem &elastic, ContactNodes points, RCP<UpdatedOperator> hessian);
 
   // What is minimized: see ConvexFunctional and SmoothedFunctional.
@@ -73,7 +73,7 @@ public:
   void start_interior_path(const Vector &u);
   /// Updates hessian() for the linearized law, restarts the path where steps are short, and sets the right side F.                            (5.18)
   void linearize_interior(const Vector &u, Vector &F);
-  /// After the step d for mu = 0, what hessian() is to be solved for instead.                                  (5.19)
+  /// Corrector: F becomes the right side for the targets that the predictor step d gives.                      (5.19)
   void correct_interior(const Vector &u, const Vector &d, Vector &F);
   /// The part of the step d that can be taken, at most 1.                                                       (5.19)
   double longest_interior_step(const Vector &u, const Vector &d) const

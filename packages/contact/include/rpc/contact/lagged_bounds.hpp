@@ -14,7 +14,7 @@ namespace rpc::contact
 class LaggedBounds
 {
 public:
-  /// The bounds to go on with [Pa]; collective.
+  /// The bounds of the next Tresca problem [Pa]; collective.
   /// @param used    (points) s of the last problem    @param found   (points) G(s)
   /// @param weight  (points) of the norm              @return (points) >= 0
   DeviceView<double *> next(const Comm &comm, const DeviceView<double *> &used, const DeviceView<double *> &found,

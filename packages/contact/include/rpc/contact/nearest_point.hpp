@@ -12,8 +12,8 @@ namespace rpc::contact
 struct Furthest {
   std::vector<double> at;
   bool endless = false;
-  /// A point of the set that goes far along q too, where the set is endless: without it a ray nearly across q hides what the rest of
-  /// the set does. Empty: none is known.
+  /// Of an unbounded set, also a point far along q that is not on a ray: a ray nearly normal to q would hide the bounded part of the
+  /// set. Empty: none is known.
   std::vector<double> bounded = {};
 };
 /// A closed convex set in R^k that holds the origin, given by its farthest point in any direction.
