@@ -84,21 +84,24 @@ NO_RULES = {
     "numbers of formats and protocols: bytes, tags, types of cells": """
         packages/core/src/exchange.cpp packages/core/src/halo.cpp packages/core/src/message.cpp packages/core/src/units.cpp
         packages/io/src/checkpoint.cpp packages/mesh/src/gmsh_wire.cpp packages/mesh/src/gmsh_wire.hpp
-        packages/mesh/src/gmsh_size_callback.hpp packages/mesh/src/mesh_mending.cpp src/checkpoint.cpp src/output/paths.cpp""",
+        packages/mesh/src/gmsh_size_callback.hpp packages/mesh/src/mesh_mending.cpp packages/solver/src/mumps_factor.cpp
+        src/checkpoint.cpp src/output/paths.cpp""",
     "numbers of shapes": """
         packages/mesh/include/rpc/mesh/size_field.hpp packages/mesh/src/element.cpp packages/mesh/src/topology.cpp""",
     "numbers that are known to mathematics, or to stand for none": """
-        packages/algebra/include/rpc/algebra/alike_nodes.hpp packages/core/src/bounds.cpp packages/core/src/finite.cpp
-        packages/core/src/memory.cpp packages/fem/src/materials.cpp packages/io/src/expression_bounds.cpp""",
+        packages/algebra/include/rpc/algebra/alike_nodes.hpp packages/analysis/src/load_history.cpp packages/analysis/src/options.cpp
+        packages/analysis/src/take_back_results.cpp packages/core/src/bounds.cpp packages/core/src/finite.cpp
+        packages/core/src/memory.cpp packages/fem/src/materials.cpp packages/io/src/expression_bounds.cpp
+        packages/solver/src/band_factor.cpp packages/solver/src/mesh_multigrid.cpp""",
     "blocks of kernels and leaves of trees": """
         packages/algebra/src/repeated_rows.cpp packages/algebra/src/several_vectors.cpp packages/contact/src/surface/facets.cpp
-        packages/mesh/src/canonical_order.cpp packages/mesh/src/size_tree.cpp""",
+        packages/mesh/src/canonical_order.cpp packages/mesh/src/size_tree.cpp packages/solver/src/low_rank_update.cpp""",
     "what input may be": """
         packages/contact/src/contact_nodes.cpp packages/fem/src/hinges.cpp packages/io/src/deck.cpp
-        packages/mesh/include/rpc/mesh/mesh_data.hpp packages/mesh/src/make_mesh.cpp""",
+        packages/mesh/include/rpc/mesh/mesh_data.hpp packages/mesh/src/make_mesh.cpp packages/solver/src/gathered_solver.cpp""",
     "what notes and results tell, and in how many digits": """
         packages/contact/src/between_nodes.cpp packages/contact/src/gap_search.cpp packages/io/src/error_bar.cpp src/notes.cpp
-        src/output/points.cpp src/scene.cpp""",
+        src/output/points.cpp src/deck_notes.cpp""",
     "estimates of errors and what their bars cover": """
         packages/adapt/src/cycle.cpp packages/adapt/src/observed_error.cpp packages/adapt/src/size_plan.cpp""",
     "rounding": """
@@ -108,9 +111,8 @@ NO_RULES = {
     "contact law": """
         packages/contact/include/rpc/contact/law/foundation.hpp packages/contact/include/rpc/contact/law/interpolated.hpp""",
 }
-NUMBERS_LEFT = ["analysis", "solver"]  # packages whose numbers are not yet rules
 RULE = re.compile(r"^ *Rule<", re.MULTILINE)
-MOST_RULES = {"src": 4, "algebra": 4, "mesh": 13, "contact": 23, "adapt": 32}  # of a package; 130 are wanted in all
+MOST_RULES = {"src": 4, "algebra": 4, "mesh": 13, "contact": 23, "adapt": 32, "analysis": 89, "solver": 96}  # of a package; 130 are wanted in all
 
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"  # of LICENSE; within the first two lines, behind the marks of a comment
 COMMENTS = {".cpp": "//", ".hpp": "//", ".c": "//", ".py": "#", ".sh": "#", ".cmake": "#", ".in": "#", ".def": "#"}
@@ -265,7 +267,7 @@ def check_numbers(root):
     """Numbers that steer a decision are rules."""
     subjects = {name for files in NO_RULES.values() for name in files.split()}
     for folder in [*sorted(root.glob("packages/*")), root / "src"]:
-        for file in code(folder) if folder.name not in NUMBERS_LEFT else []:
+        for file in code(folder):
             name = str(file.relative_to(root))
             numbers = [] if "test" in file.relative_to(folder).parts else NUMBER.findall(file.read_text())
             if numbers and file.name != "rules.hpp" and name not in subjects:
@@ -283,7 +285,7 @@ def rules(root):
 def check_rules(root):
     for package, number in rules(root).items():
         most = MOST_RULES.get(package, 0)
-        if number > most and package not in NUMBERS_LEFT:
+        if number > most:
             yield f"packages/{package}: {number} rules, more than the {most} of MOST_RULES: a new rule takes the place of another one"
 
 

@@ -14,8 +14,6 @@ namespace rpc::solver
 namespace
 {
 
-constexpr int most_halvings = 10; // of an interval, in the search for the pieces of a line function
-
 /// int_a^b of the slope, known at both ends. @param halvings  that are left
 double rise_between(const LineFunction &line, const double a, const LineFunction::Value &at_a, const double b,
                     const LineFunction::Value &at_b, const int halvings)
@@ -45,7 +43,7 @@ const NewtonGroup &newton_group(const NOX::Abstract::Group &group)
 
 double rise(const LineFunction &line, const double a, const double b)
 {
-  return rise_between(line, a, line.at(a), b, line.at(b), most_halvings);
+  return rise_between(line, a, line.at(a), b, line.at(b), newton_rules.most_halvings);
 }
 
 double FunctionalMerit::computef(const NOX::Abstract::Group &group) const

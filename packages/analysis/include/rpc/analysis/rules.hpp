@@ -132,33 +132,33 @@ inline constexpr_rules StepRules step_rules;
 /// What a body's kind tells its linear solver: coarse meshes, mixed form, iterations to expect.
 struct LinearRules {
   // Coarse meshes
-  Rule<GO> few_2d{800, "linear.few_2d", "unknowns that coarser boxes end at, in the plane [-]", "not measured"};
-  Rule<GO> few_3d{400, "linear.few_3d", "the same in space [-]", "not measured"};
-  Rule<GO> most_factored_2d{2800, "linear.most_factored_2d", "unknowns of a coarsest mesh that is factored, in the plane [-]", "not measured"};
-  Rule<GO> most_factored_3d{5200, "linear.most_factored_3d", "the same in space [-]", "not measured"};
-  Rule<GO> least_nodes_of_rank{on_gpu ? 200'000 : 2000, "linear.least_nodes_of_rank", "nodes of a coarse box on each of its ranks [-]",
+  Rule<GO> few_2d{800, "body.few_2d", "unknowns that coarser boxes end at, in the plane [-]", "not measured"};
+  Rule<GO> few_3d{400, "body.few_3d", "the same in space [-]", "not measured"};
+  Rule<GO> most_factored_2d{2800, "body.most_factored_2d", "unknowns of a coarsest mesh that is factored, in the plane [-]", "not measured"};
+  Rule<GO> most_factored_3d{5200, "body.most_factored_3d", "the same in space [-]", "not measured"};
+  Rule<GO> least_nodes_of_rank{on_gpu ? 200'000 : 2000, "body.least_nodes_of_rank", "nodes of a coarse box on each of its ranks [-]",
                                "measured, not recorded"};
   // Nearly incompressible bodies
-  Rule<double> mixed_order_one{0.485, "linear.mixed_order_one", "Poisson's ratio above which order 1 takes the mixed form [-]",
+  Rule<double> mixed_order_one{0.485, "body.mixed_order_one", "Poisson's ratio above which order 1 takes the mixed form [-]",
                                "theory.md (4.13), in space"};
-  Rule<double> mixed_order_two{0.48, "linear.mixed_order_two", "the same of order 2 [-]", "theory.md (4.13)"};
-  Rule<double> soft{0.4, "linear.soft", "Poisson's ratio of the soft part of K [-]", "theory.md (4.13)"};
-  Rule<double> soft_tetrahedra{0.47, "linear.soft_tetrahedra", "the same in tetrahedra [-]", "theory.md (4.13)"};
-  Rule<double> pays_above{0.495, "linear.pays_above", "Poisson's ratio above which tetrahedra have equations for alternating pressures [-]",
+  Rule<double> mixed_order_two{0.48, "body.mixed_order_two", "the same of order 2 [-]", "theory.md (4.13)"};
+  Rule<double> soft{0.4, "body.soft", "Poisson's ratio of the soft part of K [-]", "theory.md (4.13)"};
+  Rule<double> soft_tetrahedra{0.47, "body.soft_tetrahedra", "the same in tetrahedra [-]", "theory.md (4.13)"};
+  Rule<double> pays_above{0.495, "body.pays_above", "Poisson's ratio above which tetrahedra have equations for alternating pressures [-]",
                           "theory.md (4.15a)"};
-  Rule<double> softer_tetrahedra{0.45, "linear.softer_tetrahedra", "the soft part's where they have [-]", "theory.md (4.15a)"};
+  Rule<double> softer_tetrahedra{0.45, "body.softer_tetrahedra", "the soft part's where they have [-]", "theory.md (4.15a)"};
   // Iterations to expect, to 1e-8
-  Rule<double> expected_of_mixed{30, "linear.expected_of_mixed", "of the mixed form [CG iterations]", "theory.md (4.10d)"};
-  Rule<double> cost_of_step{0.035, "linear.cost_of_step", "step of the polynomial for pressures [CG iterations]", "theory.md (4.10d)"};
-  Rule<int> first_iterations{40, "linear.first_iterations", "iterations of the mixed form before a sparse factor is considered [-]", "not measured"};
-  Rule<double> expected{4, "linear.expected", "of other bodies, times (1 - 2 nu)^(-1/2) [CG iterations]", "theory.md (4.10b)"};
-  Rule<double> expected_of_p1{6, "linear.expected_of_p1", "the same of P1 [CG iterations]", "theory.md (4.10b)"};
-  Rule<double> expected_of_stretched{3, "linear.expected_of_stretched", "of stretched P1, times (1 - 2 nu)^(-3/4) [CG iterations]",
+  Rule<double> expected_of_mixed{30, "body.expected_of_mixed", "of the mixed form [CG iterations]", "theory.md (4.10d)"};
+  Rule<double> cost_of_step{0.035, "body.cost_of_step", "step of the polynomial for pressures [CG iterations]", "theory.md (4.10d)"};
+  Rule<int> first_iterations{40, "body.first_iterations", "iterations of the mixed form before a sparse factor is considered [-]", "not measured"};
+  Rule<double> expected{4, "body.expected", "of other bodies, times (1 - 2 nu)^(-1/2) [CG iterations]", "theory.md (4.10b)"};
+  Rule<double> expected_of_p1{6, "body.expected_of_p1", "the same of P1 [CG iterations]", "theory.md (4.10b)"};
+  Rule<double> expected_of_stretched{3, "body.expected_of_stretched", "of stretched P1, times (1 - 2 nu)^(-3/4) [CG iterations]",
                                      "theory.md (4.10b)"};
-  Rule<double> stretched{1.7, "linear.stretched", "ratio of cell lengths from which cells are stretched [-]", "as for coarser boxes"};
-  Rule<double> rough_incompressible{0.002, "linear.rough_incompressible", "1 - 2 nu below which solves while states change are better [-]",
+  Rule<double> stretched{1.7, "body.stretched", "ratio of cell lengths from which cells are stretched [-]", "as for coarser boxes"};
+  Rule<double> rough_incompressible{0.002, "body.rough_incompressible", "1 - 2 nu below which solves while states change are better [-]",
                                     "theory.md (5.9b)"};
-  Rule<double> damping_order_two{1.6, "linear.damping_order_two", "damping of MueLu's prolongators at order 2 [-]",
+  Rule<double> damping_order_two{1.6, "body.damping_order_two", "damping of MueLu's prolongators at order 2 [-]",
                                  "the beam of P2: 32 to 35 iterations, 34 to 37 without"};
 };
 inline constexpr_rules LinearRules linear_rules;

@@ -188,6 +188,8 @@ struct NewtonRules {
                                     "5: a slender body takes 75 steps instead of 53; 20 add nothing"};
   Rule<int> most_steps_within{50, "newton.most_steps_within", "Newton steps within these directions [-]",
                               "the rest is left to the next step"};
+  Rule<int> most_halvings{10, "newton.most_halvings",
+                          "of an interval, in the search for the pieces of a line function [-]", "not measured"};
   Rule<double> falls{0.9, "newton.falls", "ratio of a residual that falls [-]", "not measured"};
   Rule<double> full_step{0.5, "newton.full_step", "length of a step that counts as full [-]", "not measured"};
   Rule<int> most_idle{2, "newton.most_idle", "full steps on one piece without a fall [-]", "not measured"};
