@@ -107,7 +107,7 @@ NO_RULES = {
     "rounding": """
         packages/algebra/src/updated_operator.cpp packages/fem/include/rpc/fem/rigid_motion.hpp packages/fem/src/congruent_cells.cpp
         packages/fem/src/discretization.cpp packages/fem/src/rigid_motion.cpp packages/fem/src/rounding.cpp packages/fem/src/surface.cpp
-        packages/mesh/src/gmsh_boundary.cpp packages/mesh/src/side_places.cpp src/continuation.cpp""",
+        packages/mesh/src/gmsh_boundary.cpp packages/mesh/src/side_places.cpp src/continuation.cpp packages/analysis/src/active_set.cpp""",
     "contact law": """
         packages/contact/include/rpc/contact/law/foundation.hpp packages/contact/include/rpc/contact/law/interpolated.hpp""",
 }
