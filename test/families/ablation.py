@@ -12,7 +12,7 @@ with one of UPPER, which bound from above, and 0 for others.
 Each run is a line of FILE. --continue goes on where FILE ends; --budget stops in time. Runs are compared with those of the rules as they are in the
 same call, so that calls may be on different machines. Then a table: per rule and setting the mean ratios to the rules as they are, and
 the verdict: a rule stays if it gains over 1 % of steps or seconds in the mean, or 20 % in the worst scene, or scenes fail without it. Seconds
-must exceed twice their standard error, too. Needs numpy alone. --report prints the table of FILE without a run.
+must exceed twice their standard error, too. A rule that is never met changes no count of any scene: other scenes have to tell. Needs numpy alone. --report prints the table of FILE without a run.
 """
 import argparse
 import collections
@@ -318,7 +318,7 @@ def verdict(effects):
         return "not measured"
     off = effects[OFF]
     why = off.gains()
-    said = "stays: " + ", ".join(why) if why else "goes" + (": never met" if not off.changed else ": better off" if off.is_better() else "")
+    said = "stays: " + ", ".join(why) if why else "never met" if not off.changed else "goes" + (": better off" if off.is_better() else "")
     return "; ".join([said] + [f"better {name}" for name in SCALED if name in effects and effects[name].is_better()])
 
 

@@ -62,7 +62,7 @@ class Ablation(unittest.TestCase):
         self.assertEqual(code, 0)
         cells = [[cell.strip() for cell in line.split("|")] for line in text.splitlines() if line.startswith("|")]
         verdicts = {line[1]: line[-2] for line in cells if line[2] == "off"}
-        self.assertEqual(verdicts, {"test.most_idle": "stays: steps, worst scene", "test.share": "goes: never met", "test.least": "stays: 2 fail",
+        self.assertEqual(verdicts, {"test.most_idle": "stays: steps, worst scene", "test.share": "never met", "test.least": "stays: 2 fail",
                                     "test.start": "goes: better off; better halved"})
         scaled = {run.rule for run in runs if run.setting == "halved"}
         self.assertEqual(scaled, {"test.most_idle", "test.least", "test.start"})  # not of a rule that no scene meets
