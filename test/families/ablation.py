@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What each rule of the program gains: random scenes with the rule off, halved and doubled, against the rule as it is.
 
-    python3 ablation.py --rpc=build-ablation/rpc --csv=FILE [--rules=REGEX] [--kinds=well-shaped,hard,friction,histories] [--seed=1]
-                        [--scenes=25] [--size=small] [--jobs=1] [--budget=SECONDS] [--continue] [--all-settings] [--report]
+    python3 ablation.py --rpc=build-ablation/rpc --csv=FILE [--rules=REGEX] [--kinds=well-shaped,hard,friction,histories]
+                        [--seed=1] [--scenes=25] [--size=small] [--jobs=1] [--budget=SECONDS] [--continue] [--all-settings] [--report]
 
 The program is one of -D RPC_ABLATION=ON (core/rule.hpp), which lists its rules with RPC_RULES=list and takes values from RPC_RULES. Scene K
-of a kind comes from the seed and K alone. First each rule is off; then those that changed a count of some scene are halved and doubled
+of a kind comes from the seed and K alone; --kinds=adaptive has bodies that ask for an error (test/stress/adaptive.py), most of them for gmsh. First each rule is off; then those that changed a count of some scene are halved and doubled
 (--all-settings: all of them). "Off" is the number in "off: NUMBER" at the end of a rule's meaning, where it has that; else 1e9 for names that begin
 with one of UPPER, which bound from above, and 0 for others.
 
@@ -37,7 +37,8 @@ import types
 import numpy
 
 import families
-import friction_histories  # of test/stress, whose folder families.py has put on the path
+import adaptive  # of test/stress, whose folder families.py has put on the path
+import friction_histories
 import histories
 import runs
 from scenes import contact_rows, rounding, write
@@ -45,7 +46,8 @@ from suite.table import Table
 
 KINDS = {"well-shaped": "three states", "hard": "hard", "friction": "friction"}  # those of families.py
 HISTORIES = {"history": histories, "friction history": friction_histories}  # in turn
-ALL_KINDS = [*KINDS, "histories"]
+STANDARD_KINDS = [*KINDS, "histories"]
+ALL_KINDS = [*STANDARD_KINDS, "adaptive"]
 UPPER = ("most_", "largest", "greatest", "longest", "patience", "slowest")
 LARGE = 1e9
 AS_IS, OFF = "as is", "off"
@@ -117,8 +119,21 @@ def listed(rpc):
     return list(rules.values())
 
 
-def made(kind, seed, number, size):
-    """(family, scene)"""
+def made(kind, seed, number, size, folder):
+    """(family, scene), written into a folder; the scene is None for kinds whose residuals rounding does not excuse."""
+    if kind == "adaptive":
+        space = list(adaptive.TARGETS)[number % len(adaptive.TARGETS)]
+        lists, geo = adaptive.deck(random.Random(f"{seed}/{space}/{number}"), space, number)
+        (folder / "scene.yaml").write_text(adaptive.yaml({"scene": lists}))
+        if geo:
+            (folder / "body.geo").write_text(geo)
+        return space, None
+    family, scene = make(kind, seed, number, size)
+    write(scene, folder)
+    return family, scene
+
+
+def make(kind, seed, number, size):
     if kind in KINDS:
         return families.make(seed, number, size, KINDS[kind])
     name = list(HISTORIES)[number % len(HISTORIES)]
@@ -132,11 +147,9 @@ class Scenes:
         self.options, self.scenes = options, {}
         for number in range(options.scenes):
             for kind in options.kinds:
-                family, scene = made(kind, options.seed, number, options.size)
                 where = folder / f"{kind}_{number}"
                 where.mkdir()
-                write(scene, where)
-                self.scenes[kind, options.seed, options.size, number] = family, scene, where
+                self.scenes[kind, options.seed, options.size, number] = *made(kind, options.seed, number, options.size, where), where
 
     def run(self, call, rule, setting, value, scene_id, limit):
         family, scene, where = self.scenes[scene_id]
@@ -147,8 +160,8 @@ class Scenes:
             folder = pathlib.Path(folder)
             for path in where.iterdir():
                 shutil.copy(path, folder)
-            result = runs.solve(options, folder, "scene.xml")
-            if result.complaint and result.summary:
+            result = runs.solve(options, folder, next(folder.glob("scene.[xy]*ml")).name)
+            if result.complaint and result.summary and scene:
                 runs.excuse(types.SimpleNamespace(), result, floor(scene, result.summary, contact_rows(folder)))
         run.failure = result.complaint
         if result.summary:
@@ -167,12 +180,13 @@ def count(run, summary):
     steps = summary.get("steps") or [{}]
     newton, solves, cg = ([step.get(key) for step in steps] for key in ("newton_iterations", "linear_solves", "linear_iterations"))
     history = None not in newton + solves + cg
-    run.steps = sum(newton if history else summary["newton_iterations"])
-    run.solves = sum(solves) if history else summary["linear_solves"]
-    run.cg = sum(cg if history else summary["linear_iterations"])
+    coarser = summary.get("adaptation", {}).get("cycles", [])[:-1]  # the last one is that of the result
+    run.steps = sum(newton if history else summary["newton_iterations"]) + sum(cycle["newton_iterations"] for cycle in coarser)
+    run.solves = sum(solves) if history else summary["linear_solves"] + sum(len(cycle["linear_iterations"]) for cycle in coarser)
+    run.cg = sum(cg if history else summary["linear_iterations"]) + sum(sum(cycle["linear_iterations"]) for cycle in coarser)
     run.seconds = summary["seconds"]["total"] - summary["seconds"]["output"]
     run.energy = summary["energy_J"]
-    told = [newton, cg, [[level[key] for key in ("dofs", "newton_iterations", "linear_iterations")] for level in summary["levels"]]]
+    told = [newton, cg, [[mesh[key] for key in ("dofs", "newton_iterations", "linear_iterations")] for mesh in summary["levels"] + coarser]]
     told += [summary.get(key) for key in ("dofs", "uzawa_iterations", "newton_iterations", "coarse_choices", "line_search_steps", "linear_iterations",
                                           "preconditioner_setups", "local_corrections", "solver_path", "matrix_assemblies")]
     run.counts = hashlib.sha1(json.dumps(told).encode()).hexdigest()[:12]
@@ -288,7 +302,7 @@ class Effect:
         self.failed = sum(bool(run.failure) and not base.failure for run, base in self.pairs)
         self.mended = sum(bool(base.failure) and not run.failure for run, base in self.pairs)
         self.changed = sum(differs(run, base) for run, base in self.pairs)
-        self.other_answers = sum(abs(run.energy - base.energy) > ENERGY * abs(base.energy) for run, base in both)
+        self.other_answers = sum(abs(run.energy - base.energy) > ENERGY * abs(base.energy) for run, base in both if run.kind != "adaptive")
         for name in ("steps", "solves", "cg") if both else ():
             setattr(self, name, float(numpy.mean([(getattr(run, name) + 1) / (getattr(base, name) + 1) for run, base in both])))
         if both:
@@ -325,10 +339,12 @@ def verdict(effects):
 def table(runs_, rules):
     pairs = by_setting(runs_)
     used = {run.scene for run in runs_}
-    result = Table("What rules gain", f"{len(used)} scenes of {', '.join(sorted({scene[0] for scene in used}))}, seed {', '.join(sorted({str(s[1]) for s in used}))}, size "
-                   f"{', '.join(sorted({s[2] for s in used}))}. Mean ratios to the rules as they are, of scenes that both solve; failed: more than with the "
-                   "rule as it is, or fewer (-).",
-                   ["rule", "setting", "value", "scenes", "changed", "steps", "solves", "CG", "seconds", "failed", "other answers", "worst", "worst scene", "verdict"])
+    failed = {run.scene for run in runs_ if not run.rule and run.failure}
+    kinds_, seeds, sizes = (", ".join(sorted({str(scene[k]) for scene in used})) for k in range(3))
+    note = (f"{len(used)} scenes of {kinds_}, seed {seeds}, size {sizes}; {len(failed)} fail with the rules as they are. Mean ratios to the rules as they "
+            "are, of scenes that both solve; failed: more than with the rule as it is, or fewer (-).")
+    result = Table("What rules gain", note, ["rule", "setting", "value", "scenes", "changed", "steps", "solves", "CG", "seconds", "failed", "other answers",
+                                             "worst", "worst scene", "verdict"])
     for rule in rules:
         effects = {setting: Effect(pairs[rule.name, setting]) for setting in [OFF, *SCALED] if (rule.name, setting) in pairs}
         for setting, e in effects.items():
@@ -354,11 +370,11 @@ def arguments(words=None):
     parser.add_argument("--rpc", required=True, help="a program of -D RPC_ABLATION=ON")
     parser.add_argument("--csv", required=True, help="file for a line a run")
     parser.add_argument("--rules", type=re.compile, default=re.compile(""), help="regular expression, found in names of rules; default: all")
-    parser.add_argument("--kinds", type=kinds, default=ALL_KINDS, help=",".join(ALL_KINDS))
+    parser.add_argument("--kinds", type=kinds, default=STANDARD_KINDS, help="of " + ",".join(ALL_KINDS))
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--scenes", type=int, default=25, help="of each kind (%(default)s)")
     parser.add_argument("--size", choices=list(families.SIZES), default="small", help="of the meshes, but for histories (%(default)s)")
-    parser.add_argument("--jobs", type=int, default=1, help="runs at a time (%(default)s)")
+    parser.add_argument("--jobs", type=int, default=1, help="runs at a time (%(default)s); more than the cores disturb the times")
     parser.add_argument("--budget", type=float, default=math.inf, help="time for runs [s]")
     parser.add_argument("--time-limit", type=float, default=120.0, help="of a run [s] (%(default)s)")
     parser.add_argument("--continue", dest="goes_on", action="store_true", help="keep the runs of the file")
