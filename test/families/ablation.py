@@ -12,7 +12,7 @@ with one of UPPER, which bound from above, and 0 for others.
 Each run is a line of FILE. --continue goes on where FILE ends; --budget stops in time. Runs are compared with those of the rules as they are in the
 same call, so that calls may be on different machines. Then a table: per rule and setting the mean ratios to the rules as they are, and
 the verdict: a rule stays if it gains over 1 % of steps or seconds in the mean, or 20 % in the worst scene, or scenes fail without it. Seconds
-must exceed twice their standard error, too. A rule that is never met changes no count of any scene: other scenes have to tell. Needs numpy alone. --report prints the table of FILE without a run.
+must exceed twice their standard error, too. A rule that is never met changes no count of any scene: other scenes have to tell. --report prints the table of FILE without a run.
 """
 import argparse
 import collections
@@ -28,13 +28,12 @@ import pathlib
 import random
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
 import time
 import types
-
-import numpy
 
 import families
 import adaptive  # of test/stress, whose folder families.py has put on the path
@@ -304,11 +303,11 @@ class Effect:
         self.changed = sum(differs(run, base) for run, base in self.pairs)
         self.other_answers = sum(abs(run.energy - base.energy) > ENERGY * abs(base.energy) for run, base in both if run.kind != "adaptive")
         for name in ("steps", "solves", "cg") if both else ():
-            setattr(self, name, float(numpy.mean([(getattr(run, name) + 1) / (getattr(base, name) + 1) for run, base in both])))
+            setattr(self, name, statistics.fmean((getattr(run, name) + 1) / (getattr(base, name) + 1) for run, base in both))
         if both:
-            ratios = numpy.array([run.seconds / max(base.seconds, 1e-3) for run, base in both])
-            self.seconds = float(ratios.mean())
-            self.error = float(ratios.std(ddof=1) / math.sqrt(len(ratios))) if len(ratios) > 1 else math.inf
+            ratios = [run.seconds / max(base.seconds, 1e-3) for run, base in both]
+            self.seconds = statistics.fmean(ratios)
+            self.error = statistics.stdev(ratios) / math.sqrt(len(ratios)) if len(ratios) > 1 else math.inf
         for run, base in both:
             ratio = max([1.0] + [run.steps / base.steps] * (run.steps - base.steps >= MORE_STEPS and base.steps > 0)
                         + [run.seconds / base.seconds] * (run.counts != base.counts and run.seconds - base.seconds >= MORE_SECONDS))
