@@ -252,9 +252,11 @@ def measure(options, rules):
                     for scene in base if (rule.name, setting, *scene) not in done]
 
         run_all(wanted([OFF], rules))
-        run_all(wanted(SCALED, rules if options.all_settings else [r for r in rules if met(r.name, done.values())]))
-        complete = len(base) == len(scenes.scenes) and not wanted([OFF], rules)
-        return complete and not wanted(SCALED, rules if options.all_settings else [r for r in rules if met(r.name, done.values())])
+        all_off = len(base) == len(scenes.scenes) and not wanted([OFF], rules)
+        names = met(done.values())
+        scaled = [rule for rule in rules if options.all_settings or rule.name in names]
+        run_all(wanted(SCALED, scaled))
+        return all_off and not wanted(SCALED, scaled)
 
 
 # --- judgement -------------------------------------------------------------------------------------------------------------
@@ -274,9 +276,9 @@ def differs(run, base):
     return run.counts != base.counts or bool(run.failure) != bool(base.failure)
 
 
-def met(rule, runs_):
-    """Whether a run without the rule differs in a count, or fails."""
-    return any(differs(run, base) for run, base in by_setting(list(runs_)).get((rule, OFF), []))
+def met(runs_):
+    """Names of the rules without which a run differs in a count, or fails."""
+    return {rule for (rule, setting), pairs in by_setting(list(runs_)).items() if setting == OFF and any(differs(*pair) for pair in pairs)}
 
 
 @dataclasses.dataclass

@@ -32,7 +32,8 @@ public:
   }
 #else
   /// @param name     group and name as RPC_RULES takes them
-  /// @param meaning  what is counted or compared, with its unit in brackets
+  /// @param meaning  what is counted or compared, with its unit in brackets; then "; off: NUMBER" where the rule is off neither by 0 nor, for names
+  ///                 such as most_..., by 1e9 (test/families/ablation.py)
   /// @param source   where the value was measured
   constexpr Rule(const T value, const char * /*name*/, const char * /*meaning*/, const char * /*source*/)
       : value_(value)
