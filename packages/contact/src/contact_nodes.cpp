@@ -46,7 +46,7 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
       },
       Kokkos::Max<double>(largest_gap));
   // Prescribed displacements and gaps that are meant to be equal differ by rounding: sin(pi) is not 0.
-  const double rounding = 1e-12 * (std::max(0., max_all(comm, largest_gap)) + dirichlet.value->normInf());
+  const double rounding = Rounding::sum * (std::max(0., max_all(comm, largest_gap)) + dirichlet.value->normInf());
   Kokkos::parallel_for(
       "rpc::contact::directions", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
         double length = 0, free_gap = nodes.gap(i) + nodes.dent(i); // (3.4), (11.1)
@@ -58,7 +58,7 @@ void take_over_dirichlet(ContactNodes &c, const fem::DirichletDofs &dirichlet, c
         }
         // A remainder of rounding size is no direction to push in.
         const bool weightless = nodes.weight(i) == 0;
-        nodes.fixed(i) = weightless || length < 1e-16;
+        nodes.fixed(i) = weightless || length < Rounding::direction;
         for (int k = 0; k < nodes.dim && nodes.fixed(i); ++k) nodes.direction(i, k) = 0;
         const bool touches = free_gap < rounding && free_gap > -rounding && leaves_pressure_open(nodes.law(i));
         const bool open_to_choice = weightless || touches;
@@ -267,7 +267,7 @@ void start_friction(ContactNodes &c, const fem::DirichletDofs &dirichlet, const 
         }
         const Along along = slip(points, i, u);
         for (int k = 0; k < points.dim; ++k) points.friction.from(i, k) = along(k);
-        if (room > 1e-12 && !points.fixed(i)) return;
+        if (room > Rounding::sum && !points.fixed(i)) return;
         points.friction.coefficient(i) = 0;
         points.friction.bound(i) = 0;
       });

@@ -2,10 +2,12 @@
 #include "held_part.hpp"
 
 #include "rpc/contact/law/judgement.hpp"
+#include "rpc/contact/rounding.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace rpc::contact
@@ -16,6 +18,7 @@ namespace
 using fem::dot;
 using fem::RigidMotion;
 using Coefficients = Kokkos::Array<double, 6>;
+using Location = Kokkos::MaxLoc<double, LO>;
 
 Coefficients coefficients_of(const RigidMotion &motion)
 {
@@ -81,11 +84,18 @@ KOKKOS_INLINE_FUNCTION void add_answer(const Reactions &reactions, const LO i, c
   }
 }
 
+/// The rank of the point that a motion presses in most, of the most of each rank; nothing if it presses none in. Collective.
+std::optional<int> rank_of(const Comm &comm, const Location::value_type &worst, const RigidMotion &motion)
+{
+  const double most = max_all(comm, std::max(0., worst.val)); // a maximum over no nodes is -DBL_MAX
+  if (!(most > Rounding::pressed * std::sqrt(dot(motion, motion)))) return std::nullopt;
+  return min_all(comm, worst.val == most ? comm.getRank() : comm.getSize());
+}
+
 /// The same as steepest() with friction: the ray of a rigid point.
 RigidMotion steepest_with_friction(const Comm &comm, const Reactions &reactions, const int mine,
                                    const RigidMotion &motion)
 {
-  using Location = Kokkos::MaxLoc<double, LO>;
   const Coefficients r = coefficients_of(motion);
   const Reactions all_reactions = reactions;
   const auto part = reactions.part;
@@ -110,11 +120,10 @@ RigidMotion steepest_with_friction(const Comm &comm, const Reactions &reactions,
         most.loc = i;
       },
       Location(worst));
-  const double most = max_all(comm, std::max(0., worst.val)); // a maximum over no nodes is -DBL_MAX
   RigidMotion local{}, all{};
-  if (!(most > 1e-10 * std::sqrt(dot(motion, motion)))) return all;
-  const int owner = min_all(comm, worst.val == most ? comm.getRank() : comm.getSize());
-  if (owner == comm.getRank()) {
+  const std::optional<int> owner = rank_of(comm, worst, motion);
+  if (!owner) return all;
+  if (*owner == comm.getRank()) {
     const DeviceView<double[6]> row("rpc::contact::ray");
     const LO i = worst.loc;
     Kokkos::parallel_for(
@@ -134,7 +143,6 @@ RigidMotion steepest_with_friction(const Comm &comm, const Reactions &reactions,
 /// m . r_k of the rigid node that the motion presses in most for the size of its row; 0 if it presses in none.
 RigidMotion steepest(const Comm &comm, const Reactions &reactions, const int mine, const RigidMotion &motion)
 {
-  using Location = Kokkos::MaxLoc<double, LO>;
   const Coefficients r = coefficients_of(motion);
   const auto along = reactions.along;
   const auto limit = reactions.limit;
@@ -152,11 +160,10 @@ RigidMotion steepest(const Comm &comm, const Reactions &reactions, const int min
         most.loc = i;
       },
       Location(worst));
-  const double most = max_all(comm, std::max(0., worst.val)); // a maximum over no nodes is -DBL_MAX
   RigidMotion local{}, all{};
-  if (!(most > 1e-10 * std::sqrt(dot(motion, motion)))) return all;
-  const int owner = min_all(comm, worst.val == most ? comm.getRank() : comm.getSize());
-  if (owner == comm.getRank()) {
+  const std::optional<int> owner = rank_of(comm, worst, motion);
+  if (!owner) return all;
+  if (*owner == comm.getRank()) {
     const auto rows = to_host(along);
     for (int k = 0; k < 6; ++k) local[k] = rows(worst.loc, k);
   }
@@ -258,7 +265,7 @@ RigidMotion HeldPart::carried(const RigidMotion &motion, const LO begin, const L
   const auto limit = reactions_.limit;
   const auto part = reactions_.part;
   const int mine = part_;
-  const double rounding = 1e-14 * std::sqrt(dot(motion, motion));
+  const double rounding = Rounding::speed * std::sqrt(dot(motion, motion));
   Kokkos::parallel_for(
       "rpc::contact::carried", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end), KOKKOS_LAMBDA(const LO i) {
         if (part(i) != mine || is_rigid(limit(i)) || !(speed(along, i, r) > rounding)) return;
@@ -276,7 +283,7 @@ RigidMotion HeldPart::carried_with_friction(const RigidMotion &motion, const LO 
   const Coefficients r = coefficients_of(motion);
   const Reactions reactions = reactions_;
   const int mine = part_;
-  const double rounding = 1e-14 * std::sqrt(dot(motion, motion));
+  const double rounding = Rounding::speed * std::sqrt(dot(motion, motion));
   Kokkos::parallel_for(
       "rpc::contact::carried_with_friction", Kokkos::RangePolicy<ExecutionSpace, LO>(begin, end),
       KOKKOS_LAMBDA(const LO i) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/nearest_point.hpp"
 
+#include "rpc/contact/rounding.hpp"
+
 #include <Teuchos_LAPACK.hpp>
 #include <algorithm>
 #include <cmath>
@@ -33,8 +35,8 @@ Numbers least_squares(const std::vector<Numbers> &columns, const Numbers &b)
   for (const Numbers &column : columns) A.insert(A.end(), column.begin(), column.end());
   x.resize(most, 0.);
   int rank = 0, info = 0;
-  Teuchos::LAPACK<int, double>().GELSS(rows, cols, 1, A.data(), rows, x.data(), most, singular.data(), 1e-14, &rank,
-                                       work.data(), work_size, &info);
+  Teuchos::LAPACK<int, double>().GELSS(rows, cols, 1, A.data(), rows, x.data(), most, singular.data(), Rounding::face,
+                                       &rank, work.data(), work_size, &info);
   x.resize(cols);
   return x;
 }
@@ -78,10 +80,10 @@ public:
         weight_ = goal;
         return;
       }
-      const bool drop_origin = origin_ && !(to > 0) && from <= step * (from - to) * (1 + 1e-12);
+      const bool drop_origin = origin_ && !(to > 0) && from <= step * (from - to) * (1 + Rounding::sum);
       std::vector<char> drop(goal.size(), 0);
       for (std::size_t j = 0; j < goal.size(); ++j) {
-        drop[j] = !(goal[j] > 0) && weight_[j] <= step * (weight_[j] - goal[j]) * (1 + 1e-12);
+        drop[j] = !(goal[j] > 0) && weight_[j] <= step * (weight_[j] - goal[j]) * (1 + Rounding::sum);
         weight_[j] = std::max(0., weight_[j] + step * (goal[j] - weight_[j]));
       }
       for (std::size_t j = goal.size(); j-- > 0;)
@@ -140,7 +142,6 @@ Furthest more_useful(Furthest furthest, const Numbers &q, const Numbers &x, cons
 Nearest nearest_point(const ConvexSet &set, const std::vector<double> &b, const double tolerance)
 {
   constexpr int enough = 1000; // rounding alone could lead around in circles
-  constexpr double rounding = 1e-13;
   Face face(b);
   Nearest nearest;
   nearest.away = b;
@@ -150,7 +151,7 @@ Nearest nearest_point(const ConvexSet &set, const std::vector<double> &b, const 
     const Furthest furthest = more_useful(set(q), q, x, norm(b));
     ++nearest.steps;
     const double size = norm(furthest.at), gain = dot(q, furthest.at) - (furthest.endless ? 0 : dot(q, x));
-    if (!(gain > rounding * norm(q) * (furthest.endless ? 1 : size + norm(b)))) return nearest;
+    if (!(gain > Rounding::furthest * norm(q) * (furthest.endless ? 1 : size + norm(b)))) return nearest;
     if (size > 0)
       face.add(furthest);
     else if (!face.has_origin())

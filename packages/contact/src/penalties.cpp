@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/contact/penalties.hpp"
 
+#include "rpc/contact/rounding.hpp"
 #include "rpc/contact/rules.hpp"
 #include "rpc/core/math.hpp"
 
@@ -18,7 +19,7 @@ KOKKOS_INLINE_FUNCTION bool along_an_axis(const ContactNodes &c, const LO i)
     length += square;
     largest = math::larger(largest, square);
   }
-  return length - largest <= 1e-12 * length;
+  return length - largest <= Rounding::sum * length;
 }
 
 } // namespace
