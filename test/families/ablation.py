@@ -160,7 +160,7 @@ class Scenes:
             for path in where.iterdir():
                 shutil.copy(path, folder)
             result = runs.solve(options, folder, next(folder.glob("scene.[xy]*ml")).name)
-            if result.complaint and result.summary and scene:
+            if result.complaint and result.summary and scene and (folder / "scene.contact.csv").exists():
                 runs.excuse(types.SimpleNamespace(), result, floor(scene, result.summary, contact_rows(folder)))
         run.failure = result.complaint
         if result.summary:
