@@ -160,7 +160,7 @@ class Scenes:
             for path in where.iterdir():
                 shutil.copy(path, folder)
             result = runs.solve(options, folder, next(folder.glob("scene.[xy]*ml")).name)
-            if result.complaint and result.summary and scene and (folder / "scene.contact.csv").exists():
+            if result.complaint and result.summary and scene:
                 runs.excuse(types.SimpleNamespace(), result, floor(scene, result.summary, contact_rows(folder)))
         run.failure = result.complaint
         if result.summary:
@@ -184,7 +184,7 @@ def count(run, summary):
     run.solves = sum(solves) if history else summary["linear_solves"] + sum(len(cycle["linear_iterations"]) for cycle in coarser)
     run.cg = sum(cg if history else summary["linear_iterations"]) + sum(sum(cycle["linear_iterations"]) for cycle in coarser)
     run.seconds = summary["seconds"]["total"] - summary["seconds"]["output"]
-    run.energy = summary["energy_J"]
+    run.energy = math.nan if summary["energy_J"] is None else summary["energy_J"]
     told = [newton, cg, [[mesh[key] for key in ("dofs", "newton_iterations", "linear_iterations")] for mesh in summary["levels"] + coarser]]
     told += [summary.get(key) for key in ("dofs", "uzawa_iterations", "newton_iterations", "coarse_choices", "line_search_steps", "linear_iterations",
                                           "preconditioner_setups", "local_corrections", "solver_path", "matrix_assemblies")]

@@ -114,6 +114,9 @@ def numbers(value, path=""):
 
 
 def contact_rows(folder):
+    """None where a run has failed without results."""
+    if not (folder / "scene.contact.csv").exists():
+        return []
     with open(folder / "scene.contact.csv", newline="") as file:
         return [{k: v if k in ("state", "side", "friction_state") else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
 
@@ -123,7 +126,7 @@ def stress_of_cell(scene, rows):
     length, stress = scene.units
     cell = (scene.body.smallest_cell() if scene.body else scene.cell) * length
     u = max([abs(row["u_nu"]) for row in rows] + [abs(row["gap"]) for row in rows if row["pressure"] > 0]
-            + [abs(f(x, 0)) * length for c in scene.dirichlet.values() for f in c.values() for x in (0, 0.5, 1)])
+            + [abs(f(x, 0)) * length for c in scene.dirichlet.values() for f in c.values() for x in (0, 0.5, 1)], default=0.0)
     return scene.stiffest() * stress * u / cell
 
 
@@ -135,7 +138,7 @@ def largest_traction(scene):
 def rounding(scene, summary, rows):
     """What rounding of u leaves of equilibrium: eps |K||u| over the load, in the terms of one cell."""
     stress = scene.units[1]
-    load = max(summary["max_pressure"], largest_traction(scene) * stress)
+    load = max(summary["max_pressure"] or 0.0, largest_traction(scene) * stress)
     return 4 * 2.0 ** -53 * scene.softening() * stress_of_cell(scene, rows) / load if load > 0 else 0.0
 
 
