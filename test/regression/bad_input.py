@@ -105,6 +105,7 @@ ASSIGNMENTS = [
     (["Linear Solver->Maximum Iterations=0"], ['"Linear Solver->Maximum Iterations" must be > 0', "got 0"]),
     (["Linear Solver->Reuse=all"], ['"Linear Solver->Reuse" must be one of tP, none, RP', '"all"']),
     (["Linear Solver->Method=Gauss"], ['"Linear Solver->Method"', '"Gauss"', "It knows:", "PSEUDOBLOCK CG"]),
+    (["Linear Solver->Method=LSQR"], ['"Linear Solver->Method" cannot be "LSQR"', "no bound on the residual"]),
     (["Linear Solver->Method=Hybrid Block GMRES"],
      ['"Linear Solver->Method" cannot be "Hybrid Block GMRES"', "no bound on the residual", "BICGSTAB"]),
     (["Linear Solver->Belos->Verbose=3"], ['"Linear Solver->Belos->Verbose"', 'Did you mean "Verbosity"?']),
