@@ -255,7 +255,7 @@ void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
   const adapt::ObservedErrors errors = adapt::errors_of(scene, s);
   std::string text = estimate_text(scene, s, "%.1e");
   if (std::isfinite(errors.contact_pressure) && !scene.model.contact.empty())
-    text += "; of the contact pressure " + number_text("%.1e", errors.contact_pressure) + " in L2";
+    text += "; of the contact pressure " + number_text("%.1e", errors.contact_pressure) + " of its norm in L2";
   print_text(out, "estimated error", text);
   if (!s.adaptation)
     print_text(out, "errors", "of J alone: add \"Adapt->Target Relative Error\", such as 0.01, for further error bars");

@@ -38,7 +38,8 @@ class History:
         """The prescribed displacement along the contact force, or along another axis, that changes most; None if none does. Positive
         where it goes against the foundation's force on the body."""
         axis, sign = (axis, -1) if axis else (self.axis, self.sign)
-        found = [name for name in self.columns if name.endswith(f"_displacement_{axis}")]
+        held = [name for name in self.columns if name.endswith(f"_displacement_{axis}")]
+        found = [name for name in held if reach(self.columns.get(name.replace("_displacement_", "_reaction_"), [1])) > 0]  # 0: it is free along the axis
         most = max(found, key=lambda name: spread(self.columns[name]), default=None)
         if most is None or spread(self.columns[most]) == 0:
             return None

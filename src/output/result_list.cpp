@@ -88,6 +88,46 @@ void add_reaction_bars(std::vector<Result> &all, const adapt::ObservedErrors &er
   }
 }
 
+double length_of(const std::vector<double> &vector)
+{
+  double length = 0;
+  for (const double component : vector) length = std::hypot(length, component);
+  return length;
+}
+
+/// A foundation that does not give way is penetrated by what the solver's tolerance leaves of displacements, and a support that bears nothing
+/// has what rounding leaves of the other forces.
+void mark_nothing(std::vector<Result> &all, const double max_displacement, const double tolerance)
+{
+  constexpr double rounding = 1e-11; // of the largest force
+  double force = 0;
+  for (const Result &result : all)
+    if (result.is_vector) force = std::max(force, length_of(result.value));
+  for (Result &result : all) {
+    const bool support = result.key == "reaction_force";
+    if (!support && result.key != "max_penetration") continue;
+    const double bar = std::isfinite(result.error_bar) ? result.error_bar : 0, value = length_of(result.value);
+    if (value > 0 && value + bar <= (support ? rounding * force : tolerance * max_displacement))
+      result.nothing_to = support ? "to rounding" : "to the solver's tolerance";
+  }
+}
+
+/// The estimates that the console shows on a line of their own, as shares of the norms of what they are errors of.
+void add_estimates(std::vector<Result> &all, const Scene &scene, const Solution &s, const adapt::ObservedErrors &errors)
+{
+  if (!s.estimate) return;
+  const auto add = [&](const char *const key, const double share) {
+    Result estimate;
+    estimate.key = key;
+    estimate.value = {share};
+    estimate.no_bar = "it is an estimate of an error";
+    all.push_back(estimate);
+  };
+  add("estimated_error", relative_estimate(s));
+  if (std::isfinite(errors.contact_pressure) && !scene.model.contact.empty())
+    add("contact_pressure_error", errors.contact_pressure);
+}
+
 /// "(0.5, 0) m"
 std::string place_text(const std::vector<double> &place, const double size, const std::string &unit)
 {
@@ -147,17 +187,23 @@ std::vector<Result> result_list(const Scene &scene, const Solution &s)
   add_place(all, scene, s);
   add_reaction_bars(all, errors);
   add_error_bars(all, errors, scope, s.adaptation && std::isfinite(s.adaptation->errors.energy));
+  mark_nothing(all, s.body.displacement, scene.step.uzawa.tolerance);
+  add_estimates(all, scene, s, errors);
   return all;
 }
 
 std::vector<Result> side_results(const Scene &scene, const Solution &s, const std::size_t side)
 {
-  return contact_results(s.contact.sides[side], analysis::result_scope(scene.model, s.discretization),
-                         s.discretization.dim());
+  auto all = contact_results(s.contact.sides[side], analysis::result_scope(scene.model, s.discretization),
+                             s.discretization.dim());
+  mark_nothing(all, s.body.displacement, scene.step.uzawa.tolerance);
+  return all;
 }
 
 std::string text_of(const Result &result)
 {
+  if (!result.nothing_to.empty())
+    return "0" + (result.unit.empty() ? "" : " " + result.unit) + " (" + result.nothing_to + ")" + result.more;
   const std::string number = result.is_vector ? io::with_error_bar(result.value, result.error_bar, result.unit)
                                               : io::with_error_bar(result.value.front(), result.error_bar, result.unit);
   return number + result.more;

@@ -26,6 +26,7 @@ struct Result {
   // Of the largest pressure:
   std::vector<double> place; ///< where it is [length]; else empty
   GO num_places = 0;         ///< nodes that have it; the place is that of the first
+  std::string nothing_to;    ///< "to rounding": it is no more than that with its error bar, and the console shows 0
   std::string more;          ///< what follows the number on the console: the same as text, or why it is exact
 };
 

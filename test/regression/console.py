@@ -91,11 +91,14 @@ class ConsoleTestCase(RpcTestCase):
         bar = result["error_bar"]
         if found["bar"]:
             self.assertAlmostEqual(float(found["bar"] + ten), bar, delta=0.051 * bar, msg=f"{what}: {text}")
+        elif float(found["value"]) == 0 and value > 0:
+            self.assertIn(found["note"], ["to rounding", "to the solver's tolerance"], what)
+            self.assertLess(value + (bar or 0), 1e-8, what)
         elif bar is not None:
             self.assertIn(found["note"], ["exact", "to rounding"], what)
             self.assertLessEqual(bar, 1e-11 * abs(value), what)
         self.assertEqual(bar is None, bool(result.get("reason")), what)
-        if vector and value > 0:
+        if vector and value > 0 and float(found["value"]) > 0:
             for shown, component in zip(found["components"].split(", "), result["value"]):
                 shown += found["power"] or ""
                 self.assertAlmostEqual(float(shown), component, delta=0.51 * max(last_digit(shown), 2e-6 * value), msg=f"{what}: {text}")
@@ -163,10 +166,26 @@ class Told(ConsoleTestCase):
             error = sum((a - b) ** 2 for a, b in zip(reaction["value"], exact)) ** 0.5
             self.assertLess(error, reaction["error_bar"])
             self.assertLess(reaction["error_bar"], 0.2)  # it is of use
-        self.assertIn(f"of the contact pressure {relative:.1e} in L2", self.end["estimated error"])
+        self.assertEqual(results["contact_pressure_error"]["value"], relative)
+        self.assertEqual(results["estimated_error"]["value"], self.summary["error_estimate"]["relative"])
+        self.assertIn(f"of the contact pressure {relative:.1e} of its norm in L2", self.end["estimated error"])
         self.assertRegex(self.end["contact force"], r"^\S+ ± \S+ N/m \(\S+ %\), components \(\S+, \S+\)$")
         self.assertRegex(self.end["largest pressure"], r"^16 Pa \(exact\) at \([\d.]+, 0\) m and \d+ other nodes$")  # all that yields
         self.assertEqual(self.end["adapted"], "the error is what was asked for")
+
+    def test_what_is_rounding_is_0(self):
+        """Of a block that is pressed evenly nothing pulls at the left, and a rigid foundation does not give way."""
+        for cells in (8, 9, 10):
+            results = self.run_deck(deck=f"""deck:
+  Mesh: {{Lower: [0.0, 0.0], Upper: [2.0, 1.0], Cells: [{cells}, 7], Element: P2}}
+  Material: {{Young's Modulus: 1000.0, Poisson's Ratio: 0.3}}
+  Dirichlet: {{left: {{X: 0.0}}, top: {{Y: -0.01}}}}
+  Contact: {{Side: bottom}}
+""")
+            self.assertRegex(self.end['reaction at "left"'], r"^0 N/m( \(to rounding\))?$")
+            self.assertLess(abs(results["reaction_force"]["left"]["value"][0]), 1e-9)
+            self.assertEqual(self.end.get("largest penetration", "0 m (to the solver's tolerance)"), "0 m (to the solver's tolerance)")
+            self.assertNotIn("rounding", self.end['reaction at "top"'])
 
     def test_what_has_no_error_bar_says_why_in_its_line(self):
         results = self.run_deck("--set=Adapt->Target Relative Error=0.02", "--set=Contact->Yield Stress=x < 2.5 ? 3 : inf", deck="beam_adaptive.xml")

@@ -177,6 +177,11 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLo
     errors.max_pressure = std::numeric_limits<double>::quiet_NaN();
     errors.unknown["max_pressure"] = reason;
   }
+  if (cycles.back().peak.gap_jump && !cycles.back().peak.at_bound) {
+    errors.contact_pressure = std::numeric_limits<double>::quiet_NaN();
+    errors.unknown["contact_pressure_l2_relative"] =
+        "contact ends where the gap jumps, where the square of the pressure has no integral";
+  }
   if (unsettled(changes(cycles, length), eta, errors.contact_length)) {
     errors.contact_length = std::numeric_limits<double>::quiet_NaN();
     errors.unknown["contact_length"] = "the length in contact does not settle from mesh to mesh";
