@@ -20,10 +20,11 @@ namespace rpc
 namespace
 {
 
-/// Where there is no solution, a force per area may be meant as a force.
-std::string load_hint(const Scene &scene, const ExitCode code)
+/// Where a load is more than the foundation carries, a force per area may be meant as a force.
+std::string load_hint(const Scene &scene, const ExitCode code, const std::string &reason)
 {
-  const std::string load = code == ExitCode::no_solution ? force_per_area_hint(scene) : "";
+  const bool too_large = code == ExitCode::no_solution && reason.find("carries at most") != std::string::npos;
+  const std::string load = too_large ? force_per_area_hint(scene) : "";
   return load.empty() ? "" : " " + load + ".";
 }
 
@@ -93,10 +94,10 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     try {
       return adapt::solve(scene, comm, listener);
     } catch (const Error &error) { // on all ranks
-      throw Error(error.code(), error.what() + load_hint(scene, error.code()));
+      throw Error(error.code(), error.what() + load_hint(scene, error.code(), error.what()));
     }
   }();
-  if (solution.failure) solution.failure->reason += load_hint(scene, solution.failure->code);
+  if (auto &failure = solution.failure) failure->reason += load_hint(scene, failure->code, failure->reason);
   if (!several_steps) seldom_meant.after(solution);
   seldom_meant.at_end(solution);
   solution.notes = notes.all();

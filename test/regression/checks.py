@@ -132,6 +132,8 @@ class Seldom(RpcTestCase):
         (self.folder / "deck.yaml").write_text("deck:" + deck.replace("LOAD", "Y: -99.0").replace("Side: bottom", "Side: bottom, Yield Stress: 9.0"))
         told = self.rpc("--check", "--input=deck.yaml", code=5).stderr
         self.assertIn('carries at most 9 [N/m], where all of it yields. Lower the load, or raise "Contact->Yield Stress". "Traction->top->Y" = -99 [Pa]', told)
+        (self.folder / "deck.yaml").write_text("deck:" + deck.replace("LOAD", "Y: -99.0").replace("  Dirichlet: {left: {X: 0.0}}\n", ""))
+        self.assertNotIn("per area", self.rpc("--check", "--input=deck.yaml", code=5).stderr)
 
     @unittest.skipIf(shutil.which("gmsh") is None, "gmsh is not there")
     def test_a_round_foundation_for_a_round_side(self):

@@ -18,6 +18,7 @@ constexpr const char *shear_sentence =
 constexpr const char *size_sentence =
     "The cells of a box are given by their number in each direction, \"Mesh->Cells\", those of a STEP file by their "
     "\"Mesh->Size\"; of a .geo, which has sizes, \"Mesh->Size Factor\" scales them.";
+constexpr const char *viewer_sentence = "ParaView opens <deck>.e, which \"Output->Exodus\" writes by default.";
 constexpr const char *name_sentence = "A deck is named by its file, and by the name of its outermost list. Remove it.";
 constexpr const char *elastic_sentence = "The body is linear elastic and at rest. Remove it.";
 
@@ -133,6 +134,9 @@ const std::vector<std::pair<std::string, std::string>> sentences_for_words = {
     {"thermalexpansion", elastic_sentence},
     {"temperature", elastic_sentence},
     {"damping", elastic_sentence},
+    {"vtk", viewer_sentence},
+    {"vtu", viewer_sentence},
+    {"paraview", viewer_sentence},
 };
 
 const std::vector<std::pair<std::string, std::string>> words_for_words = {

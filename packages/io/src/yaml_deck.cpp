@@ -276,7 +276,8 @@ private:
       static const std::regex digits(R"(\d+([eE][-+]?\d+)?)"), number(R"([-+]?\d+)");
       const bool comma = std::regex_match(name, digits) && std::regex_match(last, number);
       refuse(line, "\"" + name + "\" in the \"{\" of \"" + shown(path) + "\" lacks a colon with a blank behind it." +
-                       (comma ? " For a decimal comma write a point: " + last + "." + name + "."
+                       (comma ? " For a decimal comma write a point: " + last + "." + name +
+                                    ". Several numbers stand in [" + last + ", " + name + "]."
                               : " Write " + name + ": and a value."));
     }
     ++at_;
