@@ -256,15 +256,9 @@ void set_field(ParameterList &valid, const std::string &name, const std::string 
 std::string field_text(const ParameterList &list, const std::string &name)
 {
   const ParameterEntry &entry = list.getEntry(name);
-  std::ostringstream text;
-  text.precision(std::numeric_limits<double>::max_digits10);
-  if (entry.isType<int>())
-    text << Teuchos::getValue<int>(entry);
-  else if (entry.isType<double>())
-    text << Teuchos::getValue<double>(entry);
-  else
-    text << Teuchos::getValue<std::string>(entry);
-  return text.str();
+  if (entry.isType<int>()) return std::to_string(Teuchos::getValue<int>(entry));
+  if (entry.isType<double>()) return number_text(Teuchos::getValue<double>(entry));
+  return Teuchos::getValue<std::string>(entry);
 }
 
 void set_fields(ParameterList &valid, const std::string &name, const std::string &doc)
@@ -284,12 +278,7 @@ std::vector<std::string> field_texts(const ParameterList &list, const std::strin
   }
   std::vector<std::string> texts;
   const auto add = [&](const auto &numbers) {
-    for (const auto number : numbers) {
-      std::ostringstream text;
-      text.precision(std::numeric_limits<double>::max_digits10);
-      text << number;
-      texts.push_back(text.str());
-    }
+    for (const auto number : numbers) texts.push_back(number_text(number));
   };
   if (entry.isType<Array<int>>())
     add(Teuchos::getValue<Array<int>>(entry));

@@ -250,7 +250,7 @@ private:
       if (last.tag == "Parameter")
         refuse(last.line, opening(last) + " is not closed when </" + tag + "> of line " + std::to_string(line) +
                               " comes. End it with \"/>\".");
-      const std::string meant = did_you_mean(last.tag, {tag});
+      const std::string meant = last.tag == "ParameterList" ? "" : did_you_mean(last.tag, {tag});
       refuse(line, "</" + tag + "> does not close what is open, " + where + "." +
                        (meant.empty() ? " Write </" + last.tag + ">." : meant));
     }
