@@ -84,11 +84,12 @@ inline void open_between(Beam &beam, const double from, const double to)
 
 inline void ignore(const solver::NewtonStep &, const Vector &) {}
 
-/// Newton's steps alone, or after those of a first stage.
+/// By Newton's steps alone, or those that a loop chooses.
 inline solver::MinimizeResult minimize(PressedBox &body, const solver::NewtonOptions &options = {},
-                                       solver::FirstStage *stage = nullptr, const solver::NewtonReport &report = ignore)
+                                       const solver::MinimizationLoop &loop = {},
+                                       const solver::NewtonReport &report = ignore)
 {
-  return solver::minimize(*body.iterate, *body.linear, body.u, body.iterate->force_scale(), options, stage, report);
+  return solver::minimize(*body.iterate, *body.linear, body.u, body.iterate->force_scale(), options, loop, report);
 }
 
 } // namespace rpc::test

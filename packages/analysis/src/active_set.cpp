@@ -2,6 +2,7 @@
 #include "rpc/analysis/active_set.hpp"
 
 #include "rpc/analysis/rules.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,9 @@
 namespace rpc::analysis
 {
 
-using solver::NewtonGroup;
+using solver::MinimizationSteps;
+
+using Status = ActiveSetLoop::Status;
 
 namespace
 {
@@ -27,7 +30,7 @@ Headway within(const int most)
 
 // The active set: chosen by the last pressures, until a choice confirms itself --------------------------------------------
 
-ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, const Then then)
+ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, const Then then)
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
       pressure_tolerance_(tolerances.pressure),
       most_overshoot_(tolerances.nearly_incompressible ? choice_rules.far_too_much_of_rubber
@@ -44,60 +47,139 @@ ActiveSetStage::ActiveSetStage(contact::Iterate &iterate, const ActiveSetToleran
   headway_ = within(then == Then::nothing ? choice_rules.most_changes_tried : choice_rules.most_changes);
 }
 
-void ActiveSetStage::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
+void ActiveSetLoop::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
 {
   predicted_ = rubs_ ? FoundBy::choices : coarser;
   if (!rubs_) make_coarse_ = std::move(coarse_choice);
-  newton_is_next_ = predicted_ == FoundBy::newton && !make_coarse_;
 }
 
-FoundBy ActiveSetStage::found_by() const
+FoundBy ActiveSetLoop::found_by() const
 {
   if (!rubs_ && path_ != Path::ahead) return FoundBy::interior_path;
   if (newton_was_tried_) return FoundBy::newton;
   return coarse_choices_ > 0 ? FoundBy::coarse_choices : FoundBy::choices;
 }
 
-bool ActiveSetStage::resume(const NewtonGroup &from, const solver::NewtonProgress &newton)
+Status ActiveSetLoop::operator()(MinimizationSteps &steps)
 {
-  const Vector &u = solver::tpetra(from.getX());
-  if (newton.settled && !rubs_ && confirmations_ < choice_rules.most_confirmations) {
+  Status status = begin(steps);
+  while (status == Status::goes_on) {
+    if (method_ == Method::newton_from_start) back_to_start(steps);
+    status = method_ == Method::choices         ? step_to_choice(steps)
+             : method_ == Method::interior_path ? step_on_path(steps)
+                                                : newton_step(steps);
+  }
+  return status;
+}
+
+/// With what has led to the states of a coarser mesh, or else a choice.
+Status ActiveSetLoop::begin(MinimizationSteps &steps)
+{
+  const Vector &u = solver::tpetra(steps.at().getX());
+  start_.assign(u);
+  start_dual_ = iterate_.dual();
+  if (make_coarse_ || !predicted_ || *predicted_ < FoundBy::newton) return judge(steps);
+  if (*predicted_ == FoundBy::newton)
+    method_ = Method::newton_from_start;
+  else
+    take_path(u);
+  return Status::goes_on;
+}
+
+/// Chooses where a step has led to.
+Status ActiveSetLoop::judge(MinimizationSteps &steps)
+{
+  const Verdict verdict = choose_at(steps.at());
+  return verdict == Verdict::go_on ? steps.unless_last(Status::goes_on) : end_choices(steps, verdict);
+}
+
+ActiveSetLoop::Verdict ActiveSetLoop::choose_at(solver::NewtonGroup &at)
+{
+  const Vector &u = solver::tpetra(at.getX());
+  if (steps_ > 0) {
+    Vector F(u.getMap());
+    iterate_.active_set_gradient(u, solver::tpetra(at.getF()), F); // (5.6)
+    norm_ = F.norm2();
+  }
+  return choose(u);
+}
+
+/// Choices end: with the minimum, unless the deck's status tests are to tell that, or Newton goes on from here.
+Status ActiveSetLoop::end_choices(MinimizationSteps &steps, const Verdict verdict)
+{
+  if (verdict == Verdict::over && then_ == Then::nothing) return Status::converged;
+  if (verdict == Verdict::converged && !steps.user_decides()) return Status::converged;
+  method_ = Method::newton;
+  newton_ = {};
+  return steps.newton_begins();
+}
+
+/// There is no step to make for the choice: Newton makes the next one.
+Status ActiveSetLoop::leave_to_newton(MinimizationSteps &steps)
+{
+  method_ = Method::newton;
+  newton_ = {};
+  if (then_ == Then::newton) return Status::goes_on;
+  const Status status = steps.stay();
+  return status == Status::goes_on ? Status::converged : status;
+}
+
+Status ActiveSetLoop::newton_step(MinimizationSteps &steps)
+{
+  const Status status = steps.newton_step();
+  if (status != Status::goes_on || !newton_hands_over(steps) || method_ == Method::interior_path) return status;
+  const Verdict verdict = choose_at(steps.at());
+  return verdict == Verdict::go_on ? Status::goes_on : leave_to_newton(steps);
+}
+
+/// Where Newton has settled, the states are to be confirmed there; where it is slow or blocked, the interior-point method is next, once, and
+/// once choices with more changes than before, and good solves.                                                    (5.9a)
+bool ActiveSetLoop::newton_hands_over(MinimizationSteps &steps)
+{
+  const Vector &u = solver::tpetra(steps.at().getX());
+  const solver::NewtonContext &context = steps.context();
+  ++newton_.steps;
+  newton_.left *= std::max<double>(choice_rules.least_left, std::abs(1 - context.step_length));
+  newton_.short_steps += context.step_length < solver::newton_rules.cut_short;
+  const bool has_settled = std::abs(context.step_length - 1) <= solver::newton_rules.to_the_minimum &&
+                           context.functional.piece(u) == context.piece;
+  if (has_settled && !rubs_ && confirmations_ < choice_rules.most_confirmations) {
     ++confirmations_;
     take_over(u, path_rules.trial_changes);
     return true;
   }
-  const bool stands = newton.short_steps >= choice_rules.most_short_steps;
-  const bool creeps = newton.steps > 1 && newton.left > std::pow(choice_rules.left_per_step, newton.steps);
-  if (path_ == Path::ahead && (stands || creeps)) {
+  const bool is_blocked = newton_.short_steps >= choice_rules.most_short_steps;
+  const bool is_slow = newton_.steps > 1 && newton_.left > std::pow(choice_rules.left_per_step, newton_.steps);
+  if (path_ == Path::ahead && (is_blocked || is_slow)) {
     take_path(u);
     return true;
   }
-  if (!stands || std::exchange(resumed_, true)) return false;
+  if (!is_blocked || std::exchange(resumed_, true)) return false;
   take_over(u, choice_rules.most_changes_resumed);
   return true;
 }
 
-void ActiveSetStage::take_path(const Vector &u)
+void ActiveSetLoop::take_path(const Vector &u)
 {
   iterate_.start_interior_path(u);
-  path_ = Path::on_it;
-  decided_ = false;
+  path_ = Path::begun;
+  method_ = Method::interior_path;
 }
 
 /// Choices go on from a point of Newton's.
-void ActiveSetStage::take_over(const Vector &u, const int most)
+void ActiveSetLoop::take_over(const Vector &u, const int most)
 {
   iterate_.update_hessian(u); // the states there
   start_.assign(u);
   start_dual_ = iterate_.dual();
   start_over({}, most);
   updates_ = 0;
-  decided_ = false;
 }
 
 /// Choices start anew.
-void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, const int most)
+void ActiveSetLoop::start_over(std::optional<contact::ActiveSetChoice> choice, const int most)
 {
+  method_ = Method::choices;
   choice_ = std::move(choice);
   choices_ = 1; // the first one of all has no solve before it
   headway_ = within(most);
@@ -109,7 +191,7 @@ void ActiveSetStage::start_over(std::optional<contact::ActiveSetChoice> choice, 
 }
 
 /// What becomes of the iteration at a point, after the step that led there.
-ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
+ActiveSetLoop::Verdict ActiveSetLoop::choose(const Vector &u)
 {
   choice_ = iterate_.choose_active_set(u, std::max(choice_rules.negligible * pressure_tolerance_, rounding)); // (5.8)
   // The active set does not change at first: one accurate solve, which keeps the energy balance to rounding.
@@ -139,7 +221,7 @@ ActiveSetStage::Verdict ActiveSetStage::choose(const Vector &u)
 }
 
 /// Whether the choice has not been taken before. With friction a part of the changes may be new where all of them are not.
-bool ActiveSetStage::is_new_choice()
+bool ActiveSetLoop::is_new_choice()
 {
   using Answer = Headway::Answer;
   if (headway_.visit(choice_->fingerprint, turns_ ? choice_rules.most_visits : 1) != Answer::cycle) return true;
@@ -158,7 +240,7 @@ bool ActiveSetStage::is_new_choice()
 }
 
 /// Whether the choices may come to an end soon.                                                                   (5.8a)
-bool ActiveSetStage::may_settle()
+bool ActiveSetLoop::may_settle()
 {
   const int before = choices_++;
   if (rubs_) return headway_.take(false) != Headway::Answer::stuck;
@@ -180,7 +262,7 @@ bool ActiveSetStage::may_settle()
 }
 
 /// Whether it is time for choices by a coarser mesh.
-bool ActiveSetStage::is_for_coarse_mesh() const
+bool ActiveSetLoop::is_for_coarse_mesh() const
 {
   const bool was_needed = predicted_ && *predicted_ != FoundBy::choices; // more than choices by pressures, there
   return was_needed || (steps_ >= choice_rules.steps_before_coarse && left_ > choice_rules.one_more) ||
@@ -188,7 +270,7 @@ bool ActiveSetStage::is_for_coarse_mesh() const
 }
 
 /// From here on a coarser mesh chooses, if there is one that can. @return whether it has chosen
-bool ActiveSetStage::begin_coarse_choices(const Vector &u)
+bool ActiveSetLoop::begin_coarse_choices(const Vector &u)
 {
   if (!make_coarse_ || steps_ == 0 || path_ != Path::ahead) return false;
   coarse_ = std::exchange(make_coarse_, {})(iterate_, solve_seconds_);
@@ -196,7 +278,7 @@ bool ActiveSetStage::begin_coarse_choices(const Vector &u)
 }
 
 /// The next choice by the coarser mesh. Where it makes none, it chooses no more.
-bool ActiveSetStage::choose_by_coarse_mesh(const Vector &u)
+bool ActiveSetLoop::choose_by_coarse_mesh(const Vector &u)
 {
   auto chosen = coarse_->choose(iterate_, *choice_, u);
   if (!chosen) {
@@ -212,105 +294,30 @@ bool ActiveSetStage::choose_by_coarse_mesh(const Vector &u)
 
 /// The coarser mesh chooses, if it has not yet. Where it could not, the interior-point method follows from here, else Newton from the start.
 /// Where that method has begun it goes on; where it has been, Newton does from here.
-ActiveSetStage::Verdict ActiveSetStage::give_up(const Vector &u)
+ActiveSetLoop::Verdict ActiveSetLoop::give_up(const Vector &u)
 {
   if (begin_coarse_choices(u)) return Verdict::go_on;
   if (path_ == Path::behind) return Verdict::over;
   if (path_ != Path::ahead)
-    path_ = Path::on_it;
+    method_ = Method::interior_path;
   else if (coarse_gave_up_)
     take_path(u);
   else
-    newton_is_next_ = true;
+    method_ = Method::newton_from_start;
   return Verdict::go_on;
 }
 
-/// Goes back to the start, where Newton begins.
-ActiveSetStage::Step ActiveSetStage::leave_to_newton(NewtonGroup &group)
+void ActiveSetLoop::back_to_start(MinimizationSteps &steps)
 {
-  newton_is_next_ = false;
+  method_ = Method::newton;
+  newton_ = {};
   newton_was_tried_ = true;
   iterate_.take_dual(start_dual_);
-  group.setX(solver::NoxVector(rcp(new Vector(start_, Teuchos::Copy))));
-  group.computeF();
-  return Step::none;
-}
-
-/// Whether the states that the path leads to are to be tried, or taken; then they are the next choice.
-bool ActiveSetStage::leaves_path()
-{
-  const auto &path = iterate_.interior_path();
-  const bool ends = path.gap() <= path_rules.last_gap || path_steps_ >= path_rules.most_steps;
-  if (!ends && !(path.settled() && path.gap() <= trial_gap_)) return false;
-  path_ = ends ? Path::behind : Path::tried;
-  trial_gap_ = path_rules.next_trial * path.gap();
-  start_over(iterate_.end_of_interior_path(), path_rules.trial_changes); // (5.20)
-  return true;
-}
-
-ActiveSetStage::Step ActiveSetStage::propose_interior(NewtonGroup &group, Vector &direction)
-{
-  const Vector &u = solver::tpetra(group.getX());
-  if (!solve_interior(group.context(), u, direction)) {
-    path_ = Path::behind;
-    return Step::none;
-  }
-  const double t = iterate_.advance_interior(u, direction);
-  if (!(t > 0)) return Step::none;
-  direction.scale(t);
-  ++path_steps_;
-  ++group.context().steps;
-  ++steps_;
-  return Step::full;
-}
-
-/// The direction of a step of the path: predictor, and what it lacks of the correctors.             (5.18) to (5.19a)
-/// @return whether it can be used
-bool ActiveSetStage::solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction)
-{
-  double energy = 0; // of the predictor
-  const auto solve = [&](const Vector &F, Vector &d, const double tolerance) {
-    const auto solved = solver::solve_for_direction(context, F, d, {tolerance, path_rules.error, energy});
-    energy = solved.energy;
-    return !solved.broken && !solved.interrupted && std::isfinite(context.direction_norm);
-  };
-  // Brings d to -H^-1 F, by a solve for what it lacks; false where that fails.
-  const auto improve = [&](const Vector &F, Vector &d) {
-    Vector lacking(u.getMap());
-    iterate_.hessian()->apply(d, lacking);
-    lacking.update(1., F, 1.);
-    const double wanted = path_rules.forcing * F.norm2(), missing = lacking.norm2();
-    if (missing <= wanted) return true;
-    const int iterations = context.linear_iterations;
-    Vector correction(u.getMap());
-    if (!solve(lacking, correction, wanted / missing)) return false;
-    context.linear_iterations += iterations;
-    d.update(-1., correction, 1.);
-    return true;
-  };
-  Vector F(u.getMap());
-  iterate_.linearize_interior(u, F);
-  if (!solve(F, direction, path_rules.forcing)) return false;
-  direction.scale(-1.);
-  iterate_.correct_interior(u, direction, F);
-  if (!improve(F, direction)) return false;
-  double t = iterate_.longest_interior_step(u, direction);
-  for (int times = 0; times < path_rules.most_centerings && t < path_rules.long_enough; ++times) {
-    iterate_.center_interior(u, direction, F);
-    Vector centered(direction, Teuchos::Copy);
-    const double longer = improve(F, centered) ? iterate_.longest_interior_step(u, centered) : 0;
-    if (longer > t)
-      direction.assign(centered);
-    else
-      iterate_.take_back_interior();
-    if (longer < t + path_rules.least_gain) break;
-    t = longer;
-  }
-  return true;
+  steps.move_to(rcp(new Vector(start_, Teuchos::Copy)));
 }
 
 /// What the next solve is to leave: roughly while states change; while slip turns the better the shorter the step is.
-solver::Accuracy ActiveSetStage::wanted() const
+solver::Accuracy ActiveSetLoop::wanted() const
 {
   double rough = 0;
   if (rough_ && coarse_) return {choice_rules.enough * target_ / norm_, choice_rules.coarse_error};
@@ -321,91 +328,48 @@ solver::Accuracy ActiveSetStage::wanted() const
   return {std::max(choice_rules.enough * target_, rough) / norm_, rough_ ? choice_rules.rough_error : 0.};
 }
 
-ActiveSetStage::Verdict ActiveSetStage::judge(const NewtonGroup &at)
+/// A step to the minimum for the chosen active set.
+Status ActiveSetLoop::step_to_choice(MinimizationSteps &steps)
 {
-  const Verdict verdict = judged(at);
-  return verdict == Verdict::over && then_ == Then::nothing ? Verdict::converged : verdict;
-}
-
-ActiveSetStage::Step ActiveSetStage::propose(NewtonGroup &group, Vector &direction)
-{
-  const Step step = proposed(group, direction);
-  if (step != Step::none || then_ == Then::newton) return step;
-  decided_ = true;
-  direction.putScalar(0);
-  return Step::full;
-}
-
-ActiveSetStage::Verdict ActiveSetStage::judged(const NewtonGroup &at)
-{
-  if (decided_) return confirmed_ ? Verdict::converged : Verdict::over;
-  if (path_ == Path::on_it) return Verdict::go_on;
-  const Vector &u = solver::tpetra(at.getX());
-  if (steps_ == 0) {
-    start_.assign(u);
-    start_dual_ = iterate_.dual();
-    if (predicted_ == FoundBy::interior_path && !make_coarse_ && path_ == Path::ahead) take_path(u);
-    if (newton_is_next_ || path_ == Path::on_it) return Verdict::go_on;
-  } else {
-    Vector F(u.getMap());
-    iterate_.active_set_gradient(u, solver::tpetra(at.getF()), F); // (5.6)
-    norm_ = F.norm2();
-  }
-  return choose(u);
-}
-
-ActiveSetStage::Step ActiveSetStage::proposed(NewtonGroup &group, Vector &direction)
-{
-  if (path_ == Path::on_it && !leaves_path()) return propose_interior(group, direction);
-  if (!choice_ && judged(group) != Verdict::go_on)
-    return Step::none; // a user's status tests do not ask for the verdict
-  if (newton_is_next_) return leave_to_newton(group);
-  if (path_ == Path::on_it) return propose_interior(group, direction);
-  auto u = rcp(new Vector(solver::tpetra(group.getX()), Teuchos::Copy));
-  const auto move_to = [&] {
-    group.setX(solver::NoxVector(u));
-    group.computeF();
-  };
+  auto u = rcp(new Vector(solver::tpetra(steps.at().getX()), Teuchos::Copy));
   Vector F(u->getMap());
   while (true) {
     iterate_.take_active_set(*choice_, *u); // (5.7)
     choice_.reset();
-    move_to();
-    iterate_.active_set_gradient(*u, solver::tpetra(group.getF()), F);
+    steps.move_to(u);
+    iterate_.active_set_gradient(*u, solver::tpetra(steps.at().getF()), F);
     before_ = norm_ = F.norm2();
     if (norm_ > target_) break;
     const Verdict verdict = choose(*u); // nothing to solve for: the next choice
-    if (newton_is_next_) return leave_to_newton(group);
-    if (path_ == Path::on_it) return propose_interior(group, direction);
-    if (verdict == Verdict::go_on) continue;
-    decided_ = true;
-    direction.putScalar(0);
-    if (verdict != Verdict::converged) return Step::none;
-    ++steps_; // of length 0
-    return Step::full;
+    if (verdict == Verdict::go_on && method_ == Method::choices) continue;
+    if (verdict == Verdict::go_on) return Status::goes_on;
+    if (verdict == Verdict::over) return leave_to_newton(steps);
+    const Status status = steps.stay();
+    return status == Status::goes_on ? end_choices(steps, verdict) : status;
   }
   if (!rough_) { // the remaining correction is small against u: solving for it keeps its relative accuracy       (5.13)
     iterate_.move_origin(*u);
     start_.putScalar(0);
     start_dual_ = iterate_.dual();
-    move_to();
+    steps.move_to(u);
   }
   u = Teuchos::null; // a solve needs the memory
 
-  const auto solved = solver::solve_for_direction(group.context(), F, direction, wanted()); // (5.9)
+  const auto direction = rcp(new Vector(F.getMap()));
+  const auto solved = solver::solve_for_direction(steps.context(), F, *direction, wanted()); // (5.9)
   if (!solved.converged) { // an active set that leaves the body unheld, or an interrupt
     if (!solved.interrupted) {
-      u = rcp(new Vector(start_, Teuchos::Copy));
       iterate_.reset_multipliers();
-      move_to();
+      steps.move_to(rcp(new Vector(start_, Teuchos::Copy)));
     }
-    return Step::none;
+    return leave_to_newton(steps);
   }
-  if (make_coarse_) solve_seconds_ = group.context().linear_solver.seconds_of_last_solve();
-  direction.scale(-1.);
-  ++group.context().steps;
+  if (make_coarse_) solve_seconds_ = steps.context().linear_solver.seconds_of_last_solve();
+  direction->scale(-1.);
+  ++steps.context().steps;
   ++steps_;
-  return Step::full;
+  const Status status = steps.take(direction);
+  return status == Status::goes_on ? judge(steps) : status;
 }
 
 } // namespace rpc::analysis

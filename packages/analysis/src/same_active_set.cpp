@@ -3,38 +3,51 @@
 
 #include "rpc/analysis/rules.hpp"
 
-#include <utility>
-
 namespace rpc::analysis
 {
-
-SameActiveSet::Verdict SameActiveSet::judge(const solver::NewtonGroup &at)
+namespace
 {
-  if (at.getNormF() <= at.context().target_residual) return Verdict::over;
-  if (!proposed_) return Verdict::go_on;
+
+/// The functional's gradient with the states of the active set. (5.6)
+Vector gradient_of_set(const contact::Iterate &iterate, const solver::NewtonGroup &at)
+{
   const Vector &F = solver::tpetra(at.getF());
   Vector G(F.getMap());
-  iterate_.active_set_gradient(solver::tpetra(at.getX()), F, G); // (5.6)
-  G.update(-1., F, 1.);
-  const bool is_enough = at.getNormF() <= choice_rules.ended_by_rounding * norm_before_ &&
-                         G.norm2() <= choice_rules.same_residual * at.getNormF();
-  return is_enough ? Verdict::converged : Verdict::over;
+  iterate.active_set_gradient(solver::tpetra(at.getX()), F, G);
+  return G;
 }
 
-SameActiveSet::Step SameActiveSet::propose(solver::NewtonGroup &group, Vector &direction)
+/// Whether a step to the minimum for the active set has ended there, up to rounding.
+bool is_enough(const contact::Iterate &iterate, const solver::NewtonGroup &at, const double norm_before)
 {
-  if (std::exchange(proposed_, true)) return Step::none;
-  const Vector &F = solver::tpetra(group.getF());
-  Vector G(F.getMap());
-  iterate_.active_set_gradient(solver::tpetra(group.getX()), F, G); // (5.6)
-  norm_before_ = G.norm2();
-  const auto solved = solver::solve_for_direction(
-      group.context(), G, direction, choice_rules.beside_target * group.context().target_residual / norm_before_);
-  if (!solved.converged || !(direction.dot(F) > 0)) return Step::none;
-  direction.scale(-1.);
-  ++group.context().steps;
-  ++steps_;
-  return Step::search;
+  Vector G = gradient_of_set(iterate, at);
+  G.update(-1., solver::tpetra(at.getF()), 1.);
+  return at.getNormF() <= choice_rules.ended_by_rounding * norm_before &&
+         G.norm2() <= choice_rules.same_residual * at.getNormF();
+}
+
+} // namespace
+
+solver::MinimizationSteps::Status minimize_from_same_active_set(const contact::Iterate &iterate,
+                                                                solver::MinimizationSteps &steps)
+{
+  using Status = solver::MinimizationSteps::Status;
+  solver::NewtonContext &context = steps.context();
+  const auto is_near = [&] { return !steps.user_decides() && steps.at().getNormF() <= context.target_residual; };
+  if (is_near()) return steps.newton_to_end(steps.newton_begins());
+  const Vector G = gradient_of_set(iterate, steps.at());
+  const double norm = G.norm2();
+  const auto direction = rcp(new Vector(G.getMap()));
+  const auto solved =
+      solver::solve_for_direction(context, G, *direction, choice_rules.beside_target * context.target_residual / norm);
+  if (!solved.converged || !(direction->dot(solver::tpetra(steps.at().getF())) > 0))
+    return steps.newton_to_end(Status::goes_on);
+  direction->scale(-1.);
+  ++context.steps;
+  const Status status = steps.take(direction, true);
+  if (status != Status::goes_on) return status;
+  if (!is_near() && !steps.user_decides() && is_enough(iterate, steps.at(), norm)) return Status::converged;
+  return steps.newton_to_end(steps.newton_begins());
 }
 
 } // namespace rpc::analysis

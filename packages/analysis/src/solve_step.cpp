@@ -173,7 +173,7 @@ Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &
   return prediction;
 }
 
-// Solve: one NOX solver for each minimization. Its first directions are those of the active-set iteration, then Newton's -----
+// Solve: a loop for each minimization, whose steps NOX makes: those of the active-set iteration, then Newton's ------------------
 
 /// Iterative refinement: a solve for what is out of balance at the origin, below Newton's tolerance. Bodies that bend move far for it.
 /// @return the number of solves
@@ -189,23 +189,24 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
 
 /// Where friction's states were not confirmed: the coupled choices once more from where the last Tresca problem led; if these do not
 /// settle soon, the Tresca problem with the next bounds. (12.12)
-Minimization minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options,
-                                      const std::function<solver::MinimizeResult(solver::FirstStage *, int)> &run)
+Minimization
+minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options,
+                         const std::function<solver::MinimizeResult(const solver::MinimizationLoop &, int)> &run)
 {
   int steps = 0, most = options.newton.max_iterations;
-  if (solver::takes_first_stage(options.newton)) {
+  if (solver::takes_loop(options.newton)) {
     const Vector start(u, Teuchos::Copy);
     const Iterate::Dual dual = iterate.dual();
-    ActiveSetStage stage(iterate, active_set_tolerances(options), ActiveSetStage::Then::nothing);
-    const auto tried = run(&stage, most);
-    if (stage.confirmed()) return {tried.converged, tried.steps, tried.reason, true};
+    ActiveSetLoop choices(iterate, active_set_tolerances(options), ActiveSetLoop::Then::nothing);
+    const auto tried = run(std::ref(choices), most);
+    if (choices.confirmed()) return {tried.converged, tried.steps, tried.reason, true};
     steps = tried.steps;
     u.assign(start);
     iterate.take_dual(dual);
     most = std::min<int>(most, step_rules.most_steps_of_bounds);
   }
   iterate.follow_bounds();
-  auto result = run(nullptr, most);
+  auto result = run({}, most);
   if (result.steps == most && most < options.newton.max_iterations)
     result.reason.clear(); // the bound is not the deck's
   return {result.converged, steps + result.steps, result.reason, false, result.steps, 0, true};
@@ -216,35 +217,35 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
                       const std::optional<PredictedBy> &predicted, const Progress &progress)
 {
   const int all = options.newton.max_iterations;
-  const auto run = [&](solver::FirstStage *const stage, const int most_steps) {
+  const auto run = [&](const solver::MinimizationLoop &loop, const int most_steps) {
     solver::NewtonOptions newton = options.newton;
     newton.max_iterations = most_steps;
-    return solver::minimize(iterate, state.linear(), u, iterate.force_scale(), newton, stage,
+    return solver::minimize(iterate, state.linear(), u, iterate.force_scale(), newton, loop,
                             [&](const solver::NewtonStep &newton, const Vector &at) {
                               if (progress.newton) progress.newton(iteration, newton, iterate.count_states(at));
                             });
   };
   const bool friction = iterate.points().friction.anywhere;
   if (iteration > 1 && (!friction || previous_confirmed)) {
-    SameActiveSet stage(iterate);
-    const auto result = run(&stage, all);
+    const auto result =
+        run([&](solver::MinimizationSteps &steps) { return minimize_from_same_active_set(iterate, steps); }, all);
     const int steps = result.steps == 0 && result.converged ? refine(iterate, *u, state) : result.steps;
-    return {result.converged, steps, result.reason, false, result.steps - stage.steps()};
+    return {result.converged, steps, result.reason, false, result.newton_steps};
   }
   if (iteration > 1) return minimize_for_next_bounds(iterate, *u, options, run);
   ActiveSetTolerances tolerances = active_set_tolerances(options);
   tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
-  ActiveSetStage stage(iterate, tolerances);
-  if (predicted) stage.starts_predicted(predicted->found_by, predicted->coarse_choice);
-  const auto result = run(&stage, all);
+  ActiveSetLoop loop(iterate, tolerances);
+  if (predicted) loop.starts_predicted(predicted->found_by, predicted->coarse_choice);
+  const auto result = run(std::ref(loop), all);
   return {result.converged,
           result.steps,
           result.reason,
-          stage.confirmed(),
-          result.steps - stage.steps(),
-          stage.coarse_choices(),
-          friction && !stage.confirmed(),
-          stage.found_by()};
+          loop.confirmed(),
+          result.newton_steps,
+          loop.coarse_choices(),
+          friction && !loop.confirmed(),
+          loop.found_by()};
 }
 
 /// The residual that an iteration's is compared with: the last one, or one of some iterations ago where bounds follow the pressures, for

@@ -116,10 +116,8 @@ NoxLists nox_lists(const Teuchos::ParameterList &user, const RCP<NOX::Abstract::
   list->sublist("Line Search")
       .set<RCP<NOX::LineSearch::UserDefinedFactory>>("User Defined Line Search Factory", search);
   Teuchos::ParameterList &direction = list->sublist("Direction");
-  RCP<NOX::Direction::UserDefinedFactory> factory;
-  if (method == "Active Set") factory = rcp(new StagedDirectionFactory);
-  if (method == "Sweep") factory = rcp(new SweepDirectionFactory);
-  if (!factory.is_null()) {
+  if (own_direction) {
+    const RCP<NOX::Direction::UserDefinedFactory> factory = rcp(new SweepDirectionFactory);
     direction.set("Method", "User Defined");
     direction.set<RCP<NOX::Direction::UserDefinedFactory>>("User Defined Direction Factory", factory);
   }
@@ -144,20 +142,26 @@ void require_read(const Teuchos::ParameterList &given, const Teuchos::ParameterL
   }
 }
 
+/// NOX for a group, with the tests that it has.
+struct Nox {
+  RCP<NOX::Solver::Generic> solver;
+  RCP<NOX::StatusTest::Generic> tests;
+};
+
 /// @throws rpc::Error (bad_input) if NOX refuses the user's parameters
-RCP<NOX::Solver::Generic> build_solver(const RCP<NewtonGroup> &group, const NewtonOptions &options,
-                                       const RCP<NewtonContext> &context, const NoxLists &lists)
+Nox build_solver(const RCP<NewtonGroup> &group, const NewtonOptions &options, const NoxLists &lists)
 {
   std::string reason;
   try {
-    const auto solver = NOX::Solver::buildSolver(group, status_tests(options, context), lists.all);
+    const auto tests = status_tests(options);
+    const auto solver = NOX::Solver::buildSolver(group, tests, lists.all);
     for (const char *name : {"Line Search", "Direction", "Printing", "Solver Options"}) {
       const bool searches = name == std::string("Line Search");
       if (options.nox.isSublist(name))
         require_read(options.nox.sublist(name), searches ? *lists.line_search : lists.all->sublist(name),
                      std::string("NOX->") + name);
     }
-    return solver;
+    return {solver, tests};
   } catch (const Error &) {
     throw;
   } catch (const std::exception &failure) {
@@ -236,7 +240,7 @@ NewtonOptions newton_options(const Teuchos::ParameterList &list)
   return options;
 }
 
-bool takes_first_stage(const NewtonOptions &options)
+bool takes_loop(const NewtonOptions &options)
 {
   return method_of(options.nox, "Direction", directions) == "Active Set";
 }
@@ -247,16 +251,16 @@ void check_nox_parameters(ConvexFunctional &functional, LinearSolver &linear_sol
   if (options.nox.numParams() == 0) return;
   const auto context = rcp(new NewtonContext{functional, linear_solver});
   const auto reporter = rcp(new Reporter(context, 1, [](const NewtonStep &, const Vector &) {}));
-  build_solver(rcp(new NewtonGroup(context, u)), options, context, nox_lists(options.nox, reporter));
+  build_solver(rcp(new NewtonGroup(context, u)), options, nox_lists(options.nox, reporter));
 }
 
 MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
-                        const double scale, const NewtonOptions &options, FirstStage *const stage,
+                        const double scale, const NewtonOptions &options, const MinimizationLoop &loop,
                         const NewtonReport &report)
 {
+  using Status = MinimizationSteps::Status;
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::newton"));
   const auto context = rcp(new NewtonContext{functional, linear_solver, options.residual_tolerance * scale});
-  if (takes_first_stage(options)) context->stage = stage;
   const auto reporter = rcp(new Reporter(context, scale, report));
   const auto lists = nox_lists(options.nox, reporter);
   const auto group = rcp(new NewtonGroup(context, u));
@@ -264,11 +268,16 @@ MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solve
   MinimizeResult result;
   try {
     group->computeF(); // so that the start is reported with its residual
-    const auto solver = build_solver(group, options, context, lists);
-    const auto status = solver->solve();
-    u->assign(tpetra(solver->getSolutionGroup().getX()));
+    const auto [solver, tests] = build_solver(group, options, lists);
+    reporter->runPreSolve(*solver);
+    MinimizationSteps steps(group, solver, newton_tests(options, context), options.max_iterations);
+    auto status = MinimizationSteps::status_of(tests->checkStatus(*solver, NOX::StatusTest::Minimal));
+    if (status == Status::goes_on)
+      status = loop && takes_loop(options) ? loop(steps) : steps.newton_to_end(steps.newton_begins());
+    if (!steps.stepped()) reporter->runPostIterate(*solver);
+    u->assign(tpetra(group->getX()));
     result.steps = context->steps > 0 ? context->steps : solver->getNumIterations();
-    result.converged = status == NOX::StatusTest::Converged;
+    result.converged = status == Status::converged;
   } catch (const Error &) { // a mistake in the deck
     throw;
   } catch (const std::exception &failure) { // NOX throws when a direction cannot be had; the same on all ranks
@@ -279,6 +288,7 @@ MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solve
     result.steps = context->steps;
     result.reason = failure;
   }
+  result.newton_steps = context->newton_steps;
   if (!result.converged) {
     std::ostringstream reason;
     reason << "Newton did not converge in " << result.steps << (result.steps == 1 ? " step" : " steps");

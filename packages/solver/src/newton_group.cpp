@@ -87,6 +87,7 @@ NOX::Abstract::Group::ReturnType NewtonGroup::computeNewton(Teuchos::ParameterLi
       solve_for_direction(*context_, F_.data(), newton_->data(),
                           std::max(rough, newton_rules.beside_target * context_->target_residual / norm_F_));
   ++context_->steps;
+  ++context_->newton_steps;
   newton_->scale(-1.);
   const bool has_cause = !result.interrupted && std::isfinite(context_->direction_norm);
   context_->failure = result.reason;

@@ -96,24 +96,28 @@ private:
 
 } // namespace
 
-RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const RCP<NewtonContext> &context)
+RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options)
 {
   using namespace NOX::StatusTest;
   const RCP<Combo> tests = rcp(new Combo(Combo::OR));
   tests->addStatusTest(rcp(new FiniteValue));
   tests->addStatusTest(rcp(new InterruptTest));
-  if (options.nox.isSublist("Status Tests")) { // the user's, instead of ours
+  if (options.nox.isSublist("Status Tests")) {
     Teuchos::ParameterList list = options.nox.sublist("Status Tests");
     tests->addStatusTest(buildStatusTests(list, NOX::Utils()));
-    return tests;
   }
+  return tests;
+}
+
+RCP<NOX::StatusTest::Generic> newton_tests(const NewtonOptions &options, const RCP<NewtonContext> &context)
+{
+  using namespace NOX::StatusTest;
+  if (options.nox.isSublist("Status Tests")) return Teuchos::null;
   const RCP<Combo> newton = rcp(new Combo(Combo::OR));
   newton->addStatusTest(rcp(new NormF(context->target_residual, NOX::Abstract::Vector::TwoNorm, NormF::Unscaled)));
   newton->addStatusTest(rcp(new StepTest(context, options.step_tolerance)));
   newton->addStatusTest(rcp(new StagnationTest(context)));
-  tests->addStatusTest(rcp(new StagedTest(context, newton)));
-  tests->addStatusTest(rcp(new MaxIters(options.max_iterations)));
-  return tests;
+  return newton;
 }
 
 } // namespace rpc::solver

@@ -6,7 +6,10 @@
 namespace rpc::solver
 {
 
-/// What ends the iteration: Newton's tests, an interrupt, numbers that are not finite, or the deck's own tests in the place of Newton's.
-RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options, const RCP<NewtonContext> &context);
+/// What ends a minimization whatever its steps are: an interrupt, numbers that are not finite, the deck's own tests.
+RCP<NOX::StatusTest::Generic> status_tests(const NewtonOptions &options);
+
+/// What ends Newton's steps; null: the deck's own tests do.
+RCP<NOX::StatusTest::Generic> newton_tests(const NewtonOptions &options, const RCP<NewtonContext> &context);
 
 } // namespace rpc::solver

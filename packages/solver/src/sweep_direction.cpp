@@ -10,7 +10,11 @@ bool SweepDirection::compute(NOX::Abstract::Vector &direction, NOX::Abstract::Gr
                              const NOX::Solver::Generic &)
 {
   using Group = NOX::Abstract::Group;
-  const NewtonContext &context = dynamic_cast<const NewtonGroup &>(group).context();
+  NewtonContext &context = dynamic_cast<const NewtonGroup &>(group).context();
+  if (!context.given.is_null()) {
+    dynamic_cast<NoxVector &>(direction).data().assign(*context.given);
+    return true;
+  }
   swept_ = !swept_ || context.step_length >= newton_rules.cut_short;
   if (swept_) {
     NoxVector moved(dynamic_cast<const NoxVector &>(group.getX()), NOX::DeepCopy);
@@ -21,6 +25,7 @@ bool SweepDirection::compute(NOX::Abstract::Vector &direction, NOX::Abstract::Gr
   Teuchos::ParameterList none;
   const auto status = group.computeNewton(none);
   direction = group.getNewton();
+  context.piece = context.functional.piece(tpetra(group.getX()));
   return status == Group::Ok || status == Group::NotConverged; // a rough direction leads down as well
 }
 

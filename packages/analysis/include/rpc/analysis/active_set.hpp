@@ -5,7 +5,7 @@
 #include "rpc/analysis/solve_step.hpp"
 #include "rpc/contact/iterate.hpp"
 #include "rpc/core/headway.hpp"
-#include "rpc/solver/first_stage.hpp"
+#include "rpc/solver/minimization_steps.hpp"
 
 #include <array>
 #include <limits>
@@ -24,15 +24,12 @@ struct ActiveSetTolerances {
 /// By the options for Newton and Uzawa. (5.10)
 ActiveSetTolerances active_set_tolerances(const StepOptions &options);
 
-/// The primal-dual active-set iteration as first steps of a NOX solver: the active set is chosen by the last pressures, and the
-/// step goes to the minimum for it, by a rough solve while the active set changes. doc/theory.md (5.7), (5.8), (5.9)
+/// The loop of a minimization: choose the active set, solve for it, until a choice confirms itself. doc/theory.md (5.7) to (5.9)
 ///
-/// Converges where a choice confirms the last active set, which is then the solution's, up to the share k/r that the penalty leaves
-/// to a multiplier update. On thin bodies, whose choices by pressures overshoot, a coarser mesh of the body chooses, (5.8b); where it cannot,
-/// an interior-point method follows, (5.15) to (5.20). Where there is no such mesh and an active set comes back or choices make no headway,
-/// (5.8a), Newton's directions with their line search go on, and where these creep, (5.9a), the interior-point method. With friction Newton
-/// alone follows.
-class ActiveSetStage : public solver::FirstStage
+/// The active set is chosen by the last pressures, and the step goes to the minimum for it, by a rough solve while the active set changes. It
+/// converges where a choice confirms the last active set, which is then the solution's, up to the share k/r that the penalty leaves to a
+/// multiplier update. Where choices make no progress another method is next, see Method.
+class ActiveSetLoop
 {
 public:
   /// What follows where no choice is confirmed.
@@ -40,26 +37,45 @@ public:
     newton, ///< Newton's directions with their line search
     nothing ///< the minimization ends, as if converged; few changes are tried
   };
-  ActiveSetStage(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, Then then = Then::newton);
-
-  Verdict judge(const solver::NewtonGroup &at) override;
-  Step propose(solver::NewtonGroup &group, Vector &direction) override;
-  /// Where Newton has settled, to confirm the states there; where it creeps, once by the interior-point method and once for more
-  /// changes than before, with good solves. doc/theory.md (5.9a)
-  bool resume(const solver::NewtonGroup &from, const solver::NewtonProgress &newton) override;
+  using Status = solver::MinimizationSteps::Status;
+  ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, Then then = Then::newton);
 
   /// The start is a coarser mesh's solution. What led to its states makes the first steps, or choices by the coarser mesh where
   /// pressures were not enough; except with friction.
   /// @param coarse_choice  empty: there are no such choices
   void starts_predicted(FoundBy coarser, MakeCoarseChoice coarse_choice = {});
-  FoundBy found_by() const;                     ///< what has been at work so far
+  Status operator()(solver::MinimizationSteps &steps);
+
+  FoundBy found_by() const;                     ///< what has been at work
   bool confirmed() const { return confirmed_; } ///< the active set is the solution's
-  int steps() const { return steps_; }
+  int steps() const { return steps_; }          ///< but for Newton's
   int coarse_choices() const { return coarse_choices_; }
 
 private:
-  Verdict judged(const solver::NewtonGroup &at);
-  Step proposed(solver::NewtonGroup &group, Vector &direction);
+  /// The method of the next step, and when it is taken:
+  ///
+  ///     choices            at the start; where the path's states or Newton's have settled; once where Newton is blocked at kinks
+  ///     interior_path      once, without friction: where choices by a coarser mesh fail, or Newton is slow or blocked (5.9a)
+  ///     newton_from_start  where choices by pressures make no progress (5.8a), before the path
+  ///     newton             where they make none with friction or after the path; where the path or a linear solve fails
+  enum class Method { choices, interior_path, newton_from_start, newton };
+  enum class Verdict { go_on, converged, over };
+  /// How Newton's steps have gone, one after the other.
+  struct NewtonProgress {
+    int steps = 0, short_steps = 0; ///< the latter were blocked at a kink at once
+    double left = 1; ///< product of |1 - t|, of each not too little: part of the way that is left, were there no kinks
+  };
+
+  Status begin(solver::MinimizationSteps &steps);
+  Status judge(solver::MinimizationSteps &steps);
+  Status end_choices(solver::MinimizationSteps &steps, Verdict verdict);
+  Status leave_to_newton(solver::MinimizationSteps &steps);
+  Status step_to_choice(solver::MinimizationSteps &steps);
+  Status step_on_path(solver::MinimizationSteps &steps);
+  Status newton_step(solver::MinimizationSteps &steps);
+  bool newton_hands_over(solver::MinimizationSteps &steps);
+  void back_to_start(solver::MinimizationSteps &steps);
+  Verdict choose_at(solver::NewtonGroup &at);
   Verdict choose(const Vector &u);
   bool is_new_choice();
   bool may_settle();
@@ -71,9 +87,7 @@ private:
   void take_path(const Vector &u);
   void take_over(const Vector &u, int most);
   void start_over(std::optional<contact::ActiveSetChoice> choice, int most);
-  Step leave_to_newton(solver::NewtonGroup &group);
   bool leaves_path();
-  Step propose_interior(solver::NewtonGroup &group, Vector &direction);
   bool solve_interior(solver::NewtonContext &context, const Vector &u, Vector &direction);
 
   contact::Iterate &iterate_;
@@ -86,15 +100,17 @@ private:
   bool rough_;                                     // solves are, while the active set changes
   bool rubs_;                                      // there is friction
   bool turns_ = false;                             // and in space: the branches of an active set are not linear
-  bool confirmed_ = false, decided_ = false;
+  bool confirmed_ = false;
   bool resumed_ = false;
   std::optional<FoundBy> predicted_;     // what to begin with where a coarser mesh predicts the start
   MakeCoarseChoice make_coarse_;         // empty: there are none, or they have begun
   std::unique_ptr<CoarseChoice> coarse_; // null: pressures choose
   bool coarse_gave_up_ = false;          // there were none that settled
   int coarse_choices_ = 0;
-  bool newton_is_next_ = false, newton_was_tried_ = false;
-  int confirmations_ = 0; // of where Newton has settled
+  Method method_ = Method::choices;
+  NewtonProgress newton_;
+  bool newton_was_tried_ = false; // from the start
+  int confirmations_ = 0;         // of where Newton has settled
   Then then_;
   double norm_ = std::numeric_limits<double>::infinity(),
          before_ = norm_,      // |F|_2 for the active set, after and before the step
@@ -108,7 +124,7 @@ private:
   GO fewest_changes_ = 0;     // fewest points that one of them has changed; 0: there was none
   double left_ = std::numeric_limits<double>::infinity(); // so many more would follow at this rate
   std::array<double, 3> levers_{}; // of the last ones, the last one first: overshoot o as o / (1 - o)
-  enum class Path { ahead, on_it, tried, behind } path_ = Path::ahead; // the interior-point method
+  enum class Path { ahead, begun, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried
 };

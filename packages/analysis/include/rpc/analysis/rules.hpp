@@ -61,6 +61,7 @@ struct ChoiceRules {
   Rule<int> most_short_steps{3, "choice.most_short_steps", "Newton steps that ended at a kink at once: blocked [-]", "not measured"};
   Rule<double> left_per_step{0.5, "choice.left_per_step", "part of the way that a Newton step may leave in the mean, else it is slow [-]",
                              "theory.md (5.9a)"};
+  Rule<double> least_left{0.1, "choice.least_left", "part of the way that a Newton step is taken to leave at least [-]", "not measured"};
   Rule<int> most_confirmations{5, "choice.most_confirmations", "returns from Newton's method to choices [-]", "not measured"};
   Rule<double> ended_by_rounding{1e-3, "choice.ended_by_rounding",
                                  "residual over that before the step for the last active set: the step is enough [-]", "not measured"};

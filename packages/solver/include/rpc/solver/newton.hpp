@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "rpc/solver/first_stage.hpp"
+#include "rpc/solver/minimization_steps.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <functional>
@@ -35,8 +35,9 @@ using NewtonReport = std::function<void(const NewtonStep &, const Vector &u)>;
 /// What came out of one minimization.
 struct MinimizeResult {
   bool converged = false;
-  int steps = 0;      ///< each one linear solve
-  std::string reason; ///< why not, if not
+  int steps = 0;        ///< each one linear solve
+  int newton_steps = 0; ///< of these, those of Newton's method
+  std::string reason;   ///< why not, if not
 };
 
 /// Lets NOX read its part of the deck, which a scene may not come to; collective.
@@ -44,14 +45,14 @@ struct MinimizeResult {
 void check_nox_parameters(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u,
                           const NewtonOptions &options);
 
-/// Whether the deck's "Direction" -> "Method" leaves the first steps to a stage.
-bool takes_first_stage(const NewtonOptions &options);
+/// Whether the deck's "Direction" -> "Method" lets a loop take other steps than Newton's.
+bool takes_loop(const NewtonOptions &options);
 
-/// Minimizes a functional over u, in place, by NOX; collective. Failure is a result, not an exception.
+/// Minimizes a functional over u, in place; collective. Failure is a result, not an exception.
 /// @param scale   of forces, to which residuals are relative
-/// @param stage   proposes the first steps, where "Direction" -> "Method" is "Active Set"; null: there is none
+/// @param loop    chooses the steps, where "Direction" -> "Method" is "Active Set"; empty: all are Newton's
 /// @param report  called at the start and after each step
 MinimizeResult minimize(ConvexFunctional &functional, LinearSolver &linear_solver, const RCP<Vector> &u, double scale,
-                        const NewtonOptions &options, FirstStage *stage, const NewtonReport &report);
+                        const NewtonOptions &options, const MinimizationLoop &loop, const NewtonReport &report);
 
 } // namespace rpc::solver

@@ -13,29 +13,15 @@
 namespace rpc::solver
 {
 
-class FirstStage;
-
-/// How Newton's steps have gone since the first stage was over.
-struct NewtonProgress {
-  int steps = 0;
-  int short_steps = 0; ///< of these, that ended at a kink at once, below NewtonRules::cut_short
-  /// Of the way to the minimum, as if the functional had no kinks: the product of |1 - t|, at least 0.1 each.
-  double left = 1;
-  /// The last one met no kink and ended on the piece of the functional that its direction was for.
-  bool settled = false;
-};
-
 /// What the groups of one minimization share: the functional, the linear solver, and a record of the last step.
 struct NewtonContext {
   ConvexFunctional &functional;
   LinearSolver &linear_solver;
-  double target_residual = 0;    ///< |F|_2 at which Newton stops; no linear solve need be better than this
-  FirstStage *stage = nullptr;   ///< proposes the steps until it ends; null: Newton's directions do
-  FirstStage *resting = nullptr; ///< the stage, once it is over
+  double target_residual = 0;   ///< |F|_2 at which Newton stops; no linear solve need be better than this
+  RCP<const Vector> given = {}; ///< the next step's direction; null: Newton's
 
-  int steps = 0; ///< that took a linear solve
-  NewtonProgress newton = {};
-  std::uint64_t piece = 0; ///< of the functional, at Newton's last direction
+  int steps = 0, newton_steps = 0; ///< that took a linear solve, and of these Newton's
+  std::uint64_t piece = 0;         ///< of the functional, at Newton's last direction
 
   // Last step
   double direction_norm = 0; ///< |d|_2 of the full step

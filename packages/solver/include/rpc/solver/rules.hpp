@@ -178,8 +178,6 @@ struct NewtonRules {
                              "not measured"};
   Rule<double> largest_residual{0.1, "newton.largest_residual", "|r|/|F| of any direction, at most [-]",
                                 "not measured"};
-  Rule<double> least_left{0.1, "newton.least_left", "least part of the way that a step leaves [-]",
-                          "the next direction is for another piece of the functional"};
   Rule<double> cut_short{0.02, "newton.cut_short", "length of a step that ended at a kink [-]", "(4.6)"};
   Rule<double> to_the_minimum{1e-6, "newton.to_the_minimum", "|1 - length| of a step that has met no kink [-]",
                               "nothing is left to gain along it"};

@@ -17,7 +17,7 @@ class SweepDirection : public NOX::Direction::Generic
 {
 public:
   bool reset(const Teuchos::RCP<NOX::GlobalData> &, Teuchos::ParameterList &) override { return true; }
-  /// Moves the group, too, to where the sweep leads.
+  /// Moves the group, too, to where the sweep leads. A direction that the context gives is taken as it is.
   bool compute(NOX::Abstract::Vector &direction, NOX::Abstract::Group &group,
                const NOX::Solver::Generic &solver) override;
 
