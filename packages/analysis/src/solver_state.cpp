@@ -57,7 +57,7 @@ solver::LinearSolverOptions tuned(solver::LinearSolverOptions options, const Pro
   options.expected_iterations = expected_iterations(*d.mesh, nu);
   if (is_mixed) {
     options.expected_iterations = expected_of_mixed_form(*d.mesh, nu);
-    options.first_iterations = std::max<int>(options.first_iterations, linear_rules.first_iterations);
+    options.first_iterations = std::max<int>(options.first_iterations, linear_rules.first_iterations_of_mixed);
   }
   options.rough_part = rough_part(nu);
   return options;
