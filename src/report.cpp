@@ -303,6 +303,17 @@ void print_work(std::ostream &out, const Solution &s)
           level.newton_iterations, sum(level.linear_iterations), level.seconds);
 }
 
+void print_candidates(std::ostream &out, const solver::LinearSolverCounts &counts)
+{
+  print(out, "    candidates        %-20s %8s %8s %11s\n", "", "set-ups", "solves", "iterations");
+  for (const solver::CandidateCounts &c : counts.candidates)
+    print(out, "                      %-20s %8d %8d %11d%s%s\n", c.name.c_str(), c.setups, c.solves, c.iterations,
+          c.left.empty() ? (c.tried ? "" : "  not tried")
+          : c.tried      ? "  left: "
+                         : "  not tried: ",
+          c.left.c_str());
+}
+
 } // namespace
 
 void print_summary(std::ostream &out, const Scene &scene, const Solution &s, const std::vector<std::string> &notes,
@@ -335,6 +346,7 @@ void print_summary(std::ostream &out, const Scene &scene, const Solution &s, con
     out << "  results             none: the last iterate is no solution\n";
   print_work(out, s);
   if (s.adaptation && s.has_results()) print_meshes(out, *s.adaptation);
+  if (scene.output.verbose && !s.linear.candidates.empty()) print_candidates(out, s.linear);
   if (scene.output.verbose)
     for (const auto &skipped : s.skipped) print(out, "    skipped           %s\n", skipped.c_str());
   print_lines(out, lines(analysis::phase_seconds, s.seconds, {}, "%.3f"));

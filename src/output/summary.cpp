@@ -192,6 +192,14 @@ nlohmann::ordered_json summary(const Scene &scene, const Solution &s)
   json["local_corrections"] = s.linear.local_corrections;
   json["solver"] = s.linear.description;
   json["solver_path"] = solver::solver_path(s.linear);
+  json["candidates"] = nlohmann::ordered_json::array();
+  for (const solver::CandidateCounts &c : s.linear.candidates)
+    json["candidates"].push_back({{"name", c.name},
+                                  {"tried", c.tried},
+                                  {"setups", c.setups},
+                                  {"solves", c.solves},
+                                  {"iterations", c.iterations},
+                                  {"left", c.left}});
   json["matrix_assemblies"] = s.matrix_assemblies;
   if (!s.history.empty()) add_steps(json, s, scope);
   add_balance(json, scene, s);

@@ -24,7 +24,7 @@ SUMMARY = {"converged": bool, "reason": str, "dofs": int, "contact_nodes": int, 
            "max_von_mises": NUMBER, "contact_force": NUMBERS, "max_pressure": NUMBER, "max_penetration": NUMBER,
            "contact_length": NUMBER, "yielded_length": NUMBER, "max_dent": NUMBER, "dent_volume": NUMBER, "time": NUMBER, "kkt_residual": NUMBER, "uzawa_iterations": int,
            "newton_iterations": INTEGERS, "linear_solves": int, "linear_iterations": INTEGERS,
-           "preconditioner_setups": int, "local_corrections": int, "solver": str, "solver_path": str, "matrix_assemblies": int,
+           "preconditioner_setups": int, "local_corrections": int, "solver": str, "solver_path": str, "candidates": list, "matrix_assemblies": int,
            "notes": list, "skipped": list, "levels": list, "seconds": dict}
 
 

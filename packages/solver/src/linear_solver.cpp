@@ -4,13 +4,10 @@
 #include "convergence.hpp"
 #include "iteration_cost.hpp"
 #include "krylov.hpp"
-#include "muelu_defaults.hpp"
-#include "policy.hpp"
 #include "preconditioner/algebraic.hpp"
 #include "preconditioner/factor.hpp"
 #include "preconditioner/meshes.hpp"
 #include "preconditioner/mixed.hpp"
-#include "preconditioner/sparse.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/finite.hpp"
 #include "rpc/core/interrupt.hpp"
@@ -35,14 +32,22 @@ double fair(const double tolerance)
   return linear_rules.fair_iterations * std::min(1., std::log(tolerance) / std::log(linear_rules.full_tolerance));
 }
 
-/// What is to be done about a result; nothing where it is good.
+/// How a linear solve went that was not good.
+enum class Outcome {
+  slow,   ///< it converged, in more iterations than LinearRules::slow
+  failed, ///< it stopped before it converged
+  broken, ///< the set-up or the Krylov method broke down: the matrix may be singular
+  dear    ///< it was given up, for a sparse factor takes less time than the iterations that were left
+};
+
+/// Nothing where the result is good.
 std::optional<Outcome> outcome_of(const LinearSolver::Result &result, const bool given_up)
 {
   if (result.interrupted) return std::nullopt;
-  if (given_up) return dear;
-  if (result.broken) return broken;
-  if (!result.converged) return failed;
-  if (result.iterations > linear_rules.slow) return slow;
+  if (given_up) return Outcome::dear;
+  if (result.broken) return Outcome::broken;
+  if (!result.converged) return Outcome::failed;
+  if (result.iterations > linear_rules.slow) return Outcome::slow;
   return std::nullopt;
 }
 
@@ -60,83 +65,105 @@ std::string chosen_solver(const LinearSolverCounts &counts)
   return counts.description + (counts.path.size() > 1 ? " (" + solver_path(counts) + ")" : "");
 }
 
-/// The preconditioners, each with its own state, and which of them is in use.
+/// The candidates in order: the first one that applies is used. A sparse factor stands first, and waits until the iterations of the others
+/// would take longer than it. Where a solve fails, breaks down or is given up, goes_on() puts the next one in use for the same solve, and
+/// where it was slow for the next solve.
 struct LinearSolver::Impl {
+  enum class Kind { sparse, mixed, meshes, factor, algebraic };
+  enum class State {
+    waits, ///< until it takes less time than the others
+    open,  ///< may be used
+    rests, ///< in this solve
+    left   ///< for good
+  };
+  struct Candidate {
+    Kind kind;
+    std::unique_ptr<Preconditioner> B;
+    State state = State::open;
+
+    bool applies() const { return state == State::open; }
+    bool is_on_meshes() const { return kind == Kind::mixed || kind == Kind::meshes; }
+  };
+
   LinearSolverOptions options;
   RCP<UpdatedOperator> H;
   Body body;
   LinearSolverCounts counts;
-  std::optional<Meshes> meshes; // nothing: the deck or the mesh rules it out
-  std::optional<Mixed> mixed;   // nothing: the same, or the body is not nearly incompressible
-  std::optional<Factor> factor; // nothing: there are many unknowns, the deck rules it out, or it was too weak
-  Algebraic algebraic;
-  Sparse sparse;
+  std::vector<Candidate> candidates;
+  Factor *sparse;               // the first of them
+  const Mixed *mixed = nullptr; // null: the deck, the mesh or the body rules it out
+  Algebraic *algebraic;         // the last of them
   Krylov krylov;
-  bool on_meshes;                                    // or on one of the others
-  bool on_mixed = false;                             // until it fails
-  bool mixed_again = false;                          // in the next solve: a matrix was met that may be singular
-  bool on_sparse = false;                            // from some solve on
-  int solves_to_come = 1;                            // about
-  bool may_be_sparse;                                // the deck leaves the preconditioner open, and memory may do
-  double lost_iterations = 0;                        // of CG, in all solves, beyond what is fair
-  std::optional<IterationSeconds> iteration_seconds; // nothing: not asked for yet
-  bool given_up = false;                             // the last solve, in favour of a sparse factor
-  bool met_singular = false;                         // a matrix that neither hierarchy can solve for
-  bool stands_in = false;                            // since the meshes failed in the present solve
-  Preconditioner *used = nullptr;                    // in the last solve
+  int solves_to_come = 1;               // about
+  bool may_be_sparse;                   // the deck leaves the preconditioner open, and memory may do
+  double lost_iterations = 0;           // of CG, in all solves, beyond what is fair
+  const IterationSeconds seconds_of_cg; // of an iteration with multigrid
+  bool given_up = false;                // the last solve, in favour of a sparse factor
+  bool met_singular = false;            // a matrix that the meshes and what took their place broke down on
+  Candidate *stands_in_for = nullptr;   // the meshes, where another one took their place in the present solve
+  Candidate *used = nullptr;            // in the last solve
 
   Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels,
        MakeMixedForm mixed_form);
-  Preconditioner *chosen();
+  template <class B, class... Arguments>
+  B *consider(Kind kind, State state, Arguments &&...arguments);
+  Candidate &first(); ///< that applies; the algebraic hierarchy always does
+  CandidateCounts &row(const Candidate &candidate) { return counts.candidates[&candidate - candidates.data()]; }
+  bool is_sparse() const { return candidates.front().applies(); }
   void prepare(double tolerance);
-  bool counted(Preconditioner &B, double tolerance);
+  bool counted(Candidate &candidate, double tolerance);
   Result attempt(const Vector &b, Vector &x, const Accuracy &wanted);
-  Used used_for_policy() const;
-  const IterationSeconds &seconds_of_cg();
-  const Sparse::Prospect *prospect();
+  const Factor::Prospect *prospect();
   bool sparse_pays(double iterations_in_all, double tolerance);
   bool sparse_pays_now(const Convergence &seen, double tolerance);
   void choose_before_the_first_solve();
-  bool take(Next next, const std::string &reason);
-  void record(const Preconditioner &B, const std::string &reason);
+  bool goes_on(Outcome outcome, const std::string &reason);
+  bool take_sparse(const std::string &reason);
+  void come_back(Candidate &candidate);
+  bool leave(Candidate &candidate, State state, const std::string &reason);
+  void put_out(Candidate &candidate, State state, const std::string &reason);
+  void record(const Candidate &candidate, const std::string &reason);
 };
 
 LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &of, Body of_body, MakeMeshLevels levels,
                          MakeMixedForm mixed_form)
-    : options(std::move(given)), H(of), body(std::move(of_body)),
-      algebraic(H, body, options,
-                static_cast<GO>(H->getDomainMap()->getGlobalNumElements()) <= linear_rules.most_rows_for_each_state),
-      sparse(H), krylov(options, H)
+    : options(std::move(given)), H(of), body(std::move(of_body)), krylov(options, H),
+      seconds_of_cg(seconds_of_iteration(H->base()))
 {
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
   const bool automatic = options.multigrid == "auto" && options.muelu.numParams() == 0;
   const bool want_meshes = options.multigrid == "mesh" || (automatic && unknowns > linear_rules.few_rows);
-  if (levels && want_meshes) meshes.emplace(H, std::move(levels), options);
-  if (automatic && unknowns <= linear_rules.most_rows_for_each_state) factor.emplace(H);
-  on_meshes = meshes.has_value();
-  if (mixed_form && want_meshes) mixed.emplace(H, std::move(mixed_form), options);
-  on_mixed = mixed.has_value();
+  const bool for_each_state = unknowns <= linear_rules.most_rows_for_each_state;
+  sparse = consider<Factor>(Kind::sparse, State::waits, H, Factor::Kind::sparse);
+  if (mixed_form && want_meshes) mixed = consider<Mixed>(Kind::mixed, State::open, H, std::move(mixed_form), options);
+  if (levels && want_meshes) consider<Meshes>(Kind::meshes, State::open, H, std::move(levels), options);
+  if (automatic && for_each_state) consider<Factor>(Kind::factor, State::open, H, Factor::Kind::of_few);
+  algebraic = consider<Algebraic>(Kind::algebraic, State::open, H, body, options, for_each_state);
   may_be_sparse = automatic && unknowns <= linear_rules.most_sparse_rows;
   if (sum_all(*H->getDomainMap()->getComm(), static_cast<GO>(H->nodes().extent(0))) > 0)
     solves_to_come = linear_rules.solves_with_contact;
 }
 
-/// Of an iteration of CG with multigrid; collective.
-const IterationSeconds &LinearSolver::Impl::seconds_of_cg()
+template <class B, class... Arguments>
+B *LinearSolver::Impl::consider(const Kind kind, const State state, Arguments &&...arguments)
 {
-  if (!iteration_seconds) iteration_seconds = seconds_of_iteration(H->base());
-  return *iteration_seconds;
+  auto made = std::make_unique<B>(std::forward<Arguments>(arguments)...);
+  B *const raw = made.get();
+  candidates.push_back({kind, std::move(made), state});
+  counts.candidates.emplace_back().name = raw->name();
+  return raw;
 }
 
 /// What a sparse factor takes; null where it cannot be had. Collective.
-const Sparse::Prospect *LinearSolver::Impl::prospect()
+const Factor::Prospect *LinearSolver::Impl::prospect()
 {
   if (!may_be_sparse) return nullptr;
-  const auto &found = sparse.prospect();
+  const auto &found = sparse->prospect();
   if (found.obstacle.empty()) return &found;
   may_be_sparse = false;
-  sparse.forget();
-  record(sparse, "not made: " + found.obstacle);
+  row(candidates.front()).left = found.obstacle;
+  sparse->forget();
+  record(candidates.front(), "not made: " + found.obstacle);
   return nullptr;
 }
 
@@ -146,7 +173,7 @@ bool LinearSolver::Impl::sparse_pays(const double iterations_in_all, const doubl
 {
   if (!may_be_sparse) return false;
   const double lost =
-      seconds_of_cg().counted * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair(tolerance), 0.));
+      seconds_of_cg.counted * (lost_iterations + solves_to_come * std::max(iterations_in_all - fair(tolerance), 0.));
   if (lost < cost_model.analysis_of_row * static_cast<double>(H->getDomainMap()->getGlobalNumElements())) return false;
   const auto *const found = prospect();
   return found && found->cost.seconds < lost;
@@ -161,71 +188,72 @@ bool LinearSolver::Impl::sparse_pays_now(const Convergence &seen, const double t
       prospect())
     return true;
   return sparse_pays(seen.iterations_in_all(tolerance, limit), tolerance) &&
-         seen.iterations() * seconds_of_cg().measured >= linear_rules.part_to_tell * sparse.prospect().cost.seconds;
+         seen.iterations() * seconds_of_cg.measured >= linear_rules.part_to_tell * sparse->prospect().cost.seconds;
 }
 
 /// By the form of the body, and by the iterations that it lets expect. Where these are more than CG may take, a factor would follow anyway.
 void LinearSolver::Impl::choose_before_the_first_solve()
 {
-  if (on_sparse || !counts.iterations.empty()) return;
-  const bool is_open = may_be_sparse && chosen();
+  if (is_sparse() || !counts.iterations.empty()) return;
+  const bool is_open = may_be_sparse && first().is_on_meshes();
   const Map &unknowns = *H->getDomainMap();
   const bool narrow = is_open && body.band_width > 0 &&
-                      is_narrow(static_cast<double>(unknowns.getGlobalNumElements()), body.band_width, seconds_of_cg(),
+                      is_narrow(static_cast<double>(unknowns.getGlobalNumElements()), body.band_width, seconds_of_cg,
                                 unknowns.getComm()->getSize());
-  if (narrow) sparse.take_band();
-  if (narrow && take(Next::sparse, "it takes no longer than a few iterations")) return;
-  if (is_open && body.is_thin && take(Next::sparse, "the body is one thin layer of cells")) return;
+  if (narrow) sparse->take_band();
+  if (narrow && take_sparse("it takes no longer than a few iterations")) return;
+  if (is_open && body.is_thin && take_sparse("the body is one thin layer of cells")) return;
   const double expected = options.expected_iterations;
   if (!(expected > 0)) return;
   if (expected > options.max_iterations ? !prospect() : !sparse_pays(expected, linear_rules.full_tolerance)) return;
-  take(Next::sparse, "about " + std::to_string(static_cast<int>(expected)) + " CG iterations expected");
+  take_sparse("about " + std::to_string(static_cast<int>(expected)) + " CG iterations expected");
 }
 
 /// Brings a preconditioner to H, and counts what that took. @return whether it can be used
-bool LinearSolver::Impl::counted(Preconditioner &B, const double tolerance)
+bool LinearSolver::Impl::counted(Candidate &candidate, const double tolerance)
 {
-  used = &B;
+  used = &candidate;
+  row(candidate).tried = true;
   const double start = Teuchos::Time::wallTime();
-  const auto done = B.prepare(tolerance);
+  const auto done = candidate.B->prepare(tolerance);
   counts.preconditioner_setups += done == Preconditioner::Prepared::made;
+  row(candidate).setups += done == Preconditioner::Prepared::made;
   counts.local_corrections += done == Preconditioner::Prepared::updated;
   if (done != Preconditioner::Prepared::unchanged) counts.setup_seconds += Teuchos::Time::wallTime() - start;
   return done != Preconditioner::Prepared::refused;
 }
 
-/// What is in use; null: the factor of few unknowns or the algebraic hierarchy.
-Preconditioner *LinearSolver::Impl::chosen()
+LinearSolver::Impl::Candidate &LinearSolver::Impl::first()
 {
-  if (on_sparse) return &sparse;
-  if (on_mixed) return &*mixed;
-  return on_meshes ? &*meshes : nullptr;
+  return *std::find_if(candidates.begin(), candidates.end(), [](const Candidate &c) { return c.applies(); });
 }
 
-/// `used` <- the preconditioner that is in use, for the present H.
+/// `used` <- the first candidate that applies and does not refuse the present H.
 void LinearSolver::Impl::prepare(const double tolerance)
 {
   const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewTimer("rpc::preconditioner"));
-  if (Preconditioner *const B = chosen()) {
-    counted(*B, tolerance);
-    return;
+  const char *refused = nullptr;
+  for (Candidate &candidate : candidates) {
+    if (!candidate.applies()) continue;
+    try {
+      if (counted(candidate, tolerance)) break;
+      refused = "a factor is refused";
+    } catch (const Error &) {
+      throw;
+    } catch (const std::exception &failure) {
+      pass_on_out_of_memory(failure);
+      if (candidate.kind != Kind::algebraic || options.muelu.numParams() == 0 || counts.preconditioner_setups > 0)
+        throw;
+      throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
+    }
   }
-  if (factor && counted(*factor, tolerance)) return;
-  try {
-    counted(algebraic, tolerance);
-  } catch (const Error &) {
-    throw;
-  } catch (const std::exception &failure) {
-    pass_on_out_of_memory(failure);
-    if (options.muelu.numParams() == 0 || counts.preconditioner_setups > 0) throw;
-    throw Error(ExitCode::bad_input, "deck: \"Linear Solver->MueLu\": " + one_line(failure.what()));
-  }
-  if (factor) record(algebraic, "a factor is refused");
+  if (refused) record(*used, refused);
 }
 
-void LinearSolver::Impl::record(const Preconditioner &B, const std::string &reason)
+void LinearSolver::Impl::record(const Candidate &candidate, const std::string &reason)
 {
-  const std::string entry = B.name() + (reason.empty() ? "" : ": " + reason);
+  const std::string &name = row(candidate).name = candidate.B->name();
+  const std::string entry = name + (reason.empty() ? "" : ": " + reason);
   if (std::find(counts.path.begin(), counts.path.end(), entry) == counts.path.end()) counts.path.push_back(entry);
 }
 
@@ -243,24 +271,23 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
     Convergence seen;
     const auto gives_up = [&](const int iterations, const double residual) {
       if (iterations > seen.iterations()) seen.add(residual);
-      if (!on_sparse) return sparse_pays_now(seen, least);
+      if (!is_sparse()) return sparse_pays_now(seen, least);
       return seen.iterations() >= linear_rules.first_iterations_of_factor &&
-             sparse.renewal_pays(seen.iterations_in_all(least, options.max_iterations) - seen.iterations());
+             sparse->renewal_pays(seen.iterations_in_all(least, options.max_iterations) - seen.iterations());
     };
     const GivesUp asked = may_be_sparse ? GivesUp(gives_up) : GivesUp();
-    const KrylovResult done =
-        on_mixed ? mixed->solve(b, x, wanted, asked) : krylov.solve(*used, H->is_symmetric(), b, x, wanted, asked);
+    const KrylovResult done = used->kind == Kind::mixed
+                                  ? mixed->solve(b, x, wanted, asked)
+                                  : krylov.solve(*used->B, H->is_symmetric(), b, x, wanted, asked);
     given_up = done.given_up;
     lost_iterations += std::max(0., done.iterations - fair(least));
-    if (used == &algebraic) algebraic.learn(done.iterations, done.residual);
-    if (on_mixed)
-      mixed->learn(done.iterations, seconds_of_cg().counted);
-    else if (on_meshes)
-      meshes->learn(done.iterations, seconds_of_cg().counted);
+    used->B->learn(done.iterations, done.residual, seconds_of_cg.counted);
     result = {done.converged, done.broken, false, done.iterations, done.energy, done.reason};
     counts.iterations.push_back(result.iterations);
+    ++row(*used).solves;
+    row(*used).iterations += result.iterations;
     counts.solve_seconds += Teuchos::Time::wallTime() - start;
-    counts.description = used->description();
+    counts.description = used->B->description();
     if (!result.broken && !std::isfinite(x.norm2())) {
       result.converged = false;
       result.broken = true;
@@ -282,73 +309,73 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
   return result;
 }
 
-Used LinearSolver::Impl::used_for_policy() const
+/// Puts into use what is to follow a solve that was not good. @return whether there is something new to use
+bool LinearSolver::Impl::goes_on(const Outcome outcome, const std::string &reason)
 {
-  if (on_sparse) return sparse.is_from_scratch() ? Used::sparse_fresh : Used::sparse;
-  if (on_mixed) return Used::mixed;
-  if (on_meshes) return met_singular ? Used::meshes_again : Used::meshes;
-  if (stands_in) return Used::stand_in;
-  if (factor && used == &*factor) return Used::factor;
-  return algebraic.is_from_scratch() ? Used::from_scratch : Used::algebraic;
-}
-
-/// Puts into use what the policy wants next. @return whether there is something new to use
-bool LinearSolver::Impl::take(const Next next, const std::string &reason)
-{
-  switch (next) {
-  case Next::nothing:
-    return false;
-  case Next::stand_in:
-    meshes->forget();
-    on_meshes = false;
-    stands_in = true;
-    counts.fallback = reason;
-    record(factor ? static_cast<const Preconditioner &>(*factor) : algebraic, reason);
+  Candidate &now = *used;
+  if (outcome == Outcome::dear && !is_sparse()) return take_sparse(reason);
+  if (now.B->renew()) { // what it has reused, or followed, may be to blame
+    if (!is_sparse()) record(now, "anew");
     return true;
-  case Next::anew:
-    if (on_sparse) {
-      sparse.renew();
-    } else {
-      algebraic.forget();
-      record(algebraic, "anew");
-    }
-    return true;
-  case Next::sparse:
-    if (!prospect()) return false;
-    if (on_mixed) mixed->forget();
-    on_mixed = false;
-    if (on_meshes) {
-      meshes->forget();
-      counts.fallback = reason;
-    }
-    algebraic.forget();
-    factor.reset();
-    on_meshes = false;
-    on_sparse = true;
-    record(sparse, reason);
-    return true;
-  case Next::whole:
-  case Next::whole_once:
-    mixed->forget();
-    on_mixed = false;
-    mixed_again = next == Next::whole_once;
-    if (!mixed_again) options.first_iterations = LinearSolverOptions().first_iterations;
-    record(meshes ? static_cast<const Preconditioner &>(*meshes) : algebraic, reason);
-    return true;
-  case Next::stronger:
-    if (!algebraic.strengthen()) return false;
-    factor.reset();
-    record(algebraic, reason);
-    return true;
-  case Next::meshes_back:
-    algebraic.forget();
-    if (factor) factor->forget();
-    on_meshes = met_singular = true;
-    counts.fallback.clear();
-    record(*meshes, "the matrix is singular");
+  }
+  if (is_sparse()) return false; // the matrix is singular, or nearly so
+  if (outcome == Outcome::broken) {
+    // An active set may leave the body unheld, or coarse meshes miss what the matrix tells: the next one shows.
+    if (now.kind == Kind::mixed) return leave(now, State::rests, reason);
+    if (now.kind == Kind::meshes && !met_singular) return leave(now, State::left, reason);
+    if (stands_in_for) come_back(*stands_in_for);
     return false;
   }
-  return false;
+  const bool is_slow = outcome == Outcome::slow;
+  if (is_slow && now.is_on_meshes()) return false; // a factor would take longer
+  // The mixed form fails in cells that are too stretched for it, which multigrid for the whole matrix may be good at.
+  const bool wants_factor = now.kind != Kind::mixed && !(is_slow && now.kind == Kind::algebraic);
+  return (wants_factor && take_sparse(reason)) || leave(now, State::left, reason);
+}
+
+/// The next one is used from now on; of an algebraic hierarchy it is its stronger form. @return whether there is one
+bool LinearSolver::Impl::leave(Candidate &candidate, const State state, const std::string &reason)
+{
+  if (candidate.kind != Kind::algebraic)
+    put_out(candidate, state, reason);
+  else if (!algebraic->strengthen())
+    return false;
+  record(first(), reason);
+  return true;
+}
+
+void LinearSolver::Impl::put_out(Candidate &candidate, const State state, const std::string &reason)
+{
+  candidate.B->forget();
+  candidate.state = state;
+  row(candidate).left = reason;
+  if (candidate.kind == Kind::mixed && state == State::left)
+    options.first_iterations = LinearSolverOptions().first_iterations;
+  if (candidate.kind != Kind::meshes) return;
+  counts.fallback = reason;
+  stands_in_for = &candidate;
+}
+
+/// What took its place has broken down, too: the matrix is singular.
+void LinearSolver::Impl::come_back(Candidate &candidate)
+{
+  for (Candidate &other : candidates)
+    if (other.applies()) other.B->forget();
+  candidate.state = State::open;
+  row(candidate).left.clear();
+  counts.fallback.clear();
+  met_singular = true;
+  record(candidate, "the matrix is singular");
+}
+
+bool LinearSolver::Impl::take_sparse(const std::string &reason)
+{
+  if (!prospect()) return false;
+  for (Candidate &other : candidates)
+    if (other.applies()) put_out(other, State::left, reason);
+  candidates.front().state = State::open;
+  record(candidates.front(), reason);
+  return true;
 }
 
 LinearSolver::LinearSolver(LinearSolverOptions options, const RCP<UpdatedOperator> &H, Body body, MakeMeshLevels levels,
@@ -368,7 +395,7 @@ double LinearSolver::seconds_of_last_solve() const
 {
   Impl &now = *impl_;
   if (now.counts.iterations.empty()) return 0;
-  const double cycle = now.on_sparse ? now.sparse.prospect().cost.seconds_of_solve : now.seconds_of_cg().measured;
+  const double cycle = now.is_sparse() ? now.sparse->prospect().cost.seconds_of_solve : now.seconds_of_cg.measured;
   return (now.counts.iterations.back() + 1) * cycle;
 }
 
@@ -386,22 +413,20 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accur
   }
   if (b.norm2() == 0) {
     x.putScalar(0);
-    Result nothing_to_do;
-    nothing_to_do.converged = true;
-    return nothing_to_do;
+    return {true, false, false, 0, 0, {}};
   }
-  impl_->stands_in = false;
-  impl_->on_mixed = impl_->on_mixed || (std::exchange(impl_->mixed_again, false) && !impl_->on_sparse);
+  impl_->stands_in_for = nullptr;
+  for (auto &candidate : impl_->candidates)
+    if (candidate.state == Impl::State::rests) candidate.state = Impl::State::open;
   impl_->choose_before_the_first_solve();
   for (;;) {
     const Result result = impl_->attempt(b, x, wanted);
     if (impl_->counts.path.empty() && impl_->used) impl_->record(*impl_->used, "");
     const auto outcome = outcome_of(result, impl_->given_up);
     if (!outcome) return result;
-    const PolicyRow &rule = rule_for(impl_->used_for_policy(), *outcome);
-    const std::string reason = result.converged ? std::to_string(result.iterations) + " iterations" : result.reason;
-    const bool other = impl_->take(rule.next, reason) || impl_->take(rule.otherwise, reason);
-    if (!other || *outcome == slow) return result;
+    const bool other =
+        impl_->goes_on(*outcome, result.converged ? std::to_string(result.iterations) + " iterations" : result.reason);
+    if (!other || *outcome == Outcome::slow) return result;
   }
 }
 
@@ -410,7 +435,7 @@ double LinearSolver::inverse_energy(const Vector &F)
   if (!(F.norm2() > 0)) return 0;
   try {
     impl_->prepare(1);
-    return solver::inverse_energy(*impl_->used, F);
+    return solver::inverse_energy(*impl_->used->B, F);
   } catch (const Interrupted &) { // the next solve tells
     return std::numeric_limits<double>::quiet_NaN();
   } catch (const Error &) {

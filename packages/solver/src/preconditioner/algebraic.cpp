@@ -122,7 +122,14 @@ void Algebraic::apply_to_residual(const MultiVector &r, MultiVector &y) const
     correction_->apply_off_patch(*multigrid_, *r.getVector(k), *y.getVectorNonConst(k));
 }
 
-void Algebraic::learn(const int iterations, const double residual)
+bool Algebraic::renew()
+{
+  if (is_fresh_ && !is_renewed_) return false;
+  forget();
+  return true;
+}
+
+void Algebraic::learn(const int iterations, const double residual, double)
 {
   const double digits = -std::log10(residual);
   if (!(digits > linear_rules.few_digits)) return;

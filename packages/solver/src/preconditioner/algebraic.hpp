@@ -34,10 +34,9 @@ public:
   RCP<const Map> getDomainMap() const override { return H_->getDomainMap(); }
   RCP<const Map> getRangeMap() const override { return H_->getRangeMap(); }
 
-  /// Whether it was made from nothing, for the present H: then a failure is not that of corrections or of reused parts.
-  bool is_from_scratch() const { return is_fresh_ && !is_renewed_; }
-  /// CG's iterations to |r|/|b| = residual, from which it learns when it has worn out.
-  void learn(int iterations, double residual);
+  bool renew() override;
+  /// It learns when it has worn out.
+  void learn(int iterations, double residual, double seconds_of_iteration) override;
   /// A stronger smoother, for nearly incompressible or badly shaped cells, where aggregation misses slow modes and a factor would be too
   /// large. At most once, and not against what the deck asks for.
   /// @return whether it is another preconditioner now, to be made from nothing

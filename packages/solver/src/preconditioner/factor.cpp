@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "preconditioner/factor.hpp"
 
-#include "direct_solver.hpp"
 #include "rpc/algebra/bounded_update.hpp"
+#include "rpc/core/parallel.hpp"
 #include "rpc/solver/rules.hpp"
+
+#include <sstream>
+#include <stdexcept>
 
 namespace rpc::solver
 {
 namespace
 {
 
+/// Multiplications that a factor of few unknowns may take.
 double most_work(const CrsMatrix &A)
 {
   const Comm &comm = *A.getComm();
@@ -17,32 +21,87 @@ double most_work(const CrsMatrix &A)
   return comm.getSize() > 1 && on_one ? linear_rules.most_work_on_one_of_several : linear_rules.most_work;
 }
 
+/// On all ranks; collective. @param a, b  (nodes, dim, dim)
+bool are_equal(const Comm &comm, const DeviceView<double ***> &a, const DeviceView<double ***> &b)
+{
+  const int dim = static_cast<int>(a.extent(1));
+  LO different = 0;
+  Kokkos::parallel_reduce(
+      "rpc::solver::are_equal", device_range(static_cast<LO>(a.extent(0))),
+      KOKKOS_LAMBDA(const LO n, LO &count) {
+        for (int k = 0; k < dim; ++k)
+          for (int l = 0; l < dim; ++l) count += a(n, k, l) != b(n, k, l);
+      },
+      different);
+  return sum_all(comm, GO(different)) == 0;
+}
+
 } // namespace
+
+const Factor::Prospect &Factor::prospect()
+{
+  if (solver_) return prospect_;
+  A_ = H_->base().copy();
+  solver_ = std::make_unique<DirectSolver>(A_, H_->dofs_per_node(), kind_ == Kind::band);
+  prospect_ = {solver_->cost(), solver_->lacks_memory()};
+  return prospect_;
+}
 
 Preconditioner::Prepared Factor::prepare(double)
 {
-  const bool current = revision_ == H_->revision();
-  if (!current) {
-    factor_.reset();
-    if (A_.is_null()) A_ = H_->base().copy();
-    write_update(*A_, *H_, bounded_update(*H_));
-    factor_ = direct_solver(A_, H_->dofs_per_node(), most_work(*A_));
-    revision_ = H_->revision();
+  const int revision = H_->revision();
+  if (revision == revision_) return refused_ ? Prepared::refused : Prepared::unchanged;
+  revision_ = -1;
+  const auto &[cost, obstacle] = prospect();
+  if (kind_ == Kind::of_few) {
+    refused_ = cost.operations > most_work(*A_) || !obstacle.empty();
+    if (!refused_) write_update(*A_, *H_, bounded_update(*H_));
+    refused_ = refused_ || !solver_->make();
+    revision_ = revision;
+    return refused_ ? Prepared::refused : Prepared::made;
   }
-  if (!factor_) return Prepared::refused;
-  return current ? Prepared::unchanged : Prepared::made;
+  if (!obstacle.empty()) throw std::runtime_error(obstacle);
+  const auto bounded = bounded_update(*H_, linear_rules.most_closed_stiffness);
+  has_all_ = are_equal(*H_->getDomainMap()->getComm(), bounded, H_->update());
+  write_update(*A_, *H_, bounded);
+  last_update_ = solver_->update(linear_rules.slight_change);
+  revision_ = revision;
+  return last_update_ == CoarsestSolver::Update::made ? Prepared::made : Prepared::updated;
+}
+
+bool Factor::renew()
+{
+  if (std::exchange(last_update_, CoarsestSolver::Update::made) == CoarsestSolver::Update::made) return false;
+  revision_ = -1;
+  solver_->forget();
+  return true;
+}
+
+std::string Factor::name() const
+{
+  return kind_ == Kind::of_few ? "factor" : kind_ == Kind::band ? "band factor" : "sparse factor";
+}
+
+std::string Factor::description() const
+{
+  if (kind_ == Kind::of_few) return "factor for each choice of states: few unknowns";
+  std::ostringstream text;
+  text.precision(1);
+  text << std::fixed << name() << " of " << H_->getDomainMap()->getGlobalNumElements() << " unknowns, "
+       << prospect_.cost.entries / 1e6 << " million entries";
+  return text.str();
 }
 
 void Factor::forget()
 {
-  factor_.reset();
-  A_ = Teuchos::null;
   revision_ = -1;
+  solver_.reset();
+  A_ = Teuchos::null;
 }
 
 void Factor::apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp, double, double) const
 {
-  for (std::size_t k = 0; k < x.getNumVectors(); ++k) factor_->apply(*x.getVector(k), *y.getVectorNonConst(k));
+  for (std::size_t k = 0; k < x.getNumVectors(); ++k) solver_->apply(*x.getVector(k), *y.getVectorNonConst(k));
 }
 
 } // namespace rpc::solver

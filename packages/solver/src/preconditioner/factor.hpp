@@ -1,27 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "direct_solver.hpp"
 #include "rpc/algebra/updated_operator.hpp"
-#include "rpc/solver/mesh_multigrid.hpp"
 #include "rpc/solver/preconditioner.hpp"
 
 #include <memory>
+#include <string>
 
 namespace rpc::solver
 {
 
-/// The Cholesky factor of H itself, for few unknowns: made anew for each choice of contact states, on every rank. Of an update that is
-/// not symmetric it takes the symmetric part.
+/// The Cholesky factor of H itself. Of an update that is not symmetric it takes the symmetric part.
+///
+/// A sparse factor, for what multigrid does badly, follows changes of states by low-rank updates, (4.11), which are exact; where so many
+/// nodes have changed that these would take longer, it is made anew. That of few unknowns is made anew for each choice of states.
 class Factor : public Preconditioner
 {
 public:
-  explicit Factor(RCP<const UpdatedOperator> H) : H_(std::move(H)) {}
+  enum class Kind {
+    of_few, ///< refuses an H that is not positive definite, or takes too many multiplications
+    sparse,
+    band ///< of a narrow band, in the order of the gids, on each rank
+  };
+  Factor(RCP<const UpdatedOperator> H, const Kind kind) : H_(std::move(H)), kind_(kind) {}
 
-  /// Refused where H is not positive definite, or the factor would take too many multiplications.
+  /// What a factor takes, and why it cannot be had, if so.
+  struct Prospect {
+    FactorCost cost;
+    std::string obstacle; ///< empty: it can be had
+  };
+  /// Orders the unknowns and counts, once; collective.
+  const Prospect &prospect();
+  /// A sparse factor becomes one of a band; before the first prospect().
+  void take_band() { kind_ = Kind::band; }
+
+  /// @throws std::runtime_error, unless of few unknowns, where H is not positive definite, or there is an obstacle
   Prepared prepare(double tolerance) override;
   void forget() override;
-  std::string name() const override { return "factor"; }
-  std::string description() const override { return "factor for each choice of states: few unknowns"; }
+  bool renew() override;
+  bool is_exact() const override { return has_all_ && last_update_ != CoarsestSolver::Update::rough; }
+  std::string name() const override;
+  std::string description() const override;
+  /// Whether a new factor takes less time than so many iterations: never where the present one is that of H but for rounding.   (4.12)
+  bool renewal_pays(double iterations) const
+  {
+    return last_update_ == CoarsestSolver::Update::rough &&
+           prospect_.cost.seconds < iterations * prospect_.cost.seconds_of_solve;
+  }
 
   void apply(const MultiVector &x, MultiVector &y, Teuchos::ETransp mode = Teuchos::NO_TRANS, double alpha = 1,
              double beta = 0) const override;
@@ -30,9 +56,14 @@ public:
 
 private:
   RCP<const UpdatedOperator> H_;
-  RCP<CrsMatrix> A_;                       // H; null: none was made yet
-  std::unique_ptr<CoarsestSolver> factor_; // null: none was made, or it was refused
-  int revision_ = -1;                      // of H when it was made or refused
+  Kind kind_;
+  RCP<CrsMatrix> A_;                     // K with an update; null: it was not analysed
+  std::unique_ptr<DirectSolver> solver_; // of A
+  Prospect prospect_;
+  int revision_ = -1; // of H when it was last brought to it, or refused it
+  bool refused_ = false;
+  bool has_all_ = false; // of contact's stiffness
+  CoarsestSolver::Update last_update_ = CoarsestSolver::Update::made;
 };
 
 } // namespace rpc::solver

@@ -218,9 +218,9 @@ Preconditioner::Prepared Mixed::prepare(const double tolerance)
   return system_->meshes.prepare(tolerance);
 }
 
-void Mixed::learn(const int iterations, const double seconds_of_iteration)
+void Mixed::learn(const int iterations, const double residual, const double seconds_of_iteration)
 {
-  if (system_) system_->meshes.learn(iterations, seconds_of_iteration);
+  if (system_) system_->meshes.learn(iterations, residual, seconds_of_iteration);
 }
 
 void Mixed::forget()

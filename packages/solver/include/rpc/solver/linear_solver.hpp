@@ -14,6 +14,14 @@
 namespace rpc::solver
 {
 
+/// A preconditioner that a linear solver may use.
+struct CandidateCounts {
+  std::string name; ///< such as "meshes"
+  bool tried = false;
+  int setups = 0, solves = 0, iterations = 0;
+  std::string left; ///< why another one took its place, or why it cannot be had; empty: neither
+};
+
 /// What was done, for the summary.
 struct LinearSolverCounts {
   std::vector<int> iterations;   ///< per solve
@@ -25,6 +33,7 @@ struct LinearSolverCounts {
   std::string description; ///< what the last solve was preconditioned with, and why; empty before the first one
   double setup_seconds = 0;
   double solve_seconds = 0;
+  std::vector<CandidateCounts> candidates; ///< in the order in which they are considered, since the mesh was made
 };
 
 /// What was chosen and why, as one line: the description, and the path where it has led past others.
@@ -37,9 +46,9 @@ std::string solver_path(const LinearSolverCounts &counts);
 /// hierarchy where they do not lead down to few unknowns; else smoothed aggregation by MueLu that knows the rigid body modes. Of few
 /// unknowns the matrix is factored. Where the stiffness is given in two parts, BiCGStab solves for pressures too, mixed_form.hpp.
 ///
-/// The preconditioner is set up at the first solve, and follows H when H has changed. What is tried where a solve fails or is slow
-/// stands in one table, src/policy.hpp. Any right side may be solved for: with the same H nothing is set up again, unless the table or
-/// worn corrections ask for it.
+/// These are candidates, in an order: the first one that applies is used, set up at the first solve, and follows H when H has changed. The
+/// next one takes over where it fails or breaks down, and a sparse factor where CG takes longer by the cost model. Any right side may be
+/// solved for: with the same H nothing is set up again, but after a failure or where corrections have worn out.
 class LinearSolver
 {
 public:

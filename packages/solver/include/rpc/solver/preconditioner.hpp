@@ -26,6 +26,11 @@ public:
   virtual Prepared prepare(double tolerance) = 0;
   /// Drops what is set up: the next prepare() starts from nothing.
   virtual void forget() = 0;
+  /// After a solve, of its iterations and of what they have left, |r|/|b|: may tell that it pays to bring B closer to H.
+  virtual void learn(int /*iterations*/, double /*residual*/, double /*seconds_of_iteration*/) {}
+  /// Where B has followed changes of H, or reuses parts of an earlier B, these may be to blame for a solve that went badly: the next
+  /// prepare() does without. @return whether that makes another B
+  virtual bool renew() { return false; }
   /// For the summary, such as "algebraic".
   virtual std::string name() const = 0;
   /// The same with what was chosen and why, such as "meshes, 6 levels, thin in z: factored at 48 x 48 x 1 cells".
