@@ -180,8 +180,8 @@ class Oracle:
         pressure = max(sizes[state.time], TOLERANCE / SOLVED * max(sizes.values()))  # earlier steps leave as much as the tolerance allows
         length = foundation.facet_size(self.mesh, self.side)
         stiff = min([self.case.scene.material["E"]] + [E for E, _ in self.case.scene.material["blocks"].values()])
-        moved = max(np.max(np.abs(other.u), initial=0.0) for other in self.states if other.time <= state.time)  # a slip is a difference of two of them
-        return SOLVED * pressure + TINY, SOLVED * pressure * length / stiff + 1e-9 * moved + TINY
+        moved = max(np.max(np.abs(other.u), initial=0.0) for other in self.states if other.time <= state.time)  # a slip is a difference of two of them, each known to the solver's tolerance
+        return SOLVED * pressure + TINY, SOLVED * pressure * length / stiff + TOLERANCE * moved + TINY
 
     def check_laws(self, step, state):
         nodes, _, free = self.nodal(state)
