@@ -16,6 +16,8 @@ std::string PressurePeak::unknown() const
   if (at_bound) return "";
   if (yield_jump) return "the yield stress jumps next to a part that yields, where the pressure is singular";
   if (gap_jump) return "contact ends where the gap jumps, where the pressure is singular";
+  if (dented_jump)
+    return "the foundation is dented up to a jump of the gap, which lies between nodes that differ from mesh to mesh";
   if (friction_jump) return "friction jumps where the body slips, where the pressure is singular";
   if (friction_edge)
     return "contact with friction reaches an edge of the contact side, where the pressure may be singular";

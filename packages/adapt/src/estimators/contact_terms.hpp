@@ -23,6 +23,7 @@ enum Column {
   penetration,
   law,
   gap = law + contact::law_columns, // to the dents that there are
+  dent,
   normal,
   traction = normal + 3,
   slip = traction + 3,

@@ -57,6 +57,17 @@ RCP<const MultiVector> kinks(const fem::Discretization &d, const Slopes &slopes)
   return fem::nodes_on_overlap(d, owned);
 }
 
+/// A kink within a facet of order 1: its ends have a part of it each, the nodes beyond have what a curved gap has.
+template <class Seen>
+KOKKOS_INLINE_FUNCTION double kink_within(const Slopes &slopes, const Seen &seen, const LO start, const LO end)
+{
+  const LO left = slopes.before(start), right = slopes.after(end);
+  double beyond = 0;
+  if (left >= 0) beyond = math::fmax(beyond, seen(left, int(kink)));
+  if (right >= 0) beyond = math::fmax(beyond, seen(right, int(kink)));
+  return seen(start, int(kink)) + seen(end, int(kink)) - 2 * beyond;
+}
+
 } // namespace
 
 SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &terms)
@@ -105,7 +116,9 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
           const LO start = terms.facets(f, 0), end = terms.facets(f, 1);
           const double curved =
               math::fmax(0., math::fmax(seen(start, int(curvature_before)), seen(end, int(curvature_after))));
-          const double within = (slopes.to(end) - slopes.from(start) - curved * terms.size(f)) / 2;
+          const double within = terms.facets.extent(1) == 3
+                                    ? (slopes.to(end) - slopes.from(start) - curved * terms.size(f)) / 2
+                                    : kink_within(slopes, seen, start, end);
           const double grows = math::fmax(within, seen(node, int(kink)) - beside);
           largest = math::fmax(largest, modulus * grows / (twice_pi * terms.highest));
         }

@@ -80,6 +80,7 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const cont
           to(node, int(penetration)) = closed && c.scaling(i) * miss <= accuracy ? elastic : now;
           contact::to_columns(f, highest_yield, LawAt<decltype(to)>{to, node});
           to(node, int(gap)) = c.gap(i) + c.dent(i);
+          to(node, int(dent)) = c.dent(i);
           for (int j = 0; j < c.dim; ++j) to(node, normal + j) = c.normal(i, j);
         });
     Kokkos::fence();
@@ -165,9 +166,10 @@ struct NodalPressures {
     return terms.field(terms.facets(f, a), column);
   }
 
-  /// @param drop   max of (highest - lowest) / peak over facets at the peak     @param yield_jumps, gap_jumps  numbers
+  /// @param drop   max of (highest - lowest) / peak over facets at the peak     @param yield_jumps, gap_jumps, dented_jumps  numbers
   /// @param ends   += half of the facets that are partly open [m^(dim-1)]
-  KOKKOS_FUNCTION void operator()(const LO f, double &drop, double &yield_jumps, double &gap_jumps, double &ends) const
+  KOKKOS_FUNCTION void operator()(const LO f, double &drop, double &yield_jumps, double &gap_jumps,
+                                  double &dented_jumps, double &ends) const
   {
     if (terms.cell(f) >= terms.num_owned_cells || !(highest > 0)) return;
     const int nodes = static_cast<int>(terms.facets.extent(1));
@@ -181,9 +183,9 @@ struct NodalPressures {
       for (int b = 0; b < nodes; ++b) {
         const double other = at(f, b, pressure), other_xi = contact::yield_limit(terms.law_at(f, b));
         if (p >= xi && other < other_xi && other_xi > highest && other_xi > (1 + jump) * xi) yield_jumps += 1;
-        if (p > 0 && xi > highest && other == 0 && -at(f, b, penetration) > smooth && at_once &&
-            !terms.on_springs(f, a))
-          gap_jumps += 1;
+        const bool jumps = other == 0 && -at(f, b, penetration) > smooth && at_once;
+        if (jumps && p > 0 && xi > highest && !terms.on_springs(f, a)) gap_jumps += 1;
+        if (jumps && at(f, a, dent) > smooth) dented_jumps += 1;
       }
     }
     if (most >= near_peak * highest) drop = math::fmax(drop, (most - least) / highest);
@@ -219,7 +221,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.unseen_squared = DeviceView<double *>("rpc::adapt::unseen_squared", squared.extent(0));
   estimate.seen_from = DeviceView<double *>("rpc::adapt::seen_from", squared.extent(0));
   estimate.peak.at_bound = highest >= (1 - 1e-12) * highest_bound(mesh.comm(), of.contact);
-  constexpr int num_sums = 13;
+  constexpr int num_sums = 14;
   double sums[num_sums] = {}, peak = 0, spread = 0, drop = 0, kink = 0; // Kokkos' maximum over no facets is -DBL_MAX
   Kokkos::parallel_reduce(
       "rpc::adapt::recovery", device_range(mesh.num_owned_cells),
@@ -256,7 +258,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
     const auto around = gap_slopes(d, slopes);
     const NodalPressures nodal{terms, slopes, around->getLocalViewDevice(Tpetra::Access::ReadOnly), highest};
     Kokkos::parallel_reduce("rpc::adapt::nodal_pressures", facets, nodal, Kokkos::Max<double>(drop_of_side), of_side[3],
-                            of_side[4], of_side[5]);
+                            of_side[4], of_side[12], of_side[5]);
     drop = std::max(drop, drop_of_side);
     const SingularNodes singular = singular_nodes(d, terms);
     kink = std::max(kink, singular.kink);
@@ -285,6 +287,7 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.peak.drop = max_all(mesh.comm(), drop);
   estimate.peak.yield_jump = all[4] > 0;
   estimate.peak.gap_jump = all[5] > 0;
+  estimate.peak.dented_jump = all[13] > 0;
   estimate.contact_ends = all[6];
   estimate.peak.friction_jump = all[11] > 0;
   estimate.peak.friction_edge = all[12] > 0;

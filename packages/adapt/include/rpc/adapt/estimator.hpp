@@ -19,6 +19,7 @@ struct PressurePeak {
   bool yield_jump = false; ///< a part that yields borders on a higher yield stress: the pressure is singular in between
   bool gap_jump =
       false; ///< contact ends on a rigid foundation where the gap jumps, or has a kink: the pressure is singular there
+  bool dented_jump = false; ///< the foundation has been dented next to a jump of the gap, and no node knows up to where
   bool friction_jump = false; ///< the traction of a body that slips jumps: the pressure is singular there
   bool friction_edge = false; ///< contact with friction reaches an end of the side, where the pressure may be singular
   double kink =
