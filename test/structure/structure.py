@@ -63,7 +63,7 @@ NOT_IN_PROGRAM = {
 # Numbers of a contact law at a point, which the functions of law/ alone read; who fills them.
 LAW_PARAMETERS = re.compile(r"(?:\.|->)(?:yield|hardening|compliance)\b(?!_)")
 LAW_FOLDER = "packages/contact/include/rpc/contact/law"
-LAW_FILLERS = {"packages/contact/src/contact_nodes.cpp", "packages/contact/src/contact_options.cpp",
+LAW_FILLERS = {"packages/contact/src/between_nodes.cpp", "packages/contact/src/contact_nodes.cpp", "packages/contact/src/contact_options.cpp",
                "packages/analysis/src/problem.cpp"}  # options of the deck, and the points' views
 MOST_LINES = 450  # of a source file of a package or the program, tests included
 FOR_TESTS = {"mesh", "fem"}  # a package's tests may make their bodies with these
@@ -112,7 +112,7 @@ NO_RULES = {
         packages/contact/include/rpc/contact/law/foundation.hpp packages/contact/include/rpc/contact/law/interpolated.hpp""",
 }
 RULE = re.compile(r"^ *Rule<", re.MULTILINE)
-MOST_RULES = {"src": 4, "algebra": 4, "mesh": 13, "contact": 23, "adapt": 32, "analysis": 89, "solver": 96}  # of a package; 130 are wanted in all
+MOST_RULES = {"src": 4, "algebra": 4, "mesh": 13, "contact": 23, "adapt": 31, "analysis": 89, "solver": 96}  # of a package; 130 are wanted in all
 
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"  # of LICENSE; within the first two lines, behind the marks of a comment
 COMMENTS = {".cpp": "//", ".hpp": "//", ".c": "//", ".py": "#", ".sh": "#", ".cmake": "#", ".in": "#", ".def": "#"}

@@ -30,9 +30,11 @@ TEST(UnseenContact, AMeshWhoseNodesMissTheObstacleSaysSo)
   for (const std::string element : {"P1", "P2", "Q1", "Q2"}) {
     SCOPED_TRACE(element);
     const Scene scene = read_scene(decks + "unseen_circle.xml", {"Mesh->Element=" + element, "Mesh->Cells={3, 3}"});
-    const Solution s = run_scene(decks + "unseen_circle.xml", {"Mesh->Element=" + element, "Mesh->Cells={2, 2}"});
+    const Solution s = run_scene(decks + "unseen_circle.xml",
+                                 {"Mesh->Element=" + element, "Mesh->Cells={2, 2}", "Adapt->Estimate Error=true"});
     ASSERT_TRUE(s.uzawa.converged) << s.uzawa.reason;
     EXPECT_EQ(s.contact.total.force[1], 0);
+    EXPECT_EQ(adapt::errors_of(scene, s).unknown.at("energy_J"), adapt::unseen_by_mesh);
     EXPECT_NEAR(s.contact.total.unseen_penetration, 0.01, 1e-5);
     EXPECT_NE(contact::unseen_contact_note(s.contact, scene.model.contact, 2, s.energy_norm_squared), "");
   }

@@ -75,13 +75,17 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
   const double force = length_of(last.contact.force), squared = caution * last.estimate * last.estimate;
   const double moved = moved_by(last);
   errors.energy = std::max(errors.energy, energy_left(last));
-  const double jumped = last.jumped_force + (moved > 0 ? 2 * last.jumped_energy / moved : 0);
+  const auto by_energy = [moved](const double energy) { return moved > 0 ? 2 * energy / moved : 0; };
+  double jumped = last.jumped_force + by_energy(last.jumped_energy);
+  jumped += moved > 0 ? std::min(last.misread_force, by_energy(last.misread_energy)) : last.misread_force;
   errors.contact_force = std::max(errors.contact_force, squared * force + jumped);
   double largest = force;
   for (const auto &reaction : last.reactions) largest = std::max(largest, length_of(reaction));
   for (double &bar : errors.reactions) bar = std::max(bar, squared * largest + jumped);
   // The largest penetration may be that of a corner.
   errors.max_penetration = std::max(errors.max_penetration, last.estimate * last.contact.max_penetration);
+  if (last.contact.max_penetration > 0) // else nothing gives way
+    errors.max_penetration = std::max(errors.max_penetration, last.misread_penetration - last.contact.max_penetration);
   if (hardly_finer(eta)) errors.max_pressure = std::max(errors.max_pressure, last.estimate * last.contact.max_pressure);
   errors.max_pressure = last.peak.at_bound ? 0 : std::max(errors.max_pressure, last.recovered_max_pressure);
   errors.contact_pressure = std::max(errors.contact_pressure, last.recovered_pressure);
@@ -133,7 +137,8 @@ bool is_fixed(const std::vector<Cycle> &cycles, const FixedByLoad &fixed)
 double energy_left(const Cycle &cycle)
 {
   const double squared = caution * cycle.estimate * cycle.estimate;
-  return squared * cycle.energy_norm_squared / 2 + cycle.jumped_energy + cycle.jumped_force * moved_by(cycle);
+  return squared * cycle.energy_norm_squared / 2 + cycle.jumped_energy + cycle.jumped_force * moved_by(cycle) +
+         cycle.misread_energy;
 }
 
 std::string error_bar_name(const std::string &key, const ResultScope &scope)
@@ -166,6 +171,10 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLo
       [](const Cycle &a, const Cycle &b) { return std::abs(b.contact.max_penetration - a.contact.max_penetration); });
   if (cycles.size() < 2) {
     make_unknown(errors, one_mesh);
+    return errors;
+  }
+  if (cycles.back().misses_contact) { // what it shows is another solution
+    make_unknown(errors, unseen_by_mesh);
     return errors;
   }
   const double shown = errors.contact_force;

@@ -96,6 +96,10 @@ Cycle cycle_of(const Solution &s, const double seconds)
   cycle.contact_ends = s.estimate->contact_ends;
   cycle.jumped_force = s.estimate->jumped_force;
   cycle.jumped_energy = s.estimate->jumped_energy;
+  cycle.misread_force = s.estimate->misread_force;
+  cycle.misread_energy = s.estimate->misread_energy;
+  cycle.misread_penetration = s.estimate->misread_penetration;
+  cycle.misses_contact = s.estimate->misses_contact();
   cycle.seconds = seconds;
   return cycle;
 }
@@ -403,13 +407,15 @@ ObservedErrors errors_of(const Task &task, const Solution &s)
     reason = "there is no solution";
   else if (s.estimate && only_rounding(s))
     reason = "the strain energy is at rounding level";
+  else if (s.estimate && s.estimate->misses_contact())
+    reason = unseen_by_mesh;
   else if (s.estimate)
     reason = std::string(one_mesh) + (task.adapt.adapts() ? "" : ": set \"Adapt->Target Relative Error\"");
   for (const auto &q : error_bars) {
     errors.*q.value = std::numeric_limits<double>::quiet_NaN();
     errors.unknown[q.key] = reason;
   }
-  if (!s.has_results() || !s.estimate || only_rounding(s)) return errors;
+  if (!s.has_results() || !s.estimate || only_rounding(s) || s.estimate->misses_contact()) return errors;
   errors.energy = energy_left(cycle_of(s, 0));
   errors.unknown.erase("energy_J");
   return errors;

@@ -117,7 +117,7 @@ std::optional<mesh::MeshOptions> MeshPlanner::next(const fem::Discretization &d,
     no_better_ *= plan_rules.aim_near_nested;
   goal_.bound *= no_better_;
   // Where unseen contact is most of the error, errors elsewhere are those of another solution: no cell grows for them.
-  if (estimate.unseen() > plan_rules.mostly_unseen * estimate.total()) goal_.growth = 1;
+  if (estimate.misses_contact()) goal_.growth = 1;
   const double dofs = dofs_of(mesh), cells = cells_of(mesh), ratio = made_per_planned(cells, mesh.dim());
   if (!halved_) ratio_unless_halved_ = ratio;
   if (relative < least_) {

@@ -53,6 +53,35 @@ TEST(ErrorBars, AreNoLessThanWhatTheLastMeshLeavesOpen)
   EXPECT_NEAR(errors.energy, 0.02 * 0.02 * 2 + 0.01, 1e-15);
 }
 
+TEST(ErrorBars, CountWhatReadingTheGapAtNodesLeavesOpen)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
+  cycles.back().contact.max_penetration = cycles.front().contact.max_penetration = 0.1;
+  const auto before = observed_errors(cycles);
+  cycles.back().misread_force = 0.03;
+  cycles.back().misread_energy = 0.01; // of which the load, moved by 2 J / 10 N, makes 0.1 N
+  cycles.back().misread_penetration = 0.15;
+  auto errors = observed_errors(cycles);
+  EXPECT_NEAR(errors.contact_force, before.contact_force + 0.03, 1e-15);
+  cycles.back().misread_force = 0.3;
+  errors = observed_errors(cycles);
+  EXPECT_NEAR(errors.contact_force, before.contact_force + 0.1, 1e-15);
+  EXPECT_NEAR(errors.energy, before.energy + 0.01, 1e-15);
+  EXPECT_NEAR(before.max_penetration, 0.02 * 0.1, 1e-15);
+  EXPECT_NEAR(errors.max_penetration, 0.05, 1e-15); // samples between the nodes lie so much deeper
+}
+
+TEST(ErrorBars, OfAMeshThatMissesContactAreNone)
+{
+  std::vector<Cycle> cycles = {mesh(0.9, 1, 3), mesh(0.8, 1, 3)};
+  cycles.back().misses_contact = true;
+  const auto errors = observed_errors(cycles);
+  for (const auto &q : adapt::error_bars) {
+    EXPECT_TRUE(std::isnan(errors.*q.value)) << q.key;
+    EXPECT_EQ(errors.unknown.at(q.key), adapt::unseen_by_mesh);
+  }
+}
+
 TEST(ErrorBars, OfAContactForceThatTheLoadFixesAreWhatItChanges)
 {
   std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10 + 1e-9, 30)};

@@ -3,6 +3,7 @@
 
 #include "facet_samples.hpp"
 #include "gap_search.hpp"
+#include "rpc/contact/law/foundation.hpp"
 #include "rpc/contact/rounding.hpp"
 #include "rpc/core/device_values.hpp"
 #include "rpc/core/parallel.hpp"
@@ -96,6 +97,96 @@ struct SideSamples {
   }
 };
 
+/// What reading the gap at the nodes alone leaves open, of a facet or of several.                                 (3.16a)
+struct Misread {
+  double energy = 0, force = 0; // [J], [N], in 2D per m
+  double penetration = 0;       // the most [m]
+};
+
+/// Of facets that bear a pressure and within which the gap is far from what its nodes show of it: it jumps, or has a kink.
+struct GapReading {
+  const ContactOptions &options;
+  const FacetRows &rows;
+  const std::vector<FacetShape> &fine, &coarse;
+  bool axisymmetric;
+  // Of the range of the gap at the nodes. Between nodes beside a jump it is off by a half or more, on a smooth slope by little.
+  static constexpr double off = 0.25;
+
+  double penetration_at_sample(const LO f, const FacetShape &shape, const FacetSample &sample) const
+  {
+    return penetration_at(sample, options) - rows.interpolated(f, shape, FacetRows::dent);
+  }
+
+  /// Whether samples are far from what the nodes show. NaN and infinity, where the obstacle is missed, are not.
+  bool is_off(const LO f) const
+  {
+    double least = std::numeric_limits<double>::infinity(), most = -least, furthest = 0;
+    for (int a = 0; a < rows.nodes; ++a) {
+      least = std::min(least, rows.column(f, a, FacetRows::penetration));
+      most = std::max(most, rows.column(f, a, FacetRows::penetration));
+    }
+    for (const FacetShape &shape : coarse) {
+      const double v = penetration_at_sample(f, shape, sample_at(rows, f, shape, options, 0));
+      if (!std::isfinite(v)) return false;
+      furthest = std::max(furthest, std::abs(v - rows.interpolated(f, shape, FacetRows::penetration)));
+    }
+    return furthest > off * (most - least);
+  }
+
+  /// The foundation with a layer of the body in series.
+  Foundation law(const Point &x, const double dent, const double layer) const
+  {
+    const double hardening = options.hardening(x);
+    return {options.yield_stress(x) + (hardening > 0 ? hardening * std::max(dent, 0.) : 0), hardening,
+            layer + 1 / options.stiffness(x)};
+  }
+
+  /// @param modulus, of_surface  of the cell: lambda + 2 mu, and E/(1 - nu^2), by which a surface gives way [Pa]
+  Misread read(const LO f, const double modulus, const double of_surface) const
+  {
+    if (!is_off(f)) return {};
+    const double layer = rows.size(f) / modulus;
+    double energy[FacetShape::most_nodes], pressure[FacetShape::most_nodes];
+    double low = std::numeric_limits<double>::infinity(), high = 0;
+    for (int a = 0; a < rows.nodes; ++a) {
+      Point x{};
+      std::copy_n(rows.place(f, a), rows.dim, x.begin());
+      const double p = rows.column(f, a, FacetRows::pressure);
+      const Foundation in_series = law(x, rows.column(f, a, FacetRows::dent), layer);
+      const double v = rows.column(f, a, FacetRows::penetration) + layer * p;
+      energy[a] = foundation_energy(v, in_series);
+      pressure[a] = pressure_at(v, in_series);
+      low = std::min(low, p);
+      high = std::max(high, p);
+    }
+    const double moved = (high - low) * rows.size(f) / (2 * of_surface); // by pressures that jump half a facet further
+    Misread found;
+    double radii = 0;
+    for (const FacetShape &shape : fine) {
+      const FacetSample sample = sample_at(rows, f, shape, options, 0);
+      const double radius = axisymmetric ? sample.place[0] : 1;
+      const double v =
+          penetration_at_sample(f, shape, sample) + layer * rows.interpolated(f, shape, FacetRows::pressure);
+      if (!std::isfinite(v)) return {};
+      const Foundation in_series = law(sample.place, rows.interpolated(f, shape, FacetRows::dent), layer);
+      const double p = pressure_at(v, in_series);
+      double off_energy = foundation_energy(v, in_series), off_force = p;
+      for (int a = 0; a < rows.nodes; ++a) {
+        off_energy -= shape.value[a] * energy[a];
+        off_force -= shape.value[a] * pressure[a];
+      }
+      found.energy += radius * std::abs(off_energy);
+      found.force += radius * std::abs(off_force);
+      found.penetration = std::max(found.penetration, v - layer * p + moved);
+      radii += radius;
+    }
+    const double share = radii > 0 ? rows.area(f) / radii : 0;
+    found.energy *= share;
+    found.force *= share;
+    return found;
+  }
+};
+
 /// What is hidden between the samples of a face in space. It is taken for a paraboloid.
 Found found_in(const HiddenPart &hidden, const ContactOptions &options, const double modulus)
 {
@@ -156,6 +247,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
   const GO all_bearing_nothing = std::max(GO(1), sum_all(mesh.comm(), bearing_nothing));
   // In space facets whose nodes are far need no samples: bounds find narrow pits there, and of obstacles nodes show at least that a normal misses them.
   const bool sieves = parts == Density::fewest_parts || (facet.dim == 2 && (searches || options.obstacle.exists()));
+  const GapReading reading{options, rows, facet.dim == 1 ? fine : coarse, coarse, d.axisymmetric()};
   const int most_searched = searches ? static_cast<int>(Density::searched / all_bearing_nothing) : 0; // of each facet
   const EvaluateShape shape = shape_of(facet);
   const auto block = to_host(mesh.block);
@@ -163,7 +255,7 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
   std::vector<double> squared(rows.num_facets(), 0.), width(rows.num_facets(), 0.);
   double sum = 0;
   for (const LO f : owned) {
-    const double modulus = lame(block(rows.cell(f)), 0) + 2 * lame(block(rows.cell(f)), 1);
+    const double lambda = lame(block(rows.cell(f)), 0), mu = lame(block(rows.cell(f)), 1), modulus = lambda + 2 * mu;
     const bool unseen = rows.bears_nothing(f);
     Found found;
     if (!sieves || samples.is_near(f)) found = (unseen || facet.dim == 1 ? samples : few).look(f, modulus, least);
@@ -173,6 +265,12 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
         found = found_in(*hidden, options, modulus);
     const PlaceBetweenNodes place{found.deepest, found.place, k, found.width, rows.size(f)};
     if (place.depth > mine.deepest.depth) mine.deepest = place;
+    if (!unseen && (found.deepest > 0 || rows.is_partly_open(f))) {
+      const Misread misread = reading.read(f, modulus, 4 * mu * (lambda + mu) / modulus);
+      mine.misread_energy += misread.energy;
+      mine.misread_force += misread.force;
+      mine.misread_penetration = std::max(mine.misread_penetration, misread.penetration);
+    }
     if (!unseen) continue;
     sum += squared[f] = found.squared;
     width[f] = found.width;
@@ -215,6 +313,10 @@ void look_between_nodes(const fem::Discretization &d, const std::vector<const me
         none->push_back(DeviceView<double *>("rpc::contact::nothing_unseen", sides[k]->facets.extent(0)));
     else
       squared = look_at_side(d, *sides[k], options[k], points, materials, u, static_cast<int>(k), least, result, mine);
+    result.between.misread_energy += sum_all(comm, mine.misread_energy);
+    result.between.misread_force += sum_all(comm, mine.misread_force);
+    result.between.misread_penetration =
+        std::max(result.between.misread_penetration, max_all(comm, mine.misread_penetration));
     const auto deepest = deepest_of_all(comm, mine.deepest), unseen = deepest_of_all(comm, mine.unseen);
     ContactSums &sums = result.sides[k];
     sums.max_penetration_between_nodes = deepest.depth;

@@ -53,6 +53,20 @@ bool FacetRows::bears_nothing(const LO f) const
   return true;
 }
 
+bool FacetRows::is_partly_open(const LO f) const
+{
+  for (int a = 0; a < nodes; ++a)
+    if (column(f, a, bearing) == 0) return !bears_nothing(f);
+  return false;
+}
+
+double FacetRows::interpolated(const LO f, const FacetShape &shape, const Column which) const
+{
+  double sum = 0;
+  for (int a = 0; a < nodes; ++a) sum += shape.value[a] * column(f, a, which);
+  return sum;
+}
+
 double FacetRows::most_allowed(const LO f) const
 {
   double most = 0;
@@ -81,6 +95,9 @@ RCP<const MultiVector> at_overlap_nodes(const fem::Discretization &d, const Cont
           to(c.node(i), int(FacetRows::allowed)) = weighs && deep > 0 ? deep : 0;
           to(c.node(i), int(FacetRows::bearing)) = !weighs ? -1 : pressed ? 1 : 0;
           to(c.node(i), int(FacetRows::excess)) = v(i) - (deep > 0 ? deep : 0);
+          to(c.node(i), int(FacetRows::penetration)) = v(i) - c.dent(i);
+          to(c.node(i), int(FacetRows::dent)) = c.dent(i);
+          to(c.node(i), int(FacetRows::pressure)) = p(i);
         });
     Kokkos::fence();
   }
@@ -157,7 +174,7 @@ FacetSample sample_at(const FacetRows &rows, const LO f, const FacetShape &shape
   return sample;
 }
 
-double excess_at(const FacetSample &sample, const ContactOptions &options)
+double penetration_at(const FacetSample &sample, const ContactOptions &options)
 {
   constexpr double outside = -std::numeric_limits<double>::infinity();
   if (!sample.has_normal) return outside;
@@ -169,8 +186,13 @@ double excess_at(const FacetSample &sample, const ContactOptions &options)
   } else {
     gap = options.gap(sample.place);
   }
-  const double e = sample.along - gap - sample.allowed;
-  return std::isfinite(e) ? e : outside;
+  const double v = sample.along - gap;
+  return std::isfinite(v) ? v : outside;
+}
+
+double excess_at(const FacetSample &sample, const ContactOptions &options)
+{
+  return penetration_at(sample, options) - sample.allowed;
 }
 
 } // namespace rpc::contact

@@ -29,8 +29,9 @@ std::vector<FacetShape> lattice_of(const mesh::Element &facet, int parts);
 /// Facets of a side, each with what its nodes have: the place [m], the displacement [m], and the columns.
 struct FacetRows {
   /// How deep the contact points have been pressed in [m]; whether they bear a pressure (1), are open (0), or have no weight (-1); how much
-  /// deeper they lie [m]. A node from which the normal misses the obstacle is open, and may be near.
-  enum Column { allowed, bearing, excess, num_columns };
+  /// deeper they lie [m]; their penetration below the dented surface [m], the dents [m] and the pressure [Pa]. A node from which the normal
+  /// misses the obstacle is open, and may be near.
+  enum Column { allowed, bearing, excess, penetration, dent, pressure, num_columns };
 
   HostView<double **> row;       // (facets; nodes * width())
   HostView<LO *> cell;           // (facets)
@@ -42,9 +43,12 @@ struct FacetRows {
   const double *place(const LO f, const int a) const { return &row(f, a * width()); }
   const double *displacement(const LO f, const int a) const { return place(f, a) + dim; }
   double column(const LO f, const int a, const Column which) const { return place(f, a)[2 * dim + which]; }
+  double interpolated(LO f, const FacetShape &shape, Column which) const;
 
   /// Whether no contact point of a facet bears a pressure.
   bool bears_nothing(LO f) const;
+  /// Whether some bear one and others do not.
+  bool is_partly_open(LO f) const;
   /// How deep the contact points of a facet have been pressed in, at most [m]: points without weight, which nothing holds, count as that.
   double most_allowed(LO f) const;
 };
@@ -68,5 +72,7 @@ FacetSample sample_at(const FacetRows &rows, LO f, const FacetShape &shape, cons
 
 /// e of (3.15) at a sample [m]; minus infinity where the normal misses the obstacle.
 double excess_at(const FacetSample &sample, const ContactOptions &options);
+/// u_nu - g at a sample, without dents [m]; minus infinity where the normal misses the obstacle.
+double penetration_at(const FacetSample &sample, const ContactOptions &options);
 
 } // namespace rpc::contact

@@ -190,6 +190,32 @@ TEST(BetweenNodes, DisplacementAndDentsCount)
   }
 }
 
+TEST(BetweenNodes, WhereTheGapJumpsWithinAFacetReadingItAtNodesLeavesEnergyForceAndDepthOpen)
+{
+  // Springs of 1/k = 0.001 m/Pa under nodes at 0, 0.5, 1, ..., in contact: pressed in by 0.01 m to the left of x = 0.7.
+  const double k = 1000, p = 10, jump = 0.01, h = 0.5;
+  auto side = touching("bottom");
+  side.yield_stress = ScalarField(1e300);
+  side.stiffness = ScalarField(k);
+  side.gap = ScalarField("step", [=](const Point &x) { return x[0] < 0.7 ? -jump : 0; });
+  const Looked looked({2, 1}, side, p);
+  const double modulus = steel.lambda() + 2 * steel.mu();
+  const double layer = h / modulus, stiffness = 1 / (layer + 1 / k), left = jump + layer * p, right = layer * p;
+  // What linear interpolation between 0.5 and 1 has too much or too little: on 0.4 of the facet and on 0.6 of it.
+  const double share = h * (0.4 * 0.4 + 0.6 * 0.6) / 2;
+  const auto &between = looked.result.between;
+  EXPECT_NEAR(between.misread_energy / (share * 0.5 * stiffness * (left * left - right * right)), 1, 5e-3);
+  EXPECT_NEAR(between.misread_force / (share * stiffness * (left - right)), 1, 5e-3);
+  EXPECT_NEAR(between.misread_penetration, left * stiffness / k, 1e-12);
+  // Not where nothing bears a pressure, nor where the gap is smooth or its jump lies at a node.
+  EXPECT_EQ(Looked({2, 1}, side).result.between.misread_energy, 0);
+  for (const auto &gap : {ScalarField("slope", [](const Point &x) { return -0.01 * x[0]; }),
+                          ScalarField("parabola", [](const Point &x) { return -0.01 * (x[0] + 1) * (x[0] + 1); })}) {
+    side.gap = gap;
+    EXPECT_EQ(Looked({2, 1}, side, p).result.between.misread_energy, 0);
+  }
+}
+
 TEST(BetweenNodes, TheNoteNamesPlaceDepthAndTheSizeThatWouldSee)
 {
   const Looked looked({2, 1}, bump(0.02, 0.1));

@@ -294,6 +294,9 @@ ErrorEstimate recovered_estimate(const EstimateInput &of)
   estimate.peak.kink = max_all(mesh.comm(), kink);
   estimate.jumped_force = all[9];
   estimate.jumped_energy = all[10];
+  estimate.misread_force = unseen.misread_force;
+  estimate.misread_energy = unseen.misread_energy;
+  estimate.misread_penetration = unseen.misread_penetration;
   return estimate;
 }
 

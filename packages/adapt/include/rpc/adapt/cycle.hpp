@@ -26,6 +26,8 @@ struct Cycle {
   PressurePeak peak;
   double contact_ends = 0;                    ///< of facets that are partly open, half of them [m]
   double jumped_force = 0, jumped_energy = 0; ///< see ErrorEstimate [N], [J], in 2D per m
+  double misread_force = 0, misread_energy = 0, misread_penetration = 0; ///< the same, and [m]
+  bool misses_contact = false; ///< contact that no contact point sees is most of the estimate, (10.4b)
   int newton_iterations = 0;
   std::vector<int> linear_iterations; ///< per solve
   double seconds = 0;
@@ -64,7 +66,9 @@ std::string error_bar_name(const std::string &key, const ResultScope &scope);
 /// What one mesh by itself leaves open of J: no bar is smaller [J], in 2D per m.                     doc/theory.md (10.7a), (10.7b)
 double energy_left(const Cycle &cycle);
 
-inline constexpr const char *one_mesh = "one mesh shows no change"; ///< a reason in `unknown`
+inline constexpr const char *unseen_by_mesh =
+    "the mesh misses contact between its nodes, which is most of the estimated error"; ///< a reason in `unknown`
+inline constexpr const char *one_mesh = "one mesh shows no change";                    ///< a reason in `unknown`
 
 /// Which components of the contact force the load alone fixes: those along which no displacement is prescribed.
 using FixedByLoad = std::array<bool, 3>;

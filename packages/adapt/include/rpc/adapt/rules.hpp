@@ -31,8 +31,6 @@ struct PlanRules {
                            "doc/theory.md, section 10"};
   Rule<double> greatest_excess{1.5, "plan.greatest_excess", "cells over what the elements' order asks for [-]",
                                "doc/theory.md, section 10: where a coarse mesh asks for more, its estimate misleads"};
-  Rule<double> mostly_unseen{0.5, "plan.mostly_unseen",
-                             "part of the error by unseen contact: no cell grows [-]; off: 1", "doc/theory.md (10.4b)"};
   // gmsh makes more cells or fewer than it is asked for; after the first mesh at the limit it is known how many.
   Rule<double> share_of_max_dofs{0.75, "plan.share_of_max_dofs", "of Max Dofs that is planned for [-]; off: 1",
                                  "doc/theory.md, section 10"};
