@@ -57,15 +57,25 @@ RCP<const MultiVector> kinks(const fem::Discretization &d, const Slopes &slopes)
   return fem::nodes_on_overlap(d, owned);
 }
 
-/// A kink within a facet of order 1: its ends have a part of it each, the nodes beyond have what a curved gap has.
-template <class Seen>
-KOKKOS_INLINE_FUNCTION double kink_within(const Slopes &slopes, const Seen &seen, const LO start, const LO end)
+// What the neighbours of a node know of the gap.
+enum Neighbour { kink_before, kink_after, num_neighbours };
+
+/// The kinks at the nodes before and after owned nodes, 0 where there is none: on all nodes of the facets around them, (overlap nodes;
+/// Neighbour).
+/// @param seen  see kinks()
+RCP<const MultiVector> kinks_of_neighbours(const fem::Discretization &d, const Slopes &slopes, const ReadColumns &seen)
 {
-  const LO left = slopes.before(start), right = slopes.after(end);
-  double beyond = 0;
-  if (left >= 0) beyond = math::fmax(beyond, seen(left, int(kink)));
-  if (right >= 0) beyond = math::fmax(beyond, seen(right, int(kink)));
-  return seen(start, int(kink)) + seen(end, int(kink)) - 2 * beyond;
+  const auto owned = rcp(new MultiVector(d.mesh->owned_nodes, int(num_neighbours)));
+  {
+    const auto to = owned->getLocalViewDevice(Tpetra::Access::ReadWrite);
+    Kokkos::parallel_for(
+        "rpc::adapt::kinks_of_neighbours", device_range(static_cast<LO>(to.extent(0))), KOKKOS_LAMBDA(const LO n) {
+          if (slopes.before(n) >= 0) to(n, int(kink_before)) = seen(slopes.before(n), int(kink));
+          if (slopes.after(n) >= 0) to(n, int(kink_after)) = seen(slopes.after(n), int(kink));
+        });
+    Kokkos::fence();
+  }
+  return fem::nodes_on_overlap(d, owned);
 }
 
 } // namespace
@@ -89,6 +99,8 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
   Kokkos::fence();
   const auto at_nodes = kinks(d, slopes);
   const auto seen = at_nodes->getLocalViewDevice(Tpetra::Access::ReadOnly);
+  const auto of_neighbours = kinks_of_neighbours(d, slopes, seen);
+  const auto neighbour = of_neighbours->getLocalViewDevice(Tpetra::Access::ReadOnly);
   const auto coords = d.mesh->coords;
   const LO num_owned = d.mesh->num_owned_nodes();
   const bool axisymmetric = d.axisymmetric();
@@ -116,9 +128,12 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
           const LO start = terms.facets(f, 0), end = terms.facets(f, 1);
           const double curved =
               math::fmax(0., math::fmax(seen(start, int(curvature_before)), seen(end, int(curvature_after))));
+          // Within one of order 1 its ends have a part of it each, and the nodes beyond have what a curved gap has.
+          const double beyond =
+              math::fmax(0., math::fmax(neighbour(start, int(kink_before)), neighbour(end, int(kink_after))));
           const double within = terms.facets.extent(1) == 3
                                     ? (slopes.to(end) - slopes.from(start) - curved * terms.size(f)) / 2
-                                    : kink_within(slopes, seen, start, end);
+                                    : seen(start, int(kink)) + seen(end, int(kink)) - 2 * beyond;
           const double grows = math::fmax(within, seen(node, int(kink)) - beside);
           largest = math::fmax(largest, modulus * grows / (twice_pi * terms.highest));
         }
