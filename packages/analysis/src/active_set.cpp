@@ -322,9 +322,9 @@ solver::Accuracy ActiveSetLoop::wanted() const
   double rough = 0;
   if (rough_ && coarse_) return {choice_rules.enough * target_ / norm_, choice_rules.coarse_error};
   if (rough_)
-    rough = choice_rules.forcing * std::min(scale_, norm_);
+    rough = solver::newton_rules.forcing * std::min(scale_, norm_);
   else if (turns_)
-    rough = std::min<double>(choice_rules.forcing, norm_ / scale_) * norm_;
+    rough = std::min<double>(solver::newton_rules.forcing, norm_ / scale_) * norm_;
   return {std::max(choice_rules.enough * target_, rough) / norm_, rough_ ? choice_rules.rough_error : 0.};
 }
 

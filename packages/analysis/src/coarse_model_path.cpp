@@ -29,7 +29,7 @@ public:
       force_there += weight * model_.pressure(i, moved_[i]);
       length_ = std::max(length_, std::abs(model_.v_[i] + moved_[i]));
     }
-    load_ = path_rules.start_load * (force > 0 ? force : force_there) / area_;
+    load_ = contact::interior_rules.above_start * (force > 0 ? force : force_there) / area_;
   }
 
   /// @return whether it has come near the solution

@@ -67,14 +67,10 @@ struct ChoiceRules {
                                  "residual over that before the step for the last active set: the step is enough [-]", "not measured"};
   Rule<double> same_residual{0.1, "choice.same_residual", "part of that residual that other states make [-]", "not measured"};
   // Inexact solves
-  Rule<double> forcing{5e-3, "choice.forcing", "residual of a solve while states change, over that before and the load [-]",
-                       "theory.md (5.9): 1e-1 is too rough to choose by, 1e-4 saves no step"};
   Rule<double> rough_error{2e-4, "choice.rough_error", "error in energy that is enough instead [-]",
                            "theory.md (5.9): 1e-2 costs thin bodies half a step"};
   Rule<double> coarse_error{1e-8, "choice.coarse_error", "the same where a coarser mesh chooses, which would learn the error [-]", "not measured"};
   Rule<double> enough{0.3, "choice.enough", "last solve's residual over the tolerance: recomputed it is larger [-]", "not measured"};
-  Rule<double> beside_target{0.1, "choice.beside_target", "the same of the step for the last active set, over Newton's tolerance [-]",
-                             "not measured"};
 };
 inline constexpr_rules ChoiceRules choice_rules;
 
@@ -92,7 +88,6 @@ struct PathRules {
   Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
   Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
   Rule<int> model_steps{40, "path.model_steps", "steps on the coarser mesh [-]", "ten to eighteen are needed"};
-  Rule<double> start_load{3, "path.start_load", "pressure at the start over the mean pressure [-]", "theory.md (5.16)"};
   Rule<double> model_gap{3e-6, "path.model_gap", "gap that ends the path on the coarser mesh [-]", "not measured"};
   Rule<double> early_model_gap{3e-5, "path.early_model_gap", "the same where the last step has changed no state [-]", "not measured"};
 };
