@@ -54,7 +54,7 @@ SCALED = {"halved": 0.5, "doubled": 2.0}
 MEAN, WORST = 1.01, 1.2  # ratios from which a rule gains
 MORE_STEPS, MORE_SECONDS = 3, 0.5  # at least, in the worst scene
 ERRORS = 2  # standard errors that a mean ratio of seconds must exceed
-SLOWEST = 10  # times as long as with the rules as they are, and 10 s: out of time
+SLOWEST, SECONDS_MORE = 10, 30  # times as long as with the rules as they are, and so much more [s]: out of time
 ENERGY = 1e-6  # relative change of the last step's energy: another answer
 
 
@@ -245,7 +245,7 @@ def measure(options, rules):
         base = {scene: done[("", AS_IS, *scene)] for scene in scenes.scenes if ("", AS_IS, *scene) in done and done["", AS_IS, *scene].call == call}
 
         def limit(scene):
-            return min(options.time_limit, SLOWEST * base[scene].seconds + 10) if not base[scene].failure else options.time_limit
+            return min(options.time_limit, SLOWEST * base[scene].seconds + SECONDS_MORE) if not base[scene].failure else options.time_limit
 
         def wanted(settings, chosen):
             return [(rule.name, setting, rule.settings()[setting], scene, limit(scene)) for setting in settings for rule in chosen
