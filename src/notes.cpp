@@ -55,6 +55,14 @@ std::string strain_note(const Scene &scene, const analysis::Solution &s)
   return note.str();
 }
 
+/// Penalties of the deck that were raised for friction.                                                            (12.12b)
+std::string penalty_note(const analysis::Solution &s)
+{
+  if (s.raised_penalties == 0) return "";
+  return "\"Contact->Penalty\" is too weak for friction at " + std::to_string(s.raised_penalties) +
+         " contact points, where it counts as auto";
+}
+
 bool touches(const analysis::Solution &s)
 {
   return s.contact.total.contact_length > 0 ||
@@ -187,7 +195,7 @@ std::vector<std::string> notes_on_mesh(const Scene &scene, const fem::Discretiza
 std::vector<std::string> notes_on_results(const Scene &scene, const Solution &s)
 {
   std::vector<std::string> notes;
-  for (const std::string &note : {balance_note(s), strain_note(scene, s)})
+  for (const std::string &note : {balance_note(s), strain_note(scene, s), penalty_note(s)})
     if (!note.empty()) notes.push_back(note);
   return notes;
 }

@@ -46,9 +46,10 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
   s.step = step;
   const auto u = rcp(new Vector(*step.elastic.dirichlet.value, Teuchos::Copy)); // seen from the iterate's origin
   Iterate iterate(step.elastic, step.contact, state.hessian());
-  if (step.support.by_contact_only) iterate.hold_by_contact(); // (9.8)
-  if (low_penalties) iterate.lower_penalty();                  // (12.12a)
-  std::optional<PredictedBy> predicted;                        // nothing: no coarser mesh predicts the start
+  if (step.support.by_contact_only) iterate.hold_by_contact();                           // (9.8)
+  if (step.contact.friction.anywhere) s.raised_penalties = iterate.raise_weak_penalty(); // (12.12b)
+  if (low_penalties) iterate.lower_penalty();                                            // (12.12a)
+  std::optional<PredictedBy> predicted; // nothing: no coarser mesh predicts the start
   const auto counts_before = state.linear().counts();
   solver::check_nox_parameters(iterate, state.linear(), u, options.newton);
   if (progress.start) progress.start(problem, step);

@@ -311,6 +311,7 @@ void Iterate::follow_bounds()
 double Iterate::take_active_set_pressures(const Vector &u)
 {
   const SmoothedPoints &s = functional_.points();
+  if (s.has_friction()) bounds_before_ = copied(s.bound);
   return replace_multipliers(functional_.active_set_pressures(active_, u),
                              s.has_friction() ? active_set_tractions(s, active_, u) : DeviceView<double **>());
 }
@@ -331,6 +332,11 @@ bool Iterate::raise_penalty(const Vector &u)
   const bool raised = raise_penalties(*hessian_->getDomainMap()->getComm(), own_, penalty());
   update_stiffness(u);
   return raised;
+}
+
+GO Iterate::raise_weak_penalty()
+{
+  return raise_weak_penalties(points_, own_, penalty(), *hessian_->getDomainMap()->getComm());
 }
 
 void Iterate::lower_penalty()

@@ -22,18 +22,27 @@ KOKKOS_INLINE_FUNCTION bool along_an_axis(const ContactNodes &c, const LO i)
   return length - largest <= Rounding::sum * length;
 }
 
+/// The penalty of a point where none is given.
+struct OpenPenalty {
+  double standard = penalty_rules.standard, slanting = penalty_rules.slanting;
+
+  KOKKOS_INLINE_FUNCTION double operator()(const ContactNodes &c, const LO i, const double own) const
+  {
+    return (along_an_axis(c, i) ? standard : slanting) * own;
+  }
+};
+
 } // namespace
 
 DeviceView<double *> chosen_penalties(const ContactNodes &points, const DeviceView<double *> &own)
 {
   const ContactNodes c = points;
   DeviceView<double *> penalty("rpc::contact::penalty", c.size());
-  const double standard = penalty_rules.standard, slanting = penalty_rules.slanting, largest = penalty_rules.largest;
+  const OpenPenalty open_penalty;
+  const double largest = penalty_rules.largest;
   Kokkos::parallel_for(
       "rpc::contact::choose_penalty", device_range(c.size()), KOKKOS_LAMBDA(const LO i) {
-        penalty(i) = c.given_penalty(i) > 0 ? c.given_penalty(i)
-                     : along_an_axis(c, i)  ? standard * own(i)
-                                            : slanting * own(i);
+        penalty(i) = c.given_penalty(i) > 0 ? c.given_penalty(i) : open_penalty(c, i, own(i));
         if (own(i) > 0 && penalty(i) > largest * own(i)) penalty(i) = largest * own(i);
       });
   Kokkos::fence();
@@ -55,6 +64,24 @@ bool raise_penalties(const Comm &comm, const DeviceView<double *> &own, const De
       },
       raised);
   return sum_all(comm, GO(raised)) > 0;
+}
+
+GO raise_weak_penalties(const ContactNodes &points, const DeviceView<double *> &own,
+                        const DeviceView<double *> &penalty, const Comm &comm)
+{
+  const ContactNodes c = points;
+  const OpenPenalty open_penalty;
+  LO raised = 0;
+  Kokkos::parallel_reduce(
+      "rpc::contact::raise_weak_penalty", device_range(c.size()),
+      KOKKOS_LAMBDA(const LO i, LO &count) {
+        const double open = open_penalty(c, i, own(i));
+        if (!(penalty(i) < open)) return;
+        penalty(i) = open;
+        ++count;
+      },
+      raised);
+  return sum_all(comm, GO(raised));
 }
 
 void lower_penalties(const ContactNodes &points, const DeviceView<double *> &penalty)

@@ -99,6 +99,18 @@ TEST(Penalty, RisesToTheOneOfItsOwnChoiceAtLeastAndUpToTheBound)
   rises(9e7 * own, {1e8 * own});
 }
 
+TEST(Penalty, TooWeakForFrictionIsThatOfItsOwnChoice)
+{
+  const double own = own_stiffness();
+  for (const double given : {1e-3, 9e4 * own, 1e5 * own, 2e7 * own}) {
+    const Scene scene(std::vector{touching(given)});
+    const bool weak = given < 1e5 * own;
+    EXPECT_EQ(scene.iterate->raise_weak_penalty(), weak ? scene.iterate->points().num_total : 0);
+    expect_penalties(scene, [&](int, const Point &) { return weak ? 1e5 * own : given; });
+    EXPECT_EQ(scene.iterate->raise_weak_penalty(), 0);
+  }
+}
+
 TEST(Penalty, RaisedAtOneNodeIsARaiseOnAllRanks)
 {
   // Given at the bound below, left open beside.

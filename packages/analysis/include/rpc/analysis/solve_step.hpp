@@ -92,6 +92,7 @@ struct StepSolution {
   FoundBy found_by = FoundBy::choices;
   int line_search_steps = 0;                        ///< Newton's, where the active-set iteration was not enough
   int coarse_choices = 0;                           ///< steps to states that a coarser mesh chose
+  GO raised_penalties = 0;                          ///< contact points whose penalty was too weak for friction
   std::vector<LevelWork> levels;                    ///< coarser meshes that predicted the solution, from the coarsest
   std::string not_predicted;                        ///< why no coarser mesh did; empty if one did
   double prediction_seconds = 0, solve_seconds = 0; ///< solve: without set-ups of multigrid

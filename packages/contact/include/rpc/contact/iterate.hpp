@@ -102,6 +102,8 @@ public:
   /// @param u  where the active set was taken
   bool raise_penalty(const Vector &u);
 
+  /// Raises those that are weaker than those of no choice of the deck's, before the first minimization. @return at how many points   (12.12b)
+  GO raise_weak_penalty();
   /// Lowers them to E / diameter, before the first minimization.                                                (12.12a)
   void lower_penalty();
 
