@@ -4,6 +4,7 @@ Scenes that once ended with a wrong reason, and now converge."""
 
 import csv
 import json
+import math
 import re
 import unittest
 
@@ -224,6 +225,11 @@ class Causes(RpcTestCase):
                     self.assertIsNone(summary["energy_J"])
                     for part in causes()["breakdown"][1:]:
                         self.assertIn(part, summary["reason"])
+
+    def test_rounding_of_penetrations_is_no_violation_of_friction(self):
+        rubbing = LIGHT.replace("Stiffness:", "Friction Coefficient: 0.09\n    Stiffness:").replace("[1.0]", "[1.0, 2.0, 3.0]")
+        summary = self.summary(rubbing)
+        self.assertAlmostEqual(summary["contact_force"][1] / (3e-8 * math.pi * 1.7**2), 1, delta=1e-7)
 
     def test_much_friction_settles_with_low_penalties(self):
         for mu in [1.65, 1.75, 1.95] if RANKS == 1 else [1.75]:

@@ -204,8 +204,9 @@ ActiveSetLoop::Verdict ActiveSetLoop::choose(const Vector &u)
     const bool tells = steps_ > 0 && !rough_ && !solved_well;
     const auto answer =
         tells ? confirmed_headway_.add(norm_, std::min(before_, confirmed_norm_)) : confirmed_headway_.take(true);
-    if (!rough_) confirmed_norm_ = norm_;
+    if (!rough_) confirmed_norm_ = turns_ ? std::min(confirmed_norm_, norm_) : norm_; // slip may turn round and round
     if (confirmed_) return Verdict::converged;
+    confirmed_ = rubs_ && !turns_ && answer == Headway::Answer::stuck; // what is left is rounding
     if (answer == Headway::Answer::stuck) return Verdict::over;
     rough_ = false;
   } else if (coarse_) {

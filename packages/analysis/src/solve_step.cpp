@@ -227,13 +227,25 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
                             });
   };
   const bool friction = iterate.points().friction.anywhere;
+  int in_vain = 0;
   if (iteration > 1 && (!friction || previous_confirmed)) {
+    const Vector start(*u, friction ? Teuchos::Copy : Teuchos::View);
     const auto result =
-        run([&](solver::MinimizationSteps &steps) { return minimize_from_same_active_set(iterate, steps); }, all);
-    const int steps = result.steps == 0 && result.converged ? refine(iterate, *u, state) : result.steps;
-    return {result.converged, steps, result.reason, false, result.newton_steps};
+        run([&](solver::MinimizationSteps &steps) { return minimize_from_same_active_set(iterate, steps); },
+            friction ? 1 : all);
+    if (friction && !(result.converged && result.newton_steps == 0)) { // choices go on, not the functional
+      u->assign(start);
+      in_vain = result.steps;
+    } else {
+      const int steps = result.steps == 0 && result.converged ? refine(iterate, *u, state) : result.steps;
+      return {result.converged, steps, result.reason, false, result.newton_steps};
+    }
   }
-  if (iteration > 1) return minimize_for_next_bounds(iterate, *u, options, run);
+  if (iteration > 1) {
+    Minimization found = minimize_for_next_bounds(iterate, *u, options, run);
+    found.steps += in_vain;
+    return found;
+  }
   ActiveSetTolerances tolerances = active_set_tolerances(options);
   tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
   ActiveSetLoop loop(iterate, tolerances);
@@ -277,6 +289,8 @@ contact::OptimalityResiduals judge(const Problem &problem, const Step &step, con
     residuals.internal = unrounded.internal; // the next origin's
     if (unrounded.worst() < residuals.worst()) residuals = unrounded;
   }
+  if (!residuals.holds(tolerance) && step.contact.friction.anywhere)
+    residuals.kkt_residual = contact::contact_law_residual(step.contact, now, 1); // (12.7a)
   if (!residuals.holds(tolerance))
     contact::forgive_energies_of_rounding(problem.discretization(), problem.model().materials, step.elastic,
                                           step.contact, now, tolerance, tolerance * step.energies_before,

@@ -33,6 +33,16 @@ double energy_at_points(const ContactNodes &c, const DeviceView<double *> &lambd
   return sum;
 }
 
+/// By how much v_i may be off by the rounding of its dim products and its difference [m].                          (12.7a)
+template <class U>
+KOKKOS_INLINE_FUNCTION double penetration_rounding(const ContactNodes &c, const LO i, const U &u)
+{
+  constexpr double eps = std::numeric_limits<double>::epsilon();
+  double size = math::magnitude(c.free_gap(i));
+  for (int k = 0; k < c.dim; ++k) size += math::magnitude(c.direction(i, k) * u(c.dof(i, k)));
+  return (c.dim + 1) * eps * size;
+}
+
 /// By how much e_i may be off by the rounding of its dim products and its difference [m].                          (12.7)
 template <class U>
 KOKKOS_INLINE_FUNCTION double slip_rounding(const ContactNodes &c, const LO i, const U &u)
@@ -64,7 +74,8 @@ double largest_traction(const ContactNodes &points, const Multipliers &multiplie
 }
 
 /// This rank's largest violation of friction's law [Pa].                                                    (12.6)
-double largest_friction_residual(const ContactNodes &points, const ContactState &state)
+/// @param roundings  of e that count as none
+double largest_friction_residual(const ContactNodes &points, const ContactState &state, const double roundings)
 {
   const ContactNodes c = points;
   const auto lambda = state.multiplier.normal;
@@ -76,8 +87,8 @@ double largest_friction_residual(const ContactNodes &points, const ContactState 
       KOKKOS_LAMBDA(const LO i, double &worst) {
         if (c.fixed(i)) return;
         const Friction f = c.friction(i);
-        worst = math::larger(worst,
-                             friction_residual(slip(c, i, x), row(q, i), friction_bound(lambda(i), f), c.scaling(i)));
+        const Along e = beyond_rounding(slip(c, i, x), roundings * slip_rounding(c, i, x));
+        worst = math::larger(worst, friction_residual(e, row(q, i), friction_bound(lambda(i), f), c.scaling(i)));
       },
       Kokkos::Max<double>(violation));
   return violation;
@@ -114,7 +125,7 @@ double energy(const double elastic, const ContactNodes &points, const ContactSta
   return elastic + sum_all(comm_of(state), energy_at_points(points, state.multiplier.normal, *state.displacement));
 }
 
-double contact_law_residual(const ContactNodes &points, const ContactState &state)
+double contact_law_residual(const ContactNodes &points, const ContactState &state, const double roundings)
 {
   const ContactNodes c = points;
   const auto lambda = state.multiplier.normal;
@@ -125,12 +136,14 @@ double contact_law_residual(const ContactNodes &points, const ContactState &stat
       KOKKOS_LAMBDA(const LO i, double &worst, double &pressure_scale, double &distance_scale) {
         if (c.fixed(i)) return;
         const double v = penetration(c, i, x), p = lambda(i);
-        worst = math::larger(worst, math::magnitude(law_residual(v, p, c.scaling(i), c.law(i))));
+        const double off = roundings * penetration_rounding(c, i, x);
+        worst = math::larger(worst, law_residual(v + off, p, c.scaling(i), c.law(i)));
+        worst = math::larger(worst, -law_residual(v - off, p, c.scaling(i), c.law(i)));
         pressure_scale = math::larger(pressure_scale, p);
         distance_scale = math::larger(distance_scale, math::magnitude(c.scaling(i) * v));
       },
       Kokkos::Max<double>(violation), Kokkos::Max<double>(largest), Kokkos::Max<double>(deepest));
-  if (points.friction.exists()) violation = std::max(violation, largest_friction_residual(points, state));
+  if (points.friction.exists()) violation = std::max(violation, largest_friction_residual(points, state, roundings));
   const double mine[3] = {violation, largest, deepest};
   double all[3];
   Teuchos::reduceAll(comm_of(state), Teuchos::REDUCE_MAX, 3, mine, all);
