@@ -169,6 +169,16 @@ TEST(FailedSolve, ForgetsAHierarchyThatFollowedTheStatesBeforeItTakesAStrongerOn
     }
     EXPECT_EQ(solver->counts().preconditioner_setups, 3);
     EXPECT_EQ(solver->counts().local_corrections, 4);
+    const auto &candidates = solver->counts().candidates;
+    ASSERT_EQ(candidates.size(), 2U);
+    EXPECT_EQ(candidates[0].name, "sparse factor");
+    EXPECT_EQ(candidates[0].setups, 1);
+    EXPECT_EQ(candidates[0].solves, 4);
+    EXPECT_EQ(candidates[0].left, "");
+    EXPECT_EQ(candidates[1].name, "algebraic");
+    EXPECT_EQ(candidates[1].setups, 2);
+    EXPECT_EQ(candidates[1].solves, 4);
+    EXPECT_TRUE(contains(candidates[1].left, "the linear solver stopped at ")) << candidates[1].left;
   }
 }
 
