@@ -31,11 +31,11 @@ inline constexpr Cause breakdown{
     "the matrix is singular but for rounding, or the linear solver does not suit it",
     "leave the list \"Linear Solver\" out; without one, bring the stiffnesses of the body and of its springs nearer to "
     "each other: double precision holds ratios of up to about 1e15"};
-inline constexpr Cause no_descent{"no descent", "the functional's slope along Newton's direction is not negative",
-                                  "the functional does not fall along Newton's direction",
-                                  "leave the list \"Linear Solver\" out, whose solves must be good enough; without "
-                                  "one, raise \"Uzawa->Tolerance\" above "
-                                  "the residuals that are left"};
+inline constexpr Cause no_descent{
+    "no descent", "the functional's slope along Newton's direction is not negative",
+    "the functional does not fall along Newton's direction",
+    "leave the list \"Linear Solver\" out, whose solves must be good enough; without one, bring the stiffnesses of the "
+    "body and of its springs nearer to each other, or raise \"Uzawa->Tolerance\" above the residuals that are left"};
 inline constexpr Cause newton_steps{"Newton steps", "\"NOX->Maximum Iterations\" steps were made",
                                     "that is \"NOX->Maximum Iterations\"", "raise it, or leave the list \"NOX\" out"};
 inline constexpr Cause status_tests{"status tests", "tests of the deck's \"NOX->Status Tests\" ended the minimization",
