@@ -193,11 +193,11 @@ class Diagrams(RpcTestCase):
         for name in ("shear.contact.csv", "shear.history.csv", "beam_adaptive.contact.csv", "beam_adaptive.json"):
             self.assertEqual(self.picture(f"out/{name}", "--output=a.png"), (0, "wrote a.png\n", ""))
         self.assertEqual(self.picture("out/shear.contact.csv", "out/beam_adaptive.contact.csv", "--over=x", "--output=a.png")[0], 0)
-        for name in ("shear.contact.csv", "shear.history.csv", "beam_adaptive.json"):  # units are told of all but of numbers
+        for name in ("shear.contact.csv", "shear.history.csv", "beam_adaptive.json"):  # units are told of all but of numbers, and of forces that may be per length
             table = Table(str(self.folder / "out" / name))
             bare = [column for column in table.names() if not table.is_text(column) and "[" not in table.name_of(column)]
             self.assertEqual(set(bare) - {"friction_used", "time", "newton_iterations", "linear_iterations", "parts", "converged", "max_strain",
-                                          "dofs", "relative_estimate"}, set(), name)
+                                          "dofs", "relative_estimate", "force_x", "force_y"}, set(), name)
 
     def test_several_files_have_a_legend(self):
         (self.folder / "one").mkdir()

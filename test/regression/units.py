@@ -39,7 +39,8 @@ class Units(RpcTestCase):
                 del level["seconds"]
         self.assertEqual(named, plain)
         self.assertEqual(self.headings("out", "contact"), ["x [mm]", "y [mm]", "s [mm]", "u_nu [mm]", "gap [mm]", "pressure [MPa]", "state",
-                                                           "side", "dent [mm]"])
+                                                           "side", "dent [mm]", "u_t_x [mm]", "u_t_y [mm]", "force_x [N/mm]",
+                                                           "force_y [N/mm]"])
         history = self.headings("out", "history")
         self.assertEqual([re.sub(r" \[.*\]", "", name) for name in history], self.headings("plain", "history"))
         for name in ("time", "work [mJ/mm]", "max_pressure [MPa]", "max_dent [mm]", "dent_volume [mm^2]", "contact_length [mm]",

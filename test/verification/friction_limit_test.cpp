@@ -180,7 +180,7 @@ TEST(PressFit, HoldsWhatItsOwnPressureBearsAndSaysSoWhereThatIsTooLittle)
   EXPECT_FALSE(slips.uzawa.converged);
   EXPECT_NE(slips.uzawa.reason.find("no pressures were found that hold it; raise the friction"), std::string::npos)
       << slips.uzawa.reason;
-  EXPECT_EQ(slips.uzawa.reason.find("rounding"), std::string::npos);
+  EXPECT_EQ(slips.uzawa.reason.find("rounding"), std::string::npos) << slips.uzawa.reason;
 }
 
 TEST(SqueezedBlock, BetweenTwoFoundationsIsPulledOutAtTheSumOfTheirLimits)
