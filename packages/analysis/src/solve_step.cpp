@@ -299,14 +299,15 @@ contact::OptimalityResiduals judge(const Problem &problem, const Step &step, con
 }
 
 /// The reason of a step without convergence where friction that follows the pressures must hold the body. What ended the last minimization is
-/// then no reason. (12.10)
+/// then no reason, nor is a residual of 1 or more of a body that has moved away. (12.10)
 void tell_want_of_friction(UzawaResult &uzawa, const Problem &problem)
 {
   if (interrupted(problem.discretization().mesh->comm())) return;
+  const bool moves = uzawa.friction_unsettled || !(uzawa.residuals.worst() < 1);
   const std::string ended =
-      uzawa.friction_unsettled ? std::to_string(uzawa.iterations) + " Uzawa iterations were not enough" : uzawa.reason;
+      moves ? std::to_string(uzawa.iterations) + " Uzawa iterations were not enough" : uzawa.reason;
   uzawa.reason = ended + "; " + because(causes::want_of_friction);
-  if (uzawa.friction_unsettled) uzawa.reason_has_residuals = false;
+  if (moves) uzawa.reason_has_residuals = false;
 }
 
 /// Forces with which the Dirichlet conditions hold the body. (2.11)
