@@ -17,7 +17,7 @@ class Results(TestCase):
         with open(self.folder / "deck.contact.csv", newline="") as file:
             expected = list(csv.DictReader(file))
         self.assertEqual(len(rows), 21)
-        self.assertEqual(rows.dtype.names, ("x", "y", "s", "u_nu", "gap", "pressure", "state", "side", "dent"))
+        self.assertEqual(rows.dtype.names, ("x", "y", "s", "u_nu", "gap", "pressure", "state", "side", "dent", "u_t_x", "u_t_y", "force_x", "force_y"))
         self.assertEqual([float(row["pressure [MPa]"]) for row in expected], rows["pressure"].tolist())
         self.assertEqual([row["state"] for row in expected], rows["state"].tolist())
         self.assertEqual(set(rows["side"]), {"bottom"})
