@@ -126,9 +126,11 @@ Status ActiveSetLoop::leave_to_newton(MinimizationSteps &steps)
 
 Status ActiveSetLoop::newton_step(MinimizationSteps &steps)
 {
+  confirmed_ = false; // it was for the point that this step leaves
   const Status status = steps.newton_step();
   if (status != Status::goes_on || !newton_hands_over(steps) || method_ == Method::interior_path) return status;
   const Verdict verdict = choose_at(steps.at());
+  if (verdict == Verdict::converged) return end_choices(steps, verdict);
   return verdict == Verdict::go_on ? Status::goes_on : leave_to_newton(steps);
 }
 
@@ -193,6 +195,7 @@ void ActiveSetLoop::start_over(std::optional<contact::ActiveSetChoice> choice, c
 /// What becomes of the iteration at a point, after the step that led there.
 ActiveSetLoop::Verdict ActiveSetLoop::choose(const Vector &u)
 {
+  confirmed_ = false;
   choice_ = iterate_.choose_active_set(u, std::max(choice_rules.negligible * pressure_tolerance_, rounding)); // (5.8)
   // The active set does not change at first: one accurate solve, which keeps the energy balance to rounding.
   if (choice_->changes == 0 && steps_ == 0) rough_ = false;

@@ -399,6 +399,20 @@ TEST(ActiveSet, StopsAtTheUsersStatusTestsWhateverItBeginsWith)
   }
 }
 
+TEST(ActiveSet, IsNoLongerConfirmedWhereNewtonGoesOn)
+{
+  solver::NewtonOptions options;
+  Teuchos::ParameterList &tests = options.nox.sublist("Status Tests");
+  tests.set("Test Type", "MaxIters");
+  tests.set("Maximum Iterations", 30);
+  Beam beam;
+  analysis::ActiveSetLoop loop(*beam.iterate, {});
+  const auto result = minimize(beam, options, std::ref(loop));
+  EXPECT_GT(loop.steps(), 0);
+  EXPECT_GT(result.newton_steps, 0);
+  EXPECT_FALSE(loop.confirmed());
+}
+
 TEST(ActiveSet, ConvergesByTheUsersStatusTestsThoughNoChoiceIsConfirmed)
 {
   solver::NewtonOptions options;
