@@ -104,7 +104,7 @@ class Run:
         return (self.rule, self.setting, *self.scene)
 
 
-NUMBERS = {field.name: {int: int, float: float}.get(field.type, str) for field in dataclasses.fields(Run)}
+NUMBERS = {field.name: {int: int, float: lambda text: float(text or "nan")}.get(field.type, str) for field in dataclasses.fields(Run)}
 
 
 # --- runs ------------------------------------------------------------------------------------------------------------------
@@ -195,8 +195,6 @@ def count(run, summary):
 
 
 def read(path):
-    if not pathlib.Path(path).exists():
-        return []
     with open(path, newline="") as file:
         lines = [line for line in csv.DictReader(file) if None not in line.values()]  # the last one may be cut
     return [Run(**{name: number(line[name]) for name, number in NUMBERS.items()}) for line in lines]
@@ -204,7 +202,7 @@ def read(path):
 
 class File:
     def __init__(self, path, goes_on):
-        fresh = not goes_on or not pathlib.Path(path).exists()
+        fresh = not goes_on or os.path.getsize(path) == 0
         if not fresh:
             text = pathlib.Path(path).read_text()
             pathlib.Path(path).write_text(text[:text.rfind("\n") + 1])
@@ -366,27 +364,51 @@ def kinds(text):
     return chosen
 
 
+def expression(text):
+    try:
+        return re.compile(text)
+    except re.error as error:
+        raise argparse.ArgumentTypeError(f"\"{text}\" is no regular expression: {error}")
+
+
+def count_of(text):
+    if not text.isdecimal() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"\"{text}\" is no number >= 1")
+    return int(text)
+
+
 def arguments(words=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rpc", required=True, help="a program of -D RPC_ABLATION=ON")
     parser.add_argument("--csv", required=True, help="file for a line a run")
-    parser.add_argument("--rules", type=re.compile, default=re.compile(""), help="regular expression, found in names of rules; default: all")
+    parser.add_argument("--rules", type=expression, default=re.compile(""), help="regular expression, found in names of rules; default: all")
     parser.add_argument("--kinds", type=kinds, default=STANDARD_KINDS, help="of " + ",".join(ALL_KINDS))
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--scenes", type=int, default=25, help="of each kind (%(default)s)")
+    parser.add_argument("--scenes", type=count_of, default=25, help="of each kind (%(default)s)")
     parser.add_argument("--size", choices=list(families.SIZES), default="small", help="of the meshes, but for histories (%(default)s)")
-    parser.add_argument("--jobs", type=int, default=1, help="runs at a time (%(default)s); more than the cores disturb the times")
+    parser.add_argument("--jobs", type=count_of, default=1, help="runs at a time (%(default)s); more than the cores disturb the times")
     parser.add_argument("--budget", type=float, default=math.inf, help="time for runs [s]")
     parser.add_argument("--time-limit", type=float, default=120.0, help="of a run [s] (%(default)s)")
     parser.add_argument("--continue", dest="goes_on", action="store_true", help="keep the runs of the file")
     parser.add_argument("--all-settings", action="store_true", help="halve and double also rules that are never met")
     parser.add_argument("--report", action="store_true", help="no runs")
-    return parser.parse_args(words)
+    options = parser.parse_args(words)
+    options.rpc = os.path.abspath(options.rpc)
+    try:
+        listed(options.rpc)
+        if not options.report:
+            open(options.csv, "a").close()
+        if options.report or options.goes_on:
+            read(options.csv)
+    except OSError as error:
+        parser.error(f"{error.filename}: {error.strerror}")
+    except (KeyError, ValueError):
+        parser.error(f"--csv={options.csv}: no file of this program")
+    return options
 
 
 def main(words=None):
     options = arguments(words)
-    options.rpc = os.path.abspath(options.rpc)
     rules = [rule for rule in listed(options.rpc) if options.rules.search(rule.name)]
     if not rules:
         print(f"ablation.py: {options.rpc} with RPC_RULES=list names no rule like \"{options.rules.pattern}\"; build it with -D RPC_ABLATION=ON", file=sys.stderr)

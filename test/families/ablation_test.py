@@ -71,7 +71,7 @@ class Ablation(unittest.TestCase):
         self.assertEqual((ratios.changed, ratios.failed, ratios.seconds), (2, 0, 1.0))
 
     def test_goes_on_where_it_has_stopped(self):
-        whole = self.ablate("--rules=idle", csv="part.csv")[2]
+        whole = self.ablate("--rules=idle", "--continue", csv="part.csv")[2]  # of no file
         path = pathlib.Path(self.folder.name) / "part.csv"
         lines = path.read_text().splitlines(keepends=True)
         path.write_text("".join(lines[:4]) + lines[4][:9])  # cut in the midst of a line
@@ -80,6 +80,29 @@ class Ablation(unittest.TestCase):
         self.assertEqual(sorted({run.job for run in runs}), sorted(run.job for run in whole))
         self.assertEqual({run.call for run in runs if run.rule}, {0, 1})
         self.assertEqual(len([run for run in runs if not run.rule]), 4)  # the rules as they are, in both calls
+
+    def test_reports_runs_that_have_no_numbers(self):
+        path = pathlib.Path(self.folder.name) / "empty.csv"
+        self.ablate("--rules=idle", csv=path.name)
+        line = path.read_text().splitlines()[-1].split(",")
+        names = list(ablation.NUMBERS)
+        empty = ["" if name in ("steps", "solves", "cg", "seconds", "energy", "counts") else cell for name, cell in zip(names, line)]
+        path.write_text(path.read_text() + ",".join([*empty[:-1], "exit 4"]) + "\n")
+        code, text, runs = self.ablate("--report", csv=path.name)
+        self.assertEqual((code, runs[-1].failure), (0, "exit 4"))
+        self.assertNotIn("nan", text)
+
+    def test_what_cannot_be_run_or_read_is_told_in_one_line(self):
+        foreign = pathlib.Path(self.folder.name) / "foreign.csv"
+        foreign.write_text("a,b\n1,2\n")
+        for words, told in ((["--rpc=/gone/rpc"], "/gone/rpc"), (["--rules=("], "--rules"), (["--jobs=0"], "--jobs"), (["--scenes=few"], "--scenes"),
+                            (["--csv=/gone/a.csv"], "/gone/a.csv"), ([f"--csv={foreign}", "--report"], "foreign.csv"),
+                            (["--csv=/gone/a.csv", "--report"], "/gone/a.csv")):
+            errors = io.StringIO()
+            with contextlib.redirect_stderr(errors), self.assertRaises(SystemExit) as ended:
+                ablation.main([f"--rpc={self.rpc}", f"--csv={self.folder.name}/none.csv", "--kinds=well-shaped", "--scenes=1", *words])
+            self.assertEqual(ended.exception.code, 2, words)
+            self.assertIn(told, errors.getvalue().splitlines()[-1])
 
     def test_stops_in_time(self):
         code, text, runs = self.ablate("--budget=0", csv="none.csv")
