@@ -64,4 +64,3 @@ def chosen_columns(tables):
     known = [name for name in FIRST_CHOICE if all(name in table.columns for table in tables)]
     finite = [name for name in known if any(np.isfinite(table.columns[name]).any() for table in tables)]
     return finite or [name for name in tables[0].columns if name not in COORDINATES and not tables[0].is_text(name)][:1]
-

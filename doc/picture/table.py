@@ -23,7 +23,7 @@ MEANING = [
     ("[xyz]|off", "{0}", "m"), ("disp_([xyz])", "displacement in {1}", "m"), ("von_mises", "von Mises stress", "Pa"), ("contact_pressure|stress_.*", "{0}", "Pa"), ("s", "length along the surface", "m"), ("radius", "{radius}", "m"), ("area", "area of a point", "m^2"),
     ("u_nu", r"normal displacement $u_\nu$", "m"), ("pressure", "contact pressure", "Pa"), ("gap|dent|penetration", "{0}", "m"),
     ("friction", "friction", "Pa"), ("q_([xyz])", "friction in {1}", "Pa"), ("slip_([xyz])", "slip in {1}", "m"),
-    ("u_t_([xyz])", "displacement along the side in {1}", "m"), ("force_([xyz])", "nodal force in {1}", ""),
+    ("u_t_([xyz])", "displacement along the side in {1}", "m"), ("force_([xyz])", "nodal force in {1}", "{force}"),
     ("friction_used", "friction over what it can be", ""), ("time", "t", ""), ("contact_force_([xyz])", "contact force in {1}", "{force}"),
     (".*_displacement_[xyz]|max_(displacement|penetration|dent|slip)", "{0}", "m"), (".*_reaction_[xyz]", "{0}", "{force}"),
     ("energy_J", "energy", "{energy}"), ("relative_estimate", "estimated relative error", ""), ("dofs", "degrees of freedom", ""),
@@ -143,7 +143,9 @@ class Table:
     def name_of(self, name, axes="", centre=()):
         """What an axis says of a column. @param axes, centre  those of a radius"""
         plane = "contact_length" in self.columns
-        units = {"force": "N/m" if plane else "N", "energy": "J/m" if plane else "J", "volume": "m^2" if plane else "m^3"}
+        # Contact sides of plane bodies and of those of revolution have the same columns.
+        force = "N/m, of revolution N" if self.kind == "contact" and "area" not in self.columns else "N/m" if plane else "N"
+        units = {"force": force, "energy": "J/m" if plane else "J", "volume": "m^2" if plane else "m^3"}
         away = [f"{axis} {'-' if at > 0 else '+'} {abs(at):.4g}" if at else axis for axis, at in zip(axes, centre or [0] * len(axes))]
         if len(axes) > 1:
             squares = " + ".join(f"({text})^2" if " " in text else f"{text}^2" for text in away)
