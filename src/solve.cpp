@@ -48,8 +48,12 @@ Solution solve(const Scene &scene, const RCP<const Comm> &comm, std::ostream &co
     if (!std::exchange(points_looked_for, true)) require_inside(scene.output.points, d, scene.model.units);
     table->scene(scene, d, contact);
     for (const std::string &note : d.mesh->notes) notes.add("mesh: " + note);
-    for (const std::string &note : notes_on_mesh(scene, d, contact))
-      if (told_of_meshes.insert(std::regex_replace(note, std::regex("[0-9]+"), "")).second) notes.add(note);
+    const std::set<std::string> told = told_of_meshes; // sides of one mesh may differ by a number in their names
+    for (const std::string &note : notes_on_mesh(scene, d, contact)) {
+      const std::string without_counts = std::regex_replace(note, std::regex("[0-9]+"), "");
+      if (told.count(without_counts) == 0) notes.add(note);
+      told_of_meshes.insert(without_counts);
+    }
   };
   listener.step.start = [&](const analysis::Problem &problem, const analysis::Step &step) {
     seldom_meant.before(problem, step);

@@ -143,6 +143,14 @@ class Seldom(RpcTestCase):
         self.assertNotIn("is bent", str(self.notes(deck + "  Contact: {Side: contact, Gap: 0.001}\n")))
         self.assertNotIn("is bent", str(self.notes(deck + "  Contact: {Side: contact, Obstacle: {Type: plane, Point: [0.0, 0.0], Normal: [0.0, 1.0]}}\n")))
         self.assertNotIn("is bent", str(self.notes(deck + "  Contact: {Side: top}\n")))
+        (self.folder / "ring.geo").write_text("""Mesh.MeshSizeMax = 0.5;
+Point(1) = {1, 0, 0}; Point(2) = {2, 0, 0}; Point(3) = {0, 2, 0}; Point(4) = {0, 1, 0}; Point(5) = {0, 0, 0};
+Line(1) = {1, 2}; Circle(2) = {2, 5, 3}; Line(3) = {3, 4}; Circle(4) = {4, 5, 1}; Curve Loop(1) = {1 : 4}; Plane Surface(1) = {1};
+Physical Surface("ring") = {1}; Physical Curve("held") = {1}; Physical Curve("side 1") = {2}; Physical Curve("side 2") = {4};
+""")
+        ring = "\n  Mesh: {Type: gmsh, File: ring.geo}\n  Material: {Young's Modulus: 1.0e+3, Poisson's Ratio: 0.3}\n  Dirichlet: {held: {X: 0.0, Y: 0.01}}\n"
+        notes = self.notes(ring + "  Contact: {Sides: {1: {Side: side 1, Stiffness: 10.0}, 2: {Side: side 2, Stiffness: 10.0}}}\n")
+        self.assertEqual([note[:9] for note in notes if "is bent" in note], ['side "sid'] * 2, notes)  # names that differ by a number alone
 
     def test_other_notes_are_in_the_summary_too(self):
         body = PRESSED.replace("Cells: [4, 4]", "Cells: [4, 4], Element: P1").replace("0.3", "0.45").replace("-0.01", "-0.5")
