@@ -257,7 +257,7 @@ void print_accuracy(std::ostream &out, const Scene &scene, const Solution &s)
   if (std::isfinite(errors.contact_pressure) && !scene.model.contact.empty())
     text += "; of the contact pressure " + number_text("%.1e", errors.contact_pressure) + " of its norm in L2";
   print_text(out, "estimated error", text);
-  if (!s.adaptation && !s.estimate->misses_contact())
+  if (!s.adaptation && std::isfinite(errors.energy))
     print_text(out, "errors", "of J alone: add \"Adapt->Target Relative Error\", such as 0.01, for further error bars");
   else if (const auto reason = errors.unknown.find("contact_force"); reason != errors.unknown.end())
     print_text(out, "errors", (std::isfinite(errors.energy) ? "of J alone: " : "not known: ") + reason->second);

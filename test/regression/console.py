@@ -227,6 +227,10 @@ class Told(ConsoleTestCase):
         self.assertAlmostEqual(bar, self.summary["error_estimate"]["relative"] ** 2 * self.summary["energy_norm_squared"], delta=1e-9 * bar)
         self.assertIn("of J alone", self.end["errors"])
 
+    def test_an_estimate_of_rounding_gives_no_bar_and_no_advice(self):
+        self.run_deck(SMALL, "--set=Traction->top->Y=0", "--set=Adapt->Estimate Error=true")
+        self.assertEqual(self.end["errors"], "not known: the strain energy is at rounding level")
+
     def test_the_end_begins_with_the_outcome_and_has_the_residuals_once(self):
         self.run_deck(SMALL)
         self.assertEqual(self.stdout.count("duality gap"), 1)
