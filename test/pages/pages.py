@@ -29,7 +29,7 @@ GROUPS = {"readme": ["README.md"], "tutorial": ["doc/tutorial/*.md"], "gallery":
           "input": ["doc/input/*.md", "doc/commands.md", "doc/pictures.md"]}
 CHECKED = "doc/gallery"  # whose test solves its decks, to coarser targets: here they are checked only
 GMSH = "4.8"  # with whose meshes the numbers of the pages were made: Debian 12's
-TIMEOUT = 300  # s, of a command
+LIMIT = 300  # s of processor time of each process of a command: other work on the machine does not count. What hangs is ended by CTest.
 MPI_OF_A_TEST = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 VERSION_OF_GMSH = """<ParameterList name="version">
   <ParameterList name="Mesh">
@@ -175,9 +175,9 @@ class Checker:
                 return None
         path = f"{self.folder}{os.pathsep}{os.environ['PATH']}"
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        run = subprocess.run(["bash", "-uo", "pipefail", "-c", text], cwd=self.folder, env={**MPI_OF_A_TEST, **os.environ, "PATH": path},
-                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, errors="replace",
-                             timeout=TIMEOUT)
+        run = subprocess.run(["bash", "-uo", "pipefail", "-c", f"ulimit -t {LIMIT}\n{text}"], cwd=self.folder,
+                             env={**MPI_OF_A_TEST, **os.environ, "PATH": path}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                             stdin=subprocess.DEVNULL, text=True, errors="replace")
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.seconds.append((after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, line))
         if run.returncode != expected:
@@ -225,7 +225,7 @@ class Checker:
         except (decks.DeckFault, OSError) as error:
             return self.fault(block.line, str(error))
         (self.decks / name).write_text(text)
-        run = subprocess.run([self.tools.program, f"--input={self.decks / name}", "--check"], capture_output=True, text=True, timeout=TIMEOUT)
+        run = subprocess.run([self.tools.program, f"--input={self.decks / name}", "--check"], capture_output=True, text=True)
         if run.returncode and commands.WITHOUT_GMSH not in run.stderr:
             self.fault(block.line, f"the deck is refused, exit code {run.returncode}: {run.stderr.strip()}")
 

@@ -5,6 +5,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import commands
 import outputs
@@ -131,6 +132,10 @@ class Pages(Checked):
             self.assertIn(reason, commands.reason_not_to_run(command, TOOLS), command)
         self.assertEqual(commands.reason_not_to_run("./rpc --input=beam.xml", TOOLS), "")
         self.assertEqual(commands.as_run("NP=2 bash cmake/run.sh --input=a"), "mpirun -np 2 ./rpc --input=a")
+
+    def test_a_command_ends_by_its_processor_time(self):
+        with unittest.mock.patch.object(pages, "LIMIT", 1):
+            self.expect_fault("```sh\nwhile true; do true; done\n```\n", "while", "exit code")
 
     def test_links(self):
         for link in ["![x](nothing.png)", "[x](nothing.md)", "[x](#nothing)", "[x](README.md#nothing)", "[![x](nothing.png)](README.md)",
