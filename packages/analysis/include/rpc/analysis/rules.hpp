@@ -14,7 +14,7 @@ namespace rpc::analysis
 /// A choice is an update of the active set; overshoot is the ratio of inadmissible to admissible contact forces. doc/theory.md (5.7) to (5.9)
 struct ChoiceRules {
   // When choices by pressures end
-  Rule<int> most_idle{6, "choice.most_idle", "choices without progress [-]", "theory.md (5.8a): 417 random thin bodies"};
+  Rule<int> most_idle{6, "choice.most_idle", "choices without progress [-]", "measurements.md: Limits on active-set updates"};
   Rule<int> most_changes{10, "choice.most_changes", "choices with friction, with progress or not [-]", "not measured"};
   Rule<int> most_changes_tried{3, "choice.most_changes_tried", "the same after a Tresca problem [-]", "not measured"};
   Rule<int> most_changes_resumed{30, "choice.most_changes_resumed",
@@ -24,15 +24,15 @@ struct ChoiceRules {
   Rule<double> first_part{0.5, "choice.first_part", "part of the changes that is tried first where an active set with friction came back [-]",
                           "not measured"};
   Rule<double> most_left{10, "choice.most_left", "predicted changes to go that count as progress [choices]",
-                         "theory.md (5.8a): 417 random thin bodies"};
+                         "measurements.md: Limits on active-set updates"};
   Rule<double> most_left_creeping{4, "choice.most_left_creeping", "the same by the speed at which the contact edge moves [choices]",
-                                  "theory.md (5.8a): 417 random thin bodies"};
-  Rule<int> fewest_to_tell{4, "choice.fewest_to_tell", "choices before a slow edge may end them [-]", "theory.md (5.8a): 417 random thin bodies"};
+                                  "measurements.md: Limits on active-set updates"};
+  Rule<int> fewest_to_tell{4, "choice.fewest_to_tell", "choices before a slow edge may end them [-]", "measurements.md: Limits on active-set updates"};
   Rule<double> much{0.5, "choice.much", "overshoot with which a choice without progress counts twice, and a coarser mesh chooses [-]",
                     "theory.md (5.8a): bodies of equal sides stay below"};
-  Rule<double> far_too_much{1, "choice.far_too_much", "overshoot that ends choices [-]", "theory.md (5.8a): 417 random thin bodies"};
+  Rule<double> far_too_much{1, "choice.far_too_much", "overshoot that ends choices [-]", "measurements.md: Limits on active-set updates"};
   Rule<double> far_too_much_of_rubber{10, "choice.far_too_much_of_rubber", "the same of nearly incompressible bodies [-]", "not measured"};
-  Rule<GO> few_changes{5, "choice.few_changes", "changed points up to which overshoot ends nothing [-]", "theory.md (5.8a): 417 random thin bodies"};
+  Rule<GO> few_changes{5, "choice.few_changes", "changed points up to which overshoot ends nothing [-]", "measurements.md: Limits on active-set updates"};
   // Where an active set is confirmed
   Rule<int> most_updates{2, "choice.most_updates", "multiplier updates at the end, even if pressures miss their tolerance then [-]", "not measured"};
   Rule<double> idle_residual{0.5, "choice.idle_residual", "residual over the least before: a step that leaves more is idle [-]", "not measured"};

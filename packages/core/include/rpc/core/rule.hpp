@@ -14,7 +14,7 @@ namespace rpc
 /// A package keeps its rules in structs in `rules.hpp`, each with one constant instance:
 ///
 ///     struct ChoiceRules {
-///       Rule<int> most_idle{6, "choice.most_idle", "updates in a row without progress [-]", "measurements.md, 2026-11-30: rules"};
+///       Rule<int> most_idle{6, "choice.most_idle", "updates in a row without progress [-]", "measurements.md: Limits on active-set updates"};
 ///     };
 ///     inline constexpr_rules ChoiceRules choice_rules;
 ///
@@ -34,7 +34,7 @@ public:
   /// @param name     group and name as RPC_RULES takes them
   /// @param meaning  what is counted or compared, with its unit in brackets; then "; off: NUMBER" where the rule is off neither by 0 nor, for names
   ///                 such as most_..., by 1e9 (test/families/ablation.py)
-  /// @param source   where the value was measured
+  /// @param source   where the value was measured, or that it was not
   constexpr Rule(const T value, const char * /*name*/, const char * /*meaning*/, const char * /*source*/)
       : value_(value)
   {
