@@ -7,7 +7,8 @@ Prints each arrow that is not allowed, each line of the program that launches a 
 between Trilinos versions outside VERSION_HEADERS, each parameter of a contact law that is read outside its folder, each kernel in a
 private member function, which nvcc refuses, each source file that is longer than MOST_LINES, each file of GoogleTests outside a
 namespace of its own, each constant that two sources of a package define, each number at namespace scope that is neither a rule nor has a
-subject in NO_RULES, each package with more rules (core/rule.hpp) than MOST_RULES, each source, script and CMake file without the line that
+subject in NO_RULES, each package with more rules (core/rule.hpp) than MOST_RULES, each equation or
+measurement that a rule names and the documents lack, each source, script and CMake file without the line that
 names its licence, and each place that names another version of the program than CMakeLists.txt, and each use of gmsh outside the program rpc_gmsh; the exit code is 1 if there is one. Then the number of rules of each package.
 
     python3 structure.py --add-licence [<root of the sources>]
@@ -282,6 +283,16 @@ def rules(root):
     return {package: len(RULE.findall(file.read_text())) for package, file in files.items() if file.exists()}
 
 
+def check_sources_of_rules(root):
+    """Equations and measurements that rules name as their sources are there."""
+    texts = {name: (root / "doc" / name).read_text() if (root / "doc" / name).exists() else "" for name in ("theory.md", "measurements.md")}
+    for file in [*sorted(root.glob("packages/*/include/rpc/*/rules.hpp")), *root.glob("src/rules.hpp")]:
+        for line, text in enumerate(file.read_text().splitlines(), 1):
+            named = [("theory.md", equation) for equation in re.findall(r'"[^"]*(\(\d+\.\d+[a-z]?\))[^"]*"\};', text)]
+            named += [("measurements.md", f"## {heading}") for heading in re.findall(r"measurements\.md: ([^\";]+)", text)]
+            yield from (f"{file.relative_to(root)}:{line}: no \"{what}\" in doc/{name}" for name, what in named if what not in texts[name])
+
+
 def check_rules(root):
     for package, number in rules(root).items():
         most = MOST_RULES.get(package, 0)
@@ -346,6 +357,7 @@ def violations(root):
     yield from check_constants(root)
     yield from check_numbers(root)
     yield from check_rules(root)
+    yield from check_sources_of_rules(root)
     yield from check_licences(root)
     yield from check_version(root)
 

@@ -174,6 +174,13 @@ class Structure(unittest.TestCase):
             found = self.violations(**{"packages__mesh__include__rpc__mesh__rules.hpp": f"struct MeshRules {{\n{number * rule}}};\n"})
             self.assertEqual(len(found), number - structure.MOST_RULES["mesh"], found)
 
+    def test_finds_a_source_of_a_rule_that_is_not_there(self):
+        rules = "".join(f'  Rule<int> a{{1, "mesh.a", "cells (9.9) [-]", "{source}"}};\n' for source in (
+            "not measured", "theory.md (4.1)", "theory.md (4.2)", "measurements.md: Meshes", "measurements.md: Cells"))
+        found = self.violations(**{
+            "packages__mesh__include__rpc__mesh__rules.hpp": rules, "doc__theory.md": "(4.1)", "doc__measurements.md": "## Meshes (2026-11-29)\n"})
+        self.assertEqual([each.partition(": ")[2] for each in found], ['no "(4.2)" in doc/theory.md', 'no "## Cells" in doc/measurements.md'])
+
     def test_counts_the_rules_of_packages(self):
         rules = structure.rules(SOURCE)
         self.assertEqual({package: rules[package] for package in structure.MOST_RULES}, structure.MOST_RULES)  # fewer: the bound falls, too
