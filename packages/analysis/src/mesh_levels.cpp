@@ -4,6 +4,8 @@
 #include "rpc/algebra/diagonal_matrix.hpp"
 #include "rpc/analysis/rules.hpp"
 #include "rpc/fem/interpolation.hpp"
+#include "rpc/mesh/rules.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -123,7 +125,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   levels.prescribed = prescribed;
   const int dim = finest.discretization().dim();
   levels.order = finest.discretization().mesh->element.order;
-  const GO few = dim == 2 ? linear_rules.few_2d : linear_rules.few_3d;
+  const GO few = dim == 2 ? mesh::coarsening_rules.few_2d : mesh::coarsening_rules.few_3d;
   const auto held = held_sides(model.dirichlet);
   const auto num_unknowns = [](const NestedMesh &mesh) {
     return static_cast<GO>(mesh.discretization().owned_dofs->getGlobalNumElements());
@@ -148,8 +150,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   }
   if (!levels.level.empty()) assemble(levels.level.back());
   if (thin && num_unknowns(*mesh) > few) levels.remark = thin_text(*mesh->discretization().mesh->box, *thin);
-  levels.down_to_few =
-      thin || num_unknowns(*mesh) <= (dim == 2 ? linear_rules.most_factored_2d : linear_rules.most_factored_3d);
+  levels.down_to_few = thin || num_unknowns(*mesh) <= solver::linear_rules.most_rows_on_each_rank;
   return levels;
 }
 

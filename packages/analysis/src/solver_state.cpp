@@ -3,6 +3,7 @@
 
 #include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
+#include "rpc/mesh/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ double expected_iterations(const mesh::Mesh &mesh, const double nu)
   if (mesh.element.order > 1 || mesh.element.shape != mesh::Shape::simplex)
     return linear_rules.expected * std::pow(to_go, -0.5);
   const double square = linear_rules.expected_of_p1 * std::pow(to_go, -0.5);
-  return mesh.box && mesh::stretch(*mesh.box) > linear_rules.stretched
+  return mesh.box && mesh::stretch(*mesh.box) > mesh::coarsening_rules.equally_long
              ? std::max(square, linear_rules.expected_of_stretched * std::pow(to_go, -0.75))
              : square;
 }

@@ -320,8 +320,7 @@ std::optional<LocalCorrection> LocalCorrection::around(const UpdatedOperator &H,
   if (sum_all(comm, GO(changes.size())) == 0) return std::nullopt;
   Vector place(A.getRowMap());
   mark_changed(changes, H.dofs_per_node(), place);
-  for (int layer = 0; layer < (H.dofs_per_node() == 2 ? linear_rules.layers_2d : linear_rules.layers_3d); ++layer)
-    add_layer(A, place);
+  for (int layer = 0; layer < (H.dofs_per_node() == 2 ? linear_rules.layers : 0); ++layer) add_layer(A, place);
   const LO members = count_marked(place);
   const GO size = sum_all(comm, GO(members));
   const double most_work = linear_rules.patch_work * static_cast<double>(A.getGlobalNumRows());

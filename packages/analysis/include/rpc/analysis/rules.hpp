@@ -127,11 +127,6 @@ inline constexpr_rules StepRules step_rules;
 
 /// What a body's kind tells its linear solver: coarse meshes, mixed form, iterations to expect.
 struct LinearRules {
-  // Coarse meshes
-  Rule<GO> few_2d{800, "body.few_2d", "unknowns that coarser boxes end at, in the plane [-]", "not measured"};
-  Rule<GO> few_3d{400, "body.few_3d", "the same in space [-]", "not measured"};
-  Rule<GO> most_factored_2d{2800, "body.most_factored_2d", "unknowns of a coarsest mesh that is factored, in the plane [-]", "not measured"};
-  Rule<GO> most_factored_3d{5200, "body.most_factored_3d", "the same in space [-]", "not measured"};
   Rule<GO> least_nodes_of_rank{on_gpu ? 200'000 : 2000, "body.least_nodes_of_rank", "nodes of a coarse box on each of its ranks [-]",
                                "measured, not recorded"};
   // Nearly incompressible bodies
@@ -152,7 +147,6 @@ struct LinearRules {
   Rule<double> expected_of_p1{6, "body.expected_of_p1", "the same of P1 [CG iterations]", "theory.md (4.10b)"};
   Rule<double> expected_of_stretched{3, "body.expected_of_stretched", "of stretched P1, times (1 - 2 nu)^(-3/4) [CG iterations]",
                                      "theory.md (4.10b)"};
-  Rule<double> stretched{1.7, "body.stretched", "ratio of cell lengths from which cells are stretched [-]", "as for coarser boxes"};
   Rule<double> rough_incompressible{0.002, "body.rough_incompressible", "1 - 2 nu below which solves while states change are better [-]",
                                     "theory.md (5.9b)"};
   Rule<double> damping_order_two{1.6, "body.damping_order_two", "damping of MueLu's prolongators at order 2 [-]",

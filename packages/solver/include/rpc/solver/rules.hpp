@@ -88,10 +88,8 @@ struct LinearRules {
   Rule<double> rough_digits{6, "linear.rough_digits", "digits that may leave slight changes to CG [-]", "(4.12)"};
   Rule<int> most_setups_for_states{1, "linear.most_setups_for_states", "set-ups for changed states [-]",
                                    "not measured"};
-  Rule<int> layers_2d{2, "linear.layers_2d", "layers of a patch around changed nodes in 2D [-]",
-                      "the second saves one CG iteration in ten and costs nothing"};
-  Rule<int> layers_3d{0, "linear.layers_3d", "layers of a patch in 3D [-]",
-                      "a layer saves as much for ten times the factor"};
+  Rule<int> layers{2, "linear.layers", "layers of a patch around changed nodes in 2D [-]",
+                   "the second saves one CG iteration in ten; in 3D a layer saves as much for ten times the factor"};
   Rule<double> patch_work{3e3, "linear.patch_work", "multiplications of a patch's factor, a row of H [-]",
                           "a fraction of a set-up"};
   Rule<int> muelu_degree{2, "linear.muelu_degree", "degree of MueLu's smoother [-]", "not measured"};
@@ -114,9 +112,10 @@ struct LinearRules {
   Rule<double> most_work_on_one_of_several{1e8, "linear.most_work_on_one_of_several",
                                            "the same where one of several ranks has all rows [-]",
                                            "the hierarchy would be set up over all of them"};
-  Rule<GO> most_rows_on_each_rank{5200, "linear.most_rows_on_each_rank",
-                                  "rows up to which each rank has the whole factor [-]",
-                                  "a solve then takes one sum over the ranks"};
+  Rule<GO> most_rows_on_each_rank{
+      5200, "linear.most_rows_on_each_rank",
+      "rows up to which each rank has the whole factor, and the coarsest mesh is factored [-]",
+      "a solve then takes one sum over the ranks"};
   Rule<int> first_iterations_of_factor{3, "linear.first_iterations_of_factor",
                                        "iterations before a factor is judged [-]", "(4.12)"};
   Rule<int> most_rows_to_order{6000, "linear.most_rows_to_order",
