@@ -3,6 +3,7 @@
 #include "rpc/analysis/active_set.hpp"
 
 #include "rpc/analysis/rules.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <cmath>
 
@@ -15,7 +16,7 @@ using solver::MinimizationSteps;
 bool ActiveSetLoop::leaves_path()
 {
   const auto &path = iterate_.interior_path();
-  const bool ends = path.gap() <= path_rules.last_gap || path_steps_ >= path_rules.most_steps;
+  const bool ends = path.gap() <= path_rules.last_gap || path_steps_ >= solver::newton_rules.most_inner_steps;
   if (!ends && !(path.settled() && path.gap() <= trial_gap_)) return false;
   if (ends) path_ = Path::behind;
   trial_gap_ = path_rules.next_trial * path.gap();

@@ -4,6 +4,7 @@
 #include "rpc/analysis/rules.hpp"
 #include "rpc/contact/law/interior.hpp"
 #include "rpc/core/headway.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,7 @@ public:
     if (!(load_ > 0 && length_ > 0)) return false;
     join();
     Headway lengths({1, contact::interior_rules.many_short_steps - 1});
-    for (int step = 0; step < path_rules.model_steps; ++step) {
+    for (int step = 0; step < solver::newton_rules.most_inner_steps; ++step) {
       const double t = advance();
       if (!(t > 0)) return false;
       const double gap = products_ / (load_ * area_ * length_);

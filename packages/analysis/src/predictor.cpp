@@ -5,6 +5,7 @@
 #include "rpc/analysis/rules.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/fem/interpolation.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <Teuchos_Time.hpp>
 #include <algorithm>
@@ -30,7 +31,7 @@ std::string no_prediction(const fem::Discretization &d, const contact::ContactNo
 StepOptions rough(StepOptions options)
 {
   options.newton.residual_tolerance = options.uzawa.tolerance = options.prediction.tolerance;
-  options.newton.max_iterations = std::min<int>(options.newton.max_iterations, step_rules.most_steps_predicting);
+  options.newton.max_iterations = std::min<int>(options.newton.max_iterations, solver::newton_rules.most_inner_steps);
   return options;
 }
 

@@ -13,6 +13,7 @@
 #include "rpc/core/causes.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -204,7 +205,7 @@ minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options
     steps = tried.steps;
     u.assign(start);
     iterate.take_dual(dual);
-    most = std::min<int>(most, step_rules.most_steps_of_bounds);
+    most = std::min<int>(most, solver::newton_rules.most_inner_steps);
   }
   iterate.follow_bounds();
   auto result = run({}, most);

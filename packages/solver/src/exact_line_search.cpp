@@ -68,7 +68,7 @@ double exact_step(const LineFunction &line)
 std::vector<double> least_within(const SubspaceFunction &function, std::vector<double> a)
 {
   double first = 0;
-  for (int step = 0; step < newton_rules.most_steps_within; ++step) {
+  for (int step = 0; step < newton_rules.most_inner_steps; ++step) {
     const auto value = function.at(a);
     const auto d = newton_direction(value);
     double slope = 0;

@@ -6,6 +6,7 @@
 #include "rpc/analysis/rules.hpp"
 #include "rpc/contact/iterate.hpp"
 #include "rpc/core/headway.hpp"
+#include "rpc/solver/rules.hpp"
 
 #include <functional>
 #include <memory>
@@ -40,8 +41,8 @@ private:
   RCP<const Comm> comm_;
   std::vector<LO> points_;           // that take part, of this rank
   std::optional<CoarseModel> model_; // on rank 0
-  Headway headway_{
-      {1, choice_rules.most_idle_coarse, Headway::unlimited, choice_rules.most_coarse}}; // of changes by pressures
+  Headway headway_{{1, choice_rules.most_idle_coarse, Headway::unlimited,
+                    solver::newton_rules.most_inner_steps}}; // of changes by pressures
 };
 
 /// By a coarser mesh, see make(). Collective.

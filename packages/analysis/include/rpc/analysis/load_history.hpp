@@ -114,7 +114,7 @@ private:
     int failures, balance, all;
     double tolerance; // of a part's energy balance
     Headway headway{
-        {step_rules.helpful, step_rules.most_in_vain}}; // of what the parts around this one miss of the balance [J]
+        {step_rules.helpful, step_rules.most_attempts}}; // of what the parts around this one miss of the balance [J]
   };
   /// What is remembered between steps.
   struct Remembered {

@@ -41,7 +41,6 @@ struct ChoiceRules {
   // When a coarser mesh chooses
   Rule<int> steps_before_coarse{4, "choice.steps_before_coarse", "steps before a coarser mesh chooses without overshoot [-]", "not measured"};
   Rule<double> one_more{1, "choice.one_more", "predicted changes to go above which it does [choices]", "not measured"};
-  Rule<int> most_coarse{25, "choice.most_coarse", "choices by a coarser mesh [-]", "not measured"};
   Rule<int> most_idle_coarse{3, "choice.most_idle_coarse", "of these in a row without fewer changes than before [-]", "not measured"};
   Rule<GO> most_coarse_unknowns{60'000, "choice.most_coarse_unknowns", "unknowns of the coarser mesh, whose stiffness rank 0 holds [-]",
                                 "not measured"};
@@ -76,7 +75,6 @@ inline constexpr_rules ChoiceRules choice_rules;
 
 /// The interior-point method, on the body and on the coarser mesh that chooses states. doc/theory.md (5.15) to (5.20), (5.8f)
 struct PathRules {
-  Rule<int> most_steps{50, "path.most_steps", "steps on the body [-]", "not measured"};
   Rule<double> error{0.1, "path.error", "error in energy of a linear solve [-]",
                      "0.03 saves no step; a residual tells nothing of how far a thin body has bent"};
   Rule<double> forcing{1e-2, "path.forcing", "residual of a linear solve over its right side [-]", "not measured"};
@@ -87,7 +85,6 @@ struct PathRules {
   Rule<double> next_trial{1e-2, "path.next_trial", "the same after a trial, over the gap of that [-]", "not measured"};
   Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
   Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
-  Rule<int> model_steps{40, "path.model_steps", "steps on the coarser mesh [-]", "ten to eighteen are needed"};
   Rule<double> model_gap{3e-6, "path.model_gap", "gap that ends the path on the coarser mesh [-]", "not measured"};
   Rule<double> early_model_gap{3e-5, "path.early_model_gap", "the same where the last step has changed no state [-]", "not measured"};
 };
@@ -104,21 +101,19 @@ struct StepRules {
                             "iterations back to compare with where friction's bounds follow [-]",
                             "accelerated sequences do not fall at each step; not measured"};
   Rule<double> of_rounding{10, "step.of_rounding", "unbalanced forces over what rounding makes: the end is due to it [-]", "robustness.md"};
-  Rule<int> most_steps_of_bounds{20, "step.most_steps_of_bounds", "Newton steps with given bounds of friction [-]", "not measured"};
   Rule<double> refinement{1e-4, "step.refinement", "residual of the solve that refines [-]", "not measured"};
   // Load steps
   Rule<int> most_searches{8, "step.most_searches", "solves for the dents that points meet [-]", "two to four are needed"};
   Rule<double> dents_settled{1e-7, "step.dents_settled", "change of dents over the deepest that ends them [-]", "not measured"};
   Rule<double> helpful{0.9, "step.helpful",
                        "energy missed by a half over that of the whole; above, halving is in vain [-]", "not measured"};
-  Rule<int> most_in_vain{5, "step.most_in_vain", "halvings in vain in a row [-]", "not measured"};
-  Rule<int> most_attempts{5, "step.most_attempts", "attempts at a step, each with a lower tolerance of its parts [-]", "not measured"};
+  Rule<int> most_attempts{5, "step.most_attempts",
+ "halvings in vain in a row; attempts at a step, each with a lower tolerance of its parts [-]", "not measured"};
   Rule<double> part_of_tolerance{0.5, "step.part_of_tolerance", "of the tolerance that the parts of the next attempt aim at [-]", "not measured"};
   // Predictions
   Rule<double> near_equilibrium{1e-7, "step.near_equilibrium",
                                 "unbalanced forces over the load, residual of the contact law: no prediction is needed [-]", "not measured"};
   Rule<GO> least_nodes_predicted{500, "step.least_nodes_predicted", "nodes below which a prediction costs as much as a solution [-]", "not measured"};
-  Rule<int> most_steps_predicting{40, "step.most_steps_predicting", "Newton steps on a coarser mesh [-]", "not measured"};
   Rule<GO> fewest_points_telling{50, "step.fewest_points_telling", "contact points of a coarser mesh that tells which method to begin with [-]",
                                  "theory.md (5.11)"};
   Rule<double> boundary{0.65, "step.boundary", "growth of cells over that by numbers of nodes: boundaries have more [-]", "not measured"};

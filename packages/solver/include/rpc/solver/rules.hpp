@@ -183,8 +183,10 @@ struct NewtonRules {
   Rule<int> most_earlier_directions{9, "newton.most_earlier_directions",
                                     "directions to minimize within, besides the new one [-]",
                                     "5: a slender body takes 75 steps instead of 53; 20 add nothing"};
-  Rule<int> most_steps_within{50, "newton.most_steps_within", "Newton steps within these directions [-]",
-                              "the rest is left to the next step"};
+  Rule<int> most_inner_steps{50, "newton.most_inner_steps",
+                             "steps of an iteration within another one: interior path, choices by a coarser mesh, "
+                             "prediction, given bounds of friction, line search [-]",
+                             "measurements.md, 2026-11-30: no bound from 20 to 50 was met"};
   Rule<int> most_halvings{10, "newton.most_halvings",
                           "of an interval, in the search for the pieces of a line function [-]", "not measured"};
   Rule<double> falls{0.9, "newton.falls", "ratio of a residual that falls [-]", "not measured"};
