@@ -7,7 +7,6 @@
 #include "rpc/core/headway.hpp"
 #include "rpc/solver/minimization_steps.hpp"
 
-#include <array>
 #include <limits>
 #include <optional>
 
@@ -119,11 +118,10 @@ private:
   int steps_ = 0;
   int updates_ = 0;           // of the multipliers alone, the active set being confirmed
   int choices_ = 0;           // since the start, or since the path
-  Headway headway_;           // of these; those with much overshoot count twice
+  Headway headway_;           // of these
   Headway confirmed_headway_; // of steps of a confirmed active set
   GO fewest_changes_ = 0;     // fewest points that one of them has changed; 0: there was none
-  double left_ = std::numeric_limits<double>::infinity(); // so many more would follow at this rate
-  std::array<double, 3> levers_{}; // of the last ones, the last one first: overshoot o as o / (1 - o)
+  double left_ = std::numeric_limits<double>::infinity();       // so many more would follow at this rate
   enum class Path { ahead, begun, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried

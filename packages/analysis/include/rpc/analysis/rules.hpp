@@ -25,17 +25,10 @@ struct ChoiceRules {
                           "not measured"};
   Rule<double> most_left{10, "choice.most_left", "predicted changes to go that count as progress [choices]",
                          "measurements.md: Limits on active-set updates"};
-  Rule<double> most_left_creeping{4, "choice.most_left_creeping", "the same by the speed at which the contact edge moves [choices]",
-                                  "measurements.md: Limits on active-set updates"};
-  Rule<int> fewest_to_tell{4, "choice.fewest_to_tell", "choices before a slow edge may end them [-]", "measurements.md: Limits on active-set updates"};
-  Rule<double> much{0.5, "choice.much", "overshoot with which a choice without progress counts twice, and a coarser mesh chooses [-]",
-                    "theory.md (5.8a): bodies of equal sides stay below"};
   Rule<double> far_too_much{1, "choice.far_too_much", "overshoot that ends choices [-]", "measurements.md: Limits on active-set updates"};
   Rule<double> far_too_much_of_rubber{10, "choice.far_too_much_of_rubber", "the same of nearly incompressible bodies [-]", "not measured"};
-  Rule<GO> few_changes{5, "choice.few_changes", "changed points up to which overshoot ends nothing [-]", "measurements.md: Limits on active-set updates"};
   // Where an active set is confirmed
   Rule<int> most_updates{2, "choice.most_updates", "multiplier updates at the end, even if pressures miss their tolerance then [-]", "not measured"};
-  Rule<double> idle_residual{0.5, "choice.idle_residual", "residual over the least before: a step that leaves more is idle [-]", "not measured"};
   Rule<int> most_idle_turns{4, "choice.most_idle_turns", "idle steps in a row, friction in space [-]", "not measured"};
   Rule<double> negligible{1e-3, "choice.negligible", "violations that change no state, over the tolerance of pressures [-]", "not measured"};
   // When a coarser mesh chooses
@@ -81,8 +74,8 @@ struct PathRules {
   Rule<int> most_centerings{2, "path.most_centerings", "corrections that centre a step (5.19a) [-]", "not measured"};
   Rule<double> long_enough{0.9, "path.long_enough", "length from which a step is not centred [-]", "not measured"};
   Rule<double> least_gain{0.03, "path.least_gain", "length gained from which a step is centred once more [-]", "not measured"};
-  Rule<double> first_trial{1e-2, "path.first_trial", "complementarity gap, relative, below which settled states are tried [-]", "not measured"};
-  Rule<double> next_trial{1e-2, "path.next_trial", "the same after a trial, over the gap of that [-]", "not measured"};
+  Rule<double> trial{1e-2, "path.trial", "complementarity gap, relative and then over that of the last trial, below which settled states are tried [-]",
+ "not measured"};
   Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
   Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
   Rule<double> model_gap{3e-6, "path.model_gap", "gap that ends the path on the coarser mesh [-]", "not measured"};
@@ -114,8 +107,6 @@ struct StepRules {
   Rule<double> near_equilibrium{1e-7, "step.near_equilibrium",
                                 "unbalanced forces over the load, residual of the contact law: no prediction is needed [-]", "not measured"};
   Rule<GO> least_nodes_predicted{500, "step.least_nodes_predicted", "nodes below which a prediction costs as much as a solution [-]", "not measured"};
-  Rule<GO> fewest_points_telling{50, "step.fewest_points_telling", "contact points of a coarser mesh that tells which method to begin with [-]",
-                                 "theory.md (5.11)"};
   Rule<double> boundary{0.65, "step.boundary", "growth of cells over that by numbers of nodes: boundaries have more [-]", "not measured"};
 };
 inline constexpr_rules StepRules step_rules;
