@@ -46,7 +46,7 @@ solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, con
   const auto assembled = [d, materials = model.materials, prescribed] {
     return fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, materials), prescribed).matrix;
   };
-  solver::MeshLevel level{{}, std::move(interpolation), prescribed, body_of(d), d.mesh->element.order};
+  solver::MeshLevel level{{}, std::move(interpolation), prescribed, body_of(d)};
   if (const auto repeated = fem::repeated_stiffness(d, model.materials, prescribed)) {
     d.forget_nodes();
     level.unassembled =
@@ -99,8 +99,7 @@ double largest_ratio(const fem::Discretization &d, const fem::Materials &materia
 
 bool is_nearly_incompressible(const fem::Discretization &d, const fem::Materials &materials)
 {
-  const double least = d.mesh->element.order == 1 ? linear_rules.mixed_order_one : linear_rules.mixed_order_two;
-  return d.kinematics != fem::Kinematics::plane_stress && largest_ratio(d, materials) > least;
+  return d.kinematics != fem::Kinematics::plane_stress && largest_ratio(d, materials) > linear_rules.mixed;
 }
 
 solver::Body body_of(const fem::Discretization &d)
@@ -124,7 +123,6 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   solver::MeshLevels levels;
   levels.prescribed = prescribed;
   const int dim = finest.discretization().dim();
-  levels.order = finest.discretization().mesh->element.order;
   const GO few = dim == 2 ? mesh::coarsening_rules.few_2d : mesh::coarsening_rules.few_3d;
   const auto held = held_sides(model.dirichlet);
   const auto num_unknowns = [](const NestedMesh &mesh) {

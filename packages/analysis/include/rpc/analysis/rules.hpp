@@ -116,9 +116,7 @@ struct LinearRules {
   Rule<GO> least_nodes_of_rank{on_gpu ? 200'000 : 2000, "body.least_nodes_of_rank", "nodes of a coarse box on each of its ranks [-]",
                                "measured, not recorded"};
   // Nearly incompressible bodies
-  Rule<double> mixed_order_one{0.485, "body.mixed_order_one", "Poisson's ratio above which order 1 takes the mixed form [-]",
-                               "theory.md (4.13), in space"};
-  Rule<double> mixed_order_two{0.48, "body.mixed_order_two", "the same of order 2 [-]", "theory.md (4.13)"};
+  Rule<double> mixed{0.48, "body.mixed", "Poisson's ratio above which a body has the mixed form [-]", "theory.md (4.13)"};
   Rule<double> soft{0.4, "body.soft", "Poisson's ratio of the soft part of K [-]", "theory.md (4.13)"};
   Rule<double> soft_tetrahedra{0.47, "body.soft_tetrahedra", "the same in tetrahedra [-]", "theory.md (4.13)"};
   Rule<double> pays_above{0.495, "body.pays_above", "Poisson's ratio above which tetrahedra have equations for alternating pressures [-]",
