@@ -32,10 +32,7 @@ Headway within(const int most)
 
 ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, const Then then)
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
-      pressure_tolerance_(tolerances.pressure),
-      most_overshoot_(tolerances.nearly_incompressible ? choice_rules.far_too_much_of_rubber
-                                                       : choice_rules.far_too_much),
-      start_(iterate.hessian()->getDomainMap()),
+      pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
       rubs_(iterate_.points().friction.anywhere), then_(then), headway_(within(choice_rules.most_idle)),
       confirmed_headway_({solver::newton_rules.falls, 0}), trial_gap_(path_rules.trial)
@@ -44,7 +41,7 @@ ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerance
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
   confirmed_headway_ = Headway({solver::newton_rules.falls, turns_ ? choice_rules.most_idle_turns : 0});
-  headway_ = within(then == Then::nothing ? choice_rules.most_changes_tried : choice_rules.most_changes);
+  headway_ = within(choice_rules.most_changes);
 }
 
 void ActiveSetLoop::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
@@ -186,7 +183,6 @@ void ActiveSetLoop::start_over(std::optional<contact::ActiveSetChoice> choice, c
   choices_ = 1; // the first one of all has no solve before it
   headway_ = within(most);
   fewest_changes_ = 0;
-  left_ = std::numeric_limits<double>::infinity();
   norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
   rough_ = false; // a small residual may be all of the bending
 }
@@ -215,7 +211,7 @@ ActiveSetLoop::Verdict ActiveSetLoop::choose(const Vector &u)
     if (!choose_by_coarse_mesh(u)) return give_up(u);
   } else if (!is_new_choice() || !may_settle()) {
     return give_up(u); // in circles, or too slow
-  } else if (is_for_coarse_mesh() && begin_coarse_choices(u)) {
+  } else if (begin_coarse_choices(u)) {
     return Verdict::go_on;
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
@@ -248,21 +244,13 @@ bool ActiveSetLoop::may_settle()
   const int before = choices_++;
   if (rubs_) return headway_.take(false) != Headway::Answer::stuck;
   const GO changes = choice_->changes;
-  const double overshoot = choice_->overshoot, infinity = std::numeric_limits<double>::infinity();
   if (before == 0) return true; // not by a solve, but by where it starts
   const auto number = static_cast<double>(changes), fewest = static_cast<double>(fewest_changes_);
-  left_ = number < fewest ? std::log(number) / std::log(fewest / number) : infinity;
+  const bool contracts = number < fewest && std::log(number) <= choice_rules.most_left * std::log(fewest / number);
   fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
   const bool tells = predicted_ || before > 1;
-  if (tells && overshoot > most_overshoot_) return false;
-  return headway_.take(left_ <= choice_rules.most_left) != Headway::Answer::stuck;
-}
-
-/// Whether it is time for choices by a coarser mesh.
-bool ActiveSetLoop::is_for_coarse_mesh() const
-{
-  const bool was_needed = predicted_ && *predicted_ != FoundBy::choices; // more than choices by pressures, there
-  return was_needed || (steps_ >= choice_rules.steps_before_coarse && left_ > choice_rules.one_more);
+  if (tells && choice_->overshoot > choice_rules.far_too_much) return false;
+  return headway_.take(contracts) != Headway::Answer::stuck;
 }
 
 /// From here on a coarser mesh chooses, if there is one that can. @return whether it has chosen

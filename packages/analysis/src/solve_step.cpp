@@ -4,7 +4,6 @@
 #include "rpc/analysis/solve_step.hpp"
 
 #include "rpc/analysis/active_set.hpp"
-#include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/same_active_set.hpp"
 #include "rpc/contact/between_nodes.hpp"
@@ -247,9 +246,7 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
     found.steps += in_vain;
     return found;
   }
-  ActiveSetTolerances tolerances = active_set_tolerances(options);
-  tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
-  ActiveSetLoop loop(iterate, tolerances);
+  ActiveSetLoop loop(iterate, active_set_tolerances(options));
   if (predicted) loop.starts_predicted(predicted->found_by, predicted->coarse_choice);
   const auto result = run(std::ref(loop), all);
   return {result.converged,

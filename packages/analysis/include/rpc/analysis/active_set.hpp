@@ -15,9 +15,8 @@ namespace rpc::analysis
 
 /// When the active-set iteration is content.
 struct ActiveSetTolerances {
-  double residual = 1e-10;            ///< |F|_2 / |load|_2, > 0
-  double pressure = 1e-7;             ///< error of pressures, over the largest, > 0
-  bool nearly_incompressible = false; ///< the body is: pressures err by more than displacements
+  double residual = 1e-10; ///< |F|_2 / |load|_2, > 0
+  double pressure = 1e-7;  ///< error of pressures, over the largest, > 0
 };
 
 /// By the options for Newton and Uzawa. (5.10)
@@ -78,7 +77,6 @@ private:
   Verdict choose(const Vector &u);
   bool is_new_choice();
   bool may_settle();
-  bool is_for_coarse_mesh() const;
   bool begin_coarse_choices(const Vector &u);
   bool choose_by_coarse_mesh(const Vector &u);
   solver::Accuracy wanted() const;
@@ -92,7 +90,6 @@ private:
   contact::Iterate &iterate_;
   double scale_, target_;                          // of forces, and |F|_2 that is small enough [N]
   double pressure_tolerance_;                      // over the largest pressure
-  double most_overshoot_;                          // of forces, before choices end
   std::optional<contact::ActiveSetChoice> choice_; // at the present point
   Vector start_;                                   // to go back to, with
   contact::Iterate::Dual start_dual_;              // its multipliers
@@ -121,7 +118,6 @@ private:
   Headway headway_;           // of these
   Headway confirmed_headway_; // of steps of a confirmed active set
   GO fewest_changes_ = 0;     // fewest points that one of them has changed; 0: there was none
-  double left_ = std::numeric_limits<double>::infinity();       // so many more would follow at this rate
   enum class Path { ahead, begun, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried

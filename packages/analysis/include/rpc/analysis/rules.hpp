@@ -16,7 +16,6 @@ struct ChoiceRules {
   // When choices by pressures end
   Rule<int> most_idle{6, "choice.most_idle", "choices without progress [-]", "measurements.md: Limits on active-set updates"};
   Rule<int> most_changes{10, "choice.most_changes", "choices with friction, with progress or not [-]", "not measured"};
-  Rule<int> most_changes_tried{3, "choice.most_changes_tried", "the same after a Tresca problem [-]", "not measured"};
   Rule<int> most_changes_resumed{30, "choice.most_changes_resumed",
                                  "choices without progress after Newton's steps were blocked at kinks [-]",
                                  "not measured; slender bodies need them"};
@@ -26,14 +25,11 @@ struct ChoiceRules {
   Rule<double> most_left{10, "choice.most_left", "predicted changes to go that count as progress [choices]",
                          "measurements.md: Limits on active-set updates"};
   Rule<double> far_too_much{1, "choice.far_too_much", "overshoot that ends choices [-]", "measurements.md: Limits on active-set updates"};
-  Rule<double> far_too_much_of_rubber{10, "choice.far_too_much_of_rubber", "the same of nearly incompressible bodies [-]", "not measured"};
   // Where an active set is confirmed
   Rule<int> most_updates{2, "choice.most_updates", "multiplier updates at the end, even if pressures miss their tolerance then [-]", "not measured"};
   Rule<int> most_idle_turns{4, "choice.most_idle_turns", "idle steps in a row, friction in space [-]", "not measured"};
   Rule<double> negligible{1e-3, "choice.negligible", "violations that change no state, over the tolerance of pressures [-]", "not measured"};
   // When a coarser mesh chooses
-  Rule<int> steps_before_coarse{4, "choice.steps_before_coarse", "steps before a coarser mesh chooses without overshoot [-]", "not measured"};
-  Rule<double> one_more{1, "choice.one_more", "predicted changes to go above which it does [choices]", "not measured"};
   Rule<int> most_idle_coarse{3, "choice.most_idle_coarse", "of these in a row without fewer changes than before [-]", "not measured"};
   Rule<GO> most_coarse_unknowns{60'000, "choice.most_coarse_unknowns", "unknowns of the coarser mesh, whose stiffness rank 0 holds [-]",
                                 "not measured"};
