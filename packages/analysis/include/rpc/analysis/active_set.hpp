@@ -33,13 +33,13 @@ public:
   /// What follows where no choice is confirmed.
   enum class Then {
     newton, ///< Newton's directions with their line search
-    nothing ///< the minimization ends, as if converged; few changes are tried
+    nothing ///< the minimization ends, as if converged
   };
   using Status = solver::MinimizationSteps::Status;
   ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, Then then = Then::newton);
 
-  /// The start is a coarser mesh's solution. What led to its states makes the first steps, or choices by the coarser mesh where
-  /// pressures were not enough; except with friction.
+  /// The start is a coarser mesh's solution. What led to its states makes the first steps, or the coarser mesh makes
+  /// the choices from the second one on; except with friction.
   /// @param coarse_choice  empty: there are no such choices
   void starts_predicted(FoundBy coarser, MakeCoarseChoice coarse_choice = {});
   Status operator()(solver::MinimizationSteps &steps);
