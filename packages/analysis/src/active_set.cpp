@@ -348,7 +348,7 @@ Status ActiveSetLoop::step_to_choice(MinimizationSteps &steps)
     }
     return leave_to_newton(steps);
   }
-  if (make_coarse_) solve_seconds_ = steps.context().linear_solver.seconds_of_last_solve();
+  if (make_coarse_) solve_seconds_ = steps.context().linear_solver.one_rank_seconds_of_last_solve();
   direction->scale(-1.);
   ++steps.context().steps;
   ++steps_;

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/analysis/run.hpp"
 
+#include "rpc/analysis/rules.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/interrupt.hpp"
 #include "rpc/core/timed.hpp"
 #include "rpc/fem/interpolation.hpp"
 #include "rpc/fem/rounding.hpp"
+#include "rpc/mesh/box.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <sstream>
 #include <utility>
+#include <variant>
 
 namespace rpc::analysis
 {
@@ -45,6 +48,8 @@ CoarserProblem coarser_meshes(Task task, const mesh::MeshOptions &options, const
     for (int k = 0; k < level && coarse; ++k) coarse = mesh::coarser(*coarse, task.step.prediction.coarsening);
     PhaseSeconds seconds;
     if (!coarse) return nullptr;
+    if (auto *const box = std::get_if<mesh::BoxOptions>(&*coarse)) // there may be fewer cells than ranks
+      *box = mesh::divided(*box, comm->getSize(), linear_rules.least_nodes_of_rank);
     auto mesh = make_mesh(*coarse, comm, seconds);
     // A .geo with Transfinite curves has as many cells whatever the size factor is.
     if (mesh->owned_nodes->getGlobalNumElements() >= finer.discretization().mesh->owned_nodes->getGlobalNumElements())

@@ -23,6 +23,7 @@ struct Part {
   MeshData mesh;            // its local nodes and cells, in local numbers
   std::vector<int> node_id; // (owned nodes)
   std::vector<int> cell_id; // (owned cells)
+  std::vector<int> halo_id; // (other cells)
   std::vector<int> gid;     // (local nodes) owned first, then ascending, which is by owner: what Tpetra packs best
 };
 
@@ -44,6 +45,7 @@ void for_each_array(AnyPart &part, const Each &each)
   }
   each(part.node_id);
   each(part.cell_id);
+  each(part.halo_id);
   each(part.gid);
 }
 
@@ -99,7 +101,7 @@ Part part_of(const MeshData &whole, const Division &division, const int rank)
     std::sort(by_node.begin(), by_node.end());
     for (const auto &[lids, cell] : by_node) {
       cell_lid[cell] = num_cells++;
-      if (cells == &division.cells) part.cell_id.push_back(cell);
+      (cells == &division.cells ? part.cell_id : part.halo_id).push_back(cell);
       part.mesh.block.push_back(whole.block[cell]);
       for (int a = 0; a < width; ++a) part.mesh.cells.push_back(lid_of(nodes_of(cell)[a]));
     }
@@ -223,9 +225,11 @@ Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const std::v
   return distribute(whole, comm, division);
 }
 
-Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const Division &division)
+Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const Division &division,
+                std::vector<int> *const halo)
 {
   const Part part = deal(whole, *comm, division);
+  if (halo) *halo = part.halo_id;
   Mesh mesh;
   mesh.element = part.mesh.element;
   const GO invalid = Teuchos::OrdinalTraits<GO>::invalid();

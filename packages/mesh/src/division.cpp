@@ -2,6 +2,7 @@
 #include "division.hpp"
 
 #include "rpc/core/error.hpp"
+#include "rpc/mesh/rules.hpp"
 #include "rpc/mesh/topology.hpp"
 #include "sorted_lists.hpp"
 
@@ -80,6 +81,11 @@ std::vector<int> ranks_of_cells(const MeshData &whole, const int num_parts, cons
     ++size[p];
   }
   return part;
+}
+
+int ranks_for(const MeshData &coarse, const int num_ranks)
+{
+  return std::clamp(coarse.num_cells() / coarsening_rules.least_cells_of_rank, 1, num_ranks);
 }
 
 Division divide(const MeshData &whole, const int num_ranks, const std::vector<double> &weights)

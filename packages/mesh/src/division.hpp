@@ -30,6 +30,9 @@ Division divide(const MeshData &whole, int num_ranks, const std::vector<double> 
 /// METIS' cut alone: a rank for each cell, none without cells.
 std::vector<int> ranks_of_cells(const MeshData &whole, int num_ranks, const std::vector<double> &weights = {});
 
+/// On how many ranks a coarser mesh is: those that it has enough cells for, at least one; the others have none of it.
+int ranks_for(const MeshData &coarse, int num_ranks);
+
 /// The division that gives each cell to a rank.
 /// @param rank   (cells)
 /// @param order  (nodes) in which each rank numbers its own; empty: so that neighbours lie close in memory
@@ -37,6 +40,8 @@ Division divide_by(const MeshData &whole, int num_ranks, const std::vector<int> 
                    const std::vector<int> &order = {});
 
 /// Deals the mesh out by a division, which is read on rank 0 only; collective on comm.
-Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const Division &division);
+/// @param[out] halo  (local cells of other ranks) their ids, unless it is null
+Mesh distribute(const MeshData &whole, const RCP<const Comm> &comm, const Division &division,
+                std::vector<int> *halo = nullptr);
 
 } // namespace rpc::mesh

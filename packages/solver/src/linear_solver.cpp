@@ -391,12 +391,15 @@ const LinearSolverCounts &LinearSolver::counts() const
   return impl_->counts;
 }
 
-double LinearSolver::seconds_of_last_solve() const
+double LinearSolver::one_rank_seconds_of_last_solve() const
 {
   Impl &now = *impl_;
   if (now.counts.iterations.empty()) return 0;
-  const double cycle = now.is_sparse() ? now.sparse->prospect().cost.seconds_of_solve : now.seconds_of_cg.measured;
-  return (now.counts.iterations.back() + 1) * cycle;
+  if (!now.is_sparse())
+    return (now.counts.iterations.back() + 1) * now.seconds_of_cg.measured *
+           now.H->getDomainMap()->getComm()->getSize();
+  const FactorCost &cost = now.sparse->prospect().cost;
+  return (now.counts.iterations.back() + 1) * cost.seconds_of_solve * cost.gain_of_ranks;
 }
 
 const Body &LinearSolver::body() const

@@ -173,14 +173,14 @@ MumpsFactor::~MumpsFactor() = default;
 FactorCost MumpsFactor::cost() const
 {
   const auto &mumps = impl_->mumps;
-  const double faster = std::pow(comm_->getSize(), double(cost_model.gain));
   FactorCost cost;
+  cost.gain_of_ranks = std::pow(comm_->getSize(), double(cost_model.gain));
   cost.operations = mumps.rinfog[0];
   const double entries = mumps.infog[entries_of_factor];
   cost.entries = entries < 0 ? -1e6 * entries : entries;
   cost.bytes = 1e6 * mumps.infog[megabytes];
-  cost.seconds = (cost_model.dense * cost.operations + cost_model.factor_entry * cost.entries) / faster;
-  cost.seconds_of_solve = cost_model.factor_entry_in_solve * cost.entries / faster;
+  cost.seconds = (cost_model.dense * cost.operations + cost_model.factor_entry * cost.entries) / cost.gain_of_ranks;
+  cost.seconds_of_solve = cost_model.factor_entry_in_solve * cost.entries / cost.gain_of_ranks;
   cost.seconds_of_column = cost.seconds_of_solve / cost_model.columns_for_one;
   return cost;
 }

@@ -55,7 +55,7 @@ std::vector<int> order_along_axes(const MeshData &mesh)
 }
 
 /// From the finest to the coarsest, on rank 0.
-std::vector<MeshData> contracted_levels(MeshData whole, const int num_ranks)
+std::vector<MeshData> contracted_levels(MeshData whole)
 {
   std::vector<MeshData> levels;
   levels.push_back(std::move(whole));
@@ -65,7 +65,7 @@ std::vector<MeshData> contracted_levels(MeshData whole, const int num_ranks)
     const int vertices = mesh.num_nodes();
     if (dim * vertices <= (dim == 2 ? coarsening_rules.few_2d : coarsening_rules.few_3d)) break;
     auto coarse = contracted(mesh);
-    if (!coarse || coarse->num_cells() < coarsening_rules.least_cells_of_rank * num_ranks) break;
+    if (!coarse || coarse->num_cells() < coarsening_rules.least_cells_of_rank) break;
     levels.push_back(order == 2 ? with_middle_nodes(*coarse) : *coarse);
     mesh = std::move(*coarse);
   }
@@ -77,7 +77,7 @@ std::vector<MeshData> contracted_levels(MeshData whole, const int num_ranks)
 std::shared_ptr<const Mesh> distribute_with_contracted(MeshData whole, const RCP<const Comm> &comm)
 {
   std::vector<MeshData> levels;
-  on_root(*comm, ExitCode::internal_error, [&] { levels = contracted_levels(std::move(whole), comm->getSize()); });
+  on_root(*comm, ExitCode::internal_error, [&] { levels = contracted_levels(std::move(whole)); });
   const GO num_levels = sum_all(*comm, static_cast<GO>(levels.size()));
   levels.resize(num_levels); // empty ones on other ranks
   std::shared_ptr<const Mesh> coarse;
@@ -86,7 +86,8 @@ std::shared_ptr<const Mesh> distribute_with_contracted(MeshData whole, const RCP
     on_root(*comm, ExitCode::internal_error, [&] {
       const MeshData &whole_level = levels[k];
       const std::vector<int> order = k == 0 ? order_along_axes(whole_level) : std::vector<int>{};
-      division = divide_by(whole_level, comm->getSize(), ranks_of_cells(whole_level, comm->getSize()), order);
+      const int ranks = k == 0 ? comm->getSize() : ranks_for(whole_level, comm->getSize());
+      division = divide_by(whole_level, comm->getSize(), ranks_of_cells(whole_level, ranks), order);
       division.sorts_cells = !order.empty();
     });
     auto mesh = std::make_shared<Mesh>(distribute(levels[k], comm, division));

@@ -111,7 +111,7 @@ private:
   double norm_ = std::numeric_limits<double>::infinity(),
          before_ = norm_,      // |F|_2 for the active set, after and before the step
       confirmed_norm_ = norm_; // and after the last one that confirmed the active set
-  double solve_seconds_ = 0;   // about what the last solve took
+  double solve_seconds_ = 0;   // about what the last solve takes on one rank
   int steps_ = 0;
   int updates_ = 0;           // of the multipliers alone, the active set being confirmed
   int choices_ = 0;           // since the start, or since the path

@@ -24,7 +24,7 @@ public:
   static bool is_small(const Problem &coarse);
   /// Null where the factors of the coarse mesh's stiffness are not cheap. Collective.
   /// @param coarse  small   @param dirichlet  which unknowns of the coarse mesh are prescribed
-  /// @param solve_seconds  what a linear solve of the fine mesh takes
+  /// @param solve_seconds  what a linear solve of the fine mesh takes on one rank
   static std::unique_ptr<CoarseChoice> make(const Problem &coarse, const fem::DirichletDofs &dirichlet,
                                             const fem::Discretization &fine, const contact::Iterate &iterate,
                                             double solve_seconds);

@@ -45,7 +45,7 @@ public:
   CoarseModel(int size, const solver::SymmetricEntries &K, solver::SparseColumns points, std::vector<ModelPoint> data);
 
   /// Whether each of its factors, of which a choice takes some, is cheap. Without that nothing below may be asked.
-  /// @param solve_seconds  what a linear solve of the fine mesh takes
+  /// @param solve_seconds  what a linear solve of the fine mesh takes on one rank
   bool is_cheap(double solve_seconds) const;
 
   /// Takes the minimum for an active set on the fine mesh, whose changes against the one before it teach the model.

@@ -37,7 +37,7 @@ struct ChoiceRules {
   Rule<double> model_seconds{1, "choice.model_seconds", "time of a factor of the coarser mesh [s]", "not measured"};
   Rule<double> model_solves{
       on_gpu ? 10. : 1., "choice.model_solves",
-      "the same, over a solve of the fine mesh by the cost model; a GPU's model leaves out levels on the host [-]",
+      "the same, over a solve of the fine mesh on one rank by the cost model; a GPU's model leaves out levels on the host [-]",
       "measured on thin bodies on a GPU, not recorded"};
   Rule<double> least_missing{1e-2, "choice.least_missing", "energy that the model misses of a change, over all of it, to learn from [-]",
                              "theory.md (5.8d): what inexact solves leave"};

@@ -14,8 +14,8 @@ struct CoarseningRules {
   Rule<int> few_3d{400, "coarsening.few_3d", "the same in space [-]", "not measured"};
   Rule<double> most_kept{0.7, "coarsening.most_kept", "part of the nodes in a coarser mesh worth having [-]; off: 1",
                          "doc/theory.md, section 2"};
-  Rule<int> least_cells_of_rank{16, "coarsening.least_cells_of_rank", "cells a rank of the coarsest mesh [-]",
-                                "not measured"};
+  Rule<int> least_cells_of_rank{16, "coarsening.least_cells_of_rank",
+                                "cells of a coarser mesh on each of its ranks [-]", "not measured"};
   Rule<double> least_added{1.3, "coarsening.least_added", "nodes of a nested mesh over its parent's [-]; off: 1",
                            "doc/measurements.md: Adapted meshes in space"};
   Rule<double> equally_long{1.7, "coarsening.equally_long", "node distance or sheet, over the least, still alike [-]",

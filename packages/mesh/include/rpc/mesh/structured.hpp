@@ -32,7 +32,7 @@ struct LayeredMesh {
 LayeredMesh layered(const MeshData &mesh);
 
 /// Deals a mesh out as distribute() does, with the coarser meshes that its layers give, down to a few hundred unknowns: Mesh::parents leads to
-/// them. Cells are on the rank of their parents. Where layers give none, or hardly smaller ones, it is distribute(). Collective.
+/// them, the same on any number of ranks: small ones are on fewer of them. A rank has the parents of its cells. Where layers give none, or hardly smaller ones, it is distribute(). Collective.
 /// @param whole  read on rank 0 only
 std::shared_ptr<const Mesh> distribute_with_parents(MeshData whole, const RCP<const Comm> &comm);
 

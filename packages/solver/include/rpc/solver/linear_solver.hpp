@@ -77,8 +77,9 @@ public:
   double inverse_energy(const Vector &F);
 
   const LinearSolverCounts &counts() const;
-  /// About what the last solve took [s], by constants of one machine: a choice by it is the same in every run. Collective.
-  double seconds_of_last_solve() const;
+  /// About what the last solve takes on one rank [s], by constants of one machine: a choice by it is about the same in every run, on any number
+  /// of ranks. Collective.
+  double one_rank_seconds_of_last_solve() const;
   const Body &body() const;
 
 private:

@@ -36,6 +36,7 @@ struct FactorCost {
   /// About, by constants of one machine: a choice by them is the same in every run.
   double seconds = 0, seconds_of_solve = 0; ///< [s]
   double seconds_of_column = 0;             ///< of many of few entries that are solved for together [s]
+  double gain_of_ranks = 1;                 ///< how many times as fast this is as on one rank
 };
 
 /// Cholesky factor of a sparse symmetric positive definite matrix on the host.
