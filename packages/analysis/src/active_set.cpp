@@ -211,7 +211,7 @@ ActiveSetLoop::Verdict ActiveSetLoop::choose(const Vector &u)
     if (!choose_by_coarse_mesh(u)) return give_up(u);
   } else if (!is_new_choice() || !may_settle()) {
     return give_up(u); // in circles, or too slow
-  } else if (begin_coarse_choices(u)) {
+  } else if (is_for_coarse_mesh() && begin_coarse_choices(u)) {
     return Verdict::go_on;
   } else if (steps_ == 1) {
     rough_ = true; // the active set changes after all
@@ -251,6 +251,13 @@ bool ActiveSetLoop::may_settle()
   const bool tells = predicted_ || before > 1;
   if (tells && choice_->overshoot > choice_rules.far_too_much) return false;
   return headway_.take(contracts) != Headway::Answer::stuck;
+}
+
+/// Whether it is time for choices by a coarser mesh.
+bool ActiveSetLoop::is_for_coarse_mesh() const
+{
+  const bool was_needed = predicted_ && *predicted_ != FoundBy::choices; // more than choices by pressures, there
+  return was_needed || steps_ >= choice_rules.steps_before_coarse;
 }
 
 /// From here on a coarser mesh chooses, if there is one that can. @return whether it has chosen

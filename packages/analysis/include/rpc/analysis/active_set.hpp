@@ -38,8 +38,8 @@ public:
   using Status = solver::MinimizationSteps::Status;
   ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, Then then = Then::newton);
 
-  /// The start is a coarser mesh's solution. What led to its states makes the first steps, or the coarser mesh makes
-  /// the choices from the second one on; except with friction.
+  /// The start is a coarser mesh's solution. What led to its states makes the first steps, or the coarser mesh chooses,
+  /// soon or where pressures were not enough; except with friction.
   /// @param coarse_choice  empty: there are no such choices
   void starts_predicted(FoundBy coarser, MakeCoarseChoice coarse_choice = {});
   Status operator()(solver::MinimizationSteps &steps);
@@ -77,6 +77,7 @@ private:
   Verdict choose(const Vector &u);
   bool is_new_choice();
   bool may_settle();
+  bool is_for_coarse_mesh() const;
   bool begin_coarse_choices(const Vector &u);
   bool choose_by_coarse_mesh(const Vector &u);
   solver::Accuracy wanted() const;

@@ -30,6 +30,8 @@ struct ChoiceRules {
   Rule<int> most_idle_turns{4, "choice.most_idle_turns", "idle steps in a row, friction in space [-]", "not measured"};
   Rule<double> negligible{1e-3, "choice.negligible", "violations that change no state, over the tolerance of pressures [-]", "not measured"};
   // When a coarser mesh chooses
+  Rule<int> steps_before_coarse{2, "choice.steps_before_coarse", "steps before a coarser mesh chooses where pressures were enough on it [-]",
+                                "measurements.md, 2026-11-30"};
   Rule<int> most_idle_coarse{3, "choice.most_idle_coarse", "of these in a row without fewer changes than before [-]", "not measured"};
   Rule<GO> most_coarse_unknowns{60'000, "choice.most_coarse_unknowns", "unknowns of the coarser mesh, whose stiffness rank 0 holds [-]",
                                 "not measured"};
