@@ -142,7 +142,9 @@ struct CostModel {
                                "10 to 24"};
   Rule<double> gain{0.6, "cost.gain", "P ranks are P to this power times as fast [-]", "two ranks"};
   // A band factor: LAPACK works by blocks where it is wide.
-  Rule<double> band_operation{1.5e-11, "cost.band_operation", "of a multiplication in a band [s]", "one core"};
+  Rule<double> wide{64, "cost.wide", "width of a wide band [-]", "LAPACK's blocks"};
+  Rule<double> wide_band{1.5e-11, "cost.wide_band", "of a multiplication in a wide band [s]", "one core"};
+  Rule<double> narrow_band{1e-10, "cost.narrow_band", "of a multiplication in a narrow band [s]", "one core"};
   Rule<double> band_entry{6e-9, "cost.band_entry", "of an entry of the band [s]", "one core"};
   Rule<double> band_entry_in_solve{1e-9, "cost.band_entry_in_solve", "of an entry in a solve [s]", "one core"};
 };
