@@ -46,7 +46,7 @@ solver::MeshLevel level_on(const fem::Discretization &d, const Model &model, con
   const auto assembled = [d, materials = model.materials, prescribed] {
     return fem::eliminate_dirichlet(d, fem::assemble_stiffness(d, materials), prescribed).matrix;
   };
-  solver::MeshLevel level{{}, std::move(interpolation), prescribed, body_of(d)};
+  solver::MeshLevel level{{}, std::move(interpolation), prescribed, body_of(d), d.mesh->element.order};
   if (const auto repeated = fem::repeated_stiffness(d, model.materials, prescribed)) {
     d.forget_nodes();
     level.unassembled =
@@ -123,6 +123,7 @@ solver::MeshLevels mesh_levels(const NestedMesh &finest, const Model &model, con
   solver::MeshLevels levels;
   levels.prescribed = prescribed;
   const int dim = finest.discretization().dim();
+  levels.order = finest.discretization().mesh->element.order;
   const GO few = dim == 2 ? mesh::coarsening_rules.few_2d : mesh::coarsening_rules.few_3d;
   const auto held = held_sides(model.dirichlet);
   const auto num_unknowns = [](const NestedMesh &mesh) {

@@ -120,7 +120,9 @@ TEST(StretchedCells, OfThinBodiesEndWhereTheyAreFactored)
 
   const auto quadratic = levels_of({3, 2}, {10, 10, 1}, {1, 1, 0.01});
   ASSERT_EQ(quadratic.level.size(), 1U);
-  EXPECT_EQ(unknowns(quadratic), 21U * 21U * 2U * 3U) << "order 2 in x and y";
+  EXPECT_EQ(quadratic.order, 2);
+  EXPECT_EQ(quadratic.level[0].order, 2) << "in x and y";
+  EXPECT_EQ(unknowns(quadratic), 21U * 21U * 2U * 3U);
 
   const auto strip = levels_of({2, 1}, {500, 1, 0}, {500, 1, 1});
   ASSERT_EQ(strip.level.size(), 1U) << "the mesh itself";
@@ -143,6 +145,7 @@ TEST(StretchedCells, LeaveSquareOnesAlone)
     int cells = n;
     for (std::size_t l = 0; l < levels.level.size(); ++l) {
       if (l > 0 || element.order == 1) cells /= 2;
+      EXPECT_EQ(levels.level[l].order, 1);
       const std::size_t nodes = (2 * cells + 1) * (element.dim == 2 ? cells + 1 : (cells + 1) * (cells + 1));
       EXPECT_EQ(levels.level[l].interpolation->getDomainMap()->getGlobalNumElements(), nodes)
           << element.name() << ", level " << l;

@@ -202,25 +202,27 @@ MeshMultigrid::MeshMultigrid(RCP<const UpdatedOperator> H, const MeshLevels &lev
     if (H_->is_rounded()) level->coarse->allow_rounding(); // where the finest rows repeat, most of the coarse ones do
     levels_.push_back(std::move(level));
   }
-  for (std::size_t l = 0; l < levels_.size(); ++l) add_smoother(l); // contact is not in the coarse matrices yet
+  for (std::size_t l = 0; l < levels_.size(); ++l) add_smoother(levels, l); // contact is not in the coarse matrices yet
   contact_of_coarsest_ = write_contact();
   coarsest_ = make_coarsest(levels.level.back());
   if (!coarsest_) throw std::runtime_error(not_definite);
 }
 
-void MeshMultigrid::add_smoother(const std::size_t l)
+void MeshMultigrid::add_smoother(const MeshLevels &levels, const std::size_t l)
 {
   const bool is_finest = l == 0;
   Level &level = *levels_[l];
   const CoarseContact *const contact = is_finest ? nullptr : levels_[l - 1]->coarse.get();
+  const int order = is_finest ? levels.order : levels.level[l - 1].order;
   const auto block = is_finest ? H_->base().diagonal_blocks() : contact->base_blocks();
   const auto changing = is_finest ? contact_node_ : contact->nodes();
   const Rounded without_contact(H_, false);
   const double largest =
       largest_eigenvalue(is_finest ? static_cast<const Operator &>(without_contact) : *level.A, block);
-  level.smoother =
-      std::make_unique<NodeSmoother>(level.A, block, changing, std::max(largest, largest_of_contact),
-                                     NodeSmoother::Options{linear_rules.smoother_degree, linear_rules.smoother_ratio});
+  level.smoother = std::make_unique<NodeSmoother>(
+      level.A, block, changing, std::max(largest, largest_of_contact),
+      NodeSmoother::Options{linear_rules.smoother_degree,
+                            order == 2 ? linear_rules.smoother_ratio_order_two : linear_rules.smoother_ratio});
 }
 
 MeshMultigrid::~MeshMultigrid() = default;

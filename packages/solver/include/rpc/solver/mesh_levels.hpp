@@ -19,6 +19,7 @@ struct MeshLevel {
   RCP<const CrsMatrix> interpolation; ///< (owned nodes of the next finer mesh x owned nodes of this one)
   DeviceView<char *> prescribed;      ///< (columns of K) 1 where the displacement is prescribed
   Body body;                          ///< on this mesh
+  int order = 1;                      ///< of its elements; 2 too where that is so in some directions alone
   /// K where most of its rows repeat, or null. The coarsest mesh always has a matrix: its solver takes one.
   std::shared_ptr<const UnassembledMatrix> unassembled = nullptr;
   RCP<const Map> columns = Teuchos::null; ///< of `unassembled`
@@ -29,6 +30,7 @@ struct MeshLevel {
 /// From the finest of them to the coarsest one; nodes have consecutive gids from 0, a node's unknowns follow each other.
 struct MeshLevels {
   std::vector<MeshLevel> level;
+  int order = 1; ///< of the finest mesh, which is none of the levels
   /// (owned dofs, at least) of the finest mesh: 1 where the displacement is prescribed
   DeviceView<char *> prescribed;
   /// The coarsest is solved directly: it has few unknowns, or multigrid has to end there. Otherwise algebraic multigrid follows.

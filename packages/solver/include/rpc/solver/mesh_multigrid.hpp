@@ -73,7 +73,7 @@ public:
 private:
   struct Level;
   DeviceView<double ***> write_contact();
-  void add_smoother(std::size_t l);
+  void add_smoother(const MeshLevels &levels, std::size_t l);
   void cycle(std::size_t level, const Vector &b, Vector &x) const;
 
   RCP<const UpdatedOperator> H_;

@@ -59,7 +59,9 @@ struct LinearRules {
   // Multigrid on meshes, (4.7a) - (4.7c).
   Rule<int> smoother_degree{3, "linear.smoother_degree", "degree of the smoother [-]",
                             "least time, 15 iterations to 1e-8 in the plane, 20 in space"};
-  Rule<double> smoother_ratio{10, "linear.smoother_ratio", "largest over smallest damped eigenvalue [-]", "the same"};
+  Rule<double> smoother_ratio{10, "linear.smoother_ratio", "largest over smallest damped eigenvalue, order 1 [-]",
+                              "the same"};
+  Rule<double> smoother_ratio_order_two{16, "linear.smoother_ratio_order_two", "the same of order 2 [-]", "the same"};
   Rule<int> lanczos_steps{10, "linear.lanczos_steps", "steps for the largest eigenvalue [-]",
                           "they find it to a few per cent"};
   Rule<double> lanczos_margin{1.08, "linear.lanczos_margin", "factor on the eigenvalue found [-]",
