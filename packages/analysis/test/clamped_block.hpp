@@ -56,14 +56,14 @@ struct Block {
   }
   solver::MeshLevels levels() const { return analysis::mesh_levels(analysis::NestedMesh(d), model, dirichlet.fixed); }
 
-  /// Contact nodes for which `is_closed` holds at their x are closed: 1e5 times as stiff as they are.
-  void close(const std::function<bool(double)> &is_closed) const
+  /// Contact nodes for which `is_closed` holds at their x are closed: so many times as stiff as they are.
+  void close(const std::function<bool(double)> &is_closed, const double times = 1e5) const
   {
     const auto node = to_host(points.node);
     const auto own = to_host(own_stiffness(H->base(), points)), weight = to_host(points.weight);
     const auto coords = to_host(d.mesh->coords);
     HostView<double *> added("added", points.size());
-    for (LO i = 0; i < points.size(); ++i) added(i) = is_closed(coords(node(i), 0)) ? 1e5 * own(i) * weight(i) : 0;
+    for (LO i = 0; i < points.size(); ++i) added(i) = is_closed(coords(node(i), 0)) ? times * own(i) * weight(i) : 0;
     H->set(points, along_directions(points, added));
   }
   void close_half() const

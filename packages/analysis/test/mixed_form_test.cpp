@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "clamped_block.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <string>
@@ -143,6 +144,29 @@ TEST(MixedForm, IsThatOfNearlyIncompressibleBodiesThatDoNotLock)
   for (Block *const untouched : {&alone, &stretched}) untouched->model.contact.clear();
   EXPECT_TRUE(is_split(alone));
   EXPECT_TRUE(is_split(stretched));
+}
+
+/// An active set that leaves the body unheld: the mixed form rests in that solve alone, and is no candidate that was left.
+TEST(MixedForm, IsUsedAgainAfterAMatrixThatIsSingular)
+{
+  const Block block(plane_q1, cells_of(plane_q1), true, {2, 1, 1}, 0.4999);
+  const auto solver = block.solver(true);
+  const Vector b = block.vector(3);
+  Vector x(b.getMap());
+  block.close_half();
+  EXPECT_TRUE(solver->solve(b, x, 1e-8).converged);
+  block.close([](double) { return true; }, -1e5);
+  EXPECT_TRUE(solver->solve(b, x, 1e-8).broken);
+  const auto row = [&](const std::string &name) {
+    const auto &rows = solver->counts().candidates;
+    return *std::find_if(rows.begin(), rows.end(), [&](const auto &candidate) { return candidate.name == name; });
+  };
+  EXPECT_NE(row("mixed").left, "");
+  block.close_half();
+  EXPECT_TRUE(solver->solve(b, x, 1e-8).converged);
+  EXPECT_EQ(row("mixed").left, "");
+  EXPECT_GE(row("mixed").solves, 2);
+  EXPECT_EQ(solver->counts().description.rfind("mixed", 0), 0U) << solver->counts().description;
 }
 
 } // namespace

@@ -14,7 +14,6 @@
 #include "rpc/core/message.hpp"
 #include "rpc/solver/rules.hpp"
 
-#include <Teuchos_StackedTimer.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <algorithm>
 #include <cmath>
@@ -109,6 +108,11 @@ struct LinearSolver::Impl {
   B *consider(Kind kind, State state, Arguments &&...arguments);
   Candidate &first(); ///< that applies; the algebraic hierarchy always does
   CandidateCounts &row(const Candidate &candidate) { return counts.candidates[&candidate - candidates.data()]; }
+  void reopen(Candidate &candidate)
+  {
+    candidate.state = State::open;
+    row(candidate).left.clear();
+  }
   bool is_sparse() const { return candidates.front().applies(); }
   void prepare(double tolerance);
   bool counted(Candidate &candidate, double tolerance);
@@ -295,9 +299,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
                                           *body.coordinates());
     }
   } catch (const Interrupted &) {
-    result = {};
-    result.broken = result.interrupted = true;
-    result.reason = interruption();
+    result = {false, true, true, 0, 0, interruption()};
   } catch (const Error &) {
     throw;
   } catch (const std::exception &failure) { // of a set-up, such as a singular matrix; the same on all ranks
@@ -361,8 +363,7 @@ void LinearSolver::Impl::come_back(Candidate &candidate)
 {
   for (Candidate &other : candidates)
     if (other.applies()) other.B->forget();
-  candidate.state = State::open;
-  row(candidate).left.clear();
+  reopen(candidate);
   counts.fallback.clear();
   met_singular = true;
   record(candidate, "the matrix is singular");
@@ -372,7 +373,7 @@ bool LinearSolver::Impl::take_sparse(const std::string &reason)
 {
   if (!prospect()) return false;
   for (Candidate &other : candidates)
-    if (other.applies()) put_out(other, State::left, reason);
+    if (other.applies() || other.state == State::rests) put_out(other, State::left, reason);
   candidates.front().state = State::open;
   record(candidates.front(), reason);
   return true;
@@ -420,7 +421,7 @@ LinearSolver::Result LinearSolver::solve(const Vector &b, Vector &x, const Accur
   }
   impl_->stands_in_for = nullptr;
   for (auto &candidate : impl_->candidates)
-    if (candidate.state == Impl::State::rests) candidate.state = Impl::State::open;
+    if (candidate.state == Impl::State::rests) impl_->reopen(candidate);
   impl_->choose_before_the_first_solve();
   for (;;) {
     const Result result = impl_->attempt(b, x, wanted);
