@@ -93,6 +93,8 @@ std::vector<std::string> lines_of(const std::string &text)
   return lines;
 }
 
+constexpr const char *no_list = "it has no list of parameters. Write its name, such as deck:, and the lists below it";
+
 /// "deck: "path", line n: reason"
 [[noreturn]] void refuse(const std::string &path, const std::exception &error, const int lines_added = 0)
 {
@@ -107,6 +109,7 @@ std::vector<std::string> lines_of(const std::string &text)
   static const std::regex anonymous(R"( in list "ANONYMOUS"$)"); // the root that a deck need not name
   reason = std::regex_replace(reason, anonymous, "");
   if (reason.empty()) reason = "malformed";
+  if (reason == "Error!") reason = no_list; // of Teuchos, where a value stands in the place of a list
   if (reason.rfind("Expected one of", 0) == 0) reason += " (in YAML a text with special characters needs quotes)";
   throw Error(ExitCode::bad_input, "deck: \"" + path + "\"" + where + ": " + reason);
 }
@@ -197,6 +200,9 @@ ParameterList read_yaml(const std::string &path, const std::string &given)
   check_depth(path, whole, true);
   read_yaml_lines(path, whole);
   const std::vector<std::string> lines = lines_of(whole);
+  static const std::regex nothing(R"(\s*(#.*)?|---\s*|\.\.\.\s*|%.*)");
+  const auto is_nothing = [](const std::string &line) { return std::regex_match(line, nothing); };
+  RPC_REQUIRE(!std::all_of(lines.begin(), lines.end(), is_nothing), "deck: \"" << path << "\": " << no_list);
   // Teuchos wants one name at the outermost level, and loses parameters without a word if there are more.
   const bool anonymous = count_root_names(lines) > 1;
   std::string text = anonymous ? "ANONYMOUS:\n" : "";

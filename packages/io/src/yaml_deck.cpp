@@ -190,7 +190,11 @@ private:
     static const std::regex tight(R"(([A-Za-z][A-Za-z' ]*):(\S.*))"), equals(R"(([A-Za-z][A-Za-z' ]*?)\s*=\s*(.*))");
     static const std::regex value(R"(([A-Za-z][A-Za-z' ]*?)\s+([-+\d.\[{"].*))"),
         words(R"(([A-Za-z][A-Za-z' ]*)\s+(\S+))");
+    static const std::regex unit(R"(([A-Za-z][A-Za-z' ]*?)\s*\[[^\],\d][^\],]*\]\s*:\s+(.*))");
     std::smatch found;
+    if (std::regex_match(content, found, unit))
+      refuse(line_, "\"" + content + "\" has a unit in its name. Write " + found[1].str() + ": " + found[2].str() +
+                        ", in the deck's units, see \"Units\".");
     if (std::regex_match(content, found, tight) || std::regex_match(content, found, equals) ||
         std::regex_match(content, found, value) || std::regex_match(content, found, words))
       refuse(line_, "\"" + content + "\" lacks a colon with a blank behind it. Write " + found[1].str() + ": " +

@@ -163,6 +163,7 @@ TEST_F(Refusal, OfYamlNamesTheLine)
   expect_yaml("Gap: \"x, y: {1\"", "Gap: 3 %", 6,
               "\"Contact->Gap\" = 3 % has a %, which no deck has outside of quotes. Write "
               "the number alone, without \"%\": 0.03.");
+  expect_yaml("Cells: [", "Cells [mm]: [", 3, "has a unit in its name. Write Cells: [160, 32]");
   expect_yaml("Contact: {Side", "Contact {Side", 6,
               "lacks a colon with a blank behind it. Write Contact: {Side: bottom");
 }

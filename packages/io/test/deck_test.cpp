@@ -235,6 +235,8 @@ TEST_F(Deck, MalformedYamlIsRefusedWithItsLine)
   expect_refusal("m.yaml", unindented(bad), "line 5: the \"[\" of \"Mesh->Cells\" is not closed");
   expect_refusal("m.yaml", replaced(good_yaml, "\"x < 1 ? 2 : inf\"", "x > 1 ? 2 : inf"), "needs quotes");
   for (const char *text : {"", " \n"}) expect_refusal("m.yaml", text, "is empty");
+  for (const char *text : {"---\n", "# a comment\n", "beam: 3\n"})
+    expect_refusal("m.yaml", text, "it has no list of parameters. Write its name, such as deck:");
   expect_refusal("m.yaml", "- 1\n- 2\n", "line ");
   expect_refusal("m.yaml", "rpc:\n  Mesh: \"bo", "line ");
   expect_refusal("m.yaml", "just text", "line ");
