@@ -71,11 +71,12 @@ def compose(tables, columns, over, span, style, centre=None, time=None):
 
 
 def chosen_columns(tables):
-    """Of contact sides the pressure, the friction and the state; of load steps the contact force and the largest pressure; of adapted meshes
+    """Of contact sides the pressure, or the dents where those alone are left, the friction, the state and what sticks; of load steps the contact force and the largest pressure; of adapted meshes
     the estimated error; at points the contact pressure and von Mises' stress."""
     names = [name for name in tables[0].names() if all(name in table.columns for table in tables)]
     if tables[0].kind == "contact":
-        return [name for name in ("pressure", "friction", "state") if name in names]
+        left = "dent" in names and any(table.columns["dent"].any() for table in tables) and not any(table.columns["pressure"].any() for table in tables)
+        return [name for name in ("dent" if left else "pressure", "friction", "state", "friction_state") if name in names]
     if tables[0].kind == "points":
         return point_curves.chosen_columns(tables)
     if tables[0].kind == "adaptation":

@@ -157,6 +157,16 @@ class Diagrams(RpcTestCase):
         table = points_file(self.folder / "b.points.csv", {"tip": [0.25, 2]}, (1,))
         self.assertEqual(self.compose([table], over="time").axes[0].lines[1].get_label(), "tip 2")
 
+    def test_dents_are_shown_where_they_alone_are_left(self):
+        pressed = contact_file(self.folder / "a.contact.csv", dent=lambda x: 0.1)
+        left = contact_file(self.folder / "b.contact.csv", reach=1e-9, yields=0, dent=lambda x: 0.1)
+        never = contact_file(self.folder / "c.contact.csv", reach=1e-9, yields=0)
+        shown = [curves.chosen_columns(tables) for tables in ([pressed], [left], [never], [pressed, left])]
+        self.assertEqual(shown, [["pressure", "state"], ["dent", "state"], ["pressure", "state"], ["pressure", "state"]])
+
+    def test_with_friction_what_sticks_is_shown(self):
+        self.assertEqual(curves.chosen_columns([space_file(self.folder / "a.contact.csv")]), ["pressure", "friction", "state", "friction_state"])
+
     def test_sides_are_lines_of_their_own(self):
         table = contact_file(self.folder / "a.contact.csv", sides=("left", "right"))
         axes = self.compose([table]).axes[0]
@@ -193,11 +203,11 @@ class Diagrams(RpcTestCase):
         for name in ("shear.contact.csv", "shear.history.csv", "beam_adaptive.contact.csv", "beam_adaptive.json"):
             self.assertEqual(self.picture(f"out/{name}", "--output=a.png"), (0, "wrote a.png\n", ""))
         self.assertEqual(self.picture("out/shear.contact.csv", "out/beam_adaptive.contact.csv", "--over=x", "--output=a.png")[0], 0)
-        for name in ("shear.contact.csv", "shear.history.csv", "beam_adaptive.json"):  # units are told of all but of numbers, and of forces that may be per length
+        for name in ("shear.contact.csv", "shear.history.csv", "beam_adaptive.json"):  # units are told of all but of numbers
             table = Table(str(self.folder / "out" / name))
             bare = [column for column in table.names() if not table.is_text(column) and "[" not in table.name_of(column)]
             self.assertEqual(set(bare) - {"friction_used", "time", "newton_iterations", "linear_iterations", "parts", "converged", "max_strain",
-                                          "dofs", "relative_estimate", "force_x", "force_y"}, set(), name)
+                                          "dofs", "relative_estimate"}, set(), name)
 
     def test_several_files_have_a_legend(self):
         (self.folder / "one").mkdir()
@@ -224,7 +234,7 @@ class Diagrams(RpcTestCase):
         space = space_file(self.folder / "c.contact.csv")
         picture.history_file(self.folder / "d.history.csv")
         steps = Table(str(self.folder / "d.history.csv"))
-        for name, tables, columns, over, span in (("sides", [rigid, soft], ["pressure", "state"], "x", None), ("radius", [space], None, None, (0, 0.8)),
+        for name, tables, columns, over, span in (("sides", [rigid, soft], ["pressure", "state"], "x", None), ("radius", [space], ["pressure", "friction", "state"], None, (0, 0.8)),
                                                   ("steps", [steps], ["work", "contact_force_y"], None, None)):
             for kind in (style.LIGHT, style.PRINT if name == "sides" else style.DARK):
                 references.expect_like(self, references.without_texts(self.compose(tables, columns, over, span, kind)), f"{name}_{kind.name}",
