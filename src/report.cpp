@@ -81,6 +81,16 @@ int sum(const std::vector<int> &values)
   return std::accumulate(values.begin(), values.end(), 0);
 }
 
+/// Sizes of the contact forces of all sides together [N]: those of two plates that squeeze a body do not cancel.
+double pressing(const analysis::StepRecord &step)
+{
+  const auto size = [](const std::array<double, 3> &force) { return std::hypot(force[0], force[1], force[2]); };
+  if (step.side_forces.size() < 2) return size(step.contact.force);
+  double sum = 0;
+  for (const auto &force : step.side_forces) sum += size(force);
+  return sum;
+}
+
 /// The meshes of an adaptive run.
 void print_meshes(std::ostream &out, const adapt::Adaptation &adaptation)
 {
@@ -182,15 +192,14 @@ void ConsoleTable::uzawa(const analysis::UzawaResult &result)
 void ConsoleTable::load_step(const Scene &scene, const analysis::Solution &s)
 {
   const analysis::StepRecord &step = s.history.back();
-  const auto &force = step.contact.force;
   const auto &times = scene.steps.times;
   const auto left = static_cast<std::size_t>(times.end() - std::upper_bound(times.begin(), times.end(), step.time));
   ++load_steps_;
   const double now = Teuchos::Time::wallTime() - start_;
   print(out_, "%4zu/%-4zu %9.4g %12.6g %10.4g %12.4g %13.6g %5d %6d %6d %10.3f %9.1f%s\n", s.history.size(),
-        s.history.size() + left, step.time, std::hypot(force[0], force[1], force[2]), step.contact.max_pressure,
-        step.contact.max_dent, step.energies.dissipated, step.parts, step.newton_iterations, step.linear_iterations,
-        now, now / load_steps_ * static_cast<double>(left), step.converged ? "" : " NOT CONVERGED");
+        s.history.size() + left, step.time, pressing(step), step.contact.max_pressure, step.contact.max_dent,
+        step.energies.dissipated, step.parts, step.newton_iterations, step.linear_iterations, now,
+        now / load_steps_ * static_cast<double>(left), step.converged ? "" : " NOT CONVERGED");
   out_ << std::flush;
 }
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The load steps of one or several runs as a diagram: force against displacement, of friction too, and the energies of a single run."""
+import itertools
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -12,7 +14,8 @@ from table import require_same_units  # noqa: E402
 
 ENERGIES = (("dissipated_energy", "dissipated"), ("strain_energy", "elastic, in the body"), ("foundation_energy", "elastic, in the foundation"))
 WITH_FRICTION = (("dissipated_by_friction", "dissipated by friction"), ("dissipated_energy", "dissipated by yielding"), *ENERGIES[1:])
-ROUNDING = 1e-6  # of the contact force: less is no friction
+ROUNDING = 1e-6  # of the contact force: less is no friction, and of those of several sides no sum
+OF_SIDE = "_contact_force_"
 
 
 class History:
@@ -29,10 +32,29 @@ class History:
         self.force_unit = table.units.get("contact_force_x", "N/m" if plane else "N")
         self.energy_unit = table.units.get("work", "J/m" if plane else "J")
         self.length_unit = table.units.get("max_dent", "m")
-        self.axis = max((axis for axis in "xyz" if f"contact_force_{axis}" in self.columns),
-                        key=lambda axis: reach(self.columns[f"contact_force_{axis}"]))
+        self.sides = [name.removesuffix(f"{OF_SIDE}x") for name in self.columns if name.endswith(f"{OF_SIDE}x")]
+        self.axis = max((axis for axis in "xyz" if f"contact_force_{axis}" in self.columns), key=self.largest)
         self.force = self.columns[f"contact_force_{self.axis}"]
         self.sign = 1 if sum(self.force) >= 0 else -1
+
+    def largest(self, axis):
+        """The largest force along an axis, of a single side or of all together."""
+        return max(reach(self.columns[f"contact_force_{axis}"]), *(reach(self.columns[f"{side}{OF_SIDE}{axis}"]) for side in self.sides), 0)
+
+    def curves(self):
+        """[(label, [force of each step])] along the axis: all sides together, unless their forces cancel, and each of several sides. A
+        curve is positive in the mean. Sides of the same forces, as of two plates, share one."""
+        found = [(side, upwards(self.columns[f"{side}{OF_SIDE}{self.axis}"])) for side in self.sides]
+        if not found or reach(self.force) > ROUNDING * self.largest(self.axis):
+            found.insert(0, ("all sides" if found else "", upwards(self.force)))
+        curves = []
+        for name, force in found:
+            same = next((curve for curve in curves if reach([a - b for a, b in zip(curve[1], force)]) <= ROUNDING * self.largest(self.axis)), None)
+            if same:
+                same[0].append(name)
+            else:
+                curves.append(([name], force))
+        return [(": ".join(filter(None, (self.label, ", ".join(names)))), force) for names, force in curves]
 
     def moved(self, axis=None):
         """The prescribed displacement along the contact force, or along another axis, that changes most; None if none does. Positive
@@ -51,7 +73,12 @@ class History:
             return None
         others = [axis for axis in "xyz" if axis != self.axis and f"contact_force_{axis}" in self.columns]
         most = max(others, key=lambda axis: reach(self.columns[f"contact_force_{axis}"]))
-        return most if reach(self.columns[f"contact_force_{most}"]) > ROUNDING * reach(self.force) else None
+        return most if reach(self.columns[f"contact_force_{most}"]) > ROUNDING * self.largest(self.axis) else None
+
+
+def upwards(force):
+    """A force with the sign that makes it positive in the mean."""
+    return force if sum(force) >= 0 else [-value for value in force]
 
 
 def reach(values):
@@ -87,13 +114,13 @@ def add_forces(axes, histories, style):
     """Force against displacement, or against t where no displacement is prescribed along it."""
     by_time = any(history.moved() is None for history in histories)
     first = histories[0]
-    for history, look in zip(histories, style.curves):
+    curves = [(history, *curve) for history in histories for curve in history.curves()]
+    for (history, label, force), look in zip(curves, itertools.cycle(style.curves)):
         along = history.columns["time"] if by_time else [0, *history.moved()]
-        force = [history.sign * value for value in history.force]
-        axes.plot(along, force if by_time else [0, *force], **{"markersize": 5, **look}, linewidth=1.4, label=history.label or None)
+        axes.plot(along, force if by_time else [0, *force], **{"markersize": 5, **look}, linewidth=1.4, label=label or None)
     axes.set(xlabel="t" if by_time else f"prescribed displacement [{first.length_unit}]", ylabel=f"contact force [{first.force_unit}]",
              ylim=(0, None))
-    if any(history.label for history in histories):
+    if any(label for _, label, _ in curves):
         axes.legend(frameon=False)
 
 

@@ -30,6 +30,10 @@ std::string heading(const Scene &scene, const int dim, const ResultScope &scope)
   write_names(text, history_columns(contact::contact_quantities, scope), scope);
   const auto in = [&](const Unit &unit) { return scope.units.heading(unit, scope.per_length); };
   for (int c = 0; c < dim; ++c) text << ",contact_force_" << axes[c] << in(unit::force);
+  if (scene.model.contact.size() > 1)
+    for (const auto &side : scene.model.contact)
+      for (int c = 0; c < dim; ++c)
+        text << ',' << io::csv_quoted(side.name_in_results() + "_contact_force_" + axes[c] + in(unit::force));
   for (const auto &condition : scene.model.dirichlet)
     for (const auto &[what, unit] : {std::pair("_displacement_", unit::length), std::pair("_reaction_", unit::force)})
       for (int c = 0; c < dim; ++c) text << ',' << io::csv_quoted(condition.name + what + axes[c] + in(unit));
@@ -48,6 +52,9 @@ std::string row(const analysis::StepRecord &step, const int dim, const ResultSco
   write_values(text, history_columns(analysis::energy_quantities, scope), step.energies);
   write_values(text, history_columns(contact::contact_quantities, scope), step.contact);
   for (int c = 0; c < dim; ++c) text << ',' << step.contact.force[c];
+  if (step.side_forces.size() > 1)
+    for (const auto &force : step.side_forces)
+      for (int c = 0; c < dim; ++c) text << ',' << force[c];
   for (std::size_t k = 0; k < step.reactions.size(); ++k) {
     for (int c = 0; c < dim; ++c) text << ',' << step.displacements[k][c];
     for (int c = 0; c < dim; ++c) text << ',' << step.reactions[k][c];

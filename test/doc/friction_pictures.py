@@ -205,6 +205,14 @@ class Loops(RpcTestCase):
         self.assertEqual([len(line.get_xydata()) for line in loop.lines[:2]], [4, 4])
         self.assertEqual(self.picture("one=a.history.csv", "b.history.csv", "--output=both.png")[0], 0)
 
+    def test_sides_that_squeeze_a_body_have_curves_of_their_own(self):
+        squeezed = {"contact_force_x": (0, 0, 0), "contact_force_y": (0, 1e-9, -1e-9), "upper_contact_force_x": (0, 0, 0), "lower_contact_force_x": (0, 0, 0),
+                    "upper_contact_force_y": (0, -9, -4), "lower_contact_force_y": (0, 9, 4)}
+        force = self.panels(self.table(**squeezed))[0]
+        self.assertEqual([(line.get_label(), line.get_ydata().tolist()[-2:]) for line in force.lines], [("upper, lower", [9, 4])])
+        both = self.table("b", **{**squeezed, "contact_force_y": (0, 12, 5), "upper_contact_force_y": (0, 3, 1)})
+        self.assertEqual([text.get_text() for text in self.panels(both)[0].get_legend().get_texts()], ["all sides", "upper", "lower"])
+
     def test_of_the_program(self):
         self.rpc("--input=shear.xml", "--set=Mesh->Cells={24, 12}", "--output=out")
         table = history.History(Table(str(self.folder / "out" / "shear.history.csv")))

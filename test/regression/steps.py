@@ -97,6 +97,28 @@ class Steps(RpcTestCase):
             self.assertAlmostEqual(row["right top_displacement_y"], -pressure / 500 - 2 * pressure / 1000, delta=1e-12)
             self.assertEqual(row["left_displacement_x"], 0)
 
+    def test_each_of_several_sides_has_its_force(self):
+        squeezed = ["--input=beam.xml", SMALL, "--set=Contact->Sides->ceiling->Side=top", "--set=Contact->Yield Stress=inf",
+                    "--set=Contact->Gap=-0.001*t*x*(5 - x)", "--set=Contact->Sides->ceiling->Gap=-0.001*t*x*(5 - x)", "--set=Traction->top->Y=0",
+                    "--set=Steps->Times={1, 2}", "--set=Steps->Checkpoint Every=1", "--output=out"]
+        console = self.rpc(*squeezed).stdout
+        table = rows(self.folder / "out" / "beam.history.csv")
+        sides = json.loads((self.folder / "out" / "beam.json").read_text())["contact_sides"]
+        for row in table:
+            for axis in "xy":
+                self.assertAlmostEqual(row[f"bottom_contact_force_{axis}"] + row[f"top_contact_force_{axis}"],
+                                       row[f"contact_force_{axis}"], delta=1e-10)
+        self.assertGreater(table[0]["bottom_contact_force_y"], 1)
+        sizes = sum(math.hypot(table[1][f"{name}_contact_force_x"], table[1][f"{name}_contact_force_y"]) for name in ("bottom", "top"))
+        shown = next(line.split()[2] for line in console.splitlines() if line.startswith("   2/2"))
+        self.assertAlmostEqual(float(shown) / sizes, 1, delta=1e-5)  # |force|
+        for name, side in sides.items():
+            self.assertEqual([table[1][f"{name}_contact_force_x"], table[1][f"{name}_contact_force_y"]], side["contact_force"], name)
+        self.rpc(*squeezed, "--restart=out/beam.checkpoint-000001.e")
+        for row, again in zip(table, rows(self.folder / "out" / "beam.history.csv")):
+            for name in row.keys() - COUNTS:
+                self.expect_near(row[name], again[name], 1, name)
+
     def test_without_steps_there_is_no_history(self):
         summary = self.solve()
         self.assertNotIn("steps", summary)

@@ -73,6 +73,7 @@ StepRecord broken_off(const Model &model, StepRecord until_then, const double t,
   record.contact.force.fill(unknown);
   std::array<double, 3> vector{};
   vector.fill(unknown);
+  record.side_forces.assign(model.contact.size(), vector);
   record.displacements.assign(model.dirichlet.size(), vector);
   record.reactions = record.displacements;
   return record;
@@ -130,6 +131,8 @@ StepSolution LoadHistory::advance(const double t, const Progress &progress,
   last_.converged = s.uzawa.converged;
   if (last_.converged) {
     last_.contact = s.contact.total;
+    last_.side_forces.clear();
+    for (const auto &side : s.contact.sides) last_.side_forces.push_back(side.force);
     last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
     if (!mean_displacements_) mean_displacements_ = std::make_shared<const MeanDisplacements>(*problem_);
     last_.displacements = (*mean_displacements_)(*s.u);

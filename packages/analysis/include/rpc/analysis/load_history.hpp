@@ -47,6 +47,7 @@ struct StepRecord {
       0; ///< of its parts: more than these where points met other dents at the places to which a solve had led them
   Energies energies;
   contact::ContactSums contact;
+  std::vector<std::array<double, 3>> side_forces; ///< contact::ContactSums::force of each contact side
   fem::BodyPeaks body;
   std::vector<std::array<double, 3>> displacements; ///< means over the place of each Dirichlet condition [m]
   std::vector<std::array<double, 3>> reactions;     ///< as in StepSolution
