@@ -97,6 +97,7 @@ class Steps(RpcTestCase):
             self.assertAlmostEqual(row["right top_displacement_y"], -pressure / 500 - 2 * pressure / 1000, delta=1e-12)
             self.assertEqual(row["left_displacement_x"], 0)
 
+    @ONE_RANK
     def test_each_of_several_sides_has_its_force(self):
         squeezed = ["--input=beam.xml", SMALL, "--set=Contact->Sides->ceiling->Side=top", "--set=Contact->Yield Stress=inf",
                     "--set=Contact->Gap=-0.001*t*x*(5 - x)", "--set=Contact->Sides->ceiling->Gap=-0.001*t*x*(5 - x)", "--set=Traction->top->Y=0",
