@@ -36,15 +36,16 @@ IterationSeconds seconds_of_iteration(const StiffnessOperator &K)
 {
   const double entries = num_entries(K);
   const auto rows = static_cast<double>(K.getDomainMap()->getGlobalNumElements());
+  const int ranks = K.getDomainMap()->getComm()->getSize();
   if (min_all(*K.getDomainMap()->getComm(), K.rows().any_repeat() ? 1 : 0) == 0) {
     const double all = with_all_ranks(K, cost_model.entry * entries);
-    return {all, all};
+    return {all, all, ranks * all};
   }
   // Rows that repeat are read once. In the plane vectors count for more beside them.
   const double counted =
       (K.dofs_per_node() == 3 ? cost_model.repeated_entry : cost_model.entry_against_factor) * entries;
-  return {with_all_ranks(K, counted),
-          with_all_ranks(K, cost_model.repeated_entry * entries + cost_model.repeated_row * rows)};
+  const double measured = with_all_ranks(K, cost_model.repeated_entry * entries + cost_model.repeated_row * rows);
+  return {with_all_ranks(K, counted), measured, ranks * measured};
 }
 
 bool is_narrow(const double unknowns, const double width, const IterationSeconds &iteration, const int ranks)

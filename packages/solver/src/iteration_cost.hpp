@@ -10,6 +10,7 @@ namespace rpc::solver
 struct IterationSeconds {
   double counted = 0;  ///< as it counts against the time of a factor, (4.10): less than it takes where rows of K repeat
   double measured = 0; ///< within half of what it takes
+  double on_one_rank = 0; ///< measured, times the number of ranks
 };
 
 /// Collective.

@@ -396,11 +396,9 @@ double LinearSolver::one_rank_seconds_of_last_solve() const
 {
   Impl &now = *impl_;
   if (now.counts.iterations.empty()) return 0;
-  if (!now.is_sparse())
-    return (now.counts.iterations.back() + 1) * now.seconds_of_cg.measured *
-           now.H->getDomainMap()->getComm()->getSize();
-  const FactorCost &cost = now.sparse->prospect().cost;
-  return (now.counts.iterations.back() + 1) * cost.seconds_of_solve * cost.gain_of_ranks;
+  const FactorCost cost = now.is_sparse() ? now.sparse->prospect().cost : FactorCost{};
+  const double cycle = now.is_sparse() ? cost.gain_of_ranks * cost.seconds_of_solve : now.seconds_of_cg.on_one_rank;
+  return (now.counts.iterations.back() + 1) * cycle;
 }
 
 const Body &LinearSolver::body() const
