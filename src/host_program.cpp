@@ -73,7 +73,9 @@ std::optional<Teuchos::ParameterList> deck_of(const int argc, char *argv[])
 /// As far as a deck tells before there is a mesh: of any order, and in plane stress too.
 bool may_be_nearly_incompressible(const fem::Materials &materials)
 {
-  const auto is = [](const fem::Material &material) { return material.poissons_ratio > analysis::linear_rules.mixed; };
+  const auto is = [](const fem::Material &material) {
+    return material.poissons_ratio > analysis::linear_rules.mixed_order_two;
+  };
   return is(materials.common) || std::any_of(materials.block.begin(), materials.block.end(),
                                              [&is](const auto &block) { return is(block.second); });
 }

@@ -113,7 +113,7 @@ NO_RULES = {
         packages/contact/include/rpc/contact/law/foundation.hpp packages/contact/include/rpc/contact/law/interpolated.hpp""",
 }
 RULE = re.compile(r"^ *Rule<", re.MULTILINE)
-MOST_RULES = {"src": 4, "algebra": 4, "mesh": 13, "contact": 23, "adapt": 31, "analysis": 65, "solver": 82}  # of a package; 130 are wanted in all
+MOST_RULES = {"src": 4, "algebra": 4, "mesh": 13, "contact": 23, "adapt": 31, "analysis": 76, "solver": 94}  # of a package; 130 are wanted in all
 
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"  # of LICENSE; within the first two lines, behind the marks of a comment
 COMMENTS = {".cpp": "//", ".hpp": "//", ".c": "//", ".py": "#", ".sh": "#", ".cmake": "#", ".in": "#", ".def": "#"}

@@ -32,16 +32,19 @@ Headway within(const int most)
 
 ActiveSetLoop::ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, const Then then)
     : iterate_(iterate), scale_(iterate.force_scale()), target_(tolerances.residual * scale_),
-      pressure_tolerance_(tolerances.pressure), start_(iterate.hessian()->getDomainMap()),
+      pressure_tolerance_(tolerances.pressure),
+      most_overshoot_(tolerances.nearly_incompressible ? choice_rules.far_too_much_of_rubber
+                                                       : choice_rules.far_too_much),
+      start_(iterate.hessian()->getDomainMap()),
       rough_(iterate.points().num_total > iterate.points().num_fixed), // else there is no state to choose
       rubs_(iterate_.points().friction.anywhere), then_(then), headway_(within(choice_rules.most_idle)),
-      confirmed_headway_({solver::newton_rules.falls, 0}), trial_gap_(path_rules.trial)
+      confirmed_headway_({choice_rules.idle_residual, 0}), trial_gap_(path_rules.first_trial)
 {
   if (!rubs_) return;
   path_ = Path::behind; // it knows no friction
   turns_ = iterate_.points().dim == 3;
-  confirmed_headway_ = Headway({solver::newton_rules.falls, turns_ ? choice_rules.most_idle_turns : 0});
-  headway_ = within(choice_rules.most_changes);
+  confirmed_headway_ = Headway({choice_rules.idle_residual, turns_ ? choice_rules.most_idle_turns : 0});
+  headway_ = within(then == Then::nothing ? choice_rules.most_changes_tried : choice_rules.most_changes);
 }
 
 void ActiveSetLoop::starts_predicted(const FoundBy coarser, MakeCoarseChoice coarse_choice)
@@ -183,6 +186,8 @@ void ActiveSetLoop::start_over(std::optional<contact::ActiveSetChoice> choice, c
   choices_ = 1; // the first one of all has no solve before it
   headway_ = within(most);
   fewest_changes_ = 0;
+  left_ = std::numeric_limits<double>::infinity();
+  levers_ = {};
   norm_ = before_ = confirmed_norm_ = std::numeric_limits<double>::infinity();
   rough_ = false; // a small residual may be all of the bending
 }
@@ -244,20 +249,28 @@ bool ActiveSetLoop::may_settle()
   const int before = choices_++;
   if (rubs_) return headway_.take(false) != Headway::Answer::stuck;
   const GO changes = choice_->changes;
+  const double overshoot = choice_->overshoot, infinity = std::numeric_limits<double>::infinity();
+  const double lever = overshoot < 1 ? overshoot / (1 - overshoot) : infinity;
+  const bool creeps = lever > 0 && lever < levers_[1] && levers_[0] < levers_[2];
+  const bool is_near = creeps && 2 * lever <= choice_rules.most_left_creeping * (levers_[1] - lever);
+  levers_ = {lever, levers_[0], levers_[1]};
   if (before == 0) return true; // not by a solve, but by where it starts
   const auto number = static_cast<double>(changes), fewest = static_cast<double>(fewest_changes_);
-  const bool contracts = number < fewest && std::log(number) <= choice_rules.most_left * std::log(fewest / number);
+  left_ = number < fewest ? std::log(number) / std::log(fewest / number) : infinity;
+  const bool contracts = left_ <= choice_rules.most_left;
   fewest_changes_ = fewest_changes_ > 0 ? std::min(fewest_changes_, changes) : changes;
   const bool tells = predicted_ || before > 1;
-  if (tells && choice_->overshoot > choice_rules.far_too_much) return false;
-  return headway_.take(contracts) != Headway::Answer::stuck;
+  if (tells && changes > choice_rules.few_changes && overshoot > most_overshoot_) return false;
+  if (creeps && !is_near && !contracts && before >= choice_rules.fewest_to_tell) return false;
+  return headway_.take(contracts || is_near, overshoot > choice_rules.much ? 2 : 1) != Headway::Answer::stuck;
 }
 
 /// Whether it is time for choices by a coarser mesh.
 bool ActiveSetLoop::is_for_coarse_mesh() const
 {
   const bool was_needed = predicted_ && *predicted_ != FoundBy::choices; // more than choices by pressures, there
-  return was_needed || steps_ >= choice_rules.steps_before_coarse;
+  return was_needed || (steps_ >= choice_rules.steps_before_coarse && left_ > choice_rules.one_more) ||
+         choice_->overshoot > choice_rules.much * most_overshoot_;
 }
 
 /// From here on a coarser mesh chooses, if there is one that can. @return whether it has chosen

@@ -113,7 +113,8 @@ PredictedBy told_by(const StepSolution &solution, const std::shared_ptr<const Pr
                     const Problem &fine)
 {
   PredictedBy by;
-  if (level == 1) by.found_by = solution.found_by;
+  if (level == 1 && solution.step.contact.num_total >= step_rules.fewest_points_telling)
+    by.found_by = solution.found_by;
   if (scene)
     by.coarse_choice = [scene, time = solution.step.time, &fine](const contact::Iterate &iterate,
                                                                  const double solve_seconds) {

@@ -4,6 +4,7 @@
 #include "rpc/analysis/solve_step.hpp"
 
 #include "rpc/analysis/active_set.hpp"
+#include "rpc/analysis/mesh_levels.hpp"
 #include "rpc/analysis/rules.hpp"
 #include "rpc/analysis/same_active_set.hpp"
 #include "rpc/contact/between_nodes.hpp"
@@ -28,9 +29,9 @@ namespace
 {
 
 Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &starts);
-Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      int iteration, bool previous_confirmed, const std::optional<PredictedBy> &predicted,
-                      const Progress &progress);
+Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
+                      const StepOptions &options, int iteration, bool previous_confirmed,
+                      const std::optional<PredictedBy> &predicted, const Progress &progress);
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
                                    const contact::ContactState &now, SolverState &state, double tolerance);
@@ -69,7 +70,7 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
       if (uzawa.iterations > 0) // the correction is small against u (5.13)
         iterate.move_origin(*u, *uzawa.residuals.internal.forces, *step.elastic.applied_load);
       const Minimization found = // paper (10), (4.1): choose states (5.8) and solve (5.7), (5.9),
-          minimize(iterate, u, state, options, uzawa.iterations + 1, confirmed, predicted,
+          minimize(problem, iterate, u, state, options, uzawa.iterations + 1, confirmed, predicted,
                    progress); // Newton (4.2)
       confirmed = found.active_set_confirmed;
       uzawa.multiplier_change = found.active_set_confirmed ? iterate.take_active_set_pressures(*u)
@@ -213,9 +214,9 @@ minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options
   return {result.converged, steps + result.steps, result.reason, false, result.steps, 0, true};
 }
 
-Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state, const StepOptions &options,
-                      const int iteration, const bool previous_confirmed, const std::optional<PredictedBy> &predicted,
-                      const Progress &progress)
+Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
+                      const StepOptions &options, const int iteration, const bool previous_confirmed,
+                      const std::optional<PredictedBy> &predicted, const Progress &progress)
 {
   const int all = options.newton.max_iterations;
   const auto run = [&](const solver::MinimizationLoop &loop, const int most_steps) {
@@ -246,7 +247,9 @@ Minimization minimize(Iterate &iterate, const RCP<Vector> &u, SolverState &state
     found.steps += in_vain;
     return found;
   }
-  ActiveSetLoop loop(iterate, active_set_tolerances(options));
+  ActiveSetTolerances tolerances = active_set_tolerances(options);
+  tolerances.nearly_incompressible = is_nearly_incompressible(problem.discretization(), problem.model().materials);
+  ActiveSetLoop loop(iterate, tolerances);
   if (predicted) loop.starts_predicted(predicted->found_by, predicted->coarse_choice);
   const auto result = run(std::ref(loop), all);
   return {result.converged,

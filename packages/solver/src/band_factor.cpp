@@ -83,7 +83,8 @@ FactorCost BandFactor::cost_of(const double size, const double width)
   cost.entries = size * (width + 1);
   cost.bytes = sizeof(double) * cost.entries;
   cost.seconds = operation * cost.operations + cost_model.band_entry * cost.entries;
-  cost.seconds_of_solve = cost.seconds_of_column = cost_model.band_entry_in_solve * cost.entries;
+  cost.seconds_of_solve = cost.seconds_of_column =
+      cost_model.band_row_in_solve * size + cost_model.band_entry_in_solve * cost.entries;
   return cost;
 }
 

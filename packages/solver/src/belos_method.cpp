@@ -122,7 +122,7 @@ bool needs_symmetry(const std::string &method)
 Teuchos::ParameterList gmres_defaults(const int max_iterations)
 {
   Teuchos::ParameterList list;
-  list.set("Num Blocks", std::min<int>(linear_rules.most_before_restart, max_iterations));
+  list.set("Num Blocks", std::min<int>(linear_rules.gmres_vectors, max_iterations));
   list.set("Maximum Restarts", max_iterations);
   list.set("Flexible Gmres", true);
   return list;

@@ -83,7 +83,6 @@ struct LinearSolver::Impl {
     bool applies() const { return state == State::open; }
     bool is_on_meshes() const { return kind == Kind::mixed || kind == Kind::meshes; }
   };
-
   LinearSolverOptions options;
   RCP<UpdatedOperator> H;
   Body body;
@@ -136,8 +135,8 @@ LinearSolver::Impl::Impl(LinearSolverOptions given, const RCP<UpdatedOperator> &
 {
   const GO unknowns = static_cast<GO>(H->getDomainMap()->getGlobalNumElements());
   const bool automatic = options.multigrid == "auto" && options.muelu.numParams() == 0;
-  const bool for_each_state = unknowns <= linear_rules.few_rows;
-  const bool want_meshes = options.multigrid == "mesh" || (automatic && !for_each_state);
+  const bool want_meshes = options.multigrid == "mesh" || (automatic && unknowns > linear_rules.few_rows);
+  const bool for_each_state = unknowns <= linear_rules.most_rows_for_each_state;
   sparse = consider<Factor>(Kind::sparse, State::waits, H, Factor::Kind::sparse);
   if (mixed_form && want_meshes) mixed = consider<Mixed>(Kind::mixed, State::open, H, std::move(mixed_form), options);
   if (levels && want_meshes) consider<Meshes>(Kind::meshes, State::open, H, std::move(levels), options);
@@ -285,7 +284,7 @@ LinearSolver::Result LinearSolver::Impl::attempt(const Vector &b, Vector &x, con
                                   : krylov.solve(*used->B, H->is_symmetric(), b, x, wanted, asked);
     given_up = done.given_up;
     lost_iterations += std::max(0., done.iterations - fair(least));
-    used->B->learn(done.iterations, seconds_of_cg.counted);
+    used->B->learn(done.iterations, done.residual, seconds_of_cg.counted);
     result = {done.converged, done.broken, false, done.iterations, done.energy, done.reason};
     counts.iterations.push_back(result.iterations);
     ++row(*used).solves;

@@ -83,7 +83,7 @@ LinearSolverOptions for_saddle()
 {
   LinearSolverOptions options;
   options.method = "BiCGStab";
-  options.max_iterations = linear_rules.most_before_restart;
+  options.max_iterations = linear_rules.iterations_of_pass;
   return options;
 }
 
@@ -218,9 +218,9 @@ Preconditioner::Prepared Mixed::prepare(const double tolerance)
   return system_->meshes.prepare(tolerance);
 }
 
-void Mixed::learn(const int iterations, const double seconds_of_iteration)
+void Mixed::learn(const int iterations, const double residual, const double seconds_of_iteration)
 {
-  if (system_) system_->meshes.learn(iterations, seconds_of_iteration);
+  if (system_) system_->meshes.learn(iterations, residual, seconds_of_iteration);
 }
 
 void Mixed::forget()

@@ -7,6 +7,7 @@
 #include "rpc/core/headway.hpp"
 #include "rpc/solver/minimization_steps.hpp"
 
+#include <array>
 #include <limits>
 #include <optional>
 
@@ -15,8 +16,9 @@ namespace rpc::analysis
 
 /// When the active-set iteration is content.
 struct ActiveSetTolerances {
-  double residual = 1e-10; ///< |F|_2 / |load|_2, > 0
-  double pressure = 1e-7;  ///< error of pressures, over the largest, > 0
+  double residual = 1e-10;            ///< |F|_2 / |load|_2, > 0
+  double pressure = 1e-7;             ///< error of pressures, over the largest, > 0
+  bool nearly_incompressible = false; ///< the body is: pressures err by more than displacements
 };
 
 /// By the options for Newton and Uzawa. (5.10)
@@ -33,13 +35,13 @@ public:
   /// What follows where no choice is confirmed.
   enum class Then {
     newton, ///< Newton's directions with their line search
-    nothing ///< the minimization ends, as if converged
+    nothing ///< the minimization ends, as if converged; few changes are tried
   };
   using Status = solver::MinimizationSteps::Status;
   ActiveSetLoop(contact::Iterate &iterate, const ActiveSetTolerances &tolerances, Then then = Then::newton);
 
-  /// The start is a coarser mesh's solution. What led to its states makes the first steps, or the coarser mesh chooses,
-  /// soon or where pressures were not enough; except with friction.
+  /// The start is a coarser mesh's solution. What led to its states makes the first steps, or choices by the coarser mesh where
+  /// pressures were not enough; except with friction.
   /// @param coarse_choice  empty: there are no such choices
   void starts_predicted(FoundBy coarser, MakeCoarseChoice coarse_choice = {});
   Status operator()(solver::MinimizationSteps &steps);
@@ -91,6 +93,7 @@ private:
   contact::Iterate &iterate_;
   double scale_, target_;                          // of forces, and |F|_2 that is small enough [N]
   double pressure_tolerance_;                      // over the largest pressure
+  double most_overshoot_;                          // of forces, before choices end
   std::optional<contact::ActiveSetChoice> choice_; // at the present point
   Vector start_;                                   // to go back to, with
   contact::Iterate::Dual start_dual_;              // its multipliers
@@ -116,9 +119,11 @@ private:
   int steps_ = 0;
   int updates_ = 0;           // of the multipliers alone, the active set being confirmed
   int choices_ = 0;           // since the start, or since the path
-  Headway headway_;           // of these
+  Headway headway_;           // of these; those with much overshoot count twice
   Headway confirmed_headway_; // of steps of a confirmed active set
   GO fewest_changes_ = 0;     // fewest points that one of them has changed; 0: there was none
+  double left_ = std::numeric_limits<double>::infinity(); // so many more would follow at this rate
+  std::array<double, 3> levers_{}; // of the last ones, the last one first: overshoot o as o / (1 - o)
   enum class Path { ahead, begun, behind } path_ = Path::ahead; // the interior-point method
   int path_steps_ = 0;
   double trial_gap_; // of the path, at which the states that it leads to are tried

@@ -16,6 +16,7 @@ struct ChoiceRules {
   // When choices by pressures end
   Rule<int> most_idle{6, "choice.most_idle", "choices without progress [-]", "measurements.md: Limits on active-set updates"};
   Rule<int> most_changes{10, "choice.most_changes", "choices with friction, with progress or not [-]", "not measured"};
+  Rule<int> most_changes_tried{3, "choice.most_changes_tried", "the same after a Tresca problem [-]", "not measured"};
   Rule<int> most_changes_resumed{30, "choice.most_changes_resumed",
                                  "choices without progress after Newton's steps were blocked at kinks [-]",
                                  "not measured; slender bodies need them"};
@@ -24,14 +25,22 @@ struct ChoiceRules {
                           "not measured"};
   Rule<double> most_left{10, "choice.most_left", "predicted changes to go that count as progress [choices]",
                          "measurements.md: Limits on active-set updates"};
+  Rule<double> most_left_creeping{4, "choice.most_left_creeping", "the same by the speed at which the contact edge moves [choices]",
+                                  "measurements.md: Limits on active-set updates"};
+  Rule<int> fewest_to_tell{4, "choice.fewest_to_tell", "choices before a slow edge may end them [-]", "measurements.md: Limits on active-set updates"};
+  Rule<double> much{0.5, "choice.much", "overshoot with which a choice without progress counts twice, and a coarser mesh chooses [-]",
+                    "theory.md (5.8a): bodies of equal sides stay below"};
   Rule<double> far_too_much{1, "choice.far_too_much", "overshoot that ends choices [-]", "measurements.md: Limits on active-set updates"};
+  Rule<double> far_too_much_of_rubber{10, "choice.far_too_much_of_rubber", "the same of nearly incompressible bodies [-]", "not measured"};
+  Rule<GO> few_changes{5, "choice.few_changes", "changed points up to which overshoot ends nothing [-]", "measurements.md: Limits on active-set updates"};
   // Where an active set is confirmed
   Rule<int> most_updates{2, "choice.most_updates", "multiplier updates at the end, even if pressures miss their tolerance then [-]", "not measured"};
+  Rule<double> idle_residual{0.5, "choice.idle_residual", "residual over the least before: a step that leaves more is idle [-]", "not measured"};
   Rule<int> most_idle_turns{4, "choice.most_idle_turns", "idle steps in a row, friction in space [-]", "not measured"};
   Rule<double> negligible{1e-3, "choice.negligible", "violations that change no state, over the tolerance of pressures [-]", "not measured"};
   // When a coarser mesh chooses
-  Rule<int> steps_before_coarse{2, "choice.steps_before_coarse", "steps before a coarser mesh chooses where pressures were enough on it [-]",
-                                "measurements.md, 2026-11-30"};
+  Rule<int> steps_before_coarse{4, "choice.steps_before_coarse", "steps before a coarser mesh chooses without overshoot [-]", "not measured"};
+  Rule<double> one_more{1, "choice.one_more", "predicted changes to go above which it does [choices]", "not measured"};
   Rule<int> most_idle_coarse{3, "choice.most_idle_coarse", "of these in a row without fewer changes than before [-]", "not measured"};
   Rule<GO> most_coarse_unknowns{60'000, "choice.most_coarse_unknowns", "unknowns of the coarser mesh, whose stiffness rank 0 holds [-]",
                                 "not measured"};
@@ -72,8 +81,8 @@ struct PathRules {
   Rule<int> most_centerings{2, "path.most_centerings", "corrections that centre a step (5.19a) [-]", "not measured"};
   Rule<double> long_enough{0.9, "path.long_enough", "length from which a step is not centred [-]", "not measured"};
   Rule<double> least_gain{0.03, "path.least_gain", "length gained from which a step is centred once more [-]", "not measured"};
-  Rule<double> trial{1e-2, "path.trial", "complementarity gap, relative and then over that of the last trial, below which settled states are tried [-]",
- "not measured"};
+  Rule<double> first_trial{1e-2, "path.first_trial", "complementarity gap, relative, below which settled states are tried [-]", "not measured"};
+  Rule<double> next_trial{1e-2, "path.next_trial", "the same after a trial, over the gap of that [-]", "not measured"};
   Rule<double> last_gap{1e-8, "path.last_gap", "gap that ends the path [-]", "not measured"};
   Rule<int> trial_changes{2, "path.trial_changes", "choices without progress from tried states [-]", "not measured"};
   Rule<double> model_gap{3e-6, "path.model_gap", "gap that ends the path on the coarser mesh [-]", "not measured"};
@@ -105,6 +114,8 @@ struct StepRules {
   Rule<double> near_equilibrium{1e-7, "step.near_equilibrium",
                                 "unbalanced forces over the load, residual of the contact law: no prediction is needed [-]", "not measured"};
   Rule<GO> least_nodes_predicted{500, "step.least_nodes_predicted", "nodes below which a prediction costs as much as a solution [-]", "not measured"};
+  Rule<GO> fewest_points_telling{50, "step.fewest_points_telling", "contact points of a coarser mesh that tells which method to begin with [-]",
+                                 "theory.md (5.11)"};
   Rule<double> boundary{0.65, "step.boundary", "growth of cells over that by numbers of nodes: boundaries have more [-]", "not measured"};
 };
 inline constexpr_rules StepRules step_rules;
@@ -114,7 +125,9 @@ struct LinearRules {
   Rule<GO> least_nodes_of_rank{on_gpu ? 200'000 : 2000, "body.least_nodes_of_rank", "nodes of a coarse box on each of its ranks [-]",
                                "measured, not recorded"};
   // Nearly incompressible bodies
-  Rule<double> mixed{0.48, "body.mixed", "Poisson's ratio above which a body has the mixed form [-]", "theory.md (4.13)"};
+  Rule<double> mixed_order_one{0.485, "body.mixed_order_one", "Poisson's ratio above which order 1 takes the mixed form [-]",
+                               "theory.md (4.13), in space"};
+  Rule<double> mixed_order_two{0.48, "body.mixed_order_two", "the same of order 2 [-]", "theory.md (4.13)"};
   Rule<double> soft{0.4, "body.soft", "Poisson's ratio of the soft part of K [-]", "theory.md (4.13)"};
   Rule<double> soft_tetrahedra{0.47, "body.soft_tetrahedra", "the same in tetrahedra [-]", "theory.md (4.13)"};
   Rule<double> pays_above{0.495, "body.pays_above", "Poisson's ratio above which tetrahedra have equations for alternating pressures [-]",

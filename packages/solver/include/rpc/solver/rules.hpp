@@ -12,9 +12,11 @@ namespace rpc::solver
 /// Which preconditioner a linear solve has, how each is made, and when the next one takes over. Equations are those of doc/theory.md.
 struct LinearRules {
   // Choice of a preconditioner.
-  Rule<GO> few_rows{1000, "linear.few_rows",
-                    "unknowns up to which multigrid is a factor, made for each choice of states [-]",
+  Rule<GO> few_rows{1000, "linear.few_rows", "unknowns up to which multigrid is a factor [-]",
                     "coarser meshes save little there, and leave CG a rest"};
+  Rule<GO> most_rows_for_each_state{2500, "linear.most_rows_for_each_state",
+                                    "unknowns up to which a preconditioner is made for each choice of states [-]",
+                                    "not measured; MueLu's hierarchy of so few is nearly a factor"};
   Rule<GO> most_sparse_rows{3000000, "linear.most_sparse_rows",
                             "unknowns up to which a sparse factor is thought of [-]",
                             "its memory in the plane and in space"};
@@ -40,11 +42,14 @@ struct LinearRules {
                        "a stall is an error of ten gains, (4.10c)"};
   Rule<double> small_error{1e-4, "linear.small_error", "error at which a breakdown is that of rounding [-]",
                            "of a singular matrix most of the error is left"};
-  Rule<int> most_before_restart{50, "linear.most_before_restart",
-                                "iterations of GMRES and BiCGStab before a restart [-]",
-                                "with multigrid it takes fewer"};
+  Rule<double> large_error{1e-2, "linear.large_error", "error for one application of an exact factor [-]",
+                           "not measured"};
+  Rule<int> gmres_vectors{50, "linear.gmres_vectors", "GMRES iterations before a restart [-]",
+                          "with multigrid it takes fewer"};
 
   // The mixed form, (4.14), (4.15).
+  Rule<int> iterations_of_pass{80, "linear.iterations_of_pass", "BiCGStab iterations before a restart [-]",
+                               "its own residuals are no longer those of x by then"};
   Rule<double> residual_of_pass{0.1, "linear.residual_of_pass", "largest residual ratio that a pass is asked for [-]",
                                 "its own residual is a little below that of H x = b"};
   Rule<double> stalled{0.5, "linear.stalled", "residual ratio of a pass that has stalled [-]", "not measured"};
@@ -77,12 +82,18 @@ struct LinearRules {
   // MueLu's hierarchy, (4.8), (4.9).
   Rule<double> most_stiffness{5, "linear.most_stiffness", "contact in MueLu's hierarchy over own stiffness [-]",
                               "with all of the penalty CG takes a third more iterations"};
+  Rule<double> setup_in_iterations{12, "linear.setup_in_iterations", "CG iterations in the time of a set-up [-]",
+                                   "not measured"};
+  Rule<double> few_digits{2, "linear.few_digits", "digits that tell nothing of the rate [-]", "not measured"};
   Rule<double> rough_digits{6, "linear.rough_digits", "digits that may leave slight changes to CG [-]", "(4.12)"};
+  Rule<int> most_setups_for_states{1, "linear.most_setups_for_states", "set-ups for changed states [-]",
+                                   "not measured"};
   Rule<int> layers{2, "linear.layers", "layers of a patch around changed nodes in 2D [-]",
                    "the second saves one CG iteration in ten; in 3D a layer saves as much for ten times the factor"};
   Rule<double> patch_work{3e3, "linear.patch_work", "multiplications of a patch's factor, a row of H [-]",
                           "a fraction of a set-up"};
   Rule<int> muelu_degree{2, "linear.muelu_degree", "degree of MueLu's smoother [-]", "not measured"};
+  Rule<double> muelu_ratio{7, "linear.muelu_ratio", "largest over least damped eigenvalue, MueLu [-]", "not measured"};
   Rule<int> strong_degree{8, "linear.strong_degree", "degree of the stronger smoother [-]", "not measured"};
   Rule<double> strong_ratio{50, "linear.strong_ratio", "ratio of the stronger smoother [-]", "not measured"};
   Rule<GO> least_coarsening{4, "linear.least_coarsening", "rows over those of the last level on ranks [-]",
@@ -113,7 +124,12 @@ struct LinearRules {
                                  "times of both"};
   Rule<int> most_width{200, "linear.most_width", "width of a band as numbered [-]", "times of both"};
   Rule<double> short_time{5e-3, "linear.short_time", "a factor made for the slightest change [s]", "not measured"};
+  Rule<double> few_columns{3, "linear.few_columns", "the same in solves with one column [-]", "not measured"};
+  Rule<double> few_solves{8, "linear.few_solves", "solves worth a factor that leaves nothing out [-]", "(4.12)"};
   Rule<double> worth_a_factor{0.7, "linear.worth_a_factor", "time of an update over a factor's [-]", "(4.11)"};
+  Rule<double> worth_factors{1.4, "linear.worth_factors", "the same over all factors made so far [-]",
+                             "later changes are at the same places"};
+  Rule<int> most_factors_worth{3, "linear.most_factors_worth", "factors that count as made so far [-]", "not measured"};
   Rule<double> least_left_out{1e-5, "linear.least_left_out", "least bound of changes left to CG, over own block [-]",
                               "(4.12)"};
   Rule<double> kept_of_factor{2, "linear.kept_of_factor", "entries of an update over those of the factor [-]",
@@ -148,6 +164,7 @@ struct CostModel {
   Rule<double> wide_band{1.5e-11, "cost.wide_band", "of a multiplication in a wide band [s]", "one core"};
   Rule<double> narrow_band{1e-10, "cost.narrow_band", "of a multiplication in a narrow band [s]", "one core"};
   Rule<double> band_entry{6e-9, "cost.band_entry", "of an entry of the band [s]", "one core"};
+  Rule<double> band_row_in_solve{18e-9, "cost.band_row_in_solve", "of a row in a solve [s]", "one core"};
   Rule<double> band_entry_in_solve{1e-9, "cost.band_entry_in_solve", "of an entry in a solve [s]", "one core"};
 };
 inline constexpr_rules CostModel cost_model;
