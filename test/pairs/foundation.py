@@ -79,6 +79,14 @@ def samples_of(corners):
     return np.array([(a, b) for a in np.linspace(-1, 1, 4) for b in np.linspace(-1, 1, 4)])
 
 
+def middles_of(corners, parts=20):
+    """The middles of equal parts of an edge, a triangle or a quadrilateral. They count alike in integrals, and none is on an edge."""
+    if corners == 3:
+        return np.array([((3 * a + k) / (3 * parts), (3 * b + k) / (3 * parts)) for k in (1, 2) for a in range(parts) for b in range(parts - a - k + 1)])
+    line = (2 * np.arange(parts) + 1) / parts - 1
+    return line[:, None] if corners == 2 else np.array([(a, b) for a in line for b in line])
+
+
 @dataclasses.dataclass
 class Samples:
     """Points between contact points: what their facet's nodes say there, and the facet of each."""
@@ -87,19 +95,28 @@ class Samples:
     outward: np.ndarray
     u: np.ndarray
     dent: np.ndarray
+    area: np.ndarray  # of each one's part of the facet, if parts are equal
     facet: np.ndarray  # number of the facet
     nodes: list  # of each facet
 
 
-def samples(mesh, side, u, dent):
+REFERENCE = {2: 2.0, 3: 0.5, 4: 4.0}  # length and areas of the reference edge, triangle and quadrilateral
+
+
+def samples(mesh, side, u, dent, lattice=samples_of):
+    """@param lattice  by the number of corners: places in the reference facet"""
     parts, nodes = [], []
     for element, cells, facet in mesh.facets(side):
-        values, place, normal = facet_geometry(mesh, element, cells, facet, samples_of(len(element.facets[facet])))
+        corners = len(element.facets[facet])
+        at = lattice(corners)
+        values, place, normal = facet_geometry(mesh, element, cells, facet, at)
+        size = np.linalg.norm(normal, axis=2, keepdims=True)
         number = len(nodes) + np.repeat(np.arange(len(cells)), place.shape[1])
         nodes += list(cells[:, element.facet_nodes(facet)])
         flat = lambda a: a.reshape(-1, a.shape[-1])
-        parts.append((flat(place), flat(normal / np.linalg.norm(normal, axis=2, keepdims=True)),
-                      flat(np.einsum("qn,fnd->fqd", values, u[cells])), np.maximum(0, np.einsum("qn,fn->fq", values, dent[cells])).ravel(), number))
+        parts.append((flat(place), flat(normal / size),
+                      flat(np.einsum("qn,fnd->fqd", values, u[cells])), np.maximum(0, np.einsum("qn,fn->fq", values, dent[cells])).ravel(),
+                      size.ravel() * REFERENCE[corners] / len(at), number))
     return Samples(*(np.concatenate(column) for column in zip(*parts)), nodes)
 
 

@@ -111,8 +111,21 @@ class Oracle:
         return force, force * np.max(np.abs(state.u), initial=0.0)
 
     def rests(self):
-        """The largest of all states."""
-        return tuple(max(values) for values in zip(*map(self.rest, self.states)))
+        """The largest of all states, with what the tolerance leaves of forces on springs."""
+        force, energy = (max(values) for values in zip(*map(self.rest, self.states)))
+        return force + self.left_on_springs(), energy
+
+    def left_on_springs(self):
+        """Of the contact force. The solver's tolerance is of pressures (doc/theory.md, (5.3)), as if points were held by E/diameter of the body alone. A
+        column of the body on stiffer springs amplifies what is left. A rigid foundation has no such rest: its last Newton step is exact."""
+        if math.isinf(self.case.side.stiffness):
+            return 0.0
+        material, extents = self.case.scene.material, np.ptp(self.mesh.coords, axis=0)
+        lam, mu = elasticity.lame(material["E"], min(material["nu"], 0.4))
+        column = 1 / (np.min(extents) / (lam + 2 * mu) + 1 / self.case.side.stiffness)
+        held = material["E"] / np.linalg.norm(extents)
+        touching = {state.time: np.sum(weights[state.p[nodes] > 0]) for state in self.states for nodes, weights, _ in [self.nodal(state)]}
+        return TOLERANCE * max(1.0, column / held) * max(np.max(state.p) * touching[state.time] for state in self.states)
 
     # --- the judgement
 

@@ -18,6 +18,7 @@ except ImportError as missing:
 
 import numpy as np
 
+import between
 import comparisons
 import covering
 import decks
@@ -99,6 +100,35 @@ class Elements(unittest.TestCase):
                 if sum(powers) <= degree:
                     exact = np.prod([np.math.factorial(p) for p in powers]) / np.math.factorial(sum(powers) + dim)
                     self.assertAlmostEqual(np.sum(weights * np.prod(points ** np.array(powers), axis=1)), exact, 14)
+
+    def test_middles_of_parts_of_a_facet_count_alike(self):
+        for corners, size, square in ((2, 2, 2 / 3), (3, 1 / 2, 1 / 12), (4, 4, 4 / 3)):
+            at = foundation.middles_of(corners)
+            self.assertEqual(len(at), 20 ** min(corners - 1, 2))
+            self.assertEqual(foundation.REFERENCE[corners], size)
+            self.assertAlmostEqual(size * np.mean(at[:, 0] ** 2) / square, 1, 2)
+        for name in elements.NODES:
+            mesh = cube(name)
+            still = np.zeros_like(mesh.coords)
+            facets = [elasticity.facet_geometry(mesh, element, cells, facet, np.zeros((1, mesh.dim - 1)))[2] for element, cells, facet in mesh.facets("all")]
+            area = sum(np.linalg.norm(each) * foundation.REFERENCE[len(mesh.blocks[0].element.facets[k])] for k, each in enumerate(facets))
+            self.assertAlmostEqual(np.sum(foundation.samples(mesh, "all", still, still[:, 0], foundation.middles_of).area) / area, 1, 10, name)
+
+    def test_energy_of_a_strip_that_is_unseen(self):
+        element, part = elements.Element("HEX8"), 0.2
+        bottom = next(k for k in range(6) if np.ptp(element.places[element.facet_nodes(k)][:, 1]) == 0)
+        mesh = outputs.Mesh(element.places, [outputs.Block("body", element, np.arange(8)[None])], {"bottom": [(0, 0, bottom)]})
+        low, length = np.min(mesh.coords[:, 0]), np.ptp(mesh.coords[:, 0])
+        depth = lambda x: max(0.0, 1 - (x - low) / (part * length))
+        side = types.SimpleNamespace(stiffness=1e-9, at=lambda x, n: (n, -depth(x[0])), xi=lambda *x: np.inf)  # so soft that the width does not count
+        side.seen_at = lambda time: side
+        case = types.SimpleNamespace(scene=types.SimpleNamespace(material={"E": 1.0, "nu": 0.3}), side=side)
+        judge = types.SimpleNamespace(mesh=mesh, side="bottom", axisymmetric=False, case=case)
+        still = np.zeros_like(mesh.coords)
+        state = types.SimpleNamespace(time=0.0, u=still, dent=still[:, 0], p=still[:, 0], strain_energy=1.0)
+        exact = 1e-9 / 2 * length ** 2 * part / 3
+        self.assertAlmostEqual(between.share(judge, state, {0}) ** 2 / exact, 1, 1)
+        self.assertEqual(between.share(judge, state, set()), 0)
 
     def test_energy_of_a_linear_displacement(self):
         material = {"E": 7.0, "nu": 0.45, "blocks": {}}
@@ -251,6 +281,17 @@ class Changed(unittest.TestCase):
             higher.scene.contact[0].obstacle = None
             higher.scene.contact[0].gap = case.side.gap + bump
             self.assert_found(name, "between contact points", None, higher)
+
+    def test_what_the_tolerance_leaves_on_springs(self):
+        for name, run in self.runs.items():
+            judge, most = Oracle(self.cases[name], run), max(np.max(np.abs(step["contact_force"])) for step in run.step_summaries())
+            left = judge.left_on_springs()
+            if self.cases[name].side.stiffness == np.inf:
+                self.assertEqual(left, 0, name)
+            else:
+                self.assertGreaterEqual(left, 1e-8 * most, name)
+                self.assertLess(left, 1e-6 * most, name)
+                self.assertGreaterEqual(judge.rests()[0], left)
 
     def test_other_runs(self):
         for name, run in self.runs.items():
