@@ -32,7 +32,7 @@ def same_mesh(run, other):
 
 
 def same(run, other, what, rests=(0.0, 0.0)):
-    """Complaints about two runs of one problem. @param rests  forces and energies that are rounding"""
+    """Complaints about two runs of one problem. @param rests  forces and energies that are rounding, or what the tolerance leaves"""
     if other.code != run.code:
         return [f"{what}: exit {other.code} instead of {run.code}: {other.reason()[:200]}"]
     if run.mesh is None or other.mesh is None:

@@ -233,16 +233,20 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
   const mesh::Element facet = mesh.element.facet();
   const FacetRows rows = facet_rows(d, side, points, result, k, u);
   std::vector<LO> owned;
-  GO bearing_nothing = 0;
+  GO bearing_nothing = 0, partly_open = 0;
   for (LO f = 0; f < rows.num_facets(); ++f) {
     if (rows.cell(f) >= mesh.num_owned_cells) continue;
     owned.push_back(f);
     bearing_nothing += rows.bears_nothing(f) ? 1 : 0;
+    partly_open += rows.is_partly_open(f) ? 1 : 0;
   }
   const int parts = parts_of(facet, sum_all(mesh.comm(), GO(owned.size())));
   const auto fine = lattice_of(facet, parts), coarse = lattice_of(facet, Density::fewest_parts);
-  // A face in space that bears a pressure shows how far the gap bends within it by a few samples; what is unseen may be narrow.
-  const SideSamples samples{options, rows, fine, d.axisymmetric()}, few{options, rows, coarse, d.axisymmetric()};
+  // Where a face in space touches on all of it, a few samples show how far the gap bends. What is unseen may be narrow, and so may be the part in the
+  // foundation of a face that touches at one node: these faces share as many samples as a side may have.
+  const auto at_edges = facet.dim == 2 ? lattice_of(facet, parts_of(facet, sum_all(mesh.comm(), partly_open))) : fine;
+  const SideSamples samples{options, rows, fine, d.axisymmetric()}, few{options, rows, coarse, d.axisymmetric()},
+      edges{options, rows, at_edges, d.axisymmetric()};
   const bool searches = facet.dim == 2 && !options.obstacle.exists() && options.gap.bounds;
   const GO all_bearing_nothing = std::max(GO(1), sum_all(mesh.comm(), bearing_nothing));
   // In space facets whose nodes are far need no samples: bounds find narrow pits there, and of obstacles nodes show at least that a normal misses them.
@@ -258,7 +262,10 @@ double look_at_side(const fem::Discretization &d, const mesh::Side &side, const 
     const double lambda = lame(block(rows.cell(f)), 0), mu = lame(block(rows.cell(f)), 1), modulus = lambda + 2 * mu;
     const bool unseen = rows.bears_nothing(f);
     Found found;
-    if (!sieves || samples.is_near(f)) found = (unseen || facet.dim == 1 ? samples : few).look(f, modulus, least);
+    if (!sieves || samples.is_near(f)) {
+      const bool all_touches = facet.dim == 2 && !unseen && !rows.is_partly_open(f);
+      found = (unseen ? samples : all_touches ? few : edges).look(f, modulus, least);
+    }
     if (unseen && most_searched > 0 && !(found.deepest > 0))
       if (const auto hidden =
               find_hidden_part(rows, f, shape, options, facet.shape == mesh::Shape::simplex, least, most_searched))

@@ -132,6 +132,32 @@ TEST(BetweenNodes, NothingIsFoundOnAPlaneOrInFrontOfASphereThatIsAway)
   }
 }
 
+TEST(BetweenNodes, OfAFaceInSpaceThatTouchesAtOneNodeTheDeepestPlaceIsFoundBetweenQuartersOfTheFace)
+{
+  // A pit around (0.56, 0.5), of radius 0.065: the node (0.5, 0.5) touches. Quarters of faces are 0.125 long.
+  auto side = touching("back");
+  side.gap = ScalarField("pit", [](const Point &x) {
+    return 0.01 * (((x[0] - 0.56) * (x[0] - 0.56) + (x[1] - 0.5) * (x[1] - 0.5)) / (0.065 * 0.065) - 1);
+  });
+  for (const int order : {1, 2}) {
+    Looked looked({3, order}, side);
+    const auto pressure = Kokkos::create_mirror_view(looked.result.pressure);
+    const auto v = to_host(looked.result.penetration);
+    GO touch = 0;
+    for (std::size_t i = 0; i < v.extent(0); ++i) {
+      pressure(i) = v(i) > 0 ? 1 : 0;
+      touch += v(i) > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(sum_all(looked.d.mesh->comm(), touch), 1);
+    Kokkos::deep_copy(looked.result.pressure, pressure);
+    const auto sides = contact::contact_sides(*looked.d.mesh, looked.options);
+    contact::look_between_nodes(looked.d, sides, looked.options, looked.points, steel, *looked.u, looked.result);
+    // 0.01 at the centre, less what the node has; at the nearest quarter of a face 0.
+    EXPECT_GT(looked.result.total.max_penetration_between_nodes, 0.008);
+    EXPECT_EQ(looked.result.total.unseen_penetration, 0);
+  }
+}
+
 /// A pit of the gap of 1/1000 of the side, as deep as `depth`, with bounds on it.
 ScalarField narrow_pit(const double depth)
 {
