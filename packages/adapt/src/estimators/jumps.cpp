@@ -124,16 +124,15 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
           double beside = 0;
           if (slopes.after(node) >= 0) beside = math::fmax(beside, seen(slopes.after(node), int(kink)));
           if (slopes.before(node) >= 0) beside = math::fmax(beside, seen(slopes.before(node), int(kink)));
-          // Within a facet of order 2 one shows as a curvature that the next facets do not have, twice as much if it is in the middle.
+          // From before a facet to behind it the slope grows by as much as at a kink within it, wherever that lies; a curved gap shows in
+          // the curvature of the next facets of order 2, or at the nodes beyond one of order 1.
           const LO start = terms.facets(f, 0), end = terms.facets(f, 1);
+          const double across = seen(start, int(kink)) + slopes.to(end) - slopes.from(start) + seen(end, int(kink));
           const double curved =
               math::fmax(0., math::fmax(seen(start, int(curvature_before)), seen(end, int(curvature_after))));
-          // Within one of order 1 its ends have a part of it each, and the nodes beyond have what a curved gap has.
           const double beyond =
               math::fmax(0., math::fmax(neighbour(start, int(kink_before)), neighbour(end, int(kink_after))));
-          const double within = terms.facets.extent(1) == 3
-                                    ? (slopes.to(end) - slopes.from(start) - curved * terms.size(f)) / 2
-                                    : seen(start, int(kink)) + seen(end, int(kink)) - 2 * beyond;
+          const double within = across - (terms.facets.extent(1) == 3 ? curved * terms.size(f) : 2 * beyond);
           const double grows = math::fmax(within, seen(node, int(kink)) - beside);
           largest = math::fmax(largest, modulus * grows / (twice_pi * terms.highest));
         }
