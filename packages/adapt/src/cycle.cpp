@@ -62,18 +62,18 @@ std::string unknown_max_pressure(const std::vector<Cycle> &cycles, const std::ve
 
 constexpr double caution = 2; // the estimate may be 0.7 of the error
 
-/// By how much the load of a mesh moves in the mean, by the contact force [m].                                    (10.7b)
-double moved_by(const Cycle &cycle)
+/// By how much a force of a mesh moves in the mean, if the strain energy is its work [m].                         (10.7b)
+double moved_by(const Cycle &cycle, const double force)
 {
-  const double force = length_of(cycle.contact.force);
   return force > 0 ? cycle.energy_norm_squared / force : 0;
 }
 
 /// No less than what the last mesh leaves open: its estimated error, and data that jump between its nodes.      (10.7a), (10.7b)
 void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, ObservedErrors &errors)
 {
-  const double force = length_of(last.contact.force), squared = caution * last.estimate * last.estimate;
-  const double moved = moved_by(last);
+  const double force = force_at_work(last.contact.force, last.reactions),
+               squared = caution * last.estimate * last.estimate;
+  const double moved = moved_by(last, force);
   errors.energy = std::max(errors.energy, energy_left(last));
   const auto by_energy = [moved](const double energy) { return moved > 0 ? 2 * energy / moved : 0; };
   double jumped = last.jumped_force + by_energy(last.jumped_energy);
@@ -137,8 +137,8 @@ bool is_fixed(const std::vector<Cycle> &cycles, const FixedByLoad &fixed)
 double energy_left(const Cycle &cycle)
 {
   const double squared = caution * cycle.estimate * cycle.estimate;
-  return squared * cycle.energy_norm_squared / 2 + cycle.jumped_energy + cycle.jumped_force * moved_by(cycle) +
-         cycle.misread_energy;
+  return squared * cycle.energy_norm_squared / 2 + cycle.jumped_energy +
+         cycle.jumped_force * moved_by(cycle, length_of(cycle.contact.force)) + cycle.misread_energy;
 }
 
 std::string error_bar_name(const std::string &key, const ResultScope &scope)

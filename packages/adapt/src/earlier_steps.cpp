@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "earlier_steps.hpp"
+#include "rpc/adapt/observed_error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,9 +43,8 @@ EarlierSteps earlier_steps(const Task &task, const Solution &s)
   earlier.largest_estimate = s.largest_estimate;
   for (const analysis::StepRecord &step : s.history) {
     if (!step.converged || step.time > s.time) continue;
-    const auto &force = step.contact.force;
-    const double size = std::hypot(force[0], force[1], force[2]);
-    if (size > 0) earlier.moved_by = std::max(earlier.moved_by, 2 * step.energies.strain / size);
+    const double force = force_at_work(step.contact.force, step.reactions);
+    if (force > 0) earlier.moved_by = std::max(earlier.moved_by, 2 * step.energies.strain / force);
     if (step.time < s.time && step.contact.max_dent > 0) earlier.matter = true;
   }
   return earlier;

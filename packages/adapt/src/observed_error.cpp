@@ -78,4 +78,12 @@ bool unsettled(const std::vector<double> &change, const std::vector<double> &eta
   return change[last - 1] > (to_halve ? half : 1) * change[last - 2];
 }
 
+double force_at_work(const std::array<double, 3> &contact, const std::vector<std::array<double, 3>> &reactions)
+{
+  std::array<double, 3> sum = contact;
+  for (const auto &reaction : reactions)
+    for (int c = 0; c < 3; ++c) sum[c] += reaction[c];
+  return std::max(std::hypot(contact[0], contact[1], contact[2]), std::hypot(sum[0], sum[1], sum[2]));
+}
+
 } // namespace rpc::adapt

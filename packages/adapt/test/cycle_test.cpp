@@ -109,9 +109,23 @@ TEST(ErrorBars, OfReactionsAreThoseOfForces)
   EXPECT_NEAR(errors.reactions[1], 0.5 / (0.1 / 0.02 - 1), 1e-12);
   cycles[1].jumped_force = cycles[0].jumped_force = 0.3;
   cycles[1].reactions[0] = cycles[0].reactions[0] = {0, 50, 0};
+  cycles[1].reactions[1] = cycles[0].reactions[1] = {0, -60, 0};
   errors = observed_errors(cycles);
-  EXPECT_NEAR(errors.reactions[0], 2 * 0.02 * 0.02 * 50 + 0.3, 1e-12);
-  EXPECT_NEAR(errors.contact_force, 2 * 0.02 * 0.02 * 10 + 0.3, 1e-12);
+  EXPECT_NEAR(errors.reactions[0], 2 * 0.02 * 0.02 * 60 + 0.3, 1e-12);
+  EXPECT_NEAR(errors.contact_force, 2 * 0.02 * 0.02 * 10 + 0.3,
+              1e-12); // the reactions balance it: nothing else loads the body
+}
+
+TEST(ErrorBars, OfAContactForceThatIsASmallPartOfTheLoadAreThoseOfReactions)
+{
+  // A load of 200 N that the support bears but for 10 N; it moves by 0.01 m in the mean.
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 30), mesh(0.02, 10, 30)};
+  for (Cycle &cycle : cycles) cycle.reactions = {{0, 190, 0}};
+  auto errors = observed_errors(cycles);
+  EXPECT_NEAR(errors.contact_force, 2 * 0.02 * 0.02 * 200, 1e-12);
+  cycles.back().misread_force = 0.3;
+  cycles.back().misread_energy = 0.001; // of which the load makes 0.2 N
+  EXPECT_NEAR(observed_errors(cycles).contact_force, errors.contact_force + 0.2, 1e-12);
 }
 
 TEST(ErrorBars, OfMeshesThatAreHardlyFinerAreWide)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <vector>
 
 namespace rpc::adapt
@@ -35,5 +36,8 @@ bool grows_without_limit(const std::vector<double> &value, const std::vector<dou
 /// Whether the last change is larger than the one before it, or half of it where the estimate has fallen by more than half:
 /// then the sequence does not settle, and nothing bounds its error. A change up to `resolved` is no matter.        (10.8)
 bool unsettled(const std::vector<double> &change, const std::vector<double> &eta, double resolved);
+
+/// The larger of the contact force and the resultant of the loads, which balances it and the reactions [N], in 2D per m. (10.7a)
+double force_at_work(const std::array<double, 3> &contact, const std::vector<std::array<double, 3>> &reactions);
 
 } // namespace rpc::adapt
