@@ -101,6 +101,29 @@ void make_unknown(ObservedErrors &errors, const std::string &reason)
   }
 }
 
+/// Whether springs are all that gives way of the foundation: penetrations are pressures over their stiffness.
+bool springs_alone(const Cycle &cycle)
+{
+  const contact::ContactSums &all = cycle.contact;
+  return all.foundation_energy > 0 && all.max_pressure > 0 && all.max_penetration > 0 && all.max_dent == 0;
+}
+
+/// Of springs that alone give way the largest pressure and the largest penetration are known to the same share.       (10.7a)
+void share_what_springs_tell(const Cycle &last, ObservedErrors &errors)
+{
+  if (!springs_alone(last)) return;
+  const auto unknown = errors.unknown.find("max_pressure");
+  if (unknown != errors.unknown.end()) {
+    if (errors.unknown.count("max_penetration") == 0)
+      errors.unknown["max_penetration"] = "that of the springs is the largest pressure's: " + unknown->second;
+    errors.max_penetration = std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
+  const double compliance = last.contact.max_penetration / last.contact.max_pressure;
+  errors.max_penetration = std::max(errors.max_penetration, errors.max_pressure * compliance);
+  errors.max_pressure = std::max(errors.max_pressure, errors.max_penetration / compliance);
+}
+
 /// What the meshes of earlier steps leave comes to what those of the last one do.                              (10.7c)
 void add_what_earlier_steps_leave(const CoarserHistory &coarser, const Cycle &last, const EarlierSteps &earlier,
                                   ObservedErrors &errors)
@@ -195,6 +218,7 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLo
     errors.contact_length = std::numeric_limits<double>::quiet_NaN();
     errors.unknown["contact_length"] = "the length in contact does not settle from mesh to mesh";
   }
+  share_what_springs_tell(cycles.back(), errors);
   return errors;
 }
 
@@ -216,6 +240,7 @@ ObservedErrors observed_errors(std::vector<Cycle> cycles, const CoarserHistory &
   const double force_on_meshes = errors.contact_force;
   if (earlier.matter) add_what_earlier_steps_leave(coarser, cycles.back(), earlier, errors);
   if (is_fixed(cycles, fixed)) errors.contact_force = force_on_meshes;
+  share_what_springs_tell(cycles.back(), errors);
   return errors;
 }
 

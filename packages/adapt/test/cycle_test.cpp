@@ -128,6 +128,25 @@ TEST(ErrorBars, OfAContactForceThatIsASmallPartOfTheLoadAreThoseOfReactions)
   EXPECT_NEAR(observed_errors(cycles).contact_force, errors.contact_force + 0.2, 1e-12);
 }
 
+TEST(ErrorBars, OfPressuresAndPenetrationsOnSpringsAreTheSameShare)
+{
+  std::vector<Cycle> cycles = {mesh(0.1, 10, 34), mesh(0.02, 10, 30)};
+  for (Cycle &cycle : cycles) {
+    cycle.contact.max_penetration = 0.3;
+    cycle.contact.foundation_energy = 1;
+  }
+  const double wide = 4 / (0.1 / 0.02 - 1);
+  EXPECT_NEAR(observed_errors(cycles).max_penetration, wide / 100, 1e-12);
+  cycles.back().misread_penetration = 0.4; // a tip between the nodes
+  EXPECT_NEAR(observed_errors(cycles).max_pressure, 0.1 * 100, 1e-12);
+  cycles.back().peak.friction_edge = true;
+  auto errors = observed_errors(cycles);
+  EXPECT_TRUE(std::isnan(errors.max_penetration));
+  EXPECT_NE(errors.unknown.at("max_penetration").find("friction"), std::string::npos);
+  cycles.back().contact.max_dent = 0.1; // penetrations are those of dents, too
+  EXPECT_NEAR(observed_errors(cycles).max_penetration, 0.1, 1e-12);
+}
+
 TEST(ErrorBars, OfMeshesThatAreHardlyFinerAreWide)
 {
   const auto errors = observed_errors({mesh(0.1, 10, 30), mesh(0.08, 10.01, 30.1)});
