@@ -82,8 +82,9 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
   double largest = force;
   for (const auto &reaction : last.reactions) largest = std::max(largest, length_of(reaction));
   for (double &bar : errors.reactions) bar = std::max(bar, squared * largest + jumped);
-  // The largest penetration may be that of a corner.
-  errors.max_penetration = std::max(errors.max_penetration, last.estimate * last.contact.max_penetration);
+  // The largest penetration may be that of a corner; what remains of it where the body has drawn back is as uncertain as the dents.
+  const double deepest = std::max(last.contact.max_penetration, last.contact.max_dent);
+  errors.max_penetration = std::max(errors.max_penetration, last.estimate * deepest);
   if (last.contact.max_penetration > 0) // else nothing gives way
     errors.max_penetration = std::max(errors.max_penetration, last.misread_penetration - last.contact.max_penetration);
   if (hardly_finer(eta)) errors.max_pressure = std::max(errors.max_pressure, last.estimate * last.contact.max_pressure);

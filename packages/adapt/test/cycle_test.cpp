@@ -147,6 +147,17 @@ TEST(ErrorBars, OfPressuresAndPenetrationsOnSpringsAreTheSameShare)
   EXPECT_NEAR(observed_errors(cycles).max_penetration, 0.1, 1e-12);
 }
 
+TEST(ErrorBars, OfPenetrationsAreThoseOfDents)
+{
+  // The body has drawn back: what is left of the penetration is the difference of large numbers.
+  std::vector<Cycle> cycles = {mesh(0.1, 0, 0), mesh(0.02, 0, 0)};
+  for (Cycle &cycle : cycles) {
+    cycle.contact.max_dent = 0.5;
+    cycle.contact.max_penetration = 1e-3;
+  }
+  EXPECT_NEAR(observed_errors(cycles).max_penetration, 0.02 * 0.5, 1e-12);
+}
+
 TEST(ErrorBars, OfMeshesThatAreHardlyFinerAreWide)
 {
   const auto errors = observed_errors({mesh(0.1, 10, 30), mesh(0.08, 10.01, 30.1)});
