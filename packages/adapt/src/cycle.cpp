@@ -116,7 +116,8 @@ void share_what_springs_tell(const Cycle &last, ObservedErrors &errors)
   const auto unknown = errors.unknown.find("max_pressure");
   if (unknown != errors.unknown.end()) {
     if (errors.unknown.count("max_penetration") == 0)
-      errors.unknown["max_penetration"] = "that of the springs is the largest pressure's: " + unknown->second;
+      errors.unknown["max_penetration"] =
+          "on springs it goes with the largest pressure, which has no bar: " + unknown->second;
     errors.max_penetration = std::numeric_limits<double>::quiet_NaN();
     return;
   }
