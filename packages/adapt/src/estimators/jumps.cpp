@@ -127,12 +127,18 @@ SingularNodes singular_nodes(const fem::Discretization &d, const ContactTerms &t
           // From before a facet to behind it the slope grows by as much as at a kink within it, wherever that lies; a curved gap shows in
           // the curvature of the next facets of order 2, or at the nodes beyond one of order 1.
           const LO start = terms.facets(f, 0), end = terms.facets(f, 1);
-          const double across = seen(start, int(kink)) + slopes.to(end) - slopes.from(start) + seen(end, int(kink));
+          const bool quadratic = terms.facets.extent(1) == 3;
+          double across = slopes.to(end) - slopes.from(start);
+          for (int b = 0; b < 2; ++b) { // where the foundation yields at a kink the pressure has a limit
+            const LO at = terms.facets(f, b);
+            if (!quadratic || terms.field(at, int(pressure)) < contact::yield_limit(terms.law_at(f, b)))
+              across += seen(at, int(kink));
+          }
           const double curved =
               math::fmax(0., math::fmax(seen(start, int(curvature_before)), seen(end, int(curvature_after))));
           const double beyond =
               math::fmax(0., math::fmax(neighbour(start, int(kink_before)), neighbour(end, int(kink_after))));
-          const double within = across - (terms.facets.extent(1) == 3 ? curved * terms.size(f) : 2 * beyond);
+          const double within = across - (quadratic ? curved * terms.size(f) : 2 * beyond);
           const double grows = math::fmax(within, seen(node, int(kink)) - beside);
           largest = math::fmax(largest, modulus * grows / (twice_pi * terms.highest));
         }
