@@ -175,7 +175,7 @@ void tell_what_came_nearer(const UzawaResult &undivided, const double t, UzawaRe
 
 } // namespace
 
-StepSolution LoadHistory::advance_in_parts(const double t, const Halvings left, const Progress &progress,
+StepSolution LoadHistory::advance_in_parts(const double t, const Halvings &left, const Progress &progress,
                                            const std::function<void(const Problem &, const Step &)> &now)
 {
   const Remembered before = kept_;

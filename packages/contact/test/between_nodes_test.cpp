@@ -150,6 +150,7 @@ TEST(BetweenNodes, OfAFaceInSpaceThatTouchesAtOneNodeTheDeepestPlaceIsFoundBetwe
     }
     EXPECT_EQ(sum_all(looked.d.mesh->comm(), touch), 1);
     Kokkos::deep_copy(looked.result.pressure, pressure);
+    looked.result.total = {}; // of the look without a pressure
     const auto sides = contact::contact_sides(*looked.d.mesh, looked.options);
     contact::look_between_nodes(looked.d, sides, looked.options, looked.points, steel, *looked.u, looked.result);
     // 0.01 at the centre, less what the node has; at the nearest quarter of a face 0.

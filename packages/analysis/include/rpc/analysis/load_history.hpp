@@ -123,7 +123,7 @@ private:
     RCP<const Vector>
         last_forces; // on the body from all but the foundation, after the last step (owned dofs) [N]; null: not known
   };
-  StepSolution advance_in_parts(double t, Halvings left, const Progress &progress,
+  StepSolution advance_in_parts(double t, const Halvings &left, const Progress &progress,
                                 const std::function<void(const Problem &, const Step &)> &now);
   double share_missed(const Energies &before, const StepSolution &s, double tolerance) const;
   Starts starts_of(const Step &step);
