@@ -98,7 +98,7 @@ struct StepRules {
   Rule<double> fast_with_bounds{0.8, "step.fast_with_bounds", "the same of step.iterations_back iterations, friction's bounds follow [-]",
                                 "not measured"};
   Rule<int> iterations_back{6, "step.iterations_back",
-                            "iterations back to compare with where friction's bounds follow [-]",
+                            "iterations back to compare with where friction's bounds follow [-]; off: 1",
                             "accelerated sequences do not fall at each step; not measured"};
   Rule<double> of_rounding{10, "step.of_rounding", "unbalanced forces over what rounding makes: the end is due to it [-]", "robustness.md"};
   Rule<double> refinement{1e-4, "step.refinement", "residual of the solve that refines [-]", "not measured"};
