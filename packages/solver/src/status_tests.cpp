@@ -53,7 +53,8 @@ public:
   {
     const auto &group = solver.getSolutionGroup();
     const auto piece = context_->functional.piece(tpetra(group.getX()));
-    if (solver.getNumIterations() == 0 || piece != piece_ || !(context_->step_length > newton_rules.full_step)) headway_.start_over();
+    if (solver.getNumIterations() == 0 || piece != piece_ || !(context_->step_length > newton_rules.full_step))
+      headway_.start_over();
     const bool stuck = headway_.add(group.getNormF()) == Headway::Answer::stuck;
     status_ = stuck ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
     if (piece != piece_ && headway_.visit(piece) != Headway::Answer::progress) ++context_->returns;

@@ -130,8 +130,8 @@ struct LinearRules {
   Rule<double> worth_factors{1.4, "linear.worth_factors", "the same over all factors made so far [-]",
                              "later changes are at the same places"};
   Rule<int> most_factors_worth{3, "linear.most_factors_worth", "factors that count as made so far [-]", "not measured"};
-  Rule<double> least_left_out{1e-5, "linear.least_left_out", "least bound of changes left to CG, over own block [-]; off: 1",
-                              "(4.12)"};
+  Rule<double> least_left_out{1e-5, "linear.least_left_out",
+                              "least bound of changes left to CG, over own block [-]; off: 1", "(4.12)"};
   Rule<double> kept_of_factor{2, "linear.kept_of_factor", "entries of an update over those of the factor [-]",
                               "not measured"};
   Rule<double> kept_of_free{0.25, "linear.kept_of_free", "entries of an update over the free memory [-]",
