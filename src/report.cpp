@@ -2,6 +2,7 @@
 #include "report.hpp"
 
 #include "output/result_list.hpp"
+#include "rpc/core/point.hpp"
 #include "rpc/core/quantity.hpp"
 
 #include <Teuchos_Time.hpp>
@@ -84,10 +85,9 @@ int sum(const std::vector<int> &values)
 /// Sizes of the contact forces of all sides together [N]: those of two plates that squeeze a body do not cancel.
 double pressing(const analysis::StepRecord &step)
 {
-  const auto size = [](const std::array<double, 3> &force) { return std::hypot(force[0], force[1], force[2]); };
-  if (step.side_forces.size() < 2) return size(step.contact.force);
+  if (step.side_forces.size() < 2) return length(step.contact.force);
   double sum = 0;
-  for (const auto &force : step.side_forces) sum += size(force);
+  for (const auto &force : step.side_forces) sum += length(force);
   return sum;
 }
 

@@ -2,6 +2,7 @@
 #include "rpc/adapt/cycle.hpp"
 
 #include "rpc/adapt/observed_error.hpp"
+#include "rpc/core/point.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +12,6 @@ namespace rpc::adapt
 {
 namespace
 {
-
-double length_of(const std::array<double, 3> &v)
-{
-  return std::hypot(v[0], v[1], v[2]);
-}
 
 double difference_of(const std::array<double, 3> &a, const std::array<double, 3> &b)
 {
@@ -80,7 +76,7 @@ void add_what_a_mesh_leaves(const Cycle &last, const std::vector<double> &eta, O
   jumped += moved > 0 ? std::min(last.misread_force, by_energy(last.misread_energy)) : last.misread_force;
   errors.contact_force = std::max(errors.contact_force, squared * force + jumped);
   double largest = force;
-  for (const auto &reaction : last.reactions) largest = std::max(largest, length_of(reaction));
+  for (const auto &reaction : last.reactions) largest = std::max(largest, length(reaction));
   for (double &bar : errors.reactions) bar = std::max(bar, squared * largest + jumped);
   // The largest penetration may be that of a corner; what remains of it where the body has drawn back is as uncertain as the dents.
   const double deepest = std::max(last.contact.max_penetration, last.contact.max_dent);
@@ -150,7 +146,7 @@ bool is_fixed(const std::vector<Cycle> &cycles, const FixedByLoad &fixed)
 {
   constexpr double rounding = 1e-12;
   for (const Cycle &cycle : cycles) {
-    const double length = length_of(cycle.contact.force);
+    const double length = rpc::length(cycle.contact.force);
     for (int c = 0; c < 3; ++c)
       if (!fixed[c] && !(length > 0 && std::abs(cycle.contact.force[c]) <= rounding * length)) return false;
   }
@@ -163,7 +159,7 @@ double energy_left(const Cycle &cycle)
 {
   const double squared = caution * cycle.estimate * cycle.estimate;
   return squared * cycle.energy_norm_squared / 2 + cycle.jumped_energy +
-         cycle.jumped_force * moved_by(cycle, length_of(cycle.contact.force)) + cycle.misread_energy;
+         cycle.jumped_force * moved_by(cycle, length(cycle.contact.force)) + cycle.misread_energy;
 }
 
 std::string error_bar_name(const std::string &key, const ResultScope &scope)
@@ -205,7 +201,7 @@ ObservedErrors observed_errors(const std::vector<Cycle> &cycles, const FixedByLo
   const double shown = errors.contact_force;
   add_what_a_mesh_leaves(cycles.back(), eta, errors);
   if (is_fixed(cycles, fixed))
-    errors.contact_force = shown > tolerance * length_of(cycles.back().contact.force) ? shown : 0;
+    errors.contact_force = shown > tolerance * rpc::length(cycles.back().contact.force) ? shown : 0;
   const std::string reason = unknown_max_pressure(cycles, eta);
   if (!reason.empty()) {
     errors.max_pressure = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/adapt/observed_error.hpp"
 
+#include "rpc/core/point.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -83,7 +85,7 @@ double force_at_work(const std::array<double, 3> &contact, const std::vector<std
   std::array<double, 3> sum = contact;
   for (const auto &reaction : reactions)
     for (int c = 0; c < 3; ++c) sum[c] += reaction[c];
-  return std::max(std::hypot(contact[0], contact[1], contact[2]), std::hypot(sum[0], sum[1], sum[2]));
+  return std::max(length(contact), length(sum));
 }
 
 } // namespace rpc::adapt
