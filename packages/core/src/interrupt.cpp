@@ -21,7 +21,8 @@ namespace rpc
 namespace
 {
 
-volatile std::sig_atomic_t received = 0; // on this rank
+std::atomic<int> received(0);            // on this rank; signal handlers set it
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait for a lock");
 int agreed = 0;                          // on all ranks
 bool left_behind = false;                // work goes on
 
@@ -35,11 +36,13 @@ struct sigaction action_of(void (*handler)(int))
   return action;
 }
 
+/// Two threads may run it at the same time: the mask of a handler holds in its own thread alone.
 void remember(const int signal)
 {
-  received = signal;
+  const bool is_second = received.exchange(signal) != 0;
   const struct sigaction by_default = action_of(SIG_DFL);
   for (const int other : {SIGINT, SIGTERM}) sigaction(other, &by_default, nullptr);
+  if (is_second) raise(signal); // ends the process as soon as this handler returns
 }
 
 bool allows_threads(const Teuchos::Comm<int> &comm)
@@ -68,7 +71,7 @@ void install_interrupt_handlers()
 
 bool interrupted(const Teuchos::Comm<int> &comm)
 {
-  if (agreed == 0) Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, static_cast<int>(received), Teuchos::outArg(agreed));
+  if (agreed == 0) Teuchos::reduceAll(comm, Teuchos::REDUCE_MAX, received.load(), Teuchos::outArg(agreed));
   return agreed != 0;
 }
 
