@@ -9,8 +9,8 @@
 /// point operations, the least time per item (cell or row), the rates that follow, and the bandwidth's fraction of the triad's. Q2 and P2 take half the cells in each direction: as many nodes. In
 /// space the elements' names end in 3D.
 
-#include "node_interpolation.hpp"
-#include "node_smoother.hpp"
+#include "multigrid/node_interpolation.hpp"
+#include "multigrid/node_smoother.hpp"
 #include "rpc/algebra/stiffness_operator.hpp"
 #include "rpc/fem/elasticity.hpp"
 #include "rpc/fem/interpolation.hpp"

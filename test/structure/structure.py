@@ -65,7 +65,7 @@ NOT_IN_PROGRAM = {
 LAW_PARAMETERS = re.compile(r"(?:\.|->)(?:yield|hardening|compliance)\b(?!_)")
 LAW_FOLDER = "packages/contact/include/rpc/contact/law"
 LAW_FILLERS = {"packages/contact/src/between_nodes.cpp", "packages/contact/src/contact_nodes.cpp", "packages/contact/src/contact_options.cpp",
-               "packages/analysis/src/problem.cpp"}  # options of the deck, and the points' views
+               "packages/analysis/src/body/problem.cpp"}  # options of the deck, and the points' views
 MOST_LINES = 450  # of a source file of a package or the program, tests included
 FOR_TESTS = {"mesh", "fem"}  # a package's tests may make their bodies with these
 
@@ -85,21 +85,21 @@ NO_RULES = {
     "numbers of formats and protocols: bytes, tags, types of cells": """
         packages/core/src/exchange.cpp packages/core/src/halo.cpp packages/core/src/message.cpp packages/core/src/units.cpp
         packages/io/src/checkpoint.cpp packages/mesh/src/gmsh_wire.cpp packages/mesh/src/gmsh_wire.hpp
-        packages/mesh/src/gmsh_size_callback.hpp packages/mesh/src/mesh_mending.cpp packages/solver/src/mumps_factor.cpp
+        packages/mesh/src/gmsh_size_callback.hpp packages/mesh/src/mesh_mending.cpp packages/solver/src/factor/mumps_factor.cpp
         src/checkpoint.cpp src/output/paths.cpp""",
     "numbers of shapes": """
         packages/mesh/include/rpc/mesh/size_field.hpp packages/mesh/src/element.cpp packages/mesh/src/topology.cpp""",
     "numbers that are known to mathematics, or to stand for none": """
-        packages/algebra/include/rpc/algebra/alike_nodes.hpp packages/analysis/src/load_history.cpp packages/analysis/src/options.cpp
-        packages/analysis/src/take_back_results.cpp packages/core/src/bounds.cpp packages/core/src/finite.cpp
+        packages/algebra/include/rpc/algebra/alike_nodes.hpp packages/analysis/src/history/load_history.cpp packages/analysis/src/options.cpp
+        packages/analysis/src/history/take_back_results.cpp packages/core/src/bounds.cpp packages/core/src/finite.cpp
         packages/core/src/memory.cpp packages/fem/src/materials.cpp packages/io/src/expression_bounds.cpp
-        packages/solver/src/band_factor.cpp packages/solver/src/mesh_multigrid.cpp""",
+        packages/solver/src/factor/band_factor.cpp packages/solver/src/multigrid/mesh_multigrid.cpp""",
     "blocks of kernels and leaves of trees": """
         packages/algebra/src/repeated_rows.cpp packages/algebra/src/several_vectors.cpp packages/contact/src/surface/facets.cpp
-        packages/mesh/src/canonical_order.cpp packages/mesh/src/size_tree.cpp packages/solver/src/low_rank_update.cpp""",
+        packages/mesh/src/canonical_order.cpp packages/mesh/src/size_tree.cpp packages/solver/src/factor/low_rank_update.cpp""",
     "what input may be": """
         packages/contact/src/contact_nodes.cpp packages/fem/src/hinges.cpp packages/io/src/deck.cpp
-        packages/mesh/include/rpc/mesh/mesh_data.hpp packages/mesh/src/make_mesh.cpp packages/solver/src/gathered_solver.cpp""",
+        packages/mesh/include/rpc/mesh/mesh_data.hpp packages/mesh/src/make_mesh.cpp packages/solver/src/multigrid/gathered_solver.cpp""",
     "what notes and results tell, and in how many digits": """
         packages/contact/src/between_nodes.cpp packages/contact/src/gap_search.cpp packages/io/src/error_bar.cpp src/notes.cpp
         src/output/points.cpp src/deck_notes.cpp""",
@@ -108,7 +108,7 @@ NO_RULES = {
     "rounding": """
         packages/algebra/src/updated_operator.cpp packages/fem/include/rpc/fem/rigid_motion.hpp packages/fem/src/congruent_cells.cpp
         packages/fem/src/discretization.cpp packages/fem/src/rigid_motion.cpp packages/fem/src/rounding.cpp packages/fem/src/surface.cpp
-        packages/mesh/src/gmsh_boundary.cpp packages/mesh/src/side_places.cpp src/continuation.cpp packages/analysis/src/active_set.cpp""",
+        packages/mesh/src/gmsh_boundary.cpp packages/mesh/src/side_places.cpp src/continuation.cpp packages/analysis/src/step/active_set.cpp""",
     "contact law": """
         packages/contact/include/rpc/contact/law/foundation.hpp packages/contact/include/rpc/contact/law/interpolated.hpp""",
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/linear_solver.hpp"
 
-#include "convergence.hpp"
-#include "iteration_cost.hpp"
-#include "krylov.hpp"
+#include "krylov/convergence.hpp"
+#include "krylov/iteration_cost.hpp"
+#include "krylov/krylov.hpp"
 #include "preconditioner/algebraic.hpp"
 #include "preconditioner/factor.hpp"
 #include "preconditioner/meshes.hpp"

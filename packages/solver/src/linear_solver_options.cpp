@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/linear_solver_options.hpp"
 
-#include "belos_method.hpp"
-#include "muelu_parameters.hpp"
+#include "krylov/belos_method.hpp"
+#include "multigrid/muelu_parameters.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/core/tpetra.hpp"

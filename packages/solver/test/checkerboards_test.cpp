@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/checkerboards.hpp"
+#include "multigrid/checkerboards.hpp"
 
 #include "lines.hpp"
 #include "rpc/core/device_values.hpp"

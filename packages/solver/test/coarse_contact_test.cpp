@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/coarse_contact.hpp"
+#include "multigrid/coarse_contact.hpp"
 
-#include "../src/contact_supports.hpp"
 #include "lines.hpp"
+#include "multigrid/contact_supports.hpp"
 #include "rpc/core/device_values.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/convergence.hpp"
+#include "krylov/convergence.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/gathered_solver.hpp"
-#include "../src/guarded_solver.hpp"
+#include "multigrid/gathered_solver.hpp"
+#include "multigrid/guarded_solver.hpp"
 
 #include "expect_error.hpp"
 #include "grid.hpp"

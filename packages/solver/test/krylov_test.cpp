@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/krylov.hpp"
+#include "krylov/krylov.hpp"
 
 #include "grid.hpp"
 

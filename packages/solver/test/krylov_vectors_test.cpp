@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/krylov_vectors.hpp"
+#include "krylov/krylov_vectors.hpp"
 
 #include <BelosOrthoManagerFactory.hpp>
 #include <Tpetra_Core.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/low_rank_update.hpp"
+#include "factor/low_rank_update.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <cmath>

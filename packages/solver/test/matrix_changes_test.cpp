@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/matrix_changes.hpp"
+#include "factor/matrix_changes.hpp"
 
-#include "../src/direct_solver.hpp"
+#include "factor/direct_solver.hpp"
 #include "grid.hpp"
 #include "rpc/core/parallel.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/muelu_parameters.hpp"
+#include "multigrid/muelu_parameters.hpp"
 
 #include "expect_error.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 #include "grid.hpp"
 

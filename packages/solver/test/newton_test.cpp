@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rpc/solver/newton.hpp"
 
-#include "../src/nox_line_search.hpp"
 #include "beam.hpp"
 #include "kinked_line.hpp"
+#include "newton/nox_line_search.hpp"
 #include "rpc/core/causes.hpp"
 #include "rpc/core/error.hpp"
 #include "rpc/solver/exact_line_search.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/node_interpolation.hpp"
+#include "multigrid/node_interpolation.hpp"
 
 #include "lines.hpp"
 #include "rpc/core/device_values.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/node_smoother.hpp"
+#include "multigrid/node_smoother.hpp"
 
 #include "lines.hpp"
 #include "rpc/core/device_values.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/local_correction.hpp"
+#include "factor/local_correction.hpp"
 
 #include "foundation_scene.hpp"
 #include "rpc/algebra/bounded_update.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../src/band_factor.hpp"
+#include "factor/band_factor.hpp"
 #include "rpc/core/parallel.hpp"
 #include "rpc/solver/sparse_factor.hpp"
 

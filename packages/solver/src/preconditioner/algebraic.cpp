@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "preconditioner/algebraic.hpp"
 
-#include "muelu_defaults.hpp"
+#include "multigrid/muelu_defaults.hpp"
 #include "rpc/algebra/bounded_update.hpp"
 #include "rpc/solver/rules.hpp"
 

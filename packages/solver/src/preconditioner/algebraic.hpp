@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "local_correction.hpp"
-#include "multigrid.hpp"
+#include "factor/local_correction.hpp"
+#include "multigrid/multigrid.hpp"
 #include "rpc/algebra/updated_operator.hpp"
 #include "rpc/solver/body.hpp"
 #include "rpc/solver/linear_solver_options.hpp"

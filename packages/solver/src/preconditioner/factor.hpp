@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "direct_solver.hpp"
+#include "factor/direct_solver.hpp"
 #include "rpc/algebra/updated_operator.hpp"
 #include "rpc/solver/preconditioner.hpp"
 

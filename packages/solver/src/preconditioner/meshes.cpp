@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "preconditioner/meshes.hpp"
 
-#include "direct_solver.hpp"
-#include "muelu_defaults.hpp"
-#include "multigrid.hpp"
+#include "factor/direct_solver.hpp"
+#include "multigrid/muelu_defaults.hpp"
+#include "multigrid/multigrid.hpp"
 #include "rpc/solver/rules.hpp"
 
 #include <algorithm>

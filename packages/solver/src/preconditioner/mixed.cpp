@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "preconditioner/mixed.hpp"
 
-#include "checkerboards.hpp"
+#include "multigrid/checkerboards.hpp"
+#include "multigrid/shared_rows.hpp"
 #include "rpc/core/math.hpp"
 #include "rpc/solver/rules.hpp"
-#include "shared_rows.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "krylov.hpp"
+#include "krylov/krylov.hpp"
 #include "preconditioner/meshes.hpp"
 #include "rpc/solver/mixed_form.hpp"
 

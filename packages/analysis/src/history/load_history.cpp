@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rpc/analysis/load_history.hpp"
+
+#include "body/mean_displacements.hpp"
+#include "rpc/analysis/quantities.hpp"
+#include "rpc/contact/node_columns.hpp"
+#include "rpc/core/interrupt.hpp"
+#include "rpc/fem/rounding.hpp"
+#include "step/step_dents.hpp"
+#include "step/step_energies.hpp"
+
+#include <Teuchos_Time.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+namespace rpc::analysis
+{
+namespace
+{
+
+/// Zero start, for solutions small against the rounding of the last step.
+contact::ContactState at_rest(const contact::ContactNodes &points, const fem::Discretization &d)
+{
+  return {rcp(new Vector(d.owned_dofs)), DeviceView<double *>("rpc::analysis::no_pressure", points.size()), {}};
+}
+
+int newton_steps(const StepSolution &s)
+{
+  return std::accumulate(s.uzawa.newton_iterations.begin(), s.uzawa.newton_iterations.end(), 0);
+}
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+Energies unknown_energies()
+{
+  Energies energies;
+  for (const auto &q : energy_quantities) energies.*q.value = unknown;
+  return energies;
+}
+
+/// Adds what solving a part of a step took.
+void add_work(const StepSolution &s, StepRecord &record)
+{
+  record.newton_iterations += newton_steps(s);
+  record.linear_solves += static_cast<int>(s.linear.iterations.size());
+  record.linear_iterations =
+      std::accumulate(s.linear.iterations.begin(), s.linear.iterations.end(), record.linear_iterations);
+  record.preconditioner_setups += s.linear.preconditioner_setups;
+}
+
+} // namespace
+
+double relative_imbalance(const Energies &before, const Energies &after)
+{
+  const double change = std::abs(after.imbalance - before.imbalance);
+  return change == 0 ? 0 : change / std::max(before.largest(), after.largest());
+}
+
+StepRecord broken_off(const Model &model, StepRecord until_then, const double t, const std::string &reason)
+{
+  StepRecord record = std::move(until_then);
+  record.time = t;
+  record.converged = false;
+  record.reason = reason;
+  record.energies = unknown_energies();
+  for (const auto &q : contact::contact_quantities) record.contact.*q.value = unknown;
+  for (const auto &q : body_quantities) record.body.*q.value = unknown;
+  record.contact.force.fill(unknown);
+  std::array<double, 3> vector{};
+  vector.fill(unknown);
+  record.side_forces.assign(model.contact.size(), vector);
+  record.displacements.assign(model.dirichlet.size(), vector);
+  record.reactions = record.displacements;
+  return record;
+}
+
+LoadHistory::LoadHistory(std::shared_ptr<const Problem> problem, StepOptions options, const int max_halvings,
+                         const solver::LinearSolverOptions &linear, Predictor predictor)
+    : problem_(std::move(problem)), options_(std::move(options)), max_halvings_(max_halvings), linear_(linear),
+      state_(std::make_unique<SolverState>(*problem_, linear_)), predictor_(std::move(predictor))
+{
+}
+
+LoadHistory::LoadHistory(std::shared_ptr<const Problem> problem, const StepOptions &options, const int max_halvings,
+                         const solver::LinearSolverOptions &linear, const CoarserProblem &coarser)
+    : LoadHistory(std::move(problem), options, max_halvings, linear, Predictor(coarser, options, linear))
+{
+}
+
+void LoadHistory::go_on_from(Memory memory, std::optional<Memory> before)
+{
+  kept_.memory = std::move(memory);
+  kept_.before = std::move(before);
+  kept_.last_forces = Teuchos::null;
+}
+
+void LoadHistory::start_anew()
+{
+  kept_.last_forces = Teuchos::null;
+  state_.reset(); // two hierarchies would take twice the memory
+  state_ = std::make_unique<SolverState>(*problem_, linear_);
+  predictor_.forget();
+}
+
+StepSolution LoadHistory::advance(const double t, const Progress &progress,
+                                  const std::function<void(const Problem &, const Step &)> &now)
+{
+  const double start = Teuchos::Time::wallTime();
+  last_ = {};
+  last_.time = t;
+  const Remembered before = kept_;
+  const Energies energies_before = kept_.memory ? kept_.memory->energies : Energies{};
+  StepSolution s;
+  double tolerance = energy_tolerance_;
+  Headway attempts({step_rules.helpful, 0, Headway::unlimited, step_rules.most_attempts - 1});
+  while (true) {
+    last_.parts = 0; // counted as they are solved
+    s = advance_in_parts(t, {max_halvings_, balance_halvings_, std::max(max_halvings_, balance_halvings_), tolerance},
+                         progress, now);
+    const double off = s.uzawa.converged ? share_missed(energies_before, s, energy_tolerance_) : 0;
+    if (!(off > energy_tolerance_) || last_.parts == 1 || attempts.add(off) == Headway::Answer::stuck) break;
+    tolerance *= step_rules.part_of_tolerance * energy_tolerance_ / off; // what parts miss adds up
+    kept_ = before;                                                      // as if what came after had not been tried
+  }
+  last_.time = s.uzawa.converged ? t : tried_;
+  last_.converged = s.uzawa.converged;
+  if (last_.converged) {
+    last_.contact = s.contact.total;
+    last_.side_forces.clear();
+    for (const auto &side : s.contact.sides) last_.side_forces.push_back(side.force);
+    last_.body = fem::body_peaks(problem_->discretization(), problem_->model().materials, *s.u);
+    if (!mean_displacements_) mean_displacements_ = std::make_shared<const MeanDisplacements>(*problem_);
+    last_.displacements = (*mean_displacements_)(*s.u);
+    last_.reactions = s.reactions;
+    last_.energies = kept_.memory->energies;
+  } else {
+    last_ = broken_off(s.uzawa.reason);
+  }
+  last_.seconds = Teuchos::Time::wallTime() - start;
+  return s;
+}
+
+/// relative_imbalance() of a step that is remembered; 0 where one above the tolerance is rounding of the energies.
+double LoadHistory::share_missed(const Energies &before, const StepSolution &s, const double tolerance) const
+{
+  const Energies &now = kept_.memory->energies;
+  const double share = relative_imbalance(before, now);
+  if (!(share > tolerance)) return share;
+  const double rounding = fem::rounding_energy(problem_->discretization(), problem_->model().materials, *s.u);
+  return std::abs(now.imbalance - before.imbalance) > rounding ? share : 0;
+}
+
+StepRecord LoadHistory::broken_off(const std::string &reason) const
+{
+  return analysis::broken_off(problem_->model(), last_, tried_, reason);
+}
+
+namespace
+{
+
+/// Where a step to time t was divided in vain, and had come nearer to a solution as a whole than its part that failed, the reasons of both: the
+/// remedy of the former may be the better one.
+void tell_what_came_nearer(const UzawaResult &undivided, const double t, UzawaResult &part)
+{
+  if (!(undivided.residuals.worst() < part.residuals.worst()) || undivided.reason == part.reason) return;
+  std::ostringstream reason;
+  reason << part.reason << "; undivided, the step to t = " << t << " ended nearer to a solution: " << undivided.reason;
+  part.reason = reason.str();
+}
+
+} // namespace
+
+StepSolution LoadHistory::advance_in_parts(const double t, const Halvings &left, const Progress &progress,
+                                           const std::function<void(const Problem &, const Step &)> &now)
+{
+  const Remembered before = kept_;
+  StepOptions options = options_;
+  options.low_penalties = left.failures == 0; // what else could be tried is to halve the step
+  StepSolution s = solve(t, options, progress, now);
+  const double from = before.memory ? before.memory->time : time_at_rest(t);
+  const double half = 0.5 * (from + t);
+  Halvings then = left;
+  const bool may_halve = then.all-- > 0;
+  if (s.uzawa.converged) {
+    const Energies start = before.memory ? before.memory->energies : Energies{}, &end = kept_.memory->energies;
+    const auto answer = then.headway.add(std::abs(end.imbalance - start.imbalance));
+    if (!(share_missed(start, s, left.tolerance) > left.tolerance) || !may_halve || answer == Headway::Answer::stuck ||
+        then.balance-- == 0)
+      return s;
+  } else if (!may_halve || then.failures-- == 0 || interrupted(problem_->discretization().mesh->comm())) {
+    return s;
+  }
+  if (!(half > from && half < t)) return s;
+  if (s.uzawa.converged) {
+    --last_.parts;
+    kept_ = before; // as if what came after had not been tried
+  }
+  std::optional<UzawaResult> undivided;
+  if (!s.uzawa.converged && left.failures == max_halvings_) undivided = s.uzawa;
+  s = advance_in_parts(half, then, progress, now);
+  if (s.uzawa.converged) s = advance_in_parts(t, then, progress, now);
+  if (undivided && !s.uzawa.converged && !interrupted(problem_->discretization().mesh->comm()))
+    tell_what_came_nearer(*undivided, t, s.uzawa);
+  return s;
+}
+
+StepSolution LoadHistory::solve(const double t, const StepOptions &options, const Progress &progress,
+                                const std::function<void(const Problem &, const Step &)> &now)
+{
+  tried_ = t;
+  const auto sides = problem_->model().seen_at(t).contact;
+  const bool on_foundation = kept_.memory && contact::any_moves_with_foundation(sides);
+  const auto met_at = [&](const Vector &u) {
+    return contact::dents_met(problem_->discretization(), sides, kept_.memory->dent, kept_.memory->foundations, u);
+  };
+  RCP<const MultiVector> met = kept_.memory ? kept_.memory->dent : Teuchos::null;
+  if (on_foundation) met = met_at(moved_along(*problem_, t, *kept_.memory->displacement));
+  Step step = problem_->step(t, met.get(), memory());
+  if (now) now(*problem_, step);
+  Starts starts = starts_of(step);
+  ++last_.parts;
+  StepSolution s;
+  Headway searches({1, Headway::unlimited, Headway::unlimited, step_rules.most_searches - 1});
+  while (true) {
+    s = solve_step(*problem_, step, *state_, options, starts, progress);
+    ++last_.solves;
+    add_work(s, last_);
+    if (!s.uzawa.converged) return s;
+    if (!on_foundation || searches.take(true) == Headway::Answer::stuck) break;
+    const auto next = met_at(*s.u);
+    if (settled(*met, *next, kept_.memory->foundations)) break;
+    met = next;
+    step = problem_->step(t, met.get(), memory());
+    starts = {{s.state}, {}};
+  }
+  remember(t, sides, step, s);
+  return s;
+}
+
+/// The last state, the extrapolated one, rest, and what coarser meshes predict; without a last state the latter alone.
+Starts LoadHistory::starts_of(const Step &step)
+{
+  Starts starts{std::exchange(offered_, {}), {}};
+  if (kept_.memory) {
+    starts.states.push_back(state_of(step.contact, *kept_.memory));
+    if (kept_.before && kept_.before->time < kept_.memory->time)
+      starts.states.push_back(extrapolated(step.contact, *kept_.before, *kept_.memory, step.time));
+    starts.states.push_back(at_rest(step.contact, problem_->discretization()));
+  }
+  if (kept_.memory || starts.states.empty())
+    starts.predict = [this, &step] { return predictor_.predict(*problem_, step, memory()); };
+  return starts;
+}
+
+void LoadHistory::remember(const double t, const std::vector<contact::ContactOptions> &sides, const Step &step,
+                           StepSolution &s)
+{
+  const auto owned_nodes = problem_->discretization().mesh->owned_nodes;
+  const auto forces = rcp(new Vector(other_forces(*problem_, s)));
+  Memory now;
+  remember_dents(*problem_, sides, step.contact, memory(), s, now);
+  now.time = t;
+  now.displacement = s.u;
+  now.pressure = contact::node_columns(step.contact, s.contact.pressure, owned_nodes);
+  now.gap = contact::node_columns(step.contact, moving_gap(*problem_, step.contact, s.contact.dent), owned_nodes);
+  now.energies = energies_after(*problem_, t, s, memory(), kept_.last_forces.get(), *forces);
+  const double tolerance = options_.uzawa.tolerance,
+               rounding = fem::rounding_energy(problem_->discretization(), problem_->model().materials, *s.u);
+  now.energy_scale =
+      std::max({step.energies_before, now.energies.strain, rounding / (tolerance * tolerance)}); // (5.5b)
+  if (max_all(problem_->discretization().mesh->comm(), static_cast<int>(s.state.multiplier.has_tangential())) > 0)
+    now.tangential = contact::node_columns(step.contact, s.state.multiplier.tangential, owned_nodes);
+  kept_.before = std::exchange(kept_.memory, std::move(now));
+  kept_.last_forces = forces;
+}
+
+} // namespace rpc::analysis
