@@ -165,10 +165,11 @@ struct GapReading {
     for (const FacetShape &shape : fine) {
       const FacetSample sample = sample_at(rows, f, shape, options, 0);
       const double radius = axisymmetric ? sample.place[0] : 1;
+      const double dent = rows.interpolated(f, shape, FacetRows::dent);
       const double v =
           penetration_at_sample(f, shape, sample) + layer * rows.interpolated(f, shape, FacetRows::pressure);
       if (!std::isfinite(v)) return {};
-      const Foundation in_series = law(sample.place, rows.interpolated(f, shape, FacetRows::dent), layer);
+      const Foundation in_series = law(sample.place, dent, layer);
       const double p = pressure_at(v, in_series);
       double off_energy = foundation_energy(v, in_series), off_force = p;
       for (int a = 0; a < rows.nodes; ++a) {
@@ -177,7 +178,7 @@ struct GapReading {
       }
       found.energy += radius * std::abs(off_energy);
       found.force += radius * std::abs(off_force);
-      found.penetration = std::max(found.penetration, v - layer * p + moved);
+      found.penetration = std::max(found.penetration, dent + v - layer * p + moved);
       radii += radius;
     }
     const double share = radii > 0 ? rows.area(f) / radii : 0;

@@ -243,6 +243,30 @@ TEST(BetweenNodes, WhereTheGapJumpsWithinAFacetReadingItAtNodesLeavesEnergyForce
   }
 }
 
+TEST(BetweenNodes, DepthsBesideAJumpOfTheGapCountFromTheSurfaceWithoutDents)
+{
+  // The same by a step before, whose dents are as deep everywhere as the body has moved since.
+  const double deep = 0.02;
+  auto side = touching("bottom");
+  side.yield_stress = ScalarField(1e300);
+  side.stiffness = ScalarField(1000.);
+  side.gap = ScalarField("step", [](const Point &x) { return x[0] < 0.7 ? -0.01 : 0; });
+  Looked looked({2, 1}, side, 10);
+  const auto alone = looked.result.between;
+  const auto u = looked.u->getLocalViewHost(Tpetra::Access::ReadWrite);
+  for (std::size_t i = 1; i < u.extent(0); i += 2) u(i, 0) = -deep;
+  Kokkos::deep_copy(looked.points.dent, deep);
+  contact::ContactState state;
+  state.displacement = looked.u;
+  state.multiplier.normal = DeviceView<double *>("pressure", looked.points.size());
+  Kokkos::deep_copy(state.multiplier.normal, 10.);
+  const auto sides = contact::contact_sides(*looked.d.mesh, looked.options);
+  looked.result = contact::contact_result(looked.d, sides, looked.points, state);
+  contact::look_between_nodes(looked.d, sides, looked.options, looked.points, steel, *looked.u, looked.result);
+  EXPECT_NEAR(looked.result.between.misread_energy / alone.misread_energy, 1, 1e-9);
+  EXPECT_NEAR(looked.result.between.misread_penetration, deep + alone.misread_penetration, 1e-12);
+}
+
 TEST(BetweenNodes, TheNoteNamesPlaceDepthAndTheSizeThatWouldSee)
 {
   const Looked looked({2, 1}, bump(0.02, 0.1));

@@ -123,7 +123,7 @@ struct BetweenNodes {
   std::vector<DeviceView<double *>>
       unseen_width; ///< (sides; facets) see PlaceBetweenNodes, 0 where nothing is unseen [m]
   // Of facets that touch and within which the gap jumps or has a kink, over all ranks: by how much reading the gap at the nodes alone may be
-  // off, and how deep they may have been pressed in, without dents that were there.                            (3.16a)
+  // off, and how deep they may have been pressed in, with dents that were there.                               (3.16a)
   double misread_force = 0, misread_energy = 0; ///< [N], [J], in 2D per m
   double misread_penetration = 0;               ///< [m]
 };
