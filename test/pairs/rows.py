@@ -23,7 +23,7 @@ OUT_OF_TIME = (-signal.SIGXCPU, 128 + signal.SIGXCPU)  # a process by itself, an
 FINER_DOFS = 8  # a finer mesh may have so many times the unknowns
 TO_REST = {"one", "unload", "slide"}  # histories that are also run with a finer mesh where meshes adapt
 FIXED = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-         "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none", "OMP_PROC_BIND": "false",
+         "OMPI_MCA_btl_vader_single_copy_mechanism": "none", "OMP_PROC_BIND": "false",
          "OMP_WAIT_POLICY": "passive"}
 
 
@@ -50,6 +50,7 @@ class Program:
         environment = {**os.environ, **FIXED, "OMP_NUM_THREADS": str(threads)}
         with tempfile.TemporaryDirectory(prefix="pairs") as session:  # of Open MPI's: two runs that share one disturb each other
             if ranks > 1:
+                environment["OMPI_MCA_mpi_yield_when_idle"] = "1"  # one rank waits for nobody: on a busy machine it would not get its share
                 command = [*shlex.split(self.options.mpiexec), "-n", str(ranks), *command]
                 environment.update({name + "_tmpdir_base": session for name in ("OMPI_MCA_orte", "PRTE_MCA_prte")})
                 if self.options.preload:
