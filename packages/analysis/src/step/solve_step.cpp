@@ -28,9 +28,15 @@ using contact::Iterate;
 namespace
 {
 
+/// How the minimization before has ended.
+struct LastMinimum {
+  bool confirmed = false; ///< its active set was
+  Iterate::Dual dual;     ///< with friction: what it had, before pressures became multipliers
+};
+
 Prediction predict(const Step &step, Iterate &iterate, Vector &u, const Starts &starts);
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
-                      const StepOptions &options, int iteration, bool previous_confirmed,
+                      const StepOptions &options, int iteration, const LastMinimum &last,
                       const std::optional<PredictedBy> &predicted, const Progress &progress);
 double residual_before(const std::vector<double> &worst, bool bounds_follow);
 contact::OptimalityResiduals judge(const Problem &problem, const Step &step, const Iterate &iterate,
@@ -64,15 +70,17 @@ StepSolution solve_with(const Problem &problem, const Step &step, SolverState &s
   {
     const Timed timer("solve", s.solve_seconds);
     UzawaResult &uzawa = s.uzawa;
-    bool over = false, confirmed = false;
+    bool over = false;
+    LastMinimum last;
     std::vector<double> worst;  // largest residual of each iteration
     while (!over) {             // paper (16), paper (17): the gradient method for the dual problem
       if (uzawa.iterations > 0) // the correction is small against u (5.13)
         iterate.move_origin(*u, *uzawa.residuals.internal.forces, *step.elastic.applied_load);
       const Minimization found = // paper (10), (4.1): choose states (5.8) and solve (5.7), (5.9),
-          minimize(problem, iterate, u, state, options, uzawa.iterations + 1, confirmed, predicted,
+          minimize(problem, iterate, u, state, options, uzawa.iterations + 1, last, predicted,
                    progress); // Newton (4.2)
-      confirmed = found.active_set_confirmed;
+      last.confirmed = found.active_set_confirmed;
+      if (step.contact.friction.anywhere) last.dual = iterate.dual();
       uzawa.multiplier_change = found.active_set_confirmed ? iterate.take_active_set_pressures(*u)
                                                            : iterate.update_multipliers(*u); // paper (11), (5.1)
       s.state = iterate.state(*u);
@@ -192,13 +200,14 @@ int refine(const Iterate &iterate, Vector &u, SolverState &state)
 /// Where friction's states were not confirmed: the coupled choices once more from where the last Tresca problem led; if these do not
 /// settle soon, the Tresca problem with the next bounds. (12.12)
 Minimization
-minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options,
+minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options, const LastMinimum &last,
                          const std::function<solver::MinimizeResult(const solver::MinimizationLoop &, int)> &run)
 {
   int steps = 0, most = options.newton.max_iterations;
   if (solver::takes_loop(options.newton)) {
     const Vector start(u, Teuchos::Copy);
     const Iterate::Dual dual = iterate.dual();
+    if (!last.confirmed) iterate.take_dual(last.dual); // with pressures for multipliers, r v would count twice
     ActiveSetLoop choices(iterate, active_set_tolerances(options), ActiveSetLoop::Then::nothing);
     const auto tried = run(std::ref(choices), most);
     if (choices.confirmed()) return {tried.converged, tried.steps, tried.reason, true};
@@ -215,7 +224,7 @@ minimize_for_next_bounds(Iterate &iterate, Vector &u, const StepOptions &options
 }
 
 Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector> &u, SolverState &state,
-                      const StepOptions &options, const int iteration, const bool previous_confirmed,
+                      const StepOptions &options, const int iteration, const LastMinimum &last,
                       const std::optional<PredictedBy> &predicted, const Progress &progress)
 {
   const int all = options.newton.max_iterations;
@@ -229,13 +238,13 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
   };
   const bool friction = iterate.points().friction.anywhere;
   int in_vain = 0;
-  if (iteration > 1 && (!friction || previous_confirmed)) {
+  if (iteration > 1 && (!friction || last.confirmed)) {
     const Vector start(*u, friction ? Teuchos::Copy : Teuchos::View);
     const auto result =
         run([&](solver::MinimizationSteps &steps) { return minimize_from_same_active_set(iterate, steps); },
             friction ? 1 : all);
     if (friction && !(result.converged && result.newton_steps == 0)) { // choices go on, not the functional
-      u->assign(start);
+      if (result.newton_steps > 0) u->assign(start);
       in_vain = result.steps;
     } else {
       const int steps = result.steps == 0 && result.converged ? refine(iterate, *u, state) : result.steps;
@@ -243,7 +252,7 @@ Minimization minimize(const Problem &problem, Iterate &iterate, const RCP<Vector
     }
   }
   if (iteration > 1) {
-    Minimization found = minimize_for_next_bounds(iterate, *u, options, run);
+    Minimization found = minimize_for_next_bounds(iterate, *u, options, last, run);
     found.steps += in_vain;
     return found;
   }
