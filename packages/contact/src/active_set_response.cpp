@@ -39,7 +39,7 @@ AddedBlocks added_blocks(const SmoothedPoints &points, const ActiveSet &active, 
       "rpc::contact::added_blocks", device_range(s.size()), KOKKOS_LAMBDA(const LO i) {
         const ContactNodes &c = s.points;
         const Motion at = motion(c, i, x);
-        if (s.has_friction()) set_row(states.linearized_at, i, s.trial_traction(i, at));
+        if (s.has_friction()) set_row(states.linearized_at, i, s.trial_traction(i, at, states.branch(i)));
         if (!c.fixed(i))
           write_blocks(c, i, states.state(i), s.has_friction() && states.slip(i) == Slip::slip, spring,
                        s.respond_on_branch(i, states, at), blocks);
@@ -79,7 +79,9 @@ DeviceView<double **> active_set_tractions(const SmoothedPoints &points, const A
         const Motion at = motion(c, i, x);
         const double p =
             branch_pressure(states.state(i), at.penetration, s.multiplier.normal(i), s.penalty(i), c.law(i));
-        set_row(q, i, traction_on_branch(states.branch(i), s.trial_traction(i, at), p, c.friction(i), c.dim));
+        set_row(
+            q, i,
+            traction_on_branch(states.branch(i), s.trial_traction(i, at, states.branch(i)), p, c.friction(i), c.dim));
       });
   Kokkos::fence();
   return q;

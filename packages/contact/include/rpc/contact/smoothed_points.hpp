@@ -47,9 +47,10 @@ struct ActiveSet {
   bool chosen = false;          ///< else the states are those of K itself, all open, and say nothing about pressures
   DeviceView<Slip *> slip = {}; ///< (points) of friction; empty: there is none
   DeviceView<double **> direction = {};     ///< (points, dim) where a point slips: h in the plane, g in space
+  DeviceView<bool *> always = {};           ///< (points) slips since it cannot stick
   DeviceView<double **> linearized_at = {}; ///< (points, dim) lambda_tau + r e where the branches were linearized [Pa]
 
-  KOKKOS_INLINE_FUNCTION SlipBranch branch(const LO i) const { return {slip(i), row(direction, i)}; }
+  KOKKOS_INLINE_FUNCTION SlipBranch branch(const LO i) const { return {slip(i), row(direction, i), always(i)}; }
 };
 
 /// The contact points of a smoothed functional: what its formulas need of each.
@@ -66,10 +67,10 @@ struct SmoothedPoints {
     return has_friction() ? Multiplier{multiplier.normal(i), row(multiplier.tangential, i)}
                           : Multiplier{multiplier.normal(i)};
   }
-  /// lambda_tau + r e.
-  KOKKOS_INLINE_FUNCTION Along trial_traction(const LO i, const Motion &at) const
+  /// lambda_tau + r e, on a branch that may be without lambda_tau.
+  KOKKOS_INLINE_FUNCTION Along trial_traction(const LO i, const Motion &at, const SlipBranch &branch = {}) const
   {
-    return row(multiplier.tangential, i).plus(penalty(i), at.slip);
+    return contact::trial_traction(branch, row(multiplier.tangential, i), penalty(i), at.slip);
   }
   /// The response of one point at a motion, for kernels: friction with the given bound s, so that it has a potential.
   KOKKOS_INLINE_FUNCTION Response respond(const LO i, const Motion &at) const

@@ -36,6 +36,7 @@ struct Response {
 struct SlipBranch {
   Slip state = Slip::stick;
   Along direction = {};
+  bool always = false; ///< slips since it cannot stick: a part of its slip is prescribed
 };
 
 /// w a m m^T, the block of a stiffness a along m [Pa/m].
@@ -105,6 +106,14 @@ KOKKOS_INLINE_FUNCTION void add_friction(const Motion &at, const Multiplier &mul
   response.energy += w * smoothed_friction_energy(a, multiplier.tangential, s, r);
 }
 
+/// lambda_tau + r e, what states and directions in space are chosen by; of a point that cannot stick r e: the multiplier would lag behind a
+/// direction that a small prescribed slip holds. (12.13)
+KOKKOS_INLINE_FUNCTION Along trial_traction(const SlipBranch &branch, const Along &multiplier, const double r,
+                                            const Along &e)
+{
+  return branch.always ? e.scaled(r) : multiplier.plus(r, e);
+}
+
 /// Traction on the branch of a friction state, whether the law admits it or not: lambda_tau + r e, or s h with s at the pressure p. In the
 /// plane h is the branch's; in space it follows lambda_tau + r e.                                              (12.5)
 KOKKOS_INLINE_FUNCTION Along traction_on_branch(const SlipBranch &branch, const Along &a, const double p,
@@ -139,11 +148,12 @@ add_friction_on_branch(const State state, const SlipBranch &branch, const Motion
                        const Normal &normal, const Free &free, const double w, const int dim, Response &response)
 {
   const double p = branch_pressure(state, at.penetration, multiplier.normal, r, foundation);
-  const Along a = multiplier.tangential.plus(r, at.slip), q = traction_on_branch(branch, a, p, f, dim);
+  const Along a = trial_traction(branch, multiplier.tangential, r, at.slip),
+              q = traction_on_branch(branch, a, p, f, dim);
   if (branch.state == Slip::stick) return add_traction(w, q, {r, r}, {}, normal, free, dim, response);
   const Along h = dim == 2 ? branch.direction : a.unit();
   const double size = a.length(), s = friction_bound(p, f);
-  const double across = dim == 2 || !(s > 0) ? 0 : (s < size ? r * s / size : r);
+  const double across = dim == 2 || !(s > 0) ? 0 : (s < size || branch.always ? r * s / size : r);
   add_traction(w, q, {across, 0}, h, normal, free, dim, response);
   if (dim == 3) add_lag(w, across, h, branch.direction, free, dim, response);
   const double slope = friction_slope(p, f) * branch_stiffness(state, r, foundation);
