@@ -3,6 +3,7 @@
 
 #include "deck_notes.hpp"
 #include "rpc/core/error.hpp"
+#include "rpc/core/fingerprint.hpp"
 #include "rpc/core/parameters.hpp"
 #include "rpc/io/deck.hpp"
 #include "rpc/io/expression.hpp"
@@ -102,11 +103,21 @@ Scene read_scene(const std::string &deck_path, const std::vector<std::string> &a
   scene.model.dirichlet = fem::dirichlet_options(deck.sublist("Dirichlet"), dim, parse);
   scene.model.tractions = fem::traction_options(deck.sublist("Traction"), dim, parse);
   scene.model.body_force = fem::body_force_options(deck.sublist("Body Force"), dim, parse);
-  scene.model.contact = contact::contact_options(deck.sublist("Contact"), dim, parse);
+  const FileReader of_root = file_reader_of_root(std::filesystem::path(deck_path).parent_path().string(), comm);
+  std::string files; // a run does not go on with other contents
+  const FileReader read_file = [&](const std::string &name, const std::string &parameter) {
+    const std::string bytes = of_root(name, parameter);
+    std::uint64_t print = bytes.size();
+    for (const char c : bytes) print = scrambled(print, static_cast<unsigned char>(c));
+    files += parameter + "=" + std::to_string(print) + ";";
+    return bytes;
+  };
+  scene.model.contact = contact::contact_options(deck.sublist("Contact"), dim, parse, read_file);
   scene.step.prediction = analysis::prediction_options(deck.sublist("Nested Iteration"));
   scene.identity.emplace_back("Kinematics", deck.get<std::string>("Kinematics"));
   for (const char *const part : {"Mesh", "Material", "Dirichlet", "Traction", "Body Force", "Contact"})
     scene.identity.emplace_back(part, text_of(deck.sublist(part)));
+  if (!files.empty()) scene.identity.emplace_back("Contents of files", files);
   scene.steps = analysis::steps_options(deck.sublist("Steps"));
   RPC_REQUIRE(!scene.has_steps() || deck.getEntry("Time").isDefault(),
               "deck: \"Time\" = " << scene.time << " does not go with \"Steps\", which have times of their own");

@@ -106,7 +106,7 @@ double penalty_from(const std::string &text, const std::string &path)
 }
 
 ContactOptions side_options(const Teuchos::ParameterList &list, const std::string &path, const std::string &side,
-                            const int dim, const FieldParser &parse)
+                            const int dim, const FieldParser &parse, const FileReader &read_file)
 {
   ContactOptions options;
   options.path = path;
@@ -118,7 +118,7 @@ ContactOptions side_options(const Teuchos::ParameterList &list, const std::strin
   options.friction_bound = parse(field_text(list, "Friction Bound"), path + "->Friction Bound");
   options.friction_limit = parse(field_text(list, "Friction Limit"), path + "->Friction Limit");
   options.gap = parse(field_text(list, "Gap"), path + "->Gap");
-  options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle", parse);
+  options.obstacle = obstacle_options(list.sublist("Obstacle"), dim, path + "->Obstacle", parse, read_file);
   const auto &remembers = list.get<std::string>("Remembers");
   RPC_REQUIRE(remembers == "auto" || remembers == "true" || remembers == "false",
               "deck: \"" << path << "->Remembers\" must be one of auto, true, false, got \"" << remembers << "\"");
@@ -197,11 +197,12 @@ Teuchos::ParameterList valid_contact_parameters()
   return valid;
 }
 
-std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, const int dim, const FieldParser &parse)
+std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, const int dim, const FieldParser &parse,
+                                            const FileReader &read_file)
 {
   std::vector<ContactOptions> options;
   // Read even where it names no side: a wrong value is wrong in any case.
-  const ContactOptions first = side_options(list, "Contact", list.get<std::string>("Side"), dim, parse);
+  const ContactOptions first = side_options(list, "Contact", list.get<std::string>("Side"), dim, parse, read_file);
   if (!first.side.empty()) options.push_back(first);
   if (list.getEntry("Side").isDefault()) // empty by hand: contact is switched off, whatever it was
     for (auto it = list.begin(); it != list.end(); ++it)
@@ -214,7 +215,7 @@ std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, 
     const std::string name = sides.name(it);
     const Teuchos::ParameterList &entry = sides.sublist(name);
     const std::string side = entry.get<std::string>("Side").empty() ? name : entry.get<std::string>("Side");
-    options.push_back(side_options(entry, "Contact->Sides->" + name, side, dim, parse));
+    options.push_back(side_options(entry, "Contact->Sides->" + name, side, dim, parse, read_file));
   }
   name_for_results(options);
   return options;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -20,7 +21,7 @@ namespace
 /// A kind of surface in a deck.
 struct Choice {
   SurfaceKind kind;
-  Surface (*read)(const Teuchos::ParameterList &list, int dim, const std::string &path);
+  Surface (*read)(const Teuchos::ParameterList &list, int dim, const std::string &path, const FileReader &read_file);
 
   bool is(const std::string &type) const
   {
@@ -42,9 +43,14 @@ std::string names_with(const Choice &choice)
 }
 
 template <class Shape>
-Surface read_surface(const Teuchos::ParameterList &list, const int dim, const std::string &path)
+Surface read_surface(const Teuchos::ParameterList &list, const int dim, const std::string &path,
+                     [[maybe_unused]] const FileReader &read_file)
 {
-  return Shape::read(list, dim, path);
+  if constexpr (std::is_invocable_v<decltype(Shape::read), const Teuchos::ParameterList &, int, const std::string &,
+                                    const FileReader &>)
+    return Shape::read(list, dim, path, read_file);
+  else
+    return Shape::read(list, dim, path);
 }
 
 template <class... Shapes>
@@ -124,6 +130,15 @@ std::vector<ListParameter> list_parameters(const std::vector<Choice> &choices)
   return all;
 }
 
+void set_standard(Teuchos::ParameterList &valid, const ListParameter &p)
+{
+  const auto set = [&](const auto &standard) {
+    if constexpr (!std::is_same_v<std::decay_t<decltype(standard)>, std::vector<std::string>>)
+      valid.set(p.name, standard, p.help() + ".");
+  };
+  std::visit(set, p.parameter.standard);
+}
+
 /// The coordinates of a point as functions of time alone.
 std::array<ScalarField, 3> path_of(const Teuchos::ParameterList &list, const std::string &name, const int dim,
                                    const std::string &path, const FieldParser &parse)
@@ -156,14 +171,16 @@ Teuchos::ParameterList valid_obstacle_parameters()
   for (const ListParameter &p : list_parameters(all)) {
     if (p.is_point)
       set_fields(valid, p.name, p.help() + " [m]. Numbers, or expressions of t.");
+    else if (const auto *const words = std::get_if<std::vector<std::string>>(&p.parameter.standard))
+      set_words(valid, p.name, *words, p.help() + ".");
     else
-      std::visit([&](const auto &standard) { valid.set(p.name, standard, p.help() + "."); }, p.parameter.standard);
+      set_standard(valid, p);
   }
   return valid;
 }
 
 Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, const std::string &path,
-                          const FieldParser &parse)
+                          const FieldParser &parse, const FileReader &read_file)
 {
   const auto &type = list.get<std::string>("Type");
   const std::vector<Choice> all = choices();
@@ -189,7 +206,7 @@ Obstacle obstacle_options(const Teuchos::ParameterList &list, const int dim, con
                                           : ". Remove it, or change the type"));
   Obstacle obstacle;
   obstacle.path = path_of(list, choice->kind.point, dim, path, parse);
-  obstacle.surface = choice->read(list, dim, path);
+  obstacle.surface = choice->read(list, dim, path, read_file);
   for (int c = 0; c < dim; ++c) obstacle.point[c] = obstacle.path[c]({});
   obstacle.origin = obstacle.point;
   return obstacle;

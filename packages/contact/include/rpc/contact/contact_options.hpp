@@ -57,7 +57,8 @@ Teuchos::ParameterList valid_contact_parameters();
 /// One entry for each side and foundation that touches it; none if nothing touches.
 /// @throws rpc::Error (bad_input) on anything out of range that needs no mesh to be seen, and where two foundations of one side are not
 ///         told apart by an obstacle, or results by a name
-std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse);
+std::vector<ContactOptions> contact_options(const Teuchos::ParameterList &list, int dim, const FieldParser &parse,
+                                            const FileReader &read_file = bytes_of_file);
 
 /// A number of the foundation's law and the rule for it.
 struct LawParameter {

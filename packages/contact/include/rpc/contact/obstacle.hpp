@@ -3,6 +3,7 @@
 
 #include "rpc/contact/surface/surface.hpp"
 #include "rpc/core/field.hpp"
+#include "rpc/core/file_reader.hpp"
 
 #include <Teuchos_ParameterList.hpp>
 #include <array>
@@ -28,10 +29,11 @@ struct Obstacle {
 
 /// Parameters of an `Obstacle` sublist.
 Teuchos::ParameterList valid_obstacle_parameters();
-/// @param path  of the sublist, for messages
+/// @param path       of the sublist, for messages
+/// @param read_file  for obstacles that are given by a file
 /// @throws rpc::Error (bad_input) on anything out of range, or given for another type of obstacle
 Obstacle obstacle_options(const Teuchos::ParameterList &list, int dim, const std::string &path,
-                          const FieldParser &parse);
+                          const FieldParser &parse, const FileReader &read_file = bytes_of_file);
 
 // Of an obstacle that exists:
 

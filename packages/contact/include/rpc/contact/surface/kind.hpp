@@ -12,8 +12,9 @@ namespace rpc::contact
 /// A parameter of a deck's `Obstacle` list.
 struct SurfaceParameter {
   std::string name;
-  std::variant<double, bool, Teuchos::Array<double>> standard; ///< its default
-  std::string help;                                            ///< behind "plane: ", without a full stop
+  std::variant<double, bool, Teuchos::Array<double>, std::string, std::vector<std::string>>
+      standard;     ///< its default; of several words the first one is it, and the others are all that may stand there
+  std::string help; ///< behind "plane: ", without a full stop
 };
 
 /// How a deck's `Obstacle` list describes a kind of surface. A name may be of several kinds, with the same type and default.
